@@ -1,0 +1,26 @@
+//! Runs what `lagrangian!` generates: scalars, systems, motions, bodies and integrators.
+
+#[macro_use]
+mod macros;
+
+pub mod body;
+pub mod error;
+pub mod integrate;
+pub mod motion;
+pub mod real;
+pub mod system;
+pub mod time;
+
+#[doc(hidden)]
+#[path = "private.rs"]
+pub mod __private;
+
+/// What a program that writes a `lagrangian!` block and integrates it needs.
+pub mod prelude {
+    #[allow(unused_imports)]
+    pub use crate::integrate::*;
+    pub use crate::motion::Motion;
+    pub use crate::real::Real;
+    pub use crate::system::{Driven, Dynamics, System, VelocityFree};
+    pub use crate::{lagrangian, motion};
+}

@@ -1,0 +1,152 @@
+//! Prescribed motions: what drives the joints of a scene.
+//!
+//! A motion is asked for exactly the derivatives that the equations contain, and says where its kinks are: the times at which
+//! its position, velocity or acceleration jumps. There it has two values, one from each side.
+
+use crate::real::Real;
+use crate::system::{Input, Purpose};
+use crate::time::Time;
+
+/// A prescribed motion in `D` dimensions over the scalar `T`.
+pub trait Motion<T: Real, const D: usize> {
+    /// The derivatives that this motion has between its kinks.
+    const HAS: Orders;
+
+    /// Position, velocity and acceleration at `t`; those that `orders` leaves out are zero.
+    ///
+    /// At a kink the value is the limit from `side`; elsewhere `side` does not matter.
+    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D>;
+
+    /// The first time after `t` (never `t` itself) at which the position, the velocity or the acceleration jumps.
+    fn next_kink(&self, t: f64) -> Option<f64>;
+}
+
+/// A set of derivatives: of a motion's position, velocity and acceleration.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Orders(u8);
+
+impl Orders {
+    /// Nothing at all.
+    pub const NONE: Self = Self(0);
+    /// The position x.
+    pub const POSITION: Self = Self(1);
+    /// The velocity ẋ.
+    pub const VELOCITY: Self = Self(2);
+    /// The acceleration ẍ.
+    pub const ACCELERATION: Self = Self(4);
+    /// All three.
+    pub const ALL: Self = Self(7);
+
+    /// Those of `self` and those of `other`.
+    pub const fn and(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Whether all of `other` are in `self`.
+    pub const fn contains(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+}
+
+/// The side from which a kink is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The limit from earlier times.
+    Before,
+    /// The limit from later times.
+    After,
+}
+
+/// A motion at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample<T, const D: usize> {
+    /// x, in metres as a rule.
+    pub position: [T; D],
+    /// ẋ.
+    pub velocity: [T; D],
+    /// ẍ.
+    pub acceleration: [T; D],
+}
+
+impl<T: Real, const D: usize> Sample<T, D> {
+    /// Zero in all components.
+    pub fn zero() -> Self {
+        let zero = [T::from_f64(0.0); D];
+        Self { position: zero, velocity: zero, acceleration: zero }
+    }
+}
+
+/// The motions of all driven inputs of a system: `()` or a tuple, in the order of declaration.
+pub trait Motions<Inputs> {
+    /// The derivatives that each motion has.
+    const HAS: &'static [Orders];
+
+    /// One sample for each motion.
+    fn sample(&self, t: Time, side: Side, inputs: &[Input], purpose: Purpose) -> Inputs;
+
+    /// The first kink of any of them after `t`.
+    fn next_kink(&self, t: f64) -> Option<f64>;
+}
+
+/// Whether motions that have the derivatives `has` can drive `inputs`.
+pub(crate) const fn sufficient(has: &[Orders], inputs: &[Input]) -> bool {
+    let mut index = 0;
+    while index < inputs.len() {
+        let input = &inputs[index];
+        let needed = input.accelerations.and(input.momenta).and(input.energy).and(input.power);
+        if !has[index].contains(needed) {
+            return false;
+        }
+        index += 1;
+    }
+    true
+}
+
+impl Motions<()> for () {
+    const HAS: &'static [Orders] = &[];
+
+    fn sample(&self, _: Time, _: Side, _: &[Input], _: Purpose) {}
+
+    fn next_kink(&self, _: f64) -> Option<f64> {
+        None
+    }
+}
+
+/// The earlier of two kinks.
+fn earlier(a: Option<f64>, b: Option<f64>) -> Option<f64> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(if b < a { b } else { a }),
+        (a, None) => a,
+        (None, b) => b,
+    }
+}
+
+macro_rules! tuples {
+    ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
+        impl<T: Real, $($motion: Motion<T, $dim>, const $dim: usize),+> Motions<($(Sample<T, $dim>,)+)> for ($($motion,)+) {
+            const HAS: &'static [Orders] = &[$($motion::HAS),+];
+
+            #[inline]
+            fn sample(&self, t: Time, side: Side, inputs: &[Input], purpose: Purpose) -> ($(Sample<T, $dim>,)+) {
+                ($(self.$index.sample(t, side, inputs[$index].orders(purpose)),)+)
+            }
+
+            fn next_kink(&self, t: f64) -> Option<f64> {
+                let mut next = None;
+                $(next = earlier(next, self.$index.next_kink(t));)+
+                next
+            }
+        }
+    )+};
+}
+
+tuples! {
+    (A DA 0)
+    (A DA 0, B DB 1)
+    (A DA 0, B DB 1, C DC 2)
+    (A DA 0, B DB 1, C DC 2, D DD 3)
+    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4)
+    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4, F DF 5)
+    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4, F DF 5, G DG 6)
+    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4, F DF 5, G DG 6, H DH 7)
+}

@@ -1,0 +1,312 @@
+//! What `lagrangian!` generates, and a system together with the motions that drive it.
+
+use crate::motion::{Motions, Orders, Side, sufficient};
+use crate::real::Real;
+use crate::time::Time;
+use nalgebra::SMatrix;
+
+/// A mechanical system with `N` generalized coordinates: the equations of motion of one Lagrangian.
+///
+/// `q` are the coordinates, `v` their velocities q̇, `t` the time in seconds and `inputs` the samples of the driven inputs.
+/// Each function is generated on its own from one shared expression graph, so that what nobody calls costs nothing.
+/// `lagrangian!` implements it; nothing here checks for singular mass matrices or numbers that are not finite, the
+/// integrators do.
+pub trait System<const N: usize> {
+    /// The scalar of parameters and state.
+    type Scalar: Real;
+    /// `()` or a tuple with a [`Sample`](crate::motion::Sample) for each driven input, in the order of declaration.
+    type Inputs: Copy;
+    /// The same system over another scalar.
+    type With<U: Real>: System<N, Scalar = U>;
+
+    /// What is known about the system before it runs.
+    const FACTS: Facts;
+
+    /// The same system with every parameter mapped, in the order of `FACTS.parameters`.
+    fn map<U: Real>(&self, map: impl FnMut(Self::Scalar) -> U) -> Self::With<U>;
+
+    /// The accelerations q̈.
+    fn accelerations(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> [Self::Scalar; N];
+
+    /// The Jacobi integral q̇·∂L/∂q̇ − L.
+    fn energy(&self, t: Self::Scalar, q: &[Self::Scalar; N], v: &[Self::Scalar; N], inputs: &Self::Inputs) -> Self::Scalar;
+
+    /// dE/dt along the motion: −∂L/∂t − q̇·∂R/∂q̇ + Q·q̇, where ∂/∂t takes in the driven inputs.
+    fn power(&self, t: Self::Scalar, q: &[Self::Scalar; N], v: &[Self::Scalar; N], inputs: &Self::Inputs) -> Self::Scalar;
+
+    /// The generalized momenta p = ∂L/∂q̇.
+    fn momenta(&self, t: Self::Scalar, q: &[Self::Scalar; N], v: &[Self::Scalar; N], inputs: &Self::Inputs) -> [Self::Scalar; N];
+
+    /// The velocities q̇ that give the momenta `p`.
+    fn velocities(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        p: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> [Self::Scalar; N];
+
+    /// The mass matrix M = ∂²L/∂q̇².
+    fn mass_matrix(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> SMatrix<Self::Scalar, N, N>;
+
+    /// The right-hand side f of M q̈ = f.
+    fn forces(&self, t: Self::Scalar, q: &[Self::Scalar; N], v: &[Self::Scalar; N], inputs: &Self::Inputs) -> [Self::Scalar; N];
+
+    /// dp/dt = ∂L/∂q − ∂R/∂q̇ + Q: the other half of the momentum form, which needs one derivative of the inputs less than
+    /// the accelerations.
+    fn momentum_rates(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> [Self::Scalar; N];
+}
+
+/// A system whose Lagrangian was given as kinetic minus potential energy.
+pub trait SplitEnergy<const N: usize>: System<N> {
+    /// The sum of all `kinetic` statements.
+    fn kinetic_energy(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> Self::Scalar;
+
+    /// The sum of all `potential` statements.
+    fn potential_energy(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> Self::Scalar;
+}
+
+/// The marker of systems with a constant mass matrix whose accelerations contain no velocity.
+///
+/// Leapfrog and Runge–Kutta–Nyström methods are wrong for all others, so they ask for it.
+#[diagnostic::on_unimplemented(
+    message = "the accelerations of `{Self}` contain velocities or its mass matrix is not constant",
+    label = "a splitting or Nyström method would be wrong here",
+    note = "use `Rk4`, `Tsit5` or `Dop853`"
+)]
+pub trait VelocityFree<const N: usize>: System<N> {}
+
+/// What `lagrangian!` knows about a system before it runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Facts {
+    /// The name of the struct.
+    pub name: &'static str,
+    /// The coordinates as written, a family as `θ[0]`, `θ[1]`, ….
+    pub coordinates: &'static [&'static str],
+    /// The parameters in the order of [`System::map`], a vector as `c.x`, `c.y`, a family as `m[0]`, ….
+    pub parameters: &'static [&'static str],
+    /// The units of the parameters as written, empty where none was given.
+    pub units: &'static [&'static str],
+    /// The driven inputs in the order of declaration.
+    pub inputs: &'static [Input],
+    /// Neither time nor a driven input stands in the equations.
+    pub autonomous: bool,
+    /// The energy is T(p) + V(q, t): the mass matrix is constant and no velocity multiplies a function of the coordinates.
+    pub separable: bool,
+    /// The accelerations contain no velocity.
+    pub velocity_free: bool,
+    /// The mass matrix contains neither coordinates, velocities nor time.
+    pub constant_mass_matrix: bool,
+    /// There is a `dissipation` or `force` statement.
+    pub nonconservative: bool,
+    /// The coordinates that do not stand in the Lagrangian, by index.
+    pub cyclic: &'static [usize],
+    /// The parameters that the accelerations do not need.
+    pub unused: &'static [&'static str],
+    /// The equations of motion, one line a coordinate.
+    pub equations: &'static str,
+}
+
+impl Facts {
+    /// The facts of a system about which nothing is known but its names.
+    pub const fn new(name: &'static str, coordinates: &'static [&'static str]) -> Self {
+        Self {
+            name,
+            coordinates,
+            parameters: &[],
+            units: &[],
+            inputs: &[],
+            autonomous: false,
+            separable: false,
+            velocity_free: false,
+            constant_mass_matrix: false,
+            nonconservative: true,
+            cyclic: &[],
+            unused: &[],
+            equations: "",
+        }
+    }
+}
+
+/// What a system takes from one of its driven inputs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Input {
+    /// The name as written.
+    pub name: &'static str,
+    /// The number of components.
+    pub components: usize,
+    /// What the accelerations and forces need.
+    pub accelerations: Orders,
+    /// What momenta, velocities and momentum rates need.
+    pub momenta: Orders,
+    /// What the energy needs.
+    pub energy: Orders,
+    /// What the power needs.
+    pub power: Orders,
+}
+
+/// The output for which a driven input is sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// [`System::accelerations`] and [`System::forces`].
+    Accelerations,
+    /// [`System::momenta`], [`System::velocities`], [`System::momentum_rates`] and [`System::mass_matrix`].
+    Momenta,
+    /// [`System::energy`] and the two energies of [`SplitEnergy`].
+    Energy,
+    /// [`System::power`].
+    Power,
+}
+
+impl Input {
+    /// The derivatives that `purpose` needs.
+    pub const fn orders(&self, purpose: Purpose) -> Orders {
+        match purpose {
+            Purpose::Accelerations => self.accelerations,
+            Purpose::Momenta => self.momenta,
+            Purpose::Energy => self.energy,
+            Purpose::Power => self.power,
+        }
+    }
+}
+
+/// A system with a motion for each of its driven inputs: what an integrator takes.
+///
+/// Every system without driven inputs is one; a driven one becomes one by its method `driven_by`, which gives a [`Driven`].
+pub trait Dynamics<const N: usize> {
+    /// The system.
+    type System: System<N, Scalar = Self::Scalar>;
+    /// Its scalar.
+    type Scalar: Real;
+
+    /// The system.
+    fn system(&self) -> &Self::System;
+
+    /// The samples of all driven inputs at `t`, seen from `side`, with the derivatives that `purpose` needs.
+    fn inputs(&self, t: Time, side: Side, purpose: Purpose) -> <Self::System as System<N>>::Inputs;
+
+    /// The first time after `t` at which a derivative of a driven input jumps.
+    fn next_kink(&self, t: f64) -> Option<f64>;
+
+    /// The accelerations at `t`, seen from `side`.
+    #[inline]
+    fn accelerations_at(&self, t: Time, side: Side, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> [Self::Scalar; N] {
+        let inputs = self.inputs(t, side, Purpose::Accelerations);
+        self.system().accelerations(scalar_time(t), q, v, &inputs)
+    }
+
+    /// The Jacobi integral at `t`.
+    fn energy_at(&self, t: f64, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> Self::Scalar {
+        let t = Time::new(t);
+        let inputs = self.inputs(t, Side::After, Purpose::Energy);
+        self.system().energy(scalar_time(t), q, v, &inputs)
+    }
+
+    /// dE/dt at `t`.
+    fn power_at(&self, t: f64, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> Self::Scalar {
+        let t = Time::new(t);
+        let inputs = self.inputs(t, Side::After, Purpose::Power);
+        self.system().power(scalar_time(t), q, v, &inputs)
+    }
+
+    /// The velocities just after a kink at `t` from those just before it: the momenta are the same on both sides.
+    fn across_kink(&self, t: Time, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> [Self::Scalar; N] {
+        let before = self.inputs(t, Side::Before, Purpose::Momenta);
+        let after = self.inputs(t, Side::After, Purpose::Momenta);
+        let p = self.system().momenta(scalar_time(t), q, v, &before);
+        self.system().velocities(scalar_time(t), q, &p, &after)
+    }
+}
+
+/// `t` in the scalar of a system, with both of its words.
+#[inline]
+pub fn scalar_time<T: Real>(t: Time) -> T {
+    T::from_f64(t.to_f64()) + T::from_f64(t.low())
+}
+
+impl<const N: usize, S: System<N, Inputs = ()>> Dynamics<N> for S {
+    type System = S;
+    type Scalar = S::Scalar;
+
+    fn system(&self) -> &S {
+        self
+    }
+
+    #[inline]
+    fn inputs(&self, _: Time, _: Side, _: Purpose) {}
+
+    fn next_kink(&self, _: f64) -> Option<f64> {
+        None
+    }
+}
+
+/// A system and the motions of its driven inputs.
+#[derive(Clone, Debug)]
+pub struct Driven<S, M> {
+    /// The system.
+    pub system: S,
+    /// A tuple of motions in the order of declaration.
+    pub motions: M,
+}
+
+impl<S, M> Driven<S, M> {
+    /// Binds `motions`, a tuple with one motion for each driven input; does not compile if one of them lacks a derivative that
+    /// the equations need.
+    pub fn new<const N: usize>(system: S, motions: M) -> Self
+    where
+        S: System<N>,
+        M: Motions<S::Inputs>,
+    {
+        const { assert!(sufficient(M::HAS, S::FACTS.inputs), "a motion lacks a derivative that the equations of motion need") };
+        Self { system, motions }
+    }
+}
+
+impl<const N: usize, S: System<N>, M: Motions<S::Inputs>> Dynamics<N> for Driven<S, M> {
+    type System = S;
+    type Scalar = S::Scalar;
+
+    fn system(&self) -> &S {
+        &self.system
+    }
+
+    #[inline]
+    fn inputs(&self, t: Time, side: Side, purpose: Purpose) -> S::Inputs {
+        self.motions.sample(t, side, S::FACTS.inputs, purpose)
+    }
+
+    fn next_kink(&self, t: f64) -> Option<f64> {
+        self.motions.next_kink(t)
+    }
+}

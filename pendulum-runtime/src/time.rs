@@ -1,0 +1,84 @@
+//! Time in two words, so that a step of 1/60 s still resolves the motion after a year.
+
+use core::ops::{Add, AddAssign};
+
+/// A time in seconds, `hi + lo` with |lo| at most half a unit in the last place of `hi`.
+///
+/// Integrators add their steps to it without losing the low digits; motions take differences to their keys first.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Time {
+    hi: f64,
+    lo: f64,
+}
+
+impl Time {
+    /// The time `hi`, exactly.
+    pub const fn new(hi: f64) -> Self {
+        Self { hi, lo: 0.0 }
+    }
+
+    /// The nearest `f64`.
+    pub const fn to_f64(self) -> f64 {
+        self.hi
+    }
+
+    /// What `to_f64` leaves off.
+    pub const fn low(self) -> f64 {
+        self.lo
+    }
+
+    /// `self - origin`, rounded once.
+    pub fn since(self, origin: f64) -> f64 {
+        // Sterbenz: near the origin the first difference is exact.
+        (self.hi - origin) + self.lo
+    }
+}
+
+impl From<f64> for Time {
+    fn from(hi: f64) -> Self {
+        Self::new(hi)
+    }
+}
+
+impl Add<f64> for Time {
+    type Output = Self;
+
+    /// Knuth (1969), the two-sum: the sum and its rounding error.
+    fn add(self, step: f64) -> Self {
+        let sum = self.hi + step;
+        let part = sum - self.hi;
+        let error = (self.hi - (sum - part)) + (step - part);
+        let low = self.lo + error;
+        let hi = sum + low;
+        Self { hi, lo: low - (hi - sum) }
+    }
+}
+
+impl AddAssign<f64> for Time {
+    fn add_assign(&mut self, step: f64) {
+        *self = *self + step;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Time;
+
+    #[test]
+    fn sixtieths_add_up_after_thirty_years() {
+        let mut time = Time::new(1e9);
+        for _ in 0..600 {
+            time += 1.0 / 60.0;
+        }
+        // 600 · fl(1/60) = 10 within 600 half-ulps of 1/60.
+        assert!((time.since(1e9) - 10.0).abs() < 600.0 * 1.8e-18 + 2e-15);
+    }
+
+    #[test]
+    fn low_word_stays_below_half_a_unit() {
+        let time = Time::new(1e15) + 0.3;
+        assert_eq!(time.to_f64(), 1e15 + 0.3);
+        assert!(time.low().abs() <= 0.0625);
+        assert_eq!(time.since(1e15), 0.3);
+    }
+}
