@@ -1,9 +1,57 @@
-//! The `lagrangian!` macro.
+//! The `lagrangian!` macro of the `pendulum` workspace: a Lagrangian in, Rust out.
 
-use proc_macro::TokenStream;
+use error::Errors;
+use proc_macro2::TokenStream;
+use syn::parse::{ParseStream, Parser};
 
-/// Placeholder until the language lands.
+mod ast;
+mod check;
+mod collect;
+mod diff;
+mod emit;
+mod error;
+mod expr;
+mod lower;
+mod motion;
+mod name;
+mod number;
+mod parse;
+mod print;
+mod rule;
+mod schedule;
+mod solve;
+#[cfg(test)]
+mod tests;
+mod unit;
+
+/// Takes a Lagrangian and emits a type that implements `pendulum_runtime::system::System`.
+#[doc = include_str!("../language.md")]
 #[proc_macro]
-pub fn lagrangian(_: TokenStream) -> TokenStream {
-    TokenStream::new()
+pub fn lagrangian(input: proc_macro::TokenStream) -> proc_macro::TokenStream {
+    expand(input.into()).into()
+}
+
+/// The compiler: parse, check, lower, derive, emit. The items are always there, whatever is wrong with the block.
+fn expand(input: TokenStream) -> TokenStream {
+    let mut errors = Errors::default();
+    let parsed = Parser::parse2(
+        |input: ParseStream| {
+            let krate = parse::runtime(input)?;
+            Ok((krate, parse::block(input, &mut errors)))
+        },
+        input,
+    );
+    let (krate, block) = match parsed {
+        Ok((krate, Some(block))) => (krate, block),
+        Ok((_, None)) => return errors.into_tokens(),
+        Err(error) => return error.to_compile_error(),
+    };
+    let model = check::resolve(&block, &mut errors);
+    let mut graph = expr::Graph::new();
+    let energies = lower::energies(&model, &mut graph, &mut errors);
+    let motion = errors.is_empty().then(|| motion::derive(&model, &mut graph, &energies, &mut errors));
+    let motion = motion.filter(|_| errors.is_empty());
+    let items = emit::Emitter { krate, model: &model, graph, motion, energies }.items();
+    let errors = errors.into_tokens();
+    quote::quote!(#errors #items)
 }

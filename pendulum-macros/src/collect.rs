@@ -1,0 +1,185 @@
+//! A Lagrangian as a polynomial in the velocities.
+//!
+//! Written naively, kinetic energy is a sum of squares of Cartesian velocities. Collected by powers of the velocities, each
+//! coefficient simplifies on its own (sin² + cos², cos a cos b + sin a sin b, equal masses), and the equations of motion come out
+//! as a careful person would write them.
+
+use crate::expr::{Contents, Graph, Id, Node};
+use crate::number::Rational;
+use std::collections::BTreeMap;
+
+/// Powers of velocities, sorted.
+type Monomial = Vec<(Id, i64)>;
+
+/// The terms of each coefficient.
+type Polynomial = BTreeMap<Monomial, Vec<(Id, Rational)>>;
+
+/// More terms than this are left as they stand.
+const LIMIT: usize = 20_000;
+
+/// `id` collected by powers of its velocities (of coordinates and driven inputs), if it is a polynomial in them.
+pub(crate) fn by_velocities(graph: &mut Graph, id: Id) -> Option<Id> {
+    let polynomial = polynomial(graph, id)?;
+    let mut terms = Vec::new();
+    for (monomial, coefficient) in polynomial {
+        let coefficient = simplest(graph, &coefficient);
+        let mut factors: Vec<(Id, Rational)> = monomial.iter().map(|&(base, power)| (base, Rational::whole(power))).collect();
+        factors.push((coefficient, Rational::ONE));
+        terms.push((graph.product(Rational::ONE, &factors), Rational::ONE));
+    }
+    Some(graph.sum(&terms))
+}
+
+fn moving() -> Contents {
+    Contents::VELOCITY.or(Contents::VELOCITY_INPUT).or(Contents::ACCELERATION_INPUT)
+}
+
+/// The polynomial that an expression is, from those of its children.
+fn polynomial(graph: &mut Graph, root: Id) -> Option<Polynomial> {
+    let mut known: BTreeMap<Id, Polynomial> = BTreeMap::new();
+    for id in graph.reachable(&[root]) {
+        if !graph.contents(id).any(moving()) {
+            continue;
+        }
+        let value = match graph.node(id).clone() {
+            Node::Symbol(_) => Polynomial::from([(vec![(id, 1)], vec![(Graph::ONE, Rational::ONE)])]),
+            Node::Sum(terms) => {
+                let mut sum = Polynomial::new();
+                for (term, coefficient) in terms {
+                    match known.get(&term) {
+                        None => sum.entry(Vec::new()).or_default().push((term, coefficient)),
+                        Some(part) => {
+                            for (monomial, list) in part {
+                                let entry = sum.entry(monomial.clone()).or_default();
+                                for &(own, factor) in list {
+                                    entry.push((own, factor.mul(coefficient)?));
+                                }
+                            }
+                        }
+                    }
+                }
+                sum
+            }
+            Node::Product(coefficient, factors) => {
+                let mut product = Polynomial::from([(Vec::new(), vec![(Graph::ONE, coefficient)])]);
+                let mut still = Vec::new();
+                for (base, exponent) in factors {
+                    match known.get(&base) {
+                        None => still.push((base, exponent)),
+                        Some(part) => {
+                            let count = exponent.integer().filter(|count| (1..=8).contains(count))?;
+                            for _ in 0..count {
+                                product = multiply(graph, &product, part)?;
+                            }
+                        }
+                    }
+                }
+                let still = graph.product(Rational::ONE, &still);
+                let constant = Polynomial::from([(Vec::new(), vec![(still, Rational::ONE)])]);
+                multiply(graph, &product, &constant)?
+            }
+            Node::Atom(inner) => known.get(&inner)?.clone(),
+            _ => return None,
+        };
+        if LIMIT < value.values().map(Vec::len).sum() {
+            return None;
+        }
+        known.insert(id, value);
+    }
+    match known.remove(&root) {
+        Some(polynomial) => Some(polynomial),
+        None => Some(Polynomial::from([(Vec::new(), vec![(root, Rational::ONE)])])),
+    }
+}
+
+fn multiply(graph: &mut Graph, a: &Polynomial, b: &Polynomial) -> Option<Polynomial> {
+    let size = |polynomial: &Polynomial| polynomial.values().map(Vec::len).sum::<usize>();
+    if LIMIT < size(a).saturating_mul(size(b)) {
+        return None;
+    }
+    let mut product = Polynomial::new();
+    for (left, left_terms) in a {
+        for (right, right_terms) in b {
+            let mut powers: BTreeMap<Id, i64> = left.iter().copied().collect();
+            for &(base, power) in right {
+                *powers.entry(base).or_default() += power;
+            }
+            let entry = product.entry(powers.into_iter().collect()).or_insert_with(Vec::new);
+            for &(x, p) in left_terms {
+                for &(y, q) in right_terms {
+                    entry.push((graph.mul(x, y), p.mul(q)?));
+                }
+            }
+        }
+    }
+    Some(product)
+}
+
+/// The cheaper of a coefficient as it came and multiplied out.
+fn simplest(graph: &mut Graph, terms: &[(Id, Rational)]) -> Id {
+    let plain = graph.sum(terms);
+    let mut flat = Vec::new();
+    for &(term, coefficient) in terms {
+        match expand(graph, term) {
+            Some(parts) => {
+                for (part, own) in parts {
+                    match own.mul(coefficient) {
+                        Some(own) => flat.push((part, own)),
+                        None => return plain,
+                    }
+                }
+            }
+            None => return plain,
+        }
+    }
+    let flat = graph.sum(&flat);
+    if cost(graph, flat) < cost(graph, plain) { flat } else { plain }
+}
+
+/// A product of sums multiplied out; `None` if that would be too long.
+fn expand(graph: &mut Graph, term: Id) -> Option<Vec<(Id, Rational)>> {
+    let (coefficient, bare) = graph.split(term);
+    let mut terms = vec![(Graph::ONE, coefficient)];
+    for (base, exponent) in graph.factors(bare) {
+        let sum = match (graph.node(base).clone(), exponent.integer()) {
+            (Node::Sum(sum), Some(count)) if 0 < count && count <= 4 => Some((sum, count)),
+            _ => None,
+        };
+        let (parts, count) = sum.unwrap_or_else(|| (vec![(graph.power(base, exponent), Rational::ONE)], 1));
+        for _ in 0..count {
+            if 256 < terms.len() * parts.len() {
+                return None;
+            }
+            let mut next = Vec::new();
+            for &(x, p) in &terms {
+                for &(y, q) in &parts {
+                    next.push((graph.mul(x, y), p.mul(q)?));
+                }
+            }
+            terms = next;
+        }
+    }
+    Some(terms)
+}
+
+/// A rough count of the operations of an expression, shared nodes once.
+pub(crate) fn cost(graph: &Graph, root: Id) -> usize {
+    let price = |id: Id| match graph.node(id) {
+        Node::Number(_) | Node::Opaque(_) | Node::Pi | Node::Symbol(_) | Node::Atom(_) => 0,
+        Node::Sum(terms) => terms.len() - 1 + terms.iter().filter(|(_, coefficient)| coefficient.abs() != Rational::ONE).count(),
+        Node::Product(coefficient, factors) => {
+            let powers: usize = factors
+                .iter()
+                .map(|(_, exponent)| match exponent.integer() {
+                    Some(1) => 1,
+                    Some(power) if 0 < power => power.unsigned_abs().ilog2() as usize + 2,
+                    Some(_) => 8,
+                    None => 16,
+                })
+                .sum();
+            powers - 1 + usize::from(coefficient.abs() != Rational::ONE)
+        }
+        Node::Call(..) | Node::Atan2(..) | Node::Max(..) => 20,
+    };
+    graph.reachable(&[root]).into_iter().map(price).sum()
+}
