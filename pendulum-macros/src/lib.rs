@@ -2,7 +2,6 @@
 
 use error::Errors;
 use proc_macro2::TokenStream;
-use syn::parse::{ParseStream, Parser};
 
 mod ast;
 mod check;
@@ -34,17 +33,8 @@ pub fn lagrangian(input: proc_macro::TokenStream) -> proc_macro::TokenStream {
 /// The compiler: parse, check, lower, derive, emit. The items are always there, whatever is wrong with the block.
 fn expand(input: TokenStream) -> TokenStream {
     let mut errors = Errors::default();
-    let parsed = Parser::parse2(
-        |input: ParseStream| {
-            let krate = parse::runtime(input)?;
-            Ok((krate, parse::block(input, &mut errors)))
-        },
-        input,
-    );
-    let (krate, block) = match parsed {
-        Ok((krate, Some(block))) => (krate, block),
-        Ok((_, None)) => return errors.into_tokens(),
-        Err(error) => return error.to_compile_error(),
+    let Some((krate, block)) = parse::all(input, &mut errors) else {
+        return errors.into_tokens();
     };
     let model = check::resolve(&block, &mut errors);
     let mut graph = expr::Graph::new();

@@ -153,7 +153,7 @@ impl Lower<'_, '_, '_, '_> {
                 },
                 (Some(ForceIndex::Each(binder)), Some(length)) => {
                     let range = self.range(binder);
-                    match range.clone().find(|k| !(0..length.cast_signed() as i64).contains(k)) {
+                    match range.clone().find(|k| !usize::try_from(*k).is_ok_and(|k| k < length)) {
                         Some(k) => {
                             self.errors.at(binder.high.range, outside(&force.name.to_string(), k, length));
                             continue;
@@ -370,7 +370,7 @@ impl Lower<'_, '_, '_, '_> {
 
     fn quantity(&mut self, quantity: &check::Quantity, symbol: impl Fn(usize) -> Symbol) -> Value {
         let mut scalar = |offset: usize| self.graph.symbol(symbol(quantity.first + offset));
-        let coordinate = matches!(symbol(0), Symbol::Coordinate(_) | Symbol::Velocity(_));
+        let coordinate = matches!(symbol(quantity.first), Symbol::Coordinate(_) | Symbol::Velocity(_));
         match quantity.length {
             None => Value::Scalar(scalar(0)),
             Some(2) if !coordinate => Value::Plane { parts: [scalar(0), scalar(1)], complex: false },

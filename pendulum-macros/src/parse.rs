@@ -8,28 +8,41 @@ use crate::error::{Errors, Range};
 use crate::number::Rational;
 use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
 use syn::ext::IdentExt;
-use syn::parse::{ParseStream, Result};
+use syn::parse::{ParseStream, Parser as Syn, Result};
 use syn::spanned::Spanned;
 use syn::{Attribute, Lit, Token, Visibility, braced, bracketed, parenthesized};
 
 /// Deeper expressions are refused: they would overflow the stack before they meant anything.
 const DEPTH: usize = 128;
 
-/// Parses a block; `None` if not even its struct could be read.
-pub(crate) fn block(input: ParseStream, errors: &mut Errors) -> Option<Block> {
-    let mut parser = Parser { errors, sources: 0, depth: 0, lost: Lost::default() };
-    match parser.block(input) {
-        Ok(block) => Some(block),
-        Err(error) => {
-            parser.errors.push(error);
+/// Parses the path of the runtime and a block; `None` if not even the struct could be read.
+pub(crate) fn all(input: TokenStream, errors: &mut Errors) -> Option<(TokenStream, Block)> {
+    let mut parsed = None;
+    let outcome = Syn::parse2(
+        |input: ParseStream| {
+            let krate = runtime(input)?;
+            let mut parser = Parser { errors: &mut *errors, sources: 0, depth: 0, lost: Lost::default() };
+            match parser.block(input) {
+                Ok(block) => parsed = Some((krate, block)),
+                Err(error) => errors.push(error),
+            }
             drain(input);
-            None
-        }
+            Ok(())
+        },
+        input,
+    );
+    // What recovery has left in some bracket has been reported already.
+    if let Err(error) = outcome
+        && errors.is_empty()
+    {
+        errors.push(error);
+        parsed = None;
     }
+    parsed
 }
 
 /// The path of the runtime, up to the first `;`.
-pub(crate) fn runtime(input: ParseStream) -> Result<TokenStream> {
+fn runtime(input: ParseStream) -> Result<TokenStream> {
     let mut path = TokenStream::new();
     while !input.is_empty() && !input.peek(Token![;]) {
         path.extend([input.parse::<TokenTree>()?]);
@@ -50,12 +63,14 @@ impl Parser<'_> {
         let attributes = input.call(Attribute::parse_outer)?;
         let visibility: Visibility = input.parse()?;
         if !input.peek(Token![struct]) {
-            return Err(input.error("a block begins with its struct; write `pub struct Name { … }` with the parameters"));
+            return Err(Range::from(input.span())
+                .error("a block begins with its struct; write `pub struct Name { … }` with the parameters"));
         }
         input.parse::<Token![struct]>()?;
         let name = identifier(input, "the name of the struct")?;
         if !input.peek(syn::token::Brace) {
-            return Err(input.error("the parameters are missing; write `{ m: kg, L: m }` after the name of the struct"));
+            return Err(Range::from(input.span())
+                .error("the parameters are missing; write `{ m: kg, L: m }` after the name of the struct"));
         }
         let content;
         braced!(content in input);
@@ -119,7 +134,9 @@ impl Parser<'_> {
             bracketed!(content in input);
             let unit = self.expr(&content)?;
             if !content.peek(Token![;]) {
-                return Err(content.error("a length is missing; write `[m; 2]` for a vector, `[kg; 5]` for a family"));
+                return Err(
+                    Range::from(content.span()).error("a length is missing; write `[m; 2]` for a vector, `[kg; 5]` for a family")
+                );
             }
             content.parse::<Token![;]>()?;
             let length = self.expr(&content)?;
@@ -280,7 +297,7 @@ impl Parser<'_> {
     fn expr(&mut self, input: ParseStream) -> Result<Expr> {
         self.depth += 1;
         let result = if DEPTH < self.depth {
-            Err(input.error("this expression is nested too deeply; name a part of it with `let`"))
+            Err(Range::from(input.span()).error("this expression is nested too deeply; name a part of it with `let`"))
         } else {
             self.sum(input)
         };
@@ -313,7 +330,7 @@ impl Parser<'_> {
             let over = input.peek(Token![/]);
             input.parse::<TokenTree>()?;
             if input.peek(Token![*]) {
-                return Err(input.error("`**` is not an operator; write `^`"));
+                return Err(Range::from(input.span()).error("`**` is not an operator; write `^`"));
             }
             factors.push((over, self.unary(input)?));
         }
@@ -327,7 +344,11 @@ impl Parser<'_> {
         }
         let sign: Range = input.parse::<TokenTree>()?.span().into();
         self.depth += 1;
-        let operand = if DEPTH < self.depth { Err(input.error("too many signs in a row; write one")) } else { self.unary(input) };
+        let operand = if DEPTH < self.depth {
+            Err(Range::from(input.span()).error("too many signs in a row; write one"))
+        } else {
+            self.unary(input)
+        };
         self.depth -= 1;
         let operand = operand?;
         let range = sign.to(operand.range);
@@ -342,7 +363,7 @@ impl Parser<'_> {
         input.parse::<Token![^]>()?;
         self.depth += 1;
         let exponent = if DEPTH < self.depth {
-            Err(input.error("too many powers in a row; name a part with `let`"))
+            Err(Range::from(input.span()).error("too many powers in a row; name a part with `let`"))
         } else {
             self.unary(input)
         };
@@ -377,7 +398,10 @@ impl Parser<'_> {
 
     /// Two operands side by side: there is no implicit multiplication.
     fn no_operand(&mut self, input: ParseStream, left: &Expr) -> Result<()> {
-        if input.peek(Ident::peek_any) && !input.peek(Token![in]) || input.peek(Lit) || input.peek(syn::token::Paren) {
+        if input.peek(Ident::peek_any) && !input.peek(Token![in])
+            || input.peek(Lit) && !input.peek(Token![-])
+            || input.peek(syn::token::Paren)
+        {
             let token = input.fork().parse::<TokenTree>()?;
             let right = Range::from(token.span());
             if STATEMENTS.iter().any(|word| token.to_string() == *word) {
@@ -428,7 +452,7 @@ impl Parser<'_> {
             return self.named(input);
         }
         if input.is_empty() {
-            return Err(input.error("an expression is missing here"));
+            return Err(Range::from(input.span()).error("an expression is missing here"));
         }
         Err(unexpected(input, "a number, a name, `(`, `[` or `|`"))
     }
@@ -570,7 +594,7 @@ fn unexpected(input: ParseStream, expected: &str) -> syn::Error {
             Range::from(group.span_open()).error(format!("{open} is not expected here; expected {expected}"))
         }
         Ok(token) => Range::from(token.span()).error(format!("`{token}` is not expected here; expected {expected}")),
-        Err(_) => input.error(format!("the input ends too early; expected {expected}")),
+        Err(_) => Range::from(input.span()).error(format!("the input ends too early; expected {expected}")),
     }
 }
 
@@ -585,7 +609,7 @@ fn unknown_statement(input: ParseStream, word: &str) -> syn::Error {
         Some(near) => format!("did you mean `{near}`?"),
         None => "a statement begins with `coordinate`, `driven`, `let`, `kinetic`, `potential`, `lagrangian`, `dissipation` or `force`".into(),
     };
-    input.error(format!("unknown statement `{word}`; {hint}"))
+    Range::from(input.span()).error(format!("unknown statement `{word}`; {hint}"))
 }
 
 /// Skips to behind the next `mark` at this level.

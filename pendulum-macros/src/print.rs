@@ -160,6 +160,15 @@ fn product(graph: &Graph, names: &Names, coefficient: Rational, factors: &[(Id, 
     (format!("{sign}{top}/{bottom}"), if sign.is_empty() { Level::Product } else { Level::Sum })
 }
 
+/// Whether a space stands outside all brackets: a function's argument would swallow what follows.
+fn open(text: &str) -> bool {
+    let mut depth = 0;
+    text.chars().any(|letter| {
+        depth += i32::from(letter == '(') - i32::from(letter == ')');
+        depth == 0 && letter == ' '
+    })
+}
+
 /// Numbers, parameters, inputs, velocities, functions, sums: the usual order of a product.
 fn rank(graph: &Graph, base: Id) -> u8 {
     match graph.node(base) {
