@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 
 mod derivatives;
 mod golden;
+mod growth;
 mod identities;
 mod refusals;
 mod rules;

@@ -1,0 +1,9 @@
+use pendulum_runtime::lagrangian;
+
+lagrangian! {
+    pub struct Pendulum { m: kg, L: m }
+
+    kinetic = m/2 * L^2;
+}
+
+fn main() {}
