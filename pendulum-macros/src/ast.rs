@@ -48,7 +48,7 @@ pub(crate) enum Statement {
     Driven { name: Ident, kind: Kind },
     Let(Let),
     Energy { role: Role, keyword: Range, expr: Expr },
-    Force { keyword: Range, name: Ident, index: Option<ForceIndex>, expr: Expr },
+    Force { name: Ident, index: Option<ForceIndex>, expr: Expr },
 }
 
 /// `let y = …`, `let y[k in 0..5] = …` or `let r(p) = …`.

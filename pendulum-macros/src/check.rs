@@ -30,7 +30,7 @@ pub(crate) struct Quantity<'a> {
     pub(crate) length: Option<usize>,
     /// The number of scalars declared before it.
     pub(crate) first: usize,
-    #[allow(dead_code, reason = "units are stored with the language and checked by the unit pass")]
+    #[allow(dead_code, reason = "stored with the quantity; nothing is checked against it yet")]
     pub(crate) dimension: Option<Dimension>,
     pub(crate) unit: String,
     pub(crate) default: Option<&'a Expr>,
@@ -165,6 +165,7 @@ fn plain(ident: &Ident) -> String {
     name::read(&ident.to_string()).base
 }
 
+#[derive(Clone, Copy)]
 enum Shape<'a> {
     Kind(&'a Kind),
     Family(Option<&'a Expr>, Option<&'a Expr>),
@@ -211,7 +212,7 @@ fn force<'a>(model: &mut Model<'a>, name: &'a Ident, index: Option<&'a ForceInde
     match model.names.get(&base) {
         Some(&Meaning::Coordinate(coordinate)) if dots == 0 => model.forces.push(Force { coordinate, name, index, expr }),
         Some(_) => {
-            errors.at(name.span(), format!("`{name}` is no coordinate; a force acts on a coordinate, as in `force θ = …;`"))
+            errors.at(name.span(), format!("`{name}` is no coordinate; a force acts on a coordinate, as in `force θ = …;`"));
         }
         None if model.block.lost.declarations => {}
         None => {
@@ -374,7 +375,9 @@ impl Walk<'_, '_, '_> {
             ExprKind::Call(name, items)
                 if FUNCTIONS.iter().take(16).any(|(function, count)| name == function && *count == items.len()) =>
             {
-                items.iter().for_each(|item| self.constant(item));
+                for item in items {
+                    self.constant(item);
+                }
             }
             _ => self.errors.at(expr.range, "a default is a number; write its value, as in `g: m/s^2 = 9.81`"),
         }
@@ -398,7 +401,9 @@ impl Walk<'_, '_, '_> {
             }
             ExprKind::Call(name, items) => {
                 self.function(name, items.len(), expr.range);
-                items.iter().for_each(|item| self.expr(item));
+                for item in items {
+                    self.expr(item);
+                }
             }
             ExprKind::Index(base, index) => {
                 self.expr(base);
@@ -410,7 +415,11 @@ impl Walk<'_, '_, '_> {
                     self.errors.at(component.span(), format!("unknown component `{component}`; write `.x`, `.y` or `.z`"));
                 }
             }
-            ExprKind::Vector(items) => items.iter().for_each(|item| self.expr(item)),
+            ExprKind::Vector(items) => {
+                for item in items {
+                    self.expr(item);
+                }
+            }
             ExprKind::SumOver(binder, term) => {
                 let depth = self.scope.len();
                 self.bind(binder);
@@ -444,7 +453,7 @@ impl Walk<'_, '_, '_> {
         match (base.as_str(), self.model.names.get(&base)) {
             ("t" | "pi" | "i", _) if dots == 0 => {}
             ("t" | "pi" | "i", _) => {
-                self.errors.at(ident.span(), format!("`{ident}` does not move as a coordinate does; write a number"))
+                self.errors.at(ident.span(), format!("`{ident}` does not move as a coordinate does; write a number"));
             }
             (_, Some(Meaning::Parameter(_))) if 0 < dots => self.errors.at(
                 ident.span(),

@@ -104,7 +104,7 @@ fn multiply(graph: &mut Graph, a: &Polynomial, b: &Polynomial) -> Option<Polynom
             for &(base, power) in right {
                 *powers.entry(base).or_default() += power;
             }
-            let entry = product.entry(powers.into_iter().collect()).or_insert_with(Vec::new);
+            let entry = product.entry(powers.into_iter().collect()).or_default();
             for &(x, p) in left_terms {
                 for &(y, q) in right_terms {
                     entry.push((graph.mul(x, y), p.mul(q)?));

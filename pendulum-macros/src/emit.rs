@@ -9,6 +9,7 @@ use crate::print::{self, Names};
 use crate::schedule::{self, Count, Op, Place, Program};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
+use std::fmt::Write;
 
 /// What the emitter writes about and with.
 pub(crate) struct Emitter<'m, 'a> {
@@ -94,7 +95,7 @@ impl Emitter<'_, '_> {
         let visibility = &self.model.block.visibility;
         quote! {
             #[automatically_derived]
-            #[allow(non_snake_case, clippy::all, clippy::pedantic)]
+            #[allow(non_snake_case, unreachable_code, clippy::all, clippy::pedantic)]
             impl<#scalar: #krate::real::Real> #name<#scalar> {
                 /// The system with the given parameters, in the order of declaration; those with a default take it.
                 #[must_use]
@@ -150,7 +151,7 @@ impl Emitter<'_, '_> {
         let state = quote!(q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs);
         quote! {
             #[automatically_derived]
-            #[allow(non_snake_case, unused_variables, unused_mut, unused_parens, clippy::all, clippy::pedantic)]
+            #[allow(non_snake_case, unused_variables, unused_mut, unused_parens, unreachable_code, clippy::all, clippy::pedantic)]
             impl<#scalar: #krate::real::Real> #krate::system::System<#count> for #name<#scalar> {
                 type Scalar = #scalar;
                 type Inputs = (#(#krate::motion::Sample<#scalar, #dimensions>,)*);
@@ -202,7 +203,7 @@ impl Emitter<'_, '_> {
         let state = quote!(q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs);
         Some(quote! {
             #[automatically_derived]
-            #[allow(unused_variables, unused_parens, clippy::all, clippy::pedantic)]
+            #[allow(unused_variables, unused_parens, unreachable_code, clippy::all, clippy::pedantic)]
             impl<#scalar: #krate::real::Real> #krate::system::SplitEnergy<#count> for #name<#scalar> {
                 #[inline]
                 fn kinetic_energy(&self, t: #scalar, #state) -> #scalar { let [value] = #kinetic; value }
@@ -453,14 +454,14 @@ impl Emitter<'_, '_> {
             text.push('\n');
         }
         text.push_str("```\n\n");
-        text.push_str(&format!("One evaluation takes {}.", operations(count)));
+        let _ = write!(text, "One evaluation takes {}.", operations(count));
         if !cyclic.is_empty() {
-            text.push_str(&format!(" The momentum of {} is conserved.", cyclic.join(", ")));
+            let _ = write!(text, " The momentum of {} is conserved.", cyclic.join(", "));
         }
         let unused = self.unused(&names);
         if !unused.is_empty() {
             let list = unused.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-            text.push_str(&format!(" The equations do not need {list}."));
+            let _ = write!(text, " The equations do not need {list}.");
         }
         quote!(#[doc = #text])
     }

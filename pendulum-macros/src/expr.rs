@@ -142,11 +142,6 @@ impl Graph {
         self.contents[id.index()]
     }
 
-    /// The number of nodes ever made.
-    pub(crate) fn len(&self) -> usize {
-        self.nodes.len()
-    }
-
     pub(crate) fn number(&mut self, value: Rational) -> Id {
         self.intern(Node::Number(value))
     }
@@ -462,13 +457,14 @@ impl Graph {
         self.add_factor(coefficient, bases, magnitude, exponent);
         match rest.as_slice() {
             [] if sign == Rational::ONE => {}
-            [(id, power)] if sign == Rational::ONE => match power.mul(exponent) {
-                Some(total) => self.add_exponent(bases, *id, total),
-                None => {
+            [(id, power)] if sign == Rational::ONE => {
+                if let Some(total) = power.mul(exponent) {
+                    self.add_exponent(bases, *id, total);
+                } else {
                     let whole = self.intern(Node::Product(sign, rest));
                     self.add_exponent(bases, whole, exponent);
                 }
-            },
+            }
             [] => {
                 let minus = self.whole(-1);
                 self.add_exponent(bases, minus, exponent);

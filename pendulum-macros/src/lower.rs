@@ -49,6 +49,7 @@ pub(crate) fn energies(model: &Model, graph: &mut Graph, errors: &mut Errors) ->
         errors,
         scope: Vec::new(),
         indices: Vec::new(),
+        ranges: Vec::new(),
         instances: BTreeMap::new(),
         open: Vec::new(),
         work: 0,
@@ -82,6 +83,8 @@ struct Lower<'m, 'a, 'g, 'e> {
     scope: Vec<(String, Value)>,
     /// The indices that are bound.
     indices: Vec<(String, i64)>,
+    /// The end of the range of each of them.
+    ranges: Vec<usize>,
     /// The definitions that are done, by their index.
     instances: BTreeMap<(usize, Option<i64>), Value>,
     /// The definitions that are being evaluated.
@@ -164,11 +167,11 @@ impl Lower<'_, '_, '_, '_> {
             };
             for (binder, k) in members {
                 if let Some(binder) = binder {
-                    self.indices.push((plain(binder), k));
+                    self.bind(binder, k);
                 }
                 let value = self.scalar(force.expr);
                 if binder.is_some() {
-                    self.indices.pop();
+                    self.unbind();
                 }
                 let slot = coordinate.first + usize::try_from(k).unwrap_or(0);
                 if let Some(value) = value {
@@ -194,12 +197,14 @@ impl Lower<'_, '_, '_, '_> {
         }
         self.open.push((index, k));
         let indices = std::mem::take(&mut self.indices);
+        let ranges = std::mem::take(&mut self.ranges);
         let scope = std::mem::take(&mut self.scope);
         if let (Some(k), Some(binder)) = (k, &definition.index) {
-            self.indices.push((plain(binder), k));
+            self.bind(binder, k);
         }
         let value = self.expr(&definition.expr);
         self.indices = indices;
+        self.ranges = ranges;
         self.scope = scope;
         self.open.pop();
         self.instances.insert((index, k), value.clone());
@@ -223,11 +228,13 @@ impl Lower<'_, '_, '_, '_> {
         }
         self.open.push((index, None));
         let indices = std::mem::take(&mut self.indices);
+        let ranges = std::mem::take(&mut self.ranges);
         let bound = names.iter().map(|name| name::read(&name.to_string()).base).zip(arguments).collect();
         let scope = std::mem::replace(&mut self.scope, bound);
         let value = self.expr(&definition.expr);
         self.scope = scope;
         self.indices = indices;
+        self.ranges = ranges;
         self.open.pop();
         value
     }
@@ -262,7 +269,11 @@ impl Lower<'_, '_, '_, '_> {
         match check::integer(expr, &self.indices) {
             Ok(k) if (0..length as i64).contains(&k) => Some(k),
             Ok(k) => {
-                self.errors.once(expr.source, expr.range, outside(name, k, length));
+                // A range that is too long is one mistake, however often its index is used.
+                let text = check::text(expr);
+                let bound = self.indices.iter().rposition(|(name, _)| *name == name::read(&text).base);
+                let source = bound.map_or(expr.source, |place| self.ranges[place]);
+                self.errors.once(source, expr.range, outside(name, k, length));
                 None
             }
             Err(range) => {
@@ -274,6 +285,16 @@ impl Lower<'_, '_, '_, '_> {
                 None
             }
         }
+    }
+
+    fn bind(&mut self, binder: &Binder, k: i64) {
+        self.indices.push((plain(binder), k));
+        self.ranges.push(binder.high.source);
+    }
+
+    fn unbind(&mut self) {
+        self.indices.pop();
+        self.ranges.pop();
     }
 
     fn scalar(&mut self, expr: &Expr) -> Option<Id> {
@@ -312,7 +333,7 @@ impl Lower<'_, '_, '_, '_> {
             ExprKind::Product(items) => self.product(items),
             ExprKind::Negative(inner) => {
                 let value = self.expr(inner);
-                self.map(value, |graph, id| graph.negative(id))
+                self.map(value, super::expr::Graph::negative)
             }
             ExprKind::Power(base, exponent) => self.power(base, exponent),
             ExprKind::Call(name, items) => self.call(&name.to_string(), items, expr),
@@ -432,7 +453,7 @@ impl Lower<'_, '_, '_, '_> {
         for (minus, item) in items {
             let mut value = self.expr(item);
             if *minus {
-                value = self.map(value, |graph, id| graph.negative(id));
+                value = self.map(value, super::expr::Graph::negative);
             }
             total = Some(match total {
                 None => value,
@@ -685,9 +706,9 @@ impl Lower<'_, '_, '_, '_> {
         if !(2..=3).contains(&parts.len()) {
             return self.wrong(expr, &format!("a vector has two or three components; {} stand here", items.len()));
         }
-        match parts.as_slice() {
-            &[Some(x), Some(y)] => Value::Plane { parts: [x, y], complex: false },
-            &[Some(x), Some(y), Some(z)] => Value::Space([x, y, z]),
+        match *parts.as_slice() {
+            [Some(x), Some(y)] => Value::Plane { parts: [x, y], complex: false },
+            [Some(x), Some(y), Some(z)] => Value::Space([x, y, z]),
             _ => Value::Bad,
         }
     }
@@ -720,9 +741,9 @@ impl Lower<'_, '_, '_, '_> {
     fn sum_over(&mut self, binder: &Binder, term: &Expr) -> Value {
         let mut total: Option<Value> = None;
         for k in self.range(binder) {
-            self.indices.push((plain(binder), k));
+            self.bind(binder, k);
             let value = self.expr(term);
-            self.indices.pop();
+            self.unbind();
             total = Some(match total {
                 None => value,
                 Some(sum) => self.add(sum, value, term),

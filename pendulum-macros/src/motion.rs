@@ -44,12 +44,11 @@ impl Default for Id {
 pub(crate) fn derive(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Errors) -> Motion {
     let kinetic = energies.kinetic.map(|id| collected(graph, id));
     let potential = energies.potential.map(|id| collected(graph, id));
-    let lagrangian = match energies.lagrangian {
-        Some(lagrangian) => collected(graph, lagrangian),
-        None => {
-            let difference = graph.sub(kinetic.unwrap_or_default(), potential.unwrap_or_default());
-            collected(graph, difference)
-        }
+    let lagrangian = if let Some(lagrangian) = energies.lagrangian {
+        collected(graph, lagrangian)
+    } else {
+        let difference = graph.sub(kinetic.unwrap_or_default(), potential.unwrap_or_default());
+        collected(graph, difference)
     };
     let count = energies.forces.len();
     let dissipation = energies.dissipation.map(|id| collected(graph, id)).unwrap_or_default();

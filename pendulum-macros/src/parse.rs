@@ -258,7 +258,7 @@ impl Parser<'_> {
     }
 
     fn force(&mut self, input: ParseStream) -> Result<Statement> {
-        let keyword = input.call(Ident::parse_any)?.span().into();
+        input.call(Ident::parse_any)?;
         let name = identifier(input, "the coordinate on which the force acts")?;
         let index = if input.peek(syn::token::Bracket) {
             let content;
@@ -271,7 +271,7 @@ impl Parser<'_> {
             None
         };
         equals(input)?;
-        Ok(Statement::Force { keyword, name, index, expr: self.expr(input)? })
+        Ok(Statement::Force { name, index, expr: self.expr(input)? })
     }
 
     /// `k in 0..5`.
@@ -392,32 +392,8 @@ impl Parser<'_> {
                 break;
             }
         }
-        self.no_operand(input, &expr)?;
+        no_operand(input, &expr)?;
         Ok(expr)
-    }
-
-    /// Two operands side by side: there is no implicit multiplication.
-    fn no_operand(&mut self, input: ParseStream, left: &Expr) -> Result<()> {
-        if input.peek(Ident::peek_any) && !input.peek(Token![in])
-            || input.peek(Lit) && !input.peek(Token![-])
-            || input.peek(syn::token::Paren)
-        {
-            let token = input.fork().parse::<TokenTree>()?;
-            let right = Range::from(token.span());
-            if STATEMENTS.iter().any(|word| token.to_string() == *word) {
-                return Err(right.error(format!("`;` is missing before `{token}`; end the statement above with `;`")));
-            }
-            return Err(match (&left.kind, &token) {
-                (_, TokenTree::Group(group)) => match &left.kind {
-                    ExprKind::Name(_) | ExprKind::Number(_) => {
-                        Range::from(group.span_open()).error("there is no implicit multiplication; write `*` before `(`")
-                    }
-                    _ => Range::from(group.span_open()).error("an operator is missing before `(`; write `*` to multiply"),
-                },
-                _ => right.error(format!("there is no implicit multiplication; write `*` before `{token}`")),
-            });
-        }
-        Ok(())
     }
 
     fn primary(&mut self, input: ParseStream) -> Result<Expr> {
@@ -533,6 +509,30 @@ impl Parser<'_> {
         self.sources += 1;
         Expr { kind, range, source: self.sources }
     }
+}
+
+/// Two operands side by side: there is no implicit multiplication.
+fn no_operand(input: ParseStream, left: &Expr) -> Result<()> {
+    if input.peek(Ident::peek_any) && !input.peek(Token![in])
+        || input.peek(Lit) && !input.peek(Token![-])
+        || input.peek(syn::token::Paren)
+    {
+        let token = input.fork().parse::<TokenTree>()?;
+        let right = Range::from(token.span());
+        if STATEMENTS.iter().any(|word| token.to_string() == *word) {
+            return Err(right.error(format!("`;` is missing before `{token}`; end the statement above with `;`")));
+        }
+        return Err(match (&left.kind, &token) {
+            (_, TokenTree::Group(group)) => match &left.kind {
+                ExprKind::Name(_) | ExprKind::Number(_) => {
+                    Range::from(group.span_open()).error("there is no implicit multiplication; write `*` before `(`")
+                }
+                _ => Range::from(group.span_open()).error("an operator is missing before `(`; write `*` to multiply"),
+            },
+            _ => right.error(format!("there is no implicit multiplication; write `*` before `{token}`")),
+        });
+    }
+    Ok(())
 }
 
 /// An identifier that may be declared: no keyword of Rust, no reserved prefix, no middle dot.

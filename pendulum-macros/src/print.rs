@@ -250,16 +250,11 @@ pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion) -> Ve
             let (coefficient, _) = graph.split(entry);
             let negative = coefficient.is_negative();
             let magnitude = if negative { graph.negative(entry) } else { entry };
-            let part = match graph.node(magnitude) {
-                Node::Number(Rational::ONE) => symbol,
-                _ => {
-                    let text = write(graph, names, magnitude, Level::Product);
-                    if text.contains(' ') && !text.starts_with('(') {
-                        format!("({text})·{symbol}")
-                    } else {
-                        format!("{text}·{symbol}")
-                    }
-                }
+            let part = if let Node::Number(Rational::ONE) = graph.node(magnitude) {
+                symbol
+            } else {
+                let text = write(graph, names, magnitude, Level::Product);
+                if open(&text) { format!("({text})·{symbol}") } else { format!("{text}·{symbol}") }
             };
             left.push_str(match (left.is_empty(), negative) {
                 (true, true) => "−",

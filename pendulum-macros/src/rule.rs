@@ -7,6 +7,7 @@ use crate::expr::{Function, Graph, Id, Node, Terms};
 use crate::number::Rational;
 
 /// A rule on one kind of node.
+#[cfg_attr(not(test), allow(dead_code, reason = "name and patterns are for the reader and the tests"))]
 pub(crate) struct Rule {
     pub(crate) name: &'static str,
     pub(crate) left: &'static str,

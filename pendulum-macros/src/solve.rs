@@ -1,4 +1,4 @@
-//! M x = f on the graph: LDLᵀ without square roots, structural zeros skipped, independent blocks apart.
+//! M x = f on the graph: `LDLᵀ` without square roots, structural zeros skipped, independent blocks apart.
 
 use crate::check::Model;
 use crate::error::Errors;

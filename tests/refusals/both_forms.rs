@@ -1,3 +1,5 @@
+#![allow(mixed_script_confusables)]
+
 use pendulum_runtime::lagrangian;
 
 lagrangian! {
