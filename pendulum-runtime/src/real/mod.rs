@@ -1,5 +1,11 @@
 //! The scalars that generated code runs on.
 
+mod dual;
+mod float;
+mod trig;
+
+pub use dual::Dual;
+
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 

@@ -1,0 +1,300 @@
+//! Dual numbers: values that carry their derivative.
+
+use super::Real;
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// A number a + a′ε with ε² = 0: functions of it carry their derivative with respect to one variable.
+///
+/// Clifford (1873). Derivatives of a constant stay zero even where the function has an infinite slope.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Dual {
+    /// The value a.
+    pub value: f64,
+    /// The derivative a′.
+    pub derivative: f64,
+}
+
+impl Dual {
+    /// A number that does not depend on the variable.
+    pub const fn constant(value: f64) -> Self {
+        Self { value, derivative: 0.0 }
+    }
+
+    /// The variable itself.
+    pub const fn variable(value: f64) -> Self {
+        Self { value, derivative: 1.0 }
+    }
+
+    /// A function with this value and this slope at `self`: the chain rule.
+    #[inline]
+    fn chain(self, value: f64, slope: f64) -> Self {
+        Self { value, derivative: times(slope, self.derivative) }
+    }
+}
+
+/// The product; zero where the derivative is, whatever the slope.
+#[inline]
+fn times(slope: f64, derivative: f64) -> f64 {
+    if derivative == 0.0 { 0.0 } else { slope * derivative }
+}
+
+impl Add for Dual {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self { value: self.value + other.value, derivative: self.derivative + other.derivative }
+    }
+}
+
+impl Sub for Dual {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self { value: self.value - other.value, derivative: self.derivative - other.derivative }
+    }
+}
+
+impl Mul for Dual {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        let derivative = times(other.value, self.derivative) + times(self.value, other.derivative);
+        Self { value: self.value * other.value, derivative }
+    }
+}
+
+impl Div for Dual {
+    type Output = Self;
+
+    #[inline]
+    fn div(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        let derivative = times(1.0 / other.value, self.derivative) - times(value / other.value, other.derivative);
+        Self { value, derivative }
+    }
+}
+
+impl Neg for Dual {
+    type Output = Self;
+
+    #[inline]
+    fn neg(self) -> Self {
+        Self { value: -self.value, derivative: -self.derivative }
+    }
+}
+
+impl AddAssign for Dual {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl SubAssign for Dual {
+    #[inline]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl MulAssign for Dual {
+    #[inline]
+    fn mul_assign(&mut self, other: Self) {
+        *self = *self * other;
+    }
+}
+
+impl DivAssign for Dual {
+    #[inline]
+    fn div_assign(&mut self, other: Self) {
+        *self = *self / other;
+    }
+}
+
+impl Real for Dual {
+    fn from_f64(value: f64) -> Self {
+        Self::constant(value)
+    }
+
+    fn pi() -> Self {
+        Self::constant(Real::pi())
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = Real::sin_cos(self.value);
+        (self.chain(sin, cos), self.chain(cos, -sin))
+    }
+
+    fn tan(self) -> Self {
+        let tan = Real::tan(self.value);
+        self.chain(tan, 1.0 + tan * tan)
+    }
+
+    fn asin(self) -> Self {
+        self.chain(Real::asin(self.value), 1.0 / circle(self.value))
+    }
+
+    fn acos(self) -> Self {
+        self.chain(Real::acos(self.value), -1.0 / circle(self.value))
+    }
+
+    fn atan(self) -> Self {
+        self.chain(Real::atan(self.value), 1.0 / (1.0 + self.value * self.value))
+    }
+
+    fn atan2(self, x: Self) -> Self {
+        let square = self.value * self.value + x.value * x.value;
+        let derivative = times(x.value / square, self.derivative) - times(self.value / square, x.derivative);
+        Self { value: Real::atan2(self.value, x.value), derivative }
+    }
+
+    fn sinh(self) -> Self {
+        self.chain(Real::sinh(self.value), Real::cosh(self.value))
+    }
+
+    fn cosh(self) -> Self {
+        self.chain(Real::cosh(self.value), Real::sinh(self.value))
+    }
+
+    fn tanh(self) -> Self {
+        let cosh = Real::cosh(self.value);
+        self.chain(Real::tanh(self.value), 1.0 / (cosh * cosh))
+    }
+
+    fn exp(self) -> Self {
+        let exp = Real::exp(self.value);
+        self.chain(exp, exp)
+    }
+
+    fn ln(self) -> Self {
+        self.chain(Real::ln(self.value), 1.0 / self.value)
+    }
+
+    fn sqrt(self) -> Self {
+        let sqrt = self.value.sqrt();
+        self.chain(sqrt, 0.5 / sqrt)
+    }
+
+    fn powf(self, exponent: Self) -> Self {
+        let value = Real::powf(self.value, exponent.value);
+        let slope = exponent.value * Real::powf(self.value, exponent.value - 1.0);
+        let derivative = times(slope, self.derivative) + times(value * Real::ln(self.value), exponent.derivative);
+        Self { value, derivative }
+    }
+
+    fn abs(self) -> Self {
+        self.chain(self.value.abs(), Real::sign(self.value))
+    }
+
+    fn sign(self) -> Self {
+        Self::constant(Real::sign(self.value))
+    }
+
+    fn step(self) -> Self {
+        Self::constant(Real::step(self.value))
+    }
+
+    fn max(self, other: Self) -> Self {
+        let step = Real::step(self.value - other.value);
+        let derivative = times(step, self.derivative) + times(1.0 - step, other.derivative);
+        Self { value: Real::max(self.value, other.value), derivative }
+    }
+
+    fn min(self, other: Self) -> Self {
+        -Real::max(-self, -other)
+    }
+}
+
+/// √(1 − x²) without cancellation near ±1.
+fn circle(x: f64) -> f64 {
+    ((1.0 - x) * (1.0 + x)).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Dual, Real};
+
+    /// The derivative of `function` at `x`, with its value checked against plain `f64`.
+    fn slope(function: fn(Dual) -> Dual, plain: fn(f64) -> f64, x: f64) -> f64 {
+        let result = function(Dual::variable(x));
+        assert_eq!(result.value.to_bits(), plain(x).to_bits());
+        assert_eq!(function(Dual::constant(x)).derivative, 0.0);
+        result.derivative
+    }
+
+    fn close(a: f64, b: f64) {
+        assert!((a - b).abs() <= 4.0 * f64::EPSILON * b.abs(), "{a} is not {b}");
+    }
+
+    macro_rules! slope {
+        ($function:ident, $x:expr) => {
+            slope(<Dual as Real>::$function, <f64 as Real>::$function, $x)
+        };
+    }
+
+    #[test]
+    fn functions_have_their_derivatives() {
+        // The digits of `tests/data/functions.py`.
+        close(slope!(sin, 0.75), 0.7316888688738209);
+        close(slope!(cos, 0.75), -0.6816387600233341);
+        close(slope!(tan, 0.75), 1.8678719641803279);
+        close(slope!(asin, 0.75), 1.511857892036909);
+        close(slope!(acos, 0.75), -1.511857892036909);
+        close(slope!(atan, 0.75), 0.64);
+        close(slope!(sinh, 0.75), 1.2946832846768448);
+        close(slope!(cosh, 0.75), 0.82231673193583);
+        close(slope!(tanh, 0.75), 0.5965858082813315);
+        close(slope!(exp, 0.75), 2.117000016612675);
+        close(slope!(ln, 0.75), 4.0 / 3.0);
+        close(slope!(sqrt, 0.5625), 2.0 / 3.0);
+        assert_eq!((slope!(abs, 0.75), slope!(abs, -0.75), slope!(abs, 0.0)), (1.0, -1.0, 0.0));
+        assert_eq!((slope!(sign, 0.75), slope!(step, 0.75)), (0.0, 0.0));
+    }
+
+    #[test]
+    fn products_and_quotients_follow_their_rules() {
+        let x = Dual::variable(3.0);
+        let two = Dual::constant(2.0);
+        assert_eq!(x * x, Dual { value: 9.0, derivative: 6.0 });
+        assert_eq!(two / x, Dual { value: 2.0 / 3.0, derivative: -2.0 / 9.0 });
+        assert_eq!(x / two, Dual { value: 1.5, derivative: 0.5 });
+        let mut y = x;
+        y += two;
+        y *= x;
+        y -= two;
+        y /= x;
+        // x + 2 − 2/x.
+        assert_eq!(y.value, 13.0 / 3.0);
+        close(y.derivative, 11.0 / 9.0);
+        assert_eq!(-x, Dual { value: -3.0, derivative: -1.0 });
+    }
+
+    #[test]
+    fn powers_differentiate_in_base_and_exponent() {
+        let x = Dual::variable(4.0);
+        assert_eq!(x.powf(Dual::constant(1.5)), Dual { value: 8.0, derivative: 3.0 });
+        close(Dual::constant(4.0).powf(Dual::variable(1.5)).derivative, 8.0 * 1.3862943611198906);
+        // xˣ (1 + ln x).
+        close(x.powf(x).derivative, 256.0 * 2.386294361119891);
+        assert_eq!(Dual::variable(0.0).powf(Dual::constant(2.0)), Dual { value: 0.0, derivative: 0.0 });
+    }
+
+    #[test]
+    fn angles_differentiate_in_both_components() {
+        let (y, x) = (Dual::variable(1.0), Dual::constant(-2.0));
+        close(y.atan2(x).derivative, -0.4);
+        close(Dual::constant(1.0).atan2(Dual::variable(-2.0)).derivative, -0.2);
+    }
+
+    #[test]
+    fn ties_share_the_derivative() {
+        let (a, b) = (Dual::variable(1.0), Dual::constant(1.0));
+        assert_eq!((a.max(b).derivative, a.min(b).derivative), (0.5, 0.5));
+        let c = Dual::constant(2.0);
+        assert_eq!((a.max(c), a.min(c)), (c, a));
+        assert!(a.max(Dual::constant(f64::NAN)).value.is_nan());
+    }
+}

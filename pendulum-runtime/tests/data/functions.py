@@ -1,0 +1,15 @@
+"""Prints the values and slopes that the tests of `real` expect (needs mpmath)."""
+
+from mpmath import mp, mpf
+
+mp.dps = 40
+X, Y = mpf("1.25"), mpf("0.625")
+VALUES = {
+    "tan": mp.tan(X), "asin": mp.asin(Y), "acos": mp.acos(Y), "atan": mp.atan(X), "atan2": mp.atan2(1, -2),
+    "sinh": mp.sinh(X), "cosh": mp.cosh(X), "tanh": mp.tanh(X), "exp": mp.exp(-X), "ln": mp.ln(X),
+    "sqrt": mp.sqrt(X), "powf": X ** mpf("-2.5"),
+}
+for name, value in VALUES.items():
+    print("value of", name, repr(float(value)))
+for name in ["sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "ln"]:
+    print("slope of", name, repr(float(mp.diff(getattr(mp, name), mpf("0.75")))))
