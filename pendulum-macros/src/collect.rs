@@ -136,30 +136,30 @@ fn simplest(graph: &mut Graph, terms: &[(Id, Rational)]) -> Id {
     if cost(graph, flat) < cost(graph, plain) { flat } else { plain }
 }
 
-/// A product of sums multiplied out; `None` if that would be too long.
+/// A product of sums multiplied out, as often as sums stand in it; `None` if that would be too long.
 fn expand(graph: &mut Graph, term: Id) -> Option<Vec<(Id, Rational)>> {
-    let (coefficient, bare) = graph.split(term);
-    let mut terms = vec![(Graph::ONE, coefficient)];
-    for (base, exponent) in graph.factors(bare) {
-        let sum = match (graph.node(base).clone(), exponent.integer()) {
-            (Node::Sum(sum), Some(count)) if 0 < count && count <= 4 => Some((sum, count)),
+    let mut open = vec![(term, Rational::ONE)];
+    let mut done = Vec::new();
+    while let Some((term, outer)) = open.pop() {
+        let (own, bare) = graph.split(term);
+        let outer = outer.mul(own)?;
+        let sum = graph.factors(bare).into_iter().find_map(|(base, exponent)| match graph.node(base) {
+            Node::Sum(terms) if exponent.is_integer() && !exponent.is_negative() => Some((base, terms.clone())),
             _ => None,
+        });
+        let Some((base, terms)) = sum else {
+            done.push((bare, outer));
+            continue;
         };
-        let (parts, count) = sum.unwrap_or_else(|| (vec![(graph.power(base, exponent), Rational::ONE)], 1));
-        for _ in 0..count {
-            if 256 < terms.len() * parts.len() {
-                return None;
-            }
-            let mut next = Vec::new();
-            for &(x, p) in &terms {
-                for &(y, q) in &parts {
-                    next.push((graph.mul(x, y), p.mul(q)?));
-                }
-            }
-            terms = next;
+        if 256 < open.len() + done.len() + terms.len() {
+            return None;
+        }
+        for (part, coefficient) in terms {
+            let factors = [(bare, Rational::ONE), (base, Rational::MINUS_ONE), (part, Rational::ONE)];
+            open.push((graph.product(Rational::ONE, &factors), outer.mul(coefficient)?));
         }
     }
-    Some(terms)
+    Some(done)
 }
 
 /// A rough count of the operations of an expression, shared nodes once.

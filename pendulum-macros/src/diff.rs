@@ -110,21 +110,12 @@ fn minus_half() -> Rational {
 pub(crate) fn substitute(graph: &mut Graph, id: Id, value: impl Fn(Symbol) -> Option<Id>) -> Id {
     let mut known: BTreeMap<Id, Id> = BTreeMap::new();
     for node in graph.reachable(&[id]) {
-        let result = match graph.node(node).clone() {
-            Node::Number(_) | Node::Opaque(_) | Node::Pi => node,
+        let result = match *graph.node(node) {
             Node::Symbol(symbol) => value(symbol).unwrap_or(node),
-            Node::Sum(terms) => {
-                let terms: Vec<(Id, Rational)> = terms.iter().map(|&(term, coefficient)| (known[&term], coefficient)).collect();
-                graph.sum(&terms)
+            _ => {
+                let old = graph.node(node).clone();
+                graph.rebuilt(&old, |child| known[&child])
             }
-            Node::Product(coefficient, factors) => {
-                let factors: Vec<(Id, Rational)> = factors.iter().map(|&(base, exponent)| (known[&base], exponent)).collect();
-                graph.product(coefficient, &factors)
-            }
-            Node::Call(function, argument) => graph.call(function, known[&argument]),
-            Node::Atan2(y, x) => graph.atan2(known[&y], known[&x]),
-            Node::Max(a, b) => graph.max(known[&a], known[&b]),
-            Node::Atom(inner) => graph.atom(known[&inner]),
         };
         known.insert(node, result);
     }

@@ -540,6 +540,20 @@ impl Graph {
         }
     }
 
+    /// A node with other children.
+    pub(crate) fn rebuilt(&mut self, node: &Node, child: impl Fn(Id) -> Id) -> Id {
+        let list = |items: &[(Id, Rational)]| items.iter().map(|&(id, number)| (child(id), number)).collect::<Vec<_>>();
+        match node {
+            Node::Number(_) | Node::Opaque(_) | Node::Pi | Node::Symbol(_) => self.intern(node.clone()),
+            Node::Sum(terms) => self.sum(&list(terms)),
+            Node::Product(coefficient, factors) => self.product(*coefficient, &list(factors)),
+            Node::Call(function, argument) => self.call(*function, child(*argument)),
+            Node::Atan2(y, x) => self.atan2(child(*y), child(*x)),
+            Node::Max(a, b) => self.max(child(*a), child(*b)),
+            Node::Atom(inner) => self.atom(child(*inner)),
+        }
+    }
+
     /// The nodes from which an expression is made directly.
     pub(crate) fn children(&self, id: Id) -> Vec<Id> {
         match self.node(id) {

@@ -14,6 +14,7 @@ mod lower;
 mod motion;
 mod name;
 mod number;
+mod order;
 mod parse;
 mod print;
 mod rule;
@@ -38,9 +39,8 @@ fn expand(input: TokenStream) -> TokenStream {
     };
     let model = check::resolve(&block, &mut errors);
     let mut graph = expr::Graph::new();
-    let energies = lower::energies(&model, &mut graph, &mut errors);
-    let motion = errors.is_empty().then(|| motion::derive(&model, &mut graph, &energies, &mut errors));
-    let motion = motion.filter(|_| errors.is_empty());
+    let mut energies = lower::energies(&model, &mut graph, &mut errors);
+    let motion = if errors.is_empty() { motion::canonical(&model, &mut graph, &mut energies, &mut errors) } else { None };
     let items = emit::Emitter { krate, model: &model, graph, motion, energies }.items();
     let errors = errors.into_tokens();
     quote::quote!(#errors #items)

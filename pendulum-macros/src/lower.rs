@@ -27,6 +27,15 @@ pub(crate) struct Energies {
     pub(crate) defaults: Vec<Option<Id>>,
 }
 
+impl Energies {
+    /// Every expression in it.
+    pub(crate) fn roots(&mut self) -> Vec<&mut Id> {
+        let single = [&mut self.kinetic, &mut self.potential, &mut self.lagrangian, &mut self.dissipation];
+        let single = single.into_iter().flatten();
+        single.chain(&mut self.forces).chain(self.defaults.iter_mut().flatten()).collect()
+    }
+}
+
 /// An expression by its components.
 #[derive(Clone, Debug, PartialEq)]
 enum Value {

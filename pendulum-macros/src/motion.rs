@@ -9,6 +9,7 @@ use crate::error::Errors;
 use crate::expr::{Contents, Graph, Id, Symbol};
 use crate::lower::{Energies, total_derivative};
 use crate::number::Rational;
+use crate::order;
 use crate::solve;
 
 /// The equations of motion and what goes with them: roots in one graph.
@@ -34,14 +35,38 @@ pub(crate) struct Motion {
     pub(crate) nonconservative: bool,
 }
 
+impl Motion {
+    /// Every expression in it.
+    pub(crate) fn roots(&mut self) -> Vec<&mut Id> {
+        let lists = [&mut self.accelerations, &mut self.momenta, &mut self.forces, &mut self.momentum_rates];
+        let single = [Some(&mut self.energy), Some(&mut self.power), self.kinetic.as_mut(), self.potential.as_mut()];
+        let masses = self.mass_matrix.iter_mut().flatten();
+        let velocities = self.velocities.iter_mut().flatten();
+        lists.into_iter().flatten().chain(masses).chain(velocities).chain(single.into_iter().flatten()).collect()
+    }
+}
+
 impl Default for Id {
     fn default() -> Self {
         Graph::ZERO
     }
 }
 
-/// Derives the equations of motion; reports directions without kinetic energy.
-pub(crate) fn derive(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Errors) -> Motion {
+/// Derives the equations of motion so that they do not depend on how the energies were written.
+pub(crate) fn canonical(model: &Model, graph: &mut Graph, energies: &mut Energies, errors: &mut Errors) -> Option<Motion> {
+    *graph = order::canonical(graph, &mut energies.roots());
+    let mut motion = derive(model, graph, energies, errors);
+    if !errors.is_empty() {
+        return None;
+    }
+    let mut roots = motion.roots();
+    roots.extend(energies.roots());
+    *graph = order::canonical(graph, &mut roots);
+    Some(motion)
+}
+
+/// The equations of motion; reports directions without kinetic energy.
+fn derive(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Errors) -> Motion {
     let kinetic = energies.kinetic.map(|id| collected(graph, id));
     let potential = energies.potential.map(|id| collected(graph, id));
     let lagrangian = if let Some(lagrangian) = energies.lagrangian {

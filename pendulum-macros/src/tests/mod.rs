@@ -35,12 +35,12 @@ fn derived<R>(source: &str, errors: &mut Errors, inspect: impl FnOnce(&Model, &m
     let (_, block) = parse::all(tokens, errors)?;
     let model = check::resolve(&block, errors);
     let mut graph = Graph::new();
-    let energies = lower::energies(&model, &mut graph, errors);
+    let mut energies = lower::energies(&model, &mut graph, errors);
     if !errors.is_empty() {
         return None;
     }
-    let motion = motion::derive(&model, &mut graph, &energies, errors);
-    errors.is_empty().then(|| inspect(&model, &mut graph, &motion))
+    let motion = motion::canonical(&model, &mut graph, &mut energies, errors)?;
+    Some(inspect(&model, &mut graph, &motion))
 }
 
 /// An expression of the free scalars `a`, `b`, `c`, lowered through a block's potential.
