@@ -361,7 +361,7 @@ impl Emitter<'_, '_> {
 
     fn facts(&mut self) -> TokenStream {
         let krate = self.krate.clone();
-        let names = Names::new(self.model);
+        let names = Names::new(self.model, &self.energies.families);
         let name = self.model.block.name.to_string();
         let (coordinates, parameters) = (&names.coordinates, &names.parameters);
         let units = self.model.parameters.iter().flat_map(|quantity| vec![quantity.unit.clone(); quantity.count()]);
@@ -438,7 +438,7 @@ impl Emitter<'_, '_> {
 
     /// The equations, their cost and what they leave out, for hover and rustdoc.
     fn documentation(&mut self) -> TokenStream {
-        let names = Names::new(self.model);
+        let names = Names::new(self.model, &self.energies.families);
         let Some(motion) = &self.motion else { return TokenStream::new() };
         let accelerations = motion.accelerations.clone();
         let cyclic: Vec<String> = motion.cyclic.iter().map(|&index| format!("`{}`", names.coordinates[index])).collect();

@@ -9,7 +9,7 @@ use crate::error::{Errors, Range};
 use crate::expr::{Contents, Function, Graph, Id, Symbol};
 use crate::name::{self, Name};
 use crate::number::Rational;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// More evaluations than this are refused: sums within sums would never end.
 const LIMIT: usize = 2_000_000;
@@ -25,6 +25,8 @@ pub(crate) struct Energies {
     pub(crate) forces: Vec<Id>,
     /// The default of each parameter that has one.
     pub(crate) defaults: Vec<Option<Id>>,
+    /// The parameters of two or three components that are used by their indices alone: families, not vectors.
+    pub(crate) families: BTreeSet<usize>,
 }
 
 impl Energies {
@@ -61,6 +63,8 @@ pub(crate) fn energies(model: &Model, graph: &mut Graph, errors: &mut Errors) ->
         ranges: Vec::new(),
         instances: BTreeMap::new(),
         open: Vec::new(),
+        indexed: BTreeSet::new(),
+        whole: BTreeSet::new(),
         work: 0,
     };
     lower.block()
@@ -98,6 +102,9 @@ struct Lower<'m, 'a, 'g, 'e> {
     instances: BTreeMap<(usize, Option<i64>), Value>,
     /// The definitions that are being evaluated.
     open: Vec<(usize, Option<i64>)>,
+    /// The parameters that are used by their indices, and those that are used whole.
+    indexed: BTreeSet<usize>,
+    whole: BTreeSet<usize>,
     work: usize,
 }
 
@@ -137,6 +144,7 @@ impl Lower<'_, '_, '_, '_> {
             });
         }
         self.forces(&mut energies);
+        energies.families = self.indexed.difference(&self.whole).copied().collect();
         energies
     }
 
@@ -373,7 +381,10 @@ impl Lower<'_, '_, '_, '_> {
             }
         }
         match self.model.names.get(&base) {
-            Some(&Meaning::Parameter(index)) if dots == 0 => self.quantity(&self.model.parameters[index], Symbol::Parameter),
+            Some(&Meaning::Parameter(index)) if dots == 0 => {
+                self.whole.insert(index);
+                self.quantity(&self.model.parameters[index], Symbol::Parameter)
+            }
             Some(&Meaning::Coordinate(index)) if dots == 0 => self.quantity(&self.model.coordinates[index], Symbol::Coordinate),
             Some(&Meaning::Coordinate(index)) if dots == 1 => self.quantity(&self.model.coordinates[index], Symbol::Velocity),
             Some(&Meaning::Input(input)) if dots <= 2 => {
@@ -599,7 +610,7 @@ impl Lower<'_, '_, '_, '_> {
         match (name, items) {
             ("dot", [item]) => {
                 let value = self.expr(item);
-                self.dot(value, item, indexed(item))
+                self.dot(value, item, has_index(item))
             }
             ("inner", [a, b]) => self.inner(a, b),
             ("cross", [a, b]) => self.cross(a, b),
@@ -789,7 +800,7 @@ impl Lower<'_, '_, '_, '_> {
                 return value;
             }
         }
-        let value = self.expr(base);
+        let value = self.indexed(base);
         let members: Vec<Value> = match value {
             Value::Bad => return Value::Bad,
             Value::Family(members) => members,
@@ -803,6 +814,21 @@ impl Lower<'_, '_, '_, '_> {
             Some(k) => members[usize::try_from(k).unwrap_or(0)].clone(),
             None => Value::Bad,
         }
+    }
+
+    /// What an index is put to.
+    fn indexed(&mut self, base: &Expr) -> Value {
+        if let ExprKind::Name(ident) = &base.kind {
+            let Name { base: text, dots: 0 } = name::read(&ident.to_string()) else { return self.expr(base) };
+            let local = self.scope.iter().any(|(name, _)| *name == text);
+            if let Some(&Meaning::Parameter(index)) = self.model.names.get(&text)
+                && !local
+            {
+                self.indexed.insert(index);
+                return self.quantity(&self.model.parameters[index], Symbol::Parameter);
+            }
+        }
+        self.expr(base)
     }
 
     fn component(&mut self, base: &Expr, component: &str, expr: &Expr) -> Value {
@@ -857,15 +883,15 @@ const SCALAR: &[(&str, Function)] = &[
 ];
 
 /// Whether an index stands in an expression: one member of a family may be at rest.
-fn indexed(expr: &Expr) -> bool {
+fn has_index(expr: &Expr) -> bool {
     match &expr.kind {
         ExprKind::Number(_) | ExprKind::Name(_) | ExprKind::Integral { .. } => false,
         ExprKind::Index(..) => true,
-        ExprKind::Sum(items) | ExprKind::Product(items) => items.iter().any(|(_, item)| indexed(item)),
-        ExprKind::Negative(a) | ExprKind::Magnitude(a) | ExprKind::Component(a, _) => indexed(a),
-        ExprKind::Power(a, b) => indexed(a) || indexed(b),
-        ExprKind::Call(_, items) | ExprKind::Vector(items) => items.iter().any(indexed),
-        ExprKind::SumOver(_, term) => indexed(term),
+        ExprKind::Sum(items) | ExprKind::Product(items) => items.iter().any(|(_, item)| has_index(item)),
+        ExprKind::Negative(a) | ExprKind::Magnitude(a) | ExprKind::Component(a, _) => has_index(a),
+        ExprKind::Power(a, b) => has_index(a) || has_index(b),
+        ExprKind::Call(_, items) | ExprKind::Vector(items) => items.iter().any(has_index),
+        ExprKind::SumOver(_, term) => has_index(term),
     }
 }
 

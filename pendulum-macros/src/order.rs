@@ -43,7 +43,7 @@ fn key(old: &Graph, id: Id, graph: &mut Graph, known: &BTreeMap<Id, Id>) -> Key 
     let contents = old.contents(id);
     let rank = [Contents::VELOCITY, Contents::COORDINATE, Contents::INPUT, Contents::TIME];
     let rank = rank.into_iter().position(|kind| contents.any(kind)).map_or(0, |place| 4 - u8::try_from(place).unwrap_or(0));
-    let mut bare = |id: Id, graph: &mut Graph| graph.split(known[&id]);
+    let bare = |id: Id, graph: &mut Graph| graph.split(known[&id]);
     let (shape, mut parts) = match old.node(id) {
         node @ (Node::Number(_) | Node::Opaque(_) | Node::Pi | Node::Symbol(_)) => (node.clone(), Vec::new()),
         Node::Sum(terms) => {

@@ -6,6 +6,7 @@ use crate::expr::{Function, Graph, Id, Node, Symbol};
 use crate::motion::Motion;
 use crate::name;
 use crate::number::Rational;
+use std::collections::BTreeSet;
 
 /// The names of all symbols of a block, as the user writes them.
 pub(crate) struct Names {
@@ -15,10 +16,11 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    pub(crate) fn new(model: &Model) -> Self {
-        let members = |quantity: &Quantity| quantity_names(quantity, false);
+    /// `families` are the parameters of two or three components that are no vectors.
+    pub(crate) fn new(model: &Model, families: &BTreeSet<usize>) -> Self {
+        let parameters = model.parameters.iter().enumerate();
         Self {
-            parameters: model.parameters.iter().flat_map(members).collect(),
+            parameters: parameters.flat_map(|(index, quantity)| quantity_names(quantity, families.contains(&index))).collect(),
             coordinates: model.coordinates.iter().flat_map(|quantity| quantity_names(quantity, true)).collect(),
             inputs: model.inputs.iter().map(|quantity| (quantity.name.to_string(), quantity.length.is_some())).collect(),
         }
@@ -47,11 +49,11 @@ impl Names {
 }
 
 /// The scalars of a quantity: `c.x`, `m[3]` or the name itself.
-fn quantity_names(quantity: &Quantity, coordinate: bool) -> Vec<String> {
+fn quantity_names(quantity: &Quantity, family: bool) -> Vec<String> {
     let name = quantity.name.to_string();
     match quantity.length {
         None => vec![name],
-        Some(length @ (2 | 3)) if !coordinate => (0..length).map(|k| format!("{name}.{}", ["x", "y", "z"][k])).collect(),
+        Some(length @ (2 | 3)) if !family => (0..length).map(|k| format!("{name}.{}", ["x", "y", "z"][k])).collect(),
         Some(length) => (0..length).map(|k| format!("{name}[{k}]")).collect(),
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! `UPDATE_GOLDEN=1 cargo test -p pendulum-macros` rewrites them; the difference is read in review.
 
-use super::derive;
+use super::derived;
+use crate::error::Errors;
 use crate::expr::{Graph, Symbol};
 use crate::{emit, print, schedule};
 use std::fmt::Write;
@@ -29,8 +30,9 @@ fn golden_files_hold() {
 }
 
 fn report(source: &str) -> String {
-    derive(source, |model, graph, motion| {
-        let names = print::Names::new(model);
+    let mut errors = Errors::default();
+    let report = derived(source, &mut errors, |model, graph, motion, energies| {
+        let names = print::Names::new(model, &energies.families);
         let mut text = String::new();
         for line in print::equations(graph, &names, motion) {
             writeln!(text, "{line}").unwrap();
@@ -60,5 +62,6 @@ fn report(source: &str) -> String {
             writeln!(text, "inputs of the momenta: {}", symbols(&motion.momenta)).unwrap();
         }
         text
-    })
+    });
+    report.unwrap_or_else(|| panic!("{:?}", errors.messages()))
 }

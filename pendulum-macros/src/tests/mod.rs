@@ -18,19 +18,23 @@ mod soup;
 /// What is wrong with a block.
 fn refusals(source: &str) -> Vec<String> {
     let mut errors = Errors::default();
-    derived(source, &mut errors, |_, _, _| ());
+    derived(source, &mut errors, |_, _, _, _| ());
     errors.messages()
 }
 
 /// Derives a block without mistakes.
 fn derive<R>(source: &str, inspect: impl FnOnce(&Model, &mut Graph, &Motion) -> R) -> R {
     let mut errors = Errors::default();
-    let result = derived(source, &mut errors, inspect);
+    let result = derived(source, &mut errors, |model, graph, motion, _| inspect(model, graph, motion));
     assert!(errors.is_empty(), "{source}: {:?}", errors.messages());
     result.unwrap()
 }
 
-fn derived<R>(source: &str, errors: &mut Errors, inspect: impl FnOnce(&Model, &mut Graph, &Motion) -> R) -> Option<R> {
+fn derived<R>(
+    source: &str,
+    errors: &mut Errors,
+    inspect: impl FnOnce(&Model, &mut Graph, &Motion, &lower::Energies) -> R,
+) -> Option<R> {
     let tokens = format!("::pendulum_runtime; {source}").parse().unwrap();
     let (_, block) = parse::all(tokens, errors)?;
     let model = check::resolve(&block, errors);
@@ -40,7 +44,7 @@ fn derived<R>(source: &str, errors: &mut Errors, inspect: impl FnOnce(&Model, &m
         return None;
     }
     let motion = motion::canonical(&model, &mut graph, &mut energies, errors)?;
-    Some(inspect(&model, &mut graph, &motion))
+    Some(inspect(&model, &mut graph, &motion, &energies))
 }
 
 /// An expression of the free scalars `a`, `b`, `c`, lowered through a block's potential.
