@@ -110,12 +110,11 @@ fn minus_half() -> Rational {
 pub(crate) fn substitute(graph: &mut Graph, id: Id, value: impl Fn(Symbol) -> Option<Id>) -> Id {
     let mut known: BTreeMap<Id, Id> = BTreeMap::new();
     for node in graph.reachable(&[id]) {
-        let result = match *graph.node(node) {
-            Node::Symbol(symbol) => value(symbol).unwrap_or(node),
-            _ => {
-                let old = graph.node(node).clone();
-                graph.rebuilt(&old, |child| known[&child])
-            }
+        let result = if let Node::Symbol(symbol) = *graph.node(node) {
+            value(symbol).unwrap_or(node)
+        } else {
+            let old = graph.node(node).clone();
+            graph.rebuilt(&old, |child| known[&child])
         };
         known.insert(node, result);
     }
