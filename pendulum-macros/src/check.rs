@@ -30,7 +30,6 @@ pub(crate) struct Quantity<'a> {
     pub(crate) length: Option<usize>,
     /// The number of scalars declared before it.
     pub(crate) first: usize,
-    #[allow(dead_code, reason = "stored with the quantity; nothing is checked against it yet")]
     pub(crate) dimension: Option<Dimension>,
     pub(crate) unit: String,
     pub(crate) default: Option<&'a Expr>,
@@ -277,7 +276,8 @@ pub(crate) fn text(expr: &Expr) -> String {
     use crate::ast::Literal;
     let list = |items: &[Expr]| items.iter().map(text).collect::<Vec<_>>().join(", ");
     match &expr.kind {
-        ExprKind::Number(Literal::Exact(value)) => value.to_string(),
+        // A literal is a decimal fraction, so that its nearest double prints as it was written.
+        ExprKind::Number(Literal::Exact(value)) => (value.numerator() as f64 / value.denominator() as f64).to_string(),
         ExprKind::Number(Literal::Decimal(digits)) => digits.clone(),
         ExprKind::Name(name) => name.to_string(),
         ExprKind::Sum(terms) => joined(terms, " + ", " - "),

@@ -40,6 +40,9 @@ fn expand(input: TokenStream) -> TokenStream {
     let model = check::resolve(&block, &mut errors);
     let mut graph = expr::Graph::new();
     let mut energies = lower::energies(&model, &mut graph, &mut errors);
+    if errors.is_empty() {
+        unit::infer::check(&model, &mut errors);
+    }
     let motion = if errors.is_empty() { motion::canonical(&model, &mut graph, &mut energies, &mut errors) } else { None };
     let items = emit::Emitter { krate, model: &model, graph, motion, energies }.items();
     let errors = errors.into_tokens();

@@ -210,7 +210,8 @@ fn number(value: Rational, level: Level) -> String {
     if Level::Sum < level && (value.is_negative() || !value.is_integer()) { format!("({text})") } else { text }
 }
 
-fn superscript(value: i64) -> String {
+/// A whole number as an exponent.
+pub(crate) fn superscript(value: i64) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     value.to_string().chars().map(|digit| digit.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize])).collect()
 }

@@ -7,7 +7,7 @@ lagrangian! {
 
     coordinate θ: rad;
     driven x: m;
-    kinetic = m/2 * (L*θ̇ + ẍ)^2;
+    kinetic = m/2 * (L*θ̇ + t*ẍ)^2;
 }
 
 fn main() {}

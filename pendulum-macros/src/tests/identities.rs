@@ -6,12 +6,12 @@ use crate::expr::{Graph, Id, Symbol};
 use std::collections::BTreeMap;
 
 const SYSTEMS: &[&str] = &[
-    "struct S { m, L, g } coordinate θ; driven x: [m; 2]; let y = L*[sin(θ), -cos(θ)]; kinetic = m/2*|ẋ + ẏ|^2; potential = m*g*(height(x) + height(y));",
-    "struct S { m: [kg; 4], l: [m; 4], g } coordinate θ[4]; driven x: [m; 2];
+    "struct S { m, L, g } coordinate θ; driven x: [1; 2]; let y = L*[sin(θ), -cos(θ)]; kinetic = m/2*|ẋ + ẏ|^2; potential = m*g*(height(x) + height(y));",
+    "struct S { m: [1; 4], l: [1; 4], g } coordinate θ[4]; driven x: [1; 2];
      let y[k in 0..4] = x + sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]);
      kinetic = sum(k in 0..4, m[k]/2*|ẏ[k]|^2); potential = sum(k in 0..4, m[k]*g*height(y[k]));",
-    "struct S { m, k, l, g, c } coordinate r; coordinate θ; driven x: [m; 2]; let y = x + (l + r)*[sin(θ), -cos(θ)];
-     kinetic = m/2*|ẏ|^2; potential = m*g*height(y) + k/2*r^2; dissipation = c/2*(ṙ^2 + r^2*θ̇^2); force θ = sin(3*t)*θ̇;",
+    "struct S { m, k, l, g, c, w: Hz } coordinate r; coordinate θ; driven x: [1; 2]; let y = x + (l + r)*[sin(θ), -cos(θ)];
+     kinetic = m/2*|ẏ|^2; potential = m*g*height(y) + k/2*r^2; dissipation = c/2*(ṙ^2 + r^2*θ̇^2); force θ = m*l*g*sin(3*w*t)*θ̇/w;",
     "struct S { m, R, w } coordinate θ; coordinate φ; let r = R*[sin(θ)*cos(φ + w*t), sin(θ)*sin(φ + w*t), -cos(θ)]; kinetic = m/2*|ṙ|^2; potential = m*height(r);",
     "struct S { c } coordinate x; coordinate y; lagrangian = exp(c*t)*(ẋ^2 + ẏ^2 + ẋ*ẏ*x)/2 + (x*ẏ - y*ẋ)*t - 1/|[x, y]|;",
     "struct S { c } coordinate x; coordinate y; lagrangian = -c^2*sqrt(1 - (ẋ^2 + ẏ^2)/(100*c^2)) - (x^2 + y^4)/2;",

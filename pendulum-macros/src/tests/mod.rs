@@ -40,6 +40,9 @@ fn derived<R>(
     let model = check::resolve(&block, errors);
     let mut graph = Graph::new();
     let mut energies = lower::energies(&model, &mut graph, errors);
+    if errors.is_empty() {
+        crate::unit::infer::check(&model, errors);
+    }
     if !errors.is_empty() {
         return None;
     }

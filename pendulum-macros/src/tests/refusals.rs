@@ -50,8 +50,8 @@ const CASES: &[(&str, &str)] = &[
     ("kinetic = m*L^2*θ̇^2; potential = sum(k in 0..θ, k);",    "the end of a range is a whole number known while compiling; write numbers and indices only"),
     ("kinetic = m*L^2*θ̇^2; potential = x^2;",                  "`x` is a plane vector, and only scalars have powers; write `|u|^2`"),
     ("kinetic = m*L^2*θ̇^2; potential = dot(dot(dot(x))).x;",   "`dot(dot(x))` contains a third derivative of a driven input; they have two"),
-    ("kinetic = m*L^2*θ̇^2 + θ̇*ẍ.x;",                           "the momenta contain the acceleration of `x`, so the equations would contain its third derivative; leave its second derivative out of the kinetic energy"),
-    ("kinetic = m*L^2*θ̇^2; coordinate φ; potential = φ^2;",    "`φ` has no kinetic energy, so its acceleration is undetermined; add the square of its velocity to `kinetic`"),
+    ("kinetic = m*L^2*θ̇^2 + m*L*t*θ̇*ẍ.x;",                 "the momenta contain the acceleration of `x`, so the equations would contain its third derivative; leave its second derivative out of the kinetic energy"),
+    ("kinetic = m*L^2*θ̇^2; coordinate φ; potential = m*φ^2;",   "`φ` has no kinetic energy, so its acceleration is undetermined; add the square of its velocity to `kinetic`"),
     ("coordinate φ; kinetic = m*L^2*(θ̇ + φ̇)^2;",               "the mass matrix is singular in the direction of `θ`: its kinetic energy is that of other coordinates; leave the redundant coordinate out"),
     ("potential = m*g*θ;",                                     "`θ` has no kinetic energy, so its acceleration is undetermined; add the square of its velocity to `kinetic`"),
     ("",                                                       "no energy; write `kinetic = …;` and `potential = …;` below the struct"),
@@ -67,6 +67,55 @@ const CASES: &[(&str, &str)] = &[
 fn one_mistake_gives_one_message() {
     for (statements, expected) in CASES {
         assert_eq!(refusals(&block(statements)), [*expected], "{statements}");
+    }
+}
+
+/// Units, each mistake at the smallest expression that is wrong.
+#[rustfmt::skip]
+const UNITS: &[(&str, &str)] = &[
+    ("potential = m*9.81*L*cos(θ);",                        "`m*9.81*L*cos(θ)` is kg·m, but `m/2*L^2*θ̇^2` is kg·m²/s²; all energies of a block have one unit"),
+    ("potential = m*g*(L + θ);",                            "`θ` is a pure number, but `L` is m; a sum needs one unit"),
+    ("potential = m*g*L*cos(L);",                           "`L` is m, but the argument of `cos` is a pure number; divide by a unit of its kind"),
+    ("potential = m*g*L*sin(t);",                           "`t` is s, but the argument of `sin` is a pure number; divide by a unit of its kind"),
+    ("potential = m*g*L*exp(t*θ̇ + t);",                     "`t` is s, but `t*θ̇` is a pure number; a sum needs one unit"),
+    ("potential = m*g*height([L, θ]);",                     "`θ` is a pure number, but `L` is m; a vector needs one unit"),
+    ("potential = m*g*height(x + ẋ);",                      "`ẋ` is m/s, but `x` is m; a sum needs one unit"),
+    ("potential = m*g*max(0, L*θ - t);",                    "`t` is s, but `L*θ` is m; a sum needs one unit"),
+    ("potential = m*g*max(L, θ);",                          "`θ` is a pure number, but `L` is m; `max` needs one unit"),
+    ("potential = m*g*L*atan2(L, t);",                      "`t` is s, but `L` is m; `atan2` needs one unit"),
+    ("potential = m*g*L*L^θ;",                              "`L` is m, but the base of a power whose exponent is no number is a pure number; divide by a unit of its kind"),
+    ("potential = m*g*L*2^t;",                              "`t` is s, but an exponent is a pure number; divide by a unit of its kind"),
+    ("dissipation = m*L^2*θ̇^2;",                            "`m*L^2*θ̇^2` times a second is kg·m²/s, but `m/2*L^2*θ̇^2` is kg·m²/s²; all energies of a block have one unit"),
+    ("force θ = m*g;",                                      "`m*g` is kg·m/s², but a force on `θ` is kg·m²/s², an energy per unit of the coordinate"),
+    ("let r(p) = p + L; potential = m*g*r(t);",             "`L` is m, but `p` is s; a sum needs one unit"),
+    ("let w = g*L; potential = m*w + m*L;",                 "`m*L` is kg·m, but `m*w` is kg·m²/s²; a sum needs one unit"),
+    // A quantity without a unit is decided by its first use and checked at the next.
+    ("potential = k*θ^2 + k*L;",                            "`k*L` is kg·m³/s², but `k*θ^2` is kg·m²/s²; a sum needs one unit"),
+];
+
+#[test]
+fn units_are_checked() {
+    for (statements, expected) in UNITS {
+        let source = format!(
+            "struct P {{ m: kg, L: m, g: m/s^2, k }} coordinate θ: rad; driven x: [m; 2]; kinetic = m/2*L^2*θ̇^2; {statements}"
+        );
+        assert_eq!(refusals(&source), [*expected], "{statements}");
+    }
+}
+
+#[test]
+fn units_give_no_false_alarm() {
+    let blocks = [
+        // Divided by the mass, an energy is as good.
+        "struct P { L: m, g: m/s^2 } coordinate θ: rad; kinetic = L^2*θ̇^2/2; potential = -g*L*cos(θ);",
+        // Nothing has a unit: nothing is checked.
+        "struct P { L, g } coordinate θ; kinetic = θ̇^2 + t*θ̇^2; potential = sin(t);",
+        // Unknowns are inferred or left alone; a zero has every unit.
+        "struct P { m: kg, L, g, c, k, s: N/m^(3/2) } coordinate θ: rad; coordinate z: m; driven x: [m; 2]; kinetic = m/2*|ẋ + dot(L*cis(θ))|^2 + m/2*ż^2;
+         potential = m*g*(height(x) + height(L*cis(θ))) + k/2*max(0, z)^2 + s*|z|^(5/2)*sign(z); dissipation = c*θ̇^2; force θ = [c, 0].x*θ̇; force z = k*z;",
+    ];
+    for source in blocks {
+        assert!(refusals(source).is_empty(), "{:?}", refusals(source));
     }
 }
 
