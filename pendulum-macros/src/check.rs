@@ -300,7 +300,8 @@ fn joined(items: &[(bool, Expr)], plus: &str, minus: &str) -> String {
         if 0 < index {
             result.push_str(if *negative { minus } else { plus });
         }
-        result.push_str(&closed(item));
+        let first = index == 0 && matches!(item.kind, ExprKind::Negative(_));
+        result.push_str(&if first { text(item) } else { closed(item) });
     }
     result
 }

@@ -90,7 +90,7 @@ const UNITS: &[(&str, &str)] = &[
     ("let r(p) = p + L; potential = m*g*r(t);",             "`L` is m, but `p` is s; a sum needs one unit"),
     ("let w = g*L; potential = m*w + m*L;",                 "`m*L` is kg·m, but `m*w` is kg·m²/s²; a sum needs one unit"),
     // A quantity without a unit is decided by its first use and checked at the next.
-    ("potential = k*θ^2 + k*L;",                            "`k*L` is kg·m³/s², but `k*θ^2` is kg·m²/s²; a sum needs one unit"),
+    ("potential = k*θ^2 + k*L;",                            "`k*L` is m times the unit of `k`, but `k*θ^2` is a pure number times the unit of `k`; a sum needs one unit"),
 ];
 
 #[test]

@@ -109,7 +109,7 @@ impl Units<'_, '_, '_> {
             }
             let found = self.expr(force.expr);
             self.scope.truncate(depth);
-            let coordinate = self.quantity(model.parameters.len() + force.coordinate, &model.coordinates[force.coordinate]);
+            let coordinate = Self::quantity(model.parameters.len() + force.coordinate, &model.coordinates[force.coordinate]);
             let expected = energy.times(&coordinate, Rational::MINUS_ONE);
             if let (Some(found), Some(expected)) = (found, expected)
                 && !self.unify(&found, &expected)
@@ -159,7 +159,7 @@ impl Units<'_, '_, '_> {
         found
     }
 
-    fn quantity(&self, unknown: usize, quantity: &check::Quantity) -> Unit {
+    fn quantity(unknown: usize, quantity: &check::Quantity) -> Unit {
         match quantity.dimension {
             Some(known) => Unit::of(known),
             None => Unit { known: Dimension::PURE, unknown: BTreeMap::from([(unknown, Rational::ONE)]) },
@@ -295,9 +295,9 @@ impl Units<'_, '_, '_> {
         } else {
             let (parameters, coordinates) = (model.parameters.len(), model.coordinates.len());
             match (base.as_str(), model.names.get(&base)) {
-                (_, Some(&Meaning::Parameter(index))) => Some(self.quantity(index, &model.parameters[index])),
-                (_, Some(&Meaning::Coordinate(index))) => Some(self.quantity(parameters + index, &model.coordinates[index])),
-                (_, Some(&Meaning::Input(index))) => Some(self.quantity(parameters + coordinates + index, &model.inputs[index])),
+                (_, Some(&Meaning::Parameter(index))) => Some(Self::quantity(index, &model.parameters[index])),
+                (_, Some(&Meaning::Coordinate(index))) => Some(Self::quantity(parameters + index, &model.coordinates[index])),
+                (_, Some(&Meaning::Input(index))) => Some(Self::quantity(parameters + coordinates + index, &model.inputs[index])),
                 (_, Some(&Meaning::Let(index))) => self.definition(index),
                 ("t", None) => Some(Unit::of(second())),
                 _ => Some(Unit::pure()),
