@@ -3,9 +3,29 @@
 //! A motion is asked for exactly the derivatives that the equations contain, and says where its kinks are: the times at which
 //! its position, velocity or acceleration jumps. There it has two values, one from each side.
 
+mod catmull_rom;
+mod clip;
+mod error;
+mod function;
+mod linear;
+mod piecewise;
+mod sinusoid;
+mod spline;
+mod still;
+#[cfg(test)]
+mod tests;
+
 use crate::real::Real;
 use crate::system::{Input, Purpose};
 use crate::time::Time;
+pub use catmull_rom::CatmullRom;
+pub use clip::{Clip, Interpolation};
+pub use error::MotionError;
+pub use function::{Function, Missing, Part};
+pub use linear::Linear;
+pub use sinusoid::Sinusoid;
+pub use spline::Spline;
+pub use still::Still;
 
 /// A prescribed motion in `D` dimensions over the scalar `T`.
 pub trait Motion<T: Real, const D: usize> {
