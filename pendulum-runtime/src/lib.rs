@@ -18,7 +18,7 @@ pub mod __private;
 /// What a program that writes a `lagrangian!` block and integrates it needs.
 pub mod prelude {
     #[allow(unused_imports)]
-    pub use crate::integrate::*;
+    pub(crate) use crate::integrate::*;
     pub use crate::motion::Motion;
     pub use crate::real::Real;
     pub use crate::system::{Driven, Dynamics, System, VelocityFree};

@@ -70,14 +70,14 @@ pub fn newton<const N: usize, S: System<N>>(
                     let part = factor * matrix[(j, k)];
                     matrix[(i, k)] -= part;
                 }
-                step[i] = step[i] - factor * step[j];
+                step[i] -= factor * step[j];
             }
         }
         for j in (0..N).rev() {
             for k in j + 1..N {
-                step[j] = step[j] - matrix[(j, k)] * step[k];
+                step[j] -= matrix[(j, k)] * step[k];
             }
-            step[j] = step[j] / matrix[(j, j)];
+            step[j] /= matrix[(j, j)];
             v[j] += step[j];
         }
     }
