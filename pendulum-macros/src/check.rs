@@ -33,11 +33,14 @@ pub(crate) struct Quantity<'a> {
     pub(crate) dimension: Option<Dimension>,
     pub(crate) unit: String,
     pub(crate) default: Option<&'a Expr>,
+    /// A rigid body: mass, centre and central moments.
+    pub(crate) body: bool,
 }
 
 impl Quantity<'_> {
+    /// The number of its scalars.
     pub(crate) fn count(&self) -> usize {
-        self.length.unwrap_or(1)
+        if self.body { 6 } else { self.length.unwrap_or(1) }
     }
 }
 
@@ -174,22 +177,16 @@ fn quantity<'a>(name: &'a Ident, shape: Shape<'a>, first: usize, default: Option
     let (unit, length) = match shape {
         Shape::Kind(Kind::Scalar(unit)) => (unit.as_ref(), None),
         Shape::Kind(Kind::Array { unit, length }) => (Some(unit), Some(length)),
-        Shape::Kind(Kind::Body(range)) => {
-            errors.at(
-                *range,
-                "`body` parameters are not supported yet; write the mass, the centre and the inertia as parameters, \
-                 `m: kg, c: [m; 2], I: kg*m^2`",
-            );
-            (None, None)
-        }
+        Shape::Kind(Kind::Body(_)) => (None, None),
         Shape::Family(length, unit) => (unit, length),
     };
     let length = length.map(|expr| family_length(expr, errors));
-    if let (Some(_), Some(default)) = (length, default) {
-        errors.at(default.range, "a vector or family has no default; leave it out and pass it to `new`");
+    let body = matches!(shape, Shape::Kind(Kind::Body(_)));
+    if let (true, Some(default)) = (body || length.is_some(), default) {
+        errors.at(default.range, "only a scalar has a default; leave it out and pass the value to `new`");
     }
     let dimension = unit.and_then(|unit| unit::dimension(unit, errors));
-    Quantity { name, length, first, dimension, unit: unit.map(text).unwrap_or_default(), default }
+    Quantity { name, length, first, dimension, unit: unit.map(text).unwrap_or_default(), default, body }
 }
 
 fn family_length(expr: &Expr, errors: &mut Errors) -> usize {
@@ -412,8 +409,10 @@ impl Walk<'_, '_, '_> {
             }
             ExprKind::Component(base, component) => {
                 self.expr(base);
-                if !["x", "y", "z"].iter().any(|known| component == known) && !self.has_body() {
-                    self.errors.at(component.span(), format!("unknown component `{component}`; write `.x`, `.y` or `.z`"));
+                let known: &[&str] = if self.body(base) { &["mass", "center", "inertia"] } else { &["x", "y", "z"] };
+                if !known.iter().any(|known| component == known) {
+                    let list = known.iter().map(|name| format!("`.{name}`")).collect::<Vec<_>>().join(", ");
+                    self.errors.at(component.span(), format!("unknown component `{component}`; there are {list}"));
                 }
             }
             ExprKind::Vector(items) => {
@@ -427,12 +426,14 @@ impl Walk<'_, '_, '_> {
                 self.expr(term);
                 self.scope.truncate(depth);
             }
-            ExprKind::Integral { point, integrand, .. } => {
-                if !self.has_body() {
-                    self.errors.at(
-                        expr.range,
-                        "integrals over bodies are not supported yet; write the energy with mass, centre and inertia as parameters",
-                    );
+            ExprKind::Integral { point, body, integrand } => {
+                let Name { base, dots } = name::read(&body.to_string());
+                match self.model.names.get(&base) {
+                    Some(&Meaning::Parameter(index)) if dots == 0 && self.model.parameters[index].body => {}
+                    Some(_) => {
+                        self.errors.at(body.span(), format!("`{body}` is no body; declare it as `{body}: body` in the struct"))
+                    }
+                    None => self.name(body),
                 }
                 self.scope.push(plain(point));
                 self.expr(integrand);
@@ -441,9 +442,12 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    /// A refused `body` has been reported already.
-    fn has_body(&self) -> bool {
-        self.model.block.fields.iter().any(|field| matches!(field.kind, Kind::Body(_)))
+    /// Whether an expression is the name of a body.
+    fn body(&self, expr: &Expr) -> bool {
+        let ExprKind::Name(ident) = &expr.kind else { return false };
+        let Name { base, dots } = name::read(&ident.to_string());
+        let meaning = self.model.names.get(&base).filter(|_| dots == 0 && !self.scope.contains(&base));
+        matches!(meaning, Some(&Meaning::Parameter(index)) if self.model.parameters[index].body)
     }
 
     fn name(&mut self, ident: &Ident) {

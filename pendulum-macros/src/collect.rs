@@ -8,18 +8,18 @@ use crate::expr::{Contents, Graph, Id, Node};
 use crate::number::Rational;
 use std::collections::BTreeMap;
 
-/// Powers of velocities, sorted.
-type Monomial = Vec<(Id, i64)>;
+/// Powers of the variables, sorted.
+pub(crate) type Monomial = Vec<(Id, i64)>;
 
 /// The terms of each coefficient.
-type Polynomial = BTreeMap<Monomial, Vec<(Id, Rational)>>;
+pub(crate) type Polynomial = BTreeMap<Monomial, Vec<(Id, Rational)>>;
 
 /// More terms than this are left as they stand.
 const LIMIT: usize = 20_000;
 
 /// `id` collected by powers of its velocities (of coordinates and driven inputs), if it is a polynomial in them.
 pub(crate) fn by_velocities(graph: &mut Graph, id: Id) -> Option<Id> {
-    let polynomial = polynomial(graph, id)?;
+    let polynomial = polynomial(graph, id, moving())?;
     let mut terms = Vec::new();
     for (monomial, coefficient) in polynomial {
         let coefficient = simplest(graph, &coefficient);
@@ -34,11 +34,11 @@ fn moving() -> Contents {
     Contents::VELOCITY.or(Contents::VELOCITY_INPUT).or(Contents::ACCELERATION_INPUT)
 }
 
-/// The polynomial that an expression is, from those of its children.
-fn polynomial(graph: &mut Graph, root: Id) -> Option<Polynomial> {
+/// The polynomial that an expression is in all symbols of some kinds, from those of its children.
+pub(crate) fn polynomial(graph: &mut Graph, root: Id, variables: Contents) -> Option<Polynomial> {
     let mut known: BTreeMap<Id, Polynomial> = BTreeMap::new();
     for id in graph.reachable(&[root]) {
-        if !graph.contents(id).any(moving()) {
+        if !graph.contents(id).any(variables) {
             continue;
         }
         let value = match graph.node(id).clone() {
@@ -116,7 +116,7 @@ fn multiply(graph: &mut Graph, a: &Polynomial, b: &Polynomial) -> Option<Polynom
 }
 
 /// The cheaper of a coefficient as it came and multiplied out.
-fn simplest(graph: &mut Graph, terms: &[(Id, Rational)]) -> Id {
+pub(crate) fn simplest(graph: &mut Graph, terms: &[(Id, Rational)]) -> Id {
     let plain = graph.sum(terms);
     let mut flat = Vec::new();
     for &(term, coefficient) in terms {

@@ -1,7 +1,7 @@
 //! Rust for a derived block: the struct, its constructor and the implementation of the runtime's traits.
 
-use crate::check::Model;
-use crate::expr::{Function, Graph, Id, Symbol};
+use crate::check::{Model, Quantity};
+use crate::expr::{Function, Graph, Id, Moment, Symbol};
 use crate::lower::Energies;
 use crate::motion::Motion;
 use crate::number::Rational;
@@ -37,8 +37,17 @@ impl Emitter<'_, '_> {
         format_ident!("{}", if self.model.block.name == "T" { "S" } else { "T" })
     }
 
+    fn field_type(&self, quantity: &Quantity, scalar: &Ident) -> TokenStream {
+        let krate = &self.krate;
+        match quantity.length {
+            _ if quantity.body => quote!(#krate::body::Body<#scalar>),
+            None => quote!(#scalar),
+            Some(length) => quote!([#scalar; #length]),
+        }
+    }
+
     fn count(&self) -> usize {
-        self.model.coordinates.iter().map(crate::check::Quantity::count).sum()
+        self.model.coordinates.iter().map(Quantity::count).sum()
     }
 
     fn structure(&mut self) -> TokenStream {
@@ -47,7 +56,7 @@ impl Emitter<'_, '_> {
         let documentation = self.documentation();
         let fields = block.fields.iter().zip(&self.model.parameters).map(|(field, quantity)| {
             let (attributes, name) = (&field.attributes, &field.name);
-            let kind = field_type(quantity.length, &scalar);
+            let kind = self.field_type(quantity, &scalar);
             let documented = attributes.iter().any(|attribute| attribute.path().is_ident("doc"));
             let text = match (documented, quantity.unit.as_str()) {
                 (true, "") => String::new(),
@@ -82,7 +91,7 @@ impl Emitter<'_, '_> {
                 }
                 None if quantity.default.is_some() => values.push(quote!(#field: ::core::unimplemented!())),
                 None => {
-                    let kind = field_type(quantity.length, &scalar);
+                    let kind = self.field_type(quantity, &scalar);
                     arguments.push(quote!(#field: #kind));
                     values.push(quote!(#field));
                 }
@@ -131,11 +140,15 @@ impl Emitter<'_, '_> {
     fn system(&mut self) -> TokenStream {
         let (krate, scalar, count) = (self.krate.clone(), self.scalar(), self.count());
         let name = &self.model.block.name;
-        let dimensions = self.model.inputs.iter().map(crate::check::Quantity::count);
+        let dimensions = self.model.inputs.iter().map(Quantity::count);
         let facts = self.facts();
         let mapped = self.model.parameters.iter().map(|quantity| {
             let field = quantity.name;
-            if quantity.length.is_some() { quote!(#field: self.#field.map(&mut map)) } else { quote!(#field: map(self.#field)) }
+            if quantity.body || quantity.length.is_some() {
+                quote!(#field: self.#field.map(&mut map))
+            } else {
+                quote!(#field: map(self.#field))
+            }
         });
         let empty = self.model.parameters.is_empty().then(|| quote!(__scalar: ::core::marker::PhantomData));
         let vector = |emitter: &mut Self, pick: fn(&Motion) -> Vec<Id>| emitter.output(|motion| Some(pick(motion)));
@@ -345,8 +358,32 @@ impl Emitter<'_, '_> {
                 let quantity = self.model.parameters.iter().rfind(|quantity| quantity.first <= scalar);
                 let Some(quantity) = quantity else { return TokenStream::new() };
                 let (name, offset) = (quantity.name, scalar - quantity.first);
-                if quantity.length.is_some() { quote!(self.#name[#offset]) } else { quote!(self.#name) }
+                match quantity.length {
+                    _ if quantity.body => match offset {
+                        0 => quote!(self.#name.mass),
+                        1 | 2 => {
+                            let component = offset - 1;
+                            quote!(self.#name.center[#component])
+                        }
+                        _ => {
+                            let component = offset - 3;
+                            quote!(self.#name.central[#component])
+                        }
+                    },
+                    Some(_) => quote!(self.#name[#offset]),
+                    None => quote!(self.#name),
+                }
             }
+            Symbol::Moment(body, moment) => {
+                let name = self.model.parameters[body].name;
+                match moment {
+                    Moment::Inertia => quote!(self.#name.inertia()),
+                    Moment::Difference => quote!((self.#name.moments()[0] - self.#name.moments()[2])),
+                    Moment::Product => quote!(self.#name.moments()[1]),
+                }
+            }
+            // Points of integration are gone when the integral is done.
+            Symbol::Point(..) => quote!(::core::unreachable!()),
             Symbol::Time => quote!(t),
             Symbol::Coordinate(index) => quote!(q[#index]),
             Symbol::Velocity(index) => quote!(v[#index]),
@@ -364,7 +401,12 @@ impl Emitter<'_, '_> {
         let names = Names::new(self.model, &self.energies.families);
         let name = self.model.block.name.to_string();
         let (coordinates, parameters) = (&names.coordinates, &names.parameters);
-        let units = self.model.parameters.iter().flat_map(|quantity| vec![quantity.unit.clone(); quantity.count()]);
+        let units = self.model.parameters.iter().flat_map(|quantity| {
+            if quantity.body {
+                return ["kg", "m", "m", "kg*m^2", "kg*m^2", "kg*m^2"].map(String::from).to_vec();
+            }
+            vec![quantity.unit.clone(); quantity.count()]
+        });
         let inputs = self.inputs();
         let Some(motion) = &self.motion else {
             return quote!(#krate::__private::facts(#krate::__private::Known {
@@ -402,7 +444,7 @@ impl Emitter<'_, '_> {
                 ]
             }
         };
-        let describe = |(index, quantity): (usize, &crate::check::Quantity)| {
+        let describe = |(index, quantity): (usize, &Quantity)| {
             let (name, components) = (quantity.name.to_string(), quantity.count());
             let orders = purposes.iter().map(|symbols| {
                 let has = |wanted: u8| {
@@ -424,7 +466,13 @@ impl Emitter<'_, '_> {
 
     fn unused(&self, names: &Names) -> Vec<String> {
         let Some(motion) = &self.motion else { return Vec::new() };
-        let needed = self.graph.symbols(&motion.accelerations);
+        let mut needed = self.graph.symbols(&motion.accelerations);
+        for (index, quantity) in self.model.parameters.iter().enumerate() {
+            // A moment about the pivot is made of all that a body has.
+            if needed.iter().any(|symbol| matches!(symbol, Symbol::Moment(body, _) if *body == index)) {
+                needed.extend((quantity.first..quantity.first + quantity.count()).map(Symbol::Parameter));
+            }
+        }
         let all = names.parameters.iter().enumerate();
         all.filter(|(index, _)| !needed.contains(&Symbol::Parameter(*index))).map(|(_, name)| name.clone()).collect()
     }
@@ -482,13 +530,6 @@ pub(crate) fn operations(count: Count) -> String {
         .map(|(number, what)| format!("{number} {what}{}", if number == 1 { "" } else { "s" }))
         .collect();
     if parts.is_empty() { "no operation".into() } else { parts.join(", ") }
-}
-
-fn field_type(length: Option<usize>, scalar: &Ident) -> TokenStream {
-    match length {
-        None => quote!(#scalar),
-        Some(length) => quote!([#scalar; #length]),
-    }
 }
 
 /// A name of ours that no user can write.

@@ -53,6 +53,21 @@ pub(crate) enum Symbol {
     },
     /// A generalized momentum, in the function that inverts them.
     Momentum(usize),
+    /// A second moment of a body about its pivot.
+    Moment(usize, Moment),
+    /// A component of the point of integration; the first number tells nested integrals apart.
+    Point(usize, usize),
+}
+
+/// The second moments of a body in which rotations are short: S_xx + S_yy, S_xx − S_yy and S_xy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Moment {
+    /// S_xx + S_yy, the moment of inertia.
+    Inertia,
+    /// S_xx − S_yy.
+    Difference,
+    /// S_xy.
+    Product,
 }
 
 /// A function of one argument.
@@ -76,7 +91,7 @@ pub(crate) enum Function {
 
 /// What stands in an expression, anywhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Contents(u8);
+pub(crate) struct Contents(u16);
 
 impl Contents {
     pub(crate) const PARAMETER: Self = Self(1);
@@ -87,6 +102,7 @@ impl Contents {
     pub(crate) const VELOCITY_INPUT: Self = Self(32);
     pub(crate) const ACCELERATION_INPUT: Self = Self(64);
     pub(crate) const MOMENTUM: Self = Self(128);
+    pub(crate) const POINT: Self = Self(256);
     pub(crate) const INPUT: Self = Self(16 | 32 | 64);
 
     pub(crate) const fn or(self, other: Self) -> Self {
@@ -100,7 +116,8 @@ impl Contents {
 
     fn of(symbol: Symbol) -> Self {
         match symbol {
-            Symbol::Parameter(_) => Self::PARAMETER,
+            Symbol::Parameter(_) | Symbol::Moment(..) => Self::PARAMETER,
+            Symbol::Point(..) => Self::POINT,
             Symbol::Time => Self::TIME,
             Symbol::Coordinate(_) => Self::COORDINATE,
             Symbol::Velocity(_) => Self::VELOCITY,

@@ -2,7 +2,7 @@
 
 use crate::ast::Literal;
 use crate::check::{Model, Quantity};
-use crate::expr::{Function, Graph, Id, Node, Symbol};
+use crate::expr::{Function, Graph, Id, Moment, Node, Symbol};
 use crate::motion::Motion;
 use crate::name;
 use crate::number::Rational;
@@ -13,6 +13,8 @@ pub(crate) struct Names {
     pub(crate) parameters: Vec<String>,
     pub(crate) coordinates: Vec<String>,
     inputs: Vec<(String, bool)>,
+    /// The names of all parameters, bodies among them.
+    bodies: Vec<String>,
 }
 
 impl Names {
@@ -22,6 +24,7 @@ impl Names {
         Self {
             parameters: parameters.flat_map(|(index, quantity)| quantity_names(quantity, families.contains(&index))).collect(),
             coordinates: model.coordinates.iter().flat_map(|quantity| quantity_names(quantity, true)).collect(),
+            bodies: model.parameters.iter().map(|quantity| quantity.name.to_string()).collect(),
             inputs: model.inputs.iter().map(|quantity| (quantity.name.to_string(), quantity.length.is_some())).collect(),
         }
     }
@@ -34,6 +37,15 @@ impl Names {
             Symbol::Coordinate(index) => self.coordinates[index].clone(),
             Symbol::Velocity(index) => dotted(&self.coordinates[index], 1),
             Symbol::Momentum(index) => format!("p_{}", self.coordinates[index]),
+            Symbol::Point(_, component) => ["p.x", "p.y"][component.min(1)].into(),
+            Symbol::Moment(body, moment) => {
+                let body = &self.bodies[body];
+                match moment {
+                    Moment::Inertia => format!("{body}.inertia"),
+                    Moment::Difference => format!("({body}.xx − {body}.yy)"),
+                    Moment::Product => format!("{body}.xy"),
+                }
+            }
             Symbol::Input { input, component, order } => {
                 let (name, vector) = &self.inputs[input];
                 let name = dotted(name, order);
@@ -51,6 +63,10 @@ impl Names {
 /// The scalars of a quantity: `c.x`, `m[3]` or the name itself.
 fn quantity_names(quantity: &Quantity, family: bool) -> Vec<String> {
     let name = quantity.name.to_string();
+    if quantity.body {
+        let parts = ["mass", "center.x", "center.y", "central.xx", "central.xy", "central.yy"];
+        return parts.map(|part| format!("{name}.{part}")).to_vec();
+    }
     match quantity.length {
         None => vec![name],
         Some(length @ (2 | 3)) if !family => (0..length).map(|k| format!("{name}.{}", ["x", "y", "z"][k])).collect(),

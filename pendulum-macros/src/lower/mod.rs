@@ -2,6 +2,7 @@
 //!
 //! A plane vector is a complex number; `Value::Bad` stands for what has been reported, so that one mistake gives one message.
 
+mod body;
 mod term;
 mod value;
 
@@ -56,6 +57,7 @@ pub(crate) fn energies(model: &Model, graph: &mut Graph, errors: &mut Errors) ->
         indexed: BTreeSet::new(),
         whole: BTreeSet::new(),
         work: 0,
+        integrals: 0,
     };
     lower.block()
 }
@@ -96,6 +98,8 @@ struct Lower<'m, 'a, 'g, 'e> {
     indexed: BTreeSet<usize>,
     whole: BTreeSet<usize>,
     work: usize,
+    /// The number of integrals that are open.
+    integrals: usize,
 }
 
 impl Lower<'_, '_, '_, '_> {

@@ -53,7 +53,7 @@ impl Lower<'_, '_, '_, '_> {
             ExprKind::Vector(items) => self.vector(items, expr),
             ExprKind::Magnitude(inner) => self.magnitude(inner),
             ExprKind::SumOver(binder, term) => self.sum_over(binder, term),
-            ExprKind::Integral { .. } => Value::Bad,
+            ExprKind::Integral { point, body, integrand } => self.integral(&point.to_string(), &body.to_string(), integrand),
         }
     }
 
@@ -75,6 +75,12 @@ impl Lower<'_, '_, '_, '_> {
             }
         }
         match self.model.names.get(&base) {
+            Some(&Meaning::Parameter(index)) if dots == 0 && self.model.parameters[index].body => self.wrong(
+                expr,
+                &format!(
+                    "`{text}` is a body; write `{text}.mass`, `{text}.center`, `{text}.inertia` or `integral(p in {text}, …)`"
+                ),
+            ),
             Some(&Meaning::Parameter(index)) if dots == 0 => {
                 self.whole.insert(index);
                 self.quantity(&self.model.parameters[index], Symbol::Parameter)
@@ -318,6 +324,9 @@ impl Lower<'_, '_, '_, '_> {
     }
 
     pub(super) fn component(&mut self, base: &Expr, component: &str, expr: &Expr) -> Value {
+        if let Some(index) = self.body(base) {
+            return self.property(index, component);
+        }
         let value = self.expr(base);
         let which = match component {
             "x" => 0,

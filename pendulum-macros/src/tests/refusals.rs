@@ -43,7 +43,7 @@ const CASES: &[(&str, &str)] = &[
     ("kinetic = m*L^2*θ̇^2; potential = sin;",                  "`sin` is a function; write `sin(…)`"),
     ("kinetic = m*L^2*θ̇^2; potential = x/x;",                  "`x` is a plane vector, and nothing can be divided by that; divide by its length `|u|`"),
     ("kinetic = m*L^2*θ̇^2; potential = m/0;",                  "division by zero; write another divisor"),
-    ("kinetic = m*L^2*θ̇^2; potential = x.w;",                  "unknown component `w`; write `.x`, `.y` or `.z`"),
+    ("kinetic = m*L^2*θ̇^2; potential = x.w;",                  "unknown component `w`; there are `.x`, `.y`, `.z`"),
     ("kinetic = m*L^2*θ̇^2; potential = x.z;",                  "`x` is a plane vector, it has no `.z`; write a vector"),
     ("kinetic = m*L^2*θ̇^2; force m = 1;",                      "`m` is no coordinate; a force acts on a coordinate, as in `force θ = …;`"),
     ("kinetic = m*L^2*θ̇^2; potential = sum(k in 0..100000000, k);", "this range has more than 65536 members; write a shorter one"),
@@ -60,7 +60,7 @@ const CASES: &[(&str, &str)] = &[
     ("kinetic = m*L^2*θ̇^2; driven ẏ: [m; 2];",                 "`ẏ` is a time derivative; declare the name without dots, `y`"),
     ("kinetic = m*L^2*θ̇^2; driven r: [m; 5];",                 "a driven input is a scalar or a vector; write `[m; 2]` or `[m; 3]`"),
     ("kinetic = m*L^2*θ̇^2; let loop = 2;",                     "`loop` is a word of the Rust language; choose another name"),
-    ("kinetic = m*L^2*θ̇^2; potential = integral(p in c, 1);",  "integrals over bodies are not supported yet; write the energy with mass, centre and inertia as parameters"),
+    ("kinetic = m*L^2*θ̇^2; potential = integral(p in c, 1);",  "`c` is no body; declare it as `c: body` in the struct"),
 ];
 
 #[test]
@@ -146,10 +146,27 @@ fn no_coordinate() {
     assert_eq!(refusals("struct P { m } kinetic = m;"), ["no coordinate; write `coordinate θ: rad;` below the struct"]);
 }
 
+#[rustfmt::skip]
+const BODIES: &[(&str, &str)] = &[
+    ("potential = B;",                                  "`B` is a body; write `B.mass`, `B.center`, `B.inertia` or `integral(p in B, …)`"),
+    ("potential = B.weight;",                           "unknown component `weight`; there are `.mass`, `.center`, `.inertia`"),
+    ("potential = integral(p in g, height(p));",        "`g` is no body; declare it as `g: body` in the struct"),
+    ("potential = integral(p in C, height(p));",        "unknown name `C`; declare it as a parameter, a coordinate, a driven input or with `let`"),
+    ("potential = integral(p in B, |p|^3);",            "`|p|^3` is no polynomial in `p`, and a body knows its moments up to the second; write a polynomial of degree two or less"),
+    ("potential = integral(p in B, p.x*|p|^2);",        "`p.x*|p|^2` is of higher degree than two in `p`, and a body knows its moments up to the second; write a polynomial of degree two or less"),
+    ("potential = integral(p in B, sin(p.x));",         "`sin(p.x)` is no polynomial in `p`, and a body knows its moments up to the second; write a polynomial of degree two or less"),
+    ("potential = integral(p in B, p);",                "`integral(p in B, …)` is a plane vector, but a scalar is needed here; write `inner(u, v)`, `|u|` or a component"),
+    ("potential = integral(p in B, g*|p|^2);",          "`integral(p in B, …)` is kg·m³/s², but `integral(p in B, …)` is kg·m²/s²; all energies of a block have one unit"),
+];
+
 #[test]
-fn bodies_wait() {
-    let found = refusals("struct P { B: body } coordinate θ; kinetic = integral(p in B, |dot(cis(θ)*p)|^2/2) + B.mass;");
-    assert_eq!(found.len(), 1, "{found:?}");
+fn bodies_are_integrated_to_the_second_degree() {
+    for (statements, expected) in BODIES {
+        let source = format!(
+            "struct P {{ B: body, g: m/s^2 }} coordinate θ: rad; let r(p) = cis(θ)*p; kinetic = integral(p in B, |dot(r(p))|^2/2); {statements}"
+        );
+        assert_eq!(refusals(&source), [*expected], "{statements}");
+    }
 }
 
 #[test]

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 /// Checks a block, if any of its quantities has a unit.
 pub(crate) fn check(model: &Model, errors: &mut Errors) {
     let quantities = || model.parameters.iter().chain(&model.coordinates).chain(&model.inputs);
-    if quantities().all(|quantity| quantity.unit.is_empty()) {
+    if quantities().all(|quantity| quantity.unit.is_empty() && !quantity.body) {
         return;
     }
     let mut units =
@@ -285,6 +285,13 @@ impl Units<'_, '_, '_> {
                 found.and_then(|unit| unit.times(&Unit::of(mass), Rational::ONE))
             }
         }
+    }
+
+    /// Whether an expression is the name of a body.
+    fn body(&self, expr: &Expr) -> bool {
+        let ExprKind::Name(ident) = &expr.kind else { return false };
+        let base = name::read(&ident.to_string()).base;
+        matches!(self.model.names.get(&base), Some(&Meaning::Parameter(index)) if self.model.parameters[index].body)
     }
 
     fn name(&mut self, text: &str) -> Found {

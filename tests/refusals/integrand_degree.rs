@@ -7,6 +7,7 @@ lagrangian! {
 
     coordinate θ: rad;
     kinetic = integral(p in B, |dot(cis(θ)*p)|^2 / 2);
+    potential = integral(p in B, g*|p|^2*p.y);
 }
 
 fn main() {}
