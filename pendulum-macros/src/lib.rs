@@ -10,6 +10,7 @@ mod diff;
 mod emit;
 mod error;
 mod expr;
+mod jacobian;
 mod lower;
 mod motion;
 mod name;

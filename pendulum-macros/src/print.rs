@@ -13,8 +13,6 @@ pub(crate) struct Names {
     pub(crate) parameters: Vec<String>,
     pub(crate) coordinates: Vec<String>,
     inputs: Vec<(String, bool)>,
-    /// The names of all parameters, bodies among them.
-    bodies: Vec<String>,
 }
 
 impl Names {
@@ -24,7 +22,6 @@ impl Names {
         Self {
             parameters: parameters.flat_map(|(index, quantity)| quantity_names(quantity, families.contains(&index))).collect(),
             coordinates: model.coordinates.iter().flat_map(|quantity| quantity_names(quantity, true)).collect(),
-            bodies: model.parameters.iter().map(|quantity| quantity.name.to_string()).collect(),
             inputs: model.inputs.iter().map(|quantity| (quantity.name.to_string(), quantity.length.is_some())).collect(),
         }
     }
@@ -39,7 +36,7 @@ impl Names {
             Symbol::Momentum(index) => format!("p_{}", self.coordinates[index]),
             Symbol::Point(_, component) => ["p.x", "p.y"][component.min(1)].into(),
             Symbol::Moment(body, moment) => {
-                let body = &self.bodies[body];
+                let body = self.parameters[body].trim_end_matches(".mass");
                 match moment {
                     Moment::Inertia => format!("{body}.inertia"),
                     Moment::Difference => format!("({body}.xx − {body}.yy)"),

@@ -43,6 +43,11 @@ pub const fn facts(known: Known) -> Facts {
     }
 }
 
+/// The columns of a matrix of `N` rows, stored one after the other.
+pub fn columns<T, const N: usize>(entries: &[T]) -> &[[T; N]] {
+    entries.as_chunks().0
+}
+
 /// q̇ from p by Newton's method, for Lagrangians that are not quadratic in the velocities.
 ///
 /// Starts from rest and takes a fixed number of steps, because lanes have no common moment of convergence.

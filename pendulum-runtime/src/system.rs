@@ -96,6 +96,37 @@ pub trait SplitEnergy<const N: usize>: System<N> {
     ) -> Self::Scalar;
 }
 
+/// The derivatives of the accelerations, from the same expression graph.
+pub trait Jacobians<const N: usize>: System<N> {
+    /// ∂q̈/∂q, row by acceleration, column by coordinate.
+    fn position_jacobian(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> SMatrix<Self::Scalar, N, N>;
+
+    /// ∂q̈/∂q̇, row by acceleration, column by velocity.
+    fn velocity_jacobian(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> SMatrix<Self::Scalar, N, N>;
+
+    /// ∂q̈/∂p for each parameter p in the order of `FACTS.parameters`, as far as `columns` reaches.
+    fn parameter_jacobian(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+        columns: &mut [[Self::Scalar; N]],
+    );
+}
+
 /// The marker of systems with a constant mass matrix whose accelerations contain no velocity.
 ///
 /// Leapfrog and Runge–Kutta–Nyström methods are wrong for all others, so they ask for it.
