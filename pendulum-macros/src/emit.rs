@@ -162,6 +162,14 @@ impl Emitter<'_, '_> {
         let velocities = self.output(|motion| motion.velocities.clone());
         let velocities = velocities.unwrap_or_else(|| quote!(#krate::__private::newton(self, t, q, p, inputs)));
         let matrix = self.mass_matrix();
+        let conserved = self.output(|motion| Some(motion.conserved.iter().map(|conserved| conserved.value).collect()));
+        let length = self.motion.as_ref().map_or(0, |motion| motion.conserved.len());
+        let conserved = quote! {
+            let all: [#scalar; #length] = #conserved;
+            for (value, conserved) in values.iter_mut().zip(all) {
+                *value = conserved;
+            }
+        };
         let state = quote!(q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs);
         quote! {
             #[automatically_derived]
@@ -199,6 +207,8 @@ impl Emitter<'_, '_> {
 
                 #[inline]
                 fn forces(&self, t: #scalar, #state) -> [#scalar; #count] { #forces }
+
+                fn conserved(&self, t: #scalar, #state, values: &mut [#scalar]) { #conserved }
 
                 #[inline]
                 fn momentum_rates(&self, t: #scalar, #state) -> [#scalar; #count] { #momentum_rates }
@@ -495,18 +505,19 @@ impl Emitter<'_, '_> {
             return quote!(#krate::__private::facts(#krate::__private::Known {
                 name: #name, coordinates: &[#(#coordinates),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*],
                 autonomous: false, separable: false, velocity_free: false, constant_mass_matrix: false, nonconservative: false,
-                cyclic: &[], unused: &[], equations: "",
+                cyclic: &[], conserved: &[], unused: &[], equations: "",
             }));
         };
         let (autonomous, separable, velocity_free, constant_mass_matrix, nonconservative) =
             (motion.autonomous, motion.separable, motion.velocity_free, motion.constant_mass_matrix, motion.nonconservative);
         let cyclic = motion.cyclic.clone();
+        let conserved: Vec<String> = motion.conserved.iter().map(|conserved| print::conserved(&names, conserved)).collect();
         let unused = self.unused(&names);
         let equations = self.equations(&names).join("\n");
         quote!(#krate::__private::facts(#krate::__private::Known {
             name: #name, coordinates: &[#(#coordinates),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*],
             autonomous: #autonomous, separable: #separable, velocity_free: #velocity_free, constant_mass_matrix: #constant_mass_matrix,
-            nonconservative: #nonconservative, cyclic: &[#(#cyclic),*], unused: &[#(#unused),*], equations: #equations,
+            nonconservative: #nonconservative, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], equations: #equations,
         }))
     }
 
@@ -572,7 +583,11 @@ impl Emitter<'_, '_> {
         let names = Names::new(self.model, &self.energies.families);
         let Some(motion) = &self.motion else { return TokenStream::new() };
         let accelerations = motion.accelerations.clone();
-        let cyclic: Vec<String> = motion.cyclic.iter().map(|&index| format!("`{}`", names.coordinates[index])).collect();
+        let mut conserved: Vec<String> =
+            motion.conserved.iter().map(|conserved| format!("`{}`", print::conserved(&names, conserved))).collect();
+        if motion.autonomous && !motion.nonconservative {
+            conserved.push("the energy".into());
+        }
         let count = schedule::program(&self.graph, &accelerations).count();
         let documented = self.model.block.attributes.iter().any(|attribute| attribute.path().is_ident("doc"));
         let mut text = String::new();
@@ -586,8 +601,8 @@ impl Emitter<'_, '_> {
         }
         text.push_str("```\n\n");
         let _ = write!(text, "One evaluation takes {}.", operations(count));
-        if !cyclic.is_empty() {
-            let _ = write!(text, " The momentum of {} is conserved.", cyclic.join(", "));
+        if !conserved.is_empty() {
+            let _ = write!(text, " Conserved: {}.", conserved.join(", "));
         }
         let unused = self.unused(&names);
         if !unused.is_empty() {

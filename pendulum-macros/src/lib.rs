@@ -12,6 +12,7 @@ mod error;
 mod expr;
 mod jacobian;
 mod lower;
+mod modular;
 mod motion;
 mod name;
 mod number;
@@ -21,6 +22,7 @@ mod print;
 mod rule;
 mod schedule;
 mod solve;
+mod symmetry;
 #[cfg(test)]
 mod tests;
 mod unit;

@@ -13,6 +13,7 @@ use crate::number::Rational;
 use crate::order;
 use crate::schedule;
 use crate::solve;
+use crate::symmetry::{self, Conserved};
 
 /// Jacobians of more operations than this are left to dual numbers: an expansion stays small.
 const LONGEST_JACOBIAN: usize = 4000;
@@ -35,6 +36,7 @@ pub(crate) struct Motion {
     /// ∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂parameters, column by column; `None` where they would be too long to write out.
     pub(crate) jacobians: Option<[Vec<Vec<Id>>; 3]>,
     pub(crate) cyclic: Vec<usize>,
+    pub(crate) conserved: Vec<Conserved>,
     pub(crate) autonomous: bool,
     pub(crate) separable: bool,
     pub(crate) velocity_free: bool,
@@ -49,8 +51,17 @@ impl Motion {
         let single = [Some(&mut self.energy), Some(&mut self.power), self.kinetic.as_mut(), self.potential.as_mut()];
         let masses = self.mass_matrix.iter_mut().flatten();
         let velocities = self.velocities.iter_mut().flatten();
+        let conserved = self.conserved.iter_mut().map(|conserved| &mut conserved.value);
         let jacobians = self.jacobians.iter_mut().flatten().flatten().flatten();
-        lists.into_iter().flatten().chain(masses).chain(velocities).chain(jacobians).chain(single.into_iter().flatten()).collect()
+        lists
+            .into_iter()
+            .flatten()
+            .chain(masses)
+            .chain(velocities)
+            .chain(conserved)
+            .chain(jacobians)
+            .chain(single.into_iter().flatten())
+            .collect()
     }
 }
 
@@ -103,6 +114,7 @@ fn derive(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Er
     }
 
     let mut power = Vec::new();
+    let mut externals = Vec::new();
     for i in 0..count {
         let slope = derivative(graph, lagrangian, Symbol::Coordinate(i));
         if slope == Graph::ZERO {
@@ -110,6 +122,7 @@ fn derive(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Er
         }
         let friction = derivative(graph, dissipation, Symbol::Velocity(i));
         let external = graph.sub(energies.forces[i], friction);
+        externals.push(external);
         power.push((graph.mul(velocity[i], external), Rational::ONE));
         let rate = graph.add(slope, external);
         motion.momentum_rates.push(rate);
@@ -133,6 +146,7 @@ fn derive(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Er
     motion.potential = energies.lagrangian.is_none().then(|| potential.unwrap_or_default());
     motion.kinetic = motion.kinetic.or(motion.potential.map(|_| Graph::ZERO));
     motion.nonconservative = energies.dissipation.is_some() || !model.forces.is_empty();
+    motion.conserved = symmetry::conserved(graph, lagrangian, &momenta, &externals);
     motion.momenta = momenta;
     facts(graph, &mut motion);
     motion.jacobians = jacobians(model, graph, &motion);

@@ -6,6 +6,7 @@ use crate::expr::{Function, Graph, Id, Moment, Node, Symbol};
 use crate::motion::Motion;
 use crate::name;
 use crate::number::Rational;
+use crate::symmetry::Conserved;
 use std::collections::BTreeSet;
 
 /// The names of all symbols of a block, as the user writes them.
@@ -246,6 +247,33 @@ fn function_name(function: Function) -> &'static str {
         Function::Sign => "sign",
         Function::Step => "step",
     }
+}
+
+/// The name of a conserved quantity in terms of the momenta: `p_φ`, `x·p_y − y·p_x`.
+pub(crate) fn conserved(names: &Names, conserved: &Conserved) -> String {
+    let mut terms = conserved.terms.clone();
+    // Begin with a plus.
+    if let Some(first) = terms.iter().position(|(factor, ..)| !factor.is_negative()) {
+        let first = terms.remove(first);
+        terms.insert(0, first);
+    }
+    let mut text = String::new();
+    for (index, &(factor, coordinate, momentum)) in terms.iter().enumerate() {
+        text.push_str(match (index, factor.is_negative()) {
+            (0, false) => "",
+            (0, true) => "−",
+            (_, false) => " + ",
+            (_, true) => " − ",
+        });
+        let mut parts = Vec::new();
+        if factor.abs() != Rational::ONE {
+            parts.push(number(factor.abs(), Level::Product));
+        }
+        parts.extend(coordinate.map(|index| names.coordinates[index].clone()));
+        parts.push(names.symbol(Symbol::Momentum(momentum)));
+        text.push_str(&parts.join("·"));
+    }
+    text
 }
 
 /// The equations of motion, one line a coordinate: solved where a coordinate stands alone, a row of M q̈ = f where several are coupled.

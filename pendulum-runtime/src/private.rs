@@ -20,6 +20,7 @@ pub struct Known {
     pub constant_mass_matrix: bool,
     pub nonconservative: bool,
     pub cyclic: &'static [usize],
+    pub conserved: &'static [&'static str],
     pub unused: &'static [&'static str],
     pub equations: &'static str,
 }
@@ -38,6 +39,7 @@ pub const fn facts(known: Known) -> Facts {
         constant_mass_matrix: known.constant_mass_matrix,
         nonconservative: known.nonconservative,
         cyclic: known.cyclic,
+        conserved: known.conserved,
         unused: known.unused,
         equations: known.equations,
     }
