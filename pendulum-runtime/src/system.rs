@@ -1,6 +1,6 @@
 //! What `lagrangian!` generates, and a system together with the motions that drive it.
 
-use crate::motion::{Motions, Orders, Side, sufficient};
+use crate::motion::{Motions, Orders, Sample, Side, sufficient};
 use crate::real::Real;
 use crate::time::Time;
 use nalgebra::SMatrix;
@@ -15,7 +15,7 @@ pub trait System<const N: usize> {
     /// The scalar of parameters and state.
     type Scalar: Real;
     /// `()` or a tuple with a [`Sample`](crate::motion::Sample) for each driven input, in the order of declaration.
-    type Inputs: Copy;
+    type Inputs: Samples;
     /// The same system over another scalar.
     type With<U: Real>: System<N, Scalar = U>;
 
@@ -152,6 +152,8 @@ pub trait Jacobians<const N: usize>: System<N> {
 pub trait VelocityFree<const N: usize>: System<N> {}
 
 /// What `lagrangian!` knows about a system before it runs.
+// Each is a fact of its own, not a state.
+#[allow(clippy::struct_excessive_bools)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Facts {
@@ -225,6 +227,51 @@ pub struct Input {
     pub power: Orders,
 }
 
+/// The samples of all driven inputs of a system: `()` or a tuple of [`Sample`]s.
+pub trait Samples: Copy + PartialEq {
+    /// The first number that is not finite: the input, the derivative (0 for the position) and the component, by index.
+    fn first_not_finite(&self) -> Option<(usize, usize, usize)>;
+}
+
+impl Samples for () {
+    fn first_not_finite(&self) -> Option<(usize, usize, usize)> {
+        None
+    }
+}
+
+macro_rules! samples {
+    ($(($($dim:ident $index:tt),+))+) => {$(
+        impl<T: Real, $(const $dim: usize),+> Samples for ($(Sample<T, $dim>,)+) {
+            fn first_not_finite(&self) -> Option<(usize, usize, usize)> {
+                $(if let Some((derivative, component)) = first_in_sample(&self.$index) {
+                    return Some(($index, derivative, component));
+                })+
+                None
+            }
+        }
+    )+};
+}
+
+samples! {
+    (A 0)
+    (A 0, B 1)
+    (A 0, B 1, C 2)
+    (A 0, B 1, C 2, D 3)
+    (A 0, B 1, C 2, D 3, E 4)
+    (A 0, B 1, C 2, D 3, E 4, F 5)
+    (A 0, B 1, C 2, D 3, E 4, F 5, G 6)
+    (A 0, B 1, C 2, D 3, E 4, F 5, G 6, H 7)
+}
+
+/// The derivative and the component of the first number in `sample` that is not finite.
+fn first_in_sample<T: Real, const D: usize>(sample: &Sample<T, D>) -> Option<(usize, usize)> {
+    // Times zero, infinity and what is not a number are not zero; everything else is.
+    let zero = T::from_f64(0.0);
+    let infinite = |x: &T| *x * zero != zero;
+    let derivatives = [&sample.position, &sample.velocity, &sample.acceleration];
+    derivatives.iter().enumerate().find_map(|(derivative, values)| Some((derivative, values.iter().position(infinite)?)))
+}
+
 /// The output for which a driven input is sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
@@ -290,9 +337,14 @@ pub trait Dynamics<const N: usize> {
     }
 
     /// The velocities just after a kink at `t` from those just before it: the momenta are the same on both sides.
+    ///
+    /// Where nothing that the momenta contain jumps, they are the same numbers.
     fn across_kink(&self, t: Time, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> [Self::Scalar; N] {
         let before = self.inputs(t, Side::Before, Purpose::Momenta);
         let after = self.inputs(t, Side::After, Purpose::Momenta);
+        if before == after {
+            return *v;
+        }
         let p = self.system().momenta(scalar_time(t), q, v, &before);
         self.system().velocities(scalar_time(t), q, &p, &after)
     }
