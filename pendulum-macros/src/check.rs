@@ -431,7 +431,7 @@ impl Walk<'_, '_, '_> {
                 match self.model.names.get(&base) {
                     Some(&Meaning::Parameter(index)) if dots == 0 && self.model.parameters[index].body => {}
                     Some(_) => {
-                        self.errors.at(body.span(), format!("`{body}` is no body; declare it as `{body}: body` in the struct"))
+                        self.errors.at(body.span(), format!("`{body}` is no body; declare it as `{body}: body` in the struct"));
                     }
                     None => self.name(body),
                 }

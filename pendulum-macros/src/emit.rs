@@ -29,7 +29,8 @@ impl Emitter<'_, '_> {
         let system = self.system();
         let split = self.split_energy();
         let marker = self.marker();
-        quote! { #structure #constructor #system #split #marker }
+        let jacobians = self.jacobians();
+        quote! { #structure #constructor #system #split #marker #jacobians }
     }
 
     /// The scalar's type parameter; another letter if the struct took the usual one.
@@ -161,6 +162,14 @@ impl Emitter<'_, '_> {
         let velocities = self.output(|motion| motion.velocities.clone());
         let velocities = velocities.unwrap_or_else(|| quote!(#krate::__private::newton(self, t, q, p, inputs)));
         let matrix = self.mass_matrix();
+        let conserved = self.output(|motion| Some(motion.conserved.iter().map(|conserved| conserved.value).collect()));
+        let length = self.motion.as_ref().map_or(0, |motion| motion.conserved.len());
+        let conserved = quote! {
+            let all: [#scalar; #length] = #conserved;
+            for (value, conserved) in values.iter_mut().zip(all) {
+                *value = conserved;
+            }
+        };
         let state = quote!(q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs);
         quote! {
             #[automatically_derived]
@@ -199,6 +208,8 @@ impl Emitter<'_, '_> {
                 #[inline]
                 fn forces(&self, t: #scalar, #state) -> [#scalar; #count] { #forces }
 
+                fn conserved(&self, t: #scalar, #state, values: &mut [#scalar]) { #conserved }
+
                 #[inline]
                 fn momentum_rates(&self, t: #scalar, #state) -> [#scalar; #count] { #momentum_rates }
             }
@@ -236,6 +247,87 @@ impl Emitter<'_, '_> {
             #[automatically_derived]
             impl<#scalar: #krate::real::Real> #krate::system::VelocityFree<#count> for #name<#scalar> {}
         })
+    }
+
+    fn jacobians(&mut self) -> TokenStream {
+        let (krate, scalar, count, name) = (self.krate.clone(), self.scalar(), self.count(), &self.model.block.name);
+        let written = self.motion.as_ref().is_none_or(|motion| motion.jacobians.is_some());
+        let [positions, velocities, parameters] = if written { self.written_jacobians() } else { self.dual_jacobians() };
+        let state = quote!(q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs);
+        quote! {
+            #[automatically_derived]
+            #[allow(non_snake_case, unused_variables, unused_mut, unused_parens, unreachable_code, clippy::all, clippy::pedantic)]
+            impl<#scalar: #krate::real::Real> #krate::system::Jacobians<#count> for #name<#scalar> {
+                fn position_jacobian(&self, t: #scalar, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #positions }
+
+                fn velocity_jacobian(&self, t: #scalar, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #velocities }
+
+                fn parameter_jacobian(&self, t: #scalar, #state, columns: &mut [[#scalar; #count]]) { #parameters }
+            }
+        }
+    }
+
+    /// The Jacobians as expressions.
+    fn written_jacobians(&mut self) -> [TokenStream; 3] {
+        let (krate, scalar, count) = (self.krate.clone(), self.scalar(), self.count());
+        let size = count * count;
+        let flat = [0, 1, 2].map(|which| self.output(|motion| Some(motion.jacobians.as_ref()?[which].concat())));
+        let [positions, velocities, parameters] = flat;
+        if self.motion.is_none() {
+            return [quote!(#positions), quote!(#velocities), quote!(#parameters)];
+        }
+        let matrix = |entries: Option<TokenStream>| {
+            quote! {
+                let entries: [#scalar; #size] = #entries;
+                #krate::__private::SMatrix::<#scalar, #count, #count>::from_column_slice(&entries)
+            }
+        };
+        let length = count * self.model.parameters.iter().map(Quantity::count).sum::<usize>();
+        let parameters = quote! {
+            let entries: [#scalar; #length] = #parameters;
+            for (column, entries) in columns.iter_mut().zip(#krate::__private::columns::<#scalar, #count>(&entries)) {
+                *column = *entries;
+            }
+        };
+        [matrix(positions), matrix(velocities), parameters]
+    }
+
+    /// The Jacobians by dual numbers: one evaluation of the accelerations for each column.
+    fn dual_jacobians(&self) -> [TokenStream; 3] {
+        let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
+        let inputs = (0..self.model.inputs.len()).map(Literal::usize_unsuffixed);
+        let dual = quote!(#krate::real::Dual::<#scalar>);
+        let lifted = quote! {
+            let inputs = (#(inputs.#inputs.map(#dual::constant),)*);
+            let (mut q, mut v) = (q.map(#dual::constant), v.map(#dual::constant));
+            let t = #dual::constant(t);
+        };
+        let matrix = |variable: TokenStream| {
+            quote! {
+                let system = #krate::system::System::map(self, #dual::constant);
+                #lifted
+                let mut columns = [[#scalar::from_f64(0.0); #count]; #count];
+                for (k, column) in columns.iter_mut().enumerate() {
+                    #variable[k].derivative = #scalar::from_f64(1.0);
+                    *column = #krate::system::System::accelerations(&system, t, &q, &v, &inputs).map(|acceleration| acceleration.derivative);
+                    #variable[k].derivative = #scalar::from_f64(0.0);
+                }
+                #krate::__private::SMatrix::<#scalar, #count, #count>::from_fn(|row, column| columns[column][row])
+            }
+        };
+        let parameters = quote! {
+            #lifted
+            for (k, column) in columns.iter_mut().enumerate() {
+                let mut index = 0usize;
+                let system = #krate::system::System::map(self, |parameter| {
+                    let lifted = if index == k { #dual::variable(parameter) } else { #dual::constant(parameter) };
+                    index += 1;
+                    lifted
+                });
+                *column = #krate::system::System::accelerations(&system, t, &q, &v, &inputs).map(|acceleration| acceleration.derivative);
+            }
+        };
+        [matrix(quote!(q)), matrix(quote!(v)), parameters]
     }
 
     fn mass_matrix(&mut self) -> TokenStream {
@@ -374,8 +466,9 @@ impl Emitter<'_, '_> {
                     None => quote!(self.#name),
                 }
             }
-            Symbol::Moment(body, moment) => {
-                let name = self.model.parameters[body].name;
+            Symbol::Moment(first, moment) => {
+                let body = self.model.parameters.iter().rfind(|quantity| quantity.first <= first);
+                let Some(name) = body.map(|body| body.name) else { return TokenStream::new() };
                 match moment {
                     Moment::Inertia => quote!(self.#name.inertia()),
                     Moment::Difference => quote!((self.#name.moments()[0] - self.#name.moments()[2])),
@@ -412,18 +505,19 @@ impl Emitter<'_, '_> {
             return quote!(#krate::__private::facts(#krate::__private::Known {
                 name: #name, coordinates: &[#(#coordinates),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*],
                 autonomous: false, separable: false, velocity_free: false, constant_mass_matrix: false, nonconservative: false,
-                cyclic: &[], unused: &[], equations: "",
+                cyclic: &[], conserved: &[], unused: &[], equations: "",
             }));
         };
         let (autonomous, separable, velocity_free, constant_mass_matrix, nonconservative) =
             (motion.autonomous, motion.separable, motion.velocity_free, motion.constant_mass_matrix, motion.nonconservative);
         let cyclic = motion.cyclic.clone();
+        let conserved: Vec<String> = motion.conserved.iter().map(|conserved| print::conserved(&names, conserved)).collect();
         let unused = self.unused(&names);
         let equations = self.equations(&names).join("\n");
         quote!(#krate::__private::facts(#krate::__private::Known {
             name: #name, coordinates: &[#(#coordinates),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*],
             autonomous: #autonomous, separable: #separable, velocity_free: #velocity_free, constant_mass_matrix: #constant_mass_matrix,
-            nonconservative: #nonconservative, cyclic: &[#(#cyclic),*], unused: &[#(#unused),*], equations: #equations,
+            nonconservative: #nonconservative, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], equations: #equations,
         }))
     }
 
@@ -467,9 +561,9 @@ impl Emitter<'_, '_> {
     fn unused(&self, names: &Names) -> Vec<String> {
         let Some(motion) = &self.motion else { return Vec::new() };
         let mut needed = self.graph.symbols(&motion.accelerations);
-        for (index, quantity) in self.model.parameters.iter().enumerate() {
+        for quantity in &self.model.parameters {
             // A moment about the pivot is made of all that a body has.
-            if needed.iter().any(|symbol| matches!(symbol, Symbol::Moment(body, _) if *body == index)) {
+            if needed.iter().any(|symbol| matches!(symbol, Symbol::Moment(first, _) if *first == quantity.first)) {
                 needed.extend((quantity.first..quantity.first + quantity.count()).map(Symbol::Parameter));
             }
         }
@@ -489,7 +583,11 @@ impl Emitter<'_, '_> {
         let names = Names::new(self.model, &self.energies.families);
         let Some(motion) = &self.motion else { return TokenStream::new() };
         let accelerations = motion.accelerations.clone();
-        let cyclic: Vec<String> = motion.cyclic.iter().map(|&index| format!("`{}`", names.coordinates[index])).collect();
+        let mut conserved: Vec<String> =
+            motion.conserved.iter().map(|conserved| format!("`{}`", print::conserved(&names, conserved))).collect();
+        if motion.autonomous && !motion.nonconservative {
+            conserved.push("the energy".into());
+        }
         let count = schedule::program(&self.graph, &accelerations).count();
         let documented = self.model.block.attributes.iter().any(|attribute| attribute.path().is_ident("doc"));
         let mut text = String::new();
@@ -503,8 +601,8 @@ impl Emitter<'_, '_> {
         }
         text.push_str("```\n\n");
         let _ = write!(text, "One evaluation takes {}.", operations(count));
-        if !cyclic.is_empty() {
-            let _ = write!(text, " The momentum of {} is conserved.", cyclic.join(", "));
+        if !conserved.is_empty() {
+            let _ = write!(text, " Conserved: {}.", conserved.join(", "));
         }
         let unused = self.unused(&names);
         if !unused.is_empty() {

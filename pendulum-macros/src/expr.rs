@@ -53,7 +53,7 @@ pub(crate) enum Symbol {
     },
     /// A generalized momentum, in the function that inverts them.
     Momentum(usize),
-    /// A second moment of a body about its pivot.
+    /// A second moment about its pivot of the body whose scalars begin with this parameter.
     Moment(usize, Moment),
     /// A component of the point of integration; the first number tells nested integrals apart.
     Point(usize, usize),
@@ -138,6 +138,8 @@ pub(crate) struct Graph {
     nodes: Vec<Node>,
     contents: Vec<Contents>,
     ids: BTreeMap<Node, Id>,
+    /// The derivatives that are known.
+    slopes: BTreeMap<(Symbol, Id), Id>,
 }
 
 impl Graph {
@@ -145,7 +147,7 @@ impl Graph {
     pub(crate) const ONE: Id = Id(1);
 
     pub(crate) fn new() -> Self {
-        let mut graph = Self { nodes: Vec::new(), contents: Vec::new(), ids: BTreeMap::new() };
+        let mut graph = Self { nodes: Vec::new(), contents: Vec::new(), ids: BTreeMap::new(), slopes: BTreeMap::new() };
         graph.intern(Node::Number(Rational::ZERO));
         graph.intern(Node::Number(Rational::ONE));
         graph
@@ -557,6 +559,14 @@ impl Graph {
         }
     }
 
+    /// Closes any expression that is not a leaf: it is computed once and used as it is.
+    pub(crate) fn closed(&mut self, id: Id) -> Id {
+        match self.node(id) {
+            Node::Sum(_) | Node::Product(..) => self.intern(Node::Atom(id)),
+            _ => id,
+        }
+    }
+
     /// A node with other children.
     pub(crate) fn rebuilt(&mut self, node: &Node, child: impl Fn(Id) -> Id) -> Id {
         let list = |items: &[(Id, Rational)]| items.iter().map(|&(id, number)| (child(id), number)).collect::<Vec<_>>();
@@ -567,7 +577,11 @@ impl Graph {
             Node::Call(function, argument) => self.call(*function, child(*argument)),
             Node::Atan2(y, x) => self.atan2(child(*y), child(*x)),
             Node::Max(a, b) => self.max(child(*a), child(*b)),
-            Node::Atom(inner) => self.atom(child(*inner)),
+            Node::Atom(inner) => {
+                let inner = child(*inner);
+                let (_, bare) = self.split(inner);
+                if matches!(self.node(bare), Node::Sum(_)) { self.atom(inner) } else { self.closed(inner) }
+            }
         }
     }
 
@@ -591,6 +605,17 @@ impl Graph {
             }
         }
         found
+    }
+
+    /// The derivative of a node, if it is known.
+    pub(crate) fn slope(&self, symbol: Symbol, id: Id) -> Option<Id> {
+        // What contains nothing of the symbol's kind does not depend on it.
+        if self.contents(id).any(Contents::of(symbol)) { self.slopes.get(&(symbol, id)).copied() } else { Some(Self::ZERO) }
+    }
+
+    /// Remembers a derivative.
+    pub(crate) fn set_slope(&mut self, symbol: Symbol, id: Id, slope: Id) {
+        self.slopes.insert((symbol, id), slope);
     }
 
     /// The symbols in `roots`.

@@ -10,7 +10,9 @@ mod diff;
 mod emit;
 mod error;
 mod expr;
+mod jacobian;
 mod lower;
+mod modular;
 mod motion;
 mod name;
 mod number;
@@ -20,6 +22,7 @@ mod print;
 mod rule;
 mod schedule;
 mod solve;
+mod symmetry;
 #[cfg(test)]
 mod tests;
 mod unit;

@@ -2,15 +2,21 @@
 //!
 //! d/dt ∂L/∂q̇ − ∂L/∂q = Q − ∂R/∂q̇, where d/dt runs through the coordinates, the driven inputs and the time.
 
-use crate::check::Model;
+use crate::check::{Model, Quantity};
 use crate::collect;
 use crate::diff::derivative;
 use crate::error::Errors;
 use crate::expr::{Contents, Graph, Id, Symbol};
+use crate::jacobian;
 use crate::lower::{Energies, total_derivative};
 use crate::number::Rational;
 use crate::order;
+use crate::schedule;
 use crate::solve;
+use crate::symmetry::{self, Conserved};
+
+/// Jacobians of more operations than this are left to dual numbers: an expansion stays small.
+const LONGEST_JACOBIAN: usize = 4000;
 
 /// The equations of motion and what goes with them: roots in one graph.
 #[derive(Debug, Default)]
@@ -27,7 +33,10 @@ pub(crate) struct Motion {
     pub(crate) power: Id,
     pub(crate) kinetic: Option<Id>,
     pub(crate) potential: Option<Id>,
+    /// ∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂parameters, column by column; `None` where they would be too long to write out.
+    pub(crate) jacobians: Option<[Vec<Vec<Id>>; 3]>,
     pub(crate) cyclic: Vec<usize>,
+    pub(crate) conserved: Vec<Conserved>,
     pub(crate) autonomous: bool,
     pub(crate) separable: bool,
     pub(crate) velocity_free: bool,
@@ -42,7 +51,17 @@ impl Motion {
         let single = [Some(&mut self.energy), Some(&mut self.power), self.kinetic.as_mut(), self.potential.as_mut()];
         let masses = self.mass_matrix.iter_mut().flatten();
         let velocities = self.velocities.iter_mut().flatten();
-        lists.into_iter().flatten().chain(masses).chain(velocities).chain(single.into_iter().flatten()).collect()
+        let conserved = self.conserved.iter_mut().map(|conserved| &mut conserved.value);
+        let jacobians = self.jacobians.iter_mut().flatten().flatten().flatten();
+        lists
+            .into_iter()
+            .flatten()
+            .chain(masses)
+            .chain(velocities)
+            .chain(conserved)
+            .chain(jacobians)
+            .chain(single.into_iter().flatten())
+            .collect()
     }
 }
 
@@ -95,6 +114,7 @@ fn derive(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Er
     }
 
     let mut power = Vec::new();
+    let mut externals = Vec::new();
     for i in 0..count {
         let slope = derivative(graph, lagrangian, Symbol::Coordinate(i));
         if slope == Graph::ZERO {
@@ -102,6 +122,7 @@ fn derive(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Er
         }
         let friction = derivative(graph, dissipation, Symbol::Velocity(i));
         let external = graph.sub(energies.forces[i], friction);
+        externals.push(external);
         power.push((graph.mul(velocity[i], external), Rational::ONE));
         let rate = graph.add(slope, external);
         motion.momentum_rates.push(rate);
@@ -125,9 +146,27 @@ fn derive(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Er
     motion.potential = energies.lagrangian.is_none().then(|| potential.unwrap_or_default());
     motion.kinetic = motion.kinetic.or(motion.potential.map(|_| Graph::ZERO));
     motion.nonconservative = energies.dissipation.is_some() || !model.forces.is_empty();
+    motion.conserved = symmetry::conserved(graph, lagrangian, &momenta, &externals);
     motion.momenta = momenta;
     facts(graph, &mut motion);
+    motion.jacobians = jacobians(model, graph, &motion);
     motion
+}
+
+/// The Jacobians, if they are short: each column costs about as much as the accelerations.
+fn jacobians(model: &Model, graph: &mut Graph, motion: &Motion) -> Option<[Vec<Vec<Id>>; 3]> {
+    let count = motion.accelerations.len();
+    let parameters: usize = model.parameters.iter().map(Quantity::count).sum();
+    let operations = schedule::program(graph, &motion.accelerations).ops.len();
+    if LONGEST_JACOBIAN < operations * (2 * count + parameters) {
+        return None;
+    }
+    let symbols: [Vec<Symbol>; 3] = [
+        (0..count).map(Symbol::Coordinate).collect(),
+        (0..count).map(Symbol::Velocity).collect(),
+        (0..parameters).map(Symbol::Parameter).collect(),
+    ];
+    Some(symbols.map(|symbols| jacobian::columns(graph, motion, &symbols)))
 }
 
 fn collected(graph: &mut Graph, id: Id) -> Id {

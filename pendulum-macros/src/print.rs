@@ -6,6 +6,7 @@ use crate::expr::{Function, Graph, Id, Moment, Node, Symbol};
 use crate::motion::Motion;
 use crate::name;
 use crate::number::Rational;
+use crate::symmetry::Conserved;
 use std::collections::BTreeSet;
 
 /// The names of all symbols of a block, as the user writes them.
@@ -13,8 +14,6 @@ pub(crate) struct Names {
     pub(crate) parameters: Vec<String>,
     pub(crate) coordinates: Vec<String>,
     inputs: Vec<(String, bool)>,
-    /// The names of all parameters, bodies among them.
-    bodies: Vec<String>,
 }
 
 impl Names {
@@ -24,7 +23,6 @@ impl Names {
         Self {
             parameters: parameters.flat_map(|(index, quantity)| quantity_names(quantity, families.contains(&index))).collect(),
             coordinates: model.coordinates.iter().flat_map(|quantity| quantity_names(quantity, true)).collect(),
-            bodies: model.parameters.iter().map(|quantity| quantity.name.to_string()).collect(),
             inputs: model.inputs.iter().map(|quantity| (quantity.name.to_string(), quantity.length.is_some())).collect(),
         }
     }
@@ -39,7 +37,7 @@ impl Names {
             Symbol::Momentum(index) => format!("p_{}", self.coordinates[index]),
             Symbol::Point(_, component) => ["p.x", "p.y"][component.min(1)].into(),
             Symbol::Moment(body, moment) => {
-                let body = &self.bodies[body];
+                let body = self.parameters[body].trim_end_matches(".mass");
                 match moment {
                     Moment::Inertia => format!("{body}.inertia"),
                     Moment::Difference => format!("({body}.xx − {body}.yy)"),
@@ -249,6 +247,33 @@ fn function_name(function: Function) -> &'static str {
         Function::Sign => "sign",
         Function::Step => "step",
     }
+}
+
+/// The name of a conserved quantity in terms of the momenta: `p_φ`, `x·p_y − y·p_x`.
+pub(crate) fn conserved(names: &Names, conserved: &Conserved) -> String {
+    let mut terms = conserved.terms.clone();
+    // Begin with a plus.
+    if let Some(first) = terms.iter().position(|(factor, ..)| !factor.is_negative()) {
+        let first = terms.remove(first);
+        terms.insert(0, first);
+    }
+    let mut text = String::new();
+    for (index, &(factor, coordinate, momentum)) in terms.iter().enumerate() {
+        text.push_str(match (index, factor.is_negative()) {
+            (0, false) => "",
+            (0, true) => "−",
+            (_, false) => " + ",
+            (_, true) => " − ",
+        });
+        let mut parts = Vec::new();
+        if factor.abs() != Rational::ONE {
+            parts.push(number(factor.abs(), Level::Product));
+        }
+        parts.extend(coordinate.map(|index| names.coordinates[index].clone()));
+        parts.push(names.symbol(Symbol::Momentum(momentum)));
+        text.push_str(&parts.join("·"));
+    }
+    text
 }
 
 /// The equations of motion, one line a coordinate: solved where a coordinate stands alone, a row of M q̈ = f where several are coupled.

@@ -65,6 +65,11 @@ pub(crate) fn solve(graph: &mut Graph, matrix: &[Vec<Id>], right: &[Id]) -> Vec<
     solution
 }
 
+/// The coordinates that no other is coupled to.
+pub(crate) fn alone(matrix: &[Vec<Id>]) -> Vec<bool> {
+    matrix.iter().map(|row| row.iter().filter(|&&entry| entry != Graph::ZERO).count() == 1).collect()
+}
+
 /// Unit lower triangle and reciprocal pivots.
 struct Factors {
     lower: Vec<Vec<Id>>,

@@ -1,1 +1,241 @@
-//! (doc)
+//! What goes wrong while integrating: each error says what, where and what to try.
+
+use core::fmt;
+
+/// Why an integration stopped or never began.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Error {
+    /// The interval is not finite or ends before it begins.
+    Interval {
+        /// The time at which it was to begin.
+        start: f64,
+        /// The time at which it was to end.
+        end: f64,
+    },
+    /// A coordinate or velocity of the initial state is infinite or not a number.
+    InitialState {
+        /// Which of the two arrays.
+        part: Part,
+        /// The coordinate.
+        coordinate: Coordinate,
+        /// The value given.
+        value: f64,
+    },
+    /// A setting is out of its range.
+    Setting {
+        /// The builder's method that set it.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// What it has to be.
+        required: &'static str,
+    },
+    /// An entry of a list of times is not a number, outside the interval or before its predecessor.
+    Times {
+        /// The builder's method that took the list.
+        name: &'static str,
+        /// The index of the entry.
+        index: usize,
+        /// The entry.
+        time: f64,
+    },
+    /// A number that is infinite or not a number turned up.
+    NotFinite {
+        /// The time at which it was evaluated.
+        t: f64,
+        /// What it is.
+        what: Quantity,
+        /// The parameters that are zero, infinite or not a number, and so may be the cause of an acceleration that is not finite.
+        suspects: Vec<Suspect>,
+    },
+    /// Step control asked for a step below the resolution of time.
+    StepSizeUnderflow {
+        /// The time reached.
+        t: f64,
+        /// The step asked for.
+        step: f64,
+        /// The coordinate with the largest error.
+        coordinate: Coordinate,
+    },
+    /// The allowed number of steps is used up, or would be.
+    MaxSteps {
+        /// The time reached.
+        t: f64,
+        /// The number allowed.
+        max_steps: u64,
+    },
+    /// A motion says that its next kink after a time is not after it.
+    Kink {
+        /// The time asked about.
+        t: f64,
+        /// The answer.
+        kink: f64,
+    },
+}
+
+/// One of the two halves of a state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The coordinates q.
+    Position,
+    /// The velocities q̇.
+    Velocity,
+}
+
+/// A generalized coordinate, by index and by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Coordinate {
+    /// The index in `q` and `v`.
+    pub index: usize,
+    /// The name as written, empty if the system has none for it.
+    pub name: &'static str,
+}
+
+/// A number that ought to be finite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Quantity {
+    /// A component of the sample of a driven input.
+    Input {
+        /// The input as written.
+        name: &'static str,
+        /// The index of the component.
+        component: usize,
+        /// 0 for the position, 1 for the velocity, 2 for the acceleration.
+        derivative: usize,
+    },
+    /// A generalized acceleration.
+    Acceleration(Coordinate),
+    /// A coordinate.
+    Position(Coordinate),
+    /// A velocity.
+    Velocity(Coordinate),
+}
+
+/// A parameter with a value that seldom makes sense.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Suspect {
+    /// The parameter as written.
+    pub parameter: &'static str,
+    /// Its value.
+    pub value: f64,
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Interval { start, end } if start.is_finite() && end.is_finite() => {
+                write!(f, "the end {end} lies before the start {start}; swap them, or negate the velocities to go back in time")
+            }
+            Self::Interval { start, end } => write!(f, "the interval from {start} to {end} is not finite; give two finite times"),
+            Self::InitialState { part, coordinate, value } => {
+                let part = match part {
+                    Part::Position => "position",
+                    Part::Velocity => "velocity",
+                };
+                write!(f, "the initial {part} of {coordinate} is {value}; give a finite number")
+            }
+            Self::Setting { name, value, required } => write!(f, "`{name}` is {value}, but has to be {required}"),
+            Self::Times { name, index, time } => {
+                write!(f, "entry {index} of `{name}` is {time}; give finite times in ascending order within the interval")
+            }
+            Self::NotFinite { t, what, ref suspects } => {
+                write!(f, "at t = {t} the {what} is not finite; ")?;
+                match (what, suspects.split_first()) {
+                    (_, Some((first, rest))) => {
+                        write!(f, "check parameter {first}")?;
+                        rest.iter().try_for_each(|suspect| write!(f, ", {suspect}"))
+                    }
+                    (Quantity::Input { .. }, None) => write!(f, "check the motion that drives it at this time"),
+                    (Quantity::Acceleration(_), None) => {
+                        write!(
+                            f,
+                            "the mass matrix may be singular or a function outside its domain there, check the state before"
+                        )
+                    }
+                    (_, None) => write!(f, "the motion has left the range of numbers, try a smaller step or tolerance"),
+                }
+            }
+            Self::StepSizeUnderflow { t, step, coordinate } => write!(
+                f,
+                "at t = {t} the step size fell to {step:e} for the sake of {coordinate}; the motion may be singular there: \
+                 stop before it, loosen the tolerances, or choose coordinates that stay regular"
+            ),
+            Self::MaxSteps { t, max_steps } => write!(
+                f,
+                "{max_steps} steps do not suffice from t = {t}; raise `max_steps`, loosen the tolerances or lengthen the step"
+            ),
+            Self::Kink { t, kink } => {
+                write!(
+                    f,
+                    "a motion says that its next kink after t = {t} is at {kink}; `next_kink` has to give a later time or `None`"
+                )
+            }
+        }
+    }
+}
+
+impl std::error::Error for Error {}
+
+impl fmt::Display for Coordinate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.name.is_empty() { write!(f, "coordinate {}", self.index) } else { write!(f, "`{}`", self.name) }
+    }
+}
+
+impl fmt::Display for Suspect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}`, which is {}", self.parameter, self.value)
+    }
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Input { name, component, derivative } => {
+                let derivative = ["position", "velocity", "acceleration"][derivative.min(2)];
+                write!(f, "{derivative} of the driven input `{name}` (component {component})")
+            }
+            Self::Acceleration(coordinate) => write!(f, "acceleration of {coordinate}"),
+            Self::Position(coordinate) => write!(f, "position of {coordinate}"),
+            Self::Velocity(coordinate) => write!(f, "velocity of {coordinate}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Coordinate, Error, Part, Quantity, Suspect};
+
+    const THETA: Coordinate = Coordinate { index: 0, name: "θ" };
+
+    #[test]
+    fn messages_name_time_place_and_remedy() {
+        let suspects = vec![Suspect { parameter: "L", value: 0.0 }, Suspect { parameter: "g", value: f64::NAN }];
+        let error = Error::NotFinite { t: 1.5, what: Quantity::Acceleration(THETA), suspects };
+        let message = "at t = 1.5 the acceleration of `θ` is not finite; check parameter `L`, which is 0, `g`, which is NaN";
+        assert_eq!(error.to_string(), message);
+
+        let what = Quantity::Input { name: "x", component: 1, derivative: 2 };
+        let error = Error::NotFinite { t: 0.25, what, suspects: vec![] };
+        assert_eq!(
+            error.to_string(),
+            "at t = 0.25 the acceleration of the driven input `x` (component 1) is not finite; check the motion that drives it at this time"
+        );
+
+        let error = Error::InitialState { part: Part::Velocity, coordinate: THETA, value: f64::NAN };
+        assert_eq!(error.to_string(), "the initial velocity of `θ` is NaN; give a finite number");
+    }
+
+    #[test]
+    fn a_nameless_coordinate_is_numbered() {
+        assert_eq!(Coordinate { index: 3, name: "" }.to_string(), "coordinate 3");
+    }
+
+    #[test]
+    fn intervals_that_are_reversed_and_infinite_differ() {
+        assert!(Error::Interval { start: 1.0, end: 0.0 }.to_string().contains("before"));
+        assert!(Error::Interval { start: 1.0, end: f64::INFINITY }.to_string().contains("finite"));
+    }
+}

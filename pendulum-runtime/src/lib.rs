@@ -17,8 +17,7 @@ pub mod __private;
 
 /// What a program that writes a `lagrangian!` block and integrates it needs.
 pub mod prelude {
-    #[allow(unused_imports)]
-    pub(crate) use crate::integrate::*;
+    pub use crate::integrate::{Dop853, Integrator, Leapfrog, Rk4, Srkn6b, Srkn11b, Srkn14a, SymplecticEuler, Tsit5, solve};
     pub use crate::motion::Motion;
     pub use crate::real::Real;
     pub use crate::system::{Driven, Dynamics, System, VelocityFree};

@@ -20,6 +20,7 @@ pub struct Known {
     pub constant_mass_matrix: bool,
     pub nonconservative: bool,
     pub cyclic: &'static [usize],
+    pub conserved: &'static [&'static str],
     pub unused: &'static [&'static str],
     pub equations: &'static str,
 }
@@ -38,9 +39,15 @@ pub const fn facts(known: Known) -> Facts {
         constant_mass_matrix: known.constant_mass_matrix,
         nonconservative: known.nonconservative,
         cyclic: known.cyclic,
+        conserved: known.conserved,
         unused: known.unused,
         equations: known.equations,
     }
+}
+
+/// The columns of a matrix of `N` rows, stored one after the other.
+pub fn columns<T, const N: usize>(entries: &[T]) -> &[[T; N]] {
+    entries.as_chunks().0
 }
 
 /// q̇ from p by Newton's method, for Lagrangians that are not quadratic in the velocities.

@@ -28,7 +28,10 @@ impl Lower<'_, '_, '_, '_> {
         match name {
             "mass" => Value::Scalar(self.mass(body)),
             "center" => Value::Plane { parts: self.center(body), complex: false },
-            "inertia" => Value::Scalar(self.graph.symbol(Symbol::Moment(body, Moment::Inertia))),
+            "inertia" => {
+                let first = self.model.parameters[body].first;
+                Value::Scalar(self.graph.symbol(Symbol::Moment(first, Moment::Inertia)))
+            }
             _ => Value::Bad,
         }
     }
@@ -84,8 +87,9 @@ impl Lower<'_, '_, '_, '_> {
         };
         let mass = self.mass(body);
         let center = self.center(body);
+        let first = self.model.parameters[body].first;
         let [inertia, difference, product] =
-            [Moment::Inertia, Moment::Difference, Moment::Product].map(|moment| self.graph.symbol(Symbol::Moment(body, moment)));
+            [Moment::Inertia, Moment::Difference, Moment::Product].map(|moment| self.graph.symbol(Symbol::Moment(first, moment)));
         let mut terms = Vec::new();
         for (monomial, coefficients) in polynomial {
             // Points of an integral outside are constants here.

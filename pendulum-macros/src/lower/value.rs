@@ -92,6 +92,8 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn add(&mut self, a: Value, b: Value, expr: &Expr) -> Value {
         match (a, b) {
             (Value::Bad, _) | (_, Value::Bad) => Value::Bad,
+            // An empty sum is zero, whatever its terms would have been.
+            (Value::Scalar(Graph::ZERO), other) | (other, Value::Scalar(Graph::ZERO)) => other,
             (Value::Scalar(a), Value::Scalar(b)) => Value::Scalar(self.graph.add(a, b)),
             (Value::Plane { parts: a, complex: left }, Value::Plane { parts: b, complex: right }) => {
                 let parts = [self.graph.add(a[0], b[0]), self.graph.add(a[1], b[1])];

@@ -44,6 +44,9 @@ fn report(source: &str) -> String {
         for (index, &momentum) in motion.momenta.iter().enumerate() {
             writeln!(text, "p_{} = {}", names.coordinates[index], print::expression(graph, &names, momentum)).unwrap();
         }
+        for conserved in &motion.conserved {
+            writeln!(text, "conserved: {}", print::conserved(&names, conserved)).unwrap();
+        }
         let facts = [
             (motion.autonomous, "autonomous"),
             (motion.separable, "separable"),

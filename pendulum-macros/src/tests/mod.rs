@@ -51,7 +51,7 @@ fn derived<R>(
 }
 
 /// An expression of the free scalars `a`, `b`, `c`, lowered through a block's potential.
-fn lowered(graph: &mut Graph, expression: &str) -> Id {
+pub(crate) fn lowered(graph: &mut Graph, expression: &str) -> Id {
     let source = format!("::p; struct S {{ a, b, c }} coordinate q; potential = {expression};");
     let mut errors = Errors::default();
     let (_, block) = parse::all(source.parse().unwrap(), &mut errors).unwrap();

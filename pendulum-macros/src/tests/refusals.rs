@@ -156,6 +156,7 @@ const BODIES: &[(&str, &str)] = &[
     ("potential = integral(p in B, p.x*|p|^2);",        "`p.x*|p|^2` is of higher degree than two in `p`, and a body knows its moments up to the second; write a polynomial of degree two or less"),
     ("potential = integral(p in B, sin(p.x));",         "`sin(p.x)` is no polynomial in `p`, and a body knows its moments up to the second; write a polynomial of degree two or less"),
     ("potential = integral(p in B, p);",                "`integral(p in B, …)` is a plane vector, but a scalar is needed here; write `inner(u, v)`, `|u|` or a component"),
+    ("potential = B.mass*g*B.inertia;",                 "`B.mass*g*B.inertia` is kg²·m³/s², but `integral(p in B, …)` is kg·m²/s²; all energies of a block have one unit"),
     ("potential = integral(p in B, g*|p|^2);",          "`integral(p in B, …)` is kg·m³/s², but `integral(p in B, …)` is kg·m²/s²; all energies of a block have one unit"),
 ];
 

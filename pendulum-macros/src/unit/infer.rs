@@ -256,6 +256,14 @@ impl Units<'_, '_, '_> {
                 }
                 product
             }
+            ExprKind::Component(inner, component) if self.body(inner) => {
+                let exponents = match component.to_string().as_str() {
+                    "mass" => [1, 0, 0],
+                    "center" => [0, 1, 0],
+                    _ => [1, 2, 0],
+                };
+                Some(Unit::of(Dimension(exponents.map(Rational::whole))))
+            }
             ExprKind::Negative(inner)
             | ExprKind::Magnitude(inner)
             | ExprKind::Component(inner, _)

@@ -1,1 +1,64 @@
-//! Integrators.
+//! Integrators: one method a file, and around them what knows no method's name.
+//!
+//! [`solve`] integrates from start to end, [`Integrator`] step by step. A method that is wrong for a system does not compile for it.
+//!
+//! | method | order | evaluations a step | steps | for |
+//! |---|---|---|---|---|
+//! | [`SymplecticEuler`] | 1 | 1 | fixed | a baseline |
+//! | [`Leapfrog`] | 2 | 1 | fixed | velocity-free systems, animation |
+//! | [`Srkn6b`] | 4 | 6 | fixed | velocity-free systems |
+//! | [`Srkn11b`] | 6 | 11 | fixed | velocity-free systems, long |
+//! | [`Srkn14a`] | 6 | 14 | fixed | velocity-free systems, long, down to rounding |
+//! | [`Rk4`] | 4 | 4 | fixed | any system, animation |
+//! | [`Tsit5`] | 5 | 6 | adaptive | any system, errors 1e-2 … 1e-6 |
+//! | [`Dop853`] | 8 | 12 | adaptive | any system, errors 1e-6 … 1e-13 |
+//!
+//! Velocity-free are systems with a constant mass matrix whose accelerations contain no velocity; `lagrangian!` knows them.
+//! Adaptive methods take fixed steps too. All of them sum the state with compensation and keep the time in two words.
+
+pub mod method;
+
+mod adaptive_step;
+mod blame;
+mod control;
+mod dense;
+mod dop853;
+mod driver;
+mod field;
+mod fixed_step;
+mod hermite;
+mod integrator;
+mod leapfrog;
+mod node;
+mod output;
+mod piece;
+mod power;
+mod rk4;
+mod runge_kutta;
+mod solution;
+mod solve;
+mod span;
+mod splitting;
+mod srkn11b;
+mod srkn14a;
+mod srkn6b;
+mod sum;
+mod symplectic_euler;
+mod tsit5;
+
+pub use adaptive_step::AdaptiveStep;
+pub use dop853::Dop853;
+pub use fixed_step::FixedStep;
+pub use integrator::Integrator;
+pub use leapfrog::Leapfrog;
+pub use rk4::Rk4;
+pub use solution::{Failure, Solution, State, Stats};
+pub use solve::{Solve, solve};
+pub use srkn6b::Srkn6b;
+pub use srkn11b::Srkn11b;
+pub use srkn14a::Srkn14a;
+pub use symplectic_euler::SymplecticEuler;
+pub use tsit5::Tsit5;
+
+#[cfg(test)]
+mod tests;

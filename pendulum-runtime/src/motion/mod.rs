@@ -96,6 +96,14 @@ impl<T: Real, const D: usize> Sample<T, D> {
     }
 }
 
+impl<T: Copy, const D: usize> Sample<T, D> {
+    /// Every number mapped.
+    pub fn map<U>(&self, mut map: impl FnMut(T) -> U) -> Sample<U, D> {
+        let (position, velocity) = (self.position.map(&mut map), self.velocity.map(&mut map));
+        Sample { position, velocity, acceleration: self.acceleration.map(&mut map) }
+    }
+}
+
 /// The motions of all driven inputs of a system: `()` or a tuple, in the order of declaration.
 pub trait Motions<Inputs> {
     /// The derivatives that each motion has.

@@ -1,0 +1,257 @@
+//! Steps as long as the error allows.
+
+use super::blame::{blame, fault};
+use super::control::{Control, Course, Memory};
+use super::field::{Accelerations, coordinate};
+use super::method::{Embedded, Scale};
+use super::node::Node;
+use super::power::power;
+use super::span::Span;
+use crate::error::{Error, Quantity};
+use crate::motion::Side;
+use crate::real::Float;
+use crate::system::{Dynamics, System};
+use crate::time::Time;
+
+/// Steps as long as the error allows.
+///
+/// A step is accepted if √(mean (eᵢ/(atolᵢ + rtol·max(|yᵢ|, |yᵢ′|)))²) ≤ 1 over all coordinates and velocities, where e is the
+/// method's estimate and y, y′ are the values before and after. Tolerances bound the error of one step; the error at the end also depends
+/// on how the motion amplifies it.
+///
+/// A step that would end beyond a time to be met (kink, stop, end) is cut there; one that would end less than 1 % before it is
+/// stretched to it; and if less than two steps are left they are made equal, so that no sliver is left. The size before a cut is
+/// remembered. The first step follows Hairer, Nørsett and Wanner (1993), II.4.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AdaptiveStep<const N: usize> {
+    rtol: Option<f64>,
+    atol: Scale<N>,
+    first_step: Option<f64>,
+    max_step: f64,
+}
+
+impl<const N: usize> Default for AdaptiveStep<N> {
+    fn default() -> Self {
+        Self { rtol: None, atol: Scale { q: [1e-9; N], v: [1e-9; N] }, first_step: None, max_step: 1e300 }
+    }
+}
+
+impl<const N: usize> AdaptiveStep<N> {
+    /// `rtol` 1e-6 (100 machine epsilons for `f32`), `atol` 1e-9.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The relative tolerance; at least ten machine epsilons of the scalar.
+    pub fn rtol(mut self, rtol: f64) -> Self {
+        self.rtol = Some(rtol);
+        self
+    }
+
+    /// The absolute tolerance of all coordinates and velocities.
+    pub fn atol(self, atol: f64) -> Self {
+        self.atol_each([atol; N], [atol; N])
+    }
+
+    /// The absolute tolerances of each coordinate and of each velocity.
+    pub fn atol_each(mut self, q: [f64; N], v: [f64; N]) -> Self {
+        self.atol = Scale { q, v };
+        self
+    }
+
+    /// The length of the first step in seconds, instead of an automatic one.
+    pub fn first_step(mut self, step: f64) -> Self {
+        self.first_step = Some(step);
+        self
+    }
+
+    /// The greatest length of a step in seconds.
+    pub fn max_step(mut self, step: f64) -> Self {
+        self.max_step = step;
+        self
+    }
+
+    fn relative<T: Float>(&self) -> f64 {
+        let least = 100.0 * T::EPSILON.to_f64();
+        self.rtol.unwrap_or(if 1e-6 < least { least } else { 1e-6 })
+    }
+
+    /// The error allowed between `from` and `to`.
+    fn scale<T: Float>(&self, from: &Node<T, N>, to: &Node<T, N>) -> Scale<N> {
+        let rtol = self.relative::<T>();
+        let larger = |a: T, b: T| {
+            let (a, b) = (a.to_f64().abs(), b.to_f64().abs());
+            if a < b { b } else { a }
+        };
+        Scale {
+            q: core::array::from_fn(|i| self.atol.q[i] + rtol * larger(from.q.high[i], to.q.high[i])),
+            v: core::array::from_fn(|i| self.atol.v[i] + rtol * larger(from.v.high[i], to.v.high[i])),
+        }
+    }
+}
+
+impl<M: Embedded, const N: usize> Control<M, N> for AdaptiveStep<N> {
+    fn check<T: Float>(&self) -> Result<(), Error> {
+        let positive = |name, value: f64| {
+            let fine = 0.0 < value && value < f64::INFINITY;
+            if fine { Ok(()) } else { Err(Error::Setting { name, value, required: "positive and finite" }) }
+        };
+        let rtol = self.relative::<T>();
+        positive("rtol", rtol)?;
+        if rtol < 10.0 * T::EPSILON.to_f64() {
+            let required = "at least ten machine epsilons of the scalar (2.3e-15 for f64, 1.2e-6 for f32)";
+            return Err(Error::Setting { name: "rtol", value: rtol, required });
+        }
+        self.atol.q.into_iter().chain(self.atol.v).try_for_each(|atol| positive("atol", atol))?;
+        self.first_step.map_or(Ok(()), |step| positive("first_step", step))?;
+        if 0.0 < self.max_step {
+            Ok(())
+        } else {
+            Err(Error::Setting { name: "max_step", value: self.max_step, required: "positive" })
+        }
+    }
+
+    fn least_steps(&self, length: f64) -> f64 {
+        length / self.max_step
+    }
+
+    fn step<D: Dynamics<N, Scalar: Float>>(
+        &self,
+        memory: &mut Memory,
+        course: Course<'_, '_, D, M, N>,
+    ) -> Result<(Span, Node<D::Scalar, N>), Error> {
+        let Course { method, field, from, stages, target, stats } = course;
+        let response = M::RESPONSE;
+        if memory.h == 0.0 {
+            let at_once = Span::by(from.t, 0.0);
+            let a = from.start_acceleration(field);
+            if !a.iter().all(|a| a.is_finite()) {
+                return Err(blame(method, field.dynamics, &at_once, from));
+            }
+            let limit = if -from.t.since(target) < self.max_step { -from.t.since(target) } else { self.max_step };
+            memory.h = self.first_step.unwrap_or_else(|| self.automatic_step(M::ORDER, field, from, limit));
+            memory.error = 1e-4;
+        }
+        let mut wanted = if memory.h < self.max_step { memory.h } else { self.max_step };
+        let mut retried = false;
+        loop {
+            let resolution = f64::EPSILON * from.t.to_f64().abs();
+            if wanted <= resolution || wanted < 1e-200 {
+                let span = Span::by(from.t, wanted);
+                return Err(fault(method, field.dynamics, &span, from).unwrap_or_else(|| {
+                    let index = self.worst(method, stages, memory, from);
+                    let coordinate = coordinate(&<D::System as System<N>>::FACTS, index);
+                    Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate }
+                }));
+            }
+            let span = fit(from.t, wanted, target);
+            let to = method.step(field, &span, from, stages);
+            let scale = self.scale(from, &to);
+            let error = if to.is_finite() { method.error(stages, span.h, &scale) } else { f64::NAN };
+            if error <= 1.0 {
+                let factor = response.safety * power(error, -response.alpha) * power(memory.error, response.beta);
+                memory.h = span.h * if factor < response.least { response.least } else { factor };
+                // A step that was cut says little about longer ones: what was wanted before stays possible.
+                let longest = if retried { span.h } else { span.h * response.greatest };
+                let longest = if longest < wanted && !retried { wanted } else { longest };
+                if longest < memory.h {
+                    memory.h = longest;
+                }
+                memory.error = if error < 1e-4 { 1e-4 } else { error };
+                stats.accepted += 1;
+                return Ok((span, to));
+            }
+            stats.rejected += 1;
+            retried = true;
+            if error.is_nan() {
+                // A function may have left its domain, and a shorter step may stay inside; but no step is short enough for an
+                // input that is not finite.
+                match fault(method, field.dynamics, &span, from) {
+                    Some(fault @ Error::NotFinite { what: Quantity::Input { .. }, .. }) => return Err(fault),
+                    _ => wanted = 0.1 * span.h,
+                }
+            } else {
+                let factor = response.safety * power(error, -response.alpha);
+                wanted = span.h * if factor < response.least { response.least } else { factor };
+            }
+        }
+    }
+}
+
+impl<const N: usize> AdaptiveStep<N> {
+    /// A first step with which the second derivative changes the state by about a hundredth of the tolerance's root.
+    fn automatic_step<T: Float>(
+        &self,
+        order: u32,
+        field: &mut impl Accelerations<T, N>,
+        from: &mut Node<T, N>,
+        limit: f64,
+    ) -> f64 {
+        let scale = self.scale(from, from);
+        let norm = |q: &[T; N], v: &[T; N]| (scale.square_sum(q, v) / (2 * N) as f64).sqrt();
+        let (q0, v0, a0) = (from.q.high, from.v.high, from.start_acceleration(field));
+        let (state, slope) = (norm(&q0, &v0), norm(&v0, &a0));
+        let guess = if 1e-5 < state && 1e-5 < slope { 0.01 * (state / slope) } else { 1e-6 };
+        // An overflow in the norms leaves nothing to go by.
+        let guess = if 1e-100 < guess { guess } else { 1e-6 };
+        let h = if limit < guess { limit } else { guess };
+        let step = T::from_f64(h);
+        let q1 = core::array::from_fn(|i| q0[i] + step * v0[i]);
+        let v1 = core::array::from_fn(|i| v0[i] + step * a0[i]);
+        let a1 = field.at(from.t + h, Side::Before, &q1, &v1);
+        let change = norm(&core::array::from_fn(|i| v1[i] - v0[i]), &core::array::from_fn(|i| a1[i] - a0[i])) / h;
+        let curvature = if change < slope { slope } else { change };
+        let longer = if curvature <= 1e-15 {
+            if 1e-3 * h < 1e-6 { 1e-6 } else { 1e-3 * h }
+        } else if curvature < f64::INFINITY {
+            power(0.01 / curvature, 1.0 / f64::from(order))
+        } else {
+            1e-3 * h
+        };
+        let longer = if longer < 100.0 * h { longer } else { 100.0 * h };
+        if limit < longer { limit } else { longer }
+    }
+
+    /// The coordinate with the largest error in the last step tried.
+    fn worst<T: Float, M: Embedded>(&self, method: &M, stages: &M::Stages<T, N>, memory: &Memory, from: &Node<T, N>) -> usize {
+        let all = self.scale(from, from);
+        let mut worst = (0, 0.0);
+        for index in 0..N {
+            let mut scale = Scale { q: [f64::INFINITY; N], v: [f64::INFINITY; N] };
+            (scale.q[index], scale.v[index]) = (all.q[index], all.v[index]);
+            let error = method.error(stages, memory.h, &scale);
+            if worst.1 < error {
+                worst = (index, error);
+            }
+        }
+        worst.0
+    }
+}
+
+/// The step of length `wanted` from `t`, or what avoids going beyond `target` and leaving a sliver before it.
+fn fit(t: Time, wanted: f64, target: f64) -> Span {
+    let left = -t.since(target);
+    if left <= 1.01 * wanted {
+        Span::to(t, target)
+    } else if left < 2.0 * wanted {
+        Span::by(t, 0.5 * left)
+    } else {
+        Span::by(t, wanted)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Time, fit};
+
+    #[test]
+    fn no_slivers() {
+        let length = |wanted, target| fit(Time::new(0.0), wanted, target).h;
+        assert_eq!(length(1.0, f64::INFINITY), 1.0);
+        assert_eq!(length(1.0, 2.5), 1.0);
+        assert_eq!(length(1.0, 1.5), 0.75);
+        assert_eq!(length(1.0, 1.009), 1.009);
+        assert_eq!(length(1.0, 0.3), 0.3);
+        assert_eq!(fit(Time::new(0.1), 1.0, 0.3).end, Time::new(0.3));
+    }
+}

@@ -1,0 +1,52 @@
+//! Who is to blame for a step that failed.
+
+use super::field::{Watched, first_in_state};
+use super::method::Method;
+use super::node::Node;
+use super::span::Span;
+use crate::error::{Error, Quantity, Suspect};
+use crate::real::Float;
+use crate::system::{Dynamics, System};
+
+/// The error for a step that led to a number that is not finite.
+pub(crate) fn blame<D: Dynamics<N, Scalar: Float>, M: Method, const N: usize>(
+    method: &M,
+    dynamics: &D,
+    span: &Span,
+    from: &Node<D::Scalar, N>,
+) -> Error {
+    let coordinate = super::field::coordinate(&<D::System as System<N>>::FACTS, 0);
+    let unknown = Error::NotFinite { t: span.end.to_f64(), what: Quantity::Velocity(coordinate), suspects: Vec::new() };
+    fault(method, dynamics, span, from).unwrap_or(unknown)
+}
+
+/// The first number in a step that is not finite, if there is one.
+pub(crate) fn fault<D: Dynamics<N, Scalar: Float>, M: Method, const N: usize>(
+    method: &M,
+    dynamics: &D,
+    span: &Span,
+    from: &Node<D::Scalar, N>,
+) -> Option<Error> {
+    let facts = &<D::System as System<N>>::FACTS;
+    let mut watched = Watched { dynamics, first: None };
+    let to = method.step(&mut watched, span, &mut Node { a: None, ..*from }, &mut M::stages());
+    let at_end = || first_in_state(facts, &to.q.high, &to.v.high).map(|what| (span.end, what));
+    let (t, what) = watched.first.or_else(at_end)?;
+    let suspects = if let Quantity::Acceleration(_) = what { suspects(dynamics.system()) } else { Vec::new() };
+    Some(Error::NotFinite { t: t.to_f64(), what, suspects })
+}
+
+/// The parameters that are zero, infinite or not a number.
+fn suspects<S: System<N, Scalar: Float>, const N: usize>(system: &S) -> Vec<Suspect> {
+    let (mut index, mut suspects) = (0, Vec::new());
+    system.map(|parameter| {
+        let value = parameter.to_f64();
+        if value == 0.0 || !value.is_finite() {
+            let parameter = S::FACTS.parameters.get(index).copied().unwrap_or("");
+            suspects.push(Suspect { parameter, value });
+        }
+        index += 1;
+        parameter
+    });
+    suspects
+}

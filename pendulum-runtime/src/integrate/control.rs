@@ -1,0 +1,56 @@
+//! What decides about the length of steps: the interface that fixed and adaptive steps share.
+
+use super::field::Counted;
+use super::method::Method;
+use super::node::Node;
+use super::solution::Stats;
+use super::span::Span;
+use crate::error::Error;
+use crate::real::Float;
+use crate::system::Dynamics;
+
+/// What decides about the length of the steps of the method `M`.
+pub trait Control<M: Method, const N: usize>: Copy + core::fmt::Debug {
+    /// Whether the settings make sense.
+    fn check<T: Float>(&self) -> Result<(), Error>;
+
+    /// A lower bound of the number of steps over an interval.
+    fn least_steps(&self, length: f64) -> f64;
+
+    /// Takes one step from `course.from` towards `course.target`, not beyond it; nothing but caches changes if it fails.
+    fn step<D: Dynamics<N, Scalar: Float>>(
+        &self,
+        memory: &mut Memory,
+        course: Course<'_, '_, D, M, N>,
+    ) -> Result<(Span, Node<D::Scalar, N>), Error>;
+}
+
+/// What a control remembers from step to step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Memory {
+    /// The length of the steps towards `target`, or the next one that the error suggests; 0 before the first.
+    pub(crate) h: f64,
+    /// The number of equal steps left.
+    pub(crate) left: u64,
+    /// Where they lead.
+    pub(crate) target: f64,
+    /// The error of the last step.
+    pub(crate) error: f64,
+}
+
+/// What a control works with.
+#[derive(Debug)]
+pub struct Course<'a, 'd, D: Dynamics<N, Scalar: Float>, M: Method, const N: usize> {
+    /// The method.
+    pub(crate) method: &'a M,
+    /// The accelerations.
+    pub(crate) field: &'a mut Counted<'d, D>,
+    /// The state.
+    pub(crate) from: &'a mut Node<D::Scalar, N>,
+    /// What the step leaves behind.
+    pub(crate) stages: &'a mut M::Stages<D::Scalar, N>,
+    /// The time not to go beyond; infinite if there is none.
+    pub(crate) target: f64,
+    /// The counters.
+    pub(crate) stats: &'a mut Stats,
+}

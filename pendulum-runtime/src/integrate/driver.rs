@@ -1,0 +1,168 @@
+//! The loop that all ways of integrating share: one step at a time, onto kinks and over them.
+
+use super::control::{Control, Course, Memory};
+use super::field::{Counted, coordinate, first_in_inputs, first_in_state};
+use super::method::Method;
+use super::node::Node;
+use super::piece::Piece;
+use super::solution::Stats;
+use super::span::Span;
+use crate::error::{Error, Part};
+use crate::motion::Side;
+use crate::real::Float;
+use crate::system::{Dynamics, Purpose, System};
+use crate::time::Time;
+
+/// An integration under way, apart from the dynamics.
+#[derive(Clone, Debug)]
+pub(crate) struct Driver<T: Float, const N: usize, M: Method, C> {
+    pub(crate) method: M,
+    pub(crate) control: C,
+    /// The state reached; at a kink the one after it.
+    pub(crate) node: Node<T, N>,
+    pub(crate) stats: Stats,
+    last: Option<Taken<T, N>>,
+    stages: M::Stages<T, N>,
+    memory: Memory,
+    /// The next kink, infinite if there is none.
+    kink: f64,
+}
+
+/// A step that was taken.
+#[derive(Clone, Copy, Debug)]
+struct Taken<T, const N: usize> {
+    span: Span,
+    from: Node<T, N>,
+    /// The end, before a kink if there is one.
+    to: Node<T, N>,
+    onto_kink: bool,
+}
+
+impl<T: Float, const N: usize, M: Method, C> Driver<T, N, M, C> {
+    /// At `q`, `v` and `t`, if they are finite.
+    pub(crate) fn new<D: Dynamics<N, Scalar = T>>(
+        dynamics: &D,
+        method: M,
+        control: C,
+        t: f64,
+        q: [T; N],
+        v: [T; N],
+    ) -> Result<Self, Error> {
+        check_start::<D, T, N>(t, &q, &v)?;
+        let node = Node::new(Time::new(t), q, v);
+        let kink = next_kink(dynamics, t)?;
+        let stats = Stats::new(M::NAME);
+        Ok(Self { method, control, node, stats, last: None, stages: M::stages(), memory: Memory::default(), kink })
+    }
+
+    /// Puts the state elsewhere; counters and step size stay.
+    pub(crate) fn reset<D: Dynamics<N, Scalar = T>>(&mut self, dynamics: &D, t: f64, q: [T; N], v: [T; N]) -> Result<(), Error> {
+        check_start::<D, T, N>(t, &q, &v)?;
+        self.kink = next_kink(dynamics, t)?;
+        self.node = Node::new(Time::new(t), q, v);
+        self.last = None;
+        Ok(())
+    }
+
+    /// The same integration under another control.
+    pub(crate) fn controlled<B>(self, control: B) -> Driver<T, N, M, B> {
+        let Self { method, node, stats, last, stages, kink, .. } = self;
+        Driver { method, control, node, stats, last, stages, memory: Memory::default(), kink }
+    }
+
+    /// Takes one step towards `target`, which may be infinite, and over a kink if it ends on one.
+    ///
+    /// On failure the state is the one before the step.
+    #[inline]
+    pub(crate) fn step<D: Dynamics<N, Scalar = T>>(&mut self, dynamics: &D, target: f64) -> Result<(), Error>
+    where
+        C: Control<M, N>,
+    {
+        let target = if self.kink < target { self.kink } else { target };
+        let mut field = Counted::new(dynamics);
+        let course = Course {
+            method: &self.method,
+            field: &mut field,
+            from: &mut self.node,
+            stages: &mut self.stages,
+            target,
+            stats: &mut self.stats,
+        };
+        let taken = self.control.step(&mut self.memory, course);
+        self.stats.evaluations += field.evaluations;
+        let (span, mut to) = taken?;
+        let onto_kink = span.end == Time::new(self.kink);
+        let taken = Taken { span, from: self.node, to, onto_kink };
+        if onto_kink {
+            self.kink = cross(dynamics, &mut to)?;
+            self.stats.kinks += 1;
+        }
+        self.last = Some(taken);
+        self.node = to;
+        Ok(())
+    }
+
+    /// The motion within the last step, if there was one; evaluates what the method needs for it.
+    pub(crate) fn piece<D: Dynamics<N, Scalar = T>>(&mut self, dynamics: &D) -> Option<Piece<T, N>> {
+        let Taken { span, from, to, onto_kink } = self.last.as_mut()?;
+        let mut field = Counted::new(dynamics);
+        let piece = self.method.dense(&mut field, span, from, to, &mut self.stages);
+        self.stats.evaluations += field.evaluations;
+        if !*onto_kink {
+            self.node.a = to.a;
+        }
+        Some(piece)
+    }
+
+    /// The state just before a kink, if the last step has ended on one.
+    pub(crate) fn before_kink(&self) -> Option<&Node<T, N>> {
+        self.last.as_ref().filter(|last| last.onto_kink).map(|last| &last.to)
+    }
+
+    /// The time reached.
+    pub(crate) fn t(&self) -> f64 {
+        self.node.t.to_f64()
+    }
+}
+
+/// Whether an integration can begin there.
+fn check_start<D: Dynamics<N, Scalar = T>, T: Float, const N: usize>(t: f64, q: &[T; N], v: &[T; N]) -> Result<(), Error> {
+    if !t.is_finite() {
+        return Err(Error::Interval { start: t, end: t });
+    }
+    for (part, values) in [(Part::Position, q), (Part::Velocity, v)] {
+        if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+            let coordinate = coordinate(&<D::System as System<N>>::FACTS, index);
+            return Err(Error::InitialState { part, coordinate, value: values[index].to_f64() });
+        }
+    }
+    Ok(())
+}
+
+/// The first kink after `t`, infinite if there is none.
+fn next_kink<D: Dynamics<N>, const N: usize>(dynamics: &D, t: f64) -> Result<f64, Error> {
+    match dynamics.next_kink(t) {
+        None => Ok(f64::INFINITY),
+        Some(kink) if t < kink => Ok(kink),
+        Some(kink) => Err(Error::Kink { t, kink }),
+    }
+}
+
+/// Carries the velocities over the kink at `node.t` and returns the next kink.
+fn cross<D: Dynamics<N, Scalar = T>, T: Float, const N: usize>(dynamics: &D, node: &mut Node<T, N>) -> Result<f64, Error> {
+    let v = dynamics.across_kink(node.t, &node.q.high, &node.v.high);
+    let facts = &<D::System as System<N>>::FACTS;
+    if let Some(velocity) = first_in_state(facts, &node.q.high, &v) {
+        let input = |side| first_in_inputs(facts, &dynamics.inputs(node.t, side, Purpose::Momenta));
+        let what = input(Side::Before).or_else(|| input(Side::After)).unwrap_or(velocity);
+        return Err(Error::NotFinite { t: node.t.to_f64(), what, suspects: Vec::new() });
+    }
+    for i in 0..N {
+        // Where nothing jumps, the low words stay.
+        if v[i] != node.v.high[i] {
+            (node.v.high[i], node.v.low[i]) = (v[i], T::from_f64(0.0));
+        }
+    }
+    node.a = None;
+    next_kink(dynamics, node.t.to_f64())
+}

@@ -1,0 +1,109 @@
+//! What a method is: a way to take one step, and for some an estimate of its error.
+
+pub use super::control::{Control, Course, Memory};
+pub use super::field::{Accelerations, Counted};
+pub use super::node::Node;
+pub use super::piece::{Piece, TERMS};
+pub use super::span::Span;
+pub use super::sum::Sum;
+use crate::real::Float;
+use crate::system::System;
+
+/// A one-step method for q̈ = a(t, q, q̇).
+///
+/// Whether it is right for a system is another question, which [`Suits`] answers.
+pub trait Method: Copy + core::fmt::Debug {
+    /// The name.
+    const NAME: &'static str;
+    /// The order p: the error at a fixed time falls with the p-th power of the step.
+    const ORDER: u32;
+    /// The order of the dense output: the power of the step with which the error of the coordinates between two steps falls.
+    const DENSE_ORDER: u32;
+    /// What one step leaves behind for its error estimate and dense output.
+    type Stages<T: Float, const N: usize>: Clone + core::fmt::Debug;
+
+    /// Room for the stages.
+    fn stages<T: Float, const N: usize>() -> Self::Stages<T, N>;
+
+    /// Goes from `from` to the end of `span`.
+    ///
+    /// The accelerations at the start may be kept in `from`, those at the end in the node that is returned.
+    fn step<T: Float, const N: usize>(
+        &self,
+        field: &mut impl Accelerations<T, N>,
+        span: &Span,
+        from: &mut Node<T, N>,
+        stages: &mut Self::Stages<T, N>,
+    ) -> Node<T, N>;
+
+    /// The motion within the step just taken; evaluates what it needs beyond the step itself.
+    fn dense<T: Float, const N: usize>(
+        &self,
+        field: &mut impl Accelerations<T, N>,
+        span: &Span,
+        from: &mut Node<T, N>,
+        to: &mut Node<T, N>,
+        stages: &mut Self::Stages<T, N>,
+    ) -> Piece<T, N>;
+}
+
+/// A method with an error estimate, which can choose its own steps.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no error estimate and cannot choose its steps",
+    label = "a step size is missing",
+    note = "call `.step(h)` or `.steps(n)`, or use `Tsit5` or `Dop853`"
+)]
+pub trait Embedded: Method {
+    /// How the step size answers to the error.
+    const RESPONSE: Response;
+
+    /// The error of the step just taken, as a root mean square in units of `scale`.
+    fn error<T: Float, const N: usize>(&self, stages: &Self::Stages<T, N>, h: f64, scale: &Scale<N>) -> f64;
+}
+
+/// How the step size answers to the error: h ← h · safety · err^(−α) · e^β with the error e of the step before, within limits (Gustafsson 1991).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Response {
+    /// α.
+    pub alpha: f64,
+    /// β.
+    pub beta: f64,
+    /// The safety factor.
+    pub safety: f64,
+    /// The least factor between two steps.
+    pub least: f64,
+    /// The greatest.
+    pub greatest: f64,
+}
+
+/// The error that is allowed in each component: atol + rtol·max(|y₀|, |y₁|).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale<const N: usize> {
+    /// For the coordinates.
+    pub q: [f64; N],
+    /// For the velocities.
+    pub v: [f64; N],
+}
+
+impl<const N: usize> Scale<N> {
+    /// Σ (e/scale)² over coordinates and velocities; not a number if an error is not.
+    #[inline]
+    pub fn square_sum<T: Float>(&self, q: &[T; N], v: &[T; N]) -> f64 {
+        let mut sum = 0.0;
+        for i in 0..N {
+            let q = q[i].to_f64() / self.q[i];
+            let v = v[i].to_f64() / self.v[i];
+            sum += q * q + v * v;
+        }
+        sum
+    }
+}
+
+/// Methods that are right for the system `S`.
+///
+/// Every method suits every system, except for the splitting and Nyström methods, which want [`VelocityFree`](crate::system::VelocityFree).
+pub trait Suits<S, const N: usize>: Method
+where
+    S: System<N>,
+{
+}

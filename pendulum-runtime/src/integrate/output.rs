@@ -1,0 +1,169 @@
+//! Which states are kept.
+
+use super::control::Control;
+use super::dense::DenseOutput;
+use super::driver::Driver;
+use super::method::Method;
+use super::solution::{Failure, Solution, State, Stats};
+use crate::error::Error;
+use crate::real::Float;
+use crate::system::Dynamics;
+
+/// The states asked for, besides the last one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Output<'a> {
+    /// None.
+    End,
+    /// Those at these times.
+    Times(&'a [f64]),
+    /// Those at multiples of an interval.
+    Every(f64),
+    /// Those at both ends of each step.
+    Steps,
+}
+
+impl Output<'_> {
+    pub(crate) fn check(&self, start: f64, end: f64) -> Result<(), Error> {
+        match *self {
+            Output::Times(times) => ascending("t_eval", times, start, end),
+            Output::Every(interval) => {
+                // More than this is a slip of the pen, and no memory holds it.
+                let fine = 0.0 < interval && (end - start) / interval < 1e9;
+                let required = "positive, and no shorter than a billionth of the interval";
+                if fine { Ok(()) } else { Err(Error::Setting { name: "every", value: interval, required }) }
+            }
+            Output::End | Output::Steps => Ok(()),
+        }
+    }
+
+    /// The `index`-th output time.
+    fn time(&self, index: usize, (start, end): (f64, f64)) -> Option<f64> {
+        match *self {
+            Output::Times(times) => times.get(index).copied(),
+            Output::Every(interval) => {
+                let t = start + index as f64 * interval;
+                // A multiple that misses the end by rounding means the end.
+                let close = (t - end).abs() < 1e-9 * interval;
+                if close { Some(end) } else { Some(t).filter(|t| *t < end) }
+            }
+            Output::End | Output::Steps => None,
+        }
+    }
+}
+
+/// Whether `times` are finite, ascending and within the interval.
+pub(crate) fn ascending(name: &'static str, times: &[f64], start: f64, end: f64) -> Result<(), Error> {
+    let mut least = start;
+    for (index, &time) in times.iter().enumerate() {
+        if !(least <= time && time <= end) {
+            return Err(Error::Times { name, index, time });
+        }
+        least = time;
+    }
+    Ok(())
+}
+
+/// Keeps what is asked for while the integration goes on.
+#[derive(Debug)]
+pub(crate) struct Recorder<'a, T, const N: usize> {
+    output: Output<'a>,
+    interval: (f64, f64),
+    /// The index of the next output time.
+    index: usize,
+    /// The next output time, infinite if there is none.
+    next: f64,
+    dense: Option<DenseOutput<T, N>>,
+    t: Vec<f64>,
+    q: Vec<[T; N]>,
+    v: Vec<[T; N]>,
+}
+
+impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
+    pub(crate) fn new(output: Output<'a>, interval: (f64, f64)) -> Self {
+        Self { output, interval, index: 0, next: f64::INFINITY, dense: None, t: Vec::new(), q: Vec::new(), v: Vec::new() }
+    }
+
+    /// Begins with the state at the start.
+    pub(crate) fn begin(&mut self, start: State<T, N>, dense: bool) {
+        self.dense = dense.then(|| DenseOutput::new(start));
+        self.next = self.output.time(0, self.interval).unwrap_or(f64::INFINITY);
+        match self.output {
+            Output::Steps => self.push(start),
+            _ => self.push_while_next_is(start),
+        }
+    }
+
+    /// Takes in the step that `driver` has just taken.
+    #[inline]
+    pub(crate) fn step<D, M, C>(&mut self, driver: &mut Driver<T, N, M, C>, dynamics: &D)
+    where
+        D: Dynamics<N, Scalar = T>,
+        M: Method,
+        C: Control<M, N>,
+    {
+        if self.dense.is_some() || self.next <= driver.t() {
+            self.within(driver, dynamics);
+        }
+        if let Output::Steps = self.output {
+            if let Some(before) = driver.before_kink() {
+                self.push(before.into());
+            }
+            self.push((&driver.node).into());
+        }
+    }
+
+    /// The states within the step and at its end.
+    fn within<D, M, C>(&mut self, driver: &mut Driver<T, N, M, C>, dynamics: &D)
+    where
+        D: Dynamics<N, Scalar = T>,
+        M: Method,
+        C: Control<M, N>,
+    {
+        let (end, state) = (driver.node.t, State::from(&driver.node));
+        if self.dense.is_some() || 0.0 < end.since(self.next) {
+            let Some(piece) = driver.piece(dynamics) else { return };
+            while 0.0 < end.since(self.next) {
+                let theta = -piece.span.start.since(self.next) / piece.span.h;
+                let (q, v) = piece.at(theta);
+                self.push(State { t: self.next, q, v });
+                self.advance();
+            }
+            if let Some(dense) = &mut self.dense {
+                dense.push(&piece, state);
+            }
+        }
+        self.push_while_next_is(state);
+    }
+
+    fn push_while_next_is(&mut self, state: State<T, N>) {
+        while self.next == state.t {
+            self.push(state);
+            self.advance();
+        }
+    }
+
+    fn push(&mut self, State { t, q, v }: State<T, N>) {
+        self.t.push(t);
+        self.q.push(q);
+        self.v.push(v);
+    }
+
+    fn advance(&mut self) {
+        self.index += 1;
+        self.next = self.output.time(self.index, self.interval).unwrap_or(f64::INFINITY);
+    }
+
+    /// The solution that ends with `end`.
+    pub(crate) fn finish(mut self, end: State<T, N>, stats: Stats) -> Solution<T, N> {
+        if let Output::End = self.output {
+            self.push(end);
+        }
+        let Self { dense, t, q, v, .. } = self;
+        Solution { t, q, v, end, stats, dense }
+    }
+
+    /// The failure that leaves `end` as the last state.
+    pub(crate) fn fail(self, error: Error, end: State<T, N>, stats: Stats) -> Failure<T, N> {
+        Failure { error, partial: Box::new(self.finish(end, stats)) }
+    }
+}

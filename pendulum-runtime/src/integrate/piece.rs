@@ -1,0 +1,79 @@
+//! The motion within one step, as polynomials.
+
+use super::node::Node;
+use super::span::Span;
+use crate::real::Float;
+
+/// The largest number of terms of a [`Piece`].
+pub const TERMS: usize = 7;
+
+/// Coordinates and velocities within a step as polynomials in θ = (t − start)/h.
+///
+/// y(θ) = y₀ + θ(F₀ + (1−θ)(F₁ + θ(F₂ + (1−θ)(F₃ + …)))), the form of Hairer, Nørsett and Wanner (1993), II.6: F₀ is the increment, so
+/// that both ends are met exactly, and F₁ and F₂ come from the slopes at the ends.
+#[derive(Clone, Copy, Debug)]
+pub struct Piece<T, const N: usize> {
+    /// The step.
+    pub span: Span,
+    /// The coordinates at its start.
+    pub q0: [T; N],
+    /// The velocities at its start.
+    pub v0: [T; N],
+    /// The terms of the coordinates.
+    pub q: [[T; N]; TERMS],
+    /// The terms of the velocities.
+    pub v: [[T; N]; TERMS],
+    /// How many of them are not zero.
+    pub terms: usize,
+}
+
+impl<T: Float, const N: usize> Piece<T, N> {
+    /// The cubics through the states at both ends of `span` with the given slopes there: velocities for the coordinates,
+    /// accelerations for the velocities.
+    pub fn hermite(span: &Span, from: &Node<T, N>, to: &Node<T, N>, a0: &[T; N], a1: &[T; N]) -> Self {
+        let mut piece = Self::linear(span, from, to);
+        let h = T::from_f64(span.h);
+        clamp(&mut piece.q, h, &from.v.high, &to.v.high);
+        clamp(&mut piece.v, h, a0, a1);
+        piece.terms = 3;
+        piece
+    }
+
+    /// The straight line between the states at both ends.
+    pub fn linear(span: &Span, from: &Node<T, N>, to: &Node<T, N>) -> Self {
+        let zero = [[T::from_f64(0.0); N]; TERMS];
+        let mut piece = Self { span: *span, q0: from.q.high, v0: from.v.high, q: zero, v: zero, terms: 1 };
+        piece.q[0] = to.q.since(&from.q);
+        piece.v[0] = to.v.since(&from.v);
+        piece
+    }
+
+    /// Gives the coordinates the slopes `v0` and `v1` at the ends.
+    pub(crate) fn clamp_coordinates(&mut self, h: T, v0: &[T; N], v1: &[T; N]) {
+        clamp(&mut self.q, h, v0, v1);
+    }
+
+    /// Coordinates and velocities at θ.
+    pub fn at(&self, theta: f64) -> ([T; N], [T; N]) {
+        (nested(&self.q0, &self.q[..self.terms], theta), nested(&self.v0, &self.v[..self.terms], theta))
+    }
+}
+
+/// F₁ and F₂ from the slopes at both ends.
+fn clamp<T: Float, const N: usize>(terms: &mut [[T; N]; TERMS], h: T, slope0: &[T; N], slope1: &[T; N]) {
+    for i in 0..N {
+        let increment = terms[0][i];
+        terms[1][i] = h * slope0[i] - increment;
+        terms[2][i] = (increment - h * slope1[i]) - terms[1][i];
+    }
+}
+
+/// y₀ + θ(F₀ + (1−θ)(F₁ + θ(F₂ + …))).
+pub(crate) fn nested<T: Float, const N: usize>(y0: &[T; N], terms: &[[T; N]], theta: f64) -> [T; N] {
+    let factors = [T::from_f64(theta), T::from_f64(1.0 - theta)];
+    core::array::from_fn(|i| {
+        let zero = T::from_f64(0.0);
+        let sum = terms.iter().enumerate().rev().fold(zero, |sum, (k, term)| (sum + term[i]) * factors[k % 2]);
+        y0[i] + sum
+    })
+}

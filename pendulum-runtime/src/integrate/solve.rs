@@ -1,0 +1,205 @@
+//! `solve`: a builder for one integration from start to end.
+
+use super::adaptive_step::AdaptiveStep;
+use super::control::Control;
+use super::dop853::Dop853;
+use super::driver::Driver;
+use super::fixed_step::FixedStep;
+use super::method::Suits;
+use super::output::{Output, Recorder, ascending};
+use super::solution::{Failure, Solution, State, Stats};
+use crate::error::Error;
+use crate::real::Float;
+use crate::system::Dynamics;
+
+/// Integrates `dynamics` over the interval `time = (start, end)` in seconds from the coordinates `q` and the velocities `v`.
+///
+/// Without further calls it uses [`Dop853`] with `rtol` 1e-6 and `atol` 1e-9 and gives the end state.
+/// If motions have a kink at the start, `v` is the velocity after it.
+pub fn solve<const N: usize, D: Dynamics<N>>(
+    dynamics: &D,
+    time: (f64, f64),
+    q: [D::Scalar; N],
+    v: [D::Scalar; N],
+) -> Solve<'_, N, D, Dop853, AdaptiveStep<N>> {
+    Solve {
+        dynamics,
+        time,
+        q,
+        v,
+        method: Dop853::new(),
+        control: AdaptiveStep::new(),
+        output: Output::End,
+        dense: false,
+        stops: &[],
+        max_steps: 10_000_000,
+    }
+}
+
+/// An integration about to run; [`solve`] makes it.
+#[must_use = "nothing is integrated before `run`"]
+#[derive(Clone, Debug)]
+pub struct Solve<'a, const N: usize, D: Dynamics<N>, M, C> {
+    dynamics: &'a D,
+    time: (f64, f64),
+    q: [D::Scalar; N],
+    v: [D::Scalar; N],
+    method: M,
+    control: C,
+    output: Output<'a>,
+    dense: bool,
+    stops: &'a [f64],
+    max_steps: u64,
+}
+
+impl<'a, const N: usize, D: Dynamics<N>, M, C> Solve<'a, N, D, M, C> {
+    /// Uses another method.
+    pub fn method<B: Suits<D::System, N>>(self, method: B) -> Solve<'a, N, D, B, C> {
+        let control = self.control;
+        let Self { dynamics, time, q, v, output, dense, stops, max_steps, .. } = self;
+        Solve { dynamics, time, q, v, method, control, output, dense, stops, max_steps }
+    }
+
+    /// Takes equal steps of at most `step` seconds, as [`FixedStep`] describes.
+    pub fn step(self, step: f64) -> Solve<'a, N, D, M, FixedStep> {
+        self.control(FixedStep::new(step))
+    }
+
+    /// Takes `count` equal steps over the interval; more if kinks or stops divide it.
+    pub fn steps(self, count: u64) -> Solve<'a, N, D, M, FixedStep> {
+        let length = self.time.1 - self.time.0;
+        self.control(FixedStep::dividing(length, count))
+    }
+
+    /// Gives the states at these ascending times, from dense output: they do not change the steps.
+    pub fn t_eval(mut self, times: &'a [f64]) -> Self {
+        self.output = Output::Times(times);
+        self
+    }
+
+    /// Gives the states at `start`, `start + interval`, `start + 2 interval`, … up to the end, from dense output.
+    pub fn every(mut self, interval: f64) -> Self {
+        self.output = Output::Every(interval);
+        self
+    }
+
+    /// Gives the states at the start and after every step, at kinks those on both sides.
+    pub fn every_step(mut self) -> Self {
+        self.output = Output::Steps;
+        self
+    }
+
+    /// Keeps the motion within each step, so that [`Solution::at`] knows the state at any time.
+    pub fn dense(mut self) -> Self {
+        self.dense = true;
+        self
+    }
+
+    /// Makes steps end exactly at these ascending times.
+    pub fn t_stops(mut self, times: &'a [f64]) -> Self {
+        self.stops = times;
+        self
+    }
+
+    /// The number of steps, rejected ones included, after which the integration fails; ten million without this call.
+    pub fn max_steps(mut self, count: u64) -> Self {
+        self.max_steps = count;
+        self
+    }
+
+    fn control<B>(self, control: B) -> Solve<'a, N, D, M, B> {
+        let Self { dynamics, time, q, v, method, output, dense, stops, max_steps, .. } = self;
+        Solve { dynamics, time, q, v, method, control, output, dense, stops, max_steps }
+    }
+}
+
+impl<const N: usize, D: Dynamics<N>, M> Solve<'_, N, D, M, AdaptiveStep<N>> {
+    /// The relative tolerance, 1e-6 without this call (1.2e-5 for `f32`); at least ten machine epsilons of the scalar.
+    pub fn rtol(mut self, rtol: f64) -> Self {
+        self.control = self.control.rtol(rtol);
+        self
+    }
+
+    /// The absolute tolerance of all coordinates and velocities, 1e-9 without this call.
+    pub fn atol(mut self, atol: f64) -> Self {
+        self.control = self.control.atol(atol);
+        self
+    }
+
+    /// The absolute tolerances of each coordinate and of each velocity.
+    pub fn atol_each(mut self, q: [f64; N], v: [f64; N]) -> Self {
+        self.control = self.control.atol_each(q, v);
+        self
+    }
+
+    /// The length of the first step in seconds, instead of an automatic one.
+    pub fn first_step(mut self, step: f64) -> Self {
+        self.control = self.control.first_step(step);
+        self
+    }
+
+    /// The greatest length of a step in seconds.
+    pub fn max_step(mut self, step: f64) -> Self {
+        self.control = self.control.max_step(step);
+        self
+    }
+}
+
+impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, M, C> {
+    /// Integrates.
+    ///
+    /// On failure the error comes with everything reached until then. A method that is wrong for the system or lacks a step size does
+    /// not compile.
+    pub fn run(self) -> Result<Solution<D::Scalar, N>, Failure<D::Scalar, N>>
+    where
+        M: Suits<D::System, N>,
+        C: Control<M, N>,
+    {
+        let mut recorder = Recorder::new(self.output, self.time);
+        let given = State { t: self.time.0, q: self.q, v: self.v };
+        match self.check().and_then(|()| Driver::new(self.dynamics, self.method, self.control, self.time.0, self.q, self.v)) {
+            Err(error) => Err(recorder.fail(error, given, Stats::new(M::NAME))),
+            Ok(mut driver) => match self.integrate(&mut driver, &mut recorder) {
+                Err(error) => Err(recorder.fail(error, State::from(&driver.node), driver.stats)),
+                Ok(()) => Ok(recorder.finish(State::from(&driver.node), driver.stats)),
+            },
+        }
+    }
+
+    fn integrate(&self, driver: &mut Driver<D::Scalar, N, M, C>, recorder: &mut Recorder<'_, D::Scalar, N>) -> Result<(), Error>
+    where
+        M: Suits<D::System, N>,
+        C: Control<M, N>,
+    {
+        let end = self.time.1;
+        let mut stops = self.stops.iter().copied().peekable();
+        recorder.begin(State::from(&driver.node), self.dense);
+        while driver.t() < end {
+            if self.max_steps <= driver.stats.accepted + driver.stats.rejected {
+                return Err(Error::MaxSteps { t: driver.t(), max_steps: self.max_steps });
+            }
+            while stops.next_if(|stop| *stop <= driver.t()).is_some() {}
+            driver.step(self.dynamics, stops.peek().copied().unwrap_or(end))?;
+            recorder.step(driver, self.dynamics);
+        }
+        Ok(())
+    }
+
+    fn check(&self) -> Result<(), Error>
+    where
+        M: Suits<D::System, N>,
+        C: Control<M, N>,
+    {
+        let (start, end) = self.time;
+        if !(start.is_finite() && end.is_finite() && start <= end && (end - start).is_finite()) {
+            return Err(Error::Interval { start, end });
+        }
+        self.control.check::<D::Scalar>()?;
+        self.output.check(start, end)?;
+        ascending("t_stops", self.stops, start, end)?;
+        if (self.max_steps as f64) < self.control.least_steps(end - start) {
+            return Err(Error::MaxSteps { t: start, max_steps: self.max_steps });
+        }
+        Ok(())
+    }
+}

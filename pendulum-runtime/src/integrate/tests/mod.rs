@@ -1,0 +1,31 @@
+//! Integrators on systems with known solutions.
+
+mod accuracy;
+mod systems;
+
+use crate::integrate::method::Suits;
+use crate::integrate::{State, solve};
+use crate::system::Dynamics;
+
+/// The largest difference between a state and an exact one.
+///
+/// Not a number if a component is not a number: a failed run must not look accurate.
+fn distance<const N: usize>(q: &[f64; N], v: &[f64; N], exact: &[f64]) -> f64 {
+    assert_eq!(exact.len(), 2 * N);
+    let differences = q.iter().chain(v).zip(exact).map(|(value, exact)| (value - exact).abs());
+    differences.fold(0.0, |largest, difference| if difference <= largest { largest } else { difference })
+}
+
+/// The state at `end` after equal steps from time 0.
+fn fixed<D: Dynamics<N, Scalar = f64>, const N: usize>(
+    dynamics: &D,
+    end: f64,
+    q: [f64; N],
+    v: [f64; N],
+    method: impl Suits<D::System, N>,
+    steps: u64,
+) -> State<f64, N> {
+    let solution = solve(dynamics, (0.0, end), q, v).method(method).steps(steps).run().unwrap();
+    assert_eq!(solution.end.t, end);
+    solution.end
+}
