@@ -344,14 +344,18 @@ impl Tree {
             return Err(error(line, format!("a second CHANNELS in `{}`", short(&joint.name)), "keep one of them"));
         }
         joint.listed = true;
-        let (first, names) = rest.split_first().ok_or_else(|| {
-            error(line, "CHANNELS without a number".into(), "write how many channels follow, then their names")
-        })?;
+        let (first, names) = rest
+            .split_first()
+            .ok_or_else(|| error(line, "CHANNELS without a number".into(), "write how many channels follow, then their names"))?;
         let count: usize = first.1.parse().ok().filter(|&count| count <= 6).ok_or_else(|| {
             error(line, format!("`{}` is no number of channels", short(first.1)), "write 0 to 6, then as many names")
         })?;
         let names = names.get(..count).ok_or_else(|| {
-            error(line, format!("{count} channels are announced, {} names follow", names.len()), "write as many names, on one line")
+            error(
+                line,
+                format!("{count} channels are announced, {} names follow", names.len()),
+                "write as many names, on one line",
+            )
         })?;
         for &(line, name) in names {
             let channel = channel(name).ok_or_else(|| {

@@ -159,7 +159,23 @@ fn random(state: &mut u64) -> u64 {
 /// Whatever is done to a file, it is either read, with finite poses, or refused in a line of text that names a line of the file.
 #[test]
 fn mutations_are_read_or_refused() {
-    let scraps = ["{", "}", "JOINT", "End Site", "OFFSET", "CHANNELS 6", "MOTION", "Frames:", "-", "1e308", "NaN", "9999999999", "\n", "é", ":"];
+    let scraps = [
+        "{",
+        "}",
+        "JOINT",
+        "End Site",
+        "OFFSET",
+        "CHANNELS 6",
+        "MOTION",
+        "Frames:",
+        "-",
+        "1e308",
+        "NaN",
+        "9999999999",
+        "\n",
+        "é",
+        ":",
+    ];
     let mut state = 462;
     let (mut accepted, mut refused) = (0, 0);
     for _ in 0..2000 {

@@ -123,7 +123,8 @@ impl Picture<'_> {
         let end = |limb: &[usize]| limb[limb.len() - 1];
         let mut limbs: Vec<&Vec<usize>> = self.limbs.iter().collect();
         limbs.sort_by(|a, b| depth(end(a)).total_cmp(&depth(end(b))));
-        let (first, last) = (limbs.first().map_or(0.0, |limb| depth(end(limb))), limbs.last().map_or(0.0, |limb| depth(end(limb))));
+        let (first, last) =
+            (limbs.first().map_or(0.0, |limb| depth(end(limb))), limbs.last().map_or(0.0, |limb| depth(end(limb))));
         let mut left: Vec<&Worn<'_>> = self.worn.iter().collect();
         left.sort_by(|a, b| depth(a.joint).total_cmp(&depth(b.joint)));
         let mut left = left.into_iter().peekable();
@@ -294,7 +295,11 @@ impl Picture<'_> {
             for value in 0..=last {
                 write!(svg, r#"<text x="{x}" y="{}">{value}</text>"#, y + line * value as f64)?;
             }
-            write!(svg, r#"<animateTransform attributeName="transform" type="translate" calcMode="discrete" {} values=""#, self.timing())?;
+            write!(
+                svg,
+                r#"<animateTransform attributeName="transform" type="translate" calcMode="discrete" {} values=""#,
+                self.timing()
+            )?;
             for tenth in 0..tenths {
                 write!(svg, "0 {};", -line * digit(tenth) as f64)?;
             }
@@ -309,7 +314,8 @@ impl Picture<'_> {
         let [left, right, bottom, top] = CHART;
         let degrees = || self.worn.iter().flat_map(|worn| worn.spline.iter().chain(worn.linear)).map(|angle| angle.to_degrees());
         let most = degrees().fold(30.0, |peak: f64, angle| peak.max(angle.abs()));
-        let step = [15.0, 30.0, 45.0, 90.0, 180.0].into_iter().find(|step| most <= 2.2 * step).unwrap_or(360.0 * (most / 720.0).ceil());
+        let step =
+            [15.0, 30.0, 45.0, 90.0, 180.0].into_iter().find(|step| most <= 2.2 * step).unwrap_or(360.0 * (most / 720.0).ceil());
         let middle = (top + bottom) / 2.0;
         let y = |angle: f64| middle - angle / most * (bottom - top) / 2.0;
         let x = |time: f64| left + time / self.seconds * (right - left);
@@ -335,7 +341,9 @@ impl Picture<'_> {
             )?;
         }
         for worn in &self.worn {
-            for (angles, style) in [(worn.spline, r#"stroke-width="1.6""#), (worn.linear, r#"stroke-width="1.3" stroke-dasharray="2 3""#)] {
+            for (angles, style) in
+                [(worn.spline, r#"stroke-width="1.6""#), (worn.linear, r#"stroke-width="1.3" stroke-dasharray="2 3""#)]
+            {
                 write!(svg, r#"<polyline fill="none" stroke="{}" {style} stroke-linejoin="round" points=""#, worn.color)?;
                 for (index, angle) in angles.iter().enumerate().step_by(self.fine.div_ceil(2)) {
                     let time = self.seconds * index as f64 / (angles.len() - 1) as f64;

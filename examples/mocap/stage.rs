@@ -20,8 +20,7 @@ impl Plane {
         let count = path.len() as f64;
         let flat = || path.iter().map(|&[x, _, z]| [x, z]);
         let mean = [0, 1].map(|axis| flat().map(|point| point[axis]).sum::<f64>() / count);
-        let moment =
-            |a: usize, b: usize| flat().map(|point| (point[a] - mean[a]) * (point[b] - mean[b])).sum::<f64>() / count;
+        let moment = |a: usize, b: usize| flat().map(|point| (point[a] - mean[a]) * (point[b] - mean[b])).sum::<f64>() / count;
         // The principal axis of the second moments: tan 2φ = 2 s_xz/(s_xx − s_zz).
         let angle = Real::atan2(2.0 * moment(0, 1), moment(0, 0) - moment(1, 1)) / 2.0;
         let (sin, cos) = Real::sin_cos(angle);
