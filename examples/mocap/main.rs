@@ -58,9 +58,12 @@ const PLACES: [Place; 4] = [
         length: 0.16,
         color: "#d55e00",
     },
-    Place { label: "head", names: &["head", "neck"], length: 0.12, color: "#009e73" },
+    Place { label: "head", names: &["headend", "head"], length: 0.12, color: "#009e73" },
     Place { label: "hips", names: &["hips", "hip", "pelvis", "root"], length: 0.2, color: "#b0488f" },
 ];
+
+/// The joint around which the head is drawn.
+const HEAD: &[&str] = &["head"];
 
 /// Keys a second: the second differences of captured motion are noise above.
 const KEYS: f64 = 30.0;
@@ -137,14 +140,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         spline: &hung.spline.angles,
         linear: &hung.linear.angles,
     });
-    let picture = Picture {
-        limbs: limbs(&bvh.joints),
-        head: find(&bvh, PLACES[2].names),
-        poses: &poses,
-        worn: worn.collect(),
-        seconds,
-        fine: FINE,
-    };
+    let picture =
+        Picture { limbs: limbs(&bvh.joints), head: find(&bvh, HEAD), poses: &poses, worn: worn.collect(), seconds, fine: FINE };
     fs::write(target.join("mocap.svg"), picture.draw())?;
 
     println!("{}", sheet::swings(&pendulums));

@@ -10,8 +10,10 @@ const STAGE: [f64; 4] = [50.0, 1150.0, 490.0, 72.0];
 const CHART: [f64; 4] = [76.0, 1150.0, 668.0, 556.0];
 /// How long the trails last, in seconds, from the faintest on.
 const TRAILS: [f64; 3] = [0.9, 0.5, 0.22];
-/// The thickness of a limb and of what is shorter than a quarter metre, in metres.
-const THICK: [f64; 2] = [0.075, 0.03];
+/// The time between the faint figures along the way, at least, in seconds.
+const GHOSTS: f64 = 0.6;
+/// The thickness of a limb, of what is shorter than a quarter metre, and of the trunk, in metres.
+const THICK: [f64; 3] = [0.075, 0.03, 0.16];
 
 /// What is drawn.
 pub(crate) struct Picture<'a> {
@@ -73,10 +75,11 @@ impl Picture<'_> {
 <title>Feathers on captured motion</title>
 <rect width="100%" height="100%" fill="#fff"/>
 <text x="50" y="38" font-size="23" font-weight="bold" fill="#222">Feathers on captured motion</text>
-<text x="50" y="59" fill="#666">four compound pendulums, driven by the joints of somebody who jumps: I θ̈ = −m ⟨ẍ + g e_y, (e^(iθ) c)⊥⟩ − c θ̇</text>"##,
+<text x="50" y="59" fill="#666">compound pendulums, driven by the joints of a captured clip: I θ̈ = −m ⟨ẍ + g e_y, (e^(iθ) c)⊥⟩ − c θ̇</text>"##,
             SIZE[0], SIZE[1]
         )?;
         self.ground(svg, frame)?;
+        self.ghosts(svg, frame)?;
         for worn in &self.worn {
             self.trail(svg, frame, worn)?;
         }
@@ -96,7 +99,7 @@ impl Picture<'_> {
         let (width, height) = (most(0) - least(0) + 2.0 * margin, most(1) - least(1) + 0.15);
         let scale = f64::min((STAGE[1] - STAGE[0]) / width, (STAGE[2] - STAGE[3]) / height);
         let spare = (STAGE[1] - STAGE[0]) / scale - width;
-        Frame { scale, left: least(0) - margin - spare / 2.0, ground: least(1) - 0.02 }
+        Frame { scale, left: least(0) - margin - spare / 2.0, ground: least(1) - THICK[0] / 2.0 }
     }
 
     /// The ground with a tick at each metre.
@@ -116,38 +119,56 @@ impl Picture<'_> {
         Ok(())
     }
 
-    /// The limbs from the farthest to the nearest, each followed by what hangs on it.
+    /// The limbs from the farthest to the nearest, each after what hangs farther away.
     fn body(&self, svg: &mut String, frame: Frame) -> fmt::Result {
         let count = self.poses.len() as f64;
         let depth = |joint: usize| self.poses.iter().map(|pose| pose[joint][2]).sum::<f64>() / count;
         let end = |limb: &[usize]| limb[limb.len() - 1];
         let mut limbs: Vec<&Vec<usize>> = self.limbs.iter().collect();
         limbs.sort_by(|a, b| depth(end(a)).total_cmp(&depth(end(b))));
-        let (first, last) =
-            (limbs.first().map_or(0.0, |limb| depth(end(limb))), limbs.last().map_or(0.0, |limb| depth(end(limb))));
-        let mut left: Vec<&Worn<'_>> = self.worn.iter().collect();
-        left.sort_by(|a, b| depth(a.joint).total_cmp(&depth(b.joint)));
-        let mut left = left.into_iter().peekable();
+        let mut worn: Vec<&Worn<'_>> = self.worn.iter().collect();
+        worn.sort_by(|a, b| depth(a.joint).total_cmp(&depth(b.joint)));
+        let mut worn = worn.into_iter().peekable();
         for limb in limbs {
-            // What hangs farther away than the limb is behind it.
-            while let Some(worn) = left.next_if(|worn| depth(worn.joint) < depth(end(limb)) - 0.02) {
+            while let Some(worn) = worn.next_if(|worn| depth(worn.joint) < depth(end(limb)) - 0.08) {
                 self.feather(svg, frame, worn)?;
             }
-            self.limb(svg, frame, limb, (depth(end(limb)) - first) / (last - first).max(1e-9))?;
+            let near = ((depth(end(limb)) - depth(0)) / 0.2 + 0.5).clamp(0.0, 1.0);
+            self.limb(svg, frame, limb, near)?;
         }
-        left.try_for_each(|worn| self.feather(svg, frame, worn))
+        worn.try_for_each(|worn| self.feather(svg, frame, worn))
+    }
+
+    /// The figure at a few times, faintly.
+    fn ghosts(&self, svg: &mut String, frame: Frame) -> fmt::Result {
+        let every = ((self.poses.len() - 1) as f64 * GHOSTS / self.seconds).ceil().max(1.0) as usize;
+        let thick = THICK[0] * frame.scale;
+        for pose in self.poses.iter().step_by(every) {
+            write!(
+                svg,
+                r##"<path fill="none" stroke="#3e485c" stroke-opacity=".055" stroke-linecap="round" stroke-linejoin="round" stroke-width="{thick:.1}" d=""##
+            )?;
+            for limb in &self.limbs {
+                for (index, &joint) in limb.iter().enumerate() {
+                    let [x, y] = frame.at(pose[joint][0], pose[joint][1]);
+                    write!(svg, "{}{x:.1} {y:.1}", if index == 0 { 'M' } else { 'L' })?;
+                }
+            }
+            writeln!(svg, r#""/>"#)?;
+        }
+        Ok(())
     }
 
     /// A round-capped line; `near` is 0 for the farthest and 1 for the nearest limb.
     fn limb(&self, svg: &mut String, frame: Frame, limb: &[usize], near: f64) -> fmt::Result {
         let first = &self.poses[0];
         let apart = |a: usize, b: usize| {
-            let square: f64 = (0..3).map(|axis| (first[a][axis] - first[b][axis]).powi(2)).sum();
-            square.sqrt()
+            let along = |axis: usize| first[a][axis] - first[b][axis];
+            (0..3).map(|axis| along(axis) * along(axis)).sum::<f64>().sqrt()
         };
         // Joints at the same place are drawn once.
         let mut joints: Vec<usize> = limb.to_vec();
-        joints.dedup_by(|a, b| apart(*a, *b) < 1e-6);
+        joints.dedup_by(|after, before| apart(*after, *before) < 1e-6);
         let length: f64 = joints.windows(2).map(|pair| apart(pair[0], pair[1])).sum();
         if joints.len() < 2 {
             return Ok(());
@@ -155,18 +176,13 @@ impl Picture<'_> {
         let shade = |from: f64, to: f64| (from + (to - from) * near) as u8;
         let color = format!("#{:02x}{:02x}{:02x}", shade(186.0, 62.0), shade(194.0, 72.0), shade(206.0, 92.0));
         let thick = if length < 0.25 { THICK[1] } else { THICK[0] };
-        write!(
-            svg,
-            r#"<polyline fill="none" stroke="{color}" stroke-width="{:.1}" stroke-linecap="round" stroke-linejoin="round">"#,
-            thick * frame.scale
-        )?;
-        self.animate(svg, "points", |key, value| {
-            joints.iter().try_for_each(|&joint| {
-                let [x, y] = frame.at(self.poses[key][joint][0], self.poses[key][joint][1]);
-                write!(value, "{x:.1},{y:.1} ")
-            })
-        })?;
-        writeln!(svg, "</polyline>")?;
+        self.line(svg, frame, &joints, &color, thick)?;
+        // The trunk reaches from the hips to where the arms begin.
+        let begins = |joint: &usize| self.limbs.iter().any(|limb| limb[0] == *joint);
+        let is_trunk = self.head.is_some_and(|head| joints.contains(&head));
+        if let Some(top) = joints.iter().rposition(begins).filter(|&top| is_trunk && 0 < top) {
+            self.line(svg, frame, &joints[..=top], &color, THICK[2])?;
+        }
         if let Some(head) = self.head.filter(|head| joints[1..].contains(head)) {
             let top = joints[joints.len() - 1];
             write!(svg, r#"<circle r="{:.1}" fill="{color}">"#, 0.1 * frame.scale)?;
@@ -181,7 +197,22 @@ impl Picture<'_> {
         Ok(())
     }
 
-    /// A feather on its string, turned about its pivot.
+    fn line(&self, svg: &mut String, frame: Frame, joints: &[usize], color: &str, thick: f64) -> fmt::Result {
+        write!(
+            svg,
+            r#"<polyline fill="none" stroke="{color}" stroke-width="{:.1}" stroke-linecap="round" stroke-linejoin="round">"#,
+            thick * frame.scale
+        )?;
+        self.animate(svg, "points", |key, value| {
+            joints.iter().try_for_each(|&joint| {
+                let [x, y] = frame.at(self.poses[key][joint][0], self.poses[key][joint][1]);
+                write!(value, "{x:.1},{y:.1} ")
+            })
+        })?;
+        writeln!(svg, "</polyline>")
+    }
+
+    /// A feather, turned about its pivot.
     fn feather(&self, svg: &mut String, frame: Frame, worn: &Worn<'_>) -> fmt::Result {
         let color = worn.color;
         write!(svg, "<g>")?;
@@ -229,7 +260,7 @@ impl Picture<'_> {
         let id = worn.label.replace(' ', "-");
         writeln!(
             svg,
-            r#"<path id="{id}" d="{path}" pathLength="{total:.1}" fill="none" stroke="{color}" stroke-linecap="butt" stroke-opacity=".1"/>"#
+            r#"<path id="{id}" d="{path}" pathLength="{total:.1}" fill="none" stroke="{color}" stroke-linecap="butt" stroke-opacity=".17"/>"#
         )?;
         let rate = (tips.len() - 1) as f64 / self.seconds;
         for (step, lasting) in TRAILS.iter().enumerate() {
@@ -237,7 +268,7 @@ impl Picture<'_> {
             write!(
                 svg,
                 r##"<path d="{path}" pathLength="{total:.1}" fill="none" stroke="{color}" stroke-width="{:.1}" stroke-opacity="{}">"##,
-                1.4 + 0.8 * step as f64,
+                1.6 + 1.0 * step as f64,
                 0.22 + 0.06 * step as f64
             )?;
             self.animate(svg, "stroke-dasharray", |key, value| {
