@@ -1,4 +1,4 @@
-//! Runs what `lagrangian!` generates: scalars, systems, motions, bodies and integrators.
+#![doc = include_str!("../README.md")]
 
 #[macro_use]
 mod macros;

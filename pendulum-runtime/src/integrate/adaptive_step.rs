@@ -128,17 +128,16 @@ impl<M: Embedded, const N: usize> Control<M, N> for AdaptiveStep<N> {
             if !a.iter().all(|a| a.is_finite()) {
                 return Err(blame(method, field.dynamics, &at_once, from));
             }
-            let limit = if -from.t.since(target) < self.max_step { -from.t.since(target) } else { self.max_step };
-            memory.h = self.first_step.unwrap_or_else(|| self.automatic_step(M::ORDER, field, from, limit));
+            let left = -from.t.since(target);
+            memory.h = self.first_step.unwrap_or_else(|| self.automatic_step(M::ORDER, field, from, left));
             memory.error = 1e-4;
         }
         let mut wanted = if memory.h < self.max_step { memory.h } else { self.max_step };
-        let mut retried = false;
+        let (mut retried, mut last_fault) = (false, None);
         loop {
             let resolution = f64::EPSILON * from.t.to_f64().abs();
-            if wanted <= resolution || wanted < 1e-200 {
-                let span = Span::by(from.t, wanted);
-                return Err(fault(method, field.dynamics, &span, from).unwrap_or_else(|| {
+            if (wanted <= resolution || wanted < 1e-200) && wanted < -from.t.since(target) {
+                return Err(last_fault.unwrap_or_else(|| {
                     let index = self.worst(method, stages, memory, from);
                     let coordinate = coordinate(&<D::System as System<N>>::FACTS, index);
                     Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate }
@@ -164,13 +163,15 @@ impl<M: Embedded, const N: usize> Control<M, N> for AdaptiveStep<N> {
             stats.rejected += 1;
             retried = true;
             if error.is_nan() {
+                last_fault = fault(method, field.dynamics, &span, from);
                 // A function may have left its domain, and a shorter step may stay inside; but no step is short enough for an
                 // input that is not finite.
-                match fault(method, field.dynamics, &span, from) {
-                    Some(fault @ Error::NotFinite { what: Quantity::Input { .. }, .. }) => return Err(fault),
-                    _ => wanted = 0.1 * span.h,
+                if let Some(input @ Error::NotFinite { what: Quantity::Input { .. }, .. }) = last_fault {
+                    return Err(input);
                 }
+                wanted = 0.1 * span.h;
             } else {
+                last_fault = None;
                 let factor = response.safety * power(error, -response.alpha);
                 wanted = span.h * if factor < response.least { response.least } else { factor };
             }
@@ -208,8 +209,7 @@ impl<const N: usize> AdaptiveStep<N> {
         } else {
             1e-3 * h
         };
-        let longer = if longer < 100.0 * h { longer } else { 100.0 * h };
-        if limit < longer { limit } else { longer }
+        if longer < 100.0 * h { longer } else { 100.0 * h }
     }
 
     /// The coordinate with the largest error in the last step tried.

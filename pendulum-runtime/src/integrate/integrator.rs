@@ -3,7 +3,7 @@
 use super::adaptive_step::AdaptiveStep;
 use super::control::Control;
 use super::driver::Driver;
-use super::method::Suits;
+use super::method::{Method, Suits};
 use super::piece::Piece;
 use super::solution::{State, Stats};
 use crate::error::Error;
@@ -17,7 +17,7 @@ use crate::system::Dynamics;
 pub struct Integrator<'a, const N: usize, D, M, C = AdaptiveStep<N>>
 where
     D: Dynamics<N, Scalar: Float>,
-    M: Suits<D::System, N>,
+    M: Method,
 {
     dynamics: &'a D,
     driver: Driver<D::Scalar, N, M, C>,
@@ -27,12 +27,15 @@ where
 impl<'a, const N: usize, D, M> Integrator<'a, N, D, M>
 where
     D: Dynamics<N, Scalar: Float>,
-    M: Suits<D::System, N>,
+    M: Method,
 {
     /// At the coordinates `q` and velocities `v` at time `t`, with the default tolerances.
     ///
     /// A method without error estimate needs a [`FixedStep`](super::FixedStep) from [`control`](Self::control) before its first step.
-    pub fn new(dynamics: &'a D, method: M, t: f64, q: [D::Scalar; N], v: [D::Scalar; N]) -> Result<Self, Error> {
+    pub fn new(dynamics: &'a D, method: M, t: f64, q: [D::Scalar; N], v: [D::Scalar; N]) -> Result<Self, Error>
+    where
+        M: Suits<D::System, N>,
+    {
         Ok(Self { dynamics, driver: Driver::new(dynamics, method, AdaptiveStep::new(), t, q, v)?, max_steps: 10_000_000 })
     }
 }
@@ -40,7 +43,7 @@ where
 impl<'a, const N: usize, D, M, C> Integrator<'a, N, D, M, C>
 where
     D: Dynamics<N, Scalar: Float>,
-    M: Suits<D::System, N>,
+    M: Method,
 {
     /// Chooses the steps otherwise: with a [`FixedStep`](super::FixedStep) or an [`AdaptiveStep`].
     pub fn control<B: Control<M, N>>(self, control: B) -> Result<Integrator<'a, N, D, M, B>, Error> {

@@ -51,7 +51,7 @@ pub trait Method: Copy + core::fmt::Debug {
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no error estimate and cannot choose its steps",
     label = "a step size is missing",
-    note = "call `.step(h)` or `.steps(n)`, or use `Tsit5` or `Dop853`"
+    note = "give `solve(…)` a `.step(h)` or `.steps(n)` and an `Integrator` a `.control(FixedStep::new(h))`, or use `Tsit5` or `Dop853`"
 )]
 pub trait Embedded: Method {
     /// How the step size answers to the error.

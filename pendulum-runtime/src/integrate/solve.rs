@@ -5,7 +5,7 @@ use super::control::Control;
 use super::dop853::Dop853;
 use super::driver::Driver;
 use super::fixed_step::FixedStep;
-use super::method::Suits;
+use super::method::{Method, Suits};
 use super::output::{Output, Recorder, ascending};
 use super::solution::{Failure, Solution, State, Stats};
 use crate::error::Error;
@@ -152,7 +152,7 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, 
     /// not compile.
     pub fn run(self) -> Result<Solution<D::Scalar, N>, Failure<D::Scalar, N>>
     where
-        M: Suits<D::System, N>,
+        M: Method,
         C: Control<M, N>,
     {
         let mut recorder = Recorder::new(self.output, self.time);
@@ -168,7 +168,7 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, 
 
     fn integrate(&self, driver: &mut Driver<D::Scalar, N, M, C>, recorder: &mut Recorder<'_, D::Scalar, N>) -> Result<(), Error>
     where
-        M: Suits<D::System, N>,
+        M: Method,
         C: Control<M, N>,
     {
         let end = self.time.1;
@@ -187,7 +187,7 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, 
 
     fn check(&self) -> Result<(), Error>
     where
-        M: Suits<D::System, N>,
+        M: Method,
         C: Control<M, N>,
     {
         let (start, end) = self.time;

@@ -1,4 +1,4 @@
-//! The splitting method SRKN14a of Blanes and Moan.
+//! A splitting method of Blanes and Moan with fourteen evaluations.
 
 use super::field::Accelerations;
 use super::hermite;

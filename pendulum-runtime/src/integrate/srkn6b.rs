@@ -1,4 +1,4 @@
-//! The splitting method SRKN6b of Blanes and Moan.
+//! A splitting method of Blanes and Moan with six evaluations.
 
 use super::field::Accelerations;
 use super::hermite;

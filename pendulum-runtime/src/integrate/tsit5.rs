@@ -80,7 +80,7 @@ impl Method for Tsit5 {
 }
 
 impl Embedded for Tsit5 {
-    const RESPONSE: Response = Response { alpha: 0.17, beta: 0.04, safety: 0.9, least: 0.2, greatest: 10.0 };
+    const RESPONSE: Response = Response { alpha: 0.17, beta: 0.04, safety: 0.8, least: 0.2, greatest: 10.0 };
 
     #[inline]
     fn error<T: Float, const N: usize>(&self, k: &Slopes<T, N, 7>, h: f64, scale: &Scale<N>) -> f64 {

@@ -149,6 +149,11 @@ fn earlier(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     }
 }
 
+/// What an input is asked for; everything, if its system does not say.
+const fn orders(inputs: &[Input], index: usize, purpose: Purpose) -> Orders {
+    if index < inputs.len() { inputs[index].orders(purpose) } else { Orders::ALL }
+}
+
 macro_rules! tuples {
     ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
         impl<T: Real, $($motion: Motion<T, $dim>, const $dim: usize),+> Motions<($(Sample<T, $dim>,)+)> for ($($motion,)+) {
@@ -156,7 +161,7 @@ macro_rules! tuples {
 
             #[inline]
             fn sample(&self, t: Time, side: Side, inputs: &[Input], purpose: Purpose) -> ($(Sample<T, $dim>,)+) {
-                ($(self.$index.sample(t, side, inputs[$index].orders(purpose)),)+)
+                ($(self.$index.sample(t, side, orders(inputs, $index, purpose)),)+)
             }
 
             fn next_kink(&self, t: f64) -> Option<f64> {

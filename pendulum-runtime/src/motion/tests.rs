@@ -12,6 +12,10 @@ fn before<const D: usize, M: Motion<f64, D>>(motion: &M, t: f64) -> Sample<f64, 
     motion.sample(Time::new(t), Side::Before, Orders::ALL)
 }
 
+fn has<M: Motion<f64, 1>>(_: &M) -> Orders {
+    M::HAS
+}
+
 fn kinks<const D: usize, M: Motion<f64, D>>(motion: &M, from: f64, to: f64) -> Vec<f64> {
     let mut found = Vec::new();
     let mut t = from;
@@ -169,9 +173,6 @@ fn functions_have_what_they_are_given() {
         .velocity(|t: f64| [if t < 0.0 { -1.0 } else { 1.0 }])
         .acceleration(|_| [0.0])
         .kinks(&[0.0]);
-    fn has<M: Motion<f64, 1>>(_: &M) -> Orders {
-        M::HAS
-    }
     assert_eq!(has(&position), Orders::POSITION);
     assert_eq!(has(&all), Orders::ALL);
     assert_eq!(before(&all, 0.0).velocity, [-1.0]);

@@ -1,6 +1,12 @@
 //! Integrators on systems with known solutions.
 
 mod accuracy;
+mod energy;
+mod errors;
+mod kinks;
+mod order;
+mod output;
+mod stepping;
 mod systems;
 
 use crate::integrate::method::Suits;

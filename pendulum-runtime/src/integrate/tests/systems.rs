@@ -91,8 +91,8 @@ system! {
 impl<T: Real> VelocityFree<1> for Pendulum<T> {}
 
 /// The pendulum with L = g = 1.
-pub(crate) fn pendulum<T: Real>() -> Pendulum<T> {
-    Pendulum { length: T::from_f64(1.0), g: T::from_f64(1.0) }
+pub(crate) fn pendulum() -> Pendulum<f64> {
+    Pendulum { length: 1.0, g: 1.0 }
 }
 
 system! {
@@ -154,8 +154,8 @@ system! {
 }
 
 /// The double pendulum with g = 1.
-pub(crate) fn double_pendulum<T: Real>() -> DoublePendulum<T> {
-    DoublePendulum { g: T::from_f64(1.0) }
+pub(crate) fn double_pendulum() -> DoublePendulum<f64> {
+    DoublePendulum { g: 1.0 }
 }
 
 system! {
@@ -275,13 +275,26 @@ pub(crate) fn henon_heiles() -> HenonHeiles<f64> {
     HenonHeiles { lambda: 1.0 }
 }
 
+/// A pendulum whose pivot moves by a formula.
+pub(crate) type OnFormula<F> = Driven<MovingPendulum<f64>, (Formula<F>,)>;
+
+/// The pendulum with L = g = 1 whose pivot moves by a formula with kinks at multiples of `period`.
+pub(crate) fn moving<F: Fn(f64) -> [[f64; 2]; 3]>(formula: F, period: f64) -> OnFormula<F> {
+    Driven::new(MovingPendulum { length: 1.0, g: 1.0 }, (Formula { formula, period },))
+}
+
+/// ẍ = −k x.
+pub(crate) fn oscillator(k: f64) -> Oscillator<f64> {
+    Oscillator { k }
+}
+
 /// The pendulum with L = g = 1 whose pivot is at x = ¼ sin 2t.
-pub(crate) fn shaken() -> Driven<MovingPendulum<f64>, (Formula<impl Fn(f64) -> [[f64; 2]; 3]>,)> {
+pub(crate) fn shaken() -> OnFormula<impl Fn(f64) -> [[f64; 2]; 3]> {
     let formula = |t: f64| {
         let (sin, cos) = Real::sin_cos(2.0 * t);
         [[0.25 * sin, 0.0], [0.5 * cos, 0.0], [-sin, 0.0]]
     };
-    Driven::new(MovingPendulum { length: 1.0, g: 1.0 }, (Formula { formula, period: f64::INFINITY },))
+    moving(formula, f64::INFINITY)
 }
 
 /// The one above from 0.5 at t = 10.

@@ -1,0 +1,126 @@
+//! The order of convergence of each method, measured.
+
+use super::systems::{DoublePendulum, MovingPendulum, Pendulum, SHAKEN, double_pendulum, pendulum, shaken};
+use super::{distance, fixed};
+use crate::integrate::method::{Method, Suits};
+use crate::integrate::{Dop853, Leapfrog, Rk4, Srkn6b, Srkn11b, Srkn14a, SymplecticEuler, Tsit5, solve};
+use crate::motion::Motion;
+use crate::system::Driven;
+
+/// Asserts that the error falls with the order of `M` over a threefold number of steps, within a sixth.
+fn assert_order<M: Method>(error: impl Fn(u64) -> f64, steps: u64) {
+    let (coarse, fine) = (error(steps), error(3 * steps));
+    let order = (coarse / fine).ln() / 3.0_f64.ln();
+    let expected = f64::from(M::ORDER);
+    assert!((order - expected).abs() < expected / 6.0 + 0.1, "{}: order {order:.2} from {coarse:e} to {fine:e}", M::NAME);
+}
+
+/// The pendulum from 1.3 at t = 10.
+const SIMPLE: [f64; 2] = [-1.166160381932957676242545, -0.50236501011242526821132624];
+
+/// The double pendulum from (0.5, −0.25) at t = 10.
+const DOUBLE: [f64; 4] = [
+    -0.317126753679008418729029697644,
+    0.502495051916668693314933016851,
+    -0.152579088816347670822436955186,
+    -0.159373774298781573884820651113,
+];
+
+fn simple<M: Suits<Pendulum<f64>, 1>>(method: M, steps: u64) {
+    let error = |steps| {
+        let end = fixed(&pendulum(), 10.0, [1.3], [0.0], method, steps);
+        distance(&end.q, &end.v, &SIMPLE)
+    };
+    assert_order::<M>(error, steps);
+}
+
+fn driven<M: Suits<MovingPendulum<f64>, 1>>(method: M, steps: u64) {
+    fn error<F: Motion<f64, 2>>(
+        driven: &Driven<MovingPendulum<f64>, (F,)>,
+        method: impl Suits<MovingPendulum<f64>, 1>,
+        steps: u64,
+    ) -> f64 {
+        let end = fixed(driven, 10.0, [0.5], [0.0], method, steps);
+        distance(&end.q, &end.v, &SHAKEN)
+    }
+    assert_order::<M>(|steps| error(&shaken(), method, steps), steps);
+}
+
+fn double<M: Suits<DoublePendulum<f64>, 2>>(method: M, steps: u64) {
+    let error = |steps| {
+        let end = fixed(&double_pendulum(), 10.0, [0.5, -0.25], [0.0; 2], method, steps);
+        distance(&end.q, &end.v, &DOUBLE)
+    };
+    assert_order::<M>(error, steps);
+}
+
+#[test]
+fn on_the_pendulum() {
+    simple(SymplecticEuler, 1000);
+    simple(Leapfrog, 200);
+    simple(Srkn6b, 40);
+    simple(Srkn11b, 20);
+    simple(Srkn14a, 30);
+    simple(Rk4, 200);
+    simple(Tsit5, 100);
+    simple(Dop853, 12);
+}
+
+#[test]
+fn with_a_driven_pivot() {
+    driven(SymplecticEuler, 2000);
+    driven(Leapfrog, 400);
+    driven(Srkn6b, 100);
+    driven(Srkn11b, 40);
+    driven(Srkn14a, 40);
+    driven(Rk4, 400);
+    driven(Tsit5, 200);
+    driven(Dop853, 30);
+}
+
+#[test]
+fn with_velocities_in_the_accelerations() {
+    double(SymplecticEuler, 4000);
+    double(Rk4, 400);
+    double(Tsit5, 200);
+    double(Dop853, 30);
+}
+
+#[test]
+fn of_dense_output() {
+    fn measured<M: Suits<Pendulum<f64>, 1>>(method: M, steps: u64) -> (f64, f64) {
+        // The error beyond that of the method itself: a fine and a coarse run differ by both, so the states at the ends of the
+        // coarse steps are exact by construction.
+        let exact = solve(&pendulum(), (0.0, 10.0), [1.3], [0.0]).rtol(1e-14).atol(1e-14).dense().run().unwrap();
+        let (mut q, mut v) = (0.0_f64, 0.0_f64);
+        for k in 0..steps {
+            let (start, end) = (10.0 * k as f64 / steps as f64, 10.0 * (k + 1) as f64 / steps as f64);
+            let from = exact.at(start).unwrap();
+            let step = solve(&pendulum(), (start, end), from.q, from.v).method(method).steps(1).dense().run().unwrap();
+            for part in 1..8 {
+                let t = start + (end - start) * f64::from(part) / 8.0;
+                let (state, truth) = (step.at(t).unwrap(), exact.at(t).unwrap());
+                q = q.max((state.q[0] - truth.q[0]).abs());
+                v = v.max((state.v[0] - truth.v[0]).abs());
+            }
+        }
+        (q, v)
+    }
+    fn assert_dense<M: Suits<Pendulum<f64>, 1>>(method: M, steps: u64, velocity_order: f64) {
+        let (coarse, fine) = (measured(method, steps), measured(method, 2 * steps));
+        let (q, v) = ((coarse.0 / fine.0).log2(), (coarse.1 / fine.1).log2());
+        let expected = f64::from(M::DENSE_ORDER);
+        assert!(expected - 0.3 < q, "{}: order {q:.2} of the coordinates", M::NAME);
+        assert!(velocity_order - 0.3 < v, "{}: order {v:.2} of the velocities", M::NAME);
+    }
+    // In one step a method of order p makes an error of order p + 1, which the dense output may share.
+    assert_dense(SymplecticEuler, 100, 1.0);
+    assert_dense(Leapfrog, 100, 2.0);
+    // The velocities are the derivative of a quintic that shares the error of the step.
+    assert_dense(Rk4, 30, 4.0);
+    assert_dense(Srkn6b, 20, 4.0);
+    assert_dense(Srkn11b, 20, 5.0);
+    assert_dense(Srkn14a, 20, 5.0);
+    assert_dense(Tsit5, 20, 5.0);
+    assert_dense(Dop853, 10, 8.0);
+}

@@ -1,0 +1,105 @@
+//! Integration by hand.
+
+use super::systems::{moving, pendulum, shaken};
+use crate::error::Error;
+use crate::integrate::{AdaptiveStep, Dop853, FixedStep, Integrator, Leapfrog, Rk4, solve};
+
+#[test]
+fn steps_have_the_length_asked_for() {
+    let pendulum = pendulum();
+    let mut integrator = Integrator::new(&pendulum, Leapfrog, 0.0, [1.3], [0.0]).unwrap().control(FixedStep::new(0.25)).unwrap();
+    for step in 1..=8 {
+        integrator.step().unwrap();
+        assert_eq!(integrator.t(), 0.25 * f64::from(step));
+    }
+    assert_eq!(integrator.stats().accepted, 8);
+    assert_eq!(integrator.stats().evaluations, 8);
+}
+
+#[test]
+fn advancing_ends_exactly_and_equals_solving() {
+    let pendulum = pendulum();
+    let mut integrator = Integrator::new(&pendulum, Rk4, 0.0, [1.3], [0.0]).unwrap().control(FixedStep::new(0.01)).unwrap();
+    for frame in 1..=60 {
+        integrator.advance_to(f64::from(frame) / 60.0).unwrap();
+        assert_eq!(integrator.t(), f64::from(frame) / 60.0);
+    }
+    let whole = solve(&pendulum, (0.0, 1.0), [1.3], [0.0]).method(Rk4).step(1.0 / 120.0).run().unwrap();
+    assert!((integrator.q()[0] - whole.end.q[0]).abs() < 1e-14);
+    integrator.advance_to(1.0).unwrap();
+    assert_eq!(integrator.stats().accepted, 120);
+}
+
+#[test]
+fn adaptive_steps_survive_being_cut_into_frames() {
+    let shaken = shaken();
+    let control = AdaptiveStep::new().rtol(1e-10).atol(1e-10);
+    let mut integrator = Integrator::new(&shaken, Dop853, 0.0, [0.5], [0.0]).unwrap().control(control).unwrap();
+    for frame in 1..=600 {
+        integrator.advance_to(f64::from(frame) / 60.0).unwrap();
+    }
+    assert!((integrator.q()[0] - super::systems::SHAKEN[0]).abs() < 1e-9);
+    assert_eq!(integrator.stats().accepted, 600 + integrator.stats().accepted.saturating_sub(600).min(10));
+}
+
+#[test]
+fn the_last_step_is_known_within() {
+    let pendulum = pendulum();
+    let mut integrator = Integrator::new(&pendulum, Dop853, 0.0, [1.3], [0.0]).unwrap();
+    assert!(integrator.last_step().is_none());
+    integrator.step().unwrap();
+    let piece = integrator.last_step().unwrap();
+    let (q, v) = piece.at(1.0);
+    assert!((q[0] - integrator.q()[0]).abs() < 1e-15 && (v[0] - integrator.v()[0]).abs() < 1e-15);
+    assert_eq!(piece.at(0.0), ([1.3], [0.0]));
+}
+
+#[test]
+fn a_reset_state_goes_on_from_there() {
+    let pendulum = pendulum();
+    let mut integrator = Integrator::new(&pendulum, Rk4, 0.0, [1.3], [0.0]).unwrap().control(FixedStep::new(0.1)).unwrap();
+    integrator.advance_to(5.0).unwrap();
+    integrator.reset(0.0, [1.3], [0.0]).unwrap();
+    integrator.advance_to(1.0).unwrap();
+    let fresh = solve(&pendulum, (0.0, 1.0), [1.3], [0.0]).method(Rk4).step(0.1).run().unwrap();
+    assert_eq!(integrator.state(), fresh.end);
+    assert!(matches!(integrator.reset(0.0, [f64::NAN], [0.0]), Err(Error::InitialState { .. })));
+    assert_eq!(integrator.state(), fresh.end);
+}
+
+#[test]
+fn going_back_is_refused_and_changes_nothing() {
+    let pendulum = pendulum();
+    let mut integrator = Integrator::new(&pendulum, Dop853, 1.0, [1.3], [0.0]).unwrap();
+    for t in [0.5, f64::NAN, f64::INFINITY] {
+        assert!(matches!(integrator.advance_to(t), Err(Error::Interval { .. })));
+    }
+    assert_eq!((integrator.t(), integrator.q()), (1.0, &[1.3]));
+}
+
+#[test]
+fn a_failed_step_leaves_the_state_before_it() {
+    let formula = |t: f64| [[0.0; 2], [0.0; 2], [if t < 1.0 { 0.0 } else { f64::NAN }, 0.0]];
+    let driven = moving(formula, f64::INFINITY);
+    let mut integrator = Integrator::new(&driven, Leapfrog, 0.0, [1.3], [0.0]).unwrap().control(FixedStep::new(0.25)).unwrap();
+    assert!(matches!(integrator.advance_to(2.0), Err(Error::NotFinite { t: 1.125, .. })));
+    let state = integrator.state();
+    assert!(state.t == 1.0 && state.q[0].is_finite());
+    assert!(integrator.step().is_err());
+    assert_eq!(integrator.state(), state);
+}
+
+#[test]
+fn a_long_time_at_a_small_step_keeps_its_digits() {
+    // Sixtieths of a second after thirty years: the drive is seen at the right time.
+    let pendulum = pendulum();
+    let run = |start: f64| {
+        let mut integrator =
+            Integrator::new(&pendulum, Rk4, start, [1.3], [0.0]).unwrap().control(FixedStep::new(1.0 / 60.0)).unwrap();
+        for _ in 0..600 {
+            integrator.step().unwrap();
+        }
+        (integrator.t() - start, *integrator.q())
+    };
+    assert_eq!(run(1e9), (10.0, run(0.0).1));
+}
