@@ -22,6 +22,7 @@ use stage::{Plane, find, limbs};
 use std::error::Error;
 use std::fs;
 use std::path::Path;
+use std::process::ExitCode;
 use std::time::Instant;
 
 lagrangian! {
@@ -74,7 +75,17 @@ const FINE: usize = 4;
 /// A clip is shown up to this time, in seconds.
 const LONGEST: f64 = 600.0;
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> ExitCode {
+    match swing() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn swing() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let path = arguments.next().unwrap_or_else(|| concat!(env!("CARGO_MANIFEST_DIR"), "/examples/data/jumps.bvh").into());
     let scale = match arguments.next() {

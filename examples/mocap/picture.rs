@@ -56,6 +56,23 @@ impl Frame {
     fn at(self, along: f64, up: f64) -> [f64; 2] {
         [STAGE[0] + (along - self.left) * self.scale, STAGE[2] - (up - self.ground) * self.scale]
     }
+
+    /// The ground with a tick at each metre.
+    fn ground(self, svg: &mut String) -> fmt::Result {
+        let [left, right, ground, _] = STAGE;
+        writeln!(svg, r##"<rect x="{left}" y="{ground}" width="{}" height="9" fill="#f0f0f0"/>"##, right - left)?;
+        writeln!(svg, r##"<path d="M{left} {ground}H{right}" stroke="#888" stroke-width="1.5"/>"##)?;
+        let end = self.left + (right - left) / self.scale;
+        for metre in self.left.ceil() as i64..=end.floor() as i64 {
+            let [x, y] = self.at(metre as f64, self.ground);
+            writeln!(
+                svg,
+                r##"<path d="M{x:.1} {y}v9" stroke="#888" stroke-width="1.5"/><text x="{x:.1}" y="{}" text-anchor="middle" fill="#666" font-size="13">{metre} m</text>"##,
+                y + 25.0
+            )?;
+        }
+        Ok(())
+    }
 }
 
 impl Picture<'_> {
@@ -78,7 +95,7 @@ impl Picture<'_> {
 <text x="50" y="59" fill="#666">compound pendulums, driven by the joints of a captured clip: I θ̈ = −m ⟨ẍ + g e_y, (e^(iθ) c)⊥⟩ − c θ̇</text>"##,
             SIZE[0], SIZE[1]
         )?;
-        self.ground(svg, frame)?;
+        frame.ground(svg)?;
         self.ghosts(svg, frame)?;
         for worn in &self.worn {
             self.trail(svg, frame, worn)?;
@@ -100,23 +117,6 @@ impl Picture<'_> {
         let scale = f64::min((STAGE[1] - STAGE[0]) / width, (STAGE[2] - STAGE[3]) / height);
         let spare = (STAGE[1] - STAGE[0]) / scale - width;
         Frame { scale, left: least(0) - margin - spare / 2.0, ground: least(1) - THICK[0] / 2.0 }
-    }
-
-    /// The ground with a tick at each metre.
-    fn ground(&self, svg: &mut String, frame: Frame) -> fmt::Result {
-        let [left, right, ground, _] = STAGE;
-        writeln!(svg, r##"<rect x="{left}" y="{ground}" width="{}" height="9" fill="#f0f0f0"/>"##, right - left)?;
-        writeln!(svg, r##"<path d="M{left} {ground}H{right}" stroke="#888" stroke-width="1.5"/>"##)?;
-        let end = frame.left + (right - left) / frame.scale;
-        for metre in frame.left.ceil() as i64..=end.floor() as i64 {
-            let [x, y] = frame.at(metre as f64, frame.ground);
-            writeln!(
-                svg,
-                r##"<path d="M{x:.1} {y}v9" stroke="#888" stroke-width="1.5"/><text x="{x:.1}" y="{}" text-anchor="middle" fill="#666" font-size="13">{metre} m</text>"##,
-                y + 25.0
-            )?;
-        }
-        Ok(())
     }
 
     /// The limbs from the farthest to the nearest, each after what hangs farther away.
@@ -188,7 +188,7 @@ impl Picture<'_> {
             write!(svg, r#"<circle r="{:.1}" fill="{color}">"#, 0.1 * frame.scale)?;
             let middle = |key: usize| {
                 let [a, b] = [self.poses[key][head], self.poses[key][top]];
-                frame.at((a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0)
+                frame.at(f64::midpoint(a[0], b[0]), f64::midpoint(a[1], b[1]))
             };
             self.animate(svg, "cx", |key, value| write!(value, "{:.1}", middle(key)[0]))?;
             self.animate(svg, "cy", |key, value| write!(value, "{:.1}", middle(key)[1]))?;
@@ -267,7 +267,7 @@ impl Picture<'_> {
             let behind = (lasting * rate) as usize;
             write!(
                 svg,
-                r##"<path d="{path}" pathLength="{total:.1}" fill="none" stroke="{color}" stroke-width="{:.1}" stroke-opacity="{}">"##,
+                r#"<path d="{path}" pathLength="{total:.1}" fill="none" stroke="{color}" stroke-width="{:.1}" stroke-opacity="{}">"#,
                 1.6 + 1.0 * step as f64,
                 0.22 + 0.06 * step as f64
             )?;
@@ -290,7 +290,7 @@ impl Picture<'_> {
             let length = -lowest(worn.outline) * 100.0;
             writeln!(
                 svg,
-                r##"<rect x="{x}" y="{}" width="16" height="10" rx="3" fill="{}"/><text x="{}" y="{y}">{}, {length:.0} cm</text>"##,
+                r#"<rect x="{x}" y="{}" width="16" height="10" rx="3" fill="{}"/><text x="{}" y="{y}">{}, {length:.0} cm</text>"#,
                 y - 9.5,
                 worn.color,
                 x + 22.0,
@@ -319,9 +319,8 @@ impl Picture<'_> {
             right - 180.0,
             right - 32.0
         )?;
-        let columns: [(f64, &dyn Fn(usize) -> usize, usize); 2] =
-            [(right - 19.0, &|tenth| tenth % 10, 9), (right - 38.0, &|tenth| tenth / 10, (tenths - 1) / 10)];
-        for (x, digit, last) in columns {
+        // Tenths, then seconds: a column moves on every `per` tenths and starts again after `last`.
+        for (x, per, last) in [(right - 19.0, 1, 9), (right - 38.0, 10, (tenths - 1) / 10)] {
             write!(svg, r#"<g text-anchor="end">"#)?;
             for value in 0..=last {
                 write!(svg, r#"<text x="{x}" y="{}">{value}</text>"#, y + line * value as f64)?;
@@ -332,7 +331,7 @@ impl Picture<'_> {
                 self.timing()
             )?;
             for tenth in 0..tenths {
-                write!(svg, "0 {};", -line * digit(tenth) as f64)?;
+                write!(svg, "0 {};", -line * (tenth / per % (last + 1)) as f64)?;
             }
             svg.pop();
             writeln!(svg, r#""/></g>"#)?;
@@ -347,7 +346,7 @@ impl Picture<'_> {
         let most = degrees().fold(30.0, |peak: f64, angle| peak.max(angle.abs()));
         let step =
             [15.0, 30.0, 45.0, 90.0, 180.0].into_iter().find(|step| most <= 2.2 * step).unwrap_or(360.0 * (most / 720.0).ceil());
-        let middle = (top + bottom) / 2.0;
+        let middle = f64::midpoint(top, bottom);
         let y = |angle: f64| middle - angle / most * (bottom - top) / 2.0;
         let x = |time: f64| left + time / self.seconds * (right - left);
         let lines = (most / step).floor() as i64;
