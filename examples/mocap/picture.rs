@@ -10,8 +10,8 @@ const STAGE: [f64; 4] = [50.0, 1150.0, 490.0, 72.0];
 const CHART: [f64; 4] = [76.0, 1150.0, 668.0, 556.0];
 /// How long the trails last, in seconds, from the faintest on.
 const TRAILS: [f64; 3] = [0.9, 0.5, 0.22];
-/// The time between the faint figures along the way, at least, in seconds.
-const GHOSTS: f64 = 0.6;
+/// The distance between the faint figures along the way, in metres.
+const GHOSTS: f64 = 0.45;
 /// The thickness of a limb, of what is shorter than a quarter metre, and of the trunk, in metres.
 const THICK: [f64; 3] = [0.075, 0.03, 0.16];
 
@@ -130,7 +130,7 @@ impl Picture<'_> {
         worn.sort_by(|a, b| depth(a.joint).total_cmp(&depth(b.joint)));
         let mut worn = worn.into_iter().peekable();
         for limb in limbs {
-            while let Some(worn) = worn.next_if(|worn| depth(worn.joint) < depth(end(limb)) - 0.08) {
+            while let Some(worn) = worn.next_if(|worn| depth(worn.joint) < depth(end(limb)) - 0.15) {
                 self.feather(svg, frame, worn)?;
             }
             let near = ((depth(end(limb)) - depth(0)) / 0.2 + 0.5).clamp(0.0, 1.0);
@@ -139,11 +139,16 @@ impl Picture<'_> {
         worn.try_for_each(|worn| self.feather(svg, frame, worn))
     }
 
-    /// The figure at a few times, faintly.
+    /// The figure at a few places along its way, faintly.
     fn ghosts(&self, svg: &mut String, frame: Frame) -> fmt::Result {
-        let every = ((self.poses.len() - 1) as f64 * GHOSTS / self.seconds).ceil().max(1.0) as usize;
         let thick = THICK[0] * frame.scale;
-        for pose in self.poses.iter().step_by(every) {
+        let mut places: Vec<f64> = Vec::new();
+        for pose in self.poses {
+            let place = pose[0][0];
+            if places.iter().any(|other| (place - other).abs() < GHOSTS) {
+                continue;
+            }
+            places.push(place);
             write!(
                 svg,
                 r##"<path fill="none" stroke="#3e485c" stroke-opacity=".055" stroke-linecap="round" stroke-linejoin="round" stroke-width="{thick:.1}" d=""##
@@ -420,4 +425,52 @@ impl Picture<'_> {
 /// The lowest point of an outline.
 fn lowest(outline: &[[f64; 2]]) -> f64 {
     outline.iter().map(|point| point[1]).fold(0.0, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Picture, Worn};
+
+    fn picture() -> String {
+        let poses: Vec<Vec<[f64; 3]>> =
+            (0..7).map(|k| vec![[0.3 * f64::from(k), 1.0, 0.0], [0.3 * f64::from(k), 1.6, 0.1], [0.0, 0.0, -0.1]]).collect();
+        let pivot: Vec<[f64; 2]> = (0..13).map(|k| [0.15 * f64::from(k), 1.6]).collect();
+        let angles: Vec<f64> = (0..13).map(|k| 0.1 * f64::from(k)).collect();
+        let worn = Worn {
+            label: "head",
+            color: "#009e73",
+            joint: 1,
+            outline: &[[0.02, 0.0], [0.0, -0.2], [-0.02, 0.0]],
+            pivot: &pivot,
+            spline: &angles,
+            linear: &angles,
+        };
+        let limbs = vec![vec![0, 1], vec![0, 2]];
+        Picture { limbs, head: Some(1), poses: &poses, worn: vec![worn], seconds: 1.25, fine: 2 }.draw()
+    }
+
+    #[test]
+    fn every_element_is_closed() {
+        let svg = picture();
+        for name in ["svg", "g", "text", "path", "polyline", "circle", "rect", "animate", "animateTransform", "clipPath"] {
+            let opened = svg.matches(&format!("<{name} ")).count() + svg.matches(&format!("<{name}>")).count();
+            let closed = svg.matches(&format!("</{name}>")).count();
+            let alone =
+                svg.split(&format!("<{name} ")).skip(1).filter(|rest| rest[..rest.find('>').unwrap()].ends_with('/')).count();
+            assert_eq!(opened, closed + alone, "{name}");
+        }
+    }
+
+    #[test]
+    fn animations_have_a_finite_value_for_each_key() {
+        let svg = picture();
+        let lists: Vec<&str> = svg.split("values=\"").skip(1).map(|rest| &rest[..rest.find('"').unwrap()]).collect();
+        let counts: Vec<usize> = lists.iter().map(|list| list.split(';').count()).collect();
+        // Three strokes of the trail, two limbs, two coordinates of the head, two movements of the feather; 13 tenths on the
+        // clock's two columns; the line in the chart.
+        assert_eq!(counts.iter().filter(|&&count| count == 7).count(), 9, "{counts:?}");
+        assert_eq!(counts.iter().filter(|&&count| count == 13).count(), 2, "{counts:?}");
+        assert_eq!(counts.len(), 12, "{counts:?}");
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    }
 }
