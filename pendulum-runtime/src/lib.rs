@@ -6,6 +6,7 @@ mod macros;
 pub mod body;
 pub mod error;
 pub mod integrate;
+pub mod linearize;
 pub mod motion;
 pub mod real;
 pub mod system;
