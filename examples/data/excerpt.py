@@ -6,7 +6,7 @@ Says on stderr which length of the file's unit the flights give, in which nothin
 
 import sys
 
-# The scale of the subject's skeleton file is 0.45, for inches: 1 unit = 1/0.45 in.
+# The skeleton files of the database say `length 0.45`, for inches: 1 unit = 1/0.45 in.
 METRES = 0.0254 / 0.45
 RATE = 120.0
 FIRST, LAST, EVERY = 60, 1020, 4

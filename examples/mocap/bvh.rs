@@ -203,7 +203,7 @@ impl<'a> Reader<'a> {
             error(line_of_time, format!("`{}` where `Frame Time: …` must stand", short(text)), "write the seconds between frames")
         })?;
         let frame_time = number((line_of_time, step))?;
-        if !(0.0 < frame_time) {
+        if frame_time <= 0.0 {
             return Err(error(line_of_time, format!("a frame time of {step} s"), "write a positive number of seconds"));
         }
         let rows = self.lines.get(self.next..).unwrap_or_default();

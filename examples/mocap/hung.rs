@@ -131,7 +131,7 @@ impl Swing {
     /// The largest difference of the angles, and that at the end.
     pub(crate) fn apart(&self, other: &Self) -> (f64, f64) {
         let differences = || self.angles.iter().zip(&other.angles).map(|(a, b)| (a - b).abs());
-        (differences().fold(0.0, f64::max), differences().last().unwrap_or(0.0))
+        (differences().fold(0.0, f64::max), differences().next_back().unwrap_or(0.0))
     }
 }
 

@@ -22,6 +22,7 @@ use stage::{Plane, find, limbs};
 use std::error::Error;
 use std::fs;
 use std::path::Path;
+use std::process::ExitCode;
 use std::time::Instant;
 
 lagrangian! {
@@ -58,9 +59,12 @@ const PLACES: [Place; 4] = [
         length: 0.16,
         color: "#d55e00",
     },
-    Place { label: "head", names: &["head", "neck"], length: 0.12, color: "#009e73" },
+    Place { label: "head", names: &["headend", "head"], length: 0.12, color: "#009e73" },
     Place { label: "hips", names: &["hips", "hip", "pelvis", "root"], length: 0.2, color: "#b0488f" },
 ];
+
+/// The joint around which the head is drawn.
+const HEAD: &[&str] = &["head"];
 
 /// Keys a second: the second differences of captured motion are noise above.
 const KEYS: f64 = 30.0;
@@ -71,7 +75,17 @@ const FINE: usize = 4;
 /// A clip is shown up to this time, in seconds.
 const LONGEST: f64 = 600.0;
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> ExitCode {
+    match swing() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn swing() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let path = arguments.next().unwrap_or_else(|| concat!(env!("CARGO_MANIFEST_DIR"), "/examples/data/jumps.bvh").into());
     let scale = match arguments.next() {
@@ -137,14 +151,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         spline: &hung.spline.angles,
         linear: &hung.linear.angles,
     });
-    let picture = Picture {
-        limbs: limbs(&bvh.joints),
-        head: find(&bvh, PLACES[2].names),
-        poses: &poses,
-        worn: worn.collect(),
-        seconds,
-        fine: FINE,
-    };
+    let picture =
+        Picture { limbs: limbs(&bvh.joints), head: find(&bvh, HEAD), poses: &poses, worn: worn.collect(), seconds, fine: FINE };
     fs::write(target.join("mocap.svg"), picture.draw())?;
 
     println!("{}", sheet::swings(&pendulums));

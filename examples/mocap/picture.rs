@@ -10,8 +10,10 @@ const STAGE: [f64; 4] = [50.0, 1150.0, 490.0, 72.0];
 const CHART: [f64; 4] = [76.0, 1150.0, 668.0, 556.0];
 /// How long the trails last, in seconds, from the faintest on.
 const TRAILS: [f64; 3] = [0.9, 0.5, 0.22];
-/// The thickness of a limb and of what is shorter than a quarter metre, in metres.
-const THICK: [f64; 2] = [0.075, 0.03];
+/// The distance between the faint figures along the way, in metres.
+const GHOSTS: f64 = 0.45;
+/// The thickness of a limb, of what is shorter than a quarter metre, and of the trunk, in metres.
+const THICK: [f64; 3] = [0.075, 0.03, 0.16];
 
 /// What is drawn.
 pub(crate) struct Picture<'a> {
@@ -54,6 +56,23 @@ impl Frame {
     fn at(self, along: f64, up: f64) -> [f64; 2] {
         [STAGE[0] + (along - self.left) * self.scale, STAGE[2] - (up - self.ground) * self.scale]
     }
+
+    /// The ground with a tick at each metre.
+    fn ground(self, svg: &mut String) -> fmt::Result {
+        let [left, right, ground, _] = STAGE;
+        writeln!(svg, r##"<rect x="{left}" y="{ground}" width="{}" height="9" fill="#f0f0f0"/>"##, right - left)?;
+        writeln!(svg, r##"<path d="M{left} {ground}H{right}" stroke="#888" stroke-width="1.5"/>"##)?;
+        let end = self.left + (right - left) / self.scale;
+        for metre in self.left.ceil() as i64..=end.floor() as i64 {
+            let [x, y] = self.at(metre as f64, self.ground);
+            writeln!(
+                svg,
+                r##"<path d="M{x:.1} {y}v9" stroke="#888" stroke-width="1.5"/><text x="{x:.1}" y="{}" text-anchor="middle" fill="#666" font-size="13">{metre} m</text>"##,
+                y + 25.0
+            )?;
+        }
+        Ok(())
+    }
 }
 
 impl Picture<'_> {
@@ -73,10 +92,11 @@ impl Picture<'_> {
 <title>Feathers on captured motion</title>
 <rect width="100%" height="100%" fill="#fff"/>
 <text x="50" y="38" font-size="23" font-weight="bold" fill="#222">Feathers on captured motion</text>
-<text x="50" y="59" fill="#666">four compound pendulums, driven by the joints of somebody who jumps: I θ̈ = −m ⟨ẍ + g e_y, (e^(iθ) c)⊥⟩ − c θ̇</text>"##,
+<text x="50" y="59" fill="#666">compound pendulums, driven by the joints of a captured clip: I θ̈ = −m ⟨ẍ + g e_y, (e^(iθ) c)⊥⟩ − c θ̇</text>"##,
             SIZE[0], SIZE[1]
         )?;
-        self.ground(svg, frame)?;
+        frame.ground(svg)?;
+        self.ghosts(svg, frame)?;
         for worn in &self.worn {
             self.trail(svg, frame, worn)?;
         }
@@ -96,58 +116,64 @@ impl Picture<'_> {
         let (width, height) = (most(0) - least(0) + 2.0 * margin, most(1) - least(1) + 0.15);
         let scale = f64::min((STAGE[1] - STAGE[0]) / width, (STAGE[2] - STAGE[3]) / height);
         let spare = (STAGE[1] - STAGE[0]) / scale - width;
-        Frame { scale, left: least(0) - margin - spare / 2.0, ground: least(1) - 0.02 }
+        Frame { scale, left: least(0) - margin - spare / 2.0, ground: least(1) - THICK[0] / 2.0 }
     }
 
-    /// The ground with a tick at each metre.
-    fn ground(&self, svg: &mut String, frame: Frame) -> fmt::Result {
-        let [left, right, ground, _] = STAGE;
-        writeln!(svg, r##"<rect x="{left}" y="{ground}" width="{}" height="9" fill="#f0f0f0"/>"##, right - left)?;
-        writeln!(svg, r##"<path d="M{left} {ground}H{right}" stroke="#888" stroke-width="1.5"/>"##)?;
-        let end = frame.left + (right - left) / frame.scale;
-        for metre in frame.left.ceil() as i64..=end.floor() as i64 {
-            let [x, y] = frame.at(metre as f64, frame.ground);
-            writeln!(
-                svg,
-                r##"<path d="M{x:.1} {y}v9" stroke="#888" stroke-width="1.5"/><text x="{x:.1}" y="{}" text-anchor="middle" fill="#666" font-size="13">{metre} m</text>"##,
-                y + 25.0
-            )?;
-        }
-        Ok(())
-    }
-
-    /// The limbs from the farthest to the nearest, each followed by what hangs on it.
+    /// The limbs from the farthest to the nearest, each after what hangs farther away.
     fn body(&self, svg: &mut String, frame: Frame) -> fmt::Result {
         let count = self.poses.len() as f64;
         let depth = |joint: usize| self.poses.iter().map(|pose| pose[joint][2]).sum::<f64>() / count;
         let end = |limb: &[usize]| limb[limb.len() - 1];
         let mut limbs: Vec<&Vec<usize>> = self.limbs.iter().collect();
         limbs.sort_by(|a, b| depth(end(a)).total_cmp(&depth(end(b))));
-        let (first, last) =
-            (limbs.first().map_or(0.0, |limb| depth(end(limb))), limbs.last().map_or(0.0, |limb| depth(end(limb))));
-        let mut left: Vec<&Worn<'_>> = self.worn.iter().collect();
-        left.sort_by(|a, b| depth(a.joint).total_cmp(&depth(b.joint)));
-        let mut left = left.into_iter().peekable();
+        let mut worn: Vec<&Worn<'_>> = self.worn.iter().collect();
+        worn.sort_by(|a, b| depth(a.joint).total_cmp(&depth(b.joint)));
+        let mut worn = worn.into_iter().peekable();
         for limb in limbs {
-            // What hangs farther away than the limb is behind it.
-            while let Some(worn) = left.next_if(|worn| depth(worn.joint) < depth(end(limb)) - 0.02) {
+            while let Some(worn) = worn.next_if(|worn| depth(worn.joint) < depth(end(limb)) - 0.15) {
                 self.feather(svg, frame, worn)?;
             }
-            self.limb(svg, frame, limb, (depth(end(limb)) - first) / (last - first).max(1e-9))?;
+            let near = ((depth(end(limb)) - depth(0)) / 0.2 + 0.5).clamp(0.0, 1.0);
+            self.limb(svg, frame, limb, near)?;
         }
-        left.try_for_each(|worn| self.feather(svg, frame, worn))
+        worn.try_for_each(|worn| self.feather(svg, frame, worn))
+    }
+
+    /// The figure at a few places along its way, faintly.
+    fn ghosts(&self, svg: &mut String, frame: Frame) -> fmt::Result {
+        let thick = THICK[0] * frame.scale;
+        let mut places: Vec<f64> = Vec::new();
+        for pose in self.poses {
+            let place = pose[0][0];
+            if places.iter().any(|other| (place - other).abs() < GHOSTS) {
+                continue;
+            }
+            places.push(place);
+            write!(
+                svg,
+                r##"<path fill="none" stroke="#3e485c" stroke-opacity=".055" stroke-linecap="round" stroke-linejoin="round" stroke-width="{thick:.1}" d=""##
+            )?;
+            for limb in &self.limbs {
+                for (index, &joint) in limb.iter().enumerate() {
+                    let [x, y] = frame.at(pose[joint][0], pose[joint][1]);
+                    write!(svg, "{}{x:.1} {y:.1}", if index == 0 { 'M' } else { 'L' })?;
+                }
+            }
+            writeln!(svg, r#""/>"#)?;
+        }
+        Ok(())
     }
 
     /// A round-capped line; `near` is 0 for the farthest and 1 for the nearest limb.
     fn limb(&self, svg: &mut String, frame: Frame, limb: &[usize], near: f64) -> fmt::Result {
         let first = &self.poses[0];
         let apart = |a: usize, b: usize| {
-            let square: f64 = (0..3).map(|axis| (first[a][axis] - first[b][axis]).powi(2)).sum();
-            square.sqrt()
+            let along = |axis: usize| first[a][axis] - first[b][axis];
+            (0..3).map(|axis| along(axis) * along(axis)).sum::<f64>().sqrt()
         };
         // Joints at the same place are drawn once.
         let mut joints: Vec<usize> = limb.to_vec();
-        joints.dedup_by(|a, b| apart(*a, *b) < 1e-6);
+        joints.dedup_by(|after, before| apart(*after, *before) < 1e-6);
         let length: f64 = joints.windows(2).map(|pair| apart(pair[0], pair[1])).sum();
         if joints.len() < 2 {
             return Ok(());
@@ -155,6 +181,28 @@ impl Picture<'_> {
         let shade = |from: f64, to: f64| (from + (to - from) * near) as u8;
         let color = format!("#{:02x}{:02x}{:02x}", shade(186.0, 62.0), shade(194.0, 72.0), shade(206.0, 92.0));
         let thick = if length < 0.25 { THICK[1] } else { THICK[0] };
+        self.line(svg, frame, &joints, &color, thick)?;
+        // The trunk reaches from the hips to where the arms begin.
+        let begins = |joint: &usize| self.limbs.iter().any(|limb| limb[0] == *joint);
+        let is_trunk = self.head.is_some_and(|head| joints.contains(&head));
+        if let Some(top) = joints.iter().rposition(begins).filter(|&top| is_trunk && 0 < top) {
+            self.line(svg, frame, &joints[..=top], &color, THICK[2])?;
+        }
+        if let Some(head) = self.head.filter(|head| joints[1..].contains(head)) {
+            let top = joints[joints.len() - 1];
+            write!(svg, r#"<circle r="{:.1}" fill="{color}">"#, 0.1 * frame.scale)?;
+            let middle = |key: usize| {
+                let [a, b] = [self.poses[key][head], self.poses[key][top]];
+                frame.at(f64::midpoint(a[0], b[0]), f64::midpoint(a[1], b[1]))
+            };
+            self.animate(svg, "cx", |key, value| write!(value, "{:.1}", middle(key)[0]))?;
+            self.animate(svg, "cy", |key, value| write!(value, "{:.1}", middle(key)[1]))?;
+            writeln!(svg, "</circle>")?;
+        }
+        Ok(())
+    }
+
+    fn line(&self, svg: &mut String, frame: Frame, joints: &[usize], color: &str, thick: f64) -> fmt::Result {
         write!(
             svg,
             r#"<polyline fill="none" stroke="{color}" stroke-width="{:.1}" stroke-linecap="round" stroke-linejoin="round">"#,
@@ -166,22 +214,10 @@ impl Picture<'_> {
                 write!(value, "{x:.1},{y:.1} ")
             })
         })?;
-        writeln!(svg, "</polyline>")?;
-        if let Some(head) = self.head.filter(|head| joints[1..].contains(head)) {
-            let top = joints[joints.len() - 1];
-            write!(svg, r#"<circle r="{:.1}" fill="{color}">"#, 0.1 * frame.scale)?;
-            let middle = |key: usize| {
-                let [a, b] = [self.poses[key][head], self.poses[key][top]];
-                frame.at((a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0)
-            };
-            self.animate(svg, "cx", |key, value| write!(value, "{:.1}", middle(key)[0]))?;
-            self.animate(svg, "cy", |key, value| write!(value, "{:.1}", middle(key)[1]))?;
-            writeln!(svg, "</circle>")?;
-        }
-        Ok(())
+        writeln!(svg, "</polyline>")
     }
 
-    /// A feather on its string, turned about its pivot.
+    /// A feather, turned about its pivot.
     fn feather(&self, svg: &mut String, frame: Frame, worn: &Worn<'_>) -> fmt::Result {
         let color = worn.color;
         write!(svg, "<g>")?;
@@ -229,15 +265,15 @@ impl Picture<'_> {
         let id = worn.label.replace(' ', "-");
         writeln!(
             svg,
-            r#"<path id="{id}" d="{path}" pathLength="{total:.1}" fill="none" stroke="{color}" stroke-linecap="butt" stroke-opacity=".1"/>"#
+            r#"<path id="{id}" d="{path}" pathLength="{total:.1}" fill="none" stroke="{color}" stroke-linecap="butt" stroke-opacity=".17"/>"#
         )?;
         let rate = (tips.len() - 1) as f64 / self.seconds;
         for (step, lasting) in TRAILS.iter().enumerate() {
             let behind = (lasting * rate) as usize;
             write!(
                 svg,
-                r##"<path d="{path}" pathLength="{total:.1}" fill="none" stroke="{color}" stroke-width="{:.1}" stroke-opacity="{}">"##,
-                1.4 + 0.8 * step as f64,
+                r#"<path d="{path}" pathLength="{total:.1}" fill="none" stroke="{color}" stroke-width="{:.1}" stroke-opacity="{}">"#,
+                1.6 + 1.0 * step as f64,
                 0.22 + 0.06 * step as f64
             )?;
             self.animate(svg, "stroke-dasharray", |key, value| {
@@ -259,7 +295,7 @@ impl Picture<'_> {
             let length = -lowest(worn.outline) * 100.0;
             writeln!(
                 svg,
-                r##"<rect x="{x}" y="{}" width="16" height="10" rx="3" fill="{}"/><text x="{}" y="{y}">{}, {length:.0} cm</text>"##,
+                r#"<rect x="{x}" y="{}" width="16" height="10" rx="3" fill="{}"/><text x="{}" y="{y}">{}, {length:.0} cm</text>"#,
                 y - 9.5,
                 worn.color,
                 x + 22.0,
@@ -288,9 +324,8 @@ impl Picture<'_> {
             right - 180.0,
             right - 32.0
         )?;
-        let columns: [(f64, &dyn Fn(usize) -> usize, usize); 2] =
-            [(right - 19.0, &|tenth| tenth % 10, 9), (right - 38.0, &|tenth| tenth / 10, (tenths - 1) / 10)];
-        for (x, digit, last) in columns {
+        // Tenths, then seconds: a column moves on every `per` tenths and starts again after `last`.
+        for (x, per, last) in [(right - 19.0, 1, 9), (right - 38.0, 10, (tenths - 1) / 10)] {
             write!(svg, r#"<g text-anchor="end">"#)?;
             for value in 0..=last {
                 write!(svg, r#"<text x="{x}" y="{}">{value}</text>"#, y + line * value as f64)?;
@@ -301,7 +336,7 @@ impl Picture<'_> {
                 self.timing()
             )?;
             for tenth in 0..tenths {
-                write!(svg, "0 {};", -line * digit(tenth) as f64)?;
+                write!(svg, "0 {};", -line * (tenth / per % (last + 1)) as f64)?;
             }
             svg.pop();
             writeln!(svg, r#""/></g>"#)?;
@@ -316,7 +351,7 @@ impl Picture<'_> {
         let most = degrees().fold(30.0, |peak: f64, angle| peak.max(angle.abs()));
         let step =
             [15.0, 30.0, 45.0, 90.0, 180.0].into_iter().find(|step| most <= 2.2 * step).unwrap_or(360.0 * (most / 720.0).ceil());
-        let middle = (top + bottom) / 2.0;
+        let middle = f64::midpoint(top, bottom);
         let y = |angle: f64| middle - angle / most * (bottom - top) / 2.0;
         let x = |time: f64| left + time / self.seconds * (right - left);
         let lines = (most / step).floor() as i64;
@@ -390,4 +425,52 @@ impl Picture<'_> {
 /// The lowest point of an outline.
 fn lowest(outline: &[[f64; 2]]) -> f64 {
     outline.iter().map(|point| point[1]).fold(0.0, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Picture, Worn};
+
+    fn picture() -> String {
+        let poses: Vec<Vec<[f64; 3]>> =
+            (0..7).map(|k| vec![[0.3 * f64::from(k), 1.0, 0.0], [0.3 * f64::from(k), 1.6, 0.1], [0.0, 0.0, -0.1]]).collect();
+        let pivot: Vec<[f64; 2]> = (0..13).map(|k| [0.15 * f64::from(k), 1.6]).collect();
+        let angles: Vec<f64> = (0..13).map(|k| 0.1 * f64::from(k)).collect();
+        let worn = Worn {
+            label: "head",
+            color: "#009e73",
+            joint: 1,
+            outline: &[[0.02, 0.0], [0.0, -0.2], [-0.02, 0.0]],
+            pivot: &pivot,
+            spline: &angles,
+            linear: &angles,
+        };
+        let limbs = vec![vec![0, 1], vec![0, 2]];
+        Picture { limbs, head: Some(1), poses: &poses, worn: vec![worn], seconds: 1.25, fine: 2 }.draw()
+    }
+
+    #[test]
+    fn every_element_is_closed() {
+        let svg = picture();
+        for name in ["svg", "g", "text", "path", "polyline", "circle", "rect", "animate", "animateTransform", "clipPath"] {
+            let opened = svg.matches(&format!("<{name} ")).count() + svg.matches(&format!("<{name}>")).count();
+            let closed = svg.matches(&format!("</{name}>")).count();
+            let alone =
+                svg.split(&format!("<{name} ")).skip(1).filter(|rest| rest[..rest.find('>').unwrap()].ends_with('/')).count();
+            assert_eq!(opened, closed + alone, "{name}");
+        }
+    }
+
+    #[test]
+    fn animations_have_a_finite_value_for_each_key() {
+        let svg = picture();
+        let lists: Vec<&str> = svg.split("values=\"").skip(1).map(|rest| &rest[..rest.find('"').unwrap()]).collect();
+        let counts: Vec<usize> = lists.iter().map(|list| list.split(';').count()).collect();
+        // Three strokes of the trail, two limbs, two coordinates of the head, two movements of the feather; 13 tenths on the
+        // clock's two columns; the line in the chart.
+        assert_eq!(counts.iter().filter(|&&count| count == 7).count(), 9, "{counts:?}");
+        assert_eq!(counts.iter().filter(|&&count| count == 13).count(), 2, "{counts:?}");
+        assert_eq!(counts.len(), 12, "{counts:?}");
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    }
 }
