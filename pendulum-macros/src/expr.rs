@@ -104,6 +104,8 @@ impl Contents {
     pub(crate) const MOMENTUM: Self = Self(128);
     pub(crate) const POINT: Self = Self(256);
     pub(crate) const INPUT: Self = Self(16 | 32 | 64);
+    /// Everything but parameters.
+    pub(crate) const STATE: Self = Self(!1);
 
     pub(crate) const fn or(self, other: Self) -> Self {
         Self(self.0 | other.0)
@@ -547,16 +549,32 @@ impl Graph {
         self.negative(max)
     }
 
-    /// Closes a sum to rewriting: other sums no longer take its terms in. Products stay open, so that their factors cancel.
+    /// Closes the sums of an expression to rewriting: no other sum takes their terms in. Products stay open, so that their factors
+    /// cancel, and so do sums of parameters, which cost nothing.
     pub(crate) fn atom(&mut self, id: Id) -> Id {
         let (coefficient, bare) = self.split(id);
-        match self.node(bare) {
-            Node::Sum(_) => {
+        match self.node(bare).clone() {
+            Node::Sum(_) if self.contents(bare).any(Contents::STATE) => {
                 let atom = self.intern(Node::Atom(bare));
                 self.scale(coefficient, atom)
             }
+            Node::Product(_, factors) => {
+                let close = |graph: &mut Self, id: Id| {
+                    let moving = graph.contents(id).any(Contents::STATE);
+                    if moving && matches!(graph.node(id), Node::Sum(_)) { graph.intern(Node::Atom(id)) } else { id }
+                };
+                let closed: Vec<(Id, Rational)> =
+                    factors.into_iter().map(|(base, exponent)| (close(self, base), exponent)).collect();
+                self.product(coefficient, &closed)
+            }
             _ => id,
         }
+    }
+
+    /// Whether an expression is a quotient by something that moves.
+    pub(crate) fn moving_quotient(&self, id: Id) -> bool {
+        let factors = self.factors(id);
+        factors.iter().any(|&(base, exponent)| exponent.is_negative() && self.contents(base).any(Contents::STATE))
     }
 
     /// Closes any expression that is not a leaf: it is computed once and used as it is.

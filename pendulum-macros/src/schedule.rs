@@ -4,7 +4,7 @@
 //! together, and those of a difference of angles are products where both angles are there anyway.
 
 use crate::ast::Literal;
-use crate::expr::{Function, Graph, Id, Node, Symbol};
+use crate::expr::{Contents, Function, Graph, Id, Node, Symbol};
 use crate::number::Rational;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -53,9 +53,11 @@ pub(crate) struct Count {
 }
 
 impl Program {
+    /// The operations of one evaluation, after what parameters alone decide has been prepared.
     pub(crate) fn count(&self) -> Count {
         let mut count = Count::default();
-        for op in &self.ops {
+        let still = self.still();
+        for (op, _) in self.ops.iter().zip(still).filter(|(_, still)| !still) {
             match op {
                 Op::SinCos(_) | Op::Call(Function::Sin | Function::Cos, _) => count.sincos += 1,
                 Op::Mul(..) => count.mul += 1,
@@ -66,6 +68,19 @@ impl Program {
             }
         }
         count
+    }
+
+    /// Whether each operation is made of parameters and numbers alone.
+    pub(crate) fn still(&self) -> Vec<bool> {
+        let mut still: Vec<bool> = Vec::with_capacity(self.ops.len());
+        for op in &self.ops {
+            let own = match op {
+                Op::Load(symbol) => matches!(symbol, Symbol::Parameter(_) | Symbol::Moment(..)),
+                _ => operands(op).iter().all(|place| still[place.0]),
+            };
+            still.push(own);
+        }
+        still
     }
 
     fn push(&mut self, op: Op) -> Place {
@@ -93,7 +108,11 @@ pub(crate) fn program(graph: &Graph, roots: &[Id]) -> Program {
         done: BTreeMap::new(),
         differences: BTreeMap::new(),
         pairs: BTreeSet::new(),
+        scales: Vec::new(),
+        scaled: BTreeMap::new(),
+        uses: BTreeMap::new(),
     };
+    schedule.count_uses(roots);
     schedule.angles(&angles);
     // Children have smaller ids: going up in order keeps the recursion shallow.
     for id in schedule.graph.reachable(roots) {
@@ -114,13 +133,32 @@ struct Schedule<'g> {
     differences: BTreeMap<Id, (Id, Id, bool)>,
     /// Angles whose sine and cosine are both needed.
     pairs: BTreeSet<Id>,
+    /// The constants that sums take in, and the sums with theirs that are done.
+    scales: Vec<Term>,
+    scaled: BTreeMap<(Id, usize), (Place, bool)>,
+    /// In how many products and sums each sum stands.
+    uses: BTreeMap<Id, usize>,
 }
 
 /// A product on its way into a sum.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 struct Term {
     coefficient: Rational,
-    factors: Vec<(Id, Rational)>,
+    factors: Vec<(Factor, Rational)>,
+}
+
+/// A factor of a product; a sum may stand for itself times a constant that its own constants take in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Factor {
+    id: Id,
+    /// The constant, by its place in `Schedule::scales`.
+    scale: Option<usize>,
+}
+
+impl Factor {
+    fn plain(id: Id) -> Self {
+        Self { id, scale: None }
+    }
 }
 
 impl Schedule<'_> {
@@ -159,6 +197,7 @@ impl Schedule<'_> {
                 if negative { self.program.push(Op::Negative(place)) } else { place }
             }
             Node::Product(coefficient, factors) => {
+                let factors = factors.into_iter().map(|(id, exponent)| (Factor::plain(id), exponent)).collect();
                 let (place, negative) = self.product(&Term { coefficient, factors });
                 if negative { self.program.push(Op::Negative(place)) } else { place }
             }
@@ -191,7 +230,7 @@ impl Schedule<'_> {
 
     fn term(&self, term: Id, coefficient: Rational) -> Term {
         let factors = if term == Graph::ONE { Vec::new() } else { self.graph.factors(term) };
-        Term { coefficient, factors }
+        Term { coefficient, factors: factors.into_iter().map(|(id, exponent)| (Factor::plain(id), exponent)).collect() }
     }
 
     fn trigonometric(&mut self, function: Function, angle: Id) -> Place {
@@ -215,7 +254,7 @@ impl Schedule<'_> {
     /// A sum of products, and whether its value is the negative of the place.
     fn sum(&mut self, mut terms: Vec<Term>) -> (Place, bool) {
         let mut parts: Vec<(Place, bool)> = Vec::new();
-        while let Some((factor, shared)) = most_shared(&terms) {
+        while let Some((factor, shared)) = self.most_shared(&terms) {
             let mut inner = Vec::new();
             let mut rest = Vec::new();
             for (index, mut term) in terms.into_iter().enumerate() {
@@ -254,50 +293,212 @@ impl Schedule<'_> {
     }
 
     /// A product without its sign, and whether that is minus.
+    ///
+    /// What does not move stands together: it is computed once by whoever prepares it.
     fn product(&mut self, term: &Term) -> (Place, bool) {
-        let negative = term.coefficient.is_negative();
-        let coefficient = term.coefficient.abs();
+        let (still, mut moving) = self.split(term);
+        let mut negative = term.coefficient.is_negative();
+        let mut still = Some(still).filter(|still| *still != unit());
+        if let Some(constant) = &still
+            && let Some(index) =
+                moving.iter().position(|&(factor, exponent)| exponent == Rational::ONE && self.takes_in(factor.id, 1))
+            && moving[index].0.scale.is_none()
+        {
+            let scale = self.scale(constant.clone());
+            moving[index].0.scale = Some(scale);
+            still = None;
+        }
         let (mut above, mut below) = (Vec::new(), Vec::new());
-        for &(base, exponent) in &term.factors {
+        for (factor, exponent) in moving {
             let side = if exponent.is_negative() { &mut below } else { &mut above };
-            side.push((self.rank(base), base, exponent.abs()));
+            side.push((self.rank(factor.id), factor, exponent.abs()));
         }
-        above.sort_unstable();
-        below.sort_unstable();
-        let mut top: Option<Place> = None;
-        for (_, base, exponent) in above {
-            let power = self.power(base, exponent);
-            top = Some(match top {
-                Some(product) => self.program.push(mul(product, power)),
-                None => power,
-            });
-        }
-        let mut bottom: Option<Place> = None;
-        for (_, base, exponent) in below {
-            let power = self.power(base, exponent);
-            bottom = Some(match bottom {
-                Some(product) => self.program.push(mul(product, power)),
-                None => power,
-            });
-        }
-        if coefficient != Rational::ONE || top.is_none() {
-            let number = self.program.push(Op::Number(coefficient));
-            top = Some(match top {
-                Some(product) => self.program.push(mul(number, product)),
-                None => number,
-            });
-        }
+        let top = self.side(above, &mut negative);
+        let bottom = self.side(below, &mut negative);
+        let constant = still.map(|still| self.constant(&still));
+        let top = match (constant, top) {
+            (Some(constant), Some(top)) => Some(self.program.push(mul(constant, top))),
+            (constant, top) => constant.or(top),
+        };
         let place = match (top, bottom) {
             (Some(top), Some(bottom)) => self.program.push(Op::Div(top, bottom)),
             (Some(top), None) => top,
-            (None, _) => self.program.push(Op::Number(coefficient)),
+            (None, bottom) => {
+                let one = self.program.push(Op::Number(Rational::ONE));
+                match bottom {
+                    Some(bottom) => self.program.push(Op::Div(one, bottom)),
+                    None => one,
+                }
+            }
         };
         (place, negative)
     }
 
-    /// Parameters come first in a product: what does not move is computed once by whoever hoists it.
+    /// The magnitude of what does not move in a product, and its other factors.
+    fn split(&self, term: &Term) -> (Term, Vec<(Factor, Rational)>) {
+        let (factors, moving) = term.factors.iter().partition(|(factor, _)| factor.scale.is_none() && self.still(factor.id));
+        (Term { coefficient: term.coefficient.abs(), factors }, moving)
+    }
+
+    /// Whether an expression is made of parameters and numbers alone.
+    fn still(&self, id: Id) -> bool {
+        let contents = self.graph.contents(id);
+        !contents.any(Contents::STATE)
+    }
+
+    /// A product of parameters and numbers.
+    fn constant(&mut self, term: &Term) -> Place {
+        let (mut above, mut below) = (Vec::new(), Vec::new());
+        for &(factor, exponent) in &term.factors {
+            let side = if exponent.is_negative() { &mut below } else { &mut above };
+            side.push((0, factor, exponent.abs()));
+        }
+        let mut sign = false;
+        let top = self.side(above, &mut sign);
+        let bottom = self.side(below, &mut sign);
+        let top = match top {
+            Some(top) if term.coefficient == Rational::ONE => top,
+            Some(top) => {
+                let number = self.program.push(Op::Number(term.coefficient));
+                self.program.push(mul(number, top))
+            }
+            None => self.program.push(Op::Number(term.coefficient)),
+        };
+        match bottom {
+            Some(bottom) => self.program.push(Op::Div(top, bottom)),
+            None => top,
+        }
+    }
+
+    /// The product of some positive powers.
+    fn side(&mut self, mut factors: Vec<(u8, Factor, Rational)>, negative: &mut bool) -> Option<Place> {
+        factors.sort_unstable();
+        let mut product: Option<Place> = None;
+        for (_, factor, exponent) in factors {
+            let power = match factor.scale {
+                None => self.power(factor.id, exponent),
+                Some(scale) => {
+                    let (place, flipped) = self.scaled_sum(factor.id, scale);
+                    *negative ^= flipped;
+                    place
+                }
+            };
+            product = Some(match product {
+                Some(product) => self.program.push(mul(product, power)),
+                None => power,
+            });
+        }
+        product
+    }
+
+    /// A sum each of whose terms has taken in a constant.
+    fn scaled_sum(&mut self, sum: Id, scale: usize) -> (Place, bool) {
+        if let Some(&done) = self.scaled.get(&(sum, scale)) {
+            return done;
+        }
+        let Node::Sum(terms) = self.graph.node(sum).clone() else { return (self.value(sum), false) };
+        let constant = self.scales[scale].clone();
+        let mut scaled = Vec::new();
+        for (id, coefficient) in terms {
+            let mut term = self.term(id, coefficient);
+            let inner =
+                term.factors.iter().position(|&(factor, exponent)| exponent == Rational::ONE && self.takes_in(factor.id, 2));
+            if let Some(index) = inner {
+                term.factors[index].0.scale = Some(scale);
+            } else {
+                term.coefficient = term.coefficient.mul(constant.coefficient).unwrap_or(term.coefficient);
+                for &(factor, exponent) in &constant.factors {
+                    multiply(&mut term.factors, factor, exponent);
+                }
+            }
+            scaled.push(term);
+        }
+        let done = self.sum(scaled);
+        self.scaled.insert((sum, scale), done);
+        done
+    }
+
+    /// Whether a sum is the better for taking in a constant: every term has a constant of its own, or a sum that takes it in.
+    ///
+    /// A sum that stands in more than `most` places is left alone: it would be computed twice.
+    fn takes_in(&self, id: Id, most: usize) -> bool {
+        let Node::Sum(terms) = self.graph.node(id) else { return false };
+        if self.still(id) || most < self.uses.get(&id).copied().unwrap_or(0) {
+            return false;
+        }
+        terms.iter().all(|&(term, coefficient)| {
+            let factors = self.graph.factors(term);
+            let constant =
+                coefficient.abs() != Rational::ONE || term == Graph::ONE || factors.iter().any(|&(base, _)| self.still(base));
+            constant
+                || factors
+                    .iter()
+                    .any(|&(base, exponent)| exponent == Rational::ONE && self.takes_in(base, self.occurrences(base, terms)))
+        })
+    }
+
+    /// The number of terms of a sum in which a factor stands.
+    fn occurrences(&self, id: Id, terms: &[(Id, Rational)]) -> usize {
+        terms.iter().filter(|&&(term, _)| self.graph.factors(term).iter().any(|&(base, _)| base == id)).count()
+    }
+
+    fn scale(&mut self, constant: Term) -> usize {
+        if let Some(known) = self.scales.iter().position(|scale| *scale == constant) {
+            return known;
+        }
+        self.scales.push(constant);
+        self.scales.len() - 1
+    }
+
+    fn count_uses(&mut self, roots: &[Id]) {
+        for id in self.graph.reachable(roots) {
+            for child in self.graph.children(id) {
+                *self.uses.entry(child).or_default() += 1;
+            }
+        }
+        for &root in roots {
+            *self.uses.entry(root).or_default() += 1;
+        }
+    }
+
+    /// The factor that is best drawn before a sum, and the terms in which it stands.
+    ///
+    /// A factor that moves saves a multiplication in all terms but one; a constant only in those that have no other.
+    fn most_shared(&self, terms: &[Term]) -> Option<((Factor, Rational), BTreeSet<usize>)> {
+        let mut shared: BTreeMap<(Factor, bool), BTreeSet<usize>> = BTreeMap::new();
+        for (index, term) in terms.iter().enumerate() {
+            for &(factor, exponent) in &term.factors {
+                shared.entry((factor, exponent.is_negative())).or_default().insert(index);
+            }
+        }
+        let mut best: Option<(usize, (Factor, bool), BTreeSet<usize>)> = None;
+        for (key, places) in shared {
+            let still = key.0.scale.is_none() && self.still(key.0.id);
+            let saved = if still {
+                let alone = |&&index: &&usize| {
+                    let (constant, _) = self.split(&terms[index]);
+                    constant.coefficient == Rational::ONE && constant.factors.len() == 1
+                };
+                places.iter().filter(alone).count()
+            } else {
+                places.len()
+            };
+            if 2 <= saved && best.as_ref().is_none_or(|(other, ..)| *other < saved) {
+                best = Some((saved, key, places));
+            }
+        }
+        let (_, (factor, negative), places) = best?;
+        let exponents = places.iter().filter_map(|&index| {
+            let found =
+                terms[index].factors.iter().find(|(other, exponent)| *other == factor && exponent.is_negative() == negative);
+            found.map(|&(_, exponent)| exponent)
+        });
+        let exponent = exponents.reduce(|a, b| if b.abs().less(a.abs()) { b } else { a })?;
+        Some(((factor, exponent), places))
+    }
+
+    /// What changes least comes first in a product.
     fn rank(&self, base: Id) -> u8 {
-        use crate::expr::Contents;
         let contents = self.graph.contents(base);
         if contents.any(Contents::VELOCITY.or(Contents::MOMENTUM)) {
             3
@@ -352,40 +553,23 @@ fn add(a: Place, b: Place) -> Op {
     Op::Add(a.min(b), a.max(b))
 }
 
-/// The factor that stands in most terms, if it stands in two, and the terms in which it does.
-fn most_shared(terms: &[Term]) -> Option<((Id, Rational), BTreeSet<usize>)> {
-    let mut shared: BTreeMap<(Id, bool), BTreeSet<usize>> = BTreeMap::new();
-    for (index, term) in terms.iter().enumerate() {
-        for &(base, exponent) in &term.factors {
-            shared.entry((base, exponent.is_negative())).or_default().insert(index);
-        }
-    }
-    let mut best: Option<((Id, bool), BTreeSet<usize>)> = None;
-    for (key, places) in shared {
-        if 2 <= places.len() && best.as_ref().is_none_or(|(_, other)| other.len() < places.len()) {
-            best = Some((key, places));
-        }
-    }
-    let ((base, negative), places) = best?;
-    let exponents = places.iter().filter_map(|&index| {
-        terms[index]
-            .factors
-            .iter()
-            .find(|(other, exponent)| *other == base && exponent.is_negative() == negative)
-            .map(|&(_, exponent)| exponent)
-    });
-    let exponent = exponents.reduce(|a, b| if b.abs().less(a.abs()) { b } else { a })?;
-    Some(((base, exponent), places))
+/// Divides a product by one of its factors.
+fn take(factors: &mut Vec<(Factor, Rational)>, (factor, exponent): (Factor, Rational)) {
+    multiply(factors, factor, exponent.negative());
 }
 
-/// Divides a product by one of its factors.
-fn take(factors: &mut Vec<(Id, Rational)>, (base, exponent): (Id, Rational)) {
-    for factor in factors.iter_mut() {
-        if factor.0 == base {
-            factor.1 = factor.1.add(exponent.negative()).unwrap_or(factor.1);
-        }
+/// Multiplies a product by a power.
+fn multiply(factors: &mut Vec<(Factor, Rational)>, factor: Factor, exponent: Rational) {
+    match factors.iter_mut().find(|(other, _)| *other == factor) {
+        Some((_, own)) => *own = own.add(exponent).unwrap_or(*own),
+        None => factors.push((factor, exponent)),
     }
     factors.retain(|(_, exponent)| !exponent.is_zero());
+}
+
+/// The empty product.
+fn unit() -> Term {
+    Term { coefficient: Rational::ONE, factors: Vec::new() }
 }
 
 /// The coefficient that all terms share up to sign; one otherwise.

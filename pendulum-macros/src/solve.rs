@@ -130,7 +130,8 @@ fn factor(graph: &mut Graph, matrix: &[Vec<Id>], block: &[usize]) -> Result<Fact
         for i in j + 1..size {
             if scaled[i][j] != Graph::ZERO {
                 let entry = graph.mul(scaled[i][j], inverse);
-                lower[i][j] = graph.atom(entry);
+                // A division is done once; a quotient by parameters stays open and cancels.
+                lower[i][j] = if graph.moving_quotient(entry) { graph.closed(entry) } else { graph.atom(entry) };
             }
         }
         reciprocal.push(inverse);
