@@ -1,4 +1,4 @@
-//! Runs what `lagrangian!` generates: scalars, systems, motions, bodies and integrators.
+#![doc = include_str!("../README.md")]
 
 #[macro_use]
 mod macros;
@@ -6,6 +6,7 @@ mod macros;
 pub mod body;
 pub mod error;
 pub mod integrate;
+pub mod linearize;
 pub mod motion;
 pub mod real;
 pub mod system;
@@ -17,8 +18,7 @@ pub mod __private;
 
 /// What a program that writes a `lagrangian!` block and integrates it needs.
 pub mod prelude {
-    #[allow(unused_imports)]
-    pub use crate::integrate::*;
+    pub use crate::integrate::{Dop853, Integrator, Leapfrog, Rk4, Srkn6b, Srkn11b, Srkn14a, SymplecticEuler, Tsit5, solve};
     pub use crate::motion::Motion;
     pub use crate::real::Real;
     pub use crate::system::{Driven, Dynamics, System, VelocityFree};

@@ -64,6 +64,20 @@ pub trait System<const N: usize> {
     /// The right-hand side f of M q̈ = f.
     fn forces(&self, t: Self::Scalar, q: &[Self::Scalar; N], v: &[Self::Scalar; N], inputs: &Self::Inputs) -> [Self::Scalar; N];
 
+    /// The conserved quantities that `FACTS.conserved` names, as far as `values` reaches.
+    ///
+    /// They belong to the symmetries q → q + ε(a + Bq) of the Lagrangian (Noether 1918).
+    fn conserved(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+        values: &mut [Self::Scalar],
+    ) {
+        let _ = (t, q, v, inputs, values);
+    }
+
     /// dp/dt = ∂L/∂q − ∂R/∂q̇ + Q: the other half of the momentum form, which needs one derivative of the inputs less than
     /// the accelerations.
     fn momentum_rates(
@@ -94,6 +108,37 @@ pub trait SplitEnergy<const N: usize>: System<N> {
         v: &[Self::Scalar; N],
         inputs: &Self::Inputs,
     ) -> Self::Scalar;
+}
+
+/// The derivatives of the accelerations, from the same expression graph.
+pub trait Jacobians<const N: usize>: System<N> {
+    /// ∂q̈/∂q, row by acceleration, column by coordinate.
+    fn position_jacobian(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> SMatrix<Self::Scalar, N, N>;
+
+    /// ∂q̈/∂q̇, row by acceleration, column by velocity.
+    fn velocity_jacobian(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> SMatrix<Self::Scalar, N, N>;
+
+    /// ∂q̈/∂p for each parameter p in the order of `FACTS.parameters`, as far as `columns` reaches.
+    fn parameter_jacobian(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+        columns: &mut [[Self::Scalar; N]],
+    );
 }
 
 /// The marker of systems with a constant mass matrix whose accelerations contain no velocity.
@@ -134,6 +179,9 @@ pub struct Facts {
     pub nonconservative: bool,
     /// The coordinates that do not stand in the Lagrangian, by index.
     pub cyclic: &'static [usize],
+    /// The conserved quantities that [`System::conserved`] gives, in terms of the momenta: `p_φ`, `x·p_y − y·p_x`. The energy is
+    /// not among them; it is conserved if the system is autonomous and conservative.
+    pub conserved: &'static [&'static str],
     /// The parameters that the accelerations do not need.
     pub unused: &'static [&'static str],
     /// The equations of motion, one line a coordinate.
@@ -155,6 +203,7 @@ impl Facts {
             constant_mass_matrix: false,
             nonconservative: true,
             cyclic: &[],
+            conserved: &[],
             unused: &[],
             equations: "",
         }

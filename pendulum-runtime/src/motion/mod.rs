@@ -3,9 +3,29 @@
 //! A motion is asked for exactly the derivatives that the equations contain, and says where its kinks are: the times at which
 //! its position, velocity or acceleration jumps. There it has two values, one from each side.
 
+mod catmull_rom;
+mod clip;
+mod error;
+mod function;
+mod linear;
+mod piecewise;
+mod sinusoid;
+mod spline;
+mod still;
+#[cfg(test)]
+mod tests;
+
 use crate::real::Real;
 use crate::system::{Input, Purpose};
 use crate::time::Time;
+pub use catmull_rom::CatmullRom;
+pub use clip::{Clip, Interpolation};
+pub use error::MotionError;
+pub use function::{Function, Missing, Part};
+pub use linear::Linear;
+pub use sinusoid::Sinusoid;
+pub use spline::Spline;
+pub use still::Still;
 
 /// A prescribed motion in `D` dimensions over the scalar `T`.
 pub trait Motion<T: Real, const D: usize> {
@@ -76,6 +96,14 @@ impl<T: Real, const D: usize> Sample<T, D> {
     }
 }
 
+impl<T: Copy, const D: usize> Sample<T, D> {
+    /// Every number mapped.
+    pub fn map<U>(&self, mut map: impl FnMut(T) -> U) -> Sample<U, D> {
+        let (position, velocity) = (self.position.map(&mut map), self.velocity.map(&mut map));
+        Sample { position, velocity, acceleration: self.acceleration.map(&mut map) }
+    }
+}
+
 /// The motions of all driven inputs of a system: `()` or a tuple, in the order of declaration.
 pub trait Motions<Inputs> {
     /// The derivatives that each motion has.
@@ -121,6 +149,11 @@ fn earlier(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     }
 }
 
+/// What an input is asked for; everything, if its system does not say.
+const fn orders(inputs: &[Input], index: usize, purpose: Purpose) -> Orders {
+    if index < inputs.len() { inputs[index].orders(purpose) } else { Orders::ALL }
+}
+
 macro_rules! tuples {
     ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
         impl<T: Real, $($motion: Motion<T, $dim>, const $dim: usize),+> Motions<($(Sample<T, $dim>,)+)> for ($($motion,)+) {
@@ -128,7 +161,7 @@ macro_rules! tuples {
 
             #[inline]
             fn sample(&self, t: Time, side: Side, inputs: &[Input], purpose: Purpose) -> ($(Sample<T, $dim>,)+) {
-                ($(self.$index.sample(t, side, inputs[$index].orders(purpose)),)+)
+                ($(self.$index.sample(t, side, orders(inputs, $index, purpose)),)+)
             }
 
             fn next_kink(&self, t: f64) -> Option<f64> {

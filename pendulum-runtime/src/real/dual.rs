@@ -7,38 +7,42 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 ///
 /// Clifford (1873). Derivatives of a constant stay zero even where the function has an infinite slope.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Dual {
+pub struct Dual<T = f64> {
     /// The value a.
-    pub value: f64,
+    pub value: T,
     /// The derivative a′.
-    pub derivative: f64,
+    pub derivative: T,
 }
 
-impl Dual {
+impl<T: Real> Dual<T> {
     /// A number that does not depend on the variable.
-    pub const fn constant(value: f64) -> Self {
-        Self { value, derivative: 0.0 }
+    pub fn constant(value: T) -> Self {
+        Self { value, derivative: number(0.0) }
     }
 
     /// The variable itself.
-    pub const fn variable(value: f64) -> Self {
-        Self { value, derivative: 1.0 }
+    pub fn variable(value: T) -> Self {
+        Self { value, derivative: number(1.0) }
     }
 
     /// A function with this value and this slope at `self`: the chain rule.
     #[inline]
-    fn chain(self, value: f64, slope: f64) -> Self {
+    fn chain(self, value: T, slope: T) -> Self {
         Self { value, derivative: times(slope, self.derivative) }
     }
 }
 
 /// The product; zero where the derivative is, whatever the slope.
 #[inline]
-fn times(slope: f64, derivative: f64) -> f64 {
-    if derivative == 0.0 { 0.0 } else { slope * derivative }
+fn times<T: Real>(slope: T, derivative: T) -> T {
+    if derivative == number(0.0) { number(0.0) } else { slope * derivative }
 }
 
-impl Add for Dual {
+fn number<T: Real>(value: f64) -> T {
+    T::from_f64(value)
+}
+
+impl<T: Real> Add for Dual<T> {
     type Output = Self;
 
     #[inline]
@@ -47,7 +51,7 @@ impl Add for Dual {
     }
 }
 
-impl Sub for Dual {
+impl<T: Real> Sub for Dual<T> {
     type Output = Self;
 
     #[inline]
@@ -56,7 +60,7 @@ impl Sub for Dual {
     }
 }
 
-impl Mul for Dual {
+impl<T: Real> Mul for Dual<T> {
     type Output = Self;
 
     #[inline]
@@ -66,18 +70,18 @@ impl Mul for Dual {
     }
 }
 
-impl Div for Dual {
+impl<T: Real> Div for Dual<T> {
     type Output = Self;
 
     #[inline]
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
-        let derivative = times(1.0 / other.value, self.derivative) - times(value / other.value, other.derivative);
+        let derivative = times(number::<T>(1.0) / other.value, self.derivative) - times(value / other.value, other.derivative);
         Self { value, derivative }
     }
 }
 
-impl Neg for Dual {
+impl<T: Real> Neg for Dual<T> {
     type Output = Self;
 
     #[inline]
@@ -86,41 +90,45 @@ impl Neg for Dual {
     }
 }
 
-impl AddAssign for Dual {
+impl<T: Real> AddAssign for Dual<T> {
     #[inline]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl SubAssign for Dual {
+impl<T: Real> SubAssign for Dual<T> {
     #[inline]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
-impl MulAssign for Dual {
+impl<T: Real> MulAssign for Dual<T> {
     #[inline]
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }
 }
 
-impl DivAssign for Dual {
+impl<T: Real> DivAssign for Dual<T> {
     #[inline]
     fn div_assign(&mut self, other: Self) {
         *self = *self / other;
     }
 }
 
-impl Real for Dual {
+impl<T: Real> Real for Dual<T> {
     fn from_f64(value: f64) -> Self {
-        Self::constant(value)
+        Self::constant(number(value))
+    }
+
+    fn ratio(numerator: f64, denominator: f64) -> Self {
+        Self::constant(T::ratio(numerator, denominator))
     }
 
     fn pi() -> Self {
-        Self::constant(Real::pi())
+        Self::constant(T::pi())
     }
 
     fn sin_cos(self) -> (Self, Self) {
@@ -130,19 +138,19 @@ impl Real for Dual {
 
     fn tan(self) -> Self {
         let tan = Real::tan(self.value);
-        self.chain(tan, 1.0 + tan * tan)
+        self.chain(tan, number::<T>(1.0) + tan * tan)
     }
 
     fn asin(self) -> Self {
-        self.chain(Real::asin(self.value), 1.0 / circle(self.value))
+        self.chain(Real::asin(self.value), number::<T>(1.0) / circle(self.value))
     }
 
     fn acos(self) -> Self {
-        self.chain(Real::acos(self.value), -1.0 / circle(self.value))
+        self.chain(Real::acos(self.value), number::<T>(-1.0) / circle(self.value))
     }
 
     fn atan(self) -> Self {
-        self.chain(Real::atan(self.value), 1.0 / (1.0 + self.value * self.value))
+        self.chain(Real::atan(self.value), number::<T>(1.0) / (number::<T>(1.0) + self.value * self.value))
     }
 
     fn atan2(self, x: Self) -> Self {
@@ -161,7 +169,7 @@ impl Real for Dual {
 
     fn tanh(self) -> Self {
         let cosh = Real::cosh(self.value);
-        self.chain(Real::tanh(self.value), 1.0 / (cosh * cosh))
+        self.chain(Real::tanh(self.value), number::<T>(1.0) / (cosh * cosh))
     }
 
     fn exp(self) -> Self {
@@ -170,17 +178,17 @@ impl Real for Dual {
     }
 
     fn ln(self) -> Self {
-        self.chain(Real::ln(self.value), 1.0 / self.value)
+        self.chain(Real::ln(self.value), number::<T>(1.0) / self.value)
     }
 
     fn sqrt(self) -> Self {
         let sqrt = self.value.sqrt();
-        self.chain(sqrt, 0.5 / sqrt)
+        self.chain(sqrt, number::<T>(0.5) / sqrt)
     }
 
     fn powf(self, exponent: Self) -> Self {
         let value = Real::powf(self.value, exponent.value);
-        let slope = exponent.value * Real::powf(self.value, exponent.value - 1.0);
+        let slope = exponent.value * Real::powf(self.value, exponent.value - number(1.0));
         let derivative = times(slope, self.derivative) + times(value * Real::ln(self.value), exponent.derivative);
         Self { value, derivative }
     }
@@ -199,7 +207,7 @@ impl Real for Dual {
 
     fn max(self, other: Self) -> Self {
         let step = Real::step(self.value - other.value);
-        let derivative = times(step, self.derivative) + times(1.0 - step, other.derivative);
+        let derivative = times(step, self.derivative) + times(number::<T>(1.0) - step, other.derivative);
         Self { value: Real::max(self.value, other.value), derivative }
     }
 
@@ -209,8 +217,8 @@ impl Real for Dual {
 }
 
 /// √(1 − x²) without cancellation near ±1.
-fn circle(x: f64) -> f64 {
-    ((1.0 - x) * (1.0 + x)).sqrt()
+fn circle<T: Real>(x: T) -> T {
+    ((number::<T>(1.0) - x) * (number::<T>(1.0) + x)).sqrt()
 }
 
 #[cfg(test)]

@@ -1,0 +1,217 @@
+//! What the reader gives and what it refuses.
+
+use super::{Bvh, LARGEST};
+
+/// An arm whose shoulder turns and slides, with a hand that turns about two axes.
+const ARM: &str = "HIERARCHY
+ROOT Shoulder
+{
+  OFFSET 5 6 7
+  CHANNELS 4 Xposition Yposition Zposition Zrotation
+  JOINT left hand {
+    OFFSET 2 0 0
+    CHANNELS 2 Zrotation Xrotation
+    End Site
+    {
+      OFFSET 0 1 0
+    }
+  }
+}
+MOTION
+Frames: 3
+Frame Time: .025
+0 0 0 0 0 0
+1 2 3 90 0 0
+0 0 0 0 90 90
+";
+
+fn read(text: &str) -> Bvh {
+    Bvh::read(text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn message(text: &str) -> String {
+    Bvh::read(text).expect_err("it was read").to_string()
+}
+
+#[track_caller]
+fn close(a: [f64; 3], b: [f64; 3]) {
+    assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12), "{a:?} is not {b:?}");
+}
+
+#[test]
+fn names_parents_and_times() {
+    let arm = read(ARM);
+    let names: Vec<_> = arm.joints.iter().map(|joint| (joint.name.as_str(), joint.parent, joint.end)).collect();
+    assert_eq!(names, [("Shoulder", None, false), ("left hand", Some(0), false), ("left hand end", Some(1), true)]);
+    assert_eq!((arm.frames(), arm.frame_time), (3, 0.025));
+}
+
+#[test]
+fn a_right_angle_turns_all_that_hangs_on_the_joint() {
+    let pose = read(ARM).pose(1);
+    close(pose[0], [1.0, 2.0, 3.0]);
+    close(pose[1], [1.0, 4.0, 3.0]);
+    close(pose[2], [0.0, 4.0, 3.0]);
+}
+
+/// R_z(90°) R_x(90°) e_y = R_z e_z = e_z; the other order would give R_x(90°) R_z(90°) e_y = R_x(−e_x) = −e_x.
+#[test]
+fn rotations_are_applied_in_the_order_of_the_channels() {
+    close(read(ARM).pose(2)[2], [2.0, 0.0, 1.0]);
+    close(read(&ARM.replace("Zrotation Xrotation", "Xrotation Zrotation")).pose(2)[2], [1.0, 0.0, 0.0]);
+}
+
+/// R_y(90°) e_z = e_x.
+#[test]
+fn a_turn_is_right_handed_about_each_axis() {
+    for (axis, from, to) in [("X", "0 1 0", [0.0, 0.0, 1.0]), ("Y", "0 0 1", [1.0, 0.0, 0.0]), ("Z", "1 0 0", [0.0, 1.0, 0.0])] {
+        let text = format!(
+            "HIERARCHY\nROOT a {{ OFFSET 0 0 0 CHANNELS 1 {axis}rotation\nEnd Site {{ OFFSET {from} }} }}\nMOTION\nFrames: 1\n\
+             Frame Time: 1\n90\n"
+        );
+        close(read(&text).pose(0)[1], to);
+    }
+}
+
+#[test]
+fn positions_on_any_joint_take_the_place_of_the_offset() {
+    let text = ARM.replace("CHANNELS 2 Zrotation Xrotation", "CHANNELS 2 Yposition Xrotation");
+    let pose = read(&text).pose(2);
+    close(pose[1], [2.0, 90.0, 0.0]);
+    close(pose[2], [2.0, 90.0, 1.0]);
+}
+
+#[test]
+fn line_ends_case_and_blank_lines_do_not_matter() {
+    let arm = read(ARM);
+    assert_eq!(arm, read(&ARM.replace('\n', "\r\n")));
+    assert_eq!(arm, read(&ARM.replace('\n', "\n\n")));
+    assert_eq!(arm, read(&format!("\u{feff}{}", ARM.replace("Frame Time: .025", "frame  time:.025"))));
+    assert_eq!(arm, read(&ARM.replace("Zrotation", "ZROTATION")));
+}
+
+#[test]
+fn the_excerpt_is_read() {
+    let text = include_str!("../data/jumps.bvh");
+    let jumps = read(text);
+    assert_eq!((jumps.joints.len(), jumps.frames()), (38, 241));
+    let head = jumps.joints.iter().position(|joint| joint.name == "Head end").unwrap();
+    let height = jumps.pose(0)[head][1];
+    assert!(1.4 < height && height < 1.7, "{height}");
+}
+
+#[test]
+fn refusals_say_where_what_and_what_to_do() {
+    let cases = [
+        ("HIERARCHY", "HIERARCHIE", "line 1: `HIERARCHIE` where HIERARCHY must stand"),
+        ("ROOT Shoulder", "ROOT", "line 2: a joint without a name"),
+        ("Shoulder\n{", "Shoulder\n", "line 4: `OFFSET` where the brace of a joint must open"),
+        ("OFFSET 2 0 0", "OFFSET 2 0", "line 7: OFFSET with 2 numbers"),
+        ("OFFSET 2 0 0", "OFFSET 2 0 zero", "line 7: `zero` is no number"),
+        ("OFFSET 2 0 0", "OFFSET 2 0 NaN", "line 7: `NaN` is no number"),
+        ("OFFSET 2 0 0", "OFFSET 2 0 1e99", "line 7: `1e99` is no number"),
+        ("    OFFSET 2 0 0\n", "", "line 12: `left hand` has no OFFSET"),
+        ("OFFSET 2 0 0", "OFFSET 2 0 0 OFFSET 0 0 0", "line 7: a second OFFSET in `left hand`"),
+        ("OFFSET 2 0 0", "LENGTH 2", "line 7: `LENGTH` is not known in a hierarchy"),
+        ("CHANNELS 2", "CHANNELS 3", "line 8: 3 channels are announced, 2 names follow"),
+        ("CHANNELS 2", "CHANNELS 99999999999999999999", "line 8: `99999999999999999999` is no number of channels"),
+        ("2 Zrotation Xrotation", "1 Wrotation", "line 8: `Wrotation` is no channel"),
+        ("4 Xposition Yposition", "4 Xposition Xposition", "line 5: `Xposition` twice in one joint"),
+        ("OFFSET 0 1 0", "OFFSET 0 1 0 CHANNELS 1 Xrotation", "line 11: channels in an end site"),
+        ("OFFSET 0 1 0", "JOINT finger", "line 11: a joint inside an end site"),
+        ("ROOT Shoulder", "End Site", "line 2: an end site outside of all joints"),
+        ("}\nMOTION", "MOTION", "line 2: `Shoulder` is not closed before MOTION"),
+        ("}\nMOTION", "}\n}\nMOTION", "line 15: a closing brace outside of all joints"),
+        ("Frames: 3", "Frames: three", "line 16: `three` is no number of frames"),
+        ("Frames: 3", "Frames: 0", "line 16: the file has no frames"),
+        ("Frames: 3", "Frames: 18446744073709551615", "line 16: 18446744073709551615 frames are announced, 3 rows follow"),
+        ("Frames: 3", "Frames: 2", "line 20: a row after the last of 2 frames"),
+        ("Frames: 3\n", "", "line 16: `Frame Time: .025` where `Frames: …` must stand"),
+        (".025", "0", "line 17: a frame time of 0 s"),
+        (".025", "-1", "line 17: a frame time of -1 s"),
+        ("Time: .025", "Tim .025", "line 17: `Frame Tim .025` where `Frame Time: …` must stand"),
+        ("1 2 3 90 0 0", "1 2 3 90 0", "line 19: 5 numbers in the row, 6 channels in the hierarchy"),
+    ];
+    for (from, to, expected) in cases {
+        assert!(ARM.contains(from), "{from}");
+        let message = message(&ARM.replacen(from, to, 1));
+        assert!(message.starts_with(expected) && message.contains("; "), "{message}");
+    }
+    assert!(message("").starts_with("line 1: the file ends before HIERARCHY"));
+    assert!(message("HIERARCHY\nMOTION\n").starts_with("line 2: no joint has a channel"));
+}
+
+#[test]
+fn a_skeleton_of_any_depth_is_read_or_refused() {
+    let text = format!("HIERARCHY\n{}", "ROOT a { OFFSET 0 0 0 ".repeat(5000));
+    assert!(message(&text).contains("joints"), "{}", message(&text));
+}
+
+/// SplitMix64 (Steele, Lea and Flood, 2014).
+fn random(state: &mut u64) -> u64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// Whatever is done to a file, it is either read, with finite poses, or refused in a line of text that names a line of the file.
+#[test]
+fn mutations_are_read_or_refused() {
+    let scraps = [
+        "{",
+        "}",
+        "JOINT",
+        "End Site",
+        "OFFSET",
+        "CHANNELS 6",
+        "MOTION",
+        "Frames:",
+        "-",
+        "1e308",
+        "NaN",
+        "9999999999",
+        "\n",
+        "é",
+        ":",
+    ];
+    let mut state = 462;
+    let (mut accepted, mut refused) = (0, 0);
+    for _ in 0..2000 {
+        let mut text: Vec<char> = ARM.chars().collect();
+        for _ in 0..=random(&mut state) % 3 {
+            let at = random(&mut state) as usize % text.len();
+            let until = (at + random(&mut state) as usize % 12).min(text.len());
+            match random(&mut state) % 5 {
+                0 => drop(text.drain(at..until)),
+                1 => text[at] = char::from(32 + (random(&mut state) % 95) as u8),
+                2 => text.truncate(at.max(1)),
+                3 => {
+                    let copy = text[at..until].to_vec();
+                    text.splice(at..at, copy);
+                }
+                _ => {
+                    let scrap = scraps[random(&mut state) as usize % scraps.len()];
+                    text.splice(at..at, scrap.chars());
+                }
+            }
+        }
+        let text: String = text.into_iter().collect();
+        match Bvh::read(&text) {
+            Ok(bvh) => {
+                accepted += 1;
+                for frame in 0..bvh.frames() {
+                    assert!(bvh.pose(frame).iter().flatten().all(|value| value.abs() < 10.0 * LARGEST), "{text}");
+                }
+            }
+            Err(error) => {
+                refused += 1;
+                let lines = text.lines().count().max(1);
+                assert!(1 <= error.line && error.line <= lines, "{error} of {lines} lines");
+                assert!(!error.to_string().contains('\n') && error.to_string().len() < 240, "{error}");
+            }
+        }
+    }
+    assert!(100 < accepted && 100 < refused, "{accepted} read, {refused} refused");
+}

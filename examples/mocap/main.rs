@@ -1,0 +1,170 @@
+//! Feathers on somebody who jumps: compound pendulums driven by captured motion.
+//!
+//! `cargo run --release --example mocap [file.bvh [metres per unit]]` reads a clip, hangs a pendulum on both hands, the head and the hips,
+//! integrates its equations, which `lagrangian!` derives, and those derived by hand, and writes `target/mocap.csv` and
+//! `target/mocap.svg`, which plays in a browser.
+
+#![allow(mixed_script_confusables)]
+
+mod bvh;
+mod hand;
+mod hung;
+mod picture;
+mod sheet;
+mod stage;
+
+use bvh::Bvh;
+use hung::{Hung, Place};
+use indicatif::{ProgressBar, ProgressStyle};
+use pendulum_runtime::prelude::*;
+use picture::{Picture, Worn};
+use stage::{Plane, find, limbs};
+use std::error::Error;
+use std::fs;
+use std::path::Path;
+use std::time::Instant;
+
+lagrangian! {
+    /// A flat body that hangs by its end from a moving point, with a little friction there.
+    pub struct Tag {
+        /// The body as seen from its pivot.
+        B: body,
+        /// The friction at the pivot.
+        c: N*m*s,
+        /// The gravitational acceleration.
+        g: m/s^2 = 9.81,
+    }
+
+    coordinate θ: rad;
+    driven x: [m; 2];
+
+    let r(p) = x + cis(θ)*p;
+    kinetic     = integral(p in B, |dot(r(p))|^2 / 2);
+    potential   = integral(p in B, g*height(r(p)));
+    dissipation = c/2 * θ̇^2;
+}
+
+/// Both hands, the head and the hips.
+const PLACES: [Place; 4] = [
+    Place {
+        label: "left hand",
+        names: &["lefthand", "lhand", "handl", "leftwrist", "lwrist", "wristl"],
+        length: 0.16,
+        color: "#0072b2",
+    },
+    Place {
+        label: "right hand",
+        names: &["righthand", "rhand", "handr", "rightwrist", "rwrist", "wristr"],
+        length: 0.16,
+        color: "#d55e00",
+    },
+    Place { label: "head", names: &["head", "neck"], length: 0.12, color: "#009e73" },
+    Place { label: "hips", names: &["hips", "hip", "pelvis", "root"], length: 0.2, color: "#b0488f" },
+];
+
+/// Keys a second: the second differences of captured motion are noise above.
+const KEYS: f64 = 30.0;
+
+/// Samples between two keys.
+const FINE: usize = 4;
+
+/// A clip is shown up to this time, in seconds.
+const LONGEST: f64 = 600.0;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let path = arguments.next().unwrap_or_else(|| concat!(env!("CARGO_MANIFEST_DIR"), "/examples/data/jumps.bvh").into());
+    let scale = match arguments.next() {
+        Some(text) => metres(&text)?,
+        None => 1.0,
+    };
+    let text = fs::read_to_string(&path).map_err(|error| format!("{path}: {error}"))?;
+    let bvh = Bvh::read(&text).map_err(|error| format!("{path}: {error}"))?;
+    let start = Instant::now();
+
+    // Frames, thinned to keys that are a whole number of frames apart.
+    let rate = 1.0 / bvh.frame_time;
+    let every = (rate / KEYS).round().max(1.0) as usize;
+    let count = (bvh.frames() - 1) / every + 1;
+    let seconds = ((count - 1) * every) as f64 / rate;
+    if count < 2 {
+        return Err(format!("{path}: {} frames are too short a clip; give one of a second or more", bvh.frames()).into());
+    }
+    if LONGEST < seconds {
+        return Err(format!("{path}: a clip of {seconds:.0} s; cut it to {LONGEST} s or less").into());
+    }
+    let times: Vec<f64> = (0..=(count - 1) * FINE).map(|k| (k * every) as f64 / (rate * FINE as f64)).collect();
+    let poses: Vec<Vec<[f64; 3]>> = (0..count).map(|key| bvh.pose(key * every)).collect();
+    let height = extent(&poses[0]) * scale;
+    if !(0.3 < height && height < 3.5) {
+        return Err(
+            format!("{path}: somebody {height:.2} m tall; give the metres in a unit after the path, as 0.01 or 0.0564").into()
+        );
+    }
+
+    let hips = find(&bvh, PLACES[3].names).unwrap_or(0);
+    let walk: Vec<[f64; 3]> = poses.iter().map(|pose| pose[hips]).collect();
+    let plane = Plane::fit(&walk, scale);
+    let poses: Vec<Vec<[f64; 3]>> = poses.iter().map(|pose| pose.iter().map(|&at| plane.view(at)).collect()).collect();
+
+    let names: Vec<&str> = bvh.joints.iter().filter(|joint| !joint.end).map(|joint| joint.name.as_str()).collect();
+    let places: Vec<_> = PLACES.iter().filter_map(|place| find(&bvh, place.names).map(|joint| (place, joint))).collect();
+    if places.is_empty() {
+        return Err(format!("{path}: no hand, head or hips among the joints {}; rename one", names.join(", ")).into());
+    }
+
+    // Hidden where stderr is no terminal.
+    let bar = ProgressBar::new(3 * places.len() as u64);
+    bar.set_style(ProgressStyle::with_template("{bar:40} {pos}/{len} {msg}")?);
+    let mut pendulums = Vec::new();
+    for &(&place, joint) in &places {
+        bar.set_message(place.label);
+        let keys: Vec<_> = poses.iter().map(|pose| [pose[joint][0], pose[joint][1]]).collect();
+        pendulums.push(Hung::swing(place, joint, &keys, rate / every as f64, &times, &bar)?);
+    }
+    bar.finish_and_clear();
+    let elapsed = start.elapsed().as_secs_f64();
+
+    let target = Path::new(env!("CARGO_MANIFEST_DIR")).join("target");
+    fs::create_dir_all(&target)?;
+    fs::write(target.join("mocap.csv"), sheet::values(&times, &pendulums))?;
+    let worn = pendulums.iter().map(|hung| Worn {
+        label: hung.place.label,
+        color: hung.place.color,
+        joint: hung.joint,
+        outline: &hung.outline,
+        pivot: &hung.pivot,
+        spline: &hung.spline.angles,
+        linear: &hung.linear.angles,
+    });
+    let picture = Picture {
+        limbs: limbs(&bvh.joints),
+        head: find(&bvh, PLACES[2].names),
+        poses: &poses,
+        worn: worn.collect(),
+        seconds,
+        fine: FINE,
+    };
+    fs::write(target.join("mocap.svg"), picture.draw())?;
+
+    println!("{}", sheet::swings(&pendulums));
+    println!("joints: {} ({})", names.len(), names.join(", "));
+    let labels: Vec<&str> = places.iter().map(|(place, _)| place.label).collect();
+    println!("pendulums: {} ({}), written to target/mocap.csv and target/mocap.svg", labels.len(), labels.join(", "));
+    println!("simulated: {seconds:.2} s, {} swings, in {:.1} ms", 3 * pendulums.len(), 1e3 * elapsed);
+    println!("largest difference to the hand-written equation: {}", sheet::difference(&pendulums));
+    Ok(())
+}
+
+fn metres(text: &str) -> Result<f64, String> {
+    let value: Option<f64> = text.parse().ok();
+    value
+        .filter(|&value| 0.0 < value && value.is_finite())
+        .ok_or_else(|| format!("`{text}` metres in a unit of the file; give a positive number, as 0.01 for centimetres"))
+}
+
+/// The height of a pose.
+fn extent(pose: &[[f64; 3]]) -> f64 {
+    let heights = || pose.iter().map(|at| at[1]);
+    heights().fold(f64::NEG_INFINITY, f64::max) - heights().fold(f64::INFINITY, f64::min)
+}

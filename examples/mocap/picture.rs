@@ -1,0 +1,393 @@
+//! An animated picture of a skeleton and what swings on it: SVG whose `animate` elements list the values of all keys.
+
+use std::fmt::{self, Write};
+
+/// The size of the picture, in its own units.
+const SIZE: [f64; 2] = [1200.0, 700.0];
+/// The stage: left, right, the ground and the top.
+const STAGE: [f64; 4] = [50.0, 1150.0, 490.0, 72.0];
+/// The chart of the angles: left, right, bottom, top.
+const CHART: [f64; 4] = [76.0, 1150.0, 668.0, 556.0];
+/// How long the trails last, in seconds, from the faintest on.
+const TRAILS: [f64; 3] = [0.9, 0.5, 0.22];
+/// The thickness of a limb and of what is shorter than a quarter metre, in metres.
+const THICK: [f64; 2] = [0.075, 0.03];
+
+/// What is drawn.
+pub(crate) struct Picture<'a> {
+    /// The limbs, as joints from the trunk out.
+    pub(crate) limbs: Vec<Vec<usize>>,
+    /// The joint of the head.
+    pub(crate) head: Option<usize>,
+    /// The joints at the keys: along, up and towards the eye, in metres.
+    pub(crate) poses: &'a [Vec<[f64; 3]>],
+    /// What hangs there.
+    pub(crate) worn: Vec<Worn<'a>>,
+    /// The time of the last key.
+    pub(crate) seconds: f64,
+    /// Samples of the swings between two keys.
+    pub(crate) fine: usize,
+}
+
+/// A pendulum.
+pub(crate) struct Worn<'a> {
+    pub(crate) label: &'a str,
+    pub(crate) color: &'a str,
+    pub(crate) joint: usize,
+    /// In metres from the pivot, at rest.
+    pub(crate) outline: &'a [[f64; 2]],
+    pub(crate) pivot: &'a [[f64; 2]],
+    /// The angle on the spline and on the linear keys, in radians.
+    pub(crate) spline: &'a [f64],
+    pub(crate) linear: &'a [f64],
+}
+
+/// From metres to the picture.
+#[derive(Clone, Copy)]
+struct Frame {
+    scale: f64,
+    left: f64,
+    ground: f64,
+}
+
+impl Frame {
+    fn at(self, along: f64, up: f64) -> [f64; 2] {
+        [STAGE[0] + (along - self.left) * self.scale, STAGE[2] - (up - self.ground) * self.scale]
+    }
+}
+
+impl Picture<'_> {
+    /// The text of the file.
+    pub(crate) fn draw(&self) -> String {
+        let mut svg = String::new();
+        // Writing to a string does not fail.
+        let _ = self.write(&mut svg);
+        svg
+    }
+
+    fn write(&self, svg: &mut String) -> fmt::Result {
+        let frame = self.frame();
+        writeln!(
+            svg,
+            r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {} {}" font-family="Helvetica, Arial, sans-serif" font-size="14" fill="#333">
+<title>Feathers on captured motion</title>
+<rect width="100%" height="100%" fill="#fff"/>
+<text x="50" y="38" font-size="23" font-weight="bold" fill="#222">Feathers on captured motion</text>
+<text x="50" y="59" fill="#666">four compound pendulums, driven by the joints of somebody who jumps: I θ̈ = −m ⟨ẍ + g e_y, (e^(iθ) c)⊥⟩ − c θ̇</text>"##,
+            SIZE[0], SIZE[1]
+        )?;
+        self.ground(svg, frame)?;
+        for worn in &self.worn {
+            self.trail(svg, frame, worn)?;
+        }
+        self.body(svg, frame)?;
+        self.legend(svg)?;
+        self.clock(svg)?;
+        self.chart(svg)?;
+        writeln!(svg, "</svg>")
+    }
+
+    /// The whole path, as large as the stage allows.
+    fn frame(&self) -> Frame {
+        let points = || self.poses.iter().flatten();
+        let least = |axis: usize| points().map(|at| at[axis]).fold(f64::INFINITY, f64::min);
+        let most = |axis: usize| points().map(|at| at[axis]).fold(f64::NEG_INFINITY, f64::max);
+        let margin = 0.25;
+        let (width, height) = (most(0) - least(0) + 2.0 * margin, most(1) - least(1) + 0.15);
+        let scale = f64::min((STAGE[1] - STAGE[0]) / width, (STAGE[2] - STAGE[3]) / height);
+        let spare = (STAGE[1] - STAGE[0]) / scale - width;
+        Frame { scale, left: least(0) - margin - spare / 2.0, ground: least(1) - 0.02 }
+    }
+
+    /// The ground with a tick at each metre.
+    fn ground(&self, svg: &mut String, frame: Frame) -> fmt::Result {
+        let [left, right, ground, _] = STAGE;
+        writeln!(svg, r##"<rect x="{left}" y="{ground}" width="{}" height="9" fill="#f0f0f0"/>"##, right - left)?;
+        writeln!(svg, r##"<path d="M{left} {ground}H{right}" stroke="#888" stroke-width="1.5"/>"##)?;
+        let end = frame.left + (right - left) / frame.scale;
+        for metre in frame.left.ceil() as i64..=end.floor() as i64 {
+            let [x, y] = frame.at(metre as f64, frame.ground);
+            writeln!(
+                svg,
+                r##"<path d="M{x:.1} {y}v9" stroke="#888" stroke-width="1.5"/><text x="{x:.1}" y="{}" text-anchor="middle" fill="#666" font-size="13">{metre} m</text>"##,
+                y + 25.0
+            )?;
+        }
+        Ok(())
+    }
+
+    /// The limbs from the farthest to the nearest, each followed by what hangs on it.
+    fn body(&self, svg: &mut String, frame: Frame) -> fmt::Result {
+        let count = self.poses.len() as f64;
+        let depth = |joint: usize| self.poses.iter().map(|pose| pose[joint][2]).sum::<f64>() / count;
+        let end = |limb: &[usize]| limb[limb.len() - 1];
+        let mut limbs: Vec<&Vec<usize>> = self.limbs.iter().collect();
+        limbs.sort_by(|a, b| depth(end(a)).total_cmp(&depth(end(b))));
+        let (first, last) =
+            (limbs.first().map_or(0.0, |limb| depth(end(limb))), limbs.last().map_or(0.0, |limb| depth(end(limb))));
+        let mut left: Vec<&Worn<'_>> = self.worn.iter().collect();
+        left.sort_by(|a, b| depth(a.joint).total_cmp(&depth(b.joint)));
+        let mut left = left.into_iter().peekable();
+        for limb in limbs {
+            // What hangs farther away than the limb is behind it.
+            while let Some(worn) = left.next_if(|worn| depth(worn.joint) < depth(end(limb)) - 0.02) {
+                self.feather(svg, frame, worn)?;
+            }
+            self.limb(svg, frame, limb, (depth(end(limb)) - first) / (last - first).max(1e-9))?;
+        }
+        left.try_for_each(|worn| self.feather(svg, frame, worn))
+    }
+
+    /// A round-capped line; `near` is 0 for the farthest and 1 for the nearest limb.
+    fn limb(&self, svg: &mut String, frame: Frame, limb: &[usize], near: f64) -> fmt::Result {
+        let first = &self.poses[0];
+        let apart = |a: usize, b: usize| {
+            let square: f64 = (0..3).map(|axis| (first[a][axis] - first[b][axis]).powi(2)).sum();
+            square.sqrt()
+        };
+        // Joints at the same place are drawn once.
+        let mut joints: Vec<usize> = limb.to_vec();
+        joints.dedup_by(|a, b| apart(*a, *b) < 1e-6);
+        let length: f64 = joints.windows(2).map(|pair| apart(pair[0], pair[1])).sum();
+        if joints.len() < 2 {
+            return Ok(());
+        }
+        let shade = |from: f64, to: f64| (from + (to - from) * near) as u8;
+        let color = format!("#{:02x}{:02x}{:02x}", shade(186.0, 62.0), shade(194.0, 72.0), shade(206.0, 92.0));
+        let thick = if length < 0.25 { THICK[1] } else { THICK[0] };
+        write!(
+            svg,
+            r#"<polyline fill="none" stroke="{color}" stroke-width="{:.1}" stroke-linecap="round" stroke-linejoin="round">"#,
+            thick * frame.scale
+        )?;
+        self.animate(svg, "points", |key, value| {
+            joints.iter().try_for_each(|&joint| {
+                let [x, y] = frame.at(self.poses[key][joint][0], self.poses[key][joint][1]);
+                write!(value, "{x:.1},{y:.1} ")
+            })
+        })?;
+        writeln!(svg, "</polyline>")?;
+        if let Some(head) = self.head.filter(|head| joints[1..].contains(head)) {
+            let top = joints[joints.len() - 1];
+            write!(svg, r#"<circle r="{:.1}" fill="{color}">"#, 0.1 * frame.scale)?;
+            let middle = |key: usize| {
+                let [a, b] = [self.poses[key][head], self.poses[key][top]];
+                frame.at((a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0)
+            };
+            self.animate(svg, "cx", |key, value| write!(value, "{:.1}", middle(key)[0]))?;
+            self.animate(svg, "cy", |key, value| write!(value, "{:.1}", middle(key)[1]))?;
+            writeln!(svg, "</circle>")?;
+        }
+        Ok(())
+    }
+
+    /// A feather on its string, turned about its pivot.
+    fn feather(&self, svg: &mut String, frame: Frame, worn: &Worn<'_>) -> fmt::Result {
+        let color = worn.color;
+        write!(svg, "<g>")?;
+        self.transform(svg, "translate", |key, value| {
+            let [x, y] = frame.at(worn.pivot[key * self.fine][0], worn.pivot[key * self.fine][1]);
+            write!(value, "{x:.1} {y:.1}")
+        })?;
+        write!(svg, "<g>")?;
+        self.transform(svg, "rotate", |key, value| write!(value, "{:.1}", -worn.spline[key * self.fine].to_degrees()))?;
+        write!(svg, r##"<path fill="{color}" fill-opacity=".88" stroke="#fff" stroke-width="1" stroke-linejoin="round" d=""##)?;
+        for (index, [x, y]) in worn.outline.iter().enumerate() {
+            let letter = if index == 0 { 'M' } else { 'L' };
+            write!(svg, "{letter}{:.1} {:.1}", x * frame.scale, -y * frame.scale)?;
+        }
+        let shaft = lowest(worn.outline) * frame.scale;
+        writeln!(
+            svg,
+            r##"z"/><path d="M0 0V{:.1}" stroke="#fff" stroke-opacity=".7" stroke-width="1.2"/></g><circle r="3" fill="#fff" stroke="{color}" stroke-width="1.6"/></g>"##,
+            -shaft * 0.93
+        )
+    }
+
+    /// The way of a tip: all of it faintly, and the last moments.
+    fn trail(&self, svg: &mut String, frame: Frame, worn: &Worn<'_>) -> fmt::Result {
+        let length = -lowest(worn.outline);
+        let tips: Vec<[f64; 2]> = worn
+            .pivot
+            .iter()
+            .zip(worn.spline)
+            .map(|(&[x, y], &angle)| {
+                let (sin, cos) = pendulum_runtime::real::Real::sin_cos(angle);
+                frame.at(x + length * sin, y - length * cos)
+            })
+            .collect();
+        let mut reached = vec![0.0];
+        let mut path = String::new();
+        for (index, [x, y]) in tips.iter().enumerate() {
+            if 0 < index {
+                let [a, b] = tips[index - 1];
+                reached.push(reached[index - 1] + ((x - a) * (x - a) + (y - b) * (y - b)).sqrt());
+            }
+            write!(path, "{}{x:.1} {y:.1}", if index == 0 { 'M' } else { 'L' })?;
+        }
+        let (color, total) = (worn.color, reached[reached.len() - 1].max(1.0));
+        let id = worn.label.replace(' ', "-");
+        writeln!(
+            svg,
+            r#"<path id="{id}" d="{path}" pathLength="{total:.1}" fill="none" stroke="{color}" stroke-linecap="butt" stroke-opacity=".1"/>"#
+        )?;
+        let rate = (tips.len() - 1) as f64 / self.seconds;
+        for (step, lasting) in TRAILS.iter().enumerate() {
+            let behind = (lasting * rate) as usize;
+            write!(
+                svg,
+                r##"<path d="{path}" pathLength="{total:.1}" fill="none" stroke="{color}" stroke-width="{:.1}" stroke-opacity="{}">"##,
+                1.4 + 0.8 * step as f64,
+                0.22 + 0.06 * step as f64
+            )?;
+            self.animate(svg, "stroke-dasharray", |key, value| {
+                let now = key * self.fine;
+                let from = reached[now.saturating_sub(behind)];
+                write!(value, "0 {from:.1} {:.1} {:.0}", reached[now] - from, total + 9.0)
+            })?;
+            writeln!(svg, "</path>")?;
+        }
+        Ok(())
+    }
+
+    fn legend(&self, svg: &mut String) -> fmt::Result {
+        let mut x = CHART[0];
+        let y = CHART[3] - 16.0;
+        write!(svg, r##"<text x="50" y="{y}" fill="#222" font-weight="bold">angles</text>"##)?;
+        x += 40.0;
+        for worn in &self.worn {
+            let length = -lowest(worn.outline) * 100.0;
+            writeln!(
+                svg,
+                r##"<rect x="{x}" y="{}" width="16" height="10" rx="3" fill="{}"/><text x="{}" y="{y}">{}, {length:.0} cm</text>"##,
+                y - 9.5,
+                worn.color,
+                x + 22.0,
+                worn.label
+            )?;
+            x += 160.0;
+        }
+        writeln!(
+            svg,
+            r##"<path d="M{x} {0}h26" stroke="#555" stroke-width="1.6"/><text x="{1}" y="{y}">spline</text><path d="M{2} {0}h26" stroke="#555" stroke-width="1.6" stroke-dasharray="2 3"/><text x="{3}" y="{y}">linear keys</text>"##,
+            y - 4.5,
+            x + 32.0,
+            x + 96.0,
+            x + 128.0
+        )
+    }
+
+    /// Columns of digits that move behind a window.
+    fn clock(&self, svg: &mut String) -> fmt::Result {
+        let tenths = (self.seconds * 10.0).ceil().max(1.0) as usize;
+        let (right, y, line) = (1150.0, 38.0, 40.0);
+        writeln!(
+            svg,
+            r##"<clipPath id="window"><rect x="{}" y="14" width="200" height="32"/></clipPath>
+<g clip-path="url(#window)" font-size="23" font-weight="bold" fill="#222"><text x="{right}" y="{y}" text-anchor="end">s</text><text x="{}" y="{y}" text-anchor="end">.</text>"##,
+            right - 180.0,
+            right - 32.0
+        )?;
+        let columns: [(f64, &dyn Fn(usize) -> usize, usize); 2] =
+            [(right - 19.0, &|tenth| tenth % 10, 9), (right - 38.0, &|tenth| tenth / 10, (tenths - 1) / 10)];
+        for (x, digit, last) in columns {
+            write!(svg, r#"<g text-anchor="end">"#)?;
+            for value in 0..=last {
+                write!(svg, r#"<text x="{x}" y="{}">{value}</text>"#, y + line * value as f64)?;
+            }
+            write!(
+                svg,
+                r#"<animateTransform attributeName="transform" type="translate" calcMode="discrete" {} values=""#,
+                self.timing()
+            )?;
+            for tenth in 0..tenths {
+                write!(svg, "0 {};", -line * digit(tenth) as f64)?;
+            }
+            svg.pop();
+            writeln!(svg, r#""/></g>"#)?;
+        }
+        writeln!(svg, "</g>")
+    }
+
+    /// The angles over time, and where the picture is.
+    fn chart(&self, svg: &mut String) -> fmt::Result {
+        let [left, right, bottom, top] = CHART;
+        let degrees = || self.worn.iter().flat_map(|worn| worn.spline.iter().chain(worn.linear)).map(|angle| angle.to_degrees());
+        let most = degrees().fold(30.0, |peak: f64, angle| peak.max(angle.abs()));
+        let step =
+            [15.0, 30.0, 45.0, 90.0, 180.0].into_iter().find(|step| most <= 2.2 * step).unwrap_or(360.0 * (most / 720.0).ceil());
+        let middle = (top + bottom) / 2.0;
+        let y = |angle: f64| middle - angle / most * (bottom - top) / 2.0;
+        let x = |time: f64| left + time / self.seconds * (right - left);
+        let lines = (most / step).floor() as i64;
+        for line in -lines..=lines {
+            let angle = line as f64 * step;
+            writeln!(
+                svg,
+                r##"<path d="M{left} {0:.1}H{right}" stroke="{1}"/><text x="{2}" y="{3:.1}" text-anchor="end" font-size="12" fill="#666">{angle:.0}°</text>"##,
+                y(angle),
+                if line == 0 { "#bbb" } else { "#e6e6e6" },
+                left - 6.0,
+                y(angle) + 4.0
+            )?;
+        }
+        let every = (self.seconds / 12.0).ceil().max(1.0) as usize;
+        for second in (0..=self.seconds.floor() as usize).step_by(every) {
+            writeln!(
+                svg,
+                r##"<path d="M{0:.1} {bottom}v5" stroke="#888"/><text x="{0:.1}" y="{1}" text-anchor="middle" font-size="12" fill="#666">{second} s</text>"##,
+                x(second as f64),
+                bottom + 19.0
+            )?;
+        }
+        for worn in &self.worn {
+            for (angles, style) in
+                [(worn.spline, r#"stroke-width="1.6""#), (worn.linear, r#"stroke-width="1.3" stroke-dasharray="2 3""#)]
+            {
+                write!(svg, r#"<polyline fill="none" stroke="{}" {style} stroke-linejoin="round" points=""#, worn.color)?;
+                for (index, angle) in angles.iter().enumerate().step_by(self.fine.div_ceil(2)) {
+                    let time = self.seconds * index as f64 / (angles.len() - 1) as f64;
+                    write!(svg, "{:.1},{:.1} ", x(time), y(angle.to_degrees()))?;
+                }
+                writeln!(svg, r#""/>"#)?;
+            }
+        }
+        writeln!(
+            svg,
+            r##"<path d="M{left} {}V{bottom}" stroke="#222" stroke-width="1.2"><animateTransform attributeName="transform" type="translate" {} values="0 0;{} 0"/></path>"##,
+            top - 4.0,
+            self.timing(),
+            right - left
+        )
+    }
+
+    fn timing(&self) -> String {
+        format!(r#"dur="{:.4}s" repeatCount="indefinite""#, self.seconds)
+    }
+
+    fn animate(&self, svg: &mut String, name: &str, value: impl FnMut(usize, &mut String) -> fmt::Result) -> fmt::Result {
+        write!(svg, r#"<animate attributeName="{name}" {} values=""#, self.timing())?;
+        self.values(svg, value)
+    }
+
+    fn transform(&self, svg: &mut String, kind: &str, value: impl FnMut(usize, &mut String) -> fmt::Result) -> fmt::Result {
+        write!(svg, r#"<animateTransform attributeName="transform" type="{kind}" {} values=""#, self.timing())?;
+        self.values(svg, value)
+    }
+
+    /// One value a key.
+    fn values(&self, svg: &mut String, mut value: impl FnMut(usize, &mut String) -> fmt::Result) -> fmt::Result {
+        for key in 0..self.poses.len() {
+            if 0 < key {
+                svg.push(';');
+            }
+            value(key, svg)?;
+        }
+        write!(svg, r#""/>"#)
+    }
+}
+
+/// The lowest point of an outline.
+fn lowest(outline: &[[f64; 2]]) -> f64 {
+    outline.iter().map(|point| point[1]).fold(0.0, f64::min)
+}

@@ -1,0 +1,318 @@
+//! Vectors, complex numbers and families to scalars: every expression of a block becomes nodes of one graph.
+//!
+//! A plane vector is a complex number; `Value::Bad` stands for what has been reported, so that one mistake gives one message.
+
+mod body;
+mod term;
+mod value;
+
+use crate::ast::{Binder, Expr, ForceIndex, Role};
+use crate::check::{self, Model};
+use crate::diff;
+use crate::error::{Errors, Range};
+use crate::expr::{Graph, Id, Symbol};
+use crate::name;
+use crate::number::Rational;
+use std::collections::{BTreeMap, BTreeSet};
+use value::Value;
+
+/// More evaluations than this are refused: sums within sums would never end.
+const LIMIT: usize = 2_000_000;
+
+/// The scalars of a block.
+#[derive(Debug, Default)]
+pub(crate) struct Energies {
+    pub(crate) kinetic: Option<Id>,
+    pub(crate) potential: Option<Id>,
+    pub(crate) lagrangian: Option<Id>,
+    pub(crate) dissipation: Option<Id>,
+    /// One generalized force for each coordinate.
+    pub(crate) forces: Vec<Id>,
+    /// The default of each parameter that has one.
+    pub(crate) defaults: Vec<Option<Id>>,
+    /// The parameters of two or three components that are used by their indices alone: families, not vectors.
+    pub(crate) families: BTreeSet<usize>,
+}
+
+impl Energies {
+    /// Every expression in it.
+    pub(crate) fn roots(&mut self) -> Vec<&mut Id> {
+        let single = [&mut self.kinetic, &mut self.potential, &mut self.lagrangian, &mut self.dissipation];
+        let single = single.into_iter().flatten();
+        single.chain(&mut self.forces).chain(self.defaults.iter_mut().flatten()).collect()
+    }
+}
+
+/// Lowers all energies of a block.
+pub(crate) fn energies(model: &Model, graph: &mut Graph, errors: &mut Errors) -> Energies {
+    let mut lower = Lower {
+        model,
+        graph,
+        errors,
+        scope: Vec::new(),
+        indices: Vec::new(),
+        ranges: Vec::new(),
+        instances: BTreeMap::new(),
+        open: Vec::new(),
+        indexed: BTreeSet::new(),
+        whole: BTreeSet::new(),
+        work: 0,
+        integrals: 0,
+    };
+    lower.block()
+}
+
+/// dx/dt along any motion, by the chain rule through coordinates, driven inputs and time.
+pub(crate) fn total_derivative(graph: &mut Graph, id: Id) -> Id {
+    let mut terms = Vec::new();
+    for symbol in graph.symbols(&[id]) {
+        let rate = match symbol {
+            Symbol::Time => Graph::ONE,
+            Symbol::Coordinate(index) => graph.symbol(Symbol::Velocity(index)),
+            Symbol::Input { input, component, order } if order < 2 => {
+                graph.symbol(Symbol::Input { input, component, order: order + 1 })
+            }
+            _ => continue,
+        };
+        let partial = diff::derivative(graph, id, symbol);
+        terms.push((graph.mul(partial, rate), Rational::ONE));
+    }
+    graph.sum(&terms)
+}
+
+struct Lower<'m, 'a, 'g, 'e> {
+    model: &'m Model<'a>,
+    graph: &'g mut Graph,
+    errors: &'e mut Errors,
+    /// The arguments of the functions that are open.
+    scope: Vec<(String, Value)>,
+    /// The indices that are bound.
+    indices: Vec<(String, i64)>,
+    /// The end of the range of each of them.
+    ranges: Vec<usize>,
+    /// The definitions that are done, by their index.
+    instances: BTreeMap<(usize, Option<i64>), Value>,
+    /// The definitions that are being evaluated.
+    open: Vec<(usize, Option<i64>)>,
+    /// The parameters that are used by their indices, and those that are used whole.
+    indexed: BTreeSet<usize>,
+    whole: BTreeSet<usize>,
+    work: usize,
+    /// The number of integrals that are open.
+    integrals: usize,
+}
+
+impl Lower<'_, '_, '_, '_> {
+    fn block(&mut self) -> Energies {
+        let mut energies = Energies::default();
+        for quantity in &self.model.parameters {
+            let default = quantity.default.filter(|_| quantity.length.is_none()).and_then(|default| self.scalar(default));
+            energies.defaults.push(default);
+        }
+        for (index, definition) in self.model.lets.iter().enumerate() {
+            if definition.arguments.is_some() {
+                continue;
+            }
+            match &definition.index {
+                None => {
+                    self.definition(index, None, definition.expr.range);
+                }
+                Some(binder) => {
+                    for k in self.range(binder) {
+                        self.definition(index, Some(k), definition.expr.range);
+                    }
+                }
+            }
+        }
+        for &(role, expr) in &self.model.energies {
+            let Some(value) = self.scalar(expr) else { continue };
+            let slot = match role {
+                Role::Kinetic => &mut energies.kinetic,
+                Role::Potential => &mut energies.potential,
+                Role::Lagrangian => &mut energies.lagrangian,
+                Role::Dissipation => &mut energies.dissipation,
+            };
+            *slot = Some(match *slot {
+                Some(sum) => self.graph.add(sum, value),
+                None => value,
+            });
+        }
+        self.forces(&mut energies);
+        energies.families = self.indexed.difference(&self.whole).copied().collect();
+        energies
+    }
+
+    fn forces(&mut self, energies: &mut Energies) {
+        let count = self.model.coordinates.iter().map(check::Quantity::count).sum();
+        energies.forces = vec![Graph::ZERO; count];
+        for force in &self.model.forces {
+            let coordinate = &self.model.coordinates[force.coordinate];
+            let members: Vec<(Option<&Binder>, i64)> = match (force.index, coordinate.length) {
+                (None, None) => vec![(None, 0)],
+                (None, Some(_)) => {
+                    let name = force.name;
+                    self.errors.at(
+                        name.span(),
+                        format!("`{name}` is a family; write `{name}[k]`, or `{name}[k in 0..{}]` for all", coordinate.count()),
+                    );
+                    continue;
+                }
+                (Some(_), None) => {
+                    self.errors.at(force.name.span(), format!("`{}` is no family; write it without an index", force.name));
+                    continue;
+                }
+                (Some(ForceIndex::One(index)), Some(length)) => match self.index(index, length, &force.name.to_string()) {
+                    Some(k) => vec![(None, k)],
+                    None => continue,
+                },
+                (Some(ForceIndex::Each(binder)), Some(length)) => {
+                    let range = self.range(binder);
+                    match range.clone().find(|k| !usize::try_from(*k).is_ok_and(|k| k < length)) {
+                        Some(k) => {
+                            self.errors.at(binder.high.range, outside(&force.name.to_string(), k, length));
+                            continue;
+                        }
+                        None => range.map(|k| (Some(binder), k)).collect(),
+                    }
+                }
+            };
+            for (binder, k) in members {
+                if let Some(binder) = binder {
+                    self.bind(binder, k);
+                }
+                let value = self.scalar(force.expr);
+                if binder.is_some() {
+                    self.unbind();
+                }
+                let slot = coordinate.first + usize::try_from(k).unwrap_or(0);
+                if let Some(value) = value {
+                    energies.forces[slot] = self.graph.add(energies.forces[slot], value);
+                }
+            }
+        }
+    }
+
+    /// One instance of a definition.
+    fn definition(&mut self, index: usize, k: Option<i64>, range: Range) -> Value {
+        if let Some(value) = self.instances.get(&(index, k)) {
+            return value.clone();
+        }
+        let definition = self.model.lets[index];
+        if self.open.contains(&(index, k)) || 512 < self.open.len() {
+            self.errors.once(
+                definition.expr.source,
+                range,
+                format!("`{}` is defined by itself; break the circle", definition.name),
+            );
+            return Value::Bad;
+        }
+        self.open.push((index, k));
+        let indices = std::mem::take(&mut self.indices);
+        let ranges = std::mem::take(&mut self.ranges);
+        let scope = std::mem::take(&mut self.scope);
+        if let (Some(k), Some(binder)) = (k, &definition.index) {
+            self.bind(binder, k);
+        }
+        let value = self.expr(&definition.expr);
+        self.indices = indices;
+        self.ranges = ranges;
+        self.scope = scope;
+        self.open.pop();
+        self.instances.insert((index, k), value.clone());
+        value
+    }
+
+    /// A function defined by `let`, applied.
+    fn apply(&mut self, index: usize, arguments: Vec<Value>, range: Range) -> Value {
+        let definition = self.model.lets[index];
+        let names = definition.arguments.as_deref().unwrap_or_default();
+        if names.len() != arguments.len() {
+            return Value::Bad;
+        }
+        if self.open.iter().any(|&(other, _)| other == index) {
+            self.errors.once(
+                definition.expr.source,
+                range,
+                format!("`{}` is defined by itself; break the circle", definition.name),
+            );
+            return Value::Bad;
+        }
+        self.open.push((index, None));
+        let indices = std::mem::take(&mut self.indices);
+        let ranges = std::mem::take(&mut self.ranges);
+        let bound = names.iter().map(|name| name::read(&name.to_string()).base).zip(arguments).collect();
+        let scope = std::mem::replace(&mut self.scope, bound);
+        let value = self.expr(&definition.expr);
+        self.scope = scope;
+        self.indices = indices;
+        self.ranges = ranges;
+        self.open.pop();
+        value
+    }
+
+    /// The whole numbers of a range; a bad or endless one is reported and empty.
+    fn range(&mut self, binder: &Binder) -> std::ops::Range<i64> {
+        let mut end = |expr: &Expr, indices: &[(String, i64)]| match check::integer(expr, indices) {
+            Ok(value) => Some(value),
+            Err(range) => {
+                self.errors.once(
+                    expr.source,
+                    range,
+                    "the end of a range is a whole number known while compiling; write numbers and indices only",
+                );
+                None
+            }
+        };
+        let (Some(low), Some(high)) = (end(&binder.low, &self.indices), end(&binder.high, &self.indices)) else { return 0..0 };
+        let high = if binder.inclusive { high.saturating_add(1) } else { high };
+        if 65536 < high.saturating_sub(low) {
+            self.errors.once(
+                binder.high.source,
+                binder.high.range,
+                "this range has more than 65536 members; write a shorter one",
+            );
+            return 0..0;
+        }
+        low..high
+    }
+
+    fn index(&mut self, expr: &Expr, length: usize, name: &str) -> Option<i64> {
+        match check::integer(expr, &self.indices) {
+            Ok(k) if (0..length as i64).contains(&k) => Some(k),
+            Ok(k) => {
+                // A range that is too long is one mistake, however often its index is used.
+                let text = check::text(expr);
+                let bound = self.indices.iter().rposition(|(name, _)| *name == name::read(&text).base);
+                let source = bound.map_or(expr.source, |place| self.ranges[place]);
+                self.errors.once(source, expr.range, outside(name, k, length));
+                None
+            }
+            Err(range) => {
+                self.errors.once(
+                    expr.source,
+                    range,
+                    "an index is a whole number known while compiling; write numbers and indices only",
+                );
+                None
+            }
+        }
+    }
+
+    fn bind(&mut self, binder: &Binder, k: i64) {
+        self.indices.push((plain(binder), k));
+        self.ranges.push(binder.high.source);
+    }
+
+    fn unbind(&mut self) {
+        self.indices.pop();
+        self.ranges.pop();
+    }
+}
+
+fn plain(binder: &Binder) -> String {
+    name::read(&binder.name.to_string()).base
+}
+
+fn outside(name: &str, k: i64, length: usize) -> String {
+    format!("index {k} is out of range; `{name}` has {length} members, `{name}[0]` to `{name}[{}]`", length - 1)
+}

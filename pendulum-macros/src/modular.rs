@@ -1,0 +1,305 @@
+//! Values of expressions in a prime field: an oracle for what is identically zero.
+//!
+//! An expression that vanishes at random points modulo a large prime vanishes (Schwartz 1980, Zippel 1979), and nothing is rounded.
+//! Angles are points of the unit circle of the field, square roots are roots of the field, and every other function is a random
+//! value that depends on its argument's value alone. Points at which a root does not exist are thrown away.
+
+use crate::expr::{Function, Graph, Id, Node, Symbol};
+use crate::number::Rational;
+use std::collections::BTreeMap;
+
+/// 2⁶¹ − 1, which is 3 modulo 4: square roots are powers.
+const PRIME: u64 = (1 << 61) - 1;
+
+/// An element of the field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Residue(u64);
+
+impl Residue {
+    pub(crate) const ZERO: Self = Self(0);
+    pub(crate) const ONE: Self = Self(1);
+
+    pub(crate) fn add(self, other: Self) -> Self {
+        let sum = self.0 + other.0;
+        Self(if PRIME <= sum { sum - PRIME } else { sum })
+    }
+
+    pub(crate) fn negative(self) -> Self {
+        Self(if self.0 == 0 { 0 } else { PRIME - self.0 })
+    }
+
+    pub(crate) fn mul(self, other: Self) -> Self {
+        let product = u128::from(self.0) * u128::from(other.0) % u128::from(PRIME);
+        Self(u64::try_from(product).unwrap_or(0))
+    }
+
+    fn power(self, mut exponent: u64) -> Self {
+        let (mut base, mut result) = (self, Self::ONE);
+        while 0 < exponent {
+            if exponent % 2 == 1 {
+                result = result.mul(base);
+            }
+            base = base.mul(base);
+            exponent /= 2;
+        }
+        result
+    }
+
+    /// The reciprocal; `None` for zero.
+    pub(crate) fn reciprocal(self) -> Option<Self> {
+        (self.0 != 0).then(|| self.power(PRIME - 2))
+    }
+
+    fn root(self) -> Option<Self> {
+        let root = self.power(PRIME.div_ceil(4));
+        (root.mul(root) == self).then_some(root)
+    }
+
+    fn of(value: Rational) -> Option<Self> {
+        let reduce = |number: i128| {
+            let magnitude = u64::try_from(number.unsigned_abs() % u128::from(PRIME)).unwrap_or(0);
+            if number < 0 { Self(magnitude).negative() } else { Self(magnitude) }
+        };
+        Some(reduce(value.numerator()).mul(reduce(value.denominator()).reciprocal()?))
+    }
+
+    /// The fraction of small numbers that this residue is, if there is one (Wang 1981).
+    pub(crate) fn rational(self) -> Option<Rational> {
+        let (mut a, mut b) = (i128::from(PRIME), i128::from(self.0));
+        let (mut s, mut t) = (0i128, 1i128);
+        while 1 << 20 < b {
+            let quotient = a / b;
+            (a, b) = (b, a - quotient * b);
+            (s, t) = (t, s - quotient * t);
+        }
+        if t.abs() < 1 << 20 { Rational::new(b, t) } else { None }
+    }
+}
+
+/// A point of the field for every symbol, made as they are asked for.
+#[derive(Debug)]
+pub(crate) struct Point {
+    seed: u64,
+    /// The common denominator of all angles.
+    denominator: i64,
+}
+
+/// The value of every node that some roots are made of.
+pub(crate) type Values = BTreeMap<Id, Residue>;
+
+impl Point {
+    /// A point for the expressions in `roots`.
+    pub(crate) fn new(graph: &Graph, roots: &[Id], seed: u64) -> Self {
+        let mut denominator = 1i64;
+        for id in graph.reachable(roots) {
+            if let Node::Call(Function::Sin | Function::Cos, argument) = *graph.node(id) {
+                for (_, coefficient) in linear(graph, argument).unwrap_or_default() {
+                    let own = i64::try_from(coefficient.denominator()).unwrap_or(1);
+                    if denominator % own != 0 && denominator.checked_mul(own).is_some_and(|product| product < 1 << 20) {
+                        denominator *= own;
+                    }
+                }
+            }
+        }
+        Self { seed, denominator }
+    }
+
+    /// The values of `roots`; `None` where a root or a reciprocal does not exist.
+    pub(crate) fn values(&self, graph: &Graph, roots: &[Id]) -> Option<Values> {
+        let mut known = Values::new();
+        for id in graph.reachable(roots) {
+            let value = match graph.node(id) {
+                Node::Number(value) => Residue::of(*value)?,
+                Node::Opaque(_) | Node::Pi => self.random(&[u64::from(id.index() as u32), 1]),
+                Node::Symbol(symbol) => self.symbol(*symbol, 2),
+                Node::Sum(terms) => {
+                    let mut sum = Residue::ZERO;
+                    for (term, coefficient) in terms {
+                        sum = sum.add(known[term].mul(Residue::of(*coefficient)?));
+                    }
+                    sum
+                }
+                Node::Product(coefficient, factors) => {
+                    let mut product = Residue::of(*coefficient)?;
+                    for (base, exponent) in factors {
+                        product = product.mul(self.power(known[base], *exponent)?);
+                    }
+                    product
+                }
+                Node::Call(function @ (Function::Sin | Function::Cos), argument) => {
+                    let (cos, sin) = self.circle(graph, *argument, known[argument])?;
+                    if *function == Function::Sin { sin } else { cos }
+                }
+                Node::Call(function, argument) => self.random(&[*function as u64, known[argument].0, 3]),
+                Node::Atan2(a, b) => self.random(&[known[a].0, known[b].0, 4]),
+                Node::Max(a, b) => self.random(&[known[a].0, known[b].0, 5]),
+                Node::Atom(inner) => known[inner],
+            };
+            known.insert(id, value);
+        }
+        Some(known)
+    }
+
+    fn power(&self, base: Residue, exponent: Rational) -> Option<Residue> {
+        let root = match exponent.denominator() {
+            1 => base,
+            2 => base.root()?,
+            other => self.random(&[base.0, u64::try_from(other).ok()?, 6]),
+        };
+        let root = if exponent.is_negative() { root.reciprocal()? } else { root };
+        Some(root.power(u64::try_from(exponent.numerator().unsigned_abs()).ok()?))
+    }
+
+    /// Cosine and sine of an angle: a product of rotations for a linear one, a random rotation otherwise.
+    fn circle(&self, graph: &Graph, argument: Id, value: Residue) -> Option<(Residue, Residue)> {
+        let Some(terms) = linear(graph, argument) else { return self.rotation(&[value.0, 7]) };
+        let mut total = (Residue::ONE, Residue::ZERO);
+        for (base, coefficient) in terms {
+            let steps = coefficient.mul(Rational::whole(self.denominator))?.integer()?;
+            let (cos, sin) = self.rotation(&[base.index() as u64, 8])?;
+            let sin = if steps < 0 { sin.negative() } else { sin };
+            for _ in 0..steps.unsigned_abs().min(1 << 12) {
+                total = (total.0.mul(cos).add(total.1.mul(sin).negative()), total.0.mul(sin).add(total.1.mul(cos)));
+            }
+        }
+        Some(total)
+    }
+
+    /// A random point of the unit circle: ((1 − t²)/(1 + t²), 2t/(1 + t²)).
+    fn rotation(&self, key: &[u64]) -> Option<(Residue, Residue)> {
+        let t = self.random(key);
+        let square = t.mul(t);
+        let scale = square.add(Residue::ONE).reciprocal()?;
+        Some((Residue::ONE.add(square.negative()).mul(scale), t.add(t).mul(scale)))
+    }
+
+    fn symbol(&self, symbol: Symbol, salt: u64) -> Residue {
+        let key = match symbol {
+            Symbol::Parameter(index) => [0, index as u64, 0, 0],
+            Symbol::Time => [1, 0, 0, 0],
+            Symbol::Coordinate(index) => [2, index as u64, 0, 0],
+            Symbol::Velocity(index) => [3, index as u64, 0, 0],
+            Symbol::Input { input, component, order } => [4, input as u64, component as u64, u64::from(order)],
+            Symbol::Momentum(index) => [5, index as u64, 0, 0],
+            Symbol::Moment(first, moment) => [6, first as u64, moment as u64, 0],
+            Symbol::Point(level, component) => [7, level as u64, component as u64, 0],
+        };
+        self.random(&[key[0], key[1], key[2], key[3], salt])
+    }
+
+    /// A residue that depends on the seed and the key alone.
+    fn random(&self, key: &[u64]) -> Residue {
+        let mut state = self.seed;
+        for part in key {
+            // SplitMix64 (Steele, Lea and Flood 2014).
+            state = state.wrapping_add(*part).wrapping_add(0x9e37_79b9_7f4a_7c15);
+            state = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            state = (state ^ (state >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            state ^= state >> 31;
+        }
+        Residue(state % PRIME)
+    }
+}
+
+/// An angle as a rational combination of symbols.
+fn linear(graph: &Graph, argument: Id) -> Option<Vec<(Id, Rational)>> {
+    let symbol = |id: Id| matches!(graph.node(id), Node::Symbol(_) | Node::Pi);
+    match graph.node(argument) {
+        Node::Symbol(_) | Node::Pi => Some(vec![(argument, Rational::ONE)]),
+        Node::Product(coefficient, factors) => match factors.as_slice() {
+            [(base, Rational::ONE)] if symbol(*base) => Some(vec![(*base, *coefficient)]),
+            [(base, Rational::ONE)] => {
+                let terms = linear(graph, *base)?;
+                terms.into_iter().map(|(id, own)| Some((id, own.mul(*coefficient)?))).collect()
+            }
+            _ => None,
+        },
+        Node::Sum(terms) => terms.iter().all(|(id, _)| symbol(*id)).then(|| terms.clone()),
+        _ => None,
+    }
+}
+
+/// A basis of the vectors that all `rows` are orthogonal to, in reduced echelon form.
+pub(crate) fn null_space(mut rows: Vec<Vec<Residue>>, width: usize) -> Vec<Vec<Residue>> {
+    let mut pivots = Vec::new();
+    for column in 0..width {
+        let done = pivots.len();
+        let Some(found) = (done..rows.len()).find(|&row| rows[row][column] != Residue::ZERO) else { continue };
+        rows.swap(done, found);
+        let Some(inverse) = rows[done][column].reciprocal() else { continue };
+        for entry in &mut rows[done] {
+            *entry = entry.mul(inverse);
+        }
+        let pivot = rows[done].clone();
+        for (row, entries) in rows.iter_mut().enumerate() {
+            let factor = entries[column].negative();
+            if row != done && factor != Residue::ZERO {
+                for (entry, own) in entries.iter_mut().zip(&pivot) {
+                    *entry = entry.add(own.mul(factor));
+                }
+            }
+        }
+        pivots.push(column);
+    }
+    let free = (0..width).filter(|column| !pivots.contains(column));
+    free.map(|column| {
+        let mut vector = vec![Residue::ZERO; width];
+        vector[column] = Residue::ONE;
+        for (row, &pivot) in pivots.iter().enumerate() {
+            vector[pivot] = rows[row][column].negative();
+        }
+        vector
+    })
+    .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Point, Residue, null_space};
+    use crate::expr::Graph;
+    use crate::number::Rational;
+    use crate::tests::lowered;
+
+    fn vanishes(expression: &str) -> bool {
+        let mut graph = Graph::new();
+        let id = lowered(&mut graph, expression);
+        let values = (0..64).filter_map(|seed| Point::new(&graph, &[id], seed).values(&graph, &[id]));
+        let mut count = 0;
+        let all = values.inspect(|_| count += 1).all(|values| values[&id] == Residue::ZERO);
+        assert!(0 < count);
+        all
+    }
+
+    #[test]
+    fn what_vanishes_is_found_and_what_does_not_is_not() {
+        assert!(vanishes("(a + b)^2 - a^2 - 2*a*b - b^2"));
+        assert!(vanishes("sin(a + b)*sin(a - b) - sin(a)^2 + sin(b)^2"));
+        assert!(vanishes("sin(a/2)*cos(a/2) - sin(a)/2"));
+        assert!(vanishes("sqrt(a^2 + b^2)*(a - b) - (a^2 - b^2)*sqrt(a^2 + b^2)/(a + b)"));
+        assert!(vanishes("exp(a*(b + 1)) - exp(a*b + a)"));
+        assert!(!vanishes("sin(a + b) - sin(a) - sin(b)"));
+        assert!(!vanishes("(a + b)^3 - a^3 - b^3"));
+    }
+
+    #[test]
+    fn fractions_come_back() {
+        for (top, bottom) in [(1, 2), (-3, 7), (12, 1), (0, 1)] {
+            let value = Rational::new(top, bottom).unwrap();
+            assert_eq!(Residue::of(value).unwrap().rational(), Some(value));
+        }
+    }
+
+    #[test]
+    fn the_null_space_is_orthogonal_to_every_row() {
+        let row = |values: [i64; 4]| values.map(|value| Residue::of(Rational::whole(value)).unwrap()).to_vec();
+        let rows = vec![row([1, 2, 3, 4]), row([2, 4, 6, 8]), row([0, 1, -1, 5])];
+        let basis = null_space(rows.clone(), 4);
+        assert_eq!(basis.len(), 2);
+        for vector in basis {
+            for row in &rows {
+                let product = row.iter().zip(&vector).fold(Residue::ZERO, |sum, (a, b)| sum.add(a.mul(*b)));
+                assert_eq!(product, Residue::ZERO);
+            }
+        }
+    }
+}

@@ -1,0 +1,250 @@
+//! Euler–Lagrange: momenta, mass matrix, forces, accelerations, energy and power from the Lagrangian.
+//!
+//! d/dt ∂L/∂q̇ − ∂L/∂q = Q − ∂R/∂q̇, where d/dt runs through the coordinates, the driven inputs and the time.
+
+use crate::check::{Model, Quantity};
+use crate::collect;
+use crate::diff::derivative;
+use crate::error::Errors;
+use crate::expr::{Contents, Graph, Id, Symbol};
+use crate::jacobian;
+use crate::lower::{Energies, total_derivative};
+use crate::number::Rational;
+use crate::order;
+use crate::schedule;
+use crate::solve;
+use crate::symmetry::{self, Conserved};
+
+/// Jacobians of more operations than this are left to dual numbers: an expansion stays small.
+const LONGEST_JACOBIAN: usize = 4000;
+
+/// The equations of motion and what goes with them: roots in one graph.
+#[derive(Debug, Default)]
+pub(crate) struct Motion {
+    pub(crate) accelerations: Vec<Id>,
+    pub(crate) momenta: Vec<Id>,
+    /// Row by row; symmetric.
+    pub(crate) mass_matrix: Vec<Vec<Id>>,
+    pub(crate) forces: Vec<Id>,
+    pub(crate) momentum_rates: Vec<Id>,
+    /// q̇ from p; `None` if L is not quadratic in the velocities.
+    pub(crate) velocities: Option<Vec<Id>>,
+    pub(crate) energy: Id,
+    pub(crate) power: Id,
+    pub(crate) kinetic: Option<Id>,
+    pub(crate) potential: Option<Id>,
+    /// ∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂parameters, column by column; `None` where they would be too long to write out.
+    pub(crate) jacobians: Option<[Vec<Vec<Id>>; 3]>,
+    pub(crate) cyclic: Vec<usize>,
+    pub(crate) conserved: Vec<Conserved>,
+    pub(crate) autonomous: bool,
+    pub(crate) separable: bool,
+    pub(crate) velocity_free: bool,
+    pub(crate) constant_mass_matrix: bool,
+    pub(crate) nonconservative: bool,
+}
+
+impl Motion {
+    /// Every expression in it.
+    pub(crate) fn roots(&mut self) -> Vec<&mut Id> {
+        let lists = [&mut self.accelerations, &mut self.momenta, &mut self.forces, &mut self.momentum_rates];
+        let single = [Some(&mut self.energy), Some(&mut self.power), self.kinetic.as_mut(), self.potential.as_mut()];
+        let masses = self.mass_matrix.iter_mut().flatten();
+        let velocities = self.velocities.iter_mut().flatten();
+        let conserved = self.conserved.iter_mut().map(|conserved| &mut conserved.value);
+        let jacobians = self.jacobians.iter_mut().flatten().flatten().flatten();
+        lists
+            .into_iter()
+            .flatten()
+            .chain(masses)
+            .chain(velocities)
+            .chain(conserved)
+            .chain(jacobians)
+            .chain(single.into_iter().flatten())
+            .collect()
+    }
+}
+
+impl Default for Id {
+    fn default() -> Self {
+        Graph::ZERO
+    }
+}
+
+/// Derives the equations of motion so that they do not depend on how the energies were written.
+pub(crate) fn canonical(model: &Model, graph: &mut Graph, energies: &mut Energies, errors: &mut Errors) -> Option<Motion> {
+    *graph = order::canonical(graph, &mut energies.roots());
+    let mut motion = derive(model, graph, energies, errors);
+    if !errors.is_empty() {
+        return None;
+    }
+    let mut roots = motion.roots();
+    roots.extend(energies.roots());
+    *graph = order::canonical(graph, &mut roots);
+    Some(motion)
+}
+
+/// The equations of motion; reports directions without kinetic energy.
+fn derive(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Errors) -> Motion {
+    let kinetic = energies.kinetic.map(|id| collected(graph, id));
+    let potential = energies.potential.map(|id| collected(graph, id));
+    let lagrangian = if let Some(lagrangian) = energies.lagrangian {
+        collected(graph, lagrangian)
+    } else {
+        let difference = graph.sub(kinetic.unwrap_or_default(), potential.unwrap_or_default());
+        collected(graph, difference)
+    };
+    let count = energies.forces.len();
+    let dissipation = energies.dissipation.map(|id| collected(graph, id)).unwrap_or_default();
+
+    let velocity: Vec<Id> = (0..count).map(|i| graph.symbol(Symbol::Velocity(i))).collect();
+    let momenta: Vec<Id> = (0..count).map(|i| derivative(graph, lagrangian, Symbol::Velocity(i))).collect();
+    let mut mass_matrix = vec![vec![Graph::ZERO; count]; count];
+    for i in 0..count {
+        for j in 0..=i {
+            let entry = derivative(graph, momenta[i], Symbol::Velocity(j));
+            mass_matrix[i][j] = entry;
+            mass_matrix[j][i] = entry;
+        }
+    }
+    let mut motion = Motion { mass_matrix, ..Motion::default() };
+    no_jerk(model, graph, &momenta, errors);
+    if !solve::regular(model, graph, &motion.mass_matrix, errors) {
+        return motion;
+    }
+
+    let mut power = Vec::new();
+    let mut externals = Vec::new();
+    for i in 0..count {
+        let slope = derivative(graph, lagrangian, Symbol::Coordinate(i));
+        if slope == Graph::ZERO {
+            motion.cyclic.push(i);
+        }
+        let friction = derivative(graph, dissipation, Symbol::Velocity(i));
+        let external = graph.sub(energies.forces[i], friction);
+        externals.push(external);
+        power.push((graph.mul(velocity[i], external), Rational::ONE));
+        let rate = graph.add(slope, external);
+        motion.momentum_rates.push(rate);
+        // dp/dt along the motion at constant velocities: the acceleration stands in M q̈.
+        let drift = total_derivative(graph, momenta[i]);
+        let force = graph.sub(rate, drift);
+        motion.forces.push(collected(graph, force));
+    }
+    motion.accelerations = solve::solve(graph, &motion.mass_matrix, &motion.forces);
+    motion.velocities = invert(graph, &motion.mass_matrix, &momenta);
+
+    let actions: Vec<(Id, Rational)> = (0..count).map(|i| (graph.mul(velocity[i], momenta[i]), Rational::ONE)).collect();
+    let action = graph.sum(&actions);
+    let energy = graph.sub(action, lagrangian);
+    motion.energy = collected(graph, energy);
+    let explicit = explicit_rate(graph, lagrangian);
+    power.push((explicit, Rational::MINUS_ONE));
+    motion.power = graph.sum(&power);
+
+    motion.kinetic = energies.kinetic.map(|_| kinetic.unwrap_or_default());
+    motion.potential = energies.lagrangian.is_none().then(|| potential.unwrap_or_default());
+    motion.kinetic = motion.kinetic.or(motion.potential.map(|_| Graph::ZERO));
+    motion.nonconservative = energies.dissipation.is_some() || !model.forces.is_empty();
+    motion.conserved = symmetry::conserved(graph, lagrangian, &momenta, &externals);
+    motion.momenta = momenta;
+    facts(graph, &mut motion);
+    motion.jacobians = jacobians(model, graph, &motion);
+    motion
+}
+
+/// The Jacobians, if they are short: each column costs about as much as the accelerations.
+fn jacobians(model: &Model, graph: &mut Graph, motion: &Motion) -> Option<[Vec<Vec<Id>>; 3]> {
+    let count = motion.accelerations.len();
+    let parameters: usize = model.parameters.iter().map(Quantity::count).sum();
+    let operations = schedule::program(graph, &motion.accelerations).ops.len();
+    if LONGEST_JACOBIAN < operations * (2 * count + parameters) {
+        return None;
+    }
+    let symbols: [Vec<Symbol>; 3] = [
+        (0..count).map(Symbol::Coordinate).collect(),
+        (0..count).map(Symbol::Velocity).collect(),
+        (0..parameters).map(Symbol::Parameter).collect(),
+    ];
+    Some(symbols.map(|symbols| jacobian::columns(graph, motion, &symbols)))
+}
+
+fn collected(graph: &mut Graph, id: Id) -> Id {
+    match collect::by_velocities(graph, id) {
+        Some(collected) => collected,
+        None => id,
+    }
+}
+
+/// ∂L/∂t at constant coordinates and velocities: through the time and the driven inputs.
+fn explicit_rate(graph: &mut Graph, lagrangian: Id) -> Id {
+    let mut terms = Vec::new();
+    for symbol in graph.symbols(&[lagrangian]) {
+        let rate = match symbol {
+            Symbol::Time => Graph::ONE,
+            Symbol::Input { input, component, order } => graph.symbol(Symbol::Input { input, component, order: order + 1 }),
+            _ => continue,
+        };
+        let partial = derivative(graph, lagrangian, symbol);
+        terms.push((graph.mul(partial, rate), Rational::ONE));
+    }
+    graph.sum(&terms)
+}
+
+/// The momenta contain at most ẋ, else their rates would contain a third derivative.
+fn no_jerk(model: &Model, graph: &Graph, momenta: &[Id], errors: &mut Errors) {
+    for symbol in graph.symbols(momenta) {
+        if let Symbol::Input { input, order: 2, .. } = symbol {
+            let name = model.inputs[input].name;
+            errors.at(
+                name.span(),
+                format!(
+                    "the momenta contain the acceleration of `{name}`, so the equations would contain its third derivative; \
+                     leave its second derivative out of the kinetic energy"
+                ),
+            );
+            return;
+        }
+    }
+}
+
+/// q̇ = M⁻¹(p − b) for momenta M q̇ + b that are linear in the velocities.
+fn invert(graph: &mut Graph, mass_matrix: &[Vec<Id>], momenta: &[Id]) -> Option<Vec<Id>> {
+    if mass_matrix.iter().flatten().any(|&entry| graph.contents(entry).any(Contents::VELOCITY)) {
+        return None;
+    }
+    let count = momenta.len();
+    let mut right = Vec::new();
+    for i in 0..count {
+        let mut terms = vec![(momenta[i], Rational::MINUS_ONE)];
+        for (j, &entry) in mass_matrix[i].iter().enumerate() {
+            let velocity = graph.symbol(Symbol::Velocity(j));
+            terms.push((graph.mul(entry, velocity), Rational::ONE));
+        }
+        let rest = graph.sum(&terms);
+        let rest = collected(graph, rest);
+        // What structure does not cancel vanishes at q̇ = 0.
+        let rest = if graph.contents(rest).any(Contents::VELOCITY) { at_rest(graph, rest) } else { rest };
+        let momentum = graph.symbol(Symbol::Momentum(i));
+        right.push(graph.add(momentum, rest));
+    }
+    Some(solve::solve(graph, mass_matrix, &right))
+}
+
+/// An expression with all velocities of coordinates set to zero.
+fn at_rest(graph: &mut Graph, id: Id) -> Id {
+    crate::diff::substitute(graph, id, |symbol| matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO))
+}
+
+fn facts(graph: &mut Graph, motion: &mut Motion) {
+    let all = |roots: &[Id]| roots.iter().fold(Contents::default(), |all, &id| all.or(graph.contents(id)));
+    let masses = motion.mass_matrix.iter().flatten().fold(Contents::default(), |all, &id| all.or(graph.contents(id)));
+    let state = Contents::COORDINATE.or(Contents::VELOCITY);
+    let time = Contents::TIME.or(Contents::INPUT);
+    let accelerations = all(&motion.accelerations);
+    motion.constant_mass_matrix = !masses.any(state.or(time));
+    motion.velocity_free = motion.constant_mass_matrix && !accelerations.any(Contents::VELOCITY);
+    motion.autonomous = !accelerations.any(time) && !all(&motion.momenta).any(time) && !masses.any(time);
+    let moving = motion.velocities.iter().flatten().fold(Contents::default(), |all, &id| all.or(graph.contents(id)));
+    motion.separable = motion.constant_mass_matrix && !moving.any(Contents::COORDINATE) && !motion.nonconservative;
+}

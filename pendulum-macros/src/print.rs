@@ -1,0 +1,314 @@
+//! Equations in Unicode, as one would write them: θ̈ = −g·sin θ/L.
+
+use crate::ast::Literal;
+use crate::check::{Model, Quantity};
+use crate::expr::{Function, Graph, Id, Moment, Node, Symbol};
+use crate::motion::Motion;
+use crate::name;
+use crate::number::Rational;
+use crate::symmetry::Conserved;
+use std::collections::BTreeSet;
+
+/// The names of all symbols of a block, as the user writes them.
+pub(crate) struct Names {
+    pub(crate) parameters: Vec<String>,
+    pub(crate) coordinates: Vec<String>,
+    inputs: Vec<(String, bool)>,
+}
+
+impl Names {
+    /// `families` are the parameters of two or three components that are no vectors.
+    pub(crate) fn new(model: &Model, families: &BTreeSet<usize>) -> Self {
+        let parameters = model.parameters.iter().enumerate();
+        Self {
+            parameters: parameters.flat_map(|(index, quantity)| quantity_names(quantity, families.contains(&index))).collect(),
+            coordinates: model.coordinates.iter().flat_map(|quantity| quantity_names(quantity, true)).collect(),
+            inputs: model.inputs.iter().map(|quantity| (quantity.name.to_string(), quantity.length.is_some())).collect(),
+        }
+    }
+
+    /// A symbol's name with its dots.
+    pub(crate) fn symbol(&self, symbol: Symbol) -> String {
+        match symbol {
+            Symbol::Parameter(index) => self.parameters[index].clone(),
+            Symbol::Time => "t".into(),
+            Symbol::Coordinate(index) => self.coordinates[index].clone(),
+            Symbol::Velocity(index) => dotted(&self.coordinates[index], 1),
+            Symbol::Momentum(index) => format!("p_{}", self.coordinates[index]),
+            Symbol::Point(_, component) => ["p.x", "p.y"][component.min(1)].into(),
+            Symbol::Moment(body, moment) => {
+                let body = self.parameters[body].trim_end_matches(".mass");
+                match moment {
+                    Moment::Inertia => format!("{body}.inertia"),
+                    Moment::Difference => format!("({body}.xx − {body}.yy)"),
+                    Moment::Product => format!("{body}.xy"),
+                }
+            }
+            Symbol::Input { input, component, order } => {
+                let (name, vector) = &self.inputs[input];
+                let name = dotted(name, order);
+                if *vector { format!("{name}.{}", ["x", "y", "z"][component.min(2)]) } else { name }
+            }
+        }
+    }
+
+    /// A coordinate with two dots.
+    pub(crate) fn acceleration(&self, index: usize) -> String {
+        dotted(&self.coordinates[index], 2)
+    }
+}
+
+/// The scalars of a quantity: `c.x`, `m[3]` or the name itself.
+fn quantity_names(quantity: &Quantity, family: bool) -> Vec<String> {
+    let name = quantity.name.to_string();
+    if quantity.body {
+        let parts = ["mass", "center.x", "center.y", "central.xx", "central.xy", "central.yy"];
+        return parts.map(|part| format!("{name}.{part}")).to_vec();
+    }
+    match quantity.length {
+        None => vec![name],
+        Some(length @ (2 | 3)) if !family => (0..length).map(|k| format!("{name}.{}", ["x", "y", "z"][k])).collect(),
+        Some(length) => (0..length).map(|k| format!("{name}[{k}]")).collect(),
+    }
+}
+
+/// A name with dots over its first letter, or with the ASCII suffix if the name is ASCII.
+fn dotted(name: &str, dots: u8) -> String {
+    if dots == 0 {
+        return name.into();
+    }
+    let (stem, index) = name.split_at(name.find('[').unwrap_or(name.len()));
+    if stem.is_ascii() && 1 < stem.len() {
+        return format!("{stem}{}{index}", if dots == 1 { "_dot" } else { "_ddot" });
+    }
+    let mark = if dots == 1 { '\u{307}' } else { '\u{308}' };
+    let mut letters = stem.chars();
+    let first: String = letters.next().into_iter().collect();
+    let composed = name::compose(&first, dots).map_or_else(|| format!("{first}{mark}"), String::from);
+    format!("{composed}{}{index}", letters.as_str())
+}
+
+/// How tightly an expression must hold together.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Level {
+    Sum,
+    Product,
+    Power,
+}
+
+/// An expression as text.
+pub(crate) fn expression(graph: &Graph, names: &Names, id: Id) -> String {
+    write(graph, names, id, Level::Sum)
+}
+
+fn write(graph: &Graph, names: &Names, id: Id, level: Level) -> String {
+    let (text, own) = match graph.node(id) {
+        Node::Number(value) => return number(*value, level),
+        Node::Opaque(Literal::Decimal(digits)) => return digits.clone(),
+        Node::Opaque(Literal::Exact(value)) => return number(*value, level),
+        Node::Pi => return "π".into(),
+        Node::Symbol(symbol) => return names.symbol(*symbol),
+        Node::Sum(terms) => (sum(graph, names, terms), Level::Sum),
+        Node::Product(coefficient, factors) => product(graph, names, *coefficient, factors),
+        Node::Call(Function::Abs, argument) => return format!("|{}|", write(graph, names, *argument, Level::Sum)),
+        Node::Call(function, argument) => {
+            let name = function_name(*function);
+            let inner = write(graph, names, *argument, Level::Power);
+            let spaced = if inner.starts_with('(') { format!("{name}{inner}") } else { format!("{name} {inner}") };
+            (spaced, Level::Product)
+        }
+        Node::Atan2(y, x) => {
+            return format!("atan2({}, {})", write(graph, names, *y, Level::Sum), write(graph, names, *x, Level::Sum));
+        }
+        Node::Max(a, b) => {
+            return format!("max({}, {})", write(graph, names, *a, Level::Sum), write(graph, names, *b, Level::Sum));
+        }
+        Node::Atom(inner) => return write(graph, names, *inner, level),
+    };
+    let call = matches!(graph.node(id), Node::Call(..));
+    if own < level && !(call && level == Level::Product) { format!("({text})") } else { text }
+}
+
+fn sum(graph: &Graph, names: &Names, terms: &[(Id, Rational)]) -> String {
+    let mut ordered: Vec<&(Id, Rational)> = terms.iter().collect();
+    ordered.sort_by_key(|(_, coefficient)| coefficient.is_negative());
+    let mut text = String::new();
+    for (index, &&(term, coefficient)) in ordered.iter().enumerate() {
+        let sign = match (index, coefficient.is_negative()) {
+            (0, true) => "−",
+            (0, false) => "",
+            (_, true) => " − ",
+            (_, false) => " + ",
+        };
+        text.push_str(sign);
+        let factors = if term == Graph::ONE { Vec::new() } else { graph.factors(term) };
+        text.push_str(&product(graph, names, coefficient.abs(), &factors).0);
+    }
+    text
+}
+
+fn product(graph: &Graph, names: &Names, coefficient: Rational, factors: &[(Id, Rational)]) -> (String, Level) {
+    let sign = if coefficient.is_negative() { "−" } else { "" };
+    let coefficient = coefficient.abs();
+    let mut ordered: Vec<&(Id, Rational)> = factors.iter().collect();
+    ordered.sort_by_key(|(base, _)| rank(graph, *base));
+    let one = |side: &[String]| side.len() == 1;
+    let mut above = Vec::new();
+    let mut below = Vec::new();
+    if coefficient.numerator() != 1 {
+        above.push(coefficient.numerator().to_string());
+    }
+    if coefficient.denominator() != 1 {
+        below.push(coefficient.denominator().to_string());
+    }
+    for &(base, exponent) in ordered {
+        let side = if exponent.is_negative() { &mut below } else { &mut above };
+        side.push(power(graph, names, base, exponent.abs()));
+    }
+    // A function's name would swallow what follows it: functions stand last, in brackets if several do.
+    let top = if above.is_empty() { "1".to_owned() } else { above.join("·") };
+    let level = if above.len() + below.len() < 2 && sign.is_empty() { Level::Power } else { Level::Product };
+    if below.is_empty() {
+        let level = if one(&above) && sign.is_empty() && !above[0].contains(' ') { level } else { Level::Product };
+        return (format!("{sign}{top}"), if sign.is_empty() { level } else { Level::Sum });
+    }
+    let bottom = if one(&below) { below[0].clone() } else { format!("({})", below.join("·")) };
+    (format!("{sign}{top}/{bottom}"), if sign.is_empty() { Level::Product } else { Level::Sum })
+}
+
+/// Whether a space stands outside all brackets: a function's argument would swallow what follows.
+fn open(text: &str) -> bool {
+    let mut depth = 0;
+    text.chars().any(|letter| {
+        depth += i32::from(letter == '(') - i32::from(letter == ')');
+        depth == 0 && letter == ' '
+    })
+}
+
+/// Numbers, parameters, inputs, velocities, functions, sums: the usual order of a product.
+fn rank(graph: &Graph, base: Id) -> u8 {
+    match graph.node(base) {
+        Node::Number(_) | Node::Opaque(_) | Node::Pi => 0,
+        Node::Symbol(Symbol::Parameter(_)) => 1,
+        Node::Symbol(_) => 2,
+        Node::Sum(_) | Node::Atom(_) | Node::Product(..) => 3,
+        Node::Atan2(..) | Node::Max(..) => 4,
+        Node::Call(..) => 5,
+    }
+}
+
+fn power(graph: &Graph, names: &Names, base: Id, exponent: Rational) -> String {
+    if exponent == Rational::ONE {
+        return write(graph, names, base, Level::Product);
+    }
+    if exponent == Rational::HALF {
+        return format!("√({})", write(graph, names, base, Level::Sum));
+    }
+    let raised = match exponent.integer() {
+        Some(count) => superscript(count),
+        None => format!("^({exponent})"),
+    };
+    if let Node::Call(function, argument) = graph.node(base)
+        && *function != Function::Abs
+    {
+        let inner = write(graph, names, *argument, Level::Power);
+        let space = if inner.starts_with('(') { "" } else { " " };
+        return format!("{}{raised}{space}{inner}", function_name(*function));
+    }
+    let inner = write(graph, names, base, Level::Power);
+    format!("{inner}{raised}")
+}
+
+fn number(value: Rational, level: Level) -> String {
+    let text = value.to_string().replace('-', "−");
+    if Level::Sum < level && (value.is_negative() || !value.is_integer()) { format!("({text})") } else { text }
+}
+
+/// A whole number as an exponent.
+pub(crate) fn superscript(value: i64) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    value.to_string().chars().map(|digit| digit.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize])).collect()
+}
+
+fn function_name(function: Function) -> &'static str {
+    match function {
+        Function::Sin => "sin",
+        Function::Cos => "cos",
+        Function::Tan => "tan",
+        Function::Asin => "asin",
+        Function::Acos => "acos",
+        Function::Atan => "atan",
+        Function::Sinh => "sinh",
+        Function::Cosh => "cosh",
+        Function::Tanh => "tanh",
+        Function::Exp => "exp",
+        Function::Ln => "ln",
+        Function::Abs => "abs",
+        Function::Sign => "sign",
+        Function::Step => "step",
+    }
+}
+
+/// The name of a conserved quantity in terms of the momenta: `p_φ`, `x·p_y − y·p_x`.
+pub(crate) fn conserved(names: &Names, conserved: &Conserved) -> String {
+    let mut terms = conserved.terms.clone();
+    // Begin with a plus.
+    if let Some(first) = terms.iter().position(|(factor, ..)| !factor.is_negative()) {
+        let first = terms.remove(first);
+        terms.insert(0, first);
+    }
+    let mut text = String::new();
+    for (index, &(factor, coordinate, momentum)) in terms.iter().enumerate() {
+        text.push_str(match (index, factor.is_negative()) {
+            (0, false) => "",
+            (0, true) => "−",
+            (_, false) => " + ",
+            (_, true) => " − ",
+        });
+        let mut parts = Vec::new();
+        if factor.abs() != Rational::ONE {
+            parts.push(number(factor.abs(), Level::Product));
+        }
+        parts.extend(coordinate.map(|index| names.coordinates[index].clone()));
+        parts.push(names.symbol(Symbol::Momentum(momentum)));
+        text.push_str(&parts.join("·"));
+    }
+    text
+}
+
+/// The equations of motion, one line a coordinate: solved where a coordinate stands alone, a row of M q̈ = f where several are coupled.
+pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (row, &acceleration) in motion.accelerations.iter().enumerate() {
+        let alone = motion.mass_matrix[row].iter().filter(|&&entry| entry != Graph::ZERO).count() == 1;
+        if alone {
+            lines.push(format!("{} = {}", names.acceleration(row), expression(graph, names, acceleration)));
+            continue;
+        }
+        let mut left = String::new();
+        for (column, &entry) in motion.mass_matrix[row].iter().enumerate() {
+            if entry == Graph::ZERO {
+                continue;
+            }
+            let symbol = names.acceleration(column);
+            let (coefficient, _) = graph.split(entry);
+            let negative = coefficient.is_negative();
+            let magnitude = if negative { graph.negative(entry) } else { entry };
+            let part = if let Node::Number(Rational::ONE) = graph.node(magnitude) {
+                symbol
+            } else {
+                let text = write(graph, names, magnitude, Level::Product);
+                if open(&text) { format!("({text})·{symbol}") } else { format!("{text}·{symbol}") }
+            };
+            left.push_str(match (left.is_empty(), negative) {
+                (true, true) => "−",
+                (true, false) => "",
+                (false, true) => " − ",
+                (false, false) => " + ",
+            });
+            left.push_str(&part);
+        }
+        lines.push(format!("{left} = {}", expression(graph, names, motion.forces[row])));
+    }
+    lines
+}

@@ -1,0 +1,161 @@
+//! M x = f on the graph: `LDLᵀ` without square roots, structural zeros skipped, independent blocks apart.
+
+use crate::check::Model;
+use crate::error::Errors;
+use crate::expr::{Graph, Id};
+use crate::number::Rational;
+
+/// Whether every direction has kinetic energy as far as structure tells; reports the coordinates that have none.
+pub(crate) fn regular(model: &Model, graph: &mut Graph, matrix: &[Vec<Id>], errors: &mut Errors) -> bool {
+    let before = errors.len();
+    for coordinate in &model.coordinates {
+        let rows = coordinate.first..coordinate.first + coordinate.count();
+        if let Some(row) = rows.clone().find(|&row| matrix[row].iter().all(|&entry| entry == Graph::ZERO)) {
+            let name = match coordinate.length {
+                Some(_) => format!("{}[{}]", coordinate.name, row - coordinate.first),
+                None => coordinate.name.to_string(),
+            };
+            errors.at(
+                coordinate.name.span(),
+                format!(
+                    "`{name}` has no kinetic energy, so its acceleration is undetermined; \
+                     add the square of its velocity to `kinetic`"
+                ),
+            );
+        }
+    }
+    if before < errors.len() {
+        return false;
+    }
+    for block in blocks(matrix) {
+        if let Err(row) = factor(graph, matrix, &block) {
+            let found = model
+                .coordinates
+                .iter()
+                .find(|coordinate| (coordinate.first..coordinate.first + coordinate.count()).contains(&row));
+            if let Some(coordinate) = found {
+                errors.at(
+                    coordinate.name.span(),
+                    format!(
+                        "the mass matrix is singular in the direction of `{}`: its kinetic energy is that of other coordinates; \
+                         leave the redundant coordinate out",
+                        coordinate.name
+                    ),
+                );
+            }
+        }
+    }
+    errors.len() == before
+}
+
+/// Solves M x = f for a symmetric matrix that `regular` has passed.
+pub(crate) fn solve(graph: &mut Graph, matrix: &[Vec<Id>], right: &[Id]) -> Vec<Id> {
+    let mut solution = vec![Graph::ZERO; right.len()];
+    for block in blocks(matrix) {
+        if let [row] = block[..] {
+            solution[row] = graph.div(right[row], matrix[row][row]);
+            continue;
+        }
+        let Ok(factors) = factor(graph, matrix, &block) else { continue };
+        let right: Vec<Id> = block.iter().map(|&row| right[row]).collect();
+        for (value, &row) in substitute(graph, &factors, right).into_iter().zip(&block) {
+            solution[row] = value;
+        }
+    }
+    solution
+}
+
+/// The coordinates that no other is coupled to.
+pub(crate) fn alone(matrix: &[Vec<Id>]) -> Vec<bool> {
+    matrix.iter().map(|row| row.iter().filter(|&&entry| entry != Graph::ZERO).count() == 1).collect()
+}
+
+/// Unit lower triangle and reciprocal pivots.
+struct Factors {
+    lower: Vec<Vec<Id>>,
+    reciprocal: Vec<Id>,
+}
+
+/// The rows of a block, last first: chains eliminate from the leaf to the root.
+fn blocks(matrix: &[Vec<Id>]) -> Vec<Vec<usize>> {
+    let mut seen = vec![false; matrix.len()];
+    let mut blocks = Vec::new();
+    for start in 0..matrix.len() {
+        if seen[start] {
+            continue;
+        }
+        let mut block = Vec::new();
+        let mut pending = vec![start];
+        seen[start] = true;
+        while let Some(row) = pending.pop() {
+            block.push(row);
+            for (column, &entry) in matrix[row].iter().enumerate() {
+                if entry != Graph::ZERO && !seen[column] {
+                    seen[column] = true;
+                    pending.push(column);
+                }
+            }
+        }
+        block.sort_unstable_by(|a, b| b.cmp(a));
+        blocks.push(block);
+    }
+    blocks
+}
+
+/// M = L D Lᵀ on atoms; the row whose pivot is zero otherwise.
+fn factor(graph: &mut Graph, matrix: &[Vec<Id>], block: &[usize]) -> Result<Factors, usize> {
+    let size = block.len();
+    let mut lower = vec![vec![Graph::ZERO; size]; size];
+    // What stands left of the pivot before it is divided by it.
+    let mut scaled = vec![vec![Graph::ZERO; size]; size];
+    let mut reciprocal: Vec<Id> = Vec::with_capacity(size);
+    for j in 0..size {
+        for i in j..size {
+            let entry = graph.atom(matrix[block[i]][block[j]]);
+            let mut terms = vec![(entry, Rational::ONE)];
+            for k in 0..j {
+                if scaled[i][k] != Graph::ZERO && lower[j][k] != Graph::ZERO {
+                    terms.push((graph.mul(scaled[i][k], lower[j][k]), Rational::MINUS_ONE));
+                }
+            }
+            let value = graph.sum(&terms);
+            scaled[i][j] = graph.atom(value);
+        }
+        let pivot = scaled[j][j];
+        if pivot == Graph::ZERO {
+            return Err(block[j]);
+        }
+        let inverse = graph.power(pivot, Rational::MINUS_ONE);
+        let inverse = graph.atom(inverse);
+        for i in j + 1..size {
+            if scaled[i][j] != Graph::ZERO {
+                let entry = graph.mul(scaled[i][j], inverse);
+                lower[i][j] = graph.atom(entry);
+            }
+        }
+        reciprocal.push(inverse);
+    }
+    Ok(Factors { lower, reciprocal })
+}
+
+fn substitute(graph: &mut Graph, factors: &Factors, mut right: Vec<Id>) -> Vec<Id> {
+    let size = right.len();
+    for i in 0..size {
+        let start = graph.atom(right[i]);
+        let mut terms = vec![(start, Rational::ONE)];
+        for k in 0..i {
+            terms.push((graph.mul(factors.lower[i][k], right[k]), Rational::MINUS_ONE));
+        }
+        let value = graph.sum(&terms);
+        right[i] = graph.atom(value);
+    }
+    for i in (0..size).rev() {
+        let mut terms = vec![(graph.mul(right[i], factors.reciprocal[i]), Rational::ONE)];
+        for k in i + 1..size {
+            terms.push((graph.mul(factors.lower[k][i], right[k]), Rational::MINUS_ONE));
+        }
+        let value = graph.sum(&terms);
+        right[i] = graph.atom(value);
+    }
+    right
+}

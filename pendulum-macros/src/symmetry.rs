@@ -1,0 +1,89 @@
+//! Conserved quantities: every symmetry q → q + ε(a + Bq) of the Lagrangian, and the energy where nothing depends on time.
+//!
+//! The Lagrangian is unchanged if Σ ∂L/∂q_i ξ_i + ∂L/∂q̇_i ξ̇_i vanishes for ξ = a + Bq (Noether 1918), which is linear in a and B:
+//! their values are the null space of that sum at random points of a prime field. Then Σ p_i ξ_i is conserved, if the forces do no
+//! work along ξ either.
+
+use crate::diff::derivative;
+use crate::expr::{Graph, Id, Symbol};
+use crate::modular::{Point, Residue, null_space};
+use crate::number::Rational;
+
+/// With more coordinates than this only displacements q → q + εa are looked for.
+const MOST_LINEAR: usize = 8;
+
+/// A conserved quantity.
+#[derive(Clone, Debug)]
+pub(crate) struct Conserved {
+    /// What it is, in the names of the momenta: `p_φ`, `x·p_y − y·p_x`.
+    pub(crate) terms: Vec<(Rational, Option<usize>, usize)>,
+    pub(crate) value: Id,
+}
+
+/// The momenta of all symmetries of `lagrangian` along which `external` forces do nothing.
+pub(crate) fn conserved(graph: &mut Graph, lagrangian: Id, momenta: &[Id], external: &[Id]) -> Vec<Conserved> {
+    let count = momenta.len();
+    let coordinates: Vec<Id> = (0..count).map(|i| graph.symbol(Symbol::Coordinate(i))).collect();
+    let velocities: Vec<Id> = (0..count).map(|i| graph.symbol(Symbol::Velocity(i))).collect();
+    let slopes: Vec<Id> = (0..count).map(|i| derivative(graph, lagrangian, Symbol::Coordinate(i))).collect();
+    // Displacements of coordinate i, by a constant or by coordinate j.
+    let mut unknowns: Vec<(usize, Option<usize>)> = (0..count).map(|i| (i, None)).collect();
+    if count <= MOST_LINEAR {
+        unknowns.extend((0..count).flat_map(|i| (0..count).map(move |j| (i, Some(j)))));
+    }
+    let roots: Vec<Id> = [&slopes[..], momenta, external, &coordinates, &velocities].concat();
+    let mut rows = Vec::new();
+    for seed in 0..8 * unknowns.len() as u64 + 64 {
+        let Some(values) = Point::new(graph, &roots, seed).values(graph, &roots) else { continue };
+        let at = |id: Id| values[&id];
+        rows.push(
+            unknowns
+                .iter()
+                .map(|&(i, j)| match j {
+                    None => at(slopes[i]),
+                    Some(j) => at(slopes[i]).mul(at(coordinates[j])).add(at(momenta[i]).mul(at(velocities[j]))),
+                })
+                .collect::<Vec<Residue>>(),
+        );
+        rows.push(
+            unknowns
+                .iter()
+                .map(|&(i, j)| match j {
+                    None => at(external[i]),
+                    Some(j) => at(external[i]).mul(at(coordinates[j])),
+                })
+                .collect(),
+        );
+        if 2 * (unknowns.len() + 8) < rows.len() {
+            break;
+        }
+    }
+    if rows.len() < 2 * (unknowns.len() + 8) {
+        return Vec::new();
+    }
+    let mut found = Vec::new();
+    for vector in null_space(rows, unknowns.len()) {
+        let exact: Option<Vec<Rational>> = vector.iter().map(|residue| residue.rational()).collect();
+        let Some(exact) = exact else { continue };
+        let terms: Vec<(Rational, Option<usize>, usize)> = exact
+            .into_iter()
+            .zip(&unknowns)
+            .filter(|(factor, _)| !factor.is_zero())
+            .map(|(factor, &(i, j))| (factor, j, i))
+            .collect();
+        let mut sum = Vec::new();
+        for &(factor, j, i) in &terms {
+            let part = match j {
+                None => momenta[i],
+                Some(j) => graph.mul(coordinates[j], momenta[i]),
+            };
+            sum.push((part, factor));
+        }
+        let value = graph.sum(&sum);
+        // A momentum that is a constant is no news: gauge terms make such.
+        if graph.contents(value).any(crate::expr::Contents::VELOCITY) {
+            found.push(Conserved { terms, value });
+        }
+    }
+    found
+}

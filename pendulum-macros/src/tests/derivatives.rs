@@ -1,0 +1,50 @@
+//! Every row of the derivative table against fourth-order central differences.
+
+use super::{Random, evaluate, lowered};
+use crate::diff::derivative;
+use crate::expr::{Graph, Symbol};
+
+#[rustfmt::skip]
+const EXPRESSIONS: &[&str] = &[
+    "sin(a)", "cos(a)", "tan(a/3)", "asin(a/4)", "acos(a/4)", "atan(a)", "atan2(a, b)", "atan2(b, a)", "sinh(a)", "cosh(a)", "tanh(a)",
+    "exp(a)", "ln(a)", "sqrt(a)", "abs(a - 5)", "abs(a + 5)", "a^3", "a^-2", "a^(3/2)", "a^b", "b^a", "max(a, 5)", "max(a, b - 7)", "min(a, 5)", "min(a, b - 7)",
+    "sign(a)*a^2", "1/(a + b)", "(a + b)^2/(a*b - 9)", "sqrt(a^2 + b^2)", "sin(a*b)*cos(a + b)^2", "exp(-a*sin(b*a))", "ln(cosh(a)*c)", "|[a, b, a*c]|^3",
+    "max(0, a - 1/100)^2",
+];
+
+#[test]
+fn derivatives_match_differences() {
+    let mut random = Random(11);
+    for expression in EXPRESSIONS {
+        let mut graph = Graph::new();
+        let id = lowered(&mut graph, expression);
+        let slope = derivative(&mut graph, id, Symbol::Parameter(0));
+        for _ in 0..50 {
+            let point = [0, 1, 2].map(|_| random.uniform(0.2, 2.5));
+            let at = |a: f64, id| {
+                evaluate(&graph, id, &|symbol| match symbol {
+                    Symbol::Parameter(0) => a,
+                    Symbol::Parameter(index) => point[index],
+                    other => panic!("{other:?}"),
+                })
+            };
+            let (a, h) = (point[0], 1e-3);
+            let difference = (8.0 * (at(a + h, id) - at(a - h, id)) - (at(a + 2.0 * h, id) - at(a - 2.0 * h, id))) / (12.0 * h);
+            let exact = at(a, slope);
+            assert!(
+                (difference - exact).abs() < 1e-7 * (1.0 + exact.abs()),
+                "d/da {expression} at {point:?}: {exact}, differences {difference}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_step_is_the_derivative_of_the_ramp() {
+    let mut graph = Graph::new();
+    let id = lowered(&mut graph, "max(0, a)");
+    let slope = derivative(&mut graph, id, Symbol::Parameter(0));
+    for (a, expected) in [(-1.0, 0.0), (0.0, 0.5), (2.0, 1.0)] {
+        assert_eq!(evaluate(&graph, slope, &|_| a), expected);
+    }
+}

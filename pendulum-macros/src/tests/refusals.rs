@@ -1,0 +1,176 @@
+//! One mistake gives one message, two give two; the messages say what to do.
+
+use super::refusals;
+
+/// A block with one statement to vary.
+fn block(statements: &str) -> String {
+    format!("struct P {{ m: kg, L: m, c: [m; 2], f: [kg; 5], g }} coordinate θ: rad; driven x: [m; 2]; {statements}")
+}
+
+const ENERGY: &str = "kinetic = m/2*L^2*θ̇^2; potential = -m*g*L*cos(θ);";
+
+#[rustfmt::skip]
+const CASES: &[(&str, &str)] = &[
+    ("kinetic = m*L^2*θ̇^2; potential = M*g;",                  "unknown name `M`; did you mean `m`?"),
+    ("kinetic = m*L^2*θ̇^2; potential = velocity;",             "unknown name `velocity`; declare it as a parameter, a coordinate, a driven input or with `let`"),
+    ("kinetic = m*L^2*θ̇^2; potential = sinn(θ);",              "unknown function `sinn`; did you mean `sin`?"),
+    ("kinetic = m*L^2*θ̇^2; potential = θ̈;",                    "`θ̈` is an acceleration, and a Lagrangian has none; only driven inputs have a second derivative"),
+    ("kinetic = m*L^2*θ̇^2; potential = dot(θ̇);",               "the derivative of a velocity in `θ̇` is an acceleration, and a Lagrangian has none; only driven inputs have a second derivative"),
+    ("kinetic = m*L^2*θ̇^2; potential = dot(m*L);",             "nothing in `m*L` moves, so its time derivative is zero; leave it out"),
+    ("kinetic = m*L^2*θ̇^2; potential = m_dot;",                "`m` is a parameter, so nothing in `m_dot` moves; declare it `driven` or as a coordinate"),
+    ("kinetic = m*L^2*θ̇^2; potential = x;",                    "`x` is a plane vector, but a scalar is needed here; write `inner(u, v)`, `|u|` or a component"),
+    ("kinetic = m*L^2*θ̇^2; potential = inner(x, [1, 2, 3]);",  "`inner` takes two vectors of one length; these are a plane vector and a space vector"),
+    ("kinetic = m*L^2*θ̇^2; potential = |x + [1, 2, 3]|;",      "`[1, 2, 3]` is a space vector, but the terms before it are plane vectors; a sum needs terms of one kind"),
+    ("kinetic = m*L^2*θ̇^2; potential = f[5]*g;",               "index 5 is out of range; `f` has 5 members, `f[0]` to `f[4]`"),
+    ("kinetic = m*L^2*θ̇^2; potential = sum(k in 0..7, f[k]);", "index 5 is out of range; `f` has 5 members, `f[0]` to `f[4]`"),
+    ("kinetic = m*L^2*θ̇^2; potential = f*g;",                  "a family cannot be multiplied by a scalar; write a component or an index"),
+    ("kinetic = m*L^2*θ̇^2; potential = 2g;",                   "there is no implicit multiplication; write `2*g`"),
+    ("kinetic = m*L^2*θ̇^2; potential = m g;",                  "there is no implicit multiplication; write `*` before `g`"),
+    ("kinetic = m*L^2*θ̇^2; potential = m(g);",                 "`m` is no function, and there is no implicit multiplication; write `m*(…)`"),
+    ("kinetic = m*L^2*θ̇^2; potential = 1.5f64*g;",             "numbers here are exact and have no suffix; write `1.5`"),
+    ("kinetic = m*L^2*θ̇^2; potential = m·g;",                  "`·` is part of a name in Rust; write `*`, as in `m*g`"),
+    ("kinetic = m*L^2*θ̇^2; potential = __m;",                  "names that begin with `__` are reserved; choose another name"),
+    ("kinetic = m*L^2*θ̇^2; potential = m**2;",                 "`**` is not an operator; write `^`"),
+    ("kinetic = m*L^2*θ̇^2; potential = |θ;",                   "this `|` is not closed; write `|u|`"),
+    ("kinetic = m*L^2*θ̇^2; potential = m*g",                   "the input ends too early; expected `;`"),
+    ("kinetic = m*L^2*θ̇^2 potential = m*g;",                   "`;` is missing before `potential`; end the statement above with `;`"),
+    ("kinetic = m*L^2*θ̇^2; potental = m*g;",                   "unknown statement `potental`; did you mean `potential`?"),
+    ("kinetic = m*L^2*θ̇^2; lagrangian = m*g;",                 "`lagrangian` is kinetic minus potential energy already; write either one or the other"),
+    ("kinetic = m*L^2*θ̇^2; let a = b; let b = a;",             "`a` is defined by itself; break the circle"),
+    ("kinetic = m*L^2*θ̇^2; let r(p) = r(p); potential = r(θ);", "`r` is defined by itself; break the circle"),
+    ("kinetic = m*L^2*θ̇^2; let r(p) = p; potential = r(θ, θ);", "`r` takes one argument; 2 stand here"),
+    ("kinetic = m*L^2*θ̇^2; potential = sin(θ, θ);",            "`sin` takes one argument; 2 stand here"),
+    ("kinetic = m*L^2*θ̇^2; potential = sin;",                  "`sin` is a function; write `sin(…)`"),
+    ("kinetic = m*L^2*θ̇^2; potential = x/x;",                  "`x` is a plane vector, and nothing can be divided by that; divide by its length `|u|`"),
+    ("kinetic = m*L^2*θ̇^2; potential = m/0;",                  "division by zero; write another divisor"),
+    ("kinetic = m*L^2*θ̇^2; potential = x.w;",                  "unknown component `w`; there are `.x`, `.y`, `.z`"),
+    ("kinetic = m*L^2*θ̇^2; potential = x.z;",                  "`x` is a plane vector, it has no `.z`; write a vector"),
+    ("kinetic = m*L^2*θ̇^2; force m = 1;",                      "`m` is no coordinate; a force acts on a coordinate, as in `force θ = …;`"),
+    ("kinetic = m*L^2*θ̇^2; potential = sum(k in 0..100000000, k);", "this range has more than 65536 members; write a shorter one"),
+    ("kinetic = m*L^2*θ̇^2; potential = sum(k in 0..θ, k);",    "the end of a range is a whole number known while compiling; write numbers and indices only"),
+    ("kinetic = m*L^2*θ̇^2; potential = x^2;",                  "`x` is a plane vector, and only scalars have powers; write `|u|^2`"),
+    ("kinetic = m*L^2*θ̇^2; potential = dot(dot(dot(x))).x;",   "`dot(dot(x))` contains a third derivative of a driven input; they have two"),
+    ("kinetic = m*L^2*θ̇^2 + m*L*t*θ̇*ẍ.x;",                 "the momenta contain the acceleration of `x`, so the equations would contain its third derivative; leave its second derivative out of the kinetic energy"),
+    ("kinetic = m*L^2*θ̇^2; coordinate φ; potential = m*φ^2;",   "`φ` has no kinetic energy, so its acceleration is undetermined; add the square of its velocity to `kinetic`"),
+    ("coordinate φ; kinetic = m*L^2*(θ̇ + φ̇)^2;",               "the mass matrix is singular in the direction of `θ`: its kinetic energy is that of other coordinates; leave the redundant coordinate out"),
+    ("potential = m*g*θ;",                                     "`θ` has no kinetic energy, so its acceleration is undetermined; add the square of its velocity to `kinetic`"),
+    ("",                                                       "no energy; write `kinetic = …;` and `potential = …;` below the struct"),
+    ("kinetic = m*L^2*θ̇^2; coordinate φ: furlong;",            "unknown unit `furlong`; a unit is a product, quotient or power of `kg`, `m`, `s`, `rad`, `N`, `J`, `W`, `Hz` and `1`"),
+    ("kinetic = m*L^2*θ̇^2; coordinate t;",                     "`t` is the time; choose another name"),
+    ("kinetic = m*L^2*θ̇^2; driven ẏ: [m; 2];",                 "`ẏ` is a time derivative; declare the name without dots, `y`"),
+    ("kinetic = m*L^2*θ̇^2; driven r: [m; 5];",                 "a driven input is a scalar or a vector; write `[m; 2]` or `[m; 3]`"),
+    ("kinetic = m*L^2*θ̇^2; let loop = 2;",                     "`loop` is a word of the Rust language; choose another name"),
+    ("kinetic = m*L^2*θ̇^2; potential = integral(p in c, 1);",  "`c` is no body; declare it as `c: body` in the struct"),
+];
+
+#[test]
+fn one_mistake_gives_one_message() {
+    for (statements, expected) in CASES {
+        assert_eq!(refusals(&block(statements)), [*expected], "{statements}");
+    }
+}
+
+/// Units, each mistake at the smallest expression that is wrong.
+#[rustfmt::skip]
+const UNITS: &[(&str, &str)] = &[
+    ("potential = m*9.81*L*cos(θ);",                        "`m*9.81*L*cos(θ)` is kg·m, but `m/2*L^2*θ̇^2` is kg·m²/s²; all energies of a block have one unit"),
+    ("potential = m*g*(L + θ);",                            "`θ` is a pure number, but `L` is m; a sum needs one unit"),
+    ("potential = m*g*L*cos(L);",                           "`L` is m, but the argument of `cos` is a pure number; divide by a unit of its kind"),
+    ("potential = m*g*L*sin(t);",                           "`t` is s, but the argument of `sin` is a pure number; divide by a unit of its kind"),
+    ("potential = m*g*L*exp(t*θ̇ + t);",                     "`t` is s, but `t*θ̇` is a pure number; a sum needs one unit"),
+    ("potential = m*g*height([L, θ]);",                     "`θ` is a pure number, but `L` is m; a vector needs one unit"),
+    ("potential = m*g*height(x + ẋ);",                      "`ẋ` is m/s, but `x` is m; a sum needs one unit"),
+    ("potential = m*g*max(0, L*θ - t);",                    "`t` is s, but `L*θ` is m; a sum needs one unit"),
+    ("potential = m*g*max(L, θ);",                          "`θ` is a pure number, but `L` is m; `max` needs one unit"),
+    ("potential = m*g*L*atan2(L, t);",                      "`t` is s, but `L` is m; `atan2` needs one unit"),
+    ("potential = m*g*L*L^θ;",                              "`L` is m, but the base of a power whose exponent is no number is a pure number; divide by a unit of its kind"),
+    ("potential = m*g*L*2^t;",                              "`t` is s, but an exponent is a pure number; divide by a unit of its kind"),
+    ("dissipation = m*L^2*θ̇^2;",                            "`m*L^2*θ̇^2` times a second is kg·m²/s, but `m/2*L^2*θ̇^2` is kg·m²/s²; all energies of a block have one unit"),
+    ("force θ = m*g;",                                      "`m*g` is kg·m/s², but a force on `θ` is kg·m²/s², an energy per unit of the coordinate"),
+    ("let r(p) = p + L; potential = m*g*r(t);",             "`L` is m, but `p` is s; a sum needs one unit"),
+    ("let w = g*L; potential = m*w + m*L;",                 "`m*L` is kg·m, but `m*w` is kg·m²/s²; a sum needs one unit"),
+    // A quantity without a unit is decided by its first use and checked at the next.
+    ("potential = k*θ^2 + k*L;",                            "`k*L` is m times the unit of `k`, but `k*θ^2` is a pure number times the unit of `k`; a sum needs one unit"),
+];
+
+#[test]
+fn units_are_checked() {
+    for (statements, expected) in UNITS {
+        let source = format!(
+            "struct P {{ m: kg, L: m, g: m/s^2, k }} coordinate θ: rad; driven x: [m; 2]; kinetic = m/2*L^2*θ̇^2; {statements}"
+        );
+        assert_eq!(refusals(&source), [*expected], "{statements}");
+    }
+}
+
+#[test]
+fn units_give_no_false_alarm() {
+    let blocks = [
+        // Divided by the mass, an energy is as good.
+        "struct P { L: m, g: m/s^2 } coordinate θ: rad; kinetic = L^2*θ̇^2/2; potential = -g*L*cos(θ);",
+        // Nothing has a unit: nothing is checked.
+        "struct P { L, g } coordinate θ; kinetic = θ̇^2 + t*θ̇^2; potential = sin(t);",
+        // Unknowns are inferred or left alone; a zero has every unit.
+        "struct P { m: kg, L, g, c, k, s: N/m^(3/2) } coordinate θ: rad; coordinate z: m; driven x: [m; 2]; kinetic = m/2*|ẋ + dot(L*cis(θ))|^2 + m/2*ż^2;
+         potential = m*g*(height(x) + height(L*cis(θ))) + k/2*max(0, z)^2 + s*|z|^(5/2)*sign(z); dissipation = c*θ̇^2; force θ = [c, 0].x*θ̇; force z = k*z;",
+    ];
+    for source in blocks {
+        assert!(refusals(source).is_empty(), "{:?}", refusals(source));
+    }
+}
+
+#[test]
+fn two_mistakes_give_two_messages() {
+    let found = refusals(&block("kinetic = 2m*L^2*θ̇^2; potential = m g;"));
+    assert_eq!(found.len(), 2, "{found:?}");
+    let found = refusals(&block("kinetic = m*L^2*θ̇^2; potential = M*g + l;"));
+    assert_eq!(found, ["unknown name `M`; did you mean `m`?", "unknown name `l`; did you mean `L`?"]);
+    let found = refusals(&block("kinetic = m*L^2*θ̇^2 + 2θ̇; potential = x + M;"));
+    assert_eq!(found.len(), 2, "{found:?}");
+}
+
+#[test]
+fn a_name_declared_twice_is_shown_in_both_places() {
+    let found = refusals(&block(&format!("{ENERGY} coordinate theta;")));
+    assert_eq!(found, ["`theta` is declared twice; rename one of the two", "`θ` is declared here first"]);
+}
+
+#[test]
+fn a_lost_declaration_gives_no_second_message() {
+    assert_eq!(refusals("struct P { m g, L } coordinate θ; kinetic = m*L^2*θ̇^2; potential = m*g*θ;").len(), 1);
+    assert_eq!(refusals(&block("let r = ; kinetic = m*L^2*θ̇^2 + r;")).len(), 1);
+}
+
+#[test]
+fn no_coordinate() {
+    assert_eq!(refusals("struct P { m } kinetic = m;"), ["no coordinate; write `coordinate θ: rad;` below the struct"]);
+}
+
+#[rustfmt::skip]
+const BODIES: &[(&str, &str)] = &[
+    ("potential = B;",                                  "`B` is a body; write `B.mass`, `B.center`, `B.inertia` or `integral(p in B, …)`"),
+    ("potential = B.weight;",                           "unknown component `weight`; there are `.mass`, `.center`, `.inertia`"),
+    ("potential = integral(p in g, height(p));",        "`g` is no body; declare it as `g: body` in the struct"),
+    ("potential = integral(p in C, height(p));",        "unknown name `C`; declare it as a parameter, a coordinate, a driven input or with `let`"),
+    ("potential = integral(p in B, |p|^3);",            "`|p|^3` is no polynomial in `p`, and a body knows its moments up to the second; write a polynomial of degree two or less"),
+    ("potential = integral(p in B, p.x*|p|^2);",        "`p.x*|p|^2` is of higher degree than two in `p`, and a body knows its moments up to the second; write a polynomial of degree two or less"),
+    ("potential = integral(p in B, sin(p.x));",         "`sin(p.x)` is no polynomial in `p`, and a body knows its moments up to the second; write a polynomial of degree two or less"),
+    ("potential = integral(p in B, p);",                "`integral(p in B, …)` is a plane vector, but a scalar is needed here; write `inner(u, v)`, `|u|` or a component"),
+    ("potential = B.mass*g*B.inertia;",                 "`B.mass*g*B.inertia` is kg²·m³/s², but `integral(p in B, …)` is kg·m²/s²; all energies of a block have one unit"),
+    ("potential = integral(p in B, g*|p|^2);",          "`integral(p in B, …)` is kg·m³/s², but `integral(p in B, …)` is kg·m²/s²; all energies of a block have one unit"),
+];
+
+#[test]
+fn bodies_are_integrated_to_the_second_degree() {
+    for (statements, expected) in BODIES {
+        let source = format!(
+            "struct P {{ B: body, g: m/s^2 }} coordinate θ: rad; let r(p) = cis(θ)*p; kinetic = integral(p in B, |dot(r(p))|^2/2); {statements}"
+        );
+        assert_eq!(refusals(&source), [*expected], "{statements}");
+    }
+}
+
+#[test]
+fn a_right_block_is_not_refused() {
+    assert!(refusals(&block(ENERGY)).is_empty());
+}

@@ -1,0 +1,96 @@
+//! Every rule of the table, at random points: both sides agree, and the left side becomes the right.
+
+use super::{Random, evaluate, lowered};
+use crate::ast::{Expr, ExprKind, Literal};
+use crate::error::Errors;
+use crate::expr::{Graph, Symbol};
+use crate::rule::RULES;
+use crate::{check, parse};
+
+#[test]
+fn the_left_side_becomes_the_right() {
+    for rule in RULES {
+        let mut graph = Graph::new();
+        let left = lowered(&mut graph, rule.left);
+        let right = lowered(&mut graph, rule.right);
+        assert_eq!(left, right, "{}: {} is not {}", rule.name, rule.left, rule.right);
+    }
+}
+
+/// The left side is evaluated from its syntax, without the graph.
+#[test]
+fn both_sides_have_one_value() {
+    let mut random = Random(7);
+    for rule in RULES {
+        for _ in 0..100 {
+            let point = [0, 1, 2].map(|_| random.uniform(0.1, 3.0));
+            let left = value(rule.left, point);
+            let mut graph = Graph::new();
+            let right = lowered(&mut graph, rule.right);
+            let right = evaluate(&graph, right, &|symbol| match symbol {
+                Symbol::Parameter(index) => point[index],
+                other => panic!("{other:?}"),
+            });
+            assert!((left - right).abs() <= 1e-12 * (1.0 + left.abs()), "{} at {point:?}: {left} and {right}", rule.name);
+        }
+    }
+}
+
+#[test]
+fn names_are_unique() {
+    let mut names: Vec<&str> = RULES.iter().map(|rule| rule.name).collect();
+    names.sort_unstable();
+    let count = names.len();
+    names.dedup();
+    assert_eq!(names.len(), count);
+}
+
+fn value(source: &str, point: [f64; 3]) -> f64 {
+    let source = format!("::p; struct S {{ a, b, c }} coordinate q; potential = {source};");
+    let mut errors = Errors::default();
+    let (_, block) = parse::all(source.parse().unwrap(), &mut errors).unwrap();
+    let model = check::resolve(&block, &mut errors);
+    assert!(errors.is_empty(), "{:?}", errors.messages());
+    tree(model.energies[0].1, point)
+}
+
+fn tree(expr: &Expr, point: [f64; 3]) -> f64 {
+    match &expr.kind {
+        ExprKind::Number(Literal::Exact(value)) => value.numerator() as f64 / value.denominator() as f64,
+        ExprKind::Name(name) => match name.to_string().as_str() {
+            "a" => point[0],
+            "b" => point[1],
+            "c" => point[2],
+            "π" => std::f64::consts::PI,
+            other => panic!("{other}"),
+        },
+        ExprKind::Sum(items) => {
+            items.iter().map(|(minus, item)| if *minus { -tree(item, point) } else { tree(item, point) }).sum()
+        }
+        ExprKind::Product(items) => items
+            .iter()
+            .fold(1.0, |product, (over, item)| if *over { product / tree(item, point) } else { product * tree(item, point) }),
+        ExprKind::Negative(inner) => -tree(inner, point),
+        ExprKind::Power(base, exponent) => tree(base, point).powf(tree(exponent, point)),
+        ExprKind::Call(name, items) => {
+            let x = tree(&items[0], point);
+            match name.to_string().as_str() {
+                "sin" => x.sin(),
+                "cos" => x.cos(),
+                "tan" => x.tan(),
+                "asin" => x.asin(),
+                "acos" => x.acos(),
+                "atan" => x.atan(),
+                "sinh" => x.sinh(),
+                "cosh" => x.cosh(),
+                "tanh" => x.tanh(),
+                "exp" => x.exp(),
+                "ln" => x.ln(),
+                "abs" => x.abs(),
+                "sign" => x.signum(),
+                other => panic!("{other}"),
+            }
+        }
+        other => panic!("{other:?}"),
+    }
+}

@@ -1,0 +1,64 @@
+//! Catmull–Rom curves.
+
+use super::piecewise::{Piecewise, checked};
+use super::{Motion, MotionError, Orders, Sample, Side};
+use crate::real::Real;
+use crate::time::Time;
+
+/// A Catmull–Rom curve through keys: the velocity is continuous, the acceleration jumps at every key.
+///
+/// The velocity at a key is that of the parabola through it and its neighbours, at the ends that of the nearest parabola (Catmull
+/// and Rom 1974, for keys at unequal times). Before the first key and after the last the point rests.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CatmullRom<const D: usize>(Piecewise<D>);
+
+impl<const D: usize> CatmullRom<D> {
+    /// A curve through `values` at `times`, in metres and seconds.
+    ///
+    /// # Errors
+    /// No keys, lengths that differ, times that do not increase, numbers that are not finite.
+    pub fn new(times: &[f64], values: &[[f64; D]]) -> Result<Self, MotionError> {
+        checked(times, values)?;
+        let count = times.len();
+        let chord = |key: usize, d: usize| (values[key + 1][d] - values[key][d]) / (times[key + 1] - times[key]);
+        let mut velocities = vec![[0.0; D]; count];
+        for (key, velocity) in velocities.iter_mut().enumerate() {
+            for d in 0..D {
+                velocity[d] = match count {
+                    1 => 0.0,
+                    2 => chord(0, d),
+                    _ => {
+                        let middle = key.clamp(1, count - 2);
+                        let (before, after) = (times[middle] - times[middle - 1], times[middle + 1] - times[middle]);
+                        let (left, right) = (chord(middle - 1, d), chord(middle, d));
+                        let curvature = (right - left) / (before + after);
+                        left + curvature * (times[key] - times[middle - 1] + (times[key] - times[middle]))
+                    }
+                };
+            }
+        }
+        let slopes: Vec<_> = velocities.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+        Ok(Self(Piecewise::hermite(times, values, &slopes).with_kinks(true)))
+    }
+
+    /// The same motion again and again; the last key closes the loop, at which the velocity may jump.
+    ///
+    /// # Errors
+    /// Fewer than two keys.
+    pub fn looped(self) -> Result<Self, MotionError> {
+        Ok(Self(self.0.looped()?))
+    }
+}
+
+impl<T: Real, const D: usize> Motion<T, D> for CatmullRom<D> {
+    const HAS: Orders = Orders::ALL;
+
+    #[inline]
+    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
+        self.0.sample(t, side, orders)
+    }
+
+    fn next_kink(&self, t: f64) -> Option<f64> {
+        self.0.next_kink(t)
+    }
+}

@@ -1,0 +1,98 @@
+//! Motions sampled at a frame rate.
+
+use super::{CatmullRom, Linear, Motion, MotionError, Orders, Sample, Side, Spline};
+use crate::real::Real;
+use crate::time::Time;
+
+/// A motion sampled at a frame rate, such as a captured one.
+///
+/// Second differences of captured motion are noise: decimate the frames before a spline goes through them, or drive through the
+/// linear keys, whose jumps in velocity are small.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clip<const D: usize> {
+    frames: Vec<[f64; D]>,
+    times: Vec<f64>,
+    curve: Curve<D>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Curve<const D: usize> {
+    Linear(Linear<D>),
+    CatmullRom(CatmullRom<D>),
+    Spline(Spline<D>),
+}
+
+/// How the frames of a clip are joined.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Interpolation {
+    /// By straight lines.
+    Linear,
+    /// By a Catmull–Rom curve.
+    CatmullRom,
+    /// By a natural cubic spline.
+    #[default]
+    Spline,
+}
+
+impl<const D: usize> Clip<D> {
+    /// `frames` at `rate` frames a second, the first at t = 0, of which every `every`-th is kept (and the last).
+    ///
+    /// # Errors
+    /// No frames, a rate that is not positive, a decimation of zero, numbers that are not finite.
+    pub fn new(rate: f64, frames: &[[f64; D]], every: usize, interpolation: Interpolation) -> Result<Self, MotionError> {
+        if !(0.0 < rate && rate.is_finite()) {
+            return Err(MotionError::Rate(rate));
+        }
+        if every == 0 {
+            return Err(MotionError::Rate(0.0));
+        }
+        let last = frames.len().checked_sub(1).ok_or(MotionError::NoKeys)?;
+        let mut kept: Vec<usize> = (0..=last).step_by(every).collect();
+        if kept.last() != Some(&last) {
+            // The rest of a period would make a short last piece: its key moves to the end instead.
+            if 1 < kept.len() && (last - kept[kept.len() - 1]) * 2 < every {
+                kept.pop();
+            }
+            kept.push(last);
+        }
+        let times: Vec<f64> = kept.iter().map(|&frame| frame as f64 / rate).collect();
+        let frames: Vec<[f64; D]> = kept.iter().map(|&frame| frames[frame]).collect();
+        let curve = match interpolation {
+            Interpolation::Linear => Curve::Linear(Linear::new(&times, &frames)?),
+            Interpolation::CatmullRom => Curve::CatmullRom(CatmullRom::new(&times, &frames)?),
+            Interpolation::Spline => Curve::Spline(Spline::natural(&times, &frames)?),
+        };
+        Ok(Self { frames, times, curve })
+    }
+
+    /// The frames that were kept.
+    pub fn frames(&self) -> &[[f64; D]] {
+        &self.frames
+    }
+
+    /// Their times in seconds.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+}
+
+impl<T: Real, const D: usize> Motion<T, D> for Clip<D> {
+    const HAS: Orders = Orders::ALL;
+
+    #[inline]
+    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
+        match &self.curve {
+            Curve::Linear(curve) => curve.sample(t, side, orders),
+            Curve::CatmullRom(curve) => curve.sample(t, side, orders),
+            Curve::Spline(curve) => curve.sample(t, side, orders),
+        }
+    }
+
+    fn next_kink(&self, t: f64) -> Option<f64> {
+        match &self.curve {
+            Curve::Linear(curve) => Motion::<T, D>::next_kink(curve, t),
+            Curve::CatmullRom(curve) => Motion::<T, D>::next_kink(curve, t),
+            Curve::Spline(curve) => Motion::<T, D>::next_kink(curve, t),
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! Why a motion cannot be made.
+
+use core::fmt;
+
+/// Why a motion cannot be made from its keys.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum MotionError {
+    /// There is no key at all.
+    NoKeys,
+    /// A motion that repeats needs two keys.
+    OneKey,
+    /// There are not as many times as values.
+    Lengths {
+        /// The number of times.
+        times: usize,
+        /// The number of values.
+        values: usize,
+    },
+    /// A time, a value or a velocity is infinite or no number.
+    NotFinite {
+        /// The key, counted from zero.
+        key: usize,
+    },
+    /// A key is not later than the one before it.
+    NotIncreasing {
+        /// The key, counted from zero.
+        key: usize,
+        /// Its time.
+        time: f64,
+    },
+    /// The frame rate is not a positive number, or the decimation is zero.
+    Rate(f64),
+}
+
+impl fmt::Display for MotionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoKeys => write!(f, "a motion needs at least one key; use `Still` for a point at rest"),
+            Self::OneKey => write!(f, "a motion that repeats needs at least two keys; the last closes the loop"),
+            Self::Lengths { times, values } => write!(f, "{times} times but {values} values; give each key one of both"),
+            Self::NotFinite { key } => write!(f, "key {key} is infinite or no number; leave it out or mend it"),
+            Self::NotIncreasing { key, time } => {
+                write!(f, "key {key} at {time} s is not later than the key before it; sort the keys and drop doubles")
+            }
+            Self::Rate(rate) => write!(f, "a frame rate of {rate} Hz; give a positive number of frames a second"),
+        }
+    }
+}
+
+impl core::error::Error for MotionError {}

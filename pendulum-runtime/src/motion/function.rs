@@ -1,0 +1,120 @@
+//! Motions given by functions of time.
+
+use super::{Motion, Orders, Sample, Side};
+use crate::real::Real;
+use crate::time::Time;
+use core::fmt;
+
+/// A motion given by functions of the time in seconds: its position, and its derivatives as far as they are given.
+///
+/// A motion without an acceleration cannot drive a system whose equations contain one: that does not compile.
+///
+/// ```
+/// use pendulum_runtime::motion::Function;
+/// let lift = Function::new(|t| [0.0, 0.5 * t * t]).velocity(|t| [0.0, t]).acceleration(|_| [0.0, 1.0]);
+/// ```
+#[derive(Clone)]
+pub struct Function<X, V = Missing, A = Missing> {
+    position: X,
+    velocity: V,
+    acceleration: A,
+    kinks: Vec<f64>,
+}
+
+/// A derivative that a [`Function`] does not have.
+#[derive(Clone, Copy, Debug)]
+pub struct Missing;
+
+/// A function of time, or the lack of one.
+pub trait Part<const D: usize> {
+    /// Whether there is one.
+    const EXISTS: bool;
+
+    /// Its value; zero if there is none.
+    fn at(&self, t: f64) -> [f64; D];
+}
+
+impl<const D: usize> Part<D> for Missing {
+    const EXISTS: bool = false;
+
+    fn at(&self, _: f64) -> [f64; D] {
+        [0.0; D]
+    }
+}
+
+impl<const D: usize, F: Fn(f64) -> [f64; D]> Part<D> for F {
+    const EXISTS: bool = true;
+
+    fn at(&self, t: f64) -> [f64; D] {
+        self(t)
+    }
+}
+
+impl<X> Function<X> {
+    /// A motion of which only the position is known.
+    pub fn new<const D: usize>(position: X) -> Self
+    where
+        X: Fn(f64) -> [f64; D],
+    {
+        Self { position, velocity: Missing, acceleration: Missing, kinks: Vec::new() }
+    }
+}
+
+impl<X, V, A> Function<X, V, A> {
+    /// The same motion with its velocity.
+    pub fn velocity<const D: usize, F: Fn(f64) -> [f64; D]>(self, velocity: F) -> Function<X, F, A> {
+        Function { position: self.position, velocity, acceleration: self.acceleration, kinks: self.kinks }
+    }
+
+    /// The same motion with its acceleration.
+    pub fn acceleration<const D: usize, F: Fn(f64) -> [f64; D]>(self, acceleration: F) -> Function<X, V, F> {
+        Function { position: self.position, velocity: self.velocity, acceleration, kinks: self.kinks }
+    }
+
+    /// The same motion with the times at which a derivative jumps; the functions give the values after each jump.
+    ///
+    /// The value before a jump is taken one unit in the last place earlier.
+    #[must_use]
+    pub fn kinks(mut self, kinks: &[f64]) -> Self {
+        self.kinks = kinks.iter().copied().filter(|kink| kink.is_finite()).collect();
+        self.kinks.sort_by(f64::total_cmp);
+        self
+    }
+}
+
+impl<X, V, A> fmt::Debug for Function<X, V, A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Function").field("kinks", &self.kinks).finish_non_exhaustive()
+    }
+}
+
+impl<T: Real, const D: usize, X: Part<D>, V: Part<D>, A: Part<D>> Motion<T, D> for Function<X, V, A> {
+    const HAS: Orders = {
+        let velocity = if V::EXISTS { Orders::VELOCITY } else { Orders::NONE };
+        let acceleration = if A::EXISTS { Orders::ACCELERATION } else { Orders::NONE };
+        Orders::POSITION.and(velocity).and(acceleration)
+    };
+
+    #[inline]
+    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
+        let exact = t.to_f64();
+        let at_kink = side == Side::Before && self.kinks.binary_search_by(|kink| kink.total_cmp(&exact)).is_ok();
+        let t = if at_kink { exact.next_down() } else { exact };
+        let mut sample = Sample::zero();
+        if orders.contains(Orders::POSITION) {
+            sample.position = self.position.at(t).map(T::from_f64);
+        }
+        if orders.contains(Orders::VELOCITY) {
+            sample.velocity = self.velocity.at(t).map(T::from_f64);
+        }
+        if orders.contains(Orders::ACCELERATION) {
+            sample.acceleration = self.acceleration.at(t).map(T::from_f64);
+        }
+        sample
+    }
+
+    fn next_kink(&self, t: f64) -> Option<f64> {
+        let index = self.kinks.partition_point(|&kink| kink <= t);
+        self.kinks.get(index).copied()
+    }
+}

@@ -1,0 +1,54 @@
+//! Straight lines between keys.
+
+use super::piecewise::{Piecewise, checked};
+use super::{Motion, MotionError, Orders, Sample, Side};
+use crate::real::Real;
+use crate::time::Time;
+
+/// Straight lines between keys: the velocity jumps at every key, the acceleration is zero between them.
+///
+/// An acceleration form alone never feels such a motion; the integrators land on the keys and carry the momenta over each jump.
+/// Before the first key and after the last the point rests.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Linear<const D: usize>(Piecewise<D>);
+
+impl<const D: usize> Linear<D> {
+    /// Lines through `values` at `times`, in metres and seconds.
+    ///
+    /// # Errors
+    /// No keys, lengths that differ, times that do not increase, numbers that are not finite.
+    pub fn new(times: &[f64], values: &[[f64; D]]) -> Result<Self, MotionError> {
+        checked(times, values)?;
+        let slope = |key: usize| {
+            let h = times[key + 1] - times[key];
+            let mut slope = [0.0; D];
+            for d in 0..D {
+                slope[d] = (values[key + 1][d] - values[key][d]) / h;
+            }
+            [slope, slope]
+        };
+        let slopes: Vec<_> = (0..times.len() - 1).map(slope).collect();
+        Ok(Self(Piecewise::hermite(times, values, &slopes).straight().with_kinks(true)))
+    }
+
+    /// The same motion again and again; the last key closes the loop.
+    ///
+    /// # Errors
+    /// Fewer than two keys.
+    pub fn looped(self) -> Result<Self, MotionError> {
+        Ok(Self(self.0.looped()?))
+    }
+}
+
+impl<T: Real, const D: usize> Motion<T, D> for Linear<D> {
+    const HAS: Orders = Orders::ALL;
+
+    #[inline]
+    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
+        self.0.sample(t, side, orders)
+    }
+
+    fn next_kink(&self, t: f64) -> Option<f64> {
+        self.0.next_kink(t)
+    }
+}

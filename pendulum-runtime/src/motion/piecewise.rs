@@ -1,0 +1,233 @@
+//! Cubic pieces between keys: what linear keys, Catmull–Rom curves and splines are evaluated by.
+
+use super::{MotionError, Orders, Sample, Side};
+use crate::real::Real;
+use crate::time::Time;
+
+/// A curve of cubics between keys; it rests before the first key and after the last, or repeats.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Piecewise<const D: usize> {
+    times: Vec<f64>,
+    /// Coefficients of 1, u, u², u³ in the time u since the key.
+    pieces: Vec<[[f64; D]; 4]>,
+    /// The value at the last key.
+    last: [f64; D],
+    looped: bool,
+    /// Where position, velocity or acceleration jumps, within the keys.
+    kinks: Vec<f64>,
+}
+
+/// Where a time lies among the keys.
+enum Place {
+    /// Before the first key, or after the last.
+    Rest { after: bool },
+    /// In a piece, and the time since its beginning.
+    Piece(usize, f64),
+}
+
+/// Times that increase and values that are finite, as many of both.
+pub(super) fn checked<const D: usize>(times: &[f64], values: &[[f64; D]]) -> Result<(), MotionError> {
+    if times.len() != values.len() {
+        return Err(MotionError::Lengths { times: times.len(), values: values.len() });
+    }
+    if times.is_empty() {
+        return Err(MotionError::NoKeys);
+    }
+    for key in 0..times.len() {
+        if !times[key].is_finite() || values[key].iter().any(|value| !value.is_finite()) {
+            return Err(MotionError::NotFinite { key });
+        }
+        if 0 < key && times[key] <= times[key - 1] {
+            return Err(MotionError::NotIncreasing { key, time: times[key] });
+        }
+    }
+    Ok(())
+}
+
+impl<const D: usize> Piecewise<D> {
+    /// Pieces that meet at `times`; `values` are those at the keys, `slopes` the velocities at both ends of each piece.
+    pub(super) fn hermite(times: &[f64], values: &[[f64; D]], slopes: &[[[f64; D]; 2]]) -> Self {
+        let mut pieces = Vec::with_capacity(slopes.len());
+        for (index, [from, to]) in slopes.iter().enumerate() {
+            let h = times[index + 1] - times[index];
+            let mut piece = [[0.0; D]; 4];
+            for d in 0..D {
+                let chord = (values[index + 1][d] - values[index][d]) / h;
+                piece[0][d] = values[index][d];
+                piece[1][d] = from[d];
+                piece[2][d] = (3.0 * chord - 2.0 * from[d] - to[d]) / h;
+                piece[3][d] = (from[d] + to[d] - 2.0 * chord) / (h * h);
+            }
+            pieces.push(piece);
+        }
+        let last = values[values.len() - 1];
+        Self { times: times.to_vec(), pieces, last, looped: false, kinks: Vec::new() }
+    }
+
+    /// Drops what is left of the higher coefficients when every piece is a line.
+    pub(super) fn straight(mut self) -> Self {
+        for piece in &mut self.pieces {
+            piece[2] = [0.0; D];
+            piece[3] = [0.0; D];
+        }
+        self
+    }
+
+    /// Declares the curve free of kinks.
+    pub(super) fn smooth(mut self) -> Self {
+        self.kinks.clear();
+        self
+    }
+
+    /// Says at which keys there is a jump: where `jumps` and at the ends, unless the curve comes to rest there smoothly.
+    pub(super) fn with_kinks(mut self, interior: bool) -> Self {
+        let count = self.times.len();
+        if self.pieces.is_empty() {
+            return self;
+        }
+        let rest = [[0.0; D]; 3];
+        for key in 0..count {
+            let before = if key == 0 { rest } else { self.end_of(key - 1) };
+            let after = if key + 1 == count { rest } else { self.start_of(key) };
+            let jump =
+                if key == 0 || key + 1 == count { before[1..] != after[1..] } else { interior && before[1..] != after[1..] };
+            if jump {
+                self.kinks.push(self.times[key]);
+            }
+        }
+        self
+    }
+
+    /// Repeats the curve for ever; the seam is a kink unless it is smooth.
+    pub(super) fn looped(mut self) -> Result<Self, MotionError> {
+        let count = self.times.len();
+        if count < 2 {
+            return Err(MotionError::OneKey);
+        }
+        let first = self.times[0];
+        let last = self.times[count - 1];
+        self.kinks.retain(|&kink| first < kink && kink < last);
+        if !close(&self.end_of(count - 2), &self.start_of(0)) {
+            self.kinks.push(last);
+        }
+        self.looped = true;
+        Ok(self)
+    }
+
+    /// Position, velocity and acceleration at the beginning of a piece.
+    fn start_of(&self, piece: usize) -> [[f64; D]; 3] {
+        let [a, b, c, _] = self.pieces[piece];
+        [a, b, c.map(|value| 2.0 * value)]
+    }
+
+    /// Position, velocity and acceleration at its end.
+    fn end_of(&self, piece: usize) -> [[f64; D]; 3] {
+        let h = self.times[piece + 1] - self.times[piece];
+        let sample: Sample<f64, D> = evaluate(&self.pieces[piece], h, Orders::ALL);
+        let next = if piece + 1 < self.pieces.len() { self.pieces[piece + 1][0] } else { self.last };
+        [next, sample.velocity, sample.acceleration]
+    }
+
+    fn period(&self) -> f64 {
+        self.times[self.times.len() - 1] - self.times[0]
+    }
+
+    /// The whole periods before `t`.
+    fn turns(&self, t: Time) -> f64 {
+        (t.since(self.times[0]) / self.period()).floor()
+    }
+
+    fn place(&self, t: Time, side: Side) -> Place {
+        let count = self.times.len();
+        if !self.looped {
+            let passed = self.times.partition_point(|&key| match side {
+                Side::After => 0.0 <= t.since(key),
+                Side::Before => 0.0 < t.since(key),
+            });
+            return match passed {
+                0 => Place::Rest { after: false },
+                passed if passed == count => Place::Rest { after: true },
+                passed => Place::Piece(passed - 1, t.since(self.times[passed - 1])),
+            };
+        }
+        let turns = self.turns(t);
+        let local = t + -(turns * self.period());
+        // A kink of a later period is known to the rounding of its time; there the side decides.
+        let slack = 4.0 * f64::EPSILON * (t.to_f64().abs() + self.period());
+        let key = self.times.partition_point(|&key| key <= local.to_f64());
+        let near =
+            [key.saturating_sub(1), key.min(count - 1)].into_iter().find(|&key| local.since(self.times[key]).abs() <= slack);
+        if let Some(key) = near {
+            return match side {
+                Side::After if key + 1 == count => Place::Piece(0, 0.0),
+                Side::After => Place::Piece(key, 0.0),
+                Side::Before => {
+                    let piece = if key == 0 { count - 2 } else { key - 1 };
+                    Place::Piece(piece, self.times[piece + 1] - self.times[piece])
+                }
+            };
+        }
+        let piece = key.saturating_sub(1).min(count - 2);
+        Place::Piece(piece, local.since(self.times[piece]))
+    }
+
+    #[inline]
+    pub(super) fn sample<T: Real>(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
+        match self.place(t, side) {
+            Place::Rest { after } => {
+                let mut sample = Sample::zero();
+                if orders.contains(Orders::POSITION) {
+                    let value = if after || self.pieces.is_empty() { self.last } else { self.pieces[0][0] };
+                    sample.position = value.map(T::from_f64);
+                }
+                sample
+            }
+            Place::Piece(piece, u) => evaluate(&self.pieces[piece], u, orders),
+        }
+    }
+
+    pub(super) fn next_kink(&self, t: f64) -> Option<f64> {
+        if !self.looped {
+            let index = self.kinks.partition_point(|&kink| kink <= t);
+            return self.kinks.get(index).copied();
+        }
+        if self.kinks.is_empty() || !t.is_finite() {
+            return None;
+        }
+        let turns = self.turns(Time::new(t));
+        // A kink that rounds to the time asked for has been passed.
+        let slack = 4.0 * f64::EPSILON * (t.abs() + self.period());
+        for turn in [turns - 1.0, turns, turns + 1.0, turns + 2.0] {
+            let later = self.kinks.iter().map(|&kink| kink + turn * self.period()).find(|&kink| t + slack < kink);
+            if later.is_some() {
+                return later;
+            }
+        }
+        None
+    }
+}
+
+fn evaluate<T: Real, const D: usize>(piece: &[[f64; D]; 4], u: f64, orders: Orders) -> Sample<T, D> {
+    let [a, b, c, d] = piece;
+    let mut sample = Sample::zero();
+    for k in 0..D {
+        if orders.contains(Orders::POSITION) {
+            sample.position[k] = T::from_f64(a[k] + u * (b[k] + u * (c[k] + u * d[k])));
+        }
+        if orders.contains(Orders::VELOCITY) {
+            sample.velocity[k] = T::from_f64(b[k] + u * (2.0 * c[k] + u * (3.0 * d[k])));
+        }
+        if orders.contains(Orders::ACCELERATION) {
+            sample.acceleration[k] = T::from_f64(2.0 * c[k] + u * (6.0 * d[k]));
+        }
+    }
+    sample
+}
+
+/// Whether two ends meet up to rounding.
+fn close<const D: usize>(a: &[[f64; D]; 3], b: &[[f64; D]; 3]) -> bool {
+    (0..3).all(|order| {
+        let size = a[order].iter().chain(&b[order]).fold(0.0f64, |size, value| size.max(value.abs()));
+        (0..D).all(|k| (a[order][k] - b[order][k]).abs() <= 1e-9 * size)
+    })
+}

@@ -1,0 +1,175 @@
+//! Cubic splines.
+
+use super::piecewise::{Piecewise, checked};
+use super::{Motion, MotionError, Orders, Sample, Side};
+use crate::real::Real;
+use crate::time::Time;
+
+/// A cubic spline through keys: position, velocity and acceleration are continuous between the first key and the last.
+///
+/// The velocities at the keys solve the tridiagonal system of de Boor (1978), chapter IV. Before the first key and after the
+/// last the point rests, so that the ends are kinks unless the curve starts and ends at rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spline<const D: usize>(Piecewise<D>);
+
+/// What holds at the ends of a spline.
+enum Ends<const D: usize> {
+    Natural,
+    Clamped([f64; D], [f64; D]),
+    Periodic,
+}
+
+impl<const D: usize> Spline<D> {
+    /// The natural spline: no acceleration at the ends.
+    ///
+    /// # Errors
+    /// No keys, lengths that differ, times that do not increase, numbers that are not finite.
+    pub fn natural(times: &[f64], values: &[[f64; D]]) -> Result<Self, MotionError> {
+        checked(times, values)?;
+        Ok(Self::through(times, values, &Ends::Natural))
+    }
+
+    /// The spline with the velocities `first` and `last` at its ends.
+    ///
+    /// # Errors
+    /// As for [`natural`](Self::natural).
+    pub fn clamped(times: &[f64], values: &[[f64; D]], first: [f64; D], last: [f64; D]) -> Result<Self, MotionError> {
+        checked(times, values)?;
+        if first.iter().chain(&last).any(|velocity| !velocity.is_finite()) {
+            return Err(MotionError::NotFinite { key: 0 });
+        }
+        Ok(Self::through(times, values, &Ends::Clamped(first, last)))
+    }
+
+    /// The spline that repeats for ever without a kink; the last value is taken for that of the first key.
+    ///
+    /// # Errors
+    /// As for [`natural`](Self::natural), and fewer than two keys.
+    pub fn periodic(times: &[f64], values: &[[f64; D]]) -> Result<Self, MotionError> {
+        checked(times, values)?;
+        if times.len() < 2 {
+            return Err(MotionError::OneKey);
+        }
+        let mut values = values.to_vec();
+        let last = values.len() - 1;
+        values[last] = values[0];
+        Ok(Self(Self::through(times, &values, &Ends::Periodic).0.looped()?.smooth()))
+    }
+
+    fn through(times: &[f64], values: &[[f64; D]], ends: &Ends<D>) -> Self {
+        let velocities = velocities(times, values, ends);
+        let slopes: Vec<_> = velocities.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+        Self(Piecewise::hermite(times, values, &slopes).with_kinks(false))
+    }
+}
+
+/// The velocities at the keys for which the acceleration is continuous.
+fn velocities<const D: usize>(times: &[f64], values: &[[f64; D]], ends: &Ends<D>) -> Vec<[f64; D]> {
+    let count = times.len();
+    if count < 2 {
+        return vec![[0.0; D]; count];
+    }
+    let step = |key: usize| times[key + 1] - times[key];
+    let chord = |key: usize, d: usize| (values[key + 1][d] - values[key][d]) / step(key);
+    // Row by row: below, on and above the diagonal, right-hand side; the inner rows say that the acceleration is continuous.
+    let mut rows = vec![([0.0, 1.0, 0.0], [0.0; D]); count];
+    let inner = |before: f64, after: f64, left: &dyn Fn(usize) -> f64, right: &dyn Fn(usize) -> f64| {
+        let mut side = [0.0; D];
+        for (d, value) in side.iter_mut().enumerate() {
+            *value = 3.0 * (after * left(d) + before * right(d));
+        }
+        ([after, 2.0 * (before + after), before], side)
+    };
+    for key in 1..count - 1 {
+        rows[key] = inner(step(key - 1), step(key), &|d| chord(key - 1, d), &|d| chord(key, d));
+    }
+    let last = count - 1;
+    match ends {
+        Ends::Natural => {
+            rows[0].0 = [0.0, 2.0, 1.0];
+            rows[last].0 = [1.0, 2.0, 0.0];
+            for d in 0..D {
+                rows[0].1[d] = 3.0 * chord(0, d);
+                rows[last].1[d] = 3.0 * chord(last - 1, d);
+            }
+        }
+        Ends::Clamped(first, end) => {
+            rows[0].1 = *first;
+            rows[last].1 = *end;
+        }
+        Ends::Periodic => return periodic(&rows, inner(step(last - 1), step(0), &|d| chord(last - 1, d), &|d| chord(0, d))),
+    }
+    tridiagonal(&rows)
+}
+
+type Row<const D: usize> = ([f64; 3], [f64; D]);
+
+/// Gaussian elimination without pivoting: the rows are diagonally dominant.
+fn tridiagonal<const D: usize>(rows: &[Row<D>]) -> Vec<[f64; D]> {
+    let mut rows = rows.to_vec();
+    for key in 1..rows.len() {
+        let factor = rows[key].0[0] / rows[key - 1].0[1];
+        rows[key].0[1] -= factor * rows[key - 1].0[2];
+        for d in 0..D {
+            let part = factor * rows[key - 1].1[d];
+            rows[key].1[d] -= part;
+        }
+    }
+    let mut solution = vec![[0.0; D]; rows.len()];
+    for key in (0..rows.len()).rev() {
+        for d in 0..D {
+            let above = if key + 1 < rows.len() { rows[key].0[2] * solution[key + 1][d] } else { 0.0 };
+            solution[key][d] = (rows[key].1[d] - above) / rows[key].0[1];
+        }
+    }
+    solution
+}
+
+/// The cyclic system: the first velocity is that of the last key; `seam` is its row.
+///
+/// The corner entries are bordered: one solution for the right-hand side and one for the seam's unit velocity.
+fn periodic<const D: usize>(rows: &[Row<D>], seam: Row<D>) -> Vec<[f64; D]> {
+    let count = rows.len();
+    let inner = &rows[1..count - 1];
+    let mut first = vec![[0.0; D]; inner.len()];
+    let mut unit = vec![[0.0; 1]; inner.len()];
+    if !inner.is_empty() {
+        first = tridiagonal(inner);
+        let mut border: Vec<Row<1>> = inner.iter().map(|row| (row.0, [0.0])).collect();
+        border[0].1[0] -= inner[0].0[0];
+        let end = inner.len() - 1;
+        border[end].1[0] -= inner[end].0[2];
+        unit = tridiagonal(&border);
+    }
+    let mut solution = vec![[0.0; D]; count];
+    for d in 0..D {
+        let ([below, on, above], side) = seam;
+        let (next, previous) = match inner.len() {
+            // One piece: its only neighbour is itself.
+            0 => (([0.0; D], 1.0), ([0.0; D], 1.0)),
+            len => ((first[0], unit[0][0]), (first[len - 1], unit[len - 1][0])),
+        };
+        let top = side[d] - below * previous.0[d] - above * next.0[d];
+        let bottom = on + below * previous.1 + above * next.1;
+        let velocity = top / bottom;
+        solution[0][d] = velocity;
+        solution[count - 1][d] = velocity;
+        for key in 1..count - 1 {
+            solution[key][d] = first[key - 1][d] + unit[key - 1][0] * velocity;
+        }
+    }
+    solution
+}
+
+impl<T: Real, const D: usize> Motion<T, D> for Spline<D> {
+    const HAS: Orders = Orders::ALL;
+
+    #[inline]
+    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
+        self.0.sample(t, side, orders)
+    }
+
+    fn next_kink(&self, t: f64) -> Option<f64> {
+        self.0.next_kink(t)
+    }
+}

@@ -1,0 +1,36 @@
+//! A point at rest.
+
+use super::{Motion, Orders, Sample, Side};
+use crate::real::Real;
+use crate::time::Time;
+
+/// A point at rest: x(t) = `position`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Still<const D: usize> {
+    /// Where it is, in metres.
+    pub position: [f64; D],
+}
+
+impl<const D: usize> Still<D> {
+    /// A point at rest.
+    pub const fn new(position: [f64; D]) -> Self {
+        Self { position }
+    }
+}
+
+impl<T: Real, const D: usize> Motion<T, D> for Still<D> {
+    const HAS: Orders = Orders::ALL;
+
+    #[inline]
+    fn sample(&self, _: Time, _: Side, orders: Orders) -> Sample<T, D> {
+        let mut sample = Sample::zero();
+        if orders.contains(Orders::POSITION) {
+            sample.position = self.position.map(T::from_f64);
+        }
+        sample
+    }
+
+    fn next_kink(&self, _: f64) -> Option<f64> {
+        None
+    }
+}

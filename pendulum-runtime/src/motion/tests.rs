@@ -1,0 +1,224 @@
+//! Motions against closed forms, differences and their own limits.
+
+use super::*;
+
+const TIMES: [f64; 6] = [0.0, 0.4, 0.7, 1.5, 1.9, 3.0];
+
+fn at<const D: usize, M: Motion<f64, D>>(motion: &M, t: f64) -> Sample<f64, D> {
+    motion.sample(Time::new(t), Side::After, Orders::ALL)
+}
+
+fn before<const D: usize, M: Motion<f64, D>>(motion: &M, t: f64) -> Sample<f64, D> {
+    motion.sample(Time::new(t), Side::Before, Orders::ALL)
+}
+
+fn has<M: Motion<f64, 1>>(_: &M) -> Orders {
+    M::HAS
+}
+
+fn kinks<const D: usize, M: Motion<f64, D>>(motion: &M, from: f64, to: f64) -> Vec<f64> {
+    let mut found = Vec::new();
+    let mut t = from;
+    while let Some(kink) = motion.next_kink(t).filter(|&kink| kink <= to) {
+        assert!(t < kink);
+        found.push(kink);
+        t = kink;
+    }
+    found
+}
+
+/// Velocities and accelerations are the differences of positions and velocities.
+fn consistent<const D: usize, M: Motion<f64, D>>(motion: &M, times: impl Iterator<Item = f64>) {
+    let h = 1e-5;
+    for t in times {
+        let (low, here, high) = (at(motion, t - h), at(motion, t), at(motion, t + h));
+        for d in 0..D {
+            let velocity = (high.position[d] - low.position[d]) / (2.0 * h);
+            let acceleration = (high.velocity[d] - low.velocity[d]) / (2.0 * h);
+            assert!((velocity - here.velocity[d]).abs() < 1e-7, "velocity at {t}: {velocity} and {}", here.velocity[d]);
+            assert!((acceleration - here.acceleration[d]).abs() < 1e-6, "acceleration at {t}");
+        }
+    }
+}
+
+fn cubic(t: f64) -> [f64; 2] {
+    [1.0 - 2.0 * t + t * t * t, 0.5 * t * t - 0.25 * t * t * t]
+}
+
+fn cubic_velocity(t: f64) -> [f64; 2] {
+    [-2.0 + 3.0 * t * t, t - 0.75 * t * t]
+}
+
+#[test]
+fn a_clamped_spline_reproduces_cubics() {
+    let values: Vec<[f64; 2]> = TIMES.iter().map(|&t| cubic(t)).collect();
+    let spline = Spline::clamped(&TIMES, &values, cubic_velocity(0.0), cubic_velocity(3.0)).unwrap();
+    for k in 0..=300 {
+        let t = 3.0 * f64::from(k) / 300.0;
+        let sample = if k == 300 { before(&spline, t) } else { at(&spline, t) };
+        let (position, velocity, acceleration) = (cubic(t), cubic_velocity(t), [6.0 * t, 1.0 - 1.5 * t]);
+        for d in 0..2 {
+            assert!((sample.position[d] - position[d]).abs() < 2e-14);
+            assert!((sample.velocity[d] - velocity[d]).abs() < 1e-13);
+            assert!((sample.acceleration[d] - acceleration[d]).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn a_spline_has_continuous_accelerations() {
+    let values: Vec<[f64; 1]> = TIMES.iter().map(|&t| [(3.0 * t).rem_euclid(1.0)]).collect();
+    let spline = Spline::natural(&TIMES, &values).unwrap();
+    for &key in &TIMES[1..5] {
+        let (left, right) = (before(&spline, key), at(&spline, key));
+        assert!((left.velocity[0] - right.velocity[0]).abs() < 1e-12);
+        assert!((left.acceleration[0] - right.acceleration[0]).abs() < 1e-11);
+    }
+    assert!(at(&spline, 0.0).acceleration[0].abs() < 1e-12);
+    assert_eq!(kinks(&spline, -1.0, 10.0), [0.0, 3.0]);
+    consistent(&spline, (1..29).map(|k| 0.1 * f64::from(k) + 0.03));
+}
+
+#[test]
+fn a_periodic_spline_closes_without_a_kink() {
+    let values: Vec<[f64; 1]> = TIMES.iter().map(|&t| [(2.1 * t).rem_euclid(1.3)]).collect();
+    let spline = Spline::periodic(&TIMES, &values).unwrap();
+    let (end, start) = (before(&spline, 3.0), at(&spline, 0.0));
+    assert!((end.position[0] - start.position[0]).abs() < 1e-14);
+    assert!((end.velocity[0] - start.velocity[0]).abs() < 1e-13);
+    assert!((end.acceleration[0] - start.acceleration[0]).abs() < 1e-12);
+    assert_eq!(Motion::<f64, 1>::next_kink(&spline, 0.5), None);
+    for turn in [-3.0, 1.0, 1000.0] {
+        let (a, b) = (at(&spline, 0.9), at(&spline, 0.9 + 3.0 * turn));
+        assert!((a.acceleration[0] - b.acceleration[0]).abs() < 1e-9);
+    }
+    consistent(&spline, (0..90).map(|k| 0.1 * f64::from(k) + 0.033));
+}
+
+#[test]
+fn one_piece_can_be_periodic() {
+    let spline = Spline::periodic(&[0.0, 2.0], &[[1.0], [5.0]]).unwrap();
+    assert_eq!(at(&spline, 1.3).position, [1.0]);
+}
+
+#[test]
+fn catmull_rom_reproduces_parabolas() {
+    let values: Vec<[f64; 1]> = TIMES.iter().map(|&t| [2.0 - t + 3.0 * t * t]).collect();
+    let curve = CatmullRom::new(&TIMES, &values).unwrap();
+    for k in 0..30 {
+        let t = 0.1 * f64::from(k);
+        let sample = at(&curve, t);
+        assert!((sample.position[0] - (2.0 - t + 3.0 * t * t)).abs() < 1e-13);
+        assert!((sample.velocity[0] - (6.0 * t - 1.0)).abs() < 1e-12);
+        assert!((sample.acceleration[0] - 6.0).abs() < 1e-11);
+    }
+}
+
+#[test]
+fn linear_keys_jump_in_velocity_where_they_bend() {
+    let linear = Linear::new(&[0.0, 1.0, 2.0, 3.0, 4.0], &[[0.0], [1.0], [2.0], [2.0], [1.0]]).unwrap();
+    // No jump at 1: the slope is the same on both sides.
+    assert_eq!(kinks(&linear, -1.0, 9.0), [0.0, 2.0, 3.0, 4.0]);
+    assert_eq!(before(&linear, 2.0).velocity, [1.0]);
+    assert_eq!(at(&linear, 2.0).velocity, [0.0]);
+    assert_eq!(before(&linear, 0.0).velocity, [0.0]);
+    assert_eq!(at(&linear, 0.0).velocity, [1.0]);
+    assert_eq!(at(&linear, 2.5).acceleration, [0.0]);
+    assert_eq!(at(&linear, 9.0).position, [1.0]);
+    assert_eq!(at(&linear, -9.0).position, [0.0]);
+}
+
+#[test]
+fn looped_keys_have_kinks_in_every_turn() {
+    let linear = Linear::new(&[0.5, 1.0, 1.6], &[[0.0], [1.0], [0.0]]).unwrap().looped().unwrap();
+    let found = kinks(&linear, 0.0, 100.0);
+    assert_eq!(found.len(), 181);
+    for kink in found {
+        let (left, right) = (before(&linear, kink), at(&linear, kink));
+        assert!((left.velocity[0] * right.velocity[0]) < 0.0, "at {kink}: {left:?} {right:?}");
+        assert!((left.position[0] - right.position[0]).abs() < 1e-12);
+    }
+    let far = kinks(&linear, 1e6 + 0.05, 1e6 + 11.05);
+    assert_eq!(far.len(), 20);
+    assert!(far.iter().all(|&kink| before(&linear, kink).velocity[0] * at(&linear, kink).velocity[0] < 0.0));
+}
+
+#[test]
+fn sinusoids_have_exact_derivatives() {
+    let circle = Sinusoid::new([2.0, 2.0], 3.0, [core::f64::consts::FRAC_PI_2, 0.0]).about([1.0, -1.0]);
+    let sample = at(&circle, 0.4);
+    let (sin, cos) = 1.2f64.sin_cos();
+    assert!((sample.position[0] - (1.0 + 2.0 * cos)).abs() < 1e-15);
+    assert!((sample.velocity[1] - 6.0 * cos).abs() < 1e-14);
+    assert!((sample.acceleration[1] + 18.0 * sin).abs() < 1e-14);
+    consistent(&circle, (0..20).map(f64::from));
+}
+
+#[test]
+fn a_clip_keeps_every_nth_frame_and_the_last() {
+    let frames: Vec<[f64; 1]> = (0..=10).map(|k| [f64::from(k)]).collect();
+    let clip = Clip::new(10.0, &frames, 4, Interpolation::Linear).unwrap();
+    assert_eq!(clip.times(), [0.0, 0.4, 0.8, 1.0]);
+    let clip = Clip::new(10.0, &frames, 3, Interpolation::Spline).unwrap();
+    assert_eq!(clip.times(), [0.0, 0.3, 0.6, 1.0]);
+    assert!((at(&clip, 0.77).position[0] - 7.7).abs() < 1e-12);
+    let clip = Clip::new(10.0, &frames, 1, Interpolation::CatmullRom).unwrap();
+    assert!((at(&clip, 0.77).position[0] - 7.7).abs() < 1e-12);
+}
+
+#[test]
+fn functions_have_what_they_are_given() {
+    let position = Function::new(|t| [t]);
+    let all = Function::new(|t: f64| [t.abs()])
+        .velocity(|t: f64| [if t < 0.0 { -1.0 } else { 1.0 }])
+        .acceleration(|_| [0.0])
+        .kinks(&[0.0]);
+    assert_eq!(has(&position), Orders::POSITION);
+    assert_eq!(has(&all), Orders::ALL);
+    assert_eq!(before(&all, 0.0).velocity, [-1.0]);
+    assert_eq!(at(&all, 0.0).velocity, [1.0]);
+    assert_eq!(kinks(&all, -1.0, 1.0), [0.0]);
+}
+
+#[test]
+fn what_is_not_asked_is_not_computed() {
+    let spline = Spline::natural(&TIMES, &TIMES.map(|t| [t * t])).unwrap();
+    let sample: Sample<f64, 1> = spline.sample(Time::new(0.5), Side::After, Orders::VELOCITY);
+    assert_eq!((sample.position, sample.acceleration), ([0.0], [0.0]));
+    assert_ne!(sample.velocity, [0.0]);
+}
+
+#[test]
+fn times_far_from_zero_keep_their_resolution() {
+    let times: Vec<f64> = (0..10).map(|k| 1e9 + f64::from(k)).collect();
+    let values: Vec<[f64; 1]> = (0..10).map(|k| [f64::from(k) * 10.0]).collect();
+    let linear = Linear::new(&times, &values).unwrap();
+    let sample: Sample<f64, 1> = linear.sample(Time::new(1e9) + 1.0 / 3.0, Side::After, Orders::ALL);
+    assert!((sample.position[0] - 10.0 / 3.0).abs() < 1e-15);
+}
+
+#[test]
+fn single_precision_and_single_keys_work() {
+    let still = Linear::new(&[1.0], &[[2.0, 3.0]]).unwrap();
+    let sample: Sample<f32, 2> = still.sample(Time::new(0.0), Side::After, Orders::ALL);
+    assert_eq!(sample.position, [2.0, 3.0]);
+    assert_eq!(Motion::<f32, 2>::next_kink(&still, 0.0), None);
+    assert_eq!(at(&Spline::natural(&[1.0], &[[4.0]]).unwrap(), 1.0).position, [4.0]);
+    assert_eq!(at(&Still::new([7.0]), 1.0).position, [7.0]);
+}
+
+#[test]
+fn bad_keys_are_refused() {
+    let none: &[[f64; 1]] = &[];
+    assert_eq!(Linear::new(&[], none), Err(MotionError::NoKeys));
+    assert_eq!(Linear::new(&[0.0], none), Err(MotionError::Lengths { times: 1, values: 0 }));
+    assert_eq!(Spline::natural(&[0.0, 0.0], &[[1.0], [2.0]]), Err(MotionError::NotIncreasing { key: 1, time: 0.0 }));
+    assert_eq!(CatmullRom::new(&[0.0, f64::NAN], &[[1.0], [2.0]]), Err(MotionError::NotFinite { key: 1 }));
+    assert_eq!(Linear::new(&[0.0, 1.0], &[[1.0], [f64::INFINITY]]), Err(MotionError::NotFinite { key: 1 }));
+    assert_eq!(Linear::new(&[0.0], &[[1.0]]).unwrap().looped(), Err(MotionError::OneKey));
+    assert!(matches!(Clip::new(0.0, &[[1.0]], 1, Interpolation::Linear), Err(MotionError::Rate(_))));
+    assert!(Spline::clamped(&[0.0, 1.0], &[[1.0], [2.0]], [f64::NAN], [0.0]).is_err());
+    for error in [MotionError::NoKeys, MotionError::OneKey, MotionError::Rate(-1.0)] {
+        assert!(error.to_string().contains(';') || error.to_string().contains("rests"), "{error}");
+    }
+}
