@@ -126,22 +126,27 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::Interval { start, end } if start.is_finite() && end.is_finite() => {
-                write!(f, "the end {end} lies before the start {start}; swap them, or negate the velocities to go back in time")
+                write!(
+                    f,
+                    "the end {end:?} lies before the start {start:?}; swap them, or negate the velocities to go back in time"
+                )
             }
-            Self::Interval { start, end } => write!(f, "the interval from {start} to {end} is not finite; give two finite times"),
+            Self::Interval { start, end } => {
+                write!(f, "the interval from {start:?} to {end:?} is not finite; give two finite times")
+            }
             Self::InitialState { part, coordinate, value } => {
                 let part = match part {
                     Part::Position => "position",
                     Part::Velocity => "velocity",
                 };
-                write!(f, "the initial {part} of {coordinate} is {value}; give a finite number")
+                write!(f, "the initial {part} of {coordinate} is {value:?}; give a finite number")
             }
-            Self::Setting { name, value, required } => write!(f, "`{name}` is {value}, but has to be {required}"),
+            Self::Setting { name, value, required } => write!(f, "`{name}` is {value:?}, but has to be {required}"),
             Self::Times { name, index, time } => {
-                write!(f, "entry {index} of `{name}` is {time}; give finite times in ascending order within the interval")
+                write!(f, "entry {index} of `{name}` is {time:?}; give finite times in ascending order within the interval")
             }
             Self::NotFinite { t, what, ref suspects } => {
-                write!(f, "at t = {t} the {what} is not finite; ")?;
+                write!(f, "at t = {t:?} the {what} is not finite; ")?;
                 match (what, suspects.split_first()) {
                     (_, Some((first, rest))) => {
                         write!(f, "check parameter {first}")?;
@@ -159,17 +164,17 @@ impl fmt::Display for Error {
             }
             Self::StepSizeUnderflow { t, step, coordinate } => write!(
                 f,
-                "at t = {t} the step size fell to {step:e} for the sake of {coordinate}; the motion may be singular there: \
+                "at t = {t:?} the step size fell to {step:?} for the sake of {coordinate}; the motion may be singular there: \
                  stop before it, loosen the tolerances, or choose coordinates that stay regular"
             ),
             Self::MaxSteps { t, max_steps } => write!(
                 f,
-                "{max_steps} steps do not suffice from t = {t}; raise `max_steps`, loosen the tolerances or lengthen the step"
+                "{max_steps} steps do not suffice from t = {t:?}; raise `max_steps`, loosen the tolerances or lengthen the step"
             ),
             Self::Kink { t, kink } => {
                 write!(
                     f,
-                    "a motion says that its next kink after t = {t} is at {kink}; `next_kink` has to give a later time or `None`"
+                    "a motion says that its next kink after t = {t:?} is at {kink:?}; `next_kink` has to give a later time or `None`"
                 )
             }
         }
@@ -186,7 +191,7 @@ impl fmt::Display for Coordinate {
 
 impl fmt::Display for Suspect {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "`{}`, which is {}", self.parameter, self.value)
+        write!(f, "`{}`, which is {:?}", self.parameter, self.value)
     }
 }
 
@@ -214,7 +219,7 @@ mod tests {
     fn messages_name_time_place_and_remedy() {
         let suspects = vec![Suspect { parameter: "L", value: 0.0 }, Suspect { parameter: "g", value: f64::NAN }];
         let error = Error::NotFinite { t: 1.5, what: Quantity::Acceleration(THETA), suspects };
-        let message = "at t = 1.5 the acceleration of `θ` is not finite; check parameter `L`, which is 0, `g`, which is NaN";
+        let message = "at t = 1.5 the acceleration of `θ` is not finite; check parameter `L`, which is 0.0, `g`, which is NaN";
         assert_eq!(error.to_string(), message);
 
         let what = Quantity::Input { name: "x", component: 1, derivative: 2 };

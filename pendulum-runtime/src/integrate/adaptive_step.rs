@@ -3,9 +3,9 @@
 use super::blame::{blame, fault};
 use super::control::{Control, Course, Memory};
 use super::field::{Accelerations, coordinate};
-use super::method::{Embedded, Scale};
+use super::method::{Embedded, Weights};
 use super::node::Node;
-use super::power::power;
+use super::power::{exp2, log2};
 use super::span::Span;
 use crate::error::{Error, Quantity};
 use crate::motion::Side;
@@ -25,14 +25,14 @@ use crate::time::Time;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdaptiveStep<const N: usize> {
     rtol: Option<f64>,
-    atol: Scale<N>,
+    atol: ([f64; N], [f64; N]),
     first_step: Option<f64>,
     max_step: f64,
 }
 
 impl<const N: usize> Default for AdaptiveStep<N> {
     fn default() -> Self {
-        Self { rtol: None, atol: Scale { q: [1e-9; N], v: [1e-9; N] }, first_step: None, max_step: 1e300 }
+        Self { rtol: None, atol: ([1e-9; N], [1e-9; N]), first_step: None, max_step: 1e300 }
     }
 }
 
@@ -55,7 +55,7 @@ impl<const N: usize> AdaptiveStep<N> {
 
     /// The absolute tolerances of each coordinate and of each velocity.
     pub fn atol_each(mut self, q: [f64; N], v: [f64; N]) -> Self {
-        self.atol = Scale { q, v };
+        self.atol = (q, v);
         self
     }
 
@@ -76,16 +76,16 @@ impl<const N: usize> AdaptiveStep<N> {
         self.rtol.unwrap_or(if 1e-6 < least { least } else { 1e-6 })
     }
 
-    /// The error allowed between `from` and `to`.
-    fn scale<T: Float>(&self, from: &Node<T, N>, to: &Node<T, N>) -> Scale<N> {
+    /// One over the error allowed between `from` and `to`.
+    fn weights<T: Float>(&self, from: &Node<T, N>, to: &Node<T, N>) -> Weights<N> {
         let rtol = self.relative::<T>();
         let larger = |a: T, b: T| {
             let (a, b) = (a.to_f64().abs(), b.to_f64().abs());
             if a < b { b } else { a }
         };
-        Scale {
-            q: core::array::from_fn(|i| self.atol.q[i] + rtol * larger(from.q.high[i], to.q.high[i])),
-            v: core::array::from_fn(|i| self.atol.v[i] + rtol * larger(from.v.high[i], to.v.high[i])),
+        Weights {
+            q: core::array::from_fn(|i| 1.0 / (self.atol.0[i] + rtol * larger(from.q.high[i], to.q.high[i]))),
+            v: core::array::from_fn(|i| 1.0 / (self.atol.1[i] + rtol * larger(from.v.high[i], to.v.high[i]))),
         }
     }
 }
@@ -93,7 +93,7 @@ impl<const N: usize> AdaptiveStep<N> {
 impl<M: Embedded, const N: usize> Control<M, N> for AdaptiveStep<N> {
     fn check<T: Float>(&self) -> Result<(), Error> {
         let positive = |name, value: f64| {
-            let fine = 0.0 < value && value < f64::INFINITY;
+            let fine = (f64::MIN_POSITIVE..f64::INFINITY).contains(&value);
             if fine { Ok(()) } else { Err(Error::Setting { name, value, required: "positive and finite" }) }
         };
         let rtol = self.relative::<T>();
@@ -102,7 +102,7 @@ impl<M: Embedded, const N: usize> Control<M, N> for AdaptiveStep<N> {
             let required = "at least ten machine epsilons of the scalar (2.3e-15 for f64, 1.2e-6 for f32)";
             return Err(Error::Setting { name: "rtol", value: rtol, required });
         }
-        self.atol.q.into_iter().chain(self.atol.v).try_for_each(|atol| positive("atol", atol))?;
+        self.atol.0.into_iter().chain(self.atol.1).try_for_each(|atol| positive("atol", atol))?;
         self.first_step.map_or(Ok(()), |step| positive("first_step", step))?;
         if 0.0 < self.max_step {
             Ok(())
@@ -130,7 +130,7 @@ impl<M: Embedded, const N: usize> Control<M, N> for AdaptiveStep<N> {
             }
             let left = -from.t.since(target);
             memory.h = self.first_step.unwrap_or_else(|| self.automatic_step(M::ORDER, field, from, left));
-            memory.error = 1e-4;
+            memory.error = log2(1e-4);
         }
         let mut wanted = if memory.h < self.max_step { memory.h } else { self.max_step };
         let (mut retried, mut last_fault) = (false, None);
@@ -145,10 +145,11 @@ impl<M: Embedded, const N: usize> Control<M, N> for AdaptiveStep<N> {
             }
             let span = fit(from.t, wanted, target);
             let to = method.step(field, &span, from, stages);
-            let scale = self.scale(from, &to);
-            let error = if to.is_finite() { method.error(stages, span.h, &scale) } else { f64::NAN };
+            let weights = self.weights(from, &to);
+            let error = if to.is_finite() { method.error(stages, span.h, &weights) } else { f64::NAN };
             if error <= 1.0 {
-                let factor = response.safety * power(error, -response.alpha) * power(memory.error, response.beta);
+                let error = log2(error);
+                let factor = response.safety * exp2(response.beta * memory.error - response.alpha * error);
                 memory.h = span.h * if factor < response.least { response.least } else { factor };
                 // A step that was cut says little about longer ones: what was wanted before stays possible.
                 let longest = if retried { span.h } else { span.h * response.greatest };
@@ -156,7 +157,9 @@ impl<M: Embedded, const N: usize> Control<M, N> for AdaptiveStep<N> {
                 if longest < memory.h {
                     memory.h = longest;
                 }
-                memory.error = if error < 1e-4 { 1e-4 } else { error };
+                if wanted <= span.h {
+                    memory.error = if error < log2(1e-4) { log2(1e-4) } else { error };
+                }
                 stats.accepted += 1;
                 return Ok((span, to));
             }
@@ -172,7 +175,7 @@ impl<M: Embedded, const N: usize> Control<M, N> for AdaptiveStep<N> {
                 wanted = 0.1 * span.h;
             } else {
                 last_fault = None;
-                let factor = response.safety * power(error, -response.alpha);
+                let factor = response.safety * exp2(-response.alpha * log2(error));
                 wanted = span.h * if factor < response.least { response.least } else { factor };
             }
         }
@@ -188,8 +191,8 @@ impl<const N: usize> AdaptiveStep<N> {
         from: &mut Node<T, N>,
         limit: f64,
     ) -> f64 {
-        let scale = self.scale(from, from);
-        let norm = |q: &[T; N], v: &[T; N]| (scale.square_sum(q, v) / (2 * N) as f64).sqrt();
+        let weights = self.weights(from, from);
+        let norm = |q: &[T; N], v: &[T; N]| (weights.square_sum(q, v) / (2 * N) as f64).sqrt();
         let (q0, v0, a0) = (from.q.high, from.v.high, from.start_acceleration(field));
         let (state, slope) = (norm(&q0, &v0), norm(&v0, &a0));
         let guess = if 1e-5 < state && 1e-5 < slope { 0.01 * (state / slope) } else { 1e-6 };
@@ -205,7 +208,7 @@ impl<const N: usize> AdaptiveStep<N> {
         let longer = if curvature <= 1e-15 {
             if 1e-3 * h < 1e-6 { 1e-6 } else { 1e-3 * h }
         } else if curvature < f64::INFINITY {
-            power(0.01 / curvature, 1.0 / f64::from(order))
+            exp2(log2(0.01 / curvature) / f64::from(order))
         } else {
             1e-3 * h
         };
@@ -214,12 +217,12 @@ impl<const N: usize> AdaptiveStep<N> {
 
     /// The coordinate with the largest error in the last step tried.
     fn worst<T: Float, M: Embedded>(&self, method: &M, stages: &M::Stages<T, N>, memory: &Memory, from: &Node<T, N>) -> usize {
-        let all = self.scale(from, from);
+        let all = self.weights(from, from);
         let mut worst = (0, 0.0);
         for index in 0..N {
-            let mut scale = Scale { q: [f64::INFINITY; N], v: [f64::INFINITY; N] };
-            (scale.q[index], scale.v[index]) = (all.q[index], all.v[index]);
-            let error = method.error(stages, memory.h, &scale);
+            let mut weights = Weights { q: [0.0; N], v: [0.0; N] };
+            (weights.q[index], weights.v[index]) = (all.q[index], all.v[index]);
+            let error = method.error(stages, memory.h, &weights);
             if worst.1 < error {
                 worst = (index, error);
             }

@@ -34,7 +34,7 @@ pub struct Memory {
     pub(crate) left: u64,
     /// Where they lead.
     pub(crate) target: f64,
-    /// The error of the last step.
+    /// The binary logarithm of the error of the last step.
     pub(crate) error: f64,
 }
 

@@ -7,7 +7,7 @@ use crate::motion::Side;
 use crate::real::Float;
 
 /// The pieces of all steps.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct DenseOutput<T, const N: usize> {
     start: State<T, N>,
     /// The steps in order; those from a kink start with the state after it.

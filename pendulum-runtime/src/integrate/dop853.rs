@@ -1,7 +1,7 @@
 //! The method of Dormand and Prince of order 8, in the form of Hairer.
 
 use super::field::Accelerations;
-use super::method::{Embedded, Method, Response, Scale, Suits};
+use super::method::{Embedded, Method, Response, Suits, Weights};
 use super::node::Node;
 use super::piece::Piece;
 use super::runge_kutta::{Row, Slopes};
@@ -100,12 +100,12 @@ impl Embedded for Dop853 {
     const RESPONSE: Response = Response { alpha: 0.11, beta: 0.02, safety: 0.8, least: 1.0 / 3.0, greatest: 6.0 };
 
     #[inline]
-    fn error<T: Float, const N: usize>(&self, stages: &Stages<T, N>, h: f64, scale: &Scale<N>) -> f64 {
+    fn error<T: Float, const N: usize>(&self, stages: &Stages<T, N>, h: f64, weights: &Weights<N>) -> f64 {
         let (dq, dv) = &stages.increment;
         let (q5, v5) = stages.k.weighted(E5);
         let (q3, v3) = stages.k.weighted(B3);
-        let fifth = scale.square_sum(&q5, &v5);
-        let third = scale.square_sum::<T>(&core::array::from_fn(|i| dq[i] - q3[i]), &core::array::from_fn(|i| dv[i] - v3[i]));
+        let fifth = weights.square_sum(&q5, &v5);
+        let third = weights.square_sum::<T>(&core::array::from_fn(|i| dq[i] - q3[i]), &core::array::from_fn(|i| dv[i] - v3[i]));
         if fifth == 0.0 && third == 0.0 {
             return 0.0;
         }

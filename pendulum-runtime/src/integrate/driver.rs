@@ -21,21 +21,15 @@ pub(crate) struct Driver<T: Float, const N: usize, M: Method, C> {
     /// The state reached; at a kink the one after it.
     pub(crate) node: Node<T, N>,
     pub(crate) stats: Stats,
-    last: Option<Taken<T, N>>,
+    /// The last step and the node at its start; nothing before the first step.
+    last: Option<Span>,
+    from: Node<T, N>,
+    /// The node at its end before the kink, if it ended on one.
+    before_kink: Option<Node<T, N>>,
     stages: M::Stages<T, N>,
     memory: Memory,
     /// The next kink, infinite if there is none.
     kink: f64,
-}
-
-/// A step that was taken.
-#[derive(Clone, Copy, Debug)]
-struct Taken<T, const N: usize> {
-    span: Span,
-    from: Node<T, N>,
-    /// The end, before a kink if there is one.
-    to: Node<T, N>,
-    onto_kink: bool,
 }
 
 impl<T: Float, const N: usize, M: Method, C> Driver<T, N, M, C> {
@@ -52,7 +46,8 @@ impl<T: Float, const N: usize, M: Method, C> Driver<T, N, M, C> {
         let node = Node::new(Time::new(t), q, v);
         let kink = next_kink(dynamics, t)?;
         let stats = Stats::new(M::NAME);
-        Ok(Self { method, control, node, stats, last: None, stages: M::stages(), memory: Memory::default(), kink })
+        let (stages, memory) = (M::stages(), Memory::default());
+        Ok(Self { method, control, node, stats, last: None, from: node, before_kink: None, stages, memory, kink })
     }
 
     /// Puts the state elsewhere; counters and step size stay.
@@ -60,14 +55,14 @@ impl<T: Float, const N: usize, M: Method, C> Driver<T, N, M, C> {
         check_start::<D, T, N>(t, &q, &v)?;
         self.kink = next_kink(dynamics, t)?;
         self.node = Node::new(Time::new(t), q, v);
-        self.last = None;
+        (self.last, self.before_kink) = (None, None);
         Ok(())
     }
 
     /// The same integration under another control.
     pub(crate) fn controlled<B>(self, control: B) -> Driver<T, N, M, B> {
-        let Self { method, node, stats, last, stages, kink, .. } = self;
-        Driver { method, control, node, stats, last, stages, memory: Memory::default(), kink }
+        let Self { method, node, stats, last, from, before_kink, stages, kink, .. } = self;
+        Driver { method, control, node, stats, last, from, before_kink, stages, memory: Memory::default(), kink }
     }
 
     /// Takes one step towards `target`, which may be infinite, and over a kink if it ends on one.
@@ -80,10 +75,11 @@ impl<T: Float, const N: usize, M: Method, C> Driver<T, N, M, C> {
     {
         let target = if self.kink < target { self.kink } else { target };
         let mut field = Counted::new(dynamics);
+        let mut from = self.node;
         let course = Course {
             method: &self.method,
             field: &mut field,
-            from: &mut self.node,
+            from: &mut from,
             stages: &mut self.stages,
             target,
             stats: &mut self.stats,
@@ -91,32 +87,33 @@ impl<T: Float, const N: usize, M: Method, C> Driver<T, N, M, C> {
         let taken = self.control.step(&mut self.memory, course);
         self.stats.evaluations += field.evaluations;
         let (span, mut to) = taken?;
-        let onto_kink = span.end == Time::new(self.kink);
-        let taken = Taken { span, from: self.node, to, onto_kink };
-        if onto_kink {
+        if span.end == Time::new(self.kink) {
+            let before = to;
             self.kink = cross(dynamics, &mut to)?;
             self.stats.kinks += 1;
+            self.before_kink = Some(before);
+        } else if self.before_kink.is_some() {
+            self.before_kink = None;
         }
-        self.last = Some(taken);
+        self.last = Some(span);
+        self.from = from;
         self.node = to;
         Ok(())
     }
 
     /// The motion within the last step, if there was one; evaluates what the method needs for it.
     pub(crate) fn piece<D: Dynamics<N, Scalar = T>>(&mut self, dynamics: &D) -> Option<Piece<T, N>> {
-        let Taken { span, from, to, onto_kink } = self.last.as_mut()?;
+        let span = self.last.as_ref()?;
+        let to = self.before_kink.as_mut().unwrap_or(&mut self.node);
         let mut field = Counted::new(dynamics);
-        let piece = self.method.dense(&mut field, span, from, to, &mut self.stages);
+        let piece = self.method.dense(&mut field, span, &mut self.from, to, &mut self.stages);
         self.stats.evaluations += field.evaluations;
-        if !*onto_kink {
-            self.node.a = to.a;
-        }
         Some(piece)
     }
 
     /// The state just before a kink, if the last step has ended on one.
     pub(crate) fn before_kink(&self) -> Option<&Node<T, N>> {
-        self.last.as_ref().filter(|last| last.onto_kink).map(|last| &last.to)
+        self.before_kink.as_ref()
     }
 
     /// The time reached.

@@ -47,7 +47,23 @@ pub trait Method: Copy + core::fmt::Debug {
     ) -> Piece<T, N>;
 }
 
-/// A method with an error estimate, which can choose its own steps.
+/// A method with an error estimate, which can choose its own steps; others do not compile without a step size:
+///
+/// ```
+/// # use pendulum_runtime::{integrate::*, system::*};
+/// fn swing<S: System<1, Scalar = f64, Inputs = ()>>(system: &S) -> Result<f64, Failure<f64, 1>> {
+///     let exact = solve(system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).rtol(1e-12).run()?;
+///     let animated = solve(system, (0.0, 10.0), [1.3], [0.0]).method(Rk4).step(0.01).run()?;
+///     Ok(animated.end.q[0] - exact.end.q[0])
+/// }
+/// ```
+///
+/// ```compile_fail,E0277
+/// # use pendulum_runtime::{integrate::*, system::*};
+/// fn swing<S: System<1, Scalar = f64, Inputs = ()>>(system: &S) -> Result<f64, Failure<f64, 1>> {
+///     Ok(solve(system, (0.0, 10.0), [1.3], [0.0]).method(Rk4).run()?.end.q[0])
+/// }
+/// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no error estimate and cannot choose its steps",
     label = "a step size is missing",
@@ -57,8 +73,8 @@ pub trait Embedded: Method {
     /// How the step size answers to the error.
     const RESPONSE: Response;
 
-    /// The error of the step just taken, as a root mean square in units of `scale`.
-    fn error<T: Float, const N: usize>(&self, stages: &Self::Stages<T, N>, h: f64, scale: &Scale<N>) -> f64;
+    /// The error of the step just taken, times `weights`, as a root mean square.
+    fn error<T: Float, const N: usize>(&self, stages: &Self::Stages<T, N>, h: f64, weights: &Weights<N>) -> f64;
 }
 
 /// How the step size answers to the error: h ← h · safety · err^(−α) · e^β with the error e of the step before, within limits (Gustafsson 1991).
@@ -76,23 +92,23 @@ pub struct Response {
     pub greatest: f64,
 }
 
-/// The error that is allowed in each component: atol + rtol·max(|y₀|, |y₁|).
+/// One over the error that is allowed in each component: 1/(atol + rtol·max(|y₀|, |y₁|)).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scale<const N: usize> {
+pub struct Weights<const N: usize> {
     /// For the coordinates.
     pub q: [f64; N],
     /// For the velocities.
     pub v: [f64; N],
 }
 
-impl<const N: usize> Scale<N> {
-    /// Σ (e/scale)² over coordinates and velocities; not a number if an error is not.
+impl<const N: usize> Weights<N> {
+    /// Σ (e·weight)² over coordinates and velocities; not a number if an error is not.
     #[inline]
     pub fn square_sum<T: Float>(&self, q: &[T; N], v: &[T; N]) -> f64 {
         let mut sum = 0.0;
         for i in 0..N {
-            let q = q[i].to_f64() / self.q[i];
-            let v = v[i].to_f64() / self.v[i];
+            let q = q[i].to_f64() * self.q[i];
+            let v = v[i].to_f64() * self.v[i];
             sum += q * q + v * v;
         }
         sum
@@ -101,7 +117,22 @@ impl<const N: usize> Scale<N> {
 
 /// Methods that are right for the system `S`.
 ///
-/// Every method suits every system, except for the splitting and Nyström methods, which want [`VelocityFree`](crate::system::VelocityFree).
+/// Every method suits every system, except for the splitting and Nyström methods, which want
+/// [`VelocityFree`](crate::system::VelocityFree):
+///
+/// ```
+/// # use pendulum_runtime::{integrate::*, system::*};
+/// fn swing<S: VelocityFree<1> + System<1, Scalar = f64, Inputs = ()>>(system: &S) -> Result<f64, Failure<f64, 1>> {
+///     Ok(solve(system, (0.0, 10.0), [1.3], [0.0]).method(Leapfrog).step(0.01).run()?.end.q[0])
+/// }
+/// ```
+///
+/// ```compile_fail,E0277
+/// # use pendulum_runtime::{integrate::*, system::*};
+/// fn swing<S: System<1, Scalar = f64, Inputs = ()>>(system: &S) -> Result<f64, Failure<f64, 1>> {
+///     Ok(solve(system, (0.0, 10.0), [1.3], [0.0]).method(Leapfrog).step(0.01).run()?.end.q[0])
+/// }
+/// ```
 pub trait Suits<S, const N: usize>: Method
 where
     S: System<N>,

@@ -27,7 +27,7 @@ impl<T: Float, const N: usize> From<&Node<T, N>> for State<T, N> {
 /// The motion over an interval, at the times asked for.
 ///
 /// At a kink the velocities have two values; where one is given, it is the one after the kink.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Solution<T, const N: usize> {
     /// The output times; only the last time reached if none were asked for.
@@ -87,7 +87,9 @@ impl fmt::Display for Stats {
 }
 
 /// An integration that stopped before its end, with all that was reached until then.
-#[derive(Clone, Debug)]
+///
+/// Both ways of printing it say what went wrong; `{:?}` adds the last state and the counters.
+#[derive(Clone)]
 pub struct Failure<T, const N: usize> {
     /// Why.
     pub error: Error,
@@ -98,6 +100,13 @@ pub struct Failure<T, const N: usize> {
 impl<T, const N: usize> fmt::Display for Failure<T, N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.error.fmt(f)
+    }
+}
+
+impl<T: fmt::Debug, const N: usize> fmt::Debug for Failure<T, N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Solution { end: State { t, q, v }, stats, .. } = &*self.partial;
+        write!(f, "{}\n  reached: t = {t:?}, q = {q:?}, v = {v:?}\n  {stats}", self.error)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The method of Tsitouras of order 5.
 
 use super::field::Accelerations;
-use super::method::{Embedded, Method, Response, Scale, Suits};
+use super::method::{Embedded, Method, Response, Suits, Weights};
 use super::node::Node;
 use super::piece::Piece;
 use super::runge_kutta::{Row, Slopes};
@@ -83,9 +83,9 @@ impl Embedded for Tsit5 {
     const RESPONSE: Response = Response { alpha: 0.17, beta: 0.04, safety: 0.8, least: 0.2, greatest: 10.0 };
 
     #[inline]
-    fn error<T: Float, const N: usize>(&self, k: &Slopes<T, N, 7>, h: f64, scale: &Scale<N>) -> f64 {
+    fn error<T: Float, const N: usize>(&self, k: &Slopes<T, N, 7>, h: f64, weights: &Weights<N>) -> f64 {
         let (q, v) = k.weighted(E);
-        h * (scale.square_sum(&q, &v) / (2 * N) as f64).sqrt()
+        h * (weights.square_sum(&q, &v) / (2 * N) as f64).sqrt()
     }
 }
 

@@ -77,7 +77,10 @@ fn symplectic_euler_on_the_double_pendulum_is_as_poor_as_said() {
 
 /// Asserts that no run takes more than twice the evaluations that were published for its error, between them interpolated.
 fn assert_economical(runs: impl Iterator<Item = (Stats, f64)>, published: &[(f64, f64)]) {
+    let &(_, least) = published.last().unwrap();
     for (stats, error) in runs {
+        // An error below all that were published may take what the least of them took.
+        let error = if error < least { least } else { error };
         let within = published.windows(2).find(|pair| pair[1].1 <= error && error < pair[0].1);
         let Some(&[(few, large), (many, small)]) = within else { panic!("{error:e} is beyond what was published, {stats}") };
         let fraction = (large / error).ln() / (large / small).ln();
@@ -183,7 +186,7 @@ fn single_precision_reaches_its_last_digits() {
     // 800 steps of Rk4; without compensated sums the error is 2.5e-4.
     let solution = solve(&DoublePendulum { g: 1.0_f32 }, (0.0, 10.0), [2.0, 2.5], [0.0; 2]).method(Rk4).steps(800).run().unwrap();
     let error = distance(&solution.end.q.map(f64::from), &solution.end.v.map(f64::from), &CHAOTIC);
-    assert!(error < 5e-6 + 5.6e-6, "{error:e}");
+    assert!(error < 5e-6, "{error:e}");
 }
 
 #[test]

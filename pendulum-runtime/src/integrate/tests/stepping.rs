@@ -39,7 +39,8 @@ fn adaptive_steps_survive_being_cut_into_frames() {
         integrator.advance_to(f64::from(frame) / 60.0).unwrap();
     }
     assert!((integrator.q()[0] - super::systems::SHAKEN[0]).abs() < 1e-9);
-    assert_eq!(integrator.stats().accepted, 600 + integrator.stats().accepted.saturating_sub(600).min(10));
+    // The length of a frame is shorter than what the error allows, and stays so.
+    assert!(integrator.stats().accepted < 610 && integrator.stats().rejected < 5, "{}", integrator.stats());
 }
 
 #[test]
