@@ -9,6 +9,7 @@ use pendulum_runtime::system::Jacobians;
 macro_rules! chain {
     ($name:ident, $n:literal) => {
         lagrangian! {
+            #[derive(Clone, Debug)]
             pub struct $name { m: [kg; $n], l: [m; $n], g: m/s^2 = 9.81 }
             coordinate θ[$n]: rad;
             let y[k in 0..$n] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]);
@@ -24,6 +25,7 @@ chain!(Chain5, 5);
 chain!(Chain10, 10);
 
 lagrangian! {
+    #[derive(Clone, Debug)]
     pub struct Damped { m, k, c }
     coordinate x;
     kinetic = m/2*ẋ^2;
