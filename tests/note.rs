@@ -363,6 +363,7 @@ mod hand_systems {
         type Scalar = T;
         type Inputs = (Sample<T, 2>,);
         type With<U: Real> = Hand<U>;
+        type Prepared = ();
 
         const FACTS: Facts = Facts::new("Hand", &["θ"]);
 
@@ -370,6 +371,8 @@ mod hand_systems {
             let (m, l, c) = (map(self.m), map(self.l), self.c.map(&mut map));
             Hand { equation: self.equation, m, l, c, i: map(self.i), g: map(self.g) }
         }
+
+        fn prepare(&self) {}
 
         fn accelerations(&self, _: T, q: &[T; 1], _: &[T; 1], inputs: &Self::Inputs) -> [T; 1] {
             let (sin, cos) = q[0].sin_cos();

@@ -35,6 +35,7 @@ impl<T: Real> System<1> for Hand<T> {
     type Scalar = T;
     type Inputs = (Sample<T, 2>,);
     type With<U: Real> = Hand<U>;
+    type Prepared = ();
 
     const FACTS: Facts = {
         let mut facts = Facts::new("Hand", &["θ"]);
@@ -54,6 +55,8 @@ impl<T: Real> System<1> for Hand<T> {
     fn map<U: Real>(&self, mut map: impl FnMut(T) -> U) -> Hand<U> {
         Hand { body: self.body.map(&mut map), damping: map(self.damping), g: map(self.g) }
     }
+
+    fn prepare(&self) {}
 
     fn accelerations(&self, t: T, q: &[T; 1], v: &[T; 1], inputs: &Self::Inputs) -> [T; 1] {
         [self.forces(t, q, v, inputs)[0] / self.body.inertia()]

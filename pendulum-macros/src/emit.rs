@@ -153,7 +153,7 @@ impl Emitter<'_, '_> {
         });
         let empty = self.model.parameters.is_empty().then(|| quote!(__scalar: ::core::marker::PhantomData));
         let vector = |emitter: &mut Self, pick: fn(&Motion) -> Vec<Id>| emitter.output(|motion| Some(pick(motion)));
-        let accelerations = vector(self, |motion| motion.accelerations.clone());
+        let (prepare, accelerations, prepared) = self.accelerations();
         let momenta = vector(self, |motion| motion.momenta.clone());
         let forces = vector(self, |motion| motion.forces.clone());
         let momentum_rates = vector(self, |motion| motion.momentum_rates.clone());
@@ -178,6 +178,7 @@ impl Emitter<'_, '_> {
                 type Scalar = #scalar;
                 type Inputs = (#(#krate::motion::Sample<#scalar, #dimensions>,)*);
                 type With<U: #krate::real::Real> = #name<U>;
+                type Prepared = [#scalar; #prepared];
 
                 const FACTS: #krate::system::Facts = #facts;
 
@@ -186,7 +187,17 @@ impl Emitter<'_, '_> {
                 }
 
                 #[inline]
-                fn accelerations(&self, t: #scalar, #state) -> [#scalar; #count] { #accelerations }
+                fn prepare(&self) -> [#scalar; #prepared] { #prepare }
+
+                #[inline]
+                fn accelerations_prepared(&self, prepared: &[#scalar; #prepared], t: #scalar, #state) -> [#scalar; #count] {
+                    #accelerations
+                }
+
+                #[inline]
+                fn accelerations(&self, t: #scalar, #state) -> [#scalar; #count] {
+                    #krate::system::System::accelerations_prepared(self, &#krate::system::System::prepare(self), t, q, v, inputs)
+                }
 
                 #[inline]
                 fn energy(&self, t: #scalar, #state) -> #scalar { let [value] = #energy; value }
@@ -357,19 +368,37 @@ impl Emitter<'_, '_> {
 
     /// The statements of a program: an operation that is read once stands where it is read.
     fn body(&self, program: &Program) -> TokenStream {
+        self.body_after(program, &program.results, &[])
+    }
+
+    /// The statements that lead to `results`, given what is prepared already.
+    fn body_after(&self, program: &Program, results: &[Place], prepared: &[Place]) -> TokenStream {
+        let given = |index: usize| prepared.iter().position(|place| place.0 == index);
         let mut readers = vec![0usize; program.ops.len()];
-        for op in &program.ops {
-            for place in schedule::operands(op) {
-                readers[place.0] += 1;
-            }
-        }
-        for result in &program.results {
+        for result in results {
             readers[result.0] += 1;
+        }
+        for (index, op) in program.ops.iter().enumerate().rev() {
+            if 0 < readers[index] && given(index).is_none() {
+                for place in schedule::operands(op) {
+                    readers[place.0] += 1;
+                }
+            }
         }
         let mut statements = TokenStream::new();
         let mut values: Vec<TokenStream> = Vec::with_capacity(program.ops.len());
         let mut depths: Vec<usize> = Vec::with_capacity(program.ops.len());
         for (index, op) in program.ops.iter().enumerate() {
+            if let Some(place) = given(index) {
+                values.push(quote!(prepared[#place]));
+                depths.push(0);
+                continue;
+            }
+            if readers[index] == 0 {
+                values.push(TokenStream::new());
+                depths.push(0);
+                continue;
+            }
             let at = |place: Place| values[place.0].clone();
             let depth = 1 + schedule::operands(op).iter().map(|place| depths[place.0]).max().unwrap_or(0);
             if let Op::SinCos(angle) = op {
@@ -392,8 +421,19 @@ impl Emitter<'_, '_> {
                 depths.push(0);
             }
         }
-        let results = program.results.iter().map(|place| values[place.0].clone());
+        let results = results.iter().map(|place| values[place.0].clone());
         quote!({ #statements [#(#results),*] })
+    }
+
+    /// The accelerations in two parts: what parameters alone decide, and the rest; with the number of values between them.
+    fn accelerations(&self) -> (TokenStream, TokenStream, usize) {
+        let Some(motion) = &self.motion else {
+            return (quote!(::core::unimplemented!()), quote!(::core::unimplemented!()), 0);
+        };
+        let program = schedule::program(&self.graph, &motion.accelerations);
+        let prepared = program.prepared();
+        let prepare = self.body_after(&program, &prepared, &[]);
+        (prepare, self.body_after(&program, &program.results, &prepared), prepared.len())
     }
 
     fn operation(&self, op: &Op, at: impl Fn(Place) -> TokenStream) -> TokenStream {

@@ -83,6 +83,25 @@ impl Program {
         still
     }
 
+    /// What parameters alone decide and the rest reads: the places that are worth preparing.
+    pub(crate) fn prepared(&self) -> Vec<Place> {
+        let still = self.still();
+        let mut read = vec![false; self.ops.len()];
+        for (op, _) in self.ops.iter().zip(&still).filter(|(_, still)| !**still) {
+            for place in operands(op) {
+                read[place.0] = true;
+            }
+        }
+        for result in &self.results {
+            read[result.0] = true;
+        }
+        let worth = |index: &usize| {
+            let leaf = matches!(self.ops[*index], Op::Number(_) | Op::Literal(_) | Op::Pi | Op::Load(Symbol::Parameter(_)));
+            still[*index] && read[*index] && !leaf
+        };
+        (0..self.ops.len()).filter(worth).map(Place).collect()
+    }
+
     fn push(&mut self, op: Op) -> Place {
         if let Some(&place) = self.places.get(&op) {
             return place;

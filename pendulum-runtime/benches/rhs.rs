@@ -57,12 +57,15 @@ macro_rules! hand {
             type Scalar = T;
             type Inputs = $inputs;
             type With<U: Real> = $name<U>;
+            type Prepared = ();
 
             const FACTS: Facts = Facts::new(stringify!($name), &["θ"]);
 
             fn map<U: Real>(&self, _: impl FnMut(T) -> U) -> $name<U> {
                 unimplemented!()
             }
+
+            fn prepare(&self) {}
 
             #[inline]
             fn accelerations(&self, _: T, q: &[T; 1], _: &[T; 1], $u: &Self::Inputs) -> [T; 1] {
@@ -124,7 +127,7 @@ hand!(MovingCompound { m: T, c: [T; 2], i: T, g: T }, (Sample<T, 2>,), |s, q, u|
 /// Seconds for one run of fixed steps, and where it ends.
 fn run<D: Dynamics<1, Scalar = f64>>(dynamics: &D) -> (f64, f64) {
     let start = Instant::now();
-    let end = solve(black_box(dynamics), (0.0, 100.0), [1.0], [0.2])
+    let end = solve(black_box(dynamics), (0.0, 20.0), [1.0], [0.2])
         .method(Rk4)
         .steps(20_000)
         .run()
@@ -162,7 +165,7 @@ fn compare<A: Dynamics<1, Scalar = f64>, B: Dynamics<1, Scalar = f64>>(name: &st
 fn main() {
     let shake = || Sinusoid::new([0.2, 0.1], 5.0, [0.3, 1.0]);
     let (m, l, g, c, i) = (0.8, 1.2, 9.81, [0.3, -1.1], 1.5);
-    println!("RK4, 20 000 steps over 100 s; medians of 40 pairs");
+    println!("RK4, 20 000 steps over 20 s; medians of 40 pairs");
     compare("simple", &generated::Simple::new(m, l), &Simple { l, g });
     compare("moving", &generated::Moving::new(m, l).driven_by(shake()), &Driven::new::<1>(Moving { l, g }, (shake(),)));
     compare("compound", &generated::Compound::new(m, c, i), &Compound { m, c, i, g });

@@ -3,6 +3,7 @@
 use crate::motion::{Motions, Orders, Sample, Side, sufficient};
 use crate::real::Real;
 use crate::time::Time;
+use core::fmt::Debug;
 use nalgebra::SMatrix;
 
 /// A mechanical system with `N` generalized coordinates: the equations of motion of one Lagrangian.
@@ -18,12 +19,31 @@ pub trait System<const N: usize> {
     type Inputs: Samples;
     /// The same system over another scalar.
     type With<U: Real>: System<N, Scalar = U>;
+    /// What the accelerations need and the parameters alone decide, computed once; `()` for systems written by hand.
+    type Prepared: Copy + Debug;
 
     /// What is known about the system before it runs.
     const FACTS: Facts;
 
     /// The same system with every parameter mapped, in the order of `FACTS.parameters`.
     fn map<U: Real>(&self, map: impl FnMut(Self::Scalar) -> U) -> Self::With<U>;
+
+    /// What parameters alone decide.
+    fn prepare(&self) -> Self::Prepared;
+
+    /// The accelerations q̈ with what [`prepare`](Self::prepare) gave.
+    #[inline]
+    fn accelerations_prepared(
+        &self,
+        prepared: &Self::Prepared,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> [Self::Scalar; N] {
+        let _ = prepared;
+        self.accelerations(t, q, v, inputs)
+    }
 
     /// The accelerations q̈.
     fn accelerations(
@@ -369,6 +389,56 @@ impl<const N: usize, S: System<N, Inputs = ()>> Dynamics<N> for S {
 
     fn next_kink(&self, _: f64) -> Option<f64> {
         None
+    }
+}
+
+/// Some dynamics with what their parameters alone decide computed once: what steppers work with.
+#[derive(Debug)]
+pub struct Prepared<'a, D, P> {
+    dynamics: &'a D,
+    prepared: P,
+}
+
+impl<D, P: Copy> Clone for Prepared<'_, D, P> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<D, P: Copy> Copy for Prepared<'_, D, P> {}
+
+impl<'a, D, P> Prepared<'a, D, P> {
+    /// Prepares the system of `dynamics`.
+    pub fn new<const N: usize>(dynamics: &'a D) -> Self
+    where
+        D: Dynamics<N>,
+        D::System: System<N, Prepared = P>,
+    {
+        Self { dynamics, prepared: dynamics.system().prepare() }
+    }
+}
+
+impl<const N: usize, D: Dynamics<N>> Dynamics<N> for Prepared<'_, D, <D::System as System<N>>::Prepared> {
+    type System = D::System;
+    type Scalar = D::Scalar;
+
+    fn system(&self) -> &D::System {
+        self.dynamics.system()
+    }
+
+    #[inline]
+    fn inputs(&self, t: Time, side: Side, purpose: Purpose) -> <D::System as System<N>>::Inputs {
+        self.dynamics.inputs(t, side, purpose)
+    }
+
+    fn next_kink(&self, t: f64) -> Option<f64> {
+        self.dynamics.next_kink(t)
+    }
+
+    #[inline]
+    fn accelerations_at(&self, t: Time, side: Side, q: &[D::Scalar; N], v: &[D::Scalar; N]) -> [D::Scalar; N] {
+        let inputs = self.inputs(t, side, Purpose::Accelerations);
+        self.system().accelerations_prepared(&self.prepared, scalar_time(t), q, v, &inputs)
     }
 }
 

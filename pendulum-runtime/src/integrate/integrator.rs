@@ -8,7 +8,7 @@ use super::piece::Piece;
 use super::solution::{State, Stats};
 use crate::error::Error;
 use crate::real::Float;
-use crate::system::Dynamics;
+use crate::system::{Dynamics, Prepared, System};
 
 /// An integration that goes on for as long as somebody asks for the next step; no step allocates.
 ///
@@ -19,7 +19,7 @@ where
     D: Dynamics<N, Scalar: Float>,
     M: Method,
 {
-    dynamics: &'a D,
+    dynamics: Prepared<'a, D, <D::System as System<N>>::Prepared>,
     driver: Driver<D::Scalar, N, M, C>,
     max_steps: u64,
 }
@@ -36,7 +36,8 @@ where
     where
         M: Suits<D::System, N>,
     {
-        Ok(Self { dynamics, driver: Driver::new(dynamics, method, AdaptiveStep::new(), t, q, v)?, max_steps: 10_000_000 })
+        let dynamics = Prepared::new(dynamics);
+        Ok(Self { dynamics, driver: Driver::new(&dynamics, method, AdaptiveStep::new(), t, q, v)?, max_steps: 10_000_000 })
     }
 }
 
@@ -64,7 +65,7 @@ where
     where
         C: Control<M, N>,
     {
-        self.driver.step(self.dynamics, f64::INFINITY)
+        self.driver.step(&self.dynamics, f64::INFINITY)
     }
 
     /// Takes steps until the time is exactly `t`.
@@ -81,21 +82,21 @@ where
             if self.max_steps <= steps(&self.driver.stats) - before {
                 return Err(Error::MaxSteps { t: self.t(), max_steps: self.max_steps });
             }
-            self.driver.step(self.dynamics, t)?;
+            self.driver.step(&self.dynamics, t)?;
         }
         Ok(())
     }
 
     /// Puts the state elsewhere, or the same state to another time.
     pub fn reset(&mut self, t: f64, q: [D::Scalar; N], v: [D::Scalar; N]) -> Result<(), Error> {
-        self.driver.reset(self.dynamics, t, q, v)
+        self.driver.reset(&self.dynamics, t, q, v)
     }
 
     /// The motion within the last step; `None` before the first.
     ///
     /// Methods that need further evaluations for it take them now.
     pub fn last_step(&mut self) -> Option<Piece<D::Scalar, N>> {
-        self.driver.piece(self.dynamics)
+        self.driver.piece(&self.dynamics)
     }
 
     /// The time reached.

@@ -10,7 +10,7 @@ use super::output::{Output, Recorder, ascending};
 use super::solution::{Failure, Solution, State, Stats};
 use crate::error::Error;
 use crate::real::Float;
-use crate::system::Dynamics;
+use crate::system::{Dynamics, Prepared};
 
 /// Integrates `dynamics` over the interval `time = (start, end)` in seconds from the coordinates `q` and the velocities `v`.
 ///
@@ -157,17 +157,24 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, 
     {
         let mut recorder = Recorder::new(self.output, self.time);
         let given = State { t: self.time.0, q: self.q, v: self.v };
-        match self.check().and_then(|()| Driver::new(self.dynamics, self.method, self.control, self.time.0, self.q, self.v)) {
+        let dynamics = Prepared::new(self.dynamics);
+        match self.check().and_then(|()| Driver::new(&dynamics, self.method, self.control, self.time.0, self.q, self.v)) {
             Err(error) => Err(recorder.fail(error, given, Stats::new(M::NAME))),
-            Ok(mut driver) => match self.integrate(&mut driver, &mut recorder) {
+            Ok(mut driver) => match self.integrate(&dynamics, &mut driver, &mut recorder) {
                 Err(error) => Err(recorder.fail(error, State::from(&driver.node), driver.stats)),
                 Ok(()) => Ok(recorder.finish(State::from(&driver.node), driver.stats)),
             },
         }
     }
 
-    fn integrate(&self, driver: &mut Driver<D::Scalar, N, M, C>, recorder: &mut Recorder<'_, D::Scalar, N>) -> Result<(), Error>
+    fn integrate<P>(
+        &self,
+        dynamics: &P,
+        driver: &mut Driver<D::Scalar, N, M, C>,
+        recorder: &mut Recorder<'_, D::Scalar, N>,
+    ) -> Result<(), Error>
     where
+        P: Dynamics<N, Scalar = D::Scalar>,
         M: Method,
         C: Control<M, N>,
     {
@@ -179,8 +186,8 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, 
                 return Err(Error::MaxSteps { t: driver.t(), max_steps: self.max_steps });
             }
             while stops.next_if(|stop| *stop <= driver.t()).is_some() {}
-            driver.step(self.dynamics, stops.peek().copied().unwrap_or(end))?;
-            recorder.step(driver, self.dynamics);
+            driver.step(dynamics, stops.peek().copied().unwrap_or(end))?;
+            recorder.step(driver, dynamics);
         }
         Ok(())
     }

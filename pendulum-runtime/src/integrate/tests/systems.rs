@@ -22,12 +22,15 @@ macro_rules! system {
             type Scalar = $t;
             type Inputs = $inputs;
             type With<U: Real> = $name<U>;
+            type Prepared = ();
             const FACTS: Facts = $facts;
 
             #[allow(unused_mut, unused_variables)]
             fn map<U: Real>(&self, mut map: impl FnMut($t) -> U) -> $name<U> {
                 $name { $($parameter: map(self.$parameter)),* }
             }
+
+            fn prepare(&self) {}
 
             #[allow(unused_variables)]
             #[inline]
