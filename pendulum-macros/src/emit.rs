@@ -3,6 +3,7 @@
 use crate::check::{Model, Quantity};
 use crate::expr::{Function, Graph, Id, Moment, Symbol};
 use crate::lower::Energies;
+use crate::mirror;
 use crate::motion::Motion;
 use crate::number::Rational;
 use crate::print::{self, Names};
@@ -30,7 +31,8 @@ impl Emitter<'_, '_> {
         let split = self.split_energy();
         let marker = self.marker();
         let jacobians = self.jacobians();
-        quote! { #structure #constructor #system #split #marker #jacobians }
+        let mirror = mirror::function(self.model.block);
+        quote! { #structure #constructor #system #split #marker #jacobians #mirror }
     }
 
     /// The scalar's type parameter; another letter if the struct took the usual one.

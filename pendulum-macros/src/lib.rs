@@ -12,6 +12,7 @@ mod error;
 mod expr;
 mod jacobian;
 mod lower;
+mod mirror;
 mod modular;
 mod motion;
 mod name;
