@@ -2,6 +2,7 @@
 
 use crate::check::{Model, Quantity};
 use crate::expr::{Function, Graph, Id, Moment, Symbol};
+use crate::latex;
 use crate::lower::Energies;
 use crate::mirror;
 use crate::motion::Motion;
@@ -547,7 +548,7 @@ impl Emitter<'_, '_> {
             return quote!(#krate::__private::facts(#krate::__private::Known {
                 name: #name, coordinates: &[#(#coordinates),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*],
                 autonomous: false, separable: false, velocity_free: false, constant_mass_matrix: false, nonconservative: false,
-                cyclic: &[], conserved: &[], unused: &[], equations: "",
+                cyclic: &[], conserved: &[], unused: &[], equations: "", latex: "",
             }));
         };
         let (autonomous, separable, velocity_free, constant_mass_matrix, nonconservative) =
@@ -556,10 +557,14 @@ impl Emitter<'_, '_> {
         let conserved: Vec<String> = motion.conserved.iter().map(|conserved| print::conserved(&names, conserved)).collect();
         let unused = self.unused(&names);
         let equations = self.equations(&names).join("\n");
+        let latex = match &self.motion {
+            Some(motion) => latex::equations(&mut self.graph, &names, motion).join("\n"),
+            None => String::new(),
+        };
         quote!(#krate::__private::facts(#krate::__private::Known {
             name: #name, coordinates: &[#(#coordinates),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*],
             autonomous: #autonomous, separable: #separable, velocity_free: #velocity_free, constant_mass_matrix: #constant_mass_matrix,
-            nonconservative: #nonconservative, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], equations: #equations,
+            nonconservative: #nonconservative, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], equations: #equations, latex: #latex,
         }))
     }
 

@@ -11,6 +11,7 @@ mod emit;
 mod error;
 mod expr;
 mod jacobian;
+mod latex;
 mod lower;
 mod mirror;
 mod modular;

@@ -39,6 +39,11 @@ pub(crate) fn read(text: &str) -> Name {
     Name { base, dots }
 }
 
+/// Whether a word is the English name of a Greek letter that LaTeX knows by it.
+pub(crate) fn is_greek(word: &str) -> bool {
+    GREEK.iter().any(|row| row.1 == word) && word != "omicron"
+}
+
 /// The one letter that a letter with dots composes to, if Unicode has it.
 pub(crate) fn compose(letter: &str, dots: u8) -> Option<char> {
     DOTTED.iter().find(|row| row.2 == dots && letter.chars().eq([row.1])).map(|row| row.0)

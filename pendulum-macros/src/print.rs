@@ -52,6 +52,12 @@ impl Names {
         }
     }
 
+    /// The name of a driven input, and whether it is a vector.
+    pub(crate) fn input(&self, index: usize) -> (&str, bool) {
+        let (name, vector) = &self.inputs[index];
+        (name, *vector)
+    }
+
     /// A coordinate with two dots.
     pub(crate) fn acceleration(&self, index: usize) -> String {
         dotted(&self.coordinates[index], 2)

@@ -23,6 +23,7 @@ pub struct Known {
     pub conserved: &'static [&'static str],
     pub unused: &'static [&'static str],
     pub equations: &'static str,
+    pub latex: &'static str,
 }
 
 /// The facts of a generated system.
@@ -42,6 +43,7 @@ pub const fn facts(known: Known) -> Facts {
         conserved: known.conserved,
         unused: known.unused,
         equations: known.equations,
+        latex: known.latex,
     }
 }
 

@@ -206,6 +206,7 @@ pub struct Facts {
     pub unused: &'static [&'static str],
     /// The equations of motion, one line a coordinate.
     pub equations: &'static str,
+    pub(crate) latex: &'static str,
 }
 
 impl Facts {
@@ -226,7 +227,13 @@ impl Facts {
             conserved: &[],
             unused: &[],
             equations: "",
+            latex: "",
         }
+    }
+
+    /// The equations of motion in LaTeX, one line a coordinate.
+    pub const fn latex(&self) -> &'static str {
+        self.latex
     }
 }
 

@@ -5,7 +5,7 @@
 use super::derived;
 use crate::error::Errors;
 use crate::expr::{Graph, Symbol};
-use crate::{emit, print, schedule};
+use crate::{emit, latex, print, schedule};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -39,6 +39,9 @@ fn report(source: &str) -> String {
         let mut text = String::new();
         for line in print::equations(graph, &names, motion) {
             writeln!(text, "{line}").unwrap();
+        }
+        for line in latex::equations(graph, &names, motion) {
+            writeln!(text, "latex: {line}").unwrap();
         }
         let operations = |graph: &Graph, roots: &[_]| emit::operations(schedule::program(graph, roots).count());
         writeln!(text, "accelerations: {}", operations(graph, &motion.accelerations)).unwrap();
