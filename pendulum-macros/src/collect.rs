@@ -136,6 +136,14 @@ pub(crate) fn simplest(graph: &mut Graph, terms: &[(Id, Rational)]) -> Id {
     if cost(graph, flat) < cost(graph, plain) { flat } else { plain }
 }
 
+/// An expression multiplied out, unless that would be too long.
+pub(crate) fn expanded(graph: &mut Graph, id: Id) -> Id {
+    match expand(graph, id) {
+        Some(terms) => graph.sum(&terms),
+        None => id,
+    }
+}
+
 /// A product of sums multiplied out, as often as sums stand in it; `None` if that would be too long.
 fn expand(graph: &mut Graph, term: Id) -> Option<Vec<(Id, Rational)>> {
     let mut open = vec![(term, Rational::ONE)];

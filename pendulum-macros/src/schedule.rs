@@ -415,7 +415,7 @@ impl Schedule<'_> {
         if let Some(&done) = self.scaled.get(&(sum, scale)) {
             return done;
         }
-        let Node::Sum(terms) = self.graph.node(sum).clone() else { return (self.value(sum), false) };
+        let Some(terms) = self.terms(sum) else { return (self.value(sum), false) };
         let constant = self.scales[scale].clone();
         let mut scaled = Vec::new();
         for (id, coefficient) in terms {
@@ -441,10 +441,11 @@ impl Schedule<'_> {
     ///
     /// A sum that stands in more than `most` places is left alone: it would be computed twice.
     fn takes_in(&self, id: Id, most: usize) -> bool {
-        let Node::Sum(terms) = self.graph.node(id) else { return false };
+        let Some(terms) = self.terms(id) else { return false };
         if self.still(id) || most < self.uses.get(&id).copied().unwrap_or(0) {
             return false;
         }
+        let terms = &terms;
         terms.iter().all(|&(term, coefficient)| {
             let factors = self.graph.factors(term);
             let constant =
@@ -454,6 +455,15 @@ impl Schedule<'_> {
                     .iter()
                     .any(|&(base, exponent)| exponent == Rational::ONE && self.takes_in(base, self.occurrences(base, terms)))
         })
+    }
+
+    /// The terms of a sum, closed or not.
+    fn terms(&self, id: Id) -> Option<Vec<(Id, Rational)>> {
+        match self.graph.node(id) {
+            Node::Sum(terms) => Some(terms.clone()),
+            Node::Atom(inner) if self.uses.get(inner).copied().unwrap_or(0) < 2 => self.terms(*inner),
+            _ => None,
+        }
     }
 
     /// The number of terms of a sum in which a factor stands.

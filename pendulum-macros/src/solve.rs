@@ -1,8 +1,9 @@
 //! M x = f on the graph: `LDLᵀ` without square roots, structural zeros skipped, independent blocks apart.
 
 use crate::check::Model;
+use crate::collect;
 use crate::error::Errors;
-use crate::expr::{Graph, Id};
+use crate::expr::{Contents, Graph, Id};
 use crate::number::Rational;
 
 /// Whether every direction has kinetic energy as far as structure tells; reports the coordinates that have none.
@@ -56,10 +57,26 @@ pub(crate) fn solve(graph: &mut Graph, matrix: &[Vec<Id>], right: &[Id]) -> Vec<
             solution[row] = graph.div(right[row], matrix[row][row]);
             continue;
         }
-        let Ok(factors) = factor(graph, matrix, &block) else { continue };
-        let right: Vec<Id> = block.iter().map(|&row| right[row]).collect();
-        for (value, &row) in substitute(graph, &factors, right).into_iter().zip(&block) {
-            solution[row] = value;
+        let scales = scales(graph, matrix, &block);
+        let pivot =
+            graph.product(Rational::ONE, &[(matrix[block[0]][block[0]], Rational::ONE), (scales[0], Rational::whole(-2))]);
+        // The first pivot becomes one where parameters alone decide it.
+        let unit = if graph.contents(pivot).any(Contents::STATE) { Graph::ONE } else { pivot };
+        let scaled: Vec<Vec<Id>> = (0..block.len())
+            .map(|i| {
+                let entry = |j: usize| {
+                    let entry = over(graph, matrix[block[i]][block[j]], &[scales[i], scales[j], unit]);
+                    // Multiplied out, a constant shows what cancels against squares: 1 − cos² is sin².
+                    if graph.contents(entry).any(Contents::STATE) { entry } else { collect::expanded(graph, entry) }
+                };
+                (0..block.len()).map(entry).collect()
+            })
+            .collect();
+        let order: Vec<usize> = (0..block.len()).collect();
+        let Ok(factors) = factor(graph, &scaled, &order) else { continue };
+        let right: Vec<Id> = block.iter().zip(&scales).map(|(&row, &scale)| over(graph, right[row], &[scale, unit])).collect();
+        for ((value, &row), &scale) in substitute(graph, &factors, right).into_iter().zip(&block).zip(&scales) {
+            solution[row] = over(graph, value, &[scale]);
         }
     }
     solution
@@ -68,6 +85,37 @@ pub(crate) fn solve(graph: &mut Graph, matrix: &[Vec<Id>], right: &[Id]) -> Vec<
 /// The coordinates that no other is coupled to.
 pub(crate) fn alone(matrix: &[Vec<Id>]) -> Vec<bool> {
     matrix.iter().map(|row| row.iter().filter(|&&entry| entry != Graph::ZERO).count() == 1).collect()
+}
+
+/// A product of parameters for each row that stands in all its entries, twice on the diagonal: in chains the lengths. The unknowns are
+/// solved for in these units, so that fewer products move.
+fn scales(graph: &mut Graph, matrix: &[Vec<Id>], block: &[usize]) -> Vec<Id> {
+    let mut scales = Vec::new();
+    for &row in block {
+        let diagonal = graph.factors(matrix[row][row]);
+        let common: Vec<(Id, Rational)> = diagonal
+            .into_iter()
+            .filter(|&(base, exponent)| {
+                let still = !graph.contents(base).any(Contents::STATE) && exponent == Rational::whole(2);
+                let stands = |&column: &usize| {
+                    let entry = matrix[row][column];
+                    entry == Graph::ZERO
+                        || graph.factors(entry).iter().any(|&(other, power)| other == base && !power.is_negative())
+                };
+                still && block.iter().all(stands)
+            })
+            .map(|(base, _)| (base, Rational::ONE))
+            .collect();
+        scales.push(graph.product(Rational::ONE, &common));
+    }
+    scales
+}
+
+/// `id` divided by some others.
+fn over(graph: &mut Graph, id: Id, divisors: &[Id]) -> Id {
+    let mut factors = vec![(id, Rational::ONE)];
+    factors.extend(divisors.iter().map(|&divisor| (divisor, Rational::MINUS_ONE)));
+    graph.product(Rational::ONE, &factors)
 }
 
 /// Unit lower triangle and reciprocal pivots.
