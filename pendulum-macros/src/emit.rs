@@ -96,8 +96,9 @@ impl Emitter<'_, '_> {
                 None if quantity.default.is_some() => values.push(quote!(#field: ::core::unimplemented!())),
                 None => {
                     let kind = self.field_type(quantity, &scalar);
-                    arguments.push(quote!(#field: #kind));
-                    values.push(quote!(#field));
+                    let argument = argument(field);
+                    arguments.push(quote!(#argument: #kind));
+                    values.push(quote!(#field: #argument));
                 }
             }
         }
@@ -127,7 +128,7 @@ impl Emitter<'_, '_> {
             return None;
         }
         let (krate, scalar, count, visibility) = (&self.krate, self.scalar(), self.count(), &self.model.block.visibility);
-        let names: Vec<&Ident> = self.model.inputs.iter().map(|input| input.name).collect();
+        let names: Vec<Ident> = self.model.inputs.iter().map(|input| argument(input.name)).collect();
         let types: Vec<Ident> = (0..names.len()).map(|index| format_ident!("M{index}")).collect();
         let bounds = self.model.inputs.iter().zip(&types).map(|(input, motion)| {
             let dimension = input.count();
@@ -675,6 +676,12 @@ pub(crate) fn operations(count: Count) -> String {
         .map(|(number, what)| format!("{number} {what}{}", if number == 1 { "" } else { "s" }))
         .collect();
     if parts.is_empty() { "no operation".into() } else { parts.join(", ") }
+}
+
+/// The name of an argument; a capital letter gets a tail, because a constant of that name in scope would be taken for a pattern.
+fn argument(name: &Ident) -> Ident {
+    let text = name.to_string();
+    if text.starts_with(char::is_uppercase) { Ident::new(&format!("{text}_"), name.span()) } else { name.clone() }
 }
 
 /// A name of ours that no user can write.

@@ -10,7 +10,20 @@ lagrangian! {
     potential = -1/|[x, y]|;
 }
 
+#[allow(dead_code)]
+const L: f64 = 3.0;
+
+lagrangian! {
+    /// A parameter beside a constant of the same name.
+    struct Beside { L }
+    coordinate x;
+    driven X: [1; 2];
+    kinetic = L^2*(ẋ + inner(dot(X), [1, 0]))^2/2;
+}
+
 fn main() {
+    let beside = Beside::new(2.0).driven_by(motion::Still::new([0.0, 1.0]));
+    assert_eq!(beside.system.L, 2.0);
     lagrangian! {
         struct Local { k }
         coordinate x;
