@@ -31,7 +31,7 @@ pub(crate) fn by_velocities(graph: &mut Graph, id: Id) -> Option<Id> {
 }
 
 fn moving() -> Contents {
-    Contents::VELOCITY.or(Contents::VELOCITY_INPUT).or(Contents::ACCELERATION_INPUT)
+    Contents::VELOCITY.or(Contents::AUXILIARY).or(Contents::VELOCITY_INPUT).or(Contents::ACCELERATION_INPUT)
 }
 
 /// The polynomial that an expression is in all symbols of some kinds, from those of its children.

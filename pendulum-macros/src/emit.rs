@@ -519,8 +519,8 @@ impl Emitter<'_, '_> {
                     Moment::Product => quote!(self.#name.moments()[1]),
                 }
             }
-            // Points of integration are gone when the integral is done.
-            Symbol::Point(..) => quote!(::core::unreachable!()),
+            // Points of integration are gone when the integral is done, velocities of positions when the equations are solved.
+            Symbol::Point(..) | Symbol::Auxiliary(_) => quote!(::core::unreachable!()),
             Symbol::Time => quote!(t),
             Symbol::Coordinate(index) => quote!(q[#index]),
             Symbol::Velocity(index) => quote!(v[#index]),

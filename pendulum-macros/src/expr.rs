@@ -55,6 +55,8 @@ pub(crate) enum Symbol {
     Momentum(usize),
     /// A second moment about its pivot of the body whose scalars begin with this parameter.
     Moment(usize, Moment),
+    /// The velocity of a scalar of a `let` position, as an unknown of its own.
+    Auxiliary(usize),
     /// A component of the point of integration; the first number tells nested integrals apart.
     Point(usize, usize),
 }
@@ -103,6 +105,7 @@ impl Contents {
     pub(crate) const ACCELERATION_INPUT: Self = Self(64);
     pub(crate) const MOMENTUM: Self = Self(128);
     pub(crate) const POINT: Self = Self(256);
+    pub(crate) const AUXILIARY: Self = Self(512);
     pub(crate) const INPUT: Self = Self(16 | 32 | 64);
     /// Everything but parameters.
     pub(crate) const STATE: Self = Self(!1);
@@ -127,6 +130,7 @@ impl Contents {
             Symbol::Input { order: 1, .. } => Self::VELOCITY_INPUT,
             Symbol::Input { .. } => Self::ACCELERATION_INPUT,
             Symbol::Momentum(_) => Self::MOMENTUM,
+            Symbol::Auxiliary(_) => Self::AUXILIARY,
         }
     }
 }

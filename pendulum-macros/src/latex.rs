@@ -154,6 +154,7 @@ impl Writer<'_> {
             Symbol::Parameter(index) => dotted(&self.names.parameters[index], 0),
             Symbol::Coordinate(index) => self.coordinate(index, 0),
             Symbol::Velocity(index) => self.coordinate(index, 1),
+            Symbol::Auxiliary(index) => format!("u_{{{index}}}"),
             Symbol::Momentum(index) => format!("p_{{{}}}", self.coordinate(index, 0)),
             Symbol::Input { input, component, order } => {
                 let (name, vector) = self.names.input(input);

@@ -1,14 +1,13 @@
 //! The `lagrangian!` macro of the `pendulum` workspace: a Lagrangian in, Rust out.
 
-use error::Errors;
-use proc_macro2::TokenStream;
-
+mod articulated;
 mod ast;
 mod check;
 mod collect;
 mod diff;
 mod emit;
 mod error;
+mod expand;
 mod expr;
 mod jacobian;
 mod latex;
@@ -33,23 +32,5 @@ mod unit;
 #[doc = include_str!("../language.md")]
 #[proc_macro]
 pub fn lagrangian(input: proc_macro::TokenStream) -> proc_macro::TokenStream {
-    expand(input.into()).into()
-}
-
-/// The compiler: parse, check, lower, derive, emit. The items are always there, whatever is wrong with the block.
-fn expand(input: TokenStream) -> TokenStream {
-    let mut errors = Errors::default();
-    let Some((krate, block)) = parse::all(input, &mut errors) else {
-        return errors.into_tokens();
-    };
-    let model = check::resolve(&block, &mut errors);
-    let mut graph = expr::Graph::new();
-    let mut energies = lower::energies(&model, &mut graph, &mut errors);
-    if errors.is_empty() {
-        unit::infer::check(&model, &mut errors);
-    }
-    let motion = if errors.is_empty() { motion::canonical(&model, &mut graph, &mut energies, &mut errors) } else { None };
-    let items = emit::Emitter { krate, model: &model, graph, motion, energies }.items();
-    let errors = errors.into_tokens();
-    quote::quote!(#errors #items)
+    expand::expand(input.into()).into()
 }

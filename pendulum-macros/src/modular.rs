@@ -183,6 +183,7 @@ impl Point {
             Symbol::Momentum(index) => [5, index as u64, 0, 0],
             Symbol::Moment(first, moment) => [6, first as u64, moment as u64, 0],
             Symbol::Point(level, component) => [7, level as u64, component as u64, 0],
+            Symbol::Auxiliary(index) => [8, index as u64, 0, 0],
         };
         self.random(&[key[0], key[1], key[2], key[3], salt])
     }

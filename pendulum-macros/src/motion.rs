@@ -2,6 +2,7 @@
 //!
 //! d/dt ∂L/∂q̇ − ∂L/∂q = Q − ∂R/∂q̇, where d/dt runs through the coordinates, the driven inputs and the time.
 
+use crate::articulated::{self, Sparse};
 use crate::check::{Model, Quantity};
 use crate::collect;
 use crate::diff::derivative;
@@ -17,6 +18,9 @@ use crate::symmetry::{self, Conserved};
 
 /// Jacobians of more operations than this are left to dual numbers: an expansion stays small.
 const LONGEST_JACOBIAN: usize = 4000;
+
+/// Mass matrices of more rows than this are only solved in dense form if there is no cheaper sparse one.
+const LARGEST_DENSE: usize = 12;
 
 /// The equations of motion and what goes with them: roots in one graph.
 #[derive(Debug, Default)]
@@ -131,8 +135,8 @@ fn derive(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Er
         let force = graph.sub(rate, drift);
         motion.forces.push(collected(graph, force));
     }
-    motion.accelerations = solve::solve(graph, &motion.mass_matrix, &motion.forces);
-    motion.velocities = invert(graph, &motion.mass_matrix, &momenta);
+    let sparse = energies.extended.as_ref().and_then(|extended| articulated::sparse(graph, extended, count));
+    solved(graph, &mut motion, &momenta, sparse.as_ref());
 
     let actions: Vec<(Id, Rational)> = (0..count).map(|i| (graph.mul(velocity[i], momenta[i]), Rational::ONE)).collect();
     let action = graph.sum(&actions);
@@ -150,7 +154,45 @@ fn derive(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Er
     motion.momenta = momenta;
     facts(graph, &mut motion);
     motion.jacobians = jacobians(model, graph, &motion);
+    if let Some(sparse) = sparse {
+        shorten(graph, &mut motion.momenta, sparse.momenta);
+        shorten(graph, &mut motion.momentum_rates, sparse.momentum_rates);
+        shorten(graph, std::slice::from_mut(&mut motion.energy), vec![sparse.energy]);
+        if let (Some(kinetic), Some(short)) = (&mut motion.kinetic, sparse.kinetic) {
+            shorten(graph, std::slice::from_mut(kinetic), vec![short]);
+        }
+    }
     motion
+}
+
+/// Solves for the accelerations and for the velocities, in the form that costs less.
+fn solved(graph: &mut Graph, motion: &mut Motion, momenta: &[Id], sparse: Option<&Sparse>) {
+    let largest = solve::blocks(&motion.mass_matrix).iter().map(Vec::len).max().unwrap_or(0);
+    if let Some(sparse) = sparse
+        && LARGEST_DENSE < largest
+        && schedule::program(graph, &sparse.accelerations).count().cost() < largest.pow(3) / 3
+    {
+        // Elimination without structure would take n³/3 operations and as long to write down.
+        motion.accelerations.clone_from(&sparse.accelerations);
+        motion.velocities = Some(sparse.velocities.clone());
+        return;
+    }
+    motion.accelerations = solve::solve(graph, &motion.mass_matrix, &motion.forces);
+    motion.velocities = invert(graph, &motion.mass_matrix, momenta);
+    if let Some(sparse) = sparse {
+        shorten(graph, &mut motion.accelerations, sparse.accelerations.clone());
+        if let Some(velocities) = &mut motion.velocities {
+            shorten(graph, velocities, sparse.velocities.clone());
+        }
+    }
+}
+
+/// Takes `other` where it saves a tenth of the cost; below that, equal systems keep equal equations however they are written.
+fn shorten(graph: &Graph, own: &mut [Id], other: Vec<Id>) {
+    let cost = |roots: &[Id]| schedule::program(graph, roots).count().cost();
+    if 10 * cost(&other) < 9 * cost(own) {
+        own.clone_from_slice(&other);
+    }
 }
 
 /// The Jacobians, if they are short: each column costs about as much as the accelerations.
@@ -241,10 +283,10 @@ fn facts(graph: &mut Graph, motion: &mut Motion) {
     let masses = motion.mass_matrix.iter().flatten().fold(Contents::default(), |all, &id| all.or(graph.contents(id)));
     let state = Contents::COORDINATE.or(Contents::VELOCITY);
     let time = Contents::TIME.or(Contents::INPUT);
-    let accelerations = all(&motion.accelerations);
+    let forces = all(&motion.forces);
     motion.constant_mass_matrix = !masses.any(state.or(time));
-    motion.velocity_free = motion.constant_mass_matrix && !accelerations.any(Contents::VELOCITY);
-    motion.autonomous = !accelerations.any(time) && !all(&motion.momenta).any(time) && !masses.any(time);
+    motion.velocity_free = motion.constant_mass_matrix && !forces.any(Contents::VELOCITY);
+    motion.autonomous = !forces.any(time) && !all(&motion.momenta).any(time) && !masses.any(time);
     let moving = motion.velocities.iter().flatten().fold(Contents::default(), |all, &id| all.or(graph.contents(id)));
     motion.separable = motion.constant_mass_matrix && !moving.any(Contents::COORDINATE) && !motion.nonconservative;
 }

@@ -35,6 +35,7 @@ impl Names {
             Symbol::Coordinate(index) => self.coordinates[index].clone(),
             Symbol::Velocity(index) => dotted(&self.coordinates[index], 1),
             Symbol::Momentum(index) => format!("p_{}", self.coordinates[index]),
+            Symbol::Auxiliary(index) => format!("u[{index}]"),
             Symbol::Point(_, component) => ["p.x", "p.y"][component.min(1)].into(),
             Symbol::Moment(body, moment) => {
                 let body = self.parameters[body].trim_end_matches(".mass");

@@ -52,6 +52,13 @@ pub(crate) struct Count {
     pub(crate) div: usize,
 }
 
+impl Count {
+    /// What the operations cost, in multiplications.
+    pub(crate) fn cost(self) -> usize {
+        self.mul + self.add + 4 * self.div + 20 * (self.sincos + self.functions)
+    }
+}
+
 impl Program {
     /// The operations of one evaluation, after what parameters alone decide has been prepared.
     pub(crate) fn count(&self) -> Count {

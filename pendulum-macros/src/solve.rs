@@ -4,9 +4,10 @@ use crate::check::Model;
 use crate::collect;
 use crate::error::Errors;
 use crate::expr::{Contents, Graph, Id};
+use crate::modular::{Point, Residue};
 use crate::number::Rational;
 
-/// Whether every direction has kinetic energy as far as structure tells; reports the coordinates that have none.
+/// Whether every direction has kinetic energy at a random state; reports the coordinates that have none.
 pub(crate) fn regular(model: &Model, graph: &mut Graph, matrix: &[Vec<Id>], errors: &mut Errors) -> bool {
     let before = errors.len();
     for coordinate in &model.coordinates {
@@ -28,25 +29,55 @@ pub(crate) fn regular(model: &Model, graph: &mut Graph, matrix: &[Vec<Id>], erro
     if before < errors.len() {
         return false;
     }
+    let Some(values) = at_random(graph, matrix) else { return true };
     for block in blocks(matrix) {
-        if let Err(row) = factor(graph, matrix, &block) {
-            let found = model
-                .coordinates
-                .iter()
-                .find(|coordinate| (coordinate.first..coordinate.first + coordinate.count()).contains(&row));
-            if let Some(coordinate) = found {
-                errors.at(
-                    coordinate.name.span(),
-                    format!(
-                        "the mass matrix is singular in the direction of `{}`: its kinetic energy is that of other coordinates; \
-                         leave the redundant coordinate out",
-                        coordinate.name
-                    ),
-                );
+        let Some((row, deficient)) = zero_pivot(&values, &block) else { continue };
+        let found = model
+            .coordinates
+            .iter()
+            .find(|coordinate| (coordinate.first..coordinate.first + coordinate.count()).contains(&row));
+        let Some(coordinate) = found else { continue };
+        let name = &coordinate.name;
+        let message = if deficient {
+            format!(
+                "the mass matrix is singular in the direction of `{name}`: its kinetic energy is that of other coordinates; \
+                 leave the redundant coordinate out"
+            )
+        } else {
+            format!(
+                "the kinetic energy is not positive: in the direction of `{name}` it is zero at every state; \
+                 take coordinates whose squared velocities stand in it"
+            )
+        };
+        errors.at(name.span(), message);
+    }
+    errors.len() == before
+}
+
+/// The entries of a matrix at a random point of a prime field.
+fn at_random(graph: &Graph, matrix: &[Vec<Id>]) -> Option<Vec<Vec<Residue>>> {
+    let roots: Vec<Id> = matrix.iter().flatten().copied().collect();
+    let values = (0..64).find_map(|seed| Point::new(graph, &roots, seed).values(graph, &roots))?;
+    Some(matrix.iter().map(|row| row.iter().map(|entry| values[entry]).collect()).collect())
+}
+
+/// The row in which elimination meets a pivot that is zero, and whether the rows are dependent then.
+fn zero_pivot(values: &[Vec<Residue>], block: &[usize]) -> Option<(usize, bool)> {
+    let mut rows: Vec<Vec<Residue>> = block.iter().map(|&i| block.iter().map(|&j| values[i][j]).collect()).collect();
+    for pivot in 0..block.len() {
+        let Some(inverse) = rows[pivot][pivot].reciprocal() else {
+            let deficient = rows[pivot].iter().skip(pivot).all(|&entry| entry == Residue::ZERO);
+            return Some((block[pivot], deficient));
+        };
+        let (done, rest) = rows.split_at_mut(pivot + 1);
+        for row in rest {
+            let factor = row[pivot].mul(inverse).negative();
+            for (entry, &own) in row.iter_mut().zip(&done[pivot]) {
+                *entry = entry.add(own.mul(factor));
             }
         }
     }
-    errors.len() == before
+    None
 }
 
 /// Solves M x = f for a symmetric matrix that `regular` has passed.
@@ -125,7 +156,7 @@ struct Factors {
 }
 
 /// The rows of a block, last first: chains eliminate from the leaf to the root.
-fn blocks(matrix: &[Vec<Id>]) -> Vec<Vec<usize>> {
+pub(crate) fn blocks(matrix: &[Vec<Id>]) -> Vec<Vec<usize>> {
     let mut seen = vec![false; matrix.len()];
     let mut blocks = Vec::new();
     for start in 0..matrix.len() {
@@ -150,7 +181,7 @@ fn blocks(matrix: &[Vec<Id>]) -> Vec<Vec<usize>> {
     blocks
 }
 
-/// M = L D Lᵀ on atoms; the row whose pivot is zero otherwise.
+/// M = L D Lᵀ on atoms; the row whose pivot is structurally zero otherwise.
 fn factor(graph: &mut Graph, matrix: &[Vec<Id>], block: &[usize]) -> Result<Factors, usize> {
     let size = block.len();
     let mut lower = vec![vec![Graph::ZERO; size]; size];

@@ -10,7 +10,7 @@ use crate::ast::{Binder, Expr, ForceIndex, Role};
 use crate::check::{self, Model};
 use crate::diff;
 use crate::error::{Errors, Range};
-use crate::expr::{Graph, Id, Symbol};
+use crate::expr::{Contents, Graph, Id, Symbol};
 use crate::name;
 use crate::number::Rational;
 use std::collections::{BTreeMap, BTreeSet};
@@ -32,6 +32,21 @@ pub(crate) struct Energies {
     pub(crate) defaults: Vec<Option<Id>>,
     /// The parameters of two or three components that are used by their indices alone: families, not vectors.
     pub(crate) families: BTreeSet<usize>,
+    /// The same with the velocities of positions as symbols of their own; `None` where no position is written with `let`.
+    pub(crate) extended: Option<Extended>,
+}
+
+/// The energies of a block in which the velocities of `let` positions stand as symbols of their own.
+#[derive(Debug, Default)]
+pub(crate) struct Extended {
+    pub(crate) lagrangian: Id,
+    pub(crate) kinetic: Option<Id>,
+    pub(crate) dissipation: Id,
+    pub(crate) forces: Vec<Id>,
+    /// The scalars of each position.
+    pub(crate) positions: Vec<Vec<usize>>,
+    /// What each scalar is.
+    pub(crate) scalars: Vec<Id>,
 }
 
 impl Energies {
@@ -39,12 +54,75 @@ impl Energies {
     pub(crate) fn roots(&mut self) -> Vec<&mut Id> {
         let single = [&mut self.kinetic, &mut self.potential, &mut self.lagrangian, &mut self.dissipation];
         let single = single.into_iter().flatten();
-        single.chain(&mut self.forces).chain(self.defaults.iter_mut().flatten()).collect()
+        let extended = self.extended.iter_mut().flat_map(|extended| {
+            let single = [&mut extended.lagrangian, &mut extended.dissipation].into_iter().chain(extended.kinetic.as_mut());
+            single.chain(&mut extended.forces).chain(&mut extended.scalars)
+        });
+        single.chain(&mut self.forces).chain(self.defaults.iter_mut().flatten()).chain(extended).collect()
     }
 }
 
 /// Lowers all energies of a block.
 pub(crate) fn energies(model: &Model, graph: &mut Graph, errors: &mut Errors) -> Energies {
+    let mut energies = lower(model, graph, errors, None).0;
+    if errors.is_empty() && 1 < energies.forces.len() && !model.lets.is_empty() {
+        energies.extended = extended(model, graph, errors);
+    }
+    energies
+}
+
+/// Lowers a block once more, with the velocities of its positions as unknowns.
+fn extended(model: &Model, graph: &mut Graph, errors: &mut Errors) -> Option<Extended> {
+    let (energies, positions) = lower(model, graph, errors, Some(Positions::default()));
+    let Positions { scalars, positions, .. } = positions?;
+    let lagrangian = match energies.lagrangian {
+        Some(lagrangian) => lagrangian,
+        None => graph.sub(energies.kinetic.unwrap_or_default(), energies.potential.unwrap_or_default()),
+    };
+    let dissipation = energies.dissipation.unwrap_or_default();
+    Some(Extended { lagrangian, kinetic: energies.kinetic, dissipation, forces: energies.forces, positions, scalars })
+}
+
+/// The positions written with `let` that have been met.
+#[derive(Debug, Default)]
+struct Positions {
+    scalars: Vec<Id>,
+    positions: Vec<Vec<usize>>,
+    places: BTreeMap<Id, usize>,
+}
+
+impl Positions {
+    /// Notes the scalars of a value that move with the coordinates.
+    fn note(&mut self, graph: &Graph, value: &Value) {
+        let parts = match value {
+            Value::Bad => return,
+            Value::Scalar(id) => vec![*id],
+            Value::Plane { parts, .. } => parts.to_vec(),
+            Value::Space(parts) => parts.to_vec(),
+            Value::Family(members) => return members.iter().for_each(|member| self.note(graph, member)),
+        };
+        let other = Contents::VELOCITY.or(Contents::AUXILIARY).or(Contents::POINT).or(Contents::ACCELERATION_INPUT);
+        let other = other.or(Contents::VELOCITY_INPUT);
+        let position = |id: &Id| graph.contents(*id).any(Contents::COORDINATE) && !graph.contents(*id).any(other);
+        if !parts.iter().all(position) || parts.iter().any(|id| self.places.contains_key(id)) {
+            return;
+        }
+        let first = self.scalars.len();
+        for (offset, &id) in parts.iter().enumerate() {
+            self.places.insert(id, first + offset);
+        }
+        self.scalars.extend(parts);
+        self.positions.push((first..self.scalars.len()).collect());
+    }
+}
+
+/// Lowers all energies of a block, and notes its positions if that is wanted.
+fn lower(
+    model: &Model,
+    graph: &mut Graph,
+    errors: &mut Errors,
+    positions: Option<Positions>,
+) -> (Energies, Option<Positions>) {
     let mut lower = Lower {
         model,
         graph,
@@ -58,8 +136,10 @@ pub(crate) fn energies(model: &Model, graph: &mut Graph, errors: &mut Errors) ->
         whole: BTreeSet::new(),
         work: 0,
         integrals: 0,
+        positions,
     };
-    lower.block()
+    let energies = lower.block();
+    (energies, lower.positions)
 }
 
 /// dx/dt along any motion, by the chain rule through coordinates, driven inputs and time.
@@ -100,6 +180,8 @@ struct Lower<'m, 'a, 'g, 'e> {
     work: usize,
     /// The number of integrals that are open.
     integrals: usize,
+    /// The positions whose velocities become symbols.
+    positions: Option<Positions>,
 }
 
 impl Lower<'_, '_, '_, '_> {
@@ -218,6 +300,9 @@ impl Lower<'_, '_, '_, '_> {
         self.ranges = ranges;
         self.scope = scope;
         self.open.pop();
+        if let Some(positions) = &mut self.positions {
+            positions.note(self.graph, &value);
+        }
         self.instances.insert((index, k), value.clone());
         value
     }

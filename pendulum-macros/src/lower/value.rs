@@ -3,7 +3,7 @@
 use super::{Lower, total_derivative};
 use crate::ast::Expr;
 use crate::check;
-use crate::expr::{Contents, Function, Graph, Id};
+use crate::expr::{Contents, Function, Graph, Id, Symbol};
 use crate::number::Rational;
 
 /// An expression by its components.
@@ -62,7 +62,14 @@ impl Lower<'_, '_, '_, '_> {
         if !contents.any(moving) && !still {
             return self.wrong(expr, &format!("nothing in `{what}` moves, so its time derivative is zero; leave it out"));
         }
-        self.map(value, total_derivative)
+        let positions = self.positions.take();
+        let rate = |graph: &mut Graph, id: Id| match positions.as_ref().and_then(|positions| positions.places.get(&id)) {
+            Some(&scalar) => graph.symbol(Symbol::Auxiliary(scalar)),
+            None => total_derivative(graph, id),
+        };
+        let value = self.map(value, rate);
+        self.positions = positions;
+        value
     }
 
     pub(super) fn contents(&self, value: &Value) -> Contents {

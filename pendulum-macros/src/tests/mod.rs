@@ -14,6 +14,7 @@ mod identities;
 mod refusals;
 mod rules;
 mod soup;
+mod sparse;
 
 /// What is wrong with a block.
 fn refusals(source: &str) -> Vec<String> {
