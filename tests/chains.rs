@@ -37,6 +37,8 @@ chain!(Chain7, 7);
 chain!(Chain8, 8);
 chain!(Chain9, 9);
 chain!(Chain10, 10);
+chain!(Chain16, 16);
+chain!(Chain32, 32);
 
 /// θ̈ from the tensions: with e_i = (sin θ_i, −cos θ_i) along rod i and the pivot's acceleration (a_x, a_y),
 /// T_1/m_1 − cos(θ_2 − θ_1) T_2/m_1 = l_1 θ̇_1² + (g + a_y) cos θ_1 − a_x sin θ_1, and below
@@ -106,5 +108,5 @@ macro_rules! compare {
 
 #[test]
 fn chains_agree_with_the_tensions_of_their_rods() {
-    compare!(Chain1 1, Chain2 2, Chain3 3, Chain4 4, Chain5 5, Chain6 6, Chain7 7, Chain8 8, Chain9 9, Chain10 10);
+    compare!(Chain1 1, Chain2 2, Chain3 3, Chain4 4, Chain5 5, Chain6 6, Chain7 7, Chain8 8, Chain9 9, Chain10 10, Chain16 16, Chain32 32);
 }

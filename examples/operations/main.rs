@@ -55,9 +55,9 @@ mod schedule;
 mod solve;
 #[path = "../../pendulum-macros/src/symmetry.rs"]
 mod symmetry;
+mod systems;
 #[path = "../../pendulum-macros/src/unit/mod.rs"]
 mod unit;
-mod systems;
 
 use proc_macro2::{TokenStream, TokenTree};
 use std::time::Instant;

@@ -3,10 +3,22 @@
 /// The name and the block of each system.
 pub(crate) fn all() -> Vec<(String, String)> {
     let note = [
-        ("simple", "struct S { m: kg, L: m, g: m/s^2 } coordinate θ: rad; let y = L*[sin(θ), -cos(θ)]; kinetic = m/2*|ẏ|^2; potential = m*g*height(y);"),
-        ("moving", "struct S { m: kg, L: m, g: m/s^2 } coordinate θ: rad; driven x: [m; 2]; let y = x + L*[sin(θ), -cos(θ)]; kinetic = m/2*|ẏ|^2; potential = m*g*height(y);"),
-        ("compound", "struct S { B: body, g: m/s^2 } coordinate θ: rad; let y(p) = cis(θ)*p; kinetic = integral(p in B, |dot(y(p))|^2)/2; potential = integral(p in B, g*height(y(p)));"),
-        ("moving_compound", "struct S { B: body, g: m/s^2 } coordinate θ: rad; driven x: [m; 2]; let y(p) = x + cis(θ)*p; kinetic = integral(p in B, |dot(y(p))|^2)/2; potential = integral(p in B, g*height(y(p)));"),
+        (
+            "simple",
+            "struct S { m: kg, L: m, g: m/s^2 } coordinate θ: rad; let y = L*[sin(θ), -cos(θ)]; kinetic = m/2*|ẏ|^2; potential = m*g*height(y);",
+        ),
+        (
+            "moving",
+            "struct S { m: kg, L: m, g: m/s^2 } coordinate θ: rad; driven x: [m; 2]; let y = x + L*[sin(θ), -cos(θ)]; kinetic = m/2*|ẏ|^2; potential = m*g*height(y);",
+        ),
+        (
+            "compound",
+            "struct S { B: body, g: m/s^2 } coordinate θ: rad; let y(p) = cis(θ)*p; kinetic = integral(p in B, |dot(y(p))|^2)/2; potential = integral(p in B, g*height(y(p)));",
+        ),
+        (
+            "moving_compound",
+            "struct S { B: body, g: m/s^2 } coordinate θ: rad; driven x: [m; 2]; let y(p) = x + cis(θ)*p; kinetic = integral(p in B, |dot(y(p))|^2)/2; potential = integral(p in B, g*height(y(p)));",
+        ),
     ];
     let note = note.map(|(name, text)| (name.to_owned(), text.to_owned()));
     let chains = (1..=10).chain([16, 32]).map(|n| (format!("chain{n}"), chain(n)));

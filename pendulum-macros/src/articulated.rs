@@ -93,11 +93,8 @@ impl Tree<'_> {
                 if theirs.len() != own.len() {
                     continue;
                 }
-                let slip: Vec<Id> = own
-                    .iter()
-                    .zip(theirs)
-                    .map(|(&a, &b)| self.graph.sub(extended.scalars[a], extended.scalars[b]))
-                    .collect();
+                let slip: Vec<Id> =
+                    own.iter().zip(theirs).map(|(&a, &b)| self.graph.sub(extended.scalars[a], extended.scalars[b])).collect();
                 let length = self.coordinates(&slip).len();
                 if length < best.0 {
                     best = (length, Some(other));
@@ -336,12 +333,7 @@ impl Tree<'_> {
     }
 
     /// The unknowns of the coordinates, from masses, right sides and what each joint adds by itself.
-    fn solve(
-        &mut self,
-        masses: &BTreeMap<(usize, usize), Id>,
-        right: BTreeMap<usize, Id>,
-        drift: &[Vec<Id>],
-    ) -> Option<Vec<Id>> {
+    fn solve(&mut self, masses: &BTreeMap<(usize, usize), Id>, right: BTreeMap<usize, Id>, drift: &[Vec<Id>]) -> Option<Vec<Id>> {
         let mut system = Quadratic { entries: masses.clone(), right };
         let mut steps: Vec<Step> = Vec::new();
         let mut open: Vec<usize> = (0..self.count).rev().collect();
@@ -352,9 +344,8 @@ impl Tree<'_> {
             open = rest;
             let ready: Vec<usize> = ready;
             // What no position needs waits until the others are done.
-            let (now, later): (Vec<usize>, Vec<usize>) = ready.into_iter().partition(|j| {
-                index == 0 || joints.iter().any(|joint| joint.coordinates.contains(j))
-            });
+            let (now, later): (Vec<usize>, Vec<usize>) =
+                ready.into_iter().partition(|j| index == 0 || joints.iter().any(|joint| joint.coordinates.contains(j)));
             open.extend(later);
             for j in now {
                 self.eliminate(&mut system, j, &mut steps)?;

@@ -117,7 +117,7 @@ pub(crate) enum ExprKind {
 }
 
 /// A number as written: exact where it fits, else its digits.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Literal {
     Exact(Rational),
     Decimal(String),

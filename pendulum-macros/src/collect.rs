@@ -15,7 +15,7 @@ pub(crate) type Monomial = Vec<(Id, i64)>;
 pub(crate) type Polynomial = BTreeMap<Monomial, Vec<(Id, Rational)>>;
 
 /// More terms than this are left as they stand.
-const LIMIT: usize = 20_000;
+const LIMIT: usize = 100_000;
 
 /// `id` collected by powers of its velocities (of coordinates and driven inputs), if it is a polynomial in them.
 pub(crate) fn by_velocities(graph: &mut Graph, id: Id) -> Option<Id> {

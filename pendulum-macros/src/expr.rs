@@ -7,10 +7,11 @@
 use crate::ast::Literal;
 use crate::number::Rational;
 use crate::rule;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::hash::{BuildHasherDefault, DefaultHasher};
 
 /// A node of the graph.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct Id(u32);
 
 impl Id {
@@ -20,7 +21,7 @@ impl Id {
 }
 
 /// What a node is made of.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Node {
     Number(Rational),
     /// A number that takes no part in folding: too large for exact arithmetic.
@@ -40,7 +41,7 @@ pub(crate) enum Node {
 }
 
 /// A leaf that has its value at run time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Symbol {
     Parameter(usize),
     Time,
@@ -62,7 +63,7 @@ pub(crate) enum Symbol {
 }
 
 /// The second moments of a body in which rotations are short: S_xx + S_yy, S_xx − S_yy and S_xy.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Moment {
     /// S_xx + S_yy, the moment of inertia.
     Inertia,
@@ -73,7 +74,7 @@ pub(crate) enum Moment {
 }
 
 /// A function of one argument.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Function {
     Sin,
     Cos,
@@ -138,14 +139,17 @@ impl Contents {
 /// The terms of a sum under construction.
 pub(crate) type Terms = BTreeMap<Id, Rational>;
 
+/// The same in every run; the maps that use it are asked, never listed, so that no order of theirs can be seen.
+type Hasher = BuildHasherDefault<DefaultHasher>;
+
 /// All expressions of a block.
 #[derive(Debug)]
 pub(crate) struct Graph {
     nodes: Vec<Node>,
     contents: Vec<Contents>,
-    ids: BTreeMap<Node, Id>,
+    ids: HashMap<Node, Id, Hasher>,
     /// The derivatives that are known.
-    slopes: BTreeMap<(Symbol, Id), Id>,
+    slopes: HashMap<(Symbol, Id), Id, Hasher>,
 }
 
 impl Graph {
@@ -153,7 +157,7 @@ impl Graph {
     pub(crate) const ONE: Id = Id(1);
 
     pub(crate) fn new() -> Self {
-        let mut graph = Self { nodes: Vec::new(), contents: Vec::new(), ids: BTreeMap::new(), slopes: BTreeMap::new() };
+        let mut graph = Self { nodes: Vec::new(), contents: Vec::new(), ids: HashMap::default(), slopes: HashMap::default() };
         graph.intern(Node::Number(Rational::ZERO));
         graph.intern(Node::Number(Rational::ONE));
         graph

@@ -29,8 +29,10 @@ impl Residue {
     }
 
     pub(crate) fn mul(self, other: Self) -> Self {
-        let product = u128::from(self.0) * u128::from(other.0) % u128::from(PRIME);
-        Self(u64::try_from(product).unwrap_or(0))
+        let product = u128::from(self.0) * u128::from(other.0);
+        // 2⁶¹ is 1: the upper bits are added to the lower ones.
+        let sum = (product as u64 & PRIME) + (product >> 61) as u64;
+        Self(if PRIME <= sum { sum - PRIME } else { sum })
     }
 
     fn power(self, mut exponent: u64) -> Self {

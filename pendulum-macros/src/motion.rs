@@ -251,7 +251,7 @@ fn no_jerk(model: &Model, graph: &Graph, momenta: &[Id], errors: &mut Errors) {
 }
 
 /// q̇ = M⁻¹(p − b) for momenta M q̇ + b that are linear in the velocities.
-fn invert(graph: &mut Graph, mass_matrix: &[Vec<Id>], momenta: &[Id]) -> Option<Vec<Id>> {
+pub(crate) fn invert(graph: &mut Graph, mass_matrix: &[Vec<Id>], momenta: &[Id]) -> Option<Vec<Id>> {
     if mass_matrix.iter().flatten().any(|&entry| graph.contents(entry).any(Contents::VELOCITY)) {
         return None;
     }

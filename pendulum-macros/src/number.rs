@@ -5,7 +5,7 @@ use std::fmt;
 /// A fraction in lowest terms with a positive denominator.
 ///
 /// Its order is that of its two words, good for sorting only. Arithmetic that leaves 128 bits answers `None`, and the graph then keeps the operation unevaluated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct Rational {
     numerator: i128,
     denominator: i128,
@@ -24,6 +24,9 @@ impl Rational {
     pub(crate) fn new(numerator: i128, denominator: i128) -> Option<Self> {
         if denominator == 0 || numerator == i128::MIN || denominator == i128::MIN {
             return None;
+        }
+        if denominator == 1 {
+            return Some(Self { numerator, denominator });
         }
         let divisor = gcd(numerator.unsigned_abs(), denominator.unsigned_abs()).cast_signed();
         let sign = denominator.signum();
@@ -69,12 +72,18 @@ impl Rational {
     }
 
     pub(crate) fn add(self, other: Self) -> Option<Self> {
+        if self.is_integer() && other.is_integer() {
+            return Self::new(self.numerator.checked_add(other.numerator)?, 1);
+        }
         let left = self.numerator.checked_mul(other.denominator)?;
         let right = other.numerator.checked_mul(self.denominator)?;
         Self::new(left.checked_add(right)?, self.denominator.checked_mul(other.denominator)?)
     }
 
     pub(crate) fn mul(self, other: Self) -> Option<Self> {
+        if self.is_integer() && other.is_integer() {
+            return Self::new(self.numerator.checked_mul(other.numerator)?, 1);
+        }
         // Cross-cancelling first keeps the products as small as the result.
         let a = Self::new(self.numerator, other.denominator)?;
         let b = Self::new(other.numerator, self.denominator)?;

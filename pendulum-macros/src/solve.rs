@@ -32,10 +32,8 @@ pub(crate) fn regular(model: &Model, graph: &mut Graph, matrix: &[Vec<Id>], erro
     let Some(values) = at_random(graph, matrix) else { return true };
     for block in blocks(matrix) {
         let Some((row, deficient)) = zero_pivot(&values, &block) else { continue };
-        let found = model
-            .coordinates
-            .iter()
-            .find(|coordinate| (coordinate.first..coordinate.first + coordinate.count()).contains(&row));
+        let found =
+            model.coordinates.iter().find(|coordinate| (coordinate.first..coordinate.first + coordinate.count()).contains(&row));
         let Some(coordinate) = found else { continue };
         let name = &coordinate.name;
         let message = if deficient {

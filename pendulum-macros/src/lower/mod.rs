@@ -117,12 +117,7 @@ impl Positions {
 }
 
 /// Lowers all energies of a block, and notes its positions if that is wanted.
-fn lower(
-    model: &Model,
-    graph: &mut Graph,
-    errors: &mut Errors,
-    positions: Option<Positions>,
-) -> (Energies, Option<Positions>) {
+fn lower(model: &Model, graph: &mut Graph, errors: &mut Errors, positions: Option<Positions>) -> (Energies, Option<Positions>) {
     let mut lower = Lower {
         model,
         graph,

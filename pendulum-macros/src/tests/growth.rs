@@ -14,7 +14,16 @@ fn chain(n: usize) -> String {
 /// 15, 55 and 528 divisions); from six links on the sparse form costs less, and each further link the same.
 #[test]
 fn chains_grow_linearly() {
-    let known = [(1, 1, 0, 0), (2, 17, 7, 2), (3, 44, 22, 5), (5, 141, 80, 14), (6, 176, 105, 5), (10, 304, 193, 9), (16, 496, 325, 15), (32, 1008, 677, 31)];
+    let known = [
+        (1, 1, 0, 0),
+        (2, 17, 7, 2),
+        (3, 44, 22, 5),
+        (5, 141, 80, 14),
+        (6, 176, 105, 5),
+        (10, 304, 193, 9),
+        (16, 496, 325, 15),
+        (32, 1008, 677, 31),
+    ];
     for (n, mul, add, div) in known {
         let count = derive(&chain(n), |_, graph, motion| schedule::program(graph, &motion.accelerations).count());
         assert!(count.mul <= mul && count.add <= add && count.div <= div && count.sincos == n, "{n} links: {count:?}");

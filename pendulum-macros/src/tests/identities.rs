@@ -67,7 +67,11 @@ fn energy_changes_by_the_power() {
                     Symbol::Input { input, component, order } => {
                         graph.symbol(Symbol::Input { input, component, order: order + 1 })
                     }
-                    Symbol::Parameter(_) | Symbol::Momentum(_) | Symbol::Auxiliary(_) | Symbol::Moment(..) | Symbol::Point(..) => continue,
+                    Symbol::Parameter(_)
+                    | Symbol::Momentum(_)
+                    | Symbol::Auxiliary(_)
+                    | Symbol::Moment(..)
+                    | Symbol::Point(..) => continue,
                 };
                 rates.push((derivative(graph, motion.energy, symbol), rate));
             }

@@ -1,7 +1,7 @@
 //! Whatever tokens come, the expansion neither panics nor hangs.
 
 use super::Random;
-use crate::expand;
+use crate::expand::expand;
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
 const WORDS: &[&str] = &[

@@ -1,11 +1,12 @@
 //! The sparse form against the dense one: equal at random points of a prime field, and cheaper where it should be.
 
 use super::derived;
-use crate::articulated;
+use crate::diff::derivative;
 use crate::error::Errors;
-use crate::expr::{Graph, Id};
+use crate::expr::{Graph, Id, Symbol};
 use crate::modular::{Point, Residue};
-use crate::schedule;
+use crate::number::Rational;
+use crate::{articulated, motion, schedule, solve};
 
 /// Compares every output of the two forms and gives the operations of both accelerations.
 fn compare(source: &str) -> [schedule::Count; 2] {
@@ -13,24 +14,46 @@ fn compare(source: &str) -> [schedule::Count; 2] {
     let counts = derived(source, &mut errors, |_, graph, motion, energies| {
         let extended = energies.extended.as_ref().unwrap();
         let sparse = articulated::sparse(graph, extended, motion.accelerations.len()).unwrap();
-        let velocities = motion.velocities.clone().unwrap();
+        let lagrangian = match (energies.lagrangian, energies.kinetic, energies.potential) {
+            (Some(lagrangian), ..) => lagrangian,
+            (None, kinetic, potential) => graph.sub(kinetic.unwrap_or_default(), potential.unwrap_or_default()),
+        };
+        let count = motion.accelerations.len();
+        let slopes = |graph: &mut Graph, id: Id, symbol: fn(usize) -> Symbol| -> Vec<Id> {
+            (0..count).map(|i| derivative(graph, id, symbol(i))).collect()
+        };
+        let momenta = slopes(graph, lagrangian, Symbol::Velocity);
+        let pulls = slopes(graph, lagrangian, Symbol::Coordinate);
+        let frictions = slopes(graph, energies.dissipation.unwrap_or_default(), Symbol::Velocity);
+        let rates: Vec<Id> = (0..count)
+            .map(|i| {
+                let terms = [(pulls[i], 1), (energies.forces[i], 1), (frictions[i], -1)];
+                graph.sum(&terms.map(|(id, sign)| (id, Rational::whole(sign))))
+            })
+            .collect();
+        let mut energy = vec![(lagrangian, Rational::MINUS_ONE)];
+        for (i, &momentum) in momenta.iter().enumerate() {
+            let velocity = graph.symbol(Symbol::Velocity(i));
+            energy.push((graph.mul(velocity, momentum), Rational::ONE));
+        }
+        let energy = graph.sum(&energy);
+        let accelerations = solve::solve(graph, &motion.mass_matrix, &motion.forces);
+        let velocities = motion::invert(graph, &motion.mass_matrix, &momenta).unwrap();
         let pairs: Vec<(&str, Id, Id)> = [
-            ("q̈", &motion.accelerations, &sparse.accelerations),
+            ("q̈", &accelerations, &sparse.accelerations),
             ("q̇", &velocities, &sparse.velocities),
-            ("p", &motion.momenta, &sparse.momenta),
-            ("ṗ", &motion.momentum_rates, &sparse.momentum_rates),
-            ("E", &vec![motion.energy], &vec![sparse.energy]),
+            ("p", &momenta, &sparse.momenta),
+            ("ṗ", &rates, &sparse.momentum_rates),
+            ("E", &vec![energy], &vec![sparse.energy]),
         ]
         .into_iter()
-        .flat_map(|(name, dense, sparse)| {
-            dense.iter().zip(sparse).map(|(&a, &b)| (name, a, b)).collect::<Vec<_>>()
-        })
+        .flat_map(|(name, dense, sparse)| dense.iter().zip(sparse).map(|(&a, &b)| (name, a, b)).collect::<Vec<_>>())
         .collect();
         for (name, dense, sparse) in pairs {
             let difference = graph.sub(dense, sparse);
             assert!(vanishes(graph, difference), "{name} of {source}");
         }
-        [&motion.accelerations, &sparse.accelerations].map(|roots| schedule::program(graph, roots).count())
+        [&accelerations, &sparse.accelerations].map(|roots| schedule::program(graph, roots).count())
     });
     assert!(errors.is_empty(), "{:?}", errors.messages());
     counts.unwrap()
@@ -49,10 +72,70 @@ fn chain(n: usize) -> String {
     )
 }
 
+/// Blocks of every shape: the two forms are the same functions.
+#[rustfmt::skip]
+const BLOCKS: &[(&str, &str)] = &[
+    ("a driven chain",
+     "struct S { m: [kg; 3], l: [m; 3], g } coordinate θ[3]; driven x: [m; 2];
+      let y[k in 0..3] = x + sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]);
+      kinetic = sum(k in 0..3, m[k]/2*|ẏ[k]|^2); potential = sum(k in 0..3, m[k]*g*height(y[k]));"),
+    ("a tree: two arms on a trunk, one of them in two parts",
+     "struct S { m, l, g } coordinate a; coordinate b; coordinate c; coordinate d; driven x: [m; 2];
+      let trunk = x + l*[sin(a), -cos(a)]; let left = trunk + l*[sin(b), -cos(b)]; let right = trunk + 2*l*[sin(c), -cos(c)];
+      let tip = right + l*[sin(d), -cos(d)];
+      kinetic = m/2*(|dot(trunk)|^2 + 2*|dot(left)|^2 + 3*|dot(right)|^2 + |dot(tip)|^2); potential = m*g*height(trunk + left + right + tip);"),
+    ("compound bodies: joints without mass, centres of mass beside them, inertia of their own",
+     "struct S { m: [kg; 3], J: [kg*m^2; 3], l, h, g } coordinate θ[3]; let joint[k in 0..3] = sum(j in 0..k, l*cis(θ[j]));
+      let center[k in 0..3] = joint[k] + h*cis(θ[k]);
+      kinetic = sum(k in 0..3, m[k]/2*|dot(center[k])|^2 + J[k]/2*θ̇[k]^2); potential = sum(k in 0..3, m[k]*g*height(center[k]));"),
+    ("a body's velocity and its turn coupled: a compound chain written with the velocity of its joints",
+     "struct S { m, I, c: [m; 2], l, g } coordinate θ[2]; let y[k in 0..2] = sum(j in 0..k, l*cis(θ[j])) + [0, 0]*θ[k];
+      let joint = l*cis(θ[0]);
+      kinetic = I/2*θ̇[0]^2 + m/2*|dot(joint)|^2 + m*θ̇[1]*inner(dot(joint), perp(cis(θ[1])*c)) + I/2*θ̇[1]^2;
+      potential = m*g*(height(cis(θ[0])*c) + height(joint + cis(θ[1])*c));"),
+    ("springs in the links: two coordinates a joint",
+     "struct S { m, k, g } coordinate r[3]; coordinate θ[3]; let y[i in 0..3] = sum(j in 0..=i, r[j]*[sin(θ[j]), -cos(θ[j])]);
+      kinetic = sum(i in 0..3, m/2*|ẏ[i]|^2); potential = sum(i in 0..3, m*g*height(y[i]) + k/2*(r[i] - 1)^2);"),
+    ("air drag on every bob, friction in the joints and a motor",
+     "struct S { m, l, c, b, u, w } coordinate θ[3]; driven x: [m; 2]; let y[k in 0..3] = x + sum(j in 0..=k, l*cis(θ[j]));
+      kinetic = sum(k in 0..3, m/2*|ẏ[k]|^2); dissipation = sum(k in 0..3, c/2*|ẏ[k]|^2 + b/2*θ̇[k]^2); force θ[1] = u*sin(w*t);"),
+    ("a cart",
+     "struct S { M, m, l, g } coordinate s; coordinate θ[2]; let cart = [s, 0]; let y[k in 0..2] = cart + sum(j in 0..=k, l*[sin(θ[j]), -cos(θ[j])]);
+      kinetic = M/2*|dot(cart)|^2 + sum(k in 0..2, m/2*|ẏ[k]|^2); potential = sum(k in 0..2, m*g*height(y[k]));"),
+    ("coordinates that no position needs, and masses that change",
+     "struct S { m, l, J, w } coordinate θ[2]; coordinate φ; let y[k in 0..2] = sum(j in 0..=k, l*cis(θ[j]));
+      kinetic = exp(w*t)*sum(k in 0..2, m/2*|ẏ[k]|^2) + J/2*(φ̇ + θ̇[0])^2; potential = m*cos(φ);"),
+    ("links in space",
+     "struct S { m, l, g } coordinate θ[2]; coordinate φ[2]; driven x: [m; 3];
+      let y[k in 0..2] = x + sum(j in 0..=k, l*[sin(θ[j])*cos(φ[j]), sin(θ[j])*sin(φ[j]), -cos(θ[j])]);
+      kinetic = sum(k in 0..2, m/2*|ẏ[k]|^2); potential = sum(k in 0..2, m*g*height(y[k]));"),
+    ("a charge in a magnetic field, with a velocity-linear term",
+     "struct S { m, l, B } coordinate θ[2]; let y[k in 0..2] = sum(j in 0..=k, l*cis(θ[j]));
+      lagrangian = sum(k in 0..2, m/2*|ẏ[k]|^2 + B/2*cross(y[k], ẏ[k]));"),
+];
+
 #[test]
-fn chains() {
-    for n in [2, 3, 4, 5, 6, 8, 10] {
-        let [dense, sparse] = compare(&chain(n));
-        println!("{n} {dense:?}\n  {sparse:?}");
+fn both_forms_are_the_same_functions() {
+    for (name, source) in BLOCKS {
+        println!("{name}");
+        let [dense, sparse] = compare(source);
+        println!("    dense {dense:?}\n    sparse {sparse:?}");
     }
+}
+
+#[test]
+fn chains_and_trees_grow_linearly() {
+    let costs: Vec<usize> = [4, 8, 12].map(|n| compare(&chain(n))[1].cost()).to_vec();
+    assert_eq!(costs[2] - costs[1], costs[1] - costs[0]);
+    let costs: Vec<usize> = [4, 8, 12].map(|n| compare(&comb(n))[1].cost()).to_vec();
+    assert_eq!(costs[2] - costs[1], costs[1] - costs[0]);
+}
+
+/// A chain with a branch at every joint.
+fn comb(n: usize) -> String {
+    format!(
+        "struct C {{ m: [kg; {n}], l: [m; {n}], g }} coordinate θ[{n}]; coordinate φ[{n}];
+         let y[k in 0..{n}] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]); let z[k in 0..{n}] = y[k] + l[k]*[sin(φ[k]), -cos(φ[k])];
+         kinetic = sum(k in 0..{n}, m[k]/2*(|ẏ[k]|^2 + |ż[k]|^2)); potential = sum(k in 0..{n}, m[k]*g*height(y[k] + z[k]));"
+    )
 }
