@@ -27,6 +27,7 @@ mod symmetry;
 #[cfg(test)]
 mod tests;
 mod unit;
+mod value;
 
 /// Takes a Lagrangian and emits a type that implements `pendulum_runtime::system::System`.
 #[doc = include_str!("../language.md")]

@@ -84,6 +84,8 @@ pub(crate) struct Point {
     seed: u64,
     /// The common denominator of all angles.
     denominator: i64,
+    /// Whether roots are unknown functions, not roots in the field.
+    formal: bool,
 }
 
 /// The value of every node that some roots are made of.
@@ -103,7 +105,12 @@ impl Point {
                 }
             }
         }
-        Self { seed, denominator }
+        Self { seed, denominator, formal: false }
+    }
+
+    /// A point at which roots are unknown functions: equal values belong to expressions that are equal wherever both are real.
+    pub(crate) fn formal(graph: &Graph, roots: &[Id], seed: u64) -> Self {
+        Self { formal: true, ..Self::new(graph, roots, seed) }
     }
 
     /// The values of `roots`; `None` where a root or a reciprocal does not exist.
@@ -145,7 +152,7 @@ impl Point {
     fn power(&self, base: Residue, exponent: Rational) -> Option<Residue> {
         let root = match exponent.denominator() {
             1 => base,
-            2 => base.root()?,
+            2 if !self.formal => base.root()?,
             other => self.random(&[base.0, u64::try_from(other).ok()?, 6]),
         };
         let root = if exponent.is_negative() { root.reciprocal()? } else { root };

@@ -15,12 +15,16 @@ use crate::order;
 use crate::schedule;
 use crate::solve;
 use crate::symmetry::{self, Conserved};
+use crate::value;
 
 /// Jacobians of more operations than this are left to dual numbers: an expansion stays small.
 const LONGEST_JACOBIAN: usize = 4000;
 
 /// Mass matrices of more rows than this are only solved in dense form if there is no cheaper sparse one.
 const LARGEST_DENSE: usize = 12;
+
+/// The sparse form must save a tenth: below that, equal systems keep equal equations however their positions are written.
+const CLEARLY: f64 = 0.9;
 
 /// The equations of motion and what goes with them: roots in one graph.
 #[derive(Debug, Default)]
@@ -155,14 +159,28 @@ fn derive(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Er
     facts(graph, &mut motion);
     motion.jacobians = jacobians(model, graph, &motion);
     if let Some(sparse) = sparse {
-        shorten(graph, &mut motion.momenta, sparse.momenta);
-        shorten(graph, &mut motion.momentum_rates, sparse.momentum_rates);
-        shorten(graph, std::slice::from_mut(&mut motion.energy), vec![sparse.energy]);
+        shorten(graph, &mut motion.momenta, &sparse.momenta, CLEARLY);
+        shorten(graph, &mut motion.momentum_rates, &sparse.momentum_rates, CLEARLY);
+        shorten(graph, std::slice::from_mut(&mut motion.energy), &[sparse.energy], CLEARLY);
         if let (Some(kinetic), Some(short)) = (&mut motion.kinetic, sparse.kinetic) {
-            shorten(graph, std::slice::from_mut(kinetic), vec![short]);
+            shorten(graph, std::slice::from_mut(kinetic), &[short], CLEARLY);
         }
     }
+    number(graph, &mut motion);
     motion
+}
+
+/// Makes equal expressions one in each output, where that is cheaper.
+fn number(graph: &mut Graph, motion: &mut Motion) {
+    let lists = [&mut motion.accelerations, &mut motion.momenta, &mut motion.forces, &mut motion.momentum_rates];
+    let single = [&mut motion.energy, &mut motion.power].into_iter().chain(&mut motion.kinetic).chain(&mut motion.potential);
+    let all = lists.into_iter().chain(&mut motion.velocities).map(Vec::as_mut_slice).chain(single.map(std::slice::from_mut));
+    for roots in all {
+        let numbered = value::numbered(graph, roots);
+        if numbered != roots {
+            shorten(graph, roots, &numbered, 1.0);
+        }
+    }
 }
 
 /// Solves for the accelerations and for the velocities, in the form that costs less.
@@ -180,18 +198,18 @@ fn solved(graph: &mut Graph, motion: &mut Motion, momenta: &[Id], sparse: Option
     motion.accelerations = solve::solve(graph, &motion.mass_matrix, &motion.forces);
     motion.velocities = invert(graph, &motion.mass_matrix, momenta);
     if let Some(sparse) = sparse {
-        shorten(graph, &mut motion.accelerations, sparse.accelerations.clone());
+        shorten(graph, &mut motion.accelerations, &sparse.accelerations, CLEARLY);
         if let Some(velocities) = &mut motion.velocities {
-            shorten(graph, velocities, sparse.velocities.clone());
+            shorten(graph, velocities, &sparse.velocities, CLEARLY);
         }
     }
 }
 
-/// Takes `other` where it saves a tenth of the cost; below that, equal systems keep equal equations however they are written.
-fn shorten(graph: &Graph, own: &mut [Id], other: Vec<Id>) {
-    let cost = |roots: &[Id]| schedule::program(graph, roots).count().cost();
-    if 10 * cost(&other) < 9 * cost(own) {
-        own.clone_from_slice(&other);
+/// Takes `other` where its cost is below a share of the own one.
+fn shorten(graph: &Graph, own: &mut [Id], other: &[Id], share: f64) {
+    let cost = |roots: &[Id]| schedule::program(graph, roots).count().cost() as f64;
+    if cost(other) < share * cost(own) {
+        own.clone_from_slice(other);
     }
 }
 
