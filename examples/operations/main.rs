@@ -58,6 +58,8 @@ mod symmetry;
 mod systems;
 #[path = "../../pendulum-macros/src/unit/mod.rs"]
 mod unit;
+#[path = "../../pendulum-macros/src/value.rs"]
+mod value;
 
 use proc_macro2::{TokenStream, TokenTree};
 use std::time::Instant;

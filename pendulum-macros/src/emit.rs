@@ -1,6 +1,7 @@
 //! Rust for a derived block: the struct, its constructor and the implementation of the runtime's traits.
 
 use crate::check::{Model, Quantity};
+use crate::diff;
 use crate::expr::{Function, Graph, Id, Moment, Symbol};
 use crate::latex;
 use crate::lower::Energies;
@@ -8,7 +9,7 @@ use crate::mirror;
 use crate::motion::Motion;
 use crate::number::Rational;
 use crate::print::{self, Names};
-use crate::schedule::{self, Count, Op, Place, Program};
+use crate::schedule::{self, Count, Op, Place, Program, Stage};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 use std::fmt::Write;
@@ -31,9 +32,10 @@ impl Emitter<'_, '_> {
         let system = self.system();
         let split = self.split_energy();
         let marker = self.marker();
+        let staged = self.staged();
         let jacobians = self.jacobians();
         let mirror = mirror::function(self.model.block);
-        quote! { #structure #constructor #system #split #marker #jacobians #mirror }
+        quote! { #structure #constructor #system #split #staged #marker #jacobians #mirror }
     }
 
     /// The scalar's type parameter; another letter if the struct took the usual one.
@@ -163,6 +165,7 @@ impl Emitter<'_, '_> {
         let momentum_rates = vector(self, |motion| motion.momentum_rates.clone());
         let energy = vector(self, |motion| vec![motion.energy]);
         let power = vector(self, |motion| vec![motion.power]);
+        let hamilton = self.hamilton();
         let velocities = self.output(|motion| motion.velocities.clone());
         let velocities = velocities.unwrap_or_else(|| quote!(#krate::__private::newton(self, t, q, p, inputs)));
         let matrix = self.mass_matrix();
@@ -227,6 +230,8 @@ impl Emitter<'_, '_> {
 
                 #[inline]
                 fn momentum_rates(&self, t: #scalar, #state) -> [#scalar; #count] { #momentum_rates }
+
+                #hamilton
             }
         }
     }
@@ -375,9 +380,15 @@ impl Emitter<'_, '_> {
         self.body_after(program, &program.results, &[])
     }
 
-    /// The statements that lead to `results`, given what is prepared already.
-    fn body_after(&self, program: &Program, results: &[Place], prepared: &[Place]) -> TokenStream {
-        let given = |index: usize| prepared.iter().position(|place| place.0 == index);
+    /// The statements that lead to `results`, given arrays of values that are known already.
+    fn body_after(&self, program: &Program, results: &[Place], arrays: &[(&str, &[Place])]) -> TokenStream {
+        let given = |index: usize| {
+            arrays.iter().find_map(|(name, places)| {
+                let place = places.iter().position(|place| place.0 == index)?;
+                let name = Ident::new(name, Span::call_site());
+                Some(quote!(#name[#place]))
+            })
+        };
         let mut readers = vec![0usize; program.ops.len()];
         for result in results {
             readers[result.0] += 1;
@@ -393,8 +404,8 @@ impl Emitter<'_, '_> {
         let mut values: Vec<TokenStream> = Vec::with_capacity(program.ops.len());
         let mut depths: Vec<usize> = Vec::with_capacity(program.ops.len());
         for (index, op) in program.ops.iter().enumerate() {
-            if let Some(place) = given(index) {
-                values.push(quote!(prepared[#place]));
+            if let Some(value) = given(index) {
+                values.push(value);
                 depths.push(0);
                 continue;
             }
@@ -435,9 +446,83 @@ impl Emitter<'_, '_> {
             return (quote!(::core::unimplemented!()), quote!(::core::unimplemented!()), 0);
         };
         let program = schedule::program(&self.graph, &motion.accelerations);
-        let prepared = program.prepared();
+        let prepared = program.kept(Stage::Parameters);
         let prepare = self.body_after(&program, &prepared, &[]);
-        (prepare, self.body_after(&program, &program.results, &prepared), prepared.len())
+        (prepare, self.body_after(&program, &program.results, &[("prepared", &prepared)]), prepared.len())
+    }
+
+    /// The accelerations in four parts: what parameters decide, what time and inputs decide, what the position adds, and the rest.
+    fn staged(&self) -> TokenStream {
+        let (krate, scalar, count, name) = (&self.krate, self.scalar(), self.count(), &self.model.block.name);
+        let missing = || (quote!(::core::unimplemented!()), 0);
+        let (mut at_time, mut at_position, mut rest) = (missing(), missing(), missing().0);
+        if let Some(motion) = &self.motion {
+            let program = schedule::program(&self.graph, &motion.accelerations);
+            let [prepared, time, position] = [Stage::Parameters, Stage::Time, Stage::Position].map(|stage| program.kept(stage));
+            let known: [(&str, &[Place]); 3] = [("prepared", &prepared), ("at_time", &time), ("at_position", &position)];
+            at_time = (self.body_after(&program, &time, &[]), time.len());
+            at_position = (self.body_after(&program, &position, &known[..2]), position.len());
+            rest = self.body_after(&program, &program.results, &known);
+        }
+        let ((at_time, times), (at_position, positions)) = (at_time, at_position);
+        let system = quote!(#krate::system::System<#count>);
+        quote! {
+            #[automatically_derived]
+            #[allow(non_snake_case, unused_variables, unused_parens, unreachable_code, clippy::all, clippy::pedantic)]
+            impl<#scalar: #krate::real::Real> #krate::system::Staged<#count> for #name<#scalar> {
+                type AtTime = [#scalar; #times];
+                type AtPosition = [#scalar; #positions];
+
+                #[inline]
+                fn at_time(t: #scalar, inputs: &<Self as #system>::Inputs) -> [#scalar; #times] { #at_time }
+
+                #[inline]
+                fn at_position(
+                    &self, prepared: &<Self as #system>::Prepared, at_time: &[#scalar; #times], t: #scalar, q: &[#scalar; #count],
+                    inputs: &<Self as #system>::Inputs,
+                ) -> [#scalar; #positions] {
+                    #at_position
+                }
+
+                #[inline]
+                fn accelerations_staged(
+                    &self, prepared: &<Self as #system>::Prepared, at_time: &[#scalar; #times], at_position: &[#scalar; #positions],
+                    t: #scalar, q: &[#scalar; #count], v: &[#scalar; #count], inputs: &<Self as #system>::Inputs,
+                ) -> [#scalar; #count] {
+                    #rest
+                }
+            }
+        }
+    }
+
+    /// Velocities and momentum rates from momenta, with what they share computed once; `None` where velocities are found by iteration.
+    fn hamilton(&mut self) -> Option<TokenStream> {
+        let (mut roots, rates) = {
+            let motion = self.motion.as_ref()?;
+            (motion.velocities.clone()?, motion.momentum_rates.clone())
+        };
+        let velocities: Vec<Id> = roots.iter().map(|&velocity| self.graph.closed(velocity)).collect();
+        for rate in rates {
+            let value = |symbol| match symbol {
+                Symbol::Velocity(index) => velocities.get(index).copied(),
+                _ => None,
+            };
+            roots.push(diff::substitute(&mut self.graph, rate, value));
+        }
+        let program = schedule::program(&self.graph, &roots);
+        let both = self.body(&program);
+        let (scalar, count) = (self.scalar(), self.count());
+        let (all, parts) = (2 * count, 0..count);
+        let (first, second) = (parts.clone(), parts.map(|index| index + count));
+        Some(quote! {
+            #[inline]
+            fn hamilton(
+                &self, t: #scalar, q: &[#scalar; #count], p: &[#scalar; #count], inputs: &Self::Inputs,
+            ) -> ([#scalar; #count], [#scalar; #count]) {
+                let both: [#scalar; #all] = #both;
+                ([#(both[#first]),*], [#(both[#second]),*])
+            }
+        })
     }
 
     fn operation(&self, op: &Op, at: impl Fn(Place) -> TokenStream) -> TokenStream {

@@ -107,6 +107,59 @@ pub trait System<const N: usize> {
         v: &[Self::Scalar; N],
         inputs: &Self::Inputs,
     ) -> [Self::Scalar; N];
+
+    /// Hamilton's equations: the velocities q̇ = ∂H/∂p that give the momenta `p`, and dp/dt there.
+    ///
+    /// Generated code computes once what both need of a position.
+    #[inline]
+    fn hamilton(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        p: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> ([Self::Scalar; N], [Self::Scalar; N]) {
+        let v = self.velocities(t, q, p, inputs);
+        let rates = self.momentum_rates(t, q, &v, inputs);
+        (v, rates)
+    }
+}
+
+/// The accelerations in stages: what parameters decide is [prepared](System::prepare) once, what time and driven inputs decide is
+/// computed once for all systems of a type on a joint, and what the position adds once for all velocities.
+///
+/// The last stage gives the same bits as [`System::accelerations`].
+pub trait Staged<const N: usize>: System<N> {
+    /// What time and driven inputs alone decide.
+    type AtTime: Copy + Debug;
+    /// What the position adds to it.
+    type AtPosition: Copy + Debug;
+
+    /// What time and driven inputs alone decide, whatever the parameters.
+    fn at_time(t: Self::Scalar, inputs: &Self::Inputs) -> Self::AtTime;
+
+    /// What can be computed before the velocities are known.
+    fn at_position(
+        &self,
+        prepared: &Self::Prepared,
+        at_time: &Self::AtTime,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> Self::AtPosition;
+
+    /// The accelerations q̈ from all stages before.
+    #[allow(clippy::too_many_arguments)]
+    fn accelerations_staged(
+        &self,
+        prepared: &Self::Prepared,
+        at_time: &Self::AtTime,
+        at_position: &Self::AtPosition,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> [Self::Scalar; N];
 }
 
 /// A system whose Lagrangian was given as kinetic minus potential energy.
@@ -255,7 +308,7 @@ pub struct Input {
 }
 
 /// The samples of all driven inputs of a system: `()` or a tuple of [`Sample`]s.
-pub trait Samples: Copy + PartialEq {
+pub trait Samples: Copy + Debug + PartialEq {
     /// The first number that is not finite: the input, the derivative (0 for the position) and the component, by index.
     fn first_not_finite(&self) -> Option<(usize, usize, usize)>;
 }

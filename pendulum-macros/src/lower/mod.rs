@@ -73,8 +73,8 @@ pub(crate) fn energies(model: &Model, graph: &mut Graph, errors: &mut Errors) ->
 
 /// Lowers a block once more, with the velocities of its positions as unknowns.
 fn extended(model: &Model, graph: &mut Graph, errors: &mut Errors) -> Option<Extended> {
-    let (energies, positions) = lower(model, graph, errors, Some(Positions::default()));
-    let Positions { scalars, positions, .. } = positions?;
+    let (energies, positions) = lower(model, graph, errors, Some(Noted::default()));
+    let Noted { scalars, positions, .. } = positions?;
     let lagrangian = match energies.lagrangian {
         Some(lagrangian) => lagrangian,
         None => graph.sub(energies.kinetic.unwrap_or_default(), energies.potential.unwrap_or_default()),
@@ -85,13 +85,13 @@ fn extended(model: &Model, graph: &mut Graph, errors: &mut Errors) -> Option<Ext
 
 /// The positions written with `let` that have been met.
 #[derive(Debug, Default)]
-struct Positions {
+struct Noted {
     scalars: Vec<Id>,
     positions: Vec<Vec<usize>>,
     places: BTreeMap<Id, usize>,
 }
 
-impl Positions {
+impl Noted {
     /// Notes the scalars of a value that move with the coordinates.
     fn note(&mut self, graph: &Graph, value: &Value) {
         let parts = match value {
@@ -117,7 +117,7 @@ impl Positions {
 }
 
 /// Lowers all energies of a block, and notes its positions if that is wanted.
-fn lower(model: &Model, graph: &mut Graph, errors: &mut Errors, positions: Option<Positions>) -> (Energies, Option<Positions>) {
+fn lower(model: &Model, graph: &mut Graph, errors: &mut Errors, positions: Option<Noted>) -> (Energies, Option<Noted>) {
     let mut lower = Lower {
         model,
         graph,
@@ -176,7 +176,7 @@ struct Lower<'m, 'a, 'g, 'e> {
     /// The number of integrals that are open.
     integrals: usize,
     /// The positions whose velocities become symbols.
-    positions: Option<Positions>,
+    positions: Option<Noted>,
 }
 
 impl Lower<'_, '_, '_, '_> {

@@ -5,9 +5,10 @@
 use super::derived;
 use crate::error::Errors;
 use crate::expr::{Graph, Symbol};
+use crate::motion::Motion;
 use crate::{emit, latex, print, schedule};
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 const MARK: &str = "\n---\n";
 
@@ -32,23 +33,109 @@ fn golden_files_hold() {
     }
 }
 
+/// Every other system in the repository: tests, examples, documentation.
+#[test]
+fn every_system_in_the_repository() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut found = String::new();
+    let mut count = 0;
+    for file in sources(&root) {
+        let text = std::fs::read_to_string(&file).unwrap();
+        let name = file.strip_prefix(&root).unwrap().display().to_string();
+        for block in blocks(&text) {
+            let mut errors = Errors::default();
+            let title = block.split('{').next().unwrap_or_default().split_whitespace().last().unwrap_or_default().to_owned();
+            writeln!(found, "== {name}: {title}").unwrap();
+            match attempt(&block, &mut errors, false) {
+                Some(report) => found.push_str(&report),
+                None => writeln!(found, "refused: {}", errors.messages().join("; ")).unwrap(),
+            }
+            count += 1;
+        }
+    }
+    assert!(60 < count, "{count}");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden-repository.txt");
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        std::fs::write(&file, found).unwrap();
+    } else {
+        let expected = std::fs::read_to_string(&file).unwrap_or_default();
+        for (found, expected) in found.split("== ").zip(expected.split("== ")) {
+            assert_eq!(found, expected);
+        }
+        assert_eq!(found.len(), expected.len());
+    }
+}
+
+/// The files in which systems may stand.
+fn sources(root: &Path) -> Vec<PathBuf> {
+    let mut pending: Vec<PathBuf> = ["README.md", "tests", "examples", "pendulum-runtime/src", "pendulum-runtime/benches"]
+        .map(|part| root.join(part))
+        .to_vec();
+    pending.push(root.join("pendulum-macros/language.md"));
+    let mut files = Vec::new();
+    while let Some(path) = pending.pop() {
+        if path.is_dir() {
+            pending.extend(std::fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path()));
+        } else if path.extension().is_some_and(|kind| kind == "rs" || kind == "md")
+            && !path.components().any(|part| part.as_os_str() == "refusals")
+        {
+            files.push(path);
+        }
+    }
+    files.sort();
+    files
+}
+
+/// What stands between the braces of each `lagrangian!` that no other macro writes.
+fn blocks(text: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    for (start, _) in text.match_indices("lagrangian! {") {
+        let inside = &text[start + "lagrangian! {".len()..];
+        let mut depth = 1;
+        let end = inside.char_indices().find_map(|(place, letter)| {
+            depth += i32::from(letter == '{') - i32::from(letter == '}');
+            (depth == 0).then_some(place)
+        });
+        let line = text[..start].rsplit('\n').next().unwrap_or_default();
+        let comment = ["///", "//!"].into_iter().find(|mark| line.trim_start().starts_with(mark));
+        if let Some(end) = end
+            && !inside[..end].contains('$')
+        {
+            let lines = inside[..end].lines();
+            let bare = lines.map(|line| match comment {
+                Some(mark) => line.trim_start().strip_prefix(mark).unwrap_or(line),
+                None => line,
+            });
+            let block = bare.collect::<Vec<_>>().join("\n");
+            // Prose about the macro is no block.
+            if block.contains("struct") && block.parse::<proc_macro2::TokenStream>().is_ok() {
+                found.push(block);
+            }
+        }
+    }
+    found
+}
+
 fn report(source: &str) -> String {
     let mut errors = Errors::default();
-    let report = derived(source, &mut errors, |model, graph, motion, energies| {
+    attempt(source, &mut errors, true).unwrap_or_else(|| panic!("{:?}", errors.messages()))
+}
+
+/// What a golden file holds, without energies, momenta and LaTeX unless it is the whole; `None` if the block is refused.
+fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
+    derived(source, errors, |model, graph, motion, energies| {
         let names = print::Names::new(model, &energies.families);
         let mut text = String::new();
         for line in print::equations(graph, &names, motion) {
             writeln!(text, "{line}").unwrap();
         }
-        for line in latex::equations(graph, &names, motion) {
+        for line in latex::equations(graph, &names, motion).into_iter().filter(|_| whole) {
             writeln!(text, "latex: {line}").unwrap();
         }
         let operations = |graph: &Graph, roots: &[_]| emit::operations(schedule::program(graph, roots).count());
         writeln!(text, "accelerations: {}", operations(graph, &motion.accelerations)).unwrap();
-        writeln!(text, "energy = {}", print::expression(graph, &names, motion.energy)).unwrap();
-        writeln!(text, "power = {}", print::expression(graph, &names, motion.power)).unwrap();
-        for (index, &momentum) in motion.momenta.iter().enumerate() {
-            writeln!(text, "p_{} = {}", names.coordinates[index], print::expression(graph, &names, momentum)).unwrap();
+        if whole {
+            outputs(&mut text, graph, &names, motion);
         }
         for conserved in &motion.conserved {
             writeln!(text, "conserved: {}", print::conserved(&names, conserved)).unwrap();
@@ -71,6 +158,13 @@ fn report(source: &str) -> String {
             writeln!(text, "inputs of the momenta: {}", symbols(&motion.momenta)).unwrap();
         }
         text
-    });
-    report.unwrap_or_else(|| panic!("{:?}", errors.messages()))
+    })
+}
+
+fn outputs(text: &mut String, graph: &Graph, names: &print::Names, motion: &Motion) {
+    writeln!(text, "energy = {}", print::expression(graph, names, motion.energy)).unwrap();
+    writeln!(text, "power = {}", print::expression(graph, names, motion.power)).unwrap();
+    for (index, &momentum) in motion.momenta.iter().enumerate() {
+        writeln!(text, "p_{} = {}", names.coordinates[index], print::expression(graph, names, momentum)).unwrap();
+    }
 }

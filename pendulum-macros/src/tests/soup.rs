@@ -173,6 +173,62 @@ fn the_items_survive_a_mistake() {
     assert!(bad.contains("compile_error"));
 }
 
+/// A block with any one of its tokens gone, doubled or replaced keeps the shape that an editor needs: the struct with its fields, its
+/// constructor, its `System`, and names to hover over.
+#[test]
+fn the_shape_survives_any_broken_token() {
+    let block = "::p; pub struct M { m: kg, L: m = 1, g: m/s^2 } coordinate θ: rad; driven x: [m; 2];
+                 let y = x + L*[sin(θ), -cos(θ)]; kinetic = m/2*|ẏ|^2; potential = m*g*height(y);";
+    let tokens: TokenStream = block.parse().unwrap();
+    let count = leaves(&tokens);
+    // The tokens before the body of the struct are what the shape is made of.
+    for index in 7..count {
+        for change in [Change::Remove, Change::Double, Change::Replace] {
+            let broken = changed(&tokens, index, change, &mut 0);
+            let found = expand(broken.clone()).to_string();
+            for item in ["pub struct M <", "system :: System <", "fn new", "fn __names (parameters : & M"] {
+                assert!(found.contains(item), "{item} is missing for {broken}");
+            }
+        }
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Change {
+    Remove,
+    Double,
+    Replace,
+}
+
+fn leaves(tokens: &TokenStream) -> usize {
+    let count = |tree| match tree {
+        TokenTree::Group(group) => leaves(&group.stream()),
+        _ => 1,
+    };
+    tokens.clone().into_iter().map(count).sum()
+}
+
+/// A stream with one of its leaves changed.
+fn changed(tokens: &TokenStream, index: usize, change: Change, next: &mut usize) -> TokenStream {
+    let mut result = Vec::new();
+    for tree in tokens.clone() {
+        if let TokenTree::Group(group) = &tree {
+            let inner = changed(&group.stream(), index, change, next);
+            result.push(TokenTree::Group(proc_macro2::Group::new(group.delimiter(), inner)));
+            continue;
+        }
+        let here = *next == index;
+        *next += 1;
+        match change {
+            Change::Remove if here => {}
+            Change::Double if here => result.extend([tree.clone(), tree]),
+            Change::Replace if here => result.push(TokenTree::Punct(proc_macro2::Punct::new('?', proc_macro2::Spacing::Alone))),
+            _ => result.push(tree),
+        }
+    }
+    result.into_iter().collect()
+}
+
 #[test]
 fn deep_nesting_is_refused() {
     let deep = format!("::p; struct S {{ m }} coordinate q; kinetic = {}m{};", "(".repeat(1000), ")".repeat(1000));
