@@ -2,7 +2,7 @@
 //! and the time that the expansion takes.
 //!
 //! `cargo run --release --example operations` prints one line a system:
-//! `name coordinates sincos mul add div tokens expansion_ms`.
+//! `name coordinates sincos mul add div tokens expansion_ms`. Names on the command line choose some of them.
 
 // The compiler itself is compiled in: a macro cannot be called by a program.
 #![allow(dead_code)]
@@ -66,7 +66,8 @@ use std::time::Instant;
 
 fn main() {
     println!("name coordinates sincos mul add div tokens expansion_ms");
-    for (name, block) in systems::all() {
+    let chosen: Vec<String> = std::env::args().skip(1).collect();
+    for (name, block) in systems::all().into_iter().filter(|(name, _)| chosen.is_empty() || chosen.contains(name)) {
         let operations = operations(&block);
         let mut tokens = 0;
         let mut times: Vec<f64> = (0..if operations.mul < 200 { 9 } else { 3 })

@@ -622,15 +622,15 @@ impl Graph {
     }
 
     /// Everything from which `roots` are made, children first.
-    pub(crate) fn reachable(&self, roots: &[Id]) -> BTreeSet<Id> {
-        let mut found = BTreeSet::new();
+    pub(crate) fn reachable(&self, roots: &[Id]) -> Vec<Id> {
+        let mut found = vec![false; roots.iter().map(|id| id.index() + 1).max().unwrap_or(0)];
         let mut pending = roots.to_vec();
         while let Some(id) = pending.pop() {
-            if found.insert(id) {
+            if !std::mem::replace(&mut found[id.index()], true) {
                 pending.extend(self.children(id));
             }
         }
-        found
+        (0..).zip(found).filter(|&(_, found)| found).map(|(index, _)| Id(index)).collect()
     }
 
     /// The derivative of a node, if it is known.

@@ -23,8 +23,9 @@ const LONGEST_JACOBIAN: usize = 4000;
 /// Mass matrices of more rows than this are only solved in dense form if there is no cheaper sparse one.
 const LARGEST_DENSE: usize = 12;
 
-/// The sparse form must save a tenth: below that, equal systems keep equal equations however their positions are written.
-const CLEARLY: f64 = 0.9;
+/// The sparse form must save almost half: its operations wait for each other from the leaves to the root and back. Chains of nine links
+/// and more are faster in it (`cargo bench -p pendulum-runtime --bench chains`).
+const CLEARLY: f64 = 0.55;
 
 /// The equations of motion and what goes with them: roots in one graph.
 #[derive(Debug, Default)]

@@ -16,6 +16,9 @@ const POINTS: usize = 2;
 /// Programs of more nodes than this are left alone.
 const LIMIT: usize = 20_000;
 
+/// The cheapest form of each value up to sign, and whether it is the negative.
+type Best = BTreeMap<Vec<Residue>, (Id, bool)>;
+
 /// `roots` with equal expressions made one.
 pub(crate) fn numbered(graph: &mut Graph, roots: &[Id]) -> Vec<Id> {
     let nodes = graph.reachable(roots);
@@ -29,7 +32,7 @@ pub(crate) fn numbered(graph: &mut Graph, roots: &[Id]) -> Vec<Id> {
     }
     // The cheapest form of each value; a form never contains itself, because its parts cost no more and are older.
     let mut constants: BTreeMap<Id, Rational> = BTreeMap::new();
-    let mut best: BTreeMap<Vec<Residue>, (usize, Id, bool)> = BTreeMap::new();
+    let mut forms: BTreeMap<Vec<Residue>, Vec<(Id, bool)>> = BTreeMap::new();
     let mut keys: BTreeMap<Id, (Vec<Residue>, bool)> = BTreeMap::new();
     for &id in &nodes {
         // A closed expression has the value of what it closes.
@@ -44,15 +47,21 @@ pub(crate) fn numbered(graph: &mut Graph, roots: &[Id]) -> Vec<Id> {
         let opposite: Vec<Residue> = values.iter().map(|value| value.negative()).collect();
         let flipped = opposite < values;
         let key = if flipped { opposite } else { values };
-        let cost = collect::cost(graph, id);
-        let entry = best.entry(key.clone()).or_insert((cost, id, flipped));
-        if (cost, id) < (entry.0, entry.1) {
-            *entry = (cost, id, flipped);
-        }
+        forms.entry(key.clone()).or_default().push((id, flipped));
         keys.insert(id, (key, flipped));
     }
+    let unique = forms.len() == keys.len();
+    // The cheapest form of each value; a form never contains itself, because its parts cost no more and are older.
+    let cheapest = |mut forms: Vec<(Id, bool)>| match forms[..] {
+        [only] => only,
+        _ => {
+            forms.sort_by_cached_key(|&(id, _)| (collect::cost(graph, id), id));
+            forms[0]
+        }
+    };
+    let best: Best = forms.into_iter().map(|(key, forms)| (key, cheapest(forms))).collect();
     let plain = constants.keys().all(|&id| matches!(graph.node(id), Node::Number(_)));
-    if best.len() == keys.len() && plain {
+    if unique && plain {
         return roots.to_vec();
     }
     let mut known: BTreeMap<Id, Id> = constants.into_iter().map(|(id, value)| (id, graph.number(value))).collect();
@@ -69,12 +78,12 @@ fn constant(values: &[Residue]) -> Option<Rational> {
 fn rebuilt(
     graph: &mut Graph,
     root: Id,
-    best: &BTreeMap<Vec<Residue>, (usize, Id, bool)>,
+    best: &Best,
     keys: &BTreeMap<Id, (Vec<Residue>, bool)>,
     known: &mut BTreeMap<Id, Id>,
 ) -> Id {
     let form = |id: Id| match keys.get(&id) {
-        Some((key, flipped)) => (best[key].1, best[key].2 != *flipped),
+        Some((key, flipped)) => (best[key].0, best[key].1 != *flipped),
         None => (id, false),
     };
     let mut pending = vec![root];

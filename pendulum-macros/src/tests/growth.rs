@@ -11,7 +11,7 @@ fn chain(n: usize) -> String {
 }
 
 /// Dense elimination by hand takes ≈ N³/3 multiplications (2 links 17, 3 links 47, 5 links 160, 10 links 845, 32 links 16 432, with 3, 6,
-/// 15, 55 and 528 divisions); from six links on the sparse form costs less, and each further link the same.
+/// 15, 55 and 528 divisions); from nine links on the sparse form is taken, in which each further link costs the same.
 #[test]
 fn chains_grow_linearly() {
     let known = [
@@ -19,7 +19,7 @@ fn chains_grow_linearly() {
         (2, 17, 7, 2),
         (3, 44, 22, 5),
         (5, 141, 80, 14),
-        (6, 176, 105, 5),
+        (6, 213, 125, 20),
         (10, 304, 193, 9),
         (16, 496, 325, 15),
         (32, 1008, 677, 31),
