@@ -473,10 +473,10 @@ impl Emitter<'_, '_> {
                 type AtTime = [#scalar; #times];
                 type AtPosition = [#scalar; #positions];
 
-                #[inline]
+                #[inline(always)]
                 fn at_time(t: #scalar, inputs: &<Self as #system>::Inputs) -> [#scalar; #times] { #at_time }
 
-                #[inline]
+                #[inline(always)]
                 fn at_position(
                     &self, prepared: &<Self as #system>::Prepared, at_time: &[#scalar; #times], t: #scalar, q: &[#scalar; #count],
                     inputs: &<Self as #system>::Inputs,
@@ -484,7 +484,7 @@ impl Emitter<'_, '_> {
                     #at_position
                 }
 
-                #[inline]
+                #[inline(always)]
                 fn accelerations_staged(
                     &self, prepared: &<Self as #system>::Prepared, at_time: &[#scalar; #times], at_position: &[#scalar; #positions],
                     t: #scalar, q: &[#scalar; #count], v: &[#scalar; #count], inputs: &<Self as #system>::Inputs,

@@ -52,14 +52,11 @@ pub(crate) fn numbered(graph: &mut Graph, roots: &[Id]) -> Vec<Id> {
     }
     let unique = forms.len() == keys.len();
     // The cheapest form of each value; a form never contains itself, because its parts cost no more and are older.
-    let cheapest = |mut forms: Vec<(Id, bool)>| match forms[..] {
-        [only] => only,
-        _ => {
-            forms.sort_by_cached_key(|&(id, _)| (collect::cost(graph, id), id));
-            forms[0]
-        }
+    let cheapest = |forms: Vec<(Id, bool)>| {
+        let costs = |&(id, _): &(Id, bool)| (collect::cost(graph, id), id);
+        if let [only] = forms[..] { Some(only) } else { forms.into_iter().min_by_key(costs) }
     };
-    let best: Best = forms.into_iter().map(|(key, forms)| (key, cheapest(forms))).collect();
+    let best: Best = forms.into_iter().filter_map(|(key, forms)| Some((key, cheapest(forms)?))).collect();
     let plain = constants.keys().all(|&id| matches!(graph.node(id), Node::Number(_)));
     if unique && plain {
         return roots.to_vec();

@@ -128,7 +128,8 @@ pub trait System<const N: usize> {
 /// The accelerations in stages: what parameters decide is [prepared](System::prepare) once, what time and driven inputs decide is
 /// computed once for all systems of a type on a joint, and what the position adds once for all velocities.
 ///
-/// The last stage gives the same bits as [`System::accelerations`].
+/// The last stage gives the same bits as [`System::accelerations`]. Generated stages are always inlined, so that loops over
+/// [lanes](crate::real::Lanes) use the vectors of the code around them.
 pub trait Staged<const N: usize>: System<N> {
     /// What time and driven inputs alone decide.
     type AtTime: Copy + Debug;

@@ -2,9 +2,11 @@
 
 mod dual;
 mod float;
+mod lanes;
 mod trig;
 
 pub use dual::Dual;
+pub use lanes::{Lane, Lanes};
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};

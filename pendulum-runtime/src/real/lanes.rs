@@ -1,0 +1,205 @@
+//! Several numbers at once.
+
+#![allow(clippy::inline_always)]
+
+use super::{Real, trig};
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// `W` numbers that go through the same operations: the scalar of many systems of one type.
+///
+/// Every lane has the bits that the single number would have. Loops over lanes are straight, so that the compiler makes vector code of them for
+/// whatever instructions the surrounding code may use.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
+pub struct Lanes<T, const W: usize>(pub [T; W]);
+
+/// A number that may stand in a lane.
+pub trait Lane: Real + PartialOrd {
+    /// Sine and cosine of every lane.
+    fn sin_cos_lanes<const W: usize>(x: &[Self; W]) -> ([Self; W], [Self; W]);
+}
+
+macro_rules! lane {
+    ($float:ident) => {
+        impl Lane for $float {
+            #[inline(always)]
+            fn sin_cos_lanes<const W: usize>(x: &[Self; W]) -> ([Self; W], [Self; W]) {
+                let mut near = true;
+                for &x in x {
+                    near &= f64::from(x).abs() <= trig::LIMIT;
+                }
+                let (mut sin, mut cos) = ([0.0; W], [0.0; W]);
+                if near {
+                    for k in 0..W {
+                        let both = trig::kernel(f64::from(x[k]));
+                        (sin[k], cos[k]) = (both.0 as $float, both.1 as $float);
+                    }
+                } else {
+                    for k in 0..W {
+                        (sin[k], cos[k]) = Real::sin_cos(x[k]);
+                    }
+                }
+                (sin, cos)
+            }
+        }
+    };
+}
+
+lane!(f64);
+lane!(f32);
+
+impl<T: Lane, const W: usize> Lanes<T, W> {
+    /// The same number in every lane.
+    #[inline(always)]
+    pub fn splat(value: T) -> Self {
+        Self([value; W])
+    }
+
+    /// Each lane through a function.
+    #[inline(always)]
+    fn each(self, f: impl Fn(T) -> T) -> Self {
+        let mut result = self;
+        for x in &mut result.0 {
+            *x = f(*x);
+        }
+        result
+    }
+
+    /// Each pair of lanes through a function.
+    #[inline(always)]
+    fn pairs(self, other: Self, f: impl Fn(T, T) -> T) -> Self {
+        let mut result = self;
+        for (x, y) in result.0.iter_mut().zip(other.0) {
+            *x = f(*x, y);
+        }
+        result
+    }
+}
+
+macro_rules! operator {
+    ($($operation:ident $function:ident $assign:ident $in_place:ident $symbol:tt)+) => {$(
+        impl<T: Lane, const W: usize> $operation for Lanes<T, W> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $function(self, other: Self) -> Self {
+                self.pairs(other, |a, b| a $symbol b)
+            }
+        }
+
+        impl<T: Lane, const W: usize> $assign for Lanes<T, W> {
+            #[inline(always)]
+            fn $in_place(&mut self, other: Self) {
+                *self = *self $symbol other;
+            }
+        }
+    )+};
+}
+
+operator! {
+    Add add AddAssign add_assign +
+    Sub sub SubAssign sub_assign -
+    Mul mul MulAssign mul_assign *
+    Div div DivAssign div_assign /
+}
+
+impl<T: Lane, const W: usize> Neg for Lanes<T, W> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.each(|x| -x)
+    }
+}
+
+macro_rules! unary {
+    ($($function:ident)+) => {$(
+        #[inline(always)]
+        fn $function(self) -> Self {
+            self.each(T::$function)
+        }
+    )+};
+}
+
+macro_rules! binary {
+    ($($function:ident)+) => {$(
+        #[inline(always)]
+        fn $function(self, other: Self) -> Self {
+            self.pairs(other, T::$function)
+        }
+    )+};
+}
+
+impl<T: Lane, const W: usize> Real for Lanes<T, W> {
+    #[inline(always)]
+    fn from_f64(value: f64) -> Self {
+        Self::splat(T::from_f64(value))
+    }
+
+    #[inline(always)]
+    fn ratio(numerator: f64, denominator: f64) -> Self {
+        Self::splat(T::ratio(numerator, denominator))
+    }
+
+    #[inline(always)]
+    fn pi() -> Self {
+        Self::splat(T::pi())
+    }
+
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = T::sin_cos_lanes(&self.0);
+        (Self(sin), Self(cos))
+    }
+
+    #[inline(always)]
+    fn sin(self) -> Self {
+        self.sin_cos().0
+    }
+
+    #[inline(always)]
+    fn cos(self) -> Self {
+        self.sin_cos().1
+    }
+
+    unary! { tan asin acos atan sinh cosh tanh exp ln sqrt abs sign step }
+    binary! { atan2 powf max min }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Lanes;
+    use crate::real::Real;
+
+    fn same<const W: usize>(x: [f64; W], y: [f64; W]) {
+        let (a, b) = (Lanes(x), Lanes(y));
+        let check = |lanes: Lanes<f64, W>, single: fn(f64, f64) -> f64, name: &str| {
+            for k in 0..W {
+                assert_eq!(lanes.0[k].to_bits(), single(x[k], y[k]).to_bits(), "{name} of {} and {}", x[k], y[k]);
+            }
+        };
+        check(a + b, |x, y| x + y, "sum");
+        check(a - b, |x, y| x - y, "difference");
+        check(a * b, |x, y| x * y, "product");
+        check(a / b, |x, y| x / y, "quotient");
+        check(-a, |x, _| -x, "negative");
+        check(a.sin(), |x, _| Real::sin(x), "sine");
+        check(a.cos(), |x, _| Real::cos(x), "cosine");
+        check(a.atan2(b), Real::atan2, "angle");
+        check(a.max(b), Real::max, "larger");
+        check(a.min(b), Real::min, "smaller");
+        check(a.exp(), |x, _| Real::exp(x), "exponential");
+        check(a.abs().sqrt(), |x, _| Real::abs(x).sqrt(), "root");
+        check(a.sign(), |x, _| Real::sign(x), "sign");
+    }
+
+    #[test]
+    fn lanes_have_the_bits_of_single_numbers() {
+        for scale in [1.0, 1e3, 1e7] {
+            let x = core::array::from_fn::<f64, 16, _>(|k| (k as f64 - 7.3) * 0.91 * scale);
+            let y = core::array::from_fn::<f64, 16, _>(|k| (3.1 - k as f64) * 0.37);
+            same(x, y);
+        }
+        same([0.0, -0.0, 1e-310, f64::INFINITY], [-0.0, 0.0, 2.0, 1.0]);
+    }
+}
