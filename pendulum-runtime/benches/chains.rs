@@ -14,14 +14,14 @@ macro_rules! chains {
         $(mod $module {
             use pendulum_runtime::lagrangian;
             lagrangian! {
-                pub struct Written { m: [kg; $n], l: [m; $n], g: m/s^2 = 9.81 }
+                pub(crate) struct Written { m: [kg; $n], l: [m; $n], g: m/s^2 = 9.81 }
                 coordinate θ[$n]: rad;
                 let y[k in 0..$n] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]);
                 kinetic = sum(k in 0..$n, m[k]/2*|ẏ[k]|^2);
                 potential = sum(k in 0..$n, m[k]*g*height(y[k]));
             }
             lagrangian! {
-                pub struct Spelled { m: [kg; $n], l: [m; $n], g: m/s^2 = 9.81 }
+                pub(crate) struct Spelled { m: [kg; $n], l: [m; $n], g: m/s^2 = 9.81 }
                 coordinate θ[$n]: rad;
                 kinetic = sum(k in 0..$n, m[k]/2*|sum(j in 0..=k, l[j]*θ̇[j]*[cos(θ[j]), sin(θ[j])])|^2);
                 potential = sum(k in 0..$n, m[k]*g*sum(j in 0..=k, -l[j]*cos(θ[j])));
