@@ -253,10 +253,17 @@ def attempt(row):
         return f"failed {error}".replace("\n", " ")
 
 
+HEADER = "system,method,setting,error,seconds,evaluations,compile_seconds"
+
+
 def write(rows):
+    """Writes the table; systems that were not measured keep the lines that they have in it."""
+    measured = [row for row in rows if row.compile]
+    systems = {row.system for row in measured}
+    old = TABLE.read_text().splitlines() if TABLE.exists() else []
+    kept = [line for line in old[1:] if line.split(",")[0] not in systems] if old[:1] == [HEADER] else []
     TABLE.parent.mkdir(exist_ok=True)
-    lines = [row.line() for row in rows if row.compile]
-    TABLE.write_text("\n".join(["system,method,setting,error,seconds,evaluations,compile_seconds", *lines]) + "\n")
+    TABLE.write_text("\n".join([HEADER, *kept, *(row.line() for row in measured)]) + "\n")
 
 
 def serve(rows, about):
