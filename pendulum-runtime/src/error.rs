@@ -58,6 +58,15 @@ pub enum Error {
         /// The coordinate with the largest error.
         coordinate: Coordinate,
     },
+    /// The iteration for the equations of an implicit step moved away from a solution.
+    NoConvergence {
+        /// The time of the stage that was furthest off.
+        t: f64,
+        /// The length of the step.
+        step: f64,
+        /// The coordinate that was furthest off.
+        coordinate: Coordinate,
+    },
     /// The allowed number of steps is used up, or would be.
     MaxSteps {
         /// The time reached.
@@ -166,6 +175,11 @@ impl fmt::Display for Error {
                 f,
                 "at t = {t:?} the step size fell to {step:?} for the sake of {coordinate}; the motion may be singular there: \
                  stop before it, loosen the tolerances, or choose coordinates that stay regular"
+            ),
+            Self::NoConvergence { t, step, coordinate } => write!(
+                f,
+                "at t = {t:?} the equations of a step of {step:?} s could not be solved for {coordinate}; \
+                 try a shorter step or, if a spring or damper is stiff, Newton's method"
             ),
             Self::MaxSteps { t, max_steps } => write!(
                 f,

@@ -3,7 +3,7 @@
 use super::blame::{blame, fault};
 use super::control::{Control, Course, Memory};
 use super::field::{Accelerations, coordinate};
-use super::method::{Embedded, Weights};
+use super::method::{Embedded, Suits, Weights};
 use super::node::Node;
 use super::power::{exp2, log2};
 use super::span::Span;
@@ -119,14 +119,17 @@ impl<M: Embedded, const N: usize> Control<M, N> for AdaptiveStep<N> {
         &self,
         memory: &mut Memory,
         course: Course<'_, '_, D, M, N>,
-    ) -> Result<(Span, Node<D::Scalar, N>), Error> {
+    ) -> Result<(Span, Node<D::Scalar, N>), Error>
+    where
+        M: Suits<D::System, N>,
+    {
         let Course { method, field, from, stages, target, stats } = course;
         let response = M::RESPONSE;
         if memory.h == 0.0 {
             let at_once = Span::by(from.t, 0.0);
             let a = from.start_acceleration(field);
             if !a.iter().all(|a| a.is_finite()) {
-                return Err(blame(method, field.dynamics, &at_once, from));
+                return Err(blame(method, field.dynamics, &at_once, from, stages));
             }
             let left = -from.t.since(target);
             memory.h = self.first_step.unwrap_or_else(|| self.automatic_step(M::ORDER, field, from, left));
@@ -166,7 +169,7 @@ impl<M: Embedded, const N: usize> Control<M, N> for AdaptiveStep<N> {
             stats.rejected += 1;
             retried = true;
             if error.is_nan() {
-                last_fault = fault(method, field.dynamics, &span, from);
+                last_fault = fault(method, field.dynamics, &span, from, stages);
                 // A function may have left its domain, and a shorter step may stay inside; but no step is short enough for an
                 // input that is not finite.
                 if let Some(input @ Error::NotFinite { what: Quantity::Input { .. }, .. }) = last_fault {

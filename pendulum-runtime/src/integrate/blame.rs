@@ -1,33 +1,40 @@
 //! Who is to blame for a step that failed.
 
 use super::field::{Watched, first_in_state};
-use super::method::Method;
+use super::method::Suits;
 use super::node::Node;
 use super::span::Span;
 use crate::error::{Error, Quantity, Suspect};
 use crate::real::Float;
 use crate::system::{Dynamics, System};
 
-/// The error for a step that led to a number that is not finite.
-pub(crate) fn blame<D: Dynamics<N, Scalar: Float>, M: Method, const N: usize>(
+/// The error for a step, with what it has left in `stages`, that led to a number that is not finite.
+pub(crate) fn blame<D: Dynamics<N, Scalar: Float>, M: Suits<D::System, N>, const N: usize>(
     method: &M,
     dynamics: &D,
     span: &Span,
     from: &Node<D::Scalar, N>,
+    stages: &M::Stages<D::Scalar, N>,
 ) -> Error {
     let coordinate = super::field::coordinate(&<D::System as System<N>>::FACTS, 0);
     let unknown = Error::NotFinite { t: span.end.to_f64(), what: Quantity::Velocity(coordinate), suspects: Vec::new() };
-    fault(method, dynamics, span, from).unwrap_or(unknown)
+    fault(method, dynamics, span, from, stages).unwrap_or(unknown)
 }
 
-/// The first number in a step that is not finite, if there is one.
-pub(crate) fn fault<D: Dynamics<N, Scalar: Float>, M: Method, const N: usize>(
+/// The first number in a step that is not finite, or where its equations were not solved, if there is one.
+pub(crate) fn fault<D: Dynamics<N, Scalar: Float>, M: Suits<D::System, N>, const N: usize>(
     method: &M,
     dynamics: &D,
     span: &Span,
     from: &Node<D::Scalar, N>,
+    stages: &M::Stages<D::Scalar, N>,
 ) -> Option<Error> {
     let facts = &<D::System as System<N>>::FACTS;
+    // Where an iteration went astray, numbers that are not finite are not the cause but the effect.
+    if let Some((t, index)) = M::unsolved(stages) {
+        let coordinate = super::field::coordinate(facts, index);
+        return Some(Error::NoConvergence { t: t.to_f64(), step: span.h, coordinate });
+    }
     let mut watched = Watched { dynamics, first: None };
     let to = method.step(&mut watched, span, &mut Node { a: None, ..*from }, &mut M::stages());
     let at_end = || first_in_state(facts, &to.q.high, &to.v.high).map(|what| (span.end, what));

@@ -1,7 +1,7 @@
 //! What decides about the length of steps: the interface that fixed and adaptive steps share.
 
 use super::field::Counted;
-use super::method::Method;
+use super::method::{Method, Suits};
 use super::node::Node;
 use super::solution::Stats;
 use super::span::Span;
@@ -22,7 +22,9 @@ pub trait Control<M: Method, const N: usize>: Copy + core::fmt::Debug {
         &self,
         memory: &mut Memory,
         course: Course<'_, '_, D, M, N>,
-    ) -> Result<(Span, Node<D::Scalar, N>), Error>;
+    ) -> Result<(Span, Node<D::Scalar, N>), Error>
+    where
+        M: Suits<D::System, N>;
 }
 
 /// What a control remembers from step to step.

@@ -1,12 +1,12 @@
 //! The method of Dormand and Prince of order 8, in the form of Hairer.
 
-use super::field::Accelerations;
+use super::field::Field;
 use super::method::{Embedded, Method, Response, Suits, Weights};
 use super::node::Node;
 use super::piece::Piece;
 use super::runge_kutta::{Row, Slopes};
 use super::span::Span;
-use crate::real::Float;
+use crate::real::{Float, Real};
 use crate::system::System;
 
 /// The explicit Runge–Kutta method of order 8 of Dormand and Prince with error estimates of orders 5 and 3: twelve evaluations a
@@ -31,8 +31,6 @@ impl Dop853 {
     }
 }
 
-impl<S: System<N>, const N: usize> Suits<S, N> for Dop853 {}
-
 impl Method for Dop853 {
     const NAME: &'static str = "Dop853";
     const ORDER: u32 = 8;
@@ -43,15 +41,17 @@ impl Method for Dop853 {
         let zero = [T::from_f64(0.0); N];
         Stages { k: Slopes::zero(), increment: (zero, zero) }
     }
+}
 
+impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Dop853 {
     #[inline]
-    fn step<T: Float, const N: usize>(
+    fn step(
         &self,
-        field: &mut impl Accelerations<T, N>,
+        field: &mut impl Field<S, N>,
         span: &Span,
-        from: &mut Node<T, N>,
-        stages: &mut Stages<T, N>,
-    ) -> Node<T, N> {
+        from: &mut Node<S::Scalar, N>,
+        stages: &mut Stages<S::Scalar, N>,
+    ) -> Node<S::Scalar, N> {
         let k = &mut stages.k;
         k.first(field, from);
         k.stage(field, span, from, 1, C[1], A1);
@@ -69,14 +69,14 @@ impl Method for Dop853 {
         from.advanced(span, &stages.increment.0, &stages.increment.1)
     }
 
-    fn dense<T: Float, const N: usize>(
+    fn dense(
         &self,
-        field: &mut impl Accelerations<T, N>,
+        field: &mut impl Field<S, N>,
         span: &Span,
-        from: &mut Node<T, N>,
-        to: &mut Node<T, N>,
-        stages: &mut Stages<T, N>,
-    ) -> Piece<T, N> {
+        from: &mut Node<S::Scalar, N>,
+        to: &mut Node<S::Scalar, N>,
+        stages: &mut Stages<S::Scalar, N>,
+    ) -> Piece<S::Scalar, N> {
         let k = &mut stages.k;
         k.v[12] = to.v.high;
         k.a[12] = to.end_acceleration(field);
@@ -84,7 +84,7 @@ impl Method for Dop853 {
         k.stage(field, span, from, 14, C[14], A14);
         k.stage(field, span, from, 15, C[15], A15);
         let mut piece = Piece::hermite(span, from, to, &k.a[0], &k.a[12]);
-        let h = T::from_f64(span.h);
+        let h = S::Scalar::from_f64(span.h);
         for (term, (q, v)) in [k.weighted(D3), k.weighted(D4), k.weighted(D5), k.weighted(D6)].into_iter().enumerate() {
             piece.q[3 + term] = q.map(|sum| h * sum);
             piece.v[3 + term] = v.map(|sum| h * sum);

@@ -2,7 +2,7 @@
 
 use super::control::{Control, Course, Memory};
 use super::field::{Counted, coordinate, first_in_inputs, first_in_state};
-use super::method::Method;
+use super::method::{Method, Suits};
 use super::node::Node;
 use super::piece::Piece;
 use super::solution::Stats;
@@ -71,6 +71,7 @@ impl<T: Float, const N: usize, M: Method, C> Driver<T, N, M, C> {
     #[inline]
     pub(crate) fn step<D: Dynamics<N, Scalar = T>>(&mut self, dynamics: &D, target: f64) -> Result<(), Error>
     where
+        M: Suits<D::System, N>,
         C: Control<M, N>,
     {
         let target = if self.kink < target { self.kink } else { target };
@@ -102,7 +103,10 @@ impl<T: Float, const N: usize, M: Method, C> Driver<T, N, M, C> {
     }
 
     /// The motion within the last step, if there was one; evaluates what the method needs for it.
-    pub(crate) fn piece<D: Dynamics<N, Scalar = T>>(&mut self, dynamics: &D) -> Option<Piece<T, N>> {
+    pub(crate) fn piece<D: Dynamics<N, Scalar = T>>(&mut self, dynamics: &D) -> Option<Piece<T, N>>
+    where
+        M: Suits<D::System, N>,
+    {
         let span = self.last.as_ref()?;
         let to = self.before_kink.as_mut().unwrap_or(&mut self.node);
         let mut field = Counted::new(dynamics);

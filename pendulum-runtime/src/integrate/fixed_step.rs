@@ -2,7 +2,7 @@
 
 use super::blame::blame;
 use super::control::{Control, Course, Memory};
-use super::method::Method;
+use super::method::{Method, Suits};
 use super::node::Node;
 use super::span::Span;
 use crate::error::Error;
@@ -53,13 +53,16 @@ impl<M: Method, const N: usize> Control<M, N> for FixedStep {
         &self,
         memory: &mut Memory,
         course: Course<'_, '_, D, M, N>,
-    ) -> Result<(Span, Node<D::Scalar, N>), Error> {
+    ) -> Result<(Span, Node<D::Scalar, N>), Error>
+    where
+        M: Suits<D::System, N>,
+    {
         let Course { method, field, from, stages, target, stats } = course;
         let mut plan = *memory;
         let span = self.next(&mut plan, from.t, target);
         let to = method.step(field, &span, from, stages);
         if !to.is_finite() {
-            return Err(blame(method, field.dynamics, &span, from));
+            return Err(blame(method, field.dynamics, &span, from, stages));
         }
         *memory = plan;
         stats.accepted += 1;

@@ -63,6 +63,7 @@ where
     #[inline]
     pub fn step(&mut self) -> Result<(), Error>
     where
+        M: Suits<D::System, N>,
         C: Control<M, N>,
     {
         self.driver.step(&self.dynamics, f64::INFINITY)
@@ -71,6 +72,7 @@ where
     /// Takes steps until the time is exactly `t`.
     pub fn advance_to(&mut self, t: f64) -> Result<(), Error>
     where
+        M: Suits<D::System, N>,
         C: Control<M, N>,
     {
         if !(self.t() <= t && t < f64::INFINITY) {
@@ -95,7 +97,10 @@ where
     /// The motion within the last step; `None` before the first.
     ///
     /// Methods that need further evaluations for it take them now.
-    pub fn last_step(&mut self) -> Option<Piece<D::Scalar, N>> {
+    pub fn last_step(&mut self) -> Option<Piece<D::Scalar, N>>
+    where
+        M: Suits<D::System, N>,
+    {
         self.driver.piece(&self.dynamics)
     }
 

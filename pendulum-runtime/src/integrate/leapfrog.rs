@@ -1,6 +1,6 @@
 //! The leapfrog method.
 
-use super::field::Accelerations;
+use super::field::Field;
 use super::hermite;
 use super::method::{Method, Suits};
 use super::node::Node;
@@ -31,8 +31,6 @@ impl Leapfrog {
     }
 }
 
-impl<S: VelocityFree<N>, const N: usize> Suits<S, N> for Leapfrog {}
-
 impl Method for Leapfrog {
     const NAME: &'static str = "Leapfrog";
     const ORDER: u32 = 2;
@@ -40,26 +38,22 @@ impl Method for Leapfrog {
     type Stages<T: Float, const N: usize> = ();
 
     fn stages<T: Float, const N: usize>() {}
+}
 
+impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Leapfrog {
     #[inline]
-    fn step<T: Float, const N: usize>(
-        &self,
-        field: &mut impl Accelerations<T, N>,
-        span: &Span,
-        from: &mut Node<T, N>,
-        (): &mut (),
-    ) -> Node<T, N> {
+    fn step(&self, field: &mut impl Field<S, N>, span: &Span, from: &mut Node<S::Scalar, N>, (): &mut ()) -> Node<S::Scalar, N> {
         drift_kick_drift(&SPLITTING, field, span, from)
     }
 
-    fn dense<T: Float, const N: usize>(
+    fn dense(
         &self,
-        _: &mut impl Accelerations<T, N>,
+        _: &mut impl Field<S, N>,
         span: &Span,
-        from: &mut Node<T, N>,
-        to: &mut Node<T, N>,
+        from: &mut Node<S::Scalar, N>,
+        to: &mut Node<S::Scalar, N>,
         (): &mut (),
-    ) -> Piece<T, N> {
+    ) -> Piece<S::Scalar, N> {
         hermite::cubic(span, from, to)
     }
 }

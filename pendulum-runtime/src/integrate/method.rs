@@ -1,17 +1,18 @@
 //! What a method is: a way to take one step, and for some an estimate of its error.
 
 pub use super::control::{Control, Course, Memory};
-pub use super::field::{Accelerations, Counted};
+pub use super::field::{Accelerations, Counted, Field};
 pub use super::node::Node;
 pub use super::piece::{Piece, TERMS};
 pub use super::span::Span;
 pub use super::sum::Sum;
 use crate::real::Float;
 use crate::system::System;
+use crate::time::Time;
 
-/// A one-step method for q̈ = a(t, q, q̇).
+/// A method for q̈ = a(t, q, q̇): what is known about it.
 ///
-/// Whether it is right for a system is another question, which [`Suits`] answers.
+/// For which systems it is right, and how it steps them, says [`Suits`].
 pub trait Method: Copy + core::fmt::Debug {
     /// The name.
     const NAME: &'static str;
@@ -25,26 +26,14 @@ pub trait Method: Copy + core::fmt::Debug {
     /// Room for the stages.
     fn stages<T: Float, const N: usize>() -> Self::Stages<T, N>;
 
-    /// Goes from `from` to the end of `span`.
+    /// Where the equations of the step just taken could not be solved: the time and the index of the coordinate; explicit methods have
+    /// none to solve.
     ///
-    /// The accelerations at the start may be kept in `from`, those at the end in the node that is returned.
-    fn step<T: Float, const N: usize>(
-        &self,
-        field: &mut impl Accelerations<T, N>,
-        span: &Span,
-        from: &mut Node<T, N>,
-        stages: &mut Self::Stages<T, N>,
-    ) -> Node<T, N>;
-
-    /// The motion within the step just taken; evaluates what it needs beyond the step itself.
-    fn dense<T: Float, const N: usize>(
-        &self,
-        field: &mut impl Accelerations<T, N>,
-        span: &Span,
-        from: &mut Node<T, N>,
-        to: &mut Node<T, N>,
-        stages: &mut Self::Stages<T, N>,
-    ) -> Piece<T, N>;
+    /// Asked for after a step that has ended in numbers that are not finite.
+    fn unsolved<T: Float, const N: usize>(stages: &Self::Stages<T, N>) -> Option<(Time, usize)> {
+        let _ = stages;
+        None
+    }
 }
 
 /// A method with an error estimate, which can choose its own steps; others do not compile without a step size:
@@ -115,10 +104,10 @@ impl<const N: usize> Weights<N> {
     }
 }
 
-/// Methods that are right for the system `S`.
+/// Methods that are right for the system `S`, and how they step it.
 ///
-/// Every method suits every system, except for the splitting and Nyström methods, which want
-/// [`VelocityFree`](crate::system::VelocityFree):
+/// Splitting, Nyström and multistep methods want [`VelocityFree`](crate::system::VelocityFree) systems, those that solve equations
+/// by Newton's method [`Jacobians`](crate::system::Jacobians), which all generated systems have; the others suit every system:
 ///
 /// ```
 /// # use pendulum_runtime::{integrate::*, system::*};
@@ -135,6 +124,26 @@ impl<const N: usize> Weights<N> {
 /// ```
 pub trait Suits<S, const N: usize>: Method
 where
-    S: System<N>,
+    S: System<N, Scalar: Float>,
 {
+    /// Goes from `from` to the end of `span`.
+    ///
+    /// The accelerations at the start may be kept in `from`, those at the end in the node that is returned.
+    fn step(
+        &self,
+        field: &mut impl Field<S, N>,
+        span: &Span,
+        from: &mut Node<S::Scalar, N>,
+        stages: &mut Self::Stages<S::Scalar, N>,
+    ) -> Node<S::Scalar, N>;
+
+    /// The motion within the step just taken; evaluates what it needs beyond the step itself.
+    fn dense(
+        &self,
+        field: &mut impl Field<S, N>,
+        span: &Span,
+        from: &mut Node<S::Scalar, N>,
+        to: &mut Node<S::Scalar, N>,
+        stages: &mut Self::Stages<S::Scalar, N>,
+    ) -> Piece<S::Scalar, N>;
 }

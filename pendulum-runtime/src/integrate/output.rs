@@ -3,7 +3,7 @@
 use super::control::Control;
 use super::dense::DenseOutput;
 use super::driver::Driver;
-use super::method::Method;
+use super::method::Suits;
 use super::solution::{Failure, Solution, State, Stats};
 use crate::error::Error;
 use crate::real::Float;
@@ -98,7 +98,7 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
     pub(crate) fn step<D, M, C>(&mut self, driver: &mut Driver<T, N, M, C>, dynamics: &D)
     where
         D: Dynamics<N, Scalar = T>,
-        M: Method,
+        M: Suits<D::System, N>,
         C: Control<M, N>,
     {
         if self.dense.is_some() || self.next <= driver.t() {
@@ -116,7 +116,7 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
     fn within<D, M, C>(&mut self, driver: &mut Driver<T, N, M, C>, dynamics: &D)
     where
         D: Dynamics<N, Scalar = T>,
-        M: Method,
+        M: Suits<D::System, N>,
         C: Control<M, N>,
     {
         let (end, state) = (driver.node.t, State::from(&driver.node));

@@ -1,13 +1,13 @@
 //! The classical Runge–Kutta method.
 
-use super::field::Accelerations;
+use super::field::Field;
 use super::hermite;
 use super::method::{Method, Suits};
 use super::node::Node;
 use super::piece::Piece;
 use super::runge_kutta::Slopes;
 use super::span::Span;
-use crate::real::Float;
+use crate::real::{Float, Real};
 use crate::system::System;
 
 /// The classical Runge–Kutta method: order 4, four evaluations a step, fixed step.
@@ -29,8 +29,6 @@ impl Rk4 {
     }
 }
 
-impl<S: System<N>, const N: usize> Suits<S, N> for Rk4 {}
-
 impl Method for Rk4 {
     const NAME: &'static str = "Rk4";
     const ORDER: u32 = 4;
@@ -40,33 +38,35 @@ impl Method for Rk4 {
     fn stages<T: Float, const N: usize>() -> Slopes<T, N, 4> {
         Slopes::zero()
     }
+}
 
+impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Rk4 {
     #[inline]
-    fn step<T: Float, const N: usize>(
+    fn step(
         &self,
-        field: &mut impl Accelerations<T, N>,
+        field: &mut impl Field<S, N>,
         span: &Span,
-        from: &mut Node<T, N>,
-        k: &mut Slopes<T, N, 4>,
-    ) -> Node<T, N> {
+        from: &mut Node<S::Scalar, N>,
+        k: &mut Slopes<S::Scalar, N, 4>,
+    ) -> Node<S::Scalar, N> {
         k.first(field, from);
         k.stage(field, span, from, 1, 0.5, [(0, 0.5)]);
         k.stage(field, span, from, 2, 0.5, [(1, 0.5)]);
         k.stage(field, span, from, 3, 1.0, [(2, 1.0)]);
         // The weights are integers and the sixth is divided off: rounded sixths do not add up to one.
         let (dq, dv) = k.weighted([(0, 1.0), (1, 2.0), (2, 2.0), (3, 1.0)]);
-        let six = T::from_f64(6.0);
+        let six = S::Scalar::from_f64(6.0);
         from.advanced(span, &dq.map(|sum| sum / six), &dv.map(|sum| sum / six))
     }
 
-    fn dense<T: Float, const N: usize>(
+    fn dense(
         &self,
-        field: &mut impl Accelerations<T, N>,
+        field: &mut impl Field<S, N>,
         span: &Span,
-        from: &mut Node<T, N>,
-        to: &mut Node<T, N>,
-        _: &mut Slopes<T, N, 4>,
-    ) -> Piece<T, N> {
+        from: &mut Node<S::Scalar, N>,
+        to: &mut Node<S::Scalar, N>,
+        _: &mut Slopes<S::Scalar, N, 4>,
+    ) -> Piece<S::Scalar, N> {
         let (a0, a1) = (from.start_acceleration(field), to.end_acceleration(field));
         hermite::quintic(span, from, to, &a0, &a1)
     }

@@ -5,7 +5,7 @@ use super::control::Control;
 use super::dop853::Dop853;
 use super::driver::Driver;
 use super::fixed_step::FixedStep;
-use super::method::{Method, Suits};
+use super::method::Suits;
 use super::output::{Output, Recorder, ascending};
 use super::solution::{Failure, Solution, State, Stats};
 use crate::error::Error;
@@ -52,7 +52,7 @@ pub struct Solve<'a, const N: usize, D: Dynamics<N>, M, C> {
     max_steps: u64,
 }
 
-impl<'a, const N: usize, D: Dynamics<N>, M, C> Solve<'a, N, D, M, C> {
+impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M, C> {
     /// Uses another method.
     pub fn method<B: Suits<D::System, N>>(self, method: B) -> Solve<'a, N, D, B, C> {
         let control = self.control;
@@ -152,7 +152,7 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, 
     /// not compile.
     pub fn run(self) -> Result<Solution<D::Scalar, N>, Failure<D::Scalar, N>>
     where
-        M: Method,
+        M: Suits<D::System, N>,
         C: Control<M, N>,
     {
         let mut recorder = Recorder::new(self.output, self.time);
@@ -174,8 +174,8 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, 
         recorder: &mut Recorder<'_, D::Scalar, N>,
     ) -> Result<(), Error>
     where
-        P: Dynamics<N, Scalar = D::Scalar>,
-        M: Method,
+        P: Dynamics<N, Scalar = D::Scalar, System = D::System>,
+        M: Suits<D::System, N>,
         C: Control<M, N>,
     {
         let end = self.time.1;
@@ -194,7 +194,7 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, 
 
     fn check(&self) -> Result<(), Error>
     where
-        M: Method,
+        M: Suits<D::System, N>,
         C: Control<M, N>,
     {
         let (start, end) = self.time;

@@ -1,6 +1,6 @@
 //! A splitting method of Blanes and Moan with fourteen evaluations.
 
-use super::field::Accelerations;
+use super::field::Field;
 use super::hermite;
 use super::method::{Method, Suits};
 use super::node::Node;
@@ -32,8 +32,6 @@ impl Srkn14a {
     }
 }
 
-impl<S: VelocityFree<N>, const N: usize> Suits<S, N> for Srkn14a {}
-
 impl Method for Srkn14a {
     const NAME: &'static str = "Srkn14a";
     const ORDER: u32 = 6;
@@ -41,26 +39,22 @@ impl Method for Srkn14a {
     type Stages<T: Float, const N: usize> = ();
 
     fn stages<T: Float, const N: usize>() {}
+}
 
+impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Srkn14a {
     #[inline]
-    fn step<T: Float, const N: usize>(
-        &self,
-        field: &mut impl Accelerations<T, N>,
-        span: &Span,
-        from: &mut Node<T, N>,
-        (): &mut (),
-    ) -> Node<T, N> {
+    fn step(&self, field: &mut impl Field<S, N>, span: &Span, from: &mut Node<S::Scalar, N>, (): &mut ()) -> Node<S::Scalar, N> {
         drift_kick_drift(&SPLITTING, field, span, from)
     }
 
-    fn dense<T: Float, const N: usize>(
+    fn dense(
         &self,
-        field: &mut impl Accelerations<T, N>,
+        field: &mut impl Field<S, N>,
         span: &Span,
-        from: &mut Node<T, N>,
-        to: &mut Node<T, N>,
+        from: &mut Node<S::Scalar, N>,
+        to: &mut Node<S::Scalar, N>,
         (): &mut (),
-    ) -> Piece<T, N> {
+    ) -> Piece<S::Scalar, N> {
         let (a0, a1) = (from.start_acceleration(field), to.end_acceleration(field));
         hermite::quintic(span, from, to, &a0, &a1)
     }

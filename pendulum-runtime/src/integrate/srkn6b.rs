@@ -1,6 +1,6 @@
 //! A splitting method of Blanes and Moan with six evaluations.
 
-use super::field::Accelerations;
+use super::field::Field;
 use super::hermite;
 use super::method::{Method, Suits};
 use super::node::Node;
@@ -30,8 +30,6 @@ impl Srkn6b {
     }
 }
 
-impl<S: VelocityFree<N>, const N: usize> Suits<S, N> for Srkn6b {}
-
 impl Method for Srkn6b {
     const NAME: &'static str = "Srkn6b";
     const ORDER: u32 = 4;
@@ -39,26 +37,22 @@ impl Method for Srkn6b {
     type Stages<T: Float, const N: usize> = ();
 
     fn stages<T: Float, const N: usize>() {}
+}
 
+impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Srkn6b {
     #[inline]
-    fn step<T: Float, const N: usize>(
-        &self,
-        field: &mut impl Accelerations<T, N>,
-        span: &Span,
-        from: &mut Node<T, N>,
-        (): &mut (),
-    ) -> Node<T, N> {
+    fn step(&self, field: &mut impl Field<S, N>, span: &Span, from: &mut Node<S::Scalar, N>, (): &mut ()) -> Node<S::Scalar, N> {
         kick_drift_kick(&SPLITTING, field, span, from)
     }
 
-    fn dense<T: Float, const N: usize>(
+    fn dense(
         &self,
-        field: &mut impl Accelerations<T, N>,
+        field: &mut impl Field<S, N>,
         span: &Span,
-        from: &mut Node<T, N>,
-        to: &mut Node<T, N>,
+        from: &mut Node<S::Scalar, N>,
+        to: &mut Node<S::Scalar, N>,
         (): &mut (),
-    ) -> Piece<T, N> {
+    ) -> Piece<S::Scalar, N> {
         let (a0, a1) = (from.start_acceleration(field), to.end_acceleration(field));
         hermite::quintic(span, from, to, &a0, &a1)
     }

@@ -1,12 +1,12 @@
 //! The symplectic Euler method.
 
-use super::field::Accelerations;
+use super::field::Field;
 use super::hermite;
 use super::method::{Method, Suits};
 use super::node::Node;
 use super::piece::Piece;
 use super::span::Span;
-use crate::real::Float;
+use crate::real::{Float, Real};
 use crate::system::System;
 
 /// The symplectic (semi-implicit) Euler method: order 1, one evaluation a step, fixed step. A baseline, not a recommendation.
@@ -31,8 +31,6 @@ impl SymplecticEuler {
     }
 }
 
-impl<S: System<N>, const N: usize> Suits<S, N> for SymplecticEuler {}
-
 impl Method for SymplecticEuler {
     const NAME: &'static str = "SymplecticEuler";
     const ORDER: u32 = 1;
@@ -40,16 +38,12 @@ impl Method for SymplecticEuler {
     type Stages<T: Float, const N: usize> = ();
 
     fn stages<T: Float, const N: usize>() {}
+}
 
+impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for SymplecticEuler {
     #[inline]
-    fn step<T: Float, const N: usize>(
-        &self,
-        field: &mut impl Accelerations<T, N>,
-        span: &Span,
-        from: &mut Node<T, N>,
-        (): &mut (),
-    ) -> Node<T, N> {
-        let h = T::from_f64(span.h);
+    fn step(&self, field: &mut impl Field<S, N>, span: &Span, from: &mut Node<S::Scalar, N>, (): &mut ()) -> Node<S::Scalar, N> {
+        let h = S::Scalar::from_f64(span.h);
         let a = from.start_acceleration(field);
         let mut to = Node { t: span.end, a: None, ..*from };
         to.v.add(h, &a);
@@ -57,14 +51,14 @@ impl Method for SymplecticEuler {
         to
     }
 
-    fn dense<T: Float, const N: usize>(
+    fn dense(
         &self,
-        _: &mut impl Accelerations<T, N>,
+        _: &mut impl Field<S, N>,
         span: &Span,
-        from: &mut Node<T, N>,
-        to: &mut Node<T, N>,
+        from: &mut Node<S::Scalar, N>,
+        to: &mut Node<S::Scalar, N>,
         (): &mut (),
-    ) -> Piece<T, N> {
+    ) -> Piece<S::Scalar, N> {
         hermite::cubic(span, from, to)
     }
 }

@@ -1,12 +1,12 @@
 //! The method of Tsitouras of order 5.
 
-use super::field::Accelerations;
+use super::field::Field;
 use super::method::{Embedded, Method, Response, Suits, Weights};
 use super::node::Node;
 use super::piece::Piece;
 use super::runge_kutta::{Row, Slopes};
 use super::span::Span;
-use crate::real::Float;
+use crate::real::{Float, Real};
 use crate::system::System;
 
 /// The explicit Runge–Kutta pair of orders 5 and 4 of Tsitouras: six evaluations a step, adaptive.
@@ -28,8 +28,6 @@ impl Tsit5 {
     }
 }
 
-impl<S: System<N>, const N: usize> Suits<S, N> for Tsit5 {}
-
 impl Method for Tsit5 {
     const NAME: &'static str = "Tsit5";
     const ORDER: u32 = 5;
@@ -39,15 +37,17 @@ impl Method for Tsit5 {
     fn stages<T: Float, const N: usize>() -> Slopes<T, N, 7> {
         Slopes::zero()
     }
+}
 
+impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Tsit5 {
     #[inline]
-    fn step<T: Float, const N: usize>(
+    fn step(
         &self,
-        field: &mut impl Accelerations<T, N>,
+        field: &mut impl Field<S, N>,
         span: &Span,
-        from: &mut Node<T, N>,
-        k: &mut Slopes<T, N, 7>,
-    ) -> Node<T, N> {
+        from: &mut Node<S::Scalar, N>,
+        k: &mut Slopes<S::Scalar, N, 7>,
+    ) -> Node<S::Scalar, N> {
         k.first(field, from);
         k.stage(field, span, from, 1, C[1], A1);
         k.stage(field, span, from, 2, C[2], A2);
@@ -61,15 +61,15 @@ impl Method for Tsit5 {
         to
     }
 
-    fn dense<T: Float, const N: usize>(
+    fn dense(
         &self,
-        _: &mut impl Accelerations<T, N>,
+        _: &mut impl Field<S, N>,
         span: &Span,
-        from: &mut Node<T, N>,
-        to: &mut Node<T, N>,
-        k: &mut Slopes<T, N, 7>,
-    ) -> Piece<T, N> {
-        let h = T::from_f64(span.h);
+        from: &mut Node<S::Scalar, N>,
+        to: &mut Node<S::Scalar, N>,
+        k: &mut Slopes<S::Scalar, N, 7>,
+    ) -> Piece<S::Scalar, N> {
+        let h = S::Scalar::from_f64(span.h);
         let mut piece = Piece::hermite(span, from, to, &k.a[0], &k.a[6]);
         let (q, v) = k.weighted(D);
         piece.q[3] = q.map(|sum| h * sum);
