@@ -18,7 +18,9 @@ pub mod __private;
 
 /// What a program that writes a `lagrangian!` block and integrates it needs.
 pub mod prelude {
-    pub use crate::integrate::{Dop853, Integrator, Leapfrog, Rk4, Srkn6b, Srkn11b, Srkn14a, SymplecticEuler, Tsit5, solve};
+    pub use crate::integrate::{
+        Dop853, Gauss, Integrator, Leapfrog, Rk4, Srkn6b, Srkn11b, Srkn14a, SymplecticEuler, Tsit5, solve,
+    };
     pub use crate::motion::Motion;
     pub use crate::real::Real;
     pub use crate::system::{Driven, Dynamics, System, VelocityFree};

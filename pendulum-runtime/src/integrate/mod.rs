@@ -10,6 +10,7 @@
 //! | [`Srkn11b`] | 6 | 11 | fixed | velocity-free systems, long |
 //! | [`Srkn14a`] | 6 | 14 | fixed | velocity-free systems, long, down to rounding |
 //! | [`Rk4`] | 4 | 4 | fixed | any system, animation |
+//! | [`Gauss<S>`](Gauss) | 2S | implicit | fixed | any conservative system, long; stiff ones by Newton's method |
 //! | [`Tsit5`] | 5 | 6 | adaptive | any system, errors 1e-2 … 1e-6 |
 //! | [`Dop853`] | 8 | 12 | adaptive | any system, errors 1e-6 … 1e-13 |
 //!
@@ -26,9 +27,11 @@ mod dop853;
 mod driver;
 mod field;
 mod fixed_step;
+mod gauss;
 mod hermite;
 mod integrator;
 mod leapfrog;
+mod linear;
 mod node;
 mod output;
 mod piece;
@@ -49,6 +52,7 @@ mod tsit5;
 pub use adaptive_step::AdaptiveStep;
 pub use dop853::Dop853;
 pub use fixed_step::FixedStep;
+pub use gauss::{Gauss, Newton, Sweeps};
 pub use integrator::Integrator;
 pub use leapfrog::Leapfrog;
 pub use rk4::Rk4;

@@ -5,7 +5,7 @@ use super::span::Span;
 use crate::real::Float;
 
 /// The largest number of terms of a [`Piece`].
-pub const TERMS: usize = 7;
+pub const TERMS: usize = 10;
 
 /// Coordinates and velocities within a step as polynomials in θ = (t − start)/h.
 ///
