@@ -9,6 +9,7 @@
 //! | [`Srkn6b`] | 4 | 6 | fixed | velocity-free systems |
 //! | [`Srkn11b`] | 6 | 11 | fixed | velocity-free systems, long |
 //! | [`Srkn14a`] | 6 | 14 | fixed | velocity-free systems, long, down to rounding |
+//! | [`QuinlanTremaine<P>`](QuinlanTremaine) | 8, 10, 12 | 1 | fixed | velocity-free systems, the cheapest for a given error |
 //! | [`Rk4`] | 4 | 4 | fixed | any system, animation |
 //! | [`Gauss<S>`](Gauss) | 2S | implicit | fixed | any conservative system, long; stiff ones by Newton's method |
 //! | [`Tsit5`] | 5 | 6 | adaptive | any system, errors 1e-2 … 1e-6 |
@@ -26,16 +27,19 @@ mod dense;
 mod dop853;
 mod driver;
 mod field;
+mod fit;
 mod fixed_step;
 mod gauss;
 mod hermite;
 mod integrator;
 mod leapfrog;
 mod linear;
+mod multistep;
 mod node;
 mod output;
 mod piece;
 mod power;
+mod quinlan_tremaine;
 mod rk4;
 mod runge_kutta;
 mod solution;
@@ -55,6 +59,7 @@ pub use fixed_step::FixedStep;
 pub use gauss::{Gauss, Newton, Sweeps};
 pub use integrator::Integrator;
 pub use leapfrog::Leapfrog;
+pub use quinlan_tremaine::QuinlanTremaine;
 pub use rk4::Rk4;
 pub use solution::{Failure, Solution, State, Stats};
 pub use solve::{Solve, solve};

@@ -1,7 +1,7 @@
 //! Dense output of the Gauss methods.
 
 use super::tableau::Tableau;
-use crate::integrate::linear::Factors;
+use crate::integrate::fit::{Condition, fit};
 use crate::integrate::node::Node;
 use crate::integrate::piece::{Piece, TERMS};
 use crate::integrate::span::Span;
@@ -17,61 +17,17 @@ pub(super) fn piece<T: Float, const N: usize, const S: usize>(
     let nodes = const { &Tableau::<S>::GAUSS.nodes };
     let mut piece = Piece::linear(span, from, to);
     let h = T::from_f64(span.h);
-    // Of the velocities the increment is known, and the other terms follow from the stages. Of the coordinates the increment and the
-    // slopes at both ends and at all stages but the last are enough: the increment is a quadrature of the stages.
-    let inner = Factors::<f64, TERMS, 1>::new(|_, _| {
-        core::array::from_fn(|row| if row < S { shifted(&terms(nodes[row]).0) } else { unit(row) })
-    });
-    let slopes = Factors::<f64, TERMS, 1>::new(|_, _| {
-        core::array::from_fn(|row| match row {
-            _ if row + 1 < S => shifted(&terms(nodes[row]).1),
-            _ if row < S => shifted(&terms(0.0).1),
-            _ if row == S => shifted(&terms(1.0).1),
-            _ => unit(row),
-        })
-    });
-    for k in 0..N {
-        let mut v = [[0.0; TERMS]];
-        let mut q = [[0.0; TERMS]];
-        let (dq, dv) = (piece.q[0][k], piece.v[0][k]);
-        for i in 0..S {
-            let rise = stages[i][k] - from.v.high[k];
-            v[0][i] = (rise - T::from_f64(nodes[i]) * dv).to_f64();
-            q[0][i] = (h * stages[i][k] - dq).to_f64();
-        }
-        q[0][S - 1] = (h * from.v.high[k] - dq).to_f64();
-        q[0][S] = (h * to.v.high[k] - dq).to_f64();
-        inner.solve(&mut v);
-        slopes.solve(&mut q);
-        for term in 0..=S {
-            piece.q[term + 1][k] = T::from_f64(q[0][term]);
-            if term < S {
-                piece.v[term + 1][k] = T::from_f64(v[0][term]);
-            }
-        }
+    let zero = (Condition::Slope(0.0), [T::from_f64(0.0); N]);
+    let (mut q, mut v) = ([zero; TERMS], [zero; TERMS]);
+    for (j, (&node, stage)) in nodes.iter().zip(stages).enumerate() {
+        q[j] = (Condition::Slope(node), stage.map(|v| h * v));
+        v[j] = (Condition::Value(node), core::array::from_fn(|i| stage[i] - from.v.high[i]));
     }
+    // The increment of the coordinates is a quadrature of the slopes at the stages, so one of them is not needed.
+    q[S - 1] = (Condition::Slope(0.0), from.v.high.map(|v| h * v));
+    q[S] = (Condition::Slope(1.0), to.v.high.map(|v| h * v));
+    fit(&mut piece.q, &q[..=S]);
+    fit(&mut piece.v, &v[..S]);
     piece.terms = S + 2;
     piece
-}
-
-/// The polynomials θ, θ(1−θ), θ²(1−θ), … that the terms of a piece multiply, and their derivatives.
-fn terms(theta: f64) -> ([f64; TERMS], [f64; TERMS]) {
-    let (mut values, mut slopes) = ([0.0; TERMS], [0.0; TERMS]);
-    let (mut value, mut slope) = (1.0, 0.0);
-    for term in 0..TERMS {
-        let (factor, direction) = if term % 2 == 0 { (theta, 1.0) } else { (1.0 - theta, -1.0) };
-        (value, slope) = (value * factor, slope * factor + value * direction);
-        (values[term], slopes[term]) = (value, slope);
-    }
-    (values, slopes)
-}
-
-/// Without the first term; the place at the end is empty.
-fn shifted(terms: &[f64; TERMS]) -> [f64; TERMS] {
-    core::array::from_fn(|k| if k + 1 < TERMS { terms[k + 1] } else { 0.0 })
-}
-
-/// A row that leaves an unused unknown at zero.
-fn unit(row: usize) -> [f64; TERMS] {
-    core::array::from_fn(|k| f64::from(u8::from(k == row)))
 }
