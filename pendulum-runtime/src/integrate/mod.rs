@@ -12,6 +12,7 @@
 //! | [`QuinlanTremaine<P>`](QuinlanTremaine) | 8, 10, 12 | 1 | fixed | velocity-free systems, the cheapest for a given error |
 //! | [`Rk4`] | 4 | 4 | fixed | any system, animation |
 //! | [`Gauss<S>`](Gauss) | 2S | implicit | fixed | any conservative system, long; stiff ones by Newton's method |
+//! | [`Rodas4`] | 4 | 6 and the Jacobians | adaptive | stiff springs and dampers |
 //! | [`Tsit5`] | 5 | 6 | adaptive | any system, errors 1e-2 … 1e-6 |
 //! | [`Dop853`] | 8 | 12 | adaptive | any system, errors 1e-6 … 1e-13 |
 //!
@@ -41,6 +42,7 @@ mod piece;
 mod power;
 mod quinlan_tremaine;
 mod rk4;
+mod rodas4;
 mod runge_kutta;
 mod solution;
 mod solve;
@@ -61,6 +63,7 @@ pub use integrator::Integrator;
 pub use leapfrog::Leapfrog;
 pub use quinlan_tremaine::QuinlanTremaine;
 pub use rk4::Rk4;
+pub use rodas4::Rodas4;
 pub use solution::{Failure, Solution, State, Stats};
 pub use solve::{Solve, solve};
 pub use srkn6b::Srkn6b;
