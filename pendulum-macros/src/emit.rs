@@ -775,17 +775,17 @@ fn local(prefix: &str, index: usize) -> Ident {
 }
 
 fn number(value: Rational, scalar: &Ident) -> TokenStream {
-    let (top, bottom) = (value.numerator() as f64, value.denominator() as f64);
-    let (top_literal, bottom_literal) = (Literal::f64_unsuffixed(top.abs()), Literal::f64_unsuffixed(bottom));
     let sign = value.is_negative().then(|| quote!(-));
-    if value.is_integer() {
-        quote!(#scalar::from_f64(#sign #top_literal))
-    } else if value.fits_double() {
-        quote!(#scalar::ratio(#sign #top_literal, #bottom_literal))
-    } else {
-        let quotient = Literal::f64_unsuffixed((top / bottom).abs());
-        quote!(#scalar::from_f64(#sign #quotient))
+    if !value.fits_double() {
+        // The nearest double, and what it leaves off for scalars of more digits.
+        let (high, low) = value.abs().words();
+        let (high, rest) = (Literal::f64_unsuffixed(high), Literal::f64_unsuffixed(low.abs()));
+        let rest_sign = (value.is_negative() != (low < 0.0)).then(|| quote!(-));
+        return quote!((#scalar::from_f64(#sign #high) + #scalar::from_f64(#rest_sign #rest)));
     }
+    let (top, bottom) = (value.numerator() as f64, value.denominator() as f64);
+    let (top, bottom) = (Literal::f64_unsuffixed(top.abs()), Literal::f64_unsuffixed(bottom));
+    if value.is_integer() { quote!(#scalar::from_f64(#sign #top)) } else { quote!(#scalar::ratio(#sign #top, #bottom)) }
 }
 
 fn decimal(literal: &crate::ast::Literal, scalar: &Ident) -> TokenStream {

@@ -139,6 +139,24 @@ impl Rational {
         let exact = |value: i128| value.unsigned_abs() >> value.trailing_zeros().min(127) < 1 << 53;
         self.numerator == 0 || exact(self.numerator) && exact(self.denominator)
     }
+
+    /// The nearest double to a positive number, and the double nearest to what that leaves off.
+    pub(crate) fn words(self) -> (f64, f64) {
+        let bottom = self.denominator.unsigned_abs();
+        let (mut quotient, mut rest) = (self.numerator.unsigned_abs() / bottom, self.numerator.unsigned_abs() % bottom);
+        let mut unit = 1.0;
+        // Long division in binary, to 120 digits.
+        while quotient < 1 << 119 {
+            rest *= 2;
+            let digit = u128::from(bottom <= rest);
+            quotient = 2 * quotient + digit;
+            rest -= digit * bottom;
+            unit /= 2.0;
+        }
+        let high = quotient as f64;
+        let low = quotient.cast_signed() - (high as u128).cast_signed();
+        (unit * high, unit * low as f64)
+    }
 }
 
 impl fmt::Display for Rational {

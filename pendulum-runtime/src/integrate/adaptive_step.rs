@@ -99,7 +99,7 @@ impl<M: Embedded, const N: usize> Control<M, N> for AdaptiveStep<N> {
         let rtol = self.relative::<T>();
         positive("rtol", rtol)?;
         if rtol < 10.0 * T::EPSILON.to_f64() {
-            let required = "at least ten machine epsilons of the scalar (2.3e-15 for f64, 1.2e-6 for f32)";
+            let required = "at least ten machine epsilons of the scalar (2.3e-15 for f64, 1.2e-6 for f32, 5e-31 for two words)";
             return Err(Error::Setting { name: "rtol", value: rtol, required });
         }
         self.atol.0.into_iter().chain(self.atol.1).try_for_each(|atol| positive("atol", atol))?;

@@ -50,8 +50,8 @@ impl<T: Float, const N: usize> DenseOutput<T, N> {
         });
         let Some(index) = started.checked_sub(1) else { return Some(self.start) };
         let span = &self.spans[index];
-        let theta = -span.start.since(t) / span.h;
-        let theta = if theta < 1.0 { theta } else { 1.0 };
+        let (theta, one) = (span.fraction(t), T::from_f64(1.0));
+        let theta = if theta < one { theta } else { one };
         let values = &self.values[index * 2 * (self.terms + 1)..][..2 * (self.terms + 1)];
         let (states, terms) = values.split_at(2);
         let (q, v) = terms.split_at(self.terms);

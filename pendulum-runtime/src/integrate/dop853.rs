@@ -84,7 +84,7 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Dop853 {
         k.stage(field, span, from, 14, C[14], A14);
         k.stage(field, span, from, 15, C[15], A15);
         let mut piece = Piece::hermite(span, from, to, &k.a[0], &k.a[12]);
-        let h = S::Scalar::from_f64(span.h);
+        let h = span.length::<S::Scalar>();
         for (term, (q, v)) in [k.weighted(D3), k.weighted(D4), k.weighted(D5), k.weighted(D6)].into_iter().enumerate() {
             piece.q[3 + term] = q.map(|sum| h * sum);
             piece.v[3 + term] = v.map(|sum| h * sum);

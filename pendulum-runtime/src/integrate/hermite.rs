@@ -9,7 +9,7 @@ use crate::real::Float;
 ///
 /// It needs no accelerations. The error of the coordinates is h⁴/384·|q⁗|, that of the velocities about h³/40·|q⁗|.
 pub(crate) fn cubic<T: Float, const N: usize>(span: &Span, from: &Node<T, N>, to: &Node<T, N>) -> Piece<T, N> {
-    let h = T::from_f64(span.h);
+    let h = span.length::<T>();
     let mut piece = Piece::linear(span, from, to);
     piece.clamp_coordinates(h, &from.v.high, &to.v.high);
     for i in 0..N {
@@ -32,7 +32,7 @@ pub(crate) fn quintic<T: Float, const N: usize>(
     a1: &[T; N],
 ) -> Piece<T, N> {
     let number = T::from_f64;
-    let (h, half) = (number(span.h), number(0.5));
+    let (h, half) = (span.length::<T>(), number(0.5));
     let mut piece = Piece::hermite(span, from, to, a0, a1);
     for i in 0..N {
         let [increment, q1, q2, ..] = piece.q.map(|term| term[i]);

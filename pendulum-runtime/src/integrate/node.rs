@@ -49,7 +49,7 @@ impl<T: Float, const N: usize> Node<T, N> {
     /// The node at the end of `span` whose coordinates and velocities have grown by `h·dq` and `h·dv`.
     #[inline]
     pub fn advanced(&self, span: &Span, dq: &[T; N], dv: &[T; N]) -> Self {
-        let h = T::from_f64(span.h);
+        let h = span.length::<T>();
         let mut next = Self { t: span.end, a: None, ..*self };
         next.q.add(h, dq);
         next.v.add(h, dv);

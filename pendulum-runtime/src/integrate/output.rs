@@ -123,8 +123,7 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
         if self.dense.is_some() || 0.0 < end.since(self.next) {
             let Some(piece) = driver.piece(dynamics) else { return };
             while 0.0 < end.since(self.next) {
-                let theta = -piece.span.start.since(self.next) / piece.span.h;
-                let (q, v) = piece.at(theta);
+                let (q, v) = piece.at(piece.span.fraction(self.next));
                 self.push(State { t: self.next, q, v });
                 self.advance();
             }

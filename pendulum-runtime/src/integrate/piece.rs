@@ -32,7 +32,7 @@ impl<T: Float, const N: usize> Piece<T, N> {
     /// accelerations for the velocities.
     pub fn hermite(span: &Span, from: &Node<T, N>, to: &Node<T, N>, a0: &[T; N], a1: &[T; N]) -> Self {
         let mut piece = Self::linear(span, from, to);
-        let h = T::from_f64(span.h);
+        let h = span.length::<T>();
         clamp(&mut piece.q, h, &from.v.high, &to.v.high);
         clamp(&mut piece.v, h, a0, a1);
         piece.terms = 3;
@@ -54,7 +54,7 @@ impl<T: Float, const N: usize> Piece<T, N> {
     }
 
     /// Coordinates and velocities at θ.
-    pub fn at(&self, theta: f64) -> ([T; N], [T; N]) {
+    pub fn at(&self, theta: T) -> ([T; N], [T; N]) {
         (nested(&self.q0, &self.q[..self.terms], theta), nested(&self.v0, &self.v[..self.terms], theta))
     }
 }
@@ -69,8 +69,8 @@ fn clamp<T: Float, const N: usize>(terms: &mut [[T; N]; TERMS], h: T, slope0: &[
 }
 
 /// y₀ + θ(F₀ + (1−θ)(F₁ + θ(F₂ + …))).
-pub(crate) fn nested<T: Float, const N: usize>(y0: &[T; N], terms: &[[T; N]], theta: f64) -> [T; N] {
-    let factors = [T::from_f64(theta), T::from_f64(1.0 - theta)];
+pub(crate) fn nested<T: Float, const N: usize>(y0: &[T; N], terms: &[[T; N]], theta: T) -> [T; N] {
+    let factors = [theta, T::from_f64(1.0) - theta];
     core::array::from_fn(|i| {
         let zero = T::from_f64(0.0);
         let sum = terms.iter().enumerate().rev().fold(zero, |sum, (k, term)| (sum + term[i]) * factors[k % 2]);

@@ -44,7 +44,7 @@ impl<T: Float, const N: usize, const S: usize> Slopes<T, N, S> {
         c: f64,
         row: Row<K>,
     ) {
-        let h = T::from_f64(span.h);
+        let h = span.length::<T>();
         let (dq, dv) = self.weighted(row);
         let q = core::array::from_fn(|i| from.q.high[i] + h * dq[i]);
         let v = core::array::from_fn(|i| from.v.high[i] + h * dv[i]);

@@ -1,6 +1,7 @@
 //! The time that one step covers.
 
 use crate::motion::Side;
+use crate::real::Float;
 use crate::time::Time;
 
 /// One step in time, free of kinks inside.
@@ -12,17 +13,36 @@ pub struct Span {
     pub end: Time,
     /// Its length.
     pub h: f64,
+    /// What rounding has left off `h`.
+    pub low: f64,
 }
 
 impl Span {
     /// The step of length `h` from `start`.
     pub fn by(start: Time, h: f64) -> Self {
-        Self { start, end: start + h, h }
+        Self { start, end: start + h, h, low: 0.0 }
     }
 
     /// The step from `start` to exactly `end`.
     pub fn to(start: Time, end: f64) -> Self {
-        Self { start, end: Time::new(end), h: -start.since(end) }
+        let h = -start.since(end);
+        // The difference of the high words and its rounding error, Knuth (1969).
+        let difference = end - start.to_f64();
+        let part = difference - end;
+        let error = (end - (difference - part)) - (start.to_f64() + part);
+        Self { start, end: Time::new(end), h, low: (difference - h) + (error - start.low()) }
+    }
+
+    /// Its length in the scalar of a system, with both words.
+    #[inline]
+    pub fn length<T: Float>(&self) -> T {
+        T::from_f64(self.h) + T::from_f64(self.low)
+    }
+
+    /// The part of it that has passed at `t`: 0 at the start, 1 at the end.
+    pub fn fraction<T: Float>(&self, t: f64) -> T {
+        let number = T::from_f64;
+        ((number(t) - number(self.start.to_f64())) - number(self.start.low())) / self.length()
     }
 
     /// The time `start + c h` and the side from which a kink there is seen: a stage looks into the step.
@@ -60,5 +80,8 @@ mod tests {
         assert_eq!(span.end.to_f64(), 1e9 + 1.0);
         assert_eq!(span.end.low(), 0.0);
         assert_eq!(span.h, 1.0 - 1e-9);
+        let span = Span::to(Time::new(0.1), 1.0);
+        assert_eq!((span.start + span.h) + span.low, span.end);
+        assert_eq!((span.h, span.low), (0.9, -2.7755575615628914e-17));
     }
 }

@@ -26,15 +26,16 @@ pub(crate) fn kick_drift_kick<T: Float, const N: usize, const OUTER: usize, cons
     span: &Span,
     from: &mut Node<T, N>,
 ) -> Node<T, N> {
+    let h = span.length::<T>();
     let mut a = from.start_acceleration(field);
     let mut to = Node { t: span.end, ..*from };
     for i in 0..S {
-        to.v.add(T::from_f64(splitting.outer[i] * span.h), &a);
-        to.q.add(T::from_f64(splitting.inner[i] * span.h), &to.v.high);
+        to.v.add(T::from_f64(splitting.outer[i]) * h, &a);
+        to.q.add(T::from_f64(splitting.inner[i]) * h, &to.v.high);
         let (t, side) = span.at(splitting.times[i]);
         a = field.at(t, side, &to.q.high, &to.v.high);
     }
-    to.v.add(T::from_f64(splitting.outer[S] * span.h), &a);
+    to.v.add(T::from_f64(splitting.outer[S]) * h, &a);
     to.a = Some(a);
     to
 }
@@ -47,14 +48,15 @@ pub(crate) fn drift_kick_drift<T: Float, const N: usize, const OUTER: usize, con
     span: &Span,
     from: &Node<T, N>,
 ) -> Node<T, N> {
+    let h = span.length::<T>();
     let mut to = Node { t: span.end, a: None, ..*from };
     for i in 0..S {
-        to.q.add(T::from_f64(splitting.outer[i] * span.h), &to.v.high);
+        to.q.add(T::from_f64(splitting.outer[i]) * h, &to.v.high);
         let (t, side) = span.at(splitting.times[i]);
         let a = field.at(t, side, &to.q.high, &to.v.high);
-        to.v.add(T::from_f64(splitting.inner[i] * span.h), &a);
+        to.v.add(T::from_f64(splitting.inner[i]) * h, &a);
     }
-    to.q.add(T::from_f64(splitting.outer[S] * span.h), &to.v.high);
+    to.q.add(T::from_f64(splitting.outer[S]) * h, &to.v.high);
     to
 }
 

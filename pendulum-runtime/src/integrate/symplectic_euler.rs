@@ -43,7 +43,7 @@ impl Method for SymplecticEuler {
 impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for SymplecticEuler {
     #[inline]
     fn step(&self, field: &mut impl Field<S, N>, span: &Span, from: &mut Node<S::Scalar, N>, (): &mut ()) -> Node<S::Scalar, N> {
-        let h = S::Scalar::from_f64(span.h);
+        let h = span.length::<S::Scalar>();
         let a = from.start_acceleration(field);
         let mut to = Node { t: span.end, a: None, ..*from };
         to.v.add(h, &a);

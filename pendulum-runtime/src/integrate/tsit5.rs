@@ -69,7 +69,7 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Tsit5 {
         to: &mut Node<S::Scalar, N>,
         k: &mut Slopes<S::Scalar, N, 7>,
     ) -> Piece<S::Scalar, N> {
-        let h = S::Scalar::from_f64(span.h);
+        let h = span.length::<S::Scalar>();
         let mut piece = Piece::hermite(span, from, to, &k.a[0], &k.a[6]);
         let (q, v) = k.weighted(D);
         piece.q[3] = q.map(|sum| h * sum);

@@ -1,10 +1,12 @@
 //! The scalars that generated code runs on.
 
+mod double_double;
 mod dual;
 mod float;
 mod lanes;
 mod trig;
 
+pub use double_double::{DoubleDouble, ParseError};
 pub use dual::Dual;
 pub use lanes::{Lane, Lanes};
 
