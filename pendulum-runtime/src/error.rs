@@ -74,6 +74,13 @@ pub enum Error {
         /// The number allowed.
         max_steps: u64,
     },
+    /// The function of an event gives something that is not a number.
+    Event {
+        /// The time at which it was evaluated.
+        t: f64,
+        /// The index of the event in the list given.
+        event: usize,
+    },
     /// A motion says that its next kink after a time is not after it.
     Kink {
         /// The time asked about.
@@ -184,6 +191,10 @@ impl fmt::Display for Error {
             Self::MaxSteps { t, max_steps } => write!(
                 f,
                 "{max_steps} steps do not suffice from t = {t:?}; raise `max_steps`, loosen the tolerances or lengthen the step"
+            ),
+            Self::Event { t, event } => write!(
+                f,
+                "at t = {t:?} the function of event {event} gives something that is not a number; it has to be defined wherever the motion goes"
             ),
             Self::Kink { t, kink } => {
                 write!(

@@ -6,7 +6,7 @@ use super::node::Node;
 use super::piece::Piece;
 use super::runge_kutta::{Row, Slopes};
 use super::span::Span;
-use crate::real::{Float, Real};
+use crate::real::Float;
 use crate::system::System;
 
 /// The explicit Runge–Kutta method of order 8 of Dormand and Prince with error estimates of orders 5 and 3: twelve evaluations a

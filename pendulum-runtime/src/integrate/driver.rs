@@ -5,7 +5,7 @@ use super::field::{Counted, coordinate, first_in_inputs, first_in_state};
 use super::method::{Method, Suits};
 use super::node::Node;
 use super::piece::Piece;
-use super::solution::Stats;
+use super::solution::{State, Stats};
 use super::span::Span;
 use crate::error::{Error, Part};
 use crate::motion::Side;
@@ -24,6 +24,8 @@ pub(crate) struct Driver<T: Float, const N: usize, M: Method, C> {
     /// The last step and the node at its start; nothing before the first step.
     last: Option<Span>,
     from: Node<T, N>,
+    /// The motion within it, once somebody has asked.
+    within: Option<Piece<T, N>>,
     /// The node at its end before the kink, if it ended on one.
     before_kink: Option<Node<T, N>>,
     stages: M::Stages<T, N>,
@@ -47,7 +49,7 @@ impl<T: Float, const N: usize, M: Method, C> Driver<T, N, M, C> {
         let kink = next_kink(dynamics, t)?;
         let stats = Stats::new(M::NAME);
         let (stages, memory) = (M::stages(), Memory::default());
-        Ok(Self { method, control, node, stats, last: None, from: node, before_kink: None, stages, memory, kink })
+        Ok(Self { method, control, node, stats, last: None, from: node, within: None, before_kink: None, stages, memory, kink })
     }
 
     /// Puts the state elsewhere; counters and step size stay.
@@ -55,14 +57,14 @@ impl<T: Float, const N: usize, M: Method, C> Driver<T, N, M, C> {
         check_start::<D, T, N>(t, &q, &v)?;
         self.kink = next_kink(dynamics, t)?;
         self.node = Node::new(Time::new(t), q, v);
-        (self.last, self.before_kink) = (None, None);
+        (self.last, self.within, self.before_kink) = (None, None, None);
         Ok(())
     }
 
     /// The same integration under another control.
     pub(crate) fn controlled<B>(self, control: B) -> Driver<T, N, M, B> {
-        let Self { method, node, stats, last, from, before_kink, stages, kink, .. } = self;
-        Driver { method, control, node, stats, last, from, before_kink, stages, memory: Memory::default(), kink }
+        let Self { method, node, stats, last, from, within, before_kink, stages, kink, .. } = self;
+        Driver { method, control, node, stats, last, from, within, before_kink, stages, memory: Memory::default(), kink }
     }
 
     /// Takes one step towards `target`, which may be infinite, and over a kink if it ends on one.
@@ -96,7 +98,7 @@ impl<T: Float, const N: usize, M: Method, C> Driver<T, N, M, C> {
         } else if self.before_kink.is_some() {
             self.before_kink = None;
         }
-        self.last = Some(span);
+        (self.last, self.within) = (Some(span), None);
         self.from = from;
         self.node = to;
         Ok(())
@@ -108,11 +110,50 @@ impl<T: Float, const N: usize, M: Method, C> Driver<T, N, M, C> {
         M: Suits<D::System, N>,
     {
         let span = self.last.as_ref()?;
+        if self.within.is_some() {
+            return self.within;
+        }
         let to = self.before_kink.as_mut().unwrap_or(&mut self.node);
         let mut field = Counted::new(dynamics);
         let piece = self.method.dense(&mut field, span, &mut self.from, to, &mut self.stages);
         self.stats.evaluations += field.evaluations;
-        Some(piece)
+        self.within = Some(piece);
+        self.within
+    }
+
+    /// The accelerations at the state reached; the next step begins with them.
+    pub(crate) fn accelerations<D: Dynamics<N, Scalar = T>>(&mut self, dynamics: &D) -> [T; N] {
+        let mut field = Counted::new(dynamics);
+        let a = self.node.start_acceleration(&mut field);
+        self.stats.evaluations += field.evaluations;
+        a
+    }
+
+    /// The end of the last step; if that was on a kink, the states on both sides.
+    pub(crate) fn ends(&self) -> (Node<T, N>, Option<Node<T, N>>) {
+        self.before_kink.map_or((self.node, None), |before| (before, Some(self.node)))
+    }
+
+    /// Ends the last step at a state within.
+    pub(crate) fn cut(&mut self, t: Time, state: &State<T, N>) {
+        self.uncross();
+        self.node = Node::new(t, state.q, state.v);
+    }
+
+    /// Takes the last step back.
+    pub(crate) fn retreat(&mut self) {
+        self.uncross();
+        self.node = self.from;
+        (self.last, self.within) = (None, None);
+    }
+
+    /// Forgets that the last step ended on a kink, and the plan that led there.
+    fn uncross(&mut self) {
+        self.memory.left = 0;
+        if let Some(before) = self.before_kink.take() {
+            self.kink = before.t.to_f64();
+            self.stats.kinks -= 1;
+        }
     }
 
     /// The state just before a kink, if the last step has ended on one.

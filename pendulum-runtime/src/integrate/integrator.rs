@@ -3,9 +3,11 @@
 use super::adaptive_step::AdaptiveStep;
 use super::control::Control;
 use super::driver::Driver;
+use super::event::{Event, Occurrence};
 use super::method::{Method, Suits};
 use super::piece::Piece;
 use super::solution::{State, Stats};
+use super::watch::Watch;
 use crate::error::Error;
 use crate::real::Float;
 use crate::system::{Dynamics, Prepared, System};
@@ -21,6 +23,10 @@ where
 {
     dynamics: Prepared<'a, D, <D::System as System<N>>::Prepared>,
     driver: Driver<D::Scalar, N, M, C>,
+    watch: Watch<'a, D::Scalar, N>,
+    /// What happened in the last call.
+    found: Vec<Occurrence<D::Scalar, N>>,
+    terminal: Option<usize>,
     max_steps: u64,
 }
 
@@ -37,7 +43,8 @@ where
         M: Suits<D::System, N>,
     {
         let dynamics = Prepared::new(dynamics);
-        Ok(Self { dynamics, driver: Driver::new(&dynamics, method, AdaptiveStep::new(), t, q, v)?, max_steps: 10_000_000 })
+        let driver = Driver::new(&dynamics, method, AdaptiveStep::new(), t, q, v)?;
+        Ok(Self { dynamics, driver, watch: Watch::new(&[]), found: Vec::new(), terminal: None, max_steps: 10_000_000 })
     }
 }
 
@@ -49,8 +56,22 @@ where
     /// Chooses the steps otherwise: with a [`FixedStep`](super::FixedStep) or an [`AdaptiveStep`].
     pub fn control<B: Control<M, N>>(self, control: B) -> Result<Integrator<'a, N, D, M, B>, Error> {
         control.check::<D::Scalar>()?;
-        let Self { dynamics, driver, max_steps } = self;
-        Ok(Integrator { dynamics, driver: driver.controlled(control), max_steps })
+        let Self { dynamics, driver, watch, found, terminal, max_steps } = self;
+        Ok(Integrator { dynamics, driver: driver.controlled(control), watch, found, terminal, max_steps })
+    }
+
+    /// Looks for events from here on.
+    ///
+    /// A terminal one ends the step and the call that leads to it, with the state at the event; the next call goes on from there, or from
+    /// where [`reset`](Self::reset) has put the state.
+    pub fn events(mut self, events: &'a [Event<'a, D::Scalar, N>]) -> Result<Self, Error>
+    where
+        M: Suits<D::System, N>,
+        C: Control<M, N>,
+    {
+        self.watch = Watch::new(events);
+        self.watch.begin(&mut self.driver, &self.dynamics)?;
+        Ok(self)
     }
 
     /// The number of steps that one call of [`advance_to`](Self::advance_to) may take; ten million without this call.
@@ -66,10 +87,24 @@ where
         M: Suits<D::System, N>,
         C: Control<M, N>,
     {
-        self.driver.step(&self.dynamics, f64::INFINITY)
+        self.found.clear();
+        self.step_towards(f64::INFINITY)
     }
 
-    /// Takes steps until the time is exactly `t`.
+    #[inline]
+    fn step_towards(&mut self, target: f64) -> Result<(), Error>
+    where
+        M: Suits<D::System, N>,
+        C: Control<M, N>,
+    {
+        let event = self.watch.next_time();
+        self.driver.step(&self.dynamics, if event < target { event } else { target })?;
+        self.terminal = self.watch.observe(&mut self.driver, &self.dynamics)?;
+        self.found.extend_from_slice(self.watch.found());
+        Ok(())
+    }
+
+    /// Takes steps until the time is exactly `t`, or a terminal event has happened.
     pub fn advance_to(&mut self, t: f64) -> Result<(), Error>
     where
         M: Suits<D::System, N>,
@@ -80,18 +115,35 @@ where
         }
         let steps = |stats: &Stats| stats.accepted + stats.rejected;
         let before = steps(&self.driver.stats);
-        while self.t() < t {
+        self.found.clear();
+        self.terminal = None;
+        while self.t() < t && self.terminal.is_none() {
             if self.max_steps <= steps(&self.driver.stats) - before {
                 return Err(Error::MaxSteps { t: self.t(), max_steps: self.max_steps });
             }
-            self.driver.step(&self.dynamics, t)?;
+            self.step_towards(t)?;
         }
         Ok(())
     }
 
     /// Puts the state elsewhere, or the same state to another time.
-    pub fn reset(&mut self, t: f64, q: [D::Scalar; N], v: [D::Scalar; N]) -> Result<(), Error> {
-        self.driver.reset(&self.dynamics, t, q, v)
+    pub fn reset(&mut self, t: f64, q: [D::Scalar; N], v: [D::Scalar; N]) -> Result<(), Error>
+    where
+        M: Suits<D::System, N>,
+        C: Control<M, N>,
+    {
+        self.driver.reset(&self.dynamics, t, q, v)?;
+        self.watch.begin(&mut self.driver, &self.dynamics)
+    }
+
+    /// The events that happened in the last call of [`step`](Self::step) or [`advance_to`](Self::advance_to), in order.
+    pub fn occurrences(&self) -> &[Occurrence<D::Scalar, N>] {
+        &self.found
+    }
+
+    /// The index of the terminal event that has ended that call.
+    pub fn terminal_event(&self) -> Option<usize> {
+        self.terminal
     }
 
     /// The motion within the last step; `None` before the first.

@@ -129,7 +129,7 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
         let mut to = *from;
         for part in 1..=SUBSTEPS {
             let end = if part == SUBSTEPS { span.end } else { span.start + span.h * part as f64 / SUBSTEPS as f64 };
-            let substep = Span { start: to.t, end, h: span.h / SUBSTEPS as f64 };
+            let substep = Span { start: to.t, end, h: span.h / SUBSTEPS as f64, low: 0.0 };
             to = Dop853.step(field, &substep, &mut to, &mut self.starter);
         }
         let difference = to.q.since(&from.q);

@@ -3,6 +3,7 @@
 use super::control::Control;
 use super::dense::DenseOutput;
 use super::driver::Driver;
+use super::event::{Occurrence, Status};
 use super::method::Suits;
 use super::solution::{Failure, Solution, State, Stats};
 use crate::error::Error;
@@ -76,11 +77,22 @@ pub(crate) struct Recorder<'a, T, const N: usize> {
     t: Vec<f64>,
     q: Vec<[T; N]>,
     v: Vec<[T; N]>,
+    events: Vec<Occurrence<T, N>>,
 }
 
 impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
     pub(crate) fn new(output: Output<'a>, interval: (f64, f64)) -> Self {
-        Self { output, interval, index: 0, next: f64::INFINITY, dense: None, t: Vec::new(), q: Vec::new(), v: Vec::new() }
+        Self {
+            output,
+            interval,
+            index: 0,
+            next: f64::INFINITY,
+            dense: None,
+            t: Vec::new(),
+            q: Vec::new(),
+            v: Vec::new(),
+            events: Vec::new(),
+        }
     }
 
     /// Begins with the state at the start.
@@ -110,6 +122,11 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
             }
             self.push((&driver.node).into());
         }
+    }
+
+    /// Takes in what happened in it.
+    pub(crate) fn events(&mut self, found: &[Occurrence<T, N>]) {
+        self.events.extend_from_slice(found);
     }
 
     /// The states within the step and at its end.
@@ -153,16 +170,16 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
     }
 
     /// The solution that ends with `end`.
-    pub(crate) fn finish(mut self, end: State<T, N>, stats: Stats) -> Solution<T, N> {
+    pub(crate) fn finish(mut self, end: State<T, N>, status: Status, stats: Stats) -> Solution<T, N> {
         if let Output::End = self.output {
             self.push(end);
         }
-        let Self { dense, t, q, v, .. } = self;
-        Solution { t, q, v, end, stats, dense }
+        let Self { dense, t, q, v, events, .. } = self;
+        Solution { t, q, v, end, status, events, stats, dense }
     }
 
     /// The failure that leaves `end` as the last state.
     pub(crate) fn fail(self, error: Error, end: State<T, N>, stats: Stats) -> Failure<T, N> {
-        Failure { error, partial: Box::new(self.finish(end, stats)) }
+        Failure { error, partial: Box::new(self.finish(end, Status::Failed, stats)) }
     }
 }

@@ -139,7 +139,7 @@ impl<T: Float, const N: usize> Linear<T, N> {
             let (four, three, two) = (T::from_f64(4.0), T::from_f64(3.0), T::from_f64(2.0 * part));
             core::array::from_fn(|i| (four * once[i] - twice[i] - three * a[i]) / two)
         };
-        Self { h: T::from_f64(span.h), scale, stiffness, drive, factors }
+        Self { h: span.length::<T>(), scale, stiffness, drive, factors }
     }
 
     /// Computes stage `index` from those before.

@@ -1,6 +1,7 @@
 //! What an integration gives back.
 
 use super::dense::DenseOutput;
+use super::event::{Occurrence, Status};
 use super::node::Node;
 use crate::error::Error;
 use crate::motion::Side;
@@ -36,8 +37,12 @@ pub struct Solution<T, const N: usize> {
     pub q: Vec<[T; N]>,
     /// The velocities at each of them.
     pub v: Vec<[T; N]>,
-    /// The last state reached: where the interval ends, or before the step that failed.
+    /// The last state reached: where the interval ends, at a terminal event, or before the step that failed.
     pub end: State<T, N>,
+    /// Why it ended there.
+    pub status: Status,
+    /// The events that have happened, in order.
+    pub events: Vec<Occurrence<T, N>>,
     /// What it took.
     pub stats: Stats,
     pub(crate) dense: Option<DenseOutput<T, N>>,

@@ -4,10 +4,12 @@ use super::adaptive_step::AdaptiveStep;
 use super::control::Control;
 use super::dop853::Dop853;
 use super::driver::Driver;
+use super::event::{Event, Status};
 use super::fixed_step::FixedStep;
 use super::method::Suits;
 use super::output::{Output, Recorder, ascending};
 use super::solution::{Failure, Solution, State, Stats};
+use super::watch::Watch;
 use crate::error::Error;
 use crate::real::Float;
 use crate::system::{Dynamics, Prepared};
@@ -32,6 +34,7 @@ pub fn solve<const N: usize, D: Dynamics<N>>(
         output: Output::End,
         dense: false,
         stops: &[],
+        events: &[],
         max_steps: 10_000_000,
     }
 }
@@ -49,6 +52,7 @@ pub struct Solve<'a, const N: usize, D: Dynamics<N>, M, C> {
     output: Output<'a>,
     dense: bool,
     stops: &'a [f64],
+    events: &'a [Event<'a, D::Scalar, N>],
     max_steps: u64,
 }
 
@@ -56,8 +60,8 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
     /// Uses another method.
     pub fn method<B: Suits<D::System, N>>(self, method: B) -> Solve<'a, N, D, B, C> {
         let control = self.control;
-        let Self { dynamics, time, q, v, output, dense, stops, max_steps, .. } = self;
-        Solve { dynamics, time, q, v, method, control, output, dense, stops, max_steps }
+        let Self { dynamics, time, q, v, output, dense, stops, events, max_steps, .. } = self;
+        Solve { dynamics, time, q, v, method, control, output, dense, stops, events, max_steps }
     }
 
     /// Takes equal steps of at most `step` seconds, as [`FixedStep`] describes.
@@ -101,6 +105,13 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
         self
     }
 
+    /// Looks for events; a terminal one ends the integration. They are found in [`Solution::events`], and change no step except for known
+    /// times, at which steps end.
+    pub fn events(mut self, events: &'a [Event<'a, D::Scalar, N>]) -> Self {
+        self.events = events;
+        self
+    }
+
     /// The number of steps, rejected ones included, after which the integration fails; ten million without this call.
     pub fn max_steps(mut self, count: u64) -> Self {
         self.max_steps = count;
@@ -108,8 +119,8 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
     }
 
     fn control<B>(self, control: B) -> Solve<'a, N, D, M, B> {
-        let Self { dynamics, time, q, v, method, output, dense, stops, max_steps, .. } = self;
-        Solve { dynamics, time, q, v, method, control, output, dense, stops, max_steps }
+        let Self { dynamics, time, q, v, method, output, dense, stops, events, max_steps, .. } = self;
+        Solve { dynamics, time, q, v, method, control, output, dense, stops, events, max_steps }
     }
 }
 
@@ -162,7 +173,7 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, 
             Err(error) => Err(recorder.fail(error, given, Stats::new(M::NAME))),
             Ok(mut driver) => match self.integrate(&dynamics, &mut driver, &mut recorder) {
                 Err(error) => Err(recorder.fail(error, State::from(&driver.node), driver.stats)),
-                Ok(()) => Ok(recorder.finish(State::from(&driver.node), driver.stats)),
+                Ok(status) => Ok(recorder.finish(State::from(&driver.node), status, driver.stats)),
             },
         }
     }
@@ -172,7 +183,7 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, 
         dynamics: &P,
         driver: &mut Driver<D::Scalar, N, M, C>,
         recorder: &mut Recorder<'_, D::Scalar, N>,
-    ) -> Result<(), Error>
+    ) -> Result<Status, Error>
     where
         P: Dynamics<N, Scalar = D::Scalar, System = D::System>,
         M: Suits<D::System, N>,
@@ -180,16 +191,24 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, 
     {
         let end = self.time.1;
         let mut stops = self.stops.iter().copied().peekable();
+        let mut watch = Watch::new(self.events);
         recorder.begin(State::from(&driver.node), self.dense);
+        watch.begin(driver, dynamics)?;
         while driver.t() < end {
             if self.max_steps <= driver.stats.accepted + driver.stats.rejected {
                 return Err(Error::MaxSteps { t: driver.t(), max_steps: self.max_steps });
             }
             while stops.next_if(|stop| *stop <= driver.t()).is_some() {}
-            driver.step(dynamics, stops.peek().copied().unwrap_or(end))?;
+            let (stop, event) = (stops.peek().copied().unwrap_or(end), watch.next_time());
+            driver.step(dynamics, if event < stop { event } else { stop })?;
+            let terminal = watch.observe(driver, dynamics)?;
             recorder.step(driver, dynamics);
+            recorder.events(watch.found());
+            if let Some(event) = terminal {
+                return Ok(Status::Event(event));
+            }
         }
-        Ok(())
+        Ok(Status::Completed)
     }
 
     fn check(&self) -> Result<(), Error>

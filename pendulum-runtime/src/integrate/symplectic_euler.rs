@@ -6,7 +6,7 @@ use super::method::{Method, Suits};
 use super::node::Node;
 use super::piece::Piece;
 use super::span::Span;
-use crate::real::{Float, Real};
+use crate::real::Float;
 use crate::system::System;
 
 /// The symplectic (semi-implicit) Euler method: order 1, one evaluation a step, fixed step. A baseline, not a recommendation.

@@ -6,7 +6,7 @@ use super::node::Node;
 use super::piece::Piece;
 use super::runge_kutta::{Row, Slopes};
 use super::span::Span;
-use crate::real::{Float, Real};
+use crate::real::Float;
 use crate::system::System;
 
 /// The explicit Runge–Kutta pair of orders 5 and 4 of Tsitouras: six evaluations a step, adaptive.

@@ -16,7 +16,7 @@ pub(super) fn piece<T: Float, const N: usize, const S: usize>(
 ) -> Piece<T, N> {
     let nodes = const { &Tableau::<S>::GAUSS.nodes };
     let mut piece = Piece::linear(span, from, to);
-    let h = T::from_f64(span.h);
+    let h = span.length::<T>();
     let zero = (Condition::Slope(0.0), [T::from_f64(0.0); N]);
     let (mut q, mut v) = ([zero; TERMS], [zero; TERMS]);
     for (j, (&node, stage)) in nodes.iter().zip(stages).enumerate() {

@@ -64,7 +64,7 @@ impl<Y: System<N, Scalar: Float>, const N: usize, const S: usize> Equations<Y, N
         let tableau = const { &Tableau::<S>::GAUSS };
         let stages = tableau.nodes.map(|c| span.at(c));
         Self {
-            h: Real::from_f64(span.h),
+            h: span.length(),
             weights: tableau.weights.map(|b| Real::from_f64(b * span.h)),
             ratios: tableau.ratios.map(|row| row.map(Real::from_f64)),
             times: stages.map(|(t, _)| t),

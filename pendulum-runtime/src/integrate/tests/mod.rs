@@ -3,6 +3,7 @@
 mod accuracy;
 mod energy;
 mod errors;
+mod events;
 mod kinks;
 mod order;
 mod output;

@@ -1,0 +1,175 @@
+//! Roots and dips of a function of one variable.
+
+use crate::real::Float;
+
+/// A point of a function: the argument and the value.
+pub(crate) type Point<T> = (T, T);
+
+/// The root between two points whose values differ in sign, to the last digits.
+///
+/// Chandrupatla (1997), A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function without using derivatives,
+/// Adv. Eng. Softw. 28, 145: inverse quadratic interpolation where it converges, else halving.
+pub(crate) fn root<T: Float, E>(f: &mut impl FnMut(T) -> Result<T, E>, a: Point<T>, b: Point<T>) -> Result<T, E> {
+    let number = T::from_f64;
+    let (zero, half, one) = (number(0.0), number(0.5), number(1.0));
+    let (mut near, mut far) = (b, a);
+    let mut t = half;
+    // Halving alone needs as many steps as there are digits between the ends.
+    for _ in 0..300 {
+        let x = near.0 + t * (far.0 - near.0);
+        let new = (x, f(x)?);
+        let third = if (new.1 < zero) == (near.1 < zero) {
+            near
+        } else {
+            let third = far;
+            far = near;
+            third
+        };
+        near = new;
+        let best = if near.1.abs() < far.1.abs() { near } else { far };
+        let width = (far.0 - near.0).abs();
+        let least = T::EPSILON * (best.0.abs() + T::EPSILON);
+        if best.1 == zero || width <= least + least {
+            return Ok(best.0);
+        }
+        let xi = (near.0 - far.0) / (third.0 - far.0);
+        let phi = (near.1 - far.1) / (third.1 - far.1);
+        let smooth = phi * phi < xi && (one - phi) * (one - phi) < one - xi;
+        t = if smooth {
+            near.1 / (far.1 - near.1) * (third.1 / (far.1 - third.1))
+                + (third.0 - near.0) / (far.0 - near.0) * (near.1 / (third.1 - near.1)) * (far.1 / (third.1 - far.1))
+        } else {
+            half
+        };
+        let margin = least / width;
+        t = if t < margin {
+            margin
+        } else if one - margin < t {
+            one - margin
+        } else {
+            t
+        };
+    }
+    Ok(near.0)
+}
+
+/// What a function that is positive around does in a dip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Dip<T> {
+    /// It stays away from zero.
+    Away,
+    /// It comes as near as the tolerance allows, on either side of zero, here.
+    Touches(T),
+    /// It is negative here, beyond the tolerance.
+    Crosses(T),
+}
+
+/// Looks whether a positive function with a lower point `b` between `a` and `c` comes down to zero there.
+///
+/// The golden section (Kiefer 1953) closes in on the minimum, and gives up as soon as it is clear that it is too high; where the slope is
+/// zero, from differences over four points, is good to twice the digits.
+pub(crate) fn dip<T: Float, E>(
+    f: &mut impl FnMut(T) -> Result<T, E>,
+    [mut a, mut b, mut c]: [Point<T>; 3],
+    tolerance: T,
+) -> Result<Dip<T>, E> {
+    let number = T::from_f64;
+    let zero = number(0.0);
+    let enough = number(1e-3) * (c.0 - a.0);
+    let mut count = 0;
+    while enough < c.0 - a.0 {
+        let right = b.0 - a.0 < c.0 - b.0;
+        let x = b.0 + number(0.381966) * (if right { c.0 } else { a.0 } - b.0);
+        let new = (x, f(x)?);
+        if new.1 < -tolerance {
+            return Ok(Dip::Crosses(x));
+        }
+        (a, b, c) = match (new.1 < b.1, right) {
+            (true, true) => (b, new, c),
+            (true, false) => (a, new, b),
+            (false, true) => (a, b, new),
+            (false, false) => (new, b, c),
+        };
+        count += 1;
+        let rise = a.1.max(c.1) - b.1;
+        if 4 < count && tolerance < b.1 - (rise + rise) {
+            return Ok(Dip::Away);
+        }
+    }
+    if b.1 < -tolerance {
+        return Ok(Dip::Crosses(b.0));
+    }
+    let eta = number(1e-3);
+    let mut slope = |x: T| {
+        let near = f(x + eta)? - f(x - eta)?;
+        let far = f(x + eta + eta)? - f(x - eta - eta)?;
+        Ok(number(8.0) * near - far)
+    };
+    let ends = [(a.0, slope(a.0)?), (c.0, slope(c.0)?)];
+    let mut lowest = b;
+    if ends[0].1 < zero && zero < ends[1].1 {
+        let x = root(&mut slope, ends[0], ends[1])?;
+        lowest = (x, f(x)?.min(b.1));
+    }
+    Ok(if lowest.1 < -tolerance {
+        Dip::Crosses(lowest.0)
+    } else if lowest.1 <= tolerance {
+        Dip::Touches(lowest.0)
+    } else {
+        Dip::Away
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Dip, dip, root};
+    use crate::real::{DoubleDouble, Float, Real};
+
+    fn root_of(f: impl Fn(f64) -> f64, a: f64, b: f64) -> (f64, u32) {
+        let mut count = 0;
+        let mut counted = |x| {
+            count += 1;
+            Ok::<f64, ()>(f(x))
+        };
+        let found = root(&mut counted, (a, f(a)), (b, f(b))).unwrap();
+        (found, count)
+    }
+
+    #[test]
+    fn roots_to_the_last_digit() {
+        let (x, count) = root_of(|x| x * x - 0.5, 0.0, 1.0);
+        assert!((x - core::f64::consts::FRAC_1_SQRT_2).abs() <= 2.3e-16 && count < 12, "{x} {count}");
+        let (x, count) = root_of(|x| (x - 0.3).powi(3), 0.0, 1.0);
+        assert!((x - 0.3).abs() < 1e-5 && count < 100, "{x} {count}");
+        let (x, count) = root_of(|x| if x < 0.7 { -1.0 } else { 1.0 }, 0.0, 1.0);
+        assert!((x - 0.7).abs() <= 2.3e-16 && count < 70, "{x} {count}");
+        let (x, _) = root_of(|x| 1.0 / (x - 0.25), 0.0, 1.0);
+        assert!((x - 0.25).abs() <= 2.3e-16, "{x}");
+        let (x, _) = root_of(|x| x.powi(3) - 1e-60, 0.0, 1.0);
+        assert!((x - 1e-20).abs() < 1e-31, "{x}");
+    }
+
+    #[test]
+    fn roots_in_two_words() {
+        let two = DoubleDouble::from(0.5);
+        let mut f = |x: DoubleDouble| Ok::<_, ()>(x * x - two);
+        let x = root(&mut f, (0.0.into(), (-0.5).into()), (1.0.into(), two)).unwrap();
+        assert!((x - two.sqrt()).abs().to_f64() < 1e-31);
+    }
+
+    fn dip_of(f: impl Fn(f64) -> f64, tolerance: f64) -> Dip<f64> {
+        let mut plain = |x| Ok::<f64, ()>(f(x));
+        dip(&mut plain, [0.0, 0.5, 1.0].map(|x| (x, f(x))), tolerance).unwrap()
+    }
+
+    #[test]
+    fn dips() {
+        let Dip::Touches(x) = dip_of(|x| (x - 0.4) * (x - 0.4) * (1.0 + x), 1e-12) else { panic!("it touches") };
+        assert!((x - 0.4).abs() < 1e-11, "{x}");
+        assert_eq!(dip_of(|x| (x - 0.4) * (x - 0.4) + 1e-6, 1e-12), Dip::Away);
+        assert_eq!(dip_of(|x| (x - 0.4) * (x - 0.4) + 1.0, 1e-12), Dip::Away);
+        assert!(matches!(dip_of(|x| (x - 0.4) * (x - 0.4) - 1e-10, 0.0), Dip::Crosses(x) if (x - 0.4).abs() <= 1e-5));
+        assert!(matches!(dip_of(|x| (x - 0.4) * (x - 0.4) - 1e-13, 1e-12), Dip::Touches(x) if (x - 0.4).abs() <= 1e-6));
+        assert!(matches!(dip_of(|x| (x - 0.4).abs(), 1e-12), Dip::Touches(x) if (x - 0.4).abs() < 1e-12));
+    }
+}
