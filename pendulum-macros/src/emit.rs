@@ -274,10 +274,24 @@ impl Emitter<'_, '_> {
         let written = self.motion.as_ref().is_none_or(|motion| motion.jacobians.is_some());
         let [positions, velocities, parameters] = if written { self.written_jacobians() } else { self.dual_jacobians() };
         let state = quote!(q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs);
+        let inputs = (0..self.model.inputs.len()).map(Literal::usize_unsuffixed);
         quote! {
             #[automatically_derived]
             #[allow(non_snake_case, unused_variables, unused_mut, unused_parens, unreachable_code, clippy::all, clippy::pedantic)]
             impl<#scalar: #krate::real::Real> #krate::system::Jacobians<#count> for #name<#scalar> {
+                type Over<U: #krate::real::Real> = #name<U>;
+
+                fn over<U: #krate::real::Real>(&self, map: impl ::core::ops::FnMut(#scalar) -> U) -> #name<U> {
+                    #krate::system::System::map(self, map)
+                }
+
+                fn inputs_over<U: #krate::real::Real>(
+                    inputs: &Self::Inputs,
+                    map: impl ::core::ops::Fn(#scalar) -> U,
+                ) -> <#name<U> as #krate::system::System<#count>>::Inputs {
+                    (#(inputs.#inputs.map(&map),)*)
+                }
+
                 fn position_jacobian(&self, t: #scalar, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #positions }
 
                 fn velocity_jacobian(&self, t: #scalar, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #velocities }

@@ -11,6 +11,7 @@ pub mod motion;
 pub mod real;
 pub mod system;
 pub mod time;
+pub mod variational;
 
 #[doc(hidden)]
 #[path = "private.rs"]

@@ -186,6 +186,15 @@ pub trait SplitEnergy<const N: usize>: System<N> {
 
 /// The derivatives of the accelerations, from the same expression graph.
 pub trait Jacobians<const N: usize>: System<N> {
+    /// The same system over another scalar, as [`System::With`], with Jacobians too.
+    type Over<U: Real>: Jacobians<N, Scalar = U>;
+
+    /// The same system with every parameter mapped, as [`System::map`] does it.
+    fn over<U: Real>(&self, map: impl FnMut(Self::Scalar) -> U) -> Self::Over<U>;
+
+    /// The samples of the driven inputs with every number mapped.
+    fn inputs_over<U: Real>(inputs: &Self::Inputs, map: impl Fn(Self::Scalar) -> U) -> <Self::Over<U> as System<N>>::Inputs;
+
     /// ∂q̈/∂q, row by acceleration, column by coordinate.
     fn position_jacobian(
         &self,
