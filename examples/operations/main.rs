@@ -27,6 +27,8 @@ mod expand;
 mod expr;
 #[path = "../../pendulum-macros/src/jacobian.rs"]
 mod jacobian;
+#[path = "../../pendulum-macros/src/jet.rs"]
+mod jet;
 #[path = "../../pendulum-macros/src/latex.rs"]
 mod latex;
 #[path = "../../pendulum-macros/src/lower/mod.rs"]

@@ -34,12 +34,13 @@ impl Emitter<'_, '_> {
         let marker = self.marker();
         let staged = self.staged();
         let jacobians = self.jacobians();
+        let jets = self.jets();
         let mirror = mirror::function(self.model.block);
-        quote! { #structure #constructor #system #split #staged #marker #jacobians #mirror }
+        quote! { #structure #constructor #system #split #staged #marker #jacobians #jets #mirror }
     }
 
     /// The scalar's type parameter; another letter if the struct took the usual one.
-    fn scalar(&self) -> Ident {
+    pub(crate) fn scalar(&self) -> Ident {
         format_ident!("{}", if self.model.block.name == "T" { "S" } else { "T" })
     }
 
@@ -52,7 +53,7 @@ impl Emitter<'_, '_> {
         }
     }
 
-    fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.model.coordinates.iter().map(Quantity::count).sum()
     }
 
@@ -395,7 +396,7 @@ impl Emitter<'_, '_> {
     }
 
     /// The statements that lead to `results`, given arrays of values that are known already.
-    fn body_after(&self, program: &Program, results: &[Place], arrays: &[(&str, &[Place])]) -> TokenStream {
+    pub(crate) fn body_after(&self, program: &Program, results: &[Place], arrays: &[(&str, &[Place])]) -> TokenStream {
         let given = |index: usize| {
             arrays.iter().find_map(|(name, places)| {
                 let place = places.iter().position(|place| place.0 == index)?;
@@ -539,7 +540,7 @@ impl Emitter<'_, '_> {
         })
     }
 
-    fn operation(&self, op: &Op, at: impl Fn(Place) -> TokenStream) -> TokenStream {
+    pub(crate) fn operation(&self, op: &Op, at: impl Fn(Place) -> TokenStream) -> TokenStream {
         let scalar = self.scalar();
         let call = |method: &str, place: Place| {
             let (value, method) = (at(place), format_ident!("{method}"));
@@ -784,7 +785,7 @@ fn argument(name: &Ident) -> Ident {
 }
 
 /// A name of ours that no user can write.
-fn local(prefix: &str, index: usize) -> Ident {
+pub(crate) fn local(prefix: &str, index: usize) -> Ident {
     Ident::new(&format!("__{prefix}{index}"), Span::mixed_site())
 }
 

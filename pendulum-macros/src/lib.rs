@@ -10,6 +10,7 @@ mod error;
 mod expand;
 mod expr;
 mod jacobian;
+mod jet;
 mod latex;
 mod lower;
 mod mirror;

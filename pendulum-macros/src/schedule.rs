@@ -148,6 +148,26 @@ impl Program {
         (0..self.ops.len()).filter(worth).map(Place).collect()
     }
 
+    /// The same values, with products by reciprocals for quotients by what parameters alone decide.
+    fn with_reciprocals(self) -> Self {
+        let still = self.still();
+        let mut program = Self::default();
+        let mut moved: Vec<Place> = Vec::with_capacity(self.ops.len());
+        for (index, op) in self.ops.into_iter().enumerate() {
+            let place = match op {
+                Op::Div(a, b) if !still[index] && still[b.0] => {
+                    let one = program.push(Op::Number(Rational::ONE));
+                    let reciprocal = program.push(Op::Div(one, moved[b.0]));
+                    program.push(mul(moved[a.0], reciprocal))
+                }
+                op => program.push(renumber(op, &moved)),
+            };
+            moved.push(place);
+        }
+        program.results = self.results.iter().map(|result| moved[result.0]).collect();
+        program
+    }
+
     fn push(&mut self, op: Op) -> Place {
         if let Some(&place) = self.places.get(&op) {
             return place;
@@ -161,6 +181,16 @@ impl Program {
 
 /// The program that computes `roots`.
 pub(crate) fn program(graph: &Graph, roots: &[Id]) -> Program {
+    scheduled(graph, roots, true)
+}
+
+/// The program whose operations work on series: there sine and cosine cost as much as two products, and a reciprocal is found once.
+pub(crate) fn of_series(graph: &Graph, roots: &[Id]) -> Program {
+    scheduled(graph, roots, false).with_reciprocals()
+}
+
+/// The program; differences of angles may be taken apart.
+fn scheduled(graph: &Graph, roots: &[Id], apart: bool) -> Program {
     let mut angles: BTreeMap<Id, BTreeSet<Function>> = BTreeMap::new();
     for id in graph.reachable(roots) {
         if let Node::Call(function @ (Function::Sin | Function::Cos), argument) = *graph.node(id) {
@@ -178,7 +208,7 @@ pub(crate) fn program(graph: &Graph, roots: &[Id]) -> Program {
         uses: BTreeMap::new(),
     };
     schedule.count_uses(roots);
-    schedule.angles(&angles);
+    schedule.angles(&angles, apart);
     // Children have smaller ids: going up in order keeps the recursion shallow.
     for id in schedule.graph.reachable(roots) {
         if matches!(schedule.graph.node(id), Node::Atom(_) | Node::Call(..)) {
@@ -228,12 +258,13 @@ impl Factor {
 
 impl Schedule<'_> {
     /// Decides how each sine and cosine is computed.
-    fn angles(&mut self, angles: &BTreeMap<Id, BTreeSet<Function>>) {
+    fn angles(&mut self, angles: &BTreeMap<Id, BTreeSet<Function>>, apart: bool) {
         for (&angle, functions) in angles {
             if functions.len() == 2 {
                 self.pairs.insert(angle);
             }
-            if let Node::Sum(terms) = self.graph.node(angle)
+            if apart
+                && let Node::Sum(terms) = self.graph.node(angle)
                 && let [(a, Rational::ONE), (b, sign)] = terms[..]
                 && sign.abs() == Rational::ONE
                 && angles.contains_key(&a)

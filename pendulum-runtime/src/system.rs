@@ -426,17 +426,17 @@ pub trait Dynamics<const N: usize> {
         self.system().power(scalar_time(t), q, v, &inputs)
     }
 
-    /// The velocities just after a kink at `t` from those just before it: the momenta are the same on both sides.
+    /// The velocities beyond a kink at `t` from those on the side `from`: the momenta are the same on both sides.
     ///
     /// Where nothing that the momenta contain jumps, they are the same numbers.
-    fn across_kink(&self, t: Time, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> [Self::Scalar; N] {
-        let before = self.inputs(t, Side::Before, Purpose::Momenta);
-        let after = self.inputs(t, Side::After, Purpose::Momenta);
-        if before == after {
+    fn across_kink(&self, t: Time, from: Side, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> [Self::Scalar; N] {
+        let near = self.inputs(t, from, Purpose::Momenta);
+        let far = self.inputs(t, from.opposite(), Purpose::Momenta);
+        if near == far {
             return *v;
         }
-        let p = self.system().momenta(scalar_time(t), q, v, &before);
-        self.system().velocities(scalar_time(t), q, &p, &after)
+        let p = self.system().momenta(scalar_time(t), q, v, &near);
+        self.system().velocities(scalar_time(t), q, &p, &far)
     }
 }
 
@@ -485,6 +485,11 @@ impl<'a, D, P> Prepared<'a, D, P> {
         D::System: System<N, Prepared = P>,
     {
         Self { dynamics, prepared: dynamics.system().prepare() }
+    }
+
+    /// The dynamics.
+    pub(crate) fn dynamics(&self) -> &'a D {
+        self.dynamics
     }
 }
 

@@ -48,6 +48,11 @@ impl<const D: usize> CatmullRom<D> {
     pub fn looped(self) -> Result<Self, MotionError> {
         Ok(Self(self.0.looped()?))
     }
+
+    /// What it is made of.
+    pub(super) fn pieces(&self) -> &Piecewise<D> {
+        &self.0
+    }
 }
 
 impl<T: Real, const D: usize> Motion<T, D> for CatmullRom<D> {

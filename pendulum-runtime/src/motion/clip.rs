@@ -1,5 +1,6 @@
 //! Motions sampled at a frame rate.
 
+use super::piecewise::Piecewise;
 use super::{CatmullRom, Linear, Motion, MotionError, Orders, Sample, Side, Spline};
 use crate::real::Real;
 use crate::time::Time;
@@ -68,6 +69,15 @@ impl<const D: usize> Clip<D> {
     /// The frames that were kept.
     pub fn frames(&self) -> &[[f64; D]] {
         &self.frames
+    }
+
+    /// What it is made of.
+    pub(super) fn pieces(&self) -> &Piecewise<D> {
+        match &self.curve {
+            Curve::Linear(curve) => curve.pieces(),
+            Curve::CatmullRom(curve) => curve.pieces(),
+            Curve::Spline(curve) => curve.pieces(),
+        }
     }
 
     /// Their times in seconds.

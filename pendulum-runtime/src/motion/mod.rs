@@ -3,6 +3,7 @@
 //! A motion is asked for exactly the derivatives that the equations contain, and says where its kinks are: the times at which
 //! its position, velocity or acceleration jumps. There it has two values, one from each side.
 
+mod analytic;
 mod catmull_rom;
 mod clip;
 mod error;
@@ -18,6 +19,7 @@ mod tests;
 use crate::real::Real;
 use crate::system::{Input, Purpose};
 use crate::time::Time;
+pub use analytic::{Analytic, AnalyticMotions};
 pub use catmull_rom::CatmullRom;
 pub use clip::{Clip, Interpolation};
 pub use error::MotionError;
@@ -75,6 +77,16 @@ pub enum Side {
     Before,
     /// The limit from later times.
     After,
+}
+
+impl Side {
+    /// The other side.
+    pub const fn opposite(self) -> Self {
+        match self {
+            Self::Before => Self::After,
+            Self::After => Self::Before,
+        }
+    }
 }
 
 /// A motion at one time.

@@ -186,21 +186,75 @@ impl<const D: usize> Piecewise<D> {
         }
     }
 
-    pub(super) fn next_kink(&self, t: f64) -> Option<f64> {
-        if !self.looped {
-            let index = self.kinks.partition_point(|&kink| kink <= t);
-            return self.kinks.get(index).copied();
+    /// Coefficients of 1, u, u², u³ of one component in the time u since `t`.
+    pub(super) fn cubic(&self, t: Time, side: Side, component: usize) -> [f64; 4] {
+        match self.place(t, side) {
+            Place::Rest { after } => {
+                let value = if after || self.pieces.is_empty() { self.last } else { self.pieces[0][0] };
+                [value[component], 0.0, 0.0, 0.0]
+            }
+            Place::Piece(piece, u) => {
+                let [a, b, c, d] = self.pieces[piece].map(|coefficient| coefficient[component]);
+                [a + u * (b + u * (c + u * d)), b + u * (2.0 * c + u * (3.0 * d)), c + u * (3.0 * d), d]
+            }
         }
-        if self.kinks.is_empty() || !t.is_finite() {
+    }
+
+    pub(super) fn next_kink(&self, t: f64) -> Option<f64> {
+        self.next(&self.kinks, t)
+    }
+
+    /// The last kink before `t`.
+    pub(super) fn last_kink(&self, t: f64) -> Option<f64> {
+        self.last(&self.kinks, t)
+    }
+
+    /// The first key after `t`.
+    pub(super) fn next_key(&self, t: f64) -> Option<f64> {
+        self.next(&self.times, t)
+    }
+
+    /// The last key before `t`.
+    pub(super) fn last_key(&self, t: f64) -> Option<f64> {
+        self.last(&self.times, t)
+    }
+
+    /// The first of `times`, which repeat with the curve, after `t`.
+    fn next(&self, times: &[f64], t: f64) -> Option<f64> {
+        if !self.looped {
+            let index = times.partition_point(|&time| time <= t);
+            return times.get(index).copied();
+        }
+        if times.is_empty() || !t.is_finite() {
             return None;
         }
         let turns = self.turns(Time::new(t));
-        // A kink that rounds to the time asked for has been passed.
+        // A time that rounds to the one asked for has been passed.
         let slack = 4.0 * f64::EPSILON * (t.abs() + self.period());
         for turn in [turns - 1.0, turns, turns + 1.0, turns + 2.0] {
-            let later = self.kinks.iter().map(|&kink| kink + turn * self.period()).find(|&kink| t + slack < kink);
+            let later = times.iter().map(|&time| time + turn * self.period()).find(|&time| t + slack < time);
             if later.is_some() {
                 return later;
+            }
+        }
+        None
+    }
+
+    /// The last of `times`, which repeat with the curve, before `t`.
+    fn last(&self, times: &[f64], t: f64) -> Option<f64> {
+        if !self.looped {
+            let index = times.partition_point(|&time| time < t);
+            return times.get(index.checked_sub(1)?).copied();
+        }
+        if times.is_empty() || !t.is_finite() {
+            return None;
+        }
+        let turns = self.turns(Time::new(t));
+        let slack = 4.0 * f64::EPSILON * (t.abs() + self.period());
+        for turn in [turns + 1.0, turns, turns - 1.0, turns - 2.0] {
+            let before = times.iter().rev().map(|&time| time + turn * self.period()).find(|&time| time < t - slack);
+            if before.is_some() {
+                return before;
             }
         }
         None

@@ -56,6 +56,11 @@ impl<const D: usize> Spline<D> {
         Ok(Self(Self::through(times, &values, &Ends::Periodic).0.looped()?.smooth()))
     }
 
+    /// What it is made of.
+    pub(super) fn pieces(&self) -> &Piecewise<D> {
+        &self.0
+    }
+
     fn through(times: &[f64], values: &[[f64; D]], ends: &Ends<D>) -> Self {
         let velocities = velocities(times, values, ends);
         let slopes: Vec<_> = velocities.windows(2).map(|pair| [pair[0], pair[1]]).collect();

@@ -1,0 +1,71 @@
+//! A block of the mass matrix, factored once for all orders.
+
+use crate::real::Real;
+
+/// M = L D Lᵀ of a symmetric positive definite matrix.
+#[derive(Clone, Copy, Debug)]
+pub struct Factors<T, const B: usize> {
+    /// The unit lower triangle, below the diagonal.
+    lower: [[T; B]; B],
+    /// The reciprocals of D.
+    reciprocal: [T; B],
+}
+
+impl<T: Real, const B: usize> Factors<T, B> {
+    /// Those of nothing yet.
+    pub fn zero() -> Self {
+        let zero = T::from_f64(0.0);
+        Self { lower: [[zero; B]; B], reciprocal: [zero; B] }
+    }
+
+    /// Those of the matrix with this lower triangle; what stands above its diagonal does not matter.
+    #[inline]
+    pub fn new(mut matrix: [[T; B]; B]) -> Self {
+        let mut reciprocal = [T::from_f64(0.0); B];
+        for j in 0..B {
+            reciprocal[j] = T::from_f64(1.0) / matrix[j][j];
+            for i in (j + 1..B).rev() {
+                let factor = matrix[i][j] * reciprocal[j];
+                for k in j + 1..=i {
+                    let part = factor * matrix[k][j];
+                    matrix[i][k] -= part;
+                }
+                matrix[i][j] = factor;
+            }
+        }
+        Self { lower: matrix, reciprocal }
+    }
+
+    /// The solution x of M x = `right`.
+    #[inline]
+    pub fn solve(&self, mut right: [T; B]) -> [T; B] {
+        for i in 0..B {
+            for k in 0..i {
+                let part = self.lower[i][k] * right[k];
+                right[i] -= part;
+            }
+        }
+        for i in (0..B).rev() {
+            right[i] *= self.reciprocal[i];
+            for k in i + 1..B {
+                let part = self.lower[k][i] * right[k];
+                right[i] -= part;
+            }
+        }
+        right
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Factors;
+
+    #[test]
+    fn an_integer_matrix_is_solved_exactly() {
+        // L = [1; 2 1; −1 3 1], D = (1, 2, 4).
+        let matrix = [[1.0, 0.0, 0.0], [2.0, 6.0, 0.0], [-1.0, 4.0, 23.0]];
+        let x = [3.0, -5.0, 7.0];
+        let right = [1.0 * 3.0 - 2.0 * 5.0 - 7.0, 2.0 * 3.0 - 6.0 * 5.0 + 4.0 * 7.0, -3.0 - 4.0 * 5.0 + 23.0 * 7.0];
+        assert_eq!(Factors::new(matrix).solve(right), x);
+    }
+}

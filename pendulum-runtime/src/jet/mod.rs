@@ -1,0 +1,166 @@
+//! Jets: the Taylor coefficients of a motion, one order after the other.
+//!
+//! `lagrangian!` emits one recurrence for each operation of its equations (Jorba and Zou 2005); the mass matrix is factored once for all
+//! orders. All series are in powers of the time since their start: x(t₀ + h) = Σ x\[k\] hᵏ.
+
+// An order that the compiler knows has to reach every sum.
+#![allow(clippy::inline_always)]
+
+mod dynamics;
+mod factors;
+mod order;
+pub mod series;
+mod sum;
+#[cfg(test)]
+mod tests;
+
+pub use dynamics::JetDynamics;
+pub use factors::Factors;
+pub use order::{Called, Calling, Constant, Looped, Order, Orders, Running, Unrolled};
+
+use crate::real::Real;
+use crate::system::System;
+use core::fmt::Debug;
+
+/// The number of coefficients of a [`Series`].
+pub const LENGTH: usize = 32;
+
+/// The highest order of a jet: the last coefficients of a driven input go into its acceleration.
+pub const MAX_ORDER: usize = LENGTH - 2;
+
+/// The coefficients of one quantity, from the constant one on.
+pub type Series<T> = [T; LENGTH];
+
+/// Two series that are found together, coefficient by coefficient: sine and cosine.
+pub type Pairs<T> = [[T; 2]; LENGTH];
+
+/// A system whose equations come as Taylor recurrences; `lagrangian!` implements it.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no Taylor recurrences",
+    label = "`Taylor` needs the jets that `lagrangian!` emits",
+    note = "systems written by hand can use `Dop853`"
+)]
+pub trait Jets<const N: usize>: System<N> {
+    /// The series of the values between the state and the accelerations.
+    type Work: Clone + Debug;
+    /// The series of the driven inputs, component by component.
+    type Drive: Clone + Debug + AsMut<[InputSeries<Self::Scalar>]>;
+    /// How the orders are gone through: [`Unrolled`] for short equations, [`Looped`] for others, [`Called`] for long ones.
+    type Orders: Orders;
+
+    /// Room for the work, with what parameters alone decide.
+    fn work(&self) -> Self::Work;
+
+    /// Room for the series of the driven inputs.
+    fn drive() -> Self::Drive;
+
+    /// The coefficients q̈\[k\] of the accelerations into `path.a`, from those of q and q̇ up to the same order k.
+    ///
+    /// The orders before have to be done.
+    fn coefficient<O: Order>(&self, order: O, path: &mut Path<Self::Scalar, N>, drive: &Self::Drive, work: &mut Self::Work);
+}
+
+/// The series of a motion.
+#[derive(Clone, Debug)]
+pub struct Path<T, const N: usize> {
+    /// The time at which it starts.
+    pub t: T,
+    /// The coordinates.
+    pub q: [Series<T>; N],
+    /// The velocities.
+    pub v: [Series<T>; N],
+    /// The accelerations.
+    pub a: [Series<T>; N],
+    /// The reciprocals of the numbers 1, 2, …; the first entry means nothing.
+    pub reciprocals: Series<T>,
+}
+
+impl<T: Real, const N: usize> Path<T, N> {
+    /// All zero.
+    pub fn new() -> Self {
+        let zero = [zero(); N];
+        let reciprocals = core::array::from_fn(|k| T::ratio(1.0, if k == 0 { 1.0 } else { k as f64 }));
+        Self { t: T::from_f64(0.0), q: zero, v: zero, a: zero, reciprocals }
+    }
+
+    /// The coefficients of q and q̇ after the order k from the accelerations of that order: ẋ = y is (k+1) x\[k+1\] = y\[k\].
+    #[inline(always)]
+    pub fn integrate<O: Order>(&mut self, order: O) {
+        let k = order.index();
+        if matches!(k, 2 | 4 | 5) {
+            // As in `series::over`.
+            let next = T::from_f64((k + 1) as f64);
+            for i in 0..N {
+                self.q[i][k + 1] = self.v[i][k] / next;
+                self.v[i][k + 1] = self.a[i][k] / next;
+            }
+            return;
+        }
+        let reciprocal = self.reciprocals[k + 1];
+        for i in 0..N {
+            self.q[i][k + 1] = self.v[i][k] * reciprocal;
+            self.v[i][k + 1] = self.a[i][k] * reciprocal;
+        }
+    }
+}
+
+impl<T: Real, const N: usize> Default for Path<T, N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The series of one component of a driven input.
+#[derive(Clone, Copy, Debug)]
+pub struct InputSeries<T> {
+    /// x.
+    pub position: Series<T>,
+    /// ẋ.
+    pub velocity: Series<T>,
+    /// ẍ.
+    pub acceleration: Series<T>,
+}
+
+impl<T: Real> InputSeries<T> {
+    /// All zero.
+    pub fn zero() -> Self {
+        Self { position: zero(), velocity: zero(), acceleration: zero() }
+    }
+
+    /// Velocity and acceleration from the position, for the coefficients below `count`.
+    pub fn differentiate(&mut self, count: usize) {
+        for k in 0..count.min(MAX_ORDER) {
+            self.velocity[k] = self.position[k + 1] * T::from_f64((k + 1) as f64);
+            self.acceleration[k] = self.position[k + 2] * T::from_f64(((k + 1) * (k + 2)) as f64);
+        }
+    }
+}
+
+/// The series that is zero.
+pub fn zero<T: Real>() -> Series<T> {
+    [T::from_f64(0.0); LENGTH]
+}
+
+/// What generated code works in: `W` series, `Q` pairs of series, `P` numbers that parameters alone decide, `L` numbers that each step finds once, and the
+/// factors of the blocks of the mass matrix.
+#[derive(Clone, Debug)]
+pub struct Work<T, F, const W: usize, const Q: usize, const P: usize, const L: usize> {
+    /// The series of values that products and functions read.
+    pub series: [Series<T>; W],
+    /// Sines and cosines.
+    pub pairs: [Pairs<T>; Q],
+    /// What parameters alone decide.
+    pub still: [T; P],
+    /// What the leading coefficients decide: reciprocals and signs.
+    pub leading: [T; L],
+    /// The mass matrix at the start of the step.
+    pub factors: F,
+}
+
+impl<T: Real, F, const W: usize, const Q: usize, const P: usize, const L: usize> Work<T, F, W, Q, P, L> {
+    /// Nothing computed but `still`.
+    pub fn new(still: [T; P], factors: F) -> Self {
+        let zero_number = T::from_f64(0.0);
+        Self { series: [zero(); W], pairs: [[[zero_number; 2]; LENGTH]; Q], still, leading: [zero_number; L], factors }
+    }
+}

@@ -1,0 +1,154 @@
+//! The order of a coefficient, as a constant or as a number at run time.
+
+use super::{Jets, LENGTH, MAX_ORDER, Pairs, Path, Series, sum};
+use crate::real::Real;
+
+/// The index k of the coefficient that is computed, and the sums of products up to it.
+pub trait Order: Copy {
+    /// As a number below [`LENGTH`].
+    fn index(self) -> usize;
+
+    /// Σ a\[j\] b\[k−j\] over 0 < j < k, for k > 1.
+    fn inner<T: Real>(self, a: &Series<T>, b: &Series<T>) -> T;
+
+    /// Σ a\[j−S\] p\[k−j\] over 1 ≤ j ≤ k, for both series of the pair p and k > 0.
+    fn both<T: Real, const S: usize>(self, a: &Series<T>, pairs: &Pairs<T>) -> [T; 2];
+
+    /// Σ a\[j\] a\[k−j\] over 0 < j < k/2, for k > 2.
+    fn half<T: Real>(self, a: &Series<T>) -> T;
+}
+
+/// An order that the compiler knows: it unrolls every sum.
+#[derive(Clone, Copy, Debug)]
+pub struct Constant<const K: usize>;
+
+/// An order that is known at run time: every sum is a loop in its place.
+#[derive(Clone, Copy, Debug)]
+pub struct Running(usize);
+
+/// An order that is known at run time: every sum is a call.
+#[derive(Clone, Copy, Debug)]
+pub struct Calling(usize);
+
+impl Running {
+    /// The order `index`, below [`LENGTH`].
+    pub const fn new(index: usize) -> Self {
+        Self(index)
+    }
+}
+
+impl Calling {
+    /// The order `index`, below [`LENGTH`].
+    pub const fn new(index: usize) -> Self {
+        Self(index)
+    }
+}
+
+macro_rules! orders {
+    ($($(#[$inline:meta])? [$($parameter:tt)*] $order:ty, |$this:ident| $index:expr;)+) => {$(
+        impl<$($parameter)*> Order for $order {
+            #[inline(always)]
+            fn index(self) -> usize {
+                let $this = self;
+                $index
+            }
+
+            $(#[$inline])?
+            fn inner<T: Real>(self, a: &Series<T>, b: &Series<T>) -> T {
+                sum::inner(a, b, self.index())
+            }
+
+            $(#[$inline])?
+            fn both<T: Real, const S: usize>(self, a: &Series<T>, pairs: &Pairs<T>) -> [T; 2] {
+                sum::both::<T, S>(a, pairs, self.index())
+            }
+
+            $(#[$inline])?
+            fn half<T: Real>(self, a: &Series<T>) -> T {
+                sum::half(a, self.index())
+            }
+        }
+    )+};
+}
+
+orders! {
+    #[inline(always)] [const K: usize] Constant<K>, |_order| K;
+    // The remainder has no effect, but the compiler then knows that no series is left.
+    #[inline(always)] [] Running, |order| order.0 % LENGTH;
+    #[inline(never)] [] Calling, |order| order.0 % LENGTH;
+}
+
+/// A way to go through the orders of a jet.
+pub trait Orders {
+    /// The coefficients of q and q̇ up to `order`, at most [`MAX_ORDER`], from the leading ones.
+    fn run<S: Jets<N>, const N: usize>(
+        system: &S,
+        order: usize,
+        path: &mut Path<S::Scalar, N>,
+        drive: &S::Drive,
+        work: &mut S::Work,
+    );
+}
+
+/// One piece of code for each order: fastest for short equations.
+#[derive(Clone, Copy, Debug)]
+pub struct Unrolled;
+
+/// One piece of code for all orders.
+#[derive(Clone, Copy, Debug)]
+pub struct Looped;
+
+/// One piece of code for all orders and for all products: smallest, for long equations.
+#[derive(Clone, Copy, Debug)]
+pub struct Called;
+
+impl Orders for Looped {
+    fn run<S: Jets<N>, const N: usize>(
+        system: &S,
+        order: usize,
+        path: &mut Path<S::Scalar, N>,
+        drive: &S::Drive,
+        work: &mut S::Work,
+    ) {
+        for k in 0..order.min(MAX_ORDER) {
+            system.coefficient(Running(k), path, drive, work);
+            path.integrate(Running(k));
+        }
+    }
+}
+
+impl Orders for Called {
+    fn run<S: Jets<N>, const N: usize>(
+        system: &S,
+        order: usize,
+        path: &mut Path<S::Scalar, N>,
+        drive: &S::Drive,
+        work: &mut S::Work,
+    ) {
+        for k in 0..order.min(MAX_ORDER) {
+            system.coefficient(Calling(k), path, drive, work);
+            path.integrate(Calling(k));
+        }
+    }
+}
+
+impl Orders for Unrolled {
+    fn run<S: Jets<N>, const N: usize>(
+        system: &S,
+        order: usize,
+        path: &mut Path<S::Scalar, N>,
+        drive: &S::Drive,
+        work: &mut S::Work,
+    ) {
+        macro_rules! each {
+            ($($k:literal)+) => {$(
+                if order <= $k {
+                    return;
+                }
+                system.coefficient(Constant::<$k>, path, drive, work);
+                path.integrate(Constant::<$k>);
+            )+};
+        }
+        each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29);
+    }
+}

@@ -1,0 +1,211 @@
+//! The recurrences: the next coefficient of a function of series.
+//!
+//! Here k is the order, x\[j\] a coefficient and `rate` a series of j x\[j\]. Products sum their newest terms last, so that the older ones are
+//! ready before the newest coefficients arrive. Sources: Moore (1966), Interval Analysis; Jorba and Zou (2005), Exp. Math. 14, 99;
+//! Griewank and Walther (2008), Evaluating Derivatives, table 13.2.
+
+use super::{Order, Pairs, Path, Series};
+use crate::real::Real;
+
+/// `value` at order 0 and nothing after it: the series of a constant.
+#[inline(always)]
+pub fn constant<T: Real, O: Order>(value: T, order: O) -> T {
+    if order.index() == 0 { value } else { T::from_f64(0.0) }
+}
+
+/// The series of the time.
+#[inline(always)]
+pub fn time<T: Real, O: Order>(t: T, order: O) -> T {
+    match order.index() {
+        0 => t,
+        1 => T::from_f64(1.0),
+        _ => T::from_f64(0.0),
+    }
+}
+
+/// k x\[k\].
+#[inline(always)]
+pub fn rate<T: Real, O: Order>(x: T, order: O) -> T {
+    T::from_f64(order.index() as f64) * x
+}
+
+/// x/k. The first orders are divided: the same rounding error of ⅓ in every step would add up.
+#[inline(always)]
+pub fn over<T: Real, O: Order>(x: T, reciprocals: &Series<T>, order: O) -> T {
+    let k = order.index();
+    if matches!(k, 3 | 5 | 6) { x / T::from_f64(k as f64) } else { x * reciprocals[k] }
+}
+
+/// a b: Σ a\[j\] b\[k−j\].
+#[inline(always)]
+pub fn product<T: Real, O: Order>(a: &Series<T>, b: &Series<T>, order: O) -> T {
+    let k = order.index();
+    if k == 0 {
+        return a[0] * b[0];
+    }
+    let newest = a[0] * b[k] + a[k] * b[0];
+    if k == 1 { newest } else { order.inner(a, b) + newest }
+}
+
+/// a²: each product once.
+#[inline(always)]
+pub fn square<T: Real, O: Order>(a: &Series<T>, order: O) -> T {
+    let k = order.index();
+    if k == 0 {
+        return a[0] * a[0];
+    }
+    let newest = a[0] * a[k];
+    if k == 1 {
+        return newest + newest;
+    }
+    doubled(a, order) + (newest + newest)
+}
+
+/// Σ a\[j\] b\[k−j\] from j = 1 on: a product without what is not known yet of b, or an integrand; zero at order 0.
+#[inline(always)]
+pub fn behind<T: Real, O: Order>(a: &Series<T>, b: &Series<T>, order: O) -> T {
+    match order.index() {
+        0 => T::from_f64(0.0),
+        1 => a[1] * b[0],
+        k => order.inner(a, b) + a[k] * b[0],
+    }
+}
+
+/// The quotient of a number and a series: `a` is the coefficient of the numerator, `own` the quotient so far.
+#[inline(always)]
+pub fn quotient<T: Real, O: Order>(a: T, b: &Series<T>, own: &Series<T>, leading: &mut T, order: O) -> T {
+    if order.index() == 0 {
+        *leading = T::from_f64(1.0) / b[0];
+        return a / b[0];
+    }
+    (a - behind(b, own, order)) * *leading
+}
+
+/// √a, where `a` is the coefficient of the radicand.
+#[inline(always)]
+pub fn sqrt<T: Real, O: Order>(a: T, own: &Series<T>, leading: &mut T, order: O) -> T {
+    let k = order.index();
+    if k == 0 {
+        let root = a.sqrt();
+        *leading = T::from_f64(0.5) / root;
+        return root;
+    }
+    if k == 1 { a * *leading } else { (a - doubled(own, order)) * *leading }
+}
+
+/// a to a constant power: k a\[0\] p\[k\] = Σ (power (k−j) − j) a\[k−j\] p\[j\] over j < k.
+#[inline(always)]
+pub fn power<T: Real, O: Order>(
+    a: &Series<T>,
+    exponent: T,
+    own: &Series<T>,
+    leading: &mut T,
+    reciprocals: &Series<T>,
+    order: O,
+) -> T {
+    let k = order.index();
+    if k == 0 {
+        *leading = T::from_f64(1.0) / a[0];
+        return a[0].powf(exponent);
+    }
+    let top = T::from_f64(k as f64) * exponent;
+    let step = exponent + T::from_f64(1.0);
+    let mut sum = T::from_f64(0.0);
+    for j in 1..k {
+        sum += (top - T::from_f64(j as f64) * step) * (a[k - j] * own[j]);
+    }
+    (sum + top * (a[k] * own[0])) * (*leading * reciprocals[k])
+}
+
+/// y with ẏ = w ẋ: `start` at order 0, then (1/k) Σ j x\[j\] w\[k−j\].
+#[inline(always)]
+pub fn integral<T: Real, O: Order>(
+    start: impl FnOnce() -> T,
+    rate: &Series<T>,
+    w: &Series<T>,
+    reciprocals: &Series<T>,
+    order: O,
+) -> T {
+    let k = order.index();
+    if k == 0 { start() } else { over(behind(rate, w, order), reciprocals, order) }
+}
+
+/// sin x and cos x together.
+#[inline(always)]
+pub fn sin_cos<T: Real, O: Order>(x: T, rate: &Series<T>, own: &Pairs<T>, reciprocals: &Series<T>, order: O) -> [T; 2] {
+    let k = order.index();
+    if k == 0 {
+        let (sin, cos) = x.sin_cos();
+        return [sin, cos];
+    }
+    let [with_sin, with_cos] = order.both::<T, 0>(rate, own);
+    [over(with_cos, reciprocals, order), -over(with_sin, reciprocals, order)]
+}
+
+/// sin q and cos q of a coordinate, whose rate is its velocity.
+#[inline(always)]
+pub fn sin_cos_of_coordinate<T: Real, O: Order, const N: usize>(
+    path: &Path<T, N>,
+    coordinate: usize,
+    own: &Pairs<T>,
+    order: O,
+) -> [T; 2] {
+    let k = order.index();
+    if k == 0 {
+        let (sin, cos) = path.q[coordinate][0].sin_cos();
+        return [sin, cos];
+    }
+    let [with_sin, with_cos] = order.both::<T, 1>(&path.v[coordinate], own);
+    [over(with_cos, &path.reciprocals, order), -over(with_sin, &path.reciprocals, order)]
+}
+
+/// sinh x and cosh x together.
+#[inline(always)]
+pub fn sinh_cosh<T: Real, O: Order>(x: T, rate: &Series<T>, own: &Pairs<T>, reciprocals: &Series<T>, order: O) -> [T; 2] {
+    let k = order.index();
+    if k == 0 {
+        return [x.sinh(), x.cosh()];
+    }
+    let [with_sinh, with_cosh] = order.both::<T, 0>(rate, own);
+    [over(with_cosh, reciprocals, order), over(with_sinh, reciprocals, order)]
+}
+
+/// The rate z of y with r ẏ = ẋ, where `x` is k x\[k\]: r\[0\] z\[k\] = k x\[k\] − Σ r\[j\] z\[k−j\] over 0 < j < k.
+#[inline(always)]
+pub fn slope<T: Real, O: Order>(x: T, r: &Series<T>, own: &Series<T>, leading: &mut T, order: O) -> T {
+    match order.index() {
+        0 => {
+            *leading = T::from_f64(1.0) / r[0];
+            T::from_f64(0.0)
+        }
+        1 => x * *leading,
+        _ => (x - order.inner(r, own)) * *leading,
+    }
+}
+
+/// y from its rate: `start` at order 0.
+#[inline(always)]
+pub fn from_rate<T: Real, O: Order>(start: impl FnOnce() -> T, rate: T, reciprocals: &Series<T>, order: O) -> T {
+    let k = order.index();
+    if k == 0 { start() } else { over(rate, reciprocals, order) }
+}
+
+/// What the leading coefficients decide once for all orders.
+#[inline(always)]
+pub fn leading<T: Real, O: Order>(start: impl FnOnce() -> T, leading: &mut T, order: O) -> T {
+    if order.index() == 0 {
+        *leading = start();
+    }
+    *leading
+}
+
+/// Σ a\[j\] a\[k−j\] over 0 < j < k, each product once, for k > 1.
+#[inline(always)]
+fn doubled<T: Real, O: Order>(a: &Series<T>, order: O) -> T {
+    let k = order.index();
+    if k == 2 {
+        return a[1] * a[1];
+    }
+    let half = order.half(a);
+    if k.is_multiple_of(2) { (half + half) + a[k / 2] * a[k / 2] } else { half + half }
+}

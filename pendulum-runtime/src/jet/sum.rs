@@ -1,0 +1,82 @@
+//! The sums of products that all recurrences are made of, each in two parts of every second term; the newest terms come last.
+
+use super::{Pairs, Series};
+use crate::real::Real;
+
+/// Σ a\[j\] b\[k−j\] over 0 < j < k, for k > 1.
+#[inline(always)]
+pub(super) fn inner<T: Real>(a: &Series<T>, b: &Series<T>, k: usize) -> T {
+    let mut odd = a[1] * b[k - 1];
+    if k == 2 {
+        return odd;
+    }
+    let mut even = a[2] * b[k - 2];
+    let mut j = 3;
+    while j + 1 < k {
+        odd += a[j] * b[k - j];
+        even += a[j + 1] * b[k - j - 1];
+        j += 2;
+    }
+    if j < k {
+        odd += a[j] * b[k - j];
+    }
+    odd + even
+}
+
+/// Σ a\[j\] a\[k−j\] over 0 < j < k/2, for k > 2.
+#[inline(always)]
+pub(super) fn half<T: Real>(a: &Series<T>, k: usize) -> T {
+    let mut odd = a[1] * a[k - 1];
+    if k <= 4 {
+        return odd;
+    }
+    let mut even = a[2] * a[k - 2];
+    let mut j = 3;
+    while 2 * (j + 1) < k {
+        odd += a[j] * a[k - j];
+        even += a[j + 1] * a[k - j - 1];
+        j += 2;
+    }
+    if 2 * j < k {
+        odd += a[j] * a[k - j];
+    }
+    odd + even
+}
+
+/// Σ a\[j−S\] p\[k−j\] over 1 ≤ j ≤ k, for both series of the pair p and k > 0.
+#[inline(always)]
+pub(super) fn both<T: Real, const S: usize>(a: &Series<T>, p: &Pairs<T>, k: usize) -> [T; 2] {
+    let last = times(a[k - S], p[0]);
+    if k == 1 {
+        return last;
+    }
+    let newest = plus(times(a[1 - S], p[k - 1]), last);
+    if k == 2 {
+        return newest;
+    }
+    let mut odd = times(a[2 - S], p[k - 2]);
+    if k == 3 {
+        return plus(odd, newest);
+    }
+    let mut even = times(a[3 - S], p[k - 3]);
+    let mut j = 4;
+    while j + 1 < k {
+        odd = plus(odd, times(a[j - S], p[k - j]));
+        even = plus(even, times(a[j + 1 - S], p[k - j - 1]));
+        j += 2;
+    }
+    if j < k {
+        odd = plus(odd, times(a[j - S], p[k - j]));
+    }
+    plus(plus(odd, even), newest)
+}
+
+#[inline(always)]
+fn times<T: Real>(factor: T, pair: [T; 2]) -> [T; 2] {
+    [factor * pair[0], factor * pair[1]]
+}
+
+#[inline(always)]
+fn plus<T: Real>(a: [T; 2], b: [T; 2]) -> [T; 2] {
+    [a[0] + b[0], a[1] + b[1]]
+}

@@ -1,0 +1,229 @@
+//! Motions that know all their derivatives.
+
+use super::{CatmullRom, Clip, Linear, Motion, Motions, Sample, Side, Sinusoid, Spline, Still, earlier};
+use crate::jet::{InputSeries, Series};
+use crate::real::Real;
+use crate::time::Time;
+
+/// A motion that is analytic but at certain times, and there from both sides: what [`Taylor`](crate::integrate::Taylor) needs.
+///
+/// A [`Function`](super::Function) is none: a closure tells at most two of its derivatives.
+///
+/// ```
+/// use pendulum_runtime::motion::Sinusoid;
+/// use pendulum_runtime::prelude::*;
+///
+/// lagrangian! {
+///     pub struct Shaken { l: m, g: m/s^2 = 9.81 }
+///     coordinate q: rad;
+///     driven x: [m; 2];
+///     let r = x + l*[sin(q), -cos(q)];
+///     kinetic = |ṙ|^2/2;
+///     potential = g*height(r);
+/// }
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let shaken = Shaken::new(0.5).driven_by(Sinusoid::new([0.1, 0.0], 3.0, [0.0, 0.0]));
+/// let end = solve(&shaken, (0.0, 10.0), [0.3], [0.0]).method(Taylor::new()).rtol(1e-15).run()?.end;
+/// # let _ = end;
+/// # Ok(())
+/// # }
+/// ```
+///
+/// ```compile_fail,E0277
+/// use pendulum_runtime::motion::Function;
+/// use pendulum_runtime::prelude::*;
+///
+/// lagrangian! {
+///     pub struct Shaken { l: m, g: m/s^2 = 9.81 }
+///     coordinate q: rad;
+///     driven x: [m; 2];
+///     let r = x + l*[sin(q), -cos(q)];
+///     kinetic = |ṙ|^2/2;
+///     potential = g*height(r);
+/// }
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let lift = Function::new(|t| [0.0, 0.5 * t * t]).velocity(|t| [0.0, t]).acceleration(|_| [0.0, 1.0]);
+/// let shaken = Shaken::new(0.5).driven_by(lift);
+/// let end = solve(&shaken, (0.0, 10.0), [0.3], [0.0]).method(Taylor::new()).rtol(1e-15).run()?.end;
+/// # let _ = end;
+/// # Ok(())
+/// # }
+/// ```
+#[diagnostic::on_unimplemented(
+    message = "the motion `{Self}` does not know all its derivatives",
+    label = "`Taylor` needs the Taylor series of every motion",
+    note = "drive by `Still`, `Sinusoid`, `Linear`, `CatmullRom`, `Spline` or `Clip`, implement `Analytic`, or use `Dop853`"
+)]
+pub trait Analytic<T: Real, const D: usize>: Motion<T, D> {
+    /// The first `count` Taylor coefficients at `t` of one component of the position; the others stay as they are.
+    ///
+    /// Where the motion is not analytic they are those of the motion on `side`.
+    fn series(&self, t: Time, side: Side, component: usize, count: usize, position: &mut Series<T>);
+
+    /// The first time after `t` at which the motion is not analytic; every kink is such a time.
+    fn next_break(&self, t: f64) -> Option<f64>;
+
+    /// The last such time before `t`.
+    fn last_break(&self, t: f64) -> Option<f64>;
+
+    /// The last kink before `t`.
+    fn last_kink(&self, t: f64) -> Option<f64>;
+}
+
+impl<T: Real, const D: usize> Analytic<T, D> for Still<D> {
+    fn series(&self, _: Time, _: Side, component: usize, count: usize, position: &mut Series<T>) {
+        polynomial([self.position[component]], count, position);
+    }
+
+    fn next_break(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn last_break(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn last_kink(&self, _: f64) -> Option<f64> {
+        None
+    }
+}
+
+impl<T: Real, const D: usize> Analytic<T, D> for Sinusoid<D> {
+    /// k(k−1) x\[k\] = −ω² x\[k−2\].
+    fn series(&self, t: Time, _: Side, component: usize, count: usize, position: &mut Series<T>) {
+        let (a, w) = (self.amplitude[component], self.frequency);
+        let (sin, cos) = Real::sin_cos(w * t.to_f64() + (self.phase[component] + w * t.low()));
+        let (mut even, mut odd) = (a * sin, a * w * cos);
+        for (k, coefficient) in position.iter_mut().take(count).enumerate() {
+            *coefficient = T::from_f64(even);
+            let next = -(w * w * even) / ((k + 1) * (k + 2)) as f64;
+            (even, odd) = (odd, next);
+        }
+        position[0] = T::from_f64(self.offset[component] + a * sin);
+    }
+
+    fn next_break(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn last_break(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn last_kink(&self, _: f64) -> Option<f64> {
+        None
+    }
+}
+
+/// The coefficients of a polynomial, and zeros.
+pub(super) fn polynomial<T: Real, const K: usize>(coefficients: [f64; K], count: usize, series: &mut Series<T>) {
+    for (k, coefficient) in series.iter_mut().take(count).enumerate() {
+        *coefficient = T::from_f64(coefficients.get(k).copied().unwrap_or(0.0));
+    }
+}
+
+macro_rules! piecewise {
+    ($($motion:ident)+) => {$(
+        impl<T: Real, const D: usize> Analytic<T, D> for $motion<D> {
+            fn series(&self, t: Time, side: Side, component: usize, count: usize, position: &mut Series<T>) {
+                polynomial(self.pieces().cubic(t, side, component), count, position);
+            }
+
+            fn next_break(&self, t: f64) -> Option<f64> {
+                self.pieces().next_key(t)
+            }
+
+            fn last_break(&self, t: f64) -> Option<f64> {
+                self.pieces().last_key(t)
+            }
+
+            fn last_kink(&self, t: f64) -> Option<f64> {
+                self.pieces().last_kink(t)
+            }
+        }
+    )+};
+}
+
+piecewise!(Linear CatmullRom Spline Clip);
+
+/// The motions of all driven inputs of a system, if every one is analytic.
+pub trait AnalyticMotions<Inputs, T: Real>: Motions<Inputs> {
+    /// The positions of all components, as [`Analytic::series`] gives them.
+    fn series(&self, t: Time, side: Side, count: usize, components: &mut [InputSeries<T>]);
+
+    /// The first time after `t` at which one of them is not analytic.
+    fn next_break(&self, t: f64) -> Option<f64>;
+
+    /// The last such time before `t`.
+    fn last_break(&self, t: f64) -> Option<f64>;
+
+    /// The last kink before `t`.
+    fn last_kink(&self, t: f64) -> Option<f64>;
+}
+
+impl<T: Real> AnalyticMotions<(), T> for () {
+    fn series(&self, _: Time, _: Side, _: usize, _: &mut [InputSeries<T>]) {}
+
+    fn next_break(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn last_break(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn last_kink(&self, _: f64) -> Option<f64> {
+        None
+    }
+}
+
+/// The later of two times.
+fn later(a: Option<f64>, b: Option<f64>) -> Option<f64> {
+    earlier(a.map(|a| -a), b.map(|b| -b)).map(|time| -time)
+}
+
+macro_rules! tuples {
+    ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
+        impl<T: Real, $($motion: Analytic<T, $dim>, const $dim: usize),+> AnalyticMotions<($(Sample<T, $dim>,)+), T>
+            for ($($motion,)+)
+        {
+            fn series(&self, t: Time, side: Side, count: usize, components: &mut [InputSeries<T>]) {
+                let mut components = components.iter_mut();
+                $(for (component, series) in components.by_ref().take($dim).enumerate() {
+                    self.$index.series(t, side, component, count, &mut series.position);
+                })+
+            }
+
+            fn next_break(&self, t: f64) -> Option<f64> {
+                let mut next = None;
+                $(next = earlier(next, self.$index.next_break(t));)+
+                next
+            }
+
+            fn last_break(&self, t: f64) -> Option<f64> {
+                let mut last = None;
+                $(last = later(last, self.$index.last_break(t));)+
+                last
+            }
+
+            fn last_kink(&self, t: f64) -> Option<f64> {
+                let mut last = None;
+                $(last = later(last, self.$index.last_kink(t));)+
+                last
+            }
+        }
+    )+};
+}
+
+tuples! {
+    (A DA 0)
+    (A DA 0, B DB 1)
+    (A DA 0, B DB 1, C DC 2)
+    (A DA 0, B DB 1, C DC 2, D DD 3)
+    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4)
+    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4, F DF 5)
+    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4, F DF 5, G DG 6)
+    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4, F DF 5, G DG 6, H DH 7)
+}
