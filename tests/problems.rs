@@ -5,6 +5,8 @@
 
 #![allow(mixed_script_confusables, missing_docs)]
 
+use pendulum_runtime::integrate::Solution;
+use pendulum_runtime::jet::JetDynamics;
 use pendulum_runtime::motion::Sinusoid;
 use pendulum_runtime::prelude::*;
 
@@ -174,26 +176,34 @@ use systems::*;
 
 /// Every value within a hundred times the tolerance asked; from t = 50 on the errors of all steps before have been carried along for
 /// many periods, and ten thousand times is asked.
-fn check<D: Dynamics<N, Scalar = f64>, const N: usize>(dynamics: &D, q: [f64; N], v: [f64; N], rows: &[(f64, &[f64])]) {
+fn check<D: JetDynamics<N, Scalar = f64>, const N: usize>(dynamics: &D, q: [f64; N], v: [f64; N], rows: &[(f64, &[f64])]) {
     for &(t, expected) in rows {
         check_within(if t < 50.0 { 100.0 } else { 1e4 }, dynamics, q, v, (t, expected));
     }
 }
 
-fn check_within<D: Dynamics<N, Scalar = f64>, const N: usize>(
+fn check_within<D: JetDynamics<N, Scalar = f64>, const N: usize>(
     factor: f64,
     dynamics: &D,
     q: [f64; N],
     v: [f64; N],
     (t, expected): (f64, &[f64]),
 ) {
-    for tolerance in [1e-6, 1e-8, 1e-10] {
-        let end = solve(dynamics, (0.0, t), q, v).method(Dop853::new()).rtol(tolerance).atol(tolerance).run().unwrap().end;
+    let problem = || solve(dynamics, (0.0, t), q, v);
+    let near = |solution: Solution<f64, N>, tolerance: f64| {
+        let Solution { end, stats, .. } = solution;
         assert_eq!(end.t, t);
         for (found, expected) in end.q.iter().chain(&end.v).zip(expected) {
             let error = (found - expected).abs() / expected.abs().max(1.0);
-            assert!(error <= factor * tolerance, "t = {t}, tolerance {tolerance}: {found} for {expected}, error {error:.1e}");
+            assert!(error <= factor * tolerance, "{stats}: {found} for {expected}, error {error:.1e}");
         }
+    };
+    for tolerance in [1e-6, 1e-8, 1e-10] {
+        near(problem().method(Dop853::new()).rtol(tolerance).atol(tolerance).run().unwrap(), tolerance);
+    }
+    for tolerance in [1e-6, 1e-10, 1e-14, 1e-17] {
+        // Its steps are long, and what is below rounding is not asked for.
+        near(problem().method(Taylor::new()).rtol(tolerance).run().unwrap(), 3.0 * tolerance.max(1e-15));
     }
 }
 

@@ -6,7 +6,7 @@ use core::fmt;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
-    /// The interval is not finite or ends before it begins.
+    /// The interval is not finite, or ends before it begins and the method cannot go back in time.
     Interval {
         /// The time at which it was to begin.
         start: f64,
@@ -31,7 +31,7 @@ pub enum Error {
         /// What it has to be.
         required: &'static str,
     },
-    /// An entry of a list of times is not a number, outside the interval or before its predecessor.
+    /// An entry of a list of times is not a number, outside the interval or not in its direction.
     Times {
         /// The builder's method that took the list.
         name: &'static str,
@@ -142,10 +142,7 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::Interval { start, end } if start.is_finite() && end.is_finite() => {
-                write!(
-                    f,
-                    "the end {end:?} lies before the start {start:?}; swap them, or negate the velocities to go back in time"
-                )
+                write!(f, "the end {end:?} lies before the start {start:?}; swap them, or go back in time with `Taylor`")
             }
             Self::Interval { start, end } => {
                 write!(f, "the interval from {start:?} to {end:?} is not finite; give two finite times")
@@ -159,7 +156,7 @@ impl fmt::Display for Error {
             }
             Self::Setting { name, value, required } => write!(f, "`{name}` is {value:?}, but has to be {required}"),
             Self::Times { name, index, time } => {
-                write!(f, "entry {index} of `{name}` is {time:?}; give finite times in ascending order within the interval")
+                write!(f, "entry {index} of `{name}` is {time:?}; give finite times within the interval, in its direction")
             }
             Self::NotFinite { t, what, ref suspects } => {
                 write!(f, "at t = {t:?} the {what} is not finite; ")?;

@@ -6,6 +6,7 @@ mod macros;
 pub mod body;
 pub mod error;
 pub mod integrate;
+pub mod jet;
 pub mod linearize;
 pub mod motion;
 pub mod real;
@@ -21,7 +22,7 @@ pub mod __private;
 pub mod prelude {
     pub use crate::integrate::{
         Direction, Dop853, Event, Gauss, Integrator, Leapfrog, QuinlanTremaine, Rk4, Rodas4, Srkn6b, Srkn11b, Srkn14a,
-        SymplecticEuler, Tsit5, solve,
+        SymplecticEuler, Taylor, Tsit5, solve,
     };
     pub use crate::motion::Motion;
     pub use crate::real::Real;

@@ -1,12 +1,13 @@
 //! Steps as long as the error allows.
 
-use super::blame::{blame, fault};
+use super::blame::blame;
 use super::control::{Control, Course, Memory};
 use super::field::{Accelerations, coordinate};
 use super::method::{Embedded, Suits, Weights};
 use super::node::Node;
 use super::power::{exp2, log2};
 use super::span::Span;
+use super::stepper::Stepper;
 use crate::error::{Error, Quantity};
 use crate::motion::Side;
 use crate::real::Float;
@@ -25,14 +26,14 @@ use crate::time::Time;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdaptiveStep<const N: usize> {
     rtol: Option<f64>,
-    atol: ([f64; N], [f64; N]),
+    atol: Option<([f64; N], [f64; N])>,
     first_step: Option<f64>,
     max_step: f64,
 }
 
 impl<const N: usize> Default for AdaptiveStep<N> {
     fn default() -> Self {
-        Self { rtol: None, atol: ([1e-9; N], [1e-9; N]), first_step: None, max_step: 1e300 }
+        Self { rtol: None, atol: None, first_step: None, max_step: 1e300 }
     }
 }
 
@@ -55,7 +56,7 @@ impl<const N: usize> AdaptiveStep<N> {
 
     /// The absolute tolerances of each coordinate and of each velocity.
     pub fn atol_each(mut self, q: [f64; N], v: [f64; N]) -> Self {
-        self.atol = (q, v);
+        self.atol = Some((q, v));
         self
     }
 
@@ -76,53 +77,45 @@ impl<const N: usize> AdaptiveStep<N> {
         self.rtol.unwrap_or(if 1e-6 < least { least } else { 1e-6 })
     }
 
+    /// The absolute tolerances of coordinates and velocities, `default` where none were given.
+    fn absolute(&self, default: f64) -> ([f64; N], [f64; N]) {
+        self.atol.unwrap_or(([default; N], [default; N]))
+    }
+
     /// One over the error allowed between `from` and `to`.
     fn weights<T: Float>(&self, from: &Node<T, N>, to: &Node<T, N>) -> Weights<N> {
-        let rtol = self.relative::<T>();
+        let (rtol, atol) = (self.relative::<T>(), self.absolute(1e-9));
         let larger = |a: T, b: T| {
             let (a, b) = (a.to_f64().abs(), b.to_f64().abs());
             if a < b { b } else { a }
         };
         Weights {
-            q: core::array::from_fn(|i| 1.0 / (self.atol.0[i] + rtol * larger(from.q.high[i], to.q.high[i]))),
-            v: core::array::from_fn(|i| 1.0 / (self.atol.1[i] + rtol * larger(from.v.high[i], to.v.high[i]))),
+            q: core::array::from_fn(|i| 1.0 / (atol.0[i] + rtol * larger(from.q.high[i], to.q.high[i]))),
+            v: core::array::from_fn(|i| 1.0 / (atol.1[i] + rtol * larger(from.v.high[i], to.v.high[i]))),
         }
     }
 }
 
-impl<M: Embedded, const N: usize> Control<M, N> for AdaptiveStep<N> {
-    fn check<T: Float>(&self) -> Result<(), Error> {
-        let positive = |name, value: f64| {
-            let fine = (f64::MIN_POSITIVE..f64::INFINITY).contains(&value);
-            if fine { Ok(()) } else { Err(Error::Setting { name, value, required: "positive and finite" }) }
-        };
-        let rtol = self.relative::<T>();
-        positive("rtol", rtol)?;
-        if rtol < 10.0 * T::EPSILON.to_f64() {
+impl<M, D, const N: usize> Control<M, D, N> for AdaptiveStep<N>
+where
+    M: Embedded + Suits<D::System, N>,
+    D: Dynamics<N, Scalar: Float>,
+{
+    fn check(&self) -> Result<(), Error> {
+        self.positive::<D::Scalar>()?;
+        let rtol = self.relative::<D::Scalar>();
+        if rtol < 10.0 * D::Scalar::EPSILON.to_f64() {
             let required = "at least ten machine epsilons of the scalar (2.3e-15 for f64, 1.2e-6 for f32, 5e-31 for two words)";
             return Err(Error::Setting { name: "rtol", value: rtol, required });
         }
-        self.atol.0.into_iter().chain(self.atol.1).try_for_each(|atol| positive("atol", atol))?;
-        self.first_step.map_or(Ok(()), |step| positive("first_step", step))?;
-        if 0.0 < self.max_step {
-            Ok(())
-        } else {
-            Err(Error::Setting { name: "max_step", value: self.max_step, required: "positive" })
-        }
+        Ok(())
     }
 
     fn least_steps(&self, length: f64) -> f64 {
-        length / self.max_step
+        self.least_steps_over(length)
     }
 
-    fn step<D: Dynamics<N, Scalar: Float>>(
-        &self,
-        memory: &mut Memory,
-        course: Course<'_, '_, D, M, N>,
-    ) -> Result<(Span, Node<D::Scalar, N>), Error>
-    where
-        M: Suits<D::System, N>,
-    {
+    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, M, N>) -> Result<(Span, Node<D::Scalar, N>), Error> {
         let Course { method, field, from, stages, target, stats } = course;
         let response = M::RESPONSE;
         if memory.h == 0.0 {
@@ -169,7 +162,7 @@ impl<M: Embedded, const N: usize> Control<M, N> for AdaptiveStep<N> {
             stats.rejected += 1;
             retried = true;
             if error.is_nan() {
-                last_fault = fault(method, field.dynamics, &span, from, stages);
+                last_fault = method.fault(field.dynamics, &span, from, stages);
                 // A function may have left its domain, and a shorter step may stay inside; but no step is short enough for an
                 // input that is not finite.
                 if let Some(input @ Error::NotFinite { what: Quantity::Input { .. }, .. }) = last_fault {
@@ -186,6 +179,46 @@ impl<M: Embedded, const N: usize> Control<M, N> for AdaptiveStep<N> {
 }
 
 impl<const N: usize> AdaptiveStep<N> {
+    /// The tolerances of a method for which small ones are possible: without `atol` it is `rtol`.
+    #[inline]
+    pub(crate) fn tolerances<T: Float>(&self) -> (f64, ([f64; N], [f64; N])) {
+        let rtol = self.relative::<T>();
+        (rtol, self.absolute(rtol))
+    }
+
+    /// A lower bound of the number of steps over an interval.
+    pub(crate) fn least_steps_over(&self, length: f64) -> f64 {
+        length / self.max_step
+    }
+
+    /// A length of step within the limits set.
+    #[inline]
+    pub(crate) fn limited(&self, first: bool, wanted: f64) -> f64 {
+        let wanted = if self.max_step < wanted { self.max_step } else { wanted };
+        match self.first_step {
+            Some(step) if first && step < wanted => step,
+            _ => wanted,
+        }
+    }
+
+    /// Whether all settings are positive.
+    pub(crate) fn positive<T: Float>(&self) -> Result<(), Error> {
+        let positive = |name, value: f64| {
+            let fine = (f64::MIN_POSITIVE..f64::INFINITY).contains(&value);
+            if fine { Ok(()) } else { Err(Error::Setting { name, value, required: "positive and finite" }) }
+        };
+        positive("rtol", self.relative::<T>())?;
+        if let Some((q, v)) = self.atol {
+            q.into_iter().chain(v).try_for_each(|atol| positive("atol", atol))?;
+        }
+        self.first_step.map_or(Ok(()), |step| positive("first_step", step))?;
+        if 0.0 < self.max_step {
+            Ok(())
+        } else {
+            Err(Error::Setting { name: "max_step", value: self.max_step, required: "positive" })
+        }
+    }
+
     /// A first step with which the second derivative changes the state by about a hundredth of the tolerance's root.
     fn automatic_step<T: Float>(
         &self,
@@ -235,14 +268,14 @@ impl<const N: usize> AdaptiveStep<N> {
 }
 
 /// The step of length `wanted` from `t`, or what avoids going beyond `target` and leaving a sliver before it.
-fn fit(t: Time, wanted: f64, target: f64) -> Span {
+pub(crate) fn fit(t: Time, wanted: f64, target: f64) -> Span {
     let left = -t.since(target);
-    if left <= 1.01 * wanted {
+    if left.abs() <= 1.01 * wanted {
         Span::to(t, target)
-    } else if left < 2.0 * wanted {
+    } else if left.abs() < 2.0 * wanted {
         Span::by(t, 0.5 * left)
     } else {
-        Span::by(t, wanted)
+        Span::by(t, wanted.copysign(left))
     }
 }
 

@@ -4,24 +4,26 @@ use super::field::{Watched, first_in_state};
 use super::method::Suits;
 use super::node::Node;
 use super::span::Span;
+use super::stepper::Stepper;
 use crate::error::{Error, Quantity, Suspect};
 use crate::real::Float;
 use crate::system::{Dynamics, System};
+use crate::time::Time;
 
 /// The error for a step, with what it has left in `stages`, that led to a number that is not finite.
-pub(crate) fn blame<D: Dynamics<N, Scalar: Float>, M: Suits<D::System, N>, const N: usize>(
+pub(crate) fn blame<D: Dynamics<N, Scalar: Float>, M: Stepper<D, N>, const N: usize>(
     method: &M,
     dynamics: &D,
     span: &Span,
     from: &Node<D::Scalar, N>,
-    stages: &M::Stages<D::Scalar, N>,
+    stages: &M::Stages,
 ) -> Error {
     let coordinate = super::field::coordinate(&<D::System as System<N>>::FACTS, 0);
     let unknown = Error::NotFinite { t: span.end.to_f64(), what: Quantity::Velocity(coordinate), suspects: Vec::new() };
-    fault(method, dynamics, span, from, stages).unwrap_or(unknown)
+    method.fault(dynamics, span, from, stages).unwrap_or(unknown)
 }
 
-/// The first number in a step that is not finite, or where its equations were not solved, if there is one.
+/// The first number in the stages of a step that is not finite, or where its equations were not solved, if there is one.
 pub(crate) fn fault<D: Dynamics<N, Scalar: Float>, M: Suits<D::System, N>, const N: usize>(
     method: &M,
     dynamics: &D,
@@ -39,8 +41,13 @@ pub(crate) fn fault<D: Dynamics<N, Scalar: Float>, M: Suits<D::System, N>, const
     let to = method.step(&mut watched, span, &mut Node { a: None, ..*from }, &mut M::stages());
     let at_end = || first_in_state(facts, &to.q.high, &to.v.high).map(|what| (span.end, what));
     let (t, what) = watched.first.or_else(at_end)?;
-    let suspects = if let Quantity::Acceleration(_) = what { suspects(dynamics.system()) } else { Vec::new() };
-    Some(Error::NotFinite { t: t.to_f64(), what, suspects })
+    Some(not_finite(dynamics.system(), t, what))
+}
+
+/// The error for a number that is not finite, with the parameters that may be the cause.
+pub(crate) fn not_finite<S: System<N, Scalar: Float>, const N: usize>(system: &S, t: Time, what: Quantity) -> Error {
+    let suspects = if let Quantity::Acceleration(_) = what { suspects(system) } else { Vec::new() };
+    Error::NotFinite { t: t.to_f64(), what, suspects }
 }
 
 /// The parameters that are zero, infinite or not a number.

@@ -1,30 +1,28 @@
 //! What decides about the length of steps: the interface that fixed and adaptive steps share.
 
 use super::field::Counted;
-use super::method::{Method, Suits};
 use super::node::Node;
 use super::solution::Stats;
 use super::span::Span;
+use super::stepper::Stepper;
 use crate::error::Error;
 use crate::real::Float;
 use crate::system::Dynamics;
 
-/// What decides about the length of the steps of the method `M`.
-pub trait Control<M: Method, const N: usize>: Copy + core::fmt::Debug {
+/// What decides about the length of the steps of the method `M` on the dynamics `D`.
+pub trait Control<M, D, const N: usize>: Copy + core::fmt::Debug
+where
+    M: Stepper<D, N>,
+    D: Dynamics<N, Scalar: Float>,
+{
     /// Whether the settings make sense.
-    fn check<T: Float>(&self) -> Result<(), Error>;
+    fn check(&self) -> Result<(), Error>;
 
     /// A lower bound of the number of steps over an interval.
     fn least_steps(&self, length: f64) -> f64;
 
     /// Takes one step from `course.from` towards `course.target`, not beyond it; nothing but caches changes if it fails.
-    fn step<D: Dynamics<N, Scalar: Float>>(
-        &self,
-        memory: &mut Memory,
-        course: Course<'_, '_, D, M, N>,
-    ) -> Result<(Span, Node<D::Scalar, N>), Error>
-    where
-        M: Suits<D::System, N>;
+    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, M, N>) -> Result<(Span, Node<D::Scalar, N>), Error>;
 }
 
 /// What a control remembers from step to step.
@@ -42,7 +40,11 @@ pub struct Memory {
 
 /// What a control works with.
 #[derive(Debug)]
-pub struct Course<'a, 'd, D: Dynamics<N, Scalar: Float>, M: Method, const N: usize> {
+pub struct Course<'a, 'd, D, M, const N: usize>
+where
+    D: Dynamics<N, Scalar: Float>,
+    M: Stepper<D, N>,
+{
     /// The method.
     pub(crate) method: &'a M,
     /// The accelerations.
@@ -50,7 +52,7 @@ pub struct Course<'a, 'd, D: Dynamics<N, Scalar: Float>, M: Method, const N: usi
     /// The state.
     pub(crate) from: &'a mut Node<D::Scalar, N>,
     /// What the step leaves behind.
-    pub(crate) stages: &'a mut M::Stages<D::Scalar, N>,
+    pub(crate) stages: &'a mut M::Stages,
     /// The time not to go beyond; infinite if there is none.
     pub(crate) target: f64,
     /// The counters.

@@ -2,11 +2,11 @@
 
 use super::control::{Control, Course, Memory};
 use super::field::{Counted, coordinate, first_in_inputs, first_in_state};
-use super::method::{Method, Suits};
 use super::node::Node;
 use super::piece::Piece;
 use super::solution::{State, Stats};
 use super::span::Span;
+use super::stepper::Stepper;
 use crate::error::{Error, Part};
 use crate::motion::Side;
 use crate::real::Float;
@@ -15,10 +15,10 @@ use crate::time::Time;
 
 /// An integration under way, apart from the dynamics.
 #[derive(Clone, Debug)]
-pub(crate) struct Driver<T: Float, const N: usize, M: Method, C> {
+pub(crate) struct Driver<T, const N: usize, M, C, R> {
     pub(crate) method: M,
     pub(crate) control: C,
-    /// The state reached; at a kink the one after it.
+    /// The state reached; at a kink the one beyond it.
     pub(crate) node: Node<T, N>,
     pub(crate) stats: Stats,
     /// The last step and the node at its start; nothing before the first step.
@@ -26,57 +26,81 @@ pub(crate) struct Driver<T: Float, const N: usize, M: Method, C> {
     from: Node<T, N>,
     /// The motion within it, once somebody has asked.
     within: Option<Piece<T, N>>,
-    /// The node at its end before the kink, if it ended on one.
+    /// The node at its end on this side of the kink, if it ended on one.
     before_kink: Option<Node<T, N>>,
-    stages: M::Stages<T, N>,
+    stages: R,
     memory: Memory,
-    /// The next kink, infinite if there is none.
+    /// Whether the last step went back in time.
+    backwards: bool,
+    /// The next kink in that direction, infinite if there is none.
     kink: f64,
 }
 
-impl<T: Float, const N: usize, M: Method, C> Driver<T, N, M, C> {
+impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
     /// At `q`, `v` and `t`, if they are finite.
-    pub(crate) fn new<D: Dynamics<N, Scalar = T>>(
-        dynamics: &D,
-        method: M,
-        control: C,
-        t: f64,
-        q: [T; N],
-        v: [T; N],
-    ) -> Result<Self, Error> {
+    pub(crate) fn new<D>(dynamics: &D, method: M, control: C, t: f64, q: [T; N], v: [T; N]) -> Result<Self, Error>
+    where
+        D: Dynamics<N, Scalar = T>,
+        M: Stepper<D, N, Stages = R>,
+    {
         check_start::<D, T, N>(t, &q, &v)?;
         let node = Node::new(Time::new(t), q, v);
-        let kink = next_kink(dynamics, t)?;
+        let kink = next_kink(&method, dynamics, t, false)?;
         let stats = Stats::new(M::NAME);
-        let (stages, memory) = (M::stages(), Memory::default());
-        Ok(Self { method, control, node, stats, last: None, from: node, within: None, before_kink: None, stages, memory, kink })
+        let (stages, memory) = (method.room(dynamics), Memory::default());
+        Ok(Self {
+            method,
+            control,
+            node,
+            stats,
+            last: None,
+            from: node,
+            within: None,
+            before_kink: None,
+            stages,
+            memory,
+            backwards: false,
+            kink,
+        })
     }
 
     /// Puts the state elsewhere; counters and step size stay.
-    pub(crate) fn reset<D: Dynamics<N, Scalar = T>>(&mut self, dynamics: &D, t: f64, q: [T; N], v: [T; N]) -> Result<(), Error> {
+    pub(crate) fn reset<D>(&mut self, dynamics: &D, t: f64, q: [T; N], v: [T; N]) -> Result<(), Error>
+    where
+        D: Dynamics<N, Scalar = T>,
+        M: Stepper<D, N, Stages = R>,
+    {
         check_start::<D, T, N>(t, &q, &v)?;
-        self.kink = next_kink(dynamics, t)?;
+        self.kink = next_kink(&self.method, dynamics, t, false)?;
+        self.backwards = false;
         self.node = Node::new(Time::new(t), q, v);
         (self.last, self.within, self.before_kink) = (None, None, None);
         Ok(())
     }
 
     /// The same integration under another control.
-    pub(crate) fn controlled<B>(self, control: B) -> Driver<T, N, M, B> {
-        let Self { method, node, stats, last, from, within, before_kink, stages, kink, .. } = self;
-        Driver { method, control, node, stats, last, from, within, before_kink, stages, memory: Memory::default(), kink }
+    pub(crate) fn controlled<B>(self, control: B) -> Driver<T, N, M, B, R> {
+        let Self { method, node, stats, last, from, within, before_kink, stages, backwards, kink, .. } = self;
+        let memory = Memory::default();
+        Driver { method, control, node, stats, last, from, within, before_kink, stages, memory, backwards, kink }
     }
 
     /// Takes one step towards `target`, which may be infinite, and over a kink if it ends on one.
     ///
     /// On failure the state is the one before the step.
     #[inline]
-    pub(crate) fn step<D: Dynamics<N, Scalar = T>>(&mut self, dynamics: &D, target: f64) -> Result<(), Error>
+    pub(crate) fn step<D>(&mut self, dynamics: &D, target: f64) -> Result<(), Error>
     where
-        M: Suits<D::System, N>,
-        C: Control<M, N>,
+        D: Dynamics<N, Scalar = T>,
+        M: Stepper<D, N, Stages = R>,
+        C: Control<M, D, N>,
     {
-        let target = if self.kink < target { self.kink } else { target };
+        let backwards = target < self.t();
+        if backwards != self.backwards {
+            self.turn(dynamics, backwards)?;
+        }
+        let kink_comes_first = if backwards { target < self.kink } else { self.kink < target };
+        let target = if kink_comes_first { self.kink } else { target };
         let mut field = Counted::new(dynamics);
         let mut from = self.node;
         let course = Course {
@@ -92,7 +116,8 @@ impl<T: Float, const N: usize, M: Method, C> Driver<T, N, M, C> {
         let (span, mut to) = taken?;
         if span.end == Time::new(self.kink) {
             let before = to;
-            self.kink = cross(dynamics, &mut to)?;
+            cross(dynamics, &mut to, backwards)?;
+            self.kink = next_kink(&self.method, dynamics, self.kink, backwards)?;
             self.stats.kinks += 1;
             self.before_kink = Some(before);
         } else if self.before_kink.is_some() {
@@ -104,10 +129,26 @@ impl<T: Float, const N: usize, M: Method, C> Driver<T, N, M, C> {
         Ok(())
     }
 
-    /// The motion within the last step, if there was one; evaluates what the method needs for it.
-    pub(crate) fn piece<D: Dynamics<N, Scalar = T>>(&mut self, dynamics: &D) -> Option<Piece<T, N>>
+    /// Goes on in the other direction.
+    #[cold]
+    fn turn<D>(&mut self, dynamics: &D, backwards: bool) -> Result<(), Error>
     where
-        M: Suits<D::System, N>,
+        D: Dynamics<N, Scalar = T>,
+        M: Stepper<D, N, Stages = R>,
+    {
+        self.kink = next_kink(&self.method, dynamics, self.t(), backwards)?;
+        self.backwards = backwards;
+        if let Some(before) = self.before_kink.take() {
+            self.node = before;
+        }
+        Ok(())
+    }
+
+    /// The motion within the last step, if there was one; evaluates what the method needs for it.
+    pub(crate) fn piece<D>(&mut self, dynamics: &D) -> Option<Piece<T, N>>
+    where
+        D: Dynamics<N, Scalar = T>,
+        M: Stepper<D, N, Stages = R>,
     {
         let span = self.last.as_ref()?;
         if self.within.is_some() {
@@ -115,7 +156,7 @@ impl<T: Float, const N: usize, M: Method, C> Driver<T, N, M, C> {
         }
         let to = self.before_kink.as_mut().unwrap_or(&mut self.node);
         let mut field = Counted::new(dynamics);
-        let piece = self.method.dense(&mut field, span, &mut self.from, to, &mut self.stages);
+        let piece = self.method.within(&mut field, span, &mut self.from, to, &mut self.stages);
         self.stats.evaluations += field.evaluations;
         self.within = Some(piece);
         self.within
@@ -156,7 +197,7 @@ impl<T: Float, const N: usize, M: Method, C> Driver<T, N, M, C> {
         }
     }
 
-    /// The state just before a kink, if the last step has ended on one.
+    /// The state on this side of a kink, if the last step has ended on one.
     pub(crate) fn before_kink(&self) -> Option<&Node<T, N>> {
         self.before_kink.as_ref()
     }
@@ -181,18 +222,27 @@ fn check_start<D: Dynamics<N, Scalar = T>, T: Float, const N: usize>(t: f64, q: 
     Ok(())
 }
 
-/// The first kink after `t`, infinite if there is none.
-fn next_kink<D: Dynamics<N>, const N: usize>(dynamics: &D, t: f64) -> Result<f64, Error> {
-    match dynamics.next_kink(t) {
-        None => Ok(f64::INFINITY),
-        Some(kink) if t < kink => Ok(kink),
+/// The first kink after `t`, or the last one before it; infinite if there is none.
+fn next_kink<D, M, const N: usize>(method: &M, dynamics: &D, t: f64, backwards: bool) -> Result<f64, Error>
+where
+    D: Dynamics<N, Scalar: Float>,
+    M: Stepper<D, N>,
+{
+    match method.kink(dynamics, t, backwards) {
+        None => Ok(if backwards { f64::NEG_INFINITY } else { f64::INFINITY }),
+        Some(kink) if t < kink && !backwards || kink < t && backwards => Ok(kink),
         Some(kink) => Err(Error::Kink { t, kink }),
     }
 }
 
-/// Carries the velocities over the kink at `node.t` and returns the next kink.
-fn cross<D: Dynamics<N, Scalar = T>, T: Float, const N: usize>(dynamics: &D, node: &mut Node<T, N>) -> Result<f64, Error> {
-    let v = dynamics.across_kink(node.t, &node.q.high, &node.v.high);
+/// Carries the velocities over the kink at `node.t`.
+fn cross<D, T, const N: usize>(dynamics: &D, node: &mut Node<T, N>, backwards: bool) -> Result<(), Error>
+where
+    D: Dynamics<N, Scalar = T>,
+    T: Float,
+{
+    let from = if backwards { Side::After } else { Side::Before };
+    let v = dynamics.across_kink(node.t, from, &node.q.high, &node.v.high);
     let facts = &<D::System as System<N>>::FACTS;
     if let Some(velocity) = first_in_state(facts, &node.q.high, &v) {
         let input = |side| first_in_inputs(facts, &dynamics.inputs(node.t, side, Purpose::Momenta));
@@ -206,5 +256,5 @@ fn cross<D: Dynamics<N, Scalar = T>, T: Float, const N: usize>(dynamics: &D, nod
         }
     }
     node.a = None;
-    next_kink(dynamics, node.t.to_f64())
+    Ok(())
 }

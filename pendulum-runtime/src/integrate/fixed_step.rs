@@ -2,9 +2,9 @@
 
 use super::blame::blame;
 use super::control::{Control, Course, Memory};
-use super::method::{Method, Suits};
 use super::node::Node;
 use super::span::Span;
+use super::stepper::Stepper;
 use crate::error::Error;
 use crate::real::Float;
 use crate::system::Dynamics;
@@ -33,8 +33,8 @@ impl FixedStep {
     }
 }
 
-impl<M: Method, const N: usize> Control<M, N> for FixedStep {
-    fn check<T: Float>(&self) -> Result<(), Error> {
+impl<M: Stepper<D, N>, D: Dynamics<N, Scalar: Float>, const N: usize> Control<M, D, N> for FixedStep {
+    fn check(&self) -> Result<(), Error> {
         match self.count {
             Some(0) => Err(Error::Setting { name: "steps", value: 0.0, required: "at least 1" }),
             None if !(0.0 < self.step && self.step < f64::INFINITY) => {
@@ -49,18 +49,11 @@ impl<M: Method, const N: usize> Control<M, N> for FixedStep {
     }
 
     #[inline]
-    fn step<D: Dynamics<N, Scalar: Float>>(
-        &self,
-        memory: &mut Memory,
-        course: Course<'_, '_, D, M, N>,
-    ) -> Result<(Span, Node<D::Scalar, N>), Error>
-    where
-        M: Suits<D::System, N>,
-    {
+    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, M, N>) -> Result<(Span, Node<D::Scalar, N>), Error> {
         let Course { method, field, from, stages, target, stats } = course;
         let mut plan = *memory;
         let span = self.next(&mut plan, from.t, target);
-        let to = method.step(field, &span, from, stages);
+        let to = method.advance(field, &span, from, stages);
         if !to.is_finite() {
             return Err(blame(method, field.dynamics, &span, from, stages));
         }
@@ -79,7 +72,7 @@ impl FixedStep {
         }
         if plan.left == 0 || plan.target != target {
             let length = -t.since(target);
-            let count = steps(length, self.step);
+            let count = steps(length.abs(), self.step);
             *plan = Memory { h: length / count, left: count as u64, target, error: 0.0 };
         }
         plan.left -= 1;

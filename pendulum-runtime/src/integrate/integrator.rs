@@ -4,13 +4,16 @@ use super::adaptive_step::AdaptiveStep;
 use super::control::Control;
 use super::driver::Driver;
 use super::event::{Event, Occurrence};
-use super::method::{Method, Suits};
 use super::piece::Piece;
 use super::solution::{State, Stats};
+use super::stepper::Stepper;
 use super::watch::Watch;
 use crate::error::Error;
 use crate::real::Float;
 use crate::system::{Dynamics, Prepared, System};
+
+/// Dynamics that are prepared.
+type Ready<'a, D, const N: usize> = Prepared<'a, D, <<D as Dynamics<N>>::System as System<N>>::Prepared>;
 
 /// An integration that goes on for as long as somebody asks for the next step; no step allocates.
 ///
@@ -19,10 +22,10 @@ use crate::system::{Dynamics, Prepared, System};
 pub struct Integrator<'a, const N: usize, D, M, C = AdaptiveStep<N>>
 where
     D: Dynamics<N, Scalar: Float>,
-    M: Method,
+    M: Stepper<Ready<'a, D, N>, N>,
 {
-    dynamics: Prepared<'a, D, <D::System as System<N>>::Prepared>,
-    driver: Driver<D::Scalar, N, M, C>,
+    dynamics: Ready<'a, D, N>,
+    driver: Driver<D::Scalar, N, M, C, <M as Stepper<Ready<'a, D, N>, N>>::Stages>,
     watch: Watch<'a, D::Scalar, N>,
     /// What happened in the last call.
     found: Vec<Occurrence<D::Scalar, N>>,
@@ -33,15 +36,12 @@ where
 impl<'a, const N: usize, D, M> Integrator<'a, N, D, M>
 where
     D: Dynamics<N, Scalar: Float>,
-    M: Method,
+    M: Stepper<Ready<'a, D, N>, N>,
 {
     /// At the coordinates `q` and velocities `v` at time `t`, with the default tolerances.
     ///
     /// A method without error estimate needs a [`FixedStep`](super::FixedStep) from [`control`](Self::control) before its first step.
-    pub fn new(dynamics: &'a D, method: M, t: f64, q: [D::Scalar; N], v: [D::Scalar; N]) -> Result<Self, Error>
-    where
-        M: Suits<D::System, N>,
-    {
+    pub fn new(dynamics: &'a D, method: M, t: f64, q: [D::Scalar; N], v: [D::Scalar; N]) -> Result<Self, Error> {
         let dynamics = Prepared::new(dynamics);
         let driver = Driver::new(&dynamics, method, AdaptiveStep::new(), t, q, v)?;
         Ok(Self { dynamics, driver, watch: Watch::new(&[]), found: Vec::new(), terminal: None, max_steps: 10_000_000 })
@@ -51,24 +51,20 @@ where
 impl<'a, const N: usize, D, M, C> Integrator<'a, N, D, M, C>
 where
     D: Dynamics<N, Scalar: Float>,
-    M: Method,
+    M: Stepper<Ready<'a, D, N>, N>,
 {
     /// Chooses the steps otherwise: with a [`FixedStep`](super::FixedStep) or an [`AdaptiveStep`].
-    pub fn control<B: Control<M, N>>(self, control: B) -> Result<Integrator<'a, N, D, M, B>, Error> {
-        control.check::<D::Scalar>()?;
+    pub fn control<B: Control<M, Ready<'a, D, N>, N>>(self, control: B) -> Result<Integrator<'a, N, D, M, B>, Error> {
+        control.check()?;
         let Self { dynamics, driver, watch, found, terminal, max_steps } = self;
         Ok(Integrator { dynamics, driver: driver.controlled(control), watch, found, terminal, max_steps })
     }
 
-    /// Looks for events from here on.
+    /// Looks for events from here on, forwards in time.
     ///
     /// A terminal one ends the step and the call that leads to it, with the state at the event; the next call goes on from there, or from
     /// where [`reset`](Self::reset) has put the state.
-    pub fn events(mut self, events: &'a [Event<'a, D::Scalar, N>]) -> Result<Self, Error>
-    where
-        M: Suits<D::System, N>,
-        C: Control<M, N>,
-    {
+    pub fn events(mut self, events: &'a [Event<'a, D::Scalar, N>]) -> Result<Self, Error> {
         self.watch = Watch::new(events);
         self.watch.begin(&mut self.driver, &self.dynamics)?;
         Ok(self)
@@ -84,8 +80,7 @@ where
     #[inline]
     pub fn step(&mut self) -> Result<(), Error>
     where
-        M: Suits<D::System, N>,
-        C: Control<M, N>,
+        C: Control<M, Ready<'a, D, N>, N>,
     {
         self.found.clear();
         self.step_towards(f64::INFINITY)
@@ -94,8 +89,7 @@ where
     #[inline]
     fn step_towards(&mut self, target: f64) -> Result<(), Error>
     where
-        M: Suits<D::System, N>,
-        C: Control<M, N>,
+        C: Control<M, Ready<'a, D, N>, N>,
     {
         let event = self.watch.next_time();
         self.driver.step(&self.dynamics, if event < target { event } else { target })?;
@@ -104,20 +98,20 @@ where
         Ok(())
     }
 
-    /// Takes steps until the time is exactly `t`, or a terminal event has happened.
+    /// Takes steps until the time is exactly `t`, or a terminal event has happened; methods that can go back in time do so for an earlier
+    /// time, if there are no events to look for.
     pub fn advance_to(&mut self, t: f64) -> Result<(), Error>
     where
-        M: Suits<D::System, N>,
-        C: Control<M, N>,
+        C: Control<M, Ready<'a, D, N>, N>,
     {
-        if !(self.t() <= t && t < f64::INFINITY) {
+        if !((self.t() <= t || M::BACKWARDS && self.watch.is_idle()) && t.is_finite()) {
             return Err(Error::Interval { start: self.t(), end: t });
         }
         let steps = |stats: &Stats| stats.accepted + stats.rejected;
         let before = steps(&self.driver.stats);
         self.found.clear();
         self.terminal = None;
-        while self.t() < t && self.terminal.is_none() {
+        while self.t() != t && self.terminal.is_none() {
             if self.max_steps <= steps(&self.driver.stats) - before {
                 return Err(Error::MaxSteps { t: self.t(), max_steps: self.max_steps });
             }
@@ -127,11 +121,7 @@ where
     }
 
     /// Puts the state elsewhere, or the same state to another time.
-    pub fn reset(&mut self, t: f64, q: [D::Scalar; N], v: [D::Scalar; N]) -> Result<(), Error>
-    where
-        M: Suits<D::System, N>,
-        C: Control<M, N>,
-    {
+    pub fn reset(&mut self, t: f64, q: [D::Scalar; N], v: [D::Scalar; N]) -> Result<(), Error> {
         self.driver.reset(&self.dynamics, t, q, v)?;
         self.watch.begin(&mut self.driver, &self.dynamics)
     }
@@ -149,10 +139,7 @@ where
     /// The motion within the last step; `None` before the first.
     ///
     /// Methods that need further evaluations for it take them now.
-    pub fn last_step(&mut self) -> Option<Piece<D::Scalar, N>>
-    where
-        M: Suits<D::System, N>,
-    {
+    pub fn last_step(&mut self) -> Option<Piece<D::Scalar, N>> {
         self.driver.piece(&self.dynamics)
     }
 
@@ -166,7 +153,7 @@ where
         &self.driver.node.q.high
     }
 
-    /// The velocities; at a kink those after it.
+    /// The velocities; at a kink those beyond it.
     pub fn v(&self) -> &[D::Scalar; N] {
         &self.driver.node.v.high
     }

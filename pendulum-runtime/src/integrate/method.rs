@@ -3,8 +3,9 @@
 pub use super::control::{Control, Course, Memory};
 pub use super::field::{Accelerations, Counted, Field};
 pub use super::node::Node;
-pub use super::piece::{Piece, TERMS};
+pub use super::piece::{Basis, Piece, TERMS};
 pub use super::span::Span;
+pub use super::stepper::Stepper;
 pub use super::sum::Sum;
 use crate::real::Float;
 use crate::system::System;

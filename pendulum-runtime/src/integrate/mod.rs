@@ -15,6 +15,7 @@
 //! | [`Rodas4`] | 4 | 6 and the Jacobians | adaptive | stiff springs and dampers |
 //! | [`Tsit5`] | 5 | 6 | adaptive | any system, errors 1e-2 … 1e-6 |
 //! | [`Dop853`] | 8 | 12 | adaptive | any system, errors 1e-6 … 1e-13 |
+//! | [`Taylor`] | 2 … 30 | its order | adaptive, back in time too | any generated system, errors 1e-5 … rounding |
 //!
 //! Velocity-free are systems with a constant mass matrix whose accelerations contain no velocity; `lagrangian!` knows them.
 //! Adaptive methods take fixed steps too. All of them sum the state with compensation and keep the time in two words.
@@ -53,8 +54,10 @@ mod splitting;
 mod srkn11b;
 mod srkn14a;
 mod srkn6b;
+mod stepper;
 mod sum;
 mod symplectic_euler;
+mod taylor;
 mod tsit5;
 mod watch;
 
@@ -74,6 +77,7 @@ pub use srkn6b::Srkn6b;
 pub use srkn11b::Srkn11b;
 pub use srkn14a::Srkn14a;
 pub use symplectic_euler::SymplecticEuler;
+pub use taylor::Taylor;
 pub use tsit5::Tsit5;
 
 #[cfg(test)]

@@ -1,11 +1,10 @@
 //! Which states are kept.
 
-use super::control::Control;
 use super::dense::DenseOutput;
 use super::driver::Driver;
 use super::event::{Occurrence, Status};
-use super::method::Suits;
 use super::solution::{Failure, Solution, State, Stats};
+use super::stepper::Stepper;
 use crate::error::Error;
 use crate::real::Float;
 use crate::system::Dynamics;
@@ -26,10 +25,10 @@ pub(crate) enum Output<'a> {
 impl Output<'_> {
     pub(crate) fn check(&self, start: f64, end: f64) -> Result<(), Error> {
         match *self {
-            Output::Times(times) => ascending("t_eval", times, start, end),
+            Output::Times(times) => in_order("t_eval", times, start, end),
             Output::Every(interval) => {
                 // More than this is a slip of the pen, and no memory holds it.
-                let fine = 0.0 < interval && (end - start) / interval < 1e9;
+                let fine = 0.0 < interval && (end - start).abs() / interval < 1e9;
                 let required = "positive, and no shorter than a billionth of the interval";
                 if fine { Ok(()) } else { Err(Error::Setting { name: "every", value: interval, required }) }
             }
@@ -42,26 +41,37 @@ impl Output<'_> {
         match *self {
             Output::Times(times) => times.get(index).copied(),
             Output::Every(interval) => {
-                let t = start + index as f64 * interval;
+                let t = start + direction(start, end) * (index as f64 * interval);
                 // A multiple that misses the end by rounding means the end.
                 let close = (t - end).abs() < 1e-9 * interval;
-                if close { Some(end) } else { Some(t).filter(|t| *t < end) }
+                if close { Some(end) } else { Some(t).filter(|t| precedes(*t, end, (start, end))) }
             }
             Output::End | Output::Steps => None,
         }
     }
 }
 
-/// Whether `times` are finite, ascending and within the interval.
-pub(crate) fn ascending(name: &'static str, times: &[f64], start: f64, end: f64) -> Result<(), Error> {
-    let mut least = start;
+/// Whether `times` are finite, within the interval and in its direction.
+pub(crate) fn in_order(name: &'static str, times: &[f64], start: f64, end: f64) -> Result<(), Error> {
+    let onwards = direction(start, end);
+    let mut least = onwards * start;
     for (index, &time) in times.iter().enumerate() {
-        if !(least <= time && time <= end) {
+        if !(least <= onwards * time && onwards * time <= onwards * end) {
             return Err(Error::Times { name, index, time });
         }
-        least = time;
+        least = onwards * time;
     }
     Ok(())
+}
+
+/// −1 for an interval that leads back in time, else 1.
+pub(crate) fn direction(start: f64, end: f64) -> f64 {
+    if end < start { -1.0 } else { 1.0 }
+}
+
+/// Whether an integration over `interval` comes to `a` before it comes to `b`.
+pub(crate) fn precedes(a: f64, b: f64, (start, end): (f64, f64)) -> bool {
+    if end < start { b < a } else { a < b }
 }
 
 /// Keeps what is asked for while the integration goes on.
@@ -69,6 +79,8 @@ pub(crate) fn ascending(name: &'static str, times: &[f64], start: f64, end: f64)
 pub(crate) struct Recorder<'a, T, const N: usize> {
     output: Output<'a>,
     interval: (f64, f64),
+    /// The direction of time: 1 or −1.
+    onwards: f64,
     /// The index of the next output time.
     index: usize,
     /// The next output time, infinite if there is none.
@@ -82,11 +94,13 @@ pub(crate) struct Recorder<'a, T, const N: usize> {
 
 impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
     pub(crate) fn new(output: Output<'a>, interval: (f64, f64)) -> Self {
+        let onwards = direction(interval.0, interval.1);
         Self {
             output,
             interval,
+            onwards,
             index: 0,
-            next: f64::INFINITY,
+            next: onwards * f64::INFINITY,
             dense: None,
             t: Vec::new(),
             q: Vec::new(),
@@ -97,23 +111,27 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
 
     /// Begins with the state at the start.
     pub(crate) fn begin(&mut self, start: State<T, N>, dense: bool) {
-        self.dense = dense.then(|| DenseOutput::new(start));
-        self.next = self.output.time(0, self.interval).unwrap_or(f64::INFINITY);
+        self.dense = dense.then(|| DenseOutput::new(start, self.onwards));
+        self.next = self.time(0);
         match self.output {
             Output::Steps => self.push(start),
             _ => self.push_while_next_is(start),
         }
     }
 
+    /// The output time with this index; infinite if there is none.
+    fn time(&self, index: usize) -> f64 {
+        self.output.time(index, self.interval).unwrap_or(self.onwards * f64::INFINITY)
+    }
+
     /// Takes in the step that `driver` has just taken.
     #[inline]
-    pub(crate) fn step<D, M, C>(&mut self, driver: &mut Driver<T, N, M, C>, dynamics: &D)
+    pub(crate) fn step<D, M, C>(&mut self, driver: &mut Driver<T, N, M, C, M::Stages>, dynamics: &D)
     where
         D: Dynamics<N, Scalar = T>,
-        M: Suits<D::System, N>,
-        C: Control<M, N>,
+        M: Stepper<D, N>,
     {
-        if self.dense.is_some() || self.next <= driver.t() {
+        if self.dense.is_some() || self.onwards * self.next <= self.onwards * driver.t() {
             self.within(driver, dynamics);
         }
         if let Output::Steps = self.output {
@@ -130,16 +148,15 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
     }
 
     /// The states within the step and at its end.
-    fn within<D, M, C>(&mut self, driver: &mut Driver<T, N, M, C>, dynamics: &D)
+    fn within<D, M, C>(&mut self, driver: &mut Driver<T, N, M, C, M::Stages>, dynamics: &D)
     where
         D: Dynamics<N, Scalar = T>,
-        M: Suits<D::System, N>,
-        C: Control<M, N>,
+        M: Stepper<D, N>,
     {
         let (end, state) = (driver.node.t, State::from(&driver.node));
-        if self.dense.is_some() || 0.0 < end.since(self.next) {
+        if self.dense.is_some() || 0.0 < self.onwards * end.since(self.next) {
             let Some(piece) = driver.piece(dynamics) else { return };
-            while 0.0 < end.since(self.next) {
+            while 0.0 < self.onwards * end.since(self.next) {
                 let (q, v) = piece.at(piece.span.fraction(self.next));
                 self.push(State { t: self.next, q, v });
                 self.advance();
@@ -166,7 +183,7 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
 
     fn advance(&mut self) {
         self.index += 1;
-        self.next = self.output.time(self.index, self.interval).unwrap_or(f64::INFINITY);
+        self.next = self.time(self.index);
     }
 
     /// The solution that ends with `end`.

@@ -2,15 +2,13 @@
 
 use super::node::Node;
 use super::span::Span;
+use crate::jet::MAX_ORDER;
 use crate::real::Float;
 
 /// The largest number of terms of a [`Piece`].
-pub const TERMS: usize = 10;
+pub const TERMS: usize = MAX_ORDER;
 
 /// Coordinates and velocities within a step as polynomials in θ = (t − start)/h.
-///
-/// y(θ) = y₀ + θ(F₀ + (1−θ)(F₁ + θ(F₂ + (1−θ)(F₃ + …)))), the form of Hairer, Nørsett and Wanner (1993), II.6: F₀ is the increment, so
-/// that both ends are met exactly, and F₁ and F₂ come from the slopes at the ends.
 #[derive(Clone, Copy, Debug)]
 pub struct Piece<T, const N: usize> {
     /// The step.
@@ -25,6 +23,31 @@ pub struct Piece<T, const N: usize> {
     pub v: [[T; N]; TERMS],
     /// How many of them are not zero.
     pub terms: usize,
+    /// What the terms are multiplied by.
+    pub basis: Basis,
+}
+
+/// What the terms of a [`Piece`] are multiplied by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Basis {
+    /// y(θ) = y₀ + θ(F₀ + (1−θ)(F₁ + θ(F₂ + (1−θ)(F₃ + …)))), the form of Hairer, Nørsett and Wanner (1993), II.6: F₀ is the increment,
+    /// so that both ends are met exactly, and F₁ and F₂ come from the slopes at the ends.
+    Nested,
+    /// y(θ) = y₀ + θ(F₀ + θ(F₁ + θ(F₂ + …))): a Taylor polynomial.
+    Powers,
+}
+
+impl Basis {
+    /// The polynomial with these terms at θ.
+    pub(crate) fn at<T: Float, const N: usize>(self, y0: &[T; N], terms: &[[T; N]], theta: T) -> [T; N] {
+        let other = if self == Self::Nested { T::from_f64(1.0) - theta } else { theta };
+        let factors = [theta, other];
+        core::array::from_fn(|i| {
+            let zero = T::from_f64(0.0);
+            let sum = terms.iter().enumerate().rev().fold(zero, |sum, (k, term)| (sum + term[i]) * factors[k % 2]);
+            y0[i] + sum
+        })
+    }
 }
 
 impl<T: Float, const N: usize> Piece<T, N> {
@@ -42,7 +65,7 @@ impl<T: Float, const N: usize> Piece<T, N> {
     /// The straight line between the states at both ends.
     pub fn linear(span: &Span, from: &Node<T, N>, to: &Node<T, N>) -> Self {
         let zero = [[T::from_f64(0.0); N]; TERMS];
-        let mut piece = Self { span: *span, q0: from.q.high, v0: from.v.high, q: zero, v: zero, terms: 1 };
+        let mut piece = Self { span: *span, q0: from.q.high, v0: from.v.high, q: zero, v: zero, terms: 1, basis: Basis::Nested };
         piece.q[0] = to.q.since(&from.q);
         piece.v[0] = to.v.since(&from.v);
         piece
@@ -55,7 +78,7 @@ impl<T: Float, const N: usize> Piece<T, N> {
 
     /// Coordinates and velocities at θ.
     pub fn at(&self, theta: T) -> ([T; N], [T; N]) {
-        (nested(&self.q0, &self.q[..self.terms], theta), nested(&self.v0, &self.v[..self.terms], theta))
+        (self.basis.at(&self.q0, &self.q[..self.terms], theta), self.basis.at(&self.v0, &self.v[..self.terms], theta))
     }
 }
 
@@ -66,14 +89,4 @@ fn clamp<T: Float, const N: usize>(terms: &mut [[T; N]; TERMS], h: T, slope0: &[
         terms[1][i] = h * slope0[i] - increment;
         terms[2][i] = (increment - h * slope1[i]) - terms[1][i];
     }
-}
-
-/// y₀ + θ(F₀ + (1−θ)(F₁ + θ(F₂ + …))).
-pub(crate) fn nested<T: Float, const N: usize>(y0: &[T; N], terms: &[[T; N]], theta: T) -> [T; N] {
-    let factors = [theta, T::from_f64(1.0) - theta];
-    core::array::from_fn(|i| {
-        let zero = T::from_f64(0.0);
-        let sum = terms.iter().enumerate().rev().fold(zero, |sum, (k, term)| (sum + term[i]) * factors[k % 2]);
-        y0[i] + sum
-    })
 }

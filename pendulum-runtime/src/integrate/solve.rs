@@ -6,18 +6,19 @@ use super::dop853::Dop853;
 use super::driver::Driver;
 use super::event::{Event, Status};
 use super::fixed_step::FixedStep;
-use super::method::Suits;
-use super::output::{Output, Recorder, ascending};
+use super::output::{Output, Recorder, in_order, precedes};
 use super::solution::{Failure, Solution, State, Stats};
+use super::stepper::Stepper;
 use super::watch::Watch;
 use crate::error::Error;
 use crate::real::Float;
-use crate::system::{Dynamics, Prepared};
+use crate::system::{Dynamics, Prepared, System};
 
 /// Integrates `dynamics` over the interval `time = (start, end)` in seconds from the coordinates `q` and the velocities `v`.
 ///
 /// Without further calls it uses [`Dop853`] with `rtol` 1e-6 and `atol` 1e-9 and gives the end state.
-/// If motions have a kink at the start, `v` is the velocity after it.
+/// If motions have a kink at the start, `v` is the velocity after it. An interval that ends before it starts leads back in time; of the
+/// methods here only [`Taylor`](super::Taylor) does that.
 pub fn solve<const N: usize, D: Dynamics<N>>(
     dynamics: &D,
     time: (f64, f64),
@@ -58,7 +59,10 @@ pub struct Solve<'a, const N: usize, D: Dynamics<N>, M, C> {
 
 impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M, C> {
     /// Uses another method.
-    pub fn method<B: Suits<D::System, N>>(self, method: B) -> Solve<'a, N, D, B, C> {
+    pub fn method<B: Stepper<D, N>>(self, method: B) -> Solve<'a, N, D, B, C>
+    where
+        D: Dynamics<N, Scalar: Float>,
+    {
         let control = self.control;
         let Self { dynamics, time, q, v, output, dense, stops, events, max_steps, .. } = self;
         Solve { dynamics, time, q, v, method, control, output, dense, stops, events, max_steps }
@@ -71,11 +75,11 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
 
     /// Takes `count` equal steps over the interval; more if kinks or stops divide it.
     pub fn steps(self, count: u64) -> Solve<'a, N, D, M, FixedStep> {
-        let length = self.time.1 - self.time.0;
+        let length = (self.time.1 - self.time.0).abs();
         self.control(FixedStep::dividing(length, count))
     }
 
-    /// Gives the states at these ascending times, from dense output: they do not change the steps.
+    /// Gives the states at these times in the order of the motion, from dense output: they do not change the steps.
     pub fn t_eval(mut self, times: &'a [f64]) -> Self {
         self.output = Output::Times(times);
         self
@@ -99,7 +103,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
         self
     }
 
-    /// Makes steps end exactly at these ascending times.
+    /// Makes steps end exactly at these times in the order of the motion.
     pub fn t_stops(mut self, times: &'a [f64]) -> Self {
         self.stops = times;
         self
@@ -156,20 +160,23 @@ impl<const N: usize, D: Dynamics<N>, M> Solve<'_, N, D, M, AdaptiveStep<N>> {
     }
 }
 
-impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, M, C> {
+impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N, D, M, C> {
     /// Integrates.
     ///
     /// On failure the error comes with everything reached until then. A method that is wrong for the system or lacks a step size does
     /// not compile.
     pub fn run(self) -> Result<Solution<D::Scalar, N>, Failure<D::Scalar, N>>
     where
-        M: Suits<D::System, N>,
-        C: Control<M, N>,
+        M: Stepper<Prepared<'a, D, <D::System as System<N>>::Prepared>, N>,
+        C: Control<M, Prepared<'a, D, <D::System as System<N>>::Prepared>, N>,
     {
         let mut recorder = Recorder::new(self.output, self.time);
         let given = State { t: self.time.0, q: self.q, v: self.v };
         let dynamics = Prepared::new(self.dynamics);
-        match self.check().and_then(|()| Driver::new(&dynamics, self.method, self.control, self.time.0, self.q, self.v)) {
+        match self
+            .check::<Prepared<'a, D, _>>()
+            .and_then(|()| Driver::new(&dynamics, self.method, self.control, self.time.0, self.q, self.v))
+        {
             Err(error) => Err(recorder.fail(error, given, Stats::new(M::NAME))),
             Ok(mut driver) => match self.integrate(&dynamics, &mut driver, &mut recorder) {
                 Err(error) => Err(recorder.fail(error, State::from(&driver.node), driver.stats)),
@@ -181,24 +188,25 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, 
     fn integrate<P>(
         &self,
         dynamics: &P,
-        driver: &mut Driver<D::Scalar, N, M, C>,
+        driver: &mut Driver<D::Scalar, N, M, C, M::Stages>,
         recorder: &mut Recorder<'_, D::Scalar, N>,
     ) -> Result<Status, Error>
     where
-        P: Dynamics<N, Scalar = D::Scalar, System = D::System>,
-        M: Suits<D::System, N>,
-        C: Control<M, N>,
+        P: Dynamics<N, Scalar = D::Scalar>,
+        M: Stepper<P, N>,
+        C: Control<M, P, N>,
     {
         let end = self.time.1;
+        let ahead = |driver: &Driver<_, N, _, _, _>, t| precedes(driver.t(), t, self.time);
         let mut stops = self.stops.iter().copied().peekable();
         let mut watch = Watch::new(self.events);
         recorder.begin(State::from(&driver.node), self.dense);
         watch.begin(driver, dynamics)?;
-        while driver.t() < end {
+        while ahead(driver, end) {
             if self.max_steps <= driver.stats.accepted + driver.stats.rejected {
                 return Err(Error::MaxSteps { t: driver.t(), max_steps: self.max_steps });
             }
-            while stops.next_if(|stop| *stop <= driver.t()).is_some() {}
+            while stops.next_if(|stop| !ahead(driver, *stop)).is_some() {}
             let (stop, event) = (stops.peek().copied().unwrap_or(end), watch.next_time());
             driver.step(dynamics, if event < stop { event } else { stop })?;
             let terminal = watch.observe(driver, dynamics)?;
@@ -211,19 +219,20 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, 
         Ok(Status::Completed)
     }
 
-    fn check(&self) -> Result<(), Error>
+    fn check<P>(&self) -> Result<(), Error>
     where
-        M: Suits<D::System, N>,
-        C: Control<M, N>,
+        P: Dynamics<N, Scalar = D::Scalar>,
+        M: Stepper<P, N>,
+        C: Control<M, P, N>,
     {
         let (start, end) = self.time;
-        if !(start.is_finite() && end.is_finite() && start <= end && (end - start).is_finite()) {
+        if !((end - start).is_finite() && (start <= end || M::BACKWARDS && self.events.is_empty())) {
             return Err(Error::Interval { start, end });
         }
-        self.control.check::<D::Scalar>()?;
+        self.control.check()?;
         self.output.check(start, end)?;
-        ascending("t_stops", self.stops, start, end)?;
-        if (self.max_steps as f64) < self.control.least_steps(end - start) {
+        in_order("t_stops", self.stops, start, end)?;
+        if (self.max_steps as f64) < self.control.least_steps((end - start).abs()) {
             return Err(Error::MaxSteps { t: start, max_steps: self.max_steps });
         }
         Ok(())

@@ -24,13 +24,19 @@ impl<T: Float, const N: usize> Sum<T, N> {
     #[inline]
     pub fn add(&mut self, factor: T, increment: &[T; N]) {
         for i in 0..N {
-            let y = self.high[i];
-            let d = factor * increment[i] + self.low[i];
-            let sum = y + d;
-            let part = sum - y;
-            self.high[i] = sum;
-            self.low[i] = (y - (sum - part)) + (d - part);
+            (self.high[i], self.low[i]) = two_sum(self.high[i], factor * increment[i] + self.low[i]);
         }
+    }
+
+    /// Adds `a · b + rest` to one of the numbers; the product comes with both words (Veltkamp 1968, Dekker 1971).
+    #[inline]
+    pub fn add_product(&mut self, index: usize, a: T, b: T, rest: T) {
+        let product = a * b;
+        let ((a, a_low), (b, b_low)) = (halves(a), halves(b));
+        let error = ((a * b - product) + (a * b_low + a_low * b)) + a_low * b_low;
+        let (sum, left) = two_sum(self.high[index], product);
+        let (sum, rounded) = two_sum(sum, rest + ((left + error) + self.low[index]));
+        (self.high[index], self.low[index]) = (sum, rounded);
     }
 
     /// `self - earlier`, with the low words: exact where the two are close.
@@ -44,6 +50,25 @@ impl<T: Float, const N: usize> Sum<T, N> {
     pub fn is_finite(&self) -> bool {
         self.high.iter().all(|x| x.is_finite())
     }
+}
+
+/// A sum and its rounding error (Knuth 1969).
+#[inline]
+fn two_sum<T: Float>(a: T, b: T) -> (T, T) {
+    let sum = a + b;
+    let part = sum - a;
+    (sum, (a - (sum - part)) + (b - part))
+}
+
+/// A number as the sum of two with half the digits each.
+#[inline]
+fn halves<T: Float>(x: T) -> (T, T) {
+    // The exponent of the machine epsilon tells the number of digits.
+    let digits = 1024 - (T::EPSILON.to_f64().to_bits() >> 52);
+    let factor = T::from_f64(f64::from_bits((1023 + digits.div_ceil(2)) << 52) + 1.0);
+    let scaled = factor * x;
+    let high = scaled - (scaled - x);
+    (high, x - high)
 }
 
 #[cfg(test)]
@@ -65,6 +90,19 @@ mod tests {
         let mut sum = Sum::new([1e-20_f64]);
         sum.add(1.0, &[1.0]);
         assert_eq!((sum.high, sum.low), ([1.0], [1e-20]));
+    }
+
+    #[test]
+    fn products_keep_their_low_word() {
+        // (1 + ε)² = 1 + 2ε + ε².
+        let a = 1.0 + f64::EPSILON;
+        let mut sum = Sum::new([2.0]);
+        sum.add_product(0, a, a, 0.0);
+        assert_eq!((sum.high, sum.low), ([3.0 + 2.0 * f64::EPSILON], [f64::EPSILON * f64::EPSILON]));
+        let a = 1.0 + f32::EPSILON;
+        let mut sum = Sum::new([2.0_f32]);
+        sum.add_product(0, a, a, 0.0);
+        assert_eq!((sum.high, sum.low), ([3.0 + 2.0 * f32::EPSILON], [f32::EPSILON * f32::EPSILON]));
     }
 
     #[test]

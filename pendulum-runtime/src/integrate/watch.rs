@@ -1,14 +1,13 @@
 //! Finds the events within each step.
 
-use super::control::Control;
 use super::driver::Driver;
 use super::event::{Condition, Direction, Event, Occurrence};
-use super::method::Suits;
 use super::node::Node;
-use super::output::ascending;
+use super::output::in_order;
 use super::piece::Piece;
 use super::root::{Dip, Point, dip, root};
 use super::solution::State;
+use super::stepper::Stepper;
 use crate::error::Error;
 use crate::real::Float;
 use crate::system::{Dynamics, scalar_time};
@@ -65,11 +64,10 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
     }
 
     /// Begins at the state of `driver`.
-    pub(crate) fn begin<D, M, C>(&mut self, driver: &mut Driver<T, N, M, C>, dynamics: &D) -> Result<(), Error>
+    pub(crate) fn begin<D, M, C>(&mut self, driver: &mut Driver<T, N, M, C, M::Stages>, dynamics: &D) -> Result<(), Error>
     where
         D: Dynamics<N, Scalar = T>,
-        M: Suits<D::System, N>,
-        C: Control<M, N>,
+        M: Stepper<D, N>,
     {
         if self.is_idle() {
             return Ok(());
@@ -82,11 +80,14 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
     /// Finds what happened in the step that `driver` has just taken; if a terminal event did, puts it back there and gives the index.
     ///
     /// On failure it is put back to the start of the step.
-    pub(crate) fn observe<D, M, C>(&mut self, driver: &mut Driver<T, N, M, C>, dynamics: &D) -> Result<Option<usize>, Error>
+    pub(crate) fn observe<D, M, C>(
+        &mut self,
+        driver: &mut Driver<T, N, M, C, M::Stages>,
+        dynamics: &D,
+    ) -> Result<Option<usize>, Error>
     where
         D: Dynamics<N, Scalar = T>,
-        M: Suits<D::System, N>,
-        C: Control<M, N>,
+        M: Stepper<D, N>,
     {
         if self.is_idle() {
             return Ok(None);
@@ -124,7 +125,7 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
         for index in 0..self.events.len() {
             match self.events[index].condition {
                 Condition::Times(times) => {
-                    ascending("events", times, f64::NEG_INFINITY, f64::INFINITY)?;
+                    in_order("events", times, f64::NEG_INFINITY, f64::INFINITY)?;
                     self.tracks[index].next = times.partition_point(|time| *time <= node.t.to_f64());
                 }
                 Condition::Root(_) => {

@@ -1,0 +1,313 @@
+//! Taylor series of any order.
+
+use super::adaptive_step::{AdaptiveStep, fit};
+use super::blame::{self, blame};
+use super::control::{Control, Course, Memory};
+use super::field::{Accelerations, Counted, Watched, coordinate, first_in_state};
+use super::node::Node;
+use super::piece::{Basis, Piece, TERMS};
+use super::power::{coarse_exp2, coarse_log2, log2};
+use super::span::Span;
+use super::stepper::Stepper;
+use crate::error::{Error, Quantity};
+use crate::jet::{JetDynamics, Jets, MAX_ORDER, Orders, Path, Series};
+use crate::motion::Side;
+use crate::real::{Float, Real};
+use crate::system::{Dynamics, System, scalar_time};
+
+/// The Taylor series of the motion: any order up to 30, adaptive, forwards and backwards in time.
+///
+/// It suits every system that `lagrangian!` has made and every motion that is [`Analytic`](crate::motion::Analytic), and is the choice
+/// for errors from 1e-8 down to rounding. Its steps are long and it rejects none: the coefficients tell the radius of convergence. It is
+/// explicit, so that a stiff spring or damper shortens its steps, and it is wrong where the equations themselves are not smooth: at the
+/// zeros of `abs`, and where the larger of two numbers changes.
+///
+/// The order is p = ⌈1 − 0.7 ln rtol⌉, and the step is
+/// h = ρ rtol^(1/p) e^(−0.7/(p−1)), where ρ is the least of the radii of convergence (rtol · max |xᵢ\[k\]|/εᵢ)^(−1/k) that the last four
+/// orders k tell, with εᵢ = atolᵢ + rtol·|xᵢ| over all coordinates and velocities; where they vanish, the orders before tell it.
+/// (With ½ for 0.7 the work would be least if it grew with p²; measured, it grows with p^1.4.) `rtol` may be as small as you like: 1e-18
+/// takes the truncation well below rounding. Without `atol` it is `rtol`, in the units of each coordinate. Fixed steps have the order
+/// for the machine epsilon, without [`order`](Self::order).
+///
+/// The sum of the series is compensated. Dense output is the series itself and costs nothing.
+///
+/// Source: Jorba and Zou (2005), A software package for the numerical integration of ODEs by means of high-order Taylor methods,
+/// Exp. Math. 14, 99.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Taylor {
+    order: Option<usize>,
+}
+
+impl Taylor {
+    /// The method with the order that the tolerance asks for.
+    pub const fn new() -> Self {
+        Self { order: None }
+    }
+
+    /// The order instead, from 2 to 30; what lies beyond becomes the nearest of them.
+    pub const fn order(self, order: usize) -> Self {
+        let order = if order < 2 { 2 } else { order };
+        Self { order: Some(if MAX_ORDER < order { MAX_ORDER } else { order }) }
+    }
+
+    /// The order for a tolerance.
+    fn order_for(self, tolerance: f64) -> usize {
+        let best = (1.0 - 0.7 * core::f64::consts::LN_2 * log2(tolerance)).ceil();
+        self.order.unwrap_or(best.clamp(2.0, MAX_ORDER as f64) as usize)
+    }
+}
+
+/// The jet at the start of a step.
+#[derive(Clone, Debug)]
+pub struct Room<T, W, X, const N: usize> {
+    path: Path<T, N>,
+    drive: X,
+    work: W,
+    /// The order of the jet.
+    order: usize,
+    /// What the tolerance decides.
+    rule: Rule,
+}
+
+/// What the tolerance decides about the length of a step.
+#[derive(Clone, Copy, Debug, Default)]
+struct Rule {
+    tolerance: f64,
+    order: usize,
+    /// Its binary logarithm.
+    binary: f64,
+    /// The binary logarithm of the step over the radius of convergence.
+    margin: f64,
+}
+
+impl Rule {
+    fn new(method: Taylor, tolerance: f64) -> Self {
+        let (order, binary) = (method.order_for(tolerance), log2(tolerance));
+        let margin = binary / order as f64 - 0.7 * core::f64::consts::LOG2_E / (order as f64 - 1.0);
+        Self { tolerance, order, binary, margin }
+    }
+}
+
+/// The room for the jets of the dynamics `D`.
+type RoomOf<D, const N: usize> = Room<
+    <D as Dynamics<N>>::Scalar,
+    <<D as Dynamics<N>>::System as Jets<N>>::Work,
+    <<D as Dynamics<N>>::System as Jets<N>>::Drive,
+    N,
+>;
+
+impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Stepper<D, N> for Taylor {
+    const NAME: &'static str = "Taylor";
+    const BACKWARDS: bool = true;
+    type Stages = RoomOf<D, N>;
+
+    fn room(&self, dynamics: &D) -> RoomOf<D, N> {
+        Room { path: Path::new(), drive: D::System::drive(), work: dynamics.system().work(), order: 0, rule: Rule::default() }
+    }
+
+    fn advance(
+        &self,
+        field: &mut Counted<'_, D>,
+        span: &Span,
+        from: &mut Node<D::Scalar, N>,
+        room: &mut RoomOf<D, N>,
+    ) -> Node<D::Scalar, N> {
+        let order = self.order_for(D::Scalar::EPSILON.to_f64());
+        expand(field, from, side(span.h), order, room);
+        sum(room, from, span)
+    }
+
+    fn within(
+        &self,
+        _: &mut Counted<'_, D>,
+        span: &Span,
+        from: &mut Node<D::Scalar, N>,
+        _: &mut Node<D::Scalar, N>,
+        room: &mut RoomOf<D, N>,
+    ) -> Piece<D::Scalar, N> {
+        let (h, zero) = (span.length::<D::Scalar>(), [[D::Scalar::from_f64(0.0); N]; TERMS]);
+        let (q0, v0) = (from.q.high, from.v.high);
+        let mut piece = Piece { span: *span, q0, v0, q: zero, v: zero, terms: room.order, basis: Basis::Powers };
+        let mut power = h;
+        for k in 1..=room.order {
+            for i in 0..N {
+                piece.q[k - 1][i] = room.path.q[i][k] * power;
+                piece.v[k - 1][i] = room.path.v[i][k] * power;
+            }
+            power *= h;
+        }
+        piece
+    }
+
+    fn fault(&self, dynamics: &D, span: &Span, from: &Node<D::Scalar, N>, _: &RoomOf<D, N>) -> Option<Error> {
+        let mut watched = Watched { dynamics, first: None };
+        watched.at(from.t, side(span.h), &from.q.high, &from.v.high);
+        let mut room = self.room(dynamics);
+        expand(&mut Counted::new(dynamics), from, side(span.h), self.order_for(D::Scalar::EPSILON.to_f64()), &mut room);
+        let facts = &<D::System as System<N>>::FACTS;
+        let finite = |series: &Series<D::Scalar>| series.iter().all(|x| x.is_finite());
+        let infinite = (0..N).find(|&i| !finite(&room.path.v[i]) || !finite(&room.path.q[i]));
+        let (t, what) = watched
+            .first
+            .or_else(|| infinite.map(|index| (from.t, Quantity::Acceleration(coordinate(facts, index)))))
+            .or_else(|| {
+                let to = sum(&room, from, span);
+                first_in_state(facts, &to.q.high, &to.v.high).map(|what| (span.end, what))
+            })?;
+        Some(blame::not_finite(dynamics.system(), t, what))
+    }
+
+    fn kink(&self, dynamics: &D, t: f64, backwards: bool) -> Option<f64> {
+        if backwards { dynamics.last_kink(t) } else { dynamics.next_kink(t) }
+    }
+}
+
+impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for AdaptiveStep<N> {
+    fn check(&self) -> Result<(), Error> {
+        self.positive::<D::Scalar>()
+    }
+
+    fn least_steps(&self, length: f64) -> f64 {
+        self.least_steps_over(length)
+    }
+
+    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, Taylor, N>) -> Result<(Span, Node<D::Scalar, N>), Error> {
+        let Course { method, field, from, stages: room, target, stats } = course;
+        let t = from.t.to_f64();
+        let backwards = target < t;
+        let target = if backwards {
+            field.dynamics.last_break(t).filter(|time| target < *time).unwrap_or(target)
+        } else {
+            field.dynamics.next_break(t).filter(|time| *time < target).unwrap_or(target)
+        };
+        let (rtol, atol) = self.tolerances::<D::Scalar>();
+        if room.rule.tolerance != rtol {
+            room.rule = Rule::new(*method, rtol);
+        }
+        let rule = room.rule;
+        expand(field, from, if backwards { Side::Before } else { Side::After }, rule.order, room);
+        let weights = [
+            core::array::from_fn(|i| 1.0 / (atol.0[i] + rtol * from.q.high[i].to_f64().abs())),
+            core::array::from_fn(|i| 1.0 / (atol.1[i] + rtol * from.v.high[i].to_f64().abs())),
+        ];
+        let wanted = length(&room.path, &rule, &weights);
+        // A uniform motion may go on for ever, but it has to come to an end.
+        let wanted = if wanted == f64::INFINITY && target == wanted { 1.0 } else { wanted };
+        let wanted = self.limited(memory.h == 0.0, wanted);
+        let span = fit(from.t, wanted, target);
+        let to = sum(room, from, &span);
+        if !to.is_finite() {
+            return Err(blame(method, field.dynamics, &span, from, room));
+        }
+        if wanted <= f64::EPSILON * t.abs() && wanted < from.t.since(target).abs() || wanted < 1e-200 {
+            let (_, index) = largest(&room.path, rule.order, &weights);
+            let coordinate = coordinate(&<D::System as System<N>>::FACTS, index);
+            return Err(Error::StepSizeUnderflow { t, step: wanted, coordinate });
+        }
+        memory.h = wanted;
+        stats.accepted += 1;
+        Ok((span, to))
+    }
+}
+
+/// The side from which the start of a step is seen.
+fn side(h: f64) -> Side {
+    if h < 0.0 { Side::Before } else { Side::After }
+}
+
+/// The jet at `from`.
+#[inline]
+fn expand<D: JetDynamics<N, Scalar: Float>, const N: usize>(
+    field: &mut Counted<'_, D>,
+    from: &Node<D::Scalar, N>,
+    side: Side,
+    order: usize,
+    room: &mut RoomOf<D, N>,
+) {
+    if room.order != order {
+        // No coefficient of a higher order may stay.
+        room.path = Path::new();
+        room.order = order;
+    }
+    let Room { path, drive, work, .. } = room;
+    path.t = scalar_time(from.t);
+    for i in 0..N {
+        path.q[i][0] = from.q.high[i];
+        path.v[i][0] = from.v.high[i];
+    }
+    field.dynamics.drive(from.t, side, order, drive);
+    <D::System as Jets<N>>::Orders::run(field.dynamics.system(), order, path, drive, work);
+    field.evaluations += order as u64;
+}
+
+/// The state at the end of a step: the sum of the series, to which the products of the first order come with both words.
+#[inline]
+fn sum<T: Float, W, X, const N: usize>(room: &Room<T, W, X, N>, from: &Node<T, N>, span: &Span) -> Node<T, N> {
+    let h = span.length::<T>();
+    let mut to = Node { t: span.end, a: None, ..*from };
+    for i in 0..N {
+        to.q.add_product(i, h, room.path.q[i][1], rest(&room.path.q[i], room.order, h));
+        to.v.add_product(i, h, room.path.v[i][1], rest(&room.path.v[i], room.order, h));
+    }
+    to
+}
+
+/// Σ x\[k\] hᵏ over 2 ≤ k ≤ `order`: the upper half of the terms and the lower one after Horner (1819), side by side.
+#[inline]
+fn rest<T: Float>(series: &Series<T>, order: usize, h: T) -> T {
+    let lower = &series[2..=order / 2];
+    let upper = &series[order / 2 + 1..=order];
+    let (mut low, mut high, mut power) = (T::from_f64(0.0), T::from_f64(0.0), h * h);
+    let mut above = upper.iter().rev();
+    for coefficient in lower.iter().rev() {
+        low = low * h + *coefficient;
+        power *= h;
+        if let Some(coefficient) = above.next() {
+            high = high * h + *coefficient;
+        }
+    }
+    for coefficient in above {
+        high = high * h + *coefficient;
+    }
+    low * (h * h) + high * power
+}
+
+/// How many of the last coefficients tell the length of a step. A motion from rest in a symmetric place has one order in four only.
+const TELLING: usize = 4;
+
+/// The length of a step at whose end the last term of the series is as large as allowed; infinite for a uniform motion.
+#[inline]
+fn length<T: Float, const N: usize>(path: &Path<T, N>, rule: &Rule, weights: &[[f64; N]; 2]) -> f64 {
+    let (mut least, mut told) = (f64::INFINITY, 0);
+    for k in (1..=rule.order).rev() {
+        let (coefficient, _) = largest(path, k, weights);
+        if 0.0 < coefficient {
+            // log₂ of the radius of convergence, if the coefficients fall like its powers.
+            let radius = -(coarse_log2(coefficient) + rule.binary) * path.reciprocals[k].to_f64();
+            least = if radius < least { radius } else { least };
+        }
+        told += 1;
+        if TELLING <= told && least < f64::INFINITY {
+            break;
+        }
+    }
+    if least == f64::INFINITY {
+        return least;
+    }
+    coarse_exp2(least + rule.margin)
+}
+
+/// The largest coefficient of an order over the error allowed, and its coordinate.
+#[inline]
+fn largest<T: Float, const N: usize>(path: &Path<T, N>, k: usize, weights: &[[f64; N]; 2]) -> (f64, usize) {
+    let mut largest = (0.0, 0);
+    for i in 0..N {
+        for (series, weights) in [(&path.q[i], &weights[0]), (&path.v[i], &weights[1])] {
+            let coefficient = series[k].to_f64().abs() * weights[i];
+            if largest.0 < coefficient {
+                largest = (coefficient, i);
+            }
+        }
+    }
+    largest
+}

@@ -1,0 +1,232 @@
+//! The `Taylor` method on generated systems: forwards, backwards, over kinks, in single precision, and where it has to stop.
+
+#![allow(mixed_script_confusables, missing_docs)]
+
+use pendulum_runtime::error::{Error, Quantity};
+use pendulum_runtime::integrate::{AdaptiveStep, Solution};
+use pendulum_runtime::motion::{CatmullRom, Linear, Side, Spline};
+use pendulum_runtime::prelude::*;
+
+lagrangian! {
+    /// ½q̇² + g cos q.
+    pub struct Simple { g }
+    coordinate q;
+    kinetic = q̇^2/2;
+    potential = -g*cos(q);
+}
+
+lagrangian! {
+    #[derive(Clone, Debug)]
+    pub struct Pendulum { m: kg, L: m, g: m/s^2 = 9.81 }
+    coordinate θ: rad;
+    driven x: [m; 2];
+    let y = L*[sin(θ), -cos(θ)];
+    kinetic = m/2*|ẋ + ẏ|^2;
+    potential = m*g*height(x + y);
+}
+
+lagrangian! {
+    pub struct Kepler {}
+    coordinate x;
+    coordinate y;
+    kinetic = (ẋ^2 + ẏ^2)/2;
+    potential = -1/|[x, y]|;
+}
+
+lagrangian! {
+    pub struct Falling { g }
+    coordinate x;
+    coordinate y;
+    kinetic = (ẋ^2 + ẏ^2)/2;
+    potential = g*y;
+}
+
+fn keys() -> (Vec<f64>, Vec<[f64; 2]>) {
+    let mut state = 12345u32;
+    let mut next = || {
+        state = state.wrapping_mul(1664525).wrapping_add(1013904223);
+        f64::from(state >> 8) / f64::from(1u32 << 24) - 0.5
+    };
+    let times = (0..400).map(|i| (f64::from(i) - 1.0) / 24.0).collect();
+    let values = (0..400).map(|i| [0.1 * (0.12 * f64::from(i)).sin() + 0.004 * next(), 0.0]).collect();
+    (times, values)
+}
+
+/// The pendulum of small swings comes back after a thousand seconds there and back to within 4e-16.
+#[test]
+fn forth_and_back_over_a_thousand_seconds() {
+    let simple: Simple = Simple::new(9.8);
+    for (method, tolerance, bound) in
+        [(Taylor::new().order(20), 1e-18, 4e-16), (Taylor::new(), 1e-18, 2e-15), (Taylor::new(), 1e-15, 4e-15)]
+    {
+        let there = solve(&simple, (0.0, 1000.0), [0.05], [0.025]).method(method).rtol(tolerance).run().unwrap().end;
+        let back = solve(&simple, (1000.0, 0.0), there.q, there.v).method(method).rtol(tolerance).run().unwrap().end;
+        let distance = (back.q[0] - 0.05).hypot(back.v[0] - 0.025);
+        assert!(back.t == 0.0 && distance <= bound, "{tolerance}: {distance:e}");
+    }
+    let control = AdaptiveStep::new().rtol(1e-18);
+    let mut integrator =
+        Integrator::new(&simple, Taylor::new().order(20), 0.0, [0.05], [0.025]).unwrap().control(control).unwrap();
+    integrator.advance_to(1000.0).unwrap();
+    integrator.advance_to(0.0).unwrap();
+    let distance = (integrator.q()[0] - 0.05).hypot(integrator.v()[0] - 0.025);
+    assert!(distance <= 4e-16, "{distance:e}");
+}
+
+/// The angles after five seconds that `kinks.rs` knows, and back again over all keys.
+#[test]
+fn keys_are_met_in_both_directions() {
+    let (times, values) = keys();
+    let pendulum = Pendulum::new(0.3, 0.5);
+    let linear = pendulum.clone().driven_by(Linear::new(&times, &values).unwrap());
+    let catmull_rom = pendulum.clone().driven_by(CatmullRom::new(&times, &values).unwrap());
+    let spline = pendulum.driven_by(Spline::natural(&times, &values).unwrap());
+    let end = |solution: Solution<f64, 1>| (solution.end.q, solution.end.v, solution.stats.kinks);
+    macro_rules! forth_and_back {
+        ($dynamics:expr, $expected:expr, $kinks:expr) => {
+            let (q, v, kinks) = end(solve($dynamics, (0.0, 5.0), [0.3], [0.0]).method(Taylor::new()).rtol(1e-16).run().unwrap());
+            assert!((q[0] - $expected).abs() < 5e-12, "{}", q[0]);
+            assert_eq!(kinks, $kinks);
+            // At t = 5 there is a key: the velocity found is the one after it, and the way back begins before it.
+            let control = AdaptiveStep::new().rtol(1e-16);
+            let mut integrator = Integrator::new($dynamics, Taylor::new(), 0.0, [0.3], [0.0]).unwrap().control(control).unwrap();
+            integrator.advance_to(5.0).unwrap();
+            assert_eq!((*integrator.q(), *integrator.v()), (q, v));
+            integrator.advance_to(1.0).unwrap();
+            integrator.advance_to(2.0).unwrap();
+            integrator.advance_to(0.01).unwrap();
+            let start = solve($dynamics, (0.0, 0.01), [0.3], [0.0]).method(Taylor::new()).rtol(1e-16).run().unwrap().end;
+            let distance = (integrator.q()[0] - start.q[0]).abs().max((integrator.v()[0] - start.v[0]).abs());
+            assert!(distance < 1e-13, "{distance:e}");
+        };
+    }
+    forth_and_back!(&linear, -0.129608683467, 120);
+    forth_and_back!(&catmull_rom, -0.128838666144, 120);
+    let dop853 = solve(&spline, (0.0, 5.0), [0.3], [0.0]).rtol(1e-13).atol(1e-13).run().unwrap().end.q[0];
+    forth_and_back!(&spline, dop853, 0);
+}
+
+/// The way back over kinks gives the states of the way forth, seen from the same side.
+#[test]
+fn dense_output_has_one_history() {
+    let (times, values) = keys();
+    let linear = Pendulum::new(0.3, 0.5).driven_by(Linear::new(&times, &values).unwrap());
+    let forth = solve(&linear, (0.01, 2.01), [0.3], [0.0]).method(Taylor::new()).rtol(1e-16).dense().run().unwrap();
+    let (q, v) = (forth.end.q, forth.end.v);
+    let outputs: Vec<f64> = (0..=200).map(|i| 2.01 - 0.01 * f64::from(i)).collect();
+    let problem = solve(&linear, (2.01, 0.01), q, v).method(Taylor::new()).rtol(1e-16).dense();
+    let back = problem.t_eval(&outputs[..200]).run().unwrap();
+    assert_eq!(back.t, outputs[..200]);
+    for (index, t) in outputs[..200].iter().enumerate() {
+        let known = forth.at(*t).unwrap();
+        assert!((known.q[0] - back.q[index][0]).abs() < 1e-13, "{t}");
+    }
+    for key in [1.0, 1.5, 12.0 / 24.0] {
+        for side in [Side::Before, Side::After] {
+            let (a, b) = (forth.at_side(key, side).unwrap(), back.at_side(key, side).unwrap());
+            assert!((a.q[0] - b.q[0]).abs() < 1e-13 && (a.v[0] - b.v[0]).abs() < 1e-13, "{key}, {side:?}");
+        }
+    }
+    let every = solve(&linear, (2.01, 0.01), q, v).method(Taylor::new()).every(0.5).run().unwrap();
+    assert_eq!(every.t.len(), 5);
+    assert_eq!((every.t[0], every.t[4]), (2.01, 0.01));
+}
+
+/// Dense output is as good as the steps.
+#[test]
+fn dense_output_is_exact() {
+    let simple = Simple::new(1.0);
+    let solution = solve(&simple, (0.0, 10.0), [1.3], [0.0]).method(Taylor::new()).rtol(1e-16).dense().run().unwrap();
+    for i in 1..40 {
+        let t = 0.25 * f64::from(i);
+        let stopped = solve(&simple, (0.0, t), [1.3], [0.0]).method(Taylor::new()).rtol(1e-18).run().unwrap().end;
+        let state = solution.at(t).unwrap();
+        assert!((state.q[0] - stopped.q[0]).abs() < 2e-15 && (state.v[0] - stopped.v[0]).abs() < 2e-15, "{t}");
+    }
+}
+
+/// A polynomial takes one step, and an equilibrium too.
+#[test]
+fn series_that_end() {
+    let falling = Falling::new(9.81);
+    let solution = solve(&falling, (0.0, 100.0), [0.0, 3.0], [1.0, 2.0]).method(Taylor::new()).rtol(1e-15).run().unwrap();
+    assert!(solution.stats.accepted < 50, "{}", solution.stats);
+    assert!((solution.end.q[0] - 100.0).abs() < 1e-12 && (solution.end.q[1] - (203.0 - 9.81 * 5000.0)).abs() < 1e-10);
+    let rest = solve(&Simple::new(1.0), (0.0, 1e6), [0.0], [0.0]).method(Taylor::new()).run().unwrap();
+    assert_eq!((rest.end.q, rest.stats.accepted), ([0.0], 1));
+    let simple = Simple::new(1.0);
+    let mut integrator = Integrator::new(&simple, Taylor::new(), 0.0, [0.0], [0.0]).unwrap();
+    integrator.step().unwrap();
+    assert_eq!(integrator.t(), 1.0);
+}
+
+/// A release from a symmetric place: only one order in four is there.
+#[test]
+fn lacunary_series() {
+    let simple = Simple::new(9.81);
+    let q = [core::f64::consts::FRAC_PI_2];
+    let loose = solve(&simple, (0.0, 1.0), q, [0.0]).method(Taylor::new()).rtol(1e-6).run().unwrap().end.q[0];
+    let tight = solve(&simple, (0.0, 1.0), q, [0.0]).method(Taylor::new()).rtol(1e-16).run().unwrap().end.q[0];
+    assert!((loose - tight).abs() < 1e-5, "{loose} {tight}");
+}
+
+#[test]
+fn single_precision() {
+    let simple = Simple::new(1.0f32);
+    let end = solve(&simple, (0.0, 10.0), [1.3], [0.0]).method(Taylor::new()).rtol(1e-7).run().unwrap().end;
+    assert!((end.q[0] + 1.166_160_4).abs() < 2e-6, "{}", end.q[0]);
+}
+
+#[test]
+fn fixed_steps_and_settings() {
+    let simple: Simple = Simple::new(1.0);
+    let exact = -1.1661603819329576;
+    let solution = solve(&simple, (0.0, 10.0), [1.3], [0.0]).method(Taylor::new()).step(0.25).run().unwrap();
+    assert_eq!(solution.stats.accepted, 40);
+    assert!((solution.end.q[0] - exact).abs() < 5e-15);
+    let error = |order, steps| {
+        let end = solve(&simple, (0.0, 10.0), [1.3], [0.0]).method(Taylor::new().order(order)).steps(steps).run().unwrap().end;
+        (end.q[0] - exact).abs()
+    };
+    for order in [2, 3, 4, 5, 6, 7] {
+        let observed = (error(order, 160) / error(order, 320)).log2();
+        assert!((order as f64 - 0.4..order as f64 + 1.4).contains(&observed), "order {order}: {observed}");
+    }
+    let steps = |max| {
+        let problem = solve(&simple, (0.0, 10.0), [1.3], [0.0]).method(Taylor::new()).rtol(1e-15);
+        problem.max_step(max).run().unwrap().stats.accepted
+    };
+    assert_eq!(steps(0.1), 100);
+    let failure = solve(&simple, (0.0, 10.0), [1.3], [0.0]).method(Taylor::new()).rtol(0.0).run().unwrap_err();
+    assert!(matches!(failure.error, Error::Setting { name: "rtol", .. }));
+}
+
+/// Each coordinate has its own tolerance.
+#[test]
+fn tolerances_by_coordinate() {
+    let kepler = Kepler::new();
+    let steps = |x: f64, y: f64| {
+        let problem = solve(&kepler, (0.0, 6.0), [1.0, 0.0], [0.0, 1.0]).method(Taylor::new()).rtol(1e-14);
+        problem.atol_each([x, y], [x, y]).run().unwrap().stats.accepted
+    };
+    assert!(2 * steps(1e-2, 1e-2) < steps(1e-14, 1e-2));
+}
+
+#[test]
+fn errors_say_where() {
+    // A fall into the centre from rest: the singularity is reached at π/(2√2).
+    let kepler = Kepler::new();
+    let failure = solve(&kepler, (0.0, 2.0), [1.0, 0.0], [0.0, 0.0]).method(Taylor::new()).rtol(1e-12).run().unwrap_err();
+    let t = failure.partial.end.t;
+    assert!((t - 1.1107207345395915).abs() < 1e-6, "{failure:?}");
+    let failure = solve(&Simple::new(f64::NAN), (0.0, 2.0), [1.0], [0.0]).method(Taylor::new()).run().unwrap_err();
+    let Error::NotFinite { t, what: Quantity::Acceleration(coordinate), ref suspects } = failure.error else {
+        panic!("{failure}")
+    };
+    assert_eq!((t, coordinate.name, suspects[0].parameter), (0.0, "q", "g"));
+    // Methods that only go forth say so.
+    let failure = solve(&Simple::new(1.0), (2.0, 0.0), [1.0], [0.0]).run().unwrap_err();
+    assert!(matches!(failure.error, Error::Interval { .. }));
+    let failure = solve(&Simple::new(1.0), (2.0, 0.0), [1.0], [0.0]).method(Taylor::new()).t_eval(&[0.5, 1.0]).run().unwrap_err();
+    assert!(matches!(failure.error, Error::Times { index: 1, .. }));
+}
