@@ -366,6 +366,14 @@ impl Graph {
                 _ => false,
             });
         }
+        // What a division by the factor cannot take out of every term would be found again for ever.
+        common.retain(|&(base, least)| {
+            let divides = |&(other, exponent): &(Id, Rational)| {
+                let rest = exact(exponent.add(least.negative()));
+                other != base || rest.is_some_and(|rest| rest.is_zero() || rest.is_negative() == least.is_negative())
+            };
+            terms.keys().all(|&id| self.factors(id).iter().all(divides))
+        });
         common
     }
 
@@ -446,13 +454,17 @@ impl Graph {
             }
             Node::Product(own, inner) => {
                 if exponent.is_integer() {
+                    let powers = inner.iter().map(|&(id, power)| Some((id, exact(power.mul(exponent))?)));
+                    let powers = powers.collect::<Option<Vec<_>>>();
+                    let Some(powers) = powers else {
+                        // Exponents beyond exact arithmetic: the power stays closed, or it would be opened for ever.
+                        let closed = self.intern(Node::Atom(base));
+                        return self.add_exponent(bases, closed, exponent);
+                    };
                     let own = self.number(own);
                     self.add_factor(coefficient, bases, own, exponent);
-                    for (id, power) in inner {
-                        match power.mul(exponent) {
-                            Some(power) => self.add_factor(coefficient, bases, id, power),
-                            None => return self.add_exponent(bases, base, exponent),
-                        }
+                    for (id, power) in powers {
+                        self.add_factor(coefficient, bases, id, power);
                     }
                     return;
                 }
@@ -473,7 +485,7 @@ impl Graph {
         let (own, inner) = product;
         let mut rest = Vec::new();
         for (id, power) in inner {
-            match power.mul(exponent) {
+            match exact(power.mul(exponent)) {
                 Some(total) if power.is_even() => {
                     let magnitude = if total.is_even() { id } else { self.call(Function::Abs, id) };
                     self.add_factor(coefficient, bases, magnitude, total);
@@ -487,7 +499,7 @@ impl Graph {
         match rest.as_slice() {
             [] if sign == Rational::ONE => {}
             [(id, power)] if sign == Rational::ONE => {
-                if let Some(total) = power.mul(exponent) {
+                if let Some(total) = exact(power.mul(exponent)) {
                     self.add_exponent(bases, *id, total);
                 } else {
                     let whole = self.intern(Node::Product(sign, rest));
@@ -506,7 +518,7 @@ impl Graph {
     }
 
     fn add_exponent(&mut self, bases: &mut Terms, base: Id, exponent: Rational) {
-        match bases.get(&base).copied().unwrap_or(Rational::ZERO).add(exponent) {
+        match exact(bases.get(&base).copied().unwrap_or(Rational::ZERO).add(exponent)) {
             Some(total) if total.is_zero() => {
                 bases.remove(&base);
             }
@@ -674,8 +686,16 @@ impl Graph {
     }
 }
 
+/// An exponent as long as it is small enough for sums and differences of exponents to be exact.
+fn exact(exponent: Option<Rational>) -> Option<Rational> {
+    exponent?.within(60)
+}
+
 /// The exact power of a number, where there is one.
 fn number_power(value: Rational, exponent: Rational) -> Option<Rational> {
+    if value == Rational::ONE {
+        return Some(value);
+    }
     let degree = u32::try_from(exponent.denominator()).ok()?;
     let power = i64::try_from(exponent.numerator()).ok()?;
     if 4096 < power.abs() {
@@ -730,5 +750,18 @@ mod tests {
         let x = g.symbol(Symbol::Time);
         let scaled = g.mul(product, x);
         assert_eq!(g.sub(scaled, scaled), Graph::ZERO);
+    }
+
+    #[test]
+    fn exponents_that_overflow_stay_closed() {
+        let mut g = Graph::new();
+        let [x, y] = [0, 1].map(|k| g.symbol(Symbol::Coordinate(k)));
+        let large = Rational::decimal("1e17").unwrap();
+        let product = g.mul(x, y);
+        let power = g.power(product, large);
+        let tower = g.power(power, large);
+        let factors = g.factors(tower);
+        assert!(matches!(factors.as_slice(), [(base, exponent)] if matches!(g.node(*base), Node::Atom(_)) && *exponent == large));
+        assert_eq!(g.div(tower, tower), Graph::ONE);
     }
 }

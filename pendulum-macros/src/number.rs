@@ -63,6 +63,12 @@ impl Rational {
         if self.is_integer() { i64::try_from(self.numerator).ok() } else { None }
     }
 
+    /// The number itself if numerator and denominator are below 2^`bits`.
+    pub(crate) fn within(self, bits: u32) -> Option<Self> {
+        let small = |value: i128| value.unsigned_abs() >> bits == 0;
+        (small(self.numerator) && small(self.denominator)).then_some(self)
+    }
+
     pub(crate) fn abs(self) -> Self {
         Self { numerator: self.numerator.abs(), ..self }
     }

@@ -396,6 +396,7 @@ impl Schedule<'_> {
         let mut negative = term.coefficient.is_negative();
         let mut still = Some(still).filter(|still| *still != unit());
         if let Some(constant) = &still
+            && constant.coefficient.within(60).is_some()
             && let Some(index) =
                 moving.iter().position(|&(factor, exponent)| exponent == Rational::ONE && self.takes_in(factor.id, 1))
             && moving[index].0.scale.is_none()
@@ -524,6 +525,9 @@ impl Schedule<'_> {
         }
         let terms = &terms;
         terms.iter().all(|&(term, coefficient)| {
+            if coefficient.within(60).is_none() {
+                return false;
+            }
             let factors = self.graph.factors(term);
             let constant =
                 coefficient.abs() != Rational::ONE || term == Graph::ONE || factors.iter().any(|&(base, _)| self.still(base));
@@ -573,7 +577,8 @@ impl Schedule<'_> {
     fn most_shared(&self, terms: &[Term]) -> Option<((Factor, Rational), BTreeSet<usize>)> {
         let mut shared: BTreeMap<(Factor, bool), BTreeSet<usize>> = BTreeMap::new();
         for (index, term) in terms.iter().enumerate() {
-            for &(factor, exponent) in &term.factors {
+            // Differences of these exponents are exact.
+            for &(factor, exponent) in term.factors.iter().filter(|(_, exponent)| exponent.within(30).is_some()) {
                 shared.entry((factor, exponent.is_negative())).or_default().insert(index);
             }
         }
@@ -666,8 +671,10 @@ fn take(factors: &mut Vec<(Factor, Rational)>, (factor, exponent): (Factor, Rati
 
 /// Multiplies a product by a power.
 fn multiply(factors: &mut Vec<(Factor, Rational)>, factor: Factor, exponent: Rational) {
-    match factors.iter_mut().find(|(other, _)| *other == factor) {
-        Some((_, own)) => *own = own.add(exponent).unwrap_or(*own),
+    let own = factors.iter_mut().find(|(other, _)| *other == factor);
+    match own.and_then(|(_, own)| own.add(exponent).map(|total| (own, total))) {
+        Some((own, total)) => *own = total,
+        // An exponent that cannot be added stands beside the other.
         None => factors.push((factor, exponent)),
     }
     factors.retain(|(_, exponent)| !exponent.is_zero());

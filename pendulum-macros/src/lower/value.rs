@@ -3,7 +3,7 @@
 use super::{Lower, total_derivative};
 use crate::ast::Expr;
 use crate::check;
-use crate::expr::{Contents, Function, Graph, Id, Symbol};
+use crate::expr::{Contents, Function, Graph, Id, Node, Symbol};
 use crate::number::Rational;
 
 /// An expression by its components.
@@ -177,6 +177,11 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn power(&mut self, base: &Expr, exponent: &Expr) -> Value {
         let value = self.expr(base);
         let Some(power) = self.scalar(exponent) else { return Value::Bad };
+        if let Node::Number(number) = self.graph.node(power)
+            && number.within(60).is_none()
+        {
+            return self.wrong(exponent, "this exponent is too long for exact arithmetic; write one of at most eighteen digits");
+        }
         match value {
             Value::Bad => Value::Bad,
             Value::Scalar(Graph::ZERO) if check::integer(exponent, &self.indices).is_ok_and(|power| power < 0) => {

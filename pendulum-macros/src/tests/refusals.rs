@@ -43,6 +43,7 @@ const CASES: &[(&str, &str)] = &[
     ("kinetic = m*L^2*θ̇^2; potential = sin;",                  "`sin` is a function; write `sin(…)`"),
     ("kinetic = m*L^2*θ̇^2; potential = x/x;",                  "`x` is a plane vector, and nothing can be divided by that; divide by its length `|u|`"),
     ("kinetic = m*L^2*θ̇^2; potential = m/0;",                  "division by zero; write another divisor"),
+    ("kinetic = m*L^2*θ̇^2; potential = θ^10000000000000000000000;", "this exponent is too long for exact arithmetic; write one of at most eighteen digits"),
     ("kinetic = m*L^2*θ̇^2; potential = x.w;",                  "unknown component `w`; there are `.x`, `.y`, `.z`"),
     ("kinetic = m*L^2*θ̇^2; potential = x.z;",                  "`x` is a plane vector, it has no `.z`; write a vector"),
     ("kinetic = m*L^2*θ̇^2; force m = 1;",                      "`m` is no coordinate; a force acts on a coordinate, as in `force θ = …;`"),

@@ -59,6 +59,11 @@ const WORDS: &[&str] = &[
     "1e400",
     "1e-40",
     "99999999999999999999",
+    "10000000000000000000000",
+    "^100000000000000000000000000000000000000",
+    "^2",
+    "^(1/2)",
+    "^-1",
     "\"a\"",
     "'a'",
     "#",
@@ -227,6 +232,22 @@ fn changed(tokens: &TokenStream, index: usize, change: Change, next: &mut usize)
         }
     }
     result.into_iter().collect()
+}
+
+/// Powers of powers whose exponents leave exact arithmetic.
+#[test]
+fn huge_exponents_do_not_hang() {
+    let large = ["10000000000000000000000", "1e17", "-1e17", "(1/1e17)", "(3/7)", "(1e17/3e16)", "2e9", "(1/2e9)"];
+    for a in large {
+        for b in large {
+            for base in ["x", "(m*x)", "(2*m*x)", "|x|", "(x + m)", "(x^2 + m*x^1e17)", "3", "(-m*x^2)", "sin(x)"] {
+                let block = format!(
+                    "::p; struct S {{ m }} coordinate x; kinetic = ẋ^2; potential = m*({base}^{a})^{b} + ({base}*x^{b})^{a}/x^{a};"
+                );
+                expand(block.parse().unwrap());
+            }
+        }
+    }
 }
 
 #[test]
