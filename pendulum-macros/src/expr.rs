@@ -146,6 +146,8 @@ type Hasher = BuildHasherDefault<DefaultHasher>;
 #[derive(Debug)]
 pub(crate) struct Graph {
     nodes: Vec<Node>,
+    /// The number of operands in all sums and products.
+    size: usize,
     contents: Vec<Contents>,
     ids: HashMap<Node, Id, Hasher>,
     /// The derivatives that are known.
@@ -157,7 +159,8 @@ impl Graph {
     pub(crate) const ONE: Id = Id(1);
 
     pub(crate) fn new() -> Self {
-        let mut graph = Self { nodes: Vec::new(), contents: Vec::new(), ids: HashMap::default(), slopes: HashMap::default() };
+        let mut graph =
+            Self { nodes: Vec::new(), size: 0, contents: Vec::new(), ids: HashMap::default(), slopes: HashMap::default() };
         graph.intern(Node::Number(Rational::ZERO));
         graph.intern(Node::Number(Rational::ONE));
         graph
@@ -165,6 +168,11 @@ impl Graph {
 
     pub(crate) fn node(&self, id: Id) -> &Node {
         &self.nodes[id.index()]
+    }
+
+    /// The number of operands in all sums and products made so far.
+    pub(crate) fn size(&self) -> usize {
+        self.size
     }
 
     pub(crate) fn contents(&self, id: Id) -> Contents {
@@ -679,6 +687,9 @@ impl Graph {
             Node::Atan2(a, b) | Node::Max(a, b) => self.contents(*a).or(self.contents(*b)),
             Node::Number(_) | Node::Opaque(_) | Node::Pi => Contents::default(),
         };
+        if let Node::Sum(list) | Node::Product(_, list) = &node {
+            self.size += list.len();
+        }
         self.nodes.push(node.clone());
         self.contents.push(contents);
         self.ids.insert(node, id);

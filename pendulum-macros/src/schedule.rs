@@ -220,6 +220,9 @@ fn scheduled(graph: &Graph, roots: &[Id], apart: bool) -> Program {
     prune(schedule.program)
 }
 
+/// Polynomials are nested as Horner does down to this depth, and no deeper: the stack is finite.
+const DEPTH: usize = 64;
+
 struct Schedule<'g> {
     graph: &'g Graph,
     program: Program,
@@ -348,9 +351,16 @@ impl Schedule<'_> {
     }
 
     /// A sum of products, and whether its value is the negative of the place.
-    fn sum(&mut self, mut terms: Vec<Term>) -> (Place, bool) {
+    fn sum(&mut self, terms: Vec<Term>) -> (Place, bool) {
+        self.nested_sum(terms, 0)
+    }
+
+    /// A sum that stands in `depth` others, each with a factor drawn before it.
+    fn nested_sum(&mut self, mut terms: Vec<Term>, depth: usize) -> (Place, bool) {
         let mut parts: Vec<(Place, bool)> = Vec::new();
-        while let Some((factor, shared)) = self.most_shared(&terms) {
+        while depth < DEPTH
+            && let Some((factor, shared)) = self.most_shared(&terms)
+        {
             let mut inner = Vec::new();
             let mut rest = Vec::new();
             for (index, mut term) in terms.into_iter().enumerate() {
@@ -365,7 +375,7 @@ impl Schedule<'_> {
             for term in &mut inner {
                 term.coefficient = term.coefficient.mul(common.reciprocal().unwrap_or(Rational::ONE)).unwrap_or(term.coefficient);
             }
-            let (sum, negative) = self.sum(inner);
+            let (sum, negative) = self.nested_sum(inner, depth + 1);
             let (outer, flipped) = self.product(&Term { coefficient: common, factors: vec![factor] });
             let place = self.program.push(mul(outer, sum));
             parts.push((place, negative != flipped));

@@ -16,8 +16,11 @@ use crate::number::Rational;
 use std::collections::{BTreeMap, BTreeSet};
 use value::Value;
 
-/// More evaluations than this are refused: sums within sums would never end.
+/// More evaluations, or operands in all expressions together, are refused: sums within sums would never end.
 const LIMIT: usize = 2_000_000;
+
+/// An energy or a force of more nodes is refused: its equations would take minutes to derive and to compile.
+const LARGEST: usize = 8000;
 
 /// The scalars of a block.
 #[derive(Debug, Default)]
@@ -202,7 +205,7 @@ impl Lower<'_, '_, '_, '_> {
             }
         }
         for &(role, expr) in &self.model.energies {
-            let Some(value) = self.scalar(expr) else { continue };
+            let Some(value) = self.outcome(expr) else { continue };
             let slot = match role {
                 Role::Kinetic => &mut energies.kinetic,
                 Role::Potential => &mut energies.potential,
@@ -257,7 +260,7 @@ impl Lower<'_, '_, '_, '_> {
                 if let Some(binder) = binder {
                     self.bind(binder, k);
                 }
-                let value = self.scalar(force.expr);
+                let value = self.outcome(force.expr);
                 if binder.is_some() {
                     self.unbind();
                 }
@@ -267,6 +270,17 @@ impl Lower<'_, '_, '_, '_> {
                 }
             }
         }
+    }
+
+    /// An energy or a force, unless it is too long.
+    fn outcome(&mut self, expr: &Expr) -> Option<Id> {
+        let value = self.scalar(expr)?;
+        if LARGEST < self.graph.reachable(&[value]).len() {
+            let message = format!("this unfolds to more than {LARGEST} different expressions; write a shorter sum");
+            self.errors.once(expr.source, expr.range, message);
+            return None;
+        }
+        Some(value)
     }
 
     /// One instance of a definition.

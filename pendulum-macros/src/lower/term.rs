@@ -33,7 +33,7 @@ impl Lower<'_, '_, '_, '_> {
 
     pub(super) fn expr(&mut self, expr: &Expr) -> Value {
         self.work += 1;
-        if LIMIT < self.work {
+        if LIMIT < self.work || LIMIT < self.graph.size() {
             self.errors.once(0, expr.range, "this block unfolds to more than two million expressions; write shorter sums");
             return Value::Bad;
         }
@@ -251,17 +251,13 @@ impl Lower<'_, '_, '_, '_> {
     }
 
     pub(super) fn sum_over(&mut self, binder: &Binder, term: &Expr) -> Value {
-        let mut total: Option<Value> = None;
+        let mut values = Vec::new();
         for k in self.range(binder) {
             self.bind(binder, k);
-            let value = self.expr(term);
+            values.push(self.expr(term));
             self.unbind();
-            total = Some(match total {
-                None => value,
-                Some(sum) => self.add(sum, value, term),
-            });
         }
-        total.unwrap_or(Value::Scalar(Graph::ZERO))
+        self.total(values, term)
     }
 
     pub(super) fn member(&mut self, base: &Expr, index: &Expr) -> Value {

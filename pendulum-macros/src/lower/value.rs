@@ -123,6 +123,34 @@ impl Lower<'_, '_, '_, '_> {
         }
     }
 
+    /// The sum of many values, each of which `expr` gave.
+    ///
+    /// Scalars and vectors are summed at once: a sum that grows term by term would be rebuilt for each of them.
+    pub(super) fn total(&mut self, values: Vec<Value>, expr: &Expr) -> Value {
+        let mut columns = [const { Vec::new() }; 3];
+        let alike = values.windows(2).all(|pair| pair[0].kind() == pair[1].kind());
+        for value in values.iter().filter(|_| alike) {
+            let parts = match value {
+                Value::Bad | Value::Family(_) => &[],
+                Value::Scalar(id) => std::slice::from_ref(id),
+                Value::Plane { parts, .. } => parts.as_slice(),
+                Value::Space(parts) => parts.as_slice(),
+            };
+            for (column, &part) in columns.iter_mut().zip(parts) {
+                column.push((part, Rational::ONE));
+            }
+        }
+        match values.first() {
+            None => Value::Scalar(Graph::ZERO),
+            Some(Value::Scalar(_)) if alike => Value::Scalar(self.graph.sum(&columns[0])),
+            Some(&Value::Plane { complex, .. }) if alike => {
+                Value::Plane { parts: [0, 1].map(|k| self.graph.sum(&columns[k])), complex }
+            }
+            Some(Value::Space(_)) if alike => Value::Space([0, 1, 2].map(|k| self.graph.sum(&columns[k]))),
+            Some(_) => values.into_iter().reduce(|sum, value| self.add(sum, value, expr)).unwrap_or(Value::Bad),
+        }
+    }
+
     pub(super) fn multiply(&mut self, a: Value, b: Value, expr: &Expr) -> Value {
         match (a, b) {
             (Value::Bad, _) | (_, Value::Bad) => Value::Bad,

@@ -46,3 +46,24 @@ fn flat(tokens: proc_macro2::TokenStream) -> usize {
         })
         .sum()
 }
+
+/// Long sums are built at once, and what would not compile in reasonable time is refused before it is derived.
+#[test]
+fn long_sums_expand_or_are_refused() {
+    let message = "this unfolds to more than 8000 different expressions; write a shorter sum";
+    let endless = "this block unfolds to more than two million expressions; write shorter sums";
+    let cases = [
+        ("", "sum(k in 0..1000, sin(k*θ))", None),
+        ("", "sum(k in 0..1000, θ^k)", None),
+        ("", "sum(k in 0..1000, sin(k*θ)*θ^k)", None),
+        ("", "height(sum(k in 0..1000, [sin(k*θ), cos(k*θ)]))", None),
+        ("", "sum(k in 0..65536, sin(k*θ))", Some(message)),
+        ("", "sum(k in 0..65536, θ^k)", Some(message)),
+        ("let y[k in 0..500] = sum(j in 0..=k, sin(j*θ));", "y[499]", None),
+        ("let y[k in 0..65536] = sum(j in 0..=k, sin(j*θ));", "y[65535]", Some(endless)),
+    ];
+    for (definitions, sum, refusal) in cases {
+        let block = format!("struct S {{ m }} coordinate θ; kinetic = m*θ̇^2; {definitions} potential = {sum};");
+        assert_eq!(super::refusals(&block), refusal.into_iter().collect::<Vec<_>>(), "{sum}");
+    }
+}
