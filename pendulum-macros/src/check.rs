@@ -109,6 +109,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
             }
             Statement::Let(definition) => {
                 declared.declare(&mut model.names, &definition.name, Meaning::Let(model.lets.len()), errors);
+                twice(definition, errors);
                 model.lets.push(definition);
             }
             Statement::Energy { role, expr, .. } => model.energies.push((*role, expr)),
@@ -132,6 +133,16 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     model
 }
 
+/// Arguments of one name.
+fn twice(definition: &Let, errors: &mut Errors) {
+    let arguments = definition.arguments.as_deref().unwrap_or_default();
+    for (index, argument) in arguments.iter().enumerate() {
+        if arguments[..index].iter().any(|other| plain(other) == plain(argument)) {
+            errors.at(argument.span(), format!("the argument `{argument}` stands twice; rename one of the two"));
+        }
+    }
+}
+
 /// Where each name was first declared.
 #[derive(Default)]
 struct Declared<'a> {
@@ -150,6 +161,8 @@ impl<'a> Declared<'a> {
         };
         if let Some(message) = refusal {
             errors.at(ident.span(), message);
+            // Whoever uses the name means this declaration: one mistake gives one message.
+            names.entry(base).or_insert(meaning);
             return;
         }
         if let Some(first) = self.places.get(&base) {
@@ -329,7 +342,7 @@ impl Walk<'_, '_, '_> {
     fn block(&mut self) {
         let model = self.model;
         for quantity in &model.parameters {
-            if let Some(default) = quantity.default {
+            if let Some(default) = quantity.default.filter(|_| quantity.length.is_none() && !quantity.body) {
                 self.constant(default);
             }
         }
@@ -339,7 +352,7 @@ impl Walk<'_, '_, '_> {
                 self.bind(binder);
             }
             for argument in definition.arguments.iter().flatten() {
-                self.scope.push(plain(argument));
+                self.local(argument, "an argument");
             }
             self.expr(&definition.expr);
             self.scope.truncate(depth);
@@ -384,7 +397,27 @@ impl Walk<'_, '_, '_> {
     fn bind(&mut self, binder: &Binder) {
         self.expr(&binder.low);
         self.expr(&binder.high);
-        self.scope.push(plain(&binder.name));
+        self.local(&binder.name, "an index");
+    }
+
+    /// A name that holds in one expression; it may hide a parameter or a definition, but nothing that moves.
+    fn local(&mut self, ident: &Ident, what: &str) {
+        let Name { base, dots } = name::read(&ident.to_string());
+        let hidden = match base.as_str() {
+            _ if 0 < dots => Some(format!("`{ident}` is a time derivative")),
+            "t" => Some(format!("`{ident}` is the time")),
+            "pi" => Some(format!("`{ident}` is the number π")),
+            "i" if what != "an index" => Some(format!("`{ident}` is the imaginary unit")),
+            _ => match self.model.names.get(&base) {
+                Some(Meaning::Coordinate(_)) => Some(format!("`{ident}` is a coordinate")),
+                Some(Meaning::Input(_)) => Some(format!("`{ident}` is a driven input")),
+                _ => None,
+            },
+        };
+        if let Some(hidden) = hidden {
+            self.errors.at(ident.span(), format!("{hidden}, and {what} of this name would hide it; choose another name"));
+        }
+        self.scope.push(base);
     }
 
     fn expr(&mut self, expr: &Expr) {
@@ -435,7 +468,7 @@ impl Walk<'_, '_, '_> {
                     }
                     None => self.name(body),
                 }
-                self.scope.push(plain(point));
+                self.local(point, "a point");
                 self.expr(integrand);
                 self.scope.pop();
             }

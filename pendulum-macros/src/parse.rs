@@ -4,6 +4,7 @@
 //! reported and skipped to its `;`, so that two mistakes give two messages.
 
 use crate::ast::{Binder, Block, Expr, ExprKind, Field, ForceIndex, Kind, Let, Literal, Lost, Role, Statement};
+use crate::check::{FUNCTIONS, text};
 use crate::error::{Errors, Range};
 use crate::number::Rational;
 use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
@@ -21,7 +22,7 @@ pub(crate) fn all(input: TokenStream, errors: &mut Errors) -> Option<(TokenStrea
     let outcome = Syn::parse2(
         |input: ParseStream| {
             let krate = runtime(input)?;
-            let mut parser = Parser { errors: &mut *errors, sources: 0, depth: 0, lost: Lost::default() };
+            let mut parser = Parser { errors: &mut *errors, sources: 0, depth: 0, barred: false, lost: Lost::default() };
             match parser.block(input) {
                 Ok(block) => parsed = Some((krate, block)),
                 Err(error) => errors.push(error),
@@ -55,6 +56,8 @@ struct Parser<'a> {
     errors: &'a mut Errors,
     sources: usize,
     depth: usize,
+    /// Whether a `|` closes what stands here.
+    barred: bool,
     lost: Lost,
 }
 
@@ -295,6 +298,11 @@ impl Parser<'_> {
     }
 
     fn expr(&mut self, input: ParseStream) -> Result<Expr> {
+        self.expr_in(input, false)
+    }
+
+    fn expr_in(&mut self, input: ParseStream, barred: bool) -> Result<Expr> {
+        let outside = std::mem::replace(&mut self.barred, barred);
         self.depth += 1;
         let result = if DEPTH < self.depth {
             Err(Range::from(input.span()).error("this expression is nested too deeply; name a part of it with `let`"))
@@ -302,6 +310,7 @@ impl Parser<'_> {
             self.sum(input)
         };
         self.depth -= 1;
+        self.barred = outside;
         result
     }
 
@@ -386,13 +395,16 @@ impl Parser<'_> {
             } else if input.peek(Token![.]) && !input.peek(Token![..]) {
                 input.parse::<Token![.]>()?;
                 let component = identifier(input, "a component, `x`, `y` or `z`")?;
+                if input.peek(syn::token::Paren) {
+                    return Err(method(input, &expr, &component));
+                }
                 let range = expr.range.to(component.span().into());
                 expr = self.node(ExprKind::Component(Box::new(expr), component), range);
             } else {
                 break;
             }
         }
-        no_operand(input, &expr)?;
+        no_operand(input, &expr, self.barred)?;
         Ok(expr)
     }
 
@@ -416,7 +428,7 @@ impl Parser<'_> {
         }
         if input.peek(Token![|]) {
             let open = input.parse::<Token![|]>()?;
-            let inner = self.expr(input)?;
+            let inner = self.expr_in(input, true)?;
             if !input.peek(Token![|]) {
                 return Err(Range::from(open.span()).error("this `|` is not closed; write `|u|`"));
             }
@@ -436,6 +448,9 @@ impl Parser<'_> {
     fn named(&mut self, input: ParseStream) -> Result<Expr> {
         let name = input.call(Ident::parse_any)?;
         checked(&name)?;
+        if let Some(row) = FOREIGN.iter().find(|row| name == row.0) {
+            return Err(Range::from(name.span()).error(format!("`{name}` is Rust, which has no place in a formula; {}", row.1)));
+        }
         let start = Range::from(name.span());
         if !input.peek(syn::token::Paren) {
             return Ok(self.node(ExprKind::Name(name), start));
@@ -512,8 +527,12 @@ impl Parser<'_> {
 }
 
 /// Two operands side by side: there is no implicit multiplication.
-fn no_operand(input: ParseStream, left: &Expr) -> Result<()> {
-    if input.peek(Ident::peek_any) && !input.peek(Token![in])
+fn no_operand(input: ParseStream, left: &Expr, barred: bool) -> Result<()> {
+    if input.peek(Token![as]) {
+        return Err(Range::from(input.span()).error("`as` is Rust, which has no place in a formula; leave the type out"));
+    }
+    if input.peek(Token![|]) && !barred
+        || input.peek(Ident::peek_any) && !input.peek(Token![in])
         || input.peek(Lit) && !input.peek(Token![-])
         || input.peek(syn::token::Paren)
     {
@@ -535,6 +554,19 @@ fn no_operand(input: ParseStream, left: &Expr) -> Result<()> {
     Ok(())
 }
 
+/// A method call, and what to write instead.
+fn method(input: ParseStream, base: &Expr, name: &Ident) -> syn::Error {
+    let function = name.to_string();
+    let base = text(base);
+    let arguments = input.fork().parse::<TokenTree>().map(|group| group.to_string()).unwrap_or_default();
+    let instead = match function.as_str() {
+        "powi" | "powf" => format!("`{base}^{}`", arguments.trim_start_matches('(').trim_end_matches(')')),
+        _ if FUNCTIONS.contains(&(&function, 1)) => format!("`{function}({base})`"),
+        _ => "a function of the language, as in `sin(θ)`".to_owned(),
+    };
+    Range::from(name.span()).error(format!("`.{function}()` is Rust, which has no place in a formula; write {instead}"))
+}
+
 /// An identifier that may be declared: no keyword of Rust, no reserved prefix, no middle dot.
 fn identifier(input: ParseStream, what: &str) -> Result<Ident> {
     if !input.peek(Ident::peek_any) {
@@ -542,7 +574,8 @@ fn identifier(input: ParseStream, what: &str) -> Result<Ident> {
     }
     let name = input.call(Ident::parse_any)?;
     checked(&name)?;
-    if syn::parse_str::<Ident>(&name.to_string()).is_err() {
+    // `gen` is a word of the language from the edition of 2024 on, wherever the block stands.
+    if name == "gen" || syn::parse_str::<Ident>(&name.to_string()).is_err() {
         return Err(Range::from(name.span()).error(format!("`{name}` is a word of the Rust language; choose another name")));
     }
     Ok(name)
@@ -597,6 +630,19 @@ fn unexpected(input: ParseStream, expected: &str) -> syn::Error {
         Err(_) => Range::from(input.span()).error(format!("the input ends too early; expected {expected}")),
     }
 }
+
+/// Words that begin Rust expressions, and what to write instead.
+#[rustfmt::skip]
+const FOREIGN: &[(&str, &str)] = &[
+    ("if", "write `max`, `min`, `abs` or `sign` to tell cases apart"),
+    ("match", "write `max`, `min`, `abs` or `sign` to tell cases apart"),
+    ("for", "write `sum(k in 0..5, …)`"),
+    ("while", "write `sum(k in 0..5, …)`"),
+    ("loop", "write `sum(k in 0..5, …)`"),
+    ("return", "leave it out"),
+    ("unsafe", "leave it out"),
+    ("move", "leave it out"),
+];
 
 /// The words with which statements begin.
 const STATEMENTS: [&str; 8] = ["coordinate", "driven", "let", "kinetic", "potential", "lagrangian", "dissipation", "force"];

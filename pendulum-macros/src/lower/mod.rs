@@ -3,6 +3,7 @@
 //! A plane vector is a complex number; `Value::Bad` stands for what has been reported, so that one mistake gives one message.
 
 mod body;
+pub(crate) mod constant;
 mod term;
 mod value;
 
@@ -135,6 +136,7 @@ fn lower(model: &Model, graph: &mut Graph, errors: &mut Errors, positions: Optio
         work: 0,
         integrals: 0,
         positions,
+        constants: BTreeMap::new(),
     };
     let energies = lower.block();
     (energies, lower.positions)
@@ -180,6 +182,8 @@ struct Lower<'m, 'a, 'g, 'e> {
     integrals: usize,
     /// The positions whose velocities become symbols.
     positions: Option<Noted>,
+    /// The values of expressions without symbols.
+    constants: BTreeMap<Id, f64>,
 }
 
 impl Lower<'_, '_, '_, '_> {

@@ -37,6 +37,11 @@ impl Lower<'_, '_, '_, '_> {
             self.errors.once(0, expr.range, "this block unfolds to more than two million expressions; write shorter sums");
             return Value::Bad;
         }
+        let value = self.kind(expr);
+        self.real(value, expr)
+    }
+
+    fn kind(&mut self, expr: &Expr) -> Value {
         match &expr.kind {
             ExprKind::Number(literal) => Value::Scalar(self.graph.literal(literal)),
             ExprKind::Name(name) => self.name(&name.to_string(), expr),
@@ -66,7 +71,8 @@ impl Lower<'_, '_, '_, '_> {
             let value = value.clone();
             return self.dotted(value, dots, expr);
         }
-        if dots == 0 {
+        // A declaration of one of these names has been refused, but it is what the name means.
+        if dots == 0 && !self.model.names.contains_key(&base) {
             match base.as_str() {
                 "t" => return Value::Scalar(self.graph.symbol(Symbol::Time)),
                 "pi" => return Value::Scalar(self.graph.pi()),
@@ -222,8 +228,9 @@ impl Lower<'_, '_, '_, '_> {
     }
 
     pub(super) fn scalar_call(&mut self, name: &str, items: &[Expr]) -> Value {
-        let values: Vec<Option<Id>> = items.iter().map(|item| self.scalar(item)).collect();
-        let Some(values) = values.into_iter().collect::<Option<Vec<Id>>>() else { return Value::Bad };
+        // What is wrong with one argument is wrong with the call.
+        let values: Option<Vec<Id>> = items.iter().map(|item| self.scalar(item)).collect();
+        let Some(values) = values else { return Value::Bad };
         let graph = &mut *self.graph;
         Value::Scalar(match (name, values.as_slice()) {
             ("sqrt", &[a]) => graph.sqrt(a),

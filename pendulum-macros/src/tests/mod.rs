@@ -2,7 +2,8 @@
 
 use crate::check::Model;
 use crate::error::Errors;
-use crate::expr::{Function, Graph, Id, Node, Symbol};
+use crate::expr::{Graph, Id, Symbol};
+use crate::lower::constant;
 use crate::motion::Motion;
 use crate::{check, lower, motion, parse};
 use std::collections::BTreeMap;
@@ -65,57 +66,11 @@ pub(crate) fn lowered(graph: &mut Graph, expression: &str) -> Id {
 /// The value of an expression in floating point.
 fn evaluate(graph: &Graph, root: Id, value: &dyn Fn(Symbol) -> f64) -> f64 {
     let mut known: BTreeMap<Id, f64> = BTreeMap::new();
-    let ratio = |r: crate::number::Rational| r.numerator() as f64 / r.denominator() as f64;
     for id in graph.reachable(&[root]) {
-        let result = match graph.node(id) {
-            Node::Number(number) => ratio(*number),
-            Node::Opaque(crate::ast::Literal::Exact(number)) => ratio(*number),
-            Node::Opaque(crate::ast::Literal::Decimal(digits)) => digits.parse().unwrap(),
-            Node::Pi => std::f64::consts::PI,
-            Node::Symbol(symbol) => value(*symbol),
-            Node::Sum(terms) => terms.iter().map(|(term, coefficient)| ratio(*coefficient) * known[term]).sum(),
-            Node::Product(coefficient, factors) => {
-                factors.iter().fold(ratio(*coefficient), |product, (base, exponent)| product * known[base].powf(ratio(*exponent)))
-            }
-            Node::Call(function, argument) => function_value(*function, known[argument]),
-            Node::Atan2(y, x) => known[y].atan2(known[x]),
-            Node::Max(a, b) => known[a].max(known[b]),
-            Node::Atom(inner) => known[inner],
-        };
+        let result = constant::evaluate(graph, id, |child| known[&child], value);
         known.insert(id, result);
     }
     known[&root]
-}
-
-fn function_value(function: Function, x: f64) -> f64 {
-    match function {
-        Function::Sin => x.sin(),
-        Function::Cos => x.cos(),
-        Function::Tan => x.tan(),
-        Function::Asin => x.asin(),
-        Function::Acos => x.acos(),
-        Function::Atan => x.atan(),
-        Function::Sinh => x.sinh(),
-        Function::Cosh => x.cosh(),
-        Function::Tanh => x.tanh(),
-        Function::Exp => x.exp(),
-        Function::Ln => x.ln(),
-        Function::Abs => x.abs(),
-        Function::Sign => {
-            if x == 0.0 {
-                0.0
-            } else {
-                x.signum()
-            }
-        }
-        Function::Step => {
-            if x == 0.0 {
-                0.5
-            } else {
-                f64::from(x > 0.0)
-            }
-        }
-    }
 }
 
 /// SplitMix64 (Steele, Lea and Flood, 2014).

@@ -61,6 +61,31 @@ const CASES: &[(&str, &str)] = &[
     ("kinetic = m*L^2*θ̇^2; driven ẏ: [m; 2];",                 "`ẏ` is a time derivative; declare the name without dots, `y`"),
     ("kinetic = m*L^2*θ̇^2; driven r: [m; 5];",                 "a driven input is a scalar or a vector; write `[m; 2]` or `[m; 3]`"),
     ("kinetic = m*L^2*θ̇^2; let loop = 2;",                     "`loop` is a word of the Rust language; choose another name"),
+    ("kinetic = m*L^2*θ̇^2; let gen = 2;",                      "`gen` is a word of the Rust language; choose another name"),
+    ("kinetic = m*L^2*θ̇^2; let i = 3; potential = i*L;",       "`i` is the imaginary unit; choose another name"),
+    ("kinetic = m*L^2*θ̇^2; driven ẏ; potential = y*ẏ;",        "`ẏ` is a time derivative; declare the name without dots, `y`"),
+    ("kinetic = m*L^2*θ̇^2; potential = max(x, x);",            "`x` is a plane vector, but a scalar is needed here; write `inner(u, v)`, `|u|` or a component"),
+    ("kinetic = m*L^2*θ̇^2; let y(p, p) = p; potential = y(θ, θ);", "the argument `p` stands twice; rename one of the two"),
+    ("kinetic = m*L^2*θ̇^2; let y(α, alpha) = α; potential = y(θ, θ);", "the argument `alpha` stands twice; rename one of the two"),
+    ("kinetic = m*L^2*θ̇^2; potential = sum(θ in 0..2, g*θ);",  "`θ` is a coordinate, and an index of this name would hide it; choose another name"),
+    ("kinetic = m*L^2*θ̇^2; let y(θ) = θ^2; potential = y(L);", "`θ` is a coordinate, and an argument of this name would hide it; choose another name"),
+    ("kinetic = m*L^2*θ̇^2; let y(t) = t^2; potential = y(L);", "`t` is the time, and an argument of this name would hide it; choose another name"),
+    ("kinetic = m*L^2*θ̇^2; potential = g |x|;",                "there is no implicit multiplication; write `*` before `|`"),
+    ("kinetic = m*L^2*θ̇^2; potential = |x||x|;",               "there is no implicit multiplication; write `*` before `|`"),
+    ("kinetic = m*L^2*θ̇^2; potential = |(g |x|)|;",            "there is no implicit multiplication; write `*` before `|`"),
+    ("kinetic = m*L^2*θ̇^2; potential = θ.powi(2);",            "`.powi()` is Rust, which has no place in a formula; write `θ^2`"),
+    ("kinetic = m*L^2*θ̇^2; potential = (m*θ).sin();",          "`.sin()` is Rust, which has no place in a formula; write `sin(m*θ)`"),
+    ("kinetic = m*L^2*θ̇^2; potential = θ.clamp(0, 1);",        "`.clamp()` is Rust, which has no place in a formula; write a function of the language, as in `sin(θ)`"),
+    ("kinetic = m*L^2*θ̇^2; potential = θ as f64;",             "`as` is Rust, which has no place in a formula; leave the type out"),
+    ("kinetic = m*L^2*θ̇^2; potential = if θ { 1 };",           "`if` is Rust, which has no place in a formula; write `max`, `min`, `abs` or `sign` to tell cases apart"),
+    ("kinetic = m*L^2*θ̇^2; potential = m*sqrt(-1);",           "`sqrt(-1)` is no real number; write an operand for which it is"),
+    ("kinetic = m*L^2*θ̇^2; potential = m*ln(-2);",             "`ln(-2)` is no real number; write an operand for which it is"),
+    ("kinetic = m*L^2*θ̇^2; potential = m*asin(2);",            "`asin(2)` is no real number; write an operand for which it is"),
+    ("kinetic = m*L^2*θ̇^2; potential = m*acos(1 + 1);",        "`acos(1 + 1)` is no real number; write an operand for which it is"),
+    ("kinetic = m*L^2*θ̇^2; potential = m*(-8)^(1/3);",         "`(-8)^(1/3)` is no real number; write an operand for which it is"),
+    ("kinetic = m*L^2*θ̇^2; potential = m*ln(0);",              "`ln(0)` is infinite or beyond the range of `f64`; write another operand"),
+    ("kinetic = m*L^2*θ̇^2; potential = m*10^10^10;",           "`10^10^10` is infinite or beyond the range of `f64`; write another operand"),
+    ("kinetic = m*L^2*θ̇^2; potential = m*sqrt(1 - π);",        "`sqrt(1 - π)` is no real number; write an operand for which it is"),
     ("kinetic = m*L^2*θ̇^2; potential = integral(p in c, 1);",  "`c` is no body; declare it as `c: body` in the struct"),
 ];
 
@@ -172,6 +197,16 @@ fn bodies_are_integrated_to_the_second_degree() {
 }
 
 #[test]
+fn a_default_that_is_no_number_is_one_mistake() {
+    let source = "struct N { m, c: [m; 2] = [1, 2] } coordinate θ; kinetic = m*θ̇^2;";
+    assert_eq!(refusals(source), ["only a scalar has a default; leave it out and pass the value to `new`"]);
+    let source = "struct N { m = sqrt(-1) } coordinate θ; kinetic = m*θ̇^2;";
+    assert_eq!(refusals(source), ["`sqrt(-1)` is no real number; write an operand for which it is"]);
+}
+
+#[test]
 fn a_right_block_is_not_refused() {
+    // Bars inside bars, and an index that is called as the imaginary unit.
+    assert!(refusals(&block("kinetic = m*L^2*θ̇^2; potential = m*g*|x + |x|*x/L|*sum(i in 0..3, i)*exp(-1)*8^(1/3);")).is_empty());
     assert!(refusals(&block(ENERGY)).is_empty());
 }
