@@ -12,7 +12,15 @@ use crate::print::{self, Names};
 use crate::schedule::{self, Count, Op, Place, Program, Stage};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
+use std::collections::BTreeMap;
 use std::fmt::Write;
+
+/// The names of ours that the generated code binds, besides those of the block and those that begin with `__`.
+#[rustfmt::skip]
+const OWN: &[&str] = &[
+    "acceleration", "all", "at_position", "at_time", "both", "column", "columns", "drive", "entries", "index", "inputs", "k", "lifted",
+    "map", "order", "p", "parameter", "path", "prepared", "q", "row", "system", "t", "v", "value", "values", "work",
+];
 
 /// What the emitter writes about and with.
 pub(crate) struct Emitter<'m, 'a> {
@@ -36,7 +44,31 @@ impl Emitter<'_, '_> {
         let jacobians = self.jacobians();
         let jets = self.jets();
         let mirror = mirror::function(self.model.block);
-        quote! { #structure #constructor #system #split #staged #marker #jacobians #jets #mirror }
+        let open = self.open_names();
+        quote! {
+            #structure
+            const _: () = {
+                #open
+                #constructor #system #split #staged #marker #jacobians #jets
+            };
+            #mirror
+        }
+    }
+
+    /// Functions of the names that the generated code binds.
+    ///
+    /// A constant or a unit struct of such a name in the user's scope would turn the binding into a pattern; behind a function of
+    /// the name it is out of sight, and a binding may shadow a function.
+    fn open_names(&self) -> TokenStream {
+        let own = OWN.iter().map(|name| Ident::new(name, Span::call_site()));
+        let declared = self.model.parameters.iter().chain(&self.model.inputs).map(|quantity| {
+            let mut name = quantity.name.clone();
+            name.set_span(name.span().located_at(Span::call_site()));
+            name
+        });
+        let names: BTreeMap<String, Ident> = own.chain(declared).map(|name| (name.to_string(), name)).collect();
+        let names = names.values();
+        quote!(#(#[allow(dead_code, non_snake_case)] fn #names() {})*)
     }
 
     /// The scalar's type parameter; another letter if the struct took the usual one.
@@ -99,9 +131,8 @@ impl Emitter<'_, '_> {
                 None if quantity.default.is_some() => values.push(quote!(#field: ::core::unimplemented!())),
                 None => {
                     let kind = self.field_type(quantity, &scalar);
-                    let argument = argument(field);
-                    arguments.push(quote!(#argument: #kind));
-                    values.push(quote!(#field: #argument));
+                    arguments.push(quote!(#field: #kind));
+                    values.push(quote!(#field));
                 }
             }
         }
@@ -131,7 +162,7 @@ impl Emitter<'_, '_> {
             return None;
         }
         let (krate, scalar, count, visibility) = (&self.krate, self.scalar(), self.count(), &self.model.block.visibility);
-        let names: Vec<Ident> = self.model.inputs.iter().map(|input| argument(input.name)).collect();
+        let names: Vec<&Ident> = self.model.inputs.iter().map(|input| input.name).collect();
         let types: Vec<Ident> = (0..names.len()).map(|index| format_ident!("M{index}")).collect();
         let bounds = self.model.inputs.iter().zip(&types).map(|(input, motion)| {
             let dimension = input.count();
@@ -174,8 +205,10 @@ impl Emitter<'_, '_> {
         let length = self.motion.as_ref().map_or(0, |motion| motion.conserved.len());
         let conserved = quote! {
             let all: [#scalar; #length] = #conserved;
-            for (value, conserved) in values.iter_mut().zip(all) {
-                *value = conserved;
+            for k in 0..#length {
+                if k < values.len() {
+                    values[k] = all[k];
+                }
             }
         };
         let state = quote!(q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs);
@@ -320,8 +353,11 @@ impl Emitter<'_, '_> {
         let length = count * self.model.parameters.iter().map(Quantity::count).sum::<usize>();
         let parameters = quote! {
             let entries: [#scalar; #length] = #parameters;
-            for (column, entries) in columns.iter_mut().zip(#krate::__private::columns::<#scalar, #count>(&entries)) {
-                *column = *entries;
+            let all = #krate::__private::columns::<#scalar, #count>(&entries);
+            for k in 0..all.len() {
+                if k < columns.len() {
+                    columns[k] = all[k];
+                }
             }
         };
         [matrix(positions), matrix(velocities), parameters]
@@ -342,9 +378,9 @@ impl Emitter<'_, '_> {
                 let system = #krate::system::System::map(self, #dual::constant);
                 #lifted
                 let mut columns = [[#scalar::from_f64(0.0); #count]; #count];
-                for (k, column) in columns.iter_mut().enumerate() {
+                for k in 0..#count {
                     #variable[k].derivative = #scalar::from_f64(1.0);
-                    *column = #krate::system::System::accelerations(&system, t, &q, &v, &inputs).map(|acceleration| acceleration.derivative);
+                    columns[k] = #krate::system::System::accelerations(&system, t, &q, &v, &inputs).map(|acceleration| acceleration.derivative);
                     #variable[k].derivative = #scalar::from_f64(0.0);
                 }
                 #krate::__private::SMatrix::<#scalar, #count, #count>::from_fn(|row, column| columns[column][row])
@@ -352,14 +388,14 @@ impl Emitter<'_, '_> {
         };
         let parameters = quote! {
             #lifted
-            for (k, column) in columns.iter_mut().enumerate() {
+            for k in 0..columns.len() {
                 let mut index = 0usize;
                 let system = #krate::system::System::map(self, |parameter| {
                     let lifted = if index == k { #dual::variable(parameter) } else { #dual::constant(parameter) };
                     index += 1;
                     lifted
                 });
-                *column = #krate::system::System::accelerations(&system, t, &q, &v, &inputs).map(|acceleration| acceleration.derivative);
+                columns[k] = #krate::system::System::accelerations(&system, t, &q, &v, &inputs).map(|acceleration| acceleration.derivative);
             }
         };
         [matrix(quote!(q)), matrix(quote!(v)), parameters]
@@ -776,12 +812,6 @@ pub(crate) fn operations(count: Count) -> String {
         .map(|(number, what)| format!("{number} {what}{}", if number == 1 { "" } else { "s" }))
         .collect();
     if parts.is_empty() { "no operation".into() } else { parts.join(", ") }
-}
-
-/// The name of an argument; a capital letter gets a tail, because a constant of that name in scope would be taken for a pattern.
-fn argument(name: &Ident) -> Ident {
-    let text = name.to_string();
-    if text.starts_with(char::is_uppercase) { Ident::new(&format!("{text}_"), name.span()) } else { name.clone() }
 }
 
 /// A name of ours that no user can write.
