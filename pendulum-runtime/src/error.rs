@@ -141,6 +141,12 @@ pub struct Suspect {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
+            Self::Interval { start, end } if start < end && start.is_finite() && end.is_finite() => {
+                write!(
+                    f,
+                    "the length of the interval from {start:?} to {end:?} is beyond the range of f64; give a shorter interval"
+                )
+            }
             Self::Interval { start, end } if start.is_finite() && end.is_finite() => {
                 write!(f, "the end {end:?} lies before the start {start:?}; swap them, or go back in time with `Taylor`")
             }
@@ -263,6 +269,7 @@ mod tests {
     #[test]
     fn intervals_that_are_reversed_and_infinite_differ() {
         assert!(Error::Interval { start: 1.0, end: 0.0 }.to_string().contains("before"));
+        assert!(Error::Interval { start: -1e308, end: 1e308 }.to_string().contains("beyond the range"));
         assert!(Error::Interval { start: 1.0, end: f64::INFINITY }.to_string().contains("finite"));
     }
 }

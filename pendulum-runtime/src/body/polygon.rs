@@ -105,9 +105,31 @@ impl Polygon {
             Err(BodyError::Crossing { first, second }) => Err(BodyError::Crossing { first, second }),
             _ if area.abs() <= least => Err(BodyError::NoArea { ring: index }),
             Err(error) => Err(error),
+            Ok(_) if self.spike(index).is_some() => {
+                let (first, second) = self.spike(index).unwrap_or_default();
+                Err(BodyError::Crossing { first: (index, first), second: (index, second) })
+            }
             Ok(_) if self.area() <= least => Err(BodyError::NoMass),
             Ok(_) => Ok(self),
         }
+    }
+
+    /// Two neighbouring edges of a ring, the second of which doubles back on the first, up to rounding.
+    fn spike(&self, ring: usize) -> Option<(usize, usize)> {
+        let points = &self.rings[ring].points;
+        let count = points.len();
+        // Edges without length are none.
+        let corners: Vec<usize> = (0..count).filter(|&index| points[index] != points[(index + 1) % count]).collect();
+        let slack = 4.0 * f64::EPSILON * self.extent();
+        (0..corners.len()).map(|place| (corners[place], corners[(place + 1) % corners.len()])).find(|&(first, second)| {
+            let edge = |index: usize| {
+                let ([x0, y0], [x1, y1]) = (points[index], points[(index + 1) % count]);
+                [x1 - x0, y1 - y0]
+            };
+            let ([a, b], [c, d]) = (edge(first), edge(second));
+            let longer = Real::max(Real::max(a.abs(), b.abs()), Real::max(c.abs(), d.abs()));
+            a * c + b * d < 0.0 && (a * d - b * c).abs() <= slack * longer
+        })
     }
 
     fn triangles(&self) -> Result<Vec<Triangle>, BodyError> {
@@ -277,6 +299,25 @@ mod tests {
     }
 
     #[test]
+    fn spikes_are_refused() {
+        let spike = |points: &[[f64; 2]]| Polygon::new(points).unwrap_err();
+        let outward = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 2.0], [1.0, 1.0], [0.0, 1.0]];
+        assert_eq!(spike(&outward), BodyError::Crossing { first: (0, 2), second: (0, 3) });
+        // Longer than the edge from which it starts, into the inside, along an edge, turned, and at a point that stands twice.
+        let along = [[0.0, 0.0], [3.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        assert_eq!(spike(&along), BodyError::Crossing { first: (0, 0), second: (0, 1) });
+        let inward = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.7, 0.7], [0.7, 0.7], [1.0, 1.0], [0.0, 1.0]];
+        assert!(matches!(spike(&inward), BodyError::Crossing { .. }));
+        let turned: Vec<_> = outward.iter().map(|[x, y]| [0.6 * x - 0.8 * y + 0.1, 0.8 * x + 0.6 * y - 0.3]).collect();
+        assert!(matches!(spike(&turned), BodyError::Crossing { .. }));
+        let frame = Polygon::new(&SQUARE).unwrap();
+        let hole: Vec<_> = outward.iter().map(|[x, y]| [0.2 * x, 0.2 * y]).collect();
+        assert!(matches!(frame.hole(&hole), Err(BodyError::Crossing { first: (1, _), .. })));
+        // A sharp tip is none.
+        assert!(Polygon::new(&[[0.0, 0.0], [1.0, 1e-9], [1.0, 2e-9]]).is_ok());
+    }
+
+    #[test]
     fn triangle_about_its_tip() {
         // A feather: m/6 (a·a + a·b + b·b).
         let (a, b) = ([0.03, -0.2], [-0.01, -0.25]);
@@ -397,7 +438,7 @@ mod tests {
         // Rings through a small grid: most of them cross, touch or lie on a line.
         let mut random = Random::new(9);
         let mut accepted = [0; 2];
-        for _ in 0..20_000 {
+        for _ in 0..40_000 {
             let mut ring = |most| -> Vec<[f64; 2]> {
                 let count = 3 + random.bits() % most;
                 (0..count).map(|_| [0; 2].map(|_| (random.bits() % 5) as f64)).collect()

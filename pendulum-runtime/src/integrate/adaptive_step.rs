@@ -131,13 +131,18 @@ where
         let mut wanted = if memory.h < self.max_step { memory.h } else { self.max_step };
         let (mut retried, mut last_fault) = (false, None);
         loop {
-            let resolution = f64::EPSILON * from.t.to_f64().abs();
-            if (wanted <= resolution || wanted < 1e-200) && wanted < -from.t.since(target) {
-                return Err(last_fault.unwrap_or_else(|| {
-                    let index = self.worst(method, stages, memory, from);
-                    let coordinate = coordinate(&<D::System as System<N>>::FACTS, index);
-                    Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate }
-                }));
+            if wanted <= resolution(from.t) && wanted < -from.t.since(target) {
+                if let (Some(value), 0, 0) = (self.first_step, stats.accepted, stats.rejected) {
+                    let required =
+                        "long enough to be told from zero at the start: above 1e-200 s, and above 1e-26 of the time there";
+                    return Err(Error::Setting { name: "first_step", value, required });
+                }
+                if let Some(fault) = last_fault {
+                    return Err(at(fault, from.t));
+                }
+                let index = self.worst(method, stages, memory, from);
+                let coordinate = coordinate(&<D::System as System<N>>::FACTS, index);
+                return Err(Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate });
             }
             let span = fit(from.t, wanted, target);
             let to = method.step(field, &span, from, stages);
@@ -248,7 +253,10 @@ impl<const N: usize> AdaptiveStep<N> {
         } else {
             1e-3 * h
         };
-        if longer < 100.0 * h { longer } else { 100.0 * h }
+        let step = if longer < 100.0 * h { longer } else { 100.0 * h };
+        // What time does not resolve is no step; the error of a longer one decides.
+        let least = 2.0 * resolution(from.t);
+        if step < least { least } else { step }
     }
 
     /// The coordinate with the largest error in the last step tried.
@@ -264,6 +272,20 @@ impl<const N: usize> AdaptiveStep<N> {
             }
         }
         worst.0
+    }
+}
+
+/// The length of a step that time does not resolve: its second word has to hold the step to about ten digits.
+fn resolution(t: Time) -> f64 {
+    let resolution = 1e-26 * t.to_f64().abs();
+    if resolution < 1e-200 { 1e-200 } else { resolution }
+}
+
+/// A fault that shorter steps ran after, at the time from which none gets away.
+fn at(fault: Error, t: Time) -> Error {
+    match fault {
+        Error::NotFinite { what, suspects, .. } => Error::NotFinite { t: t.to_f64(), what, suspects },
+        other => other,
     }
 }
 

@@ -95,7 +95,7 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
         M: Stepper<D, N, Stages = R>,
         C: Control<M, D, N>,
     {
-        let backwards = target < self.t();
+        let backwards = 0.0 < self.node.t.since(target);
         if backwards != self.backwards {
             self.turn(dynamics, backwards)?;
         }

@@ -9,6 +9,9 @@ use crate::error::Error;
 use crate::real::Float;
 use crate::system::Dynamics;
 
+/// The greatest number of states that an interval between outputs may ask for.
+const MOST: f64 = 1e7;
+
 /// The states asked for, besides the last one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Output<'a> {
@@ -27,9 +30,9 @@ impl Output<'_> {
         match *self {
             Output::Times(times) => in_order("t_eval", times, start, end),
             Output::Every(interval) => {
-                // More than this is a slip of the pen, and no memory holds it.
-                let fine = 0.0 < interval && (end - start).abs() / interval < 1e9;
-                let required = "positive, and no shorter than a billionth of the interval";
+                // More than this is a slip of the pen, and fills the memory before anybody looks at it.
+                let fine = 0.0 < interval && (end - start).abs() / interval <= MOST;
+                let required = "positive and give ten million states at most; lengthen it, or take the steps with an `Integrator` and keep what you need";
                 if fine { Ok(()) } else { Err(Error::Setting { name: "every", value: interval, required }) }
             }
             Output::End | Output::Steps => Ok(()),

@@ -6,7 +6,7 @@ use super::dop853::Dop853;
 use super::driver::Driver;
 use super::event::{Event, Status};
 use super::fixed_step::FixedStep;
-use super::output::{Output, Recorder, in_order, precedes};
+use super::output::{Output, Recorder, direction, in_order};
 use super::solution::{Failure, Solution, State, Stats};
 use super::stepper::Stepper;
 use super::watch::Watch;
@@ -197,7 +197,8 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         C: Control<M, P, N>,
     {
         let end = self.time.1;
-        let ahead = |driver: &Driver<_, N, _, _, _>, t| precedes(driver.t(), t, self.time);
+        let onwards = direction(self.time.0, end);
+        let ahead = |driver: &Driver<_, N, _, _, _>, t| onwards * driver.node.t.since(t) < 0.0;
         let mut stops = self.stops.iter().copied().peekable();
         let mut watch = Watch::new(self.events);
         recorder.begin(State::from(&driver.node), self.dense);

@@ -45,7 +45,7 @@ impl<const D: usize> Clip<D> {
             return Err(MotionError::Rate(rate));
         }
         if every == 0 {
-            return Err(MotionError::Rate(0.0));
+            return Err(MotionError::Every);
         }
         let last = frames.len().checked_sub(1).ok_or(MotionError::NoKeys)?;
         let mut kept: Vec<usize> = (0..=last).step_by(every).collect();

@@ -29,8 +29,10 @@ pub enum MotionError {
         /// Its time.
         time: f64,
     },
-    /// The frame rate is not a positive number, or the decimation is zero.
+    /// The frame rate is not a positive number.
     Rate(f64),
+    /// No frame is kept: every zeroth of them was asked for.
+    Every,
 }
 
 impl fmt::Display for MotionError {
@@ -44,6 +46,7 @@ impl fmt::Display for MotionError {
                 write!(f, "key {key} at {time} s is not later than the key before it; sort the keys and drop doubles")
             }
             Self::Rate(rate) => write!(f, "a frame rate of {rate} Hz; give a positive number of frames a second"),
+            Self::Every => write!(f, "`every` is 0, and no frame is kept; give 1 to keep all of them"),
         }
     }
 }

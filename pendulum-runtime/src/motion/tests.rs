@@ -217,8 +217,9 @@ fn bad_keys_are_refused() {
     assert_eq!(Linear::new(&[0.0, 1.0], &[[1.0], [f64::INFINITY]]), Err(MotionError::NotFinite { key: 1 }));
     assert_eq!(Linear::new(&[0.0], &[[1.0]]).unwrap().looped(), Err(MotionError::OneKey));
     assert!(matches!(Clip::new(0.0, &[[1.0]], 1, Interpolation::Linear), Err(MotionError::Rate(_))));
+    assert_eq!(Clip::new(120.0, &[[1.0]], 0, Interpolation::Linear), Err(MotionError::Every));
     assert!(Spline::clamped(&[0.0, 1.0], &[[1.0], [2.0]], [f64::NAN], [0.0]).is_err());
-    for error in [MotionError::NoKeys, MotionError::OneKey, MotionError::Rate(-1.0)] {
+    for error in [MotionError::NoKeys, MotionError::OneKey, MotionError::Rate(-1.0), MotionError::Every] {
         assert!(error.to_string().contains(';') || error.to_string().contains("rests"), "{error}");
     }
 }

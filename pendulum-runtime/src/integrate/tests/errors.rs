@@ -147,6 +147,41 @@ fn a_collision_collapses_the_step() {
 }
 
 #[test]
+fn late_times_are_resolved_in_two_words() {
+    // The pendulum does not know what time it is.
+    let early = solve(&pendulum(), (0.0, 16.0), [1.3], [0.0]).rtol(1e-10).run().unwrap();
+    for start in [1e12, -1e12, 1e14, 1e15] {
+        let late = solve(&pendulum(), (start, start + 16.0), [1.3], [0.0]).rtol(1e-10).run().unwrap();
+        assert!((late.end.q[0] - early.end.q[0]).abs() < 1e-8, "from {start:e}");
+        let late = solve(&pendulum(), (start, start + 16.0), [1.3], [0.0]).rtol(1e-8).method(Tsit5).run().unwrap();
+        assert!((late.end.q[0] - early.end.q[0]).abs() < 1e-6, "from {start:e}");
+    }
+}
+
+#[test]
+fn a_first_step_that_is_none() {
+    for (start, step) in [(0.0, 1e-300), (1.0, 1e-30)] {
+        let failure = solve(&pendulum(), (start, 2.0), [1.3], [0.0]).first_step(step).run().unwrap_err();
+        assert!(matches!(failure.error, Error::Setting { name: "first_step", value, .. } if value == step), "{failure}");
+    }
+    assert!(solve(&pendulum(), (1.0, 2.0), [1.3], [0.0]).first_step(1e-20).run().is_ok());
+}
+
+#[test]
+fn a_velocity_at_the_end_of_the_range() {
+    let pendulum = Pendulum { length: 1.0_f32, g: 9.81 };
+    let failure = solve(&pendulum, (0.0, 10.0), [0.0], [3e38]).run().unwrap_err();
+    assert!(matches!(failure.error, Error::NotFinite { t: 0.0, .. }), "{failure}");
+}
+
+#[test]
+fn more_states_than_anybody_keeps() {
+    let failure = solve(&pendulum(), (0.0, 1.0), [1.3], [0.0]).every(1e-9).run().unwrap_err();
+    assert!(matches!(failure.error, Error::Setting { name: "every", value: 1e-9, .. }), "{failure}");
+    assert!(failure.to_string().contains("ten million"), "{failure}");
+}
+
+#[test]
 fn steps_run_out() {
     let failure = solve(&pendulum(), (0.0, 1e6), [1.3], [0.0]).max_steps(1000).run().unwrap_err();
     let Error::MaxSteps { t, max_steps: 1000 } = failure.error else { panic!("{failure}") };
