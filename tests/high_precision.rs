@@ -198,3 +198,17 @@ fn aligned_rods_with_a_light_upper_mass_lose_what_the_matrix_loses() {
         assert!(found <= 8.0 * f64::EPSILON * condition, "{found:e} at a condition of {condition:e}");
     }
 }
+#[test]
+fn taylor_reaches_28_digits() {
+    let system = Simple::new(DoubleDouble::from(1.0));
+    for (end, exact) in &PENDULUM[..2] {
+        let run = |tolerance: f64| {
+            let problem = solve(&system, (0.0, *end), [number("1.3")], [0.0.into()]).method(Taylor::new());
+            let solution = problem.rtol(tolerance).atol(tolerance).run().unwrap();
+            error(solution.end.q, solution.end.v, *exact)
+        };
+        assert!(run(1e-30) < 1e-28, "{:e}", run(1e-30));
+        // A looser tolerance is visible: the test measures the method and not the digits.
+        assert!(1e-29 < run(1e-20), "{:e}", run(1e-20));
+    }
+}

@@ -14,6 +14,11 @@ macro_rules! any {
         fixed!($subject, "Rk4", Rk4, [4.0, 8.0, 16.0, 32.0, 64.0, 200.0, 600.0]);
         adaptive!($subject, "Tsit5", Tsit5::new(), [3, 4, 5, 6, 7, 8, 9, 10]);
         adaptive!($subject, "Dop853", Dop853::new(), [3, 5, 7, 9, 10, 11, 12, 13]);
+        adaptive!($subject, "Taylor", Taylor::new(), [3, 5, 7, 9, 11, 13, 15, 18]);
+        adaptive!($subject, "Rodas4", Rodas4::new(), [3, 4, 5, 6, 7, 8]);
+        fixed!($subject, "Gauss<2>", Gauss::<2>::new(), [2.0, 4.0, 8.0, 16.0, 32.0, 64.0]);
+        fixed!($subject, "Gauss<4>", Gauss::<4>::new(), [1.0, 2.0, 4.0, 8.0, 16.0]);
+        fixed!($subject, "Gauss<8>", Gauss::<8>::new(), [0.5, 1.0, 1.5, 2.0, 3.0, 4.0]);
     };
 }
 
@@ -24,6 +29,8 @@ macro_rules! velocity_free {
         fixed!($subject, "Srkn6b", Srkn6b, [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 80.0]);
         fixed!($subject, "Srkn11b", Srkn11b, [0.7, 1.0, 1.5, 2.5, 4.0, 8.0, 16.0]);
         fixed!($subject, "Srkn14a", Srkn14a, [0.5, 0.8, 1.2, 2.0, 3.0, 5.0, 8.0]);
+        fixed!($subject, "QuinlanTremaine<8>", QuinlanTremaine::<8>::new(), [3.0, 4.0, 5.0, 8.0, 12.0, 20.0]);
+        fixed!($subject, "QuinlanTremaine<12>", QuinlanTremaine::<12>::new(), [4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 24.0]);
     };
 }
 

@@ -56,7 +56,7 @@ fn basis(theta: f64) -> [[f64; 3]; TERMS] {
 #[cfg(test)]
 mod tests {
     use super::{Condition, TERMS, fit};
-    use crate::integrate::piece::nested;
+    use crate::integrate::piece::Basis;
 
     #[test]
     fn a_polynomial_is_found_again() {
@@ -75,7 +75,7 @@ mod tests {
         ];
         fit(&mut terms, &conditions);
         for x in [0.1_f64, 0.5, 0.9] {
-            let [found] = nested(&[y(0.0)], &terms[..6], x);
+            let [found] = Basis::Nested.at(&[y(0.0)], &terms[..6], x);
             assert!((found - y(x)).abs() < 1e-14, "{found} {}", y(x));
         }
     }
