@@ -35,7 +35,7 @@ fn pendulum() -> Pendulum {
 }
 
 fn after_five_seconds(dynamics: &impl Dynamics<1, Scalar = f64>) -> f64 {
-    solve(dynamics, (0.0, 5.0), [0.3], [0.0]).rtol(1e-12).atol(1e-12).run().unwrap().end.q[0]
+    solve(dynamics, (0.0, 5.0), [0.3], [0.0]).method(Dop853).rtol(1e-12).atol(1e-12).run().unwrap().end.q[0]
 }
 
 /// With straight lines between the keys the acceleration is zero almost everywhere: what moves the pendulum are the jumps.

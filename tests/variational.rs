@@ -75,7 +75,7 @@ fn the_forced_pendulum_has_the_published_sensitivities() {
     const M: usize = size(1, 1);
     let system = Variational::<_, 1, M>::new(Forced::new(0.4));
     let (q, v) = system.start([0.2], [0.3]);
-    let end = solve(&system, (0.0, 3.0), q, v).rtol(1e-14).atol(1e-14).run().unwrap().end;
+    let end = solve(&system, (0.0, 3.0), q, v).method(Dop853).rtol(1e-14).atol(1e-14).run().unwrap().end;
     let own = system.state(&end);
     let expected = [
         (own.q, own.v, [0.11757214931110473655, -1.2494065591871065318]),
@@ -130,7 +130,7 @@ fn floquet_traces_of_the_mathieu_equation() {
         let period = core::f64::consts::PI;
         let system = Variational::<_, 1, M>::new(Mathieu::new(a, q));
         let (y, v) = system.start([0.1], [0.2]);
-        let end = solve(&system, (0.0, period), y, v).rtol(1e-14).atol(1e-14).run().unwrap().end;
+        let end = solve(&system, (0.0, period), y, v).method(Dop853).rtol(1e-14).atol(1e-14).run().unwrap().end;
         let monodromy = system.transition(&end);
         close(monodromy.trace(), trace, 1e-13);
         close(monodromy.determinant(), 1.0, 1e-13);
@@ -213,7 +213,7 @@ fn the_energy_has_no_gradient_along_the_flow() {
     let system = Variational::<_, 2, M>::new(plain.clone());
     let (q0, v0) = ([2.0, 2.5], [0.0, 0.25]);
     let (q, v) = system.start(q0, v0);
-    let end = solve(&system, (0.0, 10.0), q, v).rtol(1e-13).atol(1e-13).run().unwrap().end;
+    let end = solve(&system, (0.0, 10.0), q, v).method(Dop853).rtol(1e-13).atol(1e-13).run().unwrap().end;
     let gradient = |q: [f64; 2], v: [f64; 2]| -> [f64; 4] {
         use pendulum_runtime::real::Dual;
         let lifted = plain.map(Dual::constant);
@@ -266,7 +266,7 @@ fn facts_and_errors_are_those_of_the_system() {
     let system = Variational::<_, 1, M>::new(Simple::new(1.0, 0.0));
     assert_eq!(<Variational<Simple, 1, M> as System<M>>::FACTS.parameters, ["g", "l"]);
     let (q, v) = system.start([1.0], [0.0]);
-    let failure = solve(&system, (0.0, 1.0), q, v).run().unwrap_err();
+    let failure = solve(&system, (0.0, 1.0), q, v).method(Dop853).run().unwrap_err();
     let message = failure.to_string();
     assert!(message.contains("acceleration of `θ`") && message.contains("`l`, which is 0.0"), "{message}");
 }

@@ -685,11 +685,12 @@ impl Emitter<'_, '_> {
             return quote!(#krate::__private::facts(#krate::__private::Known {
                 name: #name, coordinates: &[#(#coordinates),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*],
                 autonomous: false, separable: false, velocity_free: false, constant_mass_matrix: false, nonconservative: false,
-                cyclic: &[], conserved: &[], unused: &[], equations: "", latex: "",
+                smooth: false, cyclic: &[], conserved: &[], unused: &[], equations: "", latex: "",
             }));
         };
         let (autonomous, separable, velocity_free, constant_mass_matrix, nonconservative) =
             (motion.autonomous, motion.separable, motion.velocity_free, motion.constant_mass_matrix, motion.nonconservative);
+        let smooth = self.graph.smooth(&motion.accelerations);
         let cyclic = motion.cyclic.clone();
         let conserved: Vec<String> = motion.conserved.iter().map(|conserved| print::conserved(&names, conserved)).collect();
         let unused = self.unused(&names);
@@ -701,7 +702,7 @@ impl Emitter<'_, '_> {
         quote!(#krate::__private::facts(#krate::__private::Known {
             name: #name, coordinates: &[#(#coordinates),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*],
             autonomous: #autonomous, separable: #separable, velocity_free: #velocity_free, constant_mass_matrix: #constant_mass_matrix,
-            nonconservative: #nonconservative, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], equations: #equations, latex: #latex,
+            nonconservative: #nonconservative, smooth: #smooth, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], equations: #equations, latex: #latex,
         }))
     }
 

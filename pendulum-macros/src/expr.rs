@@ -653,6 +653,13 @@ impl Graph {
         (0..).zip(found).filter(|&(_, found)| found).map(|(index, _)| Id(index)).collect()
     }
 
+    /// Whether nothing that moves goes through a function that has a corner or jumps.
+    pub(crate) fn smooth(&self, roots: &[Id]) -> bool {
+        let cornered =
+            |&id: &Id| matches!(self.node(id), Node::Max(..) | Node::Call(Function::Abs | Function::Sign | Function::Step, _));
+        !self.reachable(roots).iter().filter(|id| cornered(id)).any(|&id| self.contents(id).any(Contents::STATE))
+    }
+
     /// The derivative of a node, if it is known.
     pub(crate) fn slope(&self, symbol: Symbol, id: Id) -> Option<Id> {
         // What contains nothing of the symbol's kind does not depend on it.

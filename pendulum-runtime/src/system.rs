@@ -260,6 +260,8 @@ pub struct Facts {
     pub constant_mass_matrix: bool,
     /// There is a `dissipation` or `force` statement.
     pub nonconservative: bool,
+    /// No `abs`, `sign`, `min` or `max` of something that moves stands in the accelerations.
+    pub smooth: bool,
     /// The coordinates that do not stand in the Lagrangian, by index.
     pub cyclic: &'static [usize],
     /// The conserved quantities that [`System::conserved`] gives, in terms of the momenta: `p_φ`, `x·p_y − y·p_x`. The energy is
@@ -286,6 +288,7 @@ impl Facts {
             velocity_free: false,
             constant_mass_matrix: false,
             nonconservative: true,
+            smooth: false,
             cyclic: &[],
             conserved: &[],
             unused: &[],

@@ -31,7 +31,7 @@ use nalgebra::{DMatrix, SMatrix};
 /// const M: usize = size(1, 1);
 /// let spring = Variational::<_, 1, M>::new(Spring::new(4.0, 1.0));
 /// let (q, v) = spring.start([1.0], [0.0]);
-/// let end = solve(&spring, (0.0, 1.0), q, v).rtol(1e-12).atol(1e-12).run()?.end;
+/// let end = solve(&spring, (0.0, 1.0), q, v).method(Dop853).rtol(1e-12).atol(1e-12).run()?.end;
 /// // x = cos ωt with ω² = k/m.
 /// let (by_k, _) = spring.by_parameter(&end, 0);
 /// assert!((by_k[0] + 2.0_f64.sin() / 4.0).abs() < 1e-10);

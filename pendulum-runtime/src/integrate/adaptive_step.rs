@@ -77,6 +77,11 @@ impl<const N: usize> AdaptiveStep<N> {
         self.rtol.unwrap_or(if 1e-6 < least { least } else { 1e-6 })
     }
 
+    /// The same with this absolute tolerance if none was given.
+    pub(crate) fn atol_or(self, atol: f64) -> Self {
+        if self.atol.is_some() { self } else { self.atol(atol) }
+    }
+
     /// The absolute tolerances of coordinates and velocities, `default` where none were given.
     fn absolute(&self, default: f64) -> ([f64; N], [f64; N]) {
         self.atol.unwrap_or(([default; N], [default; N]))
@@ -276,7 +281,7 @@ impl<const N: usize> AdaptiveStep<N> {
 }
 
 /// The length of a step that time does not resolve: its second word has to hold the step to about ten digits.
-fn resolution(t: Time) -> f64 {
+pub(crate) fn resolution(t: Time) -> f64 {
     let resolution = 1e-26 * t.to_f64().abs();
     if resolution < 1e-200 { 1e-200 } else { resolution }
 }

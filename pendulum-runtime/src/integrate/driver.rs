@@ -202,6 +202,15 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
         self.before_kink.as_ref()
     }
 
+    /// What it took so far, and which method took it.
+    pub(crate) fn stats<D>(&self) -> Stats
+    where
+        D: Dynamics<N, Scalar = T>,
+        M: Stepper<D, N, Stages = R>,
+    {
+        Stats { method: self.method.name(&self.stages), ..self.stats }
+    }
+
     /// The time reached.
     pub(crate) fn t(&self) -> f64 {
         self.node.t.to_f64()

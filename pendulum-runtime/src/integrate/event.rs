@@ -19,7 +19,7 @@ type Function<'a, T, const N: usize> = dyn Fn(T, &[T; N], &[T; N]) -> T + Sync +
 /// # use pendulum_runtime::{integrate::*, system::*};
 /// fn first_turn<S: System<1, Scalar = f64, Inputs = ()>>(system: &S) -> Result<Option<f64>, Failure<f64, 1>> {
 ///     let turns = Event::new(&|_t, _q: &[f64; 1], v: &[f64; 1]| v[0]).direction(Direction::Rising).terminal();
-///     let solution = solve(system, (0.0, 10.0), [1.3], [0.0]).rtol(1e-10).events(&[turns]).run()?;
+///     let solution = solve(system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).rtol(1e-10).events(&[turns]).run()?;
 ///     Ok(solution.events.first().map(|turn| turn.state.t))
 /// }
 /// ```

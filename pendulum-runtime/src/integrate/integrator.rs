@@ -104,7 +104,7 @@ where
     where
         C: Control<M, Ready<'a, D, N>, N>,
     {
-        if !((self.t() <= t || M::BACKWARDS && self.watch.is_idle()) && t.is_finite()) {
+        if !((self.t() <= t || self.driver.method.goes_back(&self.dynamics) && self.watch.is_idle()) && t.is_finite()) {
             return Err(Error::Interval { start: self.t(), end: t });
         }
         let steps = |stats: &Stats| stats.accepted + stats.rejected;
@@ -164,7 +164,7 @@ where
     }
 
     /// What it took so far.
-    pub fn stats(&self) -> &Stats {
-        &self.driver.stats
+    pub fn stats(&self) -> Stats {
+        self.driver.stats::<Ready<'a, D, N>>()
     }
 }

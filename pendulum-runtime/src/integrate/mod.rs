@@ -17,12 +17,15 @@
 //! | [`Dop853`] | 8 | 12 | adaptive | any system, errors 1e-6 … 1e-13 |
 //! | [`Taylor`] | 2 … 30 | its order | adaptive, back in time too | any generated system, errors 1e-5 … rounding |
 //!
+//! [`Auto`], which `solve` uses unless told otherwise, chooses among them.
+//!
 //! Velocity-free are systems with a constant mass matrix whose accelerations contain no velocity; `lagrangian!` knows them.
 //! Adaptive methods take fixed steps too. All of them sum the state with compensation and keep the time in two words.
 
 pub mod method;
 
 mod adaptive_step;
+mod auto;
 mod blame;
 mod control;
 mod dense;
@@ -62,6 +65,7 @@ mod tsit5;
 mod watch;
 
 pub use adaptive_step::AdaptiveStep;
+pub use auto::Auto;
 pub use dop853::Dop853;
 pub use event::{Direction, Event, Occurrence, Status};
 pub use fixed_step::FixedStep;

@@ -1,8 +1,8 @@
 //! `solve`: a builder for one integration from start to end.
 
 use super::adaptive_step::AdaptiveStep;
+use super::auto::Auto;
 use super::control::Control;
-use super::dop853::Dop853;
 use super::driver::Driver;
 use super::event::{Event, Status};
 use super::fixed_step::FixedStep;
@@ -16,21 +16,21 @@ use crate::system::{Dynamics, Prepared, System};
 
 /// Integrates `dynamics` over the interval `time = (start, end)` in seconds from the coordinates `q` and the velocities `v`.
 ///
-/// Without further calls it uses [`Dop853`] with `rtol` 1e-6 and `atol` 1e-9 and gives the end state.
-/// If motions have a kink at the start, `v` is the velocity after it. An interval that ends before it starts leads back in time; of the
-/// methods here only [`Taylor`](super::Taylor) does that.
+/// Without further calls it uses the method that [`Auto`] chooses, with `rtol` 1e-6, and gives the end state; [`Stats`] say which
+/// method it was. If motions have a kink at the start, `v` is the velocity after it. An interval that ends before it starts leads back
+/// in time; of the methods here only [`Taylor`](super::Taylor) does that.
 pub fn solve<const N: usize, D: Dynamics<N>>(
     dynamics: &D,
     time: (f64, f64),
     q: [D::Scalar; N],
     v: [D::Scalar; N],
-) -> Solve<'_, N, D, Dop853, AdaptiveStep<N>> {
+) -> Solve<'_, N, D, Auto, AdaptiveStep<N>> {
     Solve {
         dynamics,
         time,
         q,
         v,
-        method: Dop853::new(),
+        method: Auto,
         control: AdaptiveStep::new(),
         output: Output::End,
         dense: false,
@@ -135,7 +135,7 @@ impl<const N: usize, D: Dynamics<N>, M> Solve<'_, N, D, M, AdaptiveStep<N>> {
         self
     }
 
-    /// The absolute tolerance of all coordinates and velocities, 1e-9 without this call.
+    /// The absolute tolerance of all coordinates and velocities; without this call 1e-9, or what the method says.
     pub fn atol(mut self, atol: f64) -> Self {
         self.control = self.control.atol(atol);
         self
@@ -173,14 +173,12 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         let mut recorder = Recorder::new(self.output, self.time);
         let given = State { t: self.time.0, q: self.q, v: self.v };
         let dynamics = Prepared::new(self.dynamics);
-        match self
-            .check::<Prepared<'a, D, _>>()
-            .and_then(|()| Driver::new(&dynamics, self.method, self.control, self.time.0, self.q, self.v))
+        match self.check(&dynamics).and_then(|()| Driver::new(&dynamics, self.method, self.control, self.time.0, self.q, self.v))
         {
             Err(error) => Err(recorder.fail(error, given, Stats::new(M::NAME))),
             Ok(mut driver) => match self.integrate(&dynamics, &mut driver, &mut recorder) {
-                Err(error) => Err(recorder.fail(error, State::from(&driver.node), driver.stats)),
-                Ok(status) => Ok(recorder.finish(State::from(&driver.node), status, driver.stats)),
+                Err(error) => Err(recorder.fail(error, State::from(&driver.node), driver.stats::<Prepared<'a, D, _>>())),
+                Ok(status) => Ok(recorder.finish(State::from(&driver.node), status, driver.stats::<Prepared<'a, D, _>>())),
             },
         }
     }
@@ -220,14 +218,14 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         Ok(Status::Completed)
     }
 
-    fn check<P>(&self) -> Result<(), Error>
+    fn check<P>(&self, dynamics: &P) -> Result<(), Error>
     where
         P: Dynamics<N, Scalar = D::Scalar>,
         M: Stepper<P, N>,
         C: Control<M, P, N>,
     {
         let (start, end) = self.time;
-        if !((end - start).is_finite() && (start <= end || M::BACKWARDS && self.events.is_empty())) {
+        if !((end - start).is_finite() && (start <= end || self.method.goes_back(dynamics) && self.events.is_empty())) {
             return Err(Error::Interval { start, end });
         }
         self.control.check()?;

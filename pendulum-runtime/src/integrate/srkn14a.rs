@@ -60,7 +60,7 @@ impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Srkn14a 
     }
 }
 
-const SPLITTING: Splitting<15, 14> = Splitting::drifts_outside(
+pub(crate) const SPLITTING: Splitting<15, 14> = Splitting::drifts_outside(
     &[A1, A2, A3, A4, A5, A6, A7, 1.0 - 2.0 * (A1 + A2 + A3 + A4 + A5 + A6 + A7)],
     &[B1, B2, B3, B4, B5, B6, 0.5 - (B1 + B2 + B3 + B4 + B5 + B6)],
 );

@@ -13,16 +13,30 @@ use crate::system::Dynamics;
 /// A method that can integrate the dynamics `D`.
 ///
 /// Each [`Method`] that [`Suits`] the system can; a method that needs more than accelerations implements this trait itself.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot integrate `{D}`",
+    note = "without `.method(…)`, `solve` chooses for systems that `lagrangian!` has made; for others name a method, as `.method(Dop853)`"
+)]
 pub trait Stepper<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fmt::Debug {
     /// The name.
     const NAME: &'static str;
-    /// Whether it goes back in time too.
-    const BACKWARDS: bool;
     /// What one step leaves behind for error estimate and dense output.
     type Stages: Clone + core::fmt::Debug;
 
+    /// Whether it goes back in time too.
+    fn goes_back(&self, dynamics: &D) -> bool {
+        let _ = dynamics;
+        false
+    }
+
     /// Room for the stages.
     fn room(&self, dynamics: &D) -> Self::Stages;
+
+    /// The name of the method that has taken the steps, if that is another one.
+    fn name(&self, stages: &Self::Stages) -> &'static str {
+        let _ = stages;
+        Self::NAME
+    }
 
     /// Goes from `from` to the end of `span`.
     fn advance(
@@ -56,7 +70,6 @@ where
     D: Dynamics<N, Scalar: Float>,
 {
     const NAME: &'static str = M::NAME;
-    const BACKWARDS: bool = false;
     type Stages = M::Stages<D::Scalar, N>;
 
     fn room(&self, _: &D) -> Self::Stages {

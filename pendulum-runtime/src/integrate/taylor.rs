@@ -1,6 +1,6 @@
 //! Taylor series of any order.
 
-use super::adaptive_step::{AdaptiveStep, fit};
+use super::adaptive_step::{AdaptiveStep, fit, resolution};
 use super::blame::{self, blame};
 use super::control::{Control, Course, Memory};
 use super::field::{Accelerations, Counted, Watched, coordinate, first_in_state};
@@ -89,7 +89,7 @@ impl Rule {
 }
 
 /// The room for the jets of the dynamics `D`.
-type RoomOf<D, const N: usize> = Room<
+pub(crate) type RoomOf<D, const N: usize> = Room<
     <D as Dynamics<N>>::Scalar,
     <<D as Dynamics<N>>::System as Jets<N>>::Work,
     <<D as Dynamics<N>>::System as Jets<N>>::Drive,
@@ -98,8 +98,11 @@ type RoomOf<D, const N: usize> = Room<
 
 impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Stepper<D, N> for Taylor {
     const NAME: &'static str = "Taylor";
-    const BACKWARDS: bool = true;
     type Stages = RoomOf<D, N>;
+
+    fn goes_back(&self, _: &D) -> bool {
+        true
+    }
 
     fn room(&self, dynamics: &D) -> RoomOf<D, N> {
         Room { path: Path::new(), drive: D::System::drive(), work: dynamics.system().work(), order: 0, rule: Rule::default() }
@@ -199,7 +202,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         if !to.is_finite() {
             return Err(blame(method, field.dynamics, &span, from, room));
         }
-        if wanted <= f64::EPSILON * t.abs() && wanted < from.t.since(target).abs() || wanted < 1e-200 {
+        if wanted <= resolution(from.t) && wanted < from.t.since(target).abs() {
             let (_, index) = largest(&room.path, rule.order, &weights);
             let coordinate = coordinate(&<D::System as System<N>>::FACTS, index);
             return Err(Error::StepSizeUnderflow { t, step: wanted, coordinate });

@@ -1,8 +1,8 @@
 //! Dynamics whose jets are known: a system with recurrences, and motions with series for its driven inputs.
 
 use super::{InputSeries, Jets};
-use crate::motion::{AnalyticMotions, Side};
-use crate::system::{Driven, Dynamics, Prepared, System};
+use crate::motion::{AnalyticMotions, PerhapsAnalytic, Side};
+use crate::system::{Driven, Dynamics, Prepared, Purpose, System};
 use crate::time::Time;
 
 /// Dynamics of which [`Taylor`](crate::integrate::Taylor) can compute the jets.
@@ -20,64 +20,137 @@ pub trait JetDynamics<const N: usize>: Dynamics<N, System: Jets<N>> {
     fn last_kink(&self, t: f64) -> Option<f64>;
 }
 
+/// Dynamics of a generated system, whatever drives it: whether their jets are known shows at run time.
+///
+/// Where a motion is not analytic, its part of all other answers is missing.
+#[diagnostic::on_unimplemented(
+    message = "no method can be chosen for `{Self}`",
+    label = "what `lagrangian!` knows about a system decides about the method",
+    note = "name one: `solve(…).method(Dop853)`"
+)]
+pub trait PerhapsJets<const N: usize>: Dynamics<N, System: Jets<N>> {
+    /// Whether the jets are known: every motion is analytic.
+    fn is_analytic(&self) -> bool;
+
+    /// As [`JetDynamics::drive`].
+    fn drive(&self, t: Time, side: Side, count: usize, drive: &mut <Self::System as Jets<N>>::Drive);
+
+    /// As [`JetDynamics::next_break`].
+    fn next_break(&self, t: f64) -> Option<f64>;
+
+    /// As [`JetDynamics::last_break`].
+    fn last_break(&self, t: f64) -> Option<f64>;
+
+    /// As [`JetDynamics::last_kink`].
+    fn last_kink(&self, t: f64) -> Option<f64>;
+}
+
+/// The methods that both traits have.
+macro_rules! none {
+    ($($method:ident)+) => {
+        #[inline]
+        fn drive(&self, _: Time, _: Side, _: usize, _: &mut S::Drive) {}
+
+        $(#[inline]
+        fn $method(&self, _: f64) -> Option<f64> {
+            None
+        })+
+    };
+}
+
+macro_rules! of_motions {
+    ($($method:ident)+) => {
+        fn drive(&self, t: Time, side: Side, count: usize, drive: &mut S::Drive) {
+            let drive: &mut [InputSeries<S::Scalar>] = drive.as_mut();
+            self.motions.series(t, side, count + 2, drive);
+            for input in drive {
+                input.differentiate(count);
+            }
+        }
+
+        $(fn $method(&self, t: f64) -> Option<f64> {
+            self.motions.$method(t)
+        })+
+    };
+}
+
+macro_rules! of_inner {
+    ($this:ident, $inner:expr; $($method:ident)+) => {
+        #[inline]
+        fn drive(&$this, t: Time, side: Side, count: usize, drive: &mut <Self::System as Jets<N>>::Drive) {
+            $inner.drive(t, side, count, drive);
+        }
+
+        $(#[inline]
+        fn $method(&$this, t: f64) -> Option<f64> {
+            $inner.$method(t)
+        })+
+    };
+}
+
 impl<const N: usize, S: Jets<N> + System<N, Inputs = ()>> JetDynamics<N> for S {
-    #[inline]
-    fn drive(&self, _: Time, _: Side, _: usize, _: &mut S::Drive) {}
+    none!(next_break last_break last_kink);
+}
 
-    #[inline]
-    fn next_break(&self, _: f64) -> Option<f64> {
-        None
+impl<const N: usize, S: Jets<N> + System<N, Inputs = ()>> PerhapsJets<N> for S {
+    fn is_analytic(&self) -> bool {
+        true
     }
 
-    #[inline]
-    fn last_break(&self, _: f64) -> Option<f64> {
-        None
-    }
-
-    fn last_kink(&self, _: f64) -> Option<f64> {
-        None
-    }
+    none!(next_break last_break last_kink);
 }
 
 impl<const N: usize, S: Jets<N>, M: AnalyticMotions<S::Inputs, S::Scalar>> JetDynamics<N> for Driven<S, M> {
-    fn drive(&self, t: Time, side: Side, count: usize, drive: &mut S::Drive) {
-        let drive: &mut [InputSeries<S::Scalar>] = drive.as_mut();
-        self.motions.series(t, side, count + 2, drive);
-        for input in drive {
-            input.differentiate(count);
-        }
+    of_motions!(next_break last_break last_kink);
+}
+
+impl<const N: usize, S: Jets<N>, M: PerhapsAnalytic<S::Inputs, S::Scalar>> PerhapsJets<N> for Driven<S, M> {
+    fn is_analytic(&self) -> bool {
+        self.motions.is_analytic()
     }
 
-    fn next_break(&self, t: f64) -> Option<f64> {
-        self.motions.next_break(t)
-    }
-
-    fn last_break(&self, t: f64) -> Option<f64> {
-        self.motions.last_break(t)
-    }
-
-    fn last_kink(&self, t: f64) -> Option<f64> {
-        self.motions.last_kink(t)
-    }
+    of_motions!(next_break last_break last_kink);
 }
 
 impl<const N: usize, D: JetDynamics<N>> JetDynamics<N> for Prepared<'_, D, <D::System as System<N>>::Prepared> {
-    #[inline]
-    fn drive(&self, t: Time, side: Side, count: usize, drive: &mut <D::System as Jets<N>>::Drive) {
-        self.dynamics().drive(t, side, count, drive);
+    of_inner!(self, self.dynamics(); next_break last_break last_kink);
+}
+
+impl<const N: usize, D: PerhapsJets<N>> PerhapsJets<N> for Prepared<'_, D, <D::System as System<N>>::Prepared> {
+    fn is_analytic(&self) -> bool {
+        self.dynamics().is_analytic()
+    }
+
+    of_inner!(self, self.dynamics(); next_break last_break last_kink);
+}
+
+/// Dynamics whose motions have turned out to be analytic.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Known<'a, D>(pub(crate) &'a D);
+
+impl<const N: usize, D: PerhapsJets<N>> JetDynamics<N> for Known<'_, D> {
+    of_inner!(self, self.0; next_break last_break last_kink);
+}
+
+impl<const N: usize, D: Dynamics<N>> Dynamics<N> for Known<'_, D> {
+    type System = D::System;
+    type Scalar = D::Scalar;
+
+    fn system(&self) -> &D::System {
+        self.0.system()
     }
 
     #[inline]
-    fn next_break(&self, t: f64) -> Option<f64> {
-        self.dynamics().next_break(t)
+    fn inputs(&self, t: Time, side: Side, purpose: Purpose) -> <D::System as System<N>>::Inputs {
+        self.0.inputs(t, side, purpose)
+    }
+
+    fn next_kink(&self, t: f64) -> Option<f64> {
+        self.0.next_kink(t)
     }
 
     #[inline]
-    fn last_break(&self, t: f64) -> Option<f64> {
-        self.dynamics().last_break(t)
-    }
-
-    fn last_kink(&self, t: f64) -> Option<f64> {
-        self.dynamics().last_kink(t)
+    fn accelerations_at(&self, t: Time, side: Side, q: &[D::Scalar; N], v: &[D::Scalar; N]) -> [D::Scalar; N] {
+        self.0.accelerations_at(t, side, q, v)
     }
 }

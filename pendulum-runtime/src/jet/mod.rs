@@ -14,7 +14,8 @@ mod sum;
 #[cfg(test)]
 mod tests;
 
-pub use dynamics::JetDynamics;
+pub(crate) use dynamics::Known;
+pub use dynamics::{JetDynamics, PerhapsJets};
 pub use factors::Factors;
 pub use order::{Called, Calling, Constant, Looped, Order, Orders, Running, Unrolled};
 

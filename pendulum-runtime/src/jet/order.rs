@@ -80,6 +80,10 @@ orders! {
 
 /// A way to go through the orders of a jet.
 pub trait Orders {
+    /// The tolerance below which [`Taylor`](crate::integrate::Taylor) is faster than [`Dop853`](crate::integrate::Dop853), as the
+    /// benchmark `work_precision` measures it.
+    const PAYS_BELOW: f64;
+
     /// The coefficients of q and q̇ up to `order`, at most [`MAX_ORDER`], from the leading ones.
     fn run<S: Jets<N>, const N: usize>(
         system: &S,
@@ -103,6 +107,8 @@ pub struct Looped;
 pub struct Called;
 
 impl Orders for Looped {
+    const PAYS_BELOW: f64 = 2e-7;
+
     fn run<S: Jets<N>, const N: usize>(
         system: &S,
         order: usize,
@@ -118,6 +124,8 @@ impl Orders for Looped {
 }
 
 impl Orders for Called {
+    const PAYS_BELOW: f64 = 2e-14;
+
     fn run<S: Jets<N>, const N: usize>(
         system: &S,
         order: usize,
@@ -133,6 +141,8 @@ impl Orders for Called {
 }
 
 impl Orders for Unrolled {
+    const PAYS_BELOW: f64 = 1.0;
+
     fn run<S: Jets<N>, const N: usize>(
         system: &S,
         order: usize,

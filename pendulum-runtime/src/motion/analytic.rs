@@ -56,7 +56,7 @@ use crate::time::Time;
     label = "`Taylor` needs the Taylor series of every motion",
     note = "drive by `Still`, `Sinusoid`, `Linear`, `CatmullRom`, `Spline` or `Clip`, implement `Analytic`, or use `Dop853`"
 )]
-pub trait Analytic<T: Real, const D: usize>: Motion<T, D> {
+pub trait Analytic<T: Real, const D: usize> {
     /// The first `count` Taylor coefficients at `t` of one component of the position; the others stay as they are.
     ///
     /// Where the motion is not analytic they are those of the motion on `side`.
@@ -163,20 +163,24 @@ pub trait AnalyticMotions<Inputs, T: Real>: Motions<Inputs> {
     fn last_kink(&self, t: f64) -> Option<f64>;
 }
 
-impl<T: Real> AnalyticMotions<(), T> for () {
-    fn series(&self, _: Time, _: Side, _: usize, _: &mut [InputSeries<T>]) {}
+/// The motions of all driven inputs of a system, of which it shows at run time whether every one is analytic.
+///
+/// The part of one that is not is missing in all other answers.
+pub trait PerhapsAnalytic<Inputs, T: Real>: Motions<Inputs> {
+    /// Whether every one is analytic.
+    fn is_analytic(&self) -> bool;
 
-    fn next_break(&self, _: f64) -> Option<f64> {
-        None
-    }
+    /// The positions of all components, as [`Analytic::series`] gives them.
+    fn series(&self, t: Time, side: Side, count: usize, components: &mut [InputSeries<T>]);
 
-    fn last_break(&self, _: f64) -> Option<f64> {
-        None
-    }
+    /// The first time after `t` at which one of them is not analytic.
+    fn next_break(&self, t: f64) -> Option<f64>;
 
-    fn last_kink(&self, _: f64) -> Option<f64> {
-        None
-    }
+    /// The last such time before `t`.
+    fn last_break(&self, t: f64) -> Option<f64>;
+
+    /// The last kink before `t`.
+    fn last_kink(&self, t: f64) -> Option<f64>;
 }
 
 /// The later of two times.
@@ -184,35 +188,74 @@ fn later(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     earlier(a.map(|a| -a), b.map(|b| -b)).map(|time| -time)
 }
 
+/// The methods that both traits have, for motions of which `known` gives those that are analytic.
+macro_rules! answers {
+    ($this:ident, [$($known:expr, $dim:expr);*]) => {
+        fn series(&$this, t: Time, side: Side, count: usize, components: &mut [InputSeries<T>]) {
+            let mut components = components.iter_mut();
+            $(for (component, series) in components.by_ref().take($dim).enumerate() {
+                if let Some(motion) = $known {
+                    motion.series(t, side, component, count, &mut series.position);
+                }
+            })*
+        }
+
+        fn next_break(&$this, t: f64) -> Option<f64> {
+            let mut next = None;
+            $(next = earlier(next, $known.and_then(|motion| motion.next_break(t)));)*
+            next
+        }
+
+        fn last_break(&$this, t: f64) -> Option<f64> {
+            let mut last = None;
+            $(last = later(last, $known.and_then(|motion| motion.last_break(t)));)*
+            last
+        }
+
+        fn last_kink(&$this, t: f64) -> Option<f64> {
+            let mut last = None;
+            $(last = later(last, $known.and_then(|motion| motion.last_kink(t)));)*
+            last
+        }
+    };
+}
+
+macro_rules! nothing {
+    ($($method:ident)+) => {
+        fn series(&self, _: Time, _: Side, _: usize, _: &mut [InputSeries<T>]) {}
+
+        $(fn $method(&self, _: f64) -> Option<f64> {
+            None
+        })+
+    };
+}
+
+impl<T: Real> AnalyticMotions<(), T> for () {
+    nothing!(next_break last_break last_kink);
+}
+
+impl<T: Real> PerhapsAnalytic<(), T> for () {
+    fn is_analytic(&self) -> bool {
+        true
+    }
+
+    nothing!(next_break last_break last_kink);
+}
+
 macro_rules! tuples {
     ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
-        impl<T: Real, $($motion: Analytic<T, $dim>, const $dim: usize),+> AnalyticMotions<($(Sample<T, $dim>,)+), T>
-            for ($($motion,)+)
+        impl<T: Real, $($motion: Motion<T, $dim> + Analytic<T, $dim>, const $dim: usize),+>
+            AnalyticMotions<($(Sample<T, $dim>,)+), T> for ($($motion,)+)
         {
-            fn series(&self, t: Time, side: Side, count: usize, components: &mut [InputSeries<T>]) {
-                let mut components = components.iter_mut();
-                $(for (component, series) in components.by_ref().take($dim).enumerate() {
-                    self.$index.series(t, side, component, count, &mut series.position);
-                })+
+            answers!(self, [$(Some(&self.$index), $dim);+]);
+        }
+
+        impl<T: Real, $($motion: Motion<T, $dim>, const $dim: usize),+> PerhapsAnalytic<($(Sample<T, $dim>,)+), T> for ($($motion,)+) {
+            fn is_analytic(&self) -> bool {
+                $(self.$index.analytic().is_some())&&+
             }
 
-            fn next_break(&self, t: f64) -> Option<f64> {
-                let mut next = None;
-                $(next = earlier(next, self.$index.next_break(t));)+
-                next
-            }
-
-            fn last_break(&self, t: f64) -> Option<f64> {
-                let mut last = None;
-                $(last = later(last, self.$index.last_break(t));)+
-                last
-            }
-
-            fn last_kink(&self, t: f64) -> Option<f64> {
-                let mut last = None;
-                $(last = later(last, self.$index.last_kink(t));)+
-                last
-            }
+            answers!(self, [$(self.$index.analytic(), $dim);+]);
         }
     )+};
 }

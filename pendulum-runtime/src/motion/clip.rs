@@ -1,7 +1,7 @@
 //! Motions sampled at a frame rate.
 
 use super::piecewise::Piecewise;
-use super::{CatmullRom, Linear, Motion, MotionError, Orders, Sample, Side, Spline};
+use super::{Analytic, CatmullRom, Linear, Motion, MotionError, Orders, Sample, Side, Spline};
 use crate::real::Real;
 use crate::time::Time;
 
@@ -104,5 +104,9 @@ impl<T: Real, const D: usize> Motion<T, D> for Clip<D> {
             Curve::CatmullRom(curve) => Motion::<T, D>::next_kink(curve, t),
             Curve::Spline(curve) => Motion::<T, D>::next_kink(curve, t),
         }
+    }
+
+    fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
+        Some(self)
     }
 }

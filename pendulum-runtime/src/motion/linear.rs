@@ -1,7 +1,7 @@
 //! Straight lines between keys.
 
 use super::piecewise::{Piecewise, checked};
-use super::{Motion, MotionError, Orders, Sample, Side};
+use super::{Analytic, Motion, MotionError, Orders, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
@@ -55,5 +55,9 @@ impl<T: Real, const D: usize> Motion<T, D> for Linear<D> {
 
     fn next_kink(&self, t: f64) -> Option<f64> {
         self.0.next_kink(t)
+    }
+
+    fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
+        Some(self)
     }
 }

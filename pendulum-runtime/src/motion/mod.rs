@@ -19,7 +19,7 @@ mod tests;
 use crate::real::Real;
 use crate::system::{Input, Purpose};
 use crate::time::Time;
-pub use analytic::{Analytic, AnalyticMotions};
+pub use analytic::{Analytic, AnalyticMotions, PerhapsAnalytic};
 pub use catmull_rom::CatmullRom;
 pub use clip::{Clip, Interpolation};
 pub use error::MotionError;
@@ -41,6 +41,13 @@ pub trait Motion<T: Real, const D: usize> {
 
     /// The first time after `t` (never `t` itself) at which the position, the velocity or the acceleration jumps.
     fn next_kink(&self, t: f64) -> Option<f64>;
+
+    /// The motion as one that knows all its derivatives: `Some(self)` where it is [`Analytic`].
+    ///
+    /// [`Auto`](crate::integrate::Auto) asks for it.
+    fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
+        None
+    }
 }
 
 /// A set of derivatives: of a motion's position, velocity and acceleration.

@@ -1,6 +1,6 @@
 //! A point at rest.
 
-use super::{Motion, Orders, Sample, Side};
+use super::{Analytic, Motion, Orders, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
@@ -32,5 +32,9 @@ impl<T: Real, const D: usize> Motion<T, D> for Still<D> {
 
     fn next_kink(&self, _: f64) -> Option<f64> {
         None
+    }
+
+    fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
+        Some(self)
     }
 }

@@ -6,7 +6,7 @@ use super::systems::{
 };
 use super::{distance, fixed};
 use crate::integrate::method::Suits;
-use crate::integrate::{Leapfrog, Rk4, Solution, Srkn6b, Srkn11b, Srkn14a, Stats, SymplecticEuler, Tsit5, solve};
+use crate::integrate::{Dop853, Leapfrog, Rk4, Solution, Srkn6b, Srkn11b, Srkn14a, Stats, SymplecticEuler, Tsit5, solve};
 use crate::system::Driven;
 
 /// The pendulum from 1.3 at t = 100.
@@ -92,7 +92,7 @@ fn assert_economical(runs: impl Iterator<Item = (Stats, f64)>, published: &[(f64
 #[test]
 fn adaptive_methods_on_the_chaotic_double_pendulum() {
     let system = double_pendulum();
-    let run = |tolerance| solve(&system, (0.0, 10.0), [2.0, 2.5], [0.0; 2]).rtol(tolerance).atol(tolerance);
+    let run = |tolerance| solve(&system, (0.0, 10.0), [2.0, 2.5], [0.0; 2]).method(Dop853).rtol(tolerance).atol(tolerance);
     let measured = |solution: Solution<f64, 2>| (solution.stats, distance(&solution.end.q, &solution.end.v, &CHAOTIC));
     let dop853 = [
         (373.0, 1.2e-2),
@@ -113,7 +113,8 @@ fn adaptive_methods_on_the_chaotic_double_pendulum() {
 
 #[test]
 fn the_regular_double_pendulum_to_rounding() {
-    let solution = solve(&double_pendulum(), (0.0, 100.0), [0.5, -0.25], [0.0; 2]).rtol(2.3e-15).atol(2.3e-15).run().unwrap();
+    let solution =
+        solve(&double_pendulum(), (0.0, 100.0), [0.5, -0.25], [0.0; 2]).method(Dop853).rtol(2.3e-15).atol(2.3e-15).run().unwrap();
     let error = distance(&solution.end.q, &solution.end.v, &REGULAR);
     assert!(error < 2e-13, "{error:e}, {}", solution.stats);
 }
@@ -142,7 +143,8 @@ fn kepler_orbits_keep_the_tolerance() {
         ),
     ];
     for (e, exact) in orbits {
-        let solution = solve(&Kepler { mu: 1.0 }, (0.0, 20.0), [1.0 - e, 0.0], [0.0, ((1.0 + e) / (1.0_f64 - e)).sqrt()]);
+        let solution =
+            solve(&Kepler { mu: 1.0 }, (0.0, 20.0), [1.0 - e, 0.0], [0.0, ((1.0 + e) / (1.0_f64 - e)).sqrt()]).method(Dop853);
         let solution = solution.rtol(1e-12).atol(1e-12).run().unwrap();
         let error = distance(&solution.end.q, &solution.end.v, &exact);
         assert!(error < 1e-10, "e = {e}: {error:e}, {}", solution.stats);
@@ -162,7 +164,7 @@ fn henon_heiles_by_all_velocity_free_methods() {
     assert!(error(fixed(&system, 10.0, q, v, Srkn6b, 100)) < 1e-7);
     assert!(error(fixed(&system, 10.0, q, v, Srkn11b, 100)) < 1e-10);
     assert!(error(fixed(&system, 10.0, q, v, Srkn14a, 100)) < 1e-12);
-    let solution = solve(&system, (0.0, 10.0), q, v).rtol(1e-13).atol(1e-13).run().unwrap();
+    let solution = solve(&system, (0.0, 10.0), q, v).method(Dop853).rtol(1e-13).atol(1e-13).run().unwrap();
     assert!(error(solution.end) < 1e-12);
 }
 
@@ -177,7 +179,7 @@ fn a_shaken_pendulum_by_every_method() {
     assert!(error(fixed(&driven, 10.0, [0.5], [0.0], Srkn14a, 200)) < 1e-11);
     assert!(error(fixed(&driven, 10.0, [0.5], [0.0], Rk4, 1000)) < 1e-8);
     assert!(error(fixed(&driven, 10.0, [0.5], [0.0], Tsit5, 1000)) < 1e-10);
-    let solution = solve(&driven, (0.0, 10.0), [0.5], [0.0]).rtol(1e-12).atol(1e-12).run().unwrap();
+    let solution = solve(&driven, (0.0, 10.0), [0.5], [0.0]).method(Dop853).rtol(1e-12).atol(1e-12).run().unwrap();
     assert!(error(solution.end) < 1e-11, "{}", solution.stats);
 }
 
@@ -193,7 +195,7 @@ fn single_precision_reaches_its_last_digits() {
 fn single_precision_with_step_control() {
     let pendulum = Pendulum { length: 1.0_f32, g: 1.0 };
     let exact = [-1.166160381932957676242545, -0.50236501011242526821132624];
-    let solution = solve(&pendulum, (0.0, 10.0), [1.3], [0.0]).run().unwrap();
+    let solution = solve(&pendulum, (0.0, 10.0), [1.3], [0.0]).method(Dop853).run().unwrap();
     assert!(distance(&solution.end.q.map(f64::from), &solution.end.v.map(f64::from), &exact) < 2e-4, "{}", solution.stats);
     let solution = solve(&pendulum, (0.0, 10.0), [1.3], [0.0]).method(Tsit5).rtol(2e-6).atol(1e-6).run().unwrap();
     assert!(distance(&solution.end.q.map(f64::from), &solution.end.v.map(f64::from), &exact) < 2e-4, "{}", solution.stats);
@@ -201,7 +203,7 @@ fn single_precision_with_step_control() {
 
 #[test]
 fn a_system_at_rest_stays_there() {
-    let solution = solve(&oscillator(1.0), (0.0, 1e6), [0.0], [0.0]).run().unwrap();
+    let solution = solve(&oscillator(1.0), (0.0, 1e6), [0.0], [0.0]).method(Dop853).run().unwrap();
     assert_eq!((solution.end.q, solution.end.v), ([0.0], [0.0]));
     assert!(solution.stats.accepted < 30, "{}", solution.stats);
 }
@@ -210,7 +212,9 @@ fn a_system_at_rest_stays_there() {
 fn each_tolerance_may_differ() {
     // Two unlike magnitudes: the small one keeps its own tolerance.
     let system = henon_heiles();
-    let run = |small| solve(&system, (0.0, 3.0), [0.1, 1e-6], [0.0; 2]).rtol(1e-4).atol_each([1e-4, small], [1e-4, small]);
+    let run = |small| {
+        solve(&system, (0.0, 3.0), [0.1, 1e-6], [0.0; 2]).method(Dop853).rtol(1e-4).atol_each([1e-4, small], [1e-4, small])
+    };
     let coarse = run(1e-4).run().unwrap().stats.accepted;
     let fine = run(1e-13).run().unwrap().stats.accepted;
     assert!(coarse < fine, "{coarse} {fine}");
@@ -220,6 +224,6 @@ fn each_tolerance_may_differ() {
 fn types_of_drives_and_systems_meet() {
     // The bound of `solve` is `Dynamics`: both an undriven system and a driven one are.
     let driven: Driven<MovingPendulum<f64>, _> = shaken();
-    assert!(solve(&driven, (0.0, 1.0), [0.5], [0.0]).run().is_ok());
-    assert!(solve(&HenonHeiles { lambda: 1.0 }, (0.0, 1.0), [0.1, 0.0], [0.0; 2]).run().is_ok());
+    assert!(solve(&driven, (0.0, 1.0), [0.5], [0.0]).method(Dop853).run().is_ok());
+    assert!(solve(&HenonHeiles { lambda: 1.0 }, (0.0, 1.0), [0.1, 0.0], [0.0; 2]).method(Dop853).run().is_ok());
 }

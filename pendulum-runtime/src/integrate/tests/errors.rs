@@ -2,7 +2,7 @@
 
 use super::systems::{Kepler, MovingPendulum, Pendulum, Root, double_pendulum, moving, oscillator, pendulum, shaken};
 use crate::error::{Coordinate, Error, Part, Quantity, Suspect};
-use crate::integrate::{Failure, Leapfrog, Rk4, Srkn14a, Tsit5, solve};
+use crate::integrate::{Dop853, Failure, Leapfrog, Rk4, Srkn14a, Tsit5, solve};
 use crate::motion::{Motion, Orders, Sample, Side};
 use crate::system::Driven;
 use crate::time::Time;
@@ -20,7 +20,7 @@ fn unusable_intervals() {
         [(1.0, 0.0), (0.0, f64::INFINITY), (f64::NAN, 1.0), (0.0, f64::NAN), (f64::NEG_INFINITY, 0.0), (-1e308, 1e308)]
     {
         for failure in [
-            solve(&pendulum(), (start, end), [1.3], [0.0]).run().unwrap_err(),
+            solve(&pendulum(), (start, end), [1.3], [0.0]).method(Dop853).run().unwrap_err(),
             solve(&pendulum(), (start, end), [1.3], [0.0]).method(Rk4).step(0.1).run().unwrap_err(),
             solve(&pendulum(), (start, end), [1.3], [0.0]).method(Rk4).steps(10).run().unwrap_err(),
         ] {
@@ -32,9 +32,9 @@ fn unusable_intervals() {
 
 #[test]
 fn unusable_initial_states() {
-    let failure = solve(&pendulum(), (0.0, 1.0), [f64::NAN], [0.0]).run().unwrap_err();
+    let failure = solve(&pendulum(), (0.0, 1.0), [f64::NAN], [0.0]).method(Dop853).run().unwrap_err();
     assert!(matches!(failure.error, Error::InitialState { part: Part::Position, coordinate: THETA, .. }), "{failure}");
-    let failure = solve(&double_pendulum(), (0.0, 1.0), [0.0; 2], [0.0, f64::INFINITY]).run().unwrap_err();
+    let failure = solve(&double_pendulum(), (0.0, 1.0), [0.0; 2], [0.0, f64::INFINITY]).method(Dop853).run().unwrap_err();
     let coordinate = Coordinate { index: 1, name: "θ₂" };
     assert_eq!(failure.error, Error::InitialState { part: Part::Velocity, coordinate, value: f64::INFINITY });
     assert_eq!(failure.partial.end.v, [0.0, f64::INFINITY]);
@@ -43,7 +43,7 @@ fn unusable_initial_states() {
 #[test]
 fn unusable_settings() {
     let pendulum = pendulum();
-    let run = || solve(&pendulum, (0.0, 1.0), [1.3], [0.0]);
+    let run = || solve(&pendulum, (0.0, 1.0), [1.3], [0.0]).method(Dop853);
     for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let names = [
             run().rtol(value).run().unwrap_err(),
@@ -62,7 +62,8 @@ fn unusable_settings() {
     assert!(matches!(run().method(Rk4).steps(0).run().unwrap_err().error, Error::Setting { name: "steps", .. }));
     let message = text(&run().rtol(1e-15).run().unwrap_err());
     assert!(message.contains("`rtol` is 1e-15") && message.contains("ten machine epsilons"), "{message}");
-    let failure = solve(&Pendulum { length: 1.0_f32, g: 1.0 }, (0.0, 1.0), [1.3], [0.0]).rtol(1e-7).run().unwrap_err();
+    let failure =
+        solve(&Pendulum { length: 1.0_f32, g: 1.0 }, (0.0, 1.0), [1.3], [0.0]).method(Dop853).rtol(1e-7).run().unwrap_err();
     assert!(matches!(failure.error, Error::Setting { name: "rtol", .. }));
 }
 
@@ -72,7 +73,7 @@ fn a_drive_that_is_not_finite() {
     let driven = moving(formula, f64::INFINITY);
     let what = Quantity::Input { name: "x", component: 1, derivative: 2 };
     for failure in [
-        solve(&driven, (0.0, 10.0), [0.5], [0.0]).every_step().run().unwrap_err(),
+        solve(&driven, (0.0, 10.0), [0.5], [0.0]).method(Dop853).every_step().run().unwrap_err(),
         solve(&driven, (0.0, 10.0), [0.5], [0.0]).method(Tsit5).every_step().run().unwrap_err(),
         solve(&driven, (0.0, 10.0), [0.5], [0.0]).method(Rk4).step(0.1).every_step().run().unwrap_err(),
         solve(&driven, (0.0, 10.0), [0.5], [0.0]).method(Leapfrog).step(0.1).every_step().run().unwrap_err(),
@@ -91,7 +92,7 @@ fn a_drive_that_is_not_finite() {
 fn a_drive_that_is_not_finite_at_the_start() {
     let formula = |_| [[0.0; 2], [0.0; 2], [f64::INFINITY, 0.0]];
     let driven = moving(formula, f64::INFINITY);
-    let failure = solve(&driven, (2.0, 10.0), [0.5], [0.25]).run().unwrap_err();
+    let failure = solve(&driven, (2.0, 10.0), [0.5], [0.25]).method(Dop853).run().unwrap_err();
     assert_eq!(
         text(&failure),
         "at t = 2.0 the acceleration of the driven input `x` (component 0) is not finite; check the motion that drives it at this time"
@@ -104,7 +105,7 @@ fn a_zero_length() {
     let pendulum = Pendulum { length: 0.0, g: 9.81 };
     let suspects = vec![Suspect { parameter: "L", value: 0.0 }];
     for failure in [
-        solve(&pendulum, (0.5, 1.0), [0.5], [0.0]).run().unwrap_err(),
+        solve(&pendulum, (0.5, 1.0), [0.5], [0.0]).method(Dop853).run().unwrap_err(),
         solve(&pendulum, (0.5, 1.0), [0.5], [0.0]).method(Tsit5).run().unwrap_err(),
         solve(&pendulum, (0.5, 1.0), [0.5], [0.0]).method(Rk4).steps(10).run().unwrap_err(),
     ] {
@@ -116,14 +117,14 @@ fn a_zero_length() {
 
 #[test]
 fn parameters_that_are_not_finite() {
-    let failure = solve(&oscillator(f64::NAN), (0.0, 1.0), [0.5], [0.0]).run().unwrap_err();
+    let failure = solve(&oscillator(f64::NAN), (0.0, 1.0), [0.5], [0.0]).method(Dop853).run().unwrap_err();
     assert!(text(&failure).ends_with("check parameter `k`, which is NaN"), "{failure}");
 }
 
 #[test]
 fn a_function_left_behind_its_domain() {
     // x falls to zero with some speed, and there is no √x beyond.
-    let failure = solve(&Root { k: 1.0 }, (0.0, 10.0), [1.0], [0.0]).run().unwrap_err();
+    let failure = solve(&Root { k: 1.0 }, (0.0, 10.0), [1.0], [0.0]).method(Dop853).run().unwrap_err();
     let Error::NotFinite { t, what: Quantity::Acceleration(Coordinate { name: "x", .. }), .. } = failure.error else {
         panic!("{failure}")
     };
@@ -137,7 +138,7 @@ fn a_function_left_behind_its_domain() {
 
 #[test]
 fn a_collision_collapses_the_step() {
-    let failure = solve(&Kepler { mu: 1.0 }, (0.0, 10.0), [1.0, 0.0], [0.0, 0.0]).rtol(1e-10).run().unwrap_err();
+    let failure = solve(&Kepler { mu: 1.0 }, (0.0, 10.0), [1.0, 0.0], [0.0, 0.0]).method(Dop853).rtol(1e-10).run().unwrap_err();
     // Free fall into the centre takes π/(2√2).
     let end = failure.partial.end;
     assert!((end.t - core::f64::consts::PI / 8.0_f64.sqrt()).abs() < 1e-6, "{failure}");
@@ -149,9 +150,9 @@ fn a_collision_collapses_the_step() {
 #[test]
 fn late_times_are_resolved_in_two_words() {
     // The pendulum does not know what time it is.
-    let early = solve(&pendulum(), (0.0, 16.0), [1.3], [0.0]).rtol(1e-10).run().unwrap();
+    let early = solve(&pendulum(), (0.0, 16.0), [1.3], [0.0]).method(Dop853).rtol(1e-10).run().unwrap();
     for start in [1e12, -1e12, 1e14, 1e15] {
-        let late = solve(&pendulum(), (start, start + 16.0), [1.3], [0.0]).rtol(1e-10).run().unwrap();
+        let late = solve(&pendulum(), (start, start + 16.0), [1.3], [0.0]).method(Dop853).rtol(1e-10).run().unwrap();
         assert!((late.end.q[0] - early.end.q[0]).abs() < 1e-8, "from {start:e}");
         let late = solve(&pendulum(), (start, start + 16.0), [1.3], [0.0]).rtol(1e-8).method(Tsit5).run().unwrap();
         assert!((late.end.q[0] - early.end.q[0]).abs() < 1e-6, "from {start:e}");
@@ -161,36 +162,36 @@ fn late_times_are_resolved_in_two_words() {
 #[test]
 fn a_first_step_that_is_none() {
     for (start, step) in [(0.0, 1e-300), (1.0, 1e-30)] {
-        let failure = solve(&pendulum(), (start, 2.0), [1.3], [0.0]).first_step(step).run().unwrap_err();
+        let failure = solve(&pendulum(), (start, 2.0), [1.3], [0.0]).method(Dop853).first_step(step).run().unwrap_err();
         assert!(matches!(failure.error, Error::Setting { name: "first_step", value, .. } if value == step), "{failure}");
     }
-    assert!(solve(&pendulum(), (1.0, 2.0), [1.3], [0.0]).first_step(1e-20).run().is_ok());
+    assert!(solve(&pendulum(), (1.0, 2.0), [1.3], [0.0]).method(Dop853).first_step(1e-20).run().is_ok());
 }
 
 #[test]
 fn a_velocity_at_the_end_of_the_range() {
     let pendulum = Pendulum { length: 1.0_f32, g: 9.81 };
-    let failure = solve(&pendulum, (0.0, 10.0), [0.0], [3e38]).run().unwrap_err();
+    let failure = solve(&pendulum, (0.0, 10.0), [0.0], [3e38]).method(Dop853).run().unwrap_err();
     assert!(matches!(failure.error, Error::NotFinite { t: 0.0, .. }), "{failure}");
 }
 
 #[test]
 fn more_states_than_anybody_keeps() {
-    let failure = solve(&pendulum(), (0.0, 1.0), [1.3], [0.0]).every(1e-9).run().unwrap_err();
+    let failure = solve(&pendulum(), (0.0, 1.0), [1.3], [0.0]).method(Dop853).every(1e-9).run().unwrap_err();
     assert!(matches!(failure.error, Error::Setting { name: "every", value: 1e-9, .. }), "{failure}");
     assert!(failure.to_string().contains("ten million"), "{failure}");
 }
 
 #[test]
 fn steps_run_out() {
-    let failure = solve(&pendulum(), (0.0, 1e6), [1.3], [0.0]).max_steps(1000).run().unwrap_err();
+    let failure = solve(&pendulum(), (0.0, 1e6), [1.3], [0.0]).method(Dop853).max_steps(1000).run().unwrap_err();
     let Error::MaxSteps { t, max_steps: 1000 } = failure.error else { panic!("{failure}") };
     assert!(t == failure.partial.end.t && 100.0 < t);
     assert_eq!(failure.partial.stats.accepted + failure.partial.stats.rejected, 1000);
     // Steps of equal length are counted before the first.
     let failure = solve(&pendulum(), (0.0, 1e6), [1.3], [0.0]).method(Rk4).step(1e-9).run().unwrap_err();
     assert_eq!(failure.error, Error::MaxSteps { t: 0.0, max_steps: 10_000_000 });
-    let failure = solve(&pendulum(), (0.0, 1e6), [1.3], [0.0]).max_step(1e-9).run().unwrap_err();
+    let failure = solve(&pendulum(), (0.0, 1e6), [1.3], [0.0]).method(Dop853).max_step(1e-9).run().unwrap_err();
     assert_eq!(failure.error, Error::MaxSteps { t: 0.0, max_steps: 10_000_000 });
 }
 
@@ -221,18 +222,21 @@ impl Motion<f64, 2> for Stuck {
 #[test]
 fn a_kink_that_never_passes() {
     let driven = Driven::new(MovingPendulum { length: 1.0, g: 1.0 }, (Stuck(0.5),));
-    let failure = solve(&driven, (0.0, 1.0), [0.5], [0.0]).run().unwrap_err();
+    let failure = solve(&driven, (0.0, 1.0), [0.5], [0.0]).method(Dop853).run().unwrap_err();
     assert_eq!(failure.error, Error::Kink { t: 0.5, kink: 0.5 });
     assert!(failure.partial.end.t < 0.5);
     let driven = Driven::new(MovingPendulum { length: 1.0, g: 1.0 }, (Stuck(-1.0),));
-    assert_eq!(solve(&driven, (0.0, 1.0), [0.5], [0.0]).run().unwrap_err().error, Error::Kink { t: 0.0, kink: 0.0 });
+    assert_eq!(
+        solve(&driven, (0.0, 1.0), [0.5], [0.0]).method(Dop853).run().unwrap_err().error,
+        Error::Kink { t: 0.0, kink: 0.0 }
+    );
 }
 
 #[test]
 fn a_velocity_that_is_not_finite_at_a_kink() {
     let formula = |t: f64| [[0.0; 2], [if t < 1.0 { 0.0 } else { f64::NAN }, 0.0], [0.0; 2]];
     let driven = moving(formula, 0.5);
-    let failure = solve(&driven, (0.0, 2.0), [0.5], [0.0]).run().unwrap_err();
+    let failure = solve(&driven, (0.0, 2.0), [0.5], [0.0]).method(Dop853).run().unwrap_err();
     let what = Quantity::Input { name: "x", component: 0, derivative: 1 };
     assert_eq!(failure.error, Error::NotFinite { t: 1.0, what, suspects: Vec::new() });
     assert!(failure.partial.end.t < 1.0 && failure.partial.end.v[0].is_finite());
@@ -252,18 +256,18 @@ fn failures_print_what_matters() {
 #[test]
 fn one_failure_leaves_the_neighbour_alone() {
     let (shaken, broken) = (shaken(), oscillator(f64::NAN));
-    let alone = solve(&shaken, (0.0, 10.0), [0.5], [0.0]).run().unwrap();
-    assert!(solve(&broken, (0.0, 10.0), [0.5], [0.0]).run().is_err());
-    assert_eq!(solve(&shaken, (0.0, 10.0), [0.5], [0.0]).run().unwrap().end, alone.end);
+    let alone = solve(&shaken, (0.0, 10.0), [0.5], [0.0]).method(Dop853).run().unwrap();
+    assert!(solve(&broken, (0.0, 10.0), [0.5], [0.0]).method(Dop853).run().is_err());
+    assert_eq!(solve(&shaken, (0.0, 10.0), [0.5], [0.0]).method(Dop853).run().unwrap().end, alone.end);
 }
 
 #[test]
 fn tiny_and_huge_numbers() {
     // Denormal amplitudes, tolerances far below them, and huge stiffness: no panic, no loop.
-    let tiny = solve(&oscillator(1.0), (0.0, 1.0), [1e-310], [0.0]).run().unwrap();
+    let tiny = solve(&oscillator(1.0), (0.0, 1.0), [1e-310], [0.0]).method(Dop853).run().unwrap();
     assert!((tiny.end.q[0] / 1e-310 - 0.5403).abs() < 1e-3);
-    let solution = solve(&oscillator(1.0), (0.0, 1.0), [1.0], [0.0]).rtol(1e-12).atol(1e-300).run().unwrap();
+    let solution = solve(&oscillator(1.0), (0.0, 1.0), [1.0], [0.0]).method(Dop853).rtol(1e-12).atol(1e-300).run().unwrap();
     assert!((solution.end.q[0] - 0.5403023058681398).abs() < 1e-10, "{}", solution.stats);
-    let failure = solve(&oscillator(1e300), (0.0, 1.0), [1.0], [0.0]).max_steps(1000).run();
+    let failure = solve(&oscillator(1e300), (0.0, 1.0), [1.0], [0.0]).method(Dop853).max_steps(1000).run();
     assert!(failure.is_err());
 }

@@ -30,6 +30,7 @@ fn the_first_flip_of_the_chaotic_double_pendulum() {
     let events = [Event::new(&flip).direction(Direction::Rising).terminal()];
     let run = |tolerance| {
         solve(&double_pendulum(), (0.0, 20.0), [2.0, 2.5], [0.0; 2])
+            .method(Dop853)
             .rtol(tolerance)
             .atol(tolerance)
             .events(&events)
@@ -58,7 +59,8 @@ fn zeros_and_turns_of_the_pendulum_follow_its_period() {
     let quarters = |first: usize, step: usize| -> Vec<f64> {
         (first..).step_by(step).map(|k| k as f64 * PERIOD / 4.0).take_while(|t| *t < 50.0).collect()
     };
-    let solution = solve(&pendulum(), (0.0, 50.0), [1.3], [0.0]).rtol(1e-14).atol(1e-14).events(&events).run().unwrap();
+    let solution =
+        solve(&pendulum(), (0.0, 50.0), [1.3], [0.0]).method(Dop853).rtol(1e-14).atol(1e-14).events(&events).run().unwrap();
     assert_eq!(solution.status, Status::Completed);
     assert_times(&times(&solution.events, 0), &quarters(1, 2), 4e-14);
     assert_times(&times(&solution.events, 1), &quarters(3, 4), 4e-14);
@@ -74,7 +76,7 @@ fn every_method_finds_them() {
     let events = [Event::new(&zero)];
     let expected: Vec<f64> = (0..5).map(|k| f64::from(2 * k + 1) * PERIOD / 4.0).collect();
     let system = pendulum();
-    let problem = || solve(&system, (0.0, 18.0), [1.3], [0.0]).events(&events);
+    let problem = || solve(&system, (0.0, 18.0), [1.3], [0.0]).method(Dop853).events(&events);
     for (solution, within) in [
         (problem().method(SymplecticEuler).step(1e-3).run(), 2e-2),
         (problem().method(Leapfrog).step(1e-2).run(), 2e-4),
@@ -123,8 +125,13 @@ fn roots_that_only_touch_are_found() {
     for step in
         (1..60).map(|k| 0.02 * f64::from(k)).chain([PERIOD / 8.0, PERIOD / 32.0, PERIOD / 2.0 - 1e-5, PERIOD / 2.0 + 1e-5])
     {
-        let run =
-            solve(&system, (0.0, 50.0), [1.3], [0.0]).max_step(step).first_step(step).rtol(1e-13).atol(1e-13).events(&events);
+        let run = solve(&system, (0.0, 50.0), [1.3], [0.0])
+            .method(Dop853)
+            .max_step(step)
+            .first_step(step)
+            .rtol(1e-13)
+            .atol(1e-13)
+            .events(&events);
         let solution = run.run().unwrap();
         assert_times(&times(&solution.events, 0), &expected, 1e-9);
         assert!(times(&solution.events, 1).len() <= expected.len());
@@ -148,7 +155,7 @@ fn what_ends_at_an_event_goes_on_without_finding_it_again() {
     let system = pendulum();
     let (mut t, mut q, mut v) = (0.0, [1.3], [0.0]);
     for k in 1..=40 {
-        let solution = solve(&system, (t, 100.0), q, v).rtol(1e-13).atol(1e-13).events(&events).run().unwrap();
+        let solution = solve(&system, (t, 100.0), q, v).method(Dop853).rtol(1e-13).atol(1e-13).events(&events).run().unwrap();
         assert_eq!(solution.status, Status::Event((k + 1) % 2));
         (t, q, v) = (solution.end.t, solution.end.q, solution.end.v);
         assert_times(&[t], &[k as f64 * PERIOD / 4.0], 1e-11);
@@ -201,7 +208,7 @@ fn an_integrator_stops_and_goes_on() {
 fn known_times_are_met_exactly() {
     let when = [0.1, 0.3, 0.7];
     let system = pendulum();
-    let problem = || solve(&system, (0.1, 1.0), [1.3], [0.0]).every_step();
+    let problem = || solve(&system, (0.1, 1.0), [1.3], [0.0]).method(Dop853).every_step();
     for events in [[Event::at(&when)], [Event::at(&when).terminal_after(2)]] {
         for solution in [problem().events(&events).run(), problem().events(&events).method(Leapfrog).step(0.09).run()] {
             let solution = solution.unwrap();
@@ -211,7 +218,7 @@ fn known_times_are_met_exactly() {
             assert_eq!((solution.end.t, *solution.t.last().unwrap()), (end, end));
         }
     }
-    let failure = solve(&system, (0.0, 1.0), [1.3], [0.0]).events(&[Event::at(&[0.5, 0.4])]).run().unwrap_err();
+    let failure = solve(&system, (0.0, 1.0), [1.3], [0.0]).method(Dop853).events(&[Event::at(&[0.5, 0.4])]).run().unwrap_err();
     assert!(matches!(failure.error, Error::Times { name: "events", index: 1, .. }), "{failure}");
 }
 
@@ -220,8 +227,9 @@ fn output_ends_at_a_terminal_event() {
     let zero = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0];
     let events = [Event::new(&zero).terminal()];
     let system = pendulum();
-    let problem = || solve(&system, (0.0, 10.0), [1.3], [0.0]).rtol(1e-12).atol(1e-12).events(&events);
-    let plain = solve(&system, (0.0, 10.0), [1.3], [0.0]).rtol(1e-12).atol(1e-12).every(0.125).dense().run().unwrap();
+    let problem = || solve(&system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).rtol(1e-12).atol(1e-12).events(&events);
+    let plain =
+        solve(&system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).rtol(1e-12).atol(1e-12).every(0.125).dense().run().unwrap();
     let regular = problem().every(0.125).dense().run().unwrap();
     assert_eq!(regular.t.len(), 15);
     assert!(regular.t.iter().zip(&regular.q).all(|(t, q)| plain.at(*t).unwrap().q == *q));
@@ -239,8 +247,8 @@ fn events_change_no_step() {
     let zero = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0];
     let events = [Event::new(&zero)];
     let system = pendulum();
-    let plain = solve(&system, (0.0, 10.0), [1.3], [0.0]).every_step().run().unwrap();
-    let watched = solve(&system, (0.0, 10.0), [1.3], [0.0]).every_step().events(&events).run().unwrap();
+    let plain = solve(&system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).every_step().run().unwrap();
+    let watched = solve(&system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).every_step().events(&events).run().unwrap();
     assert_eq!((plain.t, plain.q, plain.end), (watched.t, watched.q, watched.end));
     assert_eq!(plain.stats.evaluations + 3 * plain.stats.accepted + 1, watched.stats.evaluations);
 }
@@ -281,17 +289,23 @@ fn a_function_that_gives_no_number_is_an_error() {
     let fine = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0];
     let events = [Event::new(&fine), Event::new(&root)];
     let system = pendulum();
-    let failure = solve(&system, (0.0, 10.0), [1.3], [0.0]).events(&events).run().unwrap_err();
+    let failure = solve(&system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).events(&events).run().unwrap_err();
     let Error::Event { t, event: 1 } = failure.error else { panic!("{failure}") };
     assert!(failure.to_string().contains("event 1"));
     assert_eq!(failure.partial.status, Status::Failed);
     // The last state is the one before the step.
     assert!(failure.partial.end.t < t && 0.5 <= failure.partial.end.q[0]);
     let start = |_: f64, _: &[f64; 1], _: &[f64; 1]| f64::NAN;
-    let failure = solve(&system, (0.0, 10.0), [1.3], [0.0]).events(&[Event::new(&start)]).run().unwrap_err();
+    let failure = solve(&system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).events(&[Event::new(&start)]).run().unwrap_err();
     assert_eq!(failure.error, Error::Event { t: 0.0, event: 0 });
     let poles = |_: f64, q: &[f64; 1], _: &[f64; 1]| 1.0 / q[0];
-    let solution = solve(&system, (0.0, 5.0), [1.3], [0.0]).rtol(1e-12).atol(1e-12).events(&[Event::new(&poles)]).run().unwrap();
+    let solution = solve(&system, (0.0, 5.0), [1.3], [0.0])
+        .method(Dop853)
+        .rtol(1e-12)
+        .atol(1e-12)
+        .events(&[Event::new(&poles)])
+        .run()
+        .unwrap();
     assert_times(&times(&solution.events, 0), &[PERIOD / 4.0], 1e-10);
 }
 
@@ -313,7 +327,13 @@ fn a_loose_tolerance_finds_what_its_own_motion_does() {
     // Events agree with the dense output they are found on, whatever its error.
     let system: DoublePendulum<f64> = double_pendulum();
     let f = |_: f64, q: &[f64; 2], _: &[f64; 2]| (3.0 * q[0] + q[1]).sin();
-    let solution = solve(&system, (0.0, 30.0), [2.0, 2.5], [0.0; 2]).rtol(1e-5).dense().events(&[Event::new(&f)]).run().unwrap();
+    let solution = solve(&system, (0.0, 30.0), [2.0, 2.5], [0.0; 2])
+        .method(Dop853)
+        .rtol(1e-5)
+        .dense()
+        .events(&[Event::new(&f)])
+        .run()
+        .unwrap();
     let g = |t: f64| solution.at(t).map(|state| f(t, &state.q, &state.v)).unwrap();
     let count = 300_000;
     let signs: Vec<f64> = (0..=count).map(|k| g(30.0 * f64::from(k) / f64::from(count)).signum()).collect();

@@ -56,7 +56,7 @@ fn leapfrog_looks_at_each_segment_once() {
 
 #[test]
 fn adaptive_steps_land_on_kinks() {
-    let solution = solve(&keyed(), (0.0, 5.0), [0.3], [0.0]).rtol(1e-10).atol(1e-10).run().unwrap();
+    let solution = solve(&keyed(), (0.0, 5.0), [0.3], [0.0]).method(Dop853).rtol(1e-10).atol(1e-10).run().unwrap();
     assert!((solution.end.q[0] - EXACT).abs() < 1e-9, "{}", solution.stats);
     assert_eq!(solution.stats.kinks, 120);
     // One step a key is enough, and nothing is rejected once the step size is found.
@@ -80,7 +80,7 @@ fn cutting_at_kinks_does_not_shorten_later_steps() {
     let formula = |_| [[0.0; 2]; 3];
     let run = |period| {
         let driven = moving(formula, period);
-        solve(&driven, (0.0, 100.0), [1.3], [0.0]).run().unwrap().stats.accepted
+        solve(&driven, (0.0, 100.0), [1.3], [0.0]).method(Dop853).run().unwrap().stats.accepted
     };
     let (smooth, kinked) = (run(f64::INFINITY), run(9.7));
     assert!(kinked <= smooth + 2 * 10, "{kinked} steps, {smooth} without kinks");
@@ -92,7 +92,7 @@ fn momenta_are_equal_on_both_sides() {
     let mut integrator = Integrator::new(&driven, Dop853, 0.0, [0.3], [0.0]).unwrap();
     let kink = 3.0 / 24.0;
     integrator.advance_to(kink).unwrap();
-    let solution = solve(&driven, (0.0, 1.0), [0.3], [0.0]).dense().run().unwrap();
+    let solution = solve(&driven, (0.0, 1.0), [0.3], [0.0]).method(Dop853).dense().run().unwrap();
     let (before, after) = (solution.at_side(kink, Side::Before).unwrap(), solution.at(kink).unwrap());
     assert!((before.q[0] - after.q[0]).abs() < 1e-15);
     // Δθ̇ = −Δẋ cos θ / l.

@@ -1,0 +1,207 @@
+//! The choice of a method.
+
+use super::adaptive_step::AdaptiveStep;
+use super::blame;
+use super::control::{Control, Course, Memory};
+use super::dop853::Dop853;
+use super::field::{Counted, Field};
+use super::hermite;
+use super::method::{Method, Suits};
+use super::node::Node;
+use super::piece::Piece;
+use super::span::Span;
+use super::splitting::drift_kick_drift;
+use super::srkn14a::{self, Srkn14a};
+use super::stepper::Stepper;
+use super::taylor::{RoomOf, Taylor};
+use crate::error::Error;
+use crate::jet::{Jets, Known, Orders, PerhapsJets};
+use crate::real::Float;
+use crate::system::{Dynamics, System};
+
+/// The method that what is known about the system and the tolerance decide; [`Stats`](super::Stats) say which it was.
+///
+/// | steps | choice |
+/// |---|---|
+/// | adaptive | [`Taylor`] where it is the fastest: for every tolerance if the equations are short, as for one pendulum, below 2e-7 if they are longer, as for two or three links, and below 2e-14 if they are long |
+/// | | [`Dop853`] else, and where Taylor series fail: a motion is not [`Analytic`](crate::motion::Analytic), or the accelerations contain `abs`, `sign`, `min` or `max` of something that moves |
+/// | fixed | [`Srkn14a`], which is symplectic, for velocity-free systems, [`Dop853`] for others |
+///
+/// Back in time only `Taylor` goes. Without `atol`, `Taylor` takes `rtol` for it and `Dop853` the smaller of `rtol` and 1e-9.
+///
+/// Nothing shows beforehand that a system is stiff: for stiff springs and dampers name [`Rodas4`](super::Rodas4) or
+/// [`Gauss`](super::Gauss), for long runs of a conservative system with fixed steps `Gauss`. Systems written by hand have no
+/// recurrences to choose by, and name a method too:
+///
+/// ```compile_fail,E0277
+/// # use pendulum_runtime::{integrate::*, system::*};
+/// fn swing<S: System<1, Scalar = f64, Inputs = ()>>(system: &S) -> Result<f64, Failure<f64, 1>> {
+///     Ok(solve(system, (0.0, 10.0), [1.3], [0.0]).run()?.end.q[0])
+/// }
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Auto;
+
+/// What may be chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Choice {
+    Dop853,
+    Srkn14a,
+    Taylor,
+}
+
+/// Room for whatever is chosen.
+#[derive(Clone, Debug)]
+pub struct Room<R, X> {
+    choice: Option<Choice>,
+    dop853: R,
+    taylor: X,
+}
+
+/// The room for the dynamics `D`.
+type AnyRoom<D, const N: usize> = Room<<Dop853 as Method>::Stages<<D as Dynamics<N>>::Scalar, N>, RoomOf<D, N>>;
+
+impl Auto {
+    /// The choice for adaptive steps.
+    fn adaptive<D: PerhapsJets<N, Scalar: Float>, const N: usize>(dynamics: &D, rtol: f64, backwards: bool) -> Choice {
+        let pays = rtol < <D::System as Jets<N>>::Orders::PAYS_BELOW || backwards;
+        if pays && goes_by_series(dynamics) { Choice::Taylor } else { Choice::Dop853 }
+    }
+}
+
+/// Whether Taylor series are right.
+fn goes_by_series<D: PerhapsJets<N>, const N: usize>(dynamics: &D) -> bool {
+    <D::System as System<N>>::FACTS.smooth && dynamics.is_analytic()
+}
+
+impl<D: PerhapsJets<N, Scalar: Float>, const N: usize> Stepper<D, N> for Auto {
+    const NAME: &'static str = "Auto";
+    type Stages = AnyRoom<D, N>;
+
+    fn goes_back(&self, dynamics: &D) -> bool {
+        goes_by_series(dynamics)
+    }
+
+    fn room(&self, dynamics: &D) -> AnyRoom<D, N> {
+        Room { choice: None, dop853: Dop853::stages(), taylor: Taylor::new().room(&Known(dynamics)) }
+    }
+
+    fn name(&self, room: &AnyRoom<D, N>) -> &'static str {
+        match room.choice {
+            None => "Auto",
+            Some(Choice::Dop853) => <Dop853 as Method>::NAME,
+            Some(Choice::Srkn14a) => <Srkn14a as Method>::NAME,
+            Some(Choice::Taylor) => <Taylor as Stepper<Known<'_, D>, N>>::NAME,
+        }
+    }
+
+    #[inline]
+    fn advance(
+        &self,
+        field: &mut Counted<'_, D>,
+        span: &Span,
+        from: &mut Node<D::Scalar, N>,
+        room: &mut AnyRoom<D, N>,
+    ) -> Node<D::Scalar, N> {
+        if <D::System as System<N>>::FACTS.velocity_free {
+            room.choice = Some(Choice::Srkn14a);
+            Symplectic.step(field, span, from, &mut ())
+        } else {
+            room.choice = Some(Choice::Dop853);
+            Dop853.step(field, span, from, &mut room.dop853)
+        }
+    }
+
+    fn within(
+        &self,
+        field: &mut Counted<'_, D>,
+        span: &Span,
+        from: &mut Node<D::Scalar, N>,
+        to: &mut Node<D::Scalar, N>,
+        room: &mut AnyRoom<D, N>,
+    ) -> Piece<D::Scalar, N> {
+        match room.choice {
+            Some(Choice::Taylor) => {
+                Taylor::new().within(&mut Counted::new(&Known(field.dynamics)), span, from, to, &mut room.taylor)
+            }
+            Some(Choice::Srkn14a) => Symplectic.dense(field, span, from, to, &mut ()),
+            _ => Dop853.dense(field, span, from, to, &mut room.dop853),
+        }
+    }
+
+    fn fault(&self, dynamics: &D, span: &Span, from: &Node<D::Scalar, N>, room: &AnyRoom<D, N>) -> Option<Error> {
+        match room.choice {
+            Some(Choice::Taylor) => Taylor::new().fault(&Known(dynamics), span, from, &room.taylor),
+            Some(Choice::Srkn14a) => blame::fault(&Symplectic, dynamics, span, from, &()),
+            _ => blame::fault(&Dop853, dynamics, span, from, &room.dop853),
+        }
+    }
+
+    fn kink(&self, dynamics: &D, t: f64, backwards: bool) -> Option<f64> {
+        if backwards { dynamics.last_kink(t) } else { dynamics.next_kink(t) }
+    }
+}
+
+impl<D: PerhapsJets<N, Scalar: Float>, const N: usize> Control<Auto, D, N> for AdaptiveStep<N> {
+    fn check(&self) -> Result<(), Error> {
+        self.positive::<D::Scalar>()
+    }
+
+    fn least_steps(&self, length: f64) -> f64 {
+        self.least_steps_over(length)
+    }
+
+    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, Auto, N>) -> Result<(Span, Node<D::Scalar, N>), Error> {
+        let Course { field, from, stages: room, target, stats, .. } = course;
+        let dynamics = field.dynamics;
+        let backwards = target < from.t.to_f64();
+        let (rtol, _) = self.tolerances::<D::Scalar>();
+        if room.choice.is_none() || backwards && room.choice == Some(Choice::Dop853) {
+            room.choice = Some(Auto::adaptive(dynamics, rtol, backwards));
+        }
+        if room.choice == Some(Choice::Taylor) {
+            let known = Known(dynamics);
+            let mut series = Counted::new(&known);
+            let stages = &mut room.taylor;
+            let taken =
+                Control::step(self, memory, Course { method: &Taylor::new(), field: &mut series, from, stages, target, stats });
+            field.evaluations += series.evaluations;
+            return taken;
+        }
+        let control = self.atol_or(if rtol < 1e-9 { rtol } else { 1e-9 });
+        Control::<Dop853, D, N>::check(&control)?;
+        control.step(memory, Course { method: &Dop853, field, from, stages: &mut room.dop853, target, stats })
+    }
+}
+
+/// [`Srkn14a`] for systems of which only a value says that they are velocity-free.
+#[derive(Clone, Copy, Debug)]
+struct Symplectic;
+
+impl Method for Symplectic {
+    const NAME: &'static str = <Srkn14a as Method>::NAME;
+    const ORDER: u32 = Srkn14a::ORDER;
+    const DENSE_ORDER: u32 = Srkn14a::DENSE_ORDER;
+    type Stages<T: Float, const N: usize> = ();
+
+    fn stages<T: Float, const N: usize>() {}
+}
+
+impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Symplectic {
+    #[inline]
+    fn step(&self, field: &mut impl Field<S, N>, span: &Span, from: &mut Node<S::Scalar, N>, (): &mut ()) -> Node<S::Scalar, N> {
+        drift_kick_drift(&srkn14a::SPLITTING, field, span, from)
+    }
+
+    fn dense(
+        &self,
+        field: &mut impl Field<S, N>,
+        span: &Span,
+        from: &mut Node<S::Scalar, N>,
+        to: &mut Node<S::Scalar, N>,
+        (): &mut (),
+    ) -> Piece<S::Scalar, N> {
+        let (a0, a1) = (from.start_acceleration(field), to.end_acceleration(field));
+        hermite::quintic(span, from, to, &a0, &a1)
+    }
+}

@@ -1,0 +1,179 @@
+//! The method that `solve` chooses by itself.
+
+#![allow(mixed_script_confusables, missing_docs)]
+
+use pendulum_runtime::error::Error;
+use pendulum_runtime::motion::{Analytic, Function, Motion, Orders, Sample, Side, Sinusoid};
+use pendulum_runtime::prelude::*;
+use pendulum_runtime::time::Time;
+
+lagrangian! {
+    pub struct Simple { L, g = 9.8 }
+    coordinate q;
+    kinetic = L^2*q̇^2/2;
+    potential = -g*L*cos(q);
+}
+
+lagrangian! {
+    pub struct Moving { L, g = 9.8 }
+    coordinate q;
+    driven x: [m; 2];
+    let r = x + L*[sin(q), -cos(q)];
+    kinetic = |ṙ|^2/2;
+    potential = g*height(r);
+}
+
+lagrangian! {
+    pub struct Double { g }
+    coordinate q[2];
+    kinetic = q̇[0]^2 + q̇[1]^2/2 + q̇[0]*q̇[1]*cos(q[0] - q[1]);
+    potential = -2*g*cos(q[0]) - g*cos(q[1]);
+}
+
+lagrangian! {
+    pub struct Rubbed { c }
+    coordinate q;
+    kinetic = q̇^2/2;
+    potential = q^2/2;
+    force q = -c*abs(q̇)*q̇;
+}
+
+/// θ after 1000 s from 1.3 at rest with g/L = 9.8: 2 asin(k sn(K − ωt | k²)) with k = sin 0.65.
+const AFTER_1000_S: f64 = 1.2960573950636069;
+
+fn lift() -> impl Motion<f64, 2> {
+    Function::new(|t| [0.0, 0.5 * t * t]).velocity(|t| [0.0, t]).acceleration(|_| [0.0, 1.0])
+}
+
+#[test]
+fn one_pendulum_goes_by_series_at_any_tolerance() {
+    for rtol in [1e-3, 1e-6, 1e-9, 1e-15, 1e-18] {
+        let solution = solve(&Simple::new(1.0), (0.0, 1.0), [1.3], [0.0]).rtol(rtol).run().unwrap();
+        assert_eq!(solution.stats.method, "Taylor");
+    }
+    let end = solve(&Simple::new(1.0), (0.0, 1000.0), [1.3], [0.0]).rtol(1e-14).run().unwrap().end;
+    assert!((end.q[0] - AFTER_1000_S).abs() < 1e-12, "{}", end.q[0]);
+}
+
+#[test]
+fn longer_equations_wait_for_tighter_tolerances() {
+    let run = |rtol: f64| solve(&Double::new(1.0), (0.0, 5.0), [2.0, 2.5], [0.0; 2]).rtol(rtol).run().unwrap();
+    assert_eq!([1e-4, 1e-6, 1e-9].map(|rtol| run(rtol).stats.method), ["Dop853", "Dop853", "Taylor"]);
+    let [loose, tight] = [1e-6, 1e-13].map(|rtol| run(rtol).end.q);
+    assert!((loose[0] - tight[0]).abs() < 1e-4);
+}
+
+#[test]
+fn what_has_no_series_goes_without() {
+    let closed = Moving::new(0.5).driven_by(lift());
+    let open = Moving::new(0.5).driven_by(Sinusoid::new([0.1, 0.0], 3.0, [0.0, 0.0]));
+    let by_closure = solve(&closed, (0.0, 1.0), [0.3], [0.0]).rtol(1e-9).run().unwrap();
+    let by_sinusoid = solve(&open, (0.0, 1.0), [0.3], [0.0]).rtol(1e-9).run().unwrap();
+    assert_eq!((by_closure.stats.method, by_sinusoid.stats.method), ("Dop853", "Taylor"));
+    // A lift with the acceleration 1 adds it to gravity.
+    let heavier = solve(&Simple { g: 10.8, ..Simple::new(0.5) }, (0.0, 1.0), [0.3], [0.0]).rtol(1e-12).run().unwrap();
+    assert!((by_closure.end.q[0] - heavier.end.q[0]).abs() < 1e-8);
+    let rubbed = solve(&Rubbed::new(0.5), (0.0, 10.0), [1.0], [0.0]).rtol(1e-9).run().unwrap();
+    assert_eq!(rubbed.stats.method, "Dop853");
+}
+
+#[test]
+fn facts_tell_corners_apart() {
+    let smooth = [Simple::<f64>::FACTS, Double::<f64>::FACTS, Rubbed::<f64>::FACTS].map(|facts| facts.smooth);
+    assert_eq!(smooth, [true, true, false]);
+}
+
+#[test]
+fn fixed_steps_are_symplectic_where_they_can_be() {
+    let simple = solve(&Simple::new(1.0), (0.0, 100.0), [1.3], [0.0]).step(0.02).every(0.37).run().unwrap();
+    let named = solve(&Simple::new(1.0), (0.0, 100.0), [1.3], [0.0]).method(Srkn14a).step(0.02).every(0.37).run().unwrap();
+    assert_eq!((simple.stats, simple.q), (named.stats, named.q));
+    let double = solve(&Double::new(1.0), (0.0, 1.0), [2.0, 2.5], [0.0; 2]).step(0.02).run().unwrap();
+    assert_eq!(double.stats.method, "Dop853");
+}
+
+#[test]
+fn it_is_the_method_it_names() {
+    let times = [0.3, 1.7, 2.0];
+    let double = Double::new(1.0);
+    let chosen = || solve(&double, (0.0, 2.0), [2.0, 2.5], [0.0; 2]).t_eval(&times);
+    let [a, b] = [chosen().run().unwrap(), chosen().method(Dop853).run().unwrap()];
+    assert_eq!((a.q, a.v, a.stats), (b.q, b.v, b.stats));
+    let [a, b] = [chosen().rtol(1e-10).run().unwrap(), chosen().method(Taylor::new()).rtol(1e-10).run().unwrap()];
+    assert_eq!((a.q, a.v, a.stats), (b.q, b.v, b.stats));
+}
+
+#[test]
+fn back_in_time_if_there_are_series() {
+    let there = solve(&Double::new(1.0), (0.0, 3.0), [1.0, 0.5], [0.0; 2]).run().unwrap().end;
+    let back = solve(&Double::new(1.0), (3.0, 0.0), there.q, there.v).run().unwrap();
+    assert_eq!(back.stats.method, "Taylor");
+    assert!((back.end.q[0] - 1.0).abs() < 1e-4, "{:?}", back.end);
+    let closed = Moving::new(0.5).driven_by(lift());
+    let failure = solve(&closed, (1.0, 0.0), [0.3], [0.0]).run().unwrap_err();
+    assert!(matches!(failure.error, Error::Interval { .. }));
+}
+
+#[test]
+fn step_by_step_it_says_what_it_uses() {
+    let double = Double::new(1.0);
+    let mut integrator = Integrator::new(&double, Auto, 0.0, [1.0, 0.5], [0.0; 2]).unwrap();
+    assert_eq!(integrator.stats().method, "Auto");
+    integrator.advance_to(1.0).unwrap();
+    assert_eq!(integrator.stats().method, "Dop853");
+    integrator.advance_to(0.0).unwrap();
+    assert_eq!(integrator.stats().method, "Taylor");
+    assert!((integrator.q()[0] - 1.0).abs() < 1e-5);
+}
+
+/// A parabola that says that it is analytic, and one that does not.
+struct Parabola<const KNOWN: bool>;
+
+impl<const KNOWN: bool> Motion<f64, 2> for Parabola<KNOWN> {
+    const HAS: Orders = Orders::ALL;
+
+    fn sample(&self, t: Time, _: Side, _: Orders) -> Sample<f64, 2> {
+        let t = t.to_f64();
+        Sample { position: [0.0, 0.5 * t * t], velocity: [0.0, t], acceleration: [0.0, 1.0] }
+    }
+
+    fn next_kink(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn analytic(&self) -> Option<&dyn Analytic<f64, 2>> {
+        KNOWN.then_some(self)
+    }
+}
+
+impl<const KNOWN: bool> Analytic<f64, 2> for Parabola<KNOWN> {
+    fn series(&self, t: Time, _: Side, component: usize, count: usize, position: &mut [f64; 32]) {
+        let t = t.to_f64();
+        position[..count].fill(0.0);
+        if component == 1 {
+            position[..3].copy_from_slice(&[0.5 * t * t, t, 0.5]);
+        }
+    }
+
+    fn next_break(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn last_break(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn last_kink(&self, _: f64) -> Option<f64> {
+        None
+    }
+}
+
+#[test]
+fn motions_of_ones_own_say_whether_they_have_series() {
+    let silent = Moving::new(0.5).driven_by(Parabola::<false>);
+    let known = Moving::new(0.5).driven_by(Parabola::<true>);
+    let silent = solve(&silent, (0.0, 1.0), [0.3], [0.0]).rtol(1e-11).run().unwrap();
+    let known = solve(&known, (0.0, 1.0), [0.3], [0.0]).rtol(1e-11).run().unwrap();
+    assert_eq!((silent.stats.method, known.stats.method), ("Dop853", "Taylor"));
+    assert!((silent.end.q[0] - known.end.q[0]).abs() < 1e-9);
+}
