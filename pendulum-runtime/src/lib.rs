@@ -10,6 +10,7 @@ pub mod jet;
 pub mod linearize;
 pub mod motion;
 pub mod real;
+pub mod scene;
 pub mod system;
 pub mod time;
 pub mod variational;

@@ -51,7 +51,7 @@ pub(crate) fn not_finite<S: System<N, Scalar: Float>, const N: usize>(system: &S
 }
 
 /// The parameters that are zero, infinite or not a number.
-fn suspects<S: System<N, Scalar: Float>, const N: usize>(system: &S) -> Vec<Suspect> {
+pub(crate) fn suspects<S: System<N, Scalar: Float>, const N: usize>(system: &S) -> Vec<Suspect> {
     let (mut index, mut suspects) = (0, Vec::new());
     system.map(|parameter| {
         let value = parameter.to_f64();

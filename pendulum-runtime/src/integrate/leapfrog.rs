@@ -58,4 +58,4 @@ impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Leapfrog
     }
 }
 
-const SPLITTING: Splitting<2, 1> = Splitting::drifts_outside(&[0.5], &[1.0]);
+pub(crate) const SPLITTING: Splitting<2, 1> = Splitting::drifts_outside(&[0.5], &[1.0]);

@@ -58,7 +58,7 @@ impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Srkn6b {
     }
 }
 
-const SPLITTING: Splitting<7, 6> =
+pub(crate) const SPLITTING: Splitting<7, 6> =
     Splitting::kicks_outside(&[B1, B2, B3, 1.0 - 2.0 * (B1 + B2 + B3)], &[A1, A2, 0.5 - (A1 + A2)]);
 
 const A1: f64 = 0.245298957184271;

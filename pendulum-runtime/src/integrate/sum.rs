@@ -1,6 +1,8 @@
 //! Compensated summation of the state.
 
-use crate::real::Float;
+#![allow(clippy::inline_always)]
+
+use crate::real::{Float, Real};
 
 /// `N` numbers to which small increments are added without losing their low digits.
 ///
@@ -14,20 +16,29 @@ pub struct Sum<T, const N: usize> {
     pub low: [T; N],
 }
 
-impl<T: Float, const N: usize> Sum<T, N> {
+impl<T: Real, const N: usize> Sum<T, N> {
     /// The numbers `high`, exactly.
+    #[inline]
     pub fn new(high: [T; N]) -> Self {
         Self { high, low: [T::from_f64(0.0); N] }
     }
 
     /// Adds `factor · increment`.
-    #[inline]
+    #[inline(always)]
     pub fn add(&mut self, factor: T, increment: &[T; N]) {
         for i in 0..N {
             (self.high[i], self.low[i]) = two_sum(self.high[i], factor * increment[i] + self.low[i]);
         }
     }
 
+    /// `self - earlier`, with the low words: exact where the two are close.
+    #[inline]
+    pub fn since(&self, earlier: &Self) -> [T; N] {
+        core::array::from_fn(|i| (self.high[i] - earlier.high[i]) + (self.low[i] - earlier.low[i]))
+    }
+}
+
+impl<T: Float, const N: usize> Sum<T, N> {
     /// Adds `a · b + rest` to one of the numbers; the product comes with both words (Veltkamp 1968, Dekker 1971).
     #[inline]
     pub fn add_product(&mut self, index: usize, a: T, b: T, rest: T) {
@@ -39,12 +50,6 @@ impl<T: Float, const N: usize> Sum<T, N> {
         (self.high[index], self.low[index]) = (sum, rounded);
     }
 
-    /// `self - earlier`, with the low words: exact where the two are close.
-    #[inline]
-    pub fn since(&self, earlier: &Self) -> [T; N] {
-        core::array::from_fn(|i| (self.high[i] - earlier.high[i]) + (self.low[i] - earlier.low[i]))
-    }
-
     /// Whether all numbers are finite.
     #[inline]
     pub fn is_finite(&self) -> bool {
@@ -53,8 +58,8 @@ impl<T: Float, const N: usize> Sum<T, N> {
 }
 
 /// A sum and its rounding error (Knuth 1969).
-#[inline]
-fn two_sum<T: Float>(a: T, b: T) -> (T, T) {
+#[inline(always)]
+fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
     let sum = a + b;
     let part = sum - a;
     (sum, (a - (sum - part)) + (b - part))

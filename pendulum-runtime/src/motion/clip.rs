@@ -109,4 +109,12 @@ impl<T: Real, const D: usize> Motion<T, D> for Clip<D> {
     fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
         Some(self)
     }
+
+    fn rest_until(&self, t: f64) -> f64 {
+        match &self.curve {
+            Curve::Linear(curve) => Motion::<T, D>::rest_until(curve, t),
+            Curve::CatmullRom(curve) => Motion::<T, D>::rest_until(curve, t),
+            Curve::Spline(curve) => Motion::<T, D>::rest_until(curve, t),
+        }
+    }
 }

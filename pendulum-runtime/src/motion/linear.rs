@@ -60,4 +60,8 @@ impl<T: Real, const D: usize> Motion<T, D> for Linear<D> {
     fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
         Some(self)
     }
+
+    fn rest_until(&self, t: f64) -> f64 {
+        self.0.rest_until(t)
+    }
 }

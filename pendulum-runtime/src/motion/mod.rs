@@ -48,6 +48,13 @@ pub trait Motion<T: Real, const D: usize> {
     fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
         None
     }
+
+    /// A time up to which the point rests from `t` on: `t` itself if that is not known, infinity if it rests for ever.
+    ///
+    /// Scenes let pendulums sleep until then, so a time that is too late is wrong and one that is too early only costs time.
+    fn rest_until(&self, t: f64) -> f64 {
+        t
+    }
 }
 
 /// A set of derivatives: of a motion's position, velocity and acceleration.
@@ -74,6 +81,16 @@ impl Orders {
     /// Whether all of `other` are in `self`.
     pub const fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
+    }
+
+    /// How many there are.
+    pub const fn count(self) -> usize {
+        self.0.count_ones() as usize
+    }
+
+    /// The derivative of that order alone: 0 is the position.
+    pub(crate) const fn of(derivative: usize) -> Self {
+        Self(1 << derivative)
     }
 }
 
@@ -169,7 +186,7 @@ fn earlier(a: Option<f64>, b: Option<f64>) -> Option<f64> {
 }
 
 /// What an input is asked for; everything, if its system does not say.
-const fn orders(inputs: &[Input], index: usize, purpose: Purpose) -> Orders {
+pub(crate) const fn orders(inputs: &[Input], index: usize, purpose: Purpose) -> Orders {
     if index < inputs.len() { inputs[index].orders(purpose) } else { Orders::ALL }
 }
 

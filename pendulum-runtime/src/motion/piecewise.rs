@@ -261,6 +261,36 @@ impl<const D: usize> Piecewise<D> {
     }
 }
 
+impl<const D: usize> Piecewise<D> {
+    /// The time up to which the curve is constant from `t` on.
+    pub(super) fn rest_until(&self, t: f64) -> f64 {
+        let rests = |piece: usize| self.pieces[piece][1..].iter().flatten().all(|&coefficient| coefficient == 0.0);
+        let jumps = |piece: usize| self.end_of(piece)[0] != self.pieces[piece][0];
+        if (0..self.pieces.len()).all(|piece| rests(piece) && !jumps(piece)) {
+            return f64::INFINITY;
+        }
+        if self.looped {
+            // Within the turn only: its end is soon enough to look again.
+            let turn = self.turns(Time::new(t)) * self.period();
+            let local = t - turn;
+            let piece = self.times.partition_point(|&key| key <= local).saturating_sub(1).min(self.pieces.len() - 1);
+            let moves = (piece..self.pieces.len()).find(|&piece| !rests(piece));
+            let until = self.times[moves.unwrap_or(self.pieces.len())] + turn;
+            return if t < until && rests(piece) { until - 4.0 * f64::EPSILON * (until.abs() + self.period()) } else { t };
+        }
+        let passed = self.times.partition_point(|&key| key <= t);
+        if passed == self.times.len() {
+            return f64::INFINITY;
+        }
+        let moves = (passed.saturating_sub(1)..self.pieces.len()).find(|&piece| !rests(piece));
+        match moves {
+            Some(piece) if t < self.times[piece] => self.times[piece],
+            Some(_) => t,
+            None => f64::INFINITY,
+        }
+    }
+}
+
 fn evaluate<T: Real, const D: usize>(piece: &[[f64; D]; 4], u: f64, orders: Orders) -> Sample<T, D> {
     let [a, b, c, d] = piece;
     let mut sample = Sample::zero();

@@ -37,4 +37,8 @@ impl<T: Real, const D: usize> Motion<T, D> for Still<D> {
     fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
         Some(self)
     }
+
+    fn rest_until(&self, _: f64) -> f64 {
+        f64::INFINITY
+    }
 }

@@ -1,0 +1,84 @@
+//! Samples of driven inputs, put together from single numbers, and the joints that give them.
+
+#![allow(clippy::inline_always)]
+
+use super::joint::Joint;
+use crate::motion::Sample;
+use crate::real::Real;
+use crate::system::Samples;
+
+/// The samples of all driven inputs of a system over the scalar `T`, put together number by number.
+pub trait Assemble<T>: Samples {
+    /// The components of each input.
+    const COMPONENTS: &'static [usize];
+
+    /// The samples whose number in input i, derivative d (0 for the position) and component c is `numbers(i, d, c)`.
+    fn assemble(numbers: impl FnMut(usize, usize, usize) -> T) -> Self;
+}
+
+impl<T: Real> Assemble<T> for () {
+    const COMPONENTS: &'static [usize] = &[];
+
+    #[inline(always)]
+    fn assemble(_: impl FnMut(usize, usize, usize) -> T) -> Self {}
+}
+
+/// What a system hangs on: `()`, a [`Joint`] or a tuple of joints, one for each driven input in the order of declaration.
+pub trait Anchor<Inputs> {
+    /// The joints by number.
+    #[doc(hidden)]
+    fn joints(&self) -> Vec<u32>;
+}
+
+impl Anchor<()> for () {
+    fn joints(&self) -> Vec<u32> {
+        Vec::new()
+    }
+}
+
+impl<T: Real, const D: usize> Anchor<(Sample<T, D>,)> for Joint<D> {
+    fn joints(&self) -> Vec<u32> {
+        vec![self.0]
+    }
+}
+
+#[inline(always)]
+fn sample<T: Real, const D: usize>(input: usize, numbers: &mut impl FnMut(usize, usize, usize) -> T) -> Sample<T, D> {
+    let mut sample = Sample::zero();
+    for c in 0..D {
+        sample.position[c] = numbers(input, 0, c);
+        sample.velocity[c] = numbers(input, 1, c);
+        sample.acceleration[c] = numbers(input, 2, c);
+    }
+    sample
+}
+
+macro_rules! tuples {
+    ($(($($dim:ident $index:tt),+))+) => {$(
+        impl<T: Real, $(const $dim: usize),+> Assemble<T> for ($(Sample<T, $dim>,)+) {
+            const COMPONENTS: &'static [usize] = &[$($dim),+];
+
+            #[inline(always)]
+            fn assemble(mut numbers: impl FnMut(usize, usize, usize) -> T) -> Self {
+                ($(sample::<T, $dim>($index, &mut numbers),)+)
+            }
+        }
+
+        impl<T: Real, $(const $dim: usize),+> Anchor<($(Sample<T, $dim>,)+)> for ($(Joint<$dim>,)+) {
+            fn joints(&self) -> Vec<u32> {
+                vec![$((self.$index).0),+]
+            }
+        }
+    )+};
+}
+
+tuples! {
+    (A 0)
+    (A 0, B 1)
+    (A 0, B 1, C 2)
+    (A 0, B 1, C 2, D 3)
+    (A 0, B 1, C 2, D 3, E 4)
+    (A 0, B 1, C 2, D 3, E 4, F 5)
+    (A 0, B 1, C 2, D 3, E 4, F 5, G 6)
+    (A 0, B 1, C 2, D 3, E 4, F 5, G 6, H 7)
+}

@@ -1,0 +1,94 @@
+//! What a scene refuses, and what fails in it.
+
+use crate::error::{Coordinate, Error};
+use core::fmt;
+
+/// Why a scene did not do what it was asked to; it is as it was before.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// A frame time is negative or no number.
+    FrameTime(f64),
+    /// A setting is out of its range.
+    Setting {
+        /// The setting.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// What it has to be.
+        required: &'static str,
+    },
+    /// A coordinate or velocity that a pendulum was given is infinite or not a number.
+    State {
+        /// The coordinate.
+        coordinate: Coordinate,
+        /// The value given.
+        value: f64,
+    },
+    /// A joint does not belong to this scene.
+    Joint(u32),
+    /// A pendulum does not belong to this scene.
+    Pendulum {
+        /// The name of its type.
+        kind: &'static str,
+        /// Its number among those of its type.
+        index: u32,
+    },
+    /// The motion of a joint lacks a derivative that the equations need.
+    Derivative {
+        /// The driven input.
+        input: &'static str,
+        /// 1 for the velocity, 2 for the acceleration.
+        derivative: usize,
+    },
+    /// No system of the type has a parameter of that name.
+    Parameter(String),
+    /// A snapshot was taken of another scene.
+    Snapshot(&'static str),
+    /// A pendulum could not be integrated.
+    Integration(Error),
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::FrameTime(dt) => write!(f, "a frame of {dt:?} s cannot be advanced by; give zero or a positive time"),
+            Self::Setting { name, value, required } => write!(f, "`{name}` is {value:?}; it has to be {required}"),
+            Self::State { coordinate, value } => write!(f, "the state of {coordinate} is {value:?}; give a finite number"),
+            Self::Joint(index) => write!(f, "joint {index} is not in this scene; use the handle that `joint` of this scene gave"),
+            Self::Pendulum { kind, index } => {
+                write!(f, "`{kind}` {index} is not in this scene; use the handle that `hang` of this scene gave")
+            }
+            Self::Derivative { input, derivative } => {
+                let name = ["position", "velocity", "acceleration"].get(*derivative).unwrap_or(&"derivative");
+                write!(f, "the motion that drives `{input}` has no {name}, which the equations need; give one that has")
+            }
+            Self::Parameter(name) => {
+                write!(f, "there is no parameter `{name}`; a component of a vector is written `c.x`, of a family `m[0]`")
+            }
+            Self::Snapshot(what) => write!(f, "the snapshot is of another scene: {what} differ; restore it where it was taken"),
+            Self::Integration(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+impl core::error::Error for SceneError {}
+
+/// A pendulum whose state has ceased to be finite: it hangs frozen where it was last good.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Failure {
+    /// The name of its type.
+    pub kind: &'static str,
+    /// Its number among those of its type, in the order of hanging.
+    pub index: u32,
+    /// The beginning of the tick in which it happened, in seconds.
+    pub t: f64,
+    /// What went wrong.
+    pub error: Error,
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}` {}: {}", self.kind, self.index, self.error)
+    }
+}

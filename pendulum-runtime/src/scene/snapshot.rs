@@ -1,0 +1,175 @@
+//! Everything that changes while a scene runs, as plain numbers.
+
+use super::bucket::{Extra, Kind, Loose, still};
+use super::error::{Failure, SceneError};
+use super::group::{Group, Status};
+use super::hung::Hung;
+use super::joint::Place;
+use super::scheme::{Grid, Scheme};
+use super::{Scene, hash};
+use crate::real::{Float, Lane, Real};
+
+/// The state of a scene: time, states, parameters, damping, stops, who sleeps and who has failed.
+///
+/// Motions and the list of joints and pendulums are not in it: it is restored to the scene that it was taken of, or to one that was built
+/// in the same way.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Snapshot<T> {
+    /// Tick, tick at which the sum of frame times began, that sum in two words.
+    clock: (i64, i64, [f64; 2]),
+    groups: Vec<GroupState<T>>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    failures: Vec<Failure>,
+}
+
+/// The state of all pendulums of a type, in the order of hanging.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct GroupState<T> {
+    kind: String,
+    pendulums: Vec<(Scheme, u32, Status)>,
+    /// Parameters, states and extras of one pendulum after the other.
+    numbers: Vec<T>,
+}
+
+/// The numbers of a pendulum beside its parameters.
+const fn numbers(coordinates: usize) -> usize {
+    6 * coordinates + 2 * coordinates + 4
+}
+
+pub(super) fn save<S: Hung<T, N>, T: Lane + Float, const N: usize>(group: &Group<S, T, N>) -> GroupState<T> {
+    let count = group.table.len();
+    let mut state = GroupState {
+        kind: S::FACTS.name.to_owned(),
+        pendulums: Vec::with_capacity(count),
+        numbers: Vec::with_capacity(count * (S::FACTS.parameters.len() + numbers(N))),
+    };
+    for (index, location) in group.table.iter().enumerate() {
+        let bucket = &group.buckets[location.bucket as usize];
+        let Grid { scheme, substeps } = bucket.kind.grid;
+        state.pendulums.push((scheme, substeps, group.status[index]));
+        let (extra, values) = bucket.numbers(location.slot as usize);
+        state.numbers.extend(bucket.parameters_of(location.slot as usize));
+        state.numbers.extend(values.iter().flatten());
+        state.numbers.extend(extra.low.iter().chain(&extra.high));
+        state.numbers.extend([extra.damping, extra.restitution, extra.stiffness, extra.hard]);
+    }
+    state
+}
+
+pub(super) fn accepts<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+    group: &Group<S, T, N>,
+    state: &GroupState<T>,
+) -> Result<(), SceneError> {
+    if state.kind != S::FACTS.name {
+        return Err(SceneError::Snapshot("the types of its pendulums"));
+    }
+    let count = group.table.len();
+    if state.pendulums.len() != count || state.numbers.len() != count * (S::FACTS.parameters.len() + numbers(N)) {
+        return Err(SceneError::Snapshot("the numbers of its pendulums"));
+    }
+    Ok(())
+}
+
+pub(super) fn restore<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+    group: &mut Group<S, T, N>,
+    places: &[Place<T>],
+    state: &GroupState<T>,
+) {
+    let zero = T::from_f64(0.0);
+    let mut rest = &state.numbers[..];
+    let mut take = |count: usize| {
+        let (here, after) = rest.split_at(count);
+        rest = after;
+        here
+    };
+    for (id, &(scheme, substeps, status)) in (0..).zip(&state.pendulums) {
+        let parameters = take(S::FACTS.parameters.len()).to_vec();
+        let mut array = || -> [T; N] {
+            let mut values = [zero; N];
+            values.copy_from_slice(take(N));
+            values
+        };
+        let numbers = core::array::from_fn(|_| array());
+        let (low, high) = (array(), array());
+        let last = take(4);
+        let extra = Extra { damping: last[0], low, high, restitution: last[1], stiffness: last[2], hard: last[3] };
+        let joints = group.joints(id).to_vec();
+        let kind = Kind { grid: Grid { scheme, substeps }, still: still(places, &joints) };
+        let loose = Loose { id, joints, parameters, state: numbers, extra };
+        let location = group.table[id as usize];
+        if group.buckets[location.bucket as usize].kind == kind {
+            group.write(&loose);
+        } else {
+            group.remove(id);
+            group.insert(kind, &loose);
+        }
+        group.status[id as usize] = status;
+        group.set_awake(id, status == Status::Awake);
+    }
+}
+
+impl<T: Lane + Float> Scene<T> {
+    /// Everything that changes while the scene runs.
+    pub fn snapshot(&self) -> Snapshot<T> {
+        let groups = self.groups.iter().map(|(_, group)| group.save()).collect();
+        Snapshot { clock: self.clock.state(), groups, failures: self.failures.clone() }
+    }
+
+    /// Puts the scene back to where a snapshot was taken; what follows has the same bits as it had then.
+    ///
+    /// # Errors
+    /// A snapshot of another scene.
+    pub fn restore(&mut self, snapshot: &Snapshot<T>) -> Result<(), SceneError> {
+        if snapshot.groups.len() != self.groups.len() {
+            return Err(SceneError::Snapshot("the numbers of types"));
+        }
+        for ((_, group), state) in self.groups.iter().zip(&snapshot.groups) {
+            group.accepts(state)?;
+        }
+        self.clock.restore(snapshot.clock);
+        for place in &mut self.places {
+            place.forget_kink();
+        }
+        for ((_, group), state) in self.groups.iter_mut().zip(&snapshot.groups) {
+            group.restore(&self.places, state);
+        }
+        self.failures.clone_from(&snapshot.failures);
+        self.dirty = true;
+        Ok(())
+    }
+
+    /// A number that two scenes share that are in the same state, to the last bit.
+    pub fn checksum(&self) -> u64 {
+        self.snapshot().checksum()
+    }
+}
+
+impl<T: Real + Float> Snapshot<T> {
+    /// A number that two snapshots share that are the same to the last bit.
+    pub fn checksum(&self) -> u64 {
+        let mut hash = hash::Hash::new();
+        let (tick, origin, asked) = self.clock;
+        for word in [tick as u64, origin as u64, asked[0].to_bits(), asked[1].to_bits()] {
+            hash.add(word);
+        }
+        for group in &self.groups {
+            hash.add(group.pendulums.len() as u64);
+            for &(scheme, substeps, status) in &group.pendulums {
+                let (status, tick) = match status {
+                    Status::Awake => (0, 0),
+                    Status::Asleep(tick) => (1, tick),
+                    Status::Hidden(tick) => (2, tick),
+                    Status::Failed => (3, 0),
+                };
+                hash.add(scheme as u64 | u64::from(substeps) << 8 | status << 40);
+                hash.add(tick as u64);
+            }
+            for number in &group.numbers {
+                hash.add(number.to_f64().to_bits());
+            }
+        }
+        hash.value()
+    }
+}

@@ -1,0 +1,154 @@
+//! Reading and writing pendulums.
+
+use super::error::SceneError;
+use super::group::{Group, Status, check_state, inputs_at};
+use super::hung::Hung;
+use super::{Handle, Joint, Scene};
+use crate::motion::{Orders, Side};
+use crate::real::{Float, Lane, Real};
+use crate::system::{Purpose, scalar_time};
+use crate::time::Time;
+
+impl<T: Lane + Float> Scene<T> {
+    /// Coordinates and velocities at the last tick.
+    ///
+    /// # Panics
+    /// If the pendulum is not in this scene, as indexing does.
+    pub fn state<S: Hung<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> ([T; N], [T; N]) {
+        self.known(pendulum).states(pendulum.index)[1]
+    }
+
+    /// The coordinates that are `alpha` of the way from the tick before the last to the last: the cubic through coordinates and velocities at both
+    /// (Hermite).
+    ///
+    /// With [`alpha`](Self::alpha) it is where the frame is to be drawn, always one tick late; the error is h⁴/384·|q⁗|.
+    ///
+    /// # Panics
+    /// If the pendulum is not in this scene, as indexing does.
+    pub fn pose<S: Hung<T, N>, const N: usize>(&self, pendulum: Handle<S, N>, alpha: f64) -> [T; N] {
+        let states = self.known(pendulum).states(pendulum.index);
+        hermite(self.clock.step(), alpha, &states)
+    }
+
+    /// The poses of all pendulums of a type in the order of hanging; `poses` keeps its memory.
+    pub fn poses<S: Hung<T, N>, const N: usize>(&self, alpha: f64, poses: &mut Vec<[T; N]>) {
+        poses.clear();
+        if let Some(group) = self.group::<S, N>() {
+            let h = self.clock.step();
+            poses.extend((0..group.table.len() as u32).map(|id| hermite(h, alpha, &group.states(id))));
+        }
+    }
+
+    /// Where a joint is at the time of [`pose`](Self::pose).
+    pub fn joint_pose<const D: usize>(&self, joint: Joint<D>, alpha: f64) -> [T; D] {
+        let mut position = [T::from_f64(0.0); D];
+        let t = self.clock.within(self.clock.tick() - 1, alpha);
+        self.places[joint.0 as usize].drive.sample(t, Side::After, Orders::POSITION, &mut position);
+        position
+    }
+
+    /// Puts a pendulum elsewhere, awake.
+    ///
+    /// # Errors
+    /// A state that is not finite, a pendulum of another scene.
+    pub fn set_state<S: Hung<T, N>, const N: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+        q: [T; N],
+        v: [T; N],
+    ) -> Result<(), SceneError> {
+        check_state(&S::FACTS, &q)?;
+        check_state(&S::FACTS, &v)?;
+        self.change(pendulum, |loose| {
+            let zero = [T::from_f64(0.0); N];
+            loose.state = [q, zero, v, zero, q, v];
+        })?;
+        self.wake(pendulum)
+    }
+
+    /// The Jacobi integral of a pendulum at the last tick.
+    ///
+    /// # Panics
+    /// If the pendulum is not in this scene, as indexing does.
+    pub fn energy<S: Hung<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> T {
+        let loose = self.known(pendulum).read(pendulum.index);
+        let t = Time::new(self.time());
+        let inputs = inputs_at::<S, T, N>(&self.places, &loose.joints, t, Side::After, Purpose::Energy, false);
+        let [q, _, v, ..] = &loose.state;
+        self.system(pendulum).energy(scalar_time(t), q, v, &inputs)
+    }
+
+    /// A pendulum's system with its parameters as they are now.
+    ///
+    /// # Panics
+    /// If the pendulum is not in this scene, as indexing does.
+    pub fn system<S: Hung<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> S {
+        let group = self.known(pendulum);
+        group.system_of(&group.read(pendulum.index).parameters)
+    }
+
+    /// What a pendulum is doing.
+    ///
+    /// # Panics
+    /// If the pendulum is not in this scene, as indexing does.
+    pub fn status<S: Hung<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> Status {
+        self.known(pendulum).status[pendulum.index as usize]
+    }
+
+    /// Wakes a pendulum, whatever it was doing, at the state in which it is.
+    ///
+    /// # Errors
+    /// A pendulum of another scene.
+    pub fn wake<S: Hung<T, N>, const N: usize>(&mut self, pendulum: Handle<S, N>) -> Result<(), SceneError> {
+        let group = self.checked(pendulum)?;
+        group.status[pendulum.index as usize] = Status::Awake;
+        group.set_awake(pendulum.index, true);
+        self.dirty = true;
+        Ok(())
+    }
+
+    /// The group of a pendulum that is there.
+    pub(super) fn known<S: Hung<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> &Group<S, T, N> {
+        let group = self.group::<S, N>().filter(|group| (pendulum.index as usize) < group.table.len());
+        group.unwrap_or_else(|| panic!("{}", unknown(pendulum)))
+    }
+
+    /// The group of a pendulum.
+    pub(super) fn checked<S: Hung<T, N>, const N: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+    ) -> Result<&mut Group<S, T, N>, SceneError> {
+        let group = self.group_mut::<S, N>().map(|(group, ..)| group);
+        group.filter(|group| (pendulum.index as usize) < group.table.len()).ok_or_else(|| unknown(pendulum))
+    }
+
+    /// Changes what belongs to a pendulum and does not change its steps.
+    pub(super) fn change<S: Hung<T, N>, const N: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+        change: impl FnOnce(&mut super::bucket::Loose<T, N>),
+    ) -> Result<(), SceneError> {
+        let group = self.checked(pendulum)?;
+        let mut loose = group.read(pendulum.index);
+        change(&mut loose);
+        group.write(&loose);
+        Ok(())
+    }
+}
+
+fn unknown<S: Hung<T, N>, T: Lane + Float, const N: usize>(pendulum: Handle<S, N>) -> SceneError {
+    SceneError::Pendulum { kind: S::FACTS.name, index: pendulum.index }
+}
+
+/// The cubic through coordinates and velocities at both ends of a step `h`.
+pub(super) fn hermite<T: Real, const N: usize>(h: f64, alpha: f64, [(q0, v0), (q1, v1)]: &[([T; N], [T; N]); 2]) -> [T; N] {
+    if alpha == 1.0 {
+        return *q1;
+    }
+    let (a, h) = (T::from_f64(alpha), T::from_f64(h));
+    core::array::from_fn(|i| {
+        let (d, m0, m1) = (q1[i] - q0[i], h * v0[i], h * v1[i]);
+        let three_d = d + d + d;
+        q0[i] + a * (m0 + a * ((three_d - m0 - m0 - m1) + a * (m0 + m1 - d - d)))
+    })
+}

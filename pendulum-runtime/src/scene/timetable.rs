@@ -1,0 +1,78 @@
+//! When in a tick joints are sampled: once per time for all grids that need them.
+
+use super::scheme::Grid;
+
+/// All grids of a scene, and for each set of them that some joint serves the times of its samples.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Timetable {
+    grids: Vec<Grid>,
+    classes: Vec<Class>,
+}
+
+#[derive(Clone, Debug)]
+struct Class {
+    /// The grids, by bit.
+    grids: u64,
+    /// The times of all samples in a tick, in ticks, ascending.
+    fractions: Vec<f64>,
+    /// By grid, the samples that its evaluations take.
+    nodes: Vec<Vec<u16>>,
+}
+
+impl Timetable {
+    /// The bit of a grid.
+    pub(super) fn bit(&mut self, grid: Grid) -> u64 {
+        let index = self.grids.iter().position(|&known| known == grid).unwrap_or_else(|| {
+            self.grids.push(grid);
+            self.classes.clear();
+            self.grids.len() - 1
+        });
+        1 << index
+    }
+
+    /// The class of a set of grids.
+    pub(super) fn class(&mut self, grids: u64) -> u32 {
+        if let Some(index) = self.classes.iter().position(|class| class.grids == grids) {
+            return index as u32;
+        }
+        let members = || self.grids.iter().enumerate().filter(|(index, _)| grids & (1 << index) != 0).map(|(_, grid)| *grid);
+        let mut fractions: Vec<f64> = members().flat_map(Grid::fractions).collect();
+        fractions.sort_by(f64::total_cmp);
+        fractions.dedup();
+        let node = |fraction: f64| fractions.partition_point(|&other| other < fraction) as u16;
+        let member = |index: usize| grids & (1 << index) != 0;
+        let nodes = self.grids.iter().enumerate();
+        let nodes =
+            nodes.map(|(index, grid)| if member(index) { grid.fractions().map(node).collect() } else { Vec::new() }).collect();
+        self.classes.push(Class { grids, fractions, nodes });
+        self.classes.len() as u32 - 1
+    }
+
+    pub(super) fn fractions(&self, class: u32) -> &[f64] {
+        &self.classes[class as usize].fractions
+    }
+
+    /// The samples in a tick, and those among them that the evaluations of `grid` take.
+    pub(super) fn nodes(&self, class: u32, grid: Grid) -> (usize, &[u16]) {
+        let class = &self.classes[class as usize];
+        let index = self.grids.iter().position(|&known| known == grid).unwrap_or(0);
+        (class.fractions.len(), &class.nodes[index])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Timetable;
+    use crate::scene::scheme::{Grid, Scheme};
+
+    #[test]
+    fn grids_share_their_times() {
+        let mut timetable = Timetable::default();
+        let (one, two) = (Grid { scheme: Scheme::Leapfrog, substeps: 1 }, Grid { scheme: Scheme::Rk4, substeps: 1 });
+        let both = timetable.bit(one) | timetable.bit(two);
+        let class = timetable.class(both);
+        assert_eq!(timetable.fractions(class), [0.0, 0.5, 1.0]);
+        assert_eq!(timetable.nodes(class, one), (3, &[1][..]));
+        assert_eq!(timetable.nodes(class, two), (3, &[0, 1, 2][..]));
+    }
+}

@@ -1,0 +1,273 @@
+//! What the pendulums of a bucket see of their joints during a batch of ticks.
+
+use super::clock::Clock;
+use super::hung::Layout;
+use super::joint::Place;
+use super::scheme::{Grid, MOST_STAGES};
+use super::timetable::Timetable;
+use crate::integrate::span::Span;
+use crate::motion::{Orders, Side};
+use crate::real::{Float, Real};
+use crate::system::{Input, Purpose};
+use crate::time::Time;
+use std::collections::BTreeMap;
+
+/// The ticks that are done at once.
+pub(super) const BATCH: usize = 8;
+
+/// The distinct tuples of joints that pendulums of a bucket hang on, and what is sampled of them.
+#[derive(Clone, Debug)]
+pub(super) struct Tracks<T> {
+    /// The joints of a track.
+    inputs: usize,
+    /// Those of all tracks, one track after the other.
+    joints: Vec<u32>,
+    by_joints: BTreeMap<Vec<u32>, u32>,
+    /// The pendulums that are awake on each.
+    awake: Vec<u32>,
+    /// Records by tick, evaluation and track.
+    records: Vec<T>,
+    /// By tick and track: where the pieces of a tick with a kink begin and how many there are; empty in batches without kinks.
+    cuts: Vec<(u32, u32)>,
+    pieces: Vec<Piece>,
+    /// The records of pieces.
+    extra: Vec<T>,
+}
+
+/// A step in a tick that has been cut at kinks.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece {
+    pub(super) h: f64,
+    /// The times of the evaluations.
+    pub(super) times: [Time; MOST_STAGES],
+    /// Where the records of the evaluations begin.
+    pub(super) begin: usize,
+    /// If there is a kink at its end: its time and where the records for the momenta before and after begin.
+    pub(super) jump: Option<(f64, usize)>,
+}
+
+/// What is needed to read a joint's samples.
+pub(super) struct Sampled<'a, T> {
+    pub(super) clock: &'a Clock,
+    pub(super) tick: i64,
+    pub(super) ticks: usize,
+    pub(super) places: &'a [Place<T>],
+    pub(super) numbers: &'a [T],
+    pub(super) timetable: &'a Timetable,
+}
+
+impl<T: Real + Float> Tracks<T> {
+    pub(super) fn new(inputs: usize) -> Self {
+        Self {
+            inputs,
+            joints: Vec::new(),
+            by_joints: BTreeMap::new(),
+            awake: Vec::new(),
+            records: Vec::new(),
+            cuts: Vec::new(),
+            pieces: Vec::new(),
+            extra: Vec::new(),
+        }
+    }
+
+    /// The track of `joints`.
+    pub(super) fn find(&mut self, joints: &[u32]) -> u32 {
+        if let Some(&track) = self.by_joints.get(joints) {
+            return track;
+        }
+        let track = self.awake.len() as u32;
+        self.joints.extend_from_slice(joints);
+        self.by_joints.insert(joints.to_vec(), track);
+        self.awake.push(0);
+        track
+    }
+
+    pub(super) fn joints(&self, track: u32) -> &[u32] {
+        &self.joints[track as usize * self.inputs..][..self.inputs]
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.awake.len()
+    }
+
+    /// Counts one pendulum more or less that is awake.
+    pub(super) fn stir(&mut self, track: u32, up: bool) {
+        let awake = &mut self.awake[track as usize];
+        *awake = if up { *awake + 1 } else { *awake - 1 };
+    }
+
+    /// Tells `visit` every joint that somebody awake hangs on, with what the equations need of it.
+    pub(super) fn needs(&self, inputs: &[Input], mut visit: impl FnMut(u32, Orders)) {
+        for (track, &awake) in self.awake.iter().enumerate() {
+            if awake != 0 {
+                for (input, &joint) in self.joints(track as u32).iter().enumerate() {
+                    visit(joint, crate::motion::orders(inputs, input, Purpose::Accelerations));
+                }
+            }
+        }
+    }
+
+    /// Whether somebody is awake on a track.
+    fn is_awake(&self, track: usize) -> bool {
+        self.awake[track] != 0
+    }
+
+    /// Reads what was sampled of the joints for a batch.
+    pub(super) fn load(&mut self, grid: Grid, layout: &Layout, momenta: &Layout, inputs: &[Input], sampled: &Sampled<'_, T>) {
+        let (tracks, evaluations, width) = (self.count(), grid.count(), layout.width);
+        self.records.resize(sampled.ticks * evaluations * tracks * width, T::from_f64(0.0));
+        (self.cuts.clear(), self.pieces.clear(), self.extra.clear());
+        for track in 0..tracks {
+            if !self.is_awake(track) {
+                continue;
+            }
+            let mut kinked = 0;
+            let mut at = 0;
+            for input in 0..self.inputs {
+                let place = &sampled.places[self.joints[track * self.inputs + input] as usize];
+                let orders = crate::motion::orders(inputs, input, Purpose::Accelerations);
+                let components = place.drive.components();
+                let own = components * orders.count();
+                kinked |= place.kinked;
+                if !place.still && own != 0 {
+                    let (nodes, mine) = sampled.timetable.nodes(place.class, grid);
+                    for tick in 0..sampled.ticks {
+                        for (evaluation, &node) in mine.iter().enumerate() {
+                            let from = place.offset + (tick * nodes + usize::from(node)) * place.width();
+                            let to = ((tick * evaluations + evaluation) * tracks + track) * width + at;
+                            narrow(components, place.orders, &sampled.numbers[from..], orders, &mut self.records[to..to + own]);
+                        }
+                    }
+                } else if own != 0 {
+                    // At rest among others that move: the same record everywhere.
+                    for index in 0..sampled.ticks * evaluations {
+                        let to = (index * tracks + track) * width + at;
+                        let now = Time::new(sampled.clock.time(sampled.tick));
+                        place.drive.sample(now, Side::After, orders, &mut self.records[to..to + own]);
+                    }
+                }
+                at += own;
+            }
+            if kinked != 0 {
+                self.cuts.resize(sampled.ticks * tracks, (0, 0));
+                for tick in (0..sampled.ticks).filter(|tick| kinked & (1 << tick) != 0) {
+                    let begin = self.pieces.len();
+                    self.cut(track, tick, grid, momenta, inputs, sampled);
+                    self.cuts[tick * tracks + track] = (begin as u32, (self.pieces.len() - begin) as u32);
+                }
+            }
+        }
+    }
+
+    /// Cuts a tick at the kinks of the joints of a track.
+    fn cut(&mut self, track: usize, tick: usize, grid: Grid, momenta: &Layout, inputs: &[Input], sampled: &Sampled<'_, T>) {
+        let mut joints = [0; 8];
+        let joints = &mut joints[..self.inputs];
+        joints.copy_from_slice(self.joints(track as u32));
+        let now = sampled.tick + tick as i64;
+        let (mut start, end) = (sampled.clock.time(now), sampled.clock.time(now + 1));
+        let step = sampled.clock.step();
+        while start < end {
+            let kink = joints.iter().filter_map(|&joint| sampled.places[joint as usize].drive.next_kink(start));
+            let kink = kink.filter(|&kink| start < kink && kink <= end).fold(f64::INFINITY, f64::min);
+            let stop = if kink < end { kink } else { end };
+            let length = stop - start;
+            let steps = (length / step * f64::from(grid.substeps) - 1e-9).ceil().max(1.0);
+            for index in 0..steps as u32 {
+                let from = if index == 0 { Time::new(start) } else { Time::new(start) + f64::from(index) / steps * length };
+                let last = f64::from(index) + 1.0 == steps;
+                let span = if last { Span::to(from, stop) } else { Span::by(from, length / steps) };
+                let begin = self.extra.len();
+                let mut times = [from; MOST_STAGES];
+                for (stage, &fraction) in grid.scheme.stages().iter().enumerate() {
+                    let (t, side) = span.at(fraction);
+                    times[stage] = t;
+                    self.append(joints, t, side, inputs, Purpose::Accelerations, sampled);
+                }
+                let mut jump = None;
+                if last && kink == stop && 0 < momenta.width {
+                    jump = Some((kink, self.extra.len()));
+                    for side in [Side::Before, Side::After] {
+                        self.append(joints, Time::new(kink), side, inputs, Purpose::Momenta, sampled);
+                    }
+                }
+                self.pieces.push(Piece { h: span.h, times, begin, jump });
+            }
+            start = stop;
+        }
+    }
+
+    /// Appends a record of `joints` at `t`.
+    fn append(&mut self, joints: &[u32], t: Time, side: Side, inputs: &[Input], purpose: Purpose, sampled: &Sampled<'_, T>) {
+        for (input, &joint) in joints.iter().enumerate() {
+            let drive = &sampled.places[joint as usize].drive;
+            let orders = crate::motion::orders(inputs, input, purpose);
+            let begin = self.extra.len();
+            self.extra.resize(begin + drive.components() * orders.count(), T::from_f64(0.0));
+            drive.sample(t, side, orders, &mut self.extra[begin..]);
+        }
+    }
+
+    /// Reads the constant records of joints that rest for ever.
+    pub(super) fn load_still(&mut self, layout: &Layout, inputs: &[Input], now: f64, places: &[Place<T>]) {
+        self.records.resize(self.count() * layout.width, T::from_f64(0.0));
+        let mut to = 0;
+        for track in 0..self.count() {
+            for (input, &joint) in self.joints[track * self.inputs..][..self.inputs].iter().enumerate() {
+                let drive = &places[joint as usize].drive;
+                let orders = crate::motion::orders(inputs, input, Purpose::Accelerations);
+                let own = drive.components() * orders.count();
+                drive.sample(Time::new(now), Side::After, orders, &mut self.records[to..to + own]);
+                to += own;
+            }
+        }
+    }
+
+    /// The records of one evaluation, one for each track.
+    #[inline(always)]
+    #[allow(clippy::inline_always)]
+    pub(super) fn records(&self, evaluation: usize, width: usize) -> &[T] {
+        let length = self.awake.len() * width;
+        &self.records[evaluation * length..][..length]
+    }
+
+    /// Whether a tick of the batch has been cut for any track.
+    #[inline]
+    pub(super) fn any_cut(&self) -> bool {
+        !self.cuts.is_empty()
+    }
+
+    /// The pieces of a tick, none if it is whole.
+    pub(super) fn pieces(&self, tick: usize, track: u32) -> &[Piece] {
+        let track = track as usize;
+        if self.cuts.is_empty() || !self.is_awake(track) {
+            return &[];
+        }
+        let (begin, count) = self.cuts[tick * self.count() + track];
+        &self.pieces[begin as usize..][..count as usize]
+    }
+
+    pub(super) fn extra(&self) -> &[T] {
+        &self.extra
+    }
+}
+
+/// Copies those of the derivatives in `has` that are in `wanted`.
+#[inline]
+fn narrow<T: Copy>(components: usize, has: Orders, numbers: &[T], wanted: Orders, to: &mut [T]) {
+    if has == wanted {
+        to.copy_from_slice(&numbers[..to.len()]);
+        return;
+    }
+    let (mut from, mut filled) = (0, 0);
+    for derivative in 0..3 {
+        let order = Orders::of(derivative);
+        if wanted.contains(order) {
+            to[filled..filled + components].copy_from_slice(&numbers[from..from + components]);
+            filled += components;
+        }
+        if has.contains(order) {
+            from += components;
+        }
+    }
+}

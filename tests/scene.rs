@@ -1,0 +1,357 @@
+//! Scenes: the bits of the scalar methods in every lane, whatever the frames, the neighbours and the kinks.
+
+#![allow(mixed_script_confusables, missing_docs)]
+
+use pendulum_runtime::integrate::method::Suits;
+use pendulum_runtime::motion::{Linear, Motion, Orders, Sample, Side, Sinusoid, Spline, Still};
+use pendulum_runtime::prelude::*;
+use pendulum_runtime::scene::{Fixed, Handle, Scene, SceneError, Status};
+use pendulum_runtime::time::Time;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+#[path = "common/random.rs"]
+mod random;
+
+use random::Random;
+
+lagrangian! {
+    #[derive(Clone, Debug)]
+    pub struct Simple { m: kg, L: m, g: m/s^2 = 9.81 }
+    coordinate θ: rad;
+    let y = L * [sin(θ), -cos(θ)];
+    kinetic = m/2 * |ẏ|^2;
+    potential = m*g*height(y);
+}
+
+lagrangian! {
+    #[derive(Clone, Debug)]
+    pub struct Hanging { m: kg, L: m, g: m/s^2 = 9.81 }
+    coordinate θ: rad;
+    driven x: [m; 2];
+    let y = x + L * [sin(θ), -cos(θ)];
+    kinetic = m/2 * |ẏ|^2;
+    potential = m*g*height(y);
+}
+
+lagrangian! {
+    #[derive(Clone, Debug)]
+    pub struct Double { m: kg, l: m, c: N*m*s, g: m/s^2 = 9.81 }
+    coordinate θ[2]: rad;
+    driven x: [m; 2];
+    let y[k in 0..2] = x + sum(j in 0..=k, l*[sin(θ[j]), -cos(θ[j])]);
+    kinetic = sum(k in 0..2, m/2*|ẏ[k]|^2);
+    potential = sum(k in 0..2, m*g*height(y[k]));
+    dissipation = c/2*(θ̇[0]^2 + (θ̇[1] - θ̇[0])^2);
+}
+
+lagrangian! {
+    #[derive(Clone, Debug)]
+    pub struct Strung { m: kg, k: N/m, g: m/s^2 = 9.81 }
+    coordinate u: m;
+    driven a: m;
+    driven b: [m; 2];
+    kinetic = m/2 * u̇^2;
+    potential = k/2*(u - a)^2 + k/2*(u - b.x)^2;
+}
+
+fn keys() -> Linear<2> {
+    let times: Vec<f64> = (0..60).map(|key| f64::from(key) / 24.0).collect();
+    let mut random = Random::new(5);
+    let values: Vec<[f64; 2]> = times.iter().map(|_| [random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02)]).collect();
+    Linear::new(&times, &values).unwrap()
+}
+
+/// Pendulums of several types on joints that move smoothly, in kinks and not at all.
+fn zoo(tolerance: f64) -> Scene<f64> {
+    let mut scene = Scene::new(240.0).unwrap();
+    scene.set_tolerance(tolerance).unwrap();
+    let mut random = Random::new(1);
+    let joints = [
+        scene.joint(Sinusoid::new([0.05, 0.02], 9.0, [0.0, 1.0])),
+        scene.joint(keys()),
+        scene.joint(Still::new([1.0, 2.0])),
+        scene.joint(Spline::natural(&[0.2, 0.61, 0.9, 1.7], &[[0.0, 0.0], [0.1, 0.0], [0.0, 0.1], [0.2, 0.0]]).unwrap()),
+    ];
+    let lift = scene.joint(Sinusoid::new([0.1], 3.0, [0.0]));
+    for index in 0..100 {
+        let length = random.uniform(0.02, 1.0);
+        let (q, v) = ([random.uniform(-2.0, 2.0)], [random.uniform(-1.0, 1.0)]);
+        scene.hang(joints[index % 4], Hanging::new(0.1, length), q, v).unwrap();
+        if index % 3 == 0 {
+            scene.hang((), Simple::new(0.1, length), q, v).unwrap();
+            scene.hang(joints[index % 4], Double::new(0.1, 0.2 + length, 1e-4), [q[0], 0.1], [v[0], 0.0]).unwrap();
+            scene.hang((lift, joints[index % 4]), Strung::new(0.1, 5.0), q, v).unwrap();
+        }
+    }
+    scene
+}
+
+fn same_as_scalar<M>(method: M, tolerance: f64)
+where
+    M: Fixed + Suits<Simple<f64>, 1> + Copy,
+{
+    let mut scene = Scene::<f64>::new(256.0).unwrap();
+    scene.set_tolerance(tolerance).unwrap();
+    let mut random = Random::new(9);
+    let all: Vec<_> = (0..50).map(|_| (random.uniform(0.3, 2.0), random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0))).collect();
+    let hang = |&(length, q, v): &(f64, f64, f64)| scene.hang((), Simple::new(0.3, length), [q], [v]).unwrap();
+    let handles: Vec<Handle<Simple<f64>, 1>> = all.iter().map(hang).collect();
+    scene.set_method::<Simple<f64>, 1, M>(method).unwrap();
+    scene.advance(4.0).unwrap();
+    for (handle, &(length, q, v)) in handles.into_iter().zip(&all) {
+        let pendulum = Simple::new(0.3, length);
+        let whole = solve(&pendulum, (0.0, 4.0), [q], [v]).method(method).steps(1024).run().unwrap();
+        assert_eq!(scene.state(handle), (whole.end.q, whole.end.v));
+    }
+}
+
+#[test]
+fn lanes_have_the_bits_of_the_scalar_methods() {
+    same_as_scalar(Leapfrog, 1e-2);
+    same_as_scalar(Srkn6b, 1e-2);
+    same_as_scalar(Rk4, 1e-2);
+}
+
+#[test]
+fn frames_do_not_show() {
+    for tolerance in [1e-3, 1e-9] {
+        let mut checksums = Vec::new();
+        for frames in [24, 30, 60, 144, 240, 1000] {
+            let mut scene = zoo(tolerance);
+            for _ in 0..2 * frames {
+                scene.advance(1.0 / f64::from(frames)).unwrap();
+            }
+            assert_eq!(scene.tick(), 480);
+            checksums.push(states(&scene));
+        }
+        let mut scene = zoo(tolerance);
+        let mut random = Random::new(3);
+        let mut left = 2.0;
+        while 0.0 < left {
+            let dt = f64::min(left, random.uniform(0.0, 0.05));
+            scene.advance(dt).unwrap();
+            left -= dt;
+        }
+        checksums.push(states(&scene));
+        assert!(checksums.iter().all(|other| *other == checksums[0]));
+    }
+}
+
+/// The bits of all states and of those a tick before.
+fn states(scene: &Scene<f64>) -> Vec<u64> {
+    let mut bits = Vec::new();
+    let (mut hanging, mut simple, mut double, mut strung) = (vec![], vec![], vec![], vec![]);
+    for alpha in [0.0, 0.3, 1.0] {
+        scene.poses::<Hanging<f64>, 1>(alpha, &mut hanging);
+        scene.poses::<Simple<f64>, 1>(alpha, &mut simple);
+        scene.poses::<Double<f64>, 2>(alpha, &mut double);
+        scene.poses::<Strung<f64>, 1>(alpha, &mut strung);
+        bits.extend(hanging.iter().chain(&simple).chain(&strung).map(|q| q[0].to_bits()));
+        bits.extend(double.iter().flatten().map(|q| q.to_bits()));
+    }
+    bits
+}
+
+#[test]
+fn kinks_are_felt_in_every_lane() {
+    let mut scene = zoo(1e-10);
+    scene.advance(2.0).unwrap();
+    // The state of the zoo, again.
+    let mut random = Random::new(1);
+    for index in 0..100 {
+        let length = random.uniform(0.02, 1.0);
+        let (q, v) = ([random.uniform(-2.0, 2.0)], [random.uniform(-1.0, 1.0)]);
+        if index % 4 == 1 {
+            let (q1, v1) = scene.state(Handle::<Hanging<f64>, 1>::new(index));
+            let alone = Hanging::new(0.1, length).driven_by(keys());
+            let exact = solve(&alone, (0.0, 2.0), q, v).rtol(1e-12).atol(1e-13).run().unwrap();
+            assert!((q1[0] - exact.end.q[0]).abs() < 2e-5, "{index}: {} for {}", q1[0], exact.end.q[0]);
+            assert!((v1[0] - exact.end.v[0]).abs() < 5e-3, "{index}: {} for {}", v1[0], exact.end.v[0]);
+            if index % 3 == 0 {
+                let (q2, _) = scene.state(Handle::<Double<f64>, 2>::new(index / 3));
+                let alone = Double::new(0.1, 0.2 + length, 1e-4).driven_by(keys());
+                let exact = solve(&alone, (0.0, 2.0), [q[0], 0.1], [v[0], 0.0]).rtol(1e-12).atol(1e-13).run().unwrap();
+                assert!((q2[1] - exact.end.q[1]).abs() < 1e-5, "{index}: {} for {}", q2[1], exact.end.q[1]);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_pendulum_swings_as_it_would_alone() {
+    let mut crowd = zoo(1e-6);
+    crowd.advance(1.5).unwrap();
+    let mut random = Random::new(1);
+    for index in 0..100 {
+        let length = random.uniform(0.02, 1.0);
+        let (q, v) = ([random.uniform(-2.0, 2.0)], [random.uniform(-1.0, 1.0)]);
+        let mut alone = Scene::new(240.0).unwrap();
+        alone.set_tolerance(1e-6).unwrap();
+        let joint = match index % 4 {
+            0 => alone.joint(Sinusoid::new([0.05, 0.02], 9.0, [0.0, 1.0])),
+            1 => alone.joint(keys()),
+            _ => continue,
+        };
+        let handle = alone.hang(joint, Hanging::new(0.1, length), q, v).unwrap();
+        alone.advance(1.5).unwrap();
+        assert_eq!(alone.state(handle), crowd.state(Handle::<Hanging<f64>, 1>::new(index)));
+    }
+}
+
+#[test]
+fn what_is_restored_goes_on_as_before() {
+    let mut scene = zoo(1e-3);
+    scene.advance(0.71).unwrap();
+    let snapshot = scene.snapshot();
+    assert_eq!(snapshot.checksum(), scene.checksum());
+    scene.advance(0.9).unwrap();
+    let after = (scene.checksum(), scene.alpha());
+    assert_ne!(after.0, snapshot.checksum());
+    scene.restore(&snapshot).unwrap();
+    assert_eq!(scene.snapshot(), snapshot);
+    for _ in 0..9 {
+        scene.advance(0.1).unwrap();
+    }
+    assert!((scene.alpha() - after.1).abs() < 1e-9);
+    let mut again = zoo(1e-3);
+    again.restore(&snapshot).unwrap();
+    again.advance(0.9).unwrap();
+    assert_eq!((again.checksum(), again.alpha()), after);
+    let mut other = Scene::<f64>::new(240.0).unwrap();
+    assert!(matches!(other.restore(&snapshot), Err(SceneError::Snapshot(_))));
+}
+
+/// A motion that counts how often it is asked, and refuses what no equation contains.
+#[derive(Clone)]
+struct Watched(Arc<AtomicUsize>);
+
+impl Motion<f64, 2> for Watched {
+    const HAS: Orders = Orders::ALL;
+
+    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<f64, 2> {
+        assert!(orders == Orders::ACCELERATION || orders == Orders::NONE, "asked for {orders:?}");
+        self.0.fetch_add(1, Ordering::Relaxed);
+        Motion::<f64, 2>::sample(&Sinusoid::new([0.1, 0.0], 5.0, [0.0, 0.0]), t, side, orders)
+    }
+
+    fn next_kink(&self, _: f64) -> Option<f64> {
+        None
+    }
+}
+
+#[test]
+fn joints_are_asked_once_per_time_for_what_is_needed() {
+    let mut scene = Scene::<f64>::new(100.0).unwrap();
+    let asked = Arc::new(AtomicUsize::new(0));
+    let joint = scene.joint(Watched(asked.clone()));
+    for index in 0..100 {
+        scene.hang(joint, Hanging::new(0.1, 1.0 + 0.01 * f64::from(index)), [0.1], [0.0]).unwrap();
+    }
+    asked.store(0, Ordering::Relaxed);
+    scene.advance_ticks(50);
+    assert_eq!(asked.load(Ordering::Relaxed), 50);
+    // RK4 looks at the middle too, where the sample is there already, and at both ends, of which each is asked for once in a batch.
+    scene.hang(joint, Double::new(0.1, 1.0, 0.0), [0.1, 0.0], [0.0, 0.0]).unwrap();
+    asked.store(0, Ordering::Relaxed);
+    scene.advance_ticks(8);
+    assert_eq!(asked.load(Ordering::Relaxed), 8 + 9);
+}
+
+/// A motion that rests and must not be asked while the scene runs.
+#[derive(Clone)]
+struct Asleep(Arc<AtomicUsize>);
+
+impl Motion<f64, 2> for Asleep {
+    const HAS: Orders = Orders::ALL;
+
+    fn sample(&self, _: Time, _: Side, orders: Orders) -> Sample<f64, 2> {
+        if orders.contains(Orders::ACCELERATION) || orders.contains(Orders::VELOCITY) {
+            self.0.fetch_add(1, Ordering::Relaxed);
+        }
+        Sample::zero()
+    }
+
+    fn next_kink(&self, _: f64) -> Option<f64> {
+        panic!("a joint at rest has no kinks to ask for")
+    }
+
+    fn rest_until(&self, _: f64) -> f64 {
+        f64::INFINITY
+    }
+}
+
+#[test]
+fn still_joints_are_left_alone() {
+    let mut scene = Scene::<f64>::new(100.0).unwrap();
+    let asked = Arc::new(AtomicUsize::new(0));
+    let joint = scene.joint(Asleep(asked.clone()));
+    let handle = scene.hang(joint, Hanging::new(0.1, 1.0), [0.1], [0.0]).unwrap();
+    let free = scene.hang((), Simple::new(0.1, 1.0), [0.1], [0.0]).unwrap();
+    scene.advance_ticks(80);
+    // Ten batches; each reads once what never changes.
+    assert!(asked.load(Ordering::Relaxed) <= 10);
+    assert_eq!(scene.state(handle), scene.state(free));
+}
+
+#[test]
+fn failures_stay_where_they_are() {
+    let build = |bad: bool| {
+        let mut scene = Scene::<f64>::new(240.0).unwrap();
+        let joint = scene.joint(Sinusoid::new([0.05, 0.02], 9.0, [0.0, 1.0]));
+        for index in 0..40 {
+            let length = if bad && index == 7 { 0.0 } else { 0.5 };
+            scene.hang(joint, Hanging::new(0.1, length), [0.1 * f64::from(index)], [0.0]).unwrap();
+        }
+        scene
+    };
+    let (mut good, mut bad) = (build(false), build(true));
+    good.advance(1.0).unwrap();
+    let advanced = bad.advance(1.0).unwrap();
+    assert_eq!(advanced.failed, 1);
+    for index in 0..40 {
+        let handle = Handle::<Hanging<f64>, 1>::new(index);
+        if index == 7 {
+            assert_eq!(bad.state(handle), ([0.1 * 7.0], [0.0]));
+            assert_eq!(bad.status(handle), Status::Failed);
+        } else {
+            assert_eq!(bad.state(handle), good.state(handle));
+        }
+    }
+    let message = bad.failures()[0].to_string();
+    assert!(
+        message.starts_with("`Hanging` 7: at t = 0.0 the acceleration of `θ` is not finite; check parameter `L`"),
+        "{message}"
+    );
+}
+
+#[test]
+fn bad_input_is_refused() {
+    let mut scene = Scene::<f64>::new(240.0).unwrap();
+    let joint = scene.joint(Still::new([0.0, 0.0]));
+    assert!(matches!(scene.hang(joint, Hanging::new(0.1, 1.0), [f64::NAN], [0.0]), Err(SceneError::State { .. })));
+    for dt in [-1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(scene.advance(dt), Err(SceneError::FrameTime(_))));
+    }
+    assert_eq!(scene.advance(0.0).unwrap().ticks, 0);
+    scene.set_longest_frame(0.5).unwrap();
+    let advanced = scene.advance(2.0).unwrap();
+    assert_eq!((advanced.ticks, advanced.dropped), (120, 1.5));
+    let mut other = Scene::<f64>::new(240.0).unwrap();
+    assert!(matches!(other.hang(joint, Hanging::new(0.1, 1.0), [0.0], [0.0]), Err(SceneError::Joint(0))));
+    let position = pendulum_runtime::motion::Function::new(|t: f64| [t, 0.0]);
+    let vague = scene.joint(position);
+    let missing = scene.hang(vague, Hanging::new(0.1, 1.0), [0.0], [0.0]).unwrap_err();
+    assert_eq!(missing.to_string(), "the motion that drives `x` has no velocity, which the equations need; give one that has");
+}
+
+#[test]
+fn single_numbers_swing_too() {
+    let mut scene = Scene::<f32>::new(240.0).unwrap();
+    let joint = scene.joint(Sinusoid::new([0.05, 0.02], 9.0, [0.0, 1.0]));
+    let handle = scene.hang(joint, Hanging::new(0.1, 0.4), [0.1], [0.0]).unwrap();
+    scene.advance(10.0).unwrap();
+    let alone = Hanging::new(0.1, 0.4).driven_by(Sinusoid::new([0.05, 0.02], 9.0, [0.0, 1.0]));
+    let exact = solve(&alone, (0.0, 10.0), [0.1], [0.0]).run().unwrap();
+    assert!((f64::from(scene.state(handle).0[0]) - exact.end.q[0]).abs() < 2e-3);
+}
