@@ -355,3 +355,146 @@ fn single_numbers_swing_too() {
     let exact = solve(&alone, (0.0, 10.0), [0.1], [0.0]).run().unwrap();
     assert!((f64::from(scene.state(handle).0[0]) - exact.end.q[0]).abs() < 2e-3);
 }
+
+#[test]
+fn damping_is_exact_for_any_step() {
+    // Without gravity a damped pendulum turns by v/γ (1 − e^(−γt)).
+    for rate in [2.0, 60.0] {
+        let mut scene = Scene::<f64>::new(rate).unwrap();
+        let handle = scene.hang((), Simple { m: 0.1, L: 1.0, g: 0.0 }, [0.0], [3.0]).unwrap();
+        scene.set_damping(handle, 0.7).unwrap();
+        scene.advance(10.0).unwrap();
+        let (_, v) = scene.state(handle);
+        assert!((v[0] - 3.0 * (-7.0f64).exp()).abs() < 1e-15, "{}", v[0]);
+    }
+    // In a tick cut by kinks too.
+    let mut scene = Scene::<f64>::new(10.0).unwrap();
+    let joint = scene.joint(keys());
+    let handle = scene.hang(joint, Hanging { m: 0.1, L: 1e9, g: 0.0 }, [0.0], [3.0]).unwrap();
+    scene.set_damping(handle, 0.7).unwrap();
+    scene.advance(2.0).unwrap();
+    assert!((scene.state(handle).1[0] - 3.0 * (-1.4f64).exp()).abs() < 1e-8);
+}
+
+#[test]
+fn stops_throw_back_and_hold() {
+    use pendulum_runtime::scene::Stop;
+    let mut scene = Scene::<f64>::new(240.0).unwrap();
+    let free = |scene: &mut Scene<f64>| scene.hang((), Simple { m: 0.1, L: 1.0, g: 0.0 }, [0.0], [1.0]).unwrap();
+    let (hard, soft) = (free(&mut scene), free(&mut scene));
+    scene.set_limits(hard, [-1.0], [0.3], Stop::Hard { restitution: 0.5 }).unwrap();
+    scene.set_limits(soft, [-9.0], [0.3], Stop::Soft { stiffness: 900.0 }).unwrap();
+    scene.advance(0.25).unwrap();
+    assert_eq!(scene.state(hard), (scene.state(soft).0, [1.0]));
+    scene.advance(0.25).unwrap();
+    // At 0.3 s the wall; 0.2 s later it has gone back by 0.1 with half the speed.
+    let (q, v) = scene.state(hard);
+    assert!((q[0] - 0.2).abs() < 1e-12 && v == [-0.5], "{q:?} {v:?}");
+    // Half a period of the spring, then back with the same speed.
+    let (q, v) = scene.state(soft);
+    let expected = 0.3 - (0.2 - std::f64::consts::PI / 30.0);
+    assert!((q[0] - expected).abs() < 1e-4 && (v[0] + 1.0).abs() < 2e-3, "{q:?} {v:?} {expected}");
+    // What falls onto a wall without restitution lies there.
+    let handle = scene.hang((), Simple::new(0.1, 0.2), [1.0], [0.0]).unwrap();
+    scene.set_limits(handle, [0.5], [2.0], Stop::Hard { restitution: 0.0 }).unwrap();
+    scene.advance(2.0).unwrap();
+    let (q, v) = scene.state(handle);
+    assert!((q[0] - 0.5).abs() < 1e-12 && v[0].abs() < 0.3, "{q:?} {v:?}");
+    assert!(scene.set_limits(handle, [1.0], [0.0], Stop::Soft { stiffness: 1.0 }).is_err());
+    assert!(scene.set_limits(handle, [0.0], [1.0], Stop::Hard { restitution: 2.0 }).is_err());
+}
+
+#[test]
+fn directors_get_what_they_ask_for() {
+    use pendulum_runtime::scene::Carry;
+    let mut scene = zoo(1e-3);
+    let handle = Handle::<Hanging<f64>, 1>::new(4);
+    let double = Handle::<Double<f64>, 2>::new(3);
+    scene.advance(0.3).unwrap();
+    // Rest.
+    scene.reset_to_rest(handle).unwrap();
+    let (q, v) = scene.state(handle);
+    assert!((q[0] / std::f64::consts::TAU).fract().abs() < 1e-9 && v == [0.0], "{q:?}");
+    scene.reset_all_to_rest().unwrap();
+    let (q, v) = scene.state(double);
+    assert!(q.iter().all(|q| q.sin().abs() < 1e-9 && 0.0 < q.cos()) && v == [0.0, 0.0], "{q:?}");
+    // Mirror.
+    scene.advance(0.3).unwrap();
+    let (q, v) = scene.state(double);
+    scene.mirror(double, [-1.0, -1.0]).unwrap();
+    assert_eq!(scene.state(double), (q.map(|q| -q), v.map(|v| -v)));
+    // Gravity, everywhere and by name; nothing is reset.
+    let before = states(&scene);
+    assert_eq!(scene.set_parameter_everywhere("g", 1.62).unwrap(), 100 + 3 * 34);
+    assert_eq!(states(&scene), before);
+    assert_eq!(scene.system(handle).g, 1.62);
+    assert!(matches!(scene.set_parameter_everywhere("h", 1.0), Err(SceneError::Parameter(_))));
+    scene.set_parameter(handle, "L", 0.25).unwrap();
+    assert_eq!(scene.system(handle).L, 0.25);
+    // Pause.
+    scene.set_paused(true);
+    assert_eq!(scene.advance(5.0).unwrap().ticks, 0);
+    assert_eq!(scene.system(handle).L, 0.25);
+    scene.set_paused(false);
+    // Another motion, felt and unfelt.
+    let mut scene = Scene::<f64>::new(240.0).unwrap();
+    let joint = scene.joint(Still::new([0.0, 0.0]));
+    let handle = scene.hang(joint, Hanging::new(0.1, 0.5), [0.2], [0.1]).unwrap();
+    let away = Linear::new(&[-1.0, 9.0], &[[0.0, 0.0], [20.0, 0.0]]).unwrap();
+    scene.set_motion(joint, away.clone(), Carry::Swing).unwrap();
+    assert_eq!(scene.state(handle), ([0.2], [0.1]));
+    scene.set_motion(joint, Still::new([7.0, 0.0]), Carry::Swing).unwrap();
+    scene.set_motion(joint, away, Carry::Momentum).unwrap();
+    // Δθ̇ = −Δẋ cos θ / L.
+    assert!((scene.state(handle).1[0] - (0.1 - 2.0 * 0.2f64.cos() / 0.5)).abs() < 1e-14);
+    scene.set_motion(joint, Still::new([7.0, 0.0]), Carry::Rest).unwrap();
+    assert_eq!(scene.state(handle).1, [0.0]);
+    assert!(scene.state(handle).0[0].abs() < 1e-12);
+}
+
+#[test]
+fn loops_close() {
+    let mut scene = Scene::<f64>::new(240.0).unwrap();
+    let joint = scene.joint(Sinusoid::new([0.05, 0.0], std::f64::consts::TAU * 1.5, [0.0, 0.0]));
+    let handle = scene.hang(joint, Hanging::new(0.1, 0.3), [0.4], [0.0]).unwrap();
+    scene.set_damping(handle, 2.0).unwrap();
+    let closed = scene.close_loop(160, 100, 1e-12).unwrap();
+    assert!(closed.gap <= 1e-12 && closed.turns < 60, "{closed:?}");
+    assert_eq!(scene.tick(), 0);
+    let start = scene.state(handle);
+    scene.advance_ticks(160);
+    let end = scene.state(handle);
+    assert!((end.0[0] - start.0[0]).abs() < 1e-12 && (end.1[0] - start.1[0]).abs() < 1e-11);
+    // Warming up for as long leads there too.
+    scene.set_state(handle, [0.0], [0.0]).unwrap();
+    scene.warm_up(20.0).unwrap();
+    assert_eq!(scene.tick(), 160);
+    assert!((scene.state(handle).0[0] - end.0[0]).abs() < 1e-8);
+}
+
+#[test]
+fn baked_is_live() {
+    let mut scene = zoo(1e-3);
+    scene.advance(0.1).unwrap();
+    let handles: Vec<_> = (0..40).map(Handle::<Hanging<f64>, 1>::new).collect();
+    let exact = scene.bake(&handles, 240, 0.0).unwrap();
+    let near = scene.bake(&handles, 240, 1e-3).unwrap();
+    let (mut all, mut kept) = (0, 0);
+    for tick in 1..=240 {
+        scene.advance_ticks(1);
+        for (index, &handle) in handles.iter().enumerate() {
+            for alpha in [0.25, 0.5, 1.0] {
+                let pose = scene.pose(handle, alpha)[0];
+                let at = f64::from(tick) - 1.0 + alpha;
+                assert_eq!(exact[index].at(at)[0], pose);
+                assert!((near[index].at(at)[0] - pose).abs() < 1.2e-3, "{index} at {at}");
+            }
+        }
+    }
+    for (exact, near) in exact.iter().zip(&near) {
+        all += exact.keys().count();
+        kept += near.keys().count();
+    }
+    assert_eq!(all, 40 * 241);
+    assert!(4 * kept < all, "{kept} of {all}");
+}

@@ -41,11 +41,18 @@ pub enum SceneError {
         /// 1 for the velocity, 2 for the acceleration.
         derivative: usize,
     },
+    /// A pendulum comes to rest nowhere.
+    Restless {
+        /// The name of its type.
+        kind: &'static str,
+        /// Its number among those of its type.
+        index: u32,
+    },
     /// No system of the type has a parameter of that name.
     Parameter(String),
     /// A snapshot was taken of another scene.
     Snapshot(&'static str),
-    /// A pendulum could not be integrated.
+    /// The time in which a pendulum was hidden could not be made up for.
     Integration(Error),
 }
 
@@ -62,6 +69,9 @@ impl fmt::Display for SceneError {
             Self::Derivative { input, derivative } => {
                 let name = ["position", "velocity", "acceleration"].get(*derivative).unwrap_or(&"derivative");
                 write!(f, "the motion that drives `{input}` has no {name}, which the equations need; give one that has")
+            }
+            Self::Restless { kind, index } => {
+                write!(f, "`{kind}` {index} comes to rest nowhere; set its state, or change what drives it on")
             }
             Self::Parameter(name) => {
                 write!(f, "there is no parameter `{name}`; a component of a vector is written `c.x`, of a family `m[0]`")

@@ -3,10 +3,12 @@
 use super::assemble::Assemble;
 use super::bucket::{self, Bucket, Extra, Failed, Kind, Loose};
 use super::clock::Clock;
+use super::director::Carry;
 use super::error::{Failure, SceneError};
 use super::frequency;
 use super::hung::{Hung, Layout};
 use super::joint::Place;
+use super::rest;
 use super::scheme::{Grid, MOST_SUBSTEPS, Scheme};
 use super::snapshot::{self, GroupState};
 use super::tracks::Sampled;
@@ -35,6 +37,23 @@ pub(super) trait AnyGroup<T>: Send + Sync {
     fn save(&self) -> GroupState<T>;
     /// Whether a saved state belongs to this group; what differs if not.
     fn accepts(&self, state: &GroupState<T>) -> Result<(), SceneError>;
+    /// The largest differences of coordinates and of velocities from a saved state.
+    fn gap(&self, state: &GroupState<T>) -> [f64; 2];
+    /// Lets pendulums hang at rest.
+    fn reset(&mut self, clock: &Clock, places: &[Place<T>], which: &dyn Fn(&str, u32) -> bool) -> Result<(), SceneError>;
+    /// Whether a motion has what those on a joint need.
+    fn accepts_motion(&self, joint: u32, has: Orders) -> Result<(), SceneError>;
+    /// A joint has another motion than `before`.
+    fn moved(
+        &mut self,
+        clock: &Clock,
+        before: &[Place<T>],
+        places: &[Place<T>],
+        joint: u32,
+        carry: Carry,
+    ) -> Result<(), SceneError>;
+    /// Sets a parameter of all, if they have it.
+    fn set_parameter(&mut self, clock: &Clock, places: &[Place<T>], name: &str, value: T) -> Option<usize>;
     /// Puts back what was saved.
     fn restore(&mut self, places: &[Place<T>], state: &GroupState<T>);
 }
@@ -111,7 +130,8 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         let t = clock.time(clock.tick());
         let inputs = inputs_at::<S, T, N>(places, &loose.joints, Time::new(t), Side::After, Purpose::Accelerations, true);
         let omega = frequency::fastest(system, T::from_f64(t), &loose.state[0], &inputs);
-        let phase = omega * clock.step();
+        // A soft stop swings too.
+        let phase = omega.max(loose.extra.stiffness.to_f64().sqrt()) * clock.step();
         let grid = match self.scheme {
             Some(scheme) => Grid { scheme, substeps: scheme.substeps(phase, self.tolerance) },
             None => Scheme::cheapest(&S::FACTS, phase, self.tolerance),
@@ -204,6 +224,35 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         self.set_awake(loose.id, awake);
     }
 
+    /// Wakes a pendulum that sleeps.
+    pub(super) fn rouse(&mut self, id: u32) {
+        if let Status::Asleep(_) = self.status[id as usize] {
+            self.status[id as usize] = Status::Awake;
+            self.set_awake(id, true);
+        }
+    }
+
+    /// Where a pendulum comes to rest.
+    pub(super) fn rest_of(&self, clock: &Clock, places: &[Place<T>], loose: &Loose<T, N>) -> Option<[T; N]> {
+        let t = clock.time(clock.tick());
+        let system = self.system_of(&loose.parameters);
+        let inputs = inputs_at::<S, T, N>(places, &loose.joints, Time::new(t), Side::After, Purpose::Accelerations, true);
+        let t = T::from_f64(t);
+        let omega = frequency::fastest(&system, t, &loose.state[0], &inputs);
+        rest::rest(&system, t, &loose.state[0], &inputs, omega)
+    }
+
+    /// Lets a pendulum hang at rest.
+    fn rest(&mut self, clock: &Clock, places: &[Place<T>], id: u32) -> Result<(), SceneError> {
+        let mut loose = self.read(id);
+        let missing = SceneError::Restless { kind: S::FACTS.name, index: id };
+        let q = self.rest_of(clock, places, &loose).ok_or(missing)?;
+        let zero = [T::from_f64(0.0); N];
+        loose.state = [q, zero, zero, zero, q, zero];
+        self.write(&loose);
+        Ok(())
+    }
+
     /// The system with these parameters.
     pub(super) fn system_of(&self, parameters: &[T]) -> S {
         let mut parameters = parameters.iter();
@@ -260,8 +309,76 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T,
         snapshot::save(self)
     }
 
+    fn gap(&self, state: &GroupState<T>) -> [f64; 2] {
+        snapshot::gap(self, state)
+    }
+
     fn accepts(&self, state: &GroupState<T>) -> Result<(), SceneError> {
         snapshot::accepts(self, state)
+    }
+
+    fn reset(&mut self, clock: &Clock, places: &[Place<T>], which: &dyn Fn(&str, u32) -> bool) -> Result<(), SceneError> {
+        for id in (0..self.table.len() as u32).filter(|&id| which(S::FACTS.name, id)) {
+            self.rest(clock, places, id)?;
+        }
+        Ok(())
+    }
+
+    fn accepts_motion(&self, joint: u32, has: Orders) -> Result<(), SceneError> {
+        for bucket in &self.buckets {
+            for track in 0..bucket.tracks.count() as u32 {
+                for (input, &other) in bucket.tracks.joints(track).iter().enumerate() {
+                    if other == joint {
+                        check_motion(&S::FACTS, input, has)?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn moved(
+        &mut self,
+        clock: &Clock,
+        before: &[Place<T>],
+        places: &[Place<T>],
+        joint: u32,
+        carry: Carry,
+    ) -> Result<(), SceneError> {
+        let time = Time::new(clock.time(clock.tick()));
+        for id in 0..self.table.len() as u32 {
+            if !self.joints(id).contains(&joint) {
+                continue;
+            }
+            let mut loose = self.read(id);
+            if carry == Carry::Momentum {
+                let inputs = |places, side| inputs_at::<S, T, N>(places, &loose.joints, time, side, Purpose::Momenta, false);
+                let (old, new) = (inputs(before, Side::Before), inputs(places, Side::After));
+                let (system, t) = (self.system_of(&loose.parameters), scalar_time(time));
+                let [q, _, v, ..] = loose.state;
+                if old != new {
+                    loose.state[2] = system.velocities(t, &q, &system.momenta(t, &q, &v, &old), &new);
+                    loose.state[3] = [T::from_f64(0.0); N];
+                }
+            }
+            self.rewrite(clock, places, &loose);
+            if carry == Carry::Rest {
+                self.rest(clock, places, id)?;
+            }
+            self.rouse(id);
+        }
+        Ok(())
+    }
+
+    fn set_parameter(&mut self, clock: &Clock, places: &[Place<T>], name: &str, value: T) -> Option<usize> {
+        let index = S::FACTS.parameters.iter().position(|parameter| *parameter == name)?;
+        for id in 0..self.table.len() as u32 {
+            let mut loose = self.read(id);
+            loose.parameters[index] = value;
+            self.rewrite(clock, places, &loose);
+            self.rouse(id);
+        }
+        Some(self.table.len())
     }
 
     fn restore(&mut self, places: &[Place<T>], state: &GroupState<T>) {

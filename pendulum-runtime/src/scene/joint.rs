@@ -17,6 +17,8 @@ pub(super) trait Drive<T>: Send + Sync {
     fn components(&self) -> usize;
     /// Writes those of position, velocity and acceleration that are in `orders`, one after the other.
     fn sample(&self, t: Time, side: Side, orders: Orders, numbers: &mut [T]);
+    /// The same at several times, one record after the other; a time that stands twice in succession is sampled once.
+    fn sample_all(&self, times: &[Time], orders: Orders, numbers: &mut [T]);
     fn next_kink(&self, t: f64) -> Option<f64>;
     fn rest_until(&self, t: f64) -> f64;
 }
@@ -46,6 +48,19 @@ impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Forgot
                 let (here, after) = rest.split_at_mut(D);
                 here.copy_from_slice(&values);
                 rest = after;
+            }
+        }
+    }
+
+    fn sample_all(&self, times: &[Time], orders: Orders, numbers: &mut [T]) {
+        let width = D * orders.count();
+        for (index, &t) in times.iter().enumerate() {
+            let (before, here) = numbers.split_at_mut(index * width);
+            if 0 < index && times[index - 1] == t {
+                here[..width].copy_from_slice(&before[(index - 1) * width..]);
+            } else {
+                // Without a kink the side is all one, but only one side gives the same bits however ticks are cut into batches.
+                self.sample(t, Side::After, orders, &mut here[..width]);
             }
         }
     }
@@ -106,38 +121,35 @@ impl<T: Real> Place<T> {
         self.kink = f64::NAN;
     }
 
-    /// Samples the ticks from `tick` at `fractions`; ticks with a kink are left out.
-    pub(super) fn sample(&mut self, clock: &Clock, tick: i64, ticks: usize, fractions: &[f64], numbers: &mut [T]) {
-        let width = self.width();
+    /// Samples the ticks from `tick` at `times`; ticks with a kink in them or at their ends are left out.
+    pub(super) fn sample(&mut self, clock: &Clock, tick: i64, ticks: usize, times: &[Time], numbers: &mut [T]) {
         self.kinked = 0;
-        // A motion without kinks in sight is asked at every time but once: the end of a tick is the start of the next.
-        let shared = fractions.first() == Some(&0.0) && fractions.last() == Some(&1.0);
+        if !self.kink_within(clock.time(tick), clock.time(tick + ticks as i64)) {
+            return self.drive.sample_all(times, self.orders, numbers);
+        }
+        let (per_tick, width) = (times.len() / ticks, self.width());
         for index in 0..ticks {
             let now = tick + index as i64;
-            let (start, end) = (clock.time(now), clock.time(now + 1));
-            // Also where nobody has looked yet.
-            let ahead = start < self.kink;
-            if !ahead {
-                self.kink = match self.drive.next_kink(start) {
-                    // A motion that has not passed what it says is next has no more to say.
-                    Some(kink) if start < kink => kink,
-                    _ => f64::INFINITY,
-                };
-            }
-            if self.kink <= end {
+            if self.kink_within(clock.time(now), clock.time(now + 1)) {
                 self.kinked |= 1 << index;
-                continue;
-            }
-            let length = fractions.len() * width;
-            let (before, here) = numbers.split_at_mut(index * length);
-            for (node, (&fraction, sample)) in fractions.iter().zip(here.chunks_exact_mut(width.max(1))).enumerate() {
-                if node == 0 && shared && 0 < index && self.kinked & (1 << (index - 1)) == 0 {
-                    sample.copy_from_slice(&before[before.len() - width..]);
-                    continue;
-                }
-                // Without a kink the side is all one, but only one side gives the same bits however ticks are cut into batches.
-                self.drive.sample(clock.within(now, fraction), Side::After, self.orders, sample);
+            } else {
+                let numbers = &mut numbers[index * per_tick * width..][..per_tick * width];
+                self.drive.sample_all(&times[index * per_tick..][..per_tick], self.orders, numbers);
             }
         }
+    }
+
+    /// Whether there is a kink after `start`, up to and with `end`.
+    fn kink_within(&mut self, start: f64, end: f64) -> bool {
+        // Also where nobody has looked yet.
+        let ahead = start < self.kink;
+        if !ahead {
+            self.kink = match self.drive.next_kink(start) {
+                // A motion that has not passed what it says is next has no more to say.
+                Some(kink) if start < kink => kink,
+                _ => f64::INFINITY,
+            };
+        }
+        self.kink <= end
     }
 }

@@ -48,9 +48,9 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Work for Run<'_, S, T, N> {
             let lanes = if index == last { self.lanes_of_last } else { W };
             let kept = (lanes < W).then(|| (block.q, block.v, block.before));
             match self.batch.grid.scheme {
-                Scheme::Leapfrog if Known::<S, N>::SPLITS => batch::<S, T, N, LEAPFROG>(block, self.batch),
-                Scheme::Srkn6b if Known::<S, N>::SPLITS => batch::<S, T, N, SRKN6B>(block, self.batch),
-                _ => batch::<S, T, N, RK4>(block, self.batch),
+                Scheme::Leapfrog if Known::<S, N>::SPLITS => batch::<S, T, N, LEAPFROG, 1>(block, self.batch),
+                Scheme::Srkn6b if Known::<S, N>::SPLITS => batch::<S, T, N, SRKN6B, 7>(block, self.batch),
+                _ => batch::<S, T, N, RK4, 3>(block, self.batch),
             }
             if let Some((q, v, before)) = kept {
                 // Those beyond sleep.
@@ -108,20 +108,23 @@ impl<T: Lane + Float> Weights<T> {
 }
 
 #[inline(always)]
-fn batch<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8>(block: &mut Block<S, T, N>, batch: &Batch<'_, T>) {
-    let stages = batch.grid.scheme.stages().len();
+fn batch<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, const K: usize>(
+    block: &mut Block<S, T, N>,
+    batch: &Batch<'_, T>,
+) {
+    let stages = K;
     let weights = Weights::<T>::new::<SCHEME>(|weight| Wide::from_f64(weight * batch.h));
     let layout = const { &Known::<S, N>::FORCES };
     let zero = T::from_f64(0.0);
-    let mut inputs = [gathered::<S, T, N>(&[], layout, &block.track); MOST_STAGES];
+    let mut inputs = [gathered::<S, T, N>(&[], layout, &block.track); K];
     if batch.still {
-        inputs = [gathered::<S, T, N>(batch.tracks.records(0, layout.width), layout, &block.track); MOST_STAGES];
+        inputs = [gathered::<S, T, N>(batch.tracks.records(0, layout.width), layout, &block.track); K];
     }
-    let mut times = [Wide::from_f64(0.0); MOST_STAGES];
+    let mut times = [Wide::from_f64(0.0); K];
     for tick in 0..batch.ticks {
         block.before = [block.q.high, block.v.high];
         if batch.tracks.any_cut() && block.track.iter().any(|&track| !batch.tracks.pieces(tick, track).is_empty()) {
-            cut_tick::<S, T, N, SCHEME>(block, batch, tick);
+            cut_tick::<S, T, N, SCHEME, K>(block, batch, tick);
         } else {
             for step in 0..batch.grid.substeps as usize {
                 let evaluation = (tick * batch.grid.substeps as usize + step) * stages;
@@ -133,7 +136,7 @@ fn batch<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8>(block
                     }
                 }
                 let Block { system, prepared, q, v, extras, .. } = &mut *block;
-                step_of::<S, T, N, SCHEME>(system, prepared, &weights, &times, &inputs, q, v, extras.as_deref());
+                step_of::<S, T, N, SCHEME, K>(system, prepared, &weights, &times, &inputs, q, v, extras.as_deref());
             }
         }
         // Times zero, infinity and what is not a number are not zero.
@@ -224,12 +227,12 @@ fn accelerations<S: Hung<T, N>, T: Lane + Float, const N: usize>(
 
 #[inline(always)]
 #[allow(clippy::too_many_arguments)]
-fn step_of<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8>(
+fn step_of<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, const K: usize>(
     system: &S::Lanes,
     prepared: &<S::Lanes as System<N>>::Prepared,
     weights: &Weights<T>,
-    times: &[Wide<T>; MOST_STAGES],
-    inputs: &[Inputs<S, T, N>; MOST_STAGES],
+    times: &[Wide<T>; K],
+    inputs: &[Inputs<S, T, N>; K],
     q: &mut Sum<Wide<T>, N>,
     v: &mut Sum<Wide<T>, N>,
     extras: Option<&Extras<T, N>>,
@@ -339,12 +342,12 @@ fn stop<T: Lane + Float, const N: usize>(q: &mut Sum<Wide<T>, N>, v: &mut Sum<Wi
 /// A tick that kinks cut into pieces, others in each lane.
 #[cold]
 #[inline(never)]
-fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8>(
+fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, const K: usize>(
     block: &mut Block<S, T, N>,
     batch: &Batch<'_, T>,
     tick: usize,
 ) {
-    let stages = batch.grid.scheme.stages().len();
+    let stages = K;
     let substeps = batch.grid.substeps as usize;
     let layout = const { &Known::<S, N>::FORCES };
     let pieces = block.track.map(|track| batch.tracks.pieces(tick, track));
@@ -352,7 +355,7 @@ fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8>(
     for step in 0..steps {
         let mut active = [true; W];
         let mut lengths = [batch.h; W];
-        let mut times = [Wide::from_f64(0.0); MOST_STAGES];
+        let mut times = [Wide::from_f64(0.0); K];
         for lane in 0..W {
             let whole = pieces[lane].is_empty();
             active[lane] = step < if whole { substeps } else { pieces[lane].len() };
@@ -368,7 +371,7 @@ fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8>(
                 times[stage].0[lane] = scalar_time(t);
             }
         }
-        let mut inputs = [gathered::<S, T, N>(&[], layout, &block.track); MOST_STAGES];
+        let mut inputs = [gathered::<S, T, N>(&[], layout, &block.track); K];
         for (stage, inputs) in inputs.iter_mut().enumerate().take(stages) {
             *inputs = Assemble::assemble(|input, derivative, component| {
                 let mut lanes = Wide::from_f64(0.0);
@@ -399,7 +402,7 @@ fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8>(
             extras
         });
         let (mut q, mut v) = (block.q, block.v);
-        step_of::<S, T, N, SCHEME>(&block.system, &block.prepared, &weights, &times, &inputs, &mut q, &mut v, extras.as_ref());
+        step_of::<S, T, N, SCHEME, K>(&block.system, &block.prepared, &weights, &times, &inputs, &mut q, &mut v, extras.as_ref());
         for lane in (0..W).filter(|&lane| active[lane]) {
             copy_lane(&mut block.q.high, &q.high, lane);
             copy_lane(&mut block.q.low, &q.low, lane);

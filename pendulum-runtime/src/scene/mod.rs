@@ -41,9 +41,12 @@
 //! the method that needs fewer evaluations. Steps are cut at the kinks of the motions, and there the momenta carry the state over.
 
 mod assemble;
+mod bake;
 mod block;
 mod bucket;
 mod clock;
+mod cycle;
+mod director;
 mod dispatch;
 mod error;
 mod frequency;
@@ -52,6 +55,7 @@ mod hash;
 mod hung;
 mod joint;
 mod kernel;
+mod rest;
 mod run;
 mod scheme;
 mod snapshot;
@@ -60,6 +64,9 @@ mod timetable;
 mod tracks;
 
 pub use assemble::{Anchor, Assemble};
+pub use bake::Baked;
+pub use cycle::Closed;
+pub use director::{Carry, Stop};
 pub use error::{Failure, SceneError};
 pub use group::Status;
 pub use hung::Hung;
@@ -92,6 +99,7 @@ pub struct Scene<T> {
     tolerance: f64,
     longest_frame: f64,
     parallel: bool,
+    paused: bool,
     failures: Vec<Failure>,
 }
 
@@ -154,6 +162,7 @@ impl<T: Lane + Float> Scene<T> {
             tolerance: 1e-3,
             longest_frame: 60.0,
             parallel: true,
+            paused: false,
             failures: Vec::new(),
         })
     }

@@ -29,6 +29,9 @@ impl<T: Lane + Float> Scene<T> {
     /// # Errors
     /// A time that is negative or no number.
     pub fn advance(&mut self, dt: f64) -> Result<Advanced, SceneError> {
+        if self.paused && 0.0 <= dt && dt < f64::INFINITY {
+            return Ok(Advanced::default());
+        }
         let (ticks, dropped) = self.clock.ask(dt, self.longest_frame)?;
         let failed = self.failures.len();
         self.ticks(ticks);
@@ -109,6 +112,7 @@ impl<T: Lane + Float> Scene<T> {
     /// Samples all joints that somebody needs.
     fn sample(&mut self, tick: i64, ticks: usize) {
         let Self { clock, places, numbers, timetable, .. } = self;
+        timetable.begin(clock, tick, ticks);
         let mut length = 0;
         let shared = Ticks { clock, timetable, tick, ticks };
         for place in places.iter_mut().filter(|place| is_sampled(place)) {
@@ -137,15 +141,20 @@ struct Ticks<'a> {
 impl Ticks<'_> {
     /// The numbers of a joint in a batch.
     fn length<T: Lane + Float>(&self, place: &Place<T>) -> usize {
-        self.ticks * self.timetable.fractions(place.class).len() * place.width()
+        self.timetable.times(place.class).len() * place.width()
     }
 
     /// Samples joints into `numbers`, which begin at the offset `base`.
     fn sample<T: Lane + Float>(&self, places: &mut [Place<T>], numbers: &mut [T], base: usize) {
         for place in places.iter_mut().filter(|place| is_sampled(place)) {
             let (begin, length) = (place.offset - base, self.length(place));
-            let fractions = self.timetable.fractions(place.class);
-            place.sample(self.clock, self.tick, self.ticks, fractions, &mut numbers[begin..begin + length]);
+            place.sample(
+                self.clock,
+                self.tick,
+                self.ticks,
+                self.timetable.times(place.class),
+                &mut numbers[begin..begin + length],
+            );
         }
     }
 

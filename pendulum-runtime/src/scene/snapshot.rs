@@ -110,6 +110,27 @@ pub(super) fn restore<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     }
 }
 
+/// The largest differences of coordinates and of velocities.
+pub(super) fn gap<S: Hung<T, N>, T: Lane + Float, const N: usize>(group: &Group<S, T, N>, state: &GroupState<T>) -> [f64; 2] {
+    let count = S::FACTS.parameters.len();
+    let mut gap = [0.0f64; 2];
+    for (id, numbers) in (0..group.table.len() as u32).zip(state.numbers.chunks_exact(count + numbers(N))) {
+        let [_, (q, v)] = group.states(id);
+        // Coordinates and velocities stand before their low words.
+        for i in 0..N {
+            gap[0] = gap[0].max((q[i] - numbers[count + i]).to_f64().abs());
+            gap[1] = gap[1].max((v[i] - numbers[count + 2 * N + i]).to_f64().abs());
+        }
+    }
+    gap
+}
+
+impl<T> Snapshot<T> {
+    pub(super) fn groups(&self) -> &[GroupState<T>] {
+        &self.groups
+    }
+}
+
 impl<T: Lane + Float> Scene<T> {
     /// Everything that changes while the scene runs.
     pub fn snapshot(&self) -> Snapshot<T> {

@@ -1,6 +1,8 @@
 //! When in a tick joints are sampled: once per time for all grids that need them.
 
+use super::clock::Clock;
 use super::scheme::Grid;
+use crate::time::Time;
 
 /// All grids of a scene, and for each set of them that some joint serves the times of its samples.
 #[derive(Clone, Debug, Default)]
@@ -17,6 +19,8 @@ struct Class {
     fractions: Vec<f64>,
     /// By grid, the samples that its evaluations take.
     nodes: Vec<Vec<u16>>,
+    /// The times of all samples in a batch, tick by tick.
+    times: Vec<Time>,
 }
 
 impl Timetable {
@@ -44,11 +48,27 @@ impl Timetable {
         let nodes = self.grids.iter().enumerate();
         let nodes =
             nodes.map(|(index, grid)| if member(index) { grid.fractions().map(node).collect() } else { Vec::new() }).collect();
-        self.classes.push(Class { grids, fractions, nodes });
+        self.classes.push(Class { grids, fractions, nodes, times: Vec::new() });
         self.classes.len() as u32 - 1
     }
 
-    pub(super) fn fractions(&self, class: u32) -> &[f64] {
+    /// Writes down the times of a batch.
+    pub(super) fn begin(&mut self, clock: &Clock, tick: i64, ticks: usize) {
+        for Class { fractions, times, .. } in &mut self.classes {
+            times.clear();
+            for now in tick..tick + ticks as i64 {
+                times.extend(fractions.iter().map(|&fraction| clock.within(now, fraction)));
+            }
+        }
+    }
+
+    /// The times at which joints of a class are sampled in a batch, tick by tick.
+    pub(super) fn times(&self, class: u32) -> &[Time] {
+        &self.classes[class as usize].times
+    }
+
+    #[cfg(test)]
+    fn fractions(&self, class: u32) -> &[f64] {
         &self.classes[class as usize].fractions
     }
 

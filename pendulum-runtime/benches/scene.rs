@@ -1,0 +1,156 @@
+//! What a pendulum costs in a scene: `cargo bench -p pendulum-runtime --bench scene [--features rayon]`, written to `target/scene.csv`.
+//!
+//! Each case is the median of nine runs, and beside it in the same run a scalar loop written by hand: leapfrog with `f64::sin` (`f32::sin`), one
+//! pendulum after the other. A step is one evaluation. Awake or asleep, all pendulums count.
+
+#![allow(mixed_script_confusables, missing_docs)]
+
+use pendulum_runtime::motion::{Sinusoid, Still};
+use pendulum_runtime::prelude::*;
+use pendulum_runtime::real::{Float, Lane};
+use pendulum_runtime::scene::Scene;
+use std::fmt::Write;
+use std::hint::black_box;
+use std::time::Instant;
+
+lagrangian! {
+    #[derive(Clone, Debug)]
+    pub struct Simple { m: kg, L: m, g: m/s^2 = 9.81 }
+    coordinate θ: rad;
+    let y = L * [sin(θ), -cos(θ)];
+    kinetic = m/2 * |ẏ|^2;
+    potential = m*g*height(y);
+}
+
+lagrangian! {
+    #[derive(Clone, Debug)]
+    pub struct Hanging { m: kg, L: m, g: m/s^2 = 9.81 }
+    coordinate θ: rad;
+    driven x: [m; 2];
+    let y = x + L * [sin(θ), -cos(θ)];
+    kinetic = m/2 * |ẏ|^2;
+    potential = m*g*height(y);
+}
+
+/// The substeps of a frame of a sixtieth of a second.
+const TICKS: u32 = 4;
+
+#[derive(Clone, Copy, PartialEq)]
+enum Drive {
+    Free,
+    Still,
+    Moved,
+}
+
+fn scene<T: Lane + Float>(pendulums: usize, joints: usize, drive: Drive) -> Scene<T> {
+    let number = T::from_f64;
+    let mut scene = Scene::<T>::new(240.0).expect("a rate");
+    scene.set_tolerance(1e-2).expect("a tolerance");
+    let moved = |k: usize| Sinusoid::new([0.05, 0.02], 6.0 + 6.0 * k as f64 / joints as f64, [0.0, 1.0]);
+    let mut hung = 0;
+    for joint in 0..joints {
+        let handle = if drive == Drive::Moved { scene.joint(moved(joint)) } else { scene.joint(Still::new([0.0, 0.0])) };
+        while hung < pendulums * (joint + 1) / joints {
+            let part = hung as f64 / pendulums as f64;
+            let (length, q) = (number(0.3 + 0.5 * part), [number(1.0 - part)]);
+            if drive == Drive::Free {
+                scene
+                    .hang((), Simple { m: number(0.1), L: length, g: number(9.81) }, q, [number(0.0)])
+                    .map(drop)
+                    .expect("a pendulum");
+            } else {
+                scene
+                    .hang(handle, Hanging { m: number(0.1), L: length, g: number(9.81) }, q, [number(0.0)])
+                    .map(drop)
+                    .expect("a pendulum");
+            }
+            hung += 1;
+        }
+    }
+    scene
+}
+
+/// Nanoseconds for a step of the scalar loop with the sine of `std`.
+macro_rules! baseline {
+    ($name:ident, $float:ident) => {
+        fn $name(steps: usize) -> f64 {
+            let (h, factor): ($float, $float) = (1.0 / 240.0, black_box(9.81 / 0.5));
+            let (mut q, mut v): ($float, $float) = (black_box(1.0), 0.0);
+            let start = Instant::now();
+            for _ in 0..steps {
+                q += 0.5 * h * v;
+                v -= h * factor * q.sin();
+                q += 0.5 * h * v;
+            }
+            black_box((q, v));
+            1e9 * start.elapsed().as_secs_f64() / steps as f64
+        }
+    };
+}
+
+baseline!(baseline_f64, f64);
+baseline!(baseline_f32, f32);
+
+fn median(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
+struct Case<'a> {
+    name: &'a str,
+    pendulums: usize,
+    joints: usize,
+    scalar: &'a str,
+    threads: usize,
+    baseline: fn(usize) -> f64,
+}
+
+impl Case<'_> {
+    fn measure<T: Lane + Float>(&self, csv: &mut String, mut scene: Scene<T>) -> f64 {
+        let frames = (100_000 / self.pendulums).clamp(1, 500);
+        let runs = if self.pendulums < 100_000 { 101 } else { 11 };
+        scene.set_parallel(1 < self.threads);
+        scene.advance_ticks(TICKS);
+        let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+        for _ in 0..runs {
+            let start = Instant::now();
+            for _ in 0..frames {
+                black_box(scene.advance_ticks(TICKS));
+            }
+            ours.push(1e9 * start.elapsed().as_secs_f64() / (frames * self.pendulums * TICKS as usize) as f64);
+            theirs.push((self.baseline)(20_000));
+        }
+        let least = ours.iter().copied().fold(f64::INFINITY, f64::min);
+        let (ours, theirs) = (median(ours), median(theirs));
+        let Self { name, pendulums, joints, scalar, threads, .. } = self;
+        println!(
+            "{name:<14} {pendulums:>8} on {joints:>6}  {scalar}  {threads} threads  {ours:8.3} ns a step  {:6.3} of {theirs:.1} ns  {:8.3} ms a frame, at least {least:.3} ns",
+            ours / theirs,
+            1e-6 * ours * (pendulums * TICKS as usize) as f64
+        );
+        writeln!(csv, "{name},{pendulums},{joints},{threads},{scalar},{ours:.4},{theirs:.4}").expect("a string");
+        ours
+    }
+}
+
+fn main() {
+    let only = std::env::var("ONLY").ok();
+    let mut csv = String::from("case,pendulums,joints,threads,scalar,ns_per_pendulum_step,baseline_ns\n");
+    let many = if cfg!(feature = "rayon") { std::thread::available_parallelism().map_or(1, usize::from) } else { 1 };
+    for (pendulums, joints) in [(86, 9), (10_000, 1_000), (9_984, 10), (1_000_000, 100_000)] {
+        if only.as_deref().is_some_and(|only| only != pendulums.to_string()) {
+            continue;
+        }
+        for (drive, name) in [(Drive::Free, "free"), (Drive::Still, "still"), (Drive::Moved, "driven")] {
+            for threads in if 1 < many && 86 < pendulums { vec![1, many] } else { vec![1] } {
+                let case = |scalar, baseline| Case { name, pendulums, joints, scalar, threads, baseline };
+                case("f64", baseline_f64).measure(&mut csv, scene::<f64>(pendulums, joints, drive));
+                case("f32", baseline_f32).measure(&mut csv, scene::<f32>(pendulums, joints, drive));
+            }
+        }
+    }
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../target");
+    std::fs::create_dir_all(folder)
+        .and_then(|()| std::fs::write(format!("{folder}/scene.csv"), csv))
+        .expect("a folder to write to");
+}

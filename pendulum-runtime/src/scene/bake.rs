@@ -1,0 +1,122 @@
+//! Curves in place of a simulation.
+
+use super::error::SceneError;
+use super::hung::Hung;
+use super::state::hermite;
+use super::{Handle, Scene};
+use crate::real::{Float, Lane};
+
+/// The motion of a pendulum as keys, joined by the cubics through coordinates and velocities at both ends (Hermite).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Baked<T, const N: usize> {
+    /// The length of a tick in seconds.
+    step: f64,
+    /// The ticks of the keys since the first.
+    ticks: Vec<u32>,
+    states: Vec<([T; N], [T; N])>,
+}
+
+impl<T: Lane + Float, const N: usize> Baked<T, N> {
+    /// The keys: time in seconds since the beginning, coordinates, velocities.
+    pub fn keys(&self) -> impl Iterator<Item = (f64, [T; N], [T; N])> {
+        self.ticks.iter().zip(&self.states).map(|(&tick, &(q, v))| (f64::from(tick) * self.step, q, v))
+    }
+
+    /// The coordinates `ticks` after the beginning; beyond the ends those at the ends.
+    ///
+    /// With all ticks as keys it has the bits of [`Scene::pose`].
+    pub fn at(&self, ticks: f64) -> [T; N] {
+        let last = self.ticks.len() - 1;
+        let key = self.ticks.partition_point(|&key| f64::from(key) <= ticks);
+        if key == 0 || last == 0 {
+            return self.states[0].0;
+        }
+        if last < key {
+            return self.states[last].0;
+        }
+        self.between(key - 1, key, ticks)
+    }
+
+    fn between(&self, from: usize, to: usize, ticks: f64) -> [T; N] {
+        between(self.step, [self.ticks[from], self.ticks[to]], [self.states[from], self.states[to]], ticks)
+    }
+}
+
+/// The cubic between the states at two ticks.
+fn between<T: Lane + Float, const N: usize>(step: f64, ends: [u32; 2], states: [([T; N], [T; N]); 2], ticks: f64) -> [T; N] {
+    let length = f64::from(ends[1] - ends[0]);
+    hermite(step * length, (ticks - f64::from(ends[0])) / length, &states)
+}
+
+impl<T: Lane + Float> Scene<T> {
+    /// The motion of `pendulums` over the next `ticks` ticks as keys, no coordinate of which is off by more than `bound` at any tick or half way
+    /// between two; the scene is as before.
+    ///
+    /// With a bound of zero every tick is a key, and the curve has the bits of the live motion.
+    ///
+    /// # Errors
+    /// A pendulum of another scene, a bound that is negative or no number.
+    pub fn bake<S: Hung<T, N>, const N: usize>(
+        &mut self,
+        pendulums: &[Handle<S, N>],
+        ticks: u32,
+        bound: f64,
+    ) -> Result<Vec<Baked<T, N>>, SceneError> {
+        if !(0.0 <= bound && bound < f64::INFINITY) {
+            return Err(SceneError::Setting { name: "bound", value: bound, required: "zero or positive" });
+        }
+        for &pendulum in pendulums {
+            self.checked(pendulum)?;
+        }
+        let snapshot = self.snapshot();
+        let mut live: Vec<Vec<([T; N], [T; N])>> = pendulums.iter().map(|&pendulum| vec![self.state(pendulum)]).collect();
+        for _ in 0..ticks {
+            self.advance_ticks(1);
+            for (&pendulum, live) in pendulums.iter().zip(&mut live) {
+                live.push(self.state(pendulum));
+            }
+        }
+        self.restore(&snapshot)?;
+        let step = self.step();
+        Ok(live.iter().map(|live| thinned(step, live, bound)).collect())
+    }
+}
+
+/// As few keys as a greedy search leaves: from each key as far as the bound allows.
+fn thinned<T: Lane + Float, const N: usize>(step: f64, live: &[([T; N], [T; N])], bound: f64) -> Baked<T, N> {
+    let last = live.len() - 1;
+    let fits = |from: usize, to: usize| {
+        let ends = [from as u32, to as u32];
+        let near = |ticks: f64, pose: [T; N]| {
+            let baked = between(step, ends, [live[from], live[to]], ticks);
+            (0..N).all(|i| (baked[i] - pose[i]).to_f64().abs() <= bound)
+        };
+        (from..to).all(|tick| {
+            let half_way = hermite(step, 0.5, &[live[tick], live[tick + 1]]);
+            near(tick as f64, live[tick].0) && near(tick as f64 + 0.5, half_way)
+        })
+    };
+    let mut baked = Baked { step, ticks: vec![0], states: vec![live[0]] };
+    let mut from = 0;
+    while from < last {
+        // Doubling, then halving: the farthest end is found in a logarithmic number of trials.
+        let (mut good, mut stride) = (from + 1, 2);
+        while 0.0 < bound && from + stride <= last && fits(from, from + stride) {
+            good = from + stride;
+            stride *= 2;
+        }
+        let mut bad = (from + stride).min(last + 1);
+        while 0.0 < bound && good + 1 < bad {
+            let middle = good.midpoint(bad);
+            if fits(from, middle) {
+                good = middle;
+            } else {
+                bad = middle;
+            }
+        }
+        baked.ticks.push(good as u32);
+        baked.states.push(live[good]);
+        from = good;
+    }
+    baked
+}

@@ -1,0 +1,203 @@
+//! What directors ask for: resets, teleports, mirrors, damping, stops, parameters that change while the scene runs.
+
+use super::bucket::Extra;
+use super::error::SceneError;
+use super::hung::Hung;
+use super::joint::{Place, forget};
+use super::{Handle, Joint, Scene};
+use crate::motion::Motion;
+use crate::real::{Float, Lane};
+
+/// What becomes of the swing when a joint is given another motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Carry {
+    /// Coordinates and velocities stay: a teleport that nobody feels.
+    Swing,
+    /// The momenta stay: a jump in the velocity of the joint is a blow.
+    Momentum,
+    /// The pendulums hang at rest.
+    Rest,
+}
+
+/// How a coordinate is kept within its limits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stop {
+    /// A wall: what flies at it comes back with this part of its velocity, in [0, 1].
+    Hard {
+        /// The part of the velocity that is left.
+        restitution: f64,
+    },
+    /// A spring beyond the limit: an acceleration of so much per unit, in 1/s².
+    Soft {
+        /// The square of its angular frequency.
+        stiffness: f64,
+    },
+}
+
+impl<T: Lane + Float> Scene<T> {
+    /// Lets a pendulum hang at rest where an overdamped one would creep to, with its joints at rest where they are now.
+    ///
+    /// # Errors
+    /// A pendulum of another scene, or one that comes to rest nowhere.
+    pub fn reset_to_rest<S: Hung<T, N>, const N: usize>(&mut self, pendulum: Handle<S, N>) -> Result<(), SceneError> {
+        self.checked(pendulum)?;
+        self.reset(|kind, index| kind == S::FACTS.name && index == pendulum.index())
+    }
+
+    /// Lets all pendulums hang at rest.
+    ///
+    /// # Errors
+    /// A pendulum that comes to rest nowhere.
+    pub fn reset_all_to_rest(&mut self) -> Result<(), SceneError> {
+        self.reset(|_, _| true)
+    }
+
+    fn reset(&mut self, which: impl Fn(&str, u32) -> bool) -> Result<(), SceneError> {
+        self.dirty = true;
+        let Self { clock, places, groups, .. } = self;
+        groups.iter_mut().try_for_each(|(_, group)| group.reset(clock, places, &which))
+    }
+
+    /// Mirrors a pendulum: coordinate i and its velocity are multiplied by `signs[i]`, as the angles are when a drawing is flipped.
+    ///
+    /// # Errors
+    /// A pendulum of another scene, a sign that is neither 1 nor −1.
+    pub fn mirror<S: Hung<T, N>, const N: usize>(&mut self, pendulum: Handle<S, N>, signs: [f64; N]) -> Result<(), SceneError> {
+        if let Some(&value) = signs.iter().find(|sign| sign.abs() != 1.0) {
+            return Err(SceneError::Setting { name: "signs", value, required: "1 or -1" });
+        }
+        self.change(pendulum, |loose| {
+            for (i, &sign) in signs.iter().enumerate() {
+                for numbers in &mut loose.state {
+                    numbers[i] *= T::from_f64(sign);
+                }
+                if sign < 0.0 {
+                    (loose.extra.low[i], loose.extra.high[i]) = (-loose.extra.high[i], -loose.extra.low[i]);
+                }
+            }
+        })
+    }
+
+    /// Gives a joint another motion from the last tick on.
+    ///
+    /// # Errors
+    /// A joint of another scene, a motion that lacks what the equations of a pendulum on it need; with [`Carry::Rest`] a pendulum that comes
+    /// to rest nowhere.
+    pub fn set_motion<M, const D: usize>(&mut self, joint: Joint<D>, motion: M, carry: Carry) -> Result<(), SceneError>
+    where
+        M: Motion<T, D> + Send + Sync + 'static,
+    {
+        let place = self.places.get(joint.0 as usize).ok_or(SceneError::Joint(joint.0))?;
+        for (_, group) in &self.groups {
+            group.accepts_motion(joint.0, M::HAS)?;
+        }
+        let (now, old) = (self.time(), place.drive.clone());
+        let mut place = Place::new(forget::<T, M, D>(motion), now);
+        let mut before = self.places.clone();
+        core::mem::swap(&mut self.places[joint.0 as usize], &mut place);
+        before[joint.0 as usize].drive = old;
+        self.dirty = true;
+        let Self { clock, places, groups, .. } = self;
+        groups.iter_mut().try_for_each(|(_, group)| group.moved(clock, &before, places, joint.0, carry))
+    }
+
+    /// Stops the time of the scene or lets it go on: frames pass, ticks do not, so that nothing jumps afterwards.
+    pub fn set_paused(&mut self, paused: bool) {
+        self.paused = paused;
+    }
+
+    /// Sets the damping of a pendulum: γ in 1/s, so that free velocities decay as e^(−γt) exactly, whatever the step.
+    ///
+    /// # Errors
+    /// A pendulum of another scene, a damping that is negative or not finite.
+    pub fn set_damping<S: Hung<T, N>, const N: usize>(&mut self, pendulum: Handle<S, N>, damping: f64) -> Result<(), SceneError> {
+        if !(0.0 <= damping && damping < f64::INFINITY) {
+            return Err(SceneError::Setting { name: "damping", value: damping, required: "zero or positive" });
+        }
+        self.change(pendulum, |loose| loose.extra.damping = T::from_f64(damping))
+    }
+
+    /// Keeps coordinates within `low` and `high`; infinite limits are none.
+    ///
+    /// Hard stops act within the drifts of leapfrog and SRKN6b, where the path is straight, and at the ends of the steps of RK4; they turn the
+    /// velocity of the coordinate alone, which for coupled coordinates is not what a wall at the tip would do.
+    ///
+    /// # Errors
+    /// A pendulum of another scene, limits in the wrong order, a restitution outside of [0, 1], a negative stiffness.
+    pub fn set_limits<S: Hung<T, N>, const N: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+        low: [T; N],
+        high: [T; N],
+        stop: Stop,
+    ) -> Result<(), SceneError> {
+        for i in 0..N {
+            let ordered = low[i] <= high[i];
+            if !ordered {
+                return Err(SceneError::Setting { name: "low", value: low[i].to_f64(), required: "at most the upper limit" });
+            }
+        }
+        let [restitution, stiffness, hard] = match stop {
+            Stop::Hard { restitution: e } if (0.0..=1.0).contains(&e) => [e, 0.0, 1.0],
+            Stop::Hard { restitution: value } => {
+                return Err(SceneError::Setting { name: "restitution", value, required: "between 0 and 1" });
+            }
+            Stop::Soft { stiffness: k } if 0.0 <= k && k < f64::INFINITY => [1.0, k, 0.0],
+            Stop::Soft { stiffness: value } => {
+                return Err(SceneError::Setting { name: "stiffness", value, required: "zero or positive" });
+            }
+        }
+        .map(T::from_f64);
+        self.checked(pendulum)?;
+        let (group, clock, places) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
+        let mut loose = group.read(pendulum.index());
+        loose.extra = Extra { low, high, restitution, stiffness, hard, ..loose.extra };
+        group.rewrite(clock, places, &loose);
+        self.dirty = true;
+        Ok(())
+    }
+
+    /// Sets a parameter of a pendulum by its name, as in `FACTS.parameters`; the state stays, its steps are chosen anew and it wakes.
+    ///
+    /// # Errors
+    /// A pendulum of another scene, a name that it does not have, a value that is not finite.
+    pub fn set_parameter<S: Hung<T, N>, const N: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+        name: &str,
+        value: T,
+    ) -> Result<(), SceneError> {
+        self.checked(pendulum)?;
+        finite(value)?;
+        let index = S::FACTS.parameters.iter().position(|parameter| *parameter == name);
+        let index = index.ok_or_else(|| SceneError::Parameter(name.to_owned()))?;
+        let (group, clock, places) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
+        let mut loose = group.read(pendulum.index());
+        loose.parameters[index] = value;
+        group.rewrite(clock, places, &loose);
+        self.dirty = true;
+        if matches!(self.status(pendulum), super::Status::Asleep(_)) { self.wake(pendulum) } else { Ok(()) }
+    }
+
+    /// Sets a parameter of all pendulums that have one of that name, such as gravity or wind; states stay, steps are chosen anew (a fraction of a
+    /// microsecond each) and sleepers wake. Gives the number of pendulums.
+    ///
+    /// # Errors
+    /// A name that no type here has, a value that is not finite.
+    pub fn set_parameter_everywhere(&mut self, name: &str, value: T) -> Result<usize, SceneError> {
+        finite(value)?;
+        self.dirty = true;
+        let Self { clock, places, groups, .. } = self;
+        let changed: Vec<usize> =
+            groups.iter_mut().filter_map(|(_, group)| group.set_parameter(clock, places, name, value)).collect();
+        if changed.is_empty() { Err(SceneError::Parameter(name.to_owned())) } else { Ok(changed.iter().sum()) }
+    }
+}
+
+fn finite<T: Float>(value: T) -> Result<(), SceneError> {
+    if value.is_finite() {
+        Ok(())
+    } else {
+        Err(SceneError::Setting { name: "parameter", value: value.to_f64(), required: "finite" })
+    }
+}
