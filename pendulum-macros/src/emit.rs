@@ -684,12 +684,18 @@ impl Emitter<'_, '_> {
         let Some(motion) = &self.motion else {
             return quote!(#krate::__private::facts(#krate::__private::Known {
                 name: #name, coordinates: &[#(#coordinates),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*],
-                autonomous: false, separable: false, velocity_free: false, constant_mass_matrix: false, nonconservative: false,
+                autonomous: false, explicit_time: false, separable: false, velocity_free: false, constant_mass_matrix: false, nonconservative: false,
                 smooth: false, cyclic: &[], conserved: &[], unused: &[], equations: "", latex: "",
             }));
         };
-        let (autonomous, separable, velocity_free, constant_mass_matrix, nonconservative) =
-            (motion.autonomous, motion.separable, motion.velocity_free, motion.constant_mass_matrix, motion.nonconservative);
+        let (autonomous, explicit_time, separable, velocity_free, constant_mass_matrix, nonconservative) = (
+            motion.autonomous,
+            motion.explicit_time,
+            motion.separable,
+            motion.velocity_free,
+            motion.constant_mass_matrix,
+            motion.nonconservative,
+        );
         let smooth = self.graph.smooth(&motion.accelerations);
         let cyclic = motion.cyclic.clone();
         let conserved: Vec<String> = motion.conserved.iter().map(|conserved| print::conserved(&names, conserved)).collect();
@@ -701,7 +707,7 @@ impl Emitter<'_, '_> {
         };
         quote!(#krate::__private::facts(#krate::__private::Known {
             name: #name, coordinates: &[#(#coordinates),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*],
-            autonomous: #autonomous, separable: #separable, velocity_free: #velocity_free, constant_mass_matrix: #constant_mass_matrix,
+            autonomous: #autonomous, explicit_time: #explicit_time, separable: #separable, velocity_free: #velocity_free, constant_mass_matrix: #constant_mass_matrix,
             nonconservative: #nonconservative, smooth: #smooth, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], equations: #equations, latex: #latex,
         }))
     }

@@ -47,6 +47,7 @@ pub(crate) struct Motion {
     pub(crate) cyclic: Vec<usize>,
     pub(crate) conserved: Vec<Conserved>,
     pub(crate) autonomous: bool,
+    pub(crate) explicit_time: bool,
     pub(crate) separable: bool,
     pub(crate) velocity_free: bool,
     pub(crate) constant_mass_matrix: bool,
@@ -305,7 +306,9 @@ fn facts(graph: &mut Graph, motion: &mut Motion) {
     let forces = all(&motion.forces);
     motion.constant_mass_matrix = !masses.any(state.or(time));
     motion.velocity_free = motion.constant_mass_matrix && !forces.any(Contents::VELOCITY);
-    motion.autonomous = !forces.any(time) && !all(&motion.momenta).any(time) && !masses.any(time);
+    let contents = forces.or(all(&motion.momenta)).or(masses);
+    motion.autonomous = !contents.any(time);
+    motion.explicit_time = contents.any(Contents::TIME);
     let moving = motion.velocities.iter().flatten().fold(Contents::default(), |all, &id| all.or(graph.contents(id)));
     motion.separable = motion.constant_mass_matrix && !moving.any(Contents::COORDINATE) && !motion.nonconservative;
 }

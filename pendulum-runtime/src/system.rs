@@ -252,6 +252,8 @@ pub struct Facts {
     pub inputs: &'static [Input],
     /// Neither time nor a driven input stands in the equations.
     pub autonomous: bool,
+    /// The time itself stands in the equations, beside driven inputs.
+    pub explicit_time: bool,
     /// The energy is T(p) + V(q, t): the mass matrix is constant and no velocity multiplies a function of the coordinates.
     pub separable: bool,
     /// The accelerations contain no velocity.
@@ -284,6 +286,7 @@ impl Facts {
             units: &[],
             inputs: &[],
             autonomous: false,
+            explicit_time: true,
             separable: false,
             velocity_free: false,
             constant_mass_matrix: false,
@@ -411,8 +414,22 @@ pub trait Dynamics<const N: usize> {
     /// The accelerations at `t`, seen from `side`.
     #[inline]
     fn accelerations_at(&self, t: Time, side: Side, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> [Self::Scalar; N] {
+        self.accelerations_with(&self.system().prepare(), t, side, q, v)
+    }
+
+    /// The accelerations at `t`, seen from `side`, with what the parameters alone decide computed before: what all methods call, and the place for
+    /// forces beside those of the system.
+    #[inline]
+    fn accelerations_with(
+        &self,
+        prepared: &<Self::System as System<N>>::Prepared,
+        t: Time,
+        side: Side,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+    ) -> [Self::Scalar; N] {
         let inputs = self.inputs(t, side, Purpose::Accelerations);
-        self.system().accelerations(scalar_time(t), q, v, &inputs)
+        self.system().accelerations_prepared(prepared, scalar_time(t), q, v, &inputs)
     }
 
     /// The Jacobi integral at `t`.
@@ -515,8 +532,19 @@ impl<const N: usize, D: Dynamics<N>> Dynamics<N> for Prepared<'_, D, <D::System 
 
     #[inline]
     fn accelerations_at(&self, t: Time, side: Side, q: &[D::Scalar; N], v: &[D::Scalar; N]) -> [D::Scalar; N] {
-        let inputs = self.inputs(t, side, Purpose::Accelerations);
-        self.system().accelerations_prepared(&self.prepared, scalar_time(t), q, v, &inputs)
+        self.dynamics.accelerations_with(&self.prepared, t, side, q, v)
+    }
+
+    #[inline]
+    fn accelerations_with(
+        &self,
+        prepared: &<D::System as System<N>>::Prepared,
+        t: Time,
+        side: Side,
+        q: &[D::Scalar; N],
+        v: &[D::Scalar; N],
+    ) -> [D::Scalar; N] {
+        self.dynamics.accelerations_with(prepared, t, side, q, v)
     }
 }
 

@@ -62,7 +62,7 @@ impl<T: Lane + Float> Scene<T> {
         ticks: u32,
         bound: f64,
     ) -> Result<Vec<Baked<T, N>>, SceneError> {
-        if !(0.0 <= bound && bound < f64::INFINITY) {
+        if !(0.0..f64::INFINITY).contains(&bound) {
             return Err(SceneError::Setting { name: "bound", value: bound, required: "zero or positive" });
         }
         for &pendulum in pendulums {

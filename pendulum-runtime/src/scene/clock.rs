@@ -24,7 +24,7 @@ const SLACK: f64 = 1e-6;
 
 impl Clock {
     pub(super) fn new(rate: f64) -> Result<Self, SceneError> {
-        if 1e-3 <= rate && rate <= 1e6 {
+        if (1e-3..=1e6).contains(&rate) {
             Ok(Self { rate, tick: 0, asked: Time::new(0.0), origin: 0 })
         } else {
             Err(SceneError::Setting { name: "rate", value: rate, required: "between 0.001 and a million ticks a second" })
@@ -47,6 +47,17 @@ impl Clock {
         tick as f64 / self.rate
     }
 
+    /// The last tick before `t`: a kink at the end of a tick belongs to it.
+    pub(super) fn last_before(&self, t: f64) -> i64 {
+        let guess = (t * self.rate).floor();
+        if 9e18 <= guess {
+            return i64::MAX;
+        }
+        // Rounded up, the guess is one too late.
+        let tick = guess as i64;
+        if t <= self.time(tick) { tick - 1 } else { tick }
+    }
+
     /// The time that is `fraction` of a tick after `tick`.
     pub(super) fn within(&self, tick: i64, fraction: f64) -> Time {
         if fraction == 0.0 {
@@ -60,7 +71,7 @@ impl Clock {
 
     /// Takes `dt` seconds more, of which at most `limit`; gives the ticks that are due and the seconds dropped.
     pub(super) fn ask(&mut self, dt: f64, limit: f64) -> Result<(u64, f64), SceneError> {
-        if !(0.0 <= dt && dt < f64::INFINITY) {
+        if !(0.0..f64::INFINITY).contains(&dt) {
             return Err(SceneError::FrameTime(dt));
         }
         let taken = if limit < dt { limit } else { dt };

@@ -24,18 +24,21 @@ impl<T: Lane + Float> Scene<T> {
     /// # Errors
     /// A time that is negative or longer than a year.
     pub fn warm_up(&mut self, seconds: f64) -> Result<Advanced, SceneError> {
-        if !(0.0 <= seconds && seconds <= 3.2e7) {
+        if !(0.0..=3.2e7).contains(&seconds) {
             return Err(SceneError::Setting { name: "warm-up", value: seconds, required: "between zero and a year" });
         }
-        Ok(self.before((seconds / self.step()).ceil() as u32))
+        // As with frames, what lacks less than a millionth of a tick is whole.
+        Ok(self.before((seconds / self.step() - 1e-6).ceil().max(0.0) as u64))
     }
 
     /// Does the `ticks` before now; the clock is as before.
-    fn before(&mut self, ticks: u32) -> Advanced {
+    fn before(&mut self, ticks: u64) -> Advanced {
+        // Who sleeps now need not have slept then.
+        self.wake_all();
         let clock = self.clock.state();
-        self.clock.jump(self.clock.tick() - i64::from(ticks));
+        self.clock.jump(self.clock.tick() - ticks as i64);
         self.places.iter_mut().for_each(super::joint::Place::forget_kink);
-        let advanced = self.advance_ticks(ticks);
+        let advanced = self.whole_ticks(ticks);
         self.clock.restore(clock);
         self.places.iter_mut().for_each(super::joint::Place::forget_kink);
         advanced
@@ -56,7 +59,7 @@ impl<T: Lane + Float> Scene<T> {
         let mut closed = Closed { turns: 0, gap: f64::INFINITY, velocity_gap: f64::INFINITY };
         while closed.turns < most {
             let begin = self.snapshot();
-            self.before(period);
+            self.before(u64::from(period));
             (closed.turns, closed.gap, closed.velocity_gap) = (closed.turns + 1, 0.0, 0.0);
             for ((_, group), begin) in self.groups.iter().zip(begin.groups()) {
                 let [gap, velocity_gap] = group.gap(begin);

@@ -49,7 +49,8 @@ impl<T: Lane + Float> Scene<T> {
     /// # Errors
     /// A pendulum that comes to rest nowhere.
     pub fn reset_all_to_rest(&mut self) -> Result<(), SceneError> {
-        self.reset(|_, _| true)
+        let snapshot = self.snapshot();
+        self.reset(|_, _| true).or_else(|error| self.restore(&snapshot).and(Err(error)))
     }
 
     fn reset(&mut self, which: impl Fn(&str, u32) -> bool) -> Result<(), SceneError> {
@@ -87,18 +88,21 @@ impl<T: Lane + Float> Scene<T> {
     where
         M: Motion<T, D> + Send + Sync + 'static,
     {
-        let place = self.places.get(joint.0 as usize).ok_or(SceneError::Joint(joint.0))?;
+        self.places.get(joint.0 as usize).ok_or(SceneError::Joint(joint.0))?;
         for (_, group) in &self.groups {
             group.accepts_motion(joint.0, M::HAS)?;
         }
-        let (now, old) = (self.time(), place.drive.clone());
-        let mut place = Place::new(forget::<T, M, D>(motion), now);
-        let mut before = self.places.clone();
-        core::mem::swap(&mut self.places[joint.0 as usize], &mut place);
-        before[joint.0 as usize].drive = old;
+        let snapshot = (carry == Carry::Rest).then(|| self.snapshot());
+        let before = self.places.clone();
+        self.places[joint.0 as usize] = Place::new(forget::<T, M, D>(motion), self.time());
         self.dirty = true;
         let Self { clock, places, groups, .. } = self;
-        groups.iter_mut().try_for_each(|(_, group)| group.moved(clock, &before, places, joint.0, carry))
+        let moved = groups.iter_mut().try_for_each(|(_, group)| group.moved(clock, &before, places, joint.0, carry));
+        if let (Err(_), Some(snapshot)) = (&moved, snapshot) {
+            self.places = before;
+            self.restore(&snapshot)?;
+        }
+        moved
     }
 
     /// Stops the time of the scene or lets it go on: frames pass, ticks do not, so that nothing jumps afterwards.
@@ -111,7 +115,7 @@ impl<T: Lane + Float> Scene<T> {
     /// # Errors
     /// A pendulum of another scene, a damping that is negative or not finite.
     pub fn set_damping<S: Hung<T, N>, const N: usize>(&mut self, pendulum: Handle<S, N>, damping: f64) -> Result<(), SceneError> {
-        if !(0.0 <= damping && damping < f64::INFINITY) {
+        if !(0.0..f64::INFINITY).contains(&damping) {
             return Err(SceneError::Setting { name: "damping", value: damping, required: "zero or positive" });
         }
         self.change(pendulum, |loose| loose.extra.damping = T::from_f64(damping))
@@ -142,7 +146,7 @@ impl<T: Lane + Float> Scene<T> {
             Stop::Hard { restitution: value } => {
                 return Err(SceneError::Setting { name: "restitution", value, required: "between 0 and 1" });
             }
-            Stop::Soft { stiffness: k } if 0.0 <= k && k < f64::INFINITY => [1.0, k, 0.0],
+            Stop::Soft { stiffness: k } if (0.0..f64::INFINITY).contains(&k) => [1.0, k, 0.0],
             Stop::Soft { stiffness: value } => {
                 return Err(SceneError::Setting { name: "stiffness", value, required: "zero or positive" });
             }
@@ -153,6 +157,7 @@ impl<T: Lane + Float> Scene<T> {
         let mut loose = group.read(pendulum.index());
         loose.extra = Extra { low, high, restitution, stiffness, hard, ..loose.extra };
         group.rewrite(clock, places, &loose);
+        group.rouse(pendulum.index());
         self.dirty = true;
         Ok(())
     }
@@ -175,8 +180,10 @@ impl<T: Lane + Float> Scene<T> {
         let mut loose = group.read(pendulum.index());
         loose.parameters[index] = value;
         group.rewrite(clock, places, &loose);
+        group.rouse(pendulum.index());
+        group.unmake_bed(pendulum.index());
         self.dirty = true;
-        if matches!(self.status(pendulum), super::Status::Asleep(_)) { self.wake(pendulum) } else { Ok(()) }
+        Ok(())
     }
 
     /// Sets a parameter of all pendulums that have one of that name, such as gravity or wind; states stay, steps are chosen anew (a fraction of a

@@ -47,7 +47,7 @@ fn moved<T: Real, const N: usize>(q: &[T; N], direction: &[f64; N], size: f64) -
 fn largest<T: Float, const N: usize>(step: f64, mut pair: impl FnMut(&[f64; N], f64) -> ([T; N], [T; N])) -> f64 {
     // Weights that no symmetry shares.
     let mut direction: [f64; N] = core::array::from_fn(|i| 1.0 + 0.37 * i as f64);
-    if N % 2 == 0 {
+    if N.is_multiple_of(2) {
         direction[N / 2] = -direction[N / 2];
     }
     let norm = |x: &[f64; N]| x.iter().fold(0.0, |sum: f64, x| sum + x * x).sqrt();

@@ -10,6 +10,7 @@ use super::hung::{Hung, Layout};
 use super::joint::Place;
 use super::rest;
 use super::scheme::{Grid, MOST_SUBSTEPS, Scheme};
+use super::sleep::{Alarms, Bed};
 use super::snapshot::{self, GroupState};
 use super::tracks::Sampled;
 use crate::error::{Coordinate, Error, Quantity};
@@ -20,6 +21,7 @@ use crate::real::{Float, Lane};
 use crate::system::{Purpose, scalar_time};
 use crate::time::Time;
 use core::any::Any;
+use core::cmp::Reverse;
 
 /// All pendulums of the type `S`, as the scene sees them.
 pub(super) trait AnyGroup<T>: Send + Sync {
@@ -54,6 +56,16 @@ pub(super) trait AnyGroup<T>: Send + Sync {
     ) -> Result<(), SceneError>;
     /// Sets a parameter of all, if they have it.
     fn set_parameter(&mut self, clock: &Clock, places: &[Place<T>], name: &str, value: T) -> Option<usize>;
+    /// Wakes those whose time has come; whether there were any.
+    fn ring(&mut self, tick: i64) -> bool;
+    /// The tick at which somebody is to wake, far away if nobody is.
+    fn next_alarm(&self) -> i64;
+    /// Lets those fall asleep that may; whether there were any.
+    fn lull(&mut self, clock: &Clock, places: &[Place<T>], tolerance: f64) -> bool;
+    /// Forgets who may sleep.
+    fn unmake_beds(&mut self);
+    /// Those that are computed, and all.
+    fn awake(&self) -> (usize, usize);
     /// Puts back what was saved.
     fn restore(&mut self, places: &[Place<T>], state: &GroupState<T>);
 }
@@ -89,11 +101,23 @@ pub(super) struct Group<S: Hung<T, N>, T: Lane + Float, const N: usize> {
     pub(super) buckets: Vec<Bucket<S, T, N>>,
     pub(super) table: Vec<Location>,
     pub(super) status: Vec<Status>,
+    pub(super) alarms: Alarms,
+    /// By pendulum, once somebody has looked.
+    pub(super) beds: Vec<Option<Bed<T, N>>>,
 }
 
 impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     pub(super) fn new(prototype: S, tolerance: f64) -> Self {
-        Self { prototype, tolerance, scheme: None, buckets: Vec::new(), table: Vec::new(), status: Vec::new() }
+        Self {
+            prototype,
+            tolerance,
+            scheme: None,
+            buckets: Vec::new(),
+            table: Vec::new(),
+            status: Vec::new(),
+            alarms: Alarms::new(),
+            beds: Vec::new(),
+        }
     }
 
     /// Hangs a pendulum on joints; it is awake.
@@ -309,6 +333,26 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T,
         snapshot::save(self)
     }
 
+    fn ring(&mut self, tick: i64) -> bool {
+        self.wake_up_to(tick)
+    }
+
+    fn next_alarm(&self) -> i64 {
+        self.alarms.peek().map_or(i64::MAX, |Reverse((tick, _))| *tick)
+    }
+
+    fn lull(&mut self, clock: &Clock, places: &[Place<T>], tolerance: f64) -> bool {
+        self.fall_asleep(clock, places, tolerance)
+    }
+
+    fn unmake_beds(&mut self) {
+        self.beds.clear();
+    }
+
+    fn awake(&self) -> (usize, usize) {
+        (self.buckets.iter().map(|bucket| bucket.awake).sum(), self.table.len())
+    }
+
     fn gap(&self, state: &GroupState<T>) -> [f64; 2] {
         snapshot::gap(self, state)
     }
@@ -366,6 +410,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T,
                 self.rest(clock, places, id)?;
             }
             self.rouse(id);
+            self.unmake_bed(id);
         }
         Ok(())
     }
@@ -378,6 +423,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T,
             self.rewrite(clock, places, &loose);
             self.rouse(id);
         }
+        self.beds.clear();
         Some(self.table.len())
     }
 

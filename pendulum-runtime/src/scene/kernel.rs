@@ -46,21 +46,21 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Work for Run<'_, S, T, N> {
         let last = self.blocks.len().wrapping_sub(1);
         for (index, block) in self.blocks.iter_mut().enumerate() {
             let lanes = if index == last { self.lanes_of_last } else { W };
-            let kept = (lanes < W).then(|| (block.q, block.v, block.before));
+            let kept = (lanes < W).then_some((block.q, block.v, block.before));
             match self.batch.grid.scheme {
                 Scheme::Leapfrog if Known::<S, N>::SPLITS => batch::<S, T, N, LEAPFROG, 1>(block, self.batch),
                 Scheme::Srkn6b if Known::<S, N>::SPLITS => batch::<S, T, N, SRKN6B, 7>(block, self.batch),
                 _ => batch::<S, T, N, RK4, 3>(block, self.batch),
             }
-            if let Some((q, v, before)) = kept {
+            if let Some((q, v, [before_q, before_v])) = kept {
                 // Those beyond sleep.
                 for lane in lanes..W {
                     copy_lane(&mut block.q.high, &q.high, lane);
                     copy_lane(&mut block.q.low, &q.low, lane);
                     copy_lane(&mut block.v.high, &v.high, lane);
                     copy_lane(&mut block.v.low, &v.low, lane);
-                    copy_lane(&mut block.before[0], &before[0], lane);
-                    copy_lane(&mut block.before[1], &before[1], lane);
+                    copy_lane(&mut block.before[0], &before_q, lane);
+                    copy_lane(&mut block.before[1], &before_v, lane);
                 }
                 block.failed &= (1 << lanes) - 1;
             }
@@ -243,16 +243,16 @@ fn step_of<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, con
     };
     match SCHEME {
         LEAPFROG => {
-            drift::<S, T, N>(weights.outer[0], q, v, extras);
+            drift::<T, N>(weights.outer[0], q, v, extras);
             let a = accelerations::<S, T, N>(system, prepared, times[0], &inputs[0], &q.high, &v.high, extras);
             v.add(weights.inner[0], &a);
-            drift::<S, T, N>(weights.outer[1], q, v, extras);
+            drift::<T, N>(weights.outer[1], q, v, extras);
         }
         SRKN6B => {
             let mut a = at(0, &q.high, &v.high);
             for i in 0..6 {
                 v.add(weights.outer[i], &a);
-                drift::<S, T, N>(weights.inner[i], q, v, extras);
+                drift::<T, N>(weights.inner[i], q, v, extras);
                 a = at(i + 1, &q.high, &v.high);
             }
             v.add(weights.outer[6], &a);
@@ -299,7 +299,7 @@ fn decay<T: Lane + Float, const N: usize>(v: &mut Sum<Wide<T>, N>, extras: Optio
 }
 
 #[inline(always)]
-fn drift<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+fn drift<T: Lane + Float, const N: usize>(
     weight: Wide<T>,
     q: &mut Sum<Wide<T>, N>,
     v: &mut Sum<Wide<T>, N>,

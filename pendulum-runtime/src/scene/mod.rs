@@ -58,6 +58,8 @@ mod kernel;
 mod rest;
 mod run;
 mod scheme;
+mod screen;
+mod sleep;
 mod snapshot;
 mod state;
 mod timetable;
@@ -73,6 +75,7 @@ pub use hung::Hung;
 pub use joint::Joint;
 pub use run::Advanced;
 pub use scheme::{Fixed, Scheme};
+pub use screen::Return;
 pub use snapshot::{GroupState, Snapshot};
 
 use crate::integrate::method::Suits;
@@ -100,8 +103,12 @@ pub struct Scene<T> {
     longest_frame: f64,
     parallel: bool,
     paused: bool,
+    sleep: Option<f64>,
     failures: Vec<Failure>,
 }
+
+/// A group, and what of the scene its pendulums see.
+type Parts<'a, S, T, const N: usize> = (&'a mut Group<S, T, N>, &'a Clock, &'a [Place<T>]);
 
 /// A pendulum in a scene: its type and its number among those of its type.
 pub struct Handle<S, const N: usize> {
@@ -163,6 +170,7 @@ impl<T: Lane + Float> Scene<T> {
             longest_frame: 60.0,
             parallel: true,
             paused: false,
+            sleep: None,
             failures: Vec::new(),
         })
     }
@@ -178,6 +186,8 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// A state that is not finite, a joint of another scene, a motion without a derivative that the equations need.
+    // Taken by value, so that both can be made in the call.
+    #[allow(clippy::needless_pass_by_value)]
     pub fn hang<S: Hung<T, N>, const N: usize>(
         &mut self,
         anchor: impl Anchor<S::Inputs>,
@@ -199,7 +209,7 @@ impl<T: Lane + Float> Scene<T> {
 
     /// The relative error of the phase by which methods and steps are chosen for what is hung from now on; 0.001 at first.
     pub fn set_tolerance(&mut self, tolerance: f64) -> Result<(), SceneError> {
-        if !(1e-14 <= tolerance && tolerance <= 0.1) {
+        if !(1e-14..=0.1).contains(&tolerance) {
             return Err(SceneError::Setting { name: "tolerance", value: tolerance, required: "between 1e-14 and 0.1" });
         }
         self.tolerance = tolerance;
@@ -270,7 +280,7 @@ impl<T: Lane + Float> Scene<T> {
         self.groups[self.index_of::<S, N>()?].1.as_any().downcast_ref()
     }
 
-    fn group_mut<S: Hung<T, N>, const N: usize>(&mut self) -> Option<(&mut Group<S, T, N>, &Clock, &[Place<T>])> {
+    fn group_mut<S: Hung<T, N>, const N: usize>(&mut self) -> Option<Parts<'_, S, T, N>> {
         let index = self.index_of::<S, N>()?;
         Some((self.groups[index].1.as_any_mut().downcast_mut()?, &self.clock, &self.places))
     }

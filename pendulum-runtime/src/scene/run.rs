@@ -29,7 +29,7 @@ impl<T: Lane + Float> Scene<T> {
     /// # Errors
     /// A time that is negative or no number.
     pub fn advance(&mut self, dt: f64) -> Result<Advanced, SceneError> {
-        if self.paused && 0.0 <= dt && dt < f64::INFINITY {
+        if self.paused && (0.0..f64::INFINITY).contains(&dt) {
             return Ok(Advanced::default());
         }
         let (ticks, dropped) = self.clock.ask(dt, self.longest_frame)?;
@@ -40,15 +40,19 @@ impl<T: Lane + Float> Scene<T> {
 
     /// Does so many ticks, which no frame needs to ask for.
     pub fn advance_ticks(&mut self, ticks: u32) -> Advanced {
+        self.whole_ticks(u64::from(ticks))
+    }
+
+    pub(super) fn whole_ticks(&mut self, ticks: u64) -> Advanced {
         let failed = self.failures.len();
-        self.clock.shift(i64::from(ticks));
-        self.ticks(u64::from(ticks));
-        Advanced { ticks: u64::from(ticks), dropped: 0.0, failed: self.failures.len() - failed }
+        self.clock.shift(ticks as i64);
+        self.ticks(ticks);
+        Advanced { ticks, dropped: 0.0, failed: self.failures.len() - failed }
     }
 
     pub(super) fn ticks(&mut self, mut ticks: u64) {
         while 0 < ticks {
-            let batch = ticks.min(BATCH as u64);
+            let batch = ticks.min(self.watch()).min(BATCH as u64);
             self.batch(batch as usize);
             self.clock.passed(batch);
             ticks -= batch;
@@ -114,7 +118,7 @@ impl<T: Lane + Float> Scene<T> {
         let Self { clock, places, numbers, timetable, .. } = self;
         timetable.begin(clock, tick, ticks);
         let mut length = 0;
-        let shared = Ticks { clock, timetable, tick, ticks };
+        let shared = Times { clock, timetable, tick, ticks };
         for place in places.iter_mut().filter(|place| is_sampled(place)) {
             place.offset = length;
             length += shared.length(place);
@@ -131,14 +135,14 @@ fn is_sampled<T>(place: &Place<T>) -> bool {
 
 /// What all samplers share.
 #[derive(Clone, Copy)]
-struct Ticks<'a> {
+struct Times<'a> {
     clock: &'a Clock,
     timetable: &'a Timetable,
     tick: i64,
     ticks: usize,
 }
 
-impl Ticks<'_> {
+impl Times<'_> {
     /// The numbers of a joint in a batch.
     fn length<T: Lane + Float>(&self, place: &Place<T>) -> usize {
         self.timetable.times(place.class).len() * place.width()

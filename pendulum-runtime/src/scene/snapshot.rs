@@ -8,6 +8,7 @@ use super::joint::Place;
 use super::scheme::{Grid, Scheme};
 use super::{Scene, hash};
 use crate::real::{Float, Lane, Real};
+use core::cmp::Reverse;
 
 /// The state of a scene: time, states, parameters, damping, stops, who sleeps and who has failed.
 ///
@@ -107,6 +108,16 @@ pub(super) fn restore<S: Hung<T, N>, T: Lane + Float, const N: usize>(
         }
         group.status[id as usize] = status;
         group.set_awake(id, status == Status::Awake);
+    }
+    group.alarms = (0..).zip(&group.status).filter_map(|(id, status)| alarm(id, *status)).collect();
+    group.beds.clear();
+}
+
+/// When a pendulum is to wake, if it ever is.
+fn alarm(id: u32, status: Status) -> Option<Reverse<(i64, u32)>> {
+    match status {
+        Status::Asleep(tick) if tick != i64::MAX => Some(Reverse((tick, id))),
+        _ => None,
     }
 }
 

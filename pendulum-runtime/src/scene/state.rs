@@ -122,7 +122,7 @@ impl<T: Lane + Float> Scene<T> {
         group.filter(|group| (pendulum.index as usize) < group.table.len()).ok_or_else(|| unknown(pendulum))
     }
 
-    /// Changes what belongs to a pendulum and does not change its steps.
+    /// Changes what belongs to a pendulum and does not change its steps; one that sleeps wakes.
     pub(super) fn change<S: Hung<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -132,6 +132,8 @@ impl<T: Lane + Float> Scene<T> {
         let mut loose = group.read(pendulum.index);
         change(&mut loose);
         group.write(&loose);
+        group.rouse(pendulum.index);
+        self.dirty = true;
         Ok(())
     }
 }

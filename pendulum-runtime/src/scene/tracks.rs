@@ -108,7 +108,7 @@ impl<T: Real + Float> Tracks<T> {
     }
 
     /// Whether somebody is awake on a track.
-    fn is_awake(&self, track: usize) -> bool {
+    pub(super) fn is_awake(&self, track: usize) -> bool {
         self.awake[track] != 0
     }
 
@@ -116,7 +116,9 @@ impl<T: Real + Float> Tracks<T> {
     pub(super) fn load(&mut self, grid: Grid, layout: &Layout, momenta: &Layout, inputs: &[Input], sampled: &Sampled<'_, T>) {
         let (tracks, evaluations, width) = (self.count(), grid.count(), layout.width);
         self.records.resize(sampled.ticks * evaluations * tracks * width, T::from_f64(0.0));
-        (self.cuts.clear(), self.pieces.clear(), self.extra.clear());
+        self.cuts.clear();
+        self.pieces.clear();
+        self.extra.clear();
         for track in 0..tracks {
             if !self.is_awake(track) {
                 continue;

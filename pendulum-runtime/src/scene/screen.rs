@@ -1,0 +1,131 @@
+//! Pendulums that nobody sees.
+
+use super::error::SceneError;
+use super::group::{Status, inputs_at};
+use super::hung::Hung;
+use super::joint::Place;
+use super::{Handle, Scene};
+use crate::integrate::{Dop853, solve};
+use crate::motion::Side;
+use crate::real::{Float, Lane, Real};
+use crate::system::{Dynamics, Purpose, scalar_time};
+use crate::time::Time;
+
+/// How a pendulum comes back to the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Return {
+    /// It goes on from where it was.
+    Pause,
+    /// It hangs at rest.
+    Rest,
+    /// It makes up for the time in a few large accurate steps; if that was longer than so many seconds, it begins at rest so long ago.
+    CatchUp {
+        /// The longest time that is made up for, in seconds.
+        longest: f64,
+    },
+}
+
+/// A pendulum on the joints of a scene, with its damping and its soft stops.
+struct Hanging<'a, S, T, const N: usize> {
+    system: S,
+    places: &'a [Place<T>],
+    joints: Vec<u32>,
+    extra: super::bucket::Extra<T, N>,
+}
+
+impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Dynamics<N> for Hanging<'_, S, T, N> {
+    type System = S;
+    type Scalar = T;
+
+    fn system(&self) -> &S {
+        &self.system
+    }
+
+    fn inputs(&self, t: Time, side: Side, purpose: Purpose) -> S::Inputs {
+        inputs_at::<S, T, N>(self.places, &self.joints, t, side, purpose, false)
+    }
+
+    fn next_kink(&self, t: f64) -> Option<f64> {
+        let next = |&joint: &u32| self.places[joint as usize].drive.next_kink(t).filter(|&kink| t < kink);
+        self.joints.iter().filter_map(next).min_by(f64::total_cmp)
+    }
+
+    fn accelerations_with(&self, prepared: &S::Prepared, t: Time, side: Side, q: &[T; N], v: &[T; N]) -> [T; N] {
+        let inputs = self.inputs(t, side, Purpose::Accelerations);
+        let mut a = self.system.accelerations_prepared(prepared, scalar_time(t), q, v, &inputs);
+        for i in 0..N {
+            let inside = Real::min(Real::max(q[i], self.extra.low[i]), self.extra.high[i]);
+            a[i] -= self.extra.damping * v[i] + self.extra.stiffness * (q[i] - inside);
+        }
+        a
+    }
+}
+
+impl<T: Lane + Float> Scene<T> {
+    /// Takes a pendulum off the screen: it is not computed until [`show`](Self::show) brings it back.
+    ///
+    /// # Errors
+    /// A pendulum of another scene.
+    pub fn hide<S: Hung<T, N>, const N: usize>(&mut self, pendulum: Handle<S, N>) -> Result<(), SceneError> {
+        let tick = self.tick();
+        let group = self.checked(pendulum)?;
+        let status = &mut group.status[pendulum.index() as usize];
+        if matches!(status, Status::Awake | Status::Asleep(_)) {
+            *status = Status::Hidden(tick);
+            group.set_awake(pendulum.index(), false);
+            self.dirty = true;
+        }
+        Ok(())
+    }
+
+    /// Brings a pendulum back to the screen; one that is not hidden stays as it is.
+    ///
+    /// Catching up takes [`Dop853`] with a relative tolerance of 10⁻⁶ over the whole time, kinks, damping and soft stops included; hard stops only hold
+    /// at its end.
+    ///
+    /// # Errors
+    /// A pendulum of another scene, a time that is not positive, a pendulum that comes to rest nowhere, an integration that fails; it stays
+    /// hidden then.
+    pub fn show<S: Hung<T, N>, const N: usize>(&mut self, pendulum: Handle<S, N>, how: Return) -> Result<(), SceneError> {
+        let id = pendulum.index();
+        let Status::Hidden(since) = self.checked(pendulum)?.status[id as usize] else { return Ok(()) };
+        let (group, clock, places) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
+        let mut loose = group.read(id);
+        let zero = [T::from_f64(0.0); N];
+        let mut put = |q, v| loose.state = [q, zero, v, zero, q, v];
+        let restless = SceneError::Restless { kind: S::FACTS.name, index: id };
+        match how {
+            Return::Pause => {}
+            Return::Rest => put(group.rest_of(clock, places, &group.read(id)).ok_or(restless)?, zero),
+            Return::CatchUp { longest } => {
+                if longest <= 0.0 || longest.is_nan() {
+                    return Err(SceneError::Setting { name: "longest", value: longest, required: "positive" });
+                }
+                let now = clock.time(clock.tick());
+                let (mut start, mut from) = (clock.time(since), group.read(id));
+                if longest < now - start {
+                    let q = group.rest_of(clock, places, &from).ok_or(restless)?;
+                    (start, from.state[0], from.state[2]) = (now - longest, q, zero);
+                }
+                let system = group.system_of(&from.parameters);
+                let [q, _, v, ..] = from.state;
+                let hanging = Hanging { system, places, joints: from.joints, extra: from.extra };
+                if start < now {
+                    let solution = solve(&hanging, (start, now), q, v).method(Dop853).rtol(1e-6).atol(1e-6).run();
+                    let end = solution.map_err(|failure| SceneError::Integration(failure.error))?.end;
+                    let (mut q, mut v) = (end.q, end.v);
+                    let hard = T::from_f64(0.0) < from.extra.hard;
+                    for i in (0..N).filter(|_| hard) {
+                        let inside = Real::min(Real::max(q[i], from.extra.low[i]), from.extra.high[i]);
+                        if inside != q[i] {
+                            (q[i], v[i]) = (inside, T::from_f64(0.0));
+                        }
+                    }
+                    put(q, v);
+                }
+            }
+        }
+        group.write(&loose);
+        self.wake(pendulum)
+    }
+}
