@@ -483,11 +483,14 @@ fn baked_is_live() {
     for tick in 1..=240 {
         scene.advance_ticks(1);
         for (index, &handle) in handles.iter().enumerate() {
-            for alpha in [0.25, 0.5, 1.0] {
+            for alpha in [0.1, 0.25, 0.5, 0.8, 1.0] {
                 let pose = scene.pose(handle, alpha)[0];
                 let at = f64::from(tick) - 1.0 + alpha;
-                assert_eq!(exact[index].at(at)[0], pose);
-                assert!((near[index].at(at)[0] - pose).abs() < 1.2e-3, "{index} at {at}");
+                // Other times have rounding errors of their own.
+                if (4.0 * alpha).fract() == 0.0 {
+                    assert_eq!(exact[index].at(at)[0], pose);
+                }
+                assert!((near[index].at(at)[0] - pose).abs() < 1.0000001e-3, "{index} at {at}");
             }
         }
     }
@@ -497,4 +500,139 @@ fn baked_is_live() {
     }
     assert_eq!(all, 40 * 241);
     assert!(4 * kept < all, "{kept} of {all}");
+}
+
+/// A thousand joints with kinks at odd times, and enough pendulums that every thread has some.
+#[cfg(feature = "rayon")]
+fn crowd(seed: u64) -> Scene<f64> {
+    let mut scene = Scene::new(240.0).unwrap();
+    let mut random = Random::new(seed);
+    for index in 0..1000 {
+        let times: Vec<f64> = (0..5).map(|key| f64::from(key) * random.uniform(0.1, 0.2)).collect();
+        let mut place = || [random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)];
+        let values: Vec<[f64; 2]> = times.iter().map(|_| place()).collect();
+        let mut sorted = times.clone();
+        sorted.sort_by(f64::total_cmp);
+        let joint = match index % 3 {
+            0 => scene.joint(Linear::new(&sorted, &values).unwrap_or_else(|_| keys())),
+            1 => scene.joint(Sinusoid::new(values[0], random.uniform(3.0, 9.0), values[1])),
+            _ => scene.joint(Still::new(values[0])),
+        };
+        for _ in 0..12 {
+            let length = random.uniform(0.05, 1.0);
+            scene.hang(joint, Hanging::new(0.1, length), [random.uniform(-1.0, 1.0)], [0.0]).unwrap();
+        }
+        scene.hang(joint, Double::new(0.1, 0.3, 1e-4), [0.1, 0.2], [0.0, 0.0]).unwrap();
+    }
+    scene
+}
+
+#[test]
+#[cfg(feature = "rayon")]
+fn threads_do_not_show() {
+    let alone = {
+        let mut scene = crowd(7);
+        scene.set_parallel(false);
+        scene.advance(0.5).unwrap();
+        scene.checksum()
+    };
+    for threads in [1, 2, 3, 7] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let many = pool.install(|| {
+            let mut scene = crowd(7);
+            scene.advance(0.5).unwrap();
+            scene.checksum()
+        });
+        assert_eq!(many, alone, "{threads}");
+    }
+}
+
+#[test]
+#[cfg(feature = "serde")]
+fn snapshots_can_be_written_and_read() {
+    use pendulum_runtime::scene::{Snapshot, Stop};
+    let mut scene = zoo(1e-3);
+    let handle = Handle::<Hanging<f64>, 1>::new(4);
+    // A limit on one side only: JSON knows no infinity.
+    scene.set_limits(handle, [-0.2], [f64::INFINITY], Stop::Hard { restitution: 0.5 }).unwrap();
+    scene.advance(0.71).unwrap();
+    let snapshot = scene.snapshot();
+    let text = serde_json::to_string(&snapshot).unwrap();
+    let read: Snapshot<f64> = serde_json::from_str(&text).unwrap();
+    assert_eq!(read, snapshot);
+    scene.advance(0.9).unwrap();
+    let mut other = zoo(1e-3);
+    other.restore(&read).unwrap();
+    other.advance(0.9).unwrap();
+    assert_eq!(other.checksum(), scene.checksum());
+}
+
+#[test]
+fn bits_are_the_same_on_every_machine() {
+    // With and without vectors and threads, whatever their width and number; found once and kept.
+    for (tolerance, expected) in [(1e-3, 0xfb4a391e5681bb18), (1e-9, 0x039ade4d7b746740)] {
+        let mut scene = zoo(tolerance);
+        scene.advance(3.0).unwrap();
+        assert_eq!(scene.checksum(), expected, "{:#x}", scene.checksum());
+    }
+}
+
+#[test]
+fn fast_pendulums_do_not_hurry_slow_ones() {
+    let mut scene = Scene::<f64>::new(100.0).unwrap();
+    let counters = [Arc::new(AtomicUsize::new(0)), Arc::new(AtomicUsize::new(0))];
+    let joints = counters.each_ref().map(|counter| scene.joint(Watched(counter.clone())));
+    // 3 rad/s and 140 rad/s.
+    let slow = scene.hang(joints[0], Hanging::new(0.1, 1.0), [0.1], [0.0]).unwrap();
+    scene.hang(joints[1], Hanging::new(0.1, 0.0005), [0.1], [0.0]).unwrap();
+    counters.iter().for_each(|counter| counter.store(0, Ordering::Relaxed));
+    scene.advance_ticks(80);
+    let asked = counters.each_ref().map(|counter| counter.load(Ordering::Relaxed));
+    assert_eq!(asked[0], 80);
+    assert!(6 * 80 <= asked[1], "{asked:?}");
+    let mut alone = Scene::<f64>::new(100.0).unwrap();
+    let joint = alone.joint(Watched(counters[0].clone()));
+    let handle = alone.hang(joint, Hanging::new(0.1, 1.0), [0.1], [0.0]).unwrap();
+    alone.advance_ticks(80);
+    assert_eq!(alone.state(handle), scene.state(slow));
+}
+
+#[test]
+fn a_pause_does_not_show() {
+    let (mut through, mut paused) = (zoo(1e-3), zoo(1e-3));
+    for scene in [&mut through, &mut paused] {
+        scene.advance(0.3).unwrap();
+    }
+    paused.set_paused(true);
+    for _ in 0..1000 {
+        assert_eq!(paused.advance(0.06).unwrap().ticks, 0);
+    }
+    paused.set_paused(false);
+    for scene in [&mut through, &mut paused] {
+        scene.advance(0.3).unwrap();
+    }
+    assert_eq!(paused.checksum(), through.checksum());
+}
+
+#[test]
+fn joints_are_felt_as_much_as_directors_want() {
+    use pendulum_runtime::motion::Felt;
+    let mut scene = Scene::<f64>::new(240.0).unwrap();
+    scene.set_tolerance(1e-9).unwrap();
+    let shake = Sinusoid::new([0.1, 0.0], 9.0, [0.0, 0.0]);
+    // A tenth of a shake is what a tenth of the amplitude is, and a speed below the limit is all felt.
+    let tenth = scene.joint(Felt::new(shake, 0.1, f64::INFINITY).unwrap());
+    let small = scene.joint(Sinusoid::new([0.01, 0.0], 9.0, [0.0, 0.0]));
+    let below = scene.joint(Felt::new(shake, 1.0, 0.91).unwrap());
+    let whole = scene.joint(shake);
+    let beyond = scene.joint(Felt::new(shake, 1.0, 0.3).unwrap());
+    let all = [tenth, small, below, whole, beyond].map(|joint| scene.hang(joint, Hanging::new(0.1, 0.5), [0.1], [0.0]).unwrap());
+    scene.advance(2.0).unwrap();
+    let [tenth, small, below, whole, beyond] = all.map(|handle| scene.state(handle).0[0]);
+    assert!((tenth - small).abs() < 1e-12 && (below - whole).abs() < 1e-12, "{tenth} {small} {below} {whole}");
+    // Cut speeds through the kinks, by an integrator that lands on them.
+    let alone = Hanging::new(0.1, 0.5).driven_by(Felt::new(shake, 1.0, 0.3).unwrap());
+    let exact = solve(&alone, (0.0, 2.0), [0.1], [0.0]).rtol(1e-12).atol(1e-13).run().unwrap();
+    assert!((beyond - exact.end.q[0]).abs() < 1e-7, "{beyond} for {}", exact.end.q[0]);
+    assert!((beyond - whole).abs() > 0.01);
 }

@@ -33,6 +33,10 @@ pub enum MotionError {
     Rate(f64),
     /// No frame is kept: every zeroth of them was asked for.
     Every,
+    /// A gain is infinite or no number.
+    Gain(f64),
+    /// A limit of the speed is not positive.
+    SpeedLimit(f64),
 }
 
 impl fmt::Display for MotionError {
@@ -46,6 +50,8 @@ impl fmt::Display for MotionError {
                 write!(f, "key {key} at {time} s is not later than the key before it; sort the keys and drop doubles")
             }
             Self::Rate(rate) => write!(f, "a frame rate of {rate} Hz; give a positive number of frames a second"),
+            Self::Gain(gain) => write!(f, "a gain of {gain}; give a finite number, 1 for the motion as it is"),
+            Self::SpeedLimit(limit) => write!(f, "a speed limit of {limit} m/s; give a positive number, infinity for none"),
             Self::Every => write!(f, "`every` is 0, and no frame is kept; give 1 to keep all of them"),
         }
     }

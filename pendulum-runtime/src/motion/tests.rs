@@ -219,7 +219,55 @@ fn bad_keys_are_refused() {
     assert!(matches!(Clip::new(0.0, &[[1.0]], 1, Interpolation::Linear), Err(MotionError::Rate(_))));
     assert_eq!(Clip::new(120.0, &[[1.0]], 0, Interpolation::Linear), Err(MotionError::Every));
     assert!(Spline::clamped(&[0.0, 1.0], &[[1.0], [2.0]], [f64::NAN], [0.0]).is_err());
-    for error in [MotionError::NoKeys, MotionError::OneKey, MotionError::Rate(-1.0), MotionError::Every] {
+    let (gain, limit) = (MotionError::Gain(f64::NAN), MotionError::SpeedLimit(0.0));
+    for error in [MotionError::NoKeys, MotionError::OneKey, MotionError::Rate(-1.0), MotionError::Every, gain, limit] {
         assert!(error.to_string().contains(';') || error.to_string().contains("rests"), "{error}");
     }
+}
+
+#[test]
+fn what_is_felt_is_cut_and_scaled() {
+    // The speed is cos t between 1 and 0; beyond 0.6 it is cut.
+    let whole = Sinusoid::new([1.0, 0.0], 1.0, [0.0, 0.0]);
+    let felt = Felt::new(whole, 0.5, 0.6).unwrap();
+    let crossing = 0.6f64.acos();
+    let found = kinks(&felt, 0.0, 3.0);
+    assert!(found.iter().any(|kink| (kink - crossing).abs() < 1e-14), "{found:?}");
+    assert!(found.iter().any(|kink| (kink - (std::f64::consts::PI - crossing)).abs() < 1e-14), "{found:?}");
+    let (fast, slow) = (at(&felt, 0.3), at(&felt, 1.2));
+    assert_eq!(fast.position, at(&whole, 0.3).position);
+    assert!((fast.velocity[0] - 0.3).abs() < 1e-15 && fast.acceleration[0].abs() < 1e-15);
+    assert_eq!(slow.velocity, at(&whole, 1.2).velocity.map(|v| 0.5 * v));
+    assert_eq!(slow.acceleration, at(&whole, 1.2).acceleration.map(|a| 0.5 * a));
+    let kink = found.iter().copied().find(|kink| (kink - crossing).abs() < 1e-14).unwrap();
+    assert!(before(&felt, kink).acceleration[0].abs() < 1e-12);
+    assert!((at(&felt, kink).acceleration[0] + 0.5 * crossing.sin()).abs() < 1e-12);
+    // On a circle the speed is the same, and what is left of the acceleration is its direction's.
+    let circle = Sinusoid::new([1.0, 1.0], 2.0, [0.0, std::f64::consts::FRAC_PI_2]);
+    let felt = Felt::new(circle, 1.0, 1.0).unwrap();
+    for t in [0.1, 0.8, 2.3] {
+        let (sample, h) = (at(&felt, t), 1e-5);
+        let (ahead, behind) = (at(&felt, t + h), at(&felt, t - h));
+        assert!((sample.velocity[0].hypot(sample.velocity[1]) - 1.0).abs() < 1e-14);
+        for d in 0..2 {
+            let difference = (ahead.velocity[d] - behind.velocity[d]) / (2.0 * h);
+            assert!((difference - sample.acceleration[d]).abs() < 1e-8, "{t}");
+        }
+        let only: Sample<f64, 2> = felt.sample(Time::new(t), Side::After, Orders::ACCELERATION);
+        assert_eq!((only.acceleration, only.velocity), (sample.acceleration, [0.0; 2]));
+    }
+    // It rests when the motion rests, and nobody searches for kinks until then.
+    let late = Felt::new(Linear::new(&[50.0, 51.0], &[[0.0], [3.0]]).unwrap(), 1.0, 2.0).unwrap();
+    assert_eq!(Motion::<f64, 1>::rest_until(&late, 0.0), 50.0);
+    assert_eq!(Motion::<f64, 1>::next_kink(&late, 0.0), Some(50.0));
+    assert_eq!(at(&late, 50.5).velocity, [2.0]);
+    // Whoever asks, and when: the same kinks.
+    let two = |t: f64| Motion::<f64, 2>::next_kink(&Felt::new(whole, 0.5, 0.6).unwrap(), t);
+    assert_eq!(two(0.01), two(0.5));
+    assert_eq!(two(2.3), two(3.7));
+    assert!(
+        Felt::new(whole, f64::NAN, 1.0).is_err()
+            && Felt::new(whole, 1.0, 0.0).is_err()
+            && Felt::new(whole, 1.0, f64::NAN).is_err()
+    );
 }

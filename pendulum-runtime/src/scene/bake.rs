@@ -49,8 +49,8 @@ fn between<T: Lane + Float, const N: usize>(step: f64, ends: [u32; 2], states: [
 }
 
 impl<T: Lane + Float> Scene<T> {
-    /// The motion of `pendulums` over the next `ticks` ticks as keys, no coordinate of which is off by more than `bound` at any tick or half way
-    /// between two; the scene is as before.
+    /// The motion of `pendulums` over the next `ticks` ticks as keys, no coordinate of which is ever off the [pose](Self::pose) by more than
+    /// `bound`; the scene is as before.
     ///
     /// With a bound of zero every tick is a key, and the curve has the bits of the live motion.
     ///
@@ -82,18 +82,32 @@ impl<T: Lane + Float> Scene<T> {
     }
 }
 
+/// The largest size on [0, 1] of the cubic with these values at 0, ⅓, ⅔ and 1.
+fn farthest([a, b, c, d]: [f64; 4]) -> f64 {
+    let linear = 0.5 * (-11.0 * a + 18.0 * b - 9.0 * c + 2.0 * d);
+    let square = 4.5 * (2.0 * a - 5.0 * b + 4.0 * c - d);
+    let cubic = 4.5 * (-a + 3.0 * b - 3.0 * c + d);
+    let at = |x: f64| (a + x * (linear + x * (square + x * cubic))).abs();
+    // The roots of the derivative, without cancellation.
+    let root = (square * square - 3.0 * cubic * linear).max(0.0).sqrt();
+    let sum = -(square + root.copysign(square));
+    let inside = |x: f64| if 0.0 < x && x < 1.0 { at(x) } else { 0.0 };
+    a.abs().max(d.abs()).max(inside(sum / (3.0 * cubic))).max(inside(linear / sum))
+}
+
 /// As few keys as a greedy search leaves: from each key as far as the bound allows.
 fn thinned<T: Lane + Float, const N: usize>(step: f64, live: &[([T; N], [T; N])], bound: f64) -> Baked<T, N> {
     let last = live.len() - 1;
     let fits = |from: usize, to: usize| {
         let ends = [from as u32, to as u32];
-        let near = |ticks: f64, pose: [T; N]| {
-            let baked = between(step, ends, [live[from], live[to]], ticks);
-            (0..N).all(|i| (baked[i] - pose[i]).to_f64().abs() <= bound)
-        };
         (from..to).all(|tick| {
-            let half_way = hermite(step, 0.5, &[live[tick], live[tick + 1]]);
-            near(tick as f64, live[tick].0) && near(tick as f64 + 0.5, half_way)
+            let off = |part: f64| {
+                let baked = between(step, ends, [live[from], live[to]], tick as f64 + part);
+                let pose = hermite(step, part, &[live[tick], live[tick + 1]]);
+                core::array::from_fn::<f64, N, _>(|i| (baked[i] - pose[i]).to_f64())
+            };
+            let off = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(off);
+            (0..N).all(|i| farthest(off.map(|off| off[i])) <= bound)
         })
     };
     let mut baked = Baked { step, ticks: vec![0], states: vec![live[0]] };
@@ -119,4 +133,24 @@ fn thinned<T: Lane + Float, const N: usize>(step: f64, live: &[([T; N], [T; N])]
         from = good;
     }
     baked
+}
+
+#[cfg(test)]
+mod tests {
+    use super::farthest;
+
+    #[test]
+    fn the_farthest_of_a_cubic_is_found() {
+        let check = |cubic: fn(f64) -> f64| {
+            let found = farthest([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(cubic));
+            let tried = (0..=10_000).map(|k| cubic(f64::from(k) * 1e-4).abs()).fold(0.0, f64::max);
+            assert!((found - tried).abs() < 1e-7, "{found} for {tried}");
+        };
+        check(|x| x * (1.0 - x));
+        check(|x| x * (1.0 - x) * (0.5 - x));
+        check(|x| 1.0 - 3.0 * x + x * x - 2.0 * x * x * x);
+        check(|_| 0.25);
+        check(|x| 2.0 * x - 1.5);
+        check(|x| x * x * (1.0 - x));
+    }
 }

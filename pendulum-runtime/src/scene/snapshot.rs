@@ -34,6 +34,11 @@ pub struct GroupState<T> {
     numbers: Vec<T>,
 }
 
+/// Stands for infinity in snapshots, as some formats know no infinite numbers.
+fn most<T: Float>() -> T {
+    T::from_f64(f64::from(f32::MAX))
+}
+
 /// The numbers of a pendulum beside its parameters.
 const fn numbers(coordinates: usize) -> usize {
     6 * coordinates + 2 * coordinates + 4
@@ -53,7 +58,7 @@ pub(super) fn save<S: Hung<T, N>, T: Lane + Float, const N: usize>(group: &Group
         let (extra, values) = bucket.numbers(location.slot as usize);
         state.numbers.extend(bucket.parameters_of(location.slot as usize));
         state.numbers.extend(values.iter().flatten());
-        state.numbers.extend(extra.low.iter().chain(&extra.high));
+        state.numbers.extend(extra.low.iter().chain(&extra.high).map(|&limit| Real::max(Real::min(limit, most()), -most::<T>())));
         state.numbers.extend([extra.damping, extra.restitution, extra.stiffness, extra.hard]);
     }
     state
@@ -93,7 +98,8 @@ pub(super) fn restore<S: Hung<T, N>, T: Lane + Float, const N: usize>(
             values
         };
         let numbers = core::array::from_fn(|_| array());
-        let (low, high) = (array(), array());
+        let mut limits = || array().map(|limit| if limit.abs() < most() { limit } else { limit * T::from_f64(f64::INFINITY) });
+        let (low, high) = (limits(), limits());
         let last = take(4);
         let extra = Extra { damping: last[0], low, high, restitution: last[1], stiffness: last[2], hard: last[3] };
         let joints = group.joints(id).to_vec();
