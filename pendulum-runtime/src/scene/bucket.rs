@@ -221,7 +221,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         if still {
             self.tracks.load_still(layout, S::FACTS.inputs, sampled.clock.time(sampled.tick), sampled.places);
         } else {
-            self.tracks.load(grid, layout, momenta, S::FACTS.inputs, sampled);
+            self.tracks.load(grid, layout, momenta, S::FACTS.inputs, sampled, parallel);
         }
         self.times.clear();
         for tick in 0..sampled.ticks {

@@ -37,10 +37,11 @@ impl<T: Lane + Float> Scene<T> {
         self.wake_all();
         let clock = self.clock.state();
         self.clock.jump(self.clock.tick() - ticks as i64);
-        self.places.iter_mut().for_each(super::joint::Place::forget_kink);
+        self.dirty = true;
         let advanced = self.whole_ticks(ticks);
         self.clock.restore(clock);
-        self.places.iter_mut().for_each(super::joint::Place::forget_kink);
+        // Kinks are looked for anew.
+        self.dirty = true;
         advanced
     }
 

@@ -79,7 +79,7 @@ pub(super) fn forget<T: Real, M: Motion<T, D> + Send + Sync + 'static, const D: 
     Arc::new(Forgotten(motion))
 }
 
-/// A joint, and what was last sampled of it.
+/// A joint.
 #[derive(Clone)]
 pub(super) struct Place<T> {
     pub(super) drive: Arc<dyn Drive<T>>,
@@ -89,8 +89,19 @@ pub(super) struct Place<T> {
     pub(super) orders: Orders,
     /// By bit, the grids on which it is needed.
     pub(super) grids: u64,
-    /// The class of the timetable for these grids.
+    /// Its number among those that are sampled.
+    pub(super) active: u32,
+}
+
+/// A joint that somebody awake needs, and what was last sampled of it.
+#[derive(Debug)]
+pub(super) struct Active {
+    pub(super) joint: u32,
+    /// The class of the timetable for the grids on which it is needed.
     pub(super) class: u32,
+    /// What those that are awake on it need.
+    pub(super) orders: Orders,
+    pub(super) components: usize,
     /// The first kink after the time last looked at; NaN before anybody has looked.
     kink: f64,
     /// Where its samples begin.
@@ -108,43 +119,53 @@ impl<T> fmt::Debug for Place<T> {
 impl<T: Real> Place<T> {
     pub(super) fn new(drive: Arc<dyn Drive<T>>, now: f64) -> Self {
         let still = drive.rest_until(now) == f64::INFINITY;
-        Self { drive, still, orders: Orders::NONE, grids: 0, class: 0, kink: f64::NAN, offset: 0, kinked: 0 }
+        Self { drive, still, orders: Orders::NONE, grids: 0, active: 0 }
+    }
+}
+
+impl Active {
+    pub(super) fn new<T: Real>(joint: u32, place: &Place<T>, class: u32) -> Self {
+        let components = place.drive.components();
+        Self { joint, class, orders: place.orders, components, kink: f64::NAN, offset: 0, kinked: 0 }
     }
 
     /// The numbers in a sample.
     pub(super) fn width(&self) -> usize {
-        self.drive.components() * self.orders.count()
-    }
-
-    /// Looks again for kinks, after a jump in time.
-    pub(super) fn forget_kink(&mut self) {
-        self.kink = f64::NAN;
+        self.components * self.orders.count()
     }
 
     /// Samples the ticks from `tick` at `times`; ticks with a kink in them or at their ends are left out.
-    pub(super) fn sample(&mut self, clock: &Clock, tick: i64, ticks: usize, times: &[Time], numbers: &mut [T]) {
+    pub(super) fn sample<T: Real>(
+        &mut self,
+        drive: &dyn Drive<T>,
+        clock: &Clock,
+        tick: i64,
+        ticks: usize,
+        times: &[Time],
+        numbers: &mut [T],
+    ) {
         self.kinked = 0;
-        if !self.kink_within(clock.time(tick), clock.time(tick + ticks as i64)) {
-            return self.drive.sample_all(times, self.orders, numbers);
+        if !self.kink_within(drive, clock.time(tick), clock.time(tick + ticks as i64)) {
+            return drive.sample_all(times, self.orders, numbers);
         }
         let (per_tick, width) = (times.len() / ticks, self.width());
         for index in 0..ticks {
             let now = tick + index as i64;
-            if self.kink_within(clock.time(now), clock.time(now + 1)) {
+            if self.kink_within(drive, clock.time(now), clock.time(now + 1)) {
                 self.kinked |= 1 << index;
             } else {
                 let numbers = &mut numbers[index * per_tick * width..][..per_tick * width];
-                self.drive.sample_all(&times[index * per_tick..][..per_tick], self.orders, numbers);
+                drive.sample_all(&times[index * per_tick..][..per_tick], self.orders, numbers);
             }
         }
     }
 
     /// Whether there is a kink after `start`, up to and with `end`.
-    fn kink_within(&mut self, start: f64, end: f64) -> bool {
+    fn kink_within<T>(&mut self, drive: &dyn Drive<T>, start: f64, end: f64) -> bool {
         // Also where nobody has looked yet.
         let ahead = start < self.kink;
         if !ahead {
-            self.kink = match self.drive.next_kink(start) {
+            self.kink = match drive.next_kink(start) {
                 // A motion that has not passed what it says is next has no more to say.
                 Some(kink) if start < kink => kink,
                 _ => f64::INFINITY,

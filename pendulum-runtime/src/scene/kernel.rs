@@ -116,9 +116,9 @@ fn batch<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, const
     let weights = Weights::<T>::new::<SCHEME>(|weight| Wide::from_f64(weight * batch.h));
     let layout = const { &Known::<S, N>::FORCES };
     let zero = T::from_f64(0.0);
-    let mut inputs = [gathered::<S, T, N>(&[], layout, &block.track); K];
-    if batch.still {
-        inputs = [gathered::<S, T, N>(batch.tracks.records(0, layout.width), layout, &block.track); K];
+    let mut inputs = [nothing::<S, T, N>(); K];
+    if batch.still && 0 < layout.width {
+        inputs = [gathered::<S, T, N>(&block.track.map(|track| batch.tracks.records(track, 0, 1, layout.width)), layout, 0); K];
     }
     let mut times = [Wide::from_f64(0.0); K];
     for tick in 0..batch.ticks {
@@ -130,9 +130,11 @@ fn batch<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, const
                 let evaluation = (tick * batch.grid.substeps as usize + step) * stages;
                 for stage in 0..stages {
                     times[stage] = Wide::splat(scalar_time(batch.times[evaluation + stage]));
-                    if !batch.still {
-                        inputs[stage] =
-                            gathered::<S, T, N>(batch.tracks.records(evaluation + stage, layout.width), layout, &block.track);
+                }
+                if !batch.still && 0 < layout.width {
+                    let records = block.track.map(|track| batch.tracks.records(track, evaluation, K, layout.width));
+                    for stage in 0..stages {
+                        inputs[stage] = gathered::<S, T, N>(&records, layout, stage);
                     }
                 }
                 let Block { system, prepared, q, v, extras, .. } = &mut *block;
@@ -175,16 +177,24 @@ fn freeze<S: Hung<T, N>, T: Lane + Float, const N: usize>(block: &mut Block<S, T
     }
 }
 
-/// The inputs of each lane from the records of all tracks.
+/// Inputs that are all zero.
 #[inline(always)]
-fn gathered<S: Hung<T, N>, T: Lane + Float, const N: usize>(records: &[T], layout: &Layout, track: &[u32; W]) -> Inputs<S, T, N> {
+fn nothing<S: Hung<T, N>, T: Lane + Float, const N: usize>() -> Inputs<S, T, N> {
+    Assemble::assemble(|_, _, _| Wide::from_f64(0.0))
+}
+
+/// The inputs of each lane, from one of its records.
+#[inline(always)]
+fn gathered<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+    records: &[&[T]; W],
+    layout: &Layout,
+    index: usize,
+) -> Inputs<S, T, N> {
     Assemble::assemble(|input, derivative, component| {
         let mut lanes = Wide::from_f64(0.0);
-        if let Some(place) = layout.place(input, derivative, component)
-            && !records.is_empty()
-        {
+        if let Some(place) = layout.place(input, derivative, component) {
             for lane in 0..W {
-                lanes.0[lane] = records[track[lane] as usize * layout.width + place];
+                lanes.0[lane] = records[lane][index * layout.width + place];
             }
         }
         lanes
@@ -371,7 +381,7 @@ fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, co
                 times[stage].0[lane] = scalar_time(t);
             }
         }
-        let mut inputs = [gathered::<S, T, N>(&[], layout, &block.track); K];
+        let mut inputs = [nothing::<S, T, N>(); K];
         for (stage, inputs) in inputs.iter_mut().enumerate().take(stages) {
             *inputs = Assemble::assemble(|input, derivative, component| {
                 let mut lanes = Wide::from_f64(0.0);
@@ -381,7 +391,7 @@ fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, co
                         batch.tracks.extra()[piece.begin + stage * layout.width + place]
                     } else {
                         let evaluation = (tick * substeps + step) * stages + stage;
-                        batch.tracks.records(evaluation, layout.width)[block.track[lane] as usize * layout.width + place]
+                        batch.tracks.records(block.track[lane], evaluation, 1, layout.width)[place]
                     };
                 }
                 lanes

@@ -86,13 +86,15 @@ use core::any::TypeId;
 use core::fmt;
 use core::marker::PhantomData;
 use group::{AnyGroup, Group};
-use joint::Place;
+use joint::{Active, Place};
 use timetable::Timetable;
 
 /// Joints with their motions and pendulums of any type hung on them, over `f32` or `f64`.
 pub struct Scene<T> {
     clock: Clock,
     places: Vec<Place<T>>,
+    /// Those that somebody awake needs.
+    actives: Vec<Active>,
     groups: Vec<(TypeId, Box<dyn AnyGroup<T>>)>,
     timetable: Timetable,
     /// What was sampled of the joints in a batch.
@@ -162,6 +164,7 @@ impl<T: Lane + Float> Scene<T> {
         Ok(Self {
             clock: Clock::new(rate)?,
             places: Vec::new(),
+            actives: Vec::new(),
             groups: Vec::new(),
             timetable: Timetable::default(),
             numbers: Vec::new(),

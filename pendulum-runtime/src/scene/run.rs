@@ -4,10 +4,11 @@ use super::Scene;
 use super::bucket::Failed;
 use super::clock::Clock;
 use super::error::SceneError;
-use super::joint::Place;
+use super::joint::{Active, Place};
 use super::timetable::Timetable;
 use super::tracks::{BATCH, Sampled};
 use crate::real::{Float, Lane};
+use core::sync::atomic::{AtomicBool, Ordering};
 
 /// What [`Scene::advance`] has done.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -65,12 +66,12 @@ impl<T: Lane + Float> Scene<T> {
             self.assign();
         }
         let tick = self.clock.tick();
-        self.sample(tick, ticks);
-        let Self { clock, places, numbers, timetable, groups, failures, parallel, .. } = self;
+        let kinks = self.sample(tick, ticks);
+        let Self { clock, places, actives, numbers, timetable, groups, failures, parallel, .. } = self;
         let mut failed: Vec<Failed> = Vec::new();
         for (_, group) in groups.iter_mut() {
             group.settle(clock);
-            let sampled = Sampled { clock, tick, ticks, places, numbers, timetable };
+            let sampled = Sampled { clock, tick, ticks, places, actives, numbers, timetable, kinks };
             group.run(&sampled, *parallel, &mut failed);
             if !failed.is_empty() {
                 failed.sort_by_key(|&(id, at)| (at, id));
@@ -85,7 +86,7 @@ impl<T: Lane + Float> Scene<T> {
     /// Tells every joint who needs it, and when.
     fn assign(&mut self) {
         self.dirty = false;
-        let Self { places, groups, timetable, .. } = self;
+        let Self { places, actives, groups, timetable, .. } = self;
         for place in places.iter_mut() {
             (place.orders, place.grids) = (crate::motion::Orders::NONE, 0);
         }
@@ -103,34 +104,34 @@ impl<T: Lane + Float> Scene<T> {
                 place.grids |= bit;
             });
         }
+        actives.clear();
         let mut last = None;
-        for place in places.iter_mut().filter(|place| place.grids != 0) {
-            place.class = match last {
+        for (joint, place) in (0..).zip(places.iter_mut()).filter(|(_, place)| place.grids != 0 && !place.still) {
+            let class = match last {
                 Some((grids, class)) if grids == place.grids => class,
                 _ => timetable.class(place.grids),
             };
-            last = Some((place.grids, place.class));
+            last = Some((place.grids, class));
+            place.active = actives.len() as u32;
+            actives.push(Active::new(joint, place, class));
         }
     }
 
-    /// Samples all joints that somebody needs.
-    fn sample(&mut self, tick: i64, ticks: usize) {
-        let Self { clock, places, numbers, timetable, .. } = self;
+    /// Samples all joints that somebody needs; whether there are kinks.
+    fn sample(&mut self, tick: i64, ticks: usize) -> bool {
+        let Self { clock, places, actives, numbers, timetable, .. } = self;
         timetable.begin(clock, tick, ticks);
         let mut length = 0;
-        let shared = Times { clock, timetable, tick, ticks };
-        for place in places.iter_mut().filter(|place| is_sampled(place)) {
-            place.offset = length;
-            length += shared.length(place);
+        let kinks = AtomicBool::new(false);
+        let shared = Times { clock, timetable, tick, count: ticks, kinks: &kinks };
+        for active in actives.iter_mut() {
+            active.offset = length;
+            length += shared.length(active);
         }
         numbers.resize(length, T::from_f64(0.0));
-        shared.sample_all(places, numbers, self.parallel);
+        shared.sample_all(places, actives, numbers, self.parallel);
+        kinks.into_inner()
     }
-}
-
-/// The joints that are sampled.
-fn is_sampled<T>(place: &Place<T>) -> bool {
-    place.grids != 0 && !place.still
 }
 
 /// What all samplers share.
@@ -139,54 +140,53 @@ struct Times<'a> {
     clock: &'a Clock,
     timetable: &'a Timetable,
     tick: i64,
-    ticks: usize,
+    count: usize,
+    /// Somebody has found a kink.
+    kinks: &'a AtomicBool,
 }
 
 impl Times<'_> {
     /// The numbers of a joint in a batch.
-    fn length<T: Lane + Float>(&self, place: &Place<T>) -> usize {
-        self.timetable.times(place.class).len() * place.width()
+    fn length(&self, active: &Active) -> usize {
+        self.timetable.times(active.class).len() * active.width()
     }
 
-    /// Samples joints into `numbers`, which begin at the offset `base`.
-    fn sample<T: Lane + Float>(&self, places: &mut [Place<T>], numbers: &mut [T], base: usize) {
-        for place in places.iter_mut().filter(|place| is_sampled(place)) {
-            let (begin, length) = (place.offset - base, self.length(place));
-            place.sample(
-                self.clock,
-                self.tick,
-                self.ticks,
-                self.timetable.times(place.class),
-                &mut numbers[begin..begin + length],
-            );
+    /// Samples joints into `numbers`, which begin at the offset of the first.
+    fn sample<T: Lane + Float>(&self, places: &[Place<T>], actives: &mut [Active], numbers: &mut [T]) {
+        let (mut begin, mut kinked) = (0, 0);
+        for active in actives {
+            let (length, times) = (self.length(active), self.timetable.times(active.class));
+            let drive = &*places[active.joint as usize].drive;
+            active.sample(drive, self.clock, self.tick, self.count, times, &mut numbers[begin..begin + length]);
+            begin += length;
+            kinked |= active.kinked;
+        }
+        if kinked != 0 {
+            self.kinks.store(true, Ordering::Relaxed);
         }
     }
 
     /// Samples joints, on all threads if there are many.
     #[cfg(feature = "rayon")]
-    fn sample_all<T: Lane + Float>(&self, places: &mut [Place<T>], numbers: &mut [T], parallel: bool) {
+    fn sample_all<T: Lane + Float>(&self, places: &[Place<T>], actives: &mut [Active], numbers: &mut [T], parallel: bool) {
         const CHUNK: usize = 256;
-        if !parallel || places.len() < 2 * CHUNK {
-            return self.sample(places, numbers, 0);
+        if !parallel || actives.len() < 2 * CHUNK {
+            return self.sample(places, actives, numbers);
         }
         rayon::scope(|scope| {
-            let (mut rest, mut base) = (numbers, 0);
-            for chunk in places.chunks_mut(CHUNK) {
-                let size = chunk.iter().filter(|place| is_sampled(place)).map(|place| self.length(place)).sum();
+            let mut rest = numbers;
+            for chunk in actives.chunks_mut(CHUNK) {
+                let size = chunk.iter().map(|active| self.length(active)).sum();
                 let (mine, after) = rest.split_at_mut(size);
                 rest = after;
-                let begin = base;
-                base += size;
-                if 0 < size {
-                    scope.spawn(move |_| self.sample(chunk, mine, begin));
-                }
+                scope.spawn(move |_| self.sample(places, chunk, mine));
             }
         });
     }
 
     /// Samples joints.
     #[cfg(not(feature = "rayon"))]
-    fn sample_all<T: Lane + Float>(&self, places: &mut [Place<T>], numbers: &mut [T], _: bool) {
-        self.sample(places, numbers, 0);
+    fn sample_all<T: Lane + Float>(&self, places: &[Place<T>], actives: &mut [Active], numbers: &mut [T], _: bool) {
+        self.sample(places, actives, numbers);
     }
 }

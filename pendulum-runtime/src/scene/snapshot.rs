@@ -167,9 +167,6 @@ impl<T: Lane + Float> Scene<T> {
             group.accepts(state)?;
         }
         self.clock.restore(snapshot.clock);
-        for place in &mut self.places {
-            place.forget_kink();
-        }
         for ((_, group), state) in self.groups.iter_mut().zip(&snapshot.groups) {
             group.restore(&self.places, state);
         }

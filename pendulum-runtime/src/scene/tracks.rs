@@ -2,7 +2,7 @@
 
 use super::clock::Clock;
 use super::hung::Layout;
-use super::joint::Place;
+use super::joint::{Active, Place};
 use super::scheme::{Grid, MOST_STAGES};
 use super::timetable::Timetable;
 use crate::integrate::span::Span;
@@ -25,8 +25,10 @@ pub(super) struct Tracks<T> {
     by_joints: BTreeMap<Vec<u32>, u32>,
     /// The pendulums that are awake on each.
     awake: Vec<u32>,
-    /// Records by tick, evaluation and track.
+    /// Records by track, tick and evaluation.
     records: Vec<T>,
+    /// The records of a track.
+    stride: usize,
     /// By tick and track: where the pieces of a tick with a kink begin and how many there are; empty in batches without kinks.
     cuts: Vec<(u32, u32)>,
     pieces: Vec<Piece>,
@@ -52,8 +54,11 @@ pub(super) struct Sampled<'a, T> {
     pub(super) tick: i64,
     pub(super) ticks: usize,
     pub(super) places: &'a [Place<T>],
+    pub(super) actives: &'a [Active],
     pub(super) numbers: &'a [T],
     pub(super) timetable: &'a Timetable,
+    /// Whether some joint has a kink.
+    pub(super) kinks: bool,
 }
 
 impl<T: Real + Float> Tracks<T> {
@@ -64,6 +69,7 @@ impl<T: Real + Float> Tracks<T> {
             by_joints: BTreeMap::new(),
             awake: Vec::new(),
             records: Vec::new(),
+            stride: 0,
             cuts: Vec::new(),
             pieces: Vec::new(),
             extra: Vec::new(),
@@ -113,43 +119,29 @@ impl<T: Real + Float> Tracks<T> {
     }
 
     /// Reads what was sampled of the joints for a batch.
-    pub(super) fn load(&mut self, grid: Grid, layout: &Layout, momenta: &Layout, inputs: &[Input], sampled: &Sampled<'_, T>) {
-        let (tracks, evaluations, width) = (self.count(), grid.count(), layout.width);
-        self.records.resize(sampled.ticks * evaluations * tracks * width, T::from_f64(0.0));
+    pub(super) fn load(
+        &mut self,
+        grid: Grid,
+        layout: &Layout,
+        momenta: &Layout,
+        inputs: &[Input],
+        sampled: &Sampled<'_, T>,
+        parallel: bool,
+    ) {
+        let tracks = self.count();
         self.cuts.clear();
         self.pieces.clear();
         self.extra.clear();
+        self.stride = sampled.ticks * grid.count();
+        let mut records = core::mem::take(&mut self.records);
+        records.resize(self.stride * tracks * layout.width, T::from_f64(0.0));
+        self.read_all(grid, layout, inputs, sampled, &mut records, parallel);
+        self.records = records;
+        if !sampled.kinks {
+            return;
+        }
         for track in 0..tracks {
-            if !self.is_awake(track) {
-                continue;
-            }
-            let mut kinked = 0;
-            let mut at = 0;
-            for input in 0..self.inputs {
-                let place = &sampled.places[self.joints[track * self.inputs + input] as usize];
-                let orders = crate::motion::orders(inputs, input, Purpose::Accelerations);
-                let components = place.drive.components();
-                let own = components * orders.count();
-                kinked |= place.kinked;
-                if !place.still && own != 0 {
-                    let (nodes, mine) = sampled.timetable.nodes(place.class, grid);
-                    for tick in 0..sampled.ticks {
-                        for (evaluation, &node) in mine.iter().enumerate() {
-                            let from = place.offset + (tick * nodes + usize::from(node)) * place.width();
-                            let to = ((tick * evaluations + evaluation) * tracks + track) * width + at;
-                            narrow(components, place.orders, &sampled.numbers[from..], orders, &mut self.records[to..to + own]);
-                        }
-                    }
-                } else if own != 0 {
-                    // At rest among others that move: the same record everywhere.
-                    for index in 0..sampled.ticks * evaluations {
-                        let to = (index * tracks + track) * width + at;
-                        let now = Time::new(sampled.clock.time(sampled.tick));
-                        place.drive.sample(now, Side::After, orders, &mut self.records[to..to + own]);
-                    }
-                }
-                at += own;
-            }
+            let kinked = if self.is_awake(track) { self.kinked(track, sampled) } else { 0 };
             if kinked != 0 {
                 self.cuts.resize(sampled.ticks * tracks, (0, 0));
                 for tick in (0..sampled.ticks).filter(|tick| kinked & (1 << tick) != 0) {
@@ -157,6 +149,91 @@ impl<T: Real + Float> Tracks<T> {
                     self.cut(track, tick, grid, momenta, inputs, sampled);
                     self.cuts[tick * tracks + track] = (begin as u32, (self.pieces.len() - begin) as u32);
                 }
+            }
+        }
+    }
+
+    /// Whether each tick of the batch has a kink for a track, by bit.
+    fn kinked(&self, track: usize, sampled: &Sampled<'_, T>) -> u32 {
+        let moving = self.joints(track as u32).iter().map(|&joint| &sampled.places[joint as usize]);
+        let moving = moving.filter(|place| !place.still && place.grids != 0);
+        moving.fold(0, |kinked, place| kinked | sampled.actives[place.active as usize].kinked)
+    }
+
+    /// Reads the records of all tracks, on all threads if there are many.
+    #[cfg(feature = "rayon")]
+    fn read_all(
+        &self,
+        grid: Grid,
+        layout: &Layout,
+        inputs: &[Input],
+        sampled: &Sampled<'_, T>,
+        records: &mut [T],
+        parallel: bool,
+    ) {
+        use rayon::prelude::*;
+        const CHUNK: usize = 512;
+        let length = self.stride * layout.width;
+        if !parallel || self.count() < 2 * CHUNK || length == 0 {
+            return self.read(0, grid, layout, inputs, sampled, records);
+        }
+        records.par_chunks_mut(CHUNK * length).enumerate().for_each(|(index, records)| {
+            self.read(index * CHUNK, grid, layout, inputs, sampled, records);
+        });
+    }
+
+    /// Reads the records of all tracks.
+    #[cfg(not(feature = "rayon"))]
+    fn read_all(&self, grid: Grid, layout: &Layout, inputs: &[Input], sampled: &Sampled<'_, T>, records: &mut [T], _: bool) {
+        self.read(0, grid, layout, inputs, sampled, records);
+    }
+
+    /// Reads the records of the tracks from `first` on.
+    fn read(&self, first: usize, grid: Grid, layout: &Layout, inputs: &[Input], sampled: &Sampled<'_, T>, records: &mut [T]) {
+        let (evaluations, width) = (grid.count(), layout.width);
+        if width == 0 {
+            return;
+        }
+        for (track, records) in (first..).zip(records.chunks_exact_mut(self.stride * width)) {
+            if !self.is_awake(track) {
+                continue;
+            }
+            let mut at = 0;
+            for (input, &joint) in self.joints(track as u32).iter().enumerate() {
+                let place = &sampled.places[joint as usize];
+                let orders = crate::motion::orders(inputs, input, Purpose::Accelerations);
+                if orders == Orders::NONE {
+                    continue;
+                }
+                if place.still {
+                    // At rest among others that move: the same record everywhere.
+                    let own = place.drive.components() * orders.count();
+                    let now = Time::new(sampled.clock.time(sampled.tick));
+                    for record in records.chunks_exact_mut(width) {
+                        place.drive.sample(now, Side::After, orders, &mut record[at..at + own]);
+                    }
+                    at += own;
+                    continue;
+                }
+                let active = &sampled.actives[place.active as usize];
+                let own = active.components * orders.count();
+                let (nodes, mine) = sampled.timetable.nodes(active.class, grid);
+                let alike = nodes == evaluations && mine.iter().enumerate().all(|(index, &node)| index == usize::from(node));
+                if own == width && orders == active.orders && alike {
+                    // Nobody else wants anything else of it.
+                    let length = records.len();
+                    records.copy_from_slice(&sampled.numbers[active.offset..][..length]);
+                } else {
+                    let mut records = records.chunks_exact_mut(width);
+                    for tick in 0..sampled.ticks {
+                        for (record, &node) in (&mut records).take(evaluations).zip(mine) {
+                            let from = active.offset + (tick * nodes + usize::from(node)) * active.width();
+                            let numbers = &sampled.numbers[from..];
+                            narrow(active.components, active.orders, numbers, orders, &mut record[at..at + own]);
+                        }
+                    }
+                }
+                at += own;
             }
         }
     }
@@ -213,6 +290,7 @@ impl<T: Real + Float> Tracks<T> {
     /// Reads the constant records of joints that rest for ever.
     pub(super) fn load_still(&mut self, layout: &Layout, inputs: &[Input], now: f64, places: &[Place<T>]) {
         self.records.resize(self.count() * layout.width, T::from_f64(0.0));
+        self.stride = 1;
         let mut to = 0;
         for track in 0..self.count() {
             for (input, &joint) in self.joints[track * self.inputs..][..self.inputs].iter().enumerate() {
@@ -225,12 +303,11 @@ impl<T: Real + Float> Tracks<T> {
         }
     }
 
-    /// The records of one evaluation, one for each track.
+    /// So many records of a track from an evaluation of the batch on; those of a batch at rest are all the first.
     #[inline(always)]
     #[allow(clippy::inline_always)]
-    pub(super) fn records(&self, evaluation: usize, width: usize) -> &[T] {
-        let length = self.awake.len() * width;
-        &self.records[evaluation * length..][..length]
+    pub(super) fn records(&self, track: u32, evaluation: usize, count: usize, width: usize) -> &[T] {
+        &self.records[(track as usize * self.stride + evaluation) * width..][..count * width]
     }
 
     /// Whether a tick of the batch has been cut for any track.
