@@ -1,4 +1,5 @@
-//! Rigid planar bodies: mass, centre of mass and second moments, of simple shapes, polygons with holes and any density.
+//! Rigid planar bodies: mass, centre of mass and second moments, of simple shapes, polygons with holes, outlines of Bézier
+//! curves and any density.
 //!
 //! All lengths are in metres from the pivot while the joint is at angle zero, all masses in kilograms. No shape asks for a
 //! factor without a unit: what a body weighs decides how it swings.
@@ -18,9 +19,10 @@ mod ellipse;
 mod error;
 mod estimate;
 mod monte_carlo;
+mod outline;
 mod polygon;
 mod quadrature;
-mod random;
+pub(crate) mod random;
 mod simple;
 mod slabs;
 mod sum;
@@ -29,6 +31,7 @@ pub use ellipse::Ellipse;
 pub use error::BodyError;
 pub use estimate::Estimate;
 pub use monte_carlo::Region;
+pub use outline::{FillRule, Outline};
 pub use polygon::Polygon;
 
 use crate::real::Real;
