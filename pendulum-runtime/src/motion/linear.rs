@@ -19,16 +19,7 @@ impl<const D: usize> Linear<D> {
     /// No keys, lengths that differ, times that do not increase, numbers that are not finite.
     pub fn new(times: &[f64], values: &[[f64; D]]) -> Result<Self, MotionError> {
         checked(times, values)?;
-        let slope = |key: usize| {
-            let h = times[key + 1] - times[key];
-            let mut slope = [0.0; D];
-            for d in 0..D {
-                slope[d] = (values[key + 1][d] - values[key][d]) / h;
-            }
-            [slope, slope]
-        };
-        let slopes: Vec<_> = (0..times.len() - 1).map(slope).collect();
-        Ok(Self(Piecewise::hermite(times, values, &slopes).straight().with_kinks(true)))
+        Ok(Self(Piecewise::lines(times, values)))
     }
 
     /// The same motion again and again; the last key closes the loop.

@@ -64,8 +64,44 @@ impl<const D: usize> Piecewise<D> {
         Self { times: times.to_vec(), pieces, last, looped: false, kinks: Vec::new() }
     }
 
+    /// Straight lines; the velocity jumps at the keys.
+    pub(super) fn lines(times: &[f64], values: &[[f64; D]]) -> Self {
+        let slope = |key: usize| {
+            let h = times[key + 1] - times[key];
+            let mut slope = [0.0; D];
+            for d in 0..D {
+                slope[d] = (values[key + 1][d] - values[key][d]) / h;
+            }
+            [slope, slope]
+        };
+        let slopes: Vec<_> = (0..times.len() - 1).map(slope).collect();
+        Self::hermite(times, values, &slopes).straight().with_kinks(true)
+    }
+
+    /// Values that are kept from each key to the next, where they jump.
+    #[cfg(feature = "gltf")]
+    pub(super) fn steps(times: &[f64], values: &[[f64; D]]) -> Self {
+        let last = values.len() - 1;
+        let rest = [0.0; D];
+        let pieces = values[..last].iter().map(|&value| [value, rest, rest, rest]).collect();
+        let kinks = (0..last).filter(|&key| values[key] != values[key + 1]).map(|key| times[key + 1]).collect();
+        Self { times: times.to_vec(), pieces, last: values[last], looped: false, kinks }
+    }
+
+    /// Where position, velocity or acceleration jumps, within the keys.
+    #[cfg(feature = "gltf")]
+    pub(super) fn kinks(&self) -> &[f64] {
+        &self.kinks
+    }
+
+    /// The pieces as coefficients of 1, u, u², u³ in the time u since the key, and how long each lasts.
+    #[cfg(feature = "gltf")]
+    pub(super) fn pieces(&self) -> impl Iterator<Item = (&[[f64; D]; 4], f64)> {
+        self.pieces.iter().zip(self.times.windows(2).map(|pair| pair[1] - pair[0]))
+    }
+
     /// Drops what is left of the higher coefficients when every piece is a line.
-    pub(super) fn straight(mut self) -> Self {
+    fn straight(mut self) -> Self {
         for piece in &mut self.pieces {
             piece[2] = [0.0; D];
             piece[3] = [0.0; D];
