@@ -33,9 +33,12 @@ use accessor::Source;
 use gltf::json::animation::{Channel, Interpolation, Property};
 use gltf::json::validation::Checked;
 use gltf::json::{Animation, Root};
-use node::Local;
+use node::{Local, Parts};
 use std::path::Path;
 use track::{Arcs, Track, Turn, dot, vanishing};
+
+/// Times, values and what is between them.
+type Keys<const D: usize> = (Vec<f64>, Vec<[f64; D]>, Interpolation);
 
 /// What to do about a file that contradicts itself.
 const MEND: &str = "mend the file or export it again";
@@ -142,7 +145,7 @@ impl Gltf {
             let times = times.map_err(|error| error.within(&format!("samplers[{index}].input")))?;
             last = times.iter().fold(last, |last, &[time]| if last < time { time } else { last });
         }
-        Ok(last)
+        if last.is_finite() { Ok(last) } else { Err(GltfError::new("samplers", "a key at an infinite time", MEND)) }
     }
 
     fn source(&self) -> Source<'_> {
@@ -158,10 +161,9 @@ impl Gltf {
         let mut translation = Track::Still(wide(node.translation.unwrap_or([0.0; 3])));
         let mut rotation = Turn::Still(unit(rest).ok_or_else(|| fail("its rotation is no unit quaternion"))?);
         let mut scale = Track::Still(wide(node.scale.unwrap_or([1.0; 3])));
-        if let (Track::Still(x), Track::Still(s)) = (&translation, &scale) {
-            if x.iter().chain(s).any(|value| !value.is_finite()) {
-                return Err(fail("a number that is infinite or none"));
-            }
+        let numbers = [node.translation, node.scale];
+        if numbers.iter().flatten().flatten().any(|value| !value.is_finite()) {
+            return Err(fail("a number that is infinite or none"));
         }
         let mut animated = false;
         for (number, channel) in animation.channels.iter().enumerate() {
@@ -190,7 +192,7 @@ impl Gltf {
                 }
                 Ok(Local::Matrix(rows))
             }
-            None => Ok(Local::Parts { translation, rotation, scale }),
+            None => Ok(Local::Parts(Box::new(Parts { translation, rotation, scale }))),
         }
     }
 
@@ -206,7 +208,8 @@ impl Gltf {
     fn turn(&self, animation: &Animation, channel: &Channel) -> Result<Turn, GltfError> {
         let (times, mut values, interpolation) = self.keys::<4>(animation, channel)?;
         let tangents = interpolation == Interpolation::CubicSpline;
-        let keys = if tangents { values.iter_mut().skip(1).step_by(3) } else { values.iter_mut().skip(0).step_by(1) };
+        let [first, each] = if tangents { [1, 3] } else { [0, 1] };
+        let keys = values.iter_mut().skip(first).step_by(each);
         for (key, value) in keys.enumerate() {
             let what = || GltfError::new("output", format!("key {key} is no unit quaternion"), MEND);
             let length = unit(*value).ok_or_else(what)?;
@@ -229,11 +232,7 @@ impl Gltf {
     }
 
     /// The times and values of a channel; three values a key if it has tangents.
-    fn keys<const D: usize>(
-        &self,
-        animation: &Animation,
-        channel: &Channel,
-    ) -> Result<(Vec<f64>, Vec<[f64; D]>, Interpolation), GltfError> {
+    fn keys<const D: usize>(&self, animation: &Animation, channel: &Channel) -> Result<Keys<D>, GltfError> {
         let number = channel.sampler.value();
         let place = format!("samplers[{number}]");
         let fail = |what: String| GltfError::new(&*place, what, MEND);
@@ -264,7 +263,7 @@ fn parents(root: &Root) -> Result<Vec<Option<usize>>, GltfError> {
     let mut parents: Vec<Option<usize>> = vec![None; count];
     for (index, node) in root.nodes.iter().enumerate() {
         let fail = |what: String| GltfError::new(format!("nodes[{index}].children"), what, MEND);
-        for child in node.children.iter().flatten().map(|child| child.value()) {
+        for child in node.children.iter().flatten().map(gltf::json::Index::value) {
             let parent = parents.get_mut(child).ok_or_else(|| fail(format!("nodes[{child}] does not exist")))?;
             if let Some(other) = parent.replace(index) {
                 return Err(fail(format!("nodes[{child}] is a child of nodes[{other}] too")));

@@ -10,15 +10,24 @@ use crate::time::Time;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Local {
     /// Translation, rotation and scale: p ↦ x + R S p.
-    Parts { translation: Track, rotation: Turn, scale: Track },
+    Parts(Box<Parts>),
     /// A matrix that does not change, by rows.
     Matrix([[f64; 4]; 3]),
+}
+
+/// What channels move.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Parts {
+    pub(super) translation: Track,
+    pub(super) rotation: Turn,
+    pub(super) scale: Track,
 }
 
 impl Local {
     fn place<const N: usize>(&self, p: &[Jet<N>; 3], t: Time, side: Side) -> [Jet<N>; 3] {
         match self {
-            Self::Parts { translation, rotation, scale } => {
+            Self::Parts(parts) => {
+                let Parts { translation, rotation, scale } = &**parts;
                 let scale: [Jet<N>; 3] = scale.at(t, side);
                 let scaled = [0, 1, 2].map(|axis| scale[axis] * p[axis]);
                 let turned = turned(&rotation.at(t, side), &scaled);
@@ -34,7 +43,7 @@ impl Local {
 
     pub(super) fn kinks(&self) -> impl Iterator<Item = f64> {
         let tracks: [&[f64]; 3] = match self {
-            Self::Parts { translation, rotation, scale } => [translation.kinks(), rotation.kinks(), scale.kinks()],
+            Self::Parts(parts) => [parts.translation.kinks(), parts.rotation.kinks(), parts.scale.kinks()],
             Self::Matrix(_) => [&[]; 3],
         };
         tracks.into_iter().flatten().copied()
@@ -74,7 +83,7 @@ impl NodeMotion {
     /// # Errors
     /// An animation that lasts no time.
     pub fn looped(mut self) -> Result<Self, MotionError> {
-        if !(0.0 < self.duration) {
+        if self.duration <= 0.0 {
             return Err(MotionError::OneKey);
         }
         let end: Sample<f64, 3> = self.sample(Time::new(self.duration), Side::Before, Orders::ALL);

@@ -427,10 +427,10 @@ fn wrong_bytes_never_panic() {
     for original in [file.binary(nodes), file.text(nodes)] {
         for _ in 0..5000 {
             let mut bytes = original.clone();
-            for _ in 0..1 + random.bits() % 3 {
+            for _ in 0..=random.bits() % 3 {
                 let place = (random.unit() * bytes.len() as f64) as usize;
                 // A number becomes another more often than nonsense.
-                let digit = bytes[place].is_ascii_digit() && random.bits() % 8 != 0;
+                let digit = bytes[place].is_ascii_digit() && !random.bits().is_multiple_of(8);
                 bytes[place] = if digit { b'0' + (random.bits() % 10) as u8 } else { random.bits() as u8 };
             }
             probe(&bytes);

@@ -162,26 +162,31 @@ pub(super) fn vanishing(curve: &Piecewise<4>) -> Option<usize> {
         // Far below what a rotation of less than half a turn leaves, and high enough to be decided soon.
         let size = |coefficient: &[f64; 4]| Real::sqrt(dot(coefficient, coefficient));
         let least = 1e-4 * (size(&piece[0]) + h * (size(&piece[1]) + h * (size(&piece[2]) + h * size(&piece[3]))));
-        !away(piece, [0.0, h], least, 40)
+        !away(piece, h, least)
     })
 }
 
-/// Whether |c(u)| stays above `least` in a span of u: by the value in the middle and a bound on |ċ|, halving.
-fn away(piece: &[[f64; 4]; 4], [low, high]: [f64; 2], least: f64, depth: u32) -> bool {
+/// Whether |c(u)| stays above `least` for u from 0 to h: by the value in the middle of spans and a bound on |ċ|, halving.
+fn away(piece: &[[f64; 4]; 4], h: f64, least: f64) -> bool {
     let [a, b, c, d] = piece;
-    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-    let value: [f64; 4] = core::array::from_fn(|k| a[k] + middle * (b[k] + middle * (c[k] + middle * d[k])));
-    let size = Real::sqrt(dot(&value, &value));
-    // The farther end bounds each term of ċ.
-    let slope: [f64; 4] = core::array::from_fn(|k| b[k].abs() + high * (2.0 * c[k].abs() + high * 3.0 * d[k].abs()));
-    let change = half * Real::sqrt(dot(&slope, &slope));
-    if change < size - least {
-        return true;
+    let mut spans = vec![[0.0, h]];
+    // Curves that come from rotations need a dozen spans.
+    for _ in 0..4096 {
+        let Some([low, high]) = spans.pop() else { return true };
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+        let value: [f64; 4] = core::array::from_fn(|k| a[k] + middle * (b[k] + middle * (c[k] + middle * d[k])));
+        let size = Real::sqrt(dot(&value, &value));
+        // The farther end bounds each term of ċ.
+        let slope: [f64; 4] = core::array::from_fn(|k| b[k].abs() + high * (2.0 * c[k].abs() + high * 3.0 * d[k].abs()));
+        let change = half * Real::sqrt(dot(&slope, &slope));
+        if size <= least {
+            return false;
+        }
+        if size - least <= change || change.is_nan() {
+            spans.extend([[low, middle], [middle, high]]);
+        }
     }
-    if depth == 0 || !(least < size) {
-        return false;
-    }
-    away(piece, [low, middle], least, depth - 1) && away(piece, [middle, high], least, depth - 1)
+    false
 }
 
 /// The product of two quaternions as vectors.
