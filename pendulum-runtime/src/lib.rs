@@ -4,6 +4,8 @@
 mod macros;
 
 pub mod body;
+#[cfg(feature = "svg")]
+pub mod drawing;
 pub mod error;
 pub mod integrate;
 pub mod jet;

@@ -144,7 +144,7 @@ impl Outline {
         // Coordinates come rounded; an area that this alone can make is none.
         let least = 4.0 * count as f64 * f64::EPSILON * extent * radius;
         let area = first[0];
-        if !(least < area.abs()) {
+        if area.abs() <= least {
             return Err(BodyError::NoArea { ring: 0 });
         }
         let center = [first[1] / area, first[2] / area];

@@ -1,0 +1,211 @@
+//! Small drawings whose weights are known.
+
+use super::{Drawing, DrawingError, Role, Units, Why};
+use crate::body::Body;
+use crate::body::random::Random;
+
+const UNITS: Units = Units { pixel: 0.01, density: 3.0 };
+
+fn read(inner: &str) -> Result<Drawing, DrawingError> {
+    Drawing::read(&format!(r#"<svg xmlns="http://www.w3.org/2000/svg" width="200" height="100">{inner}</svg>"#), UNITS)
+}
+
+/// The body of one pendulum that hangs at (100, 20).
+fn body(shapes: &str) -> Body {
+    let drawing = read(&format!(r#"<g id="p"><circle id="p.pendulum" cx="100" cy="20" r="2"/>{shapes}</g>"#)).unwrap();
+    assert_eq!(drawing.joints.len(), 1);
+    drawing.joints[0].body.unwrap()
+}
+
+/// Agreement to the single precision of coordinates.
+fn same(a: Body, b: Body) {
+    let size = (b.inertia() / b.mass).sqrt();
+    assert!((a.mass - b.mass).abs() <= 1e-6 * b.mass, "{a:?} is not {b:?}");
+    assert!((0..2).all(|k| (a.center[k] - b.center[k]).abs() <= 1e-6 * size), "{a:?} is not {b:?}");
+    assert!((0..3).all(|k| (a.central[k] - b.central[k]).abs() <= 1e-6 * b.inertia()), "{a:?} is not {b:?}");
+}
+
+/// 40 × 20 pixels, from the pivot down.
+fn plank() -> Body {
+    Body::rectangle(3.0 * 0.08, 0.4, 0.2).unwrap().translated([0.0, -0.1])
+}
+
+#[test]
+fn a_rectangle_weighs_what_its_area_does() {
+    same(body(r#"<rect x="80" y="20" width="40" height="20"/>"#), plank());
+    same(body(r#"<path d="M80 20h40v20h-40z"/>"#), plank());
+    same(body(r#"<polygon points="80,20 80,40 120,40 120,20"/>"#), plank());
+}
+
+#[test]
+fn opacities_multiply_to_the_density() {
+    let half = r#"<g opacity="0.5"><g><rect x="80" y="20" width="40" height="20" fill-opacity="0.5" opacity="0.8"/></g></g>"#;
+    same(body(half), plank().scaled(0.2));
+    same(body(r#"<rect x="80" y="20" width="40" height="20" fill="rgba(9,9,9,0.2)"/>"#), plank().scaled(0.2));
+    same(body(r#"<rect x="80" y="20" width="40" height="20" style="fill:red;fill-opacity:.5"/>"#), plank().scaled(0.5));
+}
+
+#[test]
+fn transforms_move_turn_and_mirror() {
+    let turned = r#"<g transform="translate(100 20) rotate(90) scale(2)"><rect x="0" y="-10" width="10" height="20"/></g>"#;
+    same(body(turned), plank());
+    let mirrored = r#"<g transform="matrix(-1 0 0 1 200 0)"><rect x="85" y="20" width="40" height="20"/></g>"#;
+    same(body(mirrored), plank().translated([-0.05, 0.0]));
+    let drawing = read(
+        r#"<g transform="translate(10 0)"><g id="a" transform="scale(-2 2)"><circle id="a.keyed" transform="translate(-3 0)" cx="-2" cy="7" r="1"/>
+           <rect width="1" height="1"/></g></g>"#,
+    )
+    .unwrap();
+    let joint = &drawing.joints[0];
+    assert_eq!((joint.pivot, joint.anchor, joint.mirrored, joint.scale), ([0.2, -0.14], [-5.0, 7.0], true, 2.0));
+    assert_eq!(joint.rotation(core::f64::consts::PI), [180.0, -5.0, 7.0]);
+}
+
+#[test]
+fn units_and_the_view_box_are_scaled() {
+    let text = r#"<svg xmlns="http://www.w3.org/2000/svg" width="400" height="200" viewBox="0 0 200 100"><g id="p">
+        <circle id="p.pendulum" cx="100" cy="20" r="2"/><rect x="80" y="20" width="40" height="20"/></g></svg>"#;
+    let body = Drawing::read(text, Units { pixel: 0.005, density: 3.0 }).unwrap().joints[0].body.unwrap();
+    same(body, plank());
+}
+
+#[test]
+fn curves_and_holes_follow_the_fill_rule() {
+    let ring = |rule: &str| format!(r#"<path fill-rule="{rule}" d="M70 20h60v60h-60z M90 40h20v20h-20z"/>"#);
+    let whole = Body::rectangle(3.0 * 0.36, 0.6, 0.6).unwrap().translated([0.0, -0.3]);
+    let hole = Body::rectangle(3.0 * 0.04, 0.2, 0.2).unwrap().translated([0.0, -0.3]);
+    same(body(&ring("nonzero")), whole);
+    same(body(&ring("evenodd")), whole.without(hole).unwrap());
+    // A parabola: two thirds of the box around it.
+    let vane = body(r#"<path d="M80 20Q100 100 120 20z"/>"#);
+    assert!((vane.mass - 3.0 * 2.0 / 3.0 * 0.4 * 0.4).abs() < 1e-6 && vane.center[0].abs() < 1e-7);
+    assert!((vane.center[1] + 0.4 * 0.4).abs() < 1e-6, "{vane:?}");
+    // A circle of cubics.
+    let disc = body(r#"<circle cx="100" cy="50" r="10"/>"#);
+    assert!((disc.mass / (3.0 * core::f64::consts::PI * 0.01) - 1.0).abs() < 5e-4);
+}
+
+#[test]
+fn joints_stand_on_joints() {
+    let text = r#"<rect id="ground" y="90" width="200" height="10"/>
+      <g id="root"><g><circle id="root.keyed" cx="50" cy="50" r="1" fill="none"/></g><rect width="10" height="10"/>
+        <g id="loose-shapes"><rect width="5" height="10"/>
+          <g id="bell"><rect x="60" y="50" width="2" height="9"/><circle id="bell.pendulum" cx="61" cy="50" r="1" visibility="hidden"/></g></g>
+        <g id="bare"><circle id="bare.keyed" cx="1" cy="2" r="1"/></g></g>"#;
+    let drawing = read(text).unwrap();
+    let found: Vec<_> =
+        drawing.joints.iter().map(|joint| (joint.name.as_str(), joint.role, joint.parent, joint.shapes)).collect();
+    let expected = [("root", Role::Keyed, None, 2), ("bell", Role::Pendulum, Some(0), 1), ("bare", Role::Keyed, Some(0), 0)];
+    assert_eq!(found, expected);
+    assert_eq!((drawing.loose, drawing.size), (1, [200.0, 100.0]));
+    assert!(drawing.skipped.is_empty(), "{:?}", drawing.skipped);
+    // The bell's opening tag ends where its rectangle begins.
+    let head = r#"<svg xmlns="http://www.w3.org/2000/svg" width="200" height="100">"#.len();
+    assert!(text[drawing.joints[1].inside - head..].starts_with(r#"<rect x="60""#));
+}
+
+#[test]
+fn what_weighs_nothing_is_listed() {
+    let text = r##"<g id="p"><circle id="p.pendulum" cx="100" cy="20" r="2"/><rect id="solid" width="4" height="4"/>
+        <path id="wire" d="M0 0L9 9L9 0" fill="none" stroke="#000"/><rect id="ghost" width="4" height="4" fill-opacity="0"/>
+        <path id="line" d="M0 0L9 9"/><rect id="dark" width="4" height="4" visibility="hidden"/>
+        <rect id="flat" width="0" height="4"/><rect id="lost" width="4" height="4" transform="scale(0)"/>
+        <image id="photo" width="9" height="9" href="/etc/passwd"/><text id="word">owl</text>
+        <image width="9" height="9" href="data:image/png;base64,AAAA"/></g>"##;
+    let drawing = read(text).unwrap();
+    let mut found: Vec<_> = drawing.skipped.iter().map(|skipped| (skipped.id.as_str(), skipped.why)).collect();
+    found.sort_by_key(|found| found.0);
+    let expected = [
+        ("dark", Why::Hidden),
+        ("flat", Why::NotDrawn),
+        ("ghost", Why::Transparent),
+        ("image on line 6", Why::Image),
+        ("line", Why::NoArea),
+        ("lost", Why::NotDrawn),
+        ("photo", Why::Image),
+        ("wire", Why::NoFill),
+        ("word", Why::Text),
+    ];
+    assert_eq!(found, expected);
+    assert_eq!(drawing.skipped[0].to_string(), "`flat` is not drawn: its size or its transform is none");
+    same(drawing.joints[0].body.unwrap(), Body::rectangle(3.0 * 0.0016, 0.04, 0.04).unwrap().translated([-0.98, 0.18]));
+}
+
+#[test]
+fn errors_name_the_element() {
+    let rect = r#"<rect width="4" height="4"/>"#;
+    let pivot = r#"<circle id="p.pendulum" cx="1" cy="1" r="1"/>"#;
+    let cases = [
+        (format!(r#"<g id="p">{pivot}</g>"#), DrawingError::NoBody { name: "p".into() }),
+        (format!(r#"<g id="q">{pivot}{rect}</g>"#), DrawingError::NoGroup { id: "p.pendulum".into() }),
+        (format!(r#"<g id="p">{pivot}{pivot}{rect}</g>"#), DrawingError::Twice { name: "p".into() }),
+        (format!(r#"<g id="p">{pivot}{rect}</g><g id="p">{rect}</g>"#), DrawingError::Twice { name: "p".into() }),
+        (format!(r#"<g id="p" transform="scale(1 2)">{pivot}{rect}</g>"#), DrawingError::Sheared { name: "p".into() }),
+        (format!(r#"<g id="p" transform="skewX(9)">{pivot}{rect}</g>"#), DrawingError::Sheared { name: "p".into() }),
+        (format!(r#"<g id="p"><circle id="p.keyed" r="0"/>{rect}</g>"#), DrawingError::NoPlace { id: "p.keyed".into() }),
+        (format!(r#"<g id="p">{pivot}<circle id="vast" r="1e38"/></g>"#), DrawingError::Large { id: "vast".into() }),
+    ];
+    for (text, expected) in cases {
+        assert_eq!(read(&text), Err(expected));
+    }
+    let message = |text: &str, units| Drawing::read(text, units).unwrap_err().to_string();
+    assert!(message("<svg", UNITS).ends_with("give the text of an SVG file"));
+    assert!(message("no", UNITS).contains("1:1"));
+    assert_eq!(message("", Units { pixel: 0.0, ..UNITS }), "0 metres a pixel; give a positive number");
+    assert_eq!(message("", Units { density: f64::NAN, ..UNITS }), "NaN kilograms a square metre; give a positive number");
+}
+
+/// Numbers that are none, in every place where a number may stand.
+#[test]
+fn strange_numbers_never_become_strange_bodies() {
+    for number in ["NaN", "inf", "1e400", "-1e38", "1e38", "3e-39", "", "x"] {
+        for text in [
+            format!(r#"<rect width="{number}" height="4"/>"#),
+            format!(r#"<path d="M0 0L{number} 9L9 0z"/>"#),
+            format!(r#"<rect width="4" height="4" transform="matrix({number} 0 0 1 0 0)"/>"#),
+            format!(r#"<rect width="4" height="4" transform="translate({number})"/>"#),
+            format!(r#"<rect width="4" height="4" fill-opacity="{number}"/>"#),
+            format!(r#"<circle r="{number}" fill="red"/>"#),
+        ] {
+            for inner in
+                [text.clone(), format!(r#"<g id="p" transform="rotate({number})"><circle id="p.keyed" r="1"/>{text}</g>"#)]
+            {
+                let Ok(drawing) = read(&inner) else { continue };
+                for body in drawing.joints.iter().filter_map(|joint| joint.body) {
+                    assert!(body.checked().is_ok(), "{inner}: {body:?}");
+                }
+            }
+        }
+    }
+}
+
+/// Ten thousand drawings with wrong bytes: an error or a body, never a panic.
+#[test]
+fn wrong_bytes_never_panic() {
+    let text = r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 90"><g id="a" transform="rotate(30)"><circle id="a.keyed" cx="5" r="1"/>
+        <path d="M1 2C3 4 5-6 7 8Q9 1 2 3zM4 5h9v1z" fill-rule="evenodd" opacity=".5"/><g id="b"><use href="#c"/><rect id="b.pendulum" x="3"
+        width="2" height="2"/><ellipse id="c" rx="3" ry="2" style="fill:#123"/></g></g></svg>"##;
+    assert!(Drawing::read(text, UNITS).is_ok());
+    let mut random = Random::new(21);
+    let [mut refused, mut taken] = [0, 0];
+    for _ in 0..10_000 {
+        let mut bytes = text.as_bytes().to_vec();
+        for _ in 0..=random.bits() % 3 {
+            let place = (random.unit() * bytes.len() as f64) as usize;
+            let digit = bytes[place].is_ascii_digit();
+            bytes[place] = if digit { b'0' + (random.bits() % 10) as u8 } else { 32 + (random.bits() % 95) as u8 };
+        }
+        match Drawing::read(&String::from_utf8(bytes).unwrap(), UNITS) {
+            Ok(drawing) => {
+                taken += 1;
+                let bodies = drawing.joints.iter().filter_map(|joint| joint.body);
+                bodies.for_each(|body| assert!(body.checked().is_ok(), "{body:?}"));
+            }
+            Err(error) => {
+                refused += 1;
+                assert!(!error.to_string().is_empty());
+            }
+        }
+    }
+    assert!(1000 < refused && 1000 < taken, "{refused} {taken}");
+}
