@@ -94,6 +94,12 @@ impl<const D: usize> Piecewise<D> {
         &self.kinks
     }
 
+    /// The first key and the last.
+    #[cfg(feature = "gltf")]
+    pub(super) fn span(&self) -> [f64; 2] {
+        [self.times[0], self.times[self.times.len() - 1]]
+    }
+
     /// The pieces as coefficients of 1, u, u², u³ in the time u since the key, and how long each lasts.
     #[cfg(feature = "gltf")]
     pub(super) fn pieces(&self) -> impl Iterator<Item = (&[[f64; D]; 4], f64)> {

@@ -39,4 +39,8 @@ impl<T: Real, M: Motion<T, 3>> Motion<T, 2> for Projected<M> {
     fn next_kink(&self, t: f64) -> Option<f64> {
         self.motion.next_kink(t)
     }
+
+    fn rest_until(&self, t: f64) -> f64 {
+        self.motion.rest_until(t)
+    }
 }

@@ -41,7 +41,16 @@ impl Local {
         }
     }
 
-    pub(super) fn kinks(&self) -> impl Iterator<Item = f64> {
+    /// The first and the last key of each channel.
+    fn spans(&self) -> impl Iterator<Item = [f64; 2]> + use<> {
+        let spans = match self {
+            Self::Parts(parts) => [parts.translation.span(), parts.rotation.span(), parts.scale.span()],
+            Self::Matrix(_) => [None; 3],
+        };
+        spans.into_iter().flatten()
+    }
+
+    fn kinks(&self) -> impl Iterator<Item = f64> {
         let tracks: [&[f64]; 3] = match self {
             Self::Parts(parts) => [parts.translation.kinks(), parts.rotation.kinks(), parts.scale.kinks()],
             Self::Matrix(_) => [&[]; 3],
@@ -61,16 +70,20 @@ pub struct NodeMotion {
     /// The node first, then its parents outwards.
     chain: Vec<Local>,
     kinks: Vec<f64>,
+    /// The first key and the last of all channels in the chain.
+    moves: Option<[f64; 2]>,
     duration: f64,
     looped: bool,
 }
 
 impl NodeMotion {
     pub(super) fn new(chain: Vec<Local>, duration: f64) -> Self {
+        let spans = chain.iter().flat_map(Local::spans);
+        let moves = spans.reduce(|a, b| [Real::min(a[0], b[0]), Real::max(a[1], b[1])]);
         let mut kinks: Vec<f64> = chain.iter().flat_map(Local::kinks).collect();
         kinks.sort_by(f64::total_cmp);
         kinks.dedup();
-        Self { chain, kinks, duration, looped: false }
+        Self { chain, kinks, moves, duration, looped: false }
     }
 
     /// The time of the last key of the animation, of any of its nodes, in seconds.
@@ -171,5 +184,15 @@ impl<T: Real> Motion<T, 3> for NodeMotion {
         [turns - 1.0, turns, turns + 1.0, turns + 2.0]
             .into_iter()
             .find_map(|turn| self.kinks.iter().map(|&kink| kink + turn * period).find(|&kink| t + slack < kink))
+    }
+
+    fn rest_until(&self, t: f64) -> f64 {
+        // Known before the first key, after the last, and where nothing ever moves.
+        match (self.looped, self.moves) {
+            (_, None) => f64::INFINITY,
+            (false, Some([_, last])) if last <= t => f64::INFINITY,
+            (false, Some([first, _])) if t < first => first,
+            _ => t,
+        }
     }
 }

@@ -121,6 +121,10 @@ fn a_node_on_lines_moves_as_lines_do() {
         }
         assert_eq!(kinks(&motion, 9.0), [0.5, 1.0, 2.0]);
         assert_eq!(motion.duration(), 2.0);
+        let rest = |t| Motion::<f64, 3>::rest_until(&motion, t);
+        assert_eq!([0.0, 0.5, 1.9, 2.0].map(rest), [0.5, 0.5, 1.9, f64::INFINITY]);
+        let looped = motion.clone().looped().unwrap();
+        assert_eq!(Motion::<f64, 3>::rest_until(&looped, 3.0), 3.0);
     }
 }
 

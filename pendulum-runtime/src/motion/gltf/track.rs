@@ -55,6 +55,14 @@ impl Track {
             Self::Keyed(curve) => curve.kinks(),
         }
     }
+
+    /// The first key and the last, if there is one.
+    pub(super) fn span(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::Still(_) => None,
+            Self::Keyed(curve) => Some(curve.span()),
+        }
+    }
 }
 
 impl Turn {
@@ -77,6 +85,15 @@ impl Turn {
             Self::Still(_) => &[],
             Self::Steps(curve) | Self::Cubic(curve) => curve.kinks(),
             Self::Arcs(arcs) => &arcs.kinks,
+        }
+    }
+
+    /// The first key and the last, if there is one.
+    pub(super) fn span(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::Still(_) => None,
+            Self::Steps(curve) | Self::Cubic(curve) => Some(curve.span()),
+            Self::Arcs(arcs) => Some([arcs.times[0], arcs.times[arcs.times.len() - 1]]),
         }
     }
 }
