@@ -135,7 +135,7 @@ fn roots_that_only_touch_are_found() {
         let solution = run.run().unwrap();
         assert_times(&times(&solution.events, 0), &expected, 1e-9);
         assert!(times(&solution.events, 1).len() <= expected.len());
-        assert_eq!(times(&solution.events, 2), []);
+        assert!(times(&solution.events, 2).is_empty());
         let pairs = times(&solution.events, 3);
         assert_eq!(pairs.len(), 2 * expected.len());
         for (pair, expected) in pairs.chunks(2).zip(&expected) {
