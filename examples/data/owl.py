@@ -165,12 +165,12 @@ def head():
 
 
 def scenery():
-    out = '<rect id="sky" x="-170" width="940" height="720" fill="url(#night)"/>\n<circle id="moon" cx="596" cy="106" r="56" fill="#f4ecd0"/>'
+    out = '<rect id="sky" x="-170" y="-30" width="940" height="750" fill="url(#night)"/>\n<circle id="moon" cx="596" cy="106" r="56" fill="#f4ecd0"/>'
     out += '<circle cx="580" cy="94" r="9" fill="#dfd5b4"/><circle cx="612" cy="122" r="13" fill="#dfd5b4"/><circle cx="610" cy="86" r="6" fill="#dfd5b4"/>\n'
     state = 7
     for _ in range(90):
         state = state * 1103515245 + 12345 & 0x7FFFFFFF
-        x, y = state % 940 - 170, state // 940 % 470
+        x, y = state % 940 - 170, state // 940 % 500 - 30
         if (x - 596) ** 2 + (y - 106) ** 2 < 75**2:
             continue
         out += f'<circle cx="{x}" cy="{y}" r="{0.8 + state // 7 % 10 / 9:.1f}" fill="#fff" fill-opacity="{0.35 + state // 11 % 6 / 10:.2f}"/>'
@@ -181,7 +181,7 @@ def scenery():
 
 def main():
     print(
-        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="-170 0 940 720" width="940" height="720" stroke-linejoin="round" stroke-linecap="round">\n'
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="-170 -30 940 750" width="940" height="750" stroke-linejoin="round" stroke-linecap="round">\n'
         "<title>Owl</title>\n<defs>"
         '<linearGradient id="night" x1="0" y1="0" x2="0" y2="1"><stop offset="0" stop-color="#131a33"/><stop offset="1" stop-color="#46547c"/></linearGradient>'
         '<linearGradient id="coat" x1="0" y1="0" x2="0" y2="1"><stop offset="0" stop-color="#a97646"/><stop offset="1" stop-color="#7a4e2d"/></linearGradient>'
