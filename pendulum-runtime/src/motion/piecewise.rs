@@ -94,12 +94,6 @@ impl<const D: usize> Piecewise<D> {
         &self.kinks
     }
 
-    /// The first key and the last.
-    #[cfg(feature = "gltf")]
-    pub(super) fn span(&self) -> [f64; 2] {
-        [self.times[0], self.times[self.times.len() - 1]]
-    }
-
     /// The pieces as coefficients of 1, u, u², u³ in the time u since the key, and how long each lasts.
     #[cfg(feature = "gltf")]
     pub(super) fn pieces(&self) -> impl Iterator<Item = (&[[f64; D]; 4], f64)> {
@@ -307,25 +301,28 @@ impl<const D: usize> Piecewise<D> {
     /// The time up to which the curve is constant from `t` on.
     pub(super) fn rest_until(&self, t: f64) -> f64 {
         let rests = |piece: usize| self.pieces[piece][1..].iter().flatten().all(|&coefficient| coefficient == 0.0);
-        let jumps = |piece: usize| self.end_of(piece)[0] != self.pieces[piece][0];
-        if (0..self.pieces.len()).all(|piece| rests(piece) && !jumps(piece)) {
+        // Steps rest on both sides of a jump.
+        let value = |piece: usize| self.pieces.get(piece).map_or(self.last, |piece| piece[0]);
+        let count = self.pieces.len();
+        // The first key from a piece on at which the curve does not rest.
+        let moves =
+            |from: usize| (from..=count).find(|&key| key < count && !rests(key) || from < key && value(key) != value(key - 1));
+        if count == 0 || moves(0).is_none() {
             return f64::INFINITY;
         }
         if self.looped {
             // Within the turn only: its end is soon enough to look again.
             let turn = self.turns(Time::new(t)) * self.period();
             let local = t - turn;
-            let piece = self.times.partition_point(|&key| key <= local).saturating_sub(1).min(self.pieces.len() - 1);
-            let moves = (piece..self.pieces.len()).find(|&piece| !rests(piece));
-            let until = self.times[moves.unwrap_or(self.pieces.len())] + turn;
+            let piece = self.times.partition_point(|&key| key <= local).saturating_sub(1).min(count - 1);
+            let until = self.times[moves(piece).unwrap_or(count)] + turn;
             return if t < until && rests(piece) { until - 4.0 * f64::EPSILON * (until.abs() + self.period()) } else { t };
         }
         let passed = self.times.partition_point(|&key| key <= t);
         if passed == self.times.len() {
             return f64::INFINITY;
         }
-        let moves = (passed.saturating_sub(1)..self.pieces.len()).find(|&piece| !rests(piece));
-        match moves {
+        match moves(passed.saturating_sub(1)) {
             Some(piece) if t < self.times[piece] => self.times[piece],
             Some(_) => t,
             None => f64::INFINITY,

@@ -1,18 +1,24 @@
 //! Numbers out of buffers, every bound checked.
 
 use super::GltfError;
+use core::cell::Cell;
 use gltf::json::accessor::{Accessor, ComponentType, Type};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Root, buffer};
 
-/// No animation has more keys; a file that says so is something else.
-const MOST: u64 = 1 << 24;
+/// Elements that an accessor without a bufferView may have: nothing but their number is in the file.
+const MOST: usize = 1 << 16;
+
+/// Elements that one motion may take, however often its channels name the same ones.
+const BUDGET: usize = 1 << 24;
 
 /// What numbers are read from.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Source<'a> {
-    pub(super) root: &'a Root,
-    pub(super) buffers: &'a [Vec<u8>],
+    root: &'a Root,
+    buffers: &'a [Vec<u8>],
+    /// The elements that may still be read.
+    left: Cell<usize>,
 }
 
 /// A run of elements of one type: where it begins and how far apart they are.
@@ -45,16 +51,16 @@ impl Run<'_> {
 }
 
 impl<'a> Source<'a> {
+    pub(super) fn new(root: &'a Root, buffers: &'a [Vec<u8>]) -> Self {
+        Self { root, buffers, left: Cell::new(BUDGET) }
+    }
+
     /// The elements of an accessor, which must have `D` components.
     pub(super) fn read<const D: usize>(&self, index: usize) -> Result<Vec<[f64; D]>, GltfError> {
         let place = format!("accessors[{index}]");
         let fail = |what: String| GltfError::new(&*place, what, "mend the file or export it again");
         let accessor = self.root.accessors.get(index).ok_or_else(|| fail("does not exist".into()))?;
-        let count = accessor.count.0;
-        if MOST < count {
-            return Err(fail(format!("{count} elements")));
-        }
-        let count = count as usize;
+        let count = usize::try_from(accessor.count.0).unwrap_or(usize::MAX);
         let components = width(accessor).ok_or_else(|| fail("an unknown type".into()))?;
         if components != D {
             return Err(fail(format!("elements of {components} numbers where {D} are needed")));
@@ -64,13 +70,17 @@ impl<'a> Source<'a> {
             let normalized = accessor.normalized;
             self.run(view, offset, count, kind, components).map(|run| Run { normalized, ..run }).map_err(fail)
         };
-        let mut values = match accessor.buffer_view {
-            Some(view) => {
-                let run = run(view, accessor.byte_offset.map_or(0, |offset| offset.0), count, kind.0, D)?;
-                (0..count).map(|element| core::array::from_fn(|component| run.number(element, component))).collect()
-            }
-            None if accessor.sparse.is_some() => vec![[0.0; D]; count],
-            None => return Err(fail("no bufferView".into())),
+        let whole = match accessor.buffer_view {
+            Some(view) => Some(run(view, accessor.byte_offset.map_or(0, |offset| offset.0), count, kind.0, D)?),
+            None if accessor.sparse.is_none() => return Err(fail("no bufferView".into())),
+            None if MOST < count => return Err(fail(format!("{count} elements without a bufferView"))),
+            None => None,
+        };
+        let left = self.left.get().checked_sub(count);
+        self.left.set(left.ok_or_else(|| fail(format!("more than {BUDGET} keys in one motion")))?);
+        let mut values = match whole {
+            Some(run) => (0..count).map(|element| core::array::from_fn(|component| run.number(element, component))).collect(),
+            None => vec![[0.0; D]; count],
         };
         if let Some(sparse) = &accessor.sparse {
             let changed = sparse.count.0;

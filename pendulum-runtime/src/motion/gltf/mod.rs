@@ -34,6 +34,7 @@ use gltf::json::animation::{Channel, Interpolation, Property};
 use gltf::json::validation::Checked;
 use gltf::json::{Animation, Root};
 use node::{Local, Parts};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use track::{Arcs, Track, Turn, dot, vanishing};
 
@@ -128,32 +129,24 @@ impl Gltf {
         if self.root.nodes.len() <= node {
             return Err(missing(format!("nodes[{node}]")));
         }
+        let source = Source::new(&self.root, &self.buffers);
+        // By the nodes that they move.
+        let mut channels: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (number, channel) in played.channels.iter().enumerate() {
+            channels.entry(channel.target.node.value()).or_default().push(number);
+        }
         let mut chain = Vec::new();
         let mut next = Some(node);
         while let Some(link) = next {
-            chain.push(self.local(played, link).map_err(|error| error.within(&outer))?);
+            let own = channels.get(&link).map_or(&[][..], Vec::as_slice);
+            chain.push(self.local(&source, played, own, link).map_err(|error| error.within(&outer))?);
             next = self.parents[link];
         }
-        Ok(NodeMotion::new(chain, self.duration(played).map_err(|error| error.within(&outer))?))
+        Ok(NodeMotion::new(chain, duration(&source, played).map_err(|error| error.within(&outer))?))
     }
 
-    /// The last key of all channels.
-    fn duration(&self, animation: &Animation) -> Result<f64, GltfError> {
-        let mut last = 0.0;
-        for (index, sampler) in animation.samplers.iter().enumerate() {
-            let times = self.source().read::<1>(sampler.input.value());
-            let times = times.map_err(|error| error.within(&format!("samplers[{index}].input")))?;
-            last = times.iter().fold(last, |last, &[time]| if last < time { time } else { last });
-        }
-        if last.is_finite() { Ok(last) } else { Err(GltfError::new("samplers", "a key at an infinite time", MEND)) }
-    }
-
-    fn source(&self) -> Source<'_> {
-        Source { root: &self.root, buffers: &self.buffers }
-    }
-
-    /// How a node stands on its parent while an animation plays.
-    fn local(&self, animation: &Animation, index: usize) -> Result<Local, GltfError> {
+    /// How a node stands on its parent while some channels of an animation play.
+    fn local(&self, source: &Source<'_>, animation: &Animation, channels: &[usize], index: usize) -> Result<Local, GltfError> {
         let node = &self.root.nodes[index];
         let fail = |what: &str| GltfError::new(format!("nodes[{index}]"), what, MEND);
         let wide = |values: [f32; 3]| values.map(f64::from);
@@ -166,18 +159,16 @@ impl Gltf {
             return Err(fail("a number that is infinite or none"));
         }
         let mut animated = false;
-        for (number, channel) in animation.channels.iter().enumerate() {
-            if channel.target.node.value() != index {
-                continue;
-            }
+        for &number in channels {
+            let channel = &animation.channels[number];
             let place = format!("channels[{number}]");
             let Checked::Valid(path) = channel.target.path else {
                 return Err(GltfError::new(place, "an unknown target path", MEND));
             };
             match path {
-                Property::Translation => translation = self.track(animation, channel).map_err(|error| error.within(&place))?,
-                Property::Rotation => rotation = self.turn(animation, channel).map_err(|error| error.within(&place))?,
-                Property::Scale => scale = self.track(animation, channel).map_err(|error| error.within(&place))?,
+                Property::Translation => translation = track(source, animation, channel).map_err(|error| error.within(&place))?,
+                Property::Rotation => rotation = turn(source, animation, channel).map_err(|error| error.within(&place))?,
+                Property::Scale => scale = track(source, animation, channel).map_err(|error| error.within(&place))?,
                 Property::MorphTargetWeights => continue,
             }
             animated = true;
@@ -195,66 +186,82 @@ impl Gltf {
             None => Ok(Local::Parts(Box::new(Parts { translation, rotation, scale }))),
         }
     }
+}
 
-    fn track(&self, animation: &Animation, channel: &Channel) -> Result<Track, GltfError> {
-        let (times, values, interpolation) = self.keys::<3>(animation, channel)?;
-        Ok(Track::Keyed(match interpolation {
-            Interpolation::Step => Piecewise::steps(&times, &values),
-            Interpolation::Linear => Piecewise::lines(&times, &values),
-            Interpolation::CubicSpline => cubic(&times, &values),
-        }))
+/// The last key of all channels.
+fn duration(source: &Source<'_>, animation: &Animation) -> Result<f64, GltfError> {
+    let mut last = 0.0;
+    let mut inputs = BTreeSet::new();
+    for (index, sampler) in animation.samplers.iter().enumerate() {
+        // Channels share their times more often than not.
+        if !inputs.insert(sampler.input.value()) {
+            continue;
+        }
+        let times = source.read::<1>(sampler.input.value());
+        let times = times.map_err(|error| error.within(&format!("samplers[{index}].input")))?;
+        last = times.iter().fold(last, |last, &[time]| if last < time { time } else { last });
     }
+    if last.is_finite() { Ok(last) } else { Err(GltfError::new("samplers", "a key at an infinite time", MEND)) }
+}
 
-    fn turn(&self, animation: &Animation, channel: &Channel) -> Result<Turn, GltfError> {
-        let (times, mut values, interpolation) = self.keys::<4>(animation, channel)?;
-        let tangents = interpolation == Interpolation::CubicSpline;
-        let [first, each] = if tangents { [1, 3] } else { [0, 1] };
-        let keys = values.iter_mut().skip(first).step_by(each);
-        for (key, value) in keys.enumerate() {
-            let what = || GltfError::new("output", format!("key {key} is no unit quaternion"), MEND);
-            let length = unit(*value).ok_or_else(what)?;
-            if !tangents {
-                *value = length;
+fn track(source: &Source<'_>, animation: &Animation, channel: &Channel) -> Result<Track, GltfError> {
+    let (times, values, interpolation) = keys::<3>(source, animation, channel)?;
+    Ok(Track::Keyed(match interpolation {
+        Interpolation::Step => Piecewise::steps(&times, &values),
+        Interpolation::Linear => Piecewise::lines(&times, &values),
+        Interpolation::CubicSpline => cubic(&times, &values),
+    }))
+}
+
+fn turn(source: &Source<'_>, animation: &Animation, channel: &Channel) -> Result<Turn, GltfError> {
+    let (times, mut values, interpolation) = keys::<4>(source, animation, channel)?;
+    let tangents = interpolation == Interpolation::CubicSpline;
+    let [first, each] = if tangents { [1, 3] } else { [0, 1] };
+    let keys = values.iter_mut().skip(first).step_by(each);
+    for (key, value) in keys.enumerate() {
+        let what = || GltfError::new("output", format!("key {key} is no unit quaternion"), MEND);
+        let length = unit(*value).ok_or_else(what)?;
+        if !tangents {
+            *value = length;
+        }
+    }
+    Ok(match interpolation {
+        Interpolation::Step => Turn::Steps(Piecewise::steps(&times, &values)),
+        Interpolation::Linear => Turn::Arcs(Arcs::new(&times, &values)),
+        Interpolation::CubicSpline => {
+            let curve = cubic(&times, &values);
+            if let Some(key) = vanishing(&curve) {
+                let what = format!("the quaternion vanishes between key {key} and key {}", key + 1);
+                return Err(GltfError::new("output", what, "turn by less than half a turn from key to key"));
             }
+            Turn::Cubic(curve)
         }
-        Ok(match interpolation {
-            Interpolation::Step => Turn::Steps(Piecewise::steps(&times, &values)),
-            Interpolation::Linear => Turn::Arcs(Arcs::new(&times, &values)),
-            Interpolation::CubicSpline => {
-                let curve = cubic(&times, &values);
-                if let Some(key) = vanishing(&curve) {
-                    let what = format!("the quaternion vanishes between key {key} and key {}", key + 1);
-                    return Err(GltfError::new("output", what, "turn by less than half a turn from key to key"));
-                }
-                Turn::Cubic(curve)
-            }
-        })
-    }
+    })
+}
 
-    /// The times and values of a channel; three values a key if it has tangents.
-    fn keys<const D: usize>(&self, animation: &Animation, channel: &Channel) -> Result<Keys<D>, GltfError> {
-        let number = channel.sampler.value();
-        let place = format!("samplers[{number}]");
-        let fail = |what: String| GltfError::new(&*place, what, MEND);
-        let sampler = animation.samplers.get(number).ok_or_else(|| fail("does not exist".into()))?;
-        let Checked::Valid(interpolation) = sampler.interpolation else { return Err(fail("an unknown interpolation".into())) };
-        let within = |part: &str, error: GltfError| error.within(&format!("{place}.{part}"));
-        let times = self.source().read::<1>(sampler.input.value()).map_err(|error| within("input", error))?;
-        let values = self.source().read::<D>(sampler.output.value()).map_err(|error| within("output", error))?;
-        let times: Vec<f64> = times.into_iter().map(|[time]| time).collect();
-        let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
-        if values.len() != each * times.len() {
-            return Err(fail(format!("{} times but {} values; {each} a time are needed", times.len(), values.len())));
-        }
-        checked(&times, &values[..times.len()]).map_err(|error| fail(error.to_string()))?;
-        if times[0] < 0.0 {
-            return Err(fail(format!("key 0 at {} s lies before the beginning", times[0])));
-        }
-        if let Some(key) = values.iter().position(|value| value.iter().any(|part| !part.is_finite())) {
-            return Err(fail(format!("value {key} is infinite or no number")));
-        }
-        Ok((times, values, interpolation))
+/// The times and values of a channel; three values a key if it has tangents.
+fn keys<const D: usize>(source: &Source<'_>, animation: &Animation, channel: &Channel) -> Result<Keys<D>, GltfError> {
+    let number = channel.sampler.value();
+    let place = format!("samplers[{number}]");
+    let fail = |what: String| GltfError::new(&*place, what, MEND);
+    let sampler = animation.samplers.get(number).ok_or_else(|| fail("does not exist".into()))?;
+    let Checked::Valid(interpolation) = sampler.interpolation else { return Err(fail("an unknown interpolation".into())) };
+    let within = |part: &str, error: GltfError| error.within(&format!("{place}.{part}"));
+    let times = source.read::<1>(sampler.input.value()).map_err(|error| within("input", error))?;
+    let values = source.read::<D>(sampler.output.value()).map_err(|error| within("output", error))?;
+    let times: Vec<f64> = times.into_iter().map(|[time]| time).collect();
+    let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+    if values.len() != each * times.len() {
+        return Err(fail(format!("{} times but {} values; {each} a time are needed", times.len(), values.len())));
     }
+    checked(&times, &values[..times.len()]).map_err(|error| fail(error.to_string()))?;
+    if times[0] < 0.0 {
+        return Err(fail(format!("key 0 at {} s lies before the beginning", times[0])));
+    }
+    if let Some(key) = values.iter().position(|value| value.iter().any(|part| !part.is_finite())) {
+        return Err(fail(format!("value {key} is infinite or no number")));
+    }
+    Ok((times, values, interpolation))
 }
 
 /// The parent of each node; the file says the children.

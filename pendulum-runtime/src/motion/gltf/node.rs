@@ -41,13 +41,15 @@ impl Local {
         }
     }
 
-    /// The first and the last key of each channel.
-    fn spans(&self) -> impl Iterator<Item = [f64; 2]> + use<> {
-        let spans = match self {
-            Self::Parts(parts) => [parts.translation.span(), parts.rotation.span(), parts.scale.span()],
-            Self::Matrix(_) => [None; 3],
-        };
-        spans.into_iter().flatten()
+    /// Until when all channels rest, from `t` on.
+    fn rest_until(&self, t: f64) -> f64 {
+        match self {
+            Self::Parts(parts) => {
+                let Parts { translation, rotation, scale } = &**parts;
+                Real::min(Real::min(translation.rest_until(t), rotation.rest_until(t)), scale.rest_until(t))
+            }
+            Self::Matrix(_) => f64::INFINITY,
+        }
     }
 
     fn kinks(&self) -> impl Iterator<Item = f64> {
@@ -70,20 +72,16 @@ pub struct NodeMotion {
     /// The node first, then its parents outwards.
     chain: Vec<Local>,
     kinks: Vec<f64>,
-    /// The first key and the last of all channels in the chain.
-    moves: Option<[f64; 2]>,
     duration: f64,
     looped: bool,
 }
 
 impl NodeMotion {
     pub(super) fn new(chain: Vec<Local>, duration: f64) -> Self {
-        let spans = chain.iter().flat_map(Local::spans);
-        let moves = spans.reduce(|a, b| [Real::min(a[0], b[0]), Real::max(a[1], b[1])]);
         let mut kinks: Vec<f64> = chain.iter().flat_map(Local::kinks).collect();
         kinks.sort_by(f64::total_cmp);
         kinks.dedup();
-        Self { chain, kinks, moves, duration, looped: false }
+        Self { chain, kinks, duration, looped: false }
     }
 
     /// The time of the last key of the animation, of any of its nodes, in seconds.
@@ -187,12 +185,17 @@ impl<T: Real> Motion<T, 3> for NodeMotion {
     }
 
     fn rest_until(&self, t: f64) -> f64 {
-        // Known before the first key, after the last, and where nothing ever moves.
-        match (self.looped, self.moves) {
-            (_, None) => f64::INFINITY,
-            (false, Some([_, last])) if last <= t => f64::INFINITY,
-            (false, Some([first, _])) if t < first => first,
-            _ => t,
+        let rest = |t: f64| self.chain.iter().map(|local| local.rest_until(t)).fold(f64::INFINITY, Real::min);
+        if !self.looped || !t.is_finite() {
+            return rest(t);
         }
+        if rest(0.0) == f64::INFINITY {
+            return f64::INFINITY;
+        }
+        // Within the turn only: its end is soon enough to look again.
+        let turn = (t / self.duration).floor() * self.duration;
+        let until = Real::min(rest(t - turn), self.duration) + turn;
+        let slack = 4.0 * f64::EPSILON * (until.abs() + self.duration);
+        Real::max(t, until - slack)
     }
 }

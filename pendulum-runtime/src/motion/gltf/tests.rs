@@ -123,9 +123,44 @@ fn a_node_on_lines_moves_as_lines_do() {
         assert_eq!(motion.duration(), 2.0);
         let rest = |t| Motion::<f64, 3>::rest_until(&motion, t);
         assert_eq!([0.0, 0.5, 1.9, 2.0].map(rest), [0.5, 0.5, 1.9, f64::INFINITY]);
-        let looped = motion.clone().looped().unwrap();
-        assert_eq!(Motion::<f64, 3>::rest_until(&looped, 3.0), 3.0);
     }
+}
+
+#[test]
+fn nodes_rest_where_no_channel_moves_them() {
+    let mut file = Writer::default();
+    // Stays, moves and stays; jumps at 3 s only; turns from 4 s to 5 s.
+    let stays = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
+    file.channel(0, "translation", "LINEAR", &[0.0, 1.0, 2.0, 6.0], &stays);
+    file.channel(0, "scale", "STEP", &[0.0, 2.5, 3.0, 6.0], &[1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 2.0, 1.0, 1.0, 2.0, 1.0, 1.0]);
+    file.channel(1, "rotation", "LINEAR", &[4.0, 5.0], &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0]);
+    let nodes = r#"{"children":[1]},{"translation":[1,0,0],"children":[2]},{"translation":[0,1,0]},{"translation":[0,9,0]}"#;
+    let read = Gltf::read(&file.binary(nodes)).unwrap();
+    let rest = |motion: &NodeMotion, t| Motion::<f64, 3>::rest_until(motion, t);
+    let (parent, child) = (read.motion(0, 0).unwrap(), read.motion(0, 2).unwrap());
+    let times = [-1.0, 0.5, 1.0, 1.5, 2.0, 2.7, 3.0, 4.5, 5.0, 6.0];
+    assert_eq!(
+        times.map(|t| rest(&parent, t)),
+        [1.0, 1.0, 1.0, 1.5, 3.0, 3.0, f64::INFINITY, f64::INFINITY, f64::INFINITY, f64::INFINITY]
+    );
+    assert_eq!(times.map(|t| rest(&child, t)), [1.0, 1.0, 1.0, 1.5, 3.0, 3.0, 4.0, 4.5, f64::INFINITY, f64::INFINITY]);
+    // Whatever is said to rest has one position, both sides of every key included.
+    let looped = child.clone().looped().unwrap();
+    for motion in [parent, child, looped.clone()] {
+        for k in -50..200 {
+            let t = 0.1 * f64::from(k) + 0.01;
+            let until = Real::min(rest(&motion, t), t + 20.0);
+            for share in [0.0, 0.3, 0.99, 1.0 - 1e-14] {
+                assert_eq!(
+                    at(&motion, t + share * (until - t), Side::After).position,
+                    at(&motion, t, Side::After).position,
+                    "{t}"
+                );
+            }
+        }
+    }
+    assert!((rest(&looped, 8.2) - 9.0).abs() < 1e-12 && (rest(&looped, 11.5) - 12.0).abs() < 1e-12);
+    assert_eq!(rest(&read.motion(0, 3).unwrap().looped().unwrap(), 1.0), f64::INFINITY);
 }
 
 /// A rod of two metres turned about z by a quarter turn in a second, the shorter way round although the signs differ.
@@ -381,6 +416,38 @@ fn impossible_keys_are_refused() {
     assert!(vanishes.contains("output: the quaternion vanishes between key 0 and key 1"), "{vanishes}");
     let zero = message("rotation", "STEP", &[0.0], &[0.0; 4]);
     assert!(zero.contains("output: key 0 is no unit quaternion"), "{zero}");
+}
+
+/// Counts that the bytes do not bear out, and few bytes that many nodes name: refused before anything is made room for.
+#[test]
+fn what_lies_about_its_size_is_refused() {
+    let sparse = r#""sparse":{"count":0,"indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":0}}"#;
+    for count in [65_537, 4_294_967_296, u64::MAX] {
+        for (extra, expected) in [(r#""bufferView":0"#, "go beyond the"), (sparse, "elements without a bufferView")] {
+            let accessor = |kind: &str| format!(r#"{{{extra},"componentType":5126,"count":{count},"type":"{kind}"}}"#);
+            let json = format!(
+                r#"{{"asset":{{"version":"2.0"}},"nodes":[{{}}],"buffers":[{{"byteLength":6,"uri":"data:;base64,AAAAAAAA"}}],
+                "bufferViews":[{{"buffer":0,"byteLength":6}}],"accessors":[{},{}],"animations":[{{"samplers":[{{"input":0,"output":1}}],
+                "channels":[{{"sampler":0,"target":{{"node":0,"path":"translation"}}}}]}}]}}"#,
+                accessor("SCALAR"),
+                accessor("VEC3")
+            );
+            let message = Gltf::read(json.as_bytes()).unwrap().motion(0, 0).unwrap_err().to_string();
+            assert!(message.contains("samplers[0].input: accessors[0]: ") && message.contains(expected), "{message}");
+        }
+    }
+    // A thousand nodes, each on the one before, all moved by the same fifty thousand keys.
+    let mut file = Writer::default();
+    let times: Vec<f32> = (0..50_000u16).map(f32::from).collect();
+    file.channel(0, "translation", "LINEAR", &times, &vec![0.5; 150_000]);
+    for node in 1..1000 {
+        write!(file.channels, r#",{{"sampler":0,"target":{{"node":{node},"path":"translation"}}}}"#).unwrap();
+    }
+    let nodes: Vec<String> = (1..1000).map(|child| format!(r#"{{"children":[{child}]}}"#)).collect();
+    let read = Gltf::read(&file.binary(&format!("{},{{}}", nodes.join(",")))).unwrap();
+    let message = read.motion(0, 999).unwrap_err().to_string();
+    assert!(message.contains("more than 16777216 keys in one motion"), "{message}");
+    assert_eq!(at(&read.motion(0, 9).unwrap(), 7.0, Side::After).position, [5.0; 3]);
 }
 
 #[test]

@@ -56,11 +56,11 @@ impl Track {
         }
     }
 
-    /// The first key and the last, if there is one.
-    pub(super) fn span(&self) -> Option<[f64; 2]> {
+    /// Until when it rests, from `t` on.
+    pub(super) fn rest_until(&self, t: f64) -> f64 {
         match self {
-            Self::Still(_) => None,
-            Self::Keyed(curve) => Some(curve.span()),
+            Self::Still(_) => f64::INFINITY,
+            Self::Keyed(curve) => curve.rest_until(t),
         }
     }
 }
@@ -88,12 +88,12 @@ impl Turn {
         }
     }
 
-    /// The first key and the last, if there is one.
-    pub(super) fn span(&self) -> Option<[f64; 2]> {
+    /// Until when it rests, from `t` on.
+    pub(super) fn rest_until(&self, t: f64) -> f64 {
         match self {
-            Self::Still(_) => None,
-            Self::Steps(curve) | Self::Cubic(curve) => Some(curve.span()),
-            Self::Arcs(arcs) => Some([arcs.times[0], arcs.times[arcs.times.len() - 1]]),
+            Self::Still(_) => f64::INFINITY,
+            Self::Steps(curve) | Self::Cubic(curve) => curve.rest_until(t),
+            Self::Arcs(arcs) => arcs.rest_until(t),
         }
     }
 }
@@ -143,6 +143,18 @@ impl Arcs {
             }
         }
         arcs
+    }
+
+    fn rest_until(&self, t: f64) -> f64 {
+        let passed = self.times.partition_point(|&key| key <= t);
+        if passed == self.times.len() {
+            return f64::INFINITY;
+        }
+        match (passed.saturating_sub(1)..self.angles.len()).find(|&arc| self.angles[arc] != 0.0) {
+            Some(arc) if t < self.times[arc] => self.times[arc],
+            Some(_) => t,
+            None => f64::INFINITY,
+        }
     }
 
     fn at<const N: usize>(&self, t: Time, side: Side) -> [Jet<N>; 4] {
