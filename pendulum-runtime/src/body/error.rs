@@ -47,6 +47,11 @@ pub enum BodyError {
         /// The first point of the edge behind which it does.
         index: usize,
     },
+    /// Curves that cross so often that to count what they surround would take minutes.
+    Tangled {
+        /// The crossings, or pairs of pieces that might cross, after which the search was given up.
+        pairs: usize,
+    },
     /// A hole outside of the outer ring or over another hole.
     HoleOutside {
         /// Its ring.
@@ -110,6 +115,9 @@ impl Display for BodyError {
             }
             Self::Winding { ring, index } => {
                 write!(f, "{} overlaps itself at the edge from point {index}; give each part as a polygon of its own", Ring(ring))
+            }
+            Self::Tangled { pairs } => {
+                write!(f, "the curves may cross in more than {pairs} places; simplify them or cut them in parts")
             }
             Self::HoleOutside { ring } => write!(f, "{} is not inside the outer ring, or overlaps another hole", Ring(ring)),
             Self::NoMass => write!(f, "there is no mass: nothing was given, everything is cut out or the density is zero"),

@@ -6,6 +6,13 @@ use crate::real::Real;
 
 type Point = [f64; 2];
 
+/// Crossings, and pairs of pieces that might cross, are no more than so many.
+const CROSSINGS: usize = 1 << 16;
+const PAIRS: usize = 1 << 28;
+
+/// Curves coincide that are no farther apart than this part of the whole.
+const COINCIDE: f64 = 1e-9;
+
 /// Straight pieces that stand for a curve where crossings and insides are looked for.
 const CHORDS: usize = 16;
 
@@ -139,7 +146,7 @@ impl Outline {
         let extent = radius + origin[0].abs() + origin[1].abs();
 
         let count = points().count();
-        let pieces = whole.moved(origin).boundary();
+        let pieces = whole.moved(origin).boundary(COINCIDE * radius)?;
         let first = integrals(&pieces, [0.0; 2]);
         // Coordinates come rounded; an area that this alone can make is none.
         let least = 4.0 * count as f64 * f64::EPSILON * extent * radius;
@@ -176,8 +183,8 @@ impl Outline {
     }
 
     /// The curves between all crossings with what lies to their left more than to their right: −1, 0 or 1.
-    fn boundary(&self) -> Vec<(Curve, f64)> {
-        let cuts = self.cuts();
+    fn boundary(&self, slack: f64) -> Result<Vec<(Curve, f64)>, BodyError> {
+        let cuts = self.cuts()?;
         // Runs of curves without a cut within, each with one answer.
         let mut runs: Vec<Vec<Curve>> = Vec::new();
         for (ring, cuts) in self.rings.iter().zip(&cuts) {
@@ -199,7 +206,10 @@ impl Outline {
             }
         }
         let chords: Vec<Vec<[Point; 2]>> = runs.iter().map(|run| run.iter().flat_map(Curve::chords).collect()).collect();
+        let all: Vec<[Point; 2]> = chords.iter().flatten().copied().collect();
+        let strips = [Strips::new(&all, 1), Strips::new(&all, 0)];
         let mut boundary = Vec::new();
+        let mut before = 0;
         for (index, run) in runs.iter().enumerate() {
             let length = |chord: &[Point; 2]| {
                 let [x, y] = [chord[1][0] - chord[0][0], chord[1][1] - chord[0][1]];
@@ -210,20 +220,17 @@ impl Outline {
             else {
                 continue;
             };
-            let own = chords[index][longest];
-            let others = chords.iter().enumerate().flat_map(|(run, chords)| {
-                chords.iter().enumerate().filter(move |(chord, _)| (run, *chord) != (index, longest)).map(|(_, chord)| *chord)
-            });
-            let right = winding_to_the_right(own, others);
+            let right = winding_to_the_right(before + longest, chords[index][longest], &strips, slack);
+            before += chords[index].len();
             let sides = [right + 1, right].map(|winding| i32::from(self.rule.inside(winding)));
             let weight = f64::from(sides[0] - sides[1]);
             boundary.extend(run.iter().map(|&curve| (curve, weight)));
         }
-        boundary
+        Ok(boundary)
     }
 
     /// The parameters at which each curve of each ring is crossed, in order.
-    fn cuts(&self) -> Vec<Vec<Vec<f64>>> {
+    fn cuts(&self) -> Result<Vec<Vec<Vec<f64>>>, BodyError> {
         let mut cuts: Vec<Vec<Vec<f64>>> = self.rings.iter().map(|ring| vec![Vec::new(); ring.len()]).collect();
         let mut chords = Vec::new();
         for (ring, curves) in self.rings.iter().enumerate() {
@@ -234,21 +241,44 @@ impl Outline {
         let left = |chord: &Chord| Real::min(chord.ends[0][0], chord.ends[1][0]);
         let right = |chord: &Chord| Real::max(chord.ends[0][0], chord.ends[1][0]);
         chords.sort_by(|a, b| left(a).total_cmp(&left(b)));
+        let [mut pairs, mut crossings] = [0, 0];
         for (k, one) in chords.iter().enumerate() {
+            if PAIRS < pairs {
+                return Err(BodyError::Tangled { pairs: PAIRS });
+            }
             for other in chords[k + 1..].iter().take_while(|other| left(other) <= right(one)) {
+                pairs += 1;
                 let together = (one.ring, one.curve) == (other.ring, other.curve);
                 if together && one.index.abs_diff(other.index) <= 1 {
                     continue;
                 }
                 let Some(at) = crossing(&one.ends, &other.ends) else { continue };
+                crossings += 1;
+                if CROSSINGS < crossings {
+                    return Err(BodyError::Tangled { pairs: CROSSINGS });
+                }
                 let curves = [one, other].map(|chord| &self.rings[chord.ring][chord.curve]);
                 let guess = [(one, at[0]), (other, at[1])]
                     .map(|(chord, at)| (chord.index as f64 + at) / self.rings[chord.ring][chord.curve].count() as f64);
                 let found = refined(curves, guess);
-                for (chord, parameter) in [one, other].into_iter().zip(found) {
-                    if 1e-9 < parameter && parameter < 1.0 - 1e-9 {
-                        cuts[chord.ring][chord.curve].push(parameter);
+                let ends = found.map(|parameter| {
+                    if parameter <= 1e-9 {
+                        0.0
+                    } else if 1.0 - 1e-9 <= parameter {
+                        1.0
+                    } else {
+                        parameter
                     }
+                });
+                // Where a curve goes on in the next nothing is crossed; where another passes through its end something is.
+                let count = self.rings[one.ring].len();
+                let goes_on = |from: usize, to: usize| ends[from] == 1.0 && ends[to] == 0.0;
+                let next = |from: &Chord, to: &Chord| from.ring == to.ring && (from.curve + 1) % count == to.curve;
+                if next(one, other) && goes_on(0, 1) || next(other, one) && goes_on(1, 0) {
+                    continue;
+                }
+                for (chord, parameter) in [one, other].into_iter().zip(ends) {
+                    cuts[chord.ring][chord.curve].push(parameter);
                 }
             }
         }
@@ -256,7 +286,7 @@ impl Outline {
             cuts.sort_by(f64::total_cmp);
             cuts.dedup_by(|later, earlier| *later - *earlier < 1e-9);
         }
-        cuts
+        Ok(cuts)
     }
 }
 
@@ -345,19 +375,61 @@ fn refined(curves: [&Curve; 2], guess: [f64; 2]) -> [f64; 2] {
     at
 }
 
-/// How often curves wind around what lies to the right of the middle of a chord: their crossings with a ray.
-fn winding_to_the_right(own: [Point; 2], others: impl Iterator<Item = [Point; 2]>) -> i32 {
+/// Which chords a line along the other axis may meet: by strips across one axis.
+struct Strips {
+    low: f64,
+    /// Strips a metre.
+    scale: f64,
+    /// The chords that reach into each strip, with their numbers.
+    chords: Vec<Vec<(usize, [Point; 2])>>,
+}
+
+impl Strips {
+    fn new(chords: &[[Point; 2]], axis: usize) -> Self {
+        let values = || chords.iter().flatten().map(|point| point[axis]);
+        let (low, high) = (values().fold(f64::INFINITY, Real::min), values().fold(f64::NEG_INFINITY, Real::max));
+        // A chord as long as everything stands in all of them.
+        let count = 1 + 2 * Real::sqrt(chords.len() as f64) as usize;
+        let scale = count as f64 / (high - low);
+        let scale = if scale.is_finite() { scale } else { 0.0 };
+        let mut strips = Self { low, scale, chords: vec![Vec::new(); count] };
+        for (number, chord) in chords.iter().enumerate() {
+            let [a, b] = chord.map(|point| strips.strip(point[axis]));
+            for strip in &mut strips.chords[if a < b { a..=b } else { b..=a }] {
+                strip.push((number, *chord));
+            }
+        }
+        strips
+    }
+
+    /// Rounds the same way for a chord and what is asked of it.
+    fn strip(&self, value: f64) -> usize {
+        let place = (value - self.low) * self.scale;
+        (place as usize).min(self.chords.len() - 1)
+    }
+
+    fn at(&self, value: f64) -> &[(usize, [Point; 2])] {
+        &self.chords[self.strip(value)]
+    }
+}
+
+/// How often curves wind around what lies to the right of the middle of chord `number`: their crossings with a ray, for
+/// which the strips across y and across x are asked; what is nearer than `slack` coincides.
+fn winding_to_the_right(number: usize, own: [Point; 2], strips: &[Strips; 2], slack: f64) -> i32 {
     let [x, y] = [0, 1].map(|axis| 0.5 * (own[0][axis] + own[1][axis]));
-    let steep = (own[1][0] - own[0][0]).abs() <= (own[1][1] - own[0][1]).abs();
+    // Chords that coincide are asked along one axis, whatever their rounding: no drawing has lines of just this slope.
+    let steep = (own[1][0] - own[0][0]).abs() <= 0.7310585786 * (own[1][1] - own[0][1]).abs();
     let mut winding = 0;
-    for [from, to] in others {
+    let met = if steep { strips[0].at(y) } else { strips[1].at(x) };
+    for &(other, [from, to]) in met.iter().filter(|(other, _)| *other != number) {
         // The ray leads along x, or along y with the axes turned by a quarter.
         let (from, to, x, y) = if steep { (from, to, x, y) } else { ([from[1], -from[0]], [to[1], -to[0]], y, -x) };
         if (from[1] <= y) == (to[1] <= y) {
             continue;
         }
         let at = from[0] + (y - from[1]) / (to[1] - from[1]) * (to[0] - from[0]);
-        if x < at {
+        // Those that coincide lie as if each were a little beyond the one before.
+        if if (x - at).abs() <= slack { number < other } else { x < at } {
             winding += if from[1] <= y { 1 } else { -1 };
         }
     }
@@ -534,6 +606,85 @@ mod tests {
         let looped = |outline: Outline| outline.move_to([0.0, 0.0]).cubic_to([3.0, 2.0], [-2.0, 2.0], [1.0, 0.0]);
         let [union, parity] = both(looped);
         close(union, parity, 1e-13);
+    }
+
+    /// Rectangles on a grid share edges, parts of edges and corners; what they cover is counted by cells.
+    #[test]
+    fn edges_may_coincide() {
+        let mut random = Random::new(5);
+        for case in 0..300 {
+            let count = 2 + case % 5;
+            let mut pick = |below: u64| (random.bits() % below) as usize;
+            let mut windings = [[0i32; 8]; 8];
+            let mut corners = Vec::new();
+            for _ in 0..count {
+                let [left, low] = [pick(7), pick(7)];
+                let [right, high] =
+                    [left + 1 + pick(7 - left as u64 + 1).min(7 - left), low + 1 + pick(7 - low as u64 + 1).min(7 - low)];
+                let back = pick(2) == 1;
+                for row in &mut windings[low..high] {
+                    row[left..right].iter_mut().for_each(|cell| *cell += if back { -1 } else { 1 });
+                }
+                let mut ring = [[left, low], [right, low], [right, high], [left, high]];
+                if back {
+                    ring.reverse();
+                }
+                ring.rotate_left(pick(4));
+                corners.push(ring);
+            }
+            // As it is, by an eighth of a turn and by an odd angle.
+            for [cos, sin] in [[1.0, 0.0], [0.7, 0.7], [0.3, -0.9]] {
+                let at = |[x, y]: [usize; 2]| [cos * x as f64 - sin * y as f64, sin * x as f64 + cos * y as f64];
+                for rule in [FillRule::NonZero, FillRule::EvenOdd] {
+                    let cells = windings.iter().flatten().filter(|&&winding| rule.inside(winding)).count();
+                    let outline = corners.iter().fold(Outline::new(rule), |outline, corners| ring(outline, &corners.map(at)));
+                    match outline.body(1.0) {
+                        Ok(body) => close(body.mass, cells as f64 * (cos * cos + sin * sin), 1e-12),
+                        Err(error) => assert_eq!((cells, error), (0, BodyError::NoArea { ring: 0 }), "{corners:?}"),
+                    }
+                }
+            }
+        }
+    }
+
+    /// The same curve twice, either way, and two leaves with a curve in common.
+    #[test]
+    fn curves_may_coincide() {
+        let leaf = |outline: Outline| {
+            outline.move_to([0.0, 0.0]).cubic_to([2.0, 1.0], [-1.0, 3.0], [0.0, 4.0]).quad_to([-3.0, 2.0], [0.0, 0.0])
+        };
+        let back = |outline: Outline| {
+            outline.move_to([0.0, 0.0]).quad_to([-3.0, 2.0], [0.0, 4.0]).cubic_to([-1.0, 3.0], [2.0, 1.0], [0.0, 0.0])
+        };
+        let beside = |outline: Outline| {
+            outline.move_to([0.0, 4.0]).cubic_to([-1.0, 3.0], [2.0, 1.0], [0.0, 0.0]).quad_to([5.0, 2.0], [0.0, 4.0])
+        };
+        let one = leaf(Outline::new(FillRule::NonZero)).body(1.0).unwrap().mass;
+        let other = beside(Outline::new(FillRule::NonZero)).body(1.0).unwrap().mass;
+        close(leaf(leaf(Outline::new(FillRule::NonZero))).body(1.0).unwrap().mass, one, 1e-13);
+        assert_eq!(leaf(back(Outline::new(FillRule::NonZero))).body(1.0), Err(BodyError::NoArea { ring: 0 }));
+        assert_eq!(leaf(leaf(Outline::new(FillRule::EvenOdd))).body(1.0), Err(BodyError::NoArea { ring: 0 }));
+        for mass in both(|outline| beside(leaf(outline))) {
+            close(mass, one + other, 1e-13);
+        }
+    }
+
+    /// A grid of bars, each over all the others, and a scribble that nobody can count.
+    #[test]
+    fn many_crossings_are_counted_and_too_many_refused() {
+        let bars = |outline: Outline| {
+            (0..60).fold(outline, |outline, bar| {
+                let (from, to) = (f64::from(bar), f64::from(bar) + 0.5);
+                let outline = ring(outline, &[[from, -1.0], [to, -1.0], [to, 61.0], [from, 61.0]]);
+                ring(outline, &[[-1.0, from], [61.0, from], [61.0, to], [-1.0, to]])
+            })
+        };
+        let masses = both(bars);
+        close(masses[0], 60.0 * 62.0 - 900.0, 1e-12);
+        close(masses[1], 60.0 * 62.0 - 1800.0, 1e-12);
+        let mut random = Random::new(8);
+        let points: Vec<Point> = (0..1500).map(|_| [random.unit(), random.unit()]).collect();
+        assert_eq!(ring(Outline::new(FillRule::EvenOdd), &points).body(1.0), Err(BodyError::Tangled { pairs: super::CROSSINGS }));
     }
 
     #[test]
