@@ -3,7 +3,7 @@
 use super::{Drawing, DrawingError, Joint, Role, Skipped, Units, Why};
 use crate::body::{Body, BodyError, FillRule, Outline};
 use crate::real::Real;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use usvg::roxmltree::{Document, Node, ParsingOptions};
 use usvg::tiny_skia_path::PathSegment;
 use usvg::{Group, ImageHrefResolver, Options, Path, Transform, Tree};
@@ -28,8 +28,8 @@ struct Reader {
     units: Units,
     /// By the names of their groups.
     pivots: BTreeMap<String, Pivot>,
-    /// Where the groups of the joints begin, by their names.
-    inside: BTreeMap<String, usize>,
+    /// Where the groups of the joints begin, by their names, until their joints are there.
+    inside: BTreeMap<String, Option<usize>>,
     bodies: Vec<Vec<Body>>,
     drawing: Drawing,
 }
@@ -61,7 +61,7 @@ impl Drawing {
             bodies: Vec::new(),
             drawing: Self { joints: Vec::new(), skipped: Vec::new(), loose: 0, size },
         };
-        let mut ids = Vec::new();
+        let mut ids = BTreeSet::new();
         reader.find(tree.root(), &mut Vec::new(), &mut ids)?;
         reader.elements(&document, &ids)?;
         reader.weigh(tree.root(), None, 1.0)?;
@@ -71,10 +71,10 @@ impl Drawing {
 
 impl Reader {
     /// Gathers the pivots, and the ids of all that is drawn.
-    fn find<'a>(&mut self, group: &'a Group, around: &mut Vec<&'a str>, ids: &mut Vec<String>) -> Result<(), DrawingError> {
+    fn find<'a>(&mut self, group: &'a Group, around: &mut Vec<&'a str>, ids: &mut BTreeSet<String>) -> Result<(), DrawingError> {
         around.push(group.id());
         for node in group.children() {
-            ids.push(node.id().to_string());
+            ids.insert(node.id().to_string());
             match node {
                 usvg::Node::Group(group) => self.find(group, around, ids)?,
                 usvg::Node::Path(path) => {
@@ -100,20 +100,20 @@ impl Reader {
     }
 
     /// What only the text shows: where groups begin, and the shapes that the tree leaves out.
-    fn elements(&mut self, document: &Document<'_>, ids: &[String]) -> Result<(), DrawingError> {
+    fn elements(&mut self, document: &Document<'_>, ids: &BTreeSet<String>) -> Result<(), DrawingError> {
         for node in document.descendants().filter(Node::is_element) {
             let tag = node.tag_name().name();
             let id = node.attribute("id").unwrap_or("");
             if tag == "g" && self.pivots.contains_key(id) {
                 let inside = node.first_child().map_or(node.range().end, |child| child.range().start);
-                if self.inside.insert(id.into(), inside).is_some() {
+                if self.inside.insert(id.into(), Some(inside)).is_some() {
                     return Err(DrawingError::Twice { name: id.into() });
                 }
             }
             if !SHAPES.contains(&tag) || node.ancestors().any(|outer| STORED.contains(&outer.tag_name().name())) {
                 continue;
             }
-            let drawn = ids.iter().any(|drawn| drawn == id);
+            let drawn = ids.contains(id);
             let why = match tag {
                 "image" => Why::Image,
                 "text" => Why::Text,
@@ -134,10 +134,8 @@ impl Reader {
             None => joint,
             Some(pivot) => {
                 let name = group.id().to_string();
-                if self.drawing.joints.iter().any(|joint| joint.name == name) {
-                    return Err(DrawingError::Twice { name });
-                }
-                let inside = *self.inside.get(&name).ok_or_else(|| DrawingError::NoGroup { id: name.clone() })?;
+                let element = self.inside.get_mut(&name).ok_or_else(|| DrawingError::NoGroup { id: name.clone() })?;
+                let Some(inside) = element.take() else { return Err(DrawingError::Twice { name }) };
                 let transform = group.abs_transform();
                 let (scale, mirrored) = similarity(transform).ok_or_else(|| DrawingError::Sheared { name: name.clone() })?;
                 let pixel = self.units.pixel;
