@@ -17,7 +17,7 @@ const TICKS: u32 = 8;
 const CLOSED: f64 = 1e-9;
 
 /// Feathers that do not close within so many loops are shown as they are; the gap is printed.
-const LONGEST: usize = 60;
+const LONGEST: u32 = 60;
 
 /// What the page's sliders set.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +37,7 @@ pub(crate) struct Course(Vec<f64>);
 pub(crate) struct Baked {
     /// By settings, then by feathers.
     pub(crate) courses: Vec<Vec<Course>>,
-    pub(crate) loops: usize,
+    pub(crate) loops: u32,
     /// The largest difference between beginning and end of the last loop, in radians.
     pub(crate) gap: f64,
 }
@@ -64,28 +64,27 @@ pub(crate) fn swing(rig: &Rig<'_>, settings: &[Settings], bar: &ProgressBar) -> 
         }
     }
 
-    let mut gap = f64::INFINITY;
-    let mut loops = 0;
-    let mut angles = vec![Vec::with_capacity(FRAMES); handles.len()];
-    bar.set_length(0);
+    // One loop at a time, so that the bar can move.
+    let (mut gap, mut loops) = (f64::INFINITY, 0);
     bar.set_position(0);
+    bar.set_length(2);
     while CLOSED < gap && loops < LONGEST {
-        bar.inc_length(FRAMES as u64);
-        let first: Vec<f64> = handles.iter().map(|&handle| scene.state(handle).0[0]).collect();
-        for frame in 0..FRAMES {
-            for (number, &handle) in handles.iter().enumerate() {
-                angles[number].truncate(frame);
-                angles[number].push(scene.state(handle).0[0]);
-            }
-            let failed = scene.advance_ticks(TICKS).failed;
-            if failed != 0 {
-                return Err(format!("{failed} feathers failed at {} s: {}", scene.time(), scene.failures()[0]).into());
-            }
-            bar.inc(1);
-        }
-        gap = handles.iter().zip(&first).map(|(&handle, first)| (scene.state(handle).0[0] - first).abs()).fold(0.0, f64::max);
-        loops += 1;
+        let closed = scene.close_loop(FRAMES as u32 * TICKS, 1, CLOSED)?;
+        (gap, loops) = (closed.gap, loops + closed.turns);
+        bar.set_length(u64::from(loops) + 2);
+        bar.inc(1);
     }
+    let mut angles = vec![Vec::with_capacity(FRAMES); handles.len()];
+    for _ in 0..FRAMES {
+        for (angles, &handle) in angles.iter_mut().zip(&handles) {
+            angles.push(scene.state(handle).0[0]);
+        }
+        let failed = scene.advance_ticks(TICKS).failed;
+        if failed != 0 {
+            return Err(format!("{failed} feathers failed at {} s: {}", scene.time(), scene.failures()[0]).into());
+        }
+    }
+    bar.inc(1);
 
     // Seen from the joint on which it hangs, which turns too.
     let turns: Vec<Vec<f64>> = rig

@@ -61,7 +61,7 @@ fn fly() -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
     let alone = bake::swing(&rig, &[shown], &bar)?;
     let seconds = start.elapsed().as_secs_f64();
-    let frames = alone.loops * bake::FRAMES;
+    let frames = (alone.loops as usize + 1) * bake::FRAMES;
 
     // All settings of the page in one scene.
     let all: Vec<Settings> =
@@ -103,7 +103,7 @@ fn report(drawing: &Drawing, rig: &Rig<'_>, alone: &Baked) {
         drawing.skipped.len()
     );
     let peak = alone.courses[0].iter().flat_map(Course::swings).fold(0.0, |peak: f64, swing| peak.max(swing.abs()));
-    let seconds = alone.loops as f64 * dance::PERIOD;
+    let seconds = f64::from(alone.loops) * dance::PERIOD;
     println!(
         "simulated: {seconds:.2} s, {} loops of {:.0} s until they close with a gap of {:.1e} rad; largest swing {:.1}°",
         alone.loops,

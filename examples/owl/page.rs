@@ -13,11 +13,27 @@ const UNIT: f64 = 1e-4;
 pub(crate) fn write(text: &str, rig: &Rig<'_>, baked: &Baked, values: [&[f64]; 2], shown: [usize; 2]) -> String {
     // What stands before the root, such as an XML declaration, does not belong into a page.
     let drawing = &text[text.find("<svg").unwrap_or(0)..];
-    include_str!("page.html")
-        .replace("@DRAWING@", drawing.trim_end())
-        .replace("@COUNT@", &rig.feathers.len().to_string())
-        .replace("@JOINTS@", &rig.keyed.len().to_string())
-        .replace("@DATA@", &data(rig, baked, values, shown))
+    let data = data(rig, baked, values, shown);
+    let [gravities, dampings] = values.map(|values| values.len().to_string());
+    let (feathers, joints) = (rig.feathers.len().to_string(), rig.keyed.len().to_string());
+    let parts = [
+        ("COUNT", feathers.as_str()),
+        ("JOINTS", &joints),
+        ("GRAVITIES", &gravities),
+        ("DAMPINGS", &dampings),
+        ("DRAWING", drawing.trim_end()),
+        ("DATA", &data),
+    ];
+    // What is put in is not looked through again.
+    let mut pieces = include_str!("page.html").split('@');
+    let mut page = pieces.next().unwrap_or_default().to_string();
+    for piece in pieces {
+        match parts.iter().find(|(name, _)| *name == piece) {
+            Some((_, part)) => page += part,
+            None => page += piece,
+        }
+    }
+    page
 }
 
 fn data(rig: &Rig<'_>, baked: &Baked, [gravities, dampings]: [&[f64]; 2], shown: [usize; 2]) -> String {
@@ -51,7 +67,8 @@ fn data(rig: &Rig<'_>, baked: &Baked, [gravities, dampings]: [&[f64]; 2], shown:
     let numbers = baked.courses.iter().flatten().flat_map(|course| course.swings());
     let bytes: Vec<u8> = numbers.flat_map(|swing| ((swing / UNIT).round() as i16).to_le_bytes()).collect();
     let _ = write!(json, "],\n\"swings\":\"{}\"}}", base64(&bytes));
-    json
+    // No name ends the script.
+    json.replace('<', "\\u003c")
 }
 
 /// RFC 4648, section 4.
