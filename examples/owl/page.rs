@@ -1,7 +1,7 @@
 //! The page: the drawing, what was baked, and a script that blends it.
 
 use crate::animation::frames;
-use crate::bake::{Baked, FRAMES};
+use crate::bake::{Baked, Course, FRAMES};
 use crate::dance::PERIOD;
 use crate::rig::Rig;
 use std::fmt::Write;
@@ -64,7 +64,7 @@ fn data(rig: &Rig<'_>, baked: &Baked, [gravities, dampings]: [&[f64]; 2], shown:
         }
         json.push('}');
     }
-    let numbers = baked.courses.iter().flatten().flat_map(|course| course.swings());
+    let numbers = baked.courses.iter().flatten().flat_map(Course::swings);
     let bytes: Vec<u8> = numbers.flat_map(|swing| ((swing / UNIT).round() as i16).to_le_bytes()).collect();
     let _ = write!(json, "],\n\"swings\":\"{}\"}}", base64(&bytes));
     // No name ends the script.

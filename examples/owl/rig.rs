@@ -58,12 +58,9 @@ impl<'a> Rig<'a> {
     pub(crate) fn new(drawing: &'a Drawing) -> Result<Self, Box<dyn Error>> {
         let mut rig = Self { keyed: Vec::new(), feathers: Vec::new() };
         // From joints of the drawing to keyed ones.
-        let mut numbers = Vec::new();
+        let mut numbers: Vec<Option<usize>> = Vec::new();
         for joint in &drawing.joints {
-            let parent = match joint.parent {
-                None => None,
-                Some(parent) => Some(numbers[parent]),
-            };
+            let parent = joint.parent.map(|parent| numbers[parent]);
             match (joint.role, parent, joint.body) {
                 (Role::Keyed, None, _) => {
                     let turn = Arc::new(dance::turn(&joint.name)?);

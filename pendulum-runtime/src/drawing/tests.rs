@@ -186,17 +186,20 @@ fn vast_drawings_neither_hang_nor_overflow() {
         |depth: usize| format!("{}<rect width='1' height='1'/>{}", "<g opacity='.9'>".repeat(depth), "</g>".repeat(depth));
     assert_eq!(read(&nested(900)).unwrap().loose, 1);
     assert!(matches!(read(&nested(100_000)), Err(DrawingError::Syntax(_))));
-    let copies: String = (1..25).map(|k| format!("<g id='a{k}'><use href='#a{0}'/><use href='#a{0}'/></g>", k - 1)).collect();
-    let copied = format!("<defs><g id='a0'><rect width='1' height='1'/></g>{copies}</defs><use href='#a24'/>");
+    let copies: Vec<String> =
+        (1..25).map(|k| format!("<g id='a{k}'><use href='#a{0}'/><use href='#a{0}'/></g>", k - 1)).collect();
+    let copied = format!("<defs><g id='a0'><rect width='1' height='1'/></g>{}</defs><use href='#a24'/>", copies.concat());
     assert!(matches!(read(&copied), Err(DrawingError::Syntax(_))));
-    let entities: String = (1..10).map(|k| format!("<!ENTITY e{k} '{}'>", format!("&e{};", k - 1).repeat(10))).collect();
-    let bomb =
-        format!("<!DOCTYPE svg [<!ENTITY e0 'ha'>{entities}]><svg xmlns='http://www.w3.org/2000/svg'><text>&e9;</text></svg>");
+    let entities: Vec<String> = (1..10).map(|k| format!("<!ENTITY e{k} '{}'>", format!("&e{};", k - 1).repeat(10))).collect();
+    let bomb = format!(
+        "<!DOCTYPE svg [<!ENTITY e0 'ha'>{}]><svg xmlns='http://www.w3.org/2000/svg'><text>&e9;</text></svg>",
+        entities.concat()
+    );
     assert!(matches!(Drawing::read(&bomb, UNITS), Err(DrawingError::Syntax(_))));
-    let joints: String = (0..5000)
+    let joints: Vec<String> = (0..5000)
         .map(|k| format!("<g id='j{k}'><circle id='j{k}.keyed' r='1'/><rect id='r{k}' width='1' height='1'/></g>"))
         .collect();
-    assert_eq!(read(&joints).unwrap().joints.len(), 5000);
+    assert_eq!(read(&joints.concat()).unwrap().joints.len(), 5000);
 }
 
 /// Ten thousand drawings with wrong bytes: an error or a body, never a panic.
