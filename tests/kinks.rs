@@ -53,6 +53,17 @@ fn jumps_of_the_acceleration_cost_no_order() {
     assert!((found + 0.128838666144).abs() < 1e-10, "{found}");
 }
 
+#[test]
+fn nystrom_pairs_land_on_the_keys() {
+    let (times, values) = keys();
+    let driven = pendulum().driven_by(Linear::new(&times, &values).unwrap());
+    let problem = || solve(&driven, (0.0, 5.0), [0.3], [0.0]).rtol(1e-12).atol(1e-12);
+    let found = problem().method(Dprkn8).run().unwrap().end.q[0];
+    assert!((found + 0.129608683467).abs() < 1e-11, "{found}");
+    let found = problem().method(Dprkn12).run().unwrap().end.q[0];
+    assert!((found + 0.129608683467).abs() < 1e-11, "{found}");
+}
+
 /// Steps of a sixtieth of a second, which no key divides: the methods land on the keys by themselves.
 #[test]
 fn fixed_steps_land_on_the_keys() {

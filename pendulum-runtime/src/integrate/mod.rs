@@ -9,7 +9,9 @@
 //! | [`Srkn6b`] | 4 | 6 | fixed | velocity-free systems |
 //! | [`Srkn11b`] | 6 | 11 | fixed | velocity-free systems, long |
 //! | [`Srkn14a`] | 6 | 14 | fixed | velocity-free systems, long, down to rounding |
-//! | [`QuinlanTremaine<P>`](QuinlanTremaine) | 8, 10, 12 | 1 | fixed | velocity-free systems, the cheapest for a given error |
+//! | [`QuinlanTremaine<P>`](QuinlanTremaine) | 8, 10, 12 | 1 | fixed | velocity-free systems, long, the fewest evaluations for a given error |
+//! | [`Dprkn8`] | 8 | 8 | adaptive | velocity-free systems, errors 1e-2 … 1e-5 |
+//! | [`Dprkn12`] | 12 | 17 | adaptive | velocity-free systems, errors 1e-5 … rounding |
 //! | [`Rk4`] | 4 | 4 | fixed | any system, animation |
 //! | [`Gauss<S>`](Gauss) | 2S | implicit | fixed | any conservative system, long; stiff ones by Newton's method |
 //! | [`Rodas4`] | 4 | 6 and the Jacobians | adaptive | stiff springs and dampers |
@@ -30,6 +32,8 @@ pub(crate) mod blame;
 mod control;
 mod dense;
 mod dop853;
+mod dprkn12;
+mod dprkn8;
 mod driver;
 mod event;
 pub(crate) mod field;
@@ -42,6 +46,7 @@ pub(crate) mod leapfrog;
 mod linear;
 mod multistep;
 mod node;
+mod nystrom;
 mod output;
 mod piece;
 mod power;
@@ -67,6 +72,8 @@ mod watch;
 pub use adaptive_step::AdaptiveStep;
 pub use auto::Auto;
 pub use dop853::Dop853;
+pub use dprkn8::Dprkn8;
+pub use dprkn12::Dprkn12;
 pub use event::{Direction, Event, Occurrence, Status};
 pub use fixed_step::FixedStep;
 pub use gauss::{Gauss, Newton, Sweeps};

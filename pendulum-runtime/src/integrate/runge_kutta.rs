@@ -63,7 +63,7 @@ impl<T: Float, const N: usize, const S: usize> Slopes<T, N, S> {
 
 #[allow(clippy::inline_always)]
 #[inline(always)]
-fn weighted<T: Float, const N: usize, const S: usize, const K: usize>(slopes: &[[T; N]; S], row: Row<K>) -> [T; N] {
+pub(crate) fn weighted<T: Float, const N: usize, const S: usize, const K: usize>(slopes: &[[T; N]; S], row: Row<K>) -> [T; N] {
     let mut sum = [T::from_f64(0.0); N];
     for (k, (stage, weight)) in row.into_iter().enumerate() {
         for i in 0..N {

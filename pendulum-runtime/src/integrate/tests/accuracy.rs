@@ -6,7 +6,9 @@ use super::systems::{
 };
 use super::{distance, fixed};
 use crate::integrate::method::Suits;
-use crate::integrate::{Dop853, Leapfrog, Rk4, Solution, Srkn6b, Srkn11b, Srkn14a, Stats, SymplecticEuler, Tsit5, solve};
+use crate::integrate::{
+    Dop853, Dprkn8, Dprkn12, Leapfrog, Rk4, Solution, Srkn6b, Srkn11b, Srkn14a, Stats, SymplecticEuler, Tsit5, solve,
+};
 use crate::system::Driven;
 
 /// The pendulum from 1.3 at t = 100.
@@ -164,8 +166,10 @@ fn henon_heiles_by_all_velocity_free_methods() {
     assert!(error(fixed(&system, 10.0, q, v, Srkn6b, 100)) < 1e-7);
     assert!(error(fixed(&system, 10.0, q, v, Srkn11b, 100)) < 1e-10);
     assert!(error(fixed(&system, 10.0, q, v, Srkn14a, 100)) < 1e-12);
-    let solution = solve(&system, (0.0, 10.0), q, v).method(Dop853).rtol(1e-13).atol(1e-13).run().unwrap();
-    assert!(error(solution.end) < 1e-12);
+    let problem = || solve(&system, (0.0, 10.0), q, v).rtol(1e-13).atol(1e-13);
+    assert!(error(problem().method(Dop853).run().unwrap().end) < 1e-12);
+    assert!(error(problem().method(Dprkn8).run().unwrap().end) < 1e-13);
+    assert!(error(problem().method(Dprkn12).run().unwrap().end) < 1e-13);
 }
 
 #[test]
@@ -179,8 +183,13 @@ fn a_shaken_pendulum_by_every_method() {
     assert!(error(fixed(&driven, 10.0, [0.5], [0.0], Srkn14a, 200)) < 1e-11);
     assert!(error(fixed(&driven, 10.0, [0.5], [0.0], Rk4, 1000)) < 1e-8);
     assert!(error(fixed(&driven, 10.0, [0.5], [0.0], Tsit5, 1000)) < 1e-10);
-    let solution = solve(&driven, (0.0, 10.0), [0.5], [0.0]).method(Dop853).rtol(1e-12).atol(1e-12).run().unwrap();
+    let problem = || solve(&driven, (0.0, 10.0), [0.5], [0.0]).rtol(1e-12).atol(1e-12);
+    let solution = problem().method(Dop853).run().unwrap();
     assert!(error(solution.end) < 1e-11, "{}", solution.stats);
+    let solution = problem().method(Dprkn8).run().unwrap();
+    assert!(error(solution.end) < 1e-13, "{}", solution.stats);
+    let solution = problem().method(Dprkn12).run().unwrap();
+    assert!(error(solution.end) < 1e-12, "{}", solution.stats);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::systems::{DoublePendulum, MovingPendulum, Pendulum, SHAKEN, double_pendulum, pendulum, shaken};
 use super::{distance, fixed};
 use crate::integrate::method::{Method, Suits};
-use crate::integrate::{Dop853, Leapfrog, Rk4, Srkn6b, Srkn11b, Srkn14a, SymplecticEuler, Tsit5, solve};
+use crate::integrate::{Dop853, Dprkn8, Dprkn12, Leapfrog, Rk4, Srkn6b, Srkn11b, Srkn14a, SymplecticEuler, Tsit5, solve};
 use crate::motion::Motion;
 use crate::system::Driven;
 
@@ -64,6 +64,8 @@ fn on_the_pendulum() {
     simple(Rk4, 200);
     simple(Tsit5, 100);
     simple(Dop853, 12);
+    simple(Dprkn8, 20);
+    simple(Dprkn12, 6);
 }
 
 #[test]
@@ -76,6 +78,8 @@ fn with_a_driven_pivot() {
     driven(Rk4, 400);
     driven(Tsit5, 200);
     driven(Dop853, 30);
+    driven(Dprkn8, 20);
+    driven(Dprkn12, 7);
 }
 
 #[test]
@@ -123,4 +127,6 @@ fn of_dense_output() {
     assert_dense(Srkn14a, 20, 5.0);
     assert_dense(Tsit5, 20, 5.0);
     assert_dense(Dop853, 10, 8.0);
+    assert_dense(Dprkn8, 10, 6.0);
+    assert_dense(Dprkn12, 10, 9.0);
 }
