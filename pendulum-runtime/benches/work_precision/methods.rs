@@ -29,6 +29,8 @@ macro_rules! velocity_free {
         fixed!($subject, "Srkn6b", Srkn6b, [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 80.0]);
         fixed!($subject, "Srkn11b", Srkn11b, [0.7, 1.0, 1.5, 2.5, 4.0, 8.0, 16.0]);
         fixed!($subject, "Srkn14a", Srkn14a, [0.5, 0.8, 1.2, 2.0, 3.0, 5.0, 8.0]);
+        adaptive!($subject, "Dprkn8", Dprkn8::new(), [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], t_stops);
+        adaptive!($subject, "Dprkn12", Dprkn12::new(), [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14], t_stops);
         fixed!($subject, "QuinlanTremaine<8>", QuinlanTremaine::<8>::new(), [3.0, 4.0, 5.0, 8.0, 12.0, 20.0]);
         fixed!($subject, "QuinlanTremaine<12>", QuinlanTremaine::<12>::new(), [4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 24.0]);
     };
@@ -48,15 +50,15 @@ macro_rules! fixed {
     };
 }
 
-/// Tolerances 10^(−exponent), relative and absolute; the states at the output times are those of the dense output.
+/// Tolerances 10^(−exponent), relative and absolute; the states at the output times are those of the dense output, or steps end there.
 macro_rules! adaptive {
-    ($subject:ident, $name:literal, $method:expr, $exponents:expr) => {
+    ($subject:ident, $name:literal, $method:expr, $exponents:expr $(, $stops:ident)?) => {
         for exponent in $exponents.into_iter().step_by($subject.every) {
             let (Problem { q, v, times, .. }, end, dynamics) = $subject.parts();
             let tolerance = 10f64.powi(-exponent);
             $subject.add($name, format!("tol=1e-{exponent}"), move || {
                 let problem = solve(black_box(&*dynamics), (0.0, end), q, v).method($method);
-                methods::values(problem.rtol(tolerance).atol(tolerance).t_eval(&times).run())
+                methods::values(problem.rtol(tolerance).atol(tolerance)$(.$stops(&times))?.t_eval(&times).run())
             });
         }
     };
