@@ -27,7 +27,8 @@ use crate::system::{Dynamics, System};
 /// | | [`Dop853`] else, and where Taylor series fail: a motion is not [`Analytic`](crate::motion::Analytic), or the accelerations contain `abs`, `sign`, `min` or `max` of something that moves |
 /// | fixed | [`Srkn14a`], which is symplectic, for velocity-free systems, [`Dop853`] for others |
 ///
-/// Back in time only `Taylor` goes. Without `atol`, `Taylor` takes `rtol` for it and `Dop853` the smaller of `rtol` and 1e-9.
+/// For a velocity-free system with a motion that is not analytic, [`Dprkn8`](super::Dprkn8) and [`Dprkn12`](super::Dprkn12) are faster than
+/// `Dop853`; name them. Back in time only `Taylor` goes. Without `atol`, `Taylor` takes `rtol` for it and `Dop853` the smaller of `rtol` and 1e-9.
 ///
 /// Nothing shows beforehand that a system is stiff: for stiff springs and dampers name [`Rodas4`](super::Rodas4) or
 /// [`Gauss`](super::Gauss), for long runs of a conservative system with fixed steps `Gauss`. Systems written by hand have no
