@@ -13,6 +13,7 @@ pub mod linearize;
 pub mod motion;
 pub mod real;
 pub mod scene;
+mod simd;
 pub mod system;
 pub mod time;
 pub mod variational;

@@ -45,6 +45,13 @@ pub trait Motion<T: Real, const D: usize> {
     /// At a kink the value is the limit from `side`; elsewhere `side` does not matter.
     fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D>;
 
+    /// The same at as many times as there are samples, after a kink: for motions that can do several at once, with the same bits.
+    fn sample_all(&self, times: &[Time], orders: Orders, samples: &mut [Sample<T, D>]) {
+        for (sample, &t) in samples.iter_mut().zip(times) {
+            *sample = self.sample(t, Side::After, orders);
+        }
+    }
+
     /// The first time after `t` (never `t` itself) at which the position, the velocity or the acceleration jumps.
     fn next_kink(&self, t: f64) -> Option<f64>;
 

@@ -1,7 +1,8 @@
 //! A harmonic motion.
 
 use super::{Analytic, Motion, Orders, Sample, Side};
-use crate::real::Real;
+use crate::real::{Lane, Real};
+use crate::simd::{Work, widest};
 use crate::time::Time;
 
 /// A harmonic motion: x_d(t) = offset_d + amplitude_d · sin(frequency · t + phase_d).
@@ -25,22 +26,20 @@ impl<const D: usize> Sinusoid<D> {
         Self { amplitude, frequency, phase, offset: [0.0; D] }
     }
 
-    /// The same motion about another centre.
-    pub const fn about(self, offset: [f64; D]) -> Self {
-        Self { offset, ..self }
+    /// The angle of component `d`.
+    #[inline(always)]
+    #[allow(clippy::inline_always)]
+    fn angle(&self, d: usize, t: Time) -> f64 {
+        self.frequency * t.to_f64() + (self.phase[d] + self.frequency * t.low())
     }
-}
 
-impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
-    const HAS: Orders = Orders::ALL;
-
-    #[inline]
-    fn sample(&self, t: Time, _: Side, orders: Orders) -> Sample<T, D> {
+    /// The sample where the components have these sines and cosines.
+    #[inline(always)]
+    #[allow(clippy::inline_always)]
+    fn at<T: Real>(&self, orders: Orders, sin_cos: impl Fn(usize) -> (f64, f64)) -> Sample<T, D> {
         let mut sample = Sample::zero();
-        let w = self.frequency;
         for d in 0..D {
-            let (sin, cos) = Real::sin_cos(w * t.to_f64() + (self.phase[d] + w * t.low()));
-            let a = self.amplitude[d];
+            let ((sin, cos), a, w) = (sin_cos(d), self.amplitude[d], self.frequency);
             if orders.contains(Orders::POSITION) {
                 sample.position[d] = T::from_f64(self.offset[d] + a * sin);
             }
@@ -54,11 +53,60 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
         sample
     }
 
+    /// The same motion about another centre.
+    pub const fn about(self, offset: [f64; D]) -> Self {
+        Self { offset, ..self }
+    }
+}
+
+impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
+    const HAS: Orders = Orders::ALL;
+
+    #[inline]
+    fn sample(&self, t: Time, _: Side, orders: Orders) -> Sample<T, D> {
+        self.at(orders, |d| Real::sin_cos(self.angle(d, t)))
+    }
+
+    fn sample_all(&self, times: &[Time], orders: Orders, samples: &mut [Sample<T, D>]) {
+        for (times, samples) in times.chunks(AT_ONCE).zip(samples.chunks_mut(AT_ONCE)) {
+            widest(Several { sinusoid: self, times, orders, samples });
+        }
+    }
+
     fn next_kink(&self, _: f64) -> Option<f64> {
         None
     }
 
     fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
         Some(self)
+    }
+}
+
+/// The times that are done at once.
+const AT_ONCE: usize = 8;
+
+/// A sinusoid at several times.
+struct Several<'a, T, const D: usize> {
+    sinusoid: &'a Sinusoid<D>,
+    times: &'a [Time],
+    orders: Orders,
+    samples: &'a mut [Sample<T, D>],
+}
+
+impl<T: Real, const D: usize> Work for Several<'_, T, D> {
+    #[inline(always)]
+    #[allow(clippy::inline_always)]
+    fn run(self) {
+        let (mut sin, mut cos) = ([[0.0; AT_ONCE]; D], [[0.0; AT_ONCE]; D]);
+        for d in 0..D {
+            let mut angles = [0.0; AT_ONCE];
+            for (angle, &t) in angles.iter_mut().zip(self.times) {
+                *angle = self.sinusoid.angle(d, t);
+            }
+            (sin[d], cos[d]) = f64::sin_cos_lanes(&angles);
+        }
+        for (index, sample) in self.samples.iter_mut().enumerate() {
+            *sample = self.sinusoid.at(self.orders, |d| (sin[d][index], cos[d][index]));
+        }
     }
 }

@@ -7,20 +7,35 @@ use crate::motion::Sample;
 use crate::real::Real;
 use crate::system::Samples;
 
+/// The numbers of samples. A closure would do, but that need not be inlined, and then is compiled for other instructions.
+pub trait Numbers<T> {
+    /// The number in input i, derivative d (0 for the position) and component c.
+    fn number(&mut self, input: usize, derivative: usize, component: usize) -> T;
+}
+
+/// Numbers that a function gives, where it does not matter.
+pub(super) struct By<F>(pub(super) F);
+
+impl<T, F: FnMut(usize, usize, usize) -> T> Numbers<T> for By<F> {
+    fn number(&mut self, input: usize, derivative: usize, component: usize) -> T {
+        (self.0)(input, derivative, component)
+    }
+}
+
 /// The samples of all driven inputs of a system over the scalar `T`, put together number by number.
 pub trait Assemble<T>: Samples {
     /// The components of each input.
     const COMPONENTS: &'static [usize];
 
-    /// The samples whose number in input i, derivative d (0 for the position) and component c is `numbers(i, d, c)`.
-    fn assemble(numbers: impl FnMut(usize, usize, usize) -> T) -> Self;
+    /// The samples of these numbers.
+    fn assemble(numbers: &mut impl Numbers<T>) -> Self;
 }
 
 impl<T: Real> Assemble<T> for () {
     const COMPONENTS: &'static [usize] = &[];
 
     #[inline(always)]
-    fn assemble(_: impl FnMut(usize, usize, usize) -> T) -> Self {}
+    fn assemble(_: &mut impl Numbers<T>) -> Self {}
 }
 
 /// What a system hangs on: `()`, a [`Joint`] or a tuple of joints, one for each driven input in the order of declaration.
@@ -43,12 +58,12 @@ impl<T: Real, const D: usize> Anchor<(Sample<T, D>,)> for Joint<D> {
 }
 
 #[inline(always)]
-fn sample<T: Real, const D: usize>(input: usize, numbers: &mut impl FnMut(usize, usize, usize) -> T) -> Sample<T, D> {
+fn sample<T: Real, const D: usize>(input: usize, numbers: &mut impl Numbers<T>) -> Sample<T, D> {
     let mut sample = Sample::zero();
     for c in 0..D {
-        sample.position[c] = numbers(input, 0, c);
-        sample.velocity[c] = numbers(input, 1, c);
-        sample.acceleration[c] = numbers(input, 2, c);
+        sample.position[c] = numbers.number(input, 0, c);
+        sample.velocity[c] = numbers.number(input, 1, c);
+        sample.acceleration[c] = numbers.number(input, 2, c);
     }
     sample
 }
@@ -59,8 +74,8 @@ macro_rules! tuples {
             const COMPONENTS: &'static [usize] = &[$($dim),+];
 
             #[inline(always)]
-            fn assemble(mut numbers: impl FnMut(usize, usize, usize) -> T) -> Self {
-                ($(sample::<T, $dim>($index, &mut numbers),)+)
+            fn assemble(numbers: &mut impl Numbers<T>) -> Self {
+                ($(sample::<T, $dim>($index, numbers),)+)
             }
         }
 

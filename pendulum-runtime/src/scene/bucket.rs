@@ -1,13 +1,13 @@
 //! Pendulums of one type that take the same steps: those that are awake first, all in blocks of lanes.
 
 use super::block::{Block, Extras, half_decay};
-use super::dispatch::widest;
 use super::hung::{Hung, Known, W, Wide};
 use super::joint::Place;
 use super::kernel::{Batch, Run};
 use super::scheme::Grid;
 use super::tracks::{Sampled, Tracks};
 use crate::real::{Float, Lane, Real};
+use crate::simd::widest;
 use crate::system::System;
 use crate::time::Time;
 

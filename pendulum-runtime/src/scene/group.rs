@@ -1,6 +1,6 @@
 //! All pendulums of one type.
 
-use super::assemble::Assemble;
+use super::assemble::{Assemble, By};
 use super::bucket::{self, Bucket, Extra, Failed, Kind, Loose};
 use super::clock::Clock;
 use super::director::Carry;
@@ -473,9 +473,9 @@ pub(super) fn inputs_at<S: Hung<T, N>, T: Lane + Float, const N: usize>(
         }
         at += own;
     }
-    Assemble::assemble(|input, derivative, component| {
+    Assemble::assemble(&mut By(|input, derivative, component| {
         layout.place(input, derivative, component).map_or(T::from_f64(0.0), |place| record[place])
-    })
+    }))
 }
 
 /// Whether a state is finite.

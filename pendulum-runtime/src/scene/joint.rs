@@ -1,7 +1,7 @@
 //! Joints: motions of any type, each sampled once per time for all that hangs on it.
 
 use super::clock::Clock;
-use crate::motion::{Motion, Orders, Side};
+use crate::motion::{Motion, Orders, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 use core::fmt;
@@ -23,6 +23,27 @@ pub(super) trait Drive<T>: Send + Sync {
     fn rest_until(&self, t: f64) -> f64;
 }
 
+/// The times that are sampled at once.
+const AT_ONCE: usize = 8;
+
+/// Writes those derivatives of a sample that are in `orders`, one after the other.
+#[inline]
+fn put<T: Real, const D: usize>(sample: &Sample<T, D>, orders: Orders, numbers: &mut [T]) {
+    let all = [
+        (Orders::POSITION, &sample.position),
+        (Orders::VELOCITY, &sample.velocity),
+        (Orders::ACCELERATION, &sample.acceleration),
+    ];
+    let mut rest = numbers;
+    for (order, values) in all {
+        if orders.contains(order) {
+            let (here, after) = rest.split_at_mut(D);
+            here.copy_from_slice(values);
+            rest = after;
+        }
+    }
+}
+
 struct Forgotten<M, const D: usize>(M);
 
 impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Forgotten<M, D> {
@@ -36,32 +57,36 @@ impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Forgot
 
     #[inline]
     fn sample(&self, t: Time, side: Side, orders: Orders, numbers: &mut [T]) {
-        let sample = self.0.sample(t, side, orders);
-        let all = [
-            (Orders::POSITION, sample.position),
-            (Orders::VELOCITY, sample.velocity),
-            (Orders::ACCELERATION, sample.acceleration),
-        ];
-        let mut rest = numbers;
-        for (order, values) in all {
-            if orders.contains(order) {
-                let (here, after) = rest.split_at_mut(D);
-                here.copy_from_slice(&values);
-                rest = after;
-            }
-        }
+        put(&self.0.sample(t, side, orders), orders, numbers);
     }
 
     fn sample_all(&self, times: &[Time], orders: Orders, numbers: &mut [T]) {
         let width = D * orders.count();
-        for (index, &t) in times.iter().enumerate() {
-            let (before, here) = numbers.split_at_mut(index * width);
-            if 0 < index && times[index - 1] == t {
-                here[..width].copy_from_slice(&before[(index - 1) * width..]);
-            } else {
-                // Without a kink the side is all one, but only one side gives the same bits however ticks are cut into batches.
-                self.sample(t, Side::After, orders, &mut here[..width]);
+        let again = |index: usize| 0 < index && times[index - 1] == times[index];
+        let (mut wanted, mut samples) = ([Time::new(0.0); AT_ONCE], [Sample::zero(); AT_ONCE]);
+        let mut begin = 0;
+        while begin < times.len() {
+            let (mut end, mut count) = (begin, 0);
+            while end < times.len() && (count < AT_ONCE || again(end)) {
+                if !again(end) {
+                    wanted[count] = times[end];
+                    count += 1;
+                }
+                end += 1;
             }
+            // Without a kink the side is all one, but only one side gives the same bits however ticks are cut into batches.
+            self.0.sample_all(&wanted[..count], orders, &mut samples[..count]);
+            let mut next = 0;
+            for index in begin..end {
+                let (before, here) = numbers.split_at_mut(index * width);
+                if again(index) {
+                    here[..width].copy_from_slice(&before[(index - 1) * width..]);
+                } else {
+                    put(&samples[next], orders, &mut here[..width]);
+                    next += 1;
+                }
+            }
+            begin = end;
         }
     }
 

@@ -1,19 +1,19 @@
 //! The steps of a block of lanes through a batch of ticks.
 //!
-//! Everything here is inlined into the code that [`dispatch`](super::dispatch) compiles for several instruction sets, and has in every lane the
+//! Everything here is inlined into the code that [`simd`](crate::simd) compiles for several instruction sets, and has in every lane the
 //! bits of the scalar methods in [`integrate`](crate::integrate).
 
 #![allow(clippy::inline_always)]
 
-use super::assemble::Assemble;
+use super::assemble::{Assemble, By, Numbers};
 use super::block::{Block, Extras, half_decay};
-use super::dispatch::Work;
 use super::hung::{Hung, Known, Layout, W, Wide};
 use super::scheme::{Grid, MOST_STAGES, Scheme};
 use super::tracks::{Piece, Tracks};
 use crate::integrate::sum::Sum;
 use crate::integrate::{leapfrog, srkn6b};
 use crate::real::{Float, Lane, Real};
+use crate::simd::Work;
 use crate::system::{Staged, System, scalar_time};
 use crate::time::Time;
 
@@ -118,7 +118,7 @@ fn batch<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, const
     let zero = T::from_f64(0.0);
     let mut inputs = [nothing::<S, T, N>(); K];
     if batch.still && 0 < layout.width {
-        inputs = [gathered::<S, T, N>(&block.track.map(|track| batch.tracks.records(track, 0, 1, layout.width)), layout, 0); K];
+        inputs = [gathered::<S, T, N>(&records_of(batch.tracks, &block.track, 0, 1, layout.width), layout, 0); K];
     }
     let mut times = [Wide::from_f64(0.0); K];
     for tick in 0..batch.ticks {
@@ -132,7 +132,7 @@ fn batch<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, const
                     times[stage] = Wide::splat(scalar_time(batch.times[evaluation + stage]));
                 }
                 if !batch.still && 0 < layout.width {
-                    let records = block.track.map(|track| batch.tracks.records(track, evaluation, K, layout.width));
+                    let records = records_of(batch.tracks, &block.track, evaluation, K, layout.width);
                     for stage in 0..stages {
                         inputs[stage] = gathered::<S, T, N>(&records, layout, stage);
                     }
@@ -180,25 +180,61 @@ fn freeze<S: Hung<T, N>, T: Lane + Float, const N: usize>(block: &mut Block<S, T
 /// Inputs that are all zero.
 #[inline(always)]
 fn nothing<S: Hung<T, N>, T: Lane + Float, const N: usize>() -> Inputs<S, T, N> {
-    Assemble::assemble(|_, _, _| Wide::from_f64(0.0))
+    Assemble::assemble(&mut Nothing)
 }
 
-/// The inputs of each lane, from one of its records.
+struct Nothing;
+
+impl<T: Lane> Numbers<Wide<T>> for Nothing {
+    #[inline(always)]
+    fn number(&mut self, _: usize, _: usize, _: usize) -> Wide<T> {
+        Wide::from_f64(0.0)
+    }
+}
+
+/// The inputs of each lane, from its record with this index.
 #[inline(always)]
 fn gathered<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     records: &[&[T]; W],
     layout: &Layout,
     index: usize,
 ) -> Inputs<S, T, N> {
-    Assemble::assemble(|input, derivative, component| {
+    Assemble::assemble(&mut Gathered { records, layout, index })
+}
+
+/// So many records of each lane's track from an evaluation on.
+#[inline(always)]
+fn records_of<'a, T: Lane + Float>(
+    tracks: &'a Tracks<T>,
+    track: &[u32; W],
+    evaluation: usize,
+    count: usize,
+    width: usize,
+) -> [&'a [T]; W] {
+    let mut records: [&[T]; W] = [&[]; W];
+    for lane in 0..W {
+        records[lane] = tracks.records(track[lane], evaluation, count, width);
+    }
+    records
+}
+
+struct Gathered<'a, T> {
+    records: &'a [&'a [T]; W],
+    layout: &'a Layout,
+    index: usize,
+}
+
+impl<T: Lane> Numbers<Wide<T>> for Gathered<'_, T> {
+    #[inline(always)]
+    fn number(&mut self, input: usize, derivative: usize, component: usize) -> Wide<T> {
         let mut lanes = Wide::from_f64(0.0);
-        if let Some(place) = layout.place(input, derivative, component) {
+        if let Some(place) = self.layout.place(input, derivative, component) {
             for lane in 0..W {
-                lanes.0[lane] = records[lane][index * layout.width + place];
+                lanes.0[lane] = self.records[lane][self.index * self.layout.width + place];
             }
         }
         lanes
-    })
+    }
 }
 
 /// The accelerations, with those of soft stops.
@@ -383,7 +419,7 @@ fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, co
         }
         let mut inputs = [nothing::<S, T, N>(); K];
         for (stage, inputs) in inputs.iter_mut().enumerate().take(stages) {
-            *inputs = Assemble::assemble(|input, derivative, component| {
+            *inputs = Assemble::assemble(&mut By(|input, derivative, component| {
                 let mut lanes = Wide::from_f64(0.0);
                 let Some(place) = layout.place(input, derivative, component) else { return lanes };
                 for lane in (0..W).filter(|&lane| active[lane]) {
@@ -395,7 +431,7 @@ fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, co
                     };
                 }
                 lanes
-            });
+            }));
         }
         let weights = Weights::<T>::new::<SCHEME>(|weight| {
             let mut lanes = Wide::from_f64(0.0);
@@ -443,7 +479,7 @@ fn cross<S: Hung<T, N>, T: Lane + Float, const N: usize>(
         return;
     }
     let side = |after: usize| -> Inputs<S, T, N> {
-        Assemble::assemble(|input, derivative, component| {
+        Assemble::assemble(&mut By(|input, derivative, component| {
             let mut lanes = Wide::from_f64(0.0);
             if let Some(place) = layout.place(input, derivative, component) {
                 for lane in 0..W {
@@ -453,7 +489,7 @@ fn cross<S: Hung<T, N>, T: Lane + Float, const N: usize>(
                 }
             }
             lanes
-        })
+        }))
     };
     let mut t = Wide::from_f64(0.0);
     for lane in 0..W {

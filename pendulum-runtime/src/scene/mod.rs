@@ -47,7 +47,6 @@ mod bucket;
 mod clock;
 mod cycle;
 mod director;
-mod dispatch;
 mod error;
 mod frequency;
 mod group;
@@ -65,7 +64,7 @@ mod state;
 mod timetable;
 mod tracks;
 
-pub use assemble::{Anchor, Assemble};
+pub use assemble::{Anchor, Assemble, Numbers};
 pub use bake::Baked;
 pub use cycle::Closed;
 pub use director::{Carry, Stop};

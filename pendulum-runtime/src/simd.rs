@@ -1,7 +1,7 @@
 //! The widest vectors of the machine, found out while running.
 
 /// Work that is compiled for several instruction sets: everything that `run` calls must be inlined into it.
-pub(super) trait Work {
+pub(crate) trait Work {
     /// Does it.
     fn run(self);
 }
@@ -11,7 +11,7 @@ pub(super) trait Work {
 /// Without the feature `simd` it runs as the rest of the program was compiled, with the same bits.
 #[cfg(feature = "simd")]
 #[inline]
-pub(super) fn widest(work: impl Work) {
+pub(crate) fn widest(work: impl Work) {
     struct Op<W>(W);
 
     impl<W: Work> pulp::NullaryFnOnce for Op<W> {
@@ -30,6 +30,6 @@ pub(super) fn widest(work: impl Work) {
 /// Runs `work` as the rest of the program was compiled.
 #[cfg(not(feature = "simd"))]
 #[inline]
-pub(super) fn widest(work: impl Work) {
+pub(crate) fn widest(work: impl Work) {
     work.run();
 }
