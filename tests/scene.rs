@@ -638,3 +638,29 @@ fn joints_are_felt_as_much_as_directors_want() {
     assert!((beyond - exact.end.q[0]).abs() < 1e-7, "{beyond} for {}", exact.end.q[0]);
     assert!((beyond - whole).abs() > 0.01);
 }
+
+#[test]
+fn a_shaken_pendulum_swings_alike_at_all_frame_rates() {
+    let swing = |rate: u32| {
+        let mut scene = Scene::<f64>::new(240.0).unwrap();
+        let joint = scene.joint(Sinusoid::new([0.05, 0.0], 4.0 * std::f64::consts::PI, [0.0, 0.0]));
+        let handle = scene.hang(joint, Hanging::new(0.01, 0.1), [0.0], [0.0]).unwrap();
+        scene.set_damping(handle, 4.0).unwrap();
+        let mut at_common_times = Vec::new();
+        for frame in 1..=20 * rate {
+            scene.advance(1.0 / f64::from(rate)).unwrap();
+            if frame % (rate / 6) == 0 {
+                at_common_times.push(scene.state(handle).0[0]);
+            }
+        }
+        let baked = scene.bake(&[handle], 240, 0.0).unwrap();
+        (at_common_times, baked[0].keys().map(|(_, q, _)| q[0].abs()).fold(0.0, f64::max))
+    };
+    let (reference, peak) = swing(240);
+    assert!((peak.to_degrees() - 44.34).abs() < 0.02, "{peak}");
+    for rate in [24, 30, 60, 120] {
+        let (states, other) = swing(rate);
+        assert!(reference.iter().zip(&states).all(|(a, b)| (a - b).abs() <= 1e-12) && (peak - other).abs() <= 1e-12, "{rate}");
+        assert_eq!(states.len(), reference.len());
+    }
+}

@@ -1,14 +1,24 @@
-//! What a pendulum costs in a scene: `cargo bench -p pendulum-runtime --bench scene [--features rayon]`, written to `target/scene.csv`.
+//! What a pendulum costs in a scene: `cargo bench -p pendulum-runtime --bench scene [--features rayon] [-- --quick] [CASE…]`, written to
+//! `target/scene.csv`.
 //!
-//! Each case is the median of nine runs, and beside it in the same run a scalar loop written by hand: leapfrog with `f64::sin` (`f32::sin`), one
-//! pendulum after the other. A step is one evaluation. Awake or asleep, all pendulums count.
+//! Each case is the median of its runs, and beside it in the same run a scalar loop written by hand: leapfrog with `f64::sin` (`f32::sin`), one
+//! pendulum for a long time. A step is one evaluation. Awake or asleep, all pendulums count.
+//!
+//! | case | what it shows |
+//! |---|---|
+//! | `free`, `still`, `driven` | no joints, joints at rest, joints that move: a frame of four ticks, one step each |
+//! | `asleep50`, `asleep99` | `driven` with so many percent hidden, of every joint alike |
+//! | `shared` | `driven` with all on ten joints: each is sampled once per time |
+//! | `position` | joints that move, of which the equations contain nothing: they are not sampled |
+//! | `hurried` | `driven` with one pendulum in a hundred that needs 16 times the steps: the others do not take them |
+//! | `kinked` | keyed joints with a kink in every frame |
 
 #![allow(mixed_script_confusables, missing_docs)]
 
-use pendulum_runtime::motion::{Sinusoid, Still};
+use pendulum_runtime::motion::{Linear, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::{Float, Lane};
-use pendulum_runtime::scene::Scene;
+use pendulum_runtime::scene::{Handle, Scene};
 use std::fmt::Write;
 use std::hint::black_box;
 use std::time::Instant;
@@ -32,40 +42,79 @@ lagrangian! {
     potential = m*g*height(y);
 }
 
+lagrangian! {
+    #[derive(Clone, Debug)]
+    pub struct Following { m: kg, L: m, g: m/s^2 = 9.81 }
+    coordinate θ: rad;
+    driven x: [m; 2];
+    let y = L * [sin(θ), -cos(θ)];
+    kinetic = m/2 * |ẏ|^2 + m/2 * |ẋ|^2;
+    potential = m*g*height(y) + m*g*height(x);
+}
+
 /// The substeps of a frame of a sixtieth of a second.
 const TICKS: u32 = 4;
 
 #[derive(Clone, Copy, PartialEq)]
-enum Drive {
+enum Kind {
     Free,
     Still,
-    Moved,
+    Driven,
+    Asleep50,
+    Asleep99,
+    Shared,
+    Position,
+    Hurried,
+    Kinked,
 }
 
-fn scene<T: Lane + Float>(pendulums: usize, joints: usize, drive: Drive) -> Scene<T> {
+const KINDS: [(Kind, &str); 9] = [
+    (Kind::Free, "free"),
+    (Kind::Still, "still"),
+    (Kind::Driven, "driven"),
+    (Kind::Asleep50, "asleep50"),
+    (Kind::Asleep99, "asleep99"),
+    (Kind::Shared, "shared"),
+    (Kind::Position, "position"),
+    (Kind::Hurried, "hurried"),
+    (Kind::Kinked, "kinked"),
+];
+
+fn scene<T: Lane + Float>(pendulums: usize, joints: usize, kind: Kind) -> Scene<T> {
     let number = T::from_f64;
     let mut scene = Scene::<T>::new(240.0).expect("a rate");
     scene.set_tolerance(1e-2).expect("a tolerance");
+    let joints = if kind == Kind::Shared { joints.min(10) } else { joints };
     let moved = |k: usize| Sinusoid::new([0.05, 0.02], 6.0 + 6.0 * k as f64 / joints as f64, [0.0, 1.0]);
+    let times: Vec<f64> = (0..600).map(|key| f64::from(key) / 60.0).collect();
+    let values: Vec<[f64; 2]> = times.iter().map(|t| [0.02 * (t * 40.0).cos(), 0.02 * (t * 33.0).cos()]).collect();
     let mut hung = 0;
     for joint in 0..joints {
-        let handle = if drive == Drive::Moved { scene.joint(moved(joint)) } else { scene.joint(Still::new([0.0, 0.0])) };
+        let handle = match kind {
+            Kind::Free | Kind::Still => scene.joint(Still::new([0.0, 0.0])),
+            Kind::Kinked => scene.joint(Linear::new(&times, &values).and_then(Linear::looped).expect("keys")),
+            _ => scene.joint(moved(joint)),
+        };
         while hung < pendulums * (joint + 1) / joints {
             let part = hung as f64 / pendulums as f64;
-            let (length, q) = (number(0.3 + 0.5 * part), [number(1.0 - part)]);
-            if drive == Drive::Free {
-                scene
-                    .hang((), Simple { m: number(0.1), L: length, g: number(9.81) }, q, [number(0.0)])
-                    .map(drop)
-                    .expect("a pendulum");
-            } else {
-                scene
-                    .hang(handle, Hanging { m: number(0.1), L: length, g: number(9.81) }, q, [number(0.0)])
-                    .map(drop)
-                    .expect("a pendulum");
-            }
+            let length = if kind == Kind::Hurried && hung % 100 == 0 { 0.002 } else { 0.3 + 0.5 * part };
+            let (m, length, g, q, v) = (number(0.1), number(length), number(9.81), [number(1.0 - part)], [number(0.0)]);
+            let done = match kind {
+                Kind::Free => scene.hang((), Simple { m, L: length, g }, q, v).map(drop),
+                Kind::Position => scene.hang(handle, Following { m, L: length, g }, q, v).map(drop),
+                _ => scene.hang(handle, Hanging { m, L: length, g }, q, v).map(drop),
+            };
+            done.expect("a pendulum");
             hung += 1;
         }
+    }
+    let awake = match kind {
+        Kind::Asleep50 => 2,
+        Kind::Asleep99 => 100,
+        _ => 1,
+    };
+    for index in (0..pendulums as u32).filter(|index| index % awake != 0) {
+        scene.hide(Handle::<Hanging<T>, 1>::new(index)).expect("a pendulum");
     }
     scene
 }
@@ -103,12 +152,13 @@ struct Case<'a> {
     scalar: &'a str,
     threads: usize,
     baseline: fn(usize) -> f64,
+    runs: usize,
 }
 
 impl Case<'_> {
     fn measure<T: Lane + Float>(&self, csv: &mut String, mut scene: Scene<T>) -> f64 {
-        let frames = (100_000 / self.pendulums).clamp(1, 500);
-        let runs = if self.pendulums < 100_000 { 101 } else { 11 };
+        let frames = (50_000 / self.pendulums).clamp(1, 500);
+        let runs = if self.pendulums < 100_000 { self.runs } else { 11 };
         scene.set_parallel(1 < self.threads);
         scene.advance_ticks(TICKS);
         let (mut ours, mut theirs) = (Vec::new(), Vec::new());
@@ -134,18 +184,24 @@ impl Case<'_> {
 }
 
 fn main() {
-    let only = std::env::var("ONLY").ok();
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
+    let quick = words.iter().any(|word| word == "--quick");
+    let names: Vec<&String> = words.iter().filter(|word| !word.starts_with("--")).collect();
     let mut csv = String::from("case,pendulums,joints,threads,scalar,ns_per_pendulum_step,baseline_ns\n");
     let many = if cfg!(feature = "rayon") { std::thread::available_parallelism().map_or(1, usize::from) } else { 1 };
-    for (pendulums, joints) in [(86, 9), (10_000, 1_000), (9_984, 10), (1_000_000, 100_000)] {
-        if only.as_deref().is_some_and(|only| only != pendulums.to_string()) {
-            continue;
-        }
-        for (drive, name) in [(Drive::Free, "free"), (Drive::Still, "still"), (Drive::Moved, "driven")] {
+    let sizes = [(86, 9), (10_000, 1_000), (1_000_000, 100_000)];
+    for (pendulums, joints) in if quick { &sizes[..2] } else { &sizes[..] }.iter().copied() {
+        for (kind, name) in KINDS {
+            // Keys of their own for a hundred thousand joints would be a benchmark of memory.
+            let skipped = kind == Kind::Kinked && 1_000 < joints;
+            if skipped || !(names.is_empty() || names.iter().any(|wanted| *wanted == name)) {
+                continue;
+            }
             for threads in if 1 < many && 86 < pendulums { vec![1, many] } else { vec![1] } {
-                let case = |scalar, baseline| Case { name, pendulums, joints, scalar, threads, baseline };
-                case("f64", baseline_f64).measure(&mut csv, scene::<f64>(pendulums, joints, drive));
-                case("f32", baseline_f32).measure(&mut csv, scene::<f32>(pendulums, joints, drive));
+                let runs = if quick { 15 } else { 51 };
+                let case = |scalar, baseline| Case { name, pendulums, joints, scalar, threads, baseline, runs };
+                case("f64", baseline_f64).measure(&mut csv, scene::<f64>(pendulums, joints, kind));
+                case("f32", baseline_f32).measure(&mut csv, scene::<f32>(pendulums, joints, kind));
             }
         }
     }

@@ -33,3 +33,8 @@ pub mod prelude {
     pub use crate::system::{Driven, Dynamics, System, VelocityFree};
     pub use crate::{lagrangian, motion};
 }
+
+/// The blocks of the guide to scenes are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/scenes.md")]
+struct Guide;

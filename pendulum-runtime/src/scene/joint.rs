@@ -62,6 +62,9 @@ impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Forgot
 
     fn sample_all(&self, times: &[Time], orders: Orders, numbers: &mut [T]) {
         let width = D * orders.count();
+        if width == 0 {
+            return;
+        }
         let again = |index: usize| 0 < index && times[index - 1] == times[index];
         let (mut wanted, mut samples) = ([Time::new(0.0); AT_ONCE], [Sample::zero(); AT_ONCE]);
         let mut begin = 0;
