@@ -7,7 +7,7 @@ use crate::check::{Model, Quantity};
 use crate::collect;
 use crate::diff::derivative;
 use crate::error::Errors;
-use crate::expr::{Contents, Graph, Id, Symbol};
+use crate::expr::{Contents, Function, Graph, Id, Node, Symbol};
 use crate::jacobian;
 use crate::lower::{Energies, total_derivative};
 use crate::number::Rational;
@@ -190,6 +190,7 @@ fn solved(graph: &mut Graph, motion: &mut Motion, momenta: &[Id], sparse: Option
     let largest = solve::blocks(&motion.mass_matrix).iter().map(Vec::len).max().unwrap_or(0);
     if let Some(sparse) = sparse
         && LARGEST_DENSE < largest
+        && !momenta.iter().any(|&momentum| jumps(graph, momentum))
         && schedule::program(graph, &sparse.accelerations).count().cost() < largest.pow(3) / 3
     {
         // Elimination without structure would take n³/3 operations and as long to write down.
@@ -285,12 +286,24 @@ pub(crate) fn invert(graph: &mut Graph, mass_matrix: &[Vec<Id>], momenta: &[Id])
         }
         let rest = graph.sum(&terms);
         let rest = collected(graph, rest);
+        if jumps(graph, rest) {
+            return None;
+        }
         // What structure does not cancel vanishes at q̇ = 0.
         let rest = if graph.contents(rest).any(Contents::VELOCITY) { at_rest(graph, rest) } else { rest };
         let momentum = graph.symbol(Symbol::Momentum(i));
         right.push(graph.add(momentum, rest));
     }
     Some(solve::solve(graph, mass_matrix, &right))
+}
+
+/// Whether an expression jumps where a function of the velocities changes sign: its derivative does not show that it contains them.
+fn jumps(graph: &Graph, id: Id) -> bool {
+    let jumps = |id: &Id| match graph.node(*id) {
+        Node::Call(Function::Sign | Function::Step, argument) => graph.contents(*argument).any(Contents::VELOCITY),
+        _ => false,
+    };
+    graph.contents(id).any(Contents::VELOCITY) && graph.reachable(&[id]).iter().any(jumps)
 }
 
 /// An expression with all velocities of coordinates set to zero.
@@ -310,5 +323,6 @@ fn facts(graph: &mut Graph, motion: &mut Motion) {
     motion.autonomous = !contents.any(time);
     motion.explicit_time = contents.any(Contents::TIME);
     let moving = motion.velocities.iter().flatten().fold(Contents::default(), |all, &id| all.or(graph.contents(id)));
-    motion.separable = motion.constant_mass_matrix && !moving.any(Contents::COORDINATE) && !motion.nonconservative;
+    let explicit = motion.velocities.is_some() && !moving.any(Contents::COORDINATE);
+    motion.separable = motion.constant_mass_matrix && explicit && !motion.nonconservative;
 }

@@ -1,0 +1,207 @@
+//! Numbers with infinitesimals: derivatives of any order without a formula for them.
+//!
+//! A number with k infinitesimals ε₁, …, ε_k, each of square zero, has 2ᵏ coefficients; that of ε₁ε₂ in f(x + ε₁ + ε₂) is f″(x). A
+//! function of a + bε is f(a) + f′(a) b ε, where a and b have the other infinitesimals, so that one slope for each function is enough.
+
+use pendulum_runtime::real::Float;
+
+/// The coefficients of a number; bit j of their index is set for those of εⱼ.
+#[derive(Clone, Debug)]
+pub(crate) struct Nilpotent<T>(pub(crate) Vec<T>);
+
+/// A function of one number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Function {
+    Sqrt,
+    Exp,
+    Ln,
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Sinh,
+    Cosh,
+    Tanh,
+    Abs,
+    Sign,
+}
+
+impl Function {
+    /// As the language writes it.
+    pub(crate) fn name(self) -> String {
+        format!("{self:?}").to_lowercase()
+    }
+}
+
+impl<T: Float> Nilpotent<T> {
+    /// A number without infinitesimals where there are some.
+    pub(crate) fn constant(value: T, infinitesimals: usize) -> Self {
+        let mut coefficients = vec![T::from_f64(0.0); 1 << infinitesimals];
+        coefficients[0] = value;
+        Self(coefficients)
+    }
+
+    /// The number of infinitesimals.
+    pub(crate) fn infinitesimals(&self) -> usize {
+        self.0.len().trailing_zeros() as usize
+    }
+
+    /// `self` + `slope` ε for a new ε.
+    pub(crate) fn join(mut self, slope: Self) -> Self {
+        self.0.extend(slope.0);
+        self
+    }
+
+    /// The parts a and b of a + bε, where ε is the newest infinitesimal.
+    pub(crate) fn split(&self) -> (Self, Self) {
+        let (a, b) = self.0.split_at(self.0.len() / 2);
+        (Self(a.to_vec()), Self(b.to_vec()))
+    }
+
+    pub(crate) fn add(&self, other: &Self) -> Self {
+        Self(self.0.iter().zip(&other.0).map(|(&a, &b)| a + b).collect())
+    }
+
+    pub(crate) fn sub(&self, other: &Self) -> Self {
+        Self(self.0.iter().zip(&other.0).map(|(&a, &b)| a - b).collect())
+    }
+
+    pub(crate) fn neg(&self) -> Self {
+        Self(self.0.iter().map(|&a| -a).collect())
+    }
+
+    pub(crate) fn mul(&self, other: &Self) -> Self {
+        let coefficient = |all: usize| {
+            let mut sum = self.0[0] * other.0[all];
+            let mut part = all;
+            while part != 0 {
+                sum += self.0[part] * other.0[all ^ part];
+                part = (part - 1) & all;
+            }
+            sum
+        };
+        Self((0..self.0.len()).map(coefficient).collect())
+    }
+
+    pub(crate) fn div(&self, other: &Self) -> Self {
+        self.mul(&other.reciprocal())
+    }
+
+    pub(crate) fn reciprocal(&self) -> Self {
+        if let [value] = self.0[..] {
+            return Self(vec![T::from_f64(1.0) / value]);
+        }
+        let (a, b) = self.split();
+        let value = a.reciprocal();
+        let slope = value.mul(&value).neg();
+        value.join(slope.mul(&b))
+    }
+
+    /// A whole power.
+    pub(crate) fn whole_power(&self, exponent: i64) -> Self {
+        let one = self.like(1.0);
+        let power = (0..exponent.unsigned_abs()).fold(one, |power, _| power.mul(self));
+        if exponent < 0 { power.reciprocal() } else { power }
+    }
+
+    /// `self` to a number that moves: exp(b ln a).
+    pub(crate) fn power(&self, exponent: &Self) -> Self {
+        exponent.mul(&self.call(Function::Ln)).call(Function::Exp)
+    }
+
+    /// `self` to a fraction, by the powers of the scalar.
+    pub(crate) fn rational_power(&self, top: i64, bottom: i64) -> Self {
+        if top % bottom == 0 {
+            return self.whole_power(top / bottom);
+        }
+        let exponent = T::from_f64(top as f64) / T::from_f64(bottom as f64);
+        if let [value] = self.0[..] {
+            return Self(vec![if bottom == 2 { Self(vec![value.sqrt()]).whole_power(top).0[0] } else { value.powf(exponent) }]);
+        }
+        let (a, b) = self.split();
+        let slope = a.rational_power(top - bottom, bottom).mul(&Self::constant(exponent, a.infinitesimals()));
+        a.rational_power(top, bottom).join(slope.mul(&b))
+    }
+
+    /// The larger one; the first of two equal ones, or one that is not a number.
+    pub(crate) fn max(&self, other: &Self) -> Self {
+        if self.0[0] < other.0[0] || other.undefined() { other.clone() } else { self.clone() }
+    }
+
+    /// The smaller one; the first of two equal ones, or one that is not a number.
+    pub(crate) fn min(&self, other: &Self) -> Self {
+        if other.0[0] < self.0[0] || other.undefined() { other.clone() } else { self.clone() }
+    }
+
+    fn undefined(&self) -> bool {
+        !self.0[0].is_finite()
+    }
+
+    /// The angle of the point (`x`, `self`).
+    pub(crate) fn atan2(&self, x: &Self) -> Self {
+        if let ([y], [x]) = (&self.0[..], &x.0[..]) {
+            return Self(vec![y.atan2(*x)]);
+        }
+        let ((y, dy), (x, dx)) = (self.split(), x.split());
+        let square = x.mul(&x).add(&y.mul(&y));
+        let slope = x.mul(&dy).sub(&y.mul(&dx)).div(&square);
+        y.atan2(&x).join(slope)
+    }
+
+    pub(crate) fn call(&self, function: Function) -> Self {
+        if let [value] = self.0[..] {
+            return Self(vec![of_scalar(function, value)]);
+        }
+        let (a, b) = self.split();
+        let slope = a.slope(function);
+        a.call(function).join(slope.mul(&b))
+    }
+
+    /// The derivative of a function at `self`.
+    fn slope(&self, function: Function) -> Self {
+        let one = || self.like(1.0);
+        let square = || self.mul(self);
+        match function {
+            Function::Sqrt => self.call(Function::Sqrt).mul(&self.like(2.0)).reciprocal(),
+            Function::Exp => self.call(Function::Exp),
+            Function::Ln => self.reciprocal(),
+            Function::Sin => self.call(Function::Cos),
+            Function::Cos => self.call(Function::Sin).neg(),
+            Function::Tan => self.call(Function::Cos).whole_power(-2),
+            Function::Asin => one().sub(&square()).call(Function::Sqrt).reciprocal(),
+            Function::Acos => one().sub(&square()).call(Function::Sqrt).reciprocal().neg(),
+            Function::Atan => one().add(&square()).reciprocal(),
+            Function::Sinh => self.call(Function::Cosh),
+            Function::Cosh => self.call(Function::Sinh),
+            Function::Tanh => self.call(Function::Cosh).whole_power(-2),
+            Function::Abs => self.call(Function::Sign),
+            Function::Sign => self.like(0.0),
+        }
+    }
+
+    /// A constant with as many infinitesimals.
+    fn like(&self, value: f64) -> Self {
+        Self::constant(T::from_f64(value), self.infinitesimals())
+    }
+}
+
+fn of_scalar<T: Float>(function: Function, x: T) -> T {
+    match function {
+        Function::Sqrt => x.sqrt(),
+        Function::Exp => x.exp(),
+        Function::Ln => x.ln(),
+        Function::Sin => x.sin(),
+        Function::Cos => x.cos(),
+        Function::Tan => x.tan(),
+        Function::Asin => x.asin(),
+        Function::Acos => x.acos(),
+        Function::Atan => x.atan(),
+        Function::Sinh => x.sinh(),
+        Function::Cosh => x.cosh(),
+        Function::Tanh => x.tanh(),
+        Function::Abs => x.abs(),
+        Function::Sign => x.sign(),
+    }
+}

@@ -1,0 +1,92 @@
+//! Other ways to write the same system: a gauge term, another scale of energy, other coordinates.
+
+use super::generate;
+use super::nilpotent::Function;
+use super::split_mix::Random;
+use super::tree::{Coordinate, Expr, Index, Kind, Let, Shape, System, Type, number, product, quotient, sum};
+
+/// L + dF/dt for a random F(q, t).
+pub(crate) fn gauged(system: &System) -> System {
+    let mut gauged = system.clone();
+    let term = generate::gauge(system, &mut Random(system.seed ^ 0xf0));
+    let rate = Expr::Dot(Box::new(term));
+    let rate = if system.units { quotient(rate, generate::measure(system, Kind::Rate)) } else { rate };
+    gauged.kinetic.push(rate);
+    gauged
+}
+
+/// The factor of [`scaled`].
+pub(crate) const SCALE: f64 = 0.75;
+
+/// Everything times three quarters.
+pub(crate) fn scaled(system: &System) -> System {
+    let mut scaled = system.clone();
+    let lists = [&mut scaled.kinetic, &mut scaled.potential, &mut scaled.dissipation];
+    let exprs = lists.into_iter().flatten().chain(scaled.forces.iter_mut().map(|force| &mut force.expr));
+    for expr in exprs {
+        *expr = product(Expr::Number(3, 4), expr.clone());
+    }
+    scaled
+}
+
+/// The system without its forces in coordinates Q with q = Q + sin(Q₁)/3, where Q₁ is the first of the coordinates declared next.
+pub(crate) fn moved(system: &System) -> System {
+    let mut moved = system.clone();
+    moved.forces.clear();
+    let count = system.coordinates.len();
+    for coordinate in &mut moved.coordinates {
+        coordinate.name = format!("{}1", coordinate.name);
+    }
+    let old = |index: usize, bound: Option<Index>| Expr::Coordinate(index, bound);
+    moved.lets = (0..count)
+        .map(|index| {
+            let Coordinate { name, length } = &system.coordinates[index];
+            let next = (index + 1) % count;
+            let first = old(next, system.coordinates[next].length.map(|_| Index::Number(0)));
+            let bend = quotient(Expr::Call(Function::Sin, Box::new(first)), number(3));
+            let expr = sum(old(index, length.map(|_| Index::Bound(0))), bend);
+            let shape = length.map_or(Shape::Plain, Shape::Indexed);
+            Let { name: name.clone(), shape, kind: Type::Scalar, expr }
+        })
+        .collect();
+    let replace = |expr: &mut Expr| replaced(expr, count);
+    moved.lets.extend(system.lets.iter().cloned().map(|mut definition| {
+        definition.expr.each(&replace);
+        definition
+    }));
+    for list in [&mut moved.kinetic, &mut moved.potential, &mut moved.dissipation] {
+        list.iter_mut().for_each(|expr| expr.each(&replace));
+    }
+    moved
+}
+
+/// The old coordinates, velocities and accelerations from those of [`moved`].
+pub(crate) fn back(system: &System, [q, v, a]: [&[f64]; 3]) -> [Vec<f64>; 3] {
+    let mut old = [q.to_vec(), v.to_vec(), a.to_vec()];
+    for index in 0..system.coordinates.len() {
+        let next = system.first_coordinate((index + 1) % system.coordinates.len());
+        let (sin, cos) = pendulum_runtime::real::Real::sin_cos(q[next]);
+        let first = system.first_coordinate(index);
+        for scalar in first..first + system.coordinates[index].length.unwrap_or(1) {
+            old[0][scalar] += sin / 3.0;
+            old[1][scalar] += cos * v[next] / 3.0;
+            old[2][scalar] += (cos * a[next] - sin * v[next] * v[next]) / 3.0;
+        }
+    }
+    old
+}
+
+/// Coordinates become definitions, which stand before all others.
+fn replaced(expr: &mut Expr, count: usize) {
+    let definition = |index: usize, member: Option<Index>| match member {
+        None => Expr::Let(index),
+        Some(member) => Expr::LetMember(index, member),
+    };
+    match expr {
+        Expr::Coordinate(index, member) => *expr = definition(*index, *member),
+        Expr::Velocity(index, None, 0) => *expr = Expr::LetDot(*index),
+        Expr::Velocity(index, member, _) => *expr = Expr::Dot(Box::new(definition(*index, *member))),
+        Expr::Let(index) | Expr::LetDot(index) | Expr::LetMember(index, _) | Expr::Apply(index, _) => *index += count,
+        _ => {}
+    }
+}
