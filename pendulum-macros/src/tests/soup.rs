@@ -1,134 +1,9 @@
 //! Whatever tokens come, the expansion neither panics nor hangs.
 
-use super::Random;
+use super::random::Random;
+use super::random::tokens::{BLOCKS, mutate, soup, transplant};
 use crate::expand::expand;
-use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
-
-const WORDS: &[&str] = &[
-    "θ",
-    "θ̇",
-    "ẋ",
-    "ẍ",
-    "m",
-    "L",
-    "x",
-    "y",
-    "k",
-    "t",
-    "i",
-    "π",
-    "sin",
-    "cos",
-    "dot",
-    "inner",
-    "sum",
-    "integral",
-    "in",
-    "let",
-    "struct",
-    "pub",
-    "coordinate",
-    "driven",
-    "kinetic",
-    "potential",
-    "lagrangian",
-    "dissipation",
-    "force",
-    "body",
-    "rad",
-    "kg",
-    "+",
-    "-",
-    "*",
-    "/",
-    "^",
-    "|",
-    "=",
-    ";",
-    ",",
-    ":",
-    ".",
-    "..",
-    "..=",
-    "0",
-    "1",
-    "2",
-    "5",
-    "1.5",
-    "2x",
-    "1e400",
-    "1e-40",
-    "99999999999999999999",
-    "10000000000000000000000",
-    "^100000000000000000000000000000000000000",
-    "^2",
-    "^(1/2)",
-    "^-1",
-    "\"a\"",
-    "'a'",
-    "#",
-    "!",
-    "?",
-    "@",
-    "<",
-    ">",
-    "&",
-    "_",
-    "__m",
-    "m·g",
-    "type",
-    "()",
-    "[]",
-    "{}",
-];
-
-const BLOCKS: &[&str] = &[
-    "::p; pub struct M { m: kg, L: m, g: m/s^2 = 9.81, } coordinate θ: rad; driven x: [m; 2]; let y = L * [sin(θ), -cos(θ)]; kinetic = m/2 * |ẋ + ẏ|^2; potential = m*g * (height(x) + height(y));",
-    "::p; struct C { m: [kg; 3], l: [m; 3], g } coordinate θ[3]: rad; let y[k in 0..3] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]); kinetic = sum(k in 0..3, m[k]/2*|ẏ[k]|^2); potential = sum(k in 0..3, m[k]*g*height(y[k])); dissipation = θ̇[0]^2; force θ[1] = sin(t);",
-    "::p; struct C { c: [m; 2], I: kg*m^2 } coordinate θ; let r(p) = cis(θ)*p; lagrangian = I/2*θ̇^2 - height(r(c)) + max(0, θ - 1)^2 - exp(i*θ).x;",
-];
-
-fn soup(random: &mut Random, depth: usize) -> TokenStream {
-    let mut tokens = TokenStream::new();
-    for _ in 0..random.below(12) {
-        if depth < 5 && random.below(6) == 0 {
-            let delimiter = [Delimiter::Parenthesis, Delimiter::Brace, Delimiter::Bracket, Delimiter::None][random.below(4)];
-            tokens.extend([TokenTree::Group(Group::new(delimiter, soup(random, depth + 1)))]);
-        } else if let Ok(word) = WORDS[random.below(WORDS.len())].parse::<TokenStream>() {
-            tokens.extend(word);
-        }
-    }
-    tokens
-}
-
-/// Drops, doubles, swaps or replaces some tokens.
-fn mutate(tokens: TokenStream, random: &mut Random) -> TokenStream {
-    let mut list: Vec<TokenTree> = tokens.into_iter().collect();
-    for tree in &mut list {
-        if let TokenTree::Group(group) = tree
-            && random.below(3) == 0
-        {
-            *tree = TokenTree::Group(Group::new(group.delimiter(), mutate(group.stream(), random)));
-        }
-    }
-    for _ in 0..=random.below(3) {
-        if list.is_empty() {
-            break;
-        }
-        let (a, b) = (random.below(list.len()), random.below(list.len()));
-        match random.below(4) {
-            0 => drop(list.remove(a)),
-            1 => list.insert(a, list[b].clone()),
-            2 => list.swap(a, b),
-            _ => {
-                if let Ok(word) = WORDS[random.below(WORDS.len())].parse::<TokenStream>() {
-                    list.splice(a..=a, word);
-                }
-            }
-        }
-    }
-    list.into_iter().collect()
-}
+use proc_macro2::{TokenStream, TokenTree};
 
 /// How many of each; `SOUP=1000000` for more.
 fn rounds() -> u64 {
@@ -154,7 +29,7 @@ fn mutated_blocks_do_not_panic() {
     for seed in 0..rounds() {
         let mut random = Random(seed);
         let block = blocks[random.below(blocks.len())].clone();
-        expand(mutate(block, &mut random));
+        expand(if seed % 2 == 0 { mutate(block, &mut random) } else { transplant(block, &mut random) });
     }
 }
 

@@ -15,15 +15,17 @@ pub(crate) mod split_mix;
 mod state;
 #[cfg(test)]
 mod tests;
+pub(crate) mod tokens;
+#[cfg(test)]
 mod transform;
-mod tree;
+pub(crate) mod tree;
 
 pub(crate) use split_mix::Random;
 
 /// What became of a random system.
 pub(crate) enum Outcome {
-    /// Refused with these messages.
-    Refused(Vec<String>),
+    /// Refused, with these errors.
+    Refused(String),
     /// The source has no value at the state that plain arithmetic can find.
     Unsound,
     Compared(check::Findings),
@@ -36,7 +38,7 @@ pub(crate) fn outcome(system: &tree::System) -> Outcome {
         check::compare(system, &check::Derived { model, graph, motion }, system.seed)
     });
     match found {
-        None => Outcome::Refused(errors.messages()),
+        None => Outcome::Refused(errors.into_tokens().to_string()),
         Some(findings) if findings.sound() => Outcome::Compared(findings),
         Some(_) => Outcome::Unsound,
     }

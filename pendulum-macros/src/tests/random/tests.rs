@@ -42,7 +42,7 @@ fn what_is_derived_is_what_is_written() {
                 assert!(0.0 < findings.pivot, "seed {}: pivot {}", system.seed, findings.pivot);
             }
             Outcome::Unsound => unsound += 1,
-            Outcome::Refused(messages) => panic!("seed {}: {messages:?} for\n{}", system.seed, system.source("Random")),
+            Outcome::Refused(messages) => panic!("seed {}: {messages} for\n{}", system.seed, system.source("Random")),
         }
     }
     assert!(unsound * 20 <= compared, "{unsound} of {compared} have no value");

@@ -1,0 +1,55 @@
+//! Files with something wrong in them.
+
+use crate::random::Random;
+
+/// What readers of numbers and of lengths trip over.
+const SPLINTERS: [&[u8]; 16] = [
+    b"-1",
+    b"0",
+    b"1e308",
+    b"1e-320",
+    b"nan",
+    b"inf",
+    b"18446744073709551616",
+    b"4294967295",
+    b"\xff\xfe",
+    b"\0",
+    b"\r",
+    b" ",
+    b"\n",
+    b"{",
+    b"}",
+    b"\xe2\x80\x8b",
+];
+
+/// A file with a few of its bytes, words or stretches changed.
+pub(crate) fn mutated(file: &[u8], random: &mut Random) -> Vec<u8> {
+    let mut bytes = file.to_vec();
+    for _ in 0..=random.below(6) {
+        if bytes.is_empty() {
+            break;
+        }
+        let at = random.below(bytes.len());
+        // Headers are where structure is.
+        let at = if random.once_in(2) { at.min(random.below(2000)) } else { at };
+        let longest = random.of(&[4, 40, 4000]);
+        let end = (at + 1 + random.below(longest)).min(bytes.len());
+        match random.below(7) {
+            0 => bytes[at] = random.next() as u8,
+            1 => drop(bytes.drain(at..end)),
+            2 => {
+                let stretch = bytes[at..end].to_vec();
+                let to = random.below(bytes.len());
+                bytes.splice(to..to, stretch);
+            }
+            3 => bytes.truncate(at),
+            4 => {
+                let word = bytes[at..].iter().position(u8::is_ascii_whitespace).map_or(bytes.len(), |length| at + length);
+                bytes.splice(at..word, random.of(&SPLINTERS).iter().copied());
+            }
+            5 => drop(bytes.splice(at..at, random.of(&SPLINTERS).iter().copied())),
+            _ => bytes[at] ^= 1 << random.below(8),
+        }
+    }
+    bytes
+}
