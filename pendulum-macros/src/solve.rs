@@ -1,6 +1,6 @@
 //! M x = f on the graph: `LDLᵀ` without square roots, structural zeros skipped, independent blocks apart.
 
-use crate::check::Model;
+use crate::check::{Model, Quantity};
 use crate::collect;
 use crate::error::Errors;
 use crate::expr::{Contents, Graph, Id};
@@ -13,10 +13,7 @@ pub(crate) fn regular(model: &Model, graph: &mut Graph, matrix: &[Vec<Id>], erro
     for coordinate in &model.coordinates {
         let rows = coordinate.first..coordinate.first + coordinate.count();
         if let Some(row) = rows.clone().find(|&row| matrix[row].iter().all(|&entry| entry == Graph::ZERO)) {
-            let name = match coordinate.length {
-                Some(_) => format!("{}[{}]", coordinate.name, row - coordinate.first),
-                None => coordinate.name.to_string(),
-            };
+            let name = named(coordinate, row);
             errors.at(
                 coordinate.name.span(),
                 format!(
@@ -35,7 +32,7 @@ pub(crate) fn regular(model: &Model, graph: &mut Graph, matrix: &[Vec<Id>], erro
         let found =
             model.coordinates.iter().find(|coordinate| (coordinate.first..coordinate.first + coordinate.count()).contains(&row));
         let Some(coordinate) = found else { continue };
-        let name = &coordinate.name;
+        let name = named(coordinate, row);
         let message = if deficient {
             format!(
                 "the mass matrix is singular in the direction of `{name}`: its kinetic energy is that of other coordinates; \
@@ -47,15 +44,26 @@ pub(crate) fn regular(model: &Model, graph: &mut Graph, matrix: &[Vec<Id>], erro
                  take coordinates whose squared velocities stand in it"
             )
         };
-        errors.at(name.span(), message);
+        errors.at(coordinate.name.span(), message);
     }
     errors.len() == before
 }
 
-/// The entries of a matrix at a random point of a prime field.
+/// The scalar coordinate of a row, as written.
+fn named(coordinate: &Quantity, row: usize) -> String {
+    match coordinate.length {
+        Some(_) => format!("{}[{}]", coordinate.name, row - coordinate.first),
+        None => coordinate.name.to_string(),
+    }
+}
+
+/// The entries of a matrix at a random point of a prime field. Half of all numbers have a root: where there are too many to meet a point
+/// at which all exist, roots are unknown functions, and what vanishes then vanishes too.
 fn at_random(graph: &Graph, matrix: &[Vec<Id>]) -> Option<Vec<Vec<Residue>>> {
     let roots: Vec<Id> = matrix.iter().flatten().copied().collect();
-    let values = (0..64).find_map(|seed| Point::new(graph, &roots, seed).values(graph, &roots))?;
+    let exact = (0..64).find_map(|seed| Point::new(graph, &roots, seed).values(graph, &roots));
+    let formal = || (0..64).find_map(|seed| Point::formal(graph, &roots, seed).values(graph, &roots));
+    let values = exact.or_else(formal)?;
     Some(matrix.iter().map(|row| row.iter().map(|entry| values[entry]).collect()).collect())
 }
 

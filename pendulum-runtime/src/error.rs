@@ -46,7 +46,8 @@ pub enum Error {
         t: f64,
         /// What it is.
         what: Quantity,
-        /// The parameters that are zero, infinite or not a number, and so may be the cause of an acceleration that is not finite.
+        /// The parameters that are zero, infinite or not a number, and so may be the cause of an acceleration, or of a velocity that
+        /// belongs to a finite momentum, that is not finite.
         suspects: Vec<Suspect>,
     },
     /// Step control asked for a step below the resolution of time.

@@ -54,6 +54,11 @@ const CASES: &[(&str, &str)] = &[
     ("kinetic = m*L^2*θ̇^2 + m*L*t*θ̇*ẍ.x;",                 "the momenta contain the acceleration of `x`, so the equations would contain its third derivative; leave its second derivative out of the kinetic energy"),
     ("kinetic = m*L^2*θ̇^2; coordinate φ; potential = m*φ^2;",   "`φ` has no kinetic energy, so its acceleration is undetermined; add the square of its velocity to `kinetic`"),
     ("coordinate φ; kinetic = m*L^2*(θ̇ + φ̇)^2;",               "the mass matrix is singular in the direction of `θ`: its kinetic energy is that of other coordinates; leave the redundant coordinate out"),
+    ("coordinate φ[3]; kinetic = m*L^2*(θ̇^2 + (φ̇[0] + φ̇[2])^2 + (φ̇[1] - 2*φ̇[2])^2);", "the mass matrix is singular in the direction of `φ[0]`: its kinetic energy is that of other coordinates; leave the redundant coordinate out"),
+    ("coordinate φ; kinetic = m*L^2*|dot([cos(θ + φ), sin(θ + φ)])|^2;", "the mass matrix is singular in the direction of `θ`: its kinetic energy is that of other coordinates; leave the redundant coordinate out"),
+    ("coordinate φ; kinetic = m*L^2*θ̇*φ̇;", "the kinetic energy is not positive: in the direction of `φ` it is zero at every state; take coordinates whose squared velocities stand in it"),
+    // More roots than a point of the field has.
+    ("let z = sum(k in 1..20, sqrt(k + θ^2)*sin(k*θ)); coordinate φ; kinetic = m*L^2*(z*θ̇ + z^2*φ̇)^2;", "the mass matrix is singular in the direction of `θ`: its kinetic energy is that of other coordinates; leave the redundant coordinate out"),
     ("potential = m*g*θ;",                                     "`θ` has no kinetic energy, so its acceleration is undetermined; add the square of its velocity to `kinetic`"),
     ("",                                                       "no energy; write `kinetic = …;` and `potential = …;` below the struct"),
     ("kinetic = m*L^2*θ̇^2; coordinate φ: furlong;",            "unknown unit `furlong`; a unit is a product, quotient or power of `kg`, `m`, `s`, `rad`, `N`, `J`, `W`, `Hz` and `1`"),

@@ -37,10 +37,13 @@ pub(crate) fn fault<D: Dynamics<N, Scalar: Float>, M: Suits<D::System, N>, const
         let coordinate = super::field::coordinate(facts, index);
         return Some(Error::NoConvergence { t: t.to_f64(), step: span.h, coordinate });
     }
-    let mut watched = Watched { dynamics, first: None };
+    let mut watched = Watched::new(dynamics);
     let to = method.step(&mut watched, span, &mut Node { a: None, ..*from }, &mut M::stages());
     let at_end = || first_in_state(facts, &to.q.high, &to.v.high).map(|what| (span.end, what));
     let (t, what) = watched.first.or_else(at_end)?;
+    if watched.singular {
+        return Some(Error::NotFinite { t: t.to_f64(), what, suspects: suspects(dynamics.system()) });
+    }
     Some(not_finite(dynamics.system(), t, what))
 }
 

@@ -134,6 +134,8 @@ fn jacobians<const N: usize, D: Dynamics<N, System: Jacobians<N>>>(
 pub(crate) struct Watched<'a, D> {
     pub(crate) dynamics: &'a D,
     pub(crate) first: Option<(Time, Quantity)>,
+    /// It is a velocity that belongs to a finite momentum: the mass matrix has no inverse there.
+    pub(crate) singular: bool,
 }
 
 impl<const N: usize, D: Dynamics<N, Scalar: Float>> Accelerations<D::Scalar, N> for Watched<'_, D> {
@@ -149,7 +151,11 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>> Accelerations<D::Scalar, N> 
     }
 }
 
-impl<D> Watched<'_, D> {
+impl<'a, D> Watched<'a, D> {
+    pub(crate) fn new(dynamics: &'a D) -> Self {
+        Self { dynamics, first: None, singular: false }
+    }
+
     fn look(&mut self, t: Time, what: impl FnOnce() -> Option<Quantity>) {
         if self.first.is_none() {
             self.first = what().map(|what| (t, what));
@@ -183,6 +189,7 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>> Field<D::System, N> for Watc
         inputs: &<D::System as System<N>>::Inputs,
     ) -> [D::Scalar; N] {
         let v = self.dynamics.system().velocities(scalar_time(t), q, p, inputs);
+        self.singular |= self.first.is_none() && first_in(p).is_none() && first_in(q).is_none() && first_in(&v).is_some();
         self.look(t, || first_in_state(&<D::System as System<N>>::FACTS, q, &v));
         v
     }

@@ -143,7 +143,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Stepper<D, N> for Taylor 
     }
 
     fn fault(&self, dynamics: &D, span: &Span, from: &Node<D::Scalar, N>, _: &RoomOf<D, N>) -> Option<Error> {
-        let mut watched = Watched { dynamics, first: None };
+        let mut watched = Watched::new(dynamics);
         watched.at(from.t, side(span.h), &from.q.high, &from.v.high);
         let mut room = self.room(dynamics);
         expand(&mut Counted::new(dynamics), from, side(span.h), self.order_for(D::Scalar::EPSILON.to_f64()), &mut room);
