@@ -19,6 +19,8 @@ pub(crate) mod tokens;
 #[cfg(test)]
 mod transform;
 pub(crate) mod tree;
+#[cfg(test)]
+mod written;
 
 pub(crate) use split_mix::Random;
 

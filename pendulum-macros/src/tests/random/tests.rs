@@ -128,3 +128,15 @@ fn other_coordinates_give_the_same_motion() {
         assert!(own < 1e-9, "seed {seed}: {own} for\n{}and\n{}", system.source("Random"), moved.source("Random"));
     }
 }
+
+/// The systems that are compiled and run are those of the generator.
+#[test]
+fn written_systems_are_up_to_date() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/random_systems/blocks.rs");
+    let text = super::written::file();
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        std::fs::write(path, &text).unwrap();
+    }
+    let found = std::fs::read_to_string(path).unwrap_or_default();
+    assert!(found == text, "`UPDATE_GOLDEN=1 cargo test -p pendulum-macros written` writes {path} anew");
+}
