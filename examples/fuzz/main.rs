@@ -133,7 +133,10 @@ fn case(target: &Target, seed: u64, tally: &mut Tally, watch: &watch::Watch) {
 }
 
 fn report(targets: &[&Target], tallies: &[Tally]) -> ExitCode {
-    println!("{:<16} {:>10} {:>10} {:>9} {:>12} {:>20} {:>10}", "target", "cases", "refused", "seconds", "slowest ms", "its seed", "peak MB");
+    println!(
+        "{:<16} {:>10} {:>10} {:>9} {:>12} {:>20} {:>10}",
+        "target", "cases", "refused", "seconds", "slowest ms", "its seed", "peak MB"
+    );
     let mut failed = false;
     for (target, tally) in targets.iter().zip(tallies) {
         let (time, seed) = tally.slowest;

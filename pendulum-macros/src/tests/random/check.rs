@@ -130,9 +130,8 @@ fn errors<T: Float>(derived: &Derived<'_, '_>, values: &Values<T>, truth: &Refer
         for i in 0..count {
             // M q̇ is p less what it is at q̇ = 0.
             let terms = (0..count).map(|j| truth.masses[i][j] * (found[j] - v[j]));
-            let scale = (0..count).fold(truth.momenta[i].to_f64().abs().max(1.0), |scale, j| {
-                scale.max((truth.masses[i][j] * v[j]).to_f64().abs())
-            });
+            let scale = (0..count)
+                .fold(truth.momenta[i].to_f64().abs().max(1.0), |scale, j| scale.max((truth.masses[i][j] * v[j]).to_f64().abs()));
             let sum = terms.reduce(|a, b| a + b).map_or(0.0, Float::to_f64);
             errors.push(("velocities", (sum / scale).abs()));
         }

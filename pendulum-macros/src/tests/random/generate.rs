@@ -35,8 +35,7 @@ const PARAMETERS: [&str; 12] = ["m", "c", "l", "g", "κ", "b", "μ", "s", "R", "
 const COORDINATES: [&str; 8] = ["θ", "φ", "x", "y", "ψ", "r", "q", "h"];
 const INPUTS: [&str; 3] = ["u", "z", "f"];
 const LETS: [&str; 6] = ["P", "ζ", "G", "H", "W", "Z"];
-const FUNCTIONS: [&[Type]; 4] =
-    [&[Type::Scalar], &[Type::Plane], &[Type::Scalar, Type::Plane], &[Type::Scalar, Type::Scalar]];
+const FUNCTIONS: [&[Type]; 4] = [&[Type::Scalar], &[Type::Plane], &[Type::Scalar, Type::Plane], &[Type::Scalar, Type::Scalar]];
 
 /// The system of a seed.
 pub(crate) fn system(seed: u64, manner: Manner) -> System {
@@ -75,7 +74,7 @@ impl Generator {
         let units = self.system.units;
         let mut names = PARAMETERS.to_vec();
         let mut take = |random: &mut Random| names.remove(random.below(names.len())).to_owned();
-        for _ in 0..1 + self.random.below(3) {
+        for _ in 0..=self.random.below(3) {
             let name = take(&mut self.random);
             self.system.parameters.push(Parameter { name, kind: Kind::Scalar });
         }
@@ -251,9 +250,7 @@ impl Generator {
         match property {
             Property::Mass => quotient(own, self.measure(Kind::Mass)),
             Property::Center => quotient(own, self.measure(Kind::Length)),
-            Property::Inertia => {
-                quotient(own, product(self.measure(Kind::Mass), power(self.measure(Kind::Length), 2)))
-            }
+            Property::Inertia => quotient(own, product(self.measure(Kind::Mass), power(self.measure(Kind::Length), 2))),
         }
     }
 
@@ -435,7 +432,8 @@ impl Generator {
         }
         match self.random.below(12) {
             0 => {
-                let (top, bottom) = self.random.of(&[(1, 1), (2, 1), (3, 1), (1, 2), (1, 4), (3, 4), (2, 3), (-1, 3), (7, 5), (-2, 1)]);
+                let (top, bottom) =
+                    self.random.of(&[(1, 1), (2, 1), (3, 1), (1, 2), (1, 4), (3, 4), (2, 3), (-1, 3), (7, 5), (-2, 1)]);
                 Expr::Number(top, bottom)
             }
             1..=3 => self.parameter(may),
@@ -452,7 +450,11 @@ impl Generator {
     fn index(&mut self, count: usize, may: May) -> Index {
         match may.bound {
             Some(bound) if bound <= count && self.random.below(4) != 0 => {
-                if self.random.once_in(4) { Index::Reversed(0, count) } else { Index::Bound(0) }
+                if self.random.once_in(4) {
+                    Index::Reversed(0, count)
+                } else {
+                    Index::Bound(0)
+                }
             }
             _ => Index::Number(self.random.below(count)),
         }
@@ -527,7 +529,9 @@ impl Generator {
         }
         let derived = may.velocities && self.random.once_in(2);
         let value = match definition.shape {
-            Shape::Plain if derived && self.random.once_in(2) && self.moves(&definition.expr) => return Some(self.rate(Expr::LetDot(index))),
+            Shape::Plain if derived && self.random.once_in(2) && moves(&definition.expr) => {
+                return Some(self.rate(Expr::LetDot(index)));
+            }
             Shape::Plain => Expr::Let(index),
             Shape::Indexed(count) => Expr::LetMember(index, self.index(count, may)),
             Shape::Function(types) => {
@@ -541,17 +545,6 @@ impl Generator {
             return Some(self.rate(Expr::Dot(Box::new(value))));
         }
         Some(value)
-    }
-
-    /// Whether a coordinate stands openly in an expression that is never simplified away.
-    fn moves(&self, expr: &Expr) -> bool {
-        match expr {
-            Expr::Coordinate(..) => true,
-            Expr::Vector(items) => items.iter().any(|item| self.moves(item)),
-            Expr::Call(Function::Sin | Function::Cos | Function::Exp, inner) => self.moves(inner),
-            Expr::Cis(inner, _) => self.moves(inner),
-            _ => false,
-        }
     }
 
     fn sum_over(&mut self, depth: usize, may: May) -> Expr {
@@ -685,5 +678,16 @@ impl Generator {
             _ => Expr::Height(Box::new(place)),
         };
         Some(quotient(Expr::Integral(body, Box::new(integrand)), self.measure(Kind::Mass)))
+    }
+}
+
+/// Whether a coordinate stands openly in an expression that is never simplified away.
+fn moves(expr: &Expr) -> bool {
+    match expr {
+        Expr::Coordinate(..) => true,
+        Expr::Vector(items) => items.iter().any(moves),
+        Expr::Call(Function::Sin | Function::Cos | Function::Exp, inner) => moves(inner),
+        Expr::Cis(inner, _) => moves(inner),
+        _ => false,
     }
 }

@@ -159,9 +159,7 @@ impl System {
             Expr::Power(base, top, 1) => (format!("{}^{top}", self.text(base, ATOM)), POWER),
             Expr::Power(base, 1, 2) => call("sqrt", &[base]),
             Expr::Power(base, top, bottom) => (format!("{}^({top}/{bottom})", self.text(base, ATOM)), POWER),
-            Expr::GeneralPower(base, exponent) => {
-                (format!("{}^{}", self.text(base, ATOM), self.text(exponent, UNARY)), POWER)
-            }
+            Expr::GeneralPower(base, exponent) => (format!("{}^{}", self.text(base, ATOM), self.text(exponent, UNARY)), POWER),
             Expr::Call(function, inner) => call(&function.name(), &[inner]),
             Expr::Atan2(y, x) => call("atan2", &[y, x]),
             Expr::Max(a, b) => call("max", &[a, b]),

@@ -78,9 +78,11 @@ fn difference<T: Float>(found: &[T], expected: &[T]) -> f64 {
     if !expected.iter().all(|x| x.is_finite()) {
         return 0.0;
     }
-    found.iter().zip(expected).map(|(&a, &b)| (a - b).to_f64().abs() / scale).fold(0.0, |worst, own| {
-        if own.is_nan() || worst < own { own } else { worst }
-    })
+    found
+        .iter()
+        .zip(expected)
+        .map(|(&a, &b)| (a - b).to_f64().abs() / scale)
+        .fold(0.0, |worst, own| if own.is_nan() || worst < own { own } else { worst })
 }
 
 /// A total derivative in L changes no acceleration.

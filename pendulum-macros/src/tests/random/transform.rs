@@ -55,7 +55,9 @@ pub(crate) fn moved(system: &System) -> System {
         definition
     }));
     for list in [&mut moved.kinetic, &mut moved.potential, &mut moved.dissipation] {
-        list.iter_mut().for_each(|expr| expr.each(&replace));
+        for expr in list {
+            expr.each(&replace);
+        }
     }
     moved
 }

@@ -66,12 +66,23 @@ fn module(system: &System) -> Option<String> {
     for line in source.lines() {
         let _ = writeln!(text, "        {line}");
     }
-    let _ = writeln!(text, "    }}\n\n    pub(crate) fn system<T: Real>() -> Random<T> {{\n        Random::new({})\n    }}\n", arguments(system, &precise));
+    let _ = writeln!(
+        text,
+        "    }}\n\n    pub(crate) fn system<T: Real>() -> Random<T> {{\n        Random::new({})\n    }}\n",
+        arguments(system, &precise)
+    );
     let (kind, value) = inputs(&precise);
     let _ = writeln!(text, "    #[rustfmt::skip]\n    pub(crate) fn inputs<T: Real>() -> {kind} {{\n        {value}\n    }}\n");
     let jerks: Vec<String> = precise.inputs.iter().flatten().map(|orders| plain_number(orders[3])).collect();
     let _ = writeln!(text, "    pub(crate) const CASE: Case<{count}, {}> = Case {{", jerks.len());
-    let _ = writeln!(text, "        t: {:?},\n        q: {:?},\n        v: {:?},\n        jerks: [{}],", plain.t, plain.q, plain.v, jerks.join(", "));
+    let _ = writeln!(
+        text,
+        "        t: {:?},\n        q: {:?},\n        v: {:?},\n        jerks: [{}],",
+        plain.t,
+        plain.q,
+        plain.v,
+        jerks.join(", ")
+    );
     let lists = [
         ("accelerations", &accelerations),
         ("momenta", &truth.momenta),
@@ -145,7 +156,9 @@ fn arguments(system: &System, state: &State<DoubleDouble>) -> String {
         let first = system.first_parameter(index);
         let own: Vec<String> = (first..first + parameter.kind.count()).map(|k| number(state.constants.parameters[k])).collect();
         arguments.push(match parameter.kind {
-            Kind::Body => format!("Body {{ mass: {}, center: [{}], central: [{}] }}", own[0], own[1..3].join(", "), own[3..].join(", ")),
+            Kind::Body => {
+                format!("Body {{ mass: {}, center: [{}], central: [{}] }}", own[0], own[1..3].join(", "), own[3..].join(", "))
+            }
             Kind::Vector(_) | Kind::Family(_) => format!("[{}]", own.join(", ")),
             _ => own[0].clone(),
         });
