@@ -32,7 +32,7 @@ fn systems(count: u64, share: u64, manner: Manner) -> impl Iterator<Item = Syste
 #[test]
 fn what_is_derived_is_what_is_written() {
     let (mut compared, mut unsound) = (0, 0);
-    for system in systems(1200, 1, Manner::Tame) {
+    for system in systems(1000, 1, Manner::Tame) {
         match outcome(&system) {
             Outcome::Compared(findings) => {
                 compared += 1;
@@ -51,7 +51,7 @@ fn what_is_derived_is_what_is_written() {
 /// What is not tame may be refused or have no value, but no value is wrong.
 #[test]
 fn wild_systems_are_derived_or_refused() {
-    for system in systems(1200, 1, Manner::Wild) {
+    for system in systems(600, 1, Manner::Wild) {
         if let Outcome::Compared(findings) = outcome(&system) {
             // Where a function has an infinite slope, a simplified derivative may have no value.
             let wrong: Vec<_> = findings.wrong().into_iter().filter(|row| 1e-6 < row.1 && 1e-6 < row.2).collect();
@@ -88,7 +88,7 @@ fn difference<T: Float>(found: &[T], expected: &[T]) -> f64 {
 /// A total derivative in L changes no acceleration.
 #[test]
 fn gauge_terms_change_nothing() {
-    for system in systems(1200, 6, Manner::Tame) {
+    for system in systems(1000, 8, Manner::Tame) {
         let (seed, gauged) = (system.seed, gauged(&system));
         let state = state(&system, seed);
         let own = difference(&outputs(&gauged, &state)[0], &outputs(&system, &state)[0]);
@@ -102,7 +102,7 @@ fn gauge_terms_change_nothing() {
 /// c L has the accelerations of L and c times its momenta.
 #[test]
 fn the_scale_of_energy_cancels() {
-    for system in systems(1200, 6, Manner::Tame) {
+    for system in systems(1000, 8, Manner::Tame) {
         let (seed, scaled) = (system.seed, scaled(&system));
         let state = state(&system, seed);
         let [accelerations, momenta] = outputs(&system, &state);
@@ -117,7 +117,7 @@ fn the_scale_of_energy_cancels() {
 /// The same motion in other coordinates.
 #[test]
 fn other_coordinates_give_the_same_motion() {
-    for system in systems(1200, 6, Manner::Tame) {
+    for system in systems(1000, 8, Manner::Tame) {
         let seed = system.seed;
         let system = System { forces: Vec::new(), ..system };
         let moved = moved(&system);
