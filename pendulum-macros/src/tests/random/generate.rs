@@ -53,7 +53,9 @@ pub(crate) fn gauge(system: &System, random: &mut Random) -> Expr {
     let mut generator = Generator { random: random.clone(), system: system.clone(), manner: Manner::Tame };
     let may = May { velocities: false, orders: 0, lets: 0, bound: None, arguments: &[] };
     let coordinate = generator.coordinate(may);
-    sum(product(coordinate, generator.scalar(1, may)), generator.scalar(2, may))
+    // The last term is the only one with a second power of its own, so that the whole moves.
+    let rest = sum(product(coordinate.clone(), generator.scalar(1, may)), generator.scalar(2, may));
+    sum(rest, quotient(power(coordinate, 2), number(7)))
 }
 
 /// The parameter that a kind of quantity is measured in.
