@@ -7,7 +7,9 @@
 //! | case | what it shows |
 //! |---|---|
 //! | `free`, `still`, `driven` | no joints, joints at rest, joints that move: a frame of four ticks, one step each |
-//! | `asleep50`, `asleep99` | `driven` with so many percent hidden, of every joint alike |
+//! | `one_still` | `still` with all on one joint: what joints at rest cost is the difference |
+//! | `asleep50`, `asleep99` | `driven` with so many percent of the joints at rest for now and what hangs on them asleep |
+//! | `hidden99` | `driven` with so many percent hidden, of every joint alike: joints that move are sampled for one pendulum |
 //! | `shared` | `driven` with all on ten joints: each is sampled once per time |
 //! | `position` | joints that move, of which the equations contain nothing: they are not sampled |
 //! | `hurried` | `driven` with one pendulum in a hundred that needs 16 times the steps: the others do not take them |
@@ -59,21 +61,25 @@ const TICKS: u32 = 4;
 enum Kind {
     Free,
     Still,
+    OneStill,
     Driven,
     Asleep50,
     Asleep99,
+    Hidden99,
     Shared,
     Position,
     Hurried,
     Kinked,
 }
 
-const KINDS: [(Kind, &str); 9] = [
+const KINDS: [(Kind, &str); 11] = [
     (Kind::Free, "free"),
     (Kind::Still, "still"),
+    (Kind::OneStill, "one_still"),
     (Kind::Driven, "driven"),
     (Kind::Asleep50, "asleep50"),
     (Kind::Asleep99, "asleep99"),
+    (Kind::Hidden99, "hidden99"),
     (Kind::Shared, "shared"),
     (Kind::Position, "position"),
     (Kind::Hurried, "hurried"),
@@ -84,21 +90,43 @@ fn scene<T: Lane + Float>(pendulums: usize, joints: usize, kind: Kind) -> Scene<
     let number = T::from_f64;
     let mut scene = Scene::<T>::new(240.0).expect("a rate");
     scene.set_tolerance(1e-2).expect("a tolerance");
-    let joints = if kind == Kind::Shared { joints.min(10) } else { joints };
+    let joints = match kind {
+        Kind::Shared => joints.min(10),
+        Kind::OneStill => 1,
+        _ => joints,
+    };
+    // One joint in so many moves.
+    let moving = match kind {
+        Kind::Asleep50 => 2,
+        Kind::Asleep99 => 100,
+        _ => 1,
+    };
+    // A joint that rests for an hour and then moves.
+    let later = || Linear::new(&[0.0, 3600.0, 3601.0], &[[0.0; 2], [0.0; 2], [0.1, 0.0]]).expect("keys");
+    if 1 < moving {
+        scene.set_sleep(Some(1e-3)).expect("a tolerance");
+    }
     let moved = |k: usize| Sinusoid::new([0.05, 0.02], 6.0 + 6.0 * k as f64 / joints as f64, [0.0, 1.0]);
     let times: Vec<f64> = (0..600).map(|key| f64::from(key) / 60.0).collect();
     let values: Vec<[f64; 2]> = times.iter().map(|t| [0.02 * (t * 40.0).cos(), 0.02 * (t * 33.0).cos()]).collect();
     let mut hung = 0;
     for joint in 0..joints {
         let handle = match kind {
-            Kind::Free | Kind::Still => scene.joint(Still::new([0.0, 0.0])),
+            Kind::Free | Kind::Still | Kind::OneStill => scene.joint(Still::new([0.0, 0.0])),
+            Kind::Asleep50 | Kind::Asleep99 if joint % moving != 0 => scene.joint(later()),
             Kind::Kinked => scene.joint(Linear::new(&times, &values).and_then(Linear::looped).expect("keys")),
             _ => scene.joint(moved(joint)),
         };
         while hung < pendulums * (joint + 1) / joints {
             let part = hung as f64 / pendulums as f64;
             let length = if kind == Kind::Hurried && hung % 100 == 0 { 0.002 } else { 0.3 + 0.5 * part };
-            let (m, length, g, q, v) = (number(0.1), number(length), number(9.81), [number(1.0 - part)], [number(0.0)]);
+            let (m, length, g, q, v) = (
+                number(0.1),
+                number(length),
+                number(9.81),
+                [number(if joint % moving == 0 { 1.0 - part } else { 0.0 })],
+                [number(0.0)],
+            );
             let done = match kind {
                 Kind::Free => scene.hang((), Simple { m, L: length, g }, q, v).map(drop),
                 Kind::Position => scene.hang(handle, Following { m, L: length, g }, q, v).map(drop),
@@ -108,13 +136,15 @@ fn scene<T: Lane + Float>(pendulums: usize, joints: usize, kind: Kind) -> Scene<
             hung += 1;
         }
     }
-    let awake = match kind {
-        Kind::Asleep50 => 2,
-        Kind::Asleep99 => 100,
-        _ => 1,
-    };
-    for index in (0..pendulums as u32).filter(|index| index % awake != 0) {
-        scene.hide(Handle::<Hanging<T>, 1>::new(index)).expect("a pendulum");
+    if kind == Kind::Hidden99 {
+        for index in (0..pendulums as u32).filter(|index| index % 100 != 0) {
+            scene.hide(Handle::<Hanging<T>, 1>::new(index)).expect("a pendulum");
+        }
+    }
+    if 1 < moving {
+        scene.advance_ticks(32);
+        let (awake, all) = scene.awake();
+        assert!(awake <= all / moving + all / joints + 1, "{awake} of {all} are awake");
     }
     scene
 }

@@ -98,12 +98,24 @@ impl<T: Real, const D: usize> Work for Several<'_, T, D> {
     #[allow(clippy::inline_always)]
     fn run(self) {
         let (mut sin, mut cos) = ([[0.0; AT_ONCE]; D], [[0.0; AT_ONCE]; D]);
-        for d in 0..D {
+        // As many components as there is room for go together.
+        let count = self.times.len().max(1);
+        let together = (AT_ONCE / count).max(1);
+        let mut first = 0;
+        while first < D {
             let mut angles = [0.0; AT_ONCE];
-            for (angle, &t) in angles.iter_mut().zip(self.times) {
-                *angle = self.sinusoid.angle(d, t);
+            let components = first..D.min(first + together);
+            for (d, angles) in components.clone().zip(angles.chunks_mut(count)) {
+                for (angle, &t) in angles.iter_mut().zip(self.times) {
+                    *angle = self.sinusoid.angle(d, t);
+                }
             }
-            (sin[d], cos[d]) = f64::sin_cos_lanes(&angles);
+            let (sines, cosines) = f64::sin_cos_lanes(&angles);
+            for (d, (sines, cosines)) in components.zip(sines.chunks(count).zip(cosines.chunks(count))) {
+                sin[d][..sines.len()].copy_from_slice(sines);
+                cos[d][..cosines.len()].copy_from_slice(cosines);
+            }
+            first += together;
         }
         for (index, sample) in self.samples.iter_mut().enumerate() {
             *sample = self.sinusoid.at(self.orders, |d| (sin[d][index], cos[d][index]));

@@ -3,9 +3,9 @@
 use super::{Float, Real, trig};
 
 /// Both types go through the functions of `f64`; `f32` rounds their results once more, which leaves it next to correctly
-/// rounded.
+/// rounded. Only its sine and cosine have a shorter kernel.
 macro_rules! float {
-    ($float:ident) => {
+    ($float:ident $sin_cos:ident) => {
         impl Real for $float {
             #[inline]
             fn from_f64(value: f64) -> Self {
@@ -24,8 +24,7 @@ macro_rules! float {
 
             #[inline]
             fn sin_cos(self) -> (Self, Self) {
-                let (sin, cos) = trig::sin_cos(f64::from(self));
-                (sin as $float, cos as $float)
+                trig::$sin_cos(self)
             }
 
             #[inline]
@@ -156,8 +155,8 @@ macro_rules! float {
     };
 }
 
-float!(f32);
-float!(f64);
+float!(f32 sin_cos_single);
+float!(f64 sin_cos);
 
 #[cfg(test)]
 mod tests {

@@ -20,7 +20,7 @@ pub trait Lane: Real + PartialOrd {
 }
 
 macro_rules! lane {
-    ($float:ident) => {
+    ($float:ident $kernel:ident) => {
         impl Lane for $float {
             #[inline(always)]
             fn sin_cos_lanes<const W: usize>(x: &[Self; W]) -> ([Self; W], [Self; W]) {
@@ -31,7 +31,7 @@ macro_rules! lane {
                 let (mut sin, mut cos) = ([0.0; W], [0.0; W]);
                 if near {
                     for k in 0..W {
-                        let both = trig::kernel(f64::from(x[k]));
+                        let both = trig::$kernel(f64::from(x[k]));
                         (sin[k], cos[k]) = (both.0 as $float, both.1 as $float);
                     }
                 } else {
@@ -45,8 +45,8 @@ macro_rules! lane {
     };
 }
 
-lane!(f64);
-lane!(f32);
+lane!(f64 kernel);
+lane!(f32 kernel_single);
 
 impl<T: Lane, const W: usize> Lanes<T, W> {
     /// The same number in every lane.
