@@ -60,6 +60,26 @@ pub(crate) fn drift_kick_drift<T: Float, const N: usize, const OUTER: usize, con
     to
 }
 
+/// The same with both words of every product and of the velocities that drift: what remains is the rounding of the accelerations.
+#[inline]
+pub(crate) fn drift_kick_drift_in_two_words<T: Float, const N: usize, const OUTER: usize, const S: usize>(
+    splitting: &Splitting<OUTER, S>,
+    field: &mut impl Accelerations<T, N>,
+    span: &Span,
+    from: &Node<T, N>,
+) -> Node<T, N> {
+    let (h, zero) = (span.length::<T>(), [T::from_f64(0.0); N]);
+    let mut to = Node { t: span.end, a: None, ..*from };
+    for i in 0..S {
+        to.q.add_both(T::from_f64(splitting.outer[i]) * h, &to.v.high, &to.v.low);
+        let (t, side) = span.at(splitting.times[i]);
+        let a = field.at(t, side, &to.q.high, &to.v.high);
+        to.v.add_both(T::from_f64(splitting.inner[i]) * h, &a, &zero);
+    }
+    to.q.add_both(T::from_f64(splitting.outer[S]) * h, &to.v.high, &to.v.low);
+    to
+}
+
 impl<const OUTER: usize, const S: usize> Splitting<OUTER, S> {
     /// The kick-drift-kick splitting with the first half of the kicks and of the drifts.
     pub(crate) const fn kicks_outside(kicks: &[f64], drifts: &[f64]) -> Self {

@@ -50,6 +50,14 @@ impl<T: Float, const N: usize> Sum<T, N> {
         (self.high[index], self.low[index]) = (sum, rounded);
     }
 
+    /// Adds `factor · (high + low)`, where the products of the high words come with both words.
+    #[inline]
+    pub fn add_both(&mut self, factor: T, high: &[T; N], low: &[T; N]) {
+        for i in 0..N {
+            self.add_product(i, factor, high[i], factor * low[i]);
+        }
+    }
+
     /// Whether all numbers are finite.
     #[inline]
     pub fn is_finite(&self) -> bool {
