@@ -126,6 +126,26 @@ where
         self.watch.begin(&mut self.driver, &self.dynamics)
     }
 
+    /// Moves the coordinates by `high + low` and keeps what rounding has left off, which [`reset`](Self::reset) does not.
+    ///
+    /// This takes whole turns off an angle that grows for ever, whose forces would lose a digit with every ten turns:
+    ///
+    /// ```
+    /// # use core::f64::consts::TAU;
+    /// # use pendulum_runtime::{error::Error, integrate::*, integrate::method::*, system::*};
+    /// # fn wind<'a, S, M, C>(run: &mut Integrator<'a, 1, S, M, C>) -> Result<(), Error>
+    /// # where S: System<1, Scalar = f64, Inputs = ()>, M: Stepper<Prepared<'a, S, S::Prepared>, 1> {
+    /// // 2π is this number and 2.449…e-16.
+    /// let turns = (run.q()[0] / TAU).round();
+    /// run.displace([-turns * TAU], [-turns * 2.4492935982947064e-16])?;
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn displace(&mut self, high: [D::Scalar; N], low: [D::Scalar; N]) -> Result<(), Error> {
+        self.driver.displace::<Ready<'a, D, N>>(&high, &low)?;
+        self.watch.begin(&mut self.driver, &self.dynamics)
+    }
+
     /// The events that happened in the last call of [`step`](Self::step) or [`advance_to`](Self::advance_to), in order.
     pub fn occurrences(&self) -> &[Occurrence<D::Scalar, N>] {
         &self.found
