@@ -29,6 +29,9 @@ fn separatrix(_: Scale, report: &mut Report) {
     }
     report.at_most("error of P05 up to t = 30, in eᵗ u", worst, 4.0);
 
+    let end = solve(&system, (0.0, 100.0), [3.125], [0.0]).method(Taylor::new()).rtol(1e-18).run().unwrap().end;
+    report.at_most("P03, a swing from 3.125 rad, t = 100, against a rounding amplified eight times a period", error(&end, &reference::NEARLY_UPRIGHT), 1e-11);
+
     let fall = |q: f64| {
         let over = Event::new(&|_, q: &[f64; 1], _: &[f64; 1]| q[0].abs() - 1.0).terminal();
         let solution = solve(&system, (0.0, 100.0), [q], [0.0]).method(Taylor::new()).rtol(1e-18).events(&[over]).run().unwrap();

@@ -1,7 +1,8 @@
 //! The stress table: twenty-eight ways in which a simulation of a mechanical system goes wrong, each measured against a bar.
 //!
 //! `cargo run --release --example stability` prints a line a measurement, writes `target/stability.csv` and the pictures
-//! `target/stability-*.svg`, and fails if a bar is missed. `--quick` takes less than a minute, `--long` an hour; `--only S7,S9` selects.
+//! `target/stability-*.svg`, and fails if a bar is missed. `--quick` takes less than a minute, `--long` an hour; `--only S7,S9` selects. With
+//! `--known` the misses whose reason is known, which `docs/accuracy.md` explains, do not count as failures.
 //!
 //! What is compared with comes from closed forms, from published or arbitrary-precision digits, or from the same equations in numbers
 //! of two words, never from the run itself.
@@ -65,7 +66,7 @@ fn main() -> ExitCode {
 
 /// Whether every bar is met.
 fn table() -> Result<bool, Box<dyn Error>> {
-    let (scale, tests) = chosen(std::env::args().skip(1))?;
+    let Choice { scale, tests, known } = chosen(std::env::args().skip(1))?;
     // Hidden where stderr is no terminal.
     let bar = ProgressBar::new(tests.len() as u64);
     bar.set_style(ProgressStyle::with_template("{bar:40} {pos}/{len} {elapsed} {msg}")?);
@@ -77,13 +78,14 @@ fn table() -> Result<bool, Box<dyn Error>> {
     let target = Path::new(env!("CARGO_MANIFEST_DIR")).join("target");
     std::fs::create_dir_all(&target)?;
     let mut csv = "test,title,measurement,measured,least,bar,holds\n".to_owned();
-    let (mut count, mut missed) = (0, 0);
+    let (mut count, mut missed, mut failed) = (0, 0, 0);
     for (test, report) in tests.iter().zip(&reports) {
         for check in &report.checks {
             println!("{}", check.line(test.title));
             writeln!(csv, "{}", check.row(test.title))?;
             count += 1;
             missed += usize::from(!check.holds());
+            failed += usize::from(!check.holds() && !(known && check.is_explained()));
         }
     }
     std::fs::write(target.join("stability.csv"), csv)?;
@@ -95,31 +97,40 @@ fn table() -> Result<bool, Box<dyn Error>> {
         if drawn.is_empty() { "" } else { " and target/" },
         drawn.join(", target/"),
     );
-    Ok(missed == 0)
+    Ok(failed == 0)
 }
 
 /// What the command line asks for.
-fn chosen(mut arguments: impl Iterator<Item = String>) -> Result<(Scale, Vec<Test>), String> {
+struct Choice {
+    scale: Scale,
+    tests: Vec<Test>,
+    /// Whether misses with a known reason count as failures.
+    known: bool,
+}
+
+fn chosen(mut arguments: impl Iterator<Item = String>) -> Result<Choice, String> {
     let all: Vec<Test> = {
         let mut all: Vec<Test> = THEMES.iter().flat_map(|theme| theme.iter().copied()).collect();
         all.sort_by_key(|test| test.id[1..].parse::<u32>().unwrap_or(0));
         all
     };
-    let (mut scale, mut only) = (Scale::Usual, None);
+    let (mut scale, mut only, mut known) = (Scale::Usual, None, false);
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--quick" => scale = Scale::Quick,
             "--long" => scale = Scale::Long,
+            "--known" => known = true,
             "--only" => only = Some(arguments.next().ok_or("`--only` needs names of tests after it, as S7,S9")?),
-            other => return Err(format!("`{other}` is unknown; give --quick, --long or --only S7,S9")),
+            other => return Err(format!("`{other}` is unknown; give --quick, --long, --known or --only S7,S9")),
         }
     }
-    let Some(only) = only else { return Ok((scale, all)) };
+    let Some(only) = only else { return Ok(Choice { scale, tests: all, known }) };
     let names: Vec<&str> = only.split(',').map(str::trim).collect();
     if let Some(name) = names.iter().find(|name| !all.iter().any(|test| test.id == **name)) {
         return Err(format!("there is no test `{name}`; they are S1 to S28"));
     }
-    Ok((scale, all.into_iter().filter(|test| names.contains(&test.id)).collect()))
+    let tests = all.into_iter().filter(|test| names.contains(&test.id)).collect();
+    Ok(Choice { scale, tests, known })
 }
 
 /// The reports of all tests in their order, a few at a time.
@@ -136,11 +147,7 @@ fn run(scale: Scale, tests: &[Test], bar: &ProgressBar) -> Vec<Report> {
                 running.push(test.title);
                 say(&running);
             }
-            let begun = Instant::now();
             (test.run)(scale, &mut reports[index].lock().unwrap());
-            if std::env::var_os("STABILITY_TIMES").is_some() {
-                eprintln!("{} {:.1} s", test.id, begun.elapsed().as_secs_f64());
-            }
             let mut running = running.lock().unwrap();
             running.retain(|title| *title != test.title);
             say(&running);

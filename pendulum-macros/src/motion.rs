@@ -12,6 +12,7 @@ use crate::jacobian;
 use crate::lower::{Energies, total_derivative};
 use crate::number::Rational;
 use crate::order;
+use crate::rule;
 use crate::schedule;
 use crate::solve;
 use crate::symmetry::{self, Conserved};
@@ -26,6 +27,9 @@ const LARGEST_DENSE: usize = 12;
 /// The sparse form must save almost half: its operations wait for each other from the leaves to the root and back. Chains of nine links
 /// and more are faster in it (`cargo bench -p pendulum-runtime --bench chains`).
 const CLEARLY: f64 = 0.55;
+
+/// An energy that keeps its digits may cost up to this much more: the half angle is one more sine and cosine.
+const DEARER: f64 = 2.5;
 
 /// The equations of motion and what goes with them: roots in one graph.
 #[derive(Debug, Default)]
@@ -169,6 +173,12 @@ fn derive(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Er
         }
     }
     number(graph, &mut motion);
+    for energy in [&mut motion.energy].into_iter().chain(&mut motion.kinetic).chain(&mut motion.potential) {
+        let kept = rule::without_cancellation(graph, *energy);
+        if kept != *energy {
+            shorten(graph, std::slice::from_mut(energy), &[kept], DEARER);
+        }
+    }
     motion
 }
 

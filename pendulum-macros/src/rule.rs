@@ -5,6 +5,7 @@
 
 use crate::expr::{Function, Graph, Id, Node, Terms};
 use crate::number::Rational;
+use std::collections::BTreeMap;
 
 /// A rule on one kind of node.
 #[cfg_attr(not(test), allow(dead_code, reason = "name and patterns are for the reader and the tests"))]
@@ -70,6 +71,42 @@ pub(crate) const RULES: &[Rule] = &[
     sum("sin-difference",                 "sin(a)*cos(b) - cos(a)*sin(b)",         "sin(a - b)",     angle_sum),
     sum("sin-sum",                        "sin(a)*cos(b) + cos(a)*sin(b)",         "sin(a + b)",     angle_sum),
 ];
+
+/// Rules that keep digits: where the two sides of the left form are close, their difference has few digits left, the product on the right
+/// has all of them. They cost more than they save, so that they are tried on energies only, which are read as values; equations of
+/// motion are derivatives, which do not cancel there.
+#[rustfmt::skip]
+pub(crate) const CANCELLATIONS: &[Rule] = &[
+    sum("one-minus-cos",                  "b - b*cos(a)",                          "2*b*sin(a/2)^2", one_and_cosines),
+    sum("one-plus-cos",                   "b + b*cos(a)",                          "2*b*cos(a/2)^2", one_and_cosines),
+    sum("cos-minus-cos",                  "c*cos(a) - c*cos(b)",                   "2*c*sin((a + b)/2)*sin((b - a)/2)", cosines),
+];
+
+/// `root` without the differences that the rules of `CANCELLATIONS` know.
+pub(crate) fn without_cancellation(graph: &mut Graph, root: Id) -> Id {
+    let mut known: BTreeMap<Id, Id> = BTreeMap::new();
+    for id in graph.reachable(&[root]) {
+        let node = graph.node(id).clone();
+        let mut value = graph.rebuilt(&node, |child| known[&child]);
+        // Each rewrite leaves fewer cosines.
+        while let Some(next) = rewrite_cancellation(graph, value) {
+            value = next;
+        }
+        known.insert(id, value);
+    }
+    known[&root]
+}
+
+fn rewrite_cancellation(graph: &mut Graph, id: Id) -> Option<Id> {
+    let Node::Sum(terms) = graph.node(id).clone() else { return None };
+    let terms: Terms = terms.into_iter().collect();
+    CANCELLATIONS.iter().find_map(|rule| {
+        let Apply::Sum(apply) = rule.apply else { return None };
+        let Edit { removed, mut added } = apply(graph, &terms)?;
+        added.extend(terms.iter().filter(|(term, _)| !removed.contains(term)).map(|(&term, &coefficient)| (term, coefficient)));
+        Some(graph.sum(&added))
+    })
+}
 
 /// The simpler form of a function's value, if a rule knows one.
 pub(crate) fn rewrite_call(graph: &mut Graph, function: Function, argument: Id) -> Option<Id> {
@@ -332,6 +369,67 @@ fn angle_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
         }
         None
     })
+}
+
+/// The terms r·cos u of a sum: r, the term, its coefficient and u.
+fn cosine_terms(graph: &mut Graph, terms: &Terms) -> Vec<(Id, Id, Rational, Id)> {
+    let mut found = Vec::new();
+    for (&term, &coefficient) in terms {
+        let cosine = graph.factors(term).into_iter().find_map(|(base, exponent)| match *graph.node(base) {
+            Node::Call(Function::Cos, argument) if exponent == Rational::ONE => Some((base, argument)),
+            _ => None,
+        });
+        if let Some((base, argument)) = cosine {
+            let rest = graph.product(Rational::ONE, &[(term, Rational::ONE), (base, Rational::MINUS_ONE)]);
+            found.push((rest, term, coefficient, argument));
+        }
+    }
+    found
+}
+
+/// r - r·cos u = 2r·sin²(u/2) and r + r·cos u = 2r·cos²(u/2), where the cosines of r use its coefficient up.
+fn one_and_cosines(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
+    let cosines = cosine_terms(graph, terms);
+    let half = Rational::new(1, 2)?;
+    terms.iter().find_map(|(&rest, &whole)| {
+        let own: Vec<&(Id, Id, Rational, Id)> = cosines.iter().filter(|(other, ..)| *other == rest).collect();
+        let used = own.iter().try_fold(Rational::ZERO, |sum, (_, _, coefficient, _)| sum.add(coefficient.abs()))?;
+        if own.is_empty() || used != whole.abs() {
+            return None;
+        }
+        let (mut removed, mut added) = (vec![rest], Vec::new());
+        for &&(_, term, coefficient, argument) in &own {
+            let same = coefficient.is_negative() == whole.is_negative();
+            let angle = graph.scale(half, argument);
+            let value = graph.call(if same { Function::Cos } else { Function::Sin }, angle);
+            let square = graph.product(Rational::ONE, &[(rest, Rational::ONE), (value, Rational::whole(2))]);
+            let twice = coefficient.abs().mul(Rational::whole(if whole.is_negative() { -2 } else { 2 }))?;
+            removed.push(term);
+            added.push((square, twice));
+        }
+        Some(Edit { removed, added })
+    })
+}
+
+/// r·cos a - r·cos b = 2r·sin((a + b)/2)·sin((b - a)/2).
+fn cosines(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
+    let cosines = cosine_terms(graph, terms);
+    let half = Rational::new(1, 2)?;
+    for (index, &(rest, first, coefficient, a)) in cosines.iter().enumerate() {
+        for &(other, second, opposite, b) in &cosines[index + 1..] {
+            if other != rest || opposite != coefficient.negative() {
+                continue;
+            }
+            let (sum, difference) = (graph.add(a, b), graph.sub(b, a));
+            let factors = [sum, difference].map(|angle| {
+                let angle = graph.scale(half, angle);
+                (graph.call(Function::Sin, angle), Rational::ONE)
+            });
+            let value = graph.product(Rational::ONE, &[(rest, Rational::ONE), factors[0], factors[1]]);
+            return Some(Edit { removed: vec![first, second], added: vec![(value, coefficient.mul(Rational::whole(2))?)] });
+        }
+    }
+    None
 }
 
 fn other(function: Function) -> Function {

@@ -4,7 +4,7 @@ use super::{Random, evaluate, lowered};
 use crate::ast::{Expr, ExprKind, Literal};
 use crate::error::Errors;
 use crate::expr::{Graph, Symbol};
-use crate::rule::RULES;
+use crate::rule::{CANCELLATIONS, RULES, without_cancellation};
 use crate::{check, parse};
 
 #[test]
@@ -17,11 +17,42 @@ fn the_left_side_becomes_the_right() {
     }
 }
 
+#[test]
+fn the_left_side_keeps_its_digits() {
+    for rule in CANCELLATIONS {
+        let mut graph = Graph::new();
+        let left = lowered(&mut graph, rule.left);
+        let right = lowered(&mut graph, rule.right);
+        assert_ne!(left, right, "{}: the graph itself leaves {} as it is", rule.name, rule.left);
+        assert_eq!(without_cancellation(&mut graph, left), right, "{}: {} is not {}", rule.name, rule.left, rule.right);
+    }
+}
+
+#[test]
+fn differences_are_found_among_other_terms() {
+    for (whole, parts) in [
+        ("a*b*(1 - cos(c)) + a", "2*a*b*sin(c/2)^2 + a"),
+        ("3 - cos(a) - 2*cos(b) + c", "2*sin(a/2)^2 + 4*sin(b/2)^2 + c"),
+        ("c^2*(2 - cos(a) + cos(b))", "c^2*(2*sin(a/2)^2 + 2*cos(b/2)^2)"),
+        ("sqrt(1 - cos(a - b))", "sqrt(2*sin((a - b)/2)^2)"),
+    ] {
+        let mut graph = Graph::new();
+        let (whole, parts) = (lowered(&mut graph, whole), lowered(&mut graph, parts));
+        assert_eq!(without_cancellation(&mut graph, whole), parts);
+    }
+    // What does not cancel stays.
+    for still in ["2 - cos(a)", "1 - cos(a)^2/2", "b - c*cos(a)", "cos(a) + cos(b)", "1 - cosh(a)"] {
+        let mut graph = Graph::new();
+        let root = lowered(&mut graph, still);
+        assert_eq!(without_cancellation(&mut graph, root), root, "{still}");
+    }
+}
+
 /// The left side is evaluated from its syntax, without the graph.
 #[test]
 fn both_sides_have_one_value() {
     let mut random = Random(7);
-    for rule in RULES {
+    for rule in RULES.iter().chain(CANCELLATIONS) {
         for _ in 0..100 {
             let point = [0, 1, 2].map(|_| random.uniform(0.1, 3.0));
             let left = value(rule.left, point);
@@ -38,7 +69,7 @@ fn both_sides_have_one_value() {
 
 #[test]
 fn names_are_unique() {
-    let mut names: Vec<&str> = RULES.iter().map(|rule| rule.name).collect();
+    let mut names: Vec<&str> = RULES.iter().chain(CANCELLATIONS).map(|rule| rule.name).collect();
     names.sort_unstable();
     let count = names.len();
     names.dedup();
