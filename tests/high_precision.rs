@@ -56,6 +56,50 @@ mod systems {
     }
 }
 
+/// Energies written as what they are above rest.
+mod above_rest {
+    use pendulum_runtime::lagrangian;
+
+    lagrangian! {
+        pub struct Swing { m, l, g }
+        coordinate q;
+        kinetic = m*l^2*q̇^2/2;
+        potential = m*g*l*(1 - cos(q));
+    }
+
+    lagrangian! {
+        /// From the top.
+        pub struct Top { m, l, g }
+        coordinate q;
+        kinetic = m*l^2*q̇^2/2;
+        potential = m*g*l*(1 + cos(q));
+    }
+
+    lagrangian! {
+        /// From where it was released.
+        pub struct Released { a, g }
+        coordinate q;
+        kinetic = q̇^2/2;
+        potential = g*(cos(a) - cos(q));
+    }
+
+    lagrangian! {
+        pub struct Links { m: [1; 2], l: [1; 2], g }
+        coordinate θ[2];
+        let y[k in 0..2] = sum(j in 0..=k, l[j]*[sin(θ[j]), 1 - cos(θ[j])]);
+        kinetic = sum(k in 0..2, m[k]/2*|ẏ[k]|^2);
+        potential = sum(k in 0..2, m[k]*g*height(y[k]));
+    }
+
+    lagrangian! {
+        pub struct Sphere { l, g }
+        coordinate θ;
+        coordinate φ;
+        kinetic = l^2*(θ̇^2 + sin(θ)^2*φ̇^2)/2;
+        potential = g*l*(1 - cos(θ));
+    }
+}
+
 use systems::*;
 
 fn number(digits: &str) -> DoubleDouble {
@@ -198,6 +242,43 @@ fn aligned_rods_with_a_light_upper_mass_lose_what_the_matrix_loses() {
         assert!(found <= 8.0 * f64::EPSILON * condition, "{found:e} at a condition of {condition:e}");
     }
 }
+
+/// The relative error of an energy, from the same block in two words.
+macro_rules! energy_error {
+    ($n:literal, $system:expr, $q:expr, $v:expr) => {{
+        let (system, q, v): (_, [f64; $n], [f64; $n]) = ($system, $q, $v);
+        let wide = system.map(DoubleDouble::from);
+        let exact = wide.energy(0.0.into(), &q.map(DoubleDouble::from), &v.map(DoubleDouble::from), &());
+        ((DoubleDouble::from(system.energy(0.0, &q, &v, &())) - exact) / exact).to_f64().abs()
+    }};
+}
+
+#[test]
+fn energies_of_small_swings_keep_their_digits() {
+    use above_rest::{Links, Released, Sphere, Swing, Top};
+    let mut worst = 0.0_f64;
+    for exponent in 0..40 {
+        let small = 1.3 * 0.5_f64.powi(exponent);
+        // 1 − cos q is zero from 1e-8 on, and has lost half of its digits at 1e-4.
+        worst = worst.max(energy_error!(1, Swing::new(0.3, 1.7, 9.81), [small], [0.0]));
+        worst = worst.max(energy_error!(1, Top::new(0.3, 1.7, 9.81), [std::f64::consts::PI - small], [small]));
+        worst = worst.max(energy_error!(1, Released::new(1.0, 9.81), [1.0 + small], [0.0]));
+        worst = worst.max(energy_error!(2, Links::new([1.0, 0.7], [0.9, 1.1], 9.81), [small, 0.3 * small], [0.0; 2]));
+        worst = worst.max(energy_error!(2, Sphere::new(1.1, 9.81), [small, 0.4], [0.0, 0.5]));
+    }
+    assert!(worst < 8.0 * f64::EPSILON, "{worst:e}");
+}
+
+#[test]
+fn the_determinant_of_aligned_links_keeps_its_digits() {
+    // Δ is known to ε, so no formula keeps more than ε/Δ; the square of the cosine would lose ε/Δ².
+    for exponent in 1..=24 {
+        let gap = 0.7 * 0.5_f64.powi(exponent);
+        let found = apart!(2, Double::new([0.5_f64.powi(52), 1.0], [1.0; 2], 1.0), [0.5, 0.5 + gap], [0.25, 0.25]);
+        assert!(found <= 4.0 * f64::EPSILON / gap, "{found:e} at {gap:e}");
+    }
+}
+
 #[test]
 fn taylor_reaches_28_digits() {
     let system = Simple::new(DoubleDouble::from(1.0));

@@ -73,7 +73,10 @@ where
         }
         if 1.0 <= place {
             trace.energy.push((run.t(), worst.max(UNIT)));
-            trace.phase.push((run.t(), late.max(UNIT)));
+            // Beyond, the distance from the motion is no longer one in phase.
+            if late < 0.5 {
+                trace.phase.push((run.t(), late.max(UNIT)));
+            }
             mark *= 1.4;
         }
     }

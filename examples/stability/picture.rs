@@ -39,9 +39,9 @@ const PAGES: &[Page] = &[
     Page {
         figure: Figure::Energy,
         file: "stability-energy.svg",
-        title: "Pendulum from 1.3 rad: largest relative energy error up to t",
+        title: "Pendulum from 1.3 rad: error of the energy up to t",
         x: "t in s",
-        y: "relative error of the energy",
+        y: "largest error, relative to the energy above rest",
         logarithmic: true,
         guides: &[("√t", 2e-17, 0.5), ("t", 1e-17, 1.0)],
     },
@@ -52,7 +52,7 @@ const PAGES: &[Page] = &[
         x: "t in s",
         y: "error in s",
         logarithmic: true,
-        guides: &[("t", 3e-17, 1.0), ("t^{3/2}", 1e-18, 1.5)],
+        guides: &[("t", 3e-17, 1.0), ("t√t", 1e-18, 1.5)],
     },
     Page {
         figure: Figure::Separation,
@@ -136,13 +136,16 @@ impl Page {
             .y_desc(self.y)
             .draw()?;
         let grey = RGBColor(150, 150, 150);
-        for &(_, factor, rate) in self.guides {
+        for &(name, factor, rate) in self.guides {
             let height = |x: f64| {
                 if self.logarithmic { factor.log10() + rate * x } else { factor.log10() + rate * x * std::f64::consts::LOG10_E }
             };
             let points: Vec<(f64, f64)> = (0..=200).map(|k| to(left) + (to(right) - to(left)) * f64::from(k) / 200.0).map(|x| (x, height(x))).collect();
-            let inside = points.into_iter().filter(|point| bottom.log10() <= point.1 && point.1 <= top.log10());
+            let inside: Vec<_> = points.into_iter().filter(|point| bottom.log10() <= point.1 && point.1 <= top.log10()).collect();
+            let end = inside.get(inside.len() * 19 / 20).copied();
             chart.draw_series(DashedLineSeries::new(inside, 5, 4, grey.stroke_width(1)))?;
+            let style = (FONT, 14).into_font().color(&RGBColor(90, 90, 90)).pos(Pos::new(HPos::Right, VPos::Bottom));
+            chart.draw_series(end.map(|end| Text::new(name.to_owned(), end, style.clone())))?;
         }
         for (curve, color) in curves.iter().zip(COLORS) {
             let points = curve.points.iter().map(|point| (to(point.0), point.1.log10()));
@@ -150,8 +153,7 @@ impl Page {
         }
         let style = (FONT, 14).into_font().color(&BLACK).pos(Pos::new(HPos::Left, VPos::Center));
         let names = curves.iter().map(|curve| curve.name.as_str()).zip(COLORS);
-        let guides = self.guides.iter().map(|guide| (guide.0, grey));
-        for (row, (name, color)) in names.chain(guides).enumerate() {
+        for (row, (name, color)) in names.enumerate() {
             let y = 56 + 24 * row as i32;
             legend.draw(&PathElement::new([(4, y), (34, y)], color.stroke_width(2)))?;
             legend.draw(&Text::new(name.to_owned(), (42, y), style.clone()))?;

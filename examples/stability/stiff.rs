@@ -179,7 +179,9 @@ fn tolerances(scale: Scale, report: &mut Report) {
             let worst = |index: usize| found.iter().fold(0.0, |worst, spread| larger(worst, spread.worst[index]));
             let all = || found.iter().chain([&orbit]);
             let runs = format!("{}: {count} runs each of P01, P22, P31", $name);
-            report.at_most(format!("{runs}: error over tolerance, 3e-15 to 1e-3"), worst(0), 100.0);
+            report.at_most(format!("{runs}: error over tolerance, 3e-15 to 1e-3"), worst(0), 100.0).because(
+                "thirty steps cover the run: in one of a thousand the estimate for one of them is small by accident, on P31",
+            );
             report.at_most(format!("{runs}: the same, 1e-3 to 0.1"), worst(1), 100.0).because(LOOSE);
             report.at_most(format!("{}: P38, e = 0.5, three orbits, 3e-15 to 1e-3", $name), orbit.worst[0], 100.0).because(
                 "the error of a step changes the period of an orbit, and what that costs grows with time",
