@@ -20,7 +20,13 @@ fn final_states_have_the_bits_that_are_checked_in() {
     let expected: Vec<&str> = text.lines().collect();
     let differ: Vec<String> =
         found.iter().zip(&expected).filter(|(found, expected)| found != expected).map(|(a, b)| format!("{a} for {b}")).collect();
-    assert!(differ.is_empty() && found.len() == expected.len(), "{} lines for {}\n{}", found.len(), expected.len(), differ.join("\n"));
+    assert!(
+        differ.is_empty() && found.len() == expected.len(),
+        "{} lines for {}\n{}",
+        found.len(),
+        expected.len(),
+        differ.join("\n")
+    );
 }
 
 #[test]

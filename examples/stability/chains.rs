@@ -35,7 +35,8 @@ fn links(scale: Scale, report: &mut Report) {
     }
     let counts = count! { Chain1 1 Chain2 2 Chain3 3 Chain5 5 Chain8 8 Chain10 10 Chain16 16 };
     let all = |operations: [f64; 3]| operations.iter().sum::<f64>();
-    let ratio = BY_HAND.iter().zip(&counts).fold(0.0, |worst, ((_, hand), found)| larger(worst, all(found.operations()) / all(*hand)));
+    let ratio =
+        BY_HAND.iter().zip(&counts).fold(0.0, |worst, ((_, hand), found)| larger(worst, all(found.operations()) / all(*hand)));
     report.at_most("operations of 1 to 16 links over those by hand", ratio, 1.3);
     let slope = |from: usize, to: usize, links: f64| (counts[to].operations()[0] - counts[from].operations()[0]) / links;
     report.at_most("multiplications for each further link, 10 to 16", slope(5, 6, 6.0), 33.0);
@@ -51,12 +52,19 @@ fn links(scale: Scale, report: &mut Report) {
     let steps = scale.pick(1000, 2000, 2000);
     let sway = |product: f64| {
         let q = core::array::from_fn(|i| 1e-8 * if i % 2 == 0 { 1.0 } else { -1.0 });
-        let solution = solve(&chain, (0.0, product / fastest * f64::from(steps)), q, [0.0; 10]).method(Rk4).steps(u64::from(steps as u32)).run();
+        let solution = solve(&chain, (0.0, product / fastest * f64::from(steps)), q, [0.0; 10])
+            .method(Rk4)
+            .steps(u64::from(steps as u32))
+            .run();
         solution.map_or(f64::INFINITY, |solution| largest(solution.end.q.map(f64::abs)))
     };
     report.at_most("ten links by Rk4 with h ω = 2.8, from 1e-8 rad", sway(2.8), 1e-7);
     report.between("the same with h ω = 2.86", sway(2.86), 1e-3, f64::INFINITY);
-    report.at_most("√(4N) against the frequency of the fastest mode of ten links, relative", (40.0f64.sqrt() / fastest - 1.0).abs(), 0.2);
+    report.at_most(
+        "√(4N) against the frequency of the fastest mode of ten links, relative",
+        (40.0f64.sqrt() / fastest - 1.0).abs(),
+        0.2,
+    );
 }
 
 fn whip(_: Scale, report: &mut Report) {
@@ -65,11 +73,11 @@ fn whip(_: Scale, report: &mut Report) {
     let (q, v) = ([core::f64::consts::FRAC_PI_2; 10], [0.0; 10]);
     let energy = |q: &[f64; 10], v: &[f64; 10]| chain.energy(0.0, q, v, &());
     let start = energy(&q, &v);
-    let solution = solve(&chain, (0.0, 20.0), q, v).rtol(1e-10).atol(1e-10).every_step().run().unwrap();
+    let solution = solve(&chain, (0.0, 20.0), q, v).method(Dop853::new()).rtol(1e-10).atol(1e-10).every_step().run().unwrap();
     let gain = solution.q.iter().zip(&solution.v).fold(0.0, |gain, (q, v)| larger(gain, energy(q, v) - start));
-    report.at_most("gain of energy in 20 s, Dop853, rtol 1e-10", gain, 1e-9).because(
-        "the tolerance bounds the error of a step, a thousand steps add up",
-    );
+    report
+        .at_most("gain of energy in 20 s, Dop853, rtol 1e-10", gain, 1e-9)
+        .because("the tolerance bounds the error of a step, a thousand steps add up");
     let lengths: Vec<f64> = solution.t.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let (least, greatest) = lengths.iter().skip(3).rev().skip(2).fold((f64::INFINITY, 0.0f64), |(a, b), &h| (a.min(h), b.max(h)));
     report.between("longest step over shortest", greatest / least, 3.0, f64::INFINITY);

@@ -30,7 +30,11 @@ fn separatrix(_: Scale, report: &mut Report) {
     report.at_most("error of P05 up to t = 30, in eᵗ u", worst, 4.0);
 
     let end = solve(&system, (0.0, 100.0), [3.125], [0.0]).method(Taylor::new()).rtol(1e-18).run().unwrap().end;
-    report.at_most("P03, a swing from 3.125 rad, t = 100, against a rounding amplified eight times a period", error(&end, &reference::NEARLY_UPRIGHT), 1e-11);
+    report.at_most(
+        "P03, a swing from 3.125 rad, t = 100, against a rounding amplified eight times a period",
+        error(&end, &reference::NEARLY_UPRIGHT),
+        1e-11,
+    );
 
     let fall = |q: f64| {
         let over = Event::new(&|_, q: &[f64; 1], _: &[f64; 1]| q[0].abs() - 1.0).terminal();
@@ -70,7 +74,13 @@ fn chaos(scale: Scale, report: &mut Report) {
     // Pairs a last digit apart, from many points of one long motion: their distance grows at the Lyapunov exponent, 0.46 ± 0.01.
     let pairs = scale.pick(16, 64, 64);
     let times: Vec<f64> = (1..=pairs).map(|k| 100.0 * f64::from(k)).collect();
-    let path = solve(&system, (0.0, 100.0 * f64::from(pairs)), start.0, start.1).rtol(1e-12).atol(1e-12).t_eval(&times).run().unwrap();
+    let path = solve(&system, (0.0, 100.0 * f64::from(pairs)), start.0, start.1)
+        .method(Dop853::new())
+        .rtol(1e-12)
+        .atol(1e-12)
+        .t_eval(&times)
+        .run()
+        .unwrap();
     let mut slopes = Vec::new();
     for k in 0..path.t.len() {
         let (q, v) = (path.q[k], path.v[k]);
@@ -79,8 +89,12 @@ fn chaos(scale: Scale, report: &mut Report) {
         if k < 3 {
             report.curve(Figure::Separation, format!("pair {}", k + 1), points.clone());
         }
-        let growing: Vec<(f64, f64)> =
-            points.iter().take_while(|point| point.1 < 1e-2).filter(|point| 5.0 <= point.0).map(|point| (point.0, point.1.ln())).collect();
+        let growing: Vec<(f64, f64)> = points
+            .iter()
+            .take_while(|point| point.1 < 1e-2)
+            .filter(|point| 5.0 <= point.0)
+            .map(|point| (point.0, point.1.ln()))
+            .collect();
         slopes.push(line(&growing).0);
     }
     let mean = slopes.iter().sum::<f64>() / slopes.len() as f64;
@@ -110,14 +124,24 @@ fn chaos(scale: Scale, report: &mut Report) {
     report.at_most("its largest error, second half over first", halves[1] / halves[0], 2.0);
 
     let every: Vec<f64> = (1..=(seconds / h) as u64).map(|k| k as f64 * h).collect();
-    let other = solve(&system, (0.0, seconds), start.0, start.1).rtol(1e-9).atol(1e-9).t_eval(&every).run().unwrap();
+    let other = solve(&system, (0.0, seconds), start.0, start.1)
+        .method(Dop853::new())
+        .rtol(1e-9)
+        .atol(1e-9)
+        .t_eval(&every)
+        .run()
+        .unwrap();
     let turns: Vec<f64> = other.q.iter().map(|q| (q[1] / core::f64::consts::TAU).round()).collect();
     let others = turns.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum::<f64>();
     let mean = other.v.iter().map(|v| v[1] * v[1]).sum::<f64>() / other.v.len() as f64;
     let bar = 0.05 * (10_000.0f64 / seconds).sqrt();
     report.at_most("mean of θ̇₂² by Gauss<4> and by Dop853, relative difference", (square / mean - 1.0).abs(), bar);
     // Turns of the lower link come in bursts.
-    report.at_most(format!("its turns, {flips:.0} and {others:.0}, relative difference"), (flips / others - 1.0).abs(), 2.0 * bar);
+    report.at_most(
+        format!("its turns, {flips:.0} and {others:.0}, relative difference"),
+        (flips / others - 1.0).abs(),
+        2.0 * bar,
+    );
 }
 
 /// The distance of two motions with time.
@@ -126,9 +150,7 @@ fn separation(system: &Double<f64>, a: ([f64; 2], [f64; 2]), b: ([f64; 2], [f64;
         let problem = solve(system, (0.0, end), q, v).method(Taylor::new()).rtol(1e-18);
         problem.every(0.5).run().unwrap()
     });
-    let distance = |k: usize| {
-        largest((0..2).flat_map(|i| [(a.q[k][i] - b.q[k][i]).abs(), (a.v[k][i] - b.v[k][i]).abs()]))
-    };
+    let distance = |k: usize| largest((0..2).flat_map(|i| [(a.q[k][i] - b.q[k][i]).abs(), (a.v[k][i] - b.v[k][i]).abs()]));
     (1..a.t.len()).map(|k| (a.t[k], distance(k).max(1e-17))).collect()
 }
 
@@ -148,7 +170,11 @@ fn back(scale: Scale, report: &mut Report) {
     let start = State { t: 0.0, q: [2.0, 2.5], v: [0.0; 2] };
     // A rounding at t = 10 comes back amplified as much as one at the start is on the way, 1.3e3 times.
     let limit = 10.0 * 1.3e3 * f64::EPSILON;
-    report.at_most("P23 to t = 10 and back by Taylor, ten roundings amplified 1300 times", apart(&run(&run(&start, 10.0), 0.0), &start), limit);
+    report.at_most(
+        "P23 to t = 10 and back by Taylor, ten roundings amplified 1300 times",
+        apart(&run(&run(&start, 10.0), 0.0), &start),
+        limit,
+    );
     let wide = system.map(DoubleDouble::from);
     let there = truth(&wide, (0.0, 10.0), start.q, start.v).end;
     let here = solve(&wide, (10.0, 0.0), there.q, there.v).method(Taylor::new()).rtol(1e-28).run().unwrap().end;

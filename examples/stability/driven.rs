@@ -35,13 +35,13 @@ fn shaking(scale: Scale, report: &mut Report) {
     let driven = |frequency| Kapitza::new().driven_by(shaken(frequency));
     let fast = driven(1e3);
     let exact = truth(&Kapitza::<DoubleDouble>::new().driven_by(shaken(1e3)), (0.0, 1.0), [3.0], [0.0]).end;
-    let end = solve(&fast, (0.0, 1.0), [3.0], [0.0]).rtol(1e-12).atol(1e-12).run().unwrap().end;
+    let end = solve(&fast, (0.0, 1.0), [3.0], [0.0]).method(Dop853::new()).rtol(1e-12).atol(1e-12).run().unwrap().end;
     report.at_most("Ω = 1e3, Dop853, rtol 1e-12, against two words at t = 1", error_from(&end, &exact), 1e-8);
 
     let frequencies = [1e3, 1e4, scale.pick(2e4, 1e5, 1e5)];
     let runs = frequencies.map(|frequency| {
         let dynamics = driven(frequency);
-        let solution = solve(&dynamics, (0.0, 5.0), [3.0], [0.0]).rtol(1e-9).atol(1e-9).run().unwrap();
+        let solution = solve(&dynamics, (0.0, 5.0), [3.0], [0.0]).method(Dop853::new()).rtol(1e-9).atol(1e-9).run().unwrap();
         (solution.stats.evaluations as f64, solution.end.q[0])
     });
     let growth = (runs[2].0 / runs[0].0) / (frequencies[2] / frequencies[0]);
@@ -54,7 +54,9 @@ fn shaking(scale: Scale, report: &mut Report) {
         .map(|k| {
             let a = 4.0 / frequencies[k];
             let start = 3.0 + a * 3.0f64.sin();
-            let slow = solve(&effective, (0.0, 5.0), [start], [0.0]).rtol(1e-12).atol(1e-12).run().unwrap().end.q[0];
+            let slow =
+                solve(&effective, (0.0, 5.0), [start], [0.0]).method(Dop853::new()).rtol(1e-12).atol(1e-12).run().unwrap().end.q
+                    [0];
             (mean[k] - slow).abs() * frequencies[k]
         })
         .collect();
@@ -72,7 +74,9 @@ fn hung() -> Hung<f64> {
 
 /// Whether the failure names the input and a time in this range, and keeps a finite state before it.
 fn blames(failure: Result<(), Failure<f64, 1>>, (from, to): (f64, f64)) -> bool {
-    let Err(Failure { error: Error::NotFinite { t, what: Quantity::Input { name, .. }, .. }, partial }) = failure else { return false };
+    let Err(Failure { error: Error::NotFinite { t, what: Quantity::Input { name, .. }, .. }, partial }) = failure else {
+        return false;
+    };
     let end = &partial.end;
     name == "x" && from <= t && t <= to && end.t <= t && end.q[0].is_finite() && end.v[0].is_finite()
 }
@@ -87,11 +91,20 @@ fn not_finite(_: Scale, report: &mut Report) {
             let range = (from, to);
             cases.push(blames(solve(&driven, (0.0, 2.0), [0.3], [0.0]).method(Rk4).step(0.002).run().map(drop), range));
             cases.push(blames(solve(&driven, (0.0, 2.0), [0.3], [0.0]).method(Srkn6b).step(0.002).run().map(drop), range));
-            cases.push(blames(solve(&driven, (0.0, 2.0), [0.3], [0.0]).max_step(0.002).run().map(drop), range));
-            cases.push(blames(solve(&driven, (0.0, 2.0), [0.3], [0.0]).method(Tsit5::new()).max_step(0.002).run().map(drop), range));
+            cases.push(blames(
+                solve(&driven, (0.0, 2.0), [0.3], [0.0]).method(Dop853::new()).max_step(0.002).run().map(drop),
+                range,
+            ));
+            cases.push(blames(
+                solve(&driven, (0.0, 2.0), [0.3], [0.0]).method(Tsit5::new()).max_step(0.002).run().map(drop),
+                range,
+            ));
         }
     }
-    report.failures(format!("NaN and ±∞ in the drive, at t = 0 and later, {} runs: the error names input and time", cases.len()), cases);
+    report.failures(
+        format!("NaN and ±∞ in the drive, at t = 0 and later, {} runs: the error names input and time", cases.len()),
+        cases,
+    );
 
     // A first step that is far too long meets the bad samples in a step that would be rejected anyway.
     let push = |t: f64| if 0.9 < t && t < 0.91 { f64::NAN } else { (40.0 * t).sin() * 50.0 };
@@ -142,7 +155,9 @@ fn keyed(_: Scale, report: &mut Report) {
         let motion = CatmullRom::new(&times, &values).unwrap();
         let at = move |t: f64| -> Sample<f64, 2> { motion.sample(Time::new(t), Side::After, Orders::ALL) };
         let (a, b) = (at.clone(), at.clone());
-        hung().driven_by(Function::new(move |t| at(t).position).velocity(move |t| a(t).velocity).acceleration(move |t| b(t).acceleration))
+        hung().driven_by(
+            Function::new(move |t| at(t).position).velocity(move |t| a(t).velocity).acceleration(move |t| b(t).acceleration),
+        )
     };
     let steps = [1u32, 2, 4, 8, 16, 32];
     macro_rules! errors {
@@ -171,11 +186,17 @@ fn keyed(_: Scale, report: &mut Report) {
     report.curve(Figure::Kinks, "Rk4, lines", errors!(&linear, Rk4, line, 1.0).to_vec());
     report.curve(Figure::Kinks, "Rk4, curves", errors!(&smooth, Rk4, curve, 1.0).to_vec());
     report.curve(Figure::Kinks, "Rk4, curves whose keys are hidden", errors!(&hidden, Rk4, curve, 0.93).to_vec());
-    report.at_most("Dop853, lines, rtol 1e-12", (solve(&linear, (0.0, 5.0), [0.3], [0.0]).rtol(1e-12).atol(1e-12).run().unwrap().end.q[0] - line).abs(), 1e-11);
+    report.at_most(
+        "Dop853, lines, rtol 1e-12",
+        (solve(&linear, (0.0, 5.0), [0.3], [0.0]).method(Dop853::new()).rtol(1e-12).atol(1e-12).run().unwrap().end.q[0] - line)
+            .abs(),
+        1e-11,
+    );
 
     // A teleport: the pivot is elsewhere from one moment to the next, with the same velocity. The pendulum goes along.
     let jump = |t: f64| if t < 0.5 { 0.0 } else { 10.0 };
-    let motion = |kinks: &[f64]| Function::new(move |t| [jump(t), 0.0]).velocity(|_| [0.0; 2]).acceleration(|_| [0.0; 2]).kinks(kinks);
+    let motion =
+        |kinks: &[f64]| Function::new(move |t| [jump(t), 0.0]).velocity(|_| [0.0; 2]).acceleration(|_| [0.0; 2]).kinks(kinks);
     let still = hung().driven_by(Function::new(|_| [0.0; 2]).velocity(|_| [0.0; 2]).acceleration(|_| [0.0; 2]));
     let end = |dynamics: &_| solve(dynamics, (0.0, 1.0), [0.3], [0.0]).method(Srkn6b).step(1.0 / 64.0).run().unwrap().end;
     let away = hung().driven_by(motion(&[0.5]));
@@ -186,9 +207,16 @@ fn keyed(_: Scale, report: &mut Report) {
     let times = [0.0, 0.25, 0.25 + 1e-9, 0.5, 0.75, 1.0];
     let values = [[0.0, 0.0], [0.1, 0.0], [0.1 + 1e-9, 0.0], [0.1, 0.05], [0.1, 0.05], [0.0, 0.0]];
     let dense = hung().driven_by(Linear::new(&times, &values).unwrap());
-    let sparse = hung().driven_by(Linear::new(&[0.0, 0.25, 0.5, 0.75, 1.0], &[values[0], values[1], values[3], values[4], values[5]]).unwrap());
-    let run = |dynamics: &_| solve(dynamics, (0.0, 1.0), [0.3], [0.0]).rtol(1e-12).atol(1e-12).run().unwrap().end.q[0];
-    report.at_most("two keys 1e-9 s apart with 1e-9 m between them, and a pause: difference", (run(&dense) - run(&sparse)).abs(), 1e-8);
+    let sparse = hung()
+        .driven_by(Linear::new(&[0.0, 0.25, 0.5, 0.75, 1.0], &[values[0], values[1], values[3], values[4], values[5]]).unwrap());
+    let run = |dynamics: &_| {
+        solve(dynamics, (0.0, 1.0), [0.3], [0.0]).method(Dop853::new()).rtol(1e-12).atol(1e-12).run().unwrap().end.q[0]
+    };
+    report.at_most(
+        "two keys 1e-9 s apart with 1e-9 m between them, and a pause: difference",
+        (run(&dense) - run(&sparse)).abs(),
+        1e-8,
+    );
     report.failures("keys at one time are refused", [Linear::new(&[0.0, 0.5, 0.5], &[[0.0; 2]; 3]).is_err()]);
 }
 
@@ -218,14 +246,20 @@ fn intervals(_: Scale, report: &mut Report) {
     let system = Simple::new(1.0);
     let run = |start: f64, end: f64| solve(&system, (start, end), [1.3], [0.0]).method(Rk4).step(0.01).run();
     let here = run(3.0, 3.0).map(|solution| (solution.end.t, solution.end.q[0], solution.end.v[0]));
-    report.failures("an interval of length zero gives the start", [matches!(here, Ok((t, q, v)) if t == 3.0 && q == 1.3 && v == 0.0)]);
+    report.failures(
+        "an interval of length zero gives the start",
+        [matches!(here, Ok((t, q, v)) if t == 3.0 && q == 1.3 && v == 0.0)],
+    );
     let bad = [(1.0, 0.0), (0.0, f64::INFINITY), (f64::NEG_INFINITY, 0.0), (f64::NAN, 1.0), (0.0, f64::NAN), (-1e308, 1e308)];
     report.failures(
         "backwards, infinite and undefined intervals are refused",
         bad.map(|(start, end)| matches!(run(start, end), Err(Failure { error: Error::Interval { .. }, .. }))),
     );
     let ends = [(0.0, 0.1), (0.1, 0.7), (1e9, 1e9 + 1.0 / 3.0), (-7.3, 1e-300), (0.0, 1e-9)];
-    report.failures("the last state is at the end, exactly", ends.map(|(start, end)| run(start, end).is_ok_and(|solution| solution.end.t == end)));
+    report.failures(
+        "the last state is at the end, exactly",
+        ends.map(|(start, end)| run(start, end).is_ok_and(|solution| solution.end.t == end)),
+    );
 
     let worst = Mutex::new(0.0);
     let clock = Clock { origin: 1e9, step: 1.0 / 60.0, worst: &worst };
@@ -238,7 +272,11 @@ fn intervals(_: Scale, report: &mut Report) {
         run.step().unwrap();
     }
     // The times that the drive sees after 10⁹ s, relative to those that have passed since.
-    report.at_most("times of the drive after 1e9 s, steps of 1/60 s: error relative to a step or the time passed", *worst.lock().unwrap(), f64::EPSILON);
+    report.at_most(
+        "times of the drive after 1e9 s, steps of 1/60 s: error relative to a step or the time passed",
+        *worst.lock().unwrap(),
+        f64::EPSILON,
+    );
 
     // The same keys 10⁹ s later give the same swing.
     let (times, values) = keys();

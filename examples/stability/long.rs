@@ -105,7 +105,11 @@ fn drift(scale: Scale, report: &mut Report) {
     report.curve(Figure::Phase, "Srkn14a, plain sums", plain.phase);
 
     let leapfrog = trace(Leapfrog, STEP, steps, false);
-    report.at_most(format!("drift of the mean energy of Leapfrog, {:.0e} steps, against √n u", steps as f64), slope(&leapfrog), walk);
+    report.at_most(
+        format!("drift of the mean energy of Leapfrog, {:.0e} steps, against √n u", steps as f64),
+        slope(&leapfrog),
+        walk,
+    );
     report.curve(Figure::Energy, "Leapfrog", leapfrog.energy);
     report.curve(Figure::Phase, "Leapfrog", leapfrog.phase);
 
@@ -140,13 +144,15 @@ fn bias(scale: Scale, report: &mut Report) {
     const COPIES: usize = 64;
     let system = Simple::new(1.0);
     let wide = system.map(DoubleDouble::from);
-    let energy = |state: &State<f64, 1>| wide.energy(0.0.into(), &state.q.map(DoubleDouble::from), &state.v.map(DoubleDouble::from), &());
+    let energy =
+        |state: &State<f64, 1>| wide.energy(0.0.into(), &state.q.map(DoubleDouble::from), &state.v.map(DoubleDouble::from), &());
     let ensemble = |plain: bool, marks: &[u64]| -> Vec<(f64, f64, f64)> {
         let mut found = vec![[0.0; COPIES]; marks.len()];
         for copy in 0..COPIES {
             let start = State { t: 0.0, q: [1.3 + 1e-12 * copy as f64], v: [0.0] };
             let before = energy(&start);
-            let mut run = Integrator::new(&system, Srkn14a, 0.0, start.q, start.v).unwrap().control(FixedStep::new(STEP)).unwrap();
+            let mut run =
+                Integrator::new(&system, Srkn14a, 0.0, start.q, start.v).unwrap().control(FixedStep::new(STEP)).unwrap();
             let mut step = 0;
             for (row, &mark) in marks.iter().enumerate() {
                 // The mean over a few states rounds the last words of the states away.
@@ -197,7 +203,9 @@ fn growth(scale: Scale, report: &mut Report) {
     };
     // n^{3/2} u steps.
     let bar = |t: f64| (t / STEP).powf(1.5) * UNIT * STEP;
-    let start = || Integrator::new(&system, Srkn14a, 0.0, [0.0], [2.5]).unwrap().control(FixedStep::new(STEP)).unwrap().max_steps(1 << 40);
+    let start = || {
+        Integrator::new(&system, Srkn14a, 0.0, [0.0], [2.5]).unwrap().control(FixedStep::new(STEP)).unwrap().max_steps(1 << 40)
+    };
     let (mut run, mut turns, mut t) = (start(), 0.0, 0.0);
     while t < end {
         t += 1.0;

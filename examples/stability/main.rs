@@ -39,16 +39,8 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-const THEMES: &[&[Test]] = &[
-    long::TESTS,
-    singular::TESTS,
-    chaos::TESTS,
-    driven::TESTS,
-    stiff::TESTS,
-    output::TESTS,
-    chains::TESTS,
-    many::TESTS,
-];
+const THEMES: &[&[Test]] =
+    &[long::TESTS, singular::TESTS, chaos::TESTS, driven::TESTS, stiff::TESTS, output::TESTS, chains::TESTS, many::TESTS];
 
 /// Tests that run at a time.
 const THREADS: usize = 2;

@@ -70,7 +70,7 @@ const PAGES: &[Page] = &[
         x: "step in s",
         y: "error in rad",
         logarithmic: true,
-        guides: &[("h", 0.1, 1.0), ("h²", 1.0, 2.0), ("h⁴", 30.0, 4.0)],
+        guides: &[("h", 1.0, 1.0), ("h²", 1.0, 2.0), ("h⁴", 30.0, 4.0)],
     },
 ];
 
@@ -91,9 +91,12 @@ impl Page {
     fn draw(&self, path: &Path, curves: &[&Curve]) -> Result<(), Box<dyn Error>> {
         let all = || curves.iter().flat_map(|curve| &curve.points);
         let ends = |values: &mut dyn Iterator<Item = f64>| {
-            values.filter(|value| value.is_finite()).fold((f64::INFINITY, 0.0f64), |(low, high), value| (low.min(value), high.max(value)))
+            values
+                .filter(|value| value.is_finite())
+                .fold((f64::INFINITY, 0.0f64), |(low, high), value| (low.min(value), high.max(value)))
         };
-        let decades = |(low, high): (f64, f64)| (10f64.powf((low.log10() + 1e-9).floor()), 10f64.powf((high.log10() - 1e-9).ceil()));
+        let decades =
+            |(low, high): (f64, f64)| (10f64.powf((low.log10() + 1e-9).floor()), 10f64.powf((high.log10() - 1e-9).ceil()));
         let (bottom, top) = decades(ends(&mut all().map(|point| point.1)));
         let x = ends(&mut all().map(|point| point.0));
         let (left, right) = if self.logarithmic { decades(x) } else { (0.0, x.1) };
@@ -140,7 +143,8 @@ impl Page {
             let height = |x: f64| {
                 if self.logarithmic { factor.log10() + rate * x } else { factor.log10() + rate * x * std::f64::consts::LOG10_E }
             };
-            let points: Vec<(f64, f64)> = (0..=200).map(|k| to(left) + (to(right) - to(left)) * f64::from(k) / 200.0).map(|x| (x, height(x))).collect();
+            let points: Vec<(f64, f64)> =
+                (0..=200).map(|k| to(left) + (to(right) - to(left)) * f64::from(k) / 200.0).map(|x| (x, height(x))).collect();
             let inside: Vec<_> = points.into_iter().filter(|point| bottom.log10() <= point.1 && point.1 <= top.log10()).collect();
             let end = inside.get(inside.len() * 19 / 20).copied();
             chart.draw_series(DashedLineSeries::new(inside, 5, 4, grey.stroke_width(1)))?;

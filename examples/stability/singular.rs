@@ -20,9 +20,14 @@ pub(crate) const TESTS: &[Test] = &[
 fn near_singular(_: Scale, report: &mut Report) {
     let light = |exponent: i32| Double::new([0.5f64.powi(exponent), 1.0], [1.0; 2], 1.0);
     for (t, exact) in &reference::LIGHT_LINK {
-        let end = solve(&light(10), (0.0, *t), [0.5, 0.625], [0.0; 2]).rtol(1e-14).atol(1e-14).run().unwrap().end;
+        let end =
+            solve(&light(10), (0.0, *t), [0.5, 0.625], [0.0; 2]).method(Dop853::new()).rtol(1e-14).atol(1e-14).run().unwrap().end;
         // The condition of the mass matrix where the links are aligned is 2/m.
-        report.at_most(format!("P26, upper mass 2^-10, Dop853 at t = {t}, against the condition"), error(&end, exact), 2048.0 * f64::EPSILON);
+        report.at_most(
+            format!("P26, upper mass 2^-10, Dop853 at t = {t}, against the condition"),
+            error(&end, exact),
+            2048.0 * f64::EPSILON,
+        );
     }
     let (mut worst, mut steps) = (0.0, 0.0);
     for exponent in [20, 40, 52] {
@@ -31,7 +36,10 @@ fn near_singular(_: Scale, report: &mut Report) {
         let exact = truth(&system.map(DoubleDouble::from), (0.0, t), [0.5, 0.625], [0.0; 2]).end;
         let scales = |v: f64| 1e-12 * v;
         let speed = 2.0f64.powi(exponent / 2);
-        let problem = solve(&system, (0.0, t), [0.5, 0.625], [0.0; 2]).rtol(1e-12).atol_each([scales(t); 2], [scales(1.0 / speed); 2]);
+        let problem = solve(&system, (0.0, t), [0.5, 0.625], [0.0; 2])
+            .method(Dop853::new())
+            .rtol(1e-12)
+            .atol_each([scales(t); 2], [scales(1.0 / speed); 2]);
         let end = problem.run().unwrap();
         let condition = 2.0 / (system.m[0] + 0.125f64.sin().powi(2));
         worst = larger(worst, error_from(&end.end, &exact) / (1e-12 * condition));
@@ -47,7 +55,8 @@ fn near_singular(_: Scale, report: &mut Report) {
         let (system, gap) = (light(52), 0.7 * 0.5f64.powi(exponent));
         let (q, v) = ([0.5, 0.5 + gap], [0.25, 0.25]);
         let found = system.accelerations(0.0, &q, &v, &());
-        let wide = system.map(DoubleDouble::from).accelerations(0.0.into(), &q.map(DoubleDouble::from), &v.map(DoubleDouble::from), &());
+        let wide =
+            system.map(DoubleDouble::from).accelerations(0.0.into(), &q.map(DoubleDouble::from), &v.map(DoubleDouble::from), &());
         let size = largest(wide.map(|a| a.to_f64().abs()));
         let apart = largest((0..2).map(|i| (DoubleDouble::from(found[i]) - wide[i]).to_f64().abs() / size));
         sine = larger(sine, apart * gap / f64::EPSILON);
@@ -63,12 +72,13 @@ fn near_singular(_: Scale, report: &mut Report) {
 fn refused(result: Result<Solution<f64, 2>, Failure<f64, 2>>) -> bool {
     let Err(failure) = result else { return false };
     let finite = failure.partial.end.q.iter().chain(&failure.partial.end.v).all(|x| x.is_finite());
-    finite && matches!(failure.error, Error::NotFinite { what: Quantity::Acceleration(coordinate), .. } if !coordinate.name.is_empty())
+    finite
+        && matches!(failure.error, Error::NotFinite { what: Quantity::Acceleration(coordinate), .. } if !coordinate.name.is_empty())
 }
 
 fn singular(_: Scale, report: &mut Report) {
     let massless = Double::new([0.0, 1.0], [1.0; 2], 1.0);
-    let problem = || solve(&massless, (0.0, 1.0), [0.5, 0.5], [0.0; 2]);
+    let problem = || solve(&massless, (0.0, 1.0), [0.5, 0.5], [0.0; 2]).method(Dop853::new());
     report.failures(
         "m₁ = 0 and Δ = 0: an error that names the coordinate, with the state before",
         [
@@ -78,25 +88,30 @@ fn singular(_: Scale, report: &mut Report) {
         ],
     );
     let still = Double::new([1.0, 0.0], [1.0; 2], 1.0);
-    report.failures("m₂ = 0: the same", [refused(solve(&still, (0.0, 1.0), [0.5, 0.25], [0.0; 2]).run())]);
+    report.failures("m₂ = 0: the same", [refused(solve(&still, (0.0, 1.0), [0.5, 0.25], [0.0; 2]).method(Dop853::new()).run())]);
     // The links line up on the way: either the step control stops before, or the run goes on with finite numbers.
-    let crossing = solve(&massless, (0.0, 1.0), [0.5, 0.625], [0.0, -1.0]).max_steps(1_000_000).run();
+    let crossing = solve(&massless, (0.0, 1.0), [0.5, 0.625], [0.0, -1.0]).method(Dop853::new()).max_steps(1_000_000).run();
     let kept = match &crossing {
         Ok(solution) => solution.end.q.iter().chain(&solution.end.v).all(|x| x.is_finite()),
         Err(failure) => failure.partial.end.q.iter().chain(&failure.partial.end.v).all(|x| x.is_finite()),
     };
     report.failures("m₁ = 0 and links that line up on the way: no NaN in any state", [kept]);
     let negative = Double::new([-2.0, 1.0], [1.0; 2], 1.0);
-    report.failures("m₁ = −2, a negative pivot: an error", [solve(&negative, (0.0, 1.0), [0.5, 0.625], [0.0; 2]).run().is_err()]).because(
-        "accelerations are finite there, and nothing checks the sign of a pivot while running",
-    );
+    report
+        .failures(
+            "m₁ = −2, a negative pivot: an error",
+            [solve(&negative, (0.0, 1.0), [0.5, 0.625], [0.0; 2]).method(Dop853::new()).run().is_err()],
+        )
+        .because("accelerations are finite there, and nothing checks the sign of a pivot while running");
 }
 
 fn ratios(_: Scale, report: &mut Report) {
     // The same motion in other units of mass, length and time: m, k and l from 1e-12 to 1e12.
     let reference = elastic(1.0, 1.0, 1.0);
     let mut worst = 0.0;
-    for exponents in [[-12, 0, 0], [12, 0, 0], [0, -12, 0], [0, 12, 0], [0, 0, -6], [0, 0, 6], [-12, 12, 6], [12, -12, -6], [12, 12, 6]] {
+    for exponents in
+        [[-12, 0, 0], [12, 0, 0], [0, -12, 0], [0, 12, 0], [0, 0, -6], [0, 0, 6], [-12, 12, 6], [12, -12, -6], [12, 12, 6]]
+    {
         let [mass, length, time] = exponents.map(|exponent: i32| 10f64.powi(exponent));
         let found = elastic(mass, length, time);
         worst = larger(worst, largest((0..4).map(|i| (found[i] - reference[i]).abs())));
@@ -104,7 +119,17 @@ fn ratios(_: Scale, report: &mut Report) {
     report.at_most("P32 in units of 1e-12 to 1e12: dimensionless difference", worst, 1e-13);
     let reference = double(1.0, 1.0);
     let mut worst = 0.0;
-    for (mass, length) in [(1e-12, 1.0), (1e12, 1.0), (1.0, 1e-12), (1.0, 1e12), (1e12, 1e-12), (1e-300, 1.0), (1e300, 1.0), (1.0, 1e-300), (1.0, 1e300)] {
+    for (mass, length) in [
+        (1e-12, 1.0),
+        (1e12, 1.0),
+        (1.0, 1e-12),
+        (1.0, 1e12),
+        (1e12, 1e-12),
+        (1e-300, 1.0),
+        (1e300, 1.0),
+        (1.0, 1e-300),
+        (1.0, 1e300),
+    ] {
         let found = double(mass, length);
         worst = larger(worst, largest((0..4).map(|i| (found[i] - reference[i]).abs())));
     }
@@ -115,12 +140,16 @@ fn ratios(_: Scale, report: &mut Report) {
 
     let hung = |g: f64, t: f64, v: f64| {
         let system = Double::new([1.0; 2], [1.0; 2], g);
-        let problem = solve(&system, (0.0, t), [0.5, -0.25], [v; 2]).rtol(1e-13).atol_each([1e-13; 2], [1e-13 * g.sqrt().max(1.0); 2]);
+        let problem = solve(&system, (0.0, t), [0.5, -0.25], [v; 2])
+            .method(Dop853::new())
+            .rtol(1e-13)
+            .atol_each([1e-13; 2], [1e-13 * g.sqrt().max(1.0); 2]);
         problem.run().map(|solution| solution.end)
     };
     let (free, faint, heavy) = (hung(0.0, 10.0, 0.5), hung(1e-300, 10.0, 0.5), hung(1e300, 1e-149, 0.0));
     let weight = hung(1.0, 10.0, 0.0).unwrap();
-    report.failures("g = 0 and g = 1e-300: the same motion", [matches!((free, faint), (Ok(a), Ok(b)) if a.q == b.q && a.v == b.v)]);
+    report
+        .failures("g = 0 and g = 1e-300: the same motion", [matches!((free, faint), (Ok(a), Ok(b)) if a.q == b.q && a.v == b.v)]);
     let apart = heavy.map_or(f64::NAN, |end| largest((0..2).map(|i| (end.q[i] - weight.q[i]).abs())));
     report.at_most("g = 1e300 against g = 1", apart, 1e-11);
 }
@@ -130,7 +159,8 @@ fn elastic(mass: f64, length: f64, time: f64) -> [f64; 4] {
     let system = Elastic::new(mass, 8.0 * mass / (time * time), length, length / (time * time));
     let (q, v) = ([1.25 * length, 1.0], [0.0; 2]);
     let speed = [1e-15 * length / time, 1e-15 / time];
-    let problem = solve(&system, (0.0, 2.0 * time), q, v).rtol(1e-14).atol_each([1e-15 * length, 1e-15], speed);
+    let problem =
+        solve(&system, (0.0, 2.0 * time), q, v).method(Dop853::new()).rtol(1e-14).atol_each([1e-15 * length, 1e-15], speed);
     problem.run().map_or([f64::NAN; 4], |solution| {
         let end = solution.end;
         [end.q[0] / length, end.q[1], end.v[0] * time / length, end.v[1] * time]
@@ -140,7 +170,7 @@ fn elastic(mass: f64, length: f64, time: f64) -> [f64; 4] {
 /// P22 with masses and lengths of another size, and gravity with the lengths.
 fn double(mass: f64, length: f64) -> [f64; 4] {
     let system = Double::new([mass; 2], [length; 2], length);
-    let problem = solve(&system, (0.0, 2.0), [0.5, -0.25], [0.0; 2]).rtol(1e-14).atol(1e-15);
+    let problem = solve(&system, (0.0, 2.0), [0.5, -0.25], [0.0; 2]).method(Dop853::new()).rtol(1e-14).atol(1e-15);
     problem.run().map_or([f64::NAN; 4], |solution| [solution.end.q[0], solution.end.q[1], solution.end.v[0], solution.end.v[1]])
 }
 
@@ -156,7 +186,7 @@ fn collapse(_: Scale, report: &mut Report) {
             (typed && near, stats.accepted + stats.rejected)
         }
     };
-    let problem = || solve(&kepler, (0.0, 2.0), [1.0, 0.0], [0.0; 2]);
+    let problem = || solve(&kepler, (0.0, 2.0), [1.0, 0.0], [0.0; 2]).method(Dop853::new());
     let found = [
         fall(problem().run()),
         fall(problem().method(Tsit5::new()).run()),
@@ -167,7 +197,9 @@ fn collapse(_: Scale, report: &mut Report) {
     report.at_most("the steps it takes until then", largest(found.map(|found| found.1 as f64)), 10_000.0);
 
     let gap = 1e-12;
-    let around = solve(&kepler, (0.0, core::f64::consts::TAU), [gap, 0.0], [0.0, ((2.0 - gap) / gap).sqrt()]).rtol(1e-10);
+    let around = solve(&kepler, (0.0, core::f64::consts::TAU), [gap, 0.0], [0.0, ((2.0 - gap) / gap).sqrt()])
+        .method(Dop853::new())
+        .rtol(1e-10);
     let steps = match around.run() {
         Ok(solution) => solution.stats.accepted + solution.stats.rejected,
         Err(failure) => failure.partial.stats.accepted + failure.partial.stats.rejected,
@@ -180,11 +212,15 @@ fn collapse(_: Scale, report: &mut Report) {
         (largest([(solution.end.q[0] - 0.994).abs(), solution.end.q[1].abs()]), solution.stats.accepted + solution.stats.rejected)
     };
     let taylor = close(solve(&orbit, (0.0, period), q, v).method(Taylor::new()).rtol(1e-18).run().unwrap());
-    let dop853 = close(solve(&orbit, (0.0, period), q, v).rtol(1e-13).atol(1e-13).run().unwrap());
+    let dop853 = close(solve(&orbit, (0.0, period), q, v).method(Dop853::new()).rtol(1e-13).atol(1e-13).run().unwrap());
     // The start is rounded to 1e-16; one period amplifies it.
     let near = truth(&orbit.map(DoubleDouble::from), (0.0, period), q, v).end;
     let rounded = largest([(near.q[0].to_f64() - 0.994).abs(), near.q[1].to_f64().abs()]);
-    report.at_most("P41 closes after a period by Taylor, against ten times what the rounded start does to it", taylor.0, 10.0 * rounded);
+    report.at_most(
+        "P41 closes after a period by Taylor, against ten times what the rounded start does to it",
+        taylor.0,
+        10.0 * rounded,
+    );
     report.at_most("P41 by Dop853, rtol 1e-13", dop853.0, 1e-5);
     report.at_most("its steps by either", largest([taylor.1 as f64, dop853.1 as f64]), 1000.0);
 }

@@ -32,7 +32,14 @@ fn spring(_: Scale, report: &mut Report) {
         energy = larger(energy, (system.energy(0.0, &end.q, &end.v, &()) - start).abs());
         // Far from every multiple of the fast period, the rigid rod is what remains.
         if 8 <= exponent {
-            let rigid = solve(&Simple::new(1.0), (0.0, 20.0), [1.0], [0.0]).rtol(1e-12).atol(1e-12).run().unwrap().end.q[0];
+            let rigid = solve(&Simple::new(1.0), (0.0, 20.0), [1.0], [0.0])
+                .method(Dop853::new())
+                .rtol(1e-12)
+                .atol(1e-12)
+                .run()
+                .unwrap()
+                .end
+                .q[0];
             let damped = solve(&system, (0.0, 20.0), q, v).method(Rodas4::new()).rtol(1e-8).atol(1e-8).run().unwrap().end;
             slow = larger(slow, (damped.q[1] - rigid).abs());
         }
@@ -54,7 +61,8 @@ fn damping(scale: Scale, report: &mut Report) {
     for exponent in 1..=6 {
         let c = 10f64.powi(exponent);
         let system = Damped::new(c);
-        let solution = solve(&system, (0.0, 5.0 * c), [1.0], [0.0]).method(Rodas4::new()).rtol(1e-8).atol(1e-12).every_step().run().unwrap();
+        let solution =
+            solve(&system, (0.0, 5.0 * c), [1.0], [0.0]).method(Rodas4::new()).rtol(1e-8).atol(1e-12).every_step().run().unwrap();
         ringing += solution.q.windows(2).filter(|pair| pair[0][0] < pair[1][0]).count();
         // tan(q/2) = tan(½) e^(−t/c) up to 1/c².
         if 4 <= exponent {
@@ -65,19 +73,27 @@ fn damping(scale: Scale, report: &mut Report) {
     report.at_most("c = 10 to 1e6, Rodas4: steps in which the pendulum rises again", ringing as f64, 0.0);
     report.at_most("c = 1e4 to 1e6: distance from the creeping motion after 5c, beyond 2/c²", creep, 1e-7);
 
-    let explicit = [1e2, 1e4, 1e6].map(|c| solve(&Damped::new(c), (0.0, 1e3), [1.0], [0.0]).method(Rk4).step(10.0 / c).run().is_err());
+    let explicit =
+        [1e2, 1e4, 1e6].map(|c| solve(&Damped::new(c), (0.0, 1e3), [1.0], [0.0]).method(Rk4).step(10.0 / c).run().is_err());
     report.failures("Rk4 with h c = 10 ends with an error", explicit);
 
     let faint = Damped::new(1e-12);
     let end = solve(&faint, (0.0, 100.0), [1.3], [0.0]).method(Taylor::new()).rtol(1e-18).run().unwrap().end;
     let exact = truth(&faint.map(DoubleDouble::from), (0.0, 100.0), [1.3], [0.0]).end;
     let change = Swing::from(1.3).at(100.0)[0] - exact.q[0];
-    report.at_most("c = 1e-12, Taylor at t = 100, error over what the damping has changed", (DoubleDouble::from(end.q[0]) - exact.q[0]).to_f64().abs() / change.to_f64().abs(), 0.01);
+    report.at_most(
+        "c = 1e-12, Taylor at t = 100, error over what the damping has changed",
+        (DoubleDouble::from(end.q[0]) - exact.q[0]).to_f64().abs() / change.to_f64().abs(),
+        0.01,
+    );
 
     // To rest, and on: no digit may become NaN, and small numbers must not be slow.
     let steps = scale.pick(100_000, 1_000_000, 1_000_000);
     let rest = Damped::new(0.5);
-    let mut run = Integrator::new(&rest, Rk4, 0.0, [1.0], [0.0]).unwrap().control(pendulum_runtime::integrate::FixedStep::new(0.05)).unwrap();
+    let mut run = Integrator::new(&rest, Rk4, 0.0, [1.0], [0.0])
+        .unwrap()
+        .control(pendulum_runtime::integrate::FixedStep::new(0.05))
+        .unwrap();
     let mut finite = true;
     for _ in 0..steps {
         run.step().unwrap();
@@ -139,7 +155,8 @@ where
     spread
 }
 
-const LOOSE: &str = "errors of order one: the estimate is no longer small against the motion, least of all in a first step as long as the run";
+const LOOSE: &str =
+    "errors of order one: the estimate is no longer small against the motion, least of all in a first step as long as the run";
 
 fn tolerances(scale: Scale, report: &mut Report) {
     let mut random = Random::new(26);
@@ -183,12 +200,16 @@ fn tolerances(scale: Scale, report: &mut Report) {
                 "thirty steps cover the run: in one of a thousand the estimate for one of them is small by accident, on P31",
             );
             report.at_most(format!("{runs}: the same, 1e-3 to 0.1"), worst(1), 100.0).because(LOOSE);
-            report.at_most(format!("{}: P38, e = 0.5, three orbits, 3e-15 to 1e-3", $name), orbit.worst[0], 100.0).because(
-                "the error of a step changes the period of an orbit, and what that costs grows with time",
-            );
+            report
+                .at_most(format!("{}: P38, e = 0.5, three orbits, 3e-15 to 1e-3", $name), orbit.worst[0], 100.0)
+                .because("the error of a step changes the period of an orbit, and what that costs grows with time");
             report.at_most(format!("{}: the same, 1e-3 to 0.1", $name), orbit.worst[1], 100.0).because(LOOSE);
             report.at_most(format!("{}: runs that fail", $name), all().map(|spread| spread.failed).sum::<usize>() as f64, 0.0);
-            report.at_most(format!("{}: errors that grow as the tolerance falls", $name), all().map(|spread| spread.turned).sum::<usize>() as f64, 0.0);
+            report.at_most(
+                format!("{}: errors that grow as the tolerance falls", $name),
+                all().map(|spread| spread.turned).sum::<usize>() as f64,
+                0.0,
+            );
         }};
     }
     method!("Dop853", Dop853::new());

@@ -242,7 +242,12 @@ pub(crate) fn lanes_that_differ(steps: usize) -> Vec<(&'static str, usize)> {
         ("simple", differing(&Simple::new(1.0), [1.3], [0.0], steps, |system| system.map(Lanes::splat))),
         ("henon_heiles", differing(&HenonHeiles::new(1.0), [0.1, 0.0], [0.0, 0.5], steps, |system| system.map(Lanes::splat))),
         ("forced", differing(&Forced::new(0.25), [0.0], [0.0], steps, |system| system.map(Lanes::splat))),
-        ("double", differing(&Double::new([1.0, 0.7], [0.9, 1.1], 9.81), [0.5, -0.25], [0.0; 2], steps, |system| system.map(Lanes::splat))),
+        (
+            "double",
+            differing(&Double::new([1.0, 0.7], [0.9, 1.1], 9.81), [0.5, -0.25], [0.0; 2], steps, |system| {
+                system.map(Lanes::splat)
+            }),
+        ),
         ("cart", differing(&Cart::new(2.0, 1.0, 1.0, 1.0), [0.0, 2.0], [0.0; 2], steps, |system| system.map(Lanes::splat))),
         ("spherical", differing(&Spherical::new(1.0, 1.0), [1.0, 0.0], [0.0, 1.0], steps, |system| system.map(Lanes::splat))),
         ("kepler", differing(&Kepler::new(1.0), [0.7, 0.0], [0.0, 1.3], steps, |system| system.map(Lanes::splat))),
