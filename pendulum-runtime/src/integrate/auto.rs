@@ -10,7 +10,7 @@ use super::method::{Method, Suits};
 use super::node::Node;
 use super::piece::Piece;
 use super::span::Span;
-use super::splitting::drift_kick_drift;
+use super::splitting::drift_kick_drift_in_two_words;
 use super::srkn14a::{self, Srkn14a};
 use super::stepper::Stepper;
 use super::taylor::{RoomOf, Taylor};
@@ -191,7 +191,7 @@ impl Method for Symplectic {
 impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Symplectic {
     #[inline]
     fn step(&self, field: &mut impl Field<S, N>, span: &Span, from: &mut Node<S::Scalar, N>, (): &mut ()) -> Node<S::Scalar, N> {
-        drift_kick_drift(&srkn14a::SPLITTING, field, span, from)
+        drift_kick_drift_in_two_words(&srkn14a::SPLITTING, field, span, from)
     }
 
     fn dense(
