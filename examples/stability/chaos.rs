@@ -117,7 +117,7 @@ fn chaos(scale: Scale, report: &mut Report) {
         halves[usize::from(count / 2 < step)] = drift;
         square += run.v()[1] * run.v()[1] / count as f64;
         let turn = (run.q()[1] / core::f64::consts::TAU).round();
-        flips += (turn - side as f64).abs();
+        flips += (turn - side).abs();
         side = turn;
     }
     report.at_most(format!("energy by Gauss<4>, 1/64 s, over {seconds} s"), drift, 1e-10);

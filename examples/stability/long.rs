@@ -157,7 +157,7 @@ fn bias(scale: Scale, report: &mut Report) {
             for (row, &mark) in marks.iter().enumerate() {
                 // The mean over a few states rounds the last words of the states away.
                 let mut mean = 0.0;
-                for _ in step..mark {
+                while step < mark {
                     run.step().unwrap();
                     if plain {
                         run.reset(run.t(), *run.q(), *run.v()).unwrap();

@@ -151,7 +151,7 @@ where
         }
     }
     let errors: Vec<f64> = (1..=7).map(|k| run(10f64.powi(-2 * k), None).unwrap_or(f64::NAN)).collect();
-    spread.turned = errors.windows(2).filter(|pair| !(pair[1] <= pair[0])).count();
+    spread.turned = errors.windows(2).filter(|pair| pair[1].is_nan() || pair[0] < pair[1]).count();
     spread
 }
 

@@ -35,9 +35,10 @@ pub(crate) fn count<T>(work: impl FnOnce() -> T) -> Tally {
     TALLY.get()
 }
 
-fn note(change: impl FnOnce(&mut Tally)) {
+/// Counts one more of a kind.
+fn note(kind: impl FnOnce(&mut Tally) -> &mut f64) {
     let mut tally = TALLY.get();
-    change(&mut tally);
+    *kind(&mut tally) += 1.0;
     TALLY.set(tally);
 }
 
@@ -47,7 +48,7 @@ macro_rules! operator {
             type Output = Self;
 
             fn $function(self, other: Self) -> Self {
-                note(|tally| tally.$kind += 1.0);
+                note(|tally| &mut tally.$kind);
                 Self(self.0 $symbol other.0)
             }
         }
@@ -105,7 +106,7 @@ impl Real for Counted {
     }
 
     fn sin_cos(self) -> (Self, Self) {
-        note(|tally| tally.sin_cos += 1.0);
+        note(|tally| &mut tally.sin_cos);
         let (sin, cos) = Real::sin_cos(self.0);
         (Self(sin), Self(cos))
     }

@@ -2,7 +2,7 @@
 
 use super::systems::{moving, pendulum, shaken};
 use crate::error::Error;
-use crate::integrate::{AdaptiveStep, Dop853, FixedStep, Integrator, Leapfrog, Rk4, solve};
+use crate::integrate::{AdaptiveStep, Dop853, FixedStep, Integrator, Leapfrog, Rk4, Srkn14a, solve};
 
 #[test]
 fn steps_have_the_length_asked_for() {
@@ -103,4 +103,23 @@ fn a_long_time_at_a_small_step_keeps_its_digits() {
         (integrator.t() - start, *integrator.q())
     };
     assert_eq!(run(1e9), (10.0, run(0.0).1));
+}
+
+#[test]
+fn displaced_coordinates_keep_what_rounding_has_left_off() {
+    // A free rotation in steps that no double holds: whole turns come off, the digits behind the last one stay.
+    let turn = (core::f64::consts::TAU, 2.4492935982947064e-16);
+    let system = pendulum();
+    let mut here = Integrator::new(&system, Srkn14a, 0.0, [0.0], [2.5]).unwrap().control(FixedStep::new(1.0 / 32.0)).unwrap();
+    let mut there = here.clone();
+    for _ in 0..1000 {
+        there.displace([turn.0], [turn.1]).unwrap();
+        there.displace([-turn.0], [-turn.1]).unwrap();
+        here.step().unwrap();
+        there.step().unwrap();
+    }
+    assert!((here.q()[0] - there.q()[0]).abs() < 1e-13 && (here.v()[0] - there.v()[0]).abs() < 1e-13);
+    let error = there.displace([f64::INFINITY], [0.0]).unwrap_err();
+    assert!(matches!(error, Error::InitialState { part: crate::error::Part::Position, .. }), "{error}");
+    assert!(there.q()[0].is_finite());
 }
