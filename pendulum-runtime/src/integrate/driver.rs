@@ -81,8 +81,7 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
     /// Moves the coordinates by `high + low`; what rounding has left off stays.
     pub(crate) fn displace<D: Dynamics<N, Scalar = T>>(&mut self, high: &[T; N], low: &[T; N]) -> Result<(), Error> {
         let mut q = self.node.q;
-        q.add(T::from_f64(1.0), high);
-        q.add(T::from_f64(1.0), low);
+        q.add_both(T::from_f64(1.0), high, low);
         check_start::<D, T, N>(self.t(), &q.high, &self.node.v.high)?;
         (self.node.q, self.node.a) = (q, None);
         (self.last, self.within, self.before_kink) = (None, None, None);
