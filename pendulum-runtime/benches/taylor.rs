@@ -1,12 +1,16 @@
-//! Error and time of `Taylor`: the simple pendulum over 1000 s, the double pendulum and a chain of five links, at several tolerances.
+//! Error and time of `Taylor`: the simple pendulum over 1000 s, the double pendulum and a chain of five links, at several tolerances; and of
+//! `Batch`, 512 pendulums of different amplitudes at order 20.
 //!
-//! The error is that of the coordinates at the end, against the elliptic functions or digits of arbitrary precision; the time is the
-//! median of eleven runs. `cargo bench -p pendulum-runtime --bench taylor`
+//! The error is that of the coordinates at the end, against the elliptic functions, digits of arbitrary precision or, for `Batch`, scalars of two
+//! words; the time is the median of eleven runs. `benches/peers/heyoka_batch.py` measures heyoka on the same batches.
+//! `cargo bench -p pendulum-runtime --bench taylor [-- batch]`
 
 #![allow(mixed_script_confusables, missing_docs)]
 
+use pendulum_runtime::integrate::{Batch, Batched, Problem};
 use pendulum_runtime::jet::JetDynamics;
 use pendulum_runtime::prelude::*;
+use pendulum_runtime::real::{DoubleDouble, Float};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -55,7 +59,82 @@ fn report<const N: usize>(name: &str, dynamics: &impl JetDynamics<N, Scalar = f6
     }
 }
 
+/// The motions of a batch.
+const MOTIONS: usize = 512;
+
+/// Nanoseconds for each lane and step at order 20, beside those of `Taylor` for one motion after the other, and the largest error of every 37th.
+fn batch<S, const N: usize>(name: &str, problems: &[Problem<S, N>], exact: impl Fn(&Problem<S, N>) -> [DoubleDouble; N])
+where
+    S: Batched<N, Scalar = f64> + JetDynamics<N, Scalar = f64>,
+{
+    let method = Batch::new().order(20).rtol(f64::EPSILON);
+    let Ok(outcomes) = method.run(problems) else { return };
+    let (mut steps, mut error) = (0, 0.0f64);
+    for (index, (outcome, problem)) in outcomes.iter().zip(problems).enumerate() {
+        let Ok(solution) = outcome else { return println!("{name}: {outcome:?}") };
+        steps += solution.stats.accepted;
+        if index % 37 == 0 {
+            for (q, exact) in solution.end.q.iter().zip(exact(problem)) {
+                error = error.max((DoubleDouble::from_f64(*q) - exact).to_f64().abs());
+            }
+        }
+    }
+    let (mut together, mut alone) = (Vec::new(), Vec::new());
+    for _ in 0..11 {
+        let start = Instant::now();
+        black_box(method.run(black_box(problems))).ok();
+        together.push(start.elapsed().as_secs_f64());
+        let start = Instant::now();
+        for Problem { system, time, q, v } in black_box(problems) {
+            black_box(solve(system, *time, *q, *v).method(Taylor::new().order(20)).rtol(f64::EPSILON).run()).ok();
+        }
+        alone.push(start.elapsed().as_secs_f64());
+    }
+    together.sort_by(f64::total_cmp);
+    alone.sort_by(f64::total_cmp);
+    let each = |times: &[f64], index: usize| 1e9 * times[index] / steps as f64;
+    println!(
+        "{name:<15} error {error:8.1e}   {:6.1} ns a lane and step (least {:.1}), alone {:.1} ns (least {:.1})   {steps} steps",
+        each(&together, 5),
+        each(&together, 0),
+        each(&alone, 5),
+        each(&alone, 0)
+    );
+}
+
+fn batches() {
+    let amplitude = |index: usize| 0.1 + 2.9 * index as f64 / MOTIONS as f64;
+    let problems: Vec<_> = (0..MOTIONS)
+        .map(|k| Problem { system: Pendulum::new(1.0, 1.0), time: (0.0, 100.0), q: [amplitude(k)], v: [0.0] })
+        .collect();
+    let two = DoubleDouble::from_f64;
+    batch("batch pendulum", &problems, |problem| {
+        let start = [two(problem.q[0])];
+        let exact = solve(&problem.system.map(two), problem.time, start, [two(0.0)]).method(Taylor::new()).rtol(1e-28).run();
+        exact.map_or([two(f64::NAN)], |exact| exact.end.q)
+    });
+    let problems: Vec<_> = (0..MOTIONS)
+        .map(|k| Problem {
+            system: Double::new([1.0; 2], [1.0; 2], 1.0),
+            time: (0.0, 20.0),
+            q: [0.5 * amplitude(k), -0.25 * amplitude(k)],
+            v: [0.0; 2],
+        })
+        .collect();
+    batch("batch double", &problems, |problem| {
+        let exact = solve(&problem.system.map(two), problem.time, problem.q.map(two), [two(0.0); 2])
+            .method(Taylor::new())
+            .rtol(1e-28)
+            .run();
+        exact.map_or([two(f64::NAN); 2], |exact| exact.end.q)
+    });
+}
+
 fn main() {
+    batches();
+    if std::env::args().any(|word| word == "batch") {
+        return;
+    }
     // θ(1000 s) = 2 asin(k sn(K − ωt | k²)) with k = sin 0.65 and ω² = 9.8.
     report("pendulum", &Pendulum::new(1.0, 1.0), 1000.0, [1.3], &[1.2960573950636069]);
     let double = Double::new([1.0; 2], [1.0; 2], 1.0);

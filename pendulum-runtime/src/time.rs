@@ -1,5 +1,8 @@
 //! Time in two words, so that a step of 1/60 s still resolves the motion after a year.
 
+// Loops over lanes have to be compiled for their vectors.
+#![allow(clippy::inline_always)]
+
 use core::ops::{Add, AddAssign};
 
 /// A time in seconds, `hi + lo` with |lo| at most half a unit in the last place of `hi`.
@@ -17,17 +20,25 @@ impl Time {
         Self { hi, lo: 0.0 }
     }
 
+    /// What [`to_f64`](Self::to_f64) and [`low`](Self::low) gave.
+    pub(crate) const fn from_words(hi: f64, lo: f64) -> Self {
+        Self { hi, lo }
+    }
+
     /// The nearest `f64`.
+    #[inline(always)]
     pub const fn to_f64(self) -> f64 {
         self.hi
     }
 
     /// What `to_f64` leaves off.
+    #[inline(always)]
     pub const fn low(self) -> f64 {
         self.lo
     }
 
     /// `self - origin`, rounded once.
+    #[inline(always)]
     pub fn since(self, origin: f64) -> f64 {
         // Sterbenz: near the origin the first difference is exact.
         (self.hi - origin) + self.lo
@@ -44,6 +55,7 @@ impl Add<f64> for Time {
     type Output = Self;
 
     /// Knuth (1969), the two-sum: the sum and its rounding error.
+    #[inline(always)]
     fn add(self, step: f64) -> Self {
         let sum = self.hi + step;
         let part = sum - self.hi;

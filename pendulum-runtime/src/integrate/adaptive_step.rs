@@ -1,5 +1,8 @@
 //! Steps as long as the error allows.
 
+// What lanes use too has to be compiled for their vectors.
+#![allow(clippy::inline_always)]
+
 use super::blame::blame;
 use super::control::{Control, Course, Memory};
 use super::field::{Accelerations, coordinate};
@@ -202,7 +205,7 @@ impl<const N: usize> AdaptiveStep<N> {
     }
 
     /// A length of step within the limits set.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn limited(&self, first: bool, wanted: f64) -> f64 {
         let wanted = if self.max_step < wanted { self.max_step } else { wanted };
         match self.first_step {
@@ -281,6 +284,7 @@ impl<const N: usize> AdaptiveStep<N> {
 }
 
 /// The length of a step that time does not resolve: its second word has to hold the step to about ten digits.
+#[inline(always)]
 pub(crate) fn resolution(t: Time) -> f64 {
     let resolution = 1e-26 * t.to_f64().abs();
     if resolution < 1e-200 { 1e-200 } else { resolution }

@@ -228,7 +228,11 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
 }
 
 /// Whether an integration can begin there.
-fn check_start<D: Dynamics<N, Scalar = T>, T: Float, const N: usize>(t: f64, q: &[T; N], v: &[T; N]) -> Result<(), Error> {
+pub(super) fn check_start<D: Dynamics<N, Scalar = T>, T: Float, const N: usize>(
+    t: f64,
+    q: &[T; N],
+    v: &[T; N],
+) -> Result<(), Error> {
     if !t.is_finite() {
         return Err(Error::Interval { start: t, end: t });
     }

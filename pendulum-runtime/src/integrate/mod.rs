@@ -19,6 +19,8 @@
 //! | [`Dop853`] | 8 | 12 | adaptive | any system, errors 1e-6 … 1e-13 |
 //! | [`Taylor`] | 2 … 30 | its order | adaptive, back in time too | any generated system, errors 1e-5 … rounding |
 //!
+//! [`Batch`] takes many motions of one system through `Taylor` side by side.
+//!
 //! [`Auto`], which `solve` uses unless told otherwise, chooses among them.
 //!
 //! Velocity-free are systems with a constant mass matrix whose accelerations contain no velocity; `lagrangian!` knows them.
@@ -28,6 +30,7 @@ pub mod method;
 
 mod adaptive_step;
 mod auto;
+mod batch;
 pub(crate) mod blame;
 mod control;
 mod dense;
@@ -71,6 +74,7 @@ mod watch;
 
 pub use adaptive_step::AdaptiveStep;
 pub use auto::Auto;
+pub use batch::{Batch, Batched, Outcome, Problem};
 pub use dop853::Dop853;
 pub use dprkn8::Dprkn8;
 pub use dprkn12::Dprkn12;

@@ -31,6 +31,18 @@ impl<T: Real, const N: usize> Sum<T, N> {
         }
     }
 
+    /// Adds `a · b + rest` to one of the numbers; the product comes with both words (Veltkamp 1968, Dekker 1971). The scalar's
+    /// [`splitter`] divides the factors.
+    #[inline(always)]
+    pub(crate) fn add_split_product(&mut self, index: usize, a: T, b: T, rest: T, splitter: T) {
+        let product = a * b;
+        let ((a, a_low), (b, b_low)) = (halves(a, splitter), halves(b, splitter));
+        let error = ((a * b - product) + (a * b_low + a_low * b)) + a_low * b_low;
+        let (sum, left) = two_sum(self.high[index], product);
+        let (sum, rounded) = two_sum(sum, rest + ((left + error) + self.low[index]));
+        (self.high[index], self.low[index]) = (sum, rounded);
+    }
+
     /// `self - earlier`, with the low words: exact where the two are close.
     #[inline]
     pub fn since(&self, earlier: &Self) -> [T; N] {
@@ -39,15 +51,10 @@ impl<T: Real, const N: usize> Sum<T, N> {
 }
 
 impl<T: Float, const N: usize> Sum<T, N> {
-    /// Adds `a · b + rest` to one of the numbers; the product comes with both words (Veltkamp 1968, Dekker 1971).
+    /// Adds `a · b + rest` to one of the numbers; the product comes with both words.
     #[inline]
     pub fn add_product(&mut self, index: usize, a: T, b: T, rest: T) {
-        let product = a * b;
-        let ((a, a_low), (b, b_low)) = (halves(a), halves(b));
-        let error = ((a * b - product) + (a * b_low + a_low * b)) + a_low * b_low;
-        let (sum, left) = two_sum(self.high[index], product);
-        let (sum, rounded) = two_sum(sum, rest + ((left + error) + self.low[index]));
-        (self.high[index], self.low[index]) = (sum, rounded);
+        self.add_split_product(index, a, b, rest, splitter::<T>());
     }
 
     /// Adds `factor · (high + low)`, where the products of the high words come with both words.
@@ -73,13 +80,18 @@ fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
     (sum, (a - (sum - part)) + (b - part))
 }
 
-/// A number as the sum of two with half the digits each.
+/// One more than the power of two that has half the digits of a number.
 #[inline]
-fn halves<T: Float>(x: T) -> (T, T) {
+pub(crate) fn splitter<T: Float>() -> T {
     // The exponent of the machine epsilon tells the number of digits.
     let digits = 1024 - (T::EPSILON.to_f64().to_bits() >> 52);
-    let factor = T::from_f64(f64::from_bits((1023 + digits.div_ceil(2)) << 52) + 1.0);
-    let scaled = factor * x;
+    T::from_f64(f64::from_bits((1023 + digits.div_ceil(2)) << 52) + 1.0)
+}
+
+/// A number as the sum of two with half the digits each.
+#[inline(always)]
+fn halves<T: Real>(x: T, splitter: T) -> (T, T) {
+    let scaled = splitter * x;
     let high = scaled - (scaled - x);
     (high, x - high)
 }

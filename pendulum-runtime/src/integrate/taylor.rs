@@ -1,5 +1,8 @@
 //! Taylor series of any order.
 
+// What lanes use too has to be compiled for their vectors.
+#![allow(clippy::inline_always)]
+
 use super::adaptive_step::{AdaptiveStep, fit, resolution};
 use super::blame::{self, blame};
 use super::control::{Control, Course, Memory};
@@ -71,17 +74,17 @@ pub struct Room<T, W, X, const N: usize> {
 
 /// What the tolerance decides about the length of a step.
 #[derive(Clone, Copy, Debug, Default)]
-struct Rule {
+pub(super) struct Rule {
     tolerance: f64,
-    order: usize,
-    /// Its binary logarithm.
-    binary: f64,
+    pub(super) order: usize,
+    /// The binary logarithm of the tolerance.
+    pub(super) binary: f64,
     /// The binary logarithm of the step over the radius of convergence.
-    margin: f64,
+    pub(super) margin: f64,
 }
 
 impl Rule {
-    fn new(method: Taylor, tolerance: f64) -> Self {
+    pub(super) fn new(method: Taylor, tolerance: f64) -> Self {
         let (order, binary) = (method.order_for(tolerance), log2(tolerance));
         let margin = binary / order as f64 - 0.7 * core::f64::consts::LOG2_E / (order as f64 - 1.0);
         Self { tolerance, order, binary, margin }
@@ -256,8 +259,8 @@ fn sum<T: Float, W, X, const N: usize>(room: &Room<T, W, X, N>, from: &Node<T, N
 }
 
 /// Σ x\[k\] hᵏ over 2 ≤ k ≤ `order`: the upper half of the terms and the lower one after Horner (1819), side by side.
-#[inline]
-fn rest<T: Float>(series: &Series<T>, order: usize, h: T) -> T {
+#[inline(always)]
+pub(super) fn rest<T: Real>(series: &Series<T>, order: usize, h: T) -> T {
     let lower = &series[2..=order / 2];
     let upper = &series[order / 2 + 1..=order];
     let (mut low, mut high, mut power) = (T::from_f64(0.0), T::from_f64(0.0), h * h);
@@ -276,7 +279,7 @@ fn rest<T: Float>(series: &Series<T>, order: usize, h: T) -> T {
 }
 
 /// How many of the last coefficients tell the length of a step. A motion from rest in a symmetric place has one order in four only.
-const TELLING: usize = 4;
+pub(super) const TELLING: usize = 4;
 
 /// The length of a step at whose end the last term of the series is as large as allowed; infinite for a uniform motion.
 #[inline]
@@ -302,7 +305,7 @@ fn length<T: Float, const N: usize>(path: &Path<T, N>, rule: &Rule, weights: &[[
 
 /// The largest coefficient of an order over the error allowed, and its coordinate.
 #[inline]
-fn largest<T: Float, const N: usize>(path: &Path<T, N>, k: usize, weights: &[[f64; N]; 2]) -> (f64, usize) {
+pub(super) fn largest<T: Float, const N: usize>(path: &Path<T, N>, k: usize, weights: &[[f64; N]; 2]) -> (f64, usize) {
     let mut largest = (0.0, 0);
     for i in 0..N {
         for (series, weights) in [(&path.q[i], &weights[0]), (&path.v[i], &weights[1])] {

@@ -92,6 +92,18 @@ pub trait Orders {
         drive: &S::Drive,
         work: &mut S::Work,
     );
+
+    /// The same for a system over lanes, compiled into the code around it for the vectors that this may use.
+    #[inline(always)]
+    fn run_in_lanes<S: Jets<N>, const N: usize>(
+        system: &S,
+        order: usize,
+        path: &mut Path<S::Scalar, N>,
+        drive: &S::Drive,
+        work: &mut S::Work,
+    ) {
+        looped::<S, true, N>(system, order, path, drive, work);
+    }
 }
 
 /// One piece of code for each order: fastest for short equations.
@@ -116,10 +128,7 @@ impl Orders for Looped {
         drive: &S::Drive,
         work: &mut S::Work,
     ) {
-        for k in 0..order.min(MAX_ORDER) {
-            system.coefficient(Running(k), path, drive, work);
-            path.integrate(Running(k));
-        }
+        looped::<S, false, N>(system, order, path, drive, work);
     }
 }
 
@@ -150,15 +159,65 @@ impl Orders for Unrolled {
         drive: &S::Drive,
         work: &mut S::Work,
     ) {
-        macro_rules! each {
-            ($($k:literal)+) => {$(
-                if order <= $k {
-                    return;
-                }
-                system.coefficient(Constant::<$k>, path, drive, work);
-                path.integrate(Constant::<$k>);
-            )+};
-        }
-        each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29);
+        unrolled::<S, false, N>(system, order, path, drive, work);
     }
+
+    #[inline(always)]
+    fn run_in_lanes<S: Jets<N>, const N: usize>(
+        system: &S,
+        order: usize,
+        path: &mut Path<S::Scalar, N>,
+        drive: &S::Drive,
+        work: &mut S::Work,
+    ) {
+        unrolled::<S, true, N>(system, order, path, drive, work);
+    }
+}
+
+/// The orders one after the other, each in the same code.
+#[inline(always)]
+fn looped<S: Jets<N>, const LANES: bool, const N: usize>(
+    system: &S,
+    order: usize,
+    path: &mut Path<S::Scalar, N>,
+    drive: &S::Drive,
+    work: &mut S::Work,
+) {
+    for k in 0..order.min(MAX_ORDER) {
+        system.coefficient(Running(k), path, drive, work);
+        path.integrate(Running(k));
+        if LANES {
+            part(path, work);
+        }
+    }
+}
+
+/// The orders one after the other, each in code of its own.
+#[inline(always)]
+fn unrolled<S: Jets<N>, const LANES: bool, const N: usize>(
+    system: &S,
+    order: usize,
+    path: &mut Path<S::Scalar, N>,
+    drive: &S::Drive,
+    work: &mut S::Work,
+) {
+    macro_rules! each {
+        ($($k:literal)+) => {$(
+            if order <= $k {
+                return;
+            }
+            system.coefficient(Constant::<$k>, path, drive, work);
+            path.integrate(Constant::<$k>);
+            if LANES {
+                part(path, work);
+            }
+        )+};
+    }
+    each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29);
+}
+
+/// Keeps the orders apart: the compiler then forms vectors of lanes within one order, where they come out whole.
+#[inline(always)]
+fn part<P, W>(path: &mut P, work: &mut W) {
+    core::hint::black_box((path, work));
 }

@@ -1,0 +1,188 @@
+//! Taylor series of many motions at once.
+
+mod kernel;
+
+use super::adaptive_step::AdaptiveStep;
+use super::control::Control;
+use super::driver::check_start;
+use super::output::{Output, Recorder};
+use super::solution::{Failure, Solution, State, Stats};
+use super::taylor::{Rule, Taylor};
+use crate::error::Error;
+use crate::jet::Jets;
+use crate::real::{Float, Lane, Lanes};
+use crate::simd;
+use crate::system::System;
+
+/// The motions that are under way at the same time: a vector of 64 bytes for `f64`.
+const W: usize = 8;
+
+/// Many motions of one type of system by their [`Taylor`] series, side by side in the lanes of the widest vectors that the machine has.
+///
+/// Parameters, intervals and start states may differ from motion to motion, and each takes the steps that `Taylor` would choose for it
+/// alone: the solution of a motion has, in state and counters, the bits of
+/// [`solve`](super::solve)`(&system, time, q, v).method(Taylor::new())`, whatever its neighbours do. Where one ends, the next one takes its lane.
+/// Worth it from about four motions on; it suits every system that `lagrangian!` has made without driven inputs.
+///
+/// A failure ends one motion only. A step allocates nothing; the end of a motion does.
+///
+/// ```
+/// # use pendulum_runtime::{integrate::{Batch, Problem}, prelude::*};
+/// # lagrangian! {
+/// #     #[derive(Clone, Debug)]
+/// #     pub struct Pendulum { m: kg, L: m, g: m/s^2 = 9.81 }
+/// #     coordinate θ: rad;
+/// #     let y = L * [sin(θ), -cos(θ)];
+/// #     kinetic = m/2 * |ẏ|^2;
+/// #     potential = m*g*height(y);
+/// # }
+/// let swings: Vec<_> = (1..=100)
+///     .map(|k| Problem { system: Pendulum::new(1.0, 0.5), time: (0.0, 10.0), q: [0.03 * f64::from(k)], v: [0.0] })
+///     .collect();
+/// for swing in Batch::new().rtol(1e-14).run(&swings).unwrap() {
+///     println!("{:.12} rad", swing.unwrap().end.q[0]);
+/// }
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Batch<const N: usize> {
+    method: Taylor,
+    control: AdaptiveStep<N>,
+    max_steps: u64,
+}
+
+/// An initial value problem: a system at the start of its motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Problem<S: System<N>, const N: usize> {
+    /// The system with its parameters.
+    pub system: S,
+    /// Start and end in seconds; an end before the start leads back in time.
+    pub time: (f64, f64),
+    /// The coordinates at the start.
+    pub q: [S::Scalar; N],
+    /// The velocities at the start.
+    pub v: [S::Scalar; N],
+}
+
+/// A system that can stand in lanes: every one that `lagrangian!` generates without driven inputs, over `f32` and `f64`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot be integrated in a batch",
+    note = "a batch takes systems that `lagrangian!` has made, over `f64` or `f32` and without driven inputs"
+)]
+pub trait Batched<const N: usize>: Jets<N, Scalar: Lane + Float, Inputs = ()> + Sized {
+    /// The same system over lanes.
+    #[doc(hidden)]
+    type Wide: Jets<N, Scalar = Lanes<Self::Scalar, 8>>;
+
+    /// The same system over lanes, with every parameter mapped.
+    #[doc(hidden)]
+    fn widen(&self, map: impl FnMut(Self::Scalar) -> Lanes<Self::Scalar, 8>) -> Self::Wide;
+}
+
+impl<S, const N: usize> Batched<N> for S
+where
+    S: Jets<N, Scalar: Lane + Float, Inputs = ()>,
+    S::With<Lanes<S::Scalar, W>>: Jets<N>,
+{
+    type Wide = S::With<Lanes<S::Scalar, W>>;
+
+    fn widen(&self, map: impl FnMut(S::Scalar) -> Lanes<S::Scalar, W>) -> Self::Wide {
+        self.map(map)
+    }
+}
+
+impl<const N: usize> Default for Batch<N> {
+    fn default() -> Self {
+        Self { method: Taylor::new(), control: AdaptiveStep::new(), max_steps: 10_000_000 }
+    }
+}
+
+impl<const N: usize> Batch<N> {
+    /// The order that the tolerance asks for, `rtol` 1e-6 (1.2e-5 for `f32`), at most ten million steps for each motion.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The order instead, from 2 to 30, as [`Taylor::order`].
+    pub fn order(mut self, order: usize) -> Self {
+        self.method = self.method.order(order);
+        self
+    }
+
+    /// The relative tolerance.
+    pub fn rtol(mut self, rtol: f64) -> Self {
+        self.control = self.control.rtol(rtol);
+        self
+    }
+
+    /// The absolute tolerance of all coordinates and velocities; without this call `rtol`.
+    pub fn atol(mut self, atol: f64) -> Self {
+        self.control = self.control.atol(atol);
+        self
+    }
+
+    /// The absolute tolerances of each coordinate and of each velocity.
+    pub fn atol_each(mut self, q: [f64; N], v: [f64; N]) -> Self {
+        self.control = self.control.atol_each(q, v);
+        self
+    }
+
+    /// The greatest length of the first step of each motion in seconds.
+    pub fn first_step(mut self, step: f64) -> Self {
+        self.control = self.control.first_step(step);
+        self
+    }
+
+    /// The greatest length of a step in seconds.
+    pub fn max_step(mut self, step: f64) -> Self {
+        self.control = self.control.max_step(step);
+        self
+    }
+
+    /// The number of steps after which a motion fails.
+    pub fn max_steps(mut self, count: u64) -> Self {
+        self.max_steps = count;
+        self
+    }
+
+    /// Integrates each problem from its start to its end: as many solutions, in the same order.
+    ///
+    /// The whole fails only if a setting is out of its range. A motion that cannot begin or go on gives its own [`Failure`], with the error and
+    /// the last good state.
+    pub fn run<S: Batched<N>>(&self, problems: &[Problem<S, N>]) -> Result<Vec<Outcome<S::Scalar, N>>, Error> {
+        <AdaptiveStep<N> as Control<Taylor, S, N>>::check(&self.control)?;
+        let Some(mut run) = kernel::Run::new(self, problems) else { return Ok(Vec::new()) };
+        simd::widest(kernel::Steps(&mut run));
+        Ok(run.outcomes())
+    }
+
+    /// What decides about the length of a step.
+    fn rule<T: Float>(&self) -> Rule {
+        Rule::new(self.method, self.control.tolerances::<T>().0)
+    }
+
+    /// Whether a motion can begin; `true` if it ends where it begins.
+    fn begin<S: Batched<N>>(&self, problem: &Problem<S, N>) -> Result<bool, Error> {
+        let (start, end) = problem.time;
+        if !(end - start).is_finite() {
+            return Err(Error::Interval { start, end });
+        }
+        let length = (end - start).abs();
+        if (self.max_steps as f64) < self.control.least_steps_over(length) || self.max_steps == 0 && start != end {
+            return Err(Error::MaxSteps { t: start, max_steps: self.max_steps });
+        }
+        check_start::<S, S::Scalar, N>(start, &problem.q, &problem.v)?;
+        Ok(start == end)
+    }
+}
+
+/// What one motion of a batch comes to.
+pub type Outcome<T, const N: usize> = Result<Solution<T, N>, Failure<T, N>>;
+
+/// The end of a motion over an interval.
+fn outcome<T: Float, const N: usize>(time: (f64, f64), end: State<T, N>, stats: Stats, error: Option<Error>) -> Outcome<T, N> {
+    let recorder = Recorder::new(Output::End, time);
+    match error {
+        None => Ok(recorder.finish(end, super::event::Status::Completed, stats)),
+        Some(error) => Err(recorder.fail(error, end, stats)),
+    }
+}
