@@ -72,6 +72,9 @@ where
     let (mut steps, mut error) = (0, 0.0f64);
     for (index, (outcome, problem)) in outcomes.iter().zip(problems).enumerate() {
         let Ok(solution) = outcome else { return println!("{name}: {outcome:?}") };
+        let Problem { system, time, q, v } = problem;
+        let alone = solve(system, *time, *q, *v).method(Taylor::new().order(20)).rtol(f64::EPSILON).run().ok();
+        assert_eq!(Some(solution), alone.as_ref(), "{name}: motion {index} has other bits alone");
         steps += solution.stats.accepted;
         if index % 37 == 0 {
             for (q, exact) in solution.end.q.iter().zip(exact(problem)) {

@@ -170,7 +170,12 @@ impl Orders for Unrolled {
         drive: &S::Drive,
         work: &mut S::Work,
     ) {
-        unrolled::<S, true, N>(system, order, path, drive, work);
+        // With the same bits; but one piece of code for each order takes the compiler long.
+        if cfg!(debug_assertions) {
+            looped::<S, true, N>(system, order, path, drive, work);
+        } else {
+            unrolled::<S, true, N>(system, order, path, drive, work);
+        }
     }
 }
 
