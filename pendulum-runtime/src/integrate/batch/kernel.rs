@@ -4,6 +4,8 @@
 //! motions is not.
 
 #![allow(clippy::inline_always)]
+// A branch in a loop over lanes would take the lanes apart.
+#![allow(clippy::needless_bitwise_bool)]
 
 use super::{Batch, Batched, Outcome, Problem, W, outcome};
 use crate::error::Error;
