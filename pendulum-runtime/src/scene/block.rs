@@ -7,7 +7,6 @@ use crate::system::System;
 
 /// [`W`] pendulums of one type.
 pub(super) struct Block<S: Hung<T, N>, T: Lane + Float, const N: usize> {
-    pub(super) system: S::Lanes,
     pub(super) prepared: <S::Lanes as System<N>>::Prepared,
     pub(super) q: Sum<Wide<T>, N>,
     pub(super) v: Sum<Wide<T>, N>,
@@ -15,14 +14,19 @@ pub(super) struct Block<S: Hung<T, N>, T: Lane + Float, const N: usize> {
     pub(super) before: [[Wide<T>; N]; 2],
     /// By lane, the track that it follows.
     pub(super) track: [u32; W],
-    /// By lane, its number in the group.
-    pub(super) id: [u32; W],
     /// The lanes whose state has ceased to be finite, by bit, and the ticks since the beginning of the batch when it did.
     pub(super) failed: u64,
     pub(super) failed_at: [u8; W],
     /// Damping and stops, if any lane has them.
     pub(super) extras: Option<Box<Extras<T, N>>>,
-    /// Whether parameters have changed, so that `system` and `prepared` must be made anew.
+}
+
+/// What most steps do not read of [`W`] pendulums: between the states it would only use up the caches.
+pub(super) struct Rare<S: Hung<T, N>, T: Lane + Float, const N: usize> {
+    pub(super) system: S::Lanes,
+    /// By lane, its number in the group.
+    pub(super) id: [u32; W],
+    /// Whether parameters have changed, so that `system` and what it has prepared must be made anew.
     pub(super) stale: bool,
 }
 
@@ -68,23 +72,20 @@ pub(super) fn half_decay<T: Real>(damping: T, h: f64) -> T {
 
 impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
     /// A block of pendulums like `prototype`, at rest at zero.
-    pub(super) fn new(prototype: &S) -> Self {
+    pub(super) fn new(prototype: &S) -> (Self, Rare<S, T, N>) {
         let system = prototype.widen(Wide::splat);
-        let prepared = system.prepare();
         let zero = [Wide::from_f64(0.0); N];
-        Self {
-            system,
-            prepared,
+        let block = Self {
+            prepared: system.prepare(),
             q: Sum::new(zero),
             v: Sum::new(zero),
             before: [zero; 2],
             track: [0; W],
-            id: [0; W],
             failed: 0,
             failed_at: [0; W],
             extras: None,
-            stale: false,
-        }
+        };
+        (block, Rare { system, id: [0; W], stale: false })
     }
 
     /// The state of a lane: coordinates and velocities.

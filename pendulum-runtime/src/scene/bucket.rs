@@ -1,6 +1,6 @@
 //! Pendulums of one type that take the same steps: those that are awake first, all in blocks of lanes.
 
-use super::block::{Block, Extras, half_decay};
+use super::block::{Block, Extras, Rare, half_decay};
 use super::hung::{Hung, Known, W, Wide};
 use super::joint::Place;
 use super::kernel::{Batch, Run};
@@ -10,6 +10,7 @@ use crate::real::{Float, Lane, Real};
 use crate::simd::widest;
 use crate::system::System;
 use crate::time::Time;
+use core::sync::atomic::AtomicBool;
 
 /// What pendulums have in common that are computed together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +25,8 @@ pub(super) struct Bucket<S: Hung<T, N>, T: Lane + Float, const N: usize> {
     pub(super) kind: Kind,
     pub(super) tracks: Tracks<T>,
     pub(super) blocks: Vec<Block<S, T, N>>,
+    /// The other part of each block.
+    pub(super) rare: Vec<Rare<S, T, N>>,
     /// The parameters: as many lanes for each block as the system has parameters.
     pub(super) parameters: Vec<Wide<T>>,
     /// All, and those at the front that are awake.
@@ -75,7 +78,17 @@ pub(super) type Failed = (u32, u8);
 impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     pub(super) fn new(kind: Kind) -> Self {
         let tracks = Tracks::new(<S::Inputs as super::assemble::Assemble<T>>::COMPONENTS.len());
-        Self { kind, tracks, blocks: Vec::new(), parameters: Vec::new(), len: 0, awake: 0, times: Vec::new(), stale: false }
+        Self {
+            kind,
+            tracks,
+            blocks: Vec::new(),
+            rare: Vec::new(),
+            parameters: Vec::new(),
+            len: 0,
+            awake: 0,
+            times: Vec::new(),
+            stale: false,
+        }
     }
 
     const fn parameter_count() -> usize {
@@ -86,7 +99,9 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     pub(super) fn push(&mut self, prototype: &S, loose: &Loose<T, N>) -> usize {
         let slot = self.len;
         if slot == self.blocks.len() * W {
-            self.blocks.push(Block::new(prototype));
+            let (block, rare) = Block::new(prototype);
+            self.blocks.push(block);
+            self.rare.push(rare);
             prototype.mapped(|parameter| {
                 self.parameters.push(Wide::splat(parameter));
                 parameter
@@ -102,6 +117,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         self.len -= 1;
         if self.len <= (self.blocks.len() - 1) * W {
             self.blocks.pop();
+            self.rare.pop();
             self.parameters.truncate(self.blocks.len() * Self::parameter_count());
         }
     }
@@ -146,13 +162,13 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         let count = Self::parameter_count();
         let lane = slot % W;
         let parameters = &mut self.parameters[slot / W * count..][..count];
-        let block = &mut self.blocks[slot / W];
+        let (block, rare) = (&mut self.blocks[slot / W], &mut self.rare[slot / W]);
         for (lanes, &parameter) in parameters.iter_mut().zip(&loose.parameters) {
             lanes.0[lane] = parameter;
         }
-        block.stale = true;
+        rare.stale = true;
         self.stale = true;
-        (block.track[lane], block.id[lane]) = (track, loose.id);
+        (block.track[lane], rare.id[lane]) = (track, loose.id);
         let Block { q, v, before: [before_q, before_v], .. } = block;
         for (lanes, numbers) in
             [&mut q.high, &mut q.low, &mut v.high, &mut v.low, before_q, before_v].into_iter().zip(&loose.state)
@@ -185,7 +201,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     }
 
     pub(super) fn id(&self, slot: usize) -> u32 {
-        self.blocks[slot / W].id[slot % W]
+        self.rare[slot / W].id[slot % W]
     }
 
     /// Computes once what parameters alone decide, where they have changed.
@@ -195,11 +211,12 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         }
         self.stale = false;
         let (count, h) = (Self::parameter_count(), step / f64::from(self.kind.grid.substeps));
-        for (index, block) in self.blocks.iter_mut().enumerate().filter(|(_, block)| block.stale) {
+        let blocks = self.blocks.iter_mut().zip(&mut self.rare).enumerate();
+        for (index, (block, rare)) in blocks.filter(|(_, (_, rare))| rare.stale) {
             let mut parameters = self.parameters[index * count..][..count].iter();
-            block.system = prototype.widen(|parameter| parameters.next().map_or(Wide::splat(parameter), |lanes| *lanes));
-            block.prepared = block.system.prepare();
-            block.stale = false;
+            rare.system = prototype.widen(|parameter| parameters.next().map_or(Wide::splat(parameter), |lanes| *lanes));
+            block.prepared = rare.system.prepare();
+            rare.stale = false;
             if let Some(extras) = &mut block.extras {
                 let infinity = T::from_f64(f64::INFINITY);
                 extras.stops = false;
@@ -228,13 +245,24 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
             self.times.extend(grid.fractions().map(|fraction| sampled.clock.within(sampled.tick + tick as i64, fraction)));
         }
         let h = sampled.clock.step() / f64::from(grid.substeps);
-        let batch = Batch { grid, h, ticks: sampled.ticks, times: &self.times, tracks: &self.tracks, still };
+        let batch = Batch {
+            grid,
+            h,
+            ticks: sampled.ticks,
+            times: &self.times,
+            tracks: &self.tracks,
+            still,
+            failed: AtomicBool::new(false),
+        };
         let blocks = &mut self.blocks[..self.awake.div_ceil(W)];
         let lanes_of_last = (self.awake - 1) % W + 1;
-        through(blocks, lanes_of_last, &batch, parallel);
-        for block in blocks.iter_mut().filter(|block| block.failed != 0) {
+        through(blocks, &self.rare, lanes_of_last, &batch, parallel);
+        if !batch.failed.into_inner() {
+            return;
+        }
+        for (block, rare) in blocks.iter_mut().zip(&self.rare).filter(|(block, _)| block.failed != 0) {
             for lane in (0..W).filter(|lane| block.failed & (1 << lane) != 0) {
-                failed.push((block.id[lane], block.failed_at[lane]));
+                failed.push((rare.id[lane], block.failed_at[lane]));
             }
             block.failed = 0;
         }
@@ -245,6 +273,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
 #[cfg(feature = "rayon")]
 fn through<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     blocks: &mut [Block<S, T, N>],
+    rare: &[Rare<S, T, N>],
     lanes_of_last: usize,
     batch: &Batch<'_, T>,
     parallel: bool,
@@ -252,11 +281,12 @@ fn through<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     use rayon::prelude::*;
     const CHUNK: usize = 32;
     if !parallel || blocks.len() < 2 * CHUNK {
-        return widest(Run { blocks, lanes_of_last, batch });
+        return widest(Run { blocks, rare, lanes_of_last, batch });
     }
     let last = blocks.len().div_ceil(CHUNK) - 1;
-    blocks.par_chunks_mut(CHUNK).enumerate().for_each(|(index, blocks)| {
-        widest(Run { blocks, lanes_of_last: if index == last { lanes_of_last } else { W }, batch });
+    let chunks = blocks.par_chunks_mut(CHUNK).zip(rare.par_chunks(CHUNK));
+    chunks.enumerate().for_each(|(index, (blocks, rare))| {
+        widest(Run { blocks, rare, lanes_of_last: if index == last { lanes_of_last } else { W }, batch });
     });
 }
 
@@ -264,11 +294,12 @@ fn through<S: Hung<T, N>, T: Lane + Float, const N: usize>(
 #[cfg(not(feature = "rayon"))]
 fn through<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     blocks: &mut [Block<S, T, N>],
+    rare: &[Rare<S, T, N>],
     lanes_of_last: usize,
     batch: &Batch<'_, T>,
     _: bool,
 ) {
-    widest(Run { blocks, lanes_of_last, batch });
+    widest(Run { blocks, rare, lanes_of_last, batch });
 }
 
 /// Whether joints are among those that rest for ever.

@@ -5,9 +5,10 @@
 
 #![allow(clippy::inline_always)]
 
-use super::assemble::{Assemble, By, Numbers};
-use super::block::{Block, Extras, half_decay};
-use super::hung::{Hung, Known, Layout, W, Wide};
+use super::assemble::{Assemble, By};
+use super::block::{Block, Extras, Rare, half_decay};
+use super::hung::{Hung, Known, W, Wide};
+use super::inputs::{Followed, Inputs, nothing};
 use super::scheme::{Grid, MOST_STAGES, Scheme};
 use super::tracks::{Piece, Tracks};
 use crate::integrate::sum::Sum;
@@ -16,6 +17,7 @@ use crate::real::{Float, Lane, Real};
 use crate::simd::Work;
 use crate::system::{Staged, System, scalar_time};
 use crate::time::Time;
+use core::sync::atomic::{AtomicBool, Ordering};
 
 /// What blocks need to go through a batch of ticks.
 pub(super) struct Batch<'a, T> {
@@ -29,28 +31,30 @@ pub(super) struct Batch<'a, T> {
     pub(super) tracks: &'a Tracks<T>,
     /// All joints rest for ever: each track has one record.
     pub(super) still: bool,
+    /// Whether some lane has failed.
+    pub(super) failed: AtomicBool,
 }
 
 /// Blocks on their way through a batch, of which the last has so many lanes that are awake.
 pub(super) struct Run<'a, S: Hung<T, N>, T: Lane + Float, const N: usize> {
     pub(super) blocks: &'a mut [Block<S, T, N>],
+    /// The other parts of the blocks.
+    pub(super) rare: &'a [Rare<S, T, N>],
     pub(super) lanes_of_last: usize,
     pub(super) batch: &'a Batch<'a, T>,
 }
-
-type Inputs<S, T, const N: usize> = <<S as Hung<T, N>>::Lanes as System<N>>::Inputs;
 
 impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Work for Run<'_, S, T, N> {
     #[inline(always)]
     fn run(self) {
         let last = self.blocks.len().wrapping_sub(1);
-        for (index, block) in self.blocks.iter_mut().enumerate() {
+        for (index, (block, Rare { system, .. })) in self.blocks.iter_mut().zip(self.rare).enumerate() {
             let lanes = if index == last { self.lanes_of_last } else { W };
             let kept = (lanes < W).then_some((block.q, block.v, block.before));
             match self.batch.grid.scheme {
-                Scheme::Leapfrog if Known::<S, N>::SPLITS => batch::<S, T, N, LEAPFROG, 1>(block, self.batch),
-                Scheme::Srkn6b if Known::<S, N>::SPLITS => batch::<S, T, N, SRKN6B, 7>(block, self.batch),
-                _ => batch::<S, T, N, RK4, 3>(block, self.batch),
+                Scheme::Leapfrog if Known::<S, N>::SPLITS => batch::<S, T, N, LEAPFROG, 1>(block, system, self.batch),
+                Scheme::Srkn6b if Known::<S, N>::SPLITS => batch::<S, T, N, SRKN6B, 7>(block, system, self.batch),
+                _ => batch::<S, T, N, RK4, 3>(block, system, self.batch),
             }
             if let Some((q, v, [before_q, before_v])) = kept {
                 // Those beyond sleep.
@@ -63,6 +67,9 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Work for Run<'_, S, T, N> {
                     copy_lane(&mut block.before[1], &before_v, lane);
                 }
                 block.failed &= (1 << lanes) - 1;
+            }
+            if block.failed != 0 {
+                self.batch.failed.store(true, Ordering::Relaxed);
             }
         }
     }
@@ -110,21 +117,24 @@ impl<T: Lane + Float> Weights<T> {
 #[inline(always)]
 fn batch<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, const K: usize>(
     block: &mut Block<S, T, N>,
+    system: &S::Lanes,
     batch: &Batch<'_, T>,
 ) {
     let stages = K;
     let weights = Weights::<T>::new::<SCHEME>(|weight| Wide::from_f64(weight * batch.h));
     let layout = const { &Known::<S, N>::FORCES };
     let zero = T::from_f64(0.0);
+    let track = block.track;
+    let followed = Followed::new(batch.tracks, layout, &track);
     let mut inputs = [nothing::<S, T, N>(); K];
     if batch.still && 0 < layout.width {
-        inputs = [gathered::<S, T, N>(&records_of(batch.tracks, &block.track, 0, 1, layout.width), layout, 0); K];
+        inputs = [followed.inputs::<S, N>(0); K];
     }
     let mut times = [Wide::from_f64(0.0); K];
     for tick in 0..batch.ticks {
         block.before = [block.q.high, block.v.high];
         if batch.tracks.any_cut() && block.track.iter().any(|&track| !batch.tracks.pieces(tick, track).is_empty()) {
-            cut_tick::<S, T, N, SCHEME, K>(block, batch, tick);
+            cut_tick::<S, T, N, SCHEME, K>(block, system, batch, tick);
         } else {
             for step in 0..batch.grid.substeps as usize {
                 let evaluation = (tick * batch.grid.substeps as usize + step) * stages;
@@ -132,12 +142,11 @@ fn batch<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, const
                     times[stage] = Wide::splat(scalar_time(batch.times[evaluation + stage]));
                 }
                 if !batch.still && 0 < layout.width {
-                    let records = records_of(batch.tracks, &block.track, evaluation, K, layout.width);
                     for stage in 0..stages {
-                        inputs[stage] = gathered::<S, T, N>(&records, layout, stage);
+                        inputs[stage] = followed.inputs::<S, N>(evaluation + stage);
                     }
                 }
-                let Block { system, prepared, q, v, extras, .. } = &mut *block;
+                let Block { prepared, q, v, extras, .. } = &mut *block;
                 step_of::<S, T, N, SCHEME, K>(system, prepared, &weights, &times, &inputs, q, v, extras.as_deref());
             }
         }
@@ -174,66 +183,6 @@ fn freeze<S: Hung<T, N>, T: Lane + Float, const N: usize>(block: &mut Block<S, T
             (block.q.high[i].0[lane], block.q.low[i].0[lane]) = (block.before[0][i].0[lane], T::from_f64(0.0));
             (block.v.high[i].0[lane], block.v.low[i].0[lane]) = (block.before[1][i].0[lane], T::from_f64(0.0));
         }
-    }
-}
-
-/// Inputs that are all zero.
-#[inline(always)]
-fn nothing<S: Hung<T, N>, T: Lane + Float, const N: usize>() -> Inputs<S, T, N> {
-    Assemble::assemble(&mut Nothing)
-}
-
-struct Nothing;
-
-impl<T: Lane> Numbers<Wide<T>> for Nothing {
-    #[inline(always)]
-    fn number(&mut self, _: usize, _: usize, _: usize) -> Wide<T> {
-        Wide::from_f64(0.0)
-    }
-}
-
-/// The inputs of each lane, from its record with this index.
-#[inline(always)]
-fn gathered<S: Hung<T, N>, T: Lane + Float, const N: usize>(
-    records: &[&[T]; W],
-    layout: &Layout,
-    index: usize,
-) -> Inputs<S, T, N> {
-    Assemble::assemble(&mut Gathered { records, layout, index })
-}
-
-/// So many records of each lane's track from an evaluation on.
-#[inline(always)]
-fn records_of<'a, T: Lane + Float>(
-    tracks: &'a Tracks<T>,
-    track: &[u32; W],
-    evaluation: usize,
-    count: usize,
-    width: usize,
-) -> [&'a [T]; W] {
-    let mut records: [&[T]; W] = [&[]; W];
-    for lane in 0..W {
-        records[lane] = tracks.records(track[lane], evaluation, count, width);
-    }
-    records
-}
-
-struct Gathered<'a, T> {
-    records: &'a [&'a [T]; W],
-    layout: &'a Layout,
-    index: usize,
-}
-
-impl<T: Lane> Numbers<Wide<T>> for Gathered<'_, T> {
-    #[inline(always)]
-    fn number(&mut self, input: usize, derivative: usize, component: usize) -> Wide<T> {
-        let mut lanes = Wide::from_f64(0.0);
-        if let Some(place) = self.layout.place(input, derivative, component) {
-            for lane in 0..W {
-                lanes.0[lane] = self.records[lane][self.index * self.layout.width + place];
-            }
-        }
-        lanes
     }
 }
 
@@ -390,6 +339,7 @@ fn stop<T: Lane + Float, const N: usize>(q: &mut Sum<Wide<T>, N>, v: &mut Sum<Wi
 #[inline(never)]
 fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, const K: usize>(
     block: &mut Block<S, T, N>,
+    system: &S::Lanes,
     batch: &Batch<'_, T>,
     tick: usize,
 ) {
@@ -427,7 +377,7 @@ fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, co
                         batch.tracks.extra()[piece.begin + stage * layout.width + place]
                     } else {
                         let evaluation = (tick * substeps + step) * stages + stage;
-                        batch.tracks.records(block.track[lane], evaluation, 1, layout.width)[place]
+                        batch.tracks.record(block.track[lane], evaluation, layout.width)[place]
                     };
                 }
                 lanes
@@ -448,20 +398,21 @@ fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, co
             extras
         });
         let (mut q, mut v) = (block.q, block.v);
-        step_of::<S, T, N, SCHEME, K>(&block.system, &block.prepared, &weights, &times, &inputs, &mut q, &mut v, extras.as_ref());
+        step_of::<S, T, N, SCHEME, K>(system, &block.prepared, &weights, &times, &inputs, &mut q, &mut v, extras.as_ref());
         for lane in (0..W).filter(|&lane| active[lane]) {
             copy_lane(&mut block.q.high, &q.high, lane);
             copy_lane(&mut block.q.low, &q.low, lane);
             copy_lane(&mut block.v.high, &v.high, lane);
             copy_lane(&mut block.v.low, &v.low, lane);
         }
-        cross::<S, T, N>(block, batch, &pieces.map(|pieces| pieces.get(step)));
+        cross::<S, T, N>(block, system, batch, &pieces.map(|pieces| pieces.get(step)));
     }
 }
 
 /// Carries the momenta over the kinks at the ends of the pieces just done.
 fn cross<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     block: &mut Block<S, T, N>,
+    system: &S::Lanes,
     batch: &Batch<'_, T>,
     pieces: &[Option<&Piece>; W],
 ) {
@@ -496,8 +447,8 @@ fn cross<S: Hung<T, N>, T: Lane + Float, const N: usize>(
         t.0[lane] = T::from_f64(jumps[lane].map_or(0.0, |(time, _)| time));
     }
     let (q, v) = (block.q.high, block.v.high);
-    let momenta = block.system.momenta(t, &q, &v, &side(0));
-    let velocities = block.system.velocities(t, &q, &momenta, &side(1));
+    let momenta = system.momenta(t, &q, &v, &side(0));
+    let velocities = system.velocities(t, &q, &momenta, &side(1));
     for lane in (0..W).filter(|&lane| jumps[lane].is_some()) {
         for i in 0..N {
             if velocities[i].0[lane] != v[i].0[lane] {

@@ -52,6 +52,7 @@ mod frequency;
 mod group;
 mod hash;
 mod hung;
+mod inputs;
 mod joint;
 mod kernel;
 mod rest;

@@ -137,8 +137,9 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                 })
                 .collect();
             for slot in 0..self.buckets[index].awake {
-                let (block, lane) = (&self.buckets[index].blocks[slot / W], slot % W);
-                let (id, wake) = (block.id[lane], until[block.track[lane] as usize]);
+                let bucket = &self.buckets[index];
+                let (block, lane) = (&bucket.blocks[slot / W], slot % W);
+                let (id, wake) = (bucket.id(slot), until[block.track[lane] as usize]);
                 if wake < tick + LOOK {
                     continue;
                 }

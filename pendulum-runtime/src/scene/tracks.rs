@@ -303,11 +303,11 @@ impl<T: Real + Float> Tracks<T> {
         }
     }
 
-    /// So many records of a track from an evaluation of the batch on; those of a batch at rest are all the first.
+    /// The record of a track at an evaluation of the batch; of one at rest all are the first.
     #[inline(always)]
     #[allow(clippy::inline_always)]
-    pub(super) fn records(&self, track: u32, evaluation: usize, count: usize, width: usize) -> &[T] {
-        &self.records[(track as usize * self.stride + evaluation) * width..][..count * width]
+    pub(super) fn record(&self, track: u32, evaluation: usize, width: usize) -> &[T] {
+        &self.records[(track as usize * self.stride + evaluation) * width..][..width]
     }
 
     /// Whether a tick of the batch has been cut for any track.
