@@ -258,24 +258,21 @@ fn sum<T: Float, W, X, const N: usize>(room: &Room<T, W, X, N>, from: &Node<T, N
     to
 }
 
-/// Σ x\[k\] hᵏ over 2 ≤ k ≤ `order`: the upper half of the terms and the lower one after Horner (1819), side by side.
+/// Σ x\[k\] hᵏ over 2 ≤ k ≤ `order`, beyond which all are zero: every fourth term after Horner (1819), the four sums side by side.
 #[inline(always)]
 pub(super) fn rest<T: Real>(series: &Series<T>, order: usize, h: T) -> T {
-    let lower = &series[2..=order / 2];
-    let upper = &series[order / 2 + 1..=order];
-    let (mut low, mut high, mut power) = (T::from_f64(0.0), T::from_f64(0.0), h * h);
-    let mut above = upper.iter().rev();
-    for coefficient in lower.iter().rev() {
-        low = low * h + *coefficient;
-        power *= h;
-        if let Some(coefficient) = above.next() {
-            high = high * h + *coefficient;
-        }
+    let (fours, _) = series.as_chunks::<4>();
+    let h2 = h * h;
+    let h4 = h2 * h2;
+    let [mut a, mut b, mut c, mut d] = [T::from_f64(0.0); 4];
+    for four in fours[1..=order / 4].iter().rev() {
+        a = a * h4 + four[0];
+        b = b * h4 + four[1];
+        c = c * h4 + four[2];
+        d = d * h4 + four[3];
     }
-    for coefficient in above {
-        high = high * h + *coefficient;
-    }
-    low * (h * h) + high * power
+    let [_, _, second, third] = fours[0];
+    ((second + third * h) + ((a + b * h) + (c + d * h) * h2) * h2) * h2
 }
 
 /// How many of the last coefficients tell the length of a step. A motion from rest in a symmetric place has one order in four only.
@@ -289,7 +286,7 @@ fn length<T: Float, const N: usize>(path: &Path<T, N>, rule: &Rule, weights: &[[
         let (coefficient, _) = largest(path, k, weights);
         if 0.0 < coefficient {
             // log₂ of the radius of convergence, if the coefficients fall like its powers.
-            let radius = -(coarse_log2(coefficient) + rule.binary) * path.reciprocals[k].to_f64();
+            let radius = -(coarse_log2(coefficient) + rule.binary) * path.reciprocals.of(k).to_f64();
             least = if radius < least { radius } else { least };
         }
         told += 1;

@@ -72,35 +72,53 @@ pub struct Path<T, const N: usize> {
     pub v: [Series<T>; N],
     /// The accelerations.
     pub a: [Series<T>; N],
-    /// The reciprocals of the numbers 1, 2, …; the first entry means nothing.
-    pub reciprocals: Series<T>,
+    /// The reciprocals of the numbers 1, 2, ….
+    pub reciprocals: Reciprocals<T>,
+}
+
+/// The reciprocals of the numbers 1, 2, ….
+#[derive(Clone, Debug)]
+pub struct Reciprocals<T>(Series<T>);
+
+impl<T: Real> Reciprocals<T> {
+    /// The nearest numbers.
+    pub fn new() -> Self {
+        Self(core::array::from_fn(|k| T::ratio(1.0, if k == 0 { 1.0 } else { k as f64 })))
+    }
+
+    /// 1/k for 0 < k < [`LENGTH`].
+    #[inline(always)]
+    pub fn of(&self, k: usize) -> T {
+        self.0[k]
+    }
+
+    /// x/k for 0 < k < [`LENGTH`]. The first orders are divided: the same rounding error of ⅓ in every step would add up.
+    #[inline(always)]
+    pub fn over(&self, x: T, k: usize) -> T {
+        if matches!(k, 3 | 5 | 6) { x / T::from_f64(k as f64) } else { x * self.0[k] }
+    }
+}
+
+impl<T: Real> Default for Reciprocals<T> {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl<T: Real, const N: usize> Path<T, N> {
     /// All zero.
     pub fn new() -> Self {
         let zero = [zero(); N];
-        let reciprocals = core::array::from_fn(|k| T::ratio(1.0, if k == 0 { 1.0 } else { k as f64 }));
-        Self { t: T::from_f64(0.0), q: zero, v: zero, a: zero, reciprocals }
+        Self { t: T::from_f64(0.0), q: zero, v: zero, a: zero, reciprocals: Reciprocals::new() }
     }
 
     /// The coefficients of q and q̇ after the order k from the accelerations of that order: ẋ = y is (k+1) x\[k+1\] = y\[k\].
     #[inline(always)]
     pub fn integrate<O: Order>(&mut self, order: O) {
         let k = order.index();
-        if matches!(k, 2 | 4 | 5) {
-            // As in `series::over`.
-            let next = T::from_f64((k + 1) as f64);
-            for i in 0..N {
-                self.q[i][k + 1] = self.v[i][k] / next;
-                self.v[i][k + 1] = self.a[i][k] / next;
-            }
-            return;
-        }
-        let reciprocal = self.reciprocals[k + 1];
         for i in 0..N {
-            self.q[i][k + 1] = self.v[i][k] * reciprocal;
-            self.v[i][k + 1] = self.a[i][k] * reciprocal;
+            self.q[i][k + 1] = self.reciprocals.over(self.v[i][k], k + 1);
+            self.v[i][k + 1] = self.reciprocals.over(self.a[i][k], k + 1);
         }
     }
 }

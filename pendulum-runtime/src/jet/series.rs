@@ -4,7 +4,7 @@
 //! ready before the newest coefficients arrive. Sources: Moore (1966), Interval Analysis; Jorba and Zou (2005), Exp. Math. 14, 99;
 //! Griewank and Walther (2008), Evaluating Derivatives, table 13.2.
 
-use super::{Order, Pairs, Path, Series};
+use super::{Order, Pairs, Path, Reciprocals, Series};
 use crate::real::Real;
 
 /// `value` at order 0 and nothing after it: the series of a constant.
@@ -27,13 +27,6 @@ pub fn time<T: Real, O: Order>(t: T, order: O) -> T {
 #[inline(always)]
 pub fn rate<T: Real, O: Order>(x: T, order: O) -> T {
     T::from_f64(order.index() as f64) * x
-}
-
-/// x/k. The first orders are divided: the same rounding error of ⅓ in every step would add up.
-#[inline(always)]
-pub fn over<T: Real, O: Order>(x: T, reciprocals: &Series<T>, order: O) -> T {
-    let k = order.index();
-    if matches!(k, 3 | 5 | 6) { x / T::from_f64(k as f64) } else { x * reciprocals[k] }
 }
 
 /// a b: Σ a\[j\] b\[k−j\].
@@ -100,7 +93,7 @@ pub fn power<T: Real, O: Order>(
     exponent: T,
     own: &Series<T>,
     leading: &mut T,
-    reciprocals: &Series<T>,
+    reciprocals: &Reciprocals<T>,
     order: O,
 ) -> T {
     let k = order.index();
@@ -114,7 +107,7 @@ pub fn power<T: Real, O: Order>(
     for j in 1..k {
         sum += (top - T::from_f64(j as f64) * step) * (a[k - j] * own[j]);
     }
-    (sum + top * (a[k] * own[0])) * (*leading * reciprocals[k])
+    (sum + top * (a[k] * own[0])) * (*leading * reciprocals.of(k))
 }
 
 /// y with ẏ = w ẋ: `start` at order 0, then (1/k) Σ j x\[j\] w\[k−j\].
@@ -123,23 +116,23 @@ pub fn integral<T: Real, O: Order>(
     start: impl FnOnce() -> T,
     rate: &Series<T>,
     w: &Series<T>,
-    reciprocals: &Series<T>,
+    reciprocals: &Reciprocals<T>,
     order: O,
 ) -> T {
     let k = order.index();
-    if k == 0 { start() } else { over(behind(rate, w, order), reciprocals, order) }
+    if k == 0 { start() } else { reciprocals.over(behind(rate, w, order), k) }
 }
 
 /// sin x and cos x together.
 #[inline(always)]
-pub fn sin_cos<T: Real, O: Order>(x: T, rate: &Series<T>, own: &Pairs<T>, reciprocals: &Series<T>, order: O) -> [T; 2] {
+pub fn sin_cos<T: Real, O: Order>(x: T, rate: &Series<T>, own: &Pairs<T>, reciprocals: &Reciprocals<T>, order: O) -> [T; 2] {
     let k = order.index();
     if k == 0 {
         let (sin, cos) = x.sin_cos();
         return [sin, cos];
     }
     let [with_sin, with_cos] = order.both::<T, 0>(rate, own);
-    [over(with_cos, reciprocals, order), -over(with_sin, reciprocals, order)]
+    [reciprocals.over(with_cos, k), -reciprocals.over(with_sin, k)]
 }
 
 /// sin q and cos q of a coordinate, whose rate is its velocity.
@@ -156,18 +149,18 @@ pub fn sin_cos_of_coordinate<T: Real, O: Order, const N: usize>(
         return [sin, cos];
     }
     let [with_sin, with_cos] = order.both::<T, 1>(&path.v[coordinate], own);
-    [over(with_cos, &path.reciprocals, order), -over(with_sin, &path.reciprocals, order)]
+    [path.reciprocals.over(with_cos, k), -path.reciprocals.over(with_sin, k)]
 }
 
 /// sinh x and cosh x together.
 #[inline(always)]
-pub fn sinh_cosh<T: Real, O: Order>(x: T, rate: &Series<T>, own: &Pairs<T>, reciprocals: &Series<T>, order: O) -> [T; 2] {
+pub fn sinh_cosh<T: Real, O: Order>(x: T, rate: &Series<T>, own: &Pairs<T>, reciprocals: &Reciprocals<T>, order: O) -> [T; 2] {
     let k = order.index();
     if k == 0 {
         return [x.sinh(), x.cosh()];
     }
     let [with_sinh, with_cosh] = order.both::<T, 0>(rate, own);
-    [over(with_cosh, reciprocals, order), over(with_sinh, reciprocals, order)]
+    [reciprocals.over(with_cosh, k), reciprocals.over(with_sinh, k)]
 }
 
 /// The rate z of y with r ẏ = ẋ, where `x` is k x\[k\]: r\[0\] z\[k\] = k x\[k\] − Σ r\[j\] z\[k−j\] over 0 < j < k.
@@ -185,9 +178,9 @@ pub fn slope<T: Real, O: Order>(x: T, r: &Series<T>, own: &Series<T>, leading: &
 
 /// y from its rate: `start` at order 0.
 #[inline(always)]
-pub fn from_rate<T: Real, O: Order>(start: impl FnOnce() -> T, rate: T, reciprocals: &Series<T>, order: O) -> T {
+pub fn from_rate<T: Real, O: Order>(start: impl FnOnce() -> T, rate: T, reciprocals: &Reciprocals<T>, order: O) -> T {
     let k = order.index();
-    if k == 0 { start() } else { over(rate, reciprocals, order) }
+    if k == 0 { start() } else { reciprocals.over(rate, k) }
 }
 
 /// What the leading coefficients decide once for all orders.

@@ -1,6 +1,6 @@
 //! Every recurrence against composition of power series in exact rationals.
 
-use super::{Order, Running, Series, series, zero};
+use super::{Order, Reciprocals, Running, Series, series, zero};
 use crate::real::Real;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -210,8 +210,8 @@ fn rates(x: &Coefficients) -> Series<Fraction> {
     core::array::from_fn(|k| if k < COUNT { x[k] * whole(k as i128) } else { whole(0) })
 }
 
-fn reciprocals() -> Series<Fraction> {
-    core::array::from_fn(|k| fraction(1, k.max(1) as i128))
+fn reciprocals() -> Reciprocals<Fraction> {
+    Reciprocals::new()
 }
 
 #[test]

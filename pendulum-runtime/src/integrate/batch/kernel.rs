@@ -77,8 +77,7 @@ struct Flight<T, const N: usize> {
 }
 
 /// What a step does to the lanes that it ends or that it must not end.
-struct Step<T, const N: usize> {
-    from: Flight<T, N>,
+struct Step {
     wanted: Wide<f64>,
     /// The length and what rounding has left off it.
     h: Wide<f64>,
@@ -167,7 +166,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             }
             self.first = false;
         }
-        let mut step = fit(from, wanted);
+        let mut step = fit(&from, wanted);
         let mut h = Wide::from_f64(0.0);
         for l in 0..W {
             h.0[l] = S::Scalar::from_f64(step.h.0[l]) + S::Scalar::from_f64(step.h_low.0[l]);
@@ -190,22 +189,22 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         }
         self.round += 1;
         if !usual || self.deadline <= self.round {
-            self.settle(&step);
+            self.settle(&from, &step);
         }
     }
 
     /// Ends the motions that have come to an end, and begins others in their lanes.
     #[cold]
     #[inline(never)]
-    fn settle(&mut self, step: &Step<S::Scalar, N>) {
+    fn settle(&mut self, before: &Flight<S::Scalar, N>, step: &Step) {
         for l in 0..W {
             let Some(index) = self.problem[l] else { continue };
             let steps = self.round - self.begun[l];
-            let from = node(&step.from, l);
+            let from = node(before, l);
             let error = if !step.finite[l] {
                 Some(self.not_finite(&from, step, l))
             } else if step.short[l] {
-                Some(self.underflow(&from, step, l))
+                Some(self.underflow(before, &from, step, l))
             } else {
                 None
             };
@@ -234,16 +233,16 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
     }
 
     /// The error for a step of a lane that led to a number that is not finite.
-    fn not_finite(&self, from: &Node<S::Scalar, N>, step: &Step<S::Scalar, N>, l: usize) -> Error {
+    fn not_finite(&self, from: &Node<S::Scalar, N>, step: &Step, l: usize) -> Error {
         let (method, start) = (&self.batch.method, from.t);
         let system = &self.problems[self.problem[l].unwrap_or(0)].system;
-        let span = if step.close[l] { Span::to(start, step.from.end.0[l]) } else { Span::by(start, step.h.0[l]) };
+        let span = if step.close[l] { Span::to(start, self.lanes.end.0[l]) } else { Span::by(start, step.h.0[l]) };
         blame(method, system, &span, from, &Stepper::<S, N>::room(method, system))
     }
 
     /// The error for a step of a lane that is too short.
-    fn underflow(&self, from: &Node<S::Scalar, N>, step: &Step<S::Scalar, N>, l: usize) -> Error {
-        let all = weights(&step.from, self.rtol, &self.atol);
+    fn underflow(&self, before: &Flight<S::Scalar, N>, from: &Node<S::Scalar, N>, step: &Step, l: usize) -> Error {
+        let all = weights(before, self.rtol, &self.atol);
         let one = all.map(|weights| weights.map(|weights| weights.0[l]));
         let mut path = Path::new();
         let k = self.rule.order;
@@ -358,46 +357,92 @@ fn weights<T: Lane + Float, const N: usize>(from: &Flight<T, N>, rtol: f64, atol
 /// The lengths of steps at whose ends the last terms of the series are as large as allowed, as [`Taylor`] finds them.
 #[inline(always)]
 fn length<T: Lane + Float, const N: usize>(path: &Path<Wide<T>, N>, rule: &Rule, weights: &[[Wide<f64>; N]; 2]) -> Wide<f64> {
-    let mut least = Wide::<f64>::from_f64(f64::INFINITY);
-    for (told, k) in (1..=rule.order).rev().enumerate() {
-        let mut largest = Wide::<f64>::from_f64(0.0);
-        for i in 0..N {
-            for (series, weights) in [(&path.q[i], &weights[0]), (&path.v[i], &weights[1])] {
-                for l in 0..W {
-                    let coefficient = series[k].0[l].to_f64().abs() * weights[i].0[l];
-                    largest.0[l] = if largest.0[l] < coefficient { coefficient } else { largest.0[l] };
-                }
-            }
+    let mut least = Wide::from_f64(f64::INFINITY);
+    for told in 0..TELLING {
+        if told < rule.order {
+            least = nearest(least, radius(path, rule, weights, rule.order - told));
         }
-        let reciprocal = path.reciprocals[k].0[0].to_f64();
-        let mut open = false;
-        for l in 0..W {
-            // A lane that has been told enough no longer listens.
-            let listens = (told < TELLING) | (least.0[l] == f64::INFINITY);
-            let radius = -(coarse_log2(largest.0[l]) + rule.binary) * reciprocal;
-            let tells = listens & (0.0 < largest.0[l]) & (radius < least.0[l]);
-            least.0[l] = if tells { radius } else { least.0[l] };
-            open |= least.0[l] == f64::INFINITY;
-        }
-        if TELLING <= told + 1 && !open {
-            break;
-        }
+    }
+    let mut open = false;
+    for l in 0..W {
+        open |= least.0[l] == f64::INFINITY;
     }
     let mut wanted = least;
     for l in 0..W {
-        let length = coarse_exp2(least.0[l] + rule.margin);
-        wanted.0[l] = if least.0[l] == f64::INFINITY { f64::INFINITY } else { length };
+        wanted.0[l] = coarse_exp2(least.0[l] + rule.margin);
+    }
+    if open {
+        longer(path, rule, weights, least, &mut wanted);
     }
     wanted
+}
+
+/// The lanes that the last terms tell nothing listen to those before.
+#[cold]
+#[inline(never)]
+fn longer<T: Lane + Float, const N: usize>(
+    path: &Path<Wide<T>, N>,
+    rule: &Rule,
+    weights: &[[Wide<f64>; N]; 2],
+    mut least: Wide<f64>,
+    wanted: &mut Wide<f64>,
+) {
+    let mut open: [bool; W] = least.0.map(|least| least == f64::INFINITY);
+    for k in (1..=rule.order.saturating_sub(TELLING)).rev() {
+        let radius = radius(path, rule, weights, k);
+        for l in 0..W {
+            if open[l] && radius.0[l] < f64::INFINITY {
+                (least.0[l], open[l]) = (radius.0[l], false);
+            }
+        }
+    }
+    for l in 0..W {
+        wanted.0[l] = if open[l] { f64::INFINITY } else { coarse_exp2(least.0[l] + rule.margin) };
+    }
+}
+
+/// log₂ of the radius of convergence, if the coefficients fall like its powers; infinite where all of this order are zero.
+#[inline(always)]
+fn radius<T: Lane + Float, const N: usize>(
+    path: &Path<Wide<T>, N>,
+    rule: &Rule,
+    weights: &[[Wide<f64>; N]; 2],
+    k: usize,
+) -> Wide<f64> {
+    let mut radius = Wide::<f64>::from_f64(0.0);
+    for i in 0..N {
+        for (series, weights) in [(&path.q[i], &weights[0]), (&path.v[i], &weights[1])] {
+            for l in 0..W {
+                let coefficient = series[k].0[l].to_f64().abs() * weights[i].0[l];
+                radius.0[l] = if radius.0[l] < coefficient { coefficient } else { radius.0[l] };
+            }
+        }
+    }
+    let reciprocal = path.reciprocals.of(k).0[0].to_f64();
+    for l in 0..W {
+        let told = -(coarse_log2(radius.0[l]) + rule.binary) * reciprocal;
+        radius.0[l] = if 0.0 < radius.0[l] { told } else { f64::INFINITY };
+    }
+    radius
+}
+
+/// The lesser number of each lane.
+#[inline(always)]
+fn nearest(a: Wide<f64>, b: Wide<f64>) -> Wide<f64> {
+    let mut least = a;
+    for l in 0..W {
+        least.0[l] = if b.0[l] < a.0[l] { b.0[l] } else { a.0[l] };
+    }
+    least
 }
 
 /// The steps of these lengths, or what avoids going beyond the end and leaving a sliver before it, as for a single motion; none in idle
 /// lanes.
 #[inline(always)]
-fn fit<T: Lane + Float, const N: usize>(from: Flight<T, N>, wanted: Wide<f64>) -> Step<T, N> {
+fn fit<T: Lane + Float, const N: usize>(from: &Flight<T, N>, wanted: Wide<f64>) -> Step {
     let zero = Wide::from_f64(0.0);
     let (close, short, finite) = ([false; W], [false; W], [true; W]);
-    let mut step = Step { from, wanted, h: zero, h_low: zero, close, short, finite };
+    let mut step = Step { wanted, h: zero, h_low: zero, close, short, finite };
     let mut any = false;
     for l in 0..W {
         let (t, wanted) = (Time::from_words(from.high.0[l], from.low.0[l]), wanted.0[l]);
@@ -410,20 +455,19 @@ fn fit<T: Lane + Float, const N: usize>(from: Flight<T, N>, wanted: Wide<f64>) -
         any |= step.close[l];
     }
     if any {
-        step.close();
+        step.end(&from.high, &from.low, &from.end);
     }
     step
 }
 
-impl<T, const N: usize> Step<T, N> {
+impl Step {
     /// Makes the last steps of motions as long as what is left.
     #[cold]
     #[inline(never)]
-    fn close(&mut self) {
+    fn end(&mut self, high: &Wide<f64>, low: &Wide<f64>, end: &Wide<f64>) {
         for l in 0..W {
             if self.close[l] {
-                let start = Time::from_words(self.from.high.0[l], self.from.low.0[l]);
-                let span = Span::to(start, self.from.end.0[l]);
+                let span = Span::to(Time::from_words(high.0[l], low.0[l]), end.0[l]);
                 (self.h.0[l], self.h_low.0[l]) = (span.h, span.low);
             }
         }
