@@ -49,6 +49,8 @@ mod rule;
 mod schedule;
 #[path = "../../pendulum-macros/src/solve.rs"]
 mod solve;
+#[path = "../../pendulum-macros/src/swing.rs"]
+mod swing;
 #[path = "../../pendulum-macros/src/symmetry.rs"]
 mod symmetry;
 #[path = "../../pendulum-macros/src/unit/mod.rs"]

@@ -10,6 +10,7 @@ use crate::expr::{Contents, Function, Graph, Id, Symbol};
 use crate::motion::Motion;
 use crate::schedule::{self, Op, Place, Program, Stage};
 use crate::solve;
+use crate::swing::swing;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 use std::collections::BTreeMap;
@@ -124,8 +125,16 @@ impl Emitter<'_, '_> {
             leading: 0,
             halves: 0,
         };
+        let explicit = blocks.iter().filter_map(|block| match block {
+            Block::Explicit(rows) => Some(rows),
+            Block::Coupled { .. } => None,
+        });
+        let swings: BTreeMap<usize, _> = explicit
+            .flatten()
+            .filter_map(|&(row, place)| swing(&program, &writer.still, row, place).map(|own| (row, own)))
+            .collect();
         for place in 0..program.ops.len() {
-            if !writer.still[place] {
+            if !writer.still[place] && !swings.values().any(|own| own.contains(&Place(place))) {
                 writer.operation(Place(place));
             }
         }
@@ -134,8 +143,12 @@ impl Emitter<'_, '_> {
             match block {
                 Block::Explicit(rows) => {
                     for &(row, place) in rows {
-                        let value = writer.value(place);
-                        writer.lines.extend(quote!(path.a[#row][k] = #value;));
+                        if swings.contains_key(&row) {
+                            writer.swing(row, place);
+                        } else {
+                            let value = writer.value(place);
+                            writer.lines.extend(quote!(path.a[#row][k] = #value;));
+                        }
                     }
                 }
                 Block::Coupled { rows, masses, forces } => {
@@ -489,6 +502,56 @@ impl Writer<'_, '_, '_> {
         self.halves += 2;
         self.series.remove(&place);
         self.exponential(place, &quote!(series::product(&#b, &#logarithm, order)));
+    }
+
+    /// The acceleration of a coordinate that swings.
+    fn swing(&mut self, row: usize, place: Place) {
+        let (combination, slot) = (self.combination(place), self.slot());
+        self.halves += 3;
+        self.lines.extend(quote! {
+            let swing = if k == 0 {
+                let (s, c) = path.q[#row][0].sin_cos();
+                let own = #combination;
+                let (s, c) = (c, -s);
+                [own, #combination]
+            } else {
+                series::swing(path, #row, &#slot, order)
+            };
+            [path.a[#row][k], #slot[k]] = swing;
+        });
+    }
+
+    /// A combination of sine and cosine as an expression in `s` and `c`.
+    fn combination(&self, place: Place) -> TokenStream {
+        match self.program.ops[place.0] {
+            Op::Call(Function::Sin, _) | Op::Part(Function::Sin, _) => quote!(s),
+            Op::Call(..) | Op::Part(..) => quote!(c),
+            Op::Negative(a) => {
+                let a = self.combination(a);
+                quote!(-(#a))
+            }
+            Op::Add(a, b) => {
+                let (a, b) = (self.combination(a), self.combination(b));
+                quote!(#a + #b)
+            }
+            Op::Sub(a, b) => {
+                let (a, b) = (self.combination(a), self.combination(b));
+                quote!(#a - (#b))
+            }
+            Op::Mul(a, b) if self.still[a.0] => {
+                let (a, b) = (self.constant(a), self.combination(b));
+                quote!(#a * (#b))
+            }
+            Op::Mul(a, b) => {
+                let (a, b) = (self.combination(a), self.constant(b));
+                quote!((#a) * #b)
+            }
+            Op::Div(a, b) => {
+                let (a, b) = (self.combination(a), self.constant(b));
+                quote!((#a) / #b)
+            }
+            _ => TokenStream::new(),
+        }
     }
 
     /// The accelerations of coordinates that a moving mass matrix couples.

@@ -24,6 +24,7 @@ mod print;
 mod rule;
 mod schedule;
 mod solve;
+mod swing;
 mod symmetry;
 #[cfg(test)]
 mod tests;

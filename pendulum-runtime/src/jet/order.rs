@@ -14,8 +14,14 @@ pub trait Order: Copy {
     /// Σ a\[j−S\] p\[k−j\] over 1 ≤ j ≤ k, for both series of the pair p and k > 0.
     fn both<T: Real, const S: usize>(self, a: &Series<T>, pairs: &Pairs<T>) -> [T; 2];
 
+    /// Σ a\[j\] b\[k−1−j\] over 0 ≤ j < k, for k > 0.
+    fn before<T: Real>(self, a: &Series<T>, b: &Series<T>) -> T;
+
     /// Σ a\[j\] a\[k−j\] over 0 < j < k/2, for k > 2.
     fn half<T: Real>(self, a: &Series<T>) -> T;
+
+    /// ½ Σ a\[j\] a\[k−j\] over 0 ≤ j ≤ k, for k > 0.
+    fn half_square<T: Real>(self, a: &Series<T>) -> T;
 }
 
 /// An order that the compiler knows: it unrolls every sum.
@@ -64,8 +70,18 @@ macro_rules! orders {
             }
 
             $(#[$inline])?
+            fn before<T: Real>(self, a: &Series<T>, b: &Series<T>) -> T {
+                sum::before(a, b, self.index())
+            }
+
+            $(#[$inline])?
             fn half<T: Real>(self, a: &Series<T>) -> T {
                 sum::half(a, self.index())
+            }
+
+            $(#[$inline])?
+            fn half_square<T: Real>(self, a: &Series<T>) -> T {
+                sum::half_square(a, self.index())
             }
         }
     )+};

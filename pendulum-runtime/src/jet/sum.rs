@@ -23,6 +23,17 @@ pub(super) fn inner<T: Real>(a: &Series<T>, b: &Series<T>, k: usize) -> T {
     odd + even
 }
 
+/// Σ a\[j\] b\[k−1−j\] over 0 ≤ j < k, for k > 0.
+#[inline(always)]
+pub(super) fn before<T: Real>(a: &Series<T>, b: &Series<T>, k: usize) -> T {
+    let oldest = a[0] * b[k - 1];
+    if k == 1 {
+        return oldest;
+    }
+    let newest = oldest + a[k - 1] * b[0];
+    if k == 2 { newest } else { inner(a, b, k - 1) + newest }
+}
+
 /// Σ a\[j\] a\[k−j\] over 0 < j < k/2, for k > 2.
 #[inline(always)]
 pub(super) fn half<T: Real>(a: &Series<T>, k: usize) -> T {
@@ -41,6 +52,21 @@ pub(super) fn half<T: Real>(a: &Series<T>, k: usize) -> T {
         odd += a[j] * a[k - j];
     }
     odd + even
+}
+
+/// ½ Σ a\[j\] a\[k−j\] over 0 ≤ j ≤ k, each product once, for k > 0.
+#[inline(always)]
+pub(super) fn half_square<T: Real>(a: &Series<T>, k: usize) -> T {
+    let newest = a[0] * a[k];
+    if k == 1 {
+        return newest;
+    }
+    let middle = T::from_f64(0.5) * (a[k / 2] * a[k / 2]);
+    if k == 2 {
+        return middle + newest;
+    }
+    let inner = half(a, k) + newest;
+    if k.is_multiple_of(2) { inner + middle } else { inner }
 }
 
 /// Σ a\[j−S\] p\[k−j\] over 1 ≤ j ≤ k, for both series of the pair p and k > 0.
