@@ -71,20 +71,17 @@ impl<'a, T: Lane + Float> Followed<'a, T> {
     #[inline(always)]
     pub(super) fn inputs<S: Hung<T, N>, const N: usize>(&self, evaluation: usize) -> Inputs<S, T, N> {
         let Self { tracks, layout, track, runs } = self;
-        match runs {
-            Some(Runs { count, track, begin }) => {
-                let mut records: [&[T]; MOST_RUNS] = [&[]; MOST_RUNS];
-                for run in 0..MOST_RUNS {
-                    if run < *count {
-                        records[run] = tracks.record(track[run], evaluation, layout.width);
-                    }
+        if let Some(Runs { count, track, begin }) = runs {
+            let mut records: [&[T]; MOST_RUNS] = [&[]; MOST_RUNS];
+            for run in 0..MOST_RUNS {
+                if run < *count {
+                    records[run] = tracks.record(track[run], evaluation, layout.width);
                 }
-                Assemble::assemble(&mut Spread { records: &records[..*count], begin, layout })
             }
-            None => {
-                let records = track.map(|track| tracks.record(track, evaluation, layout.width));
-                Assemble::assemble(&mut Gathered { records: &records, layout })
-            }
+            Assemble::assemble(&mut Spread { records: &records[..*count], begin, layout })
+        } else {
+            let records = track.map(|track| tracks.record(track, evaluation, layout.width));
+            Assemble::assemble(&mut Gathered { records: &records, layout })
         }
     }
 }
