@@ -317,6 +317,8 @@ impl<T: Real + Float> Tracks<T> {
     }
 
     /// The pieces of a tick, none if it is whole.
+    #[inline(always)]
+    #[allow(clippy::inline_always)]
     pub(super) fn pieces(&self, tick: usize, track: u32) -> &[Piece] {
         let track = track as usize;
         if self.cuts.is_empty() || !self.is_awake(track) {
