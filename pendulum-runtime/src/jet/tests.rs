@@ -273,6 +273,23 @@ fn circular_and_hyperbolic_functions() {
 }
 
 #[test]
+fn swings_have_the_sines_and_cosines_of_their_own_angle() {
+    let (sine, cosine) = (fraction(-3, 2), whole(2));
+    let mut path = super::Path::<Fraction, 1>::new();
+    path.v[0][0] = fraction(1, 2);
+    let (mut pairs, mut own) = ([[whole(0); 2]; super::LENGTH], zero());
+    for k in 0..12 {
+        let order = Running::new(k);
+        pairs[k] = series::sin_cos_of_coordinate(&path, 0, &pairs, order);
+        let [s, c] = pairs[k];
+        let expected = [sine * s + cosine * c, sine * c - cosine * s];
+        [path.a[0][k], own[k]] = if k == 0 { expected } else { series::swing(&path, 0, &own, order) };
+        assert_eq!([path.a[0][k], own[k]], expected, "order {k}");
+        path.integrate(order);
+    }
+}
+
+#[test]
 fn inverse_functions() {
     let inverse =
         |name: &str, start: fn(Fraction) -> Fraction, a: &Coefficients, divisor: &Coefficients, expected: &Coefficients| {
