@@ -41,7 +41,7 @@ pub enum DrawingError {
         /// The joint.
         name: String,
     },
-    /// A shape of more than 16384 curves.
+    /// A shape of more than 16384 curves, or one with arcs, circles or corners beyond 10¹² pixels, which have no end of them.
     Large {
         /// The shape.
         id: String,
@@ -65,7 +65,9 @@ impl fmt::Display for DrawingError {
             Self::Twice { name } => write!(f, "`{name}` is there twice; give each joint a name and a pivot of its own"),
             Self::Sheared { name } => write!(f, "the joint `{name}` is sheared or stretched; apply the transform to its shapes"),
             Self::NoBody { name } => write!(f, "the pendulum `{name}` weighs nothing; fill one of its shapes"),
-            Self::Large { id } => write!(f, "`{id}` has more than 16384 curves; simplify it or cut it in parts"),
+            Self::Large { id } => {
+                write!(f, "`{id}` has more than 16384 curves or is larger than 1e12 pixels; simplify it or cut it in parts")
+            }
             Self::Body { id, error } => write!(f, "`{id}`: {error}"),
         }
     }

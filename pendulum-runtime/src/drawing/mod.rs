@@ -34,6 +34,7 @@
 
 mod error;
 mod read;
+mod size;
 #[cfg(test)]
 mod tests;
 

@@ -1,6 +1,6 @@
 //! From the tree of `usvg` to joints.
 
-use super::{Drawing, DrawingError, Joint, Role, Skipped, Units, Why};
+use super::{Drawing, DrawingError, Joint, Role, Skipped, Units, Why, size};
 use crate::body::{Body, BodyError, FillRule, Outline};
 use crate::real::Real;
 use std::collections::{BTreeMap, BTreeSet};
@@ -48,6 +48,10 @@ impl Drawing {
         }
         let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
         let document = Document::parse_with_options(text, options).map_err(|error| DrawingError::Syntax(error.to_string()))?;
+        if let Some(vast) = document.descendants().find(|node| node.is_element() && size::is_vast(*node)) {
+            let line = || format!("{} on line {}", vast.tag_name().name(), document.text_pos_at(vast.range().start).row);
+            return Err(DrawingError::Large { id: vast.attribute("id").map_or_else(line, str::to_owned) });
+        }
         // Nothing outside the text is read.
         let none = ImageHrefResolver { resolve_data: Box::new(|_, _, _| None), resolve_string: Box::new(|_, _| None) };
         let options = Options { image_href_resolver: none, ..Options::default() };

@@ -144,6 +144,8 @@ fn errors_name_the_element() {
         (format!(r#"<g id="p" transform="skewX(9)">{pivot}{rect}</g>"#), DrawingError::Sheared { name: "p".into() }),
         (format!(r#"<g id="p"><circle id="p.keyed" r="0"/>{rect}</g>"#), DrawingError::NoPlace { id: "p.keyed".into() }),
         (format!(r#"<g id="p">{pivot}<circle id="vast" r="1e38"/></g>"#), DrawingError::Large { id: "vast".into() }),
+        (r#"<path d="M0 0A1e38 1e38 0 0 1 9 9"/>"#.into(), DrawingError::Large { id: "path on line 1".into() }),
+        (r#"<path id="arc" d="M0 0a1e-300 1 0 0 1 1 0"/>"#.into(), DrawingError::Large { id: "arc".into() }),
     ];
     for (text, expected) in cases {
         assert_eq!(read(&text), Err(expected));
