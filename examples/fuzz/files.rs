@@ -53,3 +53,35 @@ pub(crate) fn mutated(file: &[u8], random: &mut Random) -> Vec<u8> {
     }
     bytes
 }
+
+/// A text with a few of its numbers changed, so that its syntax holds.
+#[cfg(any(feature = "gltf", feature = "svg"))]
+pub(crate) fn renumbered(text: &[u8], random: &mut Random) -> Vec<u8> {
+    const NUMBERS: [&[u8]; 16] = [
+        b"-1",
+        b"0",
+        b"1",
+        b"2",
+        b"3",
+        b"7",
+        b"255",
+        b"5120",
+        b"5126",
+        b"65536",
+        b"4294967295",
+        b"18446744073709551615",
+        b"1e-320",
+        b"-1e38",
+        b"1e308",
+        b"0.1",
+    ];
+    let mut bytes = text.to_vec();
+    for _ in 0..=random.below(4) {
+        let from = random.below(bytes.len());
+        let Some(start) = bytes[from..].iter().position(u8::is_ascii_digit).map(|length| from + length) else { continue };
+        let part = |byte: &u8| !(byte.is_ascii_digit() || matches!(byte, b'.' | b'-'));
+        let end = bytes[start..].iter().position(part).map_or(bytes.len(), |length| start + length);
+        bytes.splice(start..end, random.of(&NUMBERS).iter().copied());
+    }
+    bytes
+}

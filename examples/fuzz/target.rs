@@ -3,6 +3,8 @@
 use crate::bvh::Bvh;
 use crate::expand::expand;
 use crate::files::mutated;
+#[cfg(any(feature = "gltf", feature = "svg"))]
+use crate::files::renumbered;
 use crate::random::generate::{self, Manner};
 use crate::random::tokens::{BLOCKS, mutate, soup, transplant};
 use crate::random::{Outcome, Random, outcome};
@@ -29,6 +31,10 @@ pub(crate) const TARGETS: &[Target] = &[
     Target { name: "blocks", case: blocks },
     Target { name: "equations", case: equations },
     Target { name: "motion-capture", case: motion_capture },
+    #[cfg(feature = "gltf")]
+    Target { name: "gltf", case: gltf },
+    #[cfg(feature = "svg")]
+    Target { name: "svg", case: svg },
 ];
 
 /// Any tokens, now and then behind a struct.
@@ -79,6 +85,47 @@ fn motion_capture(seed: u64) -> Verdict {
     let length = if random.once_in(2) { JUMPS.len() } else { 4000 + random.below(6000) };
     let bytes = mutated(&JUMPS[..length], &mut random);
     match Bvh::read(&String::from_utf8_lossy(&bytes)) {
+        Ok(_) => Verdict::Taken,
+        Err(_) => Verdict::Refused,
+    }
+}
+
+/// A glTF file with something wrong in it, and the motions of all its nodes.
+#[cfg(feature = "gltf")]
+fn gltf(seed: u64) -> Verdict {
+    use pendulum_runtime::motion::{Motion, Orders, Side, gltf::Gltf};
+    use pendulum_runtime::time::Time;
+
+    let mut random = Random(seed);
+    let whole = include_bytes!("../data/dance.gltf");
+    let bytes = if random.once_in(2) { mutated(whole, &mut random) } else { renumbered(whole, &mut random) };
+    let Ok(file) = Gltf::read(&bytes) else { return Verdict::Refused };
+    for animation in 0..file.animations().count() {
+        for node in 0..file.nodes().count() {
+            let Ok(motion) = file.motion(animation, node) else { return Verdict::Refused };
+            let sample = Motion::<f64, 3>::sample(&motion, Time::new(0.3), Side::After, Orders::ALL);
+            let kink = Motion::<f64, 3>::next_kink(&motion, 0.3);
+            if kink.is_some_and(|kink| kink <= 0.3) {
+                return Verdict::Wrong(format!("a kink at {kink:?} after 0.3, {sample:?}"));
+            }
+        }
+    }
+    Verdict::Taken
+}
+
+/// A drawing with something wrong in it.
+#[cfg(feature = "svg")]
+fn svg(seed: u64) -> Verdict {
+    use pendulum_runtime::drawing::{Drawing, Units};
+
+    const OWL: &[u8] = include_bytes!("../data/owl.svg");
+    const SMALL: &[u8] = br##"<svg xmlns="http://www.w3.org/2000/svg" width="100" height="100"><g id="arm"><circle id="arm.keyed" cx="50" cy="10" r="1"/>
+<path d="M 48 10 L 52 10 C 55 40 55 60 52 80 L 48 80 Z M 49 20 h 2 v 2 h -2 z" fill="#123456" fill-opacity="0.5" fill-rule="evenodd"/>
+<g id="flag" transform="rotate(20 50 10)"><circle id="flag.pendulum" cx="50" cy="70" r="1" fill="none"/><ellipse cx="50" cy="79" rx="4" ry="9"/></g></g></svg>"##;
+    let mut random = Random(seed);
+    let whole = if random.once_in(20) { OWL } else { SMALL };
+    let bytes = if random.once_in(2) { mutated(whole, &mut random) } else { renumbered(whole, &mut random) };
+    match Drawing::read(&String::from_utf8_lossy(&bytes), Units { pixel: 0.001, density: 0.3 }) {
         Ok(_) => Verdict::Taken,
         Err(_) => Verdict::Refused,
     }
