@@ -50,6 +50,17 @@ pub enum Error {
         /// belongs to a finite momentum, that is not finite.
         suspects: Vec<Suspect>,
     },
+    /// The mass matrix is not positive definite: a negative mass, or inertia that ends on the way.
+    NegativeInertia {
+        /// The time at which it was seen.
+        t: f64,
+        /// The coordinate at which elimination met the pivot, in the order of declaration.
+        coordinate: Coordinate,
+        /// The pivot: the inertia of the coordinate while those declared after it rest and those before it are free.
+        pivot: f64,
+        /// The parameters that are negative, and so may be the cause.
+        suspects: Vec<Suspect>,
+    },
     /// Step control asked for a step below the resolution of time.
     StepSizeUnderflow {
         /// The time reached.
@@ -130,7 +141,7 @@ pub enum Quantity {
     Velocity(Coordinate),
 }
 
-/// A parameter with a value that seldom makes sense.
+/// A parameter with a value that seldom makes sense where it stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Suspect {
     /// The parameter as written.
@@ -180,6 +191,16 @@ impl fmt::Display for Error {
                         )
                     }
                     (_, None) => write!(f, "the motion has left the range of numbers, try a smaller step or tolerance"),
+                }
+            }
+            Self::NegativeInertia { t, coordinate, pivot, ref suspects } => {
+                write!(f, "at t = {t:?} the inertia of {coordinate} is negative, {pivot:?}; ")?;
+                match suspects.split_first() {
+                    Some((first, rest)) => {
+                        write!(f, "check parameter {first}")?;
+                        rest.iter().try_for_each(|suspect| write!(f, ", {suspect}"))
+                    }
+                    None => write!(f, "the kinetic energy has to be positive for every velocity, check the state there"),
                 }
             }
             Self::StepSizeUnderflow { t, step, coordinate } => write!(

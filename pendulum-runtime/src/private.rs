@@ -48,6 +48,7 @@ pub const fn facts(known: Known) -> Facts {
         unused: known.unused,
         equations: known.equations,
         latex: known.latex,
+        derived: true,
     }
 }
 

@@ -274,6 +274,8 @@ pub struct Facts {
     /// The equations of motion, one line a coordinate.
     pub equations: &'static str,
     pub(crate) latex: &'static str,
+    /// `lagrangian!` has made the system, so that it has a mass matrix.
+    pub(crate) derived: bool,
 }
 
 impl Facts {
@@ -297,6 +299,7 @@ impl Facts {
             unused: &[],
             equations: "",
             latex: "",
+            derived: false,
         }
     }
 

@@ -55,10 +55,20 @@ pub(crate) fn not_finite<S: System<N, Scalar: Float>, const N: usize>(system: &S
 
 /// The parameters that are zero, infinite or not a number.
 pub(crate) fn suspects<S: System<N, Scalar: Float>, const N: usize>(system: &S) -> Vec<Suspect> {
+    parameters(system, |value| value == 0.0 || !value.is_finite())
+}
+
+/// The parameters that are negative.
+pub(crate) fn negative<S: System<N, Scalar: Float>, const N: usize>(system: &S) -> Vec<Suspect> {
+    parameters(system, |value| value < 0.0)
+}
+
+/// The parameters with values that are `suspicious`.
+fn parameters<S: System<N, Scalar: Float>, const N: usize>(system: &S, suspicious: impl Fn(f64) -> bool) -> Vec<Suspect> {
     let (mut index, mut suspects) = (0, Vec::new());
     system.map(|parameter| {
         let value = parameter.to_f64();
-        if value == 0.0 || !value.is_finite() {
+        if suspicious(value) {
             let parameter = S::FACTS.parameters.get(index).copied().unwrap_or("");
             suspects.push(Suspect { parameter, value });
         }

@@ -2,6 +2,7 @@
 
 use super::control::{Control, Course, Memory};
 use super::field::{Counted, coordinate, first_in_inputs, first_in_state};
+use super::inertia::{inertia, is_due, varies};
 use super::node::Node;
 use super::piece::Piece;
 use super::solution::{State, Stats};
@@ -37,13 +38,13 @@ pub(crate) struct Driver<T, const N: usize, M, C, R> {
 }
 
 impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
-    /// At `q`, `v` and `t`, if they are finite.
+    /// At `q`, `v` and `t`, if they are finite and the mass matrix is positive there.
     pub(crate) fn new<D>(dynamics: &D, method: M, control: C, t: f64, q: [T; N], v: [T; N]) -> Result<Self, Error>
     where
         D: Dynamics<N, Scalar = T>,
         M: Stepper<D, N, Stages = R>,
     {
-        check_start::<D, T, N>(t, &q, &v)?;
+        check_start(dynamics, Time::new(t), &q, &v)?;
         let node = Node::new(Time::new(t), q, v);
         let kink = next_kink(&method, dynamics, t, false)?;
         let stats = Stats::new(M::NAME);
@@ -70,7 +71,7 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
         D: Dynamics<N, Scalar = T>,
         M: Stepper<D, N, Stages = R>,
     {
-        check_start::<D, T, N>(t, &q, &v)?;
+        check_start(dynamics, Time::new(t), &q, &v)?;
         self.kink = next_kink(&self.method, dynamics, t, false)?;
         self.backwards = false;
         self.node = Node::new(Time::new(t), q, v);
@@ -79,10 +80,13 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
     }
 
     /// Moves the coordinates by `high + low`; what rounding has left off stays.
-    pub(crate) fn displace<D: Dynamics<N, Scalar = T>>(&mut self, high: &[T; N], low: &[T; N]) -> Result<(), Error> {
+    pub(crate) fn displace<D>(&mut self, dynamics: &D, high: &[T; N], low: &[T; N]) -> Result<(), Error>
+    where
+        D: Dynamics<N, Scalar = T>,
+    {
         let mut q = self.node.q;
         q.add_both(T::from_f64(1.0), high, low);
-        check_start::<D, T, N>(self.t(), &q.high, &self.node.v.high)?;
+        check_start(dynamics, self.node.t, &q.high, &self.node.v.high)?;
         (self.node.q, self.node.a) = (q, None);
         (self.last, self.within, self.before_kink) = (None, None, None);
         Ok(())
@@ -136,7 +140,24 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
         (self.last, self.within) = (Some(span), None);
         self.from = from;
         self.node = to;
-        Ok(())
+        if is_due::<D::System, N>(self.stats.accepted, self.before_kink.is_some()) { self.look(dynamics) } else { Ok(()) }
+    }
+
+    /// Takes the last step back if the mass matrix is not positive at its end; it does not count then.
+    // Out of the way of the steps.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn look<D: Dynamics<N, Scalar = T>>(&mut self, dynamics: &D) -> Result<(), Error> {
+        if !varies(&<D::System as System<N>>::FACTS) {
+            return Ok(());
+        }
+        let Node { t, q, v, .. } = &self.node;
+        let checked = inertia(dynamics, *t, onwards(self.backwards), &q.high, &v.high);
+        if checked.is_err() {
+            self.retreat();
+            self.stats.accepted -= 1;
+        }
+        checked
     }
 
     /// Goes on in the other direction.
@@ -227,12 +248,19 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
     }
 }
 
+/// The side of the start of a step.
+fn onwards(backwards: bool) -> Side {
+    if backwards { Side::Before } else { Side::After }
+}
+
 /// Whether an integration can begin there.
 pub(super) fn check_start<D: Dynamics<N, Scalar = T>, T: Float, const N: usize>(
-    t: f64,
+    dynamics: &D,
+    time: Time,
     q: &[T; N],
     v: &[T; N],
 ) -> Result<(), Error> {
+    let t = time.to_f64();
     if !t.is_finite() {
         return Err(Error::Interval { start: t, end: t });
     }
@@ -242,7 +270,7 @@ pub(super) fn check_start<D: Dynamics<N, Scalar = T>, T: Float, const N: usize>(
             return Err(Error::InitialState { part, coordinate, value: values[index].to_f64() });
         }
     }
-    Ok(())
+    inertia(dynamics, time, Side::After, q, v)
 }
 
 /// The first kink after `t`, or the last one before it; infinite if there is none.

@@ -142,7 +142,7 @@ where
     /// # }
     /// ```
     pub fn displace(&mut self, high: [D::Scalar; N], low: [D::Scalar; N]) -> Result<(), Error> {
-        self.driver.displace::<Ready<'a, D, N>>(&high, &low)?;
+        self.driver.displace(&self.dynamics, &high, &low)?;
         self.watch.begin(&mut self.driver, &self.dynamics)
     }
 

@@ -44,6 +44,7 @@ mod fit;
 mod fixed_step;
 mod gauss;
 mod hermite;
+pub(crate) mod inertia;
 mod integrator;
 pub(crate) mod leapfrog;
 mod linear;

@@ -208,6 +208,9 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
             while stops.next_if(|stop| !ahead(driver, *stop)).is_some() {}
             let (stop, event) = (stops.peek().copied().unwrap_or(end), watch.next_time());
             driver.step(dynamics, if event < stop { event } else { stop })?;
+            if !ahead(driver, end) {
+                driver.look(dynamics)?;
+            }
             let terminal = watch.observe(driver, dynamics)?;
             recorder.step(driver, dynamics);
             recorder.events(watch.found());

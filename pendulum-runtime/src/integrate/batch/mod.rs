@@ -13,6 +13,7 @@ use crate::jet::Jets;
 use crate::real::{Float, Lane, Lanes};
 use crate::simd;
 use crate::system::System;
+use crate::time::Time;
 
 /// The motions that are under way at the same time: a vector of 64 bytes for `f64`.
 const W: usize = 8;
@@ -170,7 +171,7 @@ impl<const N: usize> Batch<N> {
         if (self.max_steps as f64) < self.control.least_steps_over(length) || self.max_steps == 0 && start != end {
             return Err(Error::MaxSteps { t: start, max_steps: self.max_steps });
         }
-        check_start::<S, S::Scalar, N>(start, &problem.q, &problem.v)?;
+        check_start(&problem.system, Time::new(start), &problem.q, &problem.v)?;
         Ok(start == end)
     }
 }
