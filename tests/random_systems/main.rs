@@ -1,11 +1,15 @@
 //! Random systems, compiled and run: what generated code gives is what the generator's own evaluation of the source says, in `f64` and in
-//! double-double, and jets have the derivatives of the motion.
+//! double-double, jets have the derivatives of the motion, and a motion that is run backwards comes back to its start.
 
 #![allow(mixed_script_confusables, confusable_idents, missing_docs)]
 
+mod polynomial;
+
 use pendulum_runtime::jet::{InputSeries, Jets, Orders, Path};
-use pendulum_runtime::real::{DoubleDouble, Float, Real};
+use pendulum_runtime::prelude::*;
+use pendulum_runtime::real::{DoubleDouble, Float};
 use pendulum_runtime::system::Staged;
+use polynomial::Driving;
 
 #[allow(clippy::all, clippy::pedantic, unused_imports, non_snake_case)]
 #[rustfmt::skip]
@@ -158,6 +162,45 @@ trait DriveOf<const N: usize>: Jets<N> {
 }
 
 impl<S: Jets<N>, const N: usize> DriveOf<N> for S {}
+
+/// How far a motion of one module ends from its start when it is run for a while and back, as far as it goes and is smooth.
+macro_rules! there_and_back {
+    ($module:ident, $apart:ident) => {{
+        let (system, case) = (blocks::$module::system::<f64>(), &blocks::$module::CASE);
+        if smooth(&system) {
+            let dynamics = Driven::new(system, blocks::$module::inputs::<f64>().motions(case.t, &case.jerks));
+            let run =
+                |time, q, v| solve(&dynamics, time, q, v).method(Taylor::new()).rtol(1e-17).run().map(|solution| solution.end);
+            let end = run((case.t, case.t + 0.25), case.q, case.v).unwrap();
+            let back = run((case.t + 0.25, case.t), end.q, end.v).unwrap();
+            let size = |x: &[f64], y: &[f64]| x.iter().chain(y).fold(1.0, |size: f64, x| size.max(x.abs()));
+            let pairs = back.q.iter().zip(&case.q).chain(back.v.iter().zip(&case.v));
+            let own = pairs.fold(0.0, |worst: f64, (x, y)| worst.max((x - y).abs())) / size(&end.q, &end.v);
+            $apart.push((stringify!($module), own));
+        }
+    }};
+}
+
+/// Whether Taylor series are right for a system.
+fn smooth<S: System<N>, const N: usize>(_: &S) -> bool {
+    S::FACTS.smooth
+}
+
+/// Time reversal: forwards and backwards along a path, friction, forces and driven inputs included.
+#[test]
+fn motions_come_back_to_their_start() {
+    let mut apart = Vec::new();
+    macro_rules! one {
+        ($module:ident) => {
+            there_and_back!($module, apart)
+        };
+    }
+    blocks::each!(one);
+    assert!(20 <= apart.len(), "only {} systems are smooth", apart.len());
+    for (name, own) in apart {
+        assert!(own < 1e-14, "{name} ends {own:e} from its start");
+    }
+}
 
 macro_rules! check {
     ($module:ident) => {

@@ -6,7 +6,7 @@ use super::generate::{self, Manner};
 use super::interpret::Values;
 use super::reference::State;
 use super::state::{precise, state};
-use super::transform::{SCALE, back, gauged, moved, scaled};
+use super::transform::{SCALE, back, gauged, moved, reversed, scaled, turned};
 use super::tree::System;
 use super::{Outcome, outcome};
 use pendulum_runtime::real::{DoubleDouble, Float};
@@ -111,6 +111,21 @@ fn the_scale_of_energy_cancels() {
         assert!(own < PLAIN, "seed {seed}: {own} for\n{}", scaled.source("Random"));
         let expected: Vec<f64> = momenta.iter().map(|p| SCALE * p).collect();
         assert!(difference(&larger, &expected) < PLAIN, "seed {seed}: {larger:?} and {expected:?}");
+    }
+}
+
+/// Run backwards, a motion has the same accelerations and the opposite momenta.
+#[test]
+fn motions_run_backwards() {
+    for system in systems(1000, 8, Manner::Tame) {
+        let (seed, reversed) = (system.seed, reversed(&system));
+        let state = state(&system, seed);
+        let [accelerations, momenta] = outputs(&system, &state);
+        let [found, opposite] = outputs(&reversed, &turned(&state));
+        let own = difference(&found, &accelerations);
+        assert!(own < PLAIN, "seed {seed}: {own} for\n{}", reversed.source("Random"));
+        let expected: Vec<f64> = momenta.iter().map(|p| -p).collect();
+        assert!(difference(&opposite, &expected) < PLAIN, "seed {seed}: {opposite:?} and {expected:?}");
     }
 }
 

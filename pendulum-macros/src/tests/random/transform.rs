@@ -1,7 +1,8 @@
-//! Other ways to write the same system: a gauge term, another scale of energy, other coordinates.
+//! Other ways to write the same system: a gauge term, another scale of energy, other coordinates, time that runs backwards.
 
 use super::generate;
 use super::nilpotent::Function;
+use super::reference::State;
 use super::split_mix::Random;
 use super::tree::{Coordinate, Expr, Index, Kind, Let, Shape, System, Type, number, product, quotient, sum};
 
@@ -27,6 +28,41 @@ pub(crate) fn scaled(system: &System) -> System {
         *expr = product(Expr::Number(3, 4), expr.clone());
     }
     scaled
+}
+
+/// The system whose motions are those of `system` run backwards: L(−t, q, −q̇), −R(−q̇), forces of −t and −q̇, and driven inputs that run backwards.
+pub(crate) fn reversed(system: &System) -> System {
+    let mut reversed = system.clone();
+    let turn = |expr: &mut Expr| {
+        // What has been differentiated an odd number of times changes its sign.
+        if let Expr::Time | Expr::Velocity(..) | Expr::Input(_, 1) | Expr::Dot(_) | Expr::LetDot(_) = expr {
+            *expr = Expr::Negative(Box::new(expr.clone()));
+        }
+    };
+    for definition in &mut reversed.lets {
+        definition.expr.each(&turn);
+    }
+    let lists = [&mut reversed.kinetic, &mut reversed.potential, &mut reversed.dissipation];
+    for expr in lists.into_iter().flatten().chain(reversed.forces.iter_mut().map(|force| &mut force.expr)) {
+        expr.each(&turn);
+    }
+    for expr in &mut reversed.dissipation {
+        *expr = Expr::Negative(Box::new(expr.clone()));
+    }
+    reversed
+}
+
+/// The state at which [`reversed`] does backwards what the system does at `state`.
+pub(crate) fn turned(state: &State<f64>) -> State<f64> {
+    let mut turned = state.clone();
+    turned.t = -state.t;
+    for v in &mut turned.v {
+        *v = -*v;
+    }
+    for [_, velocity, _, jerk] in turned.inputs.iter_mut().flatten() {
+        (*velocity, *jerk) = (-*velocity, -*jerk);
+    }
+    turned
 }
 
 /// The system without its forces in coordinates Q with q = Q + sin(Q₁)/3, where Q₁ is the first of the coordinates declared next.
