@@ -1,9 +1,11 @@
-//! Many pendulums at once: the same bits in lanes, threads and alone, tiny numbers, a soak.
+//! Many pendulums at once: the same bits in lanes, threads, scenes and alone, tiny numbers, a soak.
 
 use crate::fingerprints::{self, classical_step};
+use crate::memory::memory;
 use crate::numbers::larger;
 use crate::random::Random;
 use crate::report::{Report, Scale, Test};
+use crate::scenes;
 use crate::systems::{Double, Hung, Simple};
 use pendulum_runtime::integrate::FixedStep;
 use pendulum_runtime::motion::{Motion, Orders, Side, Spline};
@@ -104,18 +106,13 @@ fn bits(scale: Scale, report: &mut Report) {
         threads.into_iter().rev().map(|thread| thread.join().unwrap()).collect()
     });
     report.failures("the same runs in eight threads, in another order", here.iter().zip(&there).map(|(a, b)| a == b));
+    scenes::bits(scale, report);
     let expected = include_str!("../../tests/data/determinism.txt");
     let found = fingerprints::all();
     report.failures(
         format!("{} final states of all methods against the checked-in ones: this build", found.len()),
         found.iter().zip(expected.lines()).map(|(found, line)| found == line).chain([found.len() == expected.lines().count()]),
     );
-}
-
-/// The bytes of memory that belong to this program, where the system tells.
-fn memory() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/self/statm").ok()?;
-    text.split_whitespace().nth(1)?.parse::<f64>().ok().map(|pages| pages * 4096.0)
 }
 
 /// Pendulums on the joints of random characters: lanes of sixteen, a joint each, half a step before and after each force.
@@ -169,4 +166,5 @@ fn soak(scale: Scale, report: &mut Report) {
     report.at_most("lanes that differ from the same pendulum alone", drifted as f64, 0.0);
     // Another test may run beside this one.
     report.at_most("growth of memory in bytes, other tests included", grown, 3e7);
+    scenes::soak(scale, report);
 }
