@@ -19,6 +19,9 @@ use std::collections::BTreeMap;
 const MOST_UNROLLED: usize = 10;
 const MOST_LOOPED: usize = 80;
 
+/// The most convolutions, in halves, of a system for which higher orders pay: the rest of a step costs as much.
+const MOST_CHEAP: usize = 4;
+
 /// The equations as a program: for each block of the mass matrix its rows, and what the program's results mean for it.
 pub(crate) struct Equations {
     pub(crate) program: Program,
@@ -78,8 +81,9 @@ impl Emitter<'_, '_> {
     pub(crate) fn jets(&self) -> TokenStream {
         let (krate, scalar, count, name) = (&self.krate, self.scalar(), self.count(), &self.model.block.name);
         let components: usize = self.model.inputs.iter().map(Quantity::count).sum();
-        let (kind, orders, work, body) = match &self.motion {
-            None => (quote!(()), format_ident!("Looped"), quote!(::core::unimplemented!()), quote!(::core::unimplemented!())),
+        let unknown = quote!(::core::unimplemented!());
+        let (kind, orders, per_digit, work, body) = match &self.motion {
+            None => (quote!(()), format_ident!("Looped"), quote!(0.7), unknown.clone(), unknown),
             Some(motion) => self.recurrences(motion),
         };
         quote! {
@@ -89,6 +93,7 @@ impl Emitter<'_, '_> {
                 type Work = #kind;
                 type Drive = [#krate::jet::InputSeries<#scalar>; #components];
                 type Orders = #krate::jet::#orders;
+                const PER_DIGIT: f64 = #per_digit;
 
                 fn work(&self) -> Self::Work { #work }
 
@@ -106,8 +111,8 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// The type of the work, how orders are gone through, the new work and the statements for one order.
-    fn recurrences(&self, motion: &Motion) -> (TokenStream, proc_macro2::Ident, TokenStream, TokenStream) {
+    /// The type of the work, how orders are gone through and how many pay, the new work and the statements for one order.
+    fn recurrences(&self, motion: &Motion) -> (TokenStream, proc_macro2::Ident, TokenStream, TokenStream, TokenStream) {
         let (krate, scalar) = (&self.krate, self.scalar());
         let Equations { program, blocks } = equations(&self.graph, motion);
         let prepared = program.kept(Stage::Parameters);
@@ -169,7 +174,8 @@ impl Emitter<'_, '_> {
             _ => "Called",
         };
         let orders = format_ident!("{orders}");
-        (kind, orders, work, lines)
+        let per_digit = if halves <= MOST_CHEAP { quote!(0.8) } else { quote!(0.7) };
+        (kind, orders, per_digit, work, lines)
     }
 }
 

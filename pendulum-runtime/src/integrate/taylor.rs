@@ -25,12 +25,12 @@ use crate::system::{Dynamics, System, scalar_time};
 /// explicit, so that a stiff spring or damper shortens its steps, and it is wrong where the equations themselves are not smooth: at the
 /// zeros of `abs`, and where the larger of two numbers changes.
 ///
-/// The order is p = ⌈1 − 0.7 ln rtol⌉, and the step is
+/// The order is p = ⌈1 − c ln rtol⌉ with c = 0.8 for a coordinate that swings by itself and 0.7 else, and the step is
 /// h = ρ rtol^(1/p) e^(−0.7/(p−1)), where ρ is the least of the radii of convergence (rtol · max |xᵢ\[k\]|/εᵢ)^(−1/k) that the last four
 /// orders k tell, with εᵢ = atolᵢ + rtol·|xᵢ| over all coordinates and velocities; where they vanish, the orders before tell it.
-/// (With ½ for 0.7 the work would be least if it grew with p²; measured, it grows with p^1.4.) `rtol` may be as small as you like: 1e-18
+/// (With c = ½ the work would be least if it grew with p²; measured, it grows with p^1.4 and less.) `rtol` may be as small as you like: 1e-18
 /// takes the truncation well below rounding. Without `atol` it is `rtol`, in the units of each coordinate. Fixed steps have the order
-/// for the machine epsilon, without [`order`](Self::order).
+/// for the machine epsilon and c = 0.7, without [`order`](Self::order).
 ///
 /// The sum of the series is compensated. Dense output is the series itself and costs nothing.
 ///
@@ -53,10 +53,15 @@ impl Taylor {
         Self { order: Some(if MAX_ORDER < order { MAX_ORDER } else { order }) }
     }
 
-    /// The order for a tolerance.
-    fn order_for(self, tolerance: f64) -> usize {
-        let best = (1.0 - 0.7 * core::f64::consts::LN_2 * log2(tolerance)).ceil();
+    /// The order for a tolerance, `per_digit` for each e-th part.
+    fn order_for(self, tolerance: f64, per_digit: f64) -> usize {
+        let best = (1.0 - per_digit * core::f64::consts::LN_2 * log2(tolerance)).ceil();
         self.order.unwrap_or(best.clamp(2.0, MAX_ORDER as f64) as usize)
+    }
+
+    /// The order of fixed steps.
+    fn fixed<T: Float>(self) -> usize {
+        self.order_for(T::EPSILON.to_f64(), 0.7)
     }
 }
 
@@ -84,8 +89,8 @@ pub(super) struct Rule {
 }
 
 impl Rule {
-    pub(super) fn new(method: Taylor, tolerance: f64) -> Self {
-        let (order, binary) = (method.order_for(tolerance), log2(tolerance));
+    pub(super) fn new<S: Jets<N>, const N: usize>(method: Taylor, tolerance: f64) -> Self {
+        let (order, binary) = (method.order_for(tolerance, S::PER_DIGIT), log2(tolerance));
         let margin = binary / order as f64 - 0.7 * core::f64::consts::LOG2_E / (order as f64 - 1.0);
         Self { tolerance, order, binary, margin }
     }
@@ -118,7 +123,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Stepper<D, N> for Taylor 
         from: &mut Node<D::Scalar, N>,
         room: &mut RoomOf<D, N>,
     ) -> Node<D::Scalar, N> {
-        let order = self.order_for(D::Scalar::EPSILON.to_f64());
+        let order = self.fixed::<D::Scalar>();
         expand(field, from, side(span.h), order, room);
         sum(room, from, span)
     }
@@ -149,7 +154,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Stepper<D, N> for Taylor 
         let mut watched = Watched::new(dynamics);
         watched.at(from.t, side(span.h), &from.q.high, &from.v.high);
         let mut room = self.room(dynamics);
-        expand(&mut Counted::new(dynamics), from, side(span.h), self.order_for(D::Scalar::EPSILON.to_f64()), &mut room);
+        expand(&mut Counted::new(dynamics), from, side(span.h), self.fixed::<D::Scalar>(), &mut room);
         let facts = &<D::System as System<N>>::FACTS;
         let finite = |series: &Series<D::Scalar>| series.iter().all(|x| x.is_finite());
         let infinite = (0..N).find(|&i| !finite(&room.path.v[i]) || !finite(&room.path.q[i]));
@@ -188,7 +193,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         };
         let (rtol, atol) = self.tolerances::<D::Scalar>();
         if room.rule.tolerance != rtol {
-            room.rule = Rule::new(*method, rtol);
+            room.rule = Rule::new::<D::System, N>(*method, rtol);
         }
         let rule = room.rule;
         expand(field, from, if backwards { Side::Before } else { Side::After }, rule.order, room);

@@ -49,6 +49,10 @@ pub trait Jets<const N: usize>: System<N> {
     /// How the orders are gone through: [`Unrolled`] for short equations, [`Looped`] for others, [`Called`] for long ones.
     type Orders: Orders;
 
+    /// c in the order p = ⌈1 − c ln rtol⌉ with which [`Taylor`](crate::integrate::Taylor) takes least time, measured: the less an order costs
+    /// beside the rest of a step, the more orders pay.
+    const PER_DIGIT: f64;
+
     /// Room for the work, with what parameters alone decide.
     fn work(&self) -> Self::Work;
 

@@ -137,6 +137,8 @@ pub struct Called;
 impl Orders for Looped {
     const PAYS_BELOW: f64 = 2e-7;
 
+    // Alone in its function, the loop keeps what it needs in registers.
+    #[inline(never)]
     fn run<S: Jets<N>, const N: usize>(
         system: &S,
         order: usize,
@@ -151,6 +153,8 @@ impl Orders for Looped {
 impl Orders for Called {
     const PAYS_BELOW: f64 = 2e-14;
 
+    // Alone in its function, the loop keeps what it needs in registers.
+    #[inline(never)]
     fn run<S: Jets<N>, const N: usize>(
         system: &S,
         order: usize,
@@ -168,6 +172,8 @@ impl Orders for Called {
 impl Orders for Unrolled {
     const PAYS_BELOW: f64 = 1.0;
 
+    // Alone in its function, the loop keeps what it needs in registers.
+    #[inline(never)]
     fn run<S: Jets<N>, const N: usize>(
         system: &S,
         order: usize,

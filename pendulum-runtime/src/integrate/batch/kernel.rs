@@ -120,7 +120,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             problems,
             next: 0,
             outcomes: problems.iter().map(|_| None).collect(),
-            rule: batch.rule::<S::Scalar>(),
+            rule: batch.rule::<S>(),
             atol: [atol.0, atol.1],
             rtol,
             parameters,

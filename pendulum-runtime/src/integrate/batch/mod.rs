@@ -157,8 +157,8 @@ impl<const N: usize> Batch<N> {
     }
 
     /// What decides about the length of a step.
-    fn rule<T: Float>(&self) -> Rule {
-        Rule::new(self.method, self.control.tolerances::<T>().0)
+    fn rule<S: Batched<N>>(&self) -> Rule {
+        Rule::new::<S, N>(self.method, self.control.tolerances::<S::Scalar>().0)
     }
 
     /// Whether a motion can begin; `true` if it ends where it begins.
