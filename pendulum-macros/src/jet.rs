@@ -180,13 +180,13 @@ impl Emitter<'_, '_> {
 }
 
 /// The statements under construction.
-struct Writer<'e, 'm, 'a> {
+pub(crate) struct Writer<'e, 'm, 'a> {
     emitter: &'e Emitter<'m, 'a>,
-    program: &'e Program,
+    pub(crate) program: &'e Program,
     /// Whether each place is decided by parameters alone.
-    still: Vec<bool>,
+    pub(crate) still: Vec<bool>,
     prepared: &'e [Place],
-    lines: TokenStream,
+    pub(crate) lines: TokenStream,
     /// The coefficients of the places that move.
     values: Vec<TokenStream>,
     /// Where the series of a place is, if it is kept.
@@ -195,12 +195,12 @@ struct Writer<'e, 'm, 'a> {
     pairs: usize,
     leading: usize,
     /// The convolutions so far, in halves.
-    halves: usize,
+    pub(crate) halves: usize,
 }
 
 impl Writer<'_, '_, '_> {
     /// What parameters alone decide.
-    fn constant(&self, place: Place) -> TokenStream {
+    pub(crate) fn constant(&self, place: Place) -> TokenStream {
         match self.prepared.iter().position(|prepared| *prepared == place) {
             Some(index) => quote!(work.still[#index]),
             None => self.emitter.operation(&self.program.ops[place.0], |_| TokenStream::new()),
@@ -217,7 +217,7 @@ impl Writer<'_, '_, '_> {
     }
 
     /// A new series.
-    fn slot(&mut self) -> TokenStream {
+    pub(crate) fn slot(&mut self) -> TokenStream {
         let slot = self.slots;
         self.slots += 1;
         quote!(work.series[#slot])
@@ -508,56 +508,6 @@ impl Writer<'_, '_, '_> {
         self.halves += 2;
         self.series.remove(&place);
         self.exponential(place, &quote!(series::product(&#b, &#logarithm, order)));
-    }
-
-    /// The acceleration of a coordinate that swings.
-    fn swing(&mut self, row: usize, place: Place) {
-        let (combination, slot) = (self.combination(place), self.slot());
-        self.halves += 3;
-        self.lines.extend(quote! {
-            let swing = if k == 0 {
-                let (s, c) = path.q[#row][0].sin_cos();
-                let own = #combination;
-                let (s, c) = (c, -s);
-                [own, #combination]
-            } else {
-                series::swing(path, #row, &#slot, order)
-            };
-            [path.a[#row][k], #slot[k]] = swing;
-        });
-    }
-
-    /// A combination of sine and cosine as an expression in `s` and `c`.
-    fn combination(&self, place: Place) -> TokenStream {
-        match self.program.ops[place.0] {
-            Op::Call(Function::Sin, _) | Op::Part(Function::Sin, _) => quote!(s),
-            Op::Call(..) | Op::Part(..) => quote!(c),
-            Op::Negative(a) => {
-                let a = self.combination(a);
-                quote!(-(#a))
-            }
-            Op::Add(a, b) => {
-                let (a, b) = (self.combination(a), self.combination(b));
-                quote!(#a + #b)
-            }
-            Op::Sub(a, b) => {
-                let (a, b) = (self.combination(a), self.combination(b));
-                quote!(#a - (#b))
-            }
-            Op::Mul(a, b) if self.still[a.0] => {
-                let (a, b) = (self.constant(a), self.combination(b));
-                quote!(#a * (#b))
-            }
-            Op::Mul(a, b) => {
-                let (a, b) = (self.combination(a), self.constant(b));
-                quote!((#a) * #b)
-            }
-            Op::Div(a, b) => {
-                let (a, b) = (self.combination(a), self.constant(b));
-                quote!((#a) / #b)
-            }
-            _ => TokenStream::new(),
-        }
     }
 
     /// The accelerations of coordinates that a moving mass matrix couples.

@@ -4,7 +4,10 @@
 //! one product and one square, each of whose terms comes once, in place of two products.
 
 use crate::expr::{Function, Symbol};
+use crate::jet::Writer;
 use crate::schedule::{Op, Place, Program, operands};
+use proc_macro2::TokenStream;
+use quote::quote;
 use std::collections::BTreeSet;
 
 /// The operations between the coordinate and its acceleration, if they make it swing and nothing else reads them.
@@ -19,6 +22,58 @@ pub(crate) fn swing(program: &Program, still: &[bool], coordinate: usize, accele
     let results = program.results.iter().filter(|result| own.contains(result)).count();
     let alone = results == 1 && !program.ops.iter().enumerate().any(read_outside);
     alone.then_some(own)
+}
+
+impl Writer<'_, '_, '_> {
+    /// The acceleration of a coordinate that swings.
+    pub(crate) fn swing(&mut self, row: usize, place: Place) {
+        let (combination, slot) = (self.combination(place), self.slot());
+        self.halves += 3;
+        self.lines.extend(quote! {
+            let swing = if k == 0 {
+                let (s, c) = path.q[#row][0].sin_cos();
+                let own = #combination;
+                let (s, c) = (c, -s);
+                [own, #combination]
+            } else {
+                series::swing(path, #row, &#slot, order)
+            };
+            [path.a[#row][k], #slot[k]] = swing;
+        });
+    }
+
+    /// A combination of sine and cosine as an expression in `s` and `c`.
+    fn combination(&self, place: Place) -> TokenStream {
+        match self.program.ops[place.0] {
+            Op::Call(Function::Sin, _) | Op::Part(Function::Sin, _) => quote!(s),
+            Op::Call(..) | Op::Part(..) => quote!(c),
+            Op::Negative(a) => {
+                let a = self.combination(a);
+                quote!(-(#a))
+            }
+            Op::Add(a, b) => {
+                let (a, b) = (self.combination(a), self.combination(b));
+                quote!(#a + #b)
+            }
+            Op::Sub(a, b) => {
+                let (a, b) = (self.combination(a), self.combination(b));
+                quote!(#a - (#b))
+            }
+            Op::Mul(a, b) if self.still[a.0] => {
+                let (a, b) = (self.constant(a), self.combination(b));
+                quote!(#a * (#b))
+            }
+            Op::Mul(a, b) => {
+                let (a, b) = (self.combination(a), self.constant(b));
+                quote!((#a) * #b)
+            }
+            Op::Div(a, b) => {
+                let (a, b) = (self.combination(a), self.constant(b));
+                quote!((#a) / #b)
+            }
+            _ => TokenStream::new(),
+        }
+    }
 }
 
 /// Whether a place is a sum of multiples of the sine and the cosine of the coordinate; collects what moves on the way there.
