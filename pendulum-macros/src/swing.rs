@@ -30,15 +30,14 @@ impl Writer<'_, '_, '_> {
         let (combination, slot) = (self.combination(place), self.slot());
         self.halves += 3;
         self.lines.extend(quote! {
-            let swing = if k == 0 {
+            if k == 0 {
                 let (s, c) = path.q[#row][0].sin_cos();
-                let own = #combination;
+                path.a[#row][0] = #combination;
                 let (s, c) = (c, -s);
-                [own, #combination]
+                #slot[0] = #combination;
             } else {
-                series::swing(path, #row, &#slot, order)
-            };
-            [path.a[#row][k], #slot[k]] = swing;
+                series::swing(path, #row, &mut #slot, order);
+            }
         });
     }
 

@@ -17,7 +17,7 @@ mod tests;
 pub(crate) use dynamics::Known;
 pub use dynamics::{JetDynamics, PerhapsJets};
 pub use factors::Factors;
-pub use order::{Called, Calling, Constant, Looped, Order, Orders, Running, Unrolled};
+pub use order::{Called, Calling, Constant, First, Looped, Order, Orders, Running, Second, Unrolled};
 
 use crate::real::Real;
 use crate::system::System;

@@ -14,19 +14,26 @@ pub trait Order: Copy {
     /// Σ a\[j−S\] p\[k−j\] over 1 ≤ j ≤ k, for both series of the pair p and k > 0.
     fn both<T: Real, const S: usize>(self, a: &Series<T>, pairs: &Pairs<T>) -> [T; 2];
 
-    /// Σ a\[j\] b\[k−1−j\] over 0 ≤ j < k, for k > 0.
-    fn before<T: Real>(self, a: &Series<T>, b: &Series<T>) -> T;
-
     /// Σ a\[j\] a\[k−j\] over 0 < j < k/2, for k > 2.
     fn half<T: Real>(self, a: &Series<T>) -> T;
 
-    /// ½ Σ a\[j\] a\[k−j\] over 0 ≤ j ≤ k, for k > 0.
-    fn half_square<T: Real>(self, a: &Series<T>) -> T;
+    /// Σ b\[j\] v\[k−1−j\] over 0 ≤ j < k and ½ Σ v\[j\] v\[k−j\] over 0 ≤ j ≤ k, for k > 0. From them come a\[k\] and b\[k\], whose places
+    /// may hold partial sums before.
+    fn swing<T: Real>(self, v: &Series<T>, a: &mut Series<T>, b: &mut Series<T>) -> [T; 2];
 }
 
 /// An order that the compiler knows: it unrolls every sum.
 #[derive(Clone, Copy, Debug)]
 pub struct Constant<const K: usize>;
+
+/// An even order above 2 that the compiler knows, in lanes: products of this order and the next one are summed together, because there it is
+/// loading that takes time.
+#[derive(Clone, Copy, Debug)]
+pub struct First<const K: usize>;
+
+/// The order after [`First`].
+#[derive(Clone, Copy, Debug)]
+pub struct Second<const K: usize>;
 
 /// An order that is known at run time: every sum is a loop in its place.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +58,7 @@ impl Calling {
 }
 
 macro_rules! orders {
-    ($($(#[$inline:meta])? [$($parameter:tt)*] $order:ty, |$this:ident| $index:expr;)+) => {$(
+    ($($(#[$inline:meta])? [$($parameter:tt)*] $order:ty, |$this:ident| $index:expr, $swing:ident;)+) => {$(
         impl<$($parameter)*> Order for $order {
             #[inline(always)]
             fn index(self) -> usize {
@@ -70,28 +77,48 @@ macro_rules! orders {
             }
 
             $(#[$inline])?
-            fn before<T: Real>(self, a: &Series<T>, b: &Series<T>) -> T {
-                sum::before(a, b, self.index())
-            }
-
-            $(#[$inline])?
             fn half<T: Real>(self, a: &Series<T>) -> T {
                 sum::half(a, self.index())
             }
 
             $(#[$inline])?
-            fn half_square<T: Real>(self, a: &Series<T>) -> T {
-                sum::half_square(a, self.index())
+            fn swing<T: Real>(self, v: &Series<T>, a: &mut Series<T>, b: &mut Series<T>) -> [T; 2] {
+                $swing(self.index(), v, a, b)
             }
         }
     )+};
 }
 
 orders! {
-    #[inline(always)] [const K: usize] Constant<K>, |_order| K;
+    #[inline(always)] [const K: usize] Constant<K>, |_order| K, swing;
+    #[inline(always)] [const K: usize] First<K>, |_order| K, first_swing;
+    #[inline(always)] [const K: usize] Second<K>, |_order| K, second_swing;
     // The remainder has no effect, but the compiler then knows that no series is left.
-    #[inline(always)] [] Running, |order| order.0 % LENGTH;
-    #[inline(never)] [] Calling, |order| order.0 % LENGTH;
+    #[inline(always)] [] Running, |order| order.0 % LENGTH, swing;
+    #[inline(never)] [] Calling, |order| order.0 % LENGTH, swing;
+}
+
+/// The sums of [`Order::swing`].
+#[inline(always)]
+fn swing<T: Real>(k: usize, v: &Series<T>, _: &mut Series<T>, b: &mut Series<T>) -> [T; 2] {
+    let inner = if 2 < k { Some(sum::inner(b, v, k - 1)) } else { None };
+    let half = if 2 < k { Some(sum::half(v, k)) } else { None };
+    [sum::before(b, v, k, inner), sum::half_square(v, k, half)]
+}
+
+/// The same, and what is known of the next order's sums in the places of its coefficients.
+#[inline(always)]
+fn first_swing<T: Real>(k: usize, v: &Series<T>, a: &mut Series<T>, b: &mut Series<T>) -> [T; 2] {
+    let [inner, next_inner] = sum::inner_of_two(b, v, k - 1);
+    let [half, next_half] = sum::half_of_two(v, k);
+    (a[k + 1], b[k + 1]) = (next_inner, next_half);
+    [sum::before(b, v, k, Some(inner)), sum::half_square(v, k, Some(half))]
+}
+
+/// The same with what [`first_swing`] has left in the places of the coefficients.
+#[inline(always)]
+fn second_swing<T: Real>(k: usize, v: &Series<T>, a: &mut Series<T>, b: &mut Series<T>) -> [T; 2] {
+    [sum::before(b, v, k, Some(a[k])), sum::half_square(v, k, Some(b[k]))]
 }
 
 /// A way to go through the orders of a jet.
@@ -181,7 +208,7 @@ impl Orders for Unrolled {
         drive: &S::Drive,
         work: &mut S::Work,
     ) {
-        unrolled::<S, false, N>(system, order, path, drive, work);
+        unrolled(system, order, path, drive, work);
     }
 
     #[inline(always)]
@@ -196,7 +223,7 @@ impl Orders for Unrolled {
         if cfg!(debug_assertions) {
             looped::<S, true, N>(system, order, path, drive, work);
         } else {
-            unrolled::<S, true, N>(system, order, path, drive, work);
+            paired(system, order, path, drive, work);
         }
     }
 }
@@ -219,9 +246,47 @@ fn looped<S: Jets<N>, const LANES: bool, const N: usize>(
     }
 }
 
+/// The orders in lanes, each in code of its own: four by four, so that what one order leaves to the next stays in registers; the last ones of an
+/// order that is no multiple of four in a loop.
+#[inline(always)]
+fn paired<S: Jets<N>, const N: usize>(
+    system: &S,
+    order: usize,
+    path: &mut Path<S::Scalar, N>,
+    drive: &S::Drive,
+    work: &mut S::Work,
+) {
+    let mut done = 0;
+    macro_rules! each {
+        ($([$($k:ident<$index:literal>)+] $next:literal)+) => {'groups: {$(
+            if order < $next {
+                break 'groups;
+            }
+            $(system.coefficient($k::<$index>, path, drive, work);
+            path.integrate($k::<$index>);)+
+            part(path, work);
+            done = $next;
+        )+}};
+    }
+    each! {
+        [Constant<0> Constant<1> Constant<2> Constant<3>] 4
+        [First<4> Second<5> First<6> Second<7>] 8
+        [First<8> Second<9> First<10> Second<11>] 12
+        [First<12> Second<13> First<14> Second<15>] 16
+        [First<16> Second<17> First<18> Second<19>] 20
+        [First<20> Second<21> First<22> Second<23>] 24
+        [First<24> Second<25> First<26> Second<27>] 28
+    }
+    for k in done..order.min(MAX_ORDER) {
+        system.coefficient(Running(k), path, drive, work);
+        path.integrate(Running(k));
+        part(path, work);
+    }
+}
+
 /// The orders one after the other, each in code of its own.
 #[inline(always)]
-fn unrolled<S: Jets<N>, const LANES: bool, const N: usize>(
+fn unrolled<S: Jets<N>, const N: usize>(
     system: &S,
     order: usize,
     path: &mut Path<S::Scalar, N>,
@@ -235,9 +300,6 @@ fn unrolled<S: Jets<N>, const LANES: bool, const N: usize>(
             }
             system.coefficient(Constant::<$k>, path, drive, work);
             path.integrate(Constant::<$k>);
-            if LANES {
-                part(path, work);
-            }
         )+};
     }
     each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29);

@@ -152,11 +152,13 @@ pub fn sin_cos_of_coordinate<T: Real, O: Order, const N: usize>(
     [path.reciprocals.over(with_cos, k), -path.reciprocals.over(with_sin, k)]
 }
 
-/// a = q̈ = κ sin q + λ cos q and b = κ cos q − λ sin q, `own`, after the first order: ȧ = b q̇ and ḃ = −a q̇ = −(q̇²/2)˙ need no function.
+/// a = q̈ = κ sin q + λ cos q and b = κ cos q − λ sin q after the first order: ȧ = b q̇ and ḃ = −a q̇ = −(q̇²/2)˙ need no function.
 #[inline(always)]
-pub fn swing<T: Real, O: Order, const N: usize>(path: &Path<T, N>, coordinate: usize, own: &Series<T>, order: O) -> [T; 2] {
-    let rate = &path.v[coordinate];
-    [path.reciprocals.over(order.before(own, rate), order.index()), -order.half_square(rate)]
+pub fn swing<T: Real, O: Order, const N: usize>(path: &mut Path<T, N>, coordinate: usize, b: &mut Series<T>, order: O) {
+    let k = order.index();
+    let (v, a) = (&path.v[coordinate], &mut path.a[coordinate]);
+    let [product, square] = order.swing(v, a, b);
+    (a[k], b[k]) = (path.reciprocals.over(product, k), -square);
 }
 
 /// sinh x and cosh x together.

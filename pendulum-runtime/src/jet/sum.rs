@@ -23,15 +23,38 @@ pub(super) fn inner<T: Real>(a: &Series<T>, b: &Series<T>, k: usize) -> T {
     odd + even
 }
 
-/// Σ a\[j\] b\[k−1−j\] over 0 ≤ j < k, for k > 0.
+/// [`inner`] for k and k + 1, which share most of what they load, for k > 2.
 #[inline(always)]
-pub(super) fn before<T: Real>(a: &Series<T>, b: &Series<T>, k: usize) -> T {
+pub(super) fn inner_of_two<T: Real>(a: &Series<T>, b: &Series<T>, k: usize) -> [T; 2] {
+    let mut odd = [a[1] * b[k - 1], a[1] * b[k]];
+    let mut even = [a[2] * b[k - 2], a[2] * b[k - 1]];
+    let mut j = 3;
+    while j + 1 < k {
+        odd = plus(odd, times(a[j], [b[k - j], b[k + 1 - j]]));
+        even = plus(even, times(a[j + 1], [b[k - j - 1], b[k - j]]));
+        j += 2;
+    }
+    if j < k {
+        odd = plus(odd, times(a[j], [b[k - j], b[k + 1 - j]]));
+        even[1] += a[j + 1] * b[k - j];
+    } else {
+        odd[1] += a[j] * b[1];
+    }
+    plus(odd, even)
+}
+
+/// Σ a\[j\] b\[k−1−j\] over 0 ≤ j < k, for k > 0; `inner` is [`inner`] for k − 1, where there is one.
+#[inline(always)]
+pub(super) fn before<T: Real>(a: &Series<T>, b: &Series<T>, k: usize, inner: Option<T>) -> T {
     let oldest = a[0] * b[k - 1];
     if k == 1 {
         return oldest;
     }
-    let newest = oldest + a[k - 1] * b[0];
-    if k == 2 { newest } else { inner(a, b, k - 1) + newest }
+    let older = match inner {
+        Some(inner) => inner + oldest,
+        None => oldest,
+    };
+    older + a[k - 1] * b[0]
 }
 
 /// Σ a\[j\] a\[k−j\] over 0 < j < k/2, for k > 2.
@@ -54,19 +77,42 @@ pub(super) fn half<T: Real>(a: &Series<T>, k: usize) -> T {
     odd + even
 }
 
-/// ½ Σ a\[j\] a\[k−j\] over 0 ≤ j ≤ k, each product once, for k > 0.
+/// [`half`] for k and k + 1, which share most of what they load, for even k > 2.
 #[inline(always)]
-pub(super) fn half_square<T: Real>(a: &Series<T>, k: usize) -> T {
+pub(super) fn half_of_two<T: Real>(a: &Series<T>, k: usize) -> [T; 2] {
+    let mut odd = [a[1] * a[k - 1], a[1] * a[k]];
+    if k == 4 {
+        return [odd[0], odd[1] + a[2] * a[3]];
+    }
+    let mut even = [a[2] * a[k - 2], a[2] * a[k - 1]];
+    let mut j = 3;
+    while 2 * (j + 1) < k {
+        odd = plus(odd, times(a[j], [a[k - j], a[k + 1 - j]]));
+        even = plus(even, times(a[j + 1], [a[k - j - 1], a[k - j]]));
+        j += 2;
+    }
+    if 2 * j < k {
+        odd = plus(odd, times(a[j], [a[k - j], a[k + 1 - j]]));
+        even[1] += a[j + 1] * a[k - j];
+    } else {
+        odd[1] += a[j] * a[k + 1 - j];
+    }
+    plus(odd, even)
+}
+
+/// ½ Σ a\[j\] a\[k−j\] over 0 ≤ j ≤ k, each product once, for k > 0; `half` is [`half`], where there is one.
+#[inline(always)]
+pub(super) fn half_square<T: Real>(a: &Series<T>, k: usize, half: Option<T>) -> T {
     let newest = a[0] * a[k];
     if k == 1 {
         return newest;
     }
     let middle = T::from_f64(0.5) * (a[k / 2] * a[k / 2]);
-    if k == 2 {
-        return middle + newest;
+    match half {
+        Some(half) if k.is_multiple_of(2) => (half + middle) + newest,
+        Some(half) => half + newest,
+        None => middle + newest,
     }
-    let inner = half(a, k) + newest;
-    if k.is_multiple_of(2) { inner + middle } else { inner }
 }
 
 /// Σ a\[j−S\] p\[k−j\] over 1 ≤ j ≤ k, for both series of the pair p and k > 0.

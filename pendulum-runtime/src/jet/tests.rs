@@ -1,6 +1,6 @@
 //! Every recurrence against composition of power series in exact rationals.
 
-use super::{Order, Reciprocals, Running, Series, series, zero};
+use super::{First, Order, Reciprocals, Running, Second, Series, series, zero};
 use crate::real::Real;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -283,10 +283,45 @@ fn swings_have_the_sines_and_cosines_of_their_own_angle() {
         pairs[k] = series::sin_cos_of_coordinate(&path, 0, &pairs, order);
         let [s, c] = pairs[k];
         let expected = [sine * s + cosine * c, sine * c - cosine * s];
-        [path.a[0][k], own[k]] = if k == 0 { expected } else { series::swing(&path, 0, &own, order) };
+        if k == 0 {
+            [path.a[0][0], own[0]] = expected;
+        } else {
+            series::swing(&mut path, 0, &mut own, order);
+        }
         assert_eq!([path.a[0][k], own[k]], expected, "order {k}");
         path.integrate(order);
     }
+}
+
+/// One more order of a swing.
+fn swing_on<O: Order>(path: &mut super::Path<f64, 1>, own: &mut Series<f64>, order: O) {
+    series::swing(path, 0, own, order);
+    path.integrate(order);
+}
+
+#[test]
+fn two_orders_of_a_swing_at_once_have_the_same_bits() {
+    let mut one_by_one = super::Path::<f64, 1>::new();
+    (one_by_one.v[0][0], one_by_one.a[0][0]) = (0.7, -1.3);
+    one_by_one.integrate(Running::new(0));
+    let mut own = zero();
+    own[0] = -9.1;
+    for k in 1..4 {
+        swing_on(&mut one_by_one, &mut own, Running::new(k));
+    }
+    let (mut in_pairs, mut own_in_pairs) = (one_by_one.clone(), own);
+    macro_rules! pairs {
+        ($($first:literal $second:literal)+) => {$(
+            for k in [$first, $second] {
+                swing_on(&mut one_by_one, &mut own, Running::new(k));
+            }
+            swing_on(&mut in_pairs, &mut own_in_pairs, First::<$first>);
+            swing_on(&mut in_pairs, &mut own_in_pairs, Second::<$second>);
+            let bits = |path: &super::Path<f64, 1>, own: &Series<f64>| [path.q[0], path.v[0], path.a[0], *own].map(|x| x.map(f64::to_bits));
+            assert_eq!(bits(&in_pairs, &own_in_pairs), bits(&one_by_one, &own), "order {}", $first);
+        )+};
+    }
+    pairs!(4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29);
 }
 
 #[test]
