@@ -204,6 +204,11 @@ impl<const N: usize> AdaptiveStep<N> {
         length / self.max_step
     }
 
+    /// Whether the length of the first step has a limit of its own.
+    pub(crate) fn limits_first(&self) -> bool {
+        self.first_step.is_some()
+    }
+
     /// A length of step within the limits set.
     #[inline(always)]
     pub(crate) fn limited(&self, first: bool, wanted: f64) -> f64 {

@@ -9,11 +9,11 @@ use super::control::{Control, Course, Memory};
 use super::field::{Accelerations, Counted, Watched, coordinate, first_in_state};
 use super::node::Node;
 use super::piece::{Basis, Piece, TERMS};
-use super::power::{coarse_exp2, coarse_log2, log2};
+use super::power::{digits, log2, power};
 use super::span::Span;
 use super::stepper::Stepper;
 use crate::error::{Error, Quantity};
-use crate::jet::{JetDynamics, Jets, MAX_ORDER, Orders, Path, Series};
+use crate::jet::{JetDynamics, Jets, LENGTH, MAX_ORDER, Orders, Path, Series};
 use crate::motion::Side;
 use crate::real::{Float, Real};
 use crate::system::{Dynamics, System, scalar_time};
@@ -78,21 +78,32 @@ pub struct Room<T, W, X, const N: usize> {
 }
 
 /// What the tolerance decides about the length of a step.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Rule {
     tolerance: f64,
     pub(super) order: usize,
-    /// The binary logarithm of the tolerance.
-    pub(super) binary: f64,
-    /// The binary logarithm of the step over the radius of convergence.
-    pub(super) margin: f64,
+    /// For each order what its coefficient tells where it is 2^−1023, and how much less for one that is twice as large, over 2³².
+    told: [(f64, f64); LENGTH],
 }
 
 impl Rule {
     pub(super) fn new<S: Jets<N>, const N: usize>(method: Taylor, tolerance: f64) -> Self {
         let (order, binary) = (method.order_for(tolerance, S::PER_DIGIT), log2(tolerance));
         let margin = binary / order as f64 - 0.7 * core::f64::consts::LOG2_E / (order as f64 - 1.0);
-        Self { tolerance, order, binary, margin }
+        let told = core::array::from_fn(|k| {
+            let k = k.max(1) as f64;
+            (1023.0 + margin + (1023.0 - binary) / k, 1.0 / (4294967296.0 * k))
+        });
+        Self { tolerance, order, told }
+    }
+
+    /// 1023 and the binary logarithm of the step that a coefficient of the order k over the error allowed tells, (coefficient · rtol)^(−1/k) times the
+    /// margin; infinite where it is zero.
+    #[inline(always)]
+    pub(super) fn told(&self, coefficient: f64, k: usize) -> f64 {
+        let (most, slope) = self.told[k];
+        let told = most - slope * digits(coefficient);
+        if 0.0 < coefficient { told } else { f64::INFINITY }
     }
 }
 
@@ -195,13 +206,13 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         if room.rule.tolerance != rtol {
             room.rule = Rule::new::<D::System, N>(*method, rtol);
         }
-        let rule = room.rule;
-        expand(field, from, if backwards { Side::Before } else { Side::After }, rule.order, room);
+        let order = room.rule.order;
+        expand(field, from, if backwards { Side::Before } else { Side::After }, order, room);
         let weights = [
             core::array::from_fn(|i| 1.0 / (atol.0[i] + rtol * from.q.high[i].to_f64().abs())),
             core::array::from_fn(|i| 1.0 / (atol.1[i] + rtol * from.v.high[i].to_f64().abs())),
         ];
-        let wanted = length(&room.path, &rule, &weights);
+        let wanted = length(&room.path, &room.rule, &weights);
         // A uniform motion may go on for ever, but it has to come to an end.
         let wanted = if wanted == f64::INFINITY && target == wanted { 1.0 } else { wanted };
         let wanted = self.limited(memory.h == 0.0, wanted);
@@ -211,7 +222,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
             return Err(blame(method, field.dynamics, &span, from, room));
         }
         if wanted <= resolution(from.t) && wanted < from.t.since(target).abs() {
-            let (_, index) = largest(&room.path, rule.order, &weights);
+            let (_, index) = largest(&room.path, order, &weights);
             let coordinate = coordinate(&<D::System as System<N>>::FACTS, index);
             return Err(Error::StepSizeUnderflow { t, step: wanted, coordinate });
         }
@@ -289,11 +300,8 @@ fn length<T: Float, const N: usize>(path: &Path<T, N>, rule: &Rule, weights: &[[
     let (mut least, mut told) = (f64::INFINITY, 0);
     for k in (1..=rule.order).rev() {
         let (coefficient, _) = largest(path, k, weights);
-        if 0.0 < coefficient {
-            // log₂ of the radius of convergence, if the coefficients fall like its powers.
-            let radius = -(coarse_log2(coefficient) + rule.binary) * path.reciprocals.of(k).to_f64();
-            least = if radius < least { radius } else { least };
-        }
+        let longest = rule.told(coefficient, k);
+        least = if longest < least { longest } else { least };
         told += 1;
         if TELLING <= told && least < f64::INFINITY {
             break;
@@ -302,7 +310,7 @@ fn length<T: Float, const N: usize>(path: &Path<T, N>, rule: &Rule, weights: &[[
     if least == f64::INFINITY {
         return least;
     }
-    coarse_exp2(least + rule.margin)
+    power(least)
 }
 
 /// The largest coefficient of an order over the error allowed, and its coordinate.

@@ -13,7 +13,7 @@ use crate::integrate::adaptive_step::resolution;
 use crate::integrate::blame::blame;
 use crate::integrate::field::coordinate;
 use crate::integrate::node::Node;
-use crate::integrate::power::{coarse_exp2, coarse_log2};
+use crate::integrate::power::power;
 use crate::integrate::solution::{State, Stats};
 use crate::integrate::span::Span;
 use crate::integrate::stepper::Stepper;
@@ -51,7 +51,7 @@ pub(super) struct Run<'a, S: Batched<N>, const N: usize> {
     round: u64,
     /// The round after which a motion has taken all steps allowed.
     deadline: u64,
-    /// Whether some lane takes its first step.
+    /// Whether some lane takes its first step, of limited length.
     first: bool,
 }
 
@@ -74,20 +74,6 @@ struct Flight<T, const N: usize> {
     end: Wide<f64>,
     /// 1 where a motion is under way, else 0.
     live: Wide<f64>,
-}
-
-/// What a step does to the lanes that it ends or that it must not end.
-struct Step {
-    wanted: Wide<f64>,
-    /// The length and what rounding has left off it.
-    h: Wide<f64>,
-    h_low: Wide<f64>,
-    /// Lanes that reach their end.
-    close: [bool; W],
-    /// Lanes whose step time does not resolve.
-    short: [bool; W],
-    /// Lanes whose state stays finite.
-    finite: [bool; W],
 }
 
 /// All steps of a batch.
@@ -151,60 +137,88 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             path.t.0[l] = S::Scalar::from_f64(from.high.0[l]) + S::Scalar::from_f64(from.low.0[l]);
         }
         for i in 0..N {
-            path.q[i][0] = from.q.high[i];
-            path.v[i][0] = from.v.high[i];
+            path.q[i][0] = self.lanes.q.high[i];
+            path.v[i][0] = self.lanes.v.high[i];
         }
         <S::Wide as Jets<N>>::Orders::run_in_lanes(&self.system, self.rule.order, path, drive, work);
         let weights = weights(&from, self.rtol, &self.atol);
-        let mut wanted = length(path, &self.rule, &weights);
+        let told = told(path, &self.rule, &weights);
+        let mut wanted = lengths(told);
+        let mut unusual = wanted;
         for l in 0..W {
+            unusual.0[l] = if UNTOLD < wanted.0[l] { 1.0 } else { 0.0 };
             wanted.0[l] = self.batch.control.limited(false, wanted.0[l]);
         }
-        if self.first {
-            for l in 0..W {
-                wanted.0[l] = self.batch.control.limited(self.begun[l] == self.round, wanted.0[l]);
-            }
-            self.first = false;
+        let h = fit(&from, wanted, &mut unusual);
+        if any(unusual) | self.first | (self.round + 1 == self.deadline) {
+            self.unusual_steps(&from, told, &weights);
+        } else if any(self.advance(&from, [h, Wide::from_f64(0.0)])) {
+            self.settle(&from, wanted, h);
         }
-        let mut step = fit(&from, wanted);
-        let mut h = Wide::from_f64(0.0);
+    }
+
+    /// Goes to the ends of steps of the lengths `h`, which come in two words; not zero where the state there is not finite.
+    #[inline(always)]
+    fn advance(&mut self, from: &Flight<S::Scalar, N>, h: [Wide<f64>; 2]) -> Wide<f64> {
+        let mut length = Wide::from_f64(0.0);
         for l in 0..W {
-            h.0[l] = S::Scalar::from_f64(step.h.0[l]) + S::Scalar::from_f64(step.h_low.0[l]);
+            length.0[l] = S::Scalar::from_f64(h[0].0[l]) + S::Scalar::from_f64(h[1].0[l]);
         }
-        let splitter = Wide::splat(splitter::<S::Scalar>());
+        let (path, splitter) = (&self.room.path, Wide::splat(splitter::<S::Scalar>()));
         let mut finite = Wide::from_f64(0.0);
         for i in 0..N {
             for (sum, series) in [(&mut self.lanes.q, &path.q[i]), (&mut self.lanes.v, &path.v[i])] {
-                sum.add_split_product(i, h, series[1], rest(series, self.rule.order, h), splitter);
+                sum.add_split_product(i, length, series[1], rest(series, self.rule.order, length), splitter);
                 // Times zero, infinity and what is not a number are not zero.
                 finite += sum.high[i] * Wide::from_f64(0.0);
             }
         }
-        let (mut usual, zero) = (true, S::Scalar::from_f64(0.0));
+        let mut not_finite = Wide::from_f64(0.0);
         for l in 0..W {
-            let t = Time::from_words(from.high.0[l], from.low.0[l]) + step.h.0[l];
+            let t = Time::from_words(from.high.0[l], from.low.0[l]) + h[0].0[l];
             (self.lanes.high.0[l], self.lanes.low.0[l]) = (t.to_f64(), t.low());
-            step.finite[l] = finite.0[l] == zero;
-            usual &= step.finite[l] & !step.close[l] & !step.short[l];
+            not_finite.0[l] = finite.0[l].to_f64();
         }
         self.round += 1;
-        if !usual || self.deadline <= self.round {
-            self.settle(&from, &step);
+        not_finite
+    }
+
+    /// Takes steps of which some are the first or the last ones, too short, or as long as no term tells.
+    #[cold]
+    #[inline(never)]
+    fn unusual_steps(&mut self, from: &Flight<S::Scalar, N>, told: Wide<f64>, weights: &[[Wide<f64>; N]; 2]) {
+        let mut wanted = longer(&self.room.path, &self.rule, weights, told);
+        for l in 0..W {
+            wanted.0[l] = self.batch.control.limited(self.begun[l] == self.round, wanted.0[l]);
         }
+        let mut h = [fit(from, wanted, &mut Wide::from_f64(0.0)), Wide::from_f64(0.0)];
+        for l in 0..W {
+            let (t, end) = (Time::from_words(from.high.0[l], from.low.0[l]), from.end.0[l]);
+            if 0.0 < from.live.0[l] && reaches(t, end, wanted.0[l]) {
+                let span = Span::to(t, end);
+                (h[0].0[l], h[1].0[l]) = (span.h, span.low);
+            }
+        }
+        self.first = false;
+        self.advance(from, h);
+        self.settle(from, wanted, h[0]);
     }
 
     /// Ends the motions that have come to an end, and begins others in their lanes.
     #[cold]
     #[inline(never)]
-    fn settle(&mut self, before: &Flight<S::Scalar, N>, step: &Step) {
+    fn settle(&mut self, before: &Flight<S::Scalar, N>, wanted: Wide<f64>, h: Wide<f64>) {
         for l in 0..W {
             let Some(index) = self.problem[l] else { continue };
             let steps = self.round - self.begun[l];
-            let from = node(before, l);
-            let error = if !step.finite[l] {
-                Some(self.not_finite(&from, step, l))
-            } else if step.short[l] {
-                Some(self.underflow(before, &from, step, l))
+            let (from, to) = (node(before, l), node(&self.lanes, l));
+            let end = self.lanes.end.0[l];
+            let close = reaches(from.t, end, wanted.0[l]);
+            let error = if !to.is_finite() {
+                let span = if close { Span::to(from.t, end) } else { Span::by(from.t, h.0[l]) };
+                Some(self.not_finite(&from, &span, l))
+            } else if is_short(from.t, end, wanted.0[l]) {
+                Some(self.underflow(before, &from, wanted.0[l], l))
             } else {
                 None
             };
@@ -214,11 +228,10 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             let time = self.problems[index].time;
             if error.is_some() {
                 self.finish(l, outcome(time, State::from(&from), stats, error));
-            } else if step.close[l] {
+            } else if close {
                 (self.lanes.high.0[l], self.lanes.low.0[l]) = (time.1, 0.0);
                 self.finish(l, outcome(time, State::from(&node(&self.lanes, l)), stats, None));
             } else if self.batch.max_steps <= steps {
-                let to = node(&self.lanes, l);
                 let error = Error::MaxSteps { t: to.t.to_f64(), max_steps: self.batch.max_steps };
                 self.finish(l, outcome(time, State::from(&to), stats, Some(error)));
             }
@@ -233,15 +246,14 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
     }
 
     /// The error for a step of a lane that led to a number that is not finite.
-    fn not_finite(&self, from: &Node<S::Scalar, N>, step: &Step, l: usize) -> Error {
-        let (method, start) = (&self.batch.method, from.t);
+    fn not_finite(&self, from: &Node<S::Scalar, N>, span: &Span, l: usize) -> Error {
+        let method = &self.batch.method;
         let system = &self.problems[self.problem[l].unwrap_or(0)].system;
-        let span = if step.close[l] { Span::to(start, self.lanes.end.0[l]) } else { Span::by(start, step.h.0[l]) };
-        blame(method, system, &span, from, &Stepper::<S, N>::room(method, system))
+        blame(method, system, span, from, &Stepper::<S, N>::room(method, system))
     }
 
     /// The error for a step of a lane that is too short.
-    fn underflow(&self, before: &Flight<S::Scalar, N>, from: &Node<S::Scalar, N>, step: &Step, l: usize) -> Error {
+    fn underflow(&self, before: &Flight<S::Scalar, N>, from: &Node<S::Scalar, N>, wanted: f64, l: usize) -> Error {
         let all = weights(before, self.rtol, &self.atol);
         let one = all.map(|weights| weights.map(|weights| weights.0[l]));
         let mut path = Path::new();
@@ -252,7 +264,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         }
         let (_, index) = largest(&path, k, &one);
         let coordinate = coordinate(&S::FACTS, index);
-        Error::StepSizeUnderflow { t: from.t.to_f64(), step: step.wanted.0[l], coordinate }
+        Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate }
     }
 
     /// Begins motions in all free lanes.
@@ -299,7 +311,8 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
                 });
                 self.put(l, &Node::new(Time::new(problem.time.0), problem.q, problem.v));
                 (self.lanes.end.0[l], self.lanes.live.0[l]) = (problem.time.1, 1.0);
-                (self.problem[l], self.begun[l], self.first) = (Some(self.next), self.round, true);
+                (self.problem[l], self.begun[l]) = (Some(self.next), self.round);
+                self.first = self.batch.control.limits_first();
                 return;
             }
             Ok(true) => None,
@@ -354,76 +367,76 @@ fn weights<T: Lane + Float, const N: usize>(from: &Flight<T, N>, rtol: f64, atol
     weights
 }
 
+/// A length that stands for one that the last terms do not tell.
+const UNTOLD: f64 = 1e300;
+
+/// What the last terms of the series tell about the lengths of steps: 1023 and their binary logarithms.
+#[inline(always)]
+fn told<T: Lane + Float, const N: usize>(path: &Path<Wide<T>, N>, rule: &Rule, weights: &[[Wide<f64>; N]; 2]) -> Wide<f64> {
+    let mut least = Wide::from_f64(f64::INFINITY);
+    for back in 0..TELLING {
+        least = nearest(least, told_by(path, rule, weights, rule.order.saturating_sub(back).max(1)));
+    }
+    least
+}
+
 /// The lengths of steps at whose ends the last terms of the series are as large as allowed, as [`Taylor`] finds them.
 #[inline(always)]
-fn length<T: Lane + Float, const N: usize>(path: &Path<Wide<T>, N>, rule: &Rule, weights: &[[Wide<f64>; N]; 2]) -> Wide<f64> {
-    let mut least = Wide::from_f64(f64::INFINITY);
-    for told in 0..TELLING {
-        if told < rule.order {
-            least = nearest(least, radius(path, rule, weights, rule.order - told));
-        }
-    }
-    let mut open = false;
+fn lengths(told: Wide<f64>) -> Wide<f64> {
+    let mut wanted = told;
     for l in 0..W {
-        open |= least.0[l] == f64::INFINITY;
-    }
-    let mut wanted = least;
-    for l in 0..W {
-        wanted.0[l] = coarse_exp2(least.0[l] + rule.margin);
-    }
-    if open {
-        longer(path, rule, weights, least, &mut wanted);
+        wanted.0[l] = power(told.0[l]);
     }
     wanted
 }
 
-/// The lanes that the last terms tell nothing listen to those before.
-#[cold]
-#[inline(never)]
+/// The same where the last terms may tell nothing: those lanes listen to the terms before.
 fn longer<T: Lane + Float, const N: usize>(
     path: &Path<Wide<T>, N>,
     rule: &Rule,
     weights: &[[Wide<f64>; N]; 2],
-    mut least: Wide<f64>,
-    wanted: &mut Wide<f64>,
-) {
-    let mut open: [bool; W] = least.0.map(|least| least == f64::INFINITY);
+    mut told: Wide<f64>,
+) -> Wide<f64> {
+    let mut open = told.0.map(|told| told == f64::INFINITY);
+    if !open.contains(&true) {
+        return lengths(told);
+    }
     for k in (1..=rule.order.saturating_sub(TELLING)).rev() {
-        let radius = radius(path, rule, weights, k);
+        let earlier = told_by(path, rule, weights, k);
         for l in 0..W {
-            if open[l] && radius.0[l] < f64::INFINITY {
-                (least.0[l], open[l]) = (radius.0[l], false);
+            if open[l] && earlier.0[l] < f64::INFINITY {
+                (told.0[l], open[l]) = (earlier.0[l], false);
             }
         }
     }
+    let mut wanted = lengths(told);
     for l in 0..W {
-        wanted.0[l] = if open[l] { f64::INFINITY } else { coarse_exp2(least.0[l] + rule.margin) };
+        wanted.0[l] = if open[l] { f64::INFINITY } else { wanted.0[l] };
     }
+    wanted
 }
 
-/// log₂ of the radius of convergence, if the coefficients fall like its powers; infinite where all of this order are zero.
+/// What the coefficients of one order tell; infinite where all are zero.
 #[inline(always)]
-fn radius<T: Lane + Float, const N: usize>(
+fn told_by<T: Lane + Float, const N: usize>(
     path: &Path<Wide<T>, N>,
     rule: &Rule,
     weights: &[[Wide<f64>; N]; 2],
     k: usize,
 ) -> Wide<f64> {
-    let mut radius = Wide::<f64>::from_f64(0.0);
+    let mut told = Wide::<f64>::from_f64(0.0);
     for i in 0..N {
         for (series, weights) in [(&path.q[i], &weights[0]), (&path.v[i], &weights[1])] {
             for l in 0..W {
                 let coefficient = series[k].0[l].to_f64().abs() * weights[i].0[l];
-                radius.0[l] = if radius.0[l] < coefficient { coefficient } else { radius.0[l] };
+                told.0[l] = if told.0[l] < coefficient { coefficient } else { told.0[l] };
             }
         }
     }
-    let reciprocal = path.reciprocals.of(k).0[0].to_f64();
     for l in 0..W {
-        let told = -(coarse_log2(radius.0[l]) + rule.binary) * reciprocal;
-        radius.0[l] = if 0.0 < radius.0[l] { told } else { f64::INFINITY };
+        told.0[l] = rule.told(told.0[l], k);
     }
-    radius
+    told
 }
 
 /// The lesser number of each lane.
@@ -436,40 +449,40 @@ fn nearest(a: Wide<f64>, b: Wide<f64>) -> Wide<f64> {
     least
 }
 
-/// The steps of these lengths, or what avoids going beyond the end and leaving a sliver before it, as for a single motion; none in idle
-/// lanes.
+/// The steps of these lengths, or what avoids leaving a sliver before the end, as for a single motion; none in idle lanes. Steps that would
+/// reach the end or are too short are marked.
 #[inline(always)]
-fn fit<T: Lane + Float, const N: usize>(from: &Flight<T, N>, wanted: Wide<f64>) -> Step {
-    let zero = Wide::from_f64(0.0);
-    let (close, short, finite) = ([false; W], [false; W], [true; W]);
-    let mut step = Step { wanted, h: zero, h_low: zero, close, short, finite };
-    let mut any = false;
+fn fit<T, const N: usize>(from: &Flight<T, N>, wanted: Wide<f64>, unusual: &mut Wide<f64>) -> Wide<f64> {
+    let mut h = wanted;
     for l in 0..W {
         let (t, wanted) = (Time::from_words(from.high.0[l], from.low.0[l]), wanted.0[l]);
         let left = -t.since(from.end.0[l]);
-        let live = 0.0 < from.live.0[l];
-        step.close[l] = live & (left.abs() <= 1.01 * wanted);
-        step.short[l] = live & (wanted <= resolution(t)) & (wanted < left.abs());
-        let h = if left.abs() < 2.0 * wanted { 0.5 * left } else { wanted.copysign(left) };
-        step.h.0[l] = if live { h } else { 0.0 };
-        any |= step.close[l];
+        let step = if left.abs() < 2.0 * wanted { 0.5 * left } else { wanted.copysign(left) };
+        h.0[l] = if 0.0 < from.live.0[l] { step } else { 0.0 };
+        unusual.0[l] = if reaches(t, from.end.0[l], wanted) { from.live.0[l] } else { unusual.0[l] };
+        unusual.0[l] = if is_short(t, from.end.0[l], wanted) { from.live.0[l] } else { unusual.0[l] };
     }
-    if any {
-        step.end(&from.high, &from.low, &from.end);
-    }
-    step
+    h
 }
 
-impl Step {
-    /// Makes the last steps of motions as long as what is left.
-    #[cold]
-    #[inline(never)]
-    fn end(&mut self, high: &Wide<f64>, low: &Wide<f64>, end: &Wide<f64>) {
-        for l in 0..W {
-            if self.close[l] {
-                let span = Span::to(Time::from_words(high.0[l], low.0[l]), end.0[l]);
-                (self.h.0[l], self.h_low.0[l]) = (span.h, span.low);
-            }
-        }
+/// Whether a step of this length would reach the end.
+#[inline(always)]
+fn reaches(t: Time, end: f64, wanted: f64) -> bool {
+    t.since(end).abs() <= 1.01 * wanted
+}
+
+/// Whether a step of this length would be too short before the end.
+#[inline(always)]
+fn is_short(t: Time, end: f64, wanted: f64) -> bool {
+    (wanted <= resolution(t)) & (wanted < t.since(end).abs())
+}
+
+/// Whether some lane is not zero.
+#[inline(always)]
+fn any(lanes: Wide<f64>) -> bool {
+    let mut all_zero = true;
+    for l in 0..W {
+        all_zero &= lanes.0[l] == 0.0;
     }
+    !all_zero
 }
