@@ -132,6 +132,36 @@ mod systems {
         potential = g*height(r) + g*height(e);
         dissipation = c*(q̇ - ḟ)^2/8;
     }
+
+    lagrangian! {
+        /// A chain on a moving pivot whose first link grows, with friction in the joints and in the air, a motor, and a wheel at its end.
+        pub struct Machine { m: [1; 3], l: [1; 3], g, c, w, d, n }
+        coordinate θ[3];
+        coordinate φ;
+        driven x: [1; 2];
+        driven s: 1;
+        let y[k in 0..3] = x + s*[sin(θ[0]), -cos(θ[0])] + sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]);
+        kinetic = sum(k in 0..3, m[k]/2*|ẏ[k]|^2) + w/2*(φ̇ + θ̇[2])^2 + w/5*cos(φ)*φ̇*θ̇[0];
+        potential = sum(k in 0..3, m[k]*g*height(y[k])) + d*sin(φ - θ[1])*n*t;
+        dissipation = c/2*(θ̇[1] - θ̇[0])^2 + c/8*|ẏ[2]|^2;
+        force θ[0] = d*sin(n*t) - c*θ̇[0];
+        force φ = c*cos(φ)*φ̇;
+    }
+
+    lagrangian! {
+        /// Two arms on a shoulder, in angles against the link before and with lengths that stretch; a spring between the hands.
+        pub struct Tree { g, k }
+        coordinate a;
+        coordinate b;
+        coordinate c;
+        coordinate r;
+        coordinate d;
+        let s = (2 + r^2)*[sin(a), -cos(a)];
+        let h = s + [sin(a + b), -cos(a + b)];
+        let e = s + (1 + d)*[cos(c), sin(c)];
+        kinetic = |ṡ|^2/2 + |ḣ|^2 + |ė|^2/3 + ṙ^2/2;
+        potential = g*height(s) + g*height(h) + g*height(e) + k/2*|h - e|^2 + k*(r^2 + d^2);
+    }
 }
 
 #[test]
@@ -143,6 +173,8 @@ fn coupled_coordinates() {
         check("chain", &systems::Chain::new([1.0, 0.5, 2.0, 1.0], [1.0, 1.5, 0.7, 1.0], 9.81), 0.0, q, v, 0.01);
         let (q, v) = ([0.0; 7].map(|_| random.uniform(-1.0, 1.0)), [0.0; 7].map(|_| random.uniform(-1.0, 1.0)));
         check("blocks", &systems::Blocks::new(0.3), 0.0, q, v, 0.03);
+        let (q, v) = ([0.0; 5].map(|_| random.uniform(0.2, 0.9)), [0.0; 5].map(|_| random.uniform(-1.0, 1.0)));
+        check("tree", &systems::Tree::new(9.81, 3.0), 0.0, q, v, 0.01);
     }
 }
 
@@ -157,6 +189,9 @@ fn driven_coordinates() {
         let t = 2.3;
         let (q, v) = ([0.0; 2].map(|_| random.uniform(-3.0, 3.0)), [0.0; 2].map(|_| random.uniform(-1.0, 1.0)));
         check("sinusoid and spline", &systems::Moving::new(9.81, 0.3).driven_by(sinusoid, spline.clone()), t, q, v, 0.02);
+        let machine = systems::Machine::new([1.0, 0.5, 2.0], [1.0, 1.5, 0.7], 9.81, 0.3, 0.4, 0.7, 1.3);
+        let (angles, rates) = ([0.0; 4].map(|_| random.uniform(-3.0, 3.0)), [0.0; 4].map(|_| random.uniform(-1.0, 1.0)));
+        check("machine", &machine.driven_by(sinusoid, spline.clone()), t, angles, rates, 0.01);
         let clip = pendulum_runtime::motion::Clip::new(
             1.0,
             &[[0.0, 0.1], [0.2, -0.1], [0.1, 0.0], [0.0, 0.2]],

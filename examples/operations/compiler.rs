@@ -1,6 +1,8 @@
 // The compiler itself: a macro cannot be called by a program. Its modules name each other from the root of the crate, so that this list is
 // included there.
 
+#[path = "../../pendulum-macros/src/ahead.rs"]
+mod ahead;
 #[path = "../../pendulum-macros/src/articulated.rs"]
 mod articulated;
 #[path = "../../pendulum-macros/src/ast.rs"]

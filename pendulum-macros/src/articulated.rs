@@ -22,6 +22,16 @@ pub(crate) struct Sparse {
     pub(crate) momentum_rates: Vec<Id>,
     pub(crate) energy: Id,
     pub(crate) kinetic: Option<Id>,
+    pub(crate) unsolved: Unsolved,
+}
+
+/// The equations of motion before they are solved.
+#[derive(Debug, Default)]
+pub(crate) struct Unsolved {
+    /// The momenta of the coordinates and of the positions, in q and q̇.
+    pub(crate) carried: Vec<Id>,
+    /// What vanishes along the motion, one for each coordinate; the symbol `Auxiliary(k)` is the rate of `carried[k]`.
+    pub(crate) equations: Vec<Id>,
 }
 
 /// A position, how it moves against its parent, and which coordinates do it.
@@ -238,6 +248,7 @@ impl Tree<'_> {
         let from_momenta = self.solve(&masses, right, &drive)?;
 
         let (all_momenta, all_rates) = self.gather(&momenta, &rates, &velocities);
+        let unsolved = self.unsolved(&momenta, &rates, &velocities);
         let mut energy = vec![(lagrangian, Rational::MINUS_ONE)];
         for (&place, &symbol) in &symbols {
             let velocity = self.graph.symbol(symbol);
@@ -252,7 +263,8 @@ impl Tree<'_> {
             let kinetic = collect::by_velocities(self.graph, kinetic).unwrap_or(kinetic);
             self.at(kinetic, &velocities)
         });
-        Some(Sparse { accelerations, velocities: from_momenta, momenta: all_momenta, momentum_rates: all_rates, energy, kinetic })
+        let (momenta, momentum_rates) = (all_momenta, all_rates);
+        Some(Sparse { accelerations, velocities: from_momenta, momenta, momentum_rates, energy, kinetic, unsolved })
     }
 
     /// The velocity of each scalar and the part of it that the drive alone makes, from the root to the leaves.
@@ -330,6 +342,43 @@ impl Tree<'_> {
             (0..count).map(|j| graph.sum(&lists[&j])).collect::<Vec<Id>>()
         };
         (sums(self.graph, &carried), sums(self.graph, &pushed))
+    }
+
+    /// d'Alembert's principle: ṗ less its cause, for the coordinates and for the positions, which hand it on from the leaves to the root. The
+    /// rates of the lever arms ∂z/∂q are those of the velocities, ∂u/∂q, and go out.
+    fn unsolved(
+        &mut self,
+        momenta: &BTreeMap<usize, Id>,
+        rates: &BTreeMap<usize, Id>,
+        velocities: &BTreeMap<usize, Id>,
+    ) -> Unsolved {
+        let mut carried = Vec::new();
+        let mut lost: BTreeMap<usize, Vec<(Id, Rational)>> = BTreeMap::new();
+        for (&place, &momentum) in momenta {
+            let mut terms = vec![(rates[&place], Rational::MINUS_ONE)];
+            if momentum != Graph::ZERO {
+                terms.push((self.graph.symbol(Symbol::Auxiliary(carried.len())), Rational::ONE));
+                carried.push(self.at(momentum, velocities));
+            }
+            lost.insert(place, terms);
+        }
+        let joints = std::mem::take(&mut self.joints);
+        for joint in joints.iter().rev() {
+            for (row, (&scalar, parent)) in joint.scalars.iter().zip(&joint.parents).enumerate() {
+                let total = self.graph.sum(&lost[&(self.count + scalar)]);
+                let total = self.graph.atom(total);
+                if let Some(parent) = parent {
+                    lost.entry(self.count + parent).or_default().push((total, Rational::ONE));
+                }
+                for (column, &j) in joint.coordinates.iter().enumerate() {
+                    let arm = self.graph.mul(joint.jacobian[row][column], self.units[j]);
+                    lost.entry(j).or_default().push((self.graph.mul(arm, total), Rational::ONE));
+                }
+            }
+        }
+        self.joints = joints;
+        let equations = (0..self.count).map(|j| self.graph.sum(&lost[&j])).collect();
+        Unsolved { carried, equations }
     }
 
     /// The unknowns of the coordinates, from masses, right sides and what each joint adds by itself.

@@ -4,6 +4,8 @@
 //! Where coordinates are coupled by a mass matrix that moves, M q̈ = f is solved order by order:
 //! M\[0\] q̈\[k\] = f\[k\] − Σ M\[j\] q̈\[k−j\] over 1 ≤ j ≤ k, with M\[0\] factored once. Loops over the order live in the runtime.
 
+use crate::ahead::{self, Plan};
+use crate::articulated::Unsolved;
 use crate::check::Quantity;
 use crate::emit::{Emitter, local};
 use crate::expr::{Contents, Function, Graph, Id, Symbol};
@@ -113,30 +115,35 @@ impl Emitter<'_, '_> {
 
     /// The type of the work, how orders are gone through and how many pay, the new work and the statements for one order.
     fn recurrences(&self, motion: &Motion) -> (TokenStream, proc_macro2::Ident, TokenStream, TokenStream, TokenStream) {
-        let (krate, scalar) = (&self.krate, self.scalar());
         let Equations { program, blocks } = equations(&self.graph, motion);
-        let prepared = program.kept(Stage::Parameters);
-        let prepare = self.body_after(&program, &prepared, &[]);
-        let mut writer = Writer {
-            emitter: self,
-            still: program.still(),
-            program: &program,
-            prepared: &prepared,
-            lines: TokenStream::new(),
-            values: vec![TokenStream::new(); program.ops.len()],
-            series: BTreeMap::new(),
-            slots: 0,
-            pairs: 0,
-            leading: 0,
-            halves: 0,
+        let solved = self.solved(&program, &blocks);
+        let coupled = matches!(&blocks[..], [Block::Coupled { .. }]);
+        let unsolved = motion.unsolved.as_ref().filter(|_| coupled).and_then(|unsolved| self.unsolved(motion, unsolved));
+        let Recurrences { lines, kind, work, halves } = match unsolved {
+            Some(unsolved) if 2 * unsolved.halves < solved.halves => unsolved,
+            _ => solved,
         };
+        let orders = match halves {
+            0..=MOST_UNROLLED => "Unrolled",
+            _ if halves <= MOST_LOOPED => "Looped",
+            _ => "Called",
+        };
+        let orders = format_ident!("{orders}");
+        let per_digit = if halves <= MOST_CHEAP { quote!(0.8) } else { quote!(0.7) };
+        (kind, orders, per_digit, work, lines)
+    }
+
+    /// The recurrences of accelerations, where coordinates are coupled in series with the mass matrix.
+    fn solved(&self, program: &Program, blocks: &[Block]) -> Recurrences {
+        let (still, prepared) = (program.still(), program.kept(Stage::Parameters));
+        let mut writer = Writer::new(self, program, still, &prepared);
         let explicit = blocks.iter().filter_map(|block| match block {
             Block::Explicit(rows) => Some(rows),
             Block::Coupled { .. } => None,
         });
         let swings: BTreeMap<usize, _> = explicit
             .flatten()
-            .filter_map(|&(row, place)| swing(&program, &writer.still, row, place).map(|own| (row, own)))
+            .filter_map(|&(row, place)| swing(program, &writer.still, row, place).map(|own| (row, own)))
             .collect();
         for place in 0..program.ops.len() {
             if !writer.still[place] && !swings.values().any(|own| own.contains(&Place(place))) {
@@ -144,7 +151,7 @@ impl Emitter<'_, '_> {
             }
         }
         let mut factors = Vec::new();
-        for block in &blocks {
+        for block in blocks {
             match block {
                 Block::Explicit(rows) => {
                     for &(row, place) in rows {
@@ -162,40 +169,81 @@ impl Emitter<'_, '_> {
                 }
             }
         }
-        let Writer { lines, slots, pairs, leading, halves, .. } = writer;
-        let length = prepared.len();
-        let kinds = factors.iter().map(|size| quote!(#krate::jet::Factors<#scalar, #size>));
-        let kind = quote!(#krate::jet::Work<#scalar, (#(#kinds,)*), #slots, #pairs, #length, #leading>);
-        let empty = factors.iter().map(|_| quote!(#krate::jet::Factors::zero()));
-        let work = quote!(#krate::jet::Work::new(#prepare, (#(#empty,)*)));
-        let orders = match halves {
-            0..=MOST_UNROLLED => "Unrolled",
-            _ if halves <= MOST_LOOPED => "Looped",
-            _ => "Called",
-        };
-        let orders = format_ident!("{orders}");
-        let per_digit = if halves <= MOST_CHEAP { quote!(0.8) } else { quote!(0.7) };
-        (kind, orders, per_digit, work, lines)
+        writer.finish(&factors)
     }
+
+    /// The recurrences of equations that are not solved, where they have any.
+    fn unsolved(&self, motion: &Motion, unsolved: &Unsolved) -> Option<Recurrences> {
+        let program = schedule::of_series(&self.graph, &ahead::roots(unsolved));
+        let (still, prepared) = (program.still(), program.kept(Stage::Parameters));
+        let plan = Plan::new(&program, &still, unsolved)?;
+        let mut writer = Writer::new(self, &program, still.clone(), &prepared);
+        writer.unsolved(&plan, motion);
+        Some(writer.finish(&[unsolved.equations.len()]))
+    }
+}
+
+/// The recurrences of a system: the statements for one order, the type of the work and a new one, and the convolutions in halves.
+struct Recurrences {
+    lines: TokenStream,
+    kind: TokenStream,
+    work: TokenStream,
+    halves: usize,
 }
 
 /// The statements under construction.
 pub(crate) struct Writer<'e, 'm, 'a> {
-    emitter: &'e Emitter<'m, 'a>,
+    pub(crate) emitter: &'e Emitter<'m, 'a>,
     pub(crate) program: &'e Program,
     /// Whether each place is decided by parameters alone.
     pub(crate) still: Vec<bool>,
     prepared: &'e [Place],
     pub(crate) lines: TokenStream,
     /// The coefficients of the places that move.
-    values: Vec<TokenStream>,
+    pub(crate) values: Vec<TokenStream>,
     /// Where the series of a place is, if it is kept.
-    series: BTreeMap<Place, TokenStream>,
+    pub(crate) series: BTreeMap<Place, TokenStream>,
     slots: usize,
     pairs: usize,
     leading: usize,
     /// The convolutions so far, in halves.
     pub(crate) halves: usize,
+    /// The sines and cosines that are found from turns, and the coefficients of what they are multiplied by.
+    pub(crate) turned: BTreeMap<Place, TokenStream>,
+    pub(crate) paired: Vec<(Place, TokenStream)>,
+}
+
+impl<'e, 'm, 'a> Writer<'e, 'm, 'a> {
+    /// Nothing written yet.
+    fn new(emitter: &'e Emitter<'m, 'a>, program: &'e Program, still: Vec<bool>, prepared: &'e [Place]) -> Self {
+        Self {
+            emitter,
+            still,
+            program,
+            prepared,
+            lines: TokenStream::new(),
+            values: vec![TokenStream::new(); program.ops.len()],
+            series: BTreeMap::new(),
+            slots: 0,
+            pairs: 0,
+            leading: 0,
+            halves: 0,
+            turned: BTreeMap::new(),
+            paired: Vec::new(),
+        }
+    }
+
+    /// What has been written, with matrices of these sizes to factor.
+    fn finish(self, factors: &[usize]) -> Recurrences {
+        let Self { emitter, program, prepared, lines, slots, pairs, leading, halves, .. } = self;
+        let (krate, scalar, length) = (&emitter.krate, emitter.scalar(), prepared.len());
+        let prepare = emitter.body_after(program, prepared, &[]);
+        let kinds = factors.iter().map(|size| quote!(#krate::jet::Factors<#scalar, #size>));
+        let kind = quote!(#krate::jet::Work<#scalar, (#(#kinds,)*), #slots, #pairs, #length, #leading>);
+        let empty = factors.iter().map(|_| quote!(#krate::jet::Factors::zero()));
+        let work = quote!(#krate::jet::Work::new(#prepare, (#(#empty,)*)));
+        Recurrences { lines, kind, work, halves }
+    }
 }
 
 impl Writer<'_, '_, '_> {
@@ -208,7 +256,7 @@ impl Writer<'_, '_, '_> {
     }
 
     /// The coefficient at this order.
-    fn value(&self, place: Place) -> TokenStream {
+    pub(crate) fn value(&self, place: Place) -> TokenStream {
         if self.still[place.0] {
             let constant = self.constant(place);
             return quote!(series::constant(#constant, order));
@@ -224,7 +272,7 @@ impl Writer<'_, '_, '_> {
     }
 
     /// A new pair of series.
-    fn pair(&mut self) -> TokenStream {
+    pub(crate) fn pair(&mut self) -> TokenStream {
         let pair = self.pairs;
         self.pairs += 1;
         self.halves += 4;
@@ -246,7 +294,7 @@ impl Writer<'_, '_, '_> {
     }
 
     /// The series of a place.
-    fn whole(&mut self, place: Place) -> TokenStream {
+    pub(crate) fn whole(&mut self, place: Place) -> TokenStream {
         if let Some(series) = self.series.get(&place) {
             return series.clone();
         }
@@ -262,7 +310,7 @@ impl Writer<'_, '_, '_> {
     }
 
     /// Names the coefficient of a place.
-    fn name(&mut self, place: Place, value: &TokenStream) {
+    pub(crate) fn name(&mut self, place: Place, value: &TokenStream) {
         let name = local("x", place.0);
         self.lines.extend(quote!(let #name = #value;));
         self.values[place.0] = quote!(#name);
@@ -283,7 +331,7 @@ impl Writer<'_, '_, '_> {
         quote!(#name)
     }
 
-    fn operation(&mut self, place: Place) {
+    pub(crate) fn operation(&mut self, place: Place) {
         match self.program.ops[place.0] {
             Op::Number(_) | Op::Literal(_) | Op::Pi => {}
             Op::Load(symbol) => self.load(place, symbol),
@@ -331,7 +379,17 @@ impl Writer<'_, '_, '_> {
     }
 
     fn load(&mut self, place: Place, symbol: Symbol) {
-        let series = match symbol {
+        let Some(series) = self.series_of(symbol) else {
+            self.values[place.0] = quote!(series::time(path.t, order));
+            return;
+        };
+        self.values[place.0] = quote!(#series[k]);
+        self.series.insert(place, series);
+    }
+
+    /// The series that the path or the drive has.
+    pub(crate) fn series_of(&self, symbol: Symbol) -> Option<TokenStream> {
+        Some(match symbol {
             Symbol::Coordinate(index) => quote!(path.q[#index]),
             Symbol::Velocity(index) => quote!(path.v[#index]),
             Symbol::Input { input, component, order } => {
@@ -340,13 +398,8 @@ impl Writer<'_, '_, '_> {
                 let order = format_ident!("{}", ["position", "velocity", "acceleration"][order]);
                 quote!(drive[#index].#order)
             }
-            _ => {
-                self.values[place.0] = quote!(series::time(path.t, order));
-                return;
-            }
-        };
-        self.values[place.0] = quote!(#series[k]);
-        self.series.insert(place, series);
+            _ => return None,
+        })
     }
 
     fn product(&mut self, place: Place, a: Place, b: Place) {

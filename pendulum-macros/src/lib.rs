@@ -1,5 +1,6 @@
 //! The `lagrangian!` macro of the `pendulum` workspace: a Lagrangian in, Rust out.
 
+mod ahead;
 mod articulated;
 mod ast;
 mod check;

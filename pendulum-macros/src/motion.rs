@@ -2,7 +2,7 @@
 //!
 //! d/dt ∂L/∂q̇ − ∂L/∂q = Q − ∂R/∂q̇, where d/dt runs through the coordinates, the driven inputs and the time.
 
-use crate::articulated::{self, Sparse};
+use crate::articulated::{self, Sparse, Unsolved};
 use crate::check::{Model, Quantity};
 use crate::collect;
 use crate::diff::derivative;
@@ -40,6 +40,8 @@ pub(crate) struct Motion {
     pub(crate) mass_matrix: Vec<Vec<Id>>,
     pub(crate) forces: Vec<Id>,
     pub(crate) momentum_rates: Vec<Id>,
+    /// The equations before they are solved, where positions are written with `let`.
+    pub(crate) unsolved: Option<Unsolved>,
     /// q̇ from p; `None` if L is not quadratic in the velocities.
     pub(crate) velocities: Option<Vec<Id>>,
     pub(crate) energy: Id,
@@ -67,6 +69,7 @@ impl Motion {
         let velocities = self.velocities.iter_mut().flatten();
         let conserved = self.conserved.iter_mut().map(|conserved| &mut conserved.value);
         let jacobians = self.jacobians.iter_mut().flatten().flatten().flatten();
+        let unsolved = self.unsolved.iter_mut().flat_map(|unsolved| unsolved.carried.iter_mut().chain(&mut unsolved.equations));
         lists
             .into_iter()
             .flatten()
@@ -74,6 +77,7 @@ impl Motion {
             .chain(velocities)
             .chain(conserved)
             .chain(jacobians)
+            .chain(unsolved)
             .chain(single.into_iter().flatten())
             .collect()
     }
@@ -171,6 +175,7 @@ fn derive(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Er
         if let (Some(kinetic), Some(short)) = (&mut motion.kinetic, sparse.kinetic) {
             shorten(graph, std::slice::from_mut(kinetic), &[short], CLEARLY);
         }
+        motion.unsolved = Some(sparse.unsolved);
     }
     number(graph, &mut motion);
     for energy in [&mut motion.energy].into_iter().chain(&mut motion.kinetic).chain(&mut motion.potential) {

@@ -139,3 +139,12 @@ fn comb(n: usize) -> String {
          kinetic = sum(k in 0..{n}, m[k]/2*(|ẏ[k]|^2 + |ż[k]|^2)); potential = sum(k in 0..{n}, m[k]*g*height(y[k] + z[k]));"
     )
 }
+
+#[test]
+fn jets_of_longer_chains_come_from_equations_that_are_not_solved() {
+    for (links, turned) in [(2, false), (3, true), (8, true)] {
+        let source = format!("::p; {}", chain(links));
+        let tokens = crate::expand::expand(source.parse().unwrap()).to_string();
+        assert_eq!(tokens.contains("series :: turned"), turned, "{links} links");
+    }
+}

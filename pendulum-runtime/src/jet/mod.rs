@@ -150,9 +150,11 @@ impl<T: Real> InputSeries<T> {
         Self { position: zero(), velocity: zero(), acceleration: zero() }
     }
 
-    /// Velocity and acceleration from the position, for the coefficients below `count`.
+    /// Velocity and acceleration from the position, for the coefficients below `count`, and the next one of the velocity.
     pub fn differentiate(&mut self, count: usize) {
-        for k in 0..count.min(MAX_ORDER) {
+        let count = count.min(MAX_ORDER);
+        self.velocity[count] = self.position[count + 1] * T::from_f64((count + 1) as f64);
+        for k in 0..count {
             self.velocity[k] = self.position[k + 1] * T::from_f64((k + 1) as f64);
             self.acceleration[k] = self.position[k + 2] * T::from_f64(((k + 1) * (k + 2)) as f64);
         }

@@ -5,14 +5,26 @@ use crate::real::Real;
 
 /// The index k of the coefficient that is computed, and the sums of products up to it.
 pub trait Order: Copy {
+    /// Another order, known at run time.
+    type At: Order;
+
     /// As a number below [`LENGTH`].
     fn index(self) -> usize;
+
+    /// The order `index`, below [`LENGTH`].
+    fn at(self, index: usize) -> Self::At;
 
     /// Σ a\[j\] b\[k−j\] over 0 < j < k, for k > 1.
     fn inner<T: Real>(self, a: &Series<T>, b: &Series<T>) -> T;
 
     /// Σ a\[j−S\] p\[k−j\] over 1 ≤ j ≤ k, for both series of the pair p and k > 0.
     fn both<T: Real, const S: usize>(self, a: &Series<T>, pairs: &Pairs<T>) -> [T; 2];
+
+    /// Σ a\[j\]·b\[k−j\] over 0 ≤ j ≤ k, where b\[k\] is `newest`.
+    fn dot<T: Real>(self, a: &Pairs<T>, b: &Pairs<T>, newest: [T; 2]) -> T;
+
+    /// Σ v\[j\] p\[k−j\] over 0 ≤ j < k, or v\[0\] p\[0\] for k = 0, for both series of the pair p, where p\[k\] is `newest`.
+    fn turning<T: Real>(self, v: &Series<T>, p: &Pairs<T>, newest: [T; 2]) -> [T; 2];
 
     /// Σ a\[j\] a\[k−j\] over 0 < j < k/2, for k > 2.
     fn half<T: Real>(self, a: &Series<T>) -> T;
@@ -58,8 +70,15 @@ impl Calling {
 }
 
 macro_rules! orders {
-    ($($(#[$inline:meta])? [$($parameter:tt)*] $order:ty, |$this:ident| $index:expr, $swing:ident;)+) => {$(
+    ($($(#[$inline:meta])? [$($parameter:tt)*] $order:ty, |$this:ident| $index:expr, $at:ident, $swing:ident;)+) => {$(
         impl<$($parameter)*> Order for $order {
+            type At = $at;
+
+            #[inline(always)]
+            fn at(self, index: usize) -> $at {
+                $at(index)
+            }
+
             #[inline(always)]
             fn index(self) -> usize {
                 let $this = self;
@@ -77,6 +96,16 @@ macro_rules! orders {
             }
 
             $(#[$inline])?
+            fn dot<T: Real>(self, a: &Pairs<T>, b: &Pairs<T>, newest: [T; 2]) -> T {
+                sum::dot(a, b, newest, self.index())
+            }
+
+            $(#[$inline])?
+            fn turning<T: Real>(self, v: &Series<T>, p: &Pairs<T>, newest: [T; 2]) -> [T; 2] {
+                sum::turning(v, p, newest, self.index())
+            }
+
+            $(#[$inline])?
             fn half<T: Real>(self, a: &Series<T>) -> T {
                 sum::half(a, self.index())
             }
@@ -90,12 +119,12 @@ macro_rules! orders {
 }
 
 orders! {
-    #[inline(always)] [const K: usize] Constant<K>, |_order| K, swing;
-    #[inline(always)] [const K: usize] First<K>, |_order| K, first_swing;
-    #[inline(always)] [const K: usize] Second<K>, |_order| K, second_swing;
+    #[inline(always)] [const K: usize] Constant<K>, |_order| K, Running, swing;
+    #[inline(always)] [const K: usize] First<K>, |_order| K, Running, first_swing;
+    #[inline(always)] [const K: usize] Second<K>, |_order| K, Running, second_swing;
     // The remainder has no effect, but the compiler then knows that no series is left.
-    #[inline(always)] [] Running, |order| order.0 % LENGTH, swing;
-    #[inline(never)] [] Calling, |order| order.0 % LENGTH, swing;
+    #[inline(always)] [] Running, |order| order.0 % LENGTH, Running, swing;
+    #[inline(never)] [] Calling, |order| order.0 % LENGTH, Calling, swing;
 }
 
 /// The sums of [`Order::swing`].

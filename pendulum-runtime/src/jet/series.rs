@@ -152,6 +152,43 @@ pub fn sin_cos_of_coordinate<T: Real, O: Order, const N: usize>(
     [path.reciprocals.over(with_cos, k), -path.reciprocals.over(with_sin, k)]
 }
 
+/// The rate of a series that is known one order further: (k+1) x\[k+1\].
+#[inline(always)]
+pub fn rate_of<T: Real, O: Order>(x: &Series<T>, order: O) -> T {
+    let k = order.index();
+    T::from_f64((k + 1) as f64) * x[k + 1]
+}
+
+/// The dot product of two pairs, Σ a\[j\]·b\[k−j\], where b\[k\] is `newest`.
+#[inline(always)]
+pub fn dot<T: Real, O: Order>(a: &Pairs<T>, b: &Pairs<T>, newest: [T; 2], order: O) -> T {
+    order.dot(a, b, newest)
+}
+
+/// sin q q̇ and cos q q̇ of a coordinate from its sine and cosine, whose newest coefficients are `newest`; without that of q̇ after order 0.
+#[inline(always)]
+pub fn turning<T: Real, O: Order, const N: usize>(
+    path: &Path<T, N>,
+    coordinate: usize,
+    pair: &Pairs<T>,
+    newest: [T; 2],
+    order: O,
+) -> [T; 2] {
+    order.turning(&path.v[coordinate], pair, newest)
+}
+
+/// sin q and cos q of a coordinate from [`turning`]: they are the rates of −cos q and sin q.
+#[inline(always)]
+pub fn turned<T: Real, O: Order, const N: usize>(path: &Path<T, N>, coordinate: usize, turning: &Pairs<T>, order: O) -> [T; 2] {
+    let k = order.index();
+    if k == 0 {
+        let (sin, cos) = path.q[coordinate][0].sin_cos();
+        return [sin, cos];
+    }
+    let [with_sin, with_cos] = turning[k - 1];
+    [path.reciprocals.over(with_cos, k), -path.reciprocals.over(with_sin, k)]
+}
+
 /// a = q̈ = κ sin q + λ cos q and b = κ cos q − λ sin q after the first order: ȧ = b q̇ and ḃ = −a q̇ = −(q̇²/2)˙ need no function.
 #[inline(always)]
 pub fn swing<T: Real, O: Order, const N: usize>(path: &mut Path<T, N>, coordinate: usize, b: &mut Series<T>, order: O) {

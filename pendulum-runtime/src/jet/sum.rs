@@ -143,6 +143,58 @@ pub(super) fn both<T: Real, const S: usize>(a: &Series<T>, p: &Pairs<T>, k: usiz
     plus(plus(odd, even), newest)
 }
 
+/// Σ a\[j\]·b\[k−j\] over 0 ≤ j ≤ k, where b\[k\] is `newest`: a vector that has just been stored in parts is slow to load.
+#[inline(always)]
+pub(super) fn dot<T: Real>(a: &Pairs<T>, b: &Pairs<T>, newest: [T; 2], k: usize) -> T {
+    let newest = each(a[0], newest);
+    if k == 0 {
+        return newest[0] + newest[1];
+    }
+    let mut older = each(a[k], b[0]);
+    if 1 < k {
+        older = plus(inside(&a[1..k], &b[1..k], each), older);
+    }
+    (older[0] + older[1]) + (newest[0] + newest[1])
+}
+
+/// Σ v\[j\] p\[k−j\] over 0 ≤ j < k, and over 0 ≤ j ≤ k for k = 0, for both series of the pair, where p\[k\] is `newest`.
+#[inline(always)]
+pub(super) fn turning<T: Real>(v: &Series<T>, p: &Pairs<T>, newest: [T; 2], k: usize) -> [T; 2] {
+    let newest = times(v[0], newest);
+    if k < 2 {
+        return newest;
+    }
+    let older = inside(&v[1..k], &p[1..k], times);
+    plus(older, newest)
+}
+
+/// The sum of the products of the first number of `a` and the last of `b`, the second and the last but one, and so on, in two parts. Slices
+/// without places keep a loop free of checks.
+#[inline(always)]
+fn inside<T: Real, A: Copy>(a: &[A], b: &[[T; 2]], term: impl Fn(A, [T; 2]) -> [T; 2]) -> [T; 2] {
+    let k = a.len();
+    let mut odd = term(a[0], b[k - 1]);
+    if k == 1 {
+        return odd;
+    }
+    let mut even = term(a[1], b[k - 2]);
+    let (twos, others) = (a[2..].chunks_exact(2), b[..k - 2].rchunks_exact(2));
+    let (one, other) = (twos.remainder(), others.remainder());
+    for (a, b) in twos.zip(others) {
+        odd = plus(odd, term(a[0], b[1]));
+        even = plus(even, term(a[1], b[0]));
+    }
+    if let ([a], [b]) = (one, other) {
+        odd = plus(odd, term(*a, *b));
+    }
+    plus(odd, even)
+}
+
+#[inline(always)]
+fn each<T: Real>(a: [T; 2], b: [T; 2]) -> [T; 2] {
+    [a[0] * b[0], a[1] * b[1]]
+}
+
 #[inline(always)]
 fn times<T: Real>(factor: T, pair: [T; 2]) -> [T; 2] {
     [factor * pair[0], factor * pair[1]]
