@@ -13,7 +13,7 @@ mod check;
 mod collect;
 #[path = "../../pendulum-macros/src/diff.rs"]
 mod diff;
-#[path = "../../pendulum-macros/src/emit.rs"]
+#[path = "../../pendulum-macros/src/emit/mod.rs"]
 mod emit;
 #[path = "../../pendulum-macros/src/error.rs"]
 mod error;

@@ -133,7 +133,7 @@ fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
         for line in latex::equations(graph, &names, motion).into_iter().filter(|_| whole) {
             writeln!(text, "latex: {line}").unwrap();
         }
-        let operations = |graph: &Graph, roots: &[_]| emit::operations(schedule::program(graph, roots).count());
+        let operations = |graph: &Graph, roots: &[_]| emit::documentation::operations(schedule::program(graph, roots).count());
         writeln!(text, "accelerations: {}", operations(graph, &motion.accelerations)).unwrap();
         if whole {
             outputs(&mut text, graph, &names, motion);

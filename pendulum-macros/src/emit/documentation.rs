@@ -1,0 +1,61 @@
+//! What hover and rustdoc say about a struct: its equations and what they cost.
+
+use super::Emitter;
+use crate::print::{self, Names};
+use crate::schedule::{self, Count};
+use proc_macro2::TokenStream;
+use quote::quote;
+use std::fmt::Write;
+
+impl Emitter<'_, '_> {
+    /// The equations, their cost and what they leave out, for hover and rustdoc.
+    pub(super) fn documentation(&mut self) -> TokenStream {
+        let names = Names::new(self.model, &self.energies.families);
+        let Some(motion) = &self.motion else { return TokenStream::new() };
+        let accelerations = motion.accelerations.clone();
+        let mut conserved: Vec<String> =
+            motion.conserved.iter().map(|conserved| format!("`{}`", print::conserved(&names, conserved))).collect();
+        if motion.autonomous && !motion.nonconservative {
+            conserved.push("the energy".into());
+        }
+        let count = schedule::program(&self.graph, &accelerations).count();
+        let documented = self.model.block.attributes.iter().any(|attribute| attribute.path().is_ident("doc"));
+        let mut text = String::new();
+        if documented {
+            text.push_str("\n\n");
+        }
+        text.push_str("# Equations of motion\n\n```text\n");
+        for line in self.equations(&names) {
+            text.push_str(&line);
+            text.push('\n');
+        }
+        text.push_str("```\n\n");
+        let _ = write!(text, "One evaluation takes {}.", operations(count));
+        if !conserved.is_empty() {
+            let _ = write!(text, " Conserved: {}.", conserved.join(", "));
+        }
+        let unused = self.unused(&names);
+        if !unused.is_empty() {
+            let list = unused.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+            let _ = write!(text, " The equations do not need {list}.");
+        }
+        quote!(#[doc = #text])
+    }
+}
+
+/// A count of operations in words.
+pub(crate) fn operations(count: Count) -> String {
+    let rows = [
+        (count.sincos, "sine–cosine pair"),
+        (count.functions, "other function"),
+        (count.mul, "multiplication"),
+        (count.add, "addition"),
+        (count.div, "division"),
+    ];
+    let parts: Vec<String> = rows
+        .into_iter()
+        .filter(|&(number, _)| 0 < number)
+        .map(|(number, what)| format!("{number} {what}{}", if number == 1 { "" } else { "s" }))
+        .collect();
+    if parts.is_empty() { "no operation".into() } else { parts.join(", ") }
+}

@@ -1,0 +1,90 @@
+//! Rust for a derived block: the struct, its constructor and the implementation of the runtime's traits.
+
+pub(crate) mod documentation;
+mod facts;
+mod jacobian;
+mod operation;
+mod program;
+mod staged;
+mod structure;
+mod system;
+
+use crate::check::{Model, Quantity};
+use crate::expr::Graph;
+use crate::lower::Energies;
+use crate::mirror;
+use crate::motion::Motion;
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::{format_ident, quote};
+use std::collections::BTreeMap;
+
+/// The names of ours that the generated code binds, besides those of the block and those that begin with `__`.
+#[rustfmt::skip]
+const OWN: &[&str] = &[
+    "acceleration", "all", "at_position", "at_time", "both", "column", "columns", "drive", "entries", "index", "inputs", "k", "lifted",
+    "map", "order", "p", "parameter", "path", "prepared", "q", "row", "system", "t", "v", "value", "values", "work",
+];
+
+/// What the emitter writes about and with.
+pub(crate) struct Emitter<'m, 'a> {
+    pub(crate) krate: TokenStream,
+    pub(crate) model: &'m Model<'a>,
+    pub(crate) graph: Graph,
+    /// `None` after an error: then every body is left open, so that the mistake gives one message.
+    pub(crate) motion: Option<Motion>,
+    pub(crate) energies: Energies,
+}
+
+impl Emitter<'_, '_> {
+    /// All items of a block.
+    pub(crate) fn items(mut self) -> TokenStream {
+        let structure = self.structure();
+        let constructor = self.constructor();
+        let system = self.system();
+        let split = self.split_energy();
+        let marker = self.marker();
+        let staged = self.staged();
+        let jacobians = self.jacobians();
+        let jets = self.jets();
+        let mirror = mirror::function(self.model.block);
+        let open = self.open_names();
+        quote! {
+            #structure
+            const _: () = {
+                #open
+                #constructor #system #split #staged #marker #jacobians #jets
+            };
+            #mirror
+        }
+    }
+
+    /// Functions of the names that the generated code binds.
+    ///
+    /// A constant or a unit struct of such a name in the user's scope would turn the binding into a pattern; behind a function of
+    /// the name it is out of sight, and a binding may shadow a function.
+    fn open_names(&self) -> TokenStream {
+        let own = OWN.iter().map(|name| Ident::new(name, Span::call_site()));
+        let declared = self.model.parameters.iter().chain(&self.model.inputs).map(|quantity| {
+            let mut name = quantity.name.clone();
+            name.set_span(name.span().located_at(Span::call_site()));
+            name
+        });
+        let names: BTreeMap<String, Ident> = own.chain(declared).map(|name| (name.to_string(), name)).collect();
+        let names = names.values();
+        quote!(#(#[allow(dead_code, non_snake_case)] fn #names() {})*)
+    }
+
+    /// The scalar's type parameter; another letter if the struct took the usual one.
+    pub(crate) fn scalar(&self) -> Ident {
+        format_ident!("{}", if self.model.block.name == "T" { "S" } else { "T" })
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.model.coordinates.iter().map(Quantity::count).sum()
+    }
+}
+
+/// A name of ours that no user can write.
+pub(crate) fn local(prefix: &str, index: usize) -> Ident {
+    Ident::new(&format!("__{prefix}{index}"), Span::mixed_site())
+}

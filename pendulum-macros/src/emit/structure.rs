@@ -1,0 +1,105 @@
+//! The struct of a block, its constructor and what binds motions to its driven inputs.
+
+use super::Emitter;
+use crate::check::Quantity;
+use crate::schedule;
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+impl Emitter<'_, '_> {
+    pub(super) fn structure(&mut self) -> TokenStream {
+        let block = self.model.block;
+        let (attributes, visibility, name, scalar) = (&block.attributes, &block.visibility, &block.name, self.scalar());
+        let documentation = self.documentation();
+        let fields = block.fields.iter().zip(&self.model.parameters).map(|(field, quantity)| {
+            let (attributes, name) = (&field.attributes, &field.name);
+            let kind = self.field_type(quantity, &scalar);
+            let documented = attributes.iter().any(|attribute| attribute.path().is_ident("doc"));
+            let text = match (documented, quantity.unit.as_str()) {
+                (true, "") => String::new(),
+                (true, unit) => format!("\n\nUnit: {unit}."),
+                (false, "") => format!("The parameter `{name}`."),
+                (false, unit) => format!("The parameter `{name}` in {unit}."),
+            };
+            let text = (!text.is_empty()).then(|| quote!(#[doc = #text]));
+            quote! { #(#attributes)* #text pub #name: #kind, }
+        });
+        let empty =
+            block.fields.is_empty().then(|| quote! { #[doc(hidden)] pub __scalar: ::core::marker::PhantomData<#scalar>, });
+        quote! {
+            #(#attributes)*
+            #documentation
+            #[allow(non_snake_case)]
+            #visibility struct #name<#scalar = f64> { #(#fields)* #empty }
+        }
+    }
+
+    pub(super) fn constructor(&self) -> TokenStream {
+        let (name, scalar, krate) = (&self.model.block.name, self.scalar(), &self.krate);
+        let mut arguments = Vec::new();
+        let mut values = Vec::new();
+        for (index, quantity) in self.model.parameters.iter().enumerate() {
+            let field = quantity.name;
+            match self.energies.defaults.get(index).copied().flatten() {
+                Some(default) => {
+                    let program = schedule::program(&self.graph, &[default]);
+                    let body = self.body(&program);
+                    values.push(quote!(#field: { let [value] = #body; value }));
+                }
+                None if quantity.default.is_some() => values.push(quote!(#field: ::core::unimplemented!())),
+                None => {
+                    let kind = self.field_type(quantity, &scalar);
+                    arguments.push(quote!(#field: #kind));
+                    values.push(quote!(#field));
+                }
+            }
+        }
+        if self.model.parameters.is_empty() {
+            values.push(quote!(__scalar: ::core::marker::PhantomData));
+        }
+        let driven = self.driven_by();
+        let visibility = &self.model.block.visibility;
+        quote! {
+            #[automatically_derived]
+            #[allow(non_snake_case, unreachable_code, clippy::all, clippy::pedantic)]
+            impl<#scalar: #krate::real::Real> #name<#scalar> {
+                /// The system with the given parameters, in the order of declaration; those with a default take it.
+                #[must_use]
+                #visibility fn new(#(#arguments),*) -> Self {
+                    Self { #(#values),* }
+                }
+
+                #driven
+            }
+        }
+    }
+
+    /// The method that binds a motion to each driven input.
+    fn driven_by(&self) -> Option<TokenStream> {
+        if self.model.inputs.is_empty() {
+            return None;
+        }
+        let (krate, scalar, count, visibility) = (&self.krate, self.scalar(), self.count(), &self.model.block.visibility);
+        let names: Vec<&Ident> = self.model.inputs.iter().map(|input| input.name).collect();
+        let types: Vec<Ident> = (0..names.len()).map(|index| format_ident!("M{index}")).collect();
+        let bounds = self.model.inputs.iter().zip(&types).map(|(input, motion)| {
+            let dimension = input.count();
+            quote!(#motion: #krate::motion::Motion<#scalar, #dimension>)
+        });
+        Some(quote! {
+            /// The system driven by a motion for each of its driven inputs, in the order of declaration.
+            #visibility fn driven_by<#(#bounds),*>(self, #(#names: #types),*) -> #krate::system::Driven<Self, (#(#types,)*)> {
+                #krate::system::Driven::new::<#count>(self, (#(#names,)*))
+            }
+        })
+    }
+
+    fn field_type(&self, quantity: &Quantity, scalar: &Ident) -> TokenStream {
+        let krate = &self.krate;
+        match quantity.length {
+            _ if quantity.body => quote!(#krate::body::Body<#scalar>),
+            None => quote!(#scalar),
+            Some(length) => quote!([#scalar; #length]),
+        }
+    }
+}
