@@ -19,7 +19,7 @@ mod emit;
 mod error;
 #[path = "../../pendulum-macros/src/expand.rs"]
 mod expand;
-#[path = "../../pendulum-macros/src/expr.rs"]
+#[path = "../../pendulum-macros/src/expr/mod.rs"]
 mod expr;
 #[path = "../../pendulum-macros/src/jacobian.rs"]
 mod jacobian;
