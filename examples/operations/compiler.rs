@@ -47,7 +47,7 @@ mod parse;
 mod print;
 #[path = "../../pendulum-macros/src/rule.rs"]
 mod rule;
-#[path = "../../pendulum-macros/src/schedule.rs"]
+#[path = "../../pendulum-macros/src/schedule/mod.rs"]
 mod schedule;
 #[path = "../../pendulum-macros/src/solve.rs"]
 mod solve;

@@ -1,0 +1,149 @@
+//! Products and powers: constants together, one division.
+
+use super::program::mul;
+use super::term::{Factor, Term, unit};
+use super::{Op, Place, Schedule};
+use crate::expr::{Contents, Id};
+use crate::number::Rational;
+
+impl Schedule<'_> {
+    /// A product without its sign, and whether that is minus.
+    ///
+    /// What does not move stands together: it is computed once by whoever prepares it.
+    pub(super) fn product(&mut self, term: &Term) -> (Place, bool) {
+        let (still, mut moving) = self.split(term);
+        let mut negative = term.coefficient.is_negative();
+        let mut still = Some(still).filter(|still| *still != unit());
+        if let Some(constant) = &still
+            && constant.coefficient.within(60).is_some()
+            && let Some(index) =
+                moving.iter().position(|&(factor, exponent)| exponent == Rational::ONE && self.takes_in(factor.id, 1))
+            && moving[index].0.scale.is_none()
+        {
+            let scale = self.scale(constant.clone());
+            moving[index].0.scale = Some(scale);
+            still = None;
+        }
+        let (mut above, mut below) = (Vec::new(), Vec::new());
+        for (factor, exponent) in moving {
+            let side = if exponent.is_negative() { &mut below } else { &mut above };
+            side.push((self.rank(factor.id), factor, exponent.abs()));
+        }
+        let top = self.side(above, &mut negative);
+        let bottom = self.side(below, &mut negative);
+        let constant = still.map(|still| self.constant(&still));
+        let top = match (constant, top) {
+            (Some(constant), Some(top)) => Some(self.program.push(mul(constant, top))),
+            (constant, top) => constant.or(top),
+        };
+        let place = match (top, bottom) {
+            (Some(top), Some(bottom)) => self.program.push(Op::Div(top, bottom)),
+            (Some(top), None) => top,
+            (None, bottom) => {
+                let one = self.program.push(Op::Number(Rational::ONE));
+                match bottom {
+                    Some(bottom) => self.program.push(Op::Div(one, bottom)),
+                    None => one,
+                }
+            }
+        };
+        (place, negative)
+    }
+
+    /// The magnitude of what does not move in a product, and its other factors.
+    pub(super) fn split(&self, term: &Term) -> (Term, Vec<(Factor, Rational)>) {
+        let (factors, moving) = term.factors.iter().partition(|(factor, _)| factor.scale.is_none() && self.still(factor.id));
+        (Term { coefficient: term.coefficient.abs(), factors }, moving)
+    }
+
+    /// A product of parameters and numbers.
+    fn constant(&mut self, term: &Term) -> Place {
+        let (mut above, mut below) = (Vec::new(), Vec::new());
+        for &(factor, exponent) in &term.factors {
+            let side = if exponent.is_negative() { &mut below } else { &mut above };
+            side.push((0, factor, exponent.abs()));
+        }
+        let mut sign = false;
+        let top = self.side(above, &mut sign);
+        let bottom = self.side(below, &mut sign);
+        let top = match top {
+            Some(top) if term.coefficient == Rational::ONE => top,
+            Some(top) => {
+                let number = self.program.push(Op::Number(term.coefficient));
+                self.program.push(mul(number, top))
+            }
+            None => self.program.push(Op::Number(term.coefficient)),
+        };
+        match bottom {
+            Some(bottom) => self.program.push(Op::Div(top, bottom)),
+            None => top,
+        }
+    }
+
+    /// The product of some positive powers.
+    fn side(&mut self, mut factors: Vec<(u8, Factor, Rational)>, negative: &mut bool) -> Option<Place> {
+        factors.sort_unstable();
+        let mut product: Option<Place> = None;
+        for (_, factor, exponent) in factors {
+            let power = match factor.scale {
+                None => self.power(factor.id, exponent),
+                Some(scale) => {
+                    let (place, flipped) = self.scaled_sum(factor.id, scale);
+                    *negative ^= flipped;
+                    place
+                }
+            };
+            product = Some(match product {
+                Some(product) => self.program.push(mul(product, power)),
+                None => power,
+            });
+        }
+        product
+    }
+
+    /// What changes least comes first in a product.
+    fn rank(&self, base: Id) -> u8 {
+        let contents = self.graph.contents(base);
+        if contents.any(Contents::VELOCITY.or(Contents::MOMENTUM)) {
+            3
+        } else if contents.any(Contents::COORDINATE) {
+            2
+        } else {
+            u8::from(contents.any(Contents::TIME.or(Contents::INPUT)))
+        }
+    }
+
+    /// A positive power: repeated squares, a square root for a half, `powf` for the rest.
+    fn power(&mut self, base: Id, exponent: Rational) -> Place {
+        let value = self.value(base);
+        let whole = exponent.numerator() / exponent.denominator();
+        let fraction = exponent.add(Rational::whole(i64::try_from(whole).unwrap_or(0)).negative());
+        match (i64::try_from(whole), fraction) {
+            (Ok(whole), Some(fraction)) if whole <= 64 && fraction.is_zero() => self.whole_power(value, whole),
+            (Ok(whole), Some(fraction)) if whole <= 64 && fraction == Rational::HALF => {
+                let root = self.program.push(Op::Sqrt(value));
+                if whole == 0 {
+                    return root;
+                }
+                let power = self.whole_power(value, whole);
+                self.program.push(mul(power, root))
+            }
+            _ => {
+                let exponent = self.program.push(Op::Number(exponent));
+                self.program.push(Op::Powf(value, exponent))
+            }
+        }
+    }
+
+    fn whole_power(&mut self, value: Place, exponent: i64) -> Place {
+        match exponent {
+            0 => self.program.push(Op::Number(Rational::ONE)),
+            1 => value,
+            _ => {
+                let half = self.whole_power(value, exponent / 2);
+                let square = self.program.push(Op::Mul(half, half));
+                if exponent % 2 == 0 { square } else { self.program.push(mul(square, value)) }
+            }
+        }
+    }
+}

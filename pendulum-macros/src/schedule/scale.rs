@@ -1,0 +1,80 @@
+//! Constants that sums take in, where every term has a constant of its own.
+
+use super::term::{Term, multiply};
+use super::{Place, Schedule};
+use crate::expr::{Graph, Id, Node};
+use crate::number::Rational;
+
+impl Schedule<'_> {
+    /// A sum each of whose terms has taken in a constant.
+    pub(super) fn scaled_sum(&mut self, sum: Id, scale: usize) -> (Place, bool) {
+        if let Some(&done) = self.scaled.get(&(sum, scale)) {
+            return done;
+        }
+        let Some(terms) = self.terms(sum) else { return (self.value(sum), false) };
+        let constant = self.scales[scale].clone();
+        let mut scaled = Vec::new();
+        for (id, coefficient) in terms {
+            let mut term = self.term(id, coefficient);
+            let inner =
+                term.factors.iter().position(|&(factor, exponent)| exponent == Rational::ONE && self.takes_in(factor.id, 2));
+            if let Some(index) = inner {
+                term.factors[index].0.scale = Some(scale);
+            } else {
+                term.coefficient = term.coefficient.mul(constant.coefficient).unwrap_or(term.coefficient);
+                for &(factor, exponent) in &constant.factors {
+                    multiply(&mut term.factors, factor, exponent);
+                }
+            }
+            scaled.push(term);
+        }
+        let done = self.sum(scaled);
+        self.scaled.insert((sum, scale), done);
+        done
+    }
+
+    /// Whether a sum is the better for taking in a constant: every term has a constant of its own, or a sum that takes it in.
+    ///
+    /// A sum that stands in more than `most` places is left alone: it would be computed twice.
+    pub(super) fn takes_in(&self, id: Id, most: usize) -> bool {
+        let Some(terms) = self.terms(id) else { return false };
+        if self.still(id) || most < self.uses.get(&id).copied().unwrap_or(0) {
+            return false;
+        }
+        let terms = &terms;
+        terms.iter().all(|&(term, coefficient)| {
+            if coefficient.within(60).is_none() {
+                return false;
+            }
+            let factors = self.graph.factors(term);
+            let constant =
+                coefficient.abs() != Rational::ONE || term == Graph::ONE || factors.iter().any(|&(base, _)| self.still(base));
+            constant
+                || factors
+                    .iter()
+                    .any(|&(base, exponent)| exponent == Rational::ONE && self.takes_in(base, self.occurrences(base, terms)))
+        })
+    }
+
+    pub(super) fn scale(&mut self, constant: Term) -> usize {
+        if let Some(known) = self.scales.iter().position(|scale| *scale == constant) {
+            return known;
+        }
+        self.scales.push(constant);
+        self.scales.len() - 1
+    }
+
+    /// The terms of a sum, closed or not.
+    fn terms(&self, id: Id) -> Option<Vec<(Id, Rational)>> {
+        match self.graph.node(id) {
+            Node::Sum(terms) => Some(terms.clone()),
+            Node::Atom(inner) if self.uses.get(inner).copied().unwrap_or(0) < 2 => self.terms(*inner),
+            _ => None,
+        }
+    }
+
+    /// The number of terms of a sum in which a factor stands.
+    fn occurrences(&self, id: Id, terms: &[(Id, Rational)]) -> usize {
+        terms.iter().filter(|&&(term, _)| self.graph.factors(term).iter().any(|&(base, _)| base == id)).count()
+    }
+}

@@ -1,0 +1,77 @@
+//! Stages of a program: what parameters decide, what time and inputs decide, what the position adds, and the rest.
+
+use super::{Op, Place, Program, operands};
+use crate::expr::Symbol;
+
+/// What has to be known before an operation can be done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Stage {
+    Numbers,
+    Parameters,
+    /// The time and the driven inputs, without parameters: the same for all systems on a joint.
+    Time,
+    Position,
+    Velocity,
+}
+
+impl Stage {
+    /// The stage of an operation with operands of two stages.
+    fn with(self, other: Self) -> Self {
+        match self.max(other) {
+            Stage::Time if self.min(other) == Stage::Parameters => Stage::Position,
+            later => later,
+        }
+    }
+}
+
+impl Program {
+    /// Whether each operation is made of parameters and numbers alone.
+    pub(crate) fn still(&self) -> Vec<bool> {
+        self.stages().into_iter().map(|stage| stage <= Stage::Parameters).collect()
+    }
+
+    /// When each operation can be done first.
+    fn stages(&self) -> Vec<Stage> {
+        let mut stages: Vec<Stage> = Vec::with_capacity(self.ops.len());
+        for op in &self.ops {
+            let own = match op {
+                Op::Load(symbol) => match symbol {
+                    Symbol::Parameter(_) | Symbol::Moment(..) => Stage::Parameters,
+                    Symbol::Time | Symbol::Input { .. } => Stage::Time,
+                    Symbol::Coordinate(_) => Stage::Position,
+                    Symbol::Velocity(_) | Symbol::Momentum(_) | Symbol::Auxiliary(_) | Symbol::Point(..) => Stage::Velocity,
+                },
+                _ => operands(op).iter().map(|place| stages[place.0]).fold(Stage::Numbers, Stage::with),
+            };
+            stages.push(own);
+        }
+        stages
+    }
+
+    /// What can be done up to a stage and is read after it: the places that are worth keeping.
+    pub(crate) fn kept(&self, stage: Stage) -> Vec<Place> {
+        let stages = self.stages();
+        let before = |own: Stage| own == Stage::Numbers || own == stage;
+        let mut read = vec![false; self.ops.len()];
+        for (op, _) in self.ops.iter().zip(&stages).filter(|&(_, &own)| !before(own)) {
+            for place in operands(op) {
+                read[place.0] = true;
+            }
+        }
+        for result in &self.results {
+            read[result.0] = true;
+        }
+        let worth = |index: &usize| {
+            let leaf = match self.ops[*index] {
+                Op::Load(symbol) => !matches!(symbol, Symbol::Moment(..)),
+                Op::Number(_) | Op::Literal(_) | Op::Pi => true,
+                // A pair is kept by its parts.
+                Op::SinCos(_) => true,
+                _ => false,
+            };
+            let own = stages[*index];
+            (own == stage || own == Stage::Numbers && stage == Stage::Parameters) && read[*index] && !leaf
+        };
+        (0..self.ops.len()).filter(worth).map(Place).collect()
+    }
+}

@@ -1,0 +1,97 @@
+//! Sums, factored greedily by what most of their terms share.
+
+use super::program::{add, mul};
+use super::term::{Factor, Term, common_coefficient, take};
+use super::{Op, Place, Schedule};
+use crate::number::Rational;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Polynomials are nested as Horner does down to this depth, and no deeper: the stack is finite.
+const DEPTH: usize = 64;
+
+impl Schedule<'_> {
+    /// A sum of products, and whether its value is the negative of the place.
+    pub(super) fn sum(&mut self, terms: Vec<Term>) -> (Place, bool) {
+        self.nested_sum(terms, 0)
+    }
+
+    /// A sum that stands in `depth` others, each with a factor drawn before it.
+    fn nested_sum(&mut self, mut terms: Vec<Term>, depth: usize) -> (Place, bool) {
+        let mut parts: Vec<(Place, bool)> = Vec::new();
+        while depth < DEPTH
+            && let Some((factor, shared)) = self.most_shared(&terms)
+        {
+            let mut inner = Vec::new();
+            let mut rest = Vec::new();
+            for (index, mut term) in terms.into_iter().enumerate() {
+                if shared.contains(&index) {
+                    take(&mut term.factors, factor);
+                    inner.push(term);
+                } else {
+                    rest.push(term);
+                }
+            }
+            let common = common_coefficient(&inner);
+            for term in &mut inner {
+                term.coefficient = term.coefficient.mul(common.reciprocal().unwrap_or(Rational::ONE)).unwrap_or(term.coefficient);
+            }
+            let (sum, negative) = self.nested_sum(inner, depth + 1);
+            let (outer, flipped) = self.product(&Term { coefficient: common, factors: vec![factor] });
+            let place = self.program.push(mul(outer, sum));
+            parts.push((place, negative != flipped));
+            terms = rest;
+        }
+        for term in &terms {
+            let part = self.product(term);
+            parts.push(part);
+        }
+        // Begin with a positive part, so that no negation is needed.
+        let first = parts.iter().position(|&(_, negative)| !negative);
+        let (start, flipped) = match first {
+            Some(index) => (parts.remove(index).0, false),
+            None => (parts.remove(0).0, true),
+        };
+        let mut total = start;
+        for (part, negative) in parts {
+            total = self.program.push(if negative == flipped { add(total, part) } else { Op::Sub(total, part) });
+        }
+        (total, flipped)
+    }
+
+    /// The factor that is best drawn before a sum, and the terms in which it stands.
+    ///
+    /// A factor that moves saves a multiplication in all terms but one; a constant only in those that have no other.
+    fn most_shared(&self, terms: &[Term]) -> Option<((Factor, Rational), BTreeSet<usize>)> {
+        let mut shared: BTreeMap<(Factor, bool), BTreeSet<usize>> = BTreeMap::new();
+        for (index, term) in terms.iter().enumerate() {
+            // Differences of these exponents are exact.
+            for &(factor, exponent) in term.factors.iter().filter(|(_, exponent)| exponent.within(30).is_some()) {
+                shared.entry((factor, exponent.is_negative())).or_default().insert(index);
+            }
+        }
+        let mut best: Option<(usize, (Factor, bool), BTreeSet<usize>)> = None;
+        for (key, places) in shared {
+            let still = key.0.scale.is_none() && self.still(key.0.id);
+            let saved = if still {
+                let alone = |&&index: &&usize| {
+                    let (constant, _) = self.split(&terms[index]);
+                    constant.coefficient == Rational::ONE && constant.factors.len() == 1
+                };
+                places.iter().filter(alone).count()
+            } else {
+                places.len()
+            };
+            if 2 <= saved && best.as_ref().is_none_or(|(other, ..)| *other < saved) {
+                best = Some((saved, key, places));
+            }
+        }
+        let (_, (factor, negative), places) = best?;
+        let exponents = places.iter().filter_map(|&index| {
+            let found =
+                terms[index].factors.iter().find(|(other, exponent)| *other == factor && exponent.is_negative() == negative);
+            found.map(|&(_, exponent)| exponent)
+        });
+        let exponent = exponents.reduce(|a, b| if b.abs().less(a.abs()) { b } else { a })?;
+        Some(((factor, exponent), places))
+    }
+}
