@@ -41,7 +41,7 @@ mod name;
 mod number;
 #[path = "../../pendulum-macros/src/order.rs"]
 mod order;
-#[path = "../../pendulum-macros/src/parse.rs"]
+#[path = "../../pendulum-macros/src/parse/mod.rs"]
 mod parse;
 #[path = "../../pendulum-macros/src/print.rs"]
 mod print;

@@ -1,0 +1,103 @@
+//! A block: its struct, the fields with their units and the statements, each on its own.
+
+use super::Parser;
+use super::token::{end, identifier, skip, unexpected};
+use crate::ast::{Block, ExprKind, Field, Kind, Lost};
+use crate::error::Range;
+use proc_macro2::Ident;
+use syn::ext::IdentExt;
+use syn::parse::{ParseStream, Result};
+use syn::{Attribute, Token, Visibility, braced, bracketed};
+
+impl Parser<'_> {
+    pub(super) fn block(&mut self, input: ParseStream) -> Result<Block> {
+        let attributes = input.call(Attribute::parse_outer)?;
+        let visibility: Visibility = input.parse()?;
+        if !input.peek(Token![struct]) {
+            return Err(Range::from(input.span())
+                .error("a block begins with its struct; write `pub struct Name { … }` with the parameters"));
+        }
+        input.parse::<Token![struct]>()?;
+        let name = identifier(input, "the name of the struct")?;
+        if !input.peek(syn::token::Brace) {
+            return Err(Range::from(input.span())
+                .error("the parameters are missing; write `{ m: kg, L: m }` after the name of the struct"));
+        }
+        let content;
+        braced!(content in input);
+        let mut fields = Vec::new();
+        while !content.is_empty() {
+            match self.field(&content) {
+                Ok(field) => fields.push(field),
+                Err(error) => {
+                    self.errors.push(error);
+                    self.lost.declarations = true;
+                    skip(&content, ',');
+                }
+            }
+        }
+        let mut statements = Vec::new();
+        while !input.is_empty() {
+            let word = input.fork().call(Ident::parse_any).map(|word| word.to_string()).unwrap_or_default();
+            match self.statement(input) {
+                Ok(statement) => statements.push(statement),
+                Err(error) => {
+                    self.errors.push(error);
+                    match word.as_str() {
+                        "kinetic" | "potential" | "lagrangian" | "dissipation" | "force" => self.lost.energies = true,
+                        _ => self.lost = Lost { declarations: true, energies: true },
+                    }
+                    skip(input, ';');
+                }
+            }
+        }
+        Ok(Block { attributes, visibility, name, fields, statements, lost: self.lost })
+    }
+
+    fn field(&mut self, input: ParseStream) -> Result<Field> {
+        let attributes = input.call(Attribute::parse_outer)?;
+        let _: Visibility = input.parse()?;
+        let name = identifier(input, "the name of a parameter")?;
+        let kind = if input.peek(Token![:]) {
+            input.parse::<Token![:]>()?;
+            self.kind(input)?
+        } else {
+            Kind::Scalar(None)
+        };
+        let default = if input.peek(Token![=]) {
+            input.parse::<Token![=]>()?;
+            Some(self.expr(input)?)
+        } else {
+            None
+        };
+        if !input.is_empty() && !input.peek(Token![,]) {
+            return Err(unexpected(input, "`,`"));
+        }
+        if !input.is_empty() {
+            input.parse::<Token![,]>()?;
+        }
+        Ok(Field { attributes, name, kind, default })
+    }
+
+    pub(super) fn kind(&mut self, input: ParseStream) -> Result<Kind> {
+        if input.peek(syn::token::Bracket) {
+            let content;
+            bracketed!(content in input);
+            let unit = self.expr(&content)?;
+            if !content.peek(Token![;]) {
+                return Err(
+                    Range::from(content.span()).error("a length is missing; write `[m; 2]` for a vector, `[kg; 5]` for a family")
+                );
+            }
+            content.parse::<Token![;]>()?;
+            let length = self.expr(&content)?;
+            end(&content)?;
+            return Ok(Kind::Array { unit, length });
+        }
+        let unit = self.expr(input)?;
+        match &unit.kind {
+            ExprKind::Name(name) if name == "body" => Ok(Kind::Body(unit.range)),
+            _ => Ok(Kind::Scalar(Some(unit))),
+        }
+    }
+}

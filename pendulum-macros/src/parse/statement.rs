@@ -1,0 +1,173 @@
+//! Statements: coordinates, driven inputs, definitions, energies and forces.
+
+use super::Parser;
+use super::token::{end, equals, identifier, unexpected};
+use crate::ast::{Binder, ForceIndex, Kind, Let, Role, Statement};
+use crate::error::Range;
+use crate::name;
+use proc_macro2::Ident;
+use syn::ext::IdentExt;
+use syn::parse::{ParseStream, Result};
+use syn::spanned::Spanned;
+use syn::{Attribute, Token, bracketed, parenthesized};
+
+/// The words with which statements begin.
+pub(super) const STATEMENTS: [&str; 8] =
+    ["coordinate", "driven", "let", "kinetic", "potential", "lagrangian", "dissipation", "force"];
+
+impl Parser<'_> {
+    pub(super) fn statement(&mut self, input: ParseStream) -> Result<Statement> {
+        let attributes = input.call(Attribute::parse_outer)?;
+        if let Some(attribute) = attributes.iter().find(|attribute| !attribute.path().is_ident("doc")) {
+            return Err(Range { first: attribute.pound_token.spans[0], last: attribute.span() }
+                .error("an attribute has no effect here; attributes belong on the struct and its fields"));
+        }
+        let statement = if input.peek(Token![let]) {
+            input.parse::<Token![let]>()?;
+            Statement::Let(self.definition(input)?)
+        } else {
+            let fork = input.fork();
+            let word = match fork.call(Ident::parse_any) {
+                Ok(word) => word.to_string(),
+                Err(_) => String::new(),
+            };
+            match word.as_str() {
+                "coordinate" => self.coordinate(input)?,
+                "driven" => self.driven(input)?,
+                "force" => self.force(input)?,
+                "kinetic" => self.energy(input, Role::Kinetic)?,
+                "potential" => self.energy(input, Role::Potential)?,
+                "lagrangian" => self.energy(input, Role::Lagrangian)?,
+                "dissipation" => self.energy(input, Role::Dissipation)?,
+                _ => return Err(unknown_statement(input, &word)),
+            }
+        };
+        if !input.peek(Token![;]) {
+            return Err(unexpected(input, "`;`"));
+        }
+        input.parse::<Token![;]>()?;
+        Ok(statement)
+    }
+
+    fn coordinate(&mut self, input: ParseStream) -> Result<Statement> {
+        input.call(Ident::parse_any)?;
+        let name = identifier(input, "the name of a coordinate")?;
+        let length = if input.peek(syn::token::Bracket) {
+            let content;
+            bracketed!(content in input);
+            let length = self.expr(&content)?;
+            end(&content)?;
+            Some(length)
+        } else {
+            None
+        };
+        let unit = if input.peek(Token![:]) {
+            input.parse::<Token![:]>()?;
+            match self.kind(input)? {
+                Kind::Scalar(unit) => unit,
+                Kind::Array { unit, .. } => {
+                    return Err(unit.range.error("a coordinate is one number; declare one coordinate for each component"));
+                }
+                Kind::Body(range) => return Err(range.error("a coordinate has a unit; write `rad` or `m`")),
+            }
+        } else {
+            None
+        };
+        Ok(Statement::Coordinate { name, length, unit })
+    }
+
+    fn driven(&mut self, input: ParseStream) -> Result<Statement> {
+        input.call(Ident::parse_any)?;
+        let name = identifier(input, "the name of a driven input")?;
+        let kind = if input.peek(Token![:]) {
+            input.parse::<Token![:]>()?;
+            self.kind(input)?
+        } else {
+            Kind::Scalar(None)
+        };
+        if let Kind::Body(range) = kind {
+            return Err(range.error("a driven input has a unit; write `[m; 2]` for a motion in the plane"));
+        }
+        Ok(Statement::Driven { name, kind })
+    }
+
+    fn definition(&mut self, input: ParseStream) -> Result<Let> {
+        let name = identifier(input, "the name of a definition")?;
+        let mut index = None;
+        let mut arguments = None;
+        if input.peek(syn::token::Bracket) {
+            let content;
+            bracketed!(content in input);
+            index = Some(self.binder(&content)?);
+            end(&content)?;
+        } else if input.peek(syn::token::Paren) {
+            let content;
+            parenthesized!(content in input);
+            let mut names = Vec::new();
+            while !content.is_empty() {
+                names.push(identifier(&content, "the name of an argument")?);
+                if !content.is_empty() {
+                    content.parse::<Token![,]>()?;
+                }
+            }
+            arguments = Some(names);
+        }
+        equals(input)?;
+        let expr = self.expr(input)?;
+        Ok(Let { name, index, arguments, expr })
+    }
+
+    fn energy(&mut self, input: ParseStream, role: Role) -> Result<Statement> {
+        let keyword = input.call(Ident::parse_any)?.span().into();
+        equals(input)?;
+        Ok(Statement::Energy { role, keyword, expr: self.expr(input)? })
+    }
+
+    fn force(&mut self, input: ParseStream) -> Result<Statement> {
+        input.call(Ident::parse_any)?;
+        let name = identifier(input, "the coordinate on which the force acts")?;
+        let index = if input.peek(syn::token::Bracket) {
+            let content;
+            bracketed!(content in input);
+            let each = content.peek2(Token![in]);
+            let index = if each { ForceIndex::Each(self.binder(&content)?) } else { ForceIndex::One(self.expr(&content)?) };
+            end(&content)?;
+            Some(index)
+        } else {
+            None
+        };
+        equals(input)?;
+        Ok(Statement::Force { name, index, expr: self.expr(input)? })
+    }
+
+    /// `k in 0..5`.
+    pub(super) fn binder(&mut self, input: ParseStream) -> Result<Binder> {
+        let name = identifier(input, "the name of an index")?;
+        if !input.peek(Token![in]) {
+            return Err(unexpected(input, "`in` and a range such as `0..5`"));
+        }
+        input.parse::<Token![in]>()?;
+        let low = self.expr(input)?;
+        let inclusive = input.peek(Token![..=]);
+        if inclusive {
+            input.parse::<Token![..=]>()?;
+        } else if input.peek(Token![..]) {
+            input.parse::<Token![..]>()?;
+        } else {
+            return Err(unexpected(input, "`..` and the end of the range"));
+        }
+        let high = self.expr(input)?;
+        Ok(Binder { name, low, high, inclusive })
+    }
+}
+
+fn unknown_statement(input: ParseStream, word: &str) -> syn::Error {
+    if word.is_empty() {
+        return unexpected(input, "a statement such as `coordinate θ: rad;`");
+    }
+    let hint = match name::nearest(word, STATEMENTS.into_iter()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => "a statement begins with `coordinate`, `driven`, `let`, `kinetic`, `potential`, `lagrangian`, `dissipation` or `force`".into(),
+    };
+    Range::from(input.span()).error(format!("unknown statement `{word}`; {hint}"))
+}
