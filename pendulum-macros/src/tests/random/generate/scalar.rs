@@ -1,0 +1,201 @@
+//! Scalar expressions: anything, and what is bounded, positive or wild.
+
+use super::super::nilpotent::Function;
+use super::super::tree::{Expr, Kind, Type, number, power, product, quotient, sum};
+use super::{Generator, Manner, May};
+
+impl Generator {
+    pub(super) fn scalar(&mut self, depth: usize, may: May) -> Expr {
+        if depth == 0 {
+            return self.leaf(may);
+        }
+        if self.manner == Manner::Wild && self.random.once_in(3) {
+            return self.wild(depth, may);
+        }
+        let inner = depth - 1;
+        match self.random.below(22) {
+            0..=2 => {
+                let items = (0..2 + self.random.below(2)).map(|_| (self.random.once_in(3), self.scalar(inner, may)));
+                Expr::Sum(items.collect())
+            }
+            3..=5 => product(self.scalar(inner, may), self.scalar(inner, may)),
+            6 => {
+                let divisor = self.positive(inner, may);
+                let divided = quotient(self.scalar(inner, may), divisor);
+                if self.random.once_in(3) { product(divided, self.scalar(0, may)) } else { divided }
+            }
+            7 => Expr::Negative(Box::new(self.scalar(inner, may))),
+            8 => {
+                let exponent = self.random.of(&[2, 2, 3]);
+                power(self.scalar(inner, may), exponent)
+            }
+            9 => {
+                let (top, bottom) = self.random.of(&[(1, 2), (-1, 2), (3, 2), (2, 3), (-1, 1), (-2, 1), (5, 4)]);
+                Expr::Power(Box::new(self.positive(inner, may)), top, bottom)
+            }
+            10 => Expr::GeneralPower(Box::new(self.positive(inner, may)), Box::new(self.bounded(inner, may))),
+            11..=14 => self.bounded(depth, may),
+            15 => self.of_vector(inner, may),
+            16 => self.of_vector(inner, may),
+            17 => self.sum_over(inner, may),
+            18 => {
+                let (a, b) = (Box::new(self.scalar(inner, may)), Box::new(self.scalar(inner, may)));
+                if self.random.once_in(2) { Expr::Max(a, b) } else { Expr::Min(a, b) }
+            }
+            19 => self.use_let(Type::Scalar, inner, may).unwrap_or_else(|| self.leaf(may)),
+            20 => self.integral(may).unwrap_or_else(|| self.leaf(may)),
+            _ => self.leaf(may),
+        }
+    }
+
+    /// Anything of no more than moderate size.
+    pub(super) fn bounded(&mut self, depth: usize, may: May) -> Expr {
+        let inner = depth.saturating_sub(1);
+        let call = |function, argument| Expr::Call(function, Box::new(argument));
+        let angle = |generator: &mut Self| generator.angle(inner, may);
+        let ring = |generator: &mut Self, function| {
+            let angle = generator.angle(inner, may);
+            Expr::Call(function, Box::new(angle))
+        };
+        match self.random.below(17) {
+            0..=3 => ring(self, Function::Sin),
+            4..=7 => ring(self, Function::Cos),
+            8 => call(Function::Tanh, angle(self)),
+            9 => call(Function::Atan, angle(self)),
+            10 => {
+                let half = quotient(ring(self, Function::Sin), number(2));
+                let function = self.random.of(&[Function::Asin, Function::Acos, Function::Tan, Function::Sinh, Function::Cosh]);
+                call(function, half)
+            }
+            11 => call(Function::Exp, Expr::Negative(Box::new(power(angle(self), 2)))),
+            12 => call(Function::Exp, ring(self, Function::Cos)),
+            13 => {
+                let (y, x) = (angle(self), self.positive(inner, may));
+                Expr::Atan2(Box::new(y), Box::new(x))
+            }
+            14 => {
+                let positive = self.positive(inner, may);
+                call(Function::Ln, positive)
+            }
+            15 => {
+                let function = self.random.of(&[Function::Abs, Function::Sign]);
+                let argument = ring(self, Function::Sin);
+                call(function, argument)
+            }
+            _ => {
+                let x = angle(self);
+                quotient(x.clone(), sum(number(1), power(x, 2)))
+            }
+        }
+    }
+
+    /// A sum that a trigonometric function may take apart.
+    pub(super) fn angle(&mut self, depth: usize, may: May) -> Expr {
+        if 0 < depth && self.random.once_in(3) {
+            return self.scalar(depth - 1, may);
+        }
+        let (a, b) = (self.leaf(may), self.leaf(may));
+        match self.random.below(7) {
+            0 => sum(a, b),
+            1 => Expr::Sum(vec![(false, a), (true, b)]),
+            2 => product(number(2), a),
+            3 => quotient(a, number(2)),
+            4 => Expr::Sum(vec![(false, a), (true, quotient(Expr::Pi, number(2)))]),
+            _ => a,
+        }
+    }
+
+    /// At least one half.
+    pub(super) fn positive(&mut self, depth: usize, may: May) -> Expr {
+        match self.random.below(5) {
+            0 => sum(number(1), power(self.scalar(depth, may), 2)),
+            1 => sum(number(2), Expr::Call(Function::Sin, Box::new(self.angle(depth, may)))),
+            2 => self.positive_parameter(),
+            3 => Expr::Call(Function::Cosh, Box::new(self.bounded(depth, may))),
+            _ => {
+                let vector = self.plane(depth.min(1), may);
+                sum(number(1), power(Expr::Magnitude(Box::new(vector)), 2))
+            }
+        }
+    }
+
+    /// Functions of whatever comes.
+    fn wild(&mut self, depth: usize, may: May) -> Expr {
+        let inner = depth - 1;
+        let a = Box::new(self.scalar(inner, may));
+        let functions = [
+            Function::Sqrt,
+            Function::Exp,
+            Function::Ln,
+            Function::Tan,
+            Function::Asin,
+            Function::Acos,
+            Function::Sinh,
+            Function::Cosh,
+            Function::Abs,
+            Function::Sign,
+        ];
+        match self.random.below(8) {
+            0..=2 => Expr::Call(self.random.of(&functions), a),
+            3 => quotient(*a, self.scalar(inner, may)),
+            4 => {
+                let (top, bottom) = self.random.of(&[(1, 3), (-3, 2), (7, 1), (-5, 1), (1, 4), (11, 7), (0, 1)]);
+                Expr::Power(a, top, bottom)
+            }
+            5 => Expr::GeneralPower(a, Box::new(self.scalar(inner, may))),
+            6 => {
+                let magnitude = Expr::Magnitude(Box::new(self.plane(inner, may)));
+                Expr::Atan2(a, Box::new(magnitude))
+            }
+            _ => Expr::Sum(vec![(false, (*a).clone()), (true, *a)]),
+        }
+    }
+
+    fn sum_over(&mut self, depth: usize, may: May) -> Expr {
+        // An index is bound once; within a range the index outside keeps its name.
+        if may.bound.is_some() {
+            return self.leaf(may);
+        }
+        let count = 1 + self.random.below(4);
+        let term = self.scalar(depth, May { bound: Some(count), ..may });
+        Expr::Over(0, count, self.random.once_in(3), Box::new(term))
+    }
+
+    fn of_vector(&mut self, depth: usize, may: May) -> Expr {
+        let boxed = |generator: &mut Self, kind| Box::new(generator.typed(kind, depth, may));
+        match self.random.below(9) {
+            0 => Expr::Inner(boxed(self, Type::Plane), boxed(self, Type::Plane)),
+            1 => Expr::Inner(boxed(self, Type::Space), boxed(self, Type::Space)),
+            2 => Expr::Cross(boxed(self, Type::Plane), boxed(self, Type::Plane)),
+            3 => Expr::Height(boxed(self, Type::Plane)),
+            4 => Expr::Height(boxed(self, Type::Space)),
+            5 => Expr::Component(boxed(self, Type::Plane), self.random.below(2)),
+            6 => Expr::Component(boxed(self, Type::Space), self.random.below(3)),
+            7 => power(Expr::Magnitude(boxed(self, Type::Space)), 2),
+            _ => {
+                // The length of what is never short.
+                let parts = [self.positive(depth, may), self.scalar(depth, may)];
+                Expr::Magnitude(Box::new(Expr::Vector(parts.to_vec())))
+            }
+        }
+    }
+
+    /// The integral of the square of a velocity, of a height, or of a function of the point.
+    fn integral(&mut self, may: May) -> Option<Expr> {
+        let body = self.system.parameters.iter().position(|parameter| parameter.kind == Kind::Body)?;
+        let still = May { velocities: false, orders: 0, arguments: &[], ..may };
+        let point = quotient(Expr::Point, self.measure(Kind::Length));
+        let turned = product(Expr::Cis(Box::new(self.angle(1, still)), false), point.clone());
+        let place = sum(self.plane(1, still), turned);
+        let integrand = match self.random.below(3) {
+            0 if may.velocities => {
+                let moved = self.moved(place);
+                let velocity = self.rate(Expr::Dot(Box::new(moved)));
+                quotient(power(Expr::Magnitude(Box::new(velocity)), 2), number(2))
+            }
+            1 => product(Expr::Height(Box::new(place)), Expr::Component(Box::new(point), 0)),
+            _ => Expr::Height(Box::new(place)),
+        };
+        Some(quotient(Expr::Integral(body, Box::new(integrand)), self.measure(Kind::Mass)))
+    }
+}
