@@ -3,7 +3,7 @@
 
 #[path = "../../pendulum-macros/src/ahead.rs"]
 mod ahead;
-#[path = "../../pendulum-macros/src/articulated.rs"]
+#[path = "../../pendulum-macros/src/articulated/mod.rs"]
 mod articulated;
 #[path = "../../pendulum-macros/src/ast.rs"]
 mod ast;
