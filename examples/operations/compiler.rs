@@ -7,7 +7,7 @@ mod ahead;
 mod articulated;
 #[path = "../../pendulum-macros/src/ast.rs"]
 mod ast;
-#[path = "../../pendulum-macros/src/check.rs"]
+#[path = "../../pendulum-macros/src/check/mod.rs"]
 mod check;
 #[path = "../../pendulum-macros/src/collect.rs"]
 mod collect;
