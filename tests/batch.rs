@@ -8,6 +8,11 @@ use pendulum_runtime::jet::JetDynamics;
 use pendulum_runtime::prelude::*;
 use std::fmt::Debug;
 
+#[path = "common/systems.rs"]
+mod systems;
+
+use systems::{Double, Kepler};
+
 lagrangian! {
     #[derive(Clone, Debug)]
     pub struct Simple { m: kg, L: m, g: m/s^2 = 9.81 }
@@ -15,24 +20,6 @@ lagrangian! {
     let y = L*[sin(θ), -cos(θ)];
     kinetic = m/2*|ẏ|^2;
     potential = m*g*height(y);
-}
-
-lagrangian! {
-    #[derive(Clone, Debug)]
-    pub struct Double { m: [1; 2], l: [1; 2], g }
-    coordinate θ[2];
-    let y[k in 0..2] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]);
-    kinetic = sum(k in 0..2, m[k]/2*|ẏ[k]|^2);
-    potential = sum(k in 0..2, m[k]*g*height(y[k]));
-}
-
-lagrangian! {
-    #[derive(Clone, Debug)]
-    pub struct Kepler { μ }
-    coordinate x;
-    coordinate y;
-    kinetic = (ẋ^2 + ẏ^2)/2;
-    potential = -μ/|[x, y]|;
 }
 
 lagrangian! {

@@ -7,6 +7,8 @@
 
 #[path = "common/fingerprints.rs"]
 mod fingerprints;
+#[path = "common/systems.rs"]
+mod systems;
 
 #[test]
 fn final_states_have_the_bits_that_are_checked_in() {

@@ -10,81 +10,14 @@ use pendulum_runtime::integrate::method::Suits;
 use pendulum_runtime::motion::{Linear, Sinusoid};
 use pendulum_runtime::prelude::*;
 
-lagrangian! {
-    pub struct Simple {}
-    coordinate q;
-    kinetic = q̇^2/2;
-    potential = -cos(q);
-}
+#[path = "common/systems.rs"]
+mod systems;
 
-lagrangian! {
-    #[derive(Clone, Debug)]
-    pub struct Moving { l, g }
-    coordinate q;
-    driven x: [1; 2];
-    let r = x + l*[sin(q), -cos(q)];
-    kinetic = |ṙ|^2/2;
-    potential = g*height(r);
-}
+use systems::{Cart, DampedElastic, Double, Forced, Hoop, Hung, Kepler, Simple, Spherical};
 
-lagrangian! {
-    pub struct Forced {}
-    coordinate q;
-    kinetic = q̇^2/2;
-    potential = -cos(q);
-    dissipation = q̇^2/4;
-    force q = 3/2*cos(5/8*t);
-}
-
-lagrangian! {
-    pub struct Double {}
-    coordinate θ[2];
-    let y[k in 0..2] = sum(j in 0..=k, [sin(θ[j]), -cos(θ[j])]);
-    kinetic = sum(k in 0..2, |ẏ[k]|^2/2);
-    potential = sum(k in 0..2, height(y[k]));
-}
-
-lagrangian! {
-    pub struct Cart { M, m, l, g }
-    coordinate x;
-    coordinate θ;
-    let r = [x + l*sin(θ), -l*cos(θ)];
-    kinetic = M/2*ẋ^2 + m/2*|ṙ|^2;
-    potential = m*g*height(r);
-}
-
-lagrangian! {
-    pub struct Spherical {}
-    coordinate θ;
-    coordinate φ;
-    let r = [sin(θ)*cos(φ), sin(θ)*sin(φ), -cos(θ)];
-    kinetic = |ṙ|^2/2;
-    potential = height(r);
-}
-
-lagrangian! {
-    pub struct Hoop {}
-    coordinate q;
-    lagrangian = (q̇^2 + 2*sin(q)^2)/2 + cos(q);
-}
-
-lagrangian! {
-    pub struct Kepler {}
-    coordinate x;
-    coordinate y;
-    let r = [x, y];
-    kinetic = |ṙ|^2/2;
-    potential = -1/|r|;
-}
-
-lagrangian! {
-    pub struct Elastic { k, c }
-    coordinate r;
-    coordinate θ;
-    let y = r*[sin(θ), -cos(θ)];
-    kinetic = |ẏ|^2/2;
-    potential = height(y) + k/2*(r - 1)^2;
-    dissipation = c*ṙ^2/2;
+/// Two links and bobs of one metre and one kilogram, g = 1 m/s².
+fn double() -> Double<f64> {
+    Double::new([1.0; 2], [1.0; 2], 1.0)
 }
 
 fn after<D: Dynamics<N, Scalar = f64>, const N: usize>(
@@ -122,14 +55,12 @@ fn assert_order(name: &str, order: f64, steps: u64, error: impl Fn(u64) -> f64) 
 
 fn orders<const S: usize>(steps: u64) {
     let (gauss, order) = (Gauss::<S>::new(), 2.0 * S as f64);
-    let shaken = Moving { l: 1.0, g: 1.0 }.driven_by(Sinusoid::new([0.25, 0.0], 2.0, [0.0; 2]));
-    assert_order("simple", order, steps, |n| distance(after(&Simple::new(), 10.0, [1.3], [0.0], gauss, n), &SIMPLE));
+    let shaken = Hung { l: 1.0, g: 1.0 }.driven_by(Sinusoid::new([0.25, 0.0], 2.0, [0.0; 2]));
+    assert_order("simple", order, steps, |n| distance(after(&Simple::new(1.0), 10.0, [1.3], [0.0], gauss, n), &SIMPLE));
     assert_order("driven", order, 2 * steps, |n| distance(after(&shaken, 10.0, [0.5], [0.0], gauss, n), &SHAKEN));
-    assert_order("forced", order, 2 * steps, |n| distance(after(&Forced::new(), 10.0, [0.0], [0.0], gauss, n), &FORCED));
-    assert_order("double", order, 2 * steps, |n| {
-        distance(after(&Double::new(), 10.0, [0.5, -0.25], [0.0; 2], gauss, n), &DOUBLE)
-    });
-    let newton = |n| distance(after(&Double::new(), 10.0, [0.5, -0.25], [0.0; 2], gauss.newton(), n), &DOUBLE);
+    assert_order("forced", order, 2 * steps, |n| distance(after(&Forced::new(0.25), 10.0, [0.0], [0.0], gauss, n), &FORCED));
+    assert_order("double", order, 2 * steps, |n| distance(after(&double(), 10.0, [0.5, -0.25], [0.0; 2], gauss, n), &DOUBLE));
+    let newton = |n| distance(after(&double(), 10.0, [0.5, -0.25], [0.0; 2], gauss.newton(), n), &DOUBLE);
     assert_order("double by Newton", order, 2 * steps, newton);
 }
 
@@ -144,7 +75,7 @@ fn the_order_is_twice_the_number_of_stages() {
 #[test]
 fn eight_stages_have_order_sixteen() {
     // Between the coarsest step at which the error is asymptotic and rounding there is little room.
-    let error = |n| distance(after(&Simple::new(), 10.0, [1.3], [0.0], Gauss::<8>::new(), n), &SIMPLE);
+    let error = |n| distance(after(&Simple::new(1.0), 10.0, [1.3], [0.0], Gauss::<8>::new(), n), &SIMPLE);
     assert!(
         error(5) < 1e-5 && error(10) < 1e-9 && error(16) < 1e-12 && error(24) < 2e-15,
         "{:e} {:e} {:e} {:e}",
@@ -158,21 +89,21 @@ fn eight_stages_have_order_sixteen() {
 #[test]
 fn trusted_digits() {
     let gauss = Gauss::<4>::new();
-    let double = after(&Double::new(), 10.0, [0.5, -0.25], [0.0; 2], gauss, 400);
-    assert!(distance(double, &DOUBLE) < 1e-14, "{:e}", distance(double, &DOUBLE));
-    let chaotic = after(&Double::new(), 10.0, [2.0, 2.5], [0.0; 2], gauss, 1200);
+    let regular = after(&double(), 10.0, [0.5, -0.25], [0.0; 2], gauss, 400);
+    assert!(distance(regular, &DOUBLE) < 1e-14, "{:e}", distance(regular, &DOUBLE));
+    let chaotic = after(&double(), 10.0, [2.0, 2.5], [0.0; 2], gauss, 1200);
     assert!(distance(chaotic, &CHAOTIC) < 1e-12, "{:e}", distance(chaotic, &CHAOTIC));
-    let chaotic = after(&Double::new(), 10.0, [2.0, 2.5], [0.0; 2], Gauss::<8>::new(), 200);
+    let chaotic = after(&double(), 10.0, [2.0, 2.5], [0.0; 2], Gauss::<8>::new(), 200);
     assert!(distance(chaotic, &CHAOTIC) < 1e-12, "{:e}", distance(chaotic, &CHAOTIC));
     let cart = after(&Cart { M: 2.0, m: 1.0, l: 1.0, g: 1.0 }, 50.0, [0.0, 2.0], [0.0; 2], gauss, 2000);
     let exact = [0.540687700043772166835146, -0.793433414301177316634101, 0.382285678608006812261174, -1.63509179034836170824199];
     assert!(distance(cart, &exact) < 1e-12, "{:e}", distance(cart, &exact));
-    let spherical = after(&Spherical::new(), 50.0, [1.0, 0.0], [0.0, 1.0], gauss, 2000);
+    let spherical = after(&Spherical::new(1.0, 1.0), 50.0, [1.0, 0.0], [0.0, 1.0], gauss, 2000);
     let exact = [0.924831930608251379754992, 61.9023375626447771398751, 0.212394902413278911180497, 1.11047076030315927743351];
     assert!(distance(spherical, &exact) < 1e-12, "{:e}", distance(spherical, &exact));
     let hoop = after(&Hoop::new(), 10.0, [0.5], [0.0], gauss, 400);
     assert!(distance(hoop, &[1.02886014256450250438634, -0.533514923170437428630840]) < 1e-14);
-    let kepler = after(&Kepler::new(), 20.0, [0.5, 0.0], [0.0, 3.0_f64.sqrt()], Gauss::<8>::new(), 400);
+    let kepler = after(&Kepler::new(1.0), 20.0, [0.5, 0.0], [0.0, 3.0_f64.sqrt()], Gauss::<8>::new(), 400);
     let exact =
         [-0.578043295303536123275146, 0.863384000919419280133573, -0.959508373038072735626449, -0.0650491512671209016771935];
     assert!(distance(kepler, &exact) < 1e-12, "{:e}", distance(kepler, &exact));
@@ -180,7 +111,7 @@ fn trusted_digits() {
 
 /// The largest relative change of the energy of a pendulum over `steps` steps, looked at every hundredth.
 fn drift(steps: u64) -> f64 {
-    let (system, q) = (Simple::new(), [1.3]);
+    let (system, q) = (Simple::new(1.0), [1.3]);
     let start = system.energy(0.0, &q, &[0.0], &());
     let mut integrator =
         Integrator::new(&system, Gauss::<4>::new(), 0.0, q, [0.0]).unwrap().control(FixedStep::new(1.0 / 128.0)).unwrap();
@@ -213,14 +144,14 @@ fn energy_over_ten_million_steps() {
 
 #[test]
 fn quadratic_invariants_are_kept() {
-    let (kepler, q, v) = (Kepler::new(), [0.5, 0.0], [0.0, 3.0_f64.sqrt()]);
+    let (kepler, q, v) = (Kepler::new(1.0), [0.5, 0.0], [0.0, 3.0_f64.sqrt()]);
     // The angular momentum in Cartesian coordinates, with steps far too long for the orbit.
     let coarse = |end: ([f64; 2], [f64; 2])| end.0[0] * end.1[1] - end.0[1] * end.1[0] - 0.5 * 3.0_f64.sqrt();
     let gauss = after(&kepler, 200.0, q, v, Gauss::<2>::new(), 2000);
     assert!(coarse(gauss).abs() < 1e-14, "{:e}", coarse(gauss));
     assert!(1e-6 < coarse(after(&kepler, 200.0, q, v, Rk4, 2000)).abs());
     // The momenta of cyclic coordinates, exactly but for what turning velocities into momenta costs.
-    let (cart, spherical) = (Cart { M: 2.0, m: 1.0, l: 1.0, g: 1.0 }, Spherical::new());
+    let (cart, spherical) = (Cart { M: 2.0, m: 1.0, l: 1.0, g: 1.0 }, Spherical::new(1.0, 1.0));
     let (q, v) = after(&cart, 50.0, [0.0, 2.0], [0.0; 2], Gauss::<2>::new(), 500);
     assert!(cart.momenta(50.0, &q, &v, &())[0].abs() < 1e-15);
     let (q, v) = after(&spherical, 50.0, [1.0, 0.0], [0.0, 1.0], Gauss::<1>::new(), 500);
@@ -230,7 +161,7 @@ fn quadratic_invariants_are_kept() {
 /// The largest entry of JᵀΩJ − Ω, where J is the Jacobian of one step of the double pendulum in coordinates and momenta, from central
 /// differences of order 6.
 fn symplectic_defect(method: impl Suits<Double<f64>, 2>, h: f64) -> f64 {
-    let system = Double::new();
+    let system = double();
     let step = |z: [f64; 4]| {
         let q = [z[0], z[1]];
         let v = system.velocities(0.0, &q, &[z[2], z[3]], &());
@@ -289,8 +220,8 @@ fn a_step_is_symplectic_where_the_mass_matrix_depends_on_the_coordinates() {
 
 #[test]
 fn motion_reversed_returns() {
-    let there = after(&Double::new(), 20.0, [0.5, -0.25], [0.0; 2], Gauss::<3>::new(), 100);
-    let back = after(&Double::new(), 20.0, there.0, there.1.map(|v| -v), Gauss::<3>::new(), 100);
+    let there = after(&double(), 20.0, [0.5, -0.25], [0.0; 2], Gauss::<3>::new(), 100);
+    let back = after(&double(), 20.0, there.0, there.1.map(|v| -v), Gauss::<3>::new(), 100);
     assert!(distance(back, &[0.5, -0.25, 0.0, 0.0]) < 1e-12, "{:e}", distance(back, &[0.5, -0.25, 0.0, 0.0]));
 }
 
@@ -304,7 +235,7 @@ fn momenta_carry_the_state_over_kinks() {
     };
     let times: Vec<f64> = (0..400).map(|i| (f64::from(i) - 1.0) / 24.0).collect();
     let values: Vec<[f64; 2]> = (0..400).map(|i| [0.1 * (0.12 * f64::from(i)).sin() + 0.004 * next(), 0.0]).collect();
-    let driven = Moving { l: 0.5, g: 9.81 }.driven_by(Linear::new(&times, &values).unwrap());
+    let driven = Hung { l: 0.5, g: 9.81 }.driven_by(Linear::new(&times, &values).unwrap());
     let error = |end: ([f64; 1], [f64; 1])| (end.0[0] + 0.129608683467).abs();
     assert!(error(after(&driven, 5.0, [0.3], [0.0], Gauss::<1>::new(), 480)) < 1e-3);
     assert!(error(after(&driven, 5.0, [0.3], [0.0], Gauss::<3>::new(), 120)) < 1e-9);
@@ -314,13 +245,9 @@ fn momenta_carry_the_state_over_kinks() {
 #[test]
 fn dense_output_follows_the_order() {
     fn largest<const S: usize>(steps: u64) -> f64 {
-        let exact = solve(&Double::new(), (0.0, 2.0), [0.5, -0.25], [0.0; 2]).rtol(1e-14).atol(1e-14).dense().run().unwrap();
-        let found = solve(&Double::new(), (0.0, 2.0), [0.5, -0.25], [0.0; 2])
-            .method(Gauss::<S>::new())
-            .steps(steps)
-            .dense()
-            .run()
-            .unwrap();
+        let exact = solve(&double(), (0.0, 2.0), [0.5, -0.25], [0.0; 2]).rtol(1e-14).atol(1e-14).dense().run().unwrap();
+        let found =
+            solve(&double(), (0.0, 2.0), [0.5, -0.25], [0.0; 2]).method(Gauss::<S>::new()).steps(steps).dense().run().unwrap();
         let mut largest = 0.0_f64;
         for k in 0..=200 {
             let (a, b) = (exact.at(f64::from(k) / 100.0).unwrap(), found.at(f64::from(k) / 100.0).unwrap());
@@ -344,9 +271,9 @@ fn dense_output_follows_the_order() {
 #[test]
 fn stiff_springs_by_newton() {
     // The slow motion of a pendulum whose rod hardly gives, with steps that are thousands of times longer than the fast period.
-    let rigid = after(&Simple::new(), 10.0, [1.0], [0.0], Gauss::<8>::new(), 50);
+    let rigid = after(&Simple::new(1.0), 10.0, [1.0], [0.0], Gauss::<8>::new(), 50);
     for k in [1e2_f64, 1e4, 1e6, 1e8, 1e10] {
-        let elastic = Elastic { k, c: 0.0 };
+        let elastic = DampedElastic { k, c: 0.0 };
         let length = 1.0 + 1.0_f64.cos() / k;
         let (q, v) = after(&elastic, 10.0, [length, 1.0], [0.0; 2], Gauss::<2>::new().newton(), 1000);
         assert!((q[1] - rigid.0[0]).abs() < 20.0 / k + 1e-6 && (q[0] - 1.0).abs() < 10.0 / k, "k = {k:e}: {q:?} {v:?}");
@@ -355,7 +282,7 @@ fn stiff_springs_by_newton() {
 
 #[test]
 fn sweeps_that_go_astray_are_reported() {
-    let elastic = Elastic { k: 1e6, c: 0.0 };
+    let elastic = DampedElastic { k: 1e6, c: 0.0 };
     let failure = solve(&elastic, (0.0, 10.0), [1.0, 1.0], [0.0; 2]).method(Gauss::<2>::new()).step(0.1).run().unwrap_err();
     match &failure.error {
         Error::NoConvergence { t, coordinate, .. } => assert!(coordinate.name == "r" && 0.0 < *t && *t < 0.1, "{failure}"),
@@ -364,13 +291,13 @@ fn sweeps_that_go_astray_are_reported() {
     assert!(failure.to_string().contains("Newton"), "{failure}");
     assert_eq!((failure.partial.end.q, failure.partial.end.t), ([1.0, 1.0], 0.0));
     // A number that is not finite from the start is what it was before.
-    let broken = Elastic { k: f64::NAN, c: 0.0 };
+    let broken = DampedElastic { k: f64::NAN, c: 0.0 };
     let failure = solve(&broken, (0.0, 1.0), [1.0, 1.0], [0.0; 2]).method(Gauss::<2>::new()).step(0.1).run().unwrap_err();
     assert!(matches!(failure.error, Error::NotFinite { .. }), "{failure}");
 }
 
 #[test]
 fn single_precision() {
-    let end = solve(&Simple::new(), (0.0_f64, 10.0), [1.3_f32], [0.0]).method(Gauss::<3>::new()).steps(100).run().unwrap().end;
+    let end = solve(&Simple::new(1.0), (0.0_f64, 10.0), [1.3_f32], [0.0]).method(Gauss::<3>::new()).steps(100).run().unwrap().end;
     assert!((f64::from(end.q[0]) - SIMPLE[0]).abs() < 1e-6, "{end:?}");
 }

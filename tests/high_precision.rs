@@ -8,52 +8,28 @@ use pendulum_runtime::real::{DoubleDouble, Float};
 
 #[path = "common/random.rs"]
 mod random;
+#[path = "common/systems.rs"]
+mod systems;
 
 use random::Random;
+use systems::{Double, Five, Simple};
 
-mod systems {
-    use pendulum_runtime::lagrangian;
+lagrangian! {
+    /// Numbers of more digits than a double holds.
+    pub struct Long {}
+    coordinate x;
+    kinetic = ẋ^2/2;
+    potential = 3.14159265358979323846264338327950*x - 123456789012345678901234567*x/98765432109876543210;
+}
 
-    lagrangian! {
-        pub struct Simple { g }
-        coordinate q;
-        kinetic = q̇^2/2;
-        potential = -g*cos(q);
-    }
-
-    lagrangian! {
-        pub struct Double { m: [1; 2], l: [1; 2], g }
-        coordinate θ[2];
-        let y[k in 0..2] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]);
-        kinetic = sum(k in 0..2, m[k]/2*|ẏ[k]|^2);
-        potential = sum(k in 0..2, m[k]*g*height(y[k]));
-    }
-
-    lagrangian! {
-        /// Numbers of more digits than a double holds.
-        pub struct Long {}
-        coordinate x;
-        kinetic = ẋ^2/2;
-        potential = 3.14159265358979323846264338327950*x - 123456789012345678901234567*x/98765432109876543210;
-    }
-
-    lagrangian! {
-        pub struct Five { m: [1; 5], l: [1; 5], g }
-        coordinate θ[5];
-        let y[k in 0..5] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]);
-        kinetic = sum(k in 0..5, m[k]/2*|ẏ[k]|^2);
-        potential = sum(k in 0..5, m[k]*g*height(y[k]));
-    }
-
-    lagrangian! {
-        pub struct Spherical { l, g, c }
-        coordinate θ;
-        coordinate φ;
-        let r = l*[sin(θ)*cos(φ), sin(θ)*sin(φ), -cos(θ)];
-        kinetic = |ṙ|^2/2;
-        potential = g*height(r) + exp(-|r|/3)*sqrt(1 + θ^2) + (1 + θ^2)^0.1;
-        dissipation = c*(θ̇^2 + φ̇^2)/2;
-    }
+lagrangian! {
+    pub struct Spherical { l, g, c }
+    coordinate θ;
+    coordinate φ;
+    let r = l*[sin(θ)*cos(φ), sin(θ)*sin(φ), -cos(θ)];
+    kinetic = |ṙ|^2/2;
+    potential = g*height(r) + exp(-|r|/3)*sqrt(1 + θ^2) + (1 + θ^2)^0.1;
+    dissipation = c*(θ̇^2 + φ̇^2)/2;
 }
 
 /// Energies written as what they are above rest.
@@ -99,8 +75,6 @@ mod above_rest {
         potential = g*l*(1 - cos(θ));
     }
 }
-
-use systems::*;
 
 fn number(digits: &str) -> DoubleDouble {
     digits.parse().unwrap()

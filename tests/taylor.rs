@@ -7,13 +7,10 @@ use pendulum_runtime::integrate::{AdaptiveStep, Solution};
 use pendulum_runtime::motion::{CatmullRom, Linear, Side, Spline};
 use pendulum_runtime::prelude::*;
 
-lagrangian! {
-    /// ½q̇² + g cos q.
-    pub struct Simple { g }
-    coordinate q;
-    kinetic = q̇^2/2;
-    potential = -g*cos(q);
-}
+#[path = "common/systems.rs"]
+mod systems;
+
+use systems::{Kepler, Simple};
 
 lagrangian! {
     #[derive(Clone, Debug)]
@@ -23,14 +20,6 @@ lagrangian! {
     let y = L*[sin(θ), -cos(θ)];
     kinetic = m/2*|ẋ + ẏ|^2;
     potential = m*g*height(x + y);
-}
-
-lagrangian! {
-    pub struct Kepler {}
-    coordinate x;
-    coordinate y;
-    kinetic = (ẋ^2 + ẏ^2)/2;
-    potential = -1/|[x, y]|;
 }
 
 lagrangian! {
@@ -233,7 +222,7 @@ fn fixed_steps_and_settings() {
 /// Each coordinate has its own tolerance.
 #[test]
 fn tolerances_by_coordinate() {
-    let kepler = Kepler::new();
+    let kepler = Kepler::new(1.0);
     let steps = |x: f64, y: f64| {
         let problem = solve(&kepler, (0.0, 6.0), [1.0, 0.0], [0.0, 1.0]).method(Taylor::new()).rtol(1e-14);
         problem.atol_each([x, y], [x, y]).run().unwrap().stats.accepted
@@ -244,7 +233,7 @@ fn tolerances_by_coordinate() {
 #[test]
 fn errors_say_where() {
     // A fall into the centre from rest: the singularity is reached at π/(2√2).
-    let kepler = Kepler::new();
+    let kepler = Kepler::new(1.0);
     let failure = solve(&kepler, (0.0, 2.0), [1.0, 0.0], [0.0, 0.0]).method(Taylor::new()).rtol(1e-12).run().unwrap_err();
     let t = failure.partial.end.t;
     assert!((t - 1.1107207345395915).abs() < 1e-6, "{failure:?}");

@@ -189,7 +189,7 @@ fn double(mass: f64, length: f64) -> [f64; 4] {
 }
 
 fn collapse(_: Scale, report: &mut Report) {
-    let kepler = Kepler::new();
+    let kepler = Kepler::new(1.0);
     // Straight into the sun, after π/(2√2) s from rest at distance 1.
     let fall = |solution: Result<Solution<f64, 2>, Failure<f64, 2>>| match solution {
         Ok(solution) => (false, solution.stats.accepted + solution.stats.rejected),

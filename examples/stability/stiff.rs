@@ -162,7 +162,7 @@ fn tolerances(scale: Scale, report: &mut Report) {
     let mut random = Random::new(26);
     let count = scale.pick(30, 200, 1000);
     let (simple, double) = (Simple::new(1.0), Double::new([1.0; 2], [1.0; 2], 1.0));
-    let (cart, kepler) = (Cart::new(2.0, 1.0, 1.0, 1.0), Kepler::new());
+    let (cart, kepler) = (Cart::new(2.0, 1.0, 1.0, 1.0), Kepler::new(1.0));
     let problems = (
         (10.0, [1.3], [0.0]),
         (10.0, [0.5, -0.25], [0.0; 2]),

@@ -14,28 +14,17 @@ use pendulum_runtime::real::{DoubleDouble, Float};
 use std::hint::black_box;
 use std::time::Instant;
 
+#[path = "../../tests/common/systems.rs"]
+mod systems;
+
+use systems::{Double, Five};
+
 lagrangian! {
     pub struct Pendulum { m: kg, L: m, g: m/s^2 = 9.8 }
     coordinate θ: rad;
     let y = L * [sin(θ), -cos(θ)];
     kinetic = m/2 * |ẏ|^2;
     potential = m*g*height(y);
-}
-
-lagrangian! {
-    pub struct Double { m: [1; 2], l: [1; 2], g }
-    coordinate θ[2];
-    let y[k in 0..2] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]);
-    kinetic = sum(k in 0..2, m[k]/2*|ẏ[k]|^2);
-    potential = sum(k in 0..2, m[k]*g*height(y[k]));
-}
-
-lagrangian! {
-    pub struct Five { m: [1; 5], l: [1; 5], g }
-    coordinate θ[5];
-    let y[k in 0..5] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]);
-    kinetic = sum(k in 0..5, m[k]/2*|ẏ[k]|^2);
-    potential = sum(k in 0..5, m[k]*g*height(y[k]));
 }
 
 fn report<const N: usize>(name: &str, dynamics: &impl JetDynamics<N, Scalar = f64>, end: f64, q: [f64; N], exact: &[f64]) {

@@ -2,102 +2,39 @@
 
 #![allow(missing_docs)]
 
+use crate::systems::{Cart, Double, Forced, Hung, Kepler, Simple, Spherical};
 use pendulum_runtime::integrate::State;
 use pendulum_runtime::motion::{Linear, Spline};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::{DoubleDouble, Float, Lanes};
 
-mod systems {
-    use pendulum_runtime::lagrangian;
-
-    lagrangian! {
-        pub struct Simple { g }
-        coordinate q;
-        kinetic = q̇^2/2;
-        potential = -g*cos(q);
-    }
-
-    lagrangian! {
-        pub struct HenonHeiles { k }
-        coordinate x;
-        coordinate y;
-        kinetic = (ẋ^2 + ẏ^2)/2;
-        potential = k*(x^2 + y^2)/2 + x^2*y - y^3/3;
-    }
-
-    lagrangian! {
-        pub struct Hung { L, g }
-        coordinate θ;
-        driven x: [1; 2];
-        let y = L*[sin(θ), -cos(θ)];
-        kinetic = |ẋ + ẏ|^2/2;
-        potential = g*height(x + y);
-    }
-
-    lagrangian! {
-        pub struct Forced { c }
-        coordinate q;
-        kinetic = q̇^2/2;
-        potential = -cos(q);
-        dissipation = c*q̇^2;
-        force q = 3/2*cos(5/8*t);
-    }
-
-    lagrangian! {
-        pub struct Double { m: [1; 2], l: [1; 2], g }
-        coordinate θ[2];
-        let y[k in 0..2] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]);
-        kinetic = sum(k in 0..2, m[k]/2*|ẏ[k]|^2);
-        potential = sum(k in 0..2, m[k]*g*height(y[k]));
-    }
-
-    lagrangian! {
-        pub struct Cart { M, m, l, g }
-        coordinate x;
-        coordinate θ;
-        let r = [x + l*sin(θ), -l*cos(θ)];
-        kinetic = M/2*ẋ^2 + m/2*|ṙ|^2;
-        potential = m*g*height(r);
-    }
-
-    lagrangian! {
-        pub struct Spherical { l, g }
-        coordinate θ;
-        coordinate φ;
-        let r = l*[sin(θ)*cos(φ), sin(θ)*sin(φ), -cos(θ)];
-        kinetic = |ṙ|^2/2;
-        potential = g*height(r);
-    }
-
-    lagrangian! {
-        pub struct Kepler { μ }
-        coordinate x;
-        coordinate y;
-        kinetic = (ẋ^2 + ẏ^2)/2;
-        potential = -μ/|[x, y]|;
-    }
-
-    lagrangian! {
-        /// Eliminated link by link.
-        pub struct Chain { m: [1; 9], l: [1; 9], g }
-        coordinate θ[9];
-        let y[k in 0..9] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]);
-        kinetic = sum(k in 0..9, m[k]/2*|ẏ[k]|^2);
-        potential = sum(k in 0..9, m[k]*g*height(y[k]));
-    }
-
-    lagrangian! {
-        /// All elementary functions.
-        pub struct Functions { a }
-        coordinate u;
-        coordinate v;
-        kinetic = (2 + tanh(u))*u̇^2/2 + exp(-a*v^2)*v̇^2 + u̇*v̇/(4 + u^2 + v^2);
-        potential = ln(1 + u^2) + sqrt(1 + v^2) + cosh(u/4) + atan(v)*sinh(u/5) + asin(u/(3 + u^2))
-            + acos(v/(4 + v^2)) + (1 + u^2)^a + tan(u/(2 + u^2)) + atan2(v, 3 + u^2)/5;
-    }
+lagrangian! {
+    /// A star in a galaxy, whose spring is the parameter: its bits are those of this block.
+    pub struct HenonHeiles { k }
+    coordinate x;
+    coordinate y;
+    kinetic = (ẋ^2 + ẏ^2)/2;
+    potential = k*(x^2 + y^2)/2 + x^2*y - y^3/3;
 }
 
-use systems::{Cart, Chain, Double, Forced, Functions, HenonHeiles, Hung, Kepler, Simple, Spherical};
+lagrangian! {
+    /// Eliminated link by link.
+    pub struct Chain { m: [1; 9], l: [1; 9], g }
+    coordinate θ[9];
+    let y[k in 0..9] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]);
+    kinetic = sum(k in 0..9, m[k]/2*|ẏ[k]|^2);
+    potential = sum(k in 0..9, m[k]*g*height(y[k]));
+}
+
+lagrangian! {
+    /// All elementary functions.
+    pub struct Functions { a }
+    coordinate u;
+    coordinate v;
+    kinetic = (2 + tanh(u))*u̇^2/2 + exp(-a*v^2)*v̇^2 + u̇*v̇/(4 + u^2 + v^2);
+    potential = ln(1 + u^2) + sqrt(1 + v^2) + cosh(u/4) + atan(v)*sinh(u/5) + asin(u/(3 + u^2))
+        + acos(v/(4 + v^2)) + (1 + u^2)^a + tan(u/(2 + u^2)) + atan2(v, 3 + u^2)/5;
+}
 
 /// The hash of Fowler, Noll and Vo (FNV-1a) of all bits of a state.
 fn hash(numbers: impl IntoIterator<Item = f64>) -> u64 {

@@ -2,6 +2,10 @@
 
 use pendulum_runtime::motion::Sinusoid;
 use pendulum_runtime::system::Driven;
+use shared::{Double, Elastic, Five, HenonHeiles, Kepler};
+
+#[path = "../../../tests/common/systems.rs"]
+mod shared;
 
 mod blocks {
     use pendulum_runtime::lagrangian;
@@ -34,52 +38,6 @@ mod blocks {
         kinetic = m/2*|ẋ|^2 + m*inner(ẋ, ṙ) + I/2*θ̇^2;
         potential = m*g*height(x + r);
     }
-
-    lagrangian! {
-        /// A bob on a spring.
-        pub struct Elastic { k, l, g }
-        coordinate r;
-        coordinate θ;
-        let y = r*[sin(θ), -cos(θ)];
-        kinetic = |ẏ|^2/2;
-        potential = g*height(y) + k/2*(r - l)^2;
-    }
-
-    lagrangian! {
-        /// Two links.
-        pub struct Double { m: [1; 2], l: [1; 2], g }
-        coordinate θ[2];
-        let y[k in 0..2] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]);
-        kinetic = sum(k in 0..2, m[k]/2*|ẏ[k]|^2);
-        potential = sum(k in 0..2, m[k]*g*height(y[k]));
-    }
-
-    lagrangian! {
-        /// Five links.
-        pub struct Chain5 { m: [1; 5], l: [1; 5], g }
-        coordinate θ[5];
-        let y[k in 0..5] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]);
-        kinetic = sum(k in 0..5, m[k]/2*|ẏ[k]|^2);
-        potential = sum(k in 0..5, m[k]*g*height(y[k]));
-    }
-
-    lagrangian! {
-        /// A planet.
-        pub struct Kepler { μ }
-        coordinate x;
-        coordinate y;
-        kinetic = (ẋ^2 + ẏ^2)/2;
-        potential = -μ/|[x, y]|;
-    }
-
-    lagrangian! {
-        /// A star in a galaxy.
-        pub struct HenonHeiles { λ }
-        coordinate x;
-        coordinate y;
-        kinetic = (ẋ^2 + ẏ^2)/2;
-        potential = (x^2 + y^2)/2 + λ*(x^2*y - y^3/3);
-    }
 }
 
 /// g/L = 9.8.
@@ -99,26 +57,26 @@ pub fn moving_compound() -> Driven<blocks::MovingCompound<f64>, (Sinusoid<2>,)> 
 }
 
 /// A spring with k = 8.
-pub fn elastic() -> blocks::Elastic<f64> {
-    blocks::Elastic::new(8.0, 1.0, 1.0)
+pub fn elastic() -> Elastic<f64> {
+    Elastic::new(8.0, 1.0, 1.0)
 }
 
 /// Unit links and masses, g = 1.
-pub fn double() -> blocks::Double<f64> {
-    blocks::Double::new([1.0; 2], [1.0; 2], 1.0)
+pub fn double() -> Double<f64> {
+    Double::new([1.0; 2], [1.0; 2], 1.0)
 }
 
 /// Unit links and masses, g = 1.
-pub fn chain5() -> blocks::Chain5<f64> {
-    blocks::Chain5::new([1.0; 5], [1.0; 5], 1.0)
+pub fn chain5() -> Five<f64> {
+    Five::new([1.0; 5], [1.0; 5], 1.0)
 }
 
 /// μ = 1.
-pub fn kepler() -> blocks::Kepler<f64> {
-    blocks::Kepler::new(1.0)
+pub fn kepler() -> Kepler<f64> {
+    Kepler::new(1.0)
 }
 
 /// λ = 1.
-pub fn henon_heiles() -> blocks::HenonHeiles<f64> {
-    blocks::HenonHeiles::new(1.0)
+pub fn henon_heiles() -> HenonHeiles<f64> {
+    HenonHeiles::new(1.0)
 }
