@@ -8,19 +8,13 @@ use pendulum_runtime::jet::JetDynamics;
 use pendulum_runtime::prelude::*;
 use std::fmt::Debug;
 
+#[path = "common/pendulums.rs"]
+mod pendulums;
 #[path = "common/systems.rs"]
 mod systems;
 
+use pendulums::Simple;
 use systems::{Double, Kepler};
-
-lagrangian! {
-    #[derive(Clone, Debug)]
-    pub struct Simple { m: kg, L: m, g: m/s^2 = 9.81 }
-    coordinate θ: rad;
-    let y = L*[sin(θ), -cos(θ)];
-    kinetic = m/2*|ẏ|^2;
-    potential = m*g*height(y);
-}
 
 lagrangian! {
     /// ẍ = k x² + p sin 2t: without a push it leaves for infinity in a finite time.

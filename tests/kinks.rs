@@ -8,15 +8,10 @@
 use pendulum_runtime::motion::{CatmullRom, Function, Linear, Spline};
 use pendulum_runtime::prelude::*;
 
-lagrangian! {
-    #[derive(Clone, Debug)]
-    pub struct Pendulum { m: kg, L: m, g: m/s^2 = 9.81 }
-    coordinate θ: rad;
-    driven x: [m; 2];
-    let y = L*[sin(θ), -cos(θ)];
-    kinetic = m/2*|ẋ + ẏ|^2;
-    potential = m*g*height(x + y);
-}
+#[path = "common/pendulums.rs"]
+mod pendulums;
+
+use pendulums::Hanging;
 
 /// K_i = 0.1 sin(0.12 i) + 0.004 (u_i − ½) at the times (i − 1)/24, from i = 0 on.
 fn keys() -> (Vec<f64>, Vec<[f64; 2]>) {
@@ -30,8 +25,8 @@ fn keys() -> (Vec<f64>, Vec<[f64; 2]>) {
     (times, values)
 }
 
-fn pendulum() -> Pendulum {
-    Pendulum::new(0.3, 0.5)
+fn pendulum() -> Hanging {
+    Hanging::new(0.3, 0.5)
 }
 
 fn after_five_seconds(dynamics: &impl Dynamics<1, Scalar = f64>) -> f64 {

@@ -9,20 +9,13 @@ use pendulum_runtime::time::Time;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+#[path = "common/pendulums.rs"]
+mod pendulums;
 #[path = "common/random.rs"]
 mod random;
 
+use pendulums::Hanging;
 use random::Random;
-
-lagrangian! {
-    #[derive(Clone, Debug)]
-    pub struct Hanging { m: kg, L: m, g: m/s^2 = 9.81 }
-    coordinate θ: rad;
-    driven x: [m; 2];
-    let y = x + L * [sin(θ), -cos(θ)];
-    kinetic = m/2 * |ẏ|^2;
-    potential = m*g*height(y);
-}
 
 lagrangian! {
     #[derive(Clone, Debug)]

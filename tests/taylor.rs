@@ -7,20 +7,13 @@ use pendulum_runtime::integrate::{AdaptiveStep, Solution};
 use pendulum_runtime::motion::{CatmullRom, Linear, Side, Spline};
 use pendulum_runtime::prelude::*;
 
+#[path = "common/pendulums.rs"]
+mod pendulums;
 #[path = "common/systems.rs"]
 mod systems;
 
+use pendulums::Hanging;
 use systems::{Kepler, Simple};
-
-lagrangian! {
-    #[derive(Clone, Debug)]
-    pub struct Pendulum { m: kg, L: m, g: m/s^2 = 9.81 }
-    coordinate θ: rad;
-    driven x: [m; 2];
-    let y = L*[sin(θ), -cos(θ)];
-    kinetic = m/2*|ẋ + ẏ|^2;
-    potential = m*g*height(x + y);
-}
 
 lagrangian! {
     pub struct Falling { g }
@@ -95,7 +88,7 @@ fn forth_and_back_over_a_thousand_seconds() {
 #[test]
 fn keys_are_met_in_both_directions() {
     let (times, values) = keys();
-    let pendulum = Pendulum::new(0.3, 0.5);
+    let pendulum = Hanging::new(0.3, 0.5);
     let linear = pendulum.clone().driven_by(Linear::new(&times, &values).unwrap());
     let catmull_rom = pendulum.clone().driven_by(CatmullRom::new(&times, &values).unwrap());
     let spline = pendulum.driven_by(Spline::natural(&times, &values).unwrap());
@@ -128,7 +121,7 @@ fn keys_are_met_in_both_directions() {
 #[test]
 fn dense_output_has_one_history() {
     let (times, values) = keys();
-    let linear = Pendulum::new(0.3, 0.5).driven_by(Linear::new(&times, &values).unwrap());
+    let linear = Hanging::new(0.3, 0.5).driven_by(Linear::new(&times, &values).unwrap());
     let forth = solve(&linear, (0.01, 2.01), [0.3], [0.0]).method(Taylor::new()).rtol(1e-16).dense().run().unwrap();
     let (q, v) = (forth.end.q, forth.end.v);
     let outputs: Vec<f64> = (0..=200).map(|i| 2.01 - 0.01 * f64::from(i)).collect();

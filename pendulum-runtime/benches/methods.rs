@@ -10,12 +10,14 @@ use pendulum_runtime::prelude::*;
 use std::hint::black_box;
 use std::time::Instant;
 
-lagrangian! {
-    pub struct Pendulum { m: kg, L: m, g: m/s^2 = 9.8 }
-    coordinate θ: rad;
-    let y = L * [sin(θ), -cos(θ)];
-    kinetic = m/2 * |ẏ|^2;
-    potential = m*g*height(y);
+#[path = "../../tests/common/pendulums.rs"]
+mod pendulums;
+
+use pendulums::Simple;
+
+/// g/L = 9.8.
+fn pendulum() -> Simple {
+    Simple { m: 1.0, L: 1.0, g: 9.8 }
 }
 
 /// θ(1000 s) = 2 asin(k sn(K − ωt | k²)) with k = sin 0.65 and ω² = 9.8.
@@ -44,7 +46,7 @@ fn report(setting: &str, mut run: impl FnMut() -> (f64, Stats)) {
 macro_rules! fixed {
     ($method:expr, $steps:expr) => {
         for steps in $steps {
-            let pendulum = Pendulum::new(1.0, 1.0);
+            let pendulum = pendulum();
             report(&format!("{steps} steps"), || {
                 let solution = solve(black_box(&pendulum), (0.0, 1000.0), [1.3], [0.0]).method($method).steps(steps).run();
                 solution.map_or((f64::NAN, failed()), |solution| (solution.end.q[0], solution.stats))
@@ -57,7 +59,7 @@ macro_rules! adaptive {
     ($method:expr) => {
         for exponent in [4, 6, 8, 10, 12] {
             let tolerance = 10f64.powi(-exponent);
-            let pendulum = Pendulum::new(1.0, 1.0);
+            let pendulum = pendulum();
             report(&format!("rtol 1e-{exponent}"), || {
                 let problem = solve(black_box(&pendulum), (0.0, 1000.0), [1.3], [0.0]).method($method);
                 let solution = problem.rtol(tolerance).atol(tolerance).run();
@@ -68,7 +70,7 @@ macro_rules! adaptive {
 }
 
 fn failed() -> Stats {
-    let pendulum = Pendulum::new(1.0, 1.0);
+    let pendulum = pendulum();
     match solve(&pendulum, (0.0, 0.0), [0.0], [0.0]).run() {
         Ok(solution) => solution.stats,
         Err(failure) => failure.partial.stats,

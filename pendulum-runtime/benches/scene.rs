@@ -25,24 +25,10 @@ use std::fmt::Write;
 use std::hint::black_box;
 use std::time::Instant;
 
-lagrangian! {
-    #[derive(Clone, Debug)]
-    pub struct Simple { m: kg, L: m, g: m/s^2 = 9.81 }
-    coordinate θ: rad;
-    let y = L * [sin(θ), -cos(θ)];
-    kinetic = m/2 * |ẏ|^2;
-    potential = m*g*height(y);
-}
+#[path = "../../tests/common/pendulums.rs"]
+mod pendulums;
 
-lagrangian! {
-    #[derive(Clone, Debug)]
-    pub struct Hanging { m: kg, L: m, g: m/s^2 = 9.81 }
-    coordinate θ: rad;
-    driven x: [m; 2];
-    let y = x + L * [sin(θ), -cos(θ)];
-    kinetic = m/2 * |ẏ|^2;
-    potential = m*g*height(y);
-}
+use pendulums::{Hanging, Simple};
 
 lagrangian! {
     #[derive(Clone, Debug)]
