@@ -10,9 +10,12 @@ use pendulum_runtime::integrate::method::Suits;
 use pendulum_runtime::motion::{Linear, Sinusoid};
 use pendulum_runtime::prelude::*;
 
+#[path = "common/keys.rs"]
+mod keys;
 #[path = "common/systems.rs"]
 mod systems;
 
+use keys::keys;
 use systems::{Cart, DampedElastic, Double, Forced, Hoop, Hung, Kepler, Simple, Spherical};
 
 /// Two links and bobs of one metre and one kilogram, g = 1 m/s².
@@ -227,14 +230,8 @@ fn motion_reversed_returns() {
 
 #[test]
 fn momenta_carry_the_state_over_kinks() {
-    // The keys and the value of `tests/kinks.rs`.
-    let mut state = 12345u32;
-    let mut next = || {
-        state = state.wrapping_mul(1664525).wrapping_add(1013904223);
-        f64::from(state >> 8) / f64::from(1u32 << 24) - 0.5
-    };
-    let times: Vec<f64> = (0..400).map(|i| (f64::from(i) - 1.0) / 24.0).collect();
-    let values: Vec<[f64; 2]> = (0..400).map(|i| [0.1 * (0.12 * f64::from(i)).sin() + 0.004 * next(), 0.0]).collect();
+    // The value of `tests/kinks.rs`.
+    let (times, values) = keys();
     let driven = Hung { l: 0.5, g: 9.81 }.driven_by(Linear::new(&times, &values).unwrap());
     let error = |end: ([f64; 1], [f64; 1])| (end.0[0] + 0.129608683467).abs();
     assert!(error(after(&driven, 5.0, [0.3], [0.0], Gauss::<1>::new(), 480)) < 1e-3);

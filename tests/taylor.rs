@@ -7,11 +7,14 @@ use pendulum_runtime::integrate::{AdaptiveStep, Solution};
 use pendulum_runtime::motion::{CatmullRom, Linear, Side, Spline};
 use pendulum_runtime::prelude::*;
 
+#[path = "common/keys.rs"]
+mod keys;
 #[path = "common/pendulums.rs"]
 mod pendulums;
 #[path = "common/systems.rs"]
 mod systems;
 
+use keys::keys;
 use pendulums::Hanging;
 use systems::{Kepler, Simple};
 
@@ -21,17 +24,6 @@ lagrangian! {
     coordinate y;
     kinetic = (ẋ^2 + ẏ^2)/2;
     potential = g*y;
-}
-
-fn keys() -> (Vec<f64>, Vec<[f64; 2]>) {
-    let mut state = 12345u32;
-    let mut next = || {
-        state = state.wrapping_mul(1664525).wrapping_add(1013904223);
-        f64::from(state >> 8) / f64::from(1u32 << 24) - 0.5
-    };
-    let times = (0..400).map(|i| (f64::from(i) - 1.0) / 24.0).collect();
-    let values = (0..400).map(|i| [0.1 * (0.12 * f64::from(i)).sin() + 0.004 * next(), 0.0]).collect();
-    (times, values)
 }
 
 /// How far from its start a pendulum of small swings ends that `there` takes to t = 1000 and `back` to 0.

@@ -1,5 +1,6 @@
 //! Driven motions: fast shaking, kinks, square waves, numbers that are none, late times.
 
+use crate::keys::keys;
 use crate::numbers::{error, error_from, larger, largest, truth};
 use crate::reference;
 use crate::report::{Figure, Report, Scale, Test};
@@ -132,18 +133,6 @@ fn not_finite(_: Scale, report: &mut Report) {
         "a lane that fails leaves its neighbours alone",
         [lanes.0[0] == alone(0.5), lanes.0[3] == alone(0.25), lanes.0[1].is_nan(), !lanes.0[2].is_finite()],
     );
-}
-
-/// K_i = 0.1 sin(0.12 i) + 0.004 (u_i − ½) at the times (i − 1)/24, from i = 0 on.
-fn keys() -> (Vec<f64>, Vec<[f64; 2]>) {
-    let mut state = 12345u32;
-    let mut next = || {
-        state = state.wrapping_mul(1664525).wrapping_add(1013904223);
-        f64::from(state >> 8) / f64::from(1u32 << 24) - 0.5
-    };
-    let times = (0..400).map(|i| (f64::from(i) - 1.0) / 24.0).collect();
-    let values = (0..400).map(|i| [0.1 * (0.12 * f64::from(i)).sin() + 0.004 * next(), 0.0]).collect();
-    (times, values)
 }
 
 fn keyed(_: Scale, report: &mut Report) {

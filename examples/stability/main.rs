@@ -15,6 +15,8 @@ mod driven;
 mod elliptic;
 #[path = "../../tests/common/fingerprints.rs"]
 mod fingerprints;
+#[path = "../../tests/common/keys.rs"]
+mod keys;
 mod long;
 mod many;
 mod memory;
