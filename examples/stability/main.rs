@@ -11,6 +11,8 @@
 
 mod chains;
 mod chaos;
+#[path = "../../pendulum-runtime/benches/work_precision/colors.rs"]
+mod colors;
 mod driven;
 mod elliptic;
 #[path = "../../tests/common/fingerprints.rs"]

@@ -1,5 +1,6 @@
 //! The pictures: energy and phase against time, separation of chaotic runs, error against step over kinks.
 
+use crate::colors::COLORS;
 use crate::report::{Curve, Figure};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -9,18 +10,6 @@ use std::path::Path;
 const SIZE: (u32, u32) = (960, 560);
 const LEGEND: u32 = 250;
 const FONT: &str = "sans-serif";
-
-const COLORS: [RGBColor; 9] = [
-    RGBColor(31, 119, 180),
-    RGBColor(214, 39, 40),
-    RGBColor(44, 160, 44),
-    RGBColor(148, 103, 189),
-    RGBColor(255, 127, 14),
-    RGBColor(23, 150, 170),
-    RGBColor(227, 80, 170),
-    RGBColor(140, 86, 75),
-    RGBColor(150, 150, 20),
-];
 
 /// What a picture says besides its curves.
 struct Page {

@@ -16,6 +16,7 @@
 #![allow(mixed_script_confusables, missing_docs, unreachable_pub)]
 
 mod checks;
+mod colors;
 mod measure;
 #[macro_use]
 mod methods;

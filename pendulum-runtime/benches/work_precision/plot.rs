@@ -1,5 +1,6 @@
 //! A picture for each system: error across, seconds up, both logarithmic.
 
+use crate::colors::COLORS;
 use crate::table::{Entry, Party};
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -36,22 +37,6 @@ struct Curve {
     /// Error and seconds, in the order of the settings.
     points: Vec<(f64, f64)>,
 }
-
-/// Tableau's ten colours with two more, dark enough on white.
-const COLORS: [RGBColor; 12] = [
-    RGBColor(31, 119, 180),
-    RGBColor(214, 39, 40),
-    RGBColor(44, 160, 44),
-    RGBColor(148, 103, 189),
-    RGBColor(255, 127, 14),
-    RGBColor(23, 150, 170),
-    RGBColor(227, 80, 170),
-    RGBColor(140, 86, 75),
-    RGBColor(150, 150, 20),
-    RGBColor(0, 80, 60),
-    RGBColor(60, 60, 200),
-    RGBColor(120, 0, 60),
-];
 
 fn curves(system: &str, entries: &[Entry]) -> Vec<Curve> {
     let mut curves: Vec<Curve> = Vec::new();
