@@ -487,15 +487,8 @@ const DV: [Row<14>; 5] = [
 
 #[cfg(test)]
 mod tests {
+    use super::super::runge_kutta::conditions::{moment, sum};
     use super::*;
-
-    fn sum<const K: usize>(row: Row<K>) -> f64 {
-        row.iter().map(|(_, weight)| weight).sum()
-    }
-
-    fn moment<const K: usize>(row: Row<K>, power: i32) -> f64 {
-        row.iter().map(|&(stage, weight)| weight * C[stage].powi(power)).sum()
-    }
 
     #[test]
     fn rows_add_up_to_half_the_squares_of_their_nodes() {
@@ -529,13 +522,13 @@ mod tests {
         for power in 0..12 {
             let n = f64::from(power);
             // Twice for the coordinates: ∫∫ cⁿ = 1/((n + 1)(n + 2)).
-            assert!(power == 11 || (moment(Q, power) - 1.0 / ((n + 1.0) * (n + 2.0))).abs() < 1e-15, "power {power}");
-            assert!((moment(V, power) - 1.0 / (n + 1.0)).abs() < 1e-15, "power {power}");
+            assert!(power == 11 || (moment(&C, Q, power) - 1.0 / ((n + 1.0) * (n + 2.0))).abs() < 1e-15, "power {power}");
+            assert!((moment(&C, V, power) - 1.0 / (n + 1.0)).abs() < 1e-15, "power {power}");
         }
         for power in 0..10 {
-            assert!(power == 9 || moment(EQ, power).abs() < 1e-15, "power {power}");
-            assert!(moment(EV, power).abs() < 1e-15, "power {power}");
+            assert!(power == 9 || moment(&C, EQ, power).abs() < 1e-15, "power {power}");
+            assert!(moment(&C, EV, power).abs() < 1e-15, "power {power}");
         }
-        assert!(1e-7 < moment(EV, 10).abs());
+        assert!(1e-7 < moment(&C, EV, 10).abs());
     }
 }

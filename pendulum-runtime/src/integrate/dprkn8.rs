@@ -236,15 +236,8 @@ const DV: [Row<8>; 3] = [
 
 #[cfg(test)]
 mod tests {
+    use super::super::runge_kutta::conditions::{moment, sum};
     use super::*;
-
-    fn sum<const K: usize>(row: Row<K>) -> f64 {
-        row.iter().map(|(_, weight)| weight).sum()
-    }
-
-    fn moment<const K: usize>(row: Row<K>, power: i32) -> f64 {
-        row.iter().map(|&(stage, weight)| weight * C[stage].powi(power)).sum()
-    }
 
     #[test]
     fn rows_add_up_to_half_the_squares_of_their_nodes() {
@@ -258,13 +251,13 @@ mod tests {
         for power in 0..8 {
             let n = f64::from(power);
             // Twice for the coordinates: ∫∫ cⁿ = 1/((n + 1)(n + 2)).
-            assert!(power == 7 || (moment(Q, power) - 1.0 / ((n + 1.0) * (n + 2.0))).abs() < 1e-15, "power {power}");
-            assert!((moment(V, power) - 1.0 / (n + 1.0)).abs() < 1e-15, "power {power}");
+            assert!(power == 7 || (moment(&C, Q, power) - 1.0 / ((n + 1.0) * (n + 2.0))).abs() < 1e-15, "power {power}");
+            assert!((moment(&C, V, power) - 1.0 / (n + 1.0)).abs() < 1e-15, "power {power}");
         }
         for power in 0..6 {
-            assert!(power == 5 || moment(EQ, power).abs() < 1e-15, "power {power}");
-            assert!(moment(EV, power).abs() < 1e-15, "power {power}");
+            assert!(power == 5 || moment(&C, EQ, power).abs() < 1e-15, "power {power}");
+            assert!(moment(&C, EV, power).abs() < 1e-15, "power {power}");
         }
-        assert!(1e-7 < moment(EV, 6).abs());
+        assert!(1e-7 < moment(&C, EV, 6).abs());
     }
 }

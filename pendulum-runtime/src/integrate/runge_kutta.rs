@@ -73,3 +73,19 @@ pub(crate) fn weighted<T: Float, const N: usize, const S: usize, const K: usize>
     }
     sum
 }
+
+/// What the tests of the tableaux ask of them.
+#[cfg(test)]
+pub(crate) mod conditions {
+    use super::Row;
+
+    /// Σ weight.
+    pub(crate) fn sum<const K: usize>(row: Row<K>) -> f64 {
+        row.iter().map(|(_, weight)| weight).sum()
+    }
+
+    /// Σ weight · nodeᵖ.
+    pub(crate) fn moment<const K: usize>(nodes: &[f64], row: Row<K>, power: i32) -> f64 {
+        row.iter().map(|&(stage, weight)| weight * (0..power).map(|_| nodes[stage]).product::<f64>()).sum()
+    }
+}
