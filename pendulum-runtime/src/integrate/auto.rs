@@ -5,7 +5,6 @@ use super::blame;
 use super::control::{Control, Course, Memory};
 use super::dop853::Dop853;
 use super::field::{Counted, Field};
-use super::hermite;
 use super::method::{Method, Suits};
 use super::node::Node;
 use super::piece::Piece;
@@ -192,17 +191,5 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Symplectic {
     #[inline]
     fn step(&self, field: &mut impl Field<S, N>, span: &Span, from: &mut Node<S::Scalar, N>, (): &mut ()) -> Node<S::Scalar, N> {
         drift_kick_drift_in_two_words(&srkn14a::SPLITTING, field, span, from)
-    }
-
-    fn dense(
-        &self,
-        field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
-        to: &mut Node<S::Scalar, N>,
-        (): &mut (),
-    ) -> Piece<S::Scalar, N> {
-        let (a0, a1) = (from.start_acceleration(field), to.end_acceleration(field));
-        hermite::quintic(span, from, to, &a0, &a1)
     }
 }

@@ -2,6 +2,7 @@
 
 pub use super::control::{Control, Course, Memory};
 pub use super::field::{Accelerations, Counted, Field};
+use super::hermite;
 pub use super::node::Node;
 pub use super::piece::{Basis, Piece, TERMS};
 pub use super::span::Span;
@@ -139,6 +140,8 @@ where
     ) -> Node<S::Scalar, N>;
 
     /// The motion within the step just taken; evaluates what it needs beyond the step itself.
+    ///
+    /// A method without dense output of its own has the quintic through coordinates, velocities and accelerations at both ends of the step.
     fn dense(
         &self,
         field: &mut impl Field<S, N>,
@@ -146,5 +149,9 @@ where
         from: &mut Node<S::Scalar, N>,
         to: &mut Node<S::Scalar, N>,
         stages: &mut Self::Stages<S::Scalar, N>,
-    ) -> Piece<S::Scalar, N>;
+    ) -> Piece<S::Scalar, N> {
+        let _ = stages;
+        let (a0, a1) = (from.start_acceleration(field), to.end_acceleration(field));
+        hermite::quintic(span, from, to, &a0, &a1)
+    }
 }

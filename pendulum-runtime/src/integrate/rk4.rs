@@ -1,10 +1,8 @@
 //! The classical Runge–Kutta method.
 
 use super::field::Field;
-use super::hermite;
 use super::method::{Method, Suits};
 use super::node::Node;
-use super::piece::Piece;
 use super::runge_kutta::Slopes;
 use super::span::Span;
 use crate::real::{Float, Real};
@@ -57,17 +55,5 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Rk4 {
         let (dq, dv) = k.weighted([(0, 1.0), (1, 2.0), (2, 2.0), (3, 1.0)]);
         let six = S::Scalar::from_f64(6.0);
         from.advanced(span, &dq.map(|sum| sum / six), &dv.map(|sum| sum / six))
-    }
-
-    fn dense(
-        &self,
-        field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
-        to: &mut Node<S::Scalar, N>,
-        _: &mut Slopes<S::Scalar, N, 4>,
-    ) -> Piece<S::Scalar, N> {
-        let (a0, a1) = (from.start_acceleration(field), to.end_acceleration(field));
-        hermite::quintic(span, from, to, &a0, &a1)
     }
 }

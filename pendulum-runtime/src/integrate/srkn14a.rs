@@ -1,10 +1,8 @@
 //! A splitting method of Blanes and Moan with fourteen evaluations.
 
 use super::field::Field;
-use super::hermite;
 use super::method::{Method, Suits};
 use super::node::Node;
-use super::piece::Piece;
 use super::span::Span;
 use super::splitting::{Splitting, drift_kick_drift_in_two_words};
 use crate::real::Float;
@@ -45,18 +43,6 @@ impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Srkn14a 
     #[inline]
     fn step(&self, field: &mut impl Field<S, N>, span: &Span, from: &mut Node<S::Scalar, N>, (): &mut ()) -> Node<S::Scalar, N> {
         drift_kick_drift_in_two_words(&SPLITTING, field, span, from)
-    }
-
-    fn dense(
-        &self,
-        field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
-        to: &mut Node<S::Scalar, N>,
-        (): &mut (),
-    ) -> Piece<S::Scalar, N> {
-        let (a0, a1) = (from.start_acceleration(field), to.end_acceleration(field));
-        hermite::quintic(span, from, to, &a0, &a1)
     }
 }
 
