@@ -10,11 +10,14 @@ use pendulum_runtime::integrate::method::Suits;
 use pendulum_runtime::motion::{Linear, Sinusoid};
 use pendulum_runtime::prelude::*;
 
+#[path = "common/distance.rs"]
+mod distance;
 #[path = "common/keys.rs"]
 mod keys;
 #[path = "common/systems.rs"]
 mod systems;
 
+use distance::distance;
 use keys::keys;
 use systems::{Cart, DampedElastic, Double, Forced, Hoop, Hung, Kepler, Simple, Spherical};
 
@@ -33,12 +36,6 @@ fn after<D: Dynamics<N, Scalar = f64>, const N: usize>(
 ) -> ([f64; N], [f64; N]) {
     let end = solve(dynamics, (0.0, end), q, v).method(method).steps(steps).run().unwrap().end;
     (end.q, end.v)
-}
-
-/// The largest difference from the exact state; not a number if a component is not.
-fn distance<const N: usize>((q, v): ([f64; N], [f64; N]), exact: &[f64]) -> f64 {
-    let differences = q.iter().chain(&v).zip(exact).map(|(x, exact)| (x - exact).abs());
-    differences.fold(0.0, |largest, x| if x <= largest { largest } else { x })
 }
 
 const SIMPLE: [f64; 2] = [-1.16616038193295767624254, -0.502365010112425268211326];

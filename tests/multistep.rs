@@ -10,12 +10,14 @@ use pendulum_runtime::integrate::method::Suits;
 use pendulum_runtime::motion::{Linear, Sinusoid};
 use pendulum_runtime::prelude::*;
 
+#[path = "common/distance.rs"]
+mod distance;
 #[path = "common/systems.rs"]
 mod systems;
 
+use distance::distance;
 use systems::{HenonHeiles, Hung, Simple};
 
-/// The largest difference from the exact state; not a number if a component is not.
 fn error<D: Dynamics<N, Scalar = f64>, const N: usize>(
     dynamics: &D,
     (q, v): ([f64; N], [f64; N]),
@@ -25,8 +27,7 @@ fn error<D: Dynamics<N, Scalar = f64>, const N: usize>(
     steps: u64,
 ) -> f64 {
     let end = solve(dynamics, (0.0, end), q, v).method(method).steps(steps).run().unwrap().end;
-    let differences = end.q.iter().chain(&end.v).zip(exact).map(|(x, exact)| (x - exact).abs());
-    differences.fold(0.0, |largest, x| if x <= largest { largest } else { x })
+    distance((end.q, end.v), exact)
 }
 
 const SHAKEN: [f64; 2] = [0.0342105591464723414299261, -1.02072871213303888830643];

@@ -8,9 +8,12 @@ use pendulum_runtime::integrate::method::Suits;
 use pendulum_runtime::motion::{Linear, Sinusoid};
 use pendulum_runtime::prelude::*;
 
+#[path = "common/distance.rs"]
+mod distance;
 #[path = "common/systems.rs"]
 mod systems;
 
+use distance::distance;
 use systems::{DampedElastic, Double, Forced, Hung, Simple};
 
 /// Two links and bobs of one metre and one kilogram, g = 1 m/s².
@@ -23,8 +26,7 @@ where
     Rodas4: Suits<D::System, N>,
 {
     let end = solve(dynamics, (0.0, 10.0), q, [0.0; N]).method(Rodas4).steps(steps).run().unwrap().end;
-    let differences = end.q.iter().chain(&end.v).zip(exact).map(|(x, exact)| (x - exact).abs());
-    differences.fold(0.0, |largest, x| if x <= largest { largest } else { x })
+    distance((end.q, end.v), exact)
 }
 
 const DOUBLE: [f64; 4] =
@@ -54,7 +56,7 @@ fn tolerances_are_kept() {
         let system = double();
         let problem = solve(&system, (0.0, 10.0), [0.5, -0.25], [0.0; 2]).method(Rodas4);
         let end = problem.rtol(tolerance).atol(tolerance).run().unwrap().end;
-        let error = end.q.iter().chain(&end.v).zip(&DOUBLE).map(|(x, exact)| (x - exact).abs()).fold(0.0, f64::max);
+        let error = distance((end.q, end.v), &DOUBLE);
         assert!(error < 100.0 * tolerance, "{tolerance:e}: {error:e}");
     }
 }
