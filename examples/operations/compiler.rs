@@ -1,8 +1,6 @@
 // The compiler itself: a macro cannot be called by a program. Its modules name each other from the root of the crate, so that this list is
 // included there.
 
-#[path = "../../pendulum-macros/src/ahead.rs"]
-mod ahead;
 #[path = "../../pendulum-macros/src/articulated/mod.rs"]
 mod articulated;
 #[path = "../../pendulum-macros/src/ast.rs"]
@@ -23,7 +21,7 @@ mod expand;
 mod expr;
 #[path = "../../pendulum-macros/src/jacobian.rs"]
 mod jacobian;
-#[path = "../../pendulum-macros/src/jet.rs"]
+#[path = "../../pendulum-macros/src/jet/mod.rs"]
 mod jet;
 #[path = "../../pendulum-macros/src/latex.rs"]
 mod latex;
@@ -51,8 +49,6 @@ mod rule;
 mod schedule;
 #[path = "../../pendulum-macros/src/solve.rs"]
 mod solve;
-#[path = "../../pendulum-macros/src/swing.rs"]
-mod swing;
 #[path = "../../pendulum-macros/src/symmetry.rs"]
 mod symmetry;
 #[path = "../../pendulum-macros/src/unit/mod.rs"]

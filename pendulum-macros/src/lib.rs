@@ -1,6 +1,5 @@
 //! The `lagrangian!` macro of the `pendulum` workspace: a Lagrangian in, Rust out.
 
-mod ahead;
 mod articulated;
 mod ast;
 mod check;
@@ -25,7 +24,6 @@ mod print;
 mod rule;
 mod schedule;
 mod solve;
-mod swing;
 mod symmetry;
 #[cfg(test)]
 mod tests;

@@ -4,7 +4,10 @@
 //! Where coordinates are coupled by a mass matrix that moves, M q̈ = f is solved order by order:
 //! M\[0\] q̈\[k\] = f\[k\] − Σ M\[j\] q̈\[k−j\] over 1 ≤ j ≤ k, with M\[0\] factored once. Loops over the order live in the runtime.
 
-use crate::ahead::{self, Plan};
+mod ahead;
+mod function;
+mod swing;
+
 use crate::articulated::Unsolved;
 use crate::check::Quantity;
 use crate::emit::{Emitter, local};
@@ -12,10 +15,11 @@ use crate::expr::{Contents, Function, Graph, Id, Symbol};
 use crate::motion::Motion;
 use crate::schedule::{self, Op, Place, Program, Stage};
 use crate::solve;
-use crate::swing::swing;
+use ahead::Plan;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 use std::collections::BTreeMap;
+use swing::swing;
 
 /// The most convolutions, in halves, of a system whose orders are unrolled, and of one whose sums are loops in their places.
 const MOST_UNROLLED: usize = 10;
@@ -192,25 +196,25 @@ struct Recurrences {
 }
 
 /// The statements under construction.
-pub(crate) struct Writer<'e, 'm, 'a> {
-    pub(crate) emitter: &'e Emitter<'m, 'a>,
-    pub(crate) program: &'e Program,
+struct Writer<'e, 'm, 'a> {
+    emitter: &'e Emitter<'m, 'a>,
+    program: &'e Program,
     /// Whether each place is decided by parameters alone.
-    pub(crate) still: Vec<bool>,
+    still: Vec<bool>,
     prepared: &'e [Place],
-    pub(crate) lines: TokenStream,
+    lines: TokenStream,
     /// The coefficients of the places that move.
-    pub(crate) values: Vec<TokenStream>,
+    values: Vec<TokenStream>,
     /// Where the series of a place is, if it is kept.
-    pub(crate) series: BTreeMap<Place, TokenStream>,
+    series: BTreeMap<Place, TokenStream>,
     slots: usize,
     pairs: usize,
     leading: usize,
     /// The convolutions so far, in halves.
-    pub(crate) halves: usize,
+    halves: usize,
     /// The sines and cosines that are found from turns, and the coefficients of what they are multiplied by.
-    pub(crate) turned: BTreeMap<Place, TokenStream>,
-    pub(crate) paired: Vec<(Place, TokenStream)>,
+    turned: BTreeMap<Place, TokenStream>,
+    paired: Vec<(Place, TokenStream)>,
 }
 
 impl<'e, 'm, 'a> Writer<'e, 'm, 'a> {
@@ -248,7 +252,7 @@ impl<'e, 'm, 'a> Writer<'e, 'm, 'a> {
 
 impl Writer<'_, '_, '_> {
     /// What parameters alone decide.
-    pub(crate) fn constant(&self, place: Place) -> TokenStream {
+    fn constant(&self, place: Place) -> TokenStream {
         match self.prepared.iter().position(|prepared| *prepared == place) {
             Some(index) => quote!(work.still[#index]),
             None => self.emitter.operation(&self.program.ops[place.0], |_| TokenStream::new()),
@@ -256,7 +260,7 @@ impl Writer<'_, '_, '_> {
     }
 
     /// The coefficient at this order.
-    pub(crate) fn value(&self, place: Place) -> TokenStream {
+    fn value(&self, place: Place) -> TokenStream {
         if self.still[place.0] {
             let constant = self.constant(place);
             return quote!(series::constant(#constant, order));
@@ -265,14 +269,14 @@ impl Writer<'_, '_, '_> {
     }
 
     /// A new series.
-    pub(crate) fn slot(&mut self) -> TokenStream {
+    fn slot(&mut self) -> TokenStream {
         let slot = self.slots;
         self.slots += 1;
         quote!(work.series[#slot])
     }
 
     /// A new pair of series.
-    pub(crate) fn pair(&mut self) -> TokenStream {
+    fn pair(&mut self) -> TokenStream {
         let pair = self.pairs;
         self.pairs += 1;
         self.halves += 4;
@@ -294,7 +298,7 @@ impl Writer<'_, '_, '_> {
     }
 
     /// The series of a place.
-    pub(crate) fn whole(&mut self, place: Place) -> TokenStream {
+    fn whole(&mut self, place: Place) -> TokenStream {
         if let Some(series) = self.series.get(&place) {
             return series.clone();
         }
@@ -310,7 +314,7 @@ impl Writer<'_, '_, '_> {
     }
 
     /// Names the coefficient of a place.
-    pub(crate) fn name(&mut self, place: Place, value: &TokenStream) {
+    fn name(&mut self, place: Place, value: &TokenStream) {
         let name = local("x", place.0);
         self.lines.extend(quote!(let #name = #value;));
         self.values[place.0] = quote!(#name);
@@ -331,7 +335,7 @@ impl Writer<'_, '_, '_> {
         quote!(#name)
     }
 
-    pub(crate) fn operation(&mut self, place: Place) {
+    fn operation(&mut self, place: Place) {
         match self.program.ops[place.0] {
             Op::Number(_) | Op::Literal(_) | Op::Pi => {}
             Op::Load(symbol) => self.load(place, symbol),
@@ -388,7 +392,7 @@ impl Writer<'_, '_, '_> {
     }
 
     /// The series that the path or the drive has.
-    pub(crate) fn series_of(&self, symbol: Symbol) -> Option<TokenStream> {
+    fn series_of(&self, symbol: Symbol) -> Option<TokenStream> {
         Some(match symbol {
             Symbol::Coordinate(index) => quote!(path.q[#index]),
             Symbol::Velocity(index) => quote!(path.v[#index]),
@@ -437,130 +441,6 @@ impl Writer<'_, '_, '_> {
             quote!(series::sin_cos(#x, &#rate, &#pair, &path.reciprocals, order))
         };
         self.lines.extend(quote! { let [#s, #c] = #value; #pair[k] = [#s, #c]; });
-    }
-
-    fn call(&mut self, place: Place, function: Function, a: Place) {
-        let scalar = self.emitter.scalar();
-        let one = quote!(series::constant(#scalar::from_f64(1.0), order));
-        match function {
-            Function::Sin | Function::Cos => {
-                self.sin_cos(place, a);
-                let name = local(if function == Function::Sin { "s" } else { "c" }, place.0);
-                self.values[place.0] = quote!(#name);
-            }
-            Function::Sinh | Function::Cosh => {
-                let (pair, x) = (self.pair(), self.value(a));
-                let (x, both) = (self.shared("a", place, &x), local("b", place.0));
-                let rate = self.rate(&x);
-                let part = usize::from(function == Function::Cosh);
-                self.lines.extend(quote! {
-                    let #both = series::sinh_cosh(#x, &#rate, &#pair, &path.reciprocals, order);
-                    #pair[k] = #both;
-                });
-                self.values[place.0] = quote!(#both[#part]);
-            }
-            Function::Exp => {
-                let x = self.value(a);
-                self.exponential(place, &x);
-            }
-            Function::Tan | Function::Tanh => {
-                let (x, slot, slope) = (self.value(a), self.slot(), self.slot());
-                let x = self.shared("a", place, &x);
-                let rate = self.rate(&x);
-                self.halves += 3;
-                let (name, sign) = if function == Function::Tan { ("tan", quote!(+)) } else { ("tanh", quote!(-)) };
-                let name = format_ident!("{name}");
-                let value = quote!(series::integral(|| #x.#name(), &#rate, &#slope, &path.reciprocals, order));
-                self.name_in(place, &value, slot.clone());
-                self.lines.extend(quote!(#slope[k] = #one #sign series::square(&#slot, order);));
-            }
-            Function::Ln => {
-                let (x, divisor) = (self.value(a), self.whole(a));
-                let x = self.shared("a", place, &x);
-                self.inverse(place, &quote!(#x.ln()), &quote!(series::rate(#x, order)), &divisor, false);
-            }
-            Function::Atan => {
-                let (x, series) = (self.value(a), self.whole(a));
-                let x = self.shared("a", place, &x);
-                self.halves += 1;
-                let divisor = self.kept(&quote!(#one + series::square(&#series, order)));
-                self.inverse(place, &quote!(#x.atan()), &quote!(series::rate(#x, order)), &divisor, false);
-            }
-            Function::Asin | Function::Acos => {
-                let (x, series) = (self.value(a), self.whole(a));
-                let (x, root, lead) = (self.shared("a", place, &x), self.slot(), self.lead());
-                self.halves += 2;
-                let below = self.shared("b", place, &quote!(#one - series::square(&#series, order)));
-                self.lines.extend(quote!(#root[k] = series::sqrt(#below, &#root, #lead, order);));
-                let name = format_ident!("{}", if function == Function::Asin { "asin" } else { "acos" });
-                let rate = quote!(series::rate(#x, order));
-                self.inverse(place, &quote!(#x.#name()), &rate, &root, function == Function::Acos);
-            }
-            Function::Abs => {
-                let (x, lead) = (self.value(a), self.lead());
-                let x = self.shared("a", place, &x);
-                self.name(place, &quote!(series::leading(|| #x.sign(), #lead, order) * #x));
-            }
-            Function::Sign | Function::Step => {
-                let x = self.value(a);
-                let name = format_ident!("{}", if function == Function::Sign { "sign" } else { "step" });
-                // The value at order 0 is all there is; that of another order means nothing and is not used.
-                self.name(place, &quote!(series::constant(#x.#name(), order)));
-            }
-        }
-    }
-
-    /// exp x.
-    fn exponential(&mut self, place: Place, x: &TokenStream) {
-        let (x, slot) = (self.shared("e", place, x), self.slot());
-        let rate = self.rate(&x);
-        self.halves += 2;
-        let value = quote!(series::integral(|| #x.exp(), &#rate, &#slot, &path.reciprocals, order));
-        self.name_in(place, &value, slot);
-    }
-
-    /// A function with the value `start` whose rate is `rate` over `divisor`.
-    fn inverse(&mut self, place: Place, start: &TokenStream, rate: &TokenStream, divisor: &TokenStream, negative: bool) {
-        let (slot, lead, sign) = (self.slot(), self.lead(), negative.then(|| quote!(-)));
-        self.halves += 2;
-        let slope = self.shared("r", place, &quote!(series::slope(#sign #rate, &#divisor, &#slot, #lead, order)));
-        self.lines.extend(quote!(#slot[k] = #slope;));
-        self.name(place, &quote!(series::from_rate(|| #start, #slope, &path.reciprocals, order)));
-    }
-
-    /// (x ẏ − y ẋ)/(x² + y²) is the rate of the angle of the point (x, y).
-    fn angle(&mut self, place: Place, y: Place, x: Place) {
-        let (y_value, x_value) = (self.value(y), self.value(x));
-        let (y_value, x_value) = (self.shared("a", place, &y_value), self.shared("b", place, &x_value));
-        let (y, x) = (self.whole(y), self.whole(x));
-        let (y_rate, x_rate) = (self.rate(&y_value), self.rate(&x_value));
-        self.halves += 6;
-        let divisor = self.kept(&quote!(series::square(&#x, order) + series::square(&#y, order)));
-        let rate = quote!((series::behind(&#y_rate, &#x, order) - series::behind(&#x_rate, &#y, order)));
-        self.inverse(place, &quote!(#y_value.atan2(#x_value)), &rate, &divisor, false);
-    }
-
-    /// A power: one recurrence if the exponent does not move, else exp(b ln a).
-    fn power(&mut self, place: Place, a: Place, b: Place) {
-        if self.still[b.0] {
-            let (a, b, slot, lead) = (self.whole(a), self.constant(b), self.slot(), self.lead());
-            self.halves += 3;
-            let value = quote!(series::power(&#a, #b, &#slot, #lead, &path.reciprocals, order));
-            self.name_in(place, &value, slot);
-            return;
-        }
-        if self.still[a.0] {
-            let (a, b, lead) = (self.constant(a), self.value(b), self.lead());
-            let logarithm = self.shared("l", place, &quote!(series::leading(|| #a.ln(), #lead, order)));
-            self.exponential(place, &quote!(#b * #logarithm));
-            return;
-        }
-        self.call(place, Function::Ln, a);
-        let logarithm = self.values[place.0].clone();
-        let (logarithm, b) = (self.kept(&logarithm), self.whole(b));
-        self.halves += 2;
-        self.series.remove(&place);
-        self.exponential(place, &quote!(series::product(&#b, &#logarithm, order)));
     }
 
     /// The accelerations of coordinates that a moving mass matrix couples.

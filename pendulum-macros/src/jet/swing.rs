@@ -3,15 +3,15 @@
 //! Their jets need neither sine nor cosine as a series. With a = q̈ and b = κ cos q − λ sin q is ȧ = b q̇ and ḃ = −a q̇ = −(q̇²/2)˙:
 //! one product and one square, each of whose terms comes once, in place of two products.
 
+use super::Writer;
 use crate::expr::{Function, Symbol};
-use crate::jet::Writer;
 use crate::schedule::{Op, Place, Program, operands};
 use proc_macro2::TokenStream;
 use quote::quote;
 use std::collections::BTreeSet;
 
 /// The operations between the coordinate and its acceleration, if they make it swing and nothing else reads them.
-pub(crate) fn swing(program: &Program, still: &[bool], coordinate: usize, acceleration: Place) -> Option<BTreeSet<Place>> {
+pub(super) fn swing(program: &Program, still: &[bool], coordinate: usize, acceleration: Place) -> Option<BTreeSet<Place>> {
     let mut own = BTreeSet::new();
     if !combines(program, still, coordinate, acceleration, &mut own) {
         return None;
@@ -26,7 +26,7 @@ pub(crate) fn swing(program: &Program, still: &[bool], coordinate: usize, accele
 
 impl Writer<'_, '_, '_> {
     /// The acceleration of a coordinate that swings.
-    pub(crate) fn swing(&mut self, row: usize, place: Place) {
+    pub(super) fn swing(&mut self, row: usize, place: Place) {
         let (combination, slot) = (self.combination(place), self.slot());
         self.halves += 3;
         self.lines.extend(quote! {

@@ -6,10 +6,10 @@
 //! 2. with (k+1) p\[k+1\] for ṗ\[k\] the equations leave −M\[0\] q̈\[k\], where M is the mass matrix;
 //! 3. what q̈\[k\] adds to the series goes into their newest coefficients.
 
+use super::Writer;
 use crate::articulated::Unsolved;
 use crate::emit::local;
 use crate::expr::{Function, Id, Symbol};
-use crate::jet::Writer;
 use crate::motion::Motion;
 use crate::schedule::{self, Op, Place, Program, operands};
 use proc_macro2::TokenStream;
@@ -31,7 +31,7 @@ struct Dot {
 }
 
 /// What each operation belongs to.
-pub(crate) struct Plan<'p> {
+pub(super) struct Plan<'p> {
     program: &'p Program,
     still: &'p [bool],
     carried: Vec<Place>,
@@ -48,13 +48,13 @@ pub(crate) struct Plan<'p> {
 }
 
 /// The expressions that jets of equations that are not solved need.
-pub(crate) fn roots(unsolved: &Unsolved) -> Vec<Id> {
+pub(super) fn roots(unsolved: &Unsolved) -> Vec<Id> {
     unsolved.carried.iter().chain(&unsolved.equations).copied().collect()
 }
 
 impl<'p> Plan<'p> {
     /// The plan for the program of [`roots`]; `None` where a momentum is not affine in the velocities by sums and products.
-    pub(crate) fn new(program: &'p Program, still: &'p [bool], unsolved: &Unsolved) -> Option<Self> {
+    pub(super) fn new(program: &'p Program, still: &'p [bool], unsolved: &Unsolved) -> Option<Self> {
         let (carried, equations) = program.results.split_at(unsolved.carried.len());
         let (carried, equations) = (carried.to_vec(), equations.to_vec());
         let count = program.ops.len();
@@ -154,7 +154,7 @@ impl<'p> Plan<'p> {
 
 impl Writer<'_, '_, '_> {
     /// The statements for one order.
-    pub(crate) fn unsolved(&mut self, plan: &Plan<'_>, motion: &Motion) {
+    pub(super) fn unsolved(&mut self, plan: &Plan<'_>, motion: &Motion) {
         let (ahead, turns) = self.momenta(plan);
         self.remainders(plan);
         let count = plan.equations.len();
