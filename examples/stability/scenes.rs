@@ -257,7 +257,7 @@ impl Crowd {
 
 /// The part of S28 that scenes have.
 pub(crate) fn soak(scale: Scale, report: &mut Report) {
-    let (count, frames) = (scale.pick(1_000, 10_000, 100_000), scale.pick(2_000, 10_000, 10_000));
+    let (count, frames) = (scale.pick(1_000, 10_000, 100_000), scale.pick(2_000, 10_000, 36_000));
     let mut crowd = Crowd::new(28, count);
     let (mut well, mut restored, mut ticks, mut before) = (true, Vec::new(), 0, None);
     for frame in 0..frames {
