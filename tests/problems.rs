@@ -5,7 +5,7 @@
 
 #![allow(mixed_script_confusables, missing_docs)]
 
-use pendulum_runtime::integrate::{Solution, State};
+use pendulum_runtime::integrate::{SideBySide, Solution, State};
 use pendulum_runtime::jet::JetDynamics;
 use pendulum_runtime::motion::Sinusoid;
 use pendulum_runtime::prelude::*;
@@ -68,13 +68,18 @@ lagrangian! {
 
 /// Every value within a hundred times the tolerance asked; from t = 50 on the errors of all steps before have been carried along for
 /// many periods, and ten thousand times is asked.
-fn check<D: JetDynamics<N, Scalar = f64>, const N: usize>(dynamics: &D, q: [f64; N], v: [f64; N], rows: &[(f64, &[f64])]) {
+fn check<D: JetDynamics<N, Scalar = f64> + SideBySide<N>, const N: usize>(
+    dynamics: &D,
+    q: [f64; N],
+    v: [f64; N],
+    rows: &[(f64, &[f64])],
+) {
     for &(t, expected) in rows {
         check_within(if t < 50.0 { 100.0 } else { 1e4 }, dynamics, q, v, (t, expected));
     }
 }
 
-fn check_within<D: JetDynamics<N, Scalar = f64>, const N: usize>(
+fn check_within<D: JetDynamics<N, Scalar = f64> + SideBySide<N>, const N: usize>(
     factor: f64,
     dynamics: &D,
     q: [f64; N],
@@ -86,6 +91,9 @@ fn check_within<D: JetDynamics<N, Scalar = f64>, const N: usize>(
     for tolerance in [1e-6, 1e-8, 1e-10] {
         near(problem().method(Dop853::new()).rtol(tolerance).atol(tolerance).run().unwrap(), tolerance);
     }
+    for tolerance in [1e-4, 1e-7, 1e-10, 1e-13] {
+        near(problem().method(Picard).rtol(tolerance).run().unwrap(), tolerance);
+    }
     for tolerance in [1e-6, 1e-10, 1e-14, 1e-17] {
         // Its steps are long, and what is below rounding is not asked for.
         near(problem().method(Taylor::new()).rtol(tolerance).run().unwrap(), 3.0 * tolerance.max(1e-15));
@@ -95,7 +103,7 @@ fn check_within<D: JetDynamics<N, Scalar = f64>, const N: usize>(
 /// The same, and by the Nyström pairs, which only these systems suit.
 fn check_velocity_free<D, const N: usize>(dynamics: &D, q: [f64; N], v: [f64; N], rows: &[(f64, &[f64])])
 where
-    D: JetDynamics<N, Scalar = f64, System: VelocityFree<N>>,
+    D: JetDynamics<N, Scalar = f64, System: VelocityFree<N>> + SideBySide<N>,
 {
     check(dynamics, q, v, rows);
     for &(t, expected) in rows {

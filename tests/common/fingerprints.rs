@@ -62,6 +62,7 @@ macro_rules! kinds {
             "Rk4" Rk4 => step 0.03;
             "Dop853" Dop853::new() => rtol 1e-9;
             "Taylor" Taylor::new() => rtol 1e-15;
+            "Picard" Picard => rtol 1e-12;
             "Gauss2" Gauss::<2>::new() => step 0.01;
         }
     };
@@ -72,6 +73,7 @@ macro_rules! others {
     ($lines:ident, $system:literal, $dynamics:expr, $q:expr, $v:expr) => {
         run! { $lines, $system, $dynamics, $q, $v,
             "SymplecticEuler" SymplecticEuler => step 0.01;
+            "Picard-steps" Picard => step 0.1;
             "Tsit5" Tsit5::new() => rtol 1e-6;
             "Rodas4" Rodas4::new() => rtol 1e-5;
             "Gauss1" Gauss::<1>::new() => step 0.02;
@@ -122,6 +124,7 @@ pub(crate) fn all() -> Vec<String> {
         "Leapfrog" Leapfrog => step 0.01;
         "Srkn6b" Srkn6b => step 0.03;
         "Dop853" Dop853::new() => rtol 1e-9;
+        "Picard" Picard => rtol 1e-9;
     }
     kinds!(lines, "forced", &Forced::new(0.25), [0.0], [0.0]);
     let double = Double::new([1.0, 0.7], [0.9, 1.1], 9.81);
@@ -133,6 +136,7 @@ pub(crate) fn all() -> Vec<String> {
     run! { lines, "chain", &Chain::new(links, [0.2; 9], 9.81), links, [0.0; 9],
         "Rk4" Rk4 => step 0.01;
         "Dop853" Dop853::new() => rtol 1e-9;
+        "Picard" Picard => rtol 1e-9;
     }
     kinds!(lines, "functions", &Functions::new(0.3), [0.4, -0.7], [0.5, 0.2]);
 

@@ -15,6 +15,7 @@ macro_rules! any {
         adaptive!($subject, "Tsit5", Tsit5::new(), [3, 4, 5, 6, 7, 8, 9, 10]);
         adaptive!($subject, "Dop853", Dop853::new(), [3, 5, 7, 9, 10, 11, 12, 13]);
         adaptive!($subject, "Taylor", Taylor::new(), [3, 5, 7, 9, 11, 13, 15, 18]);
+        adaptive!($subject, "Picard", Picard, [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15], t_stops);
         adaptive!($subject, "Rodas4", Rodas4::new(), [3, 4, 5, 6, 7, 8]);
         fixed!($subject, "Gauss<2>", Gauss::<2>::new(), [2.0, 4.0, 8.0, 16.0, 32.0, 64.0]);
         fixed!($subject, "Gauss<4>", Gauss::<4>::new(), [1.0, 2.0, 4.0, 8.0, 16.0]);

@@ -238,7 +238,7 @@ impl<const N: usize> AdaptiveStep<N> {
     }
 
     /// A first step with which the second derivative changes the state by about a hundredth of the tolerance's root.
-    fn automatic_step<T: Float>(
+    pub(crate) fn automatic_step<T: Float>(
         &self,
         order: u32,
         field: &mut impl Accelerations<T, N>,

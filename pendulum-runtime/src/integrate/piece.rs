@@ -35,11 +35,16 @@ pub enum Basis {
     Nested,
     /// y(θ) = y₀ + θ(F₀ + θ(F₁ + θ(F₂ + …))): a Taylor polynomial.
     Powers,
+    /// y(θ) = y₀ + Σ F_k (P_{k+1}(2θ − 1) − P_{k+1}(−1)) with Legendre's polynomials P.
+    Legendre,
 }
 
 impl Basis {
     /// The polynomial with these terms at θ.
     pub(crate) fn at<T: Float, const N: usize>(self, y0: &[T; N], terms: &[[T; N]], theta: T) -> [T; N] {
+        if self == Self::Legendre {
+            return legendre(y0, terms, theta);
+        }
         let other = if self == Self::Nested { T::from_f64(1.0) - theta } else { theta };
         let factors = [theta, other];
         core::array::from_fn(|i| {
@@ -48,6 +53,23 @@ impl Basis {
             y0[i] + sum
         })
     }
+}
+
+/// y₀ + Σ terms_k (P_{k+1}(2θ − 1) − P_{k+1}(−1)), where (k + 1) P_{k+1}(x) = (2k + 1) x P_k(x) − k P_{k−1}(x).
+fn legendre<T: Float, const N: usize>(y0: &[T; N], terms: &[[T; N]], theta: T) -> [T; N] {
+    let one = T::from_f64(1.0);
+    let x = theta - (one - theta);
+    let (mut before, mut now, mut sign) = (one, x, -one);
+    let mut sums = [T::from_f64(0.0); N];
+    for (k, term) in terms.iter().enumerate() {
+        for i in 0..N {
+            sums[i] += term[i] * (now - sign);
+        }
+        let k = (k + 1) as f64;
+        let next = T::ratio(2.0 * k + 1.0, k + 1.0) * (x * now) - T::ratio(k, k + 1.0) * before;
+        (before, now, sign) = (now, next, -sign);
+    }
+    core::array::from_fn(|i| y0[i] + sums[i])
 }
 
 impl<T: Float, const N: usize> Piece<T, N> {

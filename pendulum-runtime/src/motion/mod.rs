@@ -20,7 +20,7 @@ mod still;
 #[cfg(test)]
 mod tests;
 
-use crate::real::Real;
+use crate::real::{Lane, Lanes, Real};
 use crate::system::{Input, Purpose};
 use crate::time::Time;
 pub use analytic::{Analytic, AnalyticMotions, PerhapsAnalytic};
@@ -50,6 +50,24 @@ pub trait Motion<T: Real, const D: usize> {
         for (sample, &t) in samples.iter_mut().zip(times) {
             *sample = self.sample(t, Side::After, orders);
         }
+    }
+
+    /// The same at eight times, a lane each, with the bits of single samples: what [`Picard`](crate::integrate::Picard) asks for.
+    fn sample_lanes(&self, times: &[Time; 8], orders: Orders) -> Sample<Lanes<T, 8>, D>
+    where
+        T: Lane,
+    {
+        let mut samples = [Sample::zero(); 8];
+        self.sample_all(times, orders, &mut samples);
+        let mut lanes = Sample::<Lanes<T, 8>, D>::zero();
+        for (k, sample) in samples.iter().enumerate() {
+            for d in 0..D {
+                lanes.position[d].0[k] = sample.position[d];
+                lanes.velocity[d].0[k] = sample.velocity[d];
+                lanes.acceleration[d].0[k] = sample.acceleration[d];
+            }
+        }
+        lanes
     }
 
     /// The first time after `t` (never `t` itself) at which the position, the velocity or the acceleration jumps.

@@ -1,7 +1,7 @@
 //! A harmonic motion.
 
 use super::{Analytic, Motion, Orders, Sample, Side};
-use crate::real::{Lane, Real};
+use crate::real::{Lane, Lanes, Real};
 use crate::simd::{Work, widest};
 use crate::time::Time;
 
@@ -40,15 +40,8 @@ impl<const D: usize> Sinusoid<D> {
         let mut sample = Sample::zero();
         for d in 0..D {
             let ((sin, cos), a, w) = (sin_cos(d), self.amplitude[d], self.frequency);
-            if orders.contains(Orders::POSITION) {
-                sample.position[d] = T::from_f64(self.offset[d] + a * sin);
-            }
-            if orders.contains(Orders::VELOCITY) {
-                sample.velocity[d] = T::from_f64(a * w * cos);
-            }
-            if orders.contains(Orders::ACCELERATION) {
-                sample.acceleration[d] = T::from_f64(-(a * w * w * sin));
-            }
+            let component = of_component(orders, self.offset[d], a, w, sin, cos);
+            [sample.position[d], sample.velocity[d], sample.acceleration[d]] = component;
         }
         sample
     }
@@ -73,6 +66,28 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
         }
     }
 
+    #[inline(always)]
+    #[allow(clippy::inline_always)]
+    fn sample_lanes(&self, times: &[Time; 8], orders: Orders) -> Sample<Lanes<T, 8>, D>
+    where
+        T: Lane,
+    {
+        let mut lanes = Sample::<Lanes<T, 8>, D>::zero();
+        for d in 0..D {
+            let mut angles = [0.0; 8];
+            for k in 0..8 {
+                angles[k] = self.angle(d, times[k]);
+            }
+            let (sin, cos) = f64::sin_cos_lanes(&angles);
+            let (a, w) = (self.amplitude[d], self.frequency);
+            for k in 0..8 {
+                let sample = of_component::<T>(orders, self.offset[d], a, w, sin[k], cos[k]);
+                [lanes.position[d].0[k], lanes.velocity[d].0[k], lanes.acceleration[d].0[k]] = sample;
+            }
+        }
+        lanes
+    }
+
     fn next_kink(&self, _: f64) -> Option<f64> {
         None
     }
@@ -80,6 +95,23 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
     fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
         Some(self)
     }
+}
+
+/// Position, velocity and acceleration of a component; those that `orders` leaves out are zero.
+#[inline(always)]
+#[allow(clippy::inline_always)]
+fn of_component<T: Real>(orders: Orders, offset: f64, a: f64, w: f64, sin: f64, cos: f64) -> [T; 3] {
+    let mut component = [T::from_f64(0.0); 3];
+    if orders.contains(Orders::POSITION) {
+        component[0] = T::from_f64(offset + a * sin);
+    }
+    if orders.contains(Orders::VELOCITY) {
+        component[1] = T::from_f64(a * w * cos);
+    }
+    if orders.contains(Orders::ACCELERATION) {
+        component[2] = T::from_f64(-(a * w * w * sin));
+    }
+    component
 }
 
 /// The times that are done at once.

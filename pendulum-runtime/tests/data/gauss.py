@@ -1,4 +1,5 @@
-"""Prints the constants of src/integrate/gauss/tableau.rs: Gauss-Legendre collocation to 50 digits, rounded once.
+"""Prints the constants of src/integrate/gauss/tableau.rs, and nodes and weights for src/integrate/picard/tableau.rs: Gauss-Legendre
+collocation to 50 digits, rounded once.
 
     python gauss.py        (needs mpmath)
 
@@ -41,9 +42,10 @@ def row(values):
     return "[" + ", ".join(repr(float(x)) for x in values) + "]"
 
 
-for s in (1, 2, 3, 4, 8):
+for s in (1, 2, 3, 4, 8, 16):
     c, b, below = tableau(s)
     print("// S =", s)
     print("&" + row(c) + ",")
     print("&" + row(b) + ",")
-    print("&[" + ", ".join("&" + row(x) for x in below) + "],")
+    if s < 16:
+        print("&[" + ", ".join("&" + row(x) for x in below) + "],")

@@ -1,0 +1,77 @@
+//! Dense output: the motion between the ends of a step.
+
+use super::kernel::{Equations, Within};
+use super::side_by_side::SideBySide;
+use super::tableau::S;
+use super::{ADAPTIVE, NEGLIGIBLE, RoomOf};
+use crate::integrate::field::Counted;
+use crate::integrate::node::Node;
+use crate::integrate::piece::{Basis, Piece, TERMS};
+use crate::integrate::span::Span;
+use crate::real::{Lanes, Real};
+use crate::simd;
+
+/// The coefficients of the accelerations.
+const COUNT: usize = 2 * S;
+
+/// The collocation polynomial at sixteen nodes: the one at eight meets the ends with order 16, but what is between them with order 9 only.
+pub(super) fn piece<D: SideBySide<N>, const N: usize>(
+    field: &mut Counted<'_, D>,
+    span: &Span,
+    from: &Node<D::Scalar, N>,
+    to: &Node<D::Scalar, N>,
+    room: &RoomOf<D, N>,
+) -> Piece<D::Scalar, N> {
+    let (number, h) = (D::Scalar::from_f64, span.length::<D::Scalar>());
+    let zero = number(0.0);
+    let mut series = [[Lanes::splat(zero); N]; 2];
+    simd::widest(Within {
+        equations: Equations {
+            dynamics: field.dynamics,
+            prepared: &room.prepared,
+            span,
+            q: &from.q.high,
+            v: &from.v.high,
+            weights: &room.weights,
+            negligible: number(NEGLIGIBLE),
+            least: 2,
+            most: ADAPTIVE,
+        },
+        a: &room.a[room.last],
+        series: &mut series,
+    });
+    let mut piece = Piece {
+        basis: Basis::Legendre,
+        terms: COUNT + 1,
+        q: [[zero; N]; TERMS],
+        v: [[zero; N]; TERMS],
+        ..Piece::linear(span, from, to)
+    };
+    // ∫ P_k = (P_{k+1} − P_{k−1})/(4k + 2), so that a series α_k becomes h (α_{k−1}/(4k − 2) − α_{k+1}/(4k + 6)).
+    let integrated = |series: &[D::Scalar; COUNT + 3], k: usize| {
+        h * (series[k - 1] / number((4 * k - 2) as f64) - series[k + 1] / number((4 * k + 6) as f64))
+    };
+    for i in 0..N {
+        let (mut a, mut v) = ([zero; COUNT + 3], [zero; COUNT + 3]);
+        for k in 0..COUNT {
+            a[k] = series[k / S][i].0[k % S];
+        }
+        v[0] = from.v.high[i];
+        for k in 1..=COUNT {
+            v[k] = integrated(&a, k);
+            piece.v[k - 1][i] = v[k];
+        }
+        // P_k(−1) is 1 for even k and −1 for odd ones.
+        for k in 1..=COUNT {
+            if k % 2 == 0 {
+                v[0] -= v[k];
+            } else {
+                v[0] += v[k];
+            }
+        }
+        for k in 1..=COUNT + 1 {
+            piece.q[k - 1][i] = integrated(&v, k);
+        }
+    }
+    piece
+}

@@ -1,0 +1,154 @@
+//! Dynamics of which several times can be evaluated at once.
+
+#![allow(clippy::inline_always)]
+
+use crate::motion::{Motion, PerhapsAnalytic, Sample, orders};
+use crate::real::{Float, Lane, Lanes, Real};
+use crate::system::{Driven, Dynamics, Input, Prepared, Purpose, Samples, Staged, System};
+use crate::time::Time;
+
+use super::tableau::S;
+
+/// Dynamics of a system that `lagrangian!` has made, over `f64` or `f32`: the accelerations at eight times are computed side by side.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot be evaluated at several times at once",
+    note = "`Picard` takes systems that `lagrangian!` has made, over `f64` or `f32`; for others use `Dop853`"
+)]
+pub trait SideBySide<const N: usize>: Dynamics<N, Scalar: Lane + Float> {
+    /// The system over lanes.
+    #[doc(hidden)]
+    type Wide: Staged<N, Scalar = Lanes<Self::Scalar, 8>>;
+
+    /// The system with the same parameters in every lane.
+    #[doc(hidden)]
+    fn widened(&self) -> Self::Wide;
+
+    /// The samples of all driven inputs at eight times without a kink among them.
+    #[doc(hidden)]
+    fn inputs_at(&self, times: &[Time; 8]) -> <Self::Wide as System<N>>::Inputs;
+
+    /// Whether the accelerations have all derivatives between one break and the next.
+    #[doc(hidden)]
+    fn is_smooth(&self) -> bool;
+
+    /// The first time after `t` at which a motion is known to stop having all derivatives.
+    #[doc(hidden)]
+    fn next_break(&self, t: f64) -> Option<f64>;
+}
+
+impl<S0, const N: usize> SideBySide<N> for S0
+where
+    S0: System<N, Scalar: Lane + Float, Inputs = ()>,
+    S0::With<Lanes<S0::Scalar, S>>: Staged<N, Inputs = ()>,
+{
+    type Wide = S0::With<Lanes<S0::Scalar, S>>;
+
+    #[inline(always)]
+    fn widened(&self) -> Self::Wide {
+        self.map(Lanes::splat)
+    }
+
+    #[inline(always)]
+    fn inputs_at(&self, _: &[Time; S]) {}
+
+    fn is_smooth(&self) -> bool {
+        S0::FACTS.smooth
+    }
+
+    #[inline]
+    fn next_break(&self, _: f64) -> Option<f64> {
+        None
+    }
+}
+
+impl<S0, M, const N: usize> SideBySide<N> for Driven<S0, M>
+where
+    S0: System<N, Scalar: Lane + Float>,
+    M: MotionsSideBySide<S0::Inputs, S0::Scalar> + PerhapsAnalytic<S0::Inputs, S0::Scalar>,
+    S0::With<Lanes<S0::Scalar, S>>: Staged<N, Inputs = M::Wide>,
+{
+    type Wide = S0::With<Lanes<S0::Scalar, S>>;
+
+    #[inline(always)]
+    fn widened(&self) -> Self::Wide {
+        self.system.map(Lanes::splat)
+    }
+
+    #[inline(always)]
+    fn inputs_at(&self, times: &[Time; S]) -> M::Wide {
+        self.motions.sample_all(times, S0::FACTS.inputs)
+    }
+
+    fn is_smooth(&self) -> bool {
+        S0::FACTS.smooth && self.motions.is_analytic()
+    }
+
+    #[inline]
+    fn next_break(&self, t: f64) -> Option<f64> {
+        self.motions.next_break(t)
+    }
+}
+
+impl<D: SideBySide<N>, const N: usize> SideBySide<N> for Prepared<'_, D, <D::System as System<N>>::Prepared> {
+    type Wide = D::Wide;
+
+    #[inline(always)]
+    fn widened(&self) -> D::Wide {
+        self.dynamics().widened()
+    }
+
+    #[inline(always)]
+    fn inputs_at(&self, times: &[Time; S]) -> <D::Wide as System<N>>::Inputs {
+        self.dynamics().inputs_at(times)
+    }
+
+    fn is_smooth(&self) -> bool {
+        self.dynamics().is_smooth()
+    }
+
+    #[inline]
+    fn next_break(&self, t: f64) -> Option<f64> {
+        self.dynamics().next_break(t)
+    }
+}
+
+/// A tuple of motions, sampled at several times at once.
+#[doc(hidden)]
+pub trait MotionsSideBySide<Inputs, T>: crate::motion::Motions<Inputs> {
+    /// One sample for each motion, with a time in each lane.
+    type Wide: Samples;
+
+    /// The samples at `times`, with the derivatives that each motion is asked for.
+    fn sample_all(&self, times: &[Time; 8], inputs: &[Input]) -> Self::Wide;
+}
+
+impl<T: Real> MotionsSideBySide<(), T> for () {
+    type Wide = ();
+
+    #[inline(always)]
+    fn sample_all(&self, _: &[Time; S], _: &[Input]) {}
+}
+
+macro_rules! tuples {
+    ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
+        impl<T: Lane, $($motion: Motion<T, $dim>, const $dim: usize),+> MotionsSideBySide<($(Sample<T, $dim>,)+), T> for ($($motion,)+) {
+            type Wide = ($(Sample<Lanes<T, S>, $dim>,)+);
+
+            #[inline(always)]
+            fn sample_all(&self, times: &[Time; S], inputs: &[Input]) -> Self::Wide {
+                ($(self.$index.sample_lanes(times, orders(inputs, $index, Purpose::Accelerations)),)+)
+            }
+        }
+    )+};
+}
+
+tuples! {
+    (A DA 0)
+    (A DA 0, B DB 1)
+    (A DA 0, B DB 1, C DC 2)
+    (A DA 0, B DB 1, C DC 2, D DD 3)
+    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4)
+    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4, F DF 5)
+    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4, F DF 5, G DG 6)
+    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4, F DF 5, G DG 6, H DH 7)
+}

@@ -1,0 +1,275 @@
+//! The coefficients of collocation at the nodes of Gauss and Legendre, eight to a vector.
+
+/// The lanes of a vector: as many as an `f64` has room for in 64 bytes.
+pub(super) const S: usize = 8;
+
+/// One number for each node of a vector.
+pub(super) type Nodes = [f64; S];
+
+/// For each node, by vector and lane, what its value adds at each of the nodes of `H` vectors.
+pub(super) type Columns<const G: usize, const H: usize> = [[[Nodes; H]; S]; G];
+
+/// What the values of a polynomial at 8 `G` nodes say of its integrals and its coefficients.
+#[derive(Debug)]
+pub(super) struct Collocation<const G: usize> {
+    /// The nodes c on [0, 1].
+    pub(super) nodes: [Nodes; G],
+    /// A: the integrals from 0 to all nodes.
+    pub(super) once: Columns<G, G>,
+    /// A²: the integrals of the polynomials through these.
+    pub(super) twice: Columns<G, G>,
+    /// The values one step later.
+    pub(super) ahead: Columns<G, G>,
+    /// The integral over the step, the integral of the integral, and the last two coefficients of the series in Legendre's polynomials.
+    pub(super) ends: [[[[f64; 4]; 1]; S]; G],
+    /// All coefficients of Σ α_k P_k(2θ − 1), by vector and lane.
+    pub(super) legendre: Columns<G, G>,
+    /// 1/∏ (c_j − c_k) over the other nodes of the vector.
+    pub(super) lagrange: [Nodes; G],
+}
+
+pub(super) const EIGHT: Collocation<1> = collocation(EIGHT_NODES);
+pub(super) const SIXTEEN: Collocation<2> = collocation(SIXTEEN_NODES);
+
+/// The values at sixteen nodes of the polynomial through those at eight.
+pub(super) const REFINED: Columns<1, 2> = {
+    let mut refined = [[[[0.0; S]; 2]; S]; 1];
+    let mut j = 0;
+    while j < S {
+        let mut i = 0;
+        while i < 2 * S {
+            refined[0][j][i / S][i % S] = value(&EIGHT_NODES, j, SIXTEEN_NODES.0[i / S][i % S]);
+            i += 1;
+        }
+        j += 1;
+    }
+    refined
+};
+
+const fn collocation<const G: usize>((nodes, weights): ([Nodes; G], [Nodes; G])) -> Collocation<G> {
+    let zero = [[[[0.0; S]; G]; S]; G];
+    let mut tableau = Collocation {
+        nodes,
+        once: zero,
+        twice: zero,
+        ahead: zero,
+        ends: [[[[0.0; 4]; 1]; S]; G],
+        legendre: zero,
+        lagrange: [[1.0; S]; G],
+    };
+    let all = S * G;
+    let mut j = 0;
+    while j < all {
+        let (g, lane) = (j / S, j % S);
+        let mut i = 0;
+        while i < all {
+            let (to, at) = (i / S, i % S);
+            tableau.once[g][lane][to][at] = integral(&(nodes, weights), j, nodes[to][at]);
+            tableau.ahead[g][lane][to][at] = value(&(nodes, weights), j, 1.0 + nodes[to][at]);
+            tableau.legendre[g][lane][to][at] = coefficient(&(nodes, weights), i, j);
+            if to == g && at != lane {
+                tableau.lagrange[g][lane] /= nodes[g][lane] - nodes[g][at];
+            }
+            i += 1;
+        }
+        // The nodes are symmetric: 1 − c_j is one of them.
+        let mirrored = nodes[G - 1 - g][S - 1 - lane];
+        tableau.ends[g][lane][0] = [
+            weights[g][lane],
+            weights[g][lane] * mirrored,
+            coefficient(&(nodes, weights), all - 1, j),
+            coefficient(&(nodes, weights), all - 2, j),
+        ];
+        j += 1;
+    }
+    j = 0;
+    while j < all {
+        let mut i = 0;
+        while i < all {
+            let mut k = 0;
+            while k < all {
+                tableau.twice[j / S][j % S][i / S][i % S] +=
+                    tableau.once[k / S][k % S][i / S][i % S] * tableau.once[j / S][j % S][k / S][k % S];
+                k += 1;
+            }
+            i += 1;
+        }
+        j += 1;
+    }
+    tableau
+}
+
+/// P_k(2θ − 1), from (k + 1) P_{k+1}(x) = (2k + 1) x P_k(x) − k P_{k−1}(x).
+const fn legendre(k: usize, theta: f64) -> f64 {
+    let x = theta - (1.0 - theta);
+    let (mut before, mut now, mut degree) = (0.0, 1.0, 0);
+    while degree < k {
+        let d = degree as f64;
+        (before, now) = (now, ((2.0 * d + 1.0) * x * now - d * before) / (d + 1.0));
+        degree += 1;
+    }
+    now
+}
+
+/// What the value at node j adds to the coefficient of P_k: (2k + 1) b_j P_k(2 c_j − 1).
+const fn coefficient<const G: usize>((nodes, weights): &([Nodes; G], [Nodes; G]), k: usize, j: usize) -> f64 {
+    (2 * k + 1) as f64 * weights[j / S][j % S] * legendre(k, nodes[j / S][j % S])
+}
+
+/// The value at θ of the polynomial that is 1 at node j and 0 at the others.
+const fn value<const G: usize>(rule: &([Nodes; G], [Nodes; G]), j: usize, theta: f64) -> f64 {
+    let (mut sum, mut k) = (0.0, S * G);
+    while 0 < k {
+        k -= 1;
+        sum += coefficient(rule, k, j) * legendre(k, theta);
+    }
+    sum
+}
+
+/// Its integral from 0 to θ: ∫ P_k = (P_{k+1} − P_{k−1})/(4k + 2).
+const fn integral<const G: usize>(rule: &([Nodes; G], [Nodes; G]), j: usize, theta: f64) -> f64 {
+    let (mut sum, mut k) = (0.0, S * G);
+    while 1 < k {
+        k -= 1;
+        sum += coefficient(rule, k, j) * (legendre(k + 1, theta) - legendre(k - 1, theta)) / (4 * k + 2) as f64;
+    }
+    sum + coefficient(rule, 0, j) * theta
+}
+
+// Printed by tests/data/gauss.py: the nodes and their weights.
+
+const EIGHT_NODES: ([Nodes; 1], [Nodes; 1]) = (
+    [[
+        0.019855071751231884,
+        0.10166676129318664,
+        0.2372337950418355,
+        0.4082826787521751,
+        0.591717321247825,
+        0.7627662049581645,
+        0.8983332387068134,
+        0.9801449282487681,
+    ]],
+    [[
+        0.05061426814518813,
+        0.11119051722668724,
+        0.15685332293894363,
+        0.181341891689181,
+        0.181341891689181,
+        0.15685332293894363,
+        0.11119051722668724,
+        0.05061426814518813,
+    ]],
+);
+
+const SIXTEEN_NODES: ([Nodes; 2], [Nodes; 2]) = (
+    [
+        [
+            0.005299532504175033,
+            0.02771248846338371,
+            0.06718439880608412,
+            0.12229779582249849,
+            0.19106187779867811,
+            0.2709916111713863,
+            0.35919822461037054,
+            0.4524937450811813,
+        ],
+        [
+            0.5475062549188188,
+            0.6408017753896295,
+            0.7290083888286137,
+            0.8089381222013219,
+            0.8777022041775016,
+            0.9328156011939158,
+            0.9722875115366163,
+            0.994700467495825,
+        ],
+    ],
+    [
+        [
+            0.013576229705877048,
+            0.031126761969323947,
+            0.04757925584124639,
+            0.06231448562776694,
+            0.07479799440828837,
+            0.08457825969750127,
+            0.09130170752246179,
+            0.09472530522753425,
+        ],
+        [
+            0.09472530522753425,
+            0.09130170752246179,
+            0.08457825969750127,
+            0.07479799440828837,
+            0.06231448562776694,
+            0.04757925584124639,
+            0.031126761969323947,
+            0.013576229705877048,
+        ],
+    ],
+);
+
+#[cfg(test)]
+mod tests {
+    use super::{Collocation, EIGHT, EIGHT_NODES, Nodes, REFINED, S, SIXTEEN, SIXTEEN_NODES, legendre};
+
+    /// What the columns make of the values of θᵖ at the nodes.
+    fn sums<const G: usize, const W: usize, const H: usize>(
+        nodes: &[Nodes; G],
+        columns: &[[[[f64; W]; H]; S]; G],
+        p: i32,
+    ) -> Vec<f64> {
+        let mut sums = vec![0.0; W * H];
+        for (g, nodes) in nodes.iter().enumerate() {
+            for (j, node) in nodes.iter().enumerate() {
+                for (sum, column) in sums.iter_mut().zip(columns[g][j].as_flattened()) {
+                    *sum += node.powi(p) * column;
+                }
+            }
+        }
+        sums
+    }
+
+    fn check<const G: usize>(tableau: &Collocation<G>, weights: &[Nodes; G]) {
+        let nodes = tableau.nodes.as_flattened();
+        let close = |a: f64, b: f64, within: f64| assert!((a - b).abs() < within, "{a}, not {b}");
+        for p in 0..8 * G as i32 {
+            let degree = f64::from(p);
+            for (i, c) in nodes.iter().enumerate() {
+                close(sums(&tableau.nodes, &tableau.once, p)[i], c.powi(p + 1) / (degree + 1.0), 4e-16);
+                // The integral is a polynomial through the nodes, unless its degree is too high.
+                if p + 1 < 8 * G as i32 {
+                    let twice = c.powi(p + 2) / ((degree + 1.0) * (degree + 2.0));
+                    close(sums(&tableau.nodes, &tableau.twice, p)[i], twice, 4e-16);
+                }
+                if G == 1 {
+                    close(sums(&tableau.nodes, &tableau.ahead, p)[i], (1.0 + c).powi(p), 1e-10);
+                }
+                let series: f64 = (0..8 * G).map(|k| sums(&tableau.nodes, &tableau.legendre, p)[k] * legendre(k, *c)).sum();
+                close(series, c.powi(p), 1e-14);
+            }
+            let ends = sums(&tableau.nodes, &tableau.ends, p);
+            close(ends[0], 1.0 / (degree + 1.0), 4e-16);
+            close(ends[1], 1.0 / ((degree + 1.0) * (degree + 2.0)), 4e-16);
+        }
+        // Exact up to twice the degree (Gauss 1814).
+        for p in 0..16 * G as i32 {
+            let sum: f64 = nodes.iter().zip(weights.as_flattened()).map(|(c, b)| b * c.powi(p)).sum();
+            close(sum, 1.0 / (f64::from(p) + 1.0), 4e-16);
+        }
+    }
+
+    #[test]
+    fn polynomials_are_integrated_exactly() {
+        check(&EIGHT, &EIGHT_NODES.1);
+        check(&SIXTEEN, &SIXTEEN_NODES.1);
+    }
+
+    #[test]
+    fn eight_nodes_become_sixteen() {
+        for p in 0..8 {
+            for (value, c) in sums(&EIGHT.nodes, &REFINED, p).iter().zip(SIXTEEN.nodes.as_flattened()) {
+                assert!((value - c.powi(p)).abs() < 1e-14);
+            }
+        }
+    }
+}
