@@ -5,6 +5,7 @@
 use pendulum_runtime::error::Error;
 use pendulum_runtime::motion::{Analytic, Function, Motion, Orders, Sample, Side, Sinusoid};
 use pendulum_runtime::prelude::*;
+use pendulum_runtime::real::DoubleDouble;
 use pendulum_runtime::time::Time;
 
 lagrangian! {
@@ -46,35 +47,51 @@ fn lift() -> impl Motion<f64, 2> {
 }
 
 #[test]
-fn one_pendulum_goes_by_series_at_any_tolerance() {
-    for rtol in [1e-3, 1e-6, 1e-9, 1e-15, 1e-18] {
-        let solution = solve(&Simple::new(1.0), (0.0, 1.0), [1.3], [0.0]).rtol(rtol).run().unwrap();
-        assert_eq!(solution.stats.method, "Taylor");
-    }
+fn series_where_the_last_digits_count() {
+    let method = |rtol| solve(&Simple::new(1.0), (0.0, 1.0), [1.3], [0.0]).rtol(rtol).run().unwrap().stats.method;
+    assert_eq!([1e-3, 1e-6, 1e-12, 1e-14, 1e-18].map(method), ["Picard", "Picard", "Picard", "Taylor", "Taylor"]);
     let end = solve(&Simple::new(1.0), (0.0, 1000.0), [1.3], [0.0]).rtol(1e-14).run().unwrap().end;
     assert!((end.q[0] - AFTER_1000_S).abs() < 1e-12, "{}", end.q[0]);
 }
 
 #[test]
-fn longer_equations_wait_for_tighter_tolerances() {
-    let run = |rtol: f64| solve(&Double::new(1.0), (0.0, 5.0), [2.0, 2.5], [0.0; 2]).rtol(rtol).run().unwrap();
-    assert_eq!([1e-4, 1e-6, 1e-9].map(|rtol| run(rtol).stats.method), ["Dop853", "Dop853", "Taylor"]);
-    let [loose, tight] = [1e-6, 1e-13].map(|rtol| run(rtol).end.q);
-    assert!((loose[0] - tight[0]).abs() < 1e-4);
+fn two_words_stand_in_no_lanes() {
+    let simple = Simple::new(1.0).map(DoubleDouble::from_f64);
+    let method = |rtol| {
+        let (q, v) = ([DoubleDouble::from_f64(1.3)], [DoubleDouble::from_f64(0.0)]);
+        solve(&simple, (0.0, 1.0), q, v).rtol(rtol).run().unwrap().stats.method
+    };
+    assert_eq!([1e-3, 1e-28].map(method), ["Taylor", "Taylor"]);
+    let double = Double::new(1.0).map(DoubleDouble::from_f64);
+    let method = |rtol| {
+        let (q, v) = ([2.0, 2.5].map(DoubleDouble::from_f64), [0.0; 2].map(DoubleDouble::from_f64));
+        solve(&double, (0.0, 1.0), q, v).rtol(rtol).run().unwrap().stats.method
+    };
+    assert_eq!([1e-4, 1e-6, 1e-9].map(method), ["Dop853", "Dop853", "Taylor"]);
+}
+
+#[test]
+fn what_it_chooses_keeps_the_tolerance() {
+    let run = |rtol: f64| solve(&Double::new(1.0), (0.0, 5.0), [2.0, 2.5], [0.0; 2]).rtol(rtol).run().unwrap().end.q;
+    let [loose, tight, tighter] = [1e-6, 1e-12, 1e-15].map(run);
+    assert!((loose[0] - tight[0]).abs() < 1e-4 && (tight[0] - tighter[0]).abs() < 1e-10);
 }
 
 #[test]
 fn what_has_no_series_goes_without() {
     let closed = Moving::new(0.5).driven_by(lift());
     let open = Moving::new(0.5).driven_by(Sinusoid::new([0.1, 0.0], 3.0, [0.0, 0.0]));
-    let by_closure = solve(&closed, (0.0, 1.0), [0.3], [0.0]).rtol(1e-9).run().unwrap();
-    let by_sinusoid = solve(&open, (0.0, 1.0), [0.3], [0.0]).rtol(1e-9).run().unwrap();
-    assert_eq!((by_closure.stats.method, by_sinusoid.stats.method), ("Dop853", "Taylor"));
+    let by_closure = solve(&closed, (0.0, 1.0), [0.3], [0.0]).rtol(1e-14).run().unwrap();
+    let by_sinusoid = solve(&open, (0.0, 1.0), [0.3], [0.0]).rtol(1e-14).run().unwrap();
+    assert_eq!((by_closure.stats.method, by_sinusoid.stats.method), ("Picard", "Taylor"));
     // A lift with the acceleration 1 adds it to gravity.
     let heavier = solve(&Simple { g: 10.8, ..Simple::new(0.5) }, (0.0, 1.0), [0.3], [0.0]).rtol(1e-12).run().unwrap();
     assert!((by_closure.end.q[0] - heavier.end.q[0]).abs() < 1e-8);
-    let rubbed = solve(&Rubbed::new(0.5), (0.0, 10.0), [1.0], [0.0]).rtol(1e-9).run().unwrap();
-    assert_eq!(rubbed.stats.method, "Dop853");
+    let rubbed = solve(&Rubbed::new(0.5), (0.0, 10.0), [1.0], [0.0]).rtol(1e-14).run().unwrap();
+    assert_eq!(rubbed.stats.method, "Picard");
+    let trusted = solve(&Rubbed::new(0.5), (0.0, 10.0), [1.0], [0.0]).method(Dop853).rtol(1e-13).atol(1e-13).run().unwrap();
+    let error = (rubbed.end.q[0] - trusted.end.q[0]).abs();
+    assert!(error < 1e-11, "{error:e} {} {}", rubbed.stats, trusted.stats);
 }
 
 #[test]
@@ -97,9 +114,9 @@ fn it_is_the_method_it_names() {
     let times = [0.3, 1.7, 2.0];
     let double = Double::new(1.0);
     let chosen = || solve(&double, (0.0, 2.0), [2.0, 2.5], [0.0; 2]).t_eval(&times);
-    let [a, b] = [chosen().run().unwrap(), chosen().method(Dop853).run().unwrap()];
+    let [a, b] = [chosen().run().unwrap(), chosen().method(Picard).run().unwrap()];
     assert_eq!((a.q, a.v, a.stats), (b.q, b.v, b.stats));
-    let [a, b] = [chosen().rtol(1e-10).run().unwrap(), chosen().method(Taylor::new()).rtol(1e-10).run().unwrap()];
+    let [a, b] = [chosen().rtol(1e-15).run().unwrap(), chosen().method(Taylor::new()).rtol(1e-15).run().unwrap()];
     assert_eq!((a.q, a.v, a.stats), (b.q, b.v, b.stats));
 }
 
@@ -120,7 +137,7 @@ fn step_by_step_it_says_what_it_uses() {
     let mut integrator = Integrator::new(&double, Auto, 0.0, [1.0, 0.5], [0.0; 2]).unwrap();
     assert_eq!(integrator.stats().method, "Auto");
     integrator.advance_to(1.0).unwrap();
-    assert_eq!(integrator.stats().method, "Dop853");
+    assert_eq!(integrator.stats().method, "Picard");
     integrator.advance_to(0.0).unwrap();
     assert_eq!(integrator.stats().method, "Taylor");
     assert!((integrator.q()[0] - 1.0).abs() < 1e-5);
@@ -172,8 +189,8 @@ impl<const KNOWN: bool> Analytic<f64, 2> for Parabola<KNOWN> {
 fn motions_of_ones_own_say_whether_they_have_series() {
     let silent = Moving::new(0.5).driven_by(Parabola::<false>);
     let known = Moving::new(0.5).driven_by(Parabola::<true>);
-    let silent = solve(&silent, (0.0, 1.0), [0.3], [0.0]).rtol(1e-11).run().unwrap();
-    let known = solve(&known, (0.0, 1.0), [0.3], [0.0]).rtol(1e-11).run().unwrap();
-    assert_eq!((silent.stats.method, known.stats.method), ("Dop853", "Taylor"));
-    assert!((silent.end.q[0] - known.end.q[0]).abs() < 1e-9);
+    let silent = solve(&silent, (0.0, 1.0), [0.3], [0.0]).rtol(1e-14).run().unwrap();
+    let known = solve(&known, (0.0, 1.0), [0.3], [0.0]).rtol(1e-14).run().unwrap();
+    assert_eq!((silent.stats.method, known.stats.method), ("Picard", "Taylor"));
+    assert!((silent.end.q[0] - known.end.q[0]).abs() < 1e-12);
 }

@@ -72,6 +72,7 @@ fn dense(_: Scale, report: &mut Report) {
         ("Dop853", check(&problem().run().unwrap())),
         ("Tsit5", check(&problem().method(Tsit5::new()).run().unwrap())),
         ("Taylor", check(&problem().method(Taylor::new()).run().unwrap())),
+        ("Picard", check(&problem().method(Picard).run().unwrap())),
     ];
     for (name, (within, jump, points)) in found {
         report.at_most(format!("{name}: {points} points between steps, local error over tolerance 1e-9"), within, 1.0).because(

@@ -85,6 +85,7 @@ fn singular(_: Scale, report: &mut Report) {
             refused(problem().run()),
             refused(problem().method(Rk4).step(0.01).run()),
             refused(problem().method(Taylor::new()).rtol(1e-12).run()),
+            refused(problem().method(Picard).rtol(1e-12).run()),
         ],
     );
     let still = Double::new([1.0, 0.0], [1.0; 2], 1.0);
@@ -103,11 +104,12 @@ fn singular(_: Scale, report: &mut Report) {
             unbounded(problem().method(Dop853::new()).run()),
             unbounded(problem().method(Rk4).step(0.01).run()),
             unbounded(problem().method(Taylor::new()).rtol(1e-12).run()),
+            unbounded(problem().method(Picard).rtol(1e-12).run()),
             unbounded(problem().method(Gauss::<2>::new()).step(0.01).run()),
         ]
     };
     report.failures(
-        "m₁ = −2, m₂ = −½, both −1, a negative pivot: an error before the first step that names the coordinate, four methods",
+        "m₁ = −2, m₂ = −½, both −1, a negative pivot: an error before the first step that names the coordinate, five methods",
         [[-2.0, 1.0], [1.0, -0.5], [-1.0, -1.0]].map(negative).concat(),
     );
 }
@@ -205,9 +207,10 @@ fn collapse(_: Scale, report: &mut Report) {
         fall(problem().run()),
         fall(problem().method(Tsit5::new()).run()),
         fall(problem().method(Taylor::new()).rtol(1e-12).run()),
+        fall(problem().method(Picard).rtol(1e-12).run()),
         fall(problem().method(Rodas4::new()).run()),
     ];
-    report.failures("a fall into the centre ends with an error where it happens, four methods", found.map(|found| found.0));
+    report.failures("a fall into the centre ends with an error where it happens, five methods", found.map(|found| found.0));
     report.at_most("the steps it takes until then", largest(found.map(|found| found.1 as f64)), 10_000.0);
 
     let gap = 1e-12;

@@ -215,4 +215,5 @@ fn tolerances(scale: Scale, report: &mut Report) {
     method!("Dop853", Dop853::new());
     method!("Tsit5", Tsit5::new());
     method!("Taylor", Taylor::new());
+    method!("Picard", Picard);
 }

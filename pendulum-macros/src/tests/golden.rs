@@ -104,7 +104,11 @@ fn blocks(text: &str) -> Vec<String> {
         {
             let lines = inside[..end].lines();
             let bare = lines.map(|line| match comment {
-                Some(mark) => line.trim_start().strip_prefix(mark).unwrap_or(line),
+                Some(mark) => {
+                    let line = line.trim_start().strip_prefix(mark).unwrap_or(line);
+                    // What the documentation hides.
+                    line.trim_start().strip_prefix("# ").unwrap_or(line)
+                }
                 None => line,
             });
             let block = bare.collect::<Vec<_>>().join("\n");

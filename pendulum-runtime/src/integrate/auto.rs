@@ -7,6 +7,7 @@ use super::dop853::Dop853;
 use super::field::{Counted, Field};
 use super::method::{Method, Suits};
 use super::node::Node;
+use super::picard::{Picard, SideBySide};
 use super::piece::Piece;
 use super::span::Span;
 use super::splitting::drift_kick_drift_in_two_words;
@@ -22,12 +23,14 @@ use crate::system::{Dynamics, System};
 ///
 /// | steps | choice |
 /// |---|---|
-/// | adaptive | [`Taylor`] where it is the fastest: for every tolerance if the equations are short, as for one pendulum, below 2e-7 if they are longer, as for two or three links, and below 2e-14 if they are long |
-/// | | [`Dop853`] else, and where Taylor series fail: a motion is not [`Analytic`](crate::motion::Analytic), or the accelerations contain `abs`, `sign`, `min` or `max` of something that moves |
+/// | adaptive | [`Picard`] |
+/// | | [`Taylor`] for `rtol` below 1e-13 and back in time, where there are series: every motion is [`Analytic`](crate::motion::Analytic) and the accelerations contain no `abs`, `sign`, `min` or `max` of something that moves |
 /// | fixed | [`Srkn14a`], which is symplectic, for velocity-free systems, [`Dop853`] for others |
 ///
-/// For a velocity-free system with a motion that is not analytic, [`Dprkn8`](super::Dprkn8) and [`Dprkn12`](super::Dprkn12) are faster than
-/// `Dop853`; name them. Back in time only `Taylor` goes. Without `atol`, `Taylor` takes `rtol` for it and `Dop853` the smaller of `rtol` and 1e-9.
+/// Scalars of two words stand in no lanes. `Taylor` takes the place of `Picard` there, for every tolerance if the equations are short, as for one
+/// pendulum, below 2e-7 if they are longer, as for two or three links, and below 2e-14 if they are long; else `Dop853`.
+///
+/// Without `atol`, `Picard` and `Taylor` take `rtol` for it and `Dop853` the smaller of `rtol` and 1e-9.
 ///
 /// Nothing shows beforehand that a system is stiff: for stiff springs and dampers name [`Rodas4`](super::Rodas4) or
 /// [`Gauss`](super::Gauss), for long runs of a conservative system with fixed steps `Gauss`. Systems written by hand have no
@@ -46,26 +49,36 @@ pub struct Auto;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Choice {
     Dop853,
+    Picard,
     Srkn14a,
     Taylor,
 }
 
 /// Room for whatever is chosen.
 #[derive(Clone, Debug)]
-pub struct Room<R, X> {
+pub struct Room<R, P, X> {
     choice: Option<Choice>,
     dop853: R,
+    picard: P,
     taylor: X,
 }
 
 /// The room for the dynamics `D`.
-type AnyRoom<D, const N: usize> = Room<<Dop853 as Method>::Stages<<D as Dynamics<N>>::Scalar, N>, RoomOf<D, N>>;
+type AnyRoom<D, const N: usize> =
+    Room<<Dop853 as Method>::Stages<<D as Dynamics<N>>::Scalar, N>, <Picard as Stepper<D, N>>::Stages, RoomOf<D, N>>;
 
 impl Auto {
     /// The choice for adaptive steps.
     fn adaptive<D: PerhapsJets<N, Scalar: Float>, const N: usize>(dynamics: &D, rtol: f64, backwards: bool) -> Choice {
-        let pays = rtol < <D::System as Jets<N>>::Orders::PAYS_BELOW || backwards;
-        if pays && goes_by_series(dynamics) { Choice::Taylor } else { Choice::Dop853 }
+        let two_words = D::Scalar::EPSILON.to_f64() < 1e-17;
+        let pays_below = if two_words { <D::System as Jets<N>>::Orders::PAYS_BELOW } else { 1e-13 };
+        if (rtol < pays_below || backwards) && goes_by_series(dynamics) {
+            Choice::Taylor
+        } else if two_words {
+            Choice::Dop853
+        } else {
+            Choice::Picard
+        }
     }
 }
 
@@ -74,7 +87,7 @@ fn goes_by_series<D: PerhapsJets<N>, const N: usize>(dynamics: &D) -> bool {
     <D::System as System<N>>::FACTS.smooth && dynamics.is_analytic()
 }
 
-impl<D: PerhapsJets<N, Scalar: Float>, const N: usize> Stepper<D, N> for Auto {
+impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Stepper<D, N> for Auto {
     const NAME: &'static str = "Auto";
     type Stages = AnyRoom<D, N>;
 
@@ -83,13 +96,15 @@ impl<D: PerhapsJets<N, Scalar: Float>, const N: usize> Stepper<D, N> for Auto {
     }
 
     fn room(&self, dynamics: &D) -> AnyRoom<D, N> {
-        Room { choice: None, dop853: Dop853::stages(), taylor: Taylor::new().room(&Known(dynamics)) }
+        let (dop853, taylor) = (Dop853::stages(), Taylor::new().room(&Known(dynamics)));
+        Room { choice: None, dop853, picard: Picard.room(dynamics), taylor }
     }
 
     fn name(&self, room: &AnyRoom<D, N>) -> &'static str {
         match room.choice {
             None => "Auto",
             Some(Choice::Dop853) => <Dop853 as Method>::NAME,
+            Some(Choice::Picard) => <Picard as Stepper<D, N>>::NAME,
             Some(Choice::Srkn14a) => <Srkn14a as Method>::NAME,
             Some(Choice::Taylor) => <Taylor as Stepper<Known<'_, D>, N>>::NAME,
         }
@@ -124,6 +139,7 @@ impl<D: PerhapsJets<N, Scalar: Float>, const N: usize> Stepper<D, N> for Auto {
             Some(Choice::Taylor) => {
                 Taylor::new().within(&mut Counted::new(&Known(field.dynamics)), span, from, to, &mut room.taylor)
             }
+            Some(Choice::Picard) => Picard.within(field, span, from, to, &mut room.picard),
             Some(Choice::Srkn14a) => Symplectic.dense(field, span, from, to, &mut ()),
             _ => Dop853.dense(field, span, from, to, &mut room.dop853),
         }
@@ -132,6 +148,7 @@ impl<D: PerhapsJets<N, Scalar: Float>, const N: usize> Stepper<D, N> for Auto {
     fn fault(&self, dynamics: &D, span: &Span, from: &Node<D::Scalar, N>, room: &AnyRoom<D, N>) -> Option<Error> {
         match room.choice {
             Some(Choice::Taylor) => Taylor::new().fault(&Known(dynamics), span, from, &room.taylor),
+            Some(Choice::Picard) => Picard.fault(dynamics, span, from, &room.picard),
             Some(Choice::Srkn14a) => blame::fault(&Symplectic, dynamics, span, from, &()),
             _ => blame::fault(&Dop853, dynamics, span, from, &room.dop853),
         }
@@ -142,7 +159,7 @@ impl<D: PerhapsJets<N, Scalar: Float>, const N: usize> Stepper<D, N> for Auto {
     }
 }
 
-impl<D: PerhapsJets<N, Scalar: Float>, const N: usize> Control<Auto, D, N> for AdaptiveStep<N> {
+impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Control<Auto, D, N> for AdaptiveStep<N> {
     fn check(&self) -> Result<(), Error> {
         self.positive::<D::Scalar>()
     }
@@ -156,7 +173,7 @@ impl<D: PerhapsJets<N, Scalar: Float>, const N: usize> Control<Auto, D, N> for A
         let dynamics = field.dynamics;
         let backwards = target < from.t.to_f64();
         let (rtol, _) = self.tolerances::<D::Scalar>();
-        if room.choice.is_none() || backwards && room.choice == Some(Choice::Dop853) {
+        if room.choice.is_none() || backwards && room.choice != Some(Choice::Taylor) {
             room.choice = Some(Auto::adaptive(dynamics, rtol, backwards));
         }
         if room.choice == Some(Choice::Taylor) {
@@ -167,6 +184,9 @@ impl<D: PerhapsJets<N, Scalar: Float>, const N: usize> Control<Auto, D, N> for A
                 Control::step(self, memory, Course { method: &Taylor::new(), field: &mut series, from, stages, target, stats });
             field.evaluations += series.evaluations;
             return taken;
+        }
+        if room.choice == Some(Choice::Picard) {
+            return Control::step(self, memory, Course { method: &Picard, field, from, stages: &mut room.picard, target, stats });
         }
         let control = self.atol_or(if rtol < 1e-9 { rtol } else { 1e-9 });
         Control::<Dop853, D, N>::check(&control)?;

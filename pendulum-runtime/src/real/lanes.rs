@@ -2,7 +2,7 @@
 
 #![allow(clippy::inline_always)]
 
-use super::{Real, trig};
+use super::{DoubleDouble, Real, trig};
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// `W` numbers that go through the same operations: the scalar of many systems of one type.
@@ -47,6 +47,14 @@ macro_rules! lane {
 
 lane!(f64 kernel);
 lane!(f32 kernel_single);
+
+/// Lane by lane.
+impl Lane for DoubleDouble {
+    fn sin_cos_lanes<const W: usize>(x: &[Self; W]) -> ([Self; W], [Self; W]) {
+        let both = x.map(Real::sin_cos);
+        (both.map(|both| both.0), both.map(|both| both.1))
+    }
+}
 
 impl<T: Lane, const W: usize> Lanes<T, W> {
     /// The same number in every lane.

@@ -25,7 +25,7 @@ pub(super) fn piece<D: SideBySide<N>, const N: usize>(
     let (number, h) = (D::Scalar::from_f64, span.length::<D::Scalar>());
     let zero = number(0.0);
     let mut series = [[Lanes::splat(zero); N]; 2];
-    simd::widest(Within {
+    simd::wide(Within {
         equations: Equations {
             dynamics: field.dynamics,
             prepared: &room.prepared,
@@ -71,6 +71,13 @@ pub(super) fn piece<D: SideBySide<N>, const N: usize>(
         }
         for k in 1..=COUNT + 1 {
             piece.q[k - 1][i] = integrated(&v, k);
+        }
+        // The ends are met exactly: what is left, less than the error of the step, goes straight from one to the other.
+        for (terms, [start, end]) in
+            [(&mut piece.q, [from.q.high[i], to.q.high[i]]), (&mut piece.v, [from.v.high[i], to.v.high[i]])]
+        {
+            let half = (0..=COUNT).step_by(2).fold(zero, |sum, k| sum + terms[k][i]);
+            terms[0][i] += (end - start) / number(2.0) - half;
         }
     }
     piece

@@ -141,7 +141,7 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
         rounding.is_finite() && progress.change.to_f64() <= rounding
     }
 
-    /// The error of the step over the one allowed: w α₇ (ρ/4096 + (4ρ)⁸) with ρ = α₇/|A|; w α₇/64 where accelerations do not have all derivatives.
+    /// The error of the step over the one allowed: w α₇ (ρ/4096 + (4ρ)⁸) with ρ = α₇/|A|; w α₇/16 where accelerations do not have all derivatives.
     ///
     /// The first term is what the nodes of Gauss leave of the last coefficient. They do so only where the coefficients fall; the second
     /// term sees to that.
@@ -158,11 +158,14 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
                 let part = if self.smooth {
                     weight * (tail / norm / 4096.0 + tail.sqrt() * (steep * steep))
                 } else {
-                    weight * tail.sqrt() / 64.0
+                    weight * tail.sqrt() / 16.0
                 };
                 if error < part {
                     error = part;
                 }
+            } else if error < AIM && self.a[self.last ^ 1][0][i].0.iter().any(|&a| a != T::from_f64(0.0)) {
+                // Too small for squares, which is not zero: steps become no longer.
+                error = AIM;
             }
         }
         error

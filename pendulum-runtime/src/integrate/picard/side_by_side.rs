@@ -9,10 +9,10 @@ use crate::time::Time;
 
 use super::tableau::S;
 
-/// Dynamics of a system that `lagrangian!` has made, over `f64` or `f32`: the accelerations at eight times are computed side by side.
+/// Dynamics of a system that `lagrangian!` has made: the accelerations at eight times can be computed side by side.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be evaluated at several times at once",
-    note = "`Picard` takes systems that `lagrangian!` has made, over `f64` or `f32`; for others use `Dop853`"
+    note = "`Picard` takes systems that `lagrangian!` has made; for others use `Dop853`"
 )]
 pub trait SideBySide<const N: usize>: Dynamics<N, Scalar: Lane + Float> {
     /// The system over lanes.
