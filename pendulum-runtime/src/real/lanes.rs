@@ -56,6 +56,17 @@ impl Lane for DoubleDouble {
     }
 }
 
+/// A statement for each of eight lanes. Thousands of loops in one function would take the compiler half a minute to write out.
+macro_rules! eight {
+    ($k:ident => $statement:expr) => {
+        eight!($k => $statement; 0 1 2 3 4 5 6 7)
+    };
+    ($k:ident => $statement:expr; $($index:literal)+) => {$({
+        let $k = $index;
+        $statement;
+    })+};
+}
+
 impl<T: Lane, const W: usize> Lanes<T, W> {
     /// The same number in every lane.
     #[inline(always)]
@@ -63,10 +74,38 @@ impl<T: Lane, const W: usize> Lanes<T, W> {
         Self([value; W])
     }
 
+    /// The same number, known before, in every lane.
+    #[inline(always)]
+    fn constant(value: T) -> Self {
+        let eight = [value, value, value, value, value, value, value, value];
+        match eight.first_chunk() {
+            Some(lanes) if W == 8 => Self(*lanes),
+            _ => Self::splat(value),
+        }
+    }
+
+    /// Numbers known before, one for each lane.
+    #[inline(always)]
+    pub(crate) fn known(values: &[f64; W]) -> Self {
+        let mut result = Self::constant(T::from_f64(0.0));
+        if W == 8 {
+            eight!(k => result.0[k] = T::from_f64(values[k]));
+            return result;
+        }
+        for (x, &value) in result.0.iter_mut().zip(values) {
+            *x = T::from_f64(value);
+        }
+        result
+    }
+
     /// Each lane through a function.
     #[inline(always)]
     fn each(self, f: impl Fn(T) -> T) -> Self {
         let mut result = self;
+        if W == 8 {
+            eight!(k => result.0[k] = f(self.0[k]));
+            return result;
+        }
         for x in &mut result.0 {
             *x = f(*x);
         }
@@ -77,6 +116,10 @@ impl<T: Lane, const W: usize> Lanes<T, W> {
     #[inline(always)]
     fn pairs(self, other: Self, f: impl Fn(T, T) -> T) -> Self {
         let mut result = self;
+        if W == 8 {
+            eight!(k => result.0[k] = f(self.0[k], other.0[k]));
+            return result;
+        }
         for (x, y) in result.0.iter_mut().zip(other.0) {
             *x = f(*x, y);
         }
@@ -141,17 +184,17 @@ macro_rules! binary {
 impl<T: Lane, const W: usize> Real for Lanes<T, W> {
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
-        Self::splat(T::from_f64(value))
+        Self::constant(T::from_f64(value))
     }
 
     #[inline(always)]
     fn ratio(numerator: f64, denominator: f64) -> Self {
-        Self::splat(T::ratio(numerator, denominator))
+        Self::constant(T::ratio(numerator, denominator))
     }
 
     #[inline(always)]
     fn pi() -> Self {
-        Self::splat(T::pi())
+        Self::constant(T::pi())
     }
 
     #[inline(always)]

@@ -158,7 +158,7 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
     let (t, inputs) = at_nodes(equations.dynamics, equations.span, &tableau.nodes[0]);
     let mut known = [(t, inputs, Of::<D, N>::at_time(t, &inputs)); G];
     for g in 0..G {
-        let elapsed = numbers::<T, S>(&tableau.nodes[g]) * h;
+        let elapsed = Wide::<T>::known(&tableau.nodes[g]) * h;
         for i in 0..N {
             straight[g][i] = Wide::splat(equations.q[i]) + elapsed * Wide::splat(equations.v[i]);
         }
@@ -211,15 +211,6 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
     }
 }
 
-#[inline(always)]
-fn numbers<T: Lane, const W: usize>(values: &[f64; W]) -> Lanes<T, W> {
-    let mut lanes = Lanes::splat(T::from_f64(0.0));
-    for k in 0..W {
-        lanes.0[k] = T::from_f64(values[k]);
-    }
-    lanes
-}
-
 /// Σ value_j column_j for each coordinate and each set of columns.
 ///
 /// The values have to be in memory, from where each goes to all lanes at once, and `half`, which is `S / 2`, must not be known to the compiler: it
@@ -236,11 +227,15 @@ fn sums<T: Lane, const N: usize, const G: usize, const H: usize, const W: usize,
         let j = j % (S / 2);
         for g in 0..G {
             for i in 0..N {
-                let (x, y) = (Lanes::splat(values[g][i].0[j]), Lanes::splat(values[g][i].0[j + S / 2]));
+                let (x, y) = (values[g][i].0[j], values[g][i].0[j + S / 2]);
                 for c in 0..C {
                     for to in 0..H {
-                        parts[c][to][i][0] += numbers(&columns[c][g][j][to]) * x;
-                        parts[c][to][i][1] += numbers(&columns[c][g][j + S / 2][to]) * y;
+                        let (even, odd) = (&columns[c][g][j][to], &columns[c][g][j + S / 2][to]);
+                        let [p, q] = &mut parts[c][to][i];
+                        for k in 0..W {
+                            p.0[k] += T::from_f64(even[k]) * x;
+                            q.0[k] += T::from_f64(odd[k]) * y;
+                        }
                     }
                 }
             }
@@ -268,7 +263,7 @@ fn total<T: Lane>(values: &Wide<T>) -> T {
 #[inline(always)]
 fn extrapolated<T: Lane, const N: usize>(before: &Stages<T, N, 1>, ratio: T, half: usize) -> Stages<T, N, 1> {
     let one = Wide::splat(T::from_f64(1.0));
-    let at = one + numbers::<T, S>(&EIGHT.nodes[0]) * Wide::splat(ratio);
+    let at = one + Wide::<T>::known(&EIGHT.nodes[0]) * Wide::splat(ratio);
     // Lagrange's polynomials: ∏ (x − c_k) over k < j and over k > j.
     let mut weights = [one; S];
     let mut product = one;

@@ -27,19 +27,20 @@ use tableau::{EIGHT, S};
 /// Collocation with the accelerations at eight Gauss nodes, which are evaluated side by side in the lanes of a vector: order 16, adaptive.
 ///
 /// A_i = a(t + c_i h, Q_i, V_i) with V_i = v₀ + h Σ a_ij A_j and Q_i = q₀ + c_i h v₀ + h² Σ (A²)_ij A_j is solved by Picard's iteration from the
-/// polynomial of the step before, in four to six sweeps. A sweep evaluates the accelerations at all nodes at once, in little more than
-/// the time of one evaluation on a machine with vectors of 64 bytes, in twice that with 32 and four times with 16: this is the fastest
-/// method here for most systems and errors. It suits every system that `lagrangian!` has made and any motion, analytic or not.
+/// polynomial of the step before, in four to seven sweeps. A sweep evaluates the accelerations at all nodes at once, in the time of one or two
+/// evaluations on a machine with vectors of 64 or 32 bytes, and up to three times that with 16: this is the fastest method here for most
+/// systems and errors. It suits every system that `lagrangian!` has made and any motion, analytic or not.
 ///
 /// The error of a step is estimated as a quarter of a thousandth of h α₇²/|A| in the velocities, where α₇ is the larger of the last two coefficients of
-/// the accelerations after Legendre: the nodes are those for which what is left out counts only by its product with itself. The length of
+/// the accelerations after Legendre: the nodes are those for which what is left out counts only by its product with itself. Where accelerations
+/// do not have all derivatives (closures, `abs`, `max`) it is h α₇/16; steps end where a motion is known to break. The length of
 /// the steps stays the same as long as the error is within bounds; `rtol` may be as small as you like, and below about 1e-15 the error is that of
 /// rounding. Without `atol` it is `rtol`, in the units of each coordinate. Fixed steps are iterated down to rounding; while h·ω stays
 /// below about 1.5 that converges, and an iteration that does not is an [error](crate::error::Error::NoConvergence). A stiff spring or
 /// damper shortens the steps: take [`Rodas4`](super::Rodas4) or [`Gauss`](super::Gauss) there.
 ///
-/// The sum of the state is compensated. Dense output is the collocation polynomial at sixteen nodes, as exact as the ends; it costs about as
-/// much as the step.
+/// The sum of the state is compensated; the coefficients have the digits of `f64`, so that over scalars of two words it is no better than over one.
+/// Dense output is the collocation polynomial at sixteen nodes, as exact as the ends; it costs about as much as the step.
 ///
 /// Source: van der Houwen and Sommeijer (1990), Parallel iteration of high-order Runge–Kutta methods with stepsize control, J. Comput. Appl.
 /// Math. 29, 111, here for second-order equations; for the iteration over the whole step Clenshaw and Norton (1963), The solution of

@@ -28,11 +28,12 @@ pub(super) struct Collocation<const G: usize> {
     pub(super) lagrange: [Nodes; G],
 }
 
-pub(super) const EIGHT: Collocation<1> = collocation(EIGHT_NODES);
-pub(super) const SIXTEEN: Collocation<2> = collocation(SIXTEEN_NODES);
+// Not constants: these would be computed again in every crate that uses them.
+pub(super) static EIGHT: Collocation<1> = collocation(EIGHT_NODES);
+pub(super) static SIXTEEN: Collocation<2> = collocation(SIXTEEN_NODES);
 
 /// The values at sixteen nodes of the polynomial through those at eight.
-pub(super) const REFINED: Columns<1, 2> = {
+pub(super) static REFINED: Columns<1, 2> = {
     let mut refined = [[[[0.0; S]; 2]; S]; 1];
     let mut j = 0;
     while j < S {
