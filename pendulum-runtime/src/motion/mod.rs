@@ -20,7 +20,7 @@ mod still;
 #[cfg(test)]
 mod tests;
 
-use crate::real::{Lane, Lanes, Real};
+use crate::real::{Lane, Octet, Real};
 use crate::system::{Input, Purpose};
 use crate::time::Time;
 pub use analytic::{Analytic, AnalyticMotions, PerhapsAnalytic};
@@ -53,13 +53,13 @@ pub trait Motion<T: Real, const D: usize> {
     }
 
     /// The same at eight times, a lane each, with the bits of single samples: what [`Picard`](crate::integrate::Picard) asks for.
-    fn sample_lanes(&self, times: &[Time; 8], orders: Orders) -> Sample<Lanes<T, 8>, D>
+    fn sample_lanes(&self, times: &[Time; 8], orders: Orders) -> Sample<Octet<T>, D>
     where
         T: Lane,
     {
         let mut samples = [Sample::zero(); 8];
         self.sample_all(times, orders, &mut samples);
-        let mut lanes = Sample::<Lanes<T, 8>, D>::zero();
+        let mut lanes = Sample::<Octet<T>, D>::zero();
         for (k, sample) in samples.iter().enumerate() {
             for d in 0..D {
                 lanes.position[d].0[k] = sample.position[d];

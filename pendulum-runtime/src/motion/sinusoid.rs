@@ -1,7 +1,7 @@
 //! A harmonic motion.
 
 use super::{Analytic, Motion, Orders, Sample, Side};
-use crate::real::{Lane, Lanes, Real};
+use crate::real::{Lane, Octet, Real};
 use crate::simd::{Work, widest};
 use crate::time::Time;
 
@@ -68,11 +68,11 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
 
     #[inline(always)]
     #[allow(clippy::inline_always)]
-    fn sample_lanes(&self, times: &[Time; 8], orders: Orders) -> Sample<Lanes<T, 8>, D>
+    fn sample_lanes(&self, times: &[Time; 8], orders: Orders) -> Sample<Octet<T>, D>
     where
         T: Lane,
     {
-        let mut lanes = Sample::<Lanes<T, 8>, D>::zero();
+        let mut lanes = Sample::<Octet<T>, D>::zero();
         for d in 0..D {
             let mut angles = [0.0; 8];
             for k in 0..8 {

@@ -56,17 +56,6 @@ impl Lane for DoubleDouble {
     }
 }
 
-/// A statement for each of eight lanes. Thousands of loops in one function would take the compiler half a minute to write out.
-macro_rules! eight {
-    ($k:ident => $statement:expr) => {
-        eight!($k => $statement; 0 1 2 3 4 5 6 7)
-    };
-    ($k:ident => $statement:expr; $($index:literal)+) => {$({
-        let $k = $index;
-        $statement;
-    })+};
-}
-
 impl<T: Lane, const W: usize> Lanes<T, W> {
     /// The same number in every lane.
     #[inline(always)]
@@ -77,35 +66,13 @@ impl<T: Lane, const W: usize> Lanes<T, W> {
     /// The same number, known before, in every lane.
     #[inline(always)]
     fn constant(value: T) -> Self {
-        let eight = [value, value, value, value, value, value, value, value];
-        match eight.first_chunk() {
-            Some(lanes) if W == 8 => Self(*lanes),
-            _ => Self::splat(value),
-        }
-    }
-
-    /// Numbers known before, one for each lane.
-    #[inline(always)]
-    pub(crate) fn known(values: &[f64; W]) -> Self {
-        let mut result = Self::constant(T::from_f64(0.0));
-        if W == 8 {
-            eight!(k => result.0[k] = T::from_f64(values[k]));
-            return result;
-        }
-        for (x, &value) in result.0.iter_mut().zip(values) {
-            *x = T::from_f64(value);
-        }
-        result
+        Self::splat(value)
     }
 
     /// Each lane through a function.
     #[inline(always)]
     fn each(self, f: impl Fn(T) -> T) -> Self {
         let mut result = self;
-        if W == 8 {
-            eight!(k => result.0[k] = f(self.0[k]));
-            return result;
-        }
         for x in &mut result.0 {
             *x = f(*x);
         }
@@ -116,10 +83,6 @@ impl<T: Lane, const W: usize> Lanes<T, W> {
     #[inline(always)]
     fn pairs(self, other: Self, f: impl Fn(T, T) -> T) -> Self {
         let mut result = self;
-        if W == 8 {
-            eight!(k => result.0[k] = f(self.0[k], other.0[k]));
-            return result;
-        }
         for (x, y) in result.0.iter_mut().zip(other.0) {
             *x = f(*x, y);
         }
@@ -127,39 +90,56 @@ impl<T: Lane, const W: usize> Lanes<T, W> {
     }
 }
 
-macro_rules! operator {
-    ($($operation:ident $function:ident $assign:ident $in_place:ident $symbol:tt)+) => {$(
-        impl<T: Lane, const W: usize> $operation for Lanes<T, W> {
-            type Output = Self;
+/// Eight numbers that go through the same operations: as [`Lanes`], but every operation is written out.
+///
+/// A loop for each of thousands of operations in one function takes the compiler half a minute to unroll; where there are few, as in
+/// recurrences that loop themselves, the loops become the better code.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
+pub struct Octet<T>(pub [T; 8]);
 
-            #[inline(always)]
-            fn $function(self, other: Self) -> Self {
-                self.pairs(other, |a, b| a $symbol b)
-            }
-        }
-
-        impl<T: Lane, const W: usize> $assign for Lanes<T, W> {
-            #[inline(always)]
-            fn $in_place(&mut self, other: Self) {
-                *self = *self $symbol other;
-            }
-        }
-    )+};
+/// An array with an element for each of eight lanes.
+macro_rules! eight {
+    ($k:ident => $element:expr) => {
+        eight!($k => $element; 0 1 2 3 4 5 6 7)
+    };
+    ($k:ident => $element:expr; $($index:literal)+) => {
+        Self([$({
+            let $k = $index;
+            $element
+        }),+])
+    };
 }
 
-operator! {
-    Add add AddAssign add_assign +
-    Sub sub SubAssign sub_assign -
-    Mul mul MulAssign mul_assign *
-    Div div DivAssign div_assign /
-}
-
-impl<T: Lane, const W: usize> Neg for Lanes<T, W> {
-    type Output = Self;
-
+impl<T: Lane> Octet<T> {
+    /// The same number in every lane.
     #[inline(always)]
-    fn neg(self) -> Self {
-        self.each(|x| -x)
+    pub fn splat(value: T) -> Self {
+        Self([value; 8])
+    }
+
+    /// The same number, known before, in every lane.
+    #[inline(always)]
+    fn constant(value: T) -> Self {
+        eight!(_k => value)
+    }
+
+    /// Numbers known before, one for each lane.
+    #[inline(always)]
+    pub(crate) fn known(values: &[f64; 8]) -> Self {
+        eight!(k => T::from_f64(values[k]))
+    }
+
+    /// Each lane through a function.
+    #[inline(always)]
+    fn each(self, f: impl Fn(T) -> T) -> Self {
+        eight!(k => f(self.0[k]))
+    }
+
+    /// Each pair of lanes through a function.
+    #[inline(always)]
+    fn pairs(self, other: Self, f: impl Fn(T, T) -> T) -> Self {
+        eight!(k => f(self.0[k], other.0[k]))
     }
 }
 
@@ -181,52 +161,95 @@ macro_rules! binary {
     )+};
 }
 
-impl<T: Lane, const W: usize> Real for Lanes<T, W> {
-    #[inline(always)]
-    fn from_f64(value: f64) -> Self {
-        Self::constant(T::from_f64(value))
-    }
+macro_rules! operator {
+    ([$($width:tt)*] $lanes:ty; $operation:ident $function:ident $assign:ident $in_place:ident $symbol:tt) => {
+        impl<T: Lane, $($width)*> $operation for $lanes {
+            type Output = Self;
 
-    #[inline(always)]
-    fn ratio(numerator: f64, denominator: f64) -> Self {
-        Self::constant(T::ratio(numerator, denominator))
-    }
+            #[inline(always)]
+            fn $function(self, other: Self) -> Self {
+                self.pairs(other, |a, b| a $symbol b)
+            }
+        }
 
-    #[inline(always)]
-    fn pi() -> Self {
-        Self::constant(T::pi())
-    }
-
-    #[inline(always)]
-    fn sin_cos(self) -> (Self, Self) {
-        let (sin, cos) = T::sin_cos_lanes(&self.0);
-        (Self(sin), Self(cos))
-    }
-
-    #[inline(always)]
-    fn sin(self) -> Self {
-        self.sin_cos().0
-    }
-
-    #[inline(always)]
-    fn cos(self) -> Self {
-        self.sin_cos().1
-    }
-
-    unary! { tan asin acos atan sinh cosh tanh exp ln sqrt abs sign step }
-    binary! { atan2 powf max min }
+        impl<T: Lane, $($width)*> $assign for $lanes {
+            #[inline(always)]
+            fn $in_place(&mut self, other: Self) {
+                *self = *self $symbol other;
+            }
+        }
+    };
 }
+
+/// Makes a number of a type with `each`, `pairs` and `constant`.
+macro_rules! number {
+    ([$($width:tt)*] $lanes:ty) => {
+        operator! { [$($width)*] $lanes; Add add AddAssign add_assign + }
+        operator! { [$($width)*] $lanes; Sub sub SubAssign sub_assign - }
+        operator! { [$($width)*] $lanes; Mul mul MulAssign mul_assign * }
+        operator! { [$($width)*] $lanes; Div div DivAssign div_assign / }
+
+        impl<T: Lane, $($width)*> Neg for $lanes {
+            type Output = Self;
+
+            #[inline(always)]
+            fn neg(self) -> Self {
+                self.each(|x| -x)
+            }
+        }
+
+        impl<T: Lane, $($width)*> Real for $lanes {
+            #[inline(always)]
+            fn from_f64(value: f64) -> Self {
+                Self::constant(T::from_f64(value))
+            }
+
+            #[inline(always)]
+            fn ratio(numerator: f64, denominator: f64) -> Self {
+                Self::constant(T::ratio(numerator, denominator))
+            }
+
+            #[inline(always)]
+            fn pi() -> Self {
+                Self::constant(T::pi())
+            }
+
+            #[inline(always)]
+            fn sin_cos(self) -> (Self, Self) {
+                let (sin, cos) = T::sin_cos_lanes(&self.0);
+                (Self(sin), Self(cos))
+            }
+
+            #[inline(always)]
+            fn sin(self) -> Self {
+                self.sin_cos().0
+            }
+
+            #[inline(always)]
+            fn cos(self) -> Self {
+                self.sin_cos().1
+            }
+
+            unary! { tan asin acos atan sinh cosh tanh exp ln sqrt abs sign step }
+            binary! { atan2 powf max min }
+        }
+    };
+}
+
+number! { [const W: usize] Lanes<T, W> }
+number! { [] Octet<T> }
 
 #[cfg(test)]
 mod tests {
-    use super::Lanes;
+    use super::{Lanes, Octet};
     use crate::real::Real;
 
-    fn same<const W: usize>(x: [f64; W], y: [f64; W]) {
-        let (a, b) = (Lanes(x), Lanes(y));
-        let check = |lanes: Lanes<f64, W>, single: fn(f64, f64) -> f64, name: &str| {
-            for k in 0..W {
-                assert_eq!(lanes.0[k].to_bits(), single(x[k], y[k]).to_bits(), "{name} of {} and {}", x[k], y[k]);
+    /// What `numbers` gives for lanes from two arrays has the bits of single numbers.
+    fn same<const W: usize, L: Real>(x: [f64; W], y: [f64; W], lanes: fn([f64; W]) -> L, numbers: fn(L) -> [f64; W]) {
+        let (a, b) = (lanes(x), lanes(y));
+        let check = |lanes: L, single: fn(f64, f64) -> f64, name: &str| {
+            for (k, number) in numbers(lanes).into_iter().enumerate() {
+                assert_eq!(number.to_bits(), single(x[k], y[k]).to_bits(), "{name} of {} and {}", x[k], y[k]);
             }
         };
         check(a + b, |x, y| x + y, "sum");
@@ -249,8 +272,10 @@ mod tests {
         for scale in [1.0, 1e3, 1e7] {
             let x = core::array::from_fn::<f64, 16, _>(|k| (k as f64 - 7.3) * 0.91 * scale);
             let y = core::array::from_fn::<f64, 16, _>(|k| (3.1 - k as f64) * 0.37);
-            same(x, y);
+            same(x, y, Lanes, |lanes| lanes.0);
+            let [x, y] = [x, y].map(|numbers| *numbers.first_chunk().expect("eight of sixteen"));
+            same(x, y, Octet, |lanes| lanes.0);
         }
-        same([0.0, -0.0, 1e-310, f64::INFINITY], [-0.0, 0.0, 2.0, 1.0]);
+        same([0.0, -0.0, 1e-310, f64::INFINITY], [-0.0, 0.0, 2.0, 1.0], Lanes, |lanes| lanes.0);
     }
 }

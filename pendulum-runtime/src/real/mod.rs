@@ -8,7 +8,7 @@ mod trig;
 
 pub use double_double::{DoubleDouble, ParseError};
 pub use dual::Dual;
-pub use lanes::{Lane, Lanes};
+pub use lanes::{Lane, Lanes, Octet};
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};

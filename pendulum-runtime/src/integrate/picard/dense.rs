@@ -8,7 +8,7 @@ use crate::integrate::field::Counted;
 use crate::integrate::node::Node;
 use crate::integrate::piece::{Basis, Piece, TERMS};
 use crate::integrate::span::Span;
-use crate::real::{Lanes, Real};
+use crate::real::{Octet, Real};
 use crate::simd;
 
 /// The coefficients of the accelerations.
@@ -24,7 +24,7 @@ pub(super) fn piece<D: SideBySide<N>, const N: usize>(
 ) -> Piece<D::Scalar, N> {
     let (number, h) = (D::Scalar::from_f64, span.length::<D::Scalar>());
     let zero = number(0.0);
-    let mut series = [[Lanes::splat(zero); N]; 2];
+    let mut series = [[Octet::splat(zero); N]; 2];
     simd::wide(Within {
         equations: Equations {
             dynamics: field.dynamics,

@@ -7,13 +7,13 @@
 use super::side_by_side::SideBySide;
 use super::tableau::{Collocation, EIGHT, Nodes, REFINED, S, SIXTEEN};
 use crate::integrate::span::Span;
-use crate::real::{Float, Lane, Lanes};
+use crate::real::{Float, Lane, Octet};
 use crate::simd::Work;
 use crate::system::{Staged, System, scalar_time};
 use core::hint::black_box;
 
 /// One number for each node of a vector.
-pub(super) type Wide<T> = Lanes<T, S>;
+pub(super) type Wide<T> = Octet<T>;
 
 /// The accelerations at the nodes of a step, by vector and coordinate.
 pub(super) type Stages<T, const N: usize, const G: usize> = [[Wide<T>; N]; G];
@@ -91,7 +91,7 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Onw
         let half = black_box(S / 2);
         let mut guess = *before;
         if ratio == T::from_f64(1.0) {
-            [guess] = sums(black_box(before), [&EIGHT.ahead], half);
+            guess = lanes(sums(black_box(before), [&EIGHT.ahead], half)[0]);
         } else if ratio != T::from_f64(0.0) {
             guess = extrapolated(black_box(before), ratio, half);
         }
@@ -99,7 +99,7 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Onw
         *a = guess;
         let [[sums]] = sums(black_box(a), [&EIGHT.ends], half);
         for i in 0..N {
-            let [once, twice, last, before] = sums[i].0;
+            let [once, twice, last, before] = sums[i];
             (ends.once[i], ends.twice[i], ends.last[i]) = (once, twice, [last, before]);
             ends.square[i] = total(black_box(&(guess[0][i] * guess[0][i]))) * T::from_f64(1.0 / S as f64);
         }
@@ -119,9 +119,9 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Wit
     #[inline(always)]
     fn run(self) {
         let half = black_box(S / 2);
-        let [mut a] = sums(black_box(self.a), [&REFINED], half);
+        let mut a = lanes(sums(black_box(self.a), [&REFINED], half)[0]);
         sweeps(&self.equations, &SIXTEEN, &mut a, half);
-        [*self.series] = sums(black_box(&a), [&SIXTEEN.legendre], half);
+        *self.series = lanes(sums(black_box(&a), [&SIXTEEN.legendre], half)[0]);
     }
 }
 
@@ -176,6 +176,7 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
             }
         }
         let [once, twice] = sums(black_box(&scaled), [&tableau.once, &tableau.twice], half);
+        let (once, twice) = (lanes(once), lanes(twice));
         let mut changes = zero;
         for g in 0..G {
             let (mut q, mut v) = (straight[g], once[g]);
@@ -220,8 +221,8 @@ fn sums<T: Lane, const N: usize, const G: usize, const H: usize, const W: usize,
     values: &Stages<T, N, G>,
     columns: [&'static [[[[f64; W]; H]; S]; G]; C],
     half: usize,
-) -> [[[Lanes<T, W>; N]; H]; C] {
-    let zero = Lanes::splat(T::from_f64(0.0));
+) -> [[[[T; W]; N]; H]; C] {
+    let zero = [T::from_f64(0.0); W];
     let mut parts = [[[[zero; 2]; N]; H]; C];
     for j in 0..half {
         let j = j % (S / 2);
@@ -233,8 +234,8 @@ fn sums<T: Lane, const N: usize, const G: usize, const H: usize, const W: usize,
                         let (even, odd) = (&columns[c][g][j][to], &columns[c][g][j + S / 2][to]);
                         let [p, q] = &mut parts[c][to][i];
                         for k in 0..W {
-                            p.0[k] += T::from_f64(even[k]) * x;
-                            q.0[k] += T::from_f64(odd[k]) * y;
+                            p[k] += T::from_f64(even[k]) * x;
+                            q[k] += T::from_f64(odd[k]) * y;
                         }
                     }
                 }
@@ -245,11 +246,25 @@ fn sums<T: Lane, const N: usize, const G: usize, const H: usize, const W: usize,
     for c in 0..C {
         for to in 0..H {
             for i in 0..N {
-                sums[c][to][i] = parts[c][to][i][0] + parts[c][to][i][1];
+                for k in 0..W {
+                    sums[c][to][i][k] = parts[c][to][i][0][k] + parts[c][to][i][1][k];
+                }
             }
         }
     }
     sums
+}
+
+/// Sums for all nodes as lanes.
+#[inline(always)]
+fn lanes<T: Lane, const N: usize, const G: usize>(sums: [[[T; S]; N]; G]) -> Stages<T, N, G> {
+    let mut lanes = [[Wide::splat(T::from_f64(0.0)); N]; G];
+    for g in 0..G {
+        for i in 0..N {
+            lanes[g][i] = Octet(sums[g][i]);
+        }
+    }
+    lanes
 }
 
 /// The sum over all lanes, of halves.

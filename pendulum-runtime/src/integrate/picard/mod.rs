@@ -16,7 +16,7 @@ use super::span::Span;
 use super::stepper::Stepper;
 use crate::error::{Error, Quantity};
 use crate::motion::Side;
-use crate::real::{Float, Lane, Lanes, Real};
+use crate::real::{Float, Lane, Octet, Real};
 use crate::simd;
 use crate::system::{Dynamics, System};
 use crate::time::Time;
@@ -204,7 +204,7 @@ fn attempt<D: SideBySide<N>, const N: usize>(
     let mut largest = number(0.0);
     if ratio == 0.0 {
         let a = from.start_acceleration(field);
-        (room.a[room.last], room.sweeps) = ([a.map(Lanes::splat)], 2);
+        (room.a[room.last], room.sweeps) = ([a.map(Octet::splat)], 2);
         largest = a.into_iter().fold(largest, |largest, a| largest.max(Real::abs(a)));
     } else {
         largest = room.ends.square.into_iter().fold(largest, Real::max).sqrt();
@@ -249,7 +249,7 @@ impl<D: SideBySide<N>, const N: usize> Stepper<D, N> for Picard {
         Room {
             prepared: dynamics.widened().prepare(),
             smooth: dynamics.is_smooth(),
-            a: [[[Lanes::splat(zero); N]]; 2],
+            a: [[[Octet::splat(zero); N]]; 2],
             last: 0,
             end: None,
             h: 0.0,

@@ -3,7 +3,7 @@
 #![allow(clippy::inline_always)]
 
 use crate::motion::{Motion, PerhapsAnalytic, Sample, orders};
-use crate::real::{Float, Lane, Lanes, Real};
+use crate::real::{Float, Lane, Octet, Real};
 use crate::system::{Driven, Dynamics, Input, Prepared, Purpose, Samples, Staged, System};
 use crate::time::Time;
 
@@ -17,7 +17,7 @@ use super::tableau::S;
 pub trait SideBySide<const N: usize>: Dynamics<N, Scalar: Lane + Float> {
     /// The system over lanes.
     #[doc(hidden)]
-    type Wide: Staged<N, Scalar = Lanes<Self::Scalar, 8>>;
+    type Wide: Staged<N, Scalar = Octet<Self::Scalar>>;
 
     /// The system with the same parameters in every lane.
     #[doc(hidden)]
@@ -39,13 +39,13 @@ pub trait SideBySide<const N: usize>: Dynamics<N, Scalar: Lane + Float> {
 impl<S0, const N: usize> SideBySide<N> for S0
 where
     S0: System<N, Scalar: Lane + Float, Inputs = ()>,
-    S0::With<Lanes<S0::Scalar, S>>: Staged<N, Inputs = ()>,
+    S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = ()>,
 {
-    type Wide = S0::With<Lanes<S0::Scalar, S>>;
+    type Wide = S0::With<Octet<S0::Scalar>>;
 
     #[inline(always)]
     fn widened(&self) -> Self::Wide {
-        self.map(Lanes::splat)
+        self.map(Octet::splat)
     }
 
     #[inline(always)]
@@ -65,13 +65,13 @@ impl<S0, M, const N: usize> SideBySide<N> for Driven<S0, M>
 where
     S0: System<N, Scalar: Lane + Float>,
     M: MotionsSideBySide<S0::Inputs, S0::Scalar> + PerhapsAnalytic<S0::Inputs, S0::Scalar>,
-    S0::With<Lanes<S0::Scalar, S>>: Staged<N, Inputs = M::Wide>,
+    S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = M::Wide>,
 {
-    type Wide = S0::With<Lanes<S0::Scalar, S>>;
+    type Wide = S0::With<Octet<S0::Scalar>>;
 
     #[inline(always)]
     fn widened(&self) -> Self::Wide {
-        self.system.map(Lanes::splat)
+        self.system.map(Octet::splat)
     }
 
     #[inline(always)]
@@ -132,7 +132,7 @@ impl<T: Real> MotionsSideBySide<(), T> for () {
 macro_rules! tuples {
     ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
         impl<T: Lane, $($motion: Motion<T, $dim>, const $dim: usize),+> MotionsSideBySide<($(Sample<T, $dim>,)+), T> for ($($motion,)+) {
-            type Wide = ($(Sample<Lanes<T, S>, $dim>,)+);
+            type Wide = ($(Sample<Octet<T>, $dim>,)+);
 
             #[inline(always)]
             fn sample_all(&self, times: &[Time; S], inputs: &[Input]) -> Self::Wide {
