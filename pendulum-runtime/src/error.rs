@@ -72,11 +72,11 @@ pub enum Error {
     },
     /// The iteration for the equations of an implicit step moved away from a solution.
     NoConvergence {
-        /// The time of the stage that was furthest off.
+        /// The time of the stage that was furthest off, or of the end of the step.
         t: f64,
         /// The length of the step.
         step: f64,
-        /// The coordinate that was furthest off.
+        /// The coordinate that was furthest off, or is accelerated most.
         coordinate: Coordinate,
     },
     /// The allowed number of steps is used up, or would be.
@@ -211,7 +211,7 @@ impl fmt::Display for Error {
             Self::NoConvergence { t, step, coordinate } => write!(
                 f,
                 "at t = {t:?} the equations of a step of {step:?} s could not be solved for {coordinate}; \
-                 try a shorter step or, if a spring or damper is stiff, Newton's method"
+                 try a shorter step or, if a spring or damper is stiff, `Gauss` with Newton's method"
             ),
             Self::MaxSteps { t, max_steps } => write!(
                 f,

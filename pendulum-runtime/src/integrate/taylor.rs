@@ -21,7 +21,7 @@ use crate::system::{Dynamics, System, scalar_time};
 /// The Taylor series of the motion: any order up to 30, adaptive, forwards and backwards in time.
 ///
 /// It suits every system that `lagrangian!` has made and every motion that is [`Analytic`](crate::motion::Analytic), and is the choice
-/// for errors from 1e-8 down to rounding. Its steps are long and it rejects none: the coefficients tell the radius of convergence. It is
+/// for the last digits and for the way back in time. Its steps are long and it rejects none: the coefficients tell the radius of convergence. It is
 /// explicit, so that a stiff spring or damper shortens its steps, and it is wrong where the equations themselves are not smooth: at the
 /// zeros of `abs`, and where the larger of two numbers changes.
 ///

@@ -1,4 +1,4 @@
-"""Prints the constants of src/integrate/gauss/tableau.rs, and nodes and weights for src/integrate/picard/tableau.rs: Gauss-Legendre
+"""Prints the constants of src/integrate/gauss/tableau.rs, and sixteen nodes and weights for src/integrate/picard/tableau.rs: Gauss-Legendre
 collocation to 50 digits, rounded once.
 
     python gauss.py        (needs mpmath)

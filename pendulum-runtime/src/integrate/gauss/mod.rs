@@ -15,7 +15,7 @@ use crate::real::Float;
 use crate::system::{Jacobians, System};
 use crate::time::Time;
 use equations::{Change, Equations, Linearized, Slopes};
-use tableau::Tableau;
+pub(super) use tableau::Tableau;
 
 /// The Gauss method with `S` = 1, 2, 3, 4 or 8 stages: implicit, order 2S, symplectic for every conservative system, fixed step.
 ///

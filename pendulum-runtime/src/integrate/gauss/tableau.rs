@@ -2,20 +2,20 @@
 
 /// Nodes and weights of collocation at `S` points.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Tableau<const S: usize> {
+pub(in crate::integrate) struct Tableau<const S: usize> {
     /// The nodes c: the roots of P_S(2c − 1).
-    pub(super) nodes: [f64; S],
+    pub(in crate::integrate) nodes: [f64; S],
     /// The weights b of the quadrature on [0, 1].
-    pub(super) weights: [f64; S],
+    pub(in crate::integrate) weights: [f64; S],
     /// m_ij = a_ij/b_j, for which m_ij + m_ji = 1 holds exactly: this, and not the digits of b, makes the rounded method symplectic.
-    pub(super) ratios: [[f64; S]; S],
+    pub(in crate::integrate) ratios: [[f64; S]; S],
     /// The value at 1 + c_i of the polynomial that is 1 at c_j and 0 at the other nodes.
-    pub(super) ahead: [[f64; S]; S],
+    pub(in crate::integrate) ahead: [[f64; S]; S],
 }
 
 impl<const S: usize> Tableau<S> {
     /// The coefficients for S = 1, 2, 3, 4 or 8; does not compile for others.
-    pub(super) const GAUSS: Self = {
+    pub(in crate::integrate) const GAUSS: Self = {
         let (nodes, weights, below) = match S {
             1 => GAUSS1,
             2 => GAUSS2,

@@ -3,7 +3,7 @@
 use super::kernel::{Equations, Within};
 use super::side_by_side::SideBySide;
 use super::tableau::S;
-use super::{ADAPTIVE, NEGLIGIBLE, RoomOf};
+use super::{FIXED, NEGLIGIBLE, RoomOf};
 use crate::integrate::field::Counted;
 use crate::integrate::node::Node;
 use crate::integrate::piece::{Basis, Piece, TERMS};
@@ -24,7 +24,7 @@ pub(super) fn piece<D: SideBySide<N>, const N: usize>(
 ) -> Piece<D::Scalar, N> {
     let (number, h) = (D::Scalar::from_f64, span.length::<D::Scalar>());
     let zero = number(0.0);
-    let mut series = [[Octet::splat(zero); N]; 2];
+    let (mut series, mut count) = ([[Octet::splat(zero); N]; 2], 0);
     simd::wide(Within {
         equations: Equations {
             dynamics: field.dynamics,
@@ -35,11 +35,13 @@ pub(super) fn piece<D: SideBySide<N>, const N: usize>(
             weights: &room.weights,
             negligible: number(NEGLIGIBLE),
             least: 2,
-            most: ADAPTIVE,
+            most: FIXED,
         },
         a: &room.a[room.last],
         series: &mut series,
+        count: &mut count,
     });
+    field.evaluations += u64::from(count) * COUNT as u64;
     let mut piece = Piece {
         basis: Basis::Legendre,
         terms: COUNT + 1,

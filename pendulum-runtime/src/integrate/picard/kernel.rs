@@ -29,7 +29,7 @@ pub(super) struct Equations<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, c
     /// The state at its start.
     pub(super) q: &'a [T; N],
     pub(super) v: &'a [T; N],
-    /// What a unit of each acceleration, times the step, is of the error allowed.
+    /// The part of the error allowed that a unit of each acceleration makes in the step.
     pub(super) weights: &'a [T; N],
     /// The square of the largest error that may be left.
     pub(super) negligible: T,
@@ -113,6 +113,8 @@ pub(super) struct Within<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, cons
     pub(super) a: &'a Stages<T, N, 1>,
     /// Where the coefficients of the accelerations after Legendre go.
     pub(super) series: &'a mut Stages<T, N, 2>,
+    /// Where the number of sweeps goes.
+    pub(super) count: &'a mut u32,
 }
 
 impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Within<'_, D, T, N> {
@@ -120,7 +122,7 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Wit
     fn run(self) {
         let half = black_box(S / 2);
         let mut a = lanes(sums(black_box(self.a), [&REFINED], half)[0]);
-        sweeps(&self.equations, &SIXTEEN, &mut a, half);
+        *self.count = sweeps(&self.equations, &SIXTEEN, &mut a, half).sweeps;
         *self.series = lanes(sums(black_box(&a), [&SIXTEEN.legendre], half)[0]);
     }
 }
@@ -292,7 +294,7 @@ fn extrapolated<T: Lane, const N: usize>(before: &Stages<T, N, 1>, ratio: T, hal
         product *= at - Wide::splat(T::from_f64(EIGHT.nodes[0][j]));
     }
     let weights = black_box(&weights);
-    let mut a = [[one * Wide::splat(T::from_f64(0.0)); N]; 1];
+    let mut a = [[Wide::splat(T::from_f64(0.0)); N]; 1];
     for j in 0..half {
         let j = j % (S / 2);
         for i in 0..N {

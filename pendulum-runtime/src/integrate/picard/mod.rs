@@ -89,7 +89,7 @@ pub struct Room<T: Lane, P, const N: usize> {
     sweeps: u32,
     /// How exactly the equations were solved.
     weights: [T; N],
-    /// Where the equations of the step were not solved: the time of the last node and the coordinate.
+    /// Where the equations of the step were not solved: its end and the coordinate that is accelerated most.
     unsolved: Option<(Time, usize)>,
 }
 
@@ -201,14 +201,13 @@ fn attempt<D: SideBySide<N>, const N: usize>(
     let number = D::Scalar::from_f64;
     let goes_on = room.end.as_ref().is_some_and(|end| end.t == from.t && end.q == from.q && end.v == from.v);
     let ratio = if goes_on && span.h <= 2.0 * room.h { span.h / room.h } else { 0.0 };
-    let mut largest = number(0.0);
-    if ratio == 0.0 {
+    let largest = if ratio == 0.0 {
         let a = from.start_acceleration(field);
         (room.a[room.last], room.sweeps) = ([a.map(Octet::splat)], 2);
-        largest = a.into_iter().fold(largest, |largest, a| largest.max(Real::abs(a)));
+        a.into_iter().fold(number(0.0), |largest, a| largest.max(Real::abs(a)))
     } else {
-        largest = room.ends.square.into_iter().fold(largest, Real::max).sqrt();
-    }
+        room.ends.square.into_iter().fold(number(0.0), Real::max).sqrt()
+    };
     room.weigh(span.h, from, largest, tolerances);
     let h = span.length::<D::Scalar>();
     let [first, second] = &mut room.a;
@@ -235,7 +234,7 @@ fn attempt<D: SideBySide<N>, const N: usize>(
     let mut to = Node { t: span.end, a: None, ..*from };
     for i in 0..N {
         to.q.add_product(i, h, from.v.high[i], h * (h * twice[i] + from.v.low[i]));
-        to.v.add_product(i, h, once[i], D::Scalar::from_f64(0.0));
+        to.v.add_product(i, h, once[i], number(0.0));
     }
     to
 }

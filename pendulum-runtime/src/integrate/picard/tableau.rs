@@ -1,5 +1,7 @@
 //! The coefficients of collocation at the nodes of Gauss and Legendre, eight to a vector.
 
+use crate::integrate::gauss::Tableau;
+
 /// The lanes of a vector: as many as an `f64` has room for in 64 bytes.
 pub(super) const S: usize = 8;
 
@@ -137,30 +139,13 @@ const fn integral<const G: usize>(rule: &([Nodes; G], [Nodes; G]), j: usize, the
     sum + coefficient(rule, 0, j) * theta
 }
 
-// Printed by tests/data/gauss.py: the nodes and their weights.
+/// The nodes and their weights.
+const EIGHT_NODES: ([Nodes; 1], [Nodes; 1]) = {
+    let Tableau { nodes, weights, .. } = Tableau::<S>::GAUSS;
+    ([nodes], [weights])
+};
 
-const EIGHT_NODES: ([Nodes; 1], [Nodes; 1]) = (
-    [[
-        0.019855071751231884,
-        0.10166676129318664,
-        0.2372337950418355,
-        0.4082826787521751,
-        0.591717321247825,
-        0.7627662049581645,
-        0.8983332387068134,
-        0.9801449282487681,
-    ]],
-    [[
-        0.05061426814518813,
-        0.11119051722668724,
-        0.15685332293894363,
-        0.181341891689181,
-        0.181341891689181,
-        0.15685332293894363,
-        0.11119051722668724,
-        0.05061426814518813,
-    ]],
-);
+// Printed by tests/data/gauss.py.
 
 const SIXTEEN_NODES: ([Nodes; 2], [Nodes; 2]) = (
     [
