@@ -57,7 +57,7 @@ impl<T: Float, const N: usize> Node<T, N> {
     }
 
     /// Whether the whole state is finite.
-    #[inline]
+    #[inline(always)]
     pub fn is_finite(&self) -> bool {
         self.q.is_finite() && self.v.is_finite()
     }

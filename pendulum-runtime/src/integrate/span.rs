@@ -34,7 +34,7 @@ impl Span {
     }
 
     /// Its length in the scalar of a system, with both words.
-    #[inline]
+    #[inline(always)]
     pub fn length<T: Float>(&self) -> T {
         T::from_f64(self.h) + T::from_f64(self.low)
     }

@@ -31,6 +31,12 @@ impl<T: Real, const N: usize> Sum<T, N> {
         }
     }
 
+    /// Adds `increment` to one of the numbers.
+    #[inline(always)]
+    pub(crate) fn add_one(&mut self, index: usize, increment: T) {
+        (self.high[index], self.low[index]) = two_sum(self.high[index], increment + self.low[index]);
+    }
+
     /// Adds `a · b + rest` to one of the numbers; the product comes with both words (Veltkamp 1968, Dekker 1971). The scalar's
     /// [`splitter`] divides the factors.
     #[inline(always)]
@@ -52,7 +58,7 @@ impl<T: Real, const N: usize> Sum<T, N> {
 
 impl<T: Float, const N: usize> Sum<T, N> {
     /// Adds `a · b + rest` to one of the numbers; the product comes with both words.
-    #[inline]
+    #[inline(always)]
     pub fn add_product(&mut self, index: usize, a: T, b: T, rest: T) {
         self.add_split_product(index, a, b, rest, splitter::<T>());
     }
@@ -66,7 +72,7 @@ impl<T: Float, const N: usize> Sum<T, N> {
     }
 
     /// Whether all numbers are finite.
-    #[inline]
+    #[inline(always)]
     pub fn is_finite(&self) -> bool {
         self.high.iter().all(|x| x.is_finite())
     }
@@ -81,7 +87,7 @@ fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
 }
 
 /// One more than the power of two that has half the digits of a number.
-#[inline]
+#[inline(always)]
 pub(crate) fn splitter<T: Float>() -> T {
     // The exponent of the machine epsilon tells the number of digits.
     let digits = 1024 - (T::EPSILON.to_f64().to_bits() >> 52);

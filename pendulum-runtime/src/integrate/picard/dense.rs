@@ -20,7 +20,7 @@ pub(super) fn piece<D: SideBySide<N>, const N: usize>(
     span: &Span,
     from: &Node<D::Scalar, N>,
     to: &Node<D::Scalar, N>,
-    room: &RoomOf<D, N>,
+    room: &mut RoomOf<D, N>,
 ) -> Piece<D::Scalar, N> {
     let (number, h) = (D::Scalar::from_f64, span.length::<D::Scalar>());
     let zero = number(0.0);
@@ -39,6 +39,7 @@ pub(super) fn piece<D: SideBySide<N>, const N: usize>(
         },
         a: &room.a[room.last],
         series: &mut series,
+        scaled: &mut room.within,
         count: &mut count,
     });
     field.evaluations += u64::from(count) * COUNT as u64;

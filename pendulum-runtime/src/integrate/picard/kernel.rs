@@ -5,7 +5,9 @@
 #![allow(clippy::inline_always)]
 
 use super::side_by_side::SideBySide;
-use super::tableau::{Collocation, EIGHT, Nodes, REFINED, S, SIXTEEN};
+use super::tableau::{Columns, EIGHT, Nodes, REFINED, S, SIXTEEN};
+use super::{NEGLIGIBLE, RoomOf, Tolerances};
+use crate::integrate::node::Node;
 use crate::integrate::span::Span;
 use crate::real::{Float, Lane, Octet};
 use crate::simd::Work;
@@ -20,6 +22,59 @@ pub(super) type Stages<T, const N: usize, const G: usize> = [[Wide<T>; N]; G];
 
 /// The system over lanes.
 type Of<D, const N: usize> = <D as SideBySide<N>>::Wide;
+
+/// The columns of h A and h² A², for steps of one length: multiplied once, and not in every sweep.
+#[derive(Clone, Debug)]
+pub(super) struct Scaled<T, const G: usize> {
+    h: T,
+    once: [[[Wide<T>; G]; S]; G],
+    twice: [[[Wide<T>; G]; S]; G],
+}
+
+impl<T: Lane, const G: usize> Scaled<T, G> {
+    pub(super) fn new() -> Self {
+        let zero = [[[Wide::splat(T::from_f64(0.0)); G]; S]; G];
+        Self { h: T::from_f64(0.0), once: zero, twice: zero }
+    }
+
+    /// Makes them of A and A², if the length is another.
+    #[inline(always)]
+    fn scale(&mut self, h: T, once: &'static Columns<G, G>, twice: &'static Columns<G, G>) {
+        if self.h == h {
+            return;
+        }
+        self.h = h;
+        let (h, square) = (Wide::splat(h), Wide::splat(h * h));
+        for g in 0..G {
+            for j in 0..S {
+                for to in 0..G {
+                    self.once[g][j][to] = Wide::<T>::known(&once[g][j][to]) * h;
+                    self.twice[g][j][to] = Wide::<T>::known(&twice[g][j][to]) * square;
+                }
+            }
+        }
+    }
+}
+
+/// A column of a tableau, as it stands there or scaled.
+trait Column<T> {
+    /// One number for each node.
+    fn lanes(&self) -> Wide<T>;
+}
+
+impl<T: Lane> Column<T> for Nodes {
+    #[inline(always)]
+    fn lanes(&self) -> Wide<T> {
+        Wide::known(self)
+    }
+}
+
+impl<T: Lane> Column<T> for Wide<T> {
+    #[inline(always)]
+    fn lanes(&self) -> Wide<T> {
+        *self
+    }
+}
 
 /// The equations of a step at 8 `G` nodes, and how well they are to be solved.
 pub(super) struct Equations<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G: usize> {
@@ -54,55 +109,90 @@ pub(super) struct Progress<T> {
 /// What a step comes to.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ends<T, const N: usize> {
-    /// ∫ q̈ over h and ∫ ∫ q̈ over h².
-    pub(super) once: [T; N],
-    pub(super) twice: [T; N],
     /// The last coefficient of the accelerations after Legendre and the one before it.
     pub(super) last: [[T; 2]; N],
     /// The mean square of the accelerations.
     pub(super) square: [T; N],
     pub(super) progress: Progress<T>,
+    /// Whether the equations are solved.
+    pub(super) solved: bool,
+    /// The error of the step over the one allowed.
+    pub(super) error: f64,
 }
 
 impl<T: Float, const N: usize> Ends<T, N> {
     pub(super) fn new() -> Self {
         let zero = [T::from_f64(0.0); N];
         let progress = Progress { sweeps: 0, change: zero[0], done: false, spare: false };
-        Self { once: zero, twice: zero, last: [[zero[0]; 2]; N], square: zero, progress }
+        Self { last: [[zero[0]; 2]; N], square: zero, progress, solved: false, error: 0.0 }
     }
 }
 
 /// A step onwards.
 pub(super) struct Onwards<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> {
-    pub(super) equations: Equations<'a, D, T, N, 1>,
-    /// The accelerations of the step before, or a first guess.
-    pub(super) before: &'a Stages<T, N, 1>,
+    pub(super) dynamics: &'a D,
+    pub(super) span: &'a Span,
+    /// The state at its start.
+    pub(super) from: &'a Node<T, N>,
+    /// Where the one at its end goes.
+    pub(super) to: &'a mut Node<T, N>,
+    /// What the step before left behind, or a first guess of the accelerations.
+    pub(super) room: &'a mut RoomOf<D, N>,
     /// The length of this step over that of the step before; 0 with a first guess.
-    pub(super) ratio: T,
-    /// Where the accelerations of this one go.
-    pub(super) a: &'a mut Stages<T, N, 1>,
-    pub(super) ends: &'a mut Ends<T, N>,
+    pub(super) ratio: f64,
+    pub(super) tolerances: &'a Tolerances<N>,
+    /// The most sweeps.
+    pub(super) most: u32,
 }
 
 impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Onwards<'_, D, T, N> {
     #[inline(always)]
     fn run(self) {
-        let Self { equations, before, ratio, a, ends } = self;
-        let half = black_box(S / 2);
-        let mut guess = *before;
-        if ratio == T::from_f64(1.0) {
-            guess = lanes(sums(black_box(before), [&EIGHT.ahead], half)[0]);
-        } else if ratio != T::from_f64(0.0) {
-            guess = extrapolated(black_box(before), ratio, half);
+        let Self { dynamics, span, from, to, room, ratio, tolerances, most } = self;
+        let (half, h, number) = (black_box(S / 2), span.length::<T>(), T::from_f64);
+        room.weigh(span.h, from, tolerances);
+        let [scaled, ahead] = &mut room.scaled;
+        scaled.scale(h, &EIGHT.once, &EIGHT.twice);
+        let [first, second] = &mut room.a;
+        let (before, a) = if room.last == 0 { (&*first, second) } else { (&*second, first) };
+        let goes_on = ratio == 1.0;
+        if goes_on {
+            ahead.scale(h, &EIGHT.once_ahead, &EIGHT.twice_ahead);
+            [*a] = sums(black_box(before), [&EIGHT.ahead], half);
+        } else if ratio == 0.0 {
+            *a = *before;
+        } else {
+            *a = extrapolated(black_box(before), number(ratio), half);
         }
-        ends.progress = sweeps(&equations, &EIGHT, &mut guess, half);
-        *a = guess;
-        let [[sums]] = sums(black_box(a), [&EIGHT.ends], half);
+        // By way of memory: the compiler would take the vectors of the three cases apart to join them.
+        let a = black_box(a);
+        let mut new = *a;
+        let equations = Equations {
+            dynamics,
+            prepared: &room.prepared,
+            span,
+            q: &from.q.high,
+            v: &from.v.high,
+            weights: &room.weights,
+            negligible: number(NEGLIGIBLE),
+            least: room.sweeps,
+            most,
+        };
+        let first = if goes_on { (before, &*ahead) } else { (&*a, &*scaled) };
+        room.ends.progress = sweeps(&equations, &EIGHT.nodes, first, scaled, &mut new, half);
+        *a = new;
+        let [sums] = sums(black_box(a), [&EIGHT.ends], half);
+        let [sums] = black_box(&sums);
+        *to = Node { t: span.end, a: None, ..*from };
         for i in 0..N {
-            let [once, twice, last, before] = sums[i];
-            (ends.once[i], ends.twice[i], ends.last[i]) = (once, twice, [last, before]);
-            ends.square[i] = total(black_box(&(guess[0][i] * guess[0][i]))) * T::from_f64(1.0 / S as f64);
+            let [once, twice, last, before, ..] = sums[i].0;
+            room.ends.last[i] = [last, before];
+            room.ends.square[i] = total(black_box(&(new[0][i] * new[0][i]))) * number(1.0 / S as f64);
+            to.q.add_product(i, h, from.v.high[i], h * (h * twice + from.v.low[i]));
+            to.v.add_one(i, h * once);
         }
+        room.ends.solved = room.is_solved();
+        room.ends.error = if room.ends.solved && to.is_finite() { room.error() } else { f64::NAN };
     }
 }
 
@@ -113,6 +203,8 @@ pub(super) struct Within<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, cons
     pub(super) a: &'a Stages<T, N, 1>,
     /// Where the coefficients of the accelerations after Legendre go.
     pub(super) series: &'a mut Stages<T, N, 2>,
+    /// The sums of a sweep.
+    pub(super) scaled: &'a mut Scaled<T, 2>,
     /// Where the number of sweeps goes.
     pub(super) count: &'a mut u32,
 }
@@ -121,9 +213,11 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Wit
     #[inline(always)]
     fn run(self) {
         let half = black_box(S / 2);
-        let mut a = lanes(sums(black_box(self.a), [&REFINED], half)[0]);
-        *self.count = sweeps(&self.equations, &SIXTEEN, &mut a, half).sweeps;
-        *self.series = lanes(sums(black_box(&a), [&SIXTEEN.legendre], half)[0]);
+        let [mut a] = sums(black_box(self.a), [&REFINED], half);
+        self.scaled.scale(self.equations.span.length(), &SIXTEEN.once, &SIXTEEN.twice);
+        let guess = a;
+        *self.count = sweeps(&self.equations, &SIXTEEN.nodes, (&guess, self.scaled), self.scaled, &mut a, half).sweeps;
+        [*self.series] = sums(black_box(&a), [&SIXTEEN.legendre], half);
     }
 }
 
@@ -149,7 +243,9 @@ fn at_nodes<D: SideBySide<N>, const N: usize>(
 #[inline(always)]
 fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G: usize>(
     equations: &Equations<'_, D, T, N, G>,
-    tableau: &'static Collocation<G>,
+    nodes: &'static [Nodes; G],
+    first: (&Stages<T, N, G>, &Scaled<T, G>),
+    scaled: &Scaled<T, G>,
     a: &mut Stages<T, N, G>,
     half: usize,
 ) -> Progress<T> {
@@ -157,51 +253,49 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
     let (h, prepared) = (Wide::splat(equations.span.length()), equations.prepared);
     // Where the motion is without accelerations.
     let mut straight = [[zero; N]; G];
-    let (t, inputs) = at_nodes(equations.dynamics, equations.span, &tableau.nodes[0]);
+    let (t, inputs) = at_nodes(equations.dynamics, equations.span, &nodes[0]);
     let mut known = [(t, inputs, Of::<D, N>::at_time(t, &inputs)); G];
     for g in 0..G {
-        let elapsed = Wide::<T>::known(&tableau.nodes[g]) * h;
+        let elapsed = Wide::<T>::known(&nodes[g]) * h;
         for i in 0..N {
             straight[g][i] = Wide::splat(equations.q[i]) + elapsed * Wide::splat(equations.v[i]);
         }
         if 0 < g {
-            let (t, inputs) = at_nodes(equations.dynamics, equations.span, &tableau.nodes[g]);
+            let (t, inputs) = at_nodes(equations.dynamics, equations.span, &nodes[g]);
             known[g] = (t, inputs, Of::<D, N>::at_time(t, &inputs));
         }
     }
+    // In memory as vectors: the compiler would mix the lanes of different coordinates.
+    let lanes = (straight, equations.v.map(Wide::splat), equations.weights.map(Wide::splat));
+    let (straight, v0, weights) = black_box(&lanes);
     let mut progress = Progress { sweeps: 0, change: T::from_f64(0.0), done: false, spare: false };
+    let (mut values, mut by) = first;
+    let mut last;
     loop {
-        let mut scaled = *a;
-        for g in 0..G {
-            for i in 0..N {
-                scaled[g][i] *= h;
-            }
-        }
-        let [once, twice] = sums(black_box(&scaled), [&tableau.once, &tableau.twice], half);
-        let (once, twice) = (lanes(once), lanes(twice));
+        let [once, twice] = sums(black_box(values), [&by.once, &by.twice], half);
         let mut changes = zero;
         for g in 0..G {
             let (mut q, mut v) = (straight[g], once[g]);
             for i in 0..N {
-                q[i] += twice[g][i] * h;
-                v[i] += Wide::splat(equations.v[i]);
+                q[i] += twice[g][i];
+                v[i] += v0[i];
             }
             let (t, inputs, at_time) = &known[g];
             let at_position = system.at_position(prepared, at_time, *t, &q, inputs);
             let new = system.accelerations_staged(prepared, at_time, &at_position, *t, &q, &v, inputs);
             for i in 0..N {
-                let change = (new[i] - a[g][i]) * Wide::splat(equations.weights[i]);
+                let change = (new[i] - a[g][i]) * weights[i];
                 changes += change * change;
             }
             a[g] = new;
         }
-        let (change, last) = (total(black_box(&changes)), progress.change);
+        let (change, earlier) = (total(black_box(&changes)), progress.change);
         progress.sweeps += 1;
         progress.change = change;
         // A change leaves that part of itself which it was of the one before. What is not a number is not less.
-        let enough = change * change <= equations.negligible * last;
-        let shrinks = progress.sweeps == 1 || change < last;
-        let stays = shrinks || change <= T::from_f64(16.0) * last;
+        let enough = change * change <= equations.negligible * earlier;
+        let shrinks = progress.sweeps == 1 || change < earlier;
+        let stays = shrinks || change <= T::from_f64(16.0) * earlier;
         if equations.least <= progress.sweeps {
             if enough || !shrinks || equations.most <= progress.sweeps {
                 progress.done = enough;
@@ -211,6 +305,8 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
             return progress;
         }
         progress.spare = enough;
+        last = *a;
+        (values, by) = (&last, scaled);
     }
 }
 
@@ -219,54 +315,35 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
 /// The values have to be in memory, from where each goes to all lanes at once, and `half`, which is `S / 2`, must not be known to the compiler: it
 /// would write out the loop, and then gather what stands side by side.
 #[inline(always)]
-fn sums<T: Lane, const N: usize, const G: usize, const H: usize, const W: usize, const C: usize>(
+fn sums<T: Lane, K: Column<T>, const N: usize, const G: usize, const H: usize, const C: usize>(
     values: &Stages<T, N, G>,
-    columns: [&'static [[[[f64; W]; H]; S]; G]; C],
+    columns: [&[[[K; H]; S]; G]; C],
     half: usize,
-) -> [[[[T; W]; N]; H]; C] {
-    let zero = [T::from_f64(0.0); W];
-    let mut parts = [[[[zero; 2]; N]; H]; C];
-    for j in 0..half {
-        let j = j % (S / 2);
-        for g in 0..G {
-            for i in 0..N {
-                let (x, y) = (values[g][i].0[j], values[g][i].0[j + S / 2]);
-                for c in 0..C {
-                    for to in 0..H {
-                        let (even, odd) = (&columns[c][g][j][to], &columns[c][g][j + S / 2][to]);
-                        let [p, q] = &mut parts[c][to][i];
-                        for k in 0..W {
-                            p[k] += T::from_f64(even[k]) * x;
-                            q[k] += T::from_f64(odd[k]) * y;
-                        }
+) -> [Stages<T, N, H>; C] {
+    let zero = Wide::splat(T::from_f64(0.0));
+    let (mut even, mut odd) = ([[[zero; N]; H]; C], [[[zero; N]; H]; C]);
+    for c in 0..C {
+        for j in 0..half {
+            let j = j % (S / 2);
+            for g in 0..G {
+                for to in 0..H {
+                    let (x, y) = (columns[c][g][j][to].lanes(), columns[c][g][j + S / 2][to].lanes());
+                    for i in 0..N {
+                        even[c][to][i] += x * Wide::splat(values[g][i].0[j]);
+                        odd[c][to][i] += y * Wide::splat(values[g][i].0[j + S / 2]);
                     }
                 }
             }
         }
     }
-    let mut sums = [[[zero; N]; H]; C];
     for c in 0..C {
         for to in 0..H {
             for i in 0..N {
-                for k in 0..W {
-                    sums[c][to][i][k] = parts[c][to][i][0][k] + parts[c][to][i][1][k];
-                }
+                even[c][to][i] += odd[c][to][i];
             }
         }
     }
-    sums
-}
-
-/// Sums for all nodes as lanes.
-#[inline(always)]
-fn lanes<T: Lane, const N: usize, const G: usize>(sums: [[[T; S]; N]; G]) -> Stages<T, N, G> {
-    let mut lanes = [[Wide::splat(T::from_f64(0.0)); N]; G];
-    for g in 0..G {
-        for i in 0..N {
-            lanes[g][i] = Octet(sums[g][i]);
-        }
-    }
-    lanes
+    even
 }
 
 /// The sum over all lanes, of halves.

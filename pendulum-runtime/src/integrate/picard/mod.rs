@@ -20,7 +20,7 @@ use crate::real::{Float, Lane, Octet, Real};
 use crate::simd;
 use crate::system::{Dynamics, System};
 use crate::time::Time;
-use kernel::{Ends, Equations, Onwards, Progress, Stages};
+use kernel::{Ends, Onwards, Progress, Scaled, Stages};
 pub use side_by_side::SideBySide;
 use tableau::{EIGHT, S};
 
@@ -85,6 +85,9 @@ pub struct Room<T: Lane, P, const N: usize> {
     end: Option<Node<T, N>>,
     h: f64,
     ends: Ends<T, N>,
+    /// Sums for steps of the last length: of a sweep, of the first one after an equal step, and of one at sixteen nodes.
+    scaled: [Scaled<T, 1>; 2],
+    within: Scaled<T, 2>,
     /// The number of sweeps that is likely to suffice.
     sweeps: u32,
     /// How exactly the equations were solved.
@@ -111,9 +114,14 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
     ///
     /// Nothing is asked for below the rounding of a step, and of a tolerance that is larger than what the accelerations do in it a twentieth
     /// of that, or a thousandth of the tolerance: so that the motion stays one.
-    fn weigh(&mut self, h: f64, from: &Node<T, N>, guess: T, (rtol, atol): &Tolerances<N>) {
+    #[inline(always)]
+    fn weigh(&mut self, h: f64, from: &Node<T, N>, (rtol, atol): &Tolerances<N>) {
         let rounding = 0.125 * T::EPSILON.to_f64();
-        let gain = h * f64::abs(guess.to_f64());
+        let square = self.ends.square.iter().fold(0.0, |largest, square| {
+            let square = square.to_f64();
+            if largest < square { square } else { largest }
+        });
+        let gain = h * square.sqrt();
         let allowed = |tolerance: f64, change: f64, value: f64| {
             let least = if 0.05 * change < 0.001 * tolerance { 0.001 * tolerance } else { 0.05 * change };
             (if least < tolerance { least } else { tolerance }) + rounding * (value + T::EPSILON.to_f64())
@@ -128,7 +136,8 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
     }
 
     /// Whether the equations are solved: the iteration has come to its end, or to rounding.
-    fn solved(&self) -> bool {
+    #[inline(always)]
+    fn is_solved(&self) -> bool {
         let Ends { square, progress, .. } = &self.ends;
         if progress.done {
             return true;
@@ -146,6 +155,7 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
     ///
     /// The first term is what the nodes of Gauss leave of the last coefficient. They do so only where the coefficients fall; the second
     /// term sees to that.
+    #[inline(always)]
     fn error(&self) -> f64 {
         let mut error = 0.0;
         for i in 0..N {
@@ -198,44 +208,16 @@ fn attempt<D: SideBySide<N>, const N: usize>(
     tolerances: &Tolerances<N>,
     most: u32,
 ) -> Node<D::Scalar, N> {
-    let number = D::Scalar::from_f64;
     let goes_on = room.end.as_ref().is_some_and(|end| end.t == from.t && end.q == from.q && end.v == from.v);
     let ratio = if goes_on && span.h <= 2.0 * room.h { span.h / room.h } else { 0.0 };
-    let largest = if ratio == 0.0 {
+    if ratio == 0.0 {
         let a = from.start_acceleration(field);
         (room.a[room.last], room.sweeps) = ([a.map(Octet::splat)], 2);
-        a.into_iter().fold(number(0.0), |largest, a| largest.max(Real::abs(a)))
-    } else {
-        room.ends.square.into_iter().fold(number(0.0), Real::max).sqrt()
-    };
-    room.weigh(span.h, from, largest, tolerances);
-    let h = span.length::<D::Scalar>();
-    let [first, second] = &mut room.a;
-    let (before, a) = if room.last == 0 { (first, second) } else { (second, first) };
-    simd::widest(Onwards {
-        equations: Equations {
-            dynamics: field.dynamics,
-            prepared: &room.prepared,
-            span,
-            q: &from.q.high,
-            v: &from.v.high,
-            weights: &room.weights,
-            negligible: number(NEGLIGIBLE),
-            least: room.sweeps,
-            most,
-        },
-        before,
-        ratio: number(ratio),
-        a,
-        ends: &mut room.ends,
-    });
-    let Ends { once, twice, progress, .. } = &room.ends;
-    field.evaluations += u64::from(progress.sweeps) * S as u64;
-    let mut to = Node { t: span.end, a: None, ..*from };
-    for i in 0..N {
-        to.q.add_product(i, h, from.v.high[i], h * (h * twice[i] + from.v.low[i]));
-        to.v.add_product(i, h, once[i], number(0.0));
+        room.ends.square = a.map(|a| a * a);
     }
+    let mut to = *from;
+    simd::widest(Onwards { dynamics: field.dynamics, span, from, to: &mut to, room, ratio, tolerances, most });
+    field.evaluations += u64::from(room.ends.progress.sweeps) * S as u64;
     to
 }
 
@@ -253,6 +235,8 @@ impl<D: SideBySide<N>, const N: usize> Stepper<D, N> for Picard {
             end: None,
             h: 0.0,
             ends: Ends::new(),
+            scaled: [Scaled::new(), Scaled::new()],
+            within: Scaled::new(),
             sweeps: 2,
             weights: [zero; N],
             unsolved: None,
@@ -269,7 +253,7 @@ impl<D: SideBySide<N>, const N: usize> Stepper<D, N> for Picard {
     ) -> Node<D::Scalar, N> {
         let mut to = attempt(field, span, from, room, &(0.0, ([0.0; N], [0.0; N])), FIXED);
         room.unsolved = None;
-        if room.solved() {
+        if room.ends.solved {
             room.accept(&to, span.h);
         } else {
             if room.ends.progress.change.is_finite() {
@@ -376,8 +360,7 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
             }
             let span = fit(from.t, wanted, target);
             let to = attempt(field, &span, from, room, &tolerances, ADAPTIVE);
-            let finite = to.is_finite();
-            let error = if finite && room.solved() { room.error() } else { f64::NAN };
+            let error = room.ends.error;
             if error <= 1.0 {
                 room.accept(&to, span.h);
                 // A step that was cut says little about longer ones.
@@ -400,7 +383,7 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
                 * if error.is_finite() {
                     let factor = scaled(error);
                     if factor < 0.2 { 0.2 } else { factor }
-                } else if finite {
+                } else if to.is_finite() {
                     0.5
                 } else {
                     // A function may have left its domain, and a shorter step may stay inside; but no step is short enough for an

@@ -13,6 +13,7 @@ pub(super) type Columns<const G: usize, const H: usize> = [[[Nodes; H]; S]; G];
 
 /// What the values of a polynomial at 8 `G` nodes say of its integrals and its coefficients.
 #[derive(Debug)]
+#[repr(C, align(64))]
 pub(super) struct Collocation<const G: usize> {
     /// The nodes c on [0, 1].
     pub(super) nodes: [Nodes; G],
@@ -20,10 +21,13 @@ pub(super) struct Collocation<const G: usize> {
     pub(super) once: Columns<G, G>,
     /// A²: the integrals of the polynomials through these.
     pub(super) twice: Columns<G, G>,
-    /// The values one step later.
+    /// The values one step later, and the integrals from there as in `once` and `twice`.
     pub(super) ahead: Columns<G, G>,
-    /// The integral over the step, the integral of the integral, and the last two coefficients of the series in Legendre's polynomials.
-    pub(super) ends: [[[[f64; 4]; 1]; S]; G],
+    pub(super) once_ahead: Columns<G, G>,
+    pub(super) twice_ahead: Columns<G, G>,
+    /// The integral over the step, the integral of the integral, and the last two coefficients of the series in Legendre's polynomials;
+    /// the other lanes are zero.
+    pub(super) ends: Columns<G, 1>,
     /// All coefficients of Σ α_k P_k(2θ − 1), by vector and lane.
     pub(super) legendre: Columns<G, G>,
     /// 1/∏ (c_j − c_k) over the other nodes of the vector.
@@ -56,7 +60,9 @@ const fn collocation<const G: usize>((nodes, weights): ([Nodes; G], [Nodes; G]))
         once: zero,
         twice: zero,
         ahead: zero,
-        ends: [[[[0.0; 4]; 1]; S]; G],
+        once_ahead: zero,
+        twice_ahead: zero,
+        ends: [[[[0.0; S]; 1]; S]; G],
         legendre: zero,
         lagrange: [[1.0; S]; G],
     };
@@ -82,24 +88,37 @@ const fn collocation<const G: usize>((nodes, weights): ([Nodes; G], [Nodes; G]))
             weights[g][lane] * mirrored,
             coefficient(&(nodes, weights), all - 1, j),
             coefficient(&(nodes, weights), all - 2, j),
+            0.0,
+            0.0,
+            0.0,
+            0.0,
         ];
         j += 1;
     }
-    j = 0;
+    tableau.twice = product(&tableau.once, &tableau.once);
+    tableau.once_ahead = product(&tableau.once, &tableau.ahead);
+    tableau.twice_ahead = product(&tableau.twice, &tableau.ahead);
+    tableau
+}
+
+/// What comes of first taking the sums of `first`, and then those of `second` of these.
+const fn product<const G: usize>(second: &Columns<G, G>, first: &Columns<G, G>) -> Columns<G, G> {
+    let mut product = [[[[0.0; S]; G]; S]; G];
+    let all = S * G;
+    let mut j = 0;
     while j < all {
         let mut i = 0;
         while i < all {
             let mut k = 0;
             while k < all {
-                tableau.twice[j / S][j % S][i / S][i % S] +=
-                    tableau.once[k / S][k % S][i / S][i % S] * tableau.once[j / S][j % S][k / S][k % S];
+                product[j / S][j % S][i / S][i % S] += second[k / S][k % S][i / S][i % S] * first[j / S][j % S][k / S][k % S];
                 k += 1;
             }
             i += 1;
         }
         j += 1;
     }
-    tableau
+    product
 }
 
 /// P_k(2θ − 1), from (k + 1) P_{k+1}(x) = (2k + 1) x P_k(x) − k P_{k−1}(x).
@@ -229,6 +248,12 @@ mod tests {
                 }
                 if G == 1 {
                     close(sums(&tableau.nodes, &tableau.ahead, p)[i], (1.0 + c).powi(p), 1e-10);
+                    let once = ((1.0 + c).powi(p + 1) - 1.0) / (degree + 1.0);
+                    close(sums(&tableau.nodes, &tableau.once_ahead, p)[i], once, 1e-10);
+                    if p < 7 {
+                        let twice = ((1.0 + c).powi(p + 2) - 1.0 - (degree + 2.0) * c) / ((degree + 1.0) * (degree + 2.0));
+                        close(sums(&tableau.nodes, &tableau.twice_ahead, p)[i], twice, 1e-10);
+                    }
                 }
                 let series: f64 = (0..8 * G).map(|k| sums(&tableau.nodes, &tableau.legendre, p)[k] * legendre(k, *c)).sum();
                 close(series, c.powi(p), 1e-14);
