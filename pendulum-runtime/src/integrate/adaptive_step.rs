@@ -123,8 +123,8 @@ where
         self.least_steps_over(length)
     }
 
-    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, M, N>) -> Result<(Span, Node<D::Scalar, N>), Error> {
-        let Course { method, field, from, stages, target, stats } = course;
+    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, M, N>) -> Result<Span, Error> {
+        let Course { method, field, from, to, stages, target, stats } = course;
         let response = M::RESPONSE;
         if memory.h == 0.0 {
             let at_once = Span::by(from.t, 0.0);
@@ -153,8 +153,8 @@ where
                 return Err(Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate });
             }
             let span = fit(from.t, wanted, target);
-            let to = method.step(field, &span, from, stages);
-            let weights = self.weights(from, &to);
+            *to = method.step(field, &span, from, stages);
+            let weights = self.weights(from, to);
             let error = if to.is_finite() { method.error(stages, span.h, &weights) } else { f64::NAN };
             if error <= 1.0 {
                 let error = log2(error);
@@ -170,7 +170,7 @@ where
                     memory.error = if error < log2(1e-4) { log2(1e-4) } else { error };
                 }
                 stats.accepted += 1;
-                return Ok((span, to));
+                return Ok(span);
             }
             stats.rejected += 1;
             retried = true;

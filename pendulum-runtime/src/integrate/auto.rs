@@ -168,8 +168,8 @@ impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Control<Auto, D, N> for 
         self.least_steps_over(length)
     }
 
-    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, Auto, N>) -> Result<(Span, Node<D::Scalar, N>), Error> {
-        let Course { field, from, stages: room, target, stats, .. } = course;
+    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, Auto, N>) -> Result<Span, Error> {
+        let Course { field, from, to, stages: room, target, stats, .. } = course;
         let dynamics = field.dynamics;
         let backwards = target < from.t.to_f64();
         let (rtol, _) = self.tolerances::<D::Scalar>();
@@ -180,17 +180,24 @@ impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Control<Auto, D, N> for 
             let known = Known(dynamics);
             let mut series = Counted::new(&known);
             let stages = &mut room.taylor;
-            let taken =
-                Control::step(self, memory, Course { method: &Taylor::new(), field: &mut series, from, stages, target, stats });
+            let taken = Control::step(
+                self,
+                memory,
+                Course { method: &Taylor::new(), field: &mut series, from, to, stages, target, stats },
+            );
             field.evaluations += series.evaluations;
             return taken;
         }
         if room.choice == Some(Choice::Picard) {
-            return Control::step(self, memory, Course { method: &Picard, field, from, stages: &mut room.picard, target, stats });
+            return Control::step(
+                self,
+                memory,
+                Course { method: &Picard, field, from, to, stages: &mut room.picard, target, stats },
+            );
         }
         let control = self.atol_or(if rtol < 1e-9 { rtol } else { 1e-9 });
         Control::<Dop853, D, N>::check(&control)?;
-        control.step(memory, Course { method: &Dop853, field, from, stages: &mut room.dop853, target, stats })
+        control.step(memory, Course { method: &Dop853, field, from, to, stages: &mut room.dop853, target, stats })
     }
 }
 

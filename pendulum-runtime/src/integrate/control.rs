@@ -21,8 +21,9 @@ where
     /// A lower bound of the number of steps over an interval.
     fn least_steps(&self, length: f64) -> f64;
 
-    /// Takes one step from `course.from` towards `course.target`, not beyond it; nothing but caches changes if it fails.
-    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, M, N>) -> Result<(Span, Node<D::Scalar, N>), Error>;
+    /// Takes one step from `course.from` towards `course.target`, not beyond it, and puts its end into `course.to`; if it fails, nothing but
+    /// that and caches has changed.
+    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, M, N>) -> Result<Span, Error>;
 }
 
 /// What a control remembers from step to step.
@@ -51,6 +52,8 @@ where
     pub(crate) field: &'a mut Counted<'d, D>,
     /// The state.
     pub(crate) from: &'a mut Node<D::Scalar, N>,
+    /// Where the state at the end of the step goes.
+    pub(crate) to: &'a mut Node<D::Scalar, N>,
     /// What the step leaves behind.
     pub(crate) stages: &'a mut M::Stages,
     /// The time not to go beyond; infinite if there is none.

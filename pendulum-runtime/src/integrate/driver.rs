@@ -121,26 +121,40 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
             method: &self.method,
             field: &mut field,
             from: &mut from,
+            to: &mut self.node,
             stages: &mut self.stages,
             target,
             stats: &mut self.stats,
         };
         let taken = self.control.step(&mut self.memory, course);
         self.stats.evaluations += field.evaluations;
-        let (span, mut to) = taken?;
+        match taken.and_then(|span| self.arrive(dynamics, &span).map(|()| span)) {
+            Ok(span) => (self.last, self.within, self.from) = (Some(span), None, from),
+            Err(error) => {
+                self.node = from;
+                return Err(error);
+            }
+        }
+        if is_due::<D::System, N>(self.stats.accepted, self.before_kink.is_some()) { self.look(dynamics) } else { Ok(()) }
+    }
+
+    /// Carries the state over the kink if a step over `span` has ended on it.
+    #[inline]
+    fn arrive<D>(&mut self, dynamics: &D, span: &Span) -> Result<(), Error>
+    where
+        D: Dynamics<N, Scalar = T>,
+        M: Stepper<D, N, Stages = R>,
+    {
         if span.end == Time::new(self.kink) {
-            let before = to;
-            cross(dynamics, &mut to, backwards)?;
-            self.kink = next_kink(&self.method, dynamics, self.kink, backwards)?;
+            let before = self.node;
+            cross(dynamics, &mut self.node, self.backwards)?;
+            self.kink = next_kink(&self.method, dynamics, self.kink, self.backwards)?;
             self.stats.kinks += 1;
             self.before_kink = Some(before);
         } else if self.before_kink.is_some() {
             self.before_kink = None;
         }
-        (self.last, self.within) = (Some(span), None);
-        self.from = from;
-        self.node = to;
-        if is_due::<D::System, N>(self.stats.accepted, self.before_kink.is_some()) { self.look(dynamics) } else { Ok(()) }
+        Ok(())
     }
 
     /// Takes the last step back if the mass matrix is not positive at its end; it does not count then.

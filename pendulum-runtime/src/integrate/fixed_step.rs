@@ -2,7 +2,6 @@
 
 use super::blame::blame;
 use super::control::{Control, Course, Memory};
-use super::node::Node;
 use super::span::Span;
 use super::stepper::Stepper;
 use crate::error::Error;
@@ -49,17 +48,17 @@ impl<M: Stepper<D, N>, D: Dynamics<N, Scalar: Float>, const N: usize> Control<M,
     }
 
     #[inline]
-    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, M, N>) -> Result<(Span, Node<D::Scalar, N>), Error> {
-        let Course { method, field, from, stages, target, stats } = course;
+    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, M, N>) -> Result<Span, Error> {
+        let Course { method, field, from, to, stages, target, stats } = course;
         let mut plan = *memory;
         let span = self.next(&mut plan, from.t, target);
-        let to = method.advance(field, &span, from, stages);
+        *to = method.advance(field, &span, from, stages);
         if !to.is_finite() {
             return Err(blame(method, field.dynamics, &span, from, stages));
         }
         *memory = plan;
         stats.accepted += 1;
-        Ok((span, to))
+        Ok(span)
     }
 }
 

@@ -193,8 +193,8 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         self.least_steps_over(length)
     }
 
-    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, Taylor, N>) -> Result<(Span, Node<D::Scalar, N>), Error> {
-        let Course { method, field, from, stages: room, target, stats } = course;
+    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, Taylor, N>) -> Result<Span, Error> {
+        let Course { method, field, from, to, stages: room, target, stats } = course;
         let t = from.t.to_f64();
         let backwards = target < t;
         let target = if backwards {
@@ -217,7 +217,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         let wanted = if wanted == f64::INFINITY && target == wanted { 1.0 } else { wanted };
         let wanted = self.limited(memory.h == 0.0, wanted);
         let span = fit(from.t, wanted, target);
-        let to = sum(room, from, &span);
+        *to = sum(room, from, &span);
         if !to.is_finite() {
             return Err(blame(method, field.dynamics, &span, from, room));
         }
@@ -228,7 +228,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         }
         memory.h = wanted;
         stats.accepted += 1;
-        Ok((span, to))
+        Ok(span)
     }
 }
 

@@ -36,6 +36,7 @@ pub(super) fn piece<D: SideBySide<N>, const N: usize>(
             negligible: number(NEGLIGIBLE),
             least: 2,
             most: FIXED,
+            guessed: true,
         },
         a: &room.a[room.last],
         series: &mut series,

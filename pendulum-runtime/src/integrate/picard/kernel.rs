@@ -91,6 +91,8 @@ pub(super) struct Equations<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, c
     /// The least number of sweeps and the most. The processor foresees the end of the loop where the least number is right.
     pub(super) least: u32,
     pub(super) most: u32,
+    /// Whether the change made by the first sweep means anything.
+    pub(super) guessed: bool,
 }
 
 /// How the iteration has ended.
@@ -156,9 +158,13 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Onw
         let [first, second] = &mut room.a;
         let (before, a) = if room.last == 0 { (&*first, second) } else { (&*second, first) };
         let goes_on = ratio == 1.0;
+        // The first sweep of an equal step needs no guess, nor does the second where a third will come.
+        let guessed = !goes_on || room.sweeps < 3;
         if goes_on {
             ahead.scale(h, &EIGHT.once_ahead, &EIGHT.twice_ahead);
-            [*a] = sums(black_box(before), [&EIGHT.ahead], half);
+            if guessed {
+                [*a] = sums(black_box(before), [&EIGHT.ahead], half);
+            }
         } else if ratio == 0.0 {
             *a = *before;
         } else {
@@ -177,6 +183,7 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Onw
             negligible: number(NEGLIGIBLE),
             least: room.sweeps,
             most,
+            guessed,
         };
         let first = if goes_on { (before, &*ahead) } else { (&*a, &*scaled) };
         room.ends.progress = sweeps(&equations, &EIGHT.nodes, first, scaled, &mut new, half);
@@ -268,6 +275,7 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
     // In memory as vectors: the compiler would mix the lanes of different coordinates.
     let lanes = (straight, equations.v.map(Wide::splat), equations.weights.map(Wide::splat));
     let (straight, v0, weights) = black_box(&lanes);
+    let blind = if equations.guessed { 1 } else { 2 };
     let mut progress = Progress { sweeps: 0, change: T::from_f64(0.0), done: false, spare: false };
     let (mut values, mut by) = first;
     let mut last;
@@ -293,8 +301,8 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
         progress.sweeps += 1;
         progress.change = change;
         // A change leaves that part of itself which it was of the one before. What is not a number is not less.
-        let enough = change * change <= equations.negligible * earlier;
-        let shrinks = progress.sweeps == 1 || change < earlier;
+        let enough = blind < progress.sweeps && change * change <= equations.negligible * earlier;
+        let shrinks = progress.sweeps <= blind || change < earlier;
         let stays = shrinks || change <= T::from_f64(16.0) * earlier;
         if equations.least <= progress.sweeps {
             if enough || !shrinks || equations.most <= progress.sweeps {

@@ -81,8 +81,8 @@ pub struct Room<T: Lane, P, const N: usize> {
     a: [Stages<T, N, 1>; 2],
     /// Which of the two is the last step.
     last: usize,
-    /// Its end and its length; nothing before the first step.
-    end: Option<Node<T, N>>,
+    /// Time, coordinates and velocities at its end, and its length; nothing before the first step.
+    end: Option<(Time, [T; N], [T; N])>,
     h: f64,
     ends: Ends<T, N>,
     /// Sums for steps of the last length: of a sweep, of the first one after an equal step, and of one at sixteen nodes.
@@ -194,31 +194,30 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
         let Progress { sweeps, spare, .. } = self.ends.progress;
         self.sweeps = (sweeps - u32::from(spare)).clamp(2, 8);
         self.last ^= 1;
-        (self.end, self.h) = (Some(*to), h);
+        (self.end, self.h) = (Some((to.t, to.q.high, to.v.high)), h);
     }
 }
 
-/// A step over `span`, which the room holds until it is accepted.
+/// A step over `span` that leads `to` its end; the room holds what it leaves behind until it is accepted.
 #[inline]
 fn attempt<D: SideBySide<N>, const N: usize>(
     field: &mut Counted<'_, D>,
     span: &Span,
     from: &mut Node<D::Scalar, N>,
+    to: &mut Node<D::Scalar, N>,
     room: &mut RoomOf<D, N>,
     tolerances: &Tolerances<N>,
     most: u32,
-) -> Node<D::Scalar, N> {
-    let goes_on = room.end.as_ref().is_some_and(|end| end.t == from.t && end.q == from.q && end.v == from.v);
+) {
+    let goes_on = room.end.as_ref().is_some_and(|(t, q, v)| *t == from.t && *q == from.q.high && *v == from.v.high);
     let ratio = if goes_on && span.h <= 2.0 * room.h { span.h / room.h } else { 0.0 };
     if ratio == 0.0 {
         let a = from.start_acceleration(field);
         (room.a[room.last], room.sweeps) = ([a.map(Octet::splat)], 2);
         room.ends.square = a.map(|a| a * a);
     }
-    let mut to = *from;
-    simd::widest(Onwards { dynamics: field.dynamics, span, from, to: &mut to, room, ratio, tolerances, most });
+    simd::widest(Onwards { dynamics: field.dynamics, span, from, to, room, ratio, tolerances, most });
     field.evaluations += u64::from(room.ends.progress.sweeps) * S as u64;
-    to
 }
 
 impl<D: SideBySide<N>, const N: usize> Stepper<D, N> for Picard {
@@ -251,7 +250,8 @@ impl<D: SideBySide<N>, const N: usize> Stepper<D, N> for Picard {
         from: &mut Node<D::Scalar, N>,
         room: &mut RoomOf<D, N>,
     ) -> Node<D::Scalar, N> {
-        let mut to = attempt(field, span, from, room, &(0.0, ([0.0; N], [0.0; N])), FIXED);
+        let mut to = *from;
+        attempt(field, span, from, &mut to, room, &(0.0, ([0.0; N], [0.0; N])), FIXED);
         room.unsolved = None;
         if room.ends.solved {
             room.accept(&to, span.h);
@@ -339,8 +339,8 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
     }
 
     #[inline]
-    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, Picard, N>) -> Result<(Span, Node<D::Scalar, N>), Error> {
-        let Course { method, field, from, stages: room, target, stats } = course;
+    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, Picard, N>) -> Result<Span, Error> {
+        let Course { method, field, from, to, stages: room, target, stats } = course;
         let target = field.dynamics.next_break(from.t.to_f64()).filter(|time| *time < target).unwrap_or(target);
         let tolerances = self.tolerances::<D::Scalar>();
         if memory.h == 0.0 {
@@ -359,10 +359,10 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
                 return Err(last_fault.unwrap_or(short));
             }
             let span = fit(from.t, wanted, target);
-            let to = attempt(field, &span, from, room, &tolerances, ADAPTIVE);
+            attempt(field, &span, from, to, room, &tolerances, ADAPTIVE);
             let error = room.ends.error;
             if error <= 1.0 {
-                room.accept(&to, span.h);
+                room.accept(to, span.h);
                 // A step that was cut says little about longer ones.
                 memory.h = if wanted < span.h { span.h } else { wanted };
                 let sweeps = room.ends.progress.sweeps;
@@ -375,7 +375,7 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
                     memory.h = 0.95 * span.h;
                 }
                 stats.accepted += 1;
-                return Ok((span, to));
+                return Ok(span);
             }
             stats.rejected += 1;
             (retried, room.sweeps) = (true, 2);
