@@ -31,8 +31,9 @@ where
 pub struct Memory {
     /// The length of the steps towards `target`, or the next one that the error suggests; 0 before the first.
     pub(crate) h: f64,
-    /// The number of equal steps left.
+    /// The number of equal steps left, and where it is not `h`, their length.
     pub(crate) left: u64,
+    pub(crate) equal: f64,
     /// Where they lead.
     pub(crate) target: f64,
     /// The binary logarithm of the error of the last step.

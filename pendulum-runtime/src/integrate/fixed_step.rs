@@ -72,7 +72,7 @@ impl FixedStep {
         if plan.left == 0 || plan.target != target {
             let length = -t.since(target);
             let count = steps(length.abs(), self.step);
-            *plan = Memory { h: length / count, left: count as u64, target, error: 0.0 };
+            *plan = Memory { h: length / count, left: count as u64, target, ..Memory::default() };
         }
         plan.left -= 1;
         if plan.left == 0 { Span::to(t, target) } else { Span::by(t, plan.h) }

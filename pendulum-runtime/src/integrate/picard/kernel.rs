@@ -31,16 +31,16 @@ pub(super) struct Scaled<T, const G: usize> {
     twice: [[[Wide<T>; G]; S]; G],
 }
 
-impl<T: Lane, const G: usize> Scaled<T, G> {
+impl<T: Lane + Float, const G: usize> Scaled<T, G> {
     pub(super) fn new() -> Self {
         let zero = [[[Wide::splat(T::from_f64(0.0)); G]; S]; G];
         Self { h: T::from_f64(0.0), once: zero, twice: zero }
     }
 
-    /// Makes them of A and A², if the length is another.
+    /// Makes them of A and A², if the length is another by more than rounding.
     #[inline(always)]
     fn scale(&mut self, h: T, once: &'static Columns<G, G>, twice: &'static Columns<G, G>) {
-        if self.h == h {
+        if f64::abs(self.h.to_f64() - h.to_f64()) <= 1e-15 * self.h.to_f64() {
             return;
         }
         self.h = h;

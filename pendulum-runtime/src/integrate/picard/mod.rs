@@ -5,7 +5,7 @@ mod kernel;
 mod side_by_side;
 mod tableau;
 
-use super::adaptive_step::{AdaptiveStep, fit, resolution};
+use super::adaptive_step::{AdaptiveStep, resolution};
 use super::blame::{self, blame};
 use super::control::{Control, Course, Memory};
 use super::field::{Accelerations, Counted, Watched, coordinate, first_in_state};
@@ -211,6 +211,8 @@ fn attempt<D: SideBySide<N>, const N: usize>(
 ) {
     let goes_on = room.end.as_ref().is_some_and(|(t, q, v)| *t == from.t && *q == from.q.high && *v == from.v.high);
     let ratio = if goes_on && span.h <= 2.0 * room.h { span.h / room.h } else { 0.0 };
+    // Equal but for rounding: it leads only to the first sweep.
+    let ratio = if f64::abs(ratio - 1.0) <= 1e-12 { 1.0 } else { ratio };
     if ratio == 0.0 {
         let a = from.start_acceleration(field);
         (room.a[room.last], room.sweeps) = ([a.map(Octet::splat)], 2);
@@ -358,27 +360,30 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
                 let short = Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate };
                 return Err(last_fault.unwrap_or(short));
             }
-            let span = fit(from.t, wanted, target);
+            let span = planned(memory, from.t, wanted, target);
             attempt(field, &span, from, to, room, &tolerances, ADAPTIVE);
             let error = room.ends.error;
             if error <= 1.0 {
                 room.accept(to, span.h);
-                // A step that was cut says little about longer ones.
-                memory.h = if wanted < span.h { span.h } else { wanted };
                 let sweeps = room.ends.progress.sweeps;
-                if error < LOW && sweeps <= MANY && !retried && wanted <= span.h {
+                let mut next = wanted;
+                // A step that was cut short says little about longer ones.
+                if error < LOW && sweeps <= MANY && !retried && 0.5 * wanted <= span.h {
                     let factor = scaled(error);
-                    memory.h = span.h * if factor < 2.0 { factor } else { 2.0 };
+                    let longer = span.h * if factor < 2.0 { factor } else { 2.0 };
+                    next = if 1.25 * wanted <= longer { longer } else { wanted };
                 } else if HIGH < error {
-                    memory.h = span.h * scaled(error);
+                    next = span.h * scaled(error);
                 } else if TOO_MANY < sweeps {
-                    memory.h = 0.95 * span.h;
+                    next = 0.95 * span.h;
                 }
+                memory.left = if next == memory.h { memory.left - 1 } else { 0 };
+                memory.h = next;
                 stats.accepted += 1;
                 return Ok(span);
             }
             stats.rejected += 1;
-            (retried, room.sweeps) = (true, 2);
+            (retried, room.sweeps, memory.left) = (true, 2, 0);
             wanted = span.h
                 * if error.is_finite() {
                     let factor = scaled(error);
@@ -398,8 +403,70 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
     }
 }
 
+/// The next of equal steps to `target`, which are about as long as `wanted`: a step goes on best as long as the one before.
+#[inline]
+fn planned(plan: &mut Memory, t: Time, wanted: f64, target: f64) -> Span {
+    let left = -t.since(target);
+    let goes_on = |plan: &Memory| f64::abs(left - plan.left as f64 * plan.equal) <= 1e-9 * plan.equal;
+    if plan.left == 0 || plan.target != target || !goes_on(plan) {
+        let count = f64::ceil(left / wanted - 0.01);
+        let (count, equal) = if count < 1e9 { (f64::max(count, 1.0), left / f64::max(count, 1.0)) } else { (1e9, wanted) };
+        (plan.left, plan.equal, plan.target) = (count as u64, equal, target);
+    }
+    if plan.left == 1 { Span::to(t, target) } else { Span::by(t, plan.equal) }
+}
+
 /// The factor by which a step would be longer whose error is the one aimed at.
 fn scaled(error: f64) -> f64 {
     // Where accelerations do not have all derivatives the power is another, but then no power is right.
     power(1023.0 + (log2(AIM) - log2(error)) / (2 * S - 1) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Memory, planned};
+    use crate::time::Time;
+
+    /// The lengths of the steps to `target`.
+    fn lengths(wanted: f64, start: f64, target: f64) -> Vec<f64> {
+        let (mut plan, mut t, mut lengths) = (Memory::default(), Time::new(start), Vec::new());
+        while t.since(target) < 0.0 {
+            let span = planned(&mut plan, t, wanted, target);
+            plan.left -= 1;
+            t = span.end;
+            lengths.push(span.h);
+        }
+        assert_eq!(t, Time::new(target));
+        lengths
+    }
+
+    #[test]
+    fn steps_to_a_target_are_equal() {
+        assert_eq!(lengths(1.0, 0.0, 3.0), [1.0; 3]);
+        assert_eq!(lengths(1.0, 0.0, 2.25), [0.75; 3]);
+        assert_eq!(lengths(1.0, 0.0, 1.009), [1.009]);
+        assert_eq!(lengths(1.0, 0.0, 0.3), [0.3]);
+        let many = lengths(0.013, 0.1, 10.1);
+        assert_eq!(many.len(), 770);
+        assert!(many.iter().all(|h| (h * 77.0 - 1.0).abs() < 1e-12) && many[..769].iter().all(|h| *h == many[0]));
+    }
+
+    #[test]
+    fn without_a_target_they_are_as_wanted() {
+        let mut plan = Memory::default();
+        for k in 0..5 {
+            let span = planned(&mut plan, Time::new(f64::from(k)), 0.7, f64::INFINITY);
+            plan.left -= 1;
+            assert_eq!(span.h, 0.7);
+        }
+    }
+
+    #[test]
+    fn a_plan_ends_where_the_state_or_the_target_is_another() {
+        let mut plan = Memory::default();
+        assert_eq!(planned(&mut plan, Time::new(0.0), 1.0, 2.5).h, 2.5 / 3.0);
+        plan.left -= 1;
+        assert_eq!(planned(&mut plan, Time::new(0.5), 1.0, 2.5).h, 1.0);
+        assert_eq!(planned(&mut plan, Time::new(0.5), 1.0, 4.0).h, 3.5 / 4.0);
+    }
 }
