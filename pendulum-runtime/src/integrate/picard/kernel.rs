@@ -48,8 +48,10 @@ impl<T: Lane + Float, const G: usize> Scaled<T, G> {
         for g in 0..G {
             for j in 0..S {
                 for to in 0..G {
-                    self.once[g][j][to] = Wide::<T>::known(&once[g][j][to]) * h;
-                    self.twice[g][j][to] = Wide::<T>::known(&twice[g][j][to]) * square;
+                    // One column at a time: the compiler would take a lane of each.
+                    let (once, twice) = black_box((&once[g][j][to], &twice[g][j][to]));
+                    self.once[g][j][to] = Wide::<T>::known(once) * h;
+                    self.twice[g][j][to] = Wide::<T>::known(twice) * square;
                 }
             }
         }
@@ -330,15 +332,33 @@ fn sums<T: Lane, K: Column<T>, const N: usize, const G: usize, const H: usize, c
 ) -> [Stages<T, N, H>; C] {
     let zero = Wide::splat(T::from_f64(0.0));
     let (mut even, mut odd) = ([[[zero; N]; H]; C], [[[zero; N]; H]; C]);
-    for c in 0..C {
-        for j in 0..half {
-            let j = j % (S / 2);
-            for g in 0..G {
-                for to in 0..H {
-                    let (x, y) = (columns[c][g][j][to].lanes(), columns[c][g][j + S / 2][to].lanes());
-                    for i in 0..N {
-                        even[c][to][i] += x * Wide::splat(values[g][i].0[j]);
-                        odd[c][to][i] += y * Wide::splat(values[g][i].0[j + S / 2]);
+    if N <= 2 {
+        for c in 0..C {
+            for j in 0..half {
+                let j = j % (S / 2);
+                for g in 0..G {
+                    for to in 0..H {
+                        let (x, y) = (columns[c][g][j][to].lanes(), columns[c][g][j + S / 2][to].lanes());
+                        for i in 0..N {
+                            even[c][to][i] += x * Wide::splat(values[g][i].0[j]);
+                            odd[c][to][i] += y * Wide::splat(values[g][i].0[j + S / 2]);
+                        }
+                    }
+                }
+            }
+        }
+    } else {
+        // Of a loop over more coordinates the compiler would make vectors with a coordinate in each lane.
+        for i in 0..N {
+            for j in 0..half {
+                let j = j % (S / 2);
+                for g in 0..G {
+                    let (x, y) = (Wide::splat(values[g][i].0[j]), Wide::splat(values[g][i].0[j + S / 2]));
+                    for c in 0..C {
+                        for to in 0..H {
+                            even[c][to][i] += columns[c][g][j][to].lanes() * x;
+                            odd[c][to][i] += columns[c][g][j + S / 2][to].lanes() * y;
+                        }
                     }
                 }
             }
@@ -380,9 +400,9 @@ fn extrapolated<T: Lane, const N: usize>(before: &Stages<T, N, 1>, ratio: T, hal
     }
     let weights = black_box(&weights);
     let mut a = [[Wide::splat(T::from_f64(0.0)); N]; 1];
-    for j in 0..half {
-        let j = j % (S / 2);
-        for i in 0..N {
+    for i in 0..N {
+        for j in 0..half {
+            let j = j % (S / 2);
             a[0][i] += weights[j] * Wide::splat(before[0][i].0[j]);
             a[0][i] += weights[j + S / 2] * Wide::splat(before[0][i].0[j + S / 2]);
         }
