@@ -1,5 +1,8 @@
 //! The state between two steps.
 
+// Picard's steps are compiled for several instruction sets.
+#![allow(clippy::inline_always)]
+
 use super::field::Accelerations;
 use super::span::Span;
 use super::sum::Sum;

@@ -1,5 +1,8 @@
 //! The time that one step covers.
 
+// Picard's steps are compiled for several instruction sets.
+#![allow(clippy::inline_always)]
+
 use crate::motion::Side;
 use crate::real::Float;
 use crate::time::Time;

@@ -1,5 +1,8 @@
 //! Collocation at Gauss's nodes, solved by Picard's iteration with all nodes of a step side by side in the lanes of a vector.
 
+// What a step needs is inlined into what is compiled for several instruction sets.
+#![allow(clippy::inline_always)]
+
 mod dense;
 mod kernel;
 mod side_by_side;
