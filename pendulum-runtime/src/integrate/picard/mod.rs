@@ -38,7 +38,7 @@ use tableau::{EIGHT, S};
 /// the accelerations after Legendre: the nodes are those for which what is left out counts only by its product with itself. Where accelerations
 /// do not have all derivatives (closures, `abs`, `max`) it is h α₇/16; steps end where a motion is known to break. The length of
 /// the steps stays the same as long as the error is within bounds; `rtol` may be as small as you like, and below about 1e-15 the error is that of
-/// rounding. Without `atol` it is `rtol`, in the units of each coordinate. Fixed steps are iterated down to rounding; while h·ω stays
+/// rounding. A step is held to two fifths of the tolerance. Without `atol` it is `rtol`, in the units of each coordinate. Fixed steps are iterated down to rounding; while h·ω stays
 /// below about 1.5 that converges, and an iteration that does not is an [error](crate::error::Error::NoConvergence). A stiff spring or
 /// damper shortens the steps: take [`Rodas4`](super::Rodas4) or [`Gauss`](super::Gauss) there.
 ///
@@ -105,6 +105,9 @@ type RoomOf<D, const N: usize> = Room<<D as Dynamics<N>>::Scalar, <<D as SideByS
 /// The errors allowed in a step: relative, and absolute of coordinates and velocities.
 type Tolerances<const N: usize> = (f64, ([f64; N], [f64; N]));
 
+/// The part of the tolerance that a step is allowed, for the errors of steps add up.
+const PART: f64 = 0.4;
+
 /// The error that may be left in the equations, over the one allowed, squared.
 const NEGLIGIBLE: f64 = 0.04;
 
@@ -131,8 +134,8 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
         };
         for i in 0..N {
             let (q, v) = (f64::abs(from.q.high[i].to_f64()), f64::abs(from.v.high[i].to_f64()));
-            let by_velocity = h / allowed(atol.1[i] + rtol * v, gain, v + gain);
-            let by_coordinate = h * h / allowed(atol.0[i] + rtol * q, h * gain, q + h * (v + gain));
+            let by_velocity = h / allowed(PART * (atol.1[i] + rtol * v), gain, v + gain);
+            let by_coordinate = h * h / allowed(PART * (atol.0[i] + rtol * q), h * gain, q + h * (v + gain));
             let weight = if by_velocity < by_coordinate { by_coordinate } else { by_velocity };
             self.weights[i] = T::from_f64(weight);
         }
