@@ -3,7 +3,7 @@
 use super::kernel::{Equations, Within};
 use super::side_by_side::SideBySide;
 use super::tableau::S;
-use super::{FIXED, NEGLIGIBLE, RoomOf};
+use super::{FIXED, RoomOf};
 use crate::integrate::field::Counted;
 use crate::integrate::node::Node;
 use crate::integrate::piece::{Basis, Piece, TERMS};
@@ -30,10 +30,8 @@ pub(super) fn piece<D: SideBySide<N>, const N: usize>(
             dynamics: field.dynamics,
             prepared: &room.prepared,
             span,
-            q: &from.q.high,
-            v: &from.v.high,
+            from,
             weights: &room.weights,
-            negligible: number(NEGLIGIBLE),
             least: 2,
             most: FIXED,
             guessed: true,

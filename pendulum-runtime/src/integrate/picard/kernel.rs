@@ -6,7 +6,7 @@
 
 use super::side_by_side::SideBySide;
 use super::tableau::{Columns, EIGHT, Nodes, REFINED, S, SIXTEEN};
-use super::{NEGLIGIBLE, RoomOf, Tolerances};
+use super::{RoomOf, Tolerances};
 use crate::integrate::node::Node;
 use crate::integrate::span::Span;
 use crate::real::{Float, Lane, Octet};
@@ -19,6 +19,9 @@ pub(super) type Wide<T> = Octet<T>;
 
 /// The accelerations at the nodes of a step, by vector and coordinate.
 pub(super) type Stages<T, const N: usize, const G: usize> = [[Wide<T>; N]; G];
+
+/// The error that may be left in the equations, over the one allowed, squared.
+const NEGLIGIBLE: f64 = 0.04;
 
 /// The system over lanes.
 type Of<D, const N: usize> = <D as SideBySide<N>>::Wide;
@@ -84,12 +87,9 @@ pub(super) struct Equations<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, c
     pub(super) prepared: &'a <Of<D, N> as System<N>>::Prepared,
     pub(super) span: &'a Span,
     /// The state at its start.
-    pub(super) q: &'a [T; N],
-    pub(super) v: &'a [T; N],
+    pub(super) from: &'a Node<T, N>,
     /// The part of the error allowed that a unit of each acceleration makes in the step.
     pub(super) weights: &'a [T; N],
-    /// The square of the largest error that may be left.
-    pub(super) negligible: T,
     /// The least number of sweeps and the most. The processor foresees the end of the loop where the least number is right.
     pub(super) least: u32,
     pub(super) most: u32,
@@ -160,7 +160,7 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Onw
         let [first, second] = &mut room.a;
         let (before, a) = if room.last == 0 { (&*first, second) } else { (&*second, first) };
         let goes_on = ratio == 1.0;
-        // The first sweep of an equal step needs no guess, nor does the second where a third will come.
+        // The first sweep of an equal step needs no guess, and what it changes is of interest only where a second may be the last.
         let guessed = !goes_on || room.sweeps < 3;
         if goes_on {
             ahead.scale(h, &EIGHT.once_ahead, &EIGHT.twice_ahead);
@@ -179,10 +179,8 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Onw
             dynamics,
             prepared: &room.prepared,
             span,
-            q: &from.q.high,
-            v: &from.v.high,
+            from,
             weights: &room.weights,
-            negligible: number(NEGLIGIBLE),
             least: room.sweeps,
             most,
             guessed,
@@ -267,7 +265,7 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
     for g in 0..G {
         let elapsed = Wide::<T>::known(&nodes[g]) * h;
         for i in 0..N {
-            straight[g][i] = Wide::splat(equations.q[i]) + elapsed * Wide::splat(equations.v[i]);
+            straight[g][i] = Wide::splat(equations.from.q.high[i]) + elapsed * Wide::splat(equations.from.v.high[i]);
         }
         if 0 < g {
             let (t, inputs) = at_nodes(equations.dynamics, equations.span, &nodes[g]);
@@ -275,7 +273,7 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
         }
     }
     // In memory as vectors: the compiler would mix the lanes of different coordinates.
-    let lanes = (straight, equations.v.map(Wide::splat), equations.weights.map(Wide::splat));
+    let lanes = (straight, equations.from.v.high.map(Wide::splat), equations.weights.map(Wide::splat));
     let (straight, v0, weights) = black_box(&lanes);
     let blind = if equations.guessed { 1 } else { 2 };
     let mut progress = Progress { sweeps: 0, change: T::from_f64(0.0), done: false, spare: false };
@@ -303,7 +301,7 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
         progress.sweeps += 1;
         progress.change = change;
         // A change leaves that part of itself which it was of the one before. What is not a number is not less.
-        let enough = blind < progress.sweeps && change * change <= equations.negligible * earlier;
+        let enough = blind < progress.sweeps && change * change <= T::from_f64(NEGLIGIBLE) * earlier;
         let shrinks = progress.sweeps <= blind || change < earlier;
         let stays = shrinks || change <= T::from_f64(16.0) * earlier;
         if equations.least <= progress.sweeps {

@@ -38,7 +38,8 @@ use tableau::{EIGHT, S};
 /// the accelerations after Legendre: the nodes are those for which what is left out counts only by its product with itself. Where accelerations
 /// do not have all derivatives (closures, `abs`, `max`) it is h α₇/16; steps end where a motion is known to break. The length of
 /// the steps stays the same as long as the error is within bounds; `rtol` may be as small as you like, and below about 1e-15 the error is that of
-/// rounding. A step is held to two fifths of the tolerance. Without `atol` it is `rtol`, in the units of each coordinate. Fixed steps are iterated down to rounding; while h·ω stays
+/// rounding. A step is held to two fifths of the tolerance. Without `atol` it is `rtol`, in the units of each coordinate. The way to the next
+/// stop, break or end is divided into equal steps. Fixed steps are iterated down to rounding; while h·ω stays
 /// below about 1.5 that converges, and an iteration that does not is an [error](crate::error::Error::NoConvergence). A stiff spring or
 /// damper shortens the steps: take [`Rodas4`](super::Rodas4) or [`Gauss`](super::Gauss) there.
 ///
@@ -107,9 +108,6 @@ type Tolerances<const N: usize> = (f64, ([f64; N], [f64; N]));
 
 /// The part of the tolerance that a step is allowed, for the errors of steps add up.
 const PART: f64 = 0.4;
-
-/// The error that may be left in the equations, over the one allowed, squared.
-const NEGLIGIBLE: f64 = 0.04;
 
 /// The most sweeps of an adaptive step and of a fixed one.
 const ADAPTIVE: u32 = 12;
