@@ -242,3 +242,83 @@ fn joints_of_sleepers_are_not_asked() {
     assert!(scene.show(handle, Return::CatchUp { longest: -1.0 }).is_err());
     assert!(matches!(scene.status(handle), Status::Hidden(_)));
 }
+
+#[test]
+fn who_has_gone_round_sleeps_where_it_hangs() {
+    let mut scene = Scene::<f64>::new(240.0).unwrap();
+    scene.set_sleep(Some(2e-3)).unwrap();
+    let joint = scene.joint(Still::new([0.0, 0.0]));
+    let round = scene.hang(joint, Hanging::new(0.01, 0.1), [0.0], [24.0]).unwrap();
+    let put = scene.hang(joint, Hanging::new(0.01, 0.1), [0.0], [0.5]).unwrap();
+    // Upside down there is no bed; it falls.
+    let high = scene.hang(joint, Hanging::new(0.01, 0.1), [std::f64::consts::PI], [0.0]).unwrap();
+    for handle in [round, put, high] {
+        scene.set_damping(handle, 0.5).unwrap();
+    }
+    scene.advance(0.5).unwrap();
+    scene.set_state(put, [std::f64::consts::TAU + 0.5], [0.0]).unwrap();
+    scene.set_state(high, [std::f64::consts::PI], [1e-3]).unwrap();
+    for _ in 0..40 {
+        scene.advance(1.0).unwrap();
+        for handle in [round, put, high] {
+            if scene.status(handle) != Status::Awake {
+                let (q, _) = scene.state(handle);
+                assert!(q[0].sin().abs() < 2e-3 && 0.0 < q[0].cos(), "{q:?}");
+            }
+        }
+    }
+    assert_eq!(scene.awake(), (0, 3));
+    assert!(scene.state(round).0[0] > 6.0 && scene.state(high).0[0].abs() < 7.0);
+}
+
+#[test]
+fn limits_are_felt_at_rest_and_asleep() {
+    let mut scene = Scene::<f64>::new(240.0).unwrap();
+    scene.set_sleep(Some(2e-3)).unwrap();
+    let joint = scene.joint(Still::new([0.0, 0.0]));
+    let mut hang = |stop| {
+        let handle = scene.hang(joint, Hanging::new(0.01, 0.1), [0.0], [0.0]).unwrap();
+        scene.set_damping(handle, 4.0).unwrap();
+        scene.set_limits(handle, [0.3], [1.0], stop).unwrap();
+        handle
+    };
+    let (soft, hard) = (hang(Stop::Soft { stiffness: 900.0 }), hang(Stop::Hard { restitution: 0.3 }));
+    // The spring beyond the limit bears the weight: 900 (0.3 − θ) = 98.1 sin θ.
+    let mut rest = 0.3;
+    for _ in 0..50 {
+        rest = 0.3 - 98.1 * f64::sin(rest) / 900.0;
+    }
+    // A wall is where it is from the first.
+    assert_eq!(scene.state(hard), ([0.3], [0.0]));
+    for _ in 0..20 {
+        scene.advance(0.5).unwrap();
+        assert!(scene.status(soft) == Status::Awake || (scene.state(soft).0[0] - rest).abs() < 2e-3);
+    }
+    assert_eq!(scene.awake(), (0, 2));
+    assert!((scene.state(hard).0[0] - 0.3).abs() < 2e-3);
+    scene.set_state(soft, [2.0], [1.0]).unwrap();
+    scene.set_state(hard, [2.0], [1.0]).unwrap();
+    assert_eq!(scene.state(hard), ([1.0], [0.0]));
+    for handle in [soft, hard] {
+        scene.reset_to_rest(handle).unwrap();
+    }
+    assert!((scene.state(soft).0[0] - rest).abs() < 1e-12 && scene.state(hard).0[0] == 0.3);
+    scene.advance(1.0).unwrap();
+    assert!((scene.state(soft).0[0] - rest).abs() < 1e-12);
+}
+
+#[test]
+fn catching_up_begins_at_the_rest_of_that_time() {
+    let mut scene = Scene::<f64>::new(240.0).unwrap();
+    // Where `Strung` rests depends on its joint, which has gone 5 m away in the last second.
+    let joint = scene.joint(Linear::new(&[0.0, 9.0, 10.0], &[[0.0], [0.0], [5.0]]).unwrap());
+    let handles = [0, 1].map(|_| scene.hang(joint, Strung::new(1.0, 40.0), [0.0, 0.0], [0.0, 0.0]).unwrap());
+    for handle in handles {
+        scene.set_damping(handle, 1.0).unwrap();
+    }
+    scene.hide(handles[1]).unwrap();
+    scene.advance(10.0).unwrap();
+    scene.show(handles[1], Return::CatchUp { longest: 2.0 }).unwrap();
+    let [(live, _), (caught_up, _)] = handles.map(|handle| scene.state(handle));
+    assert!(live[0] > 1.0 && (0..2).all(|i| (live[i] - caught_up[i]).abs() < 5e-3), "{live:?} {caught_up:?}");
+}

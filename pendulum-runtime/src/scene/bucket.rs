@@ -47,6 +47,18 @@ pub(super) struct Loose<T, const N: usize> {
     pub(super) extra: Extra<T, N>,
 }
 
+impl<T: Real, const N: usize> Loose<T, N> {
+    /// Holds the state within hard limits.
+    pub(super) fn hold(&mut self) {
+        let [q, q_low, v, v_low, ..] = &mut self.state;
+        let before = (*q, *v);
+        self.extra.hold(q, v);
+        if before != (*q, *v) {
+            (*q_low, *v_low) = ([T::from_f64(0.0); N], [T::from_f64(0.0); N]);
+        }
+    }
+}
+
 /// What acts on one pendulum beside its equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extra<T, const N: usize> {
@@ -68,6 +80,36 @@ impl<T: Real, const N: usize> Extra<T, N> {
             restitution: number(0.0),
             stiffness: number(0.0),
             hard: number(1.0),
+        }
+    }
+
+    /// Whether the limits are walls.
+    pub(super) fn is_hard(&self) -> bool {
+        self.hard != T::from_f64(0.0)
+    }
+
+    /// The nearest coordinates within the limits.
+    pub(super) fn inside(&self, q: &[T; N]) -> [T; N] {
+        core::array::from_fn(|i| Real::min(Real::max(q[i], self.low[i]), self.high[i]))
+    }
+
+    /// The accelerations of soft stops, −k times what lies beyond the limits.
+    pub(super) fn push(&self, q: &[T; N]) -> [T; N] {
+        let inside = self.inside(q);
+        core::array::from_fn(|i| self.stiffness * (inside[i] - q[i]))
+    }
+
+    /// Holds a state within hard limits: what lies beyond them lies at them, and goes no further out.
+    pub(super) fn hold(&self, q: &mut [T; N], v: &mut [T; N]) {
+        if !self.is_hard() {
+            return;
+        }
+        let (inside, zero) = (self.inside(q), T::from_f64(0.0));
+        for i in 0..N {
+            if inside[i] != q[i] {
+                v[i] = if inside[i] == self.low[i] { Real::max(v[i], zero) } else { Real::min(v[i], zero) };
+                q[i] = inside[i];
+            }
         }
     }
 }

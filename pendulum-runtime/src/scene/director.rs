@@ -41,7 +41,9 @@ impl<T: Lane + Float> Scene<T> {
     /// A pendulum of another scene, or one that comes to rest nowhere.
     pub fn reset_to_rest<S: Hung<T, N>, const N: usize>(&mut self, pendulum: Handle<S, N>) -> Result<(), SceneError> {
         self.checked(pendulum)?;
-        self.reset(|kind, index| kind == S::FACTS.name && index == pendulum.index())
+        self.dirty = true;
+        let (group, clock, places) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
+        group.rest(clock, places, pendulum.index())
     }
 
     /// Lets all pendulums hang at rest.
@@ -50,13 +52,10 @@ impl<T: Lane + Float> Scene<T> {
     /// A pendulum that comes to rest nowhere.
     pub fn reset_all_to_rest(&mut self) -> Result<(), SceneError> {
         let snapshot = self.snapshot();
-        self.reset(|_, _| true).or_else(|error| self.restore(&snapshot).and(Err(error)))
-    }
-
-    fn reset(&mut self, which: impl Fn(&str, u32) -> bool) -> Result<(), SceneError> {
         self.dirty = true;
         let Self { clock, places, groups, .. } = self;
-        groups.iter_mut().try_for_each(|(_, group)| group.reset(clock, places, &which))
+        let reset = groups.iter_mut().try_for_each(|(_, group)| group.reset(clock, places));
+        reset.or_else(|error| self.restore(&snapshot).and(Err(error)))
     }
 
     /// Mirrors a pendulum: coordinate i and its velocity are multiplied by `signs[i]`, as the angles are when a drawing is flipped.
@@ -88,13 +87,14 @@ impl<T: Lane + Float> Scene<T> {
     where
         M: Motion<T, D> + Send + Sync + 'static,
     {
-        self.places.get(joint.0 as usize).ok_or(SceneError::Joint(joint.0))?;
+        let place = self.places.get(joint.0 as usize).filter(|place| place.drive.components() == D);
+        place.ok_or(SceneError::Joint(joint.0))?;
         for (_, group) in &self.groups {
             group.accepts_motion(joint.0, M::HAS)?;
         }
         let snapshot = (carry == Carry::Rest).then(|| self.snapshot());
         let before = self.places.clone();
-        self.places[joint.0 as usize] = Place::new(forget::<T, M, D>(motion), self.time());
+        self.places[joint.0 as usize] = Place::new(forget::<T, M, D>(motion));
         self.dirty = true;
         let Self { clock, places, groups, .. } = self;
         let moved = groups.iter_mut().try_for_each(|(_, group)| group.moved(clock, &before, places, joint.0, carry));
@@ -121,9 +121,9 @@ impl<T: Lane + Float> Scene<T> {
         self.change(pendulum, |loose| loose.extra.damping = T::from_f64(damping))
     }
 
-    /// Keeps coordinates within `low` and `high`; infinite limits are none.
+    /// Keeps coordinates within `low` and `high`, in place of the limits set before; infinite limits are none.
     ///
-    /// Hard stops act within the drifts of leapfrog and SRKN6b, where the path is straight, and at the ends of the steps of RK4; they turn the
+    /// What lies beyond a hard limit is put on it. Hard stops act within the drifts of leapfrog and SRKN6b, where the path is straight, and at the ends of the steps of RK4; they turn the
     /// velocity of the coordinate alone, which for coupled coordinates is not what a wall at the tip would do.
     ///
     /// # Errors
@@ -137,8 +137,15 @@ impl<T: Lane + Float> Scene<T> {
     ) -> Result<(), SceneError> {
         for i in 0..N {
             let ordered = low[i] <= high[i];
-            if !ordered {
+            if !ordered || low[i].to_f64() == f64::INFINITY {
                 return Err(SceneError::Setting { name: "low", value: low[i].to_f64(), required: "at most the upper limit" });
+            }
+            if high[i].to_f64() == f64::NEG_INFINITY {
+                return Err(SceneError::Setting {
+                    name: "high",
+                    value: high[i].to_f64(),
+                    required: "a place for the coordinate",
+                });
             }
         }
         let [restitution, stiffness, hard] = match stop {
@@ -156,6 +163,8 @@ impl<T: Lane + Float> Scene<T> {
         let (group, clock, places) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
         let mut loose = group.read(pendulum.index());
         loose.extra = Extra { low, high, restitution, stiffness, hard, ..loose.extra };
+        loose.hold();
+        group.unmake_bed(pendulum.index());
         group.rewrite(clock, places, &loose);
         group.rouse(pendulum.index());
         self.dirty = true;

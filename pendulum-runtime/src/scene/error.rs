@@ -7,7 +7,7 @@ use core::fmt;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SceneError {
-    /// A frame time is negative or no number.
+    /// A frame time is negative, infinite or no number.
     FrameTime(f64),
     /// A setting is out of its range.
     Setting {
@@ -50,7 +50,7 @@ pub enum SceneError {
     },
     /// No system of the type has a parameter of that name.
     Parameter(String),
-    /// A snapshot was taken of another scene.
+    /// A snapshot was taken of another scene, or damaged since; what does not fit.
     Snapshot(&'static str),
     /// The time in which a pendulum was hidden could not be made up for.
     Integration(Error),
@@ -59,7 +59,7 @@ pub enum SceneError {
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::FrameTime(dt) => write!(f, "a frame of {dt:?} s cannot be advanced by; give zero or a positive time"),
+            Self::FrameTime(dt) => write!(f, "a frame of {dt:?} s cannot be advanced by; give zero or a positive, finite time"),
             Self::Setting { name, value, required } => write!(f, "`{name}` is {value:?}; it has to be {required}"),
             Self::State { coordinate, value } => write!(f, "the state of {coordinate} is {value:?}; give a finite number"),
             Self::Joint(index) => write!(f, "joint {index} is not in this scene; use the handle that `joint` of this scene gave"),
@@ -76,7 +76,7 @@ impl fmt::Display for SceneError {
             Self::Parameter(name) => {
                 write!(f, "there is no parameter `{name}`; a component of a vector is written `c.x`, of a family `m[0]`")
             }
-            Self::Snapshot(what) => write!(f, "the snapshot is of another scene: {what} differ; restore it where it was taken"),
+            Self::Snapshot(what) => write!(f, "the snapshot is not one of this scene: {what}; restore it where it was taken"),
             Self::Integration(error) => write!(f, "{error}"),
         }
     }

@@ -41,8 +41,8 @@ pub(super) trait AnyGroup<T>: Send + Sync {
     fn accepts(&self, state: &GroupState<T>) -> Result<(), SceneError>;
     /// The largest differences of coordinates and of velocities from a saved state.
     fn gap(&self, state: &GroupState<T>) -> [f64; 2];
-    /// Lets pendulums hang at rest.
-    fn reset(&mut self, clock: &Clock, places: &[Place<T>], which: &dyn Fn(&str, u32) -> bool) -> Result<(), SceneError>;
+    /// Lets all pendulums hang at rest.
+    fn reset(&mut self, clock: &Clock, places: &[Place<T>]) -> Result<(), SceneError>;
     /// Whether a motion has what those on a joint need.
     fn accepts_motion(&self, joint: u32, has: Orders) -> Result<(), SceneError>;
     /// A joint has another motion than `before`.
@@ -94,27 +94,27 @@ pub enum Status {
 /// All pendulums of one type.
 pub(super) struct Group<S: Hung<T, N>, T: Lane + Float, const N: usize> {
     pub(super) prototype: S,
-    /// The relative error of the phase that steps are chosen by.
-    pub(super) tolerance: f64,
     /// The method that somebody has chosen.
     pub(super) scheme: Option<Scheme>,
     pub(super) buckets: Vec<Bucket<S, T, N>>,
     pub(super) table: Vec<Location>,
     pub(super) status: Vec<Status>,
+    /// The relative errors of the phase that steps are chosen by.
+    tolerances: Vec<f64>,
     pub(super) alarms: Alarms,
     /// By pendulum, once somebody has looked.
     pub(super) beds: Vec<Option<Bed<T, N>>>,
 }
 
 impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
-    pub(super) fn new(prototype: S, tolerance: f64) -> Self {
+    pub(super) fn new(prototype: S) -> Self {
         Self {
             prototype,
-            tolerance,
             scheme: None,
             buckets: Vec::new(),
             table: Vec::new(),
             status: Vec::new(),
+            tolerances: Vec::new(),
             alarms: Alarms::new(),
             beds: Vec::new(),
         }
@@ -127,12 +127,9 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         places: &[Place<T>],
         joints: Vec<u32>,
         system: &S,
-        q: [T; N],
-        v: [T; N],
-    ) -> Result<u32, SceneError> {
-        check_state(&S::FACTS, &q)?;
-        check_state(&S::FACTS, &v)?;
-        check_joints::<S, T, N>(places, &joints)?;
+        tolerance: f64,
+        [q, v]: [[T; N]; 2],
+    ) -> u32 {
         let id = self.table.len() as u32;
         let mut parameters = Vec::with_capacity(S::FACTS.parameters.len());
         system.mapped(|parameter| {
@@ -143,10 +140,11 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         let loose = Loose { id, joints, parameters, state: [q, zero, v, zero, q, v], extra: Extra::none() };
         self.table.push(Location { bucket: 0, slot: 0 });
         self.status.push(Status::Awake);
+        self.tolerances.push(tolerance);
         let kind = self.kind(clock, places, system, &loose);
         self.insert(kind, &loose);
         self.set_awake(id, true);
-        Ok(id)
+        id
     }
 
     /// What the pendulum has in common with others.
@@ -156,9 +154,10 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         let omega = frequency::fastest(system, T::from_f64(t), &loose.state[0], &inputs);
         // A soft stop swings too.
         let phase = omega.max(loose.extra.stiffness.to_f64().sqrt()) * clock.step();
+        let tolerance = self.tolerances[loose.id as usize];
         let grid = match self.scheme {
-            Some(scheme) => Grid { scheme, substeps: scheme.substeps(phase, self.tolerance) },
-            None => Scheme::cheapest(&S::FACTS, phase, self.tolerance),
+            Some(scheme) => Grid { scheme, substeps: scheme.substeps(phase, tolerance) },
+            None => Scheme::cheapest(&S::FACTS, phase, tolerance),
         };
         debug_assert!(grid.substeps <= MOST_SUBSTEPS);
         Kind { grid, still: bucket::still(places, &loose.joints) }
@@ -256,24 +255,27 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         }
     }
 
-    /// Where a pendulum comes to rest.
-    pub(super) fn rest_of(&self, clock: &Clock, places: &[Place<T>], loose: &Loose<T, N>) -> Option<[T; N]> {
-        let t = clock.time(clock.tick());
+    /// Where a pendulum comes to rest with its joints at rest where they are at `t`.
+    pub(super) fn rest_of(&self, places: &[Place<T>], loose: &Loose<T, N>, t: f64) -> Option<[T; N]> {
         let system = self.system_of(&loose.parameters);
         let inputs = inputs_at::<S, T, N>(places, &loose.joints, Time::new(t), Side::After, Purpose::Accelerations, true);
         let t = T::from_f64(t);
-        let omega = frequency::fastest(&system, t, &loose.state[0], &inputs);
-        rest::rest(&system, t, &loose.state[0], &inputs, omega)
+        let omega = frequency::fastest(&system, t, &loose.state[0], &inputs).max(loose.extra.stiffness.to_f64().sqrt());
+        rest::rest(&system, t, &loose.state[0], &inputs, omega, &loose.extra)
     }
 
-    /// Lets a pendulum hang at rest.
-    fn rest(&mut self, clock: &Clock, places: &[Place<T>], id: u32) -> Result<(), SceneError> {
+    /// Lets a pendulum hang at rest; one that has failed swings again.
+    pub(super) fn rest(&mut self, clock: &Clock, places: &[Place<T>], id: u32) -> Result<(), SceneError> {
         let mut loose = self.read(id);
         let missing = SceneError::Restless { kind: S::FACTS.name, index: id };
-        let q = self.rest_of(clock, places, &loose).ok_or(missing)?;
+        let q = self.rest_of(places, &loose, clock.time(clock.tick())).ok_or(missing)?;
         let zero = [T::from_f64(0.0); N];
         loose.state = [q, zero, zero, zero, q, zero];
         self.write(&loose);
+        if self.status[id as usize] == Status::Failed {
+            self.status[id as usize] = Status::Awake;
+            self.set_awake(id, true);
+        }
         Ok(())
     }
 
@@ -361,11 +363,8 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T,
         snapshot::accepts(self, state)
     }
 
-    fn reset(&mut self, clock: &Clock, places: &[Place<T>], which: &dyn Fn(&str, u32) -> bool) -> Result<(), SceneError> {
-        for id in (0..self.table.len() as u32).filter(|&id| which(S::FACTS.name, id)) {
-            self.rest(clock, places, id)?;
-        }
-        Ok(())
+    fn reset(&mut self, clock: &Clock, places: &[Place<T>]) -> Result<(), SceneError> {
+        (0..self.table.len() as u32).try_for_each(|id| self.rest(clock, places, id))
     }
 
     fn accepts_motion(&self, joint: u32, has: Orders) -> Result<(), SceneError> {
@@ -400,9 +399,10 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T,
                 let (old, new) = (inputs(before, Side::Before), inputs(places, Side::After));
                 let (system, t) = (self.system_of(&loose.parameters), scalar_time(time));
                 let [q, _, v, ..] = loose.state;
-                if old != new {
-                    loose.state[2] = system.velocities(t, &q, &system.momenta(t, &q, &v, &old), &new);
-                    loose.state[3] = [T::from_f64(0.0); N];
+                let after = system.velocities(t, &q, &system.momenta(t, &q, &v, &old), &new);
+                // One whose equations have no solution keeps its velocity, and fails in the next tick, which says why.
+                if old != new && after.iter().all(|v| v.is_finite()) {
+                    (loose.state[2], loose.state[3]) = (after, [T::from_f64(0.0); N]);
                 }
             }
             self.rewrite(clock, places, &loose);
@@ -489,10 +489,15 @@ pub(super) fn check_state<T: Float, const N: usize>(facts: &crate::system::Facts
     }
 }
 
-/// Whether joints exist and have what the equations need.
-fn check_joints<S: Hung<T, N>, T: Lane + Float, const N: usize>(places: &[Place<T>], joints: &[u32]) -> Result<(), SceneError> {
+/// Whether joints exist, move in as many dimensions as their inputs and have what the equations need.
+pub(super) fn check_joints<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+    places: &[Place<T>],
+    joints: &[u32],
+) -> Result<(), SceneError> {
     for (input, &joint) in joints.iter().enumerate() {
-        let place = places.get(joint as usize).ok_or(SceneError::Joint(joint))?;
+        let components = <S::Inputs as Assemble<T>>::COMPONENTS.get(input);
+        let place = places.get(joint as usize).filter(|place| components == Some(&place.drive.components()));
+        let place = place.ok_or(SceneError::Joint(joint))?;
         check_motion(&S::FACTS, input, place.drive.has())?;
     }
     Ok(())

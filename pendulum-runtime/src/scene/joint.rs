@@ -111,7 +111,7 @@ pub(super) fn forget<T: Real, M: Motion<T, D> + Send + Sync + 'static, const D: 
 #[derive(Clone)]
 pub(super) struct Place<T> {
     pub(super) drive: Arc<dyn Drive<T>>,
-    /// Whether it rests for ever, so that it is never sampled.
+    /// Whether it always rests, so that it is never sampled.
     pub(super) still: bool,
     /// What those that are awake on it need.
     pub(super) orders: Orders,
@@ -145,8 +145,9 @@ impl<T> fmt::Debug for Place<T> {
 }
 
 impl<T: Real> Place<T> {
-    pub(super) fn new(drive: Arc<dyn Drive<T>>, now: f64) -> Self {
-        let still = drive.rest_until(now) == f64::INFINITY;
+    pub(super) fn new(drive: Arc<dyn Drive<T>>) -> Self {
+        // From the beginning of time: a scene may go back.
+        let still = drive.rest_until(f64::NEG_INFINITY) == f64::INFINITY;
         Self { drive, still, orders: Orders::NONE, grids: 0, active: 0 }
     }
 }

@@ -328,7 +328,9 @@ fn stop<T: Lane + Float, const N: usize>(q: &mut Sum<Wide<T>, N>, v: &mut Sum<Wi
                 continue;
             };
             let e = extras.restitution.0[lane];
-            (q.high[i].0[lane], q.low[i].0[lane]) = (limit - e * (x - limit), zero);
+            // Where the other limit is as near it holds, too.
+            let back = Real::min(Real::max(limit - e * (x - limit), low), high);
+            (q.high[i].0[lane], q.low[i].0[lane]) = (back, zero);
             (v.high[i].0[lane], v.low[i].0[lane]) = (-(e * speed), zero);
         }
     }

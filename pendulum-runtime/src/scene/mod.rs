@@ -85,7 +85,7 @@ use clock::Clock;
 use core::any::TypeId;
 use core::fmt;
 use core::marker::PhantomData;
-use group::{AnyGroup, Group};
+use group::{AnyGroup, Group, check_state};
 use joint::{Active, Place};
 use timetable::Timetable;
 
@@ -180,8 +180,7 @@ impl<T: Lane + Float> Scene<T> {
 
     /// Adds a joint that moves so.
     pub fn joint<M: Motion<T, D> + Send + Sync + 'static, const D: usize>(&mut self, motion: M) -> Joint<D> {
-        let now = self.clock.time(self.clock.tick());
-        self.places.push(Place::new(joint::forget(motion), now));
+        self.places.push(Place::new(joint::forget(motion)));
         Joint(self.places.len() as u32 - 1)
     }
 
@@ -198,16 +197,21 @@ impl<T: Lane + Float> Scene<T> {
         q: [T; N],
         v: [T; N],
     ) -> Result<Handle<S, N>, SceneError> {
+        check_state(&S::FACTS, &q)?;
+        check_state(&S::FACTS, &v)?;
+        let joints = anchor.joints();
+        group::check_joints::<S, T, N>(&self.places, &joints)?;
+        // Nothing is refused from here on, so that no empty group stays behind.
         let index = self.index_of::<S, N>().unwrap_or_else(|| {
-            let group = Group::<S, T, N>::new(system.mapped(|parameter| parameter), self.tolerance);
+            let group = Group::<S, T, N>::new(system.mapped(|parameter| parameter));
             self.groups.push((TypeId::of::<Group<S, T, N>>(), Box::new(group)));
             self.groups.len() - 1
         });
         self.dirty = true;
-        let Self { clock, places, groups, .. } = self;
+        let Self { clock, places, groups, tolerance, .. } = self;
         let group = groups[index].1.as_any_mut().downcast_mut::<Group<S, T, N>>();
         let group = group.ok_or(SceneError::Pendulum { kind: S::FACTS.name, index: 0 })?;
-        Ok(Handle::new(group.hang(clock, places, anchor.joints(), &system, q, v)?))
+        Ok(Handle::new(group.hang(clock, places, joints, &system, *tolerance, [q, v])))
     }
 
     /// The relative error of the phase by which methods and steps are chosen for what is hung from now on; 0.001 at first.

@@ -1,11 +1,13 @@
 //! Where a pendulum comes to rest.
 
+use super::bucket::Extra;
 use super::frequency::cube_root_of_rounding;
 use crate::real::Float;
 use crate::system::System;
 use nalgebra::{DMatrix, DVector};
 
-/// The state without acceleration that an overdamped pendulum creeps to from `q`, with the inputs at rest; `None` if it finds none.
+/// The state without acceleration that an overdamped pendulum creeps to from `q`, with the inputs at rest, against soft stops and no further than
+/// hard ones; `None` if it finds none.
 ///
 /// Newton's method where the pendulum is stable and it halves the acceleration, otherwise steps q̈/(2ω²) with the fastest frequency ω.
 pub(super) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
@@ -14,25 +16,37 @@ pub(super) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
     q: &[T; N],
     inputs: &S::Inputs,
     omega: f64,
+    extra: &Extra<T, N>,
 ) -> Option<[T; N]> {
     let prepared = system.prepare();
     let zero = [T::from_f64(0.0); N];
-    let a = |q: &[T; N]| system.accelerations_prepared(&prepared, t, q, &zero, inputs).map(Float::to_f64);
+    let a = |q: &[T; N]| -> [f64; N] {
+        let (a, push) = (system.accelerations_prepared(&prepared, t, q, &zero, inputs), extra.push(q));
+        core::array::from_fn(|i| (a[i] + push[i]).to_f64())
+    };
     let size = |a: &[f64; N]| a.iter().fold(0.0f64, |size, a| size.max(a.abs()));
-    let moved = |q: &[T; N], by: &[f64]| -> [T; N] { core::array::from_fn(|i| q[i] + T::from_f64(by[i])) };
-    let (mut q, step) = (*q, cube_root_of_rounding::<T>());
+    let held = |q: [T; N]| if extra.is_hard() { extra.inside(&q) } else { q };
+    let moved = |q: &[T; N], by: &[f64]| -> [T; N] { held(core::array::from_fn(|i| q[i] + T::from_f64(by[i]))) };
+    let (mut q, step) = (held(*q), cube_root_of_rounding::<T>());
     let enough = 4.0 * T::EPSILON.to_f64() * (omega * omega).max(1e-12);
     for _ in 0..10_000 {
-        let here = a(&q);
-        if !size(&here).is_finite() {
+        let mut here = a(&q);
+        if !here.iter().all(|a| a.is_finite()) {
             return None;
+        }
+        // A wall bears what presses on it.
+        let mut presses = false;
+        for i in (0..N).filter(|_| extra.is_hard()) {
+            if here[i] < 0.0 && q[i] == extra.low[i] || 0.0 < here[i] && q[i] == extra.high[i] {
+                (here[i], presses) = (0.0, true);
+            }
         }
         if size(&here) <= enough {
             return Some(q);
         }
         let jacobian = jacobian(step, &q, a);
         // Near a saddle Newton's method would end there.
-        let stable = jacobian.complex_eigenvalues().iter().all(|value| value.re < 0.0);
+        let stable = !presses && jacobian.complex_eigenvalues().iter().all(|value| value.re < 0.0);
         let newton = if stable { jacobian.lu().solve(&DVector::from_fn(N, |i, _| -here[i])) } else { None };
         let newton = newton.filter(|by| by.amax() < 0.5);
         if let Some(by) = newton {

@@ -28,7 +28,7 @@ impl<T: Lane + Float> Scene<T> {
     /// the [longest frame](Self::set_longest_frame) is cut.
     ///
     /// # Errors
-    /// A time that is negative or no number.
+    /// A time that is negative, infinite or no number.
     pub fn advance(&mut self, dt: f64) -> Result<Advanced, SceneError> {
         if self.paused && (0.0..f64::INFINITY).contains(&dt) {
             return Ok(Advanced::default());
@@ -68,18 +68,19 @@ impl<T: Lane + Float> Scene<T> {
         let tick = self.clock.tick();
         let kinks = self.sample(tick, ticks);
         let Self { clock, places, actives, numbers, timetable, groups, failures, parallel, .. } = self;
+        let mut all: Vec<(u8, usize, u32)> = Vec::new();
         let mut failed: Vec<Failed> = Vec::new();
-        for (_, group) in groups.iter_mut() {
+        for (index, (_, group)) in groups.iter_mut().enumerate() {
             group.settle(clock);
             let sampled = Sampled { clock, tick, ticks, places, actives, numbers, timetable, kinks };
             group.run(&sampled, *parallel, &mut failed);
-            if !failed.is_empty() {
-                failed.sort_by_key(|&(id, at)| (at, id));
-                for (id, at) in failed.drain(..) {
-                    failures.push(group.fail(clock, places, id, tick + i64::from(at)));
-                }
-                self.dirty = true;
-            }
+            all.extend(failed.drain(..).map(|(id, at)| (at, index, id)));
+        }
+        self.dirty |= !all.is_empty();
+        // By time, whatever was done in one batch.
+        all.sort_unstable();
+        for (at, index, id) in all {
+            failures.push(groups[index].1.fail(clock, places, id, tick + i64::from(at)));
         }
     }
 

@@ -7,7 +7,7 @@ use super::joint::Place;
 use super::{Handle, Scene};
 use crate::integrate::{Dop853, solve};
 use crate::motion::Side;
-use crate::real::{Float, Lane, Real};
+use crate::real::{Float, Lane};
 use crate::system::{Dynamics, Purpose, scalar_time};
 use crate::time::Time;
 
@@ -53,9 +53,9 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Dynamics<N> for Hanging<'_,
     fn accelerations_with(&self, prepared: &S::Prepared, t: Time, side: Side, q: &[T; N], v: &[T; N]) -> [T; N] {
         let inputs = self.inputs(t, side, Purpose::Accelerations);
         let mut a = self.system.accelerations_prepared(prepared, scalar_time(t), q, v, &inputs);
+        let push = self.extra.push(q);
         for i in 0..N {
-            let inside = Real::min(Real::max(q[i], self.extra.low[i]), self.extra.high[i]);
-            a[i] -= self.extra.damping * v[i] + self.extra.stiffness * (q[i] - inside);
+            a[i] += push[i] - self.extra.damping * v[i];
         }
         a
     }
@@ -96,7 +96,7 @@ impl<T: Lane + Float> Scene<T> {
         let restless = SceneError::Restless { kind: S::FACTS.name, index: id };
         match how {
             Return::Pause => {}
-            Return::Rest => put(group.rest_of(clock, places, &group.read(id)).ok_or(restless)?, zero),
+            Return::Rest => put(group.rest_of(places, &group.read(id), clock.time(clock.tick())).ok_or(restless)?, zero),
             Return::CatchUp { longest } => {
                 if longest <= 0.0 || longest.is_nan() {
                     return Err(SceneError::Setting { name: "longest", value: longest, required: "positive" });
@@ -104,8 +104,9 @@ impl<T: Lane + Float> Scene<T> {
                 let now = clock.time(clock.tick());
                 let (mut start, mut from) = (clock.time(since), group.read(id));
                 if longest < now - start {
-                    let q = group.rest_of(clock, places, &from).ok_or(restless)?;
-                    (start, from.state[0], from.state[2]) = (now - longest, q, zero);
+                    start = now - longest;
+                    let q = group.rest_of(places, &from, start).ok_or(restless)?;
+                    (from.state[0], from.state[2]) = (q, zero);
                 }
                 let system = group.system_of(&from.parameters);
                 let [q, _, v, ..] = from.state;
@@ -114,13 +115,7 @@ impl<T: Lane + Float> Scene<T> {
                     let solution = solve(&hanging, (start, now), q, v).method(Dop853).rtol(1e-6).atol(1e-6).run();
                     let end = solution.map_err(|failure| SceneError::Integration(failure.error))?.end;
                     let (mut q, mut v) = (end.q, end.v);
-                    let hard = T::from_f64(0.0) < from.extra.hard;
-                    for i in (0..N).filter(|_| hard) {
-                        let inside = Real::min(Real::max(q[i], from.extra.low[i]), from.extra.high[i]);
-                        if inside != q[i] {
-                            (q[i], v[i]) = (inside, T::from_f64(0.0));
-                        }
-                    }
+                    from.extra.hold(&mut q, &mut v);
                     put(q, v);
                 }
             }

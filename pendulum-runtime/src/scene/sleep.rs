@@ -1,6 +1,8 @@
 //! Sleep: pendulums that hardly move, on joints that rest, are not computed until their joints move.
 
+use super::bucket::{Extra, Loose};
 use super::clock::Clock;
+use super::frequency;
 use super::group::{Group, Status, inputs_at};
 use super::hung::{Hung, W};
 use super::joint::Place;
@@ -26,10 +28,24 @@ pub(super) struct Bed<T, const N: usize> {
     until: i64,
     /// Where it would come to rest.
     rest: [T; N],
-    /// The energy above that at rest below which it sleeps; negative if it never may.
+    /// The energy above that at rest below which it sleeps; negative if it may not.
     energy: T,
     /// No velocity is larger with so little energy.
     speed: [T; N],
+    /// No coordinate is farther from rest with so little energy.
+    reach: T,
+}
+
+impl<T: Lane + Float, const N: usize> Bed<T, N> {
+    /// Whether another look would find no more: what moves fast does not fall asleep, and what is near its rest has no other.
+    fn lasts(&self, q: &[T; N], v: &[T; N]) -> bool {
+        let fast = (0..N).any(|i| T::from_f64(4.0) * self.speed[i] < Real::abs(v[i]));
+        fast || T::from_f64(0.0) < self.energy && self.is_near(q)
+    }
+
+    fn is_near(&self, q: &[T; N]) -> bool {
+        (0..N).all(|i| Real::abs(q[i] - self.rest[i]) <= self.reach)
+    }
 }
 
 impl<T: Lane + Float> Scene<T> {
@@ -144,11 +160,11 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                     continue;
                 }
                 let (q, v) = block.state(lane);
-                let known = self.beds[id as usize].filter(|bed| bed.until == wake);
+                let known = self.beds[id as usize].filter(|bed| bed.until == wake && bed.lasts(&q, &v));
                 let bed = known.unwrap_or_else(|| self.bed(clock, places, id, tolerance, wake));
                 self.beds[id as usize] = Some(bed);
-                let slow = (0..N).all(|i| Real::abs(v[i]) <= bed.speed[i]);
-                if slow && self.calm(clock, places, id, &q, &v, &bed) {
+                let slow = T::from_f64(0.0) < bed.energy && (0..N).all(|i| Real::abs(v[i]) <= bed.speed[i]);
+                if slow && bed.is_near(&q) && self.calm(clock, places, id, &q, &v, &bed) {
                     sleepers.push((id, wake));
                 }
             }
@@ -161,11 +177,18 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             self.write(&loose);
             self.status[id as usize] = Status::Asleep(wake);
             self.set_awake(id, false);
-            if wake != i64::MAX {
-                self.alarms.push(Reverse((wake, id)));
-            }
+            self.alarms.extend(alarm(id, self.status[id as usize]));
+        }
+        // Those of sleepers that were woken stay behind.
+        if 2 * self.table.len() < self.alarms.len() {
+            self.reset_alarms();
         }
         !sleepers.is_empty()
+    }
+
+    /// Sets the alarms of all that sleep.
+    pub(super) fn reset_alarms(&mut self) {
+        self.alarms = (0..).zip(&self.status).filter_map(|(id, status)| alarm(id, *status)).collect();
     }
 
     /// Forgets whether a pendulum may sleep.
@@ -177,26 +200,37 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
 
     /// Whether the energy is small enough.
     fn calm(&self, clock: &Clock, places: &[Place<T>], id: u32, q: &[T; N], v: &[T; N], bed: &Bed<T, N>) -> bool {
-        let system = self.system_of(&self.read(id).parameters);
-        let rest = AtRest::new(&system, clock, places, self.joints(id));
+        let loose = self.read(id);
+        let system = self.system_of(&loose.parameters);
+        let rest = AtRest::new(&system, clock, places, &loose);
         let by = core::array::from_fn(|i| q[i] - bed.rest[i]);
         rest.kinetic(q, v) + rest.lifted(&bed.rest, &by) <= bed.energy
     }
 
     /// What decides whether a pendulum may sleep.
     fn bed(&self, clock: &Clock, places: &[Place<T>], id: u32, tolerance: f64, until: i64) -> Bed<T, N> {
-        let zero = [T::from_f64(0.0); N];
-        let never = Bed { until, rest: zero, energy: T::from_f64(-1.0), speed: [T::from_f64(-1.0); N] };
-        let loose = self.read(id);
-        let Some(rest) = self.rest_of(clock, places, &loose) else { return never };
+        let (loose, reach) = (self.read(id), T::from_f64(4.0 * tolerance));
         let system = self.system_of(&loose.parameters);
-        let still = AtRest::new(&system, clock, places, &loose.joints);
+        let still = AtRest::new(&system, clock, places, &loose);
+        let [q, ..] = loose.state;
+        // Where it may not sleep it is looked at again when it is slow.
+        let omega = frequency::fastest(&system, still.t, &q, &still.forces);
+        let never = Bed { until, rest: q, energy: T::from_f64(-1.0), speed: [T::from_f64(omega * tolerance); N], reach };
+        let Some(rest) = self.rest_of(places, &loose, clock.time(clock.tick())) else { return never };
         let lifted = |by: &[f64; N]| still.lifted(&rest, &by.map(T::from_f64)).to_f64();
         let Some(energy) = barrier(tolerance, lifted) else { return never };
         let energy = T::from_f64(energy);
         // T = pᵀM⁻¹p/2 bounds q̇ᵢ by √(2T (M⁻¹)ᵢᵢ), with a tenth more because M is not the same everywhere.
         let speed = core::array::from_fn(|i| (T::from_f64(2.42) * energy * still.mobility(&rest, i)).sqrt());
-        Bed { until, rest, energy, speed }
+        Bed { until, rest, energy, speed, reach }
+    }
+}
+
+/// When a pendulum is to wake, if it ever is.
+fn alarm(id: u32, status: Status) -> Option<Reverse<(i64, u32)>> {
+    match status {
+        Status::Asleep(tick) if tick != i64::MAX => Some(Reverse((tick, id))),
+        _ => None,
     }
 }
 
@@ -206,32 +240,41 @@ struct AtRest<'a, S: Hung<T, N>, T: Lane + Float, const N: usize> {
     t: T,
     forces: S::Inputs,
     momenta: S::Inputs,
+    extra: &'a Extra<T, N>,
 }
 
 impl<'a, S: Hung<T, N>, T: Lane + Float, const N: usize> AtRest<'a, S, T, N> {
-    fn new(system: &'a S, clock: &Clock, places: &[Place<T>], joints: &[u32]) -> Self {
+    fn new(system: &'a S, clock: &Clock, places: &[Place<T>], loose: &'a Loose<T, N>) -> Self {
         let t = clock.time(clock.tick());
-        let inputs = |purpose| inputs_at::<S, T, N>(places, joints, Time::new(t), Side::After, purpose, true);
+        let inputs = |purpose| inputs_at::<S, T, N>(places, &loose.joints, Time::new(t), Side::After, purpose, true);
         let (forces, momenta) = (inputs(Purpose::Accelerations), inputs(Purpose::Momenta));
-        Self { system, t: T::from_f64(t), forces, momenta }
+        Self { system, t: T::from_f64(t), forces, momenta, extra: &loose.extra }
     }
 
     /// q̇ᵀMq̇/2.
     fn kinetic(&self, q: &[T; N], v: &[T; N]) -> T {
+        T::from_f64(0.5) * self.product(q, v, v)
+    }
+
+    /// aᵀMb.
+    fn product(&self, q: &[T; N], a: &[T; N], b: &[T; N]) -> T {
         let p = |v: &[T; N]| self.system.momenta(self.t, q, v, &self.momenta);
-        let (moving, still) = (p(v), p(&[T::from_f64(0.0); N]));
-        let sum = (0..N).fold(T::from_f64(0.0), |sum, i| sum + v[i] * (moving[i] - still[i]));
-        T::from_f64(0.5) * sum
+        let (moving, still) = (p(b), p(&[T::from_f64(0.0); N]));
+        (0..N).fold(T::from_f64(0.0), |sum, i| sum + a[i] * (moving[i] - still[i]))
     }
 
     /// The work that it takes to move from `rest` by `by`, by Simpson's rule over the forces: energies would have lost all their digits in
-    /// single precision.
+    /// single precision. Nothing gets through a wall.
     fn lifted(&self, rest: &[T; N], by: &[T; N]) -> T {
         let zero = [T::from_f64(0.0); N];
+        if self.extra.is_hard() && (0..N).any(|i| rest[i] + by[i] < self.extra.low[i] || self.extra.high[i] < rest[i] + by[i]) {
+            return T::from_f64(f64::INFINITY);
+        }
         let work = |part: f64| {
             let q = core::array::from_fn(|i| rest[i] + T::from_f64(part) * by[i]);
             let forces = self.system.forces(self.t, &q, &zero, &self.forces);
-            (0..N).fold(T::from_f64(0.0), |sum, i| sum - by[i] * forces[i])
+            let work = (0..N).fold(T::from_f64(0.0), |sum, i| sum - by[i] * forces[i]);
+            if self.extra.stiffness == zero[0] { work } else { work - self.product(&q, by, &self.extra.push(&q)) }
         };
         (work(0.0) + T::from_f64(4.0) * work(0.5) + work(1.0)) / T::from_f64(6.0)
     }

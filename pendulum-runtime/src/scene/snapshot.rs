@@ -3,17 +3,17 @@
 use super::bucket::{Extra, Kind, Loose, still};
 use super::error::{Failure, SceneError};
 use super::group::{Group, Status};
-use super::hung::Hung;
+use super::hung::{Hung, Known};
 use super::joint::Place;
-use super::scheme::{Grid, Scheme};
+use super::scheme::{Grid, MOST_SUBSTEPS, Scheme};
 use super::{Scene, hash};
 use crate::real::{Float, Lane, Real};
-use core::cmp::Reverse;
 
 /// The state of a scene: time, states, parameters, damping, stops, who sleeps and who has failed.
 ///
 /// Motions and the list of joints and pendulums are not in it: it is restored to the scene that it was taken of, or to one that was built
-/// in the same way.
+/// in the same way. Written to a file, it keeps who has failed and not why: [`Scene::failures`] is empty after it was read.
+/// With `serde_json` the bits stay what they are if its feature `float_roundtrip` is on.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Snapshot<T> {
@@ -33,6 +33,9 @@ pub struct GroupState<T> {
     /// Parameters, states and extras of one pendulum after the other.
     numbers: Vec<T>,
 }
+
+/// The time of a tick beyond these is no longer exact.
+const MOST_TICKS: u64 = 1 << 53;
 
 /// Stands for infinity in snapshots, as some formats know no infinite numbers.
 fn most<T: Float>() -> T {
@@ -69,11 +72,22 @@ pub(super) fn accepts<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     state: &GroupState<T>,
 ) -> Result<(), SceneError> {
     if state.kind != S::FACTS.name {
-        return Err(SceneError::Snapshot("the types of its pendulums"));
+        return Err(SceneError::Snapshot("the types of its pendulums differ"));
     }
     let count = group.table.len();
-    if state.pendulums.len() != count || state.numbers.len() != count * (S::FACTS.parameters.len() + numbers(N)) {
-        return Err(SceneError::Snapshot("the numbers of its pendulums"));
+    let (parameters, width) = (S::FACTS.parameters.len(), S::FACTS.parameters.len() + numbers(N));
+    if state.pendulums.len() != count || state.numbers.len() != count * width {
+        return Err(SceneError::Snapshot("the numbers of its pendulums differ"));
+    }
+    let suits = |scheme, substeps: u32| {
+        (scheme == Scheme::Rk4 || Known::<S, N>::SPLITS) && substeps <= MOST_SUBSTEPS && substeps.is_power_of_two()
+    };
+    if !state.pendulums.iter().all(|&(scheme, substeps, _)| suits(scheme, substeps)) {
+        return Err(SceneError::Snapshot("it holds steps that its pendulums cannot take"));
+    }
+    // Parameters may be what they like: a pendulum that fails for them can be saved, too.
+    if state.numbers.chunks_exact(width).any(|numbers| numbers[parameters..].iter().any(|number| !number.is_finite())) {
+        return Err(SceneError::Snapshot("it holds a state that is not finite"));
     }
     Ok(())
 }
@@ -115,16 +129,8 @@ pub(super) fn restore<S: Hung<T, N>, T: Lane + Float, const N: usize>(
         group.status[id as usize] = status;
         group.set_awake(id, status == Status::Awake);
     }
-    group.alarms = (0..).zip(&group.status).filter_map(|(id, status)| alarm(id, *status)).collect();
+    group.reset_alarms();
     group.beds.clear();
-}
-
-/// When a pendulum is to wake, if it ever is.
-fn alarm(id: u32, status: Status) -> Option<Reverse<(i64, u32)>> {
-    match status {
-        Status::Asleep(tick) if tick != i64::MAX => Some(Reverse((tick, id))),
-        _ => None,
-    }
 }
 
 /// The largest differences of coordinates and of velocities.
@@ -158,13 +164,17 @@ impl<T: Lane + Float> Scene<T> {
     /// Puts the scene back to where a snapshot was taken; what follows has the same bits as it had then.
     ///
     /// # Errors
-    /// A snapshot of another scene.
+    /// A snapshot of another scene, or one that was damaged.
     pub fn restore(&mut self, snapshot: &Snapshot<T>) -> Result<(), SceneError> {
         if snapshot.groups.len() != self.groups.len() {
-            return Err(SceneError::Snapshot("the numbers of types"));
+            return Err(SceneError::Snapshot("the numbers of types differ"));
         }
         for ((_, group), state) in self.groups.iter().zip(&snapshot.groups) {
             group.accepts(state)?;
+        }
+        let (tick, origin, asked) = snapshot.clock;
+        if MOST_TICKS < tick.unsigned_abs().max(origin.unsigned_abs()) || asked.iter().any(|asked| !asked.is_finite()) {
+            return Err(SceneError::Snapshot("it holds a time that is out of range"));
         }
         self.clock.restore(snapshot.clock);
         for ((_, group), state) in self.groups.iter_mut().zip(&snapshot.groups) {
@@ -175,20 +185,18 @@ impl<T: Lane + Float> Scene<T> {
         Ok(())
     }
 
-    /// A number that two scenes share that are in the same state, to the last bit.
+    /// A number that two scenes share that are in the same state at the same tick, to the last bit, whatever the frames were.
     pub fn checksum(&self) -> u64 {
         self.snapshot().checksum()
     }
 }
 
 impl<T: Real + Float> Snapshot<T> {
-    /// A number that two snapshots share that are the same to the last bit.
+    /// A number that two snapshots share whose tick and states are the same to the last bit; the part of a tick that frames have asked for beyond
+    /// does not count.
     pub fn checksum(&self) -> u64 {
         let mut hash = hash::Hash::new();
-        let (tick, origin, asked) = self.clock;
-        for word in [tick as u64, origin as u64, asked[0].to_bits(), asked[1].to_bits()] {
-            hash.add(word);
-        }
+        hash.add(self.clock.0 as u64);
         for group in &self.groups {
             hash.add(group.pendulums.len() as u64);
             for &(scheme, substeps, status) in &group.pendulums {

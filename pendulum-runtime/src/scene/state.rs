@@ -47,7 +47,7 @@ impl<T: Lane + Float> Scene<T> {
         position
     }
 
-    /// Puts a pendulum elsewhere, awake.
+    /// Puts a pendulum elsewhere, awake; what lies beyond a hard limit is put on it.
     ///
     /// # Errors
     /// A state that is not finite, a pendulum of another scene.
@@ -62,6 +62,8 @@ impl<T: Lane + Float> Scene<T> {
         self.change(pendulum, |loose| {
             let zero = [T::from_f64(0.0); N];
             loose.state = [q, zero, v, zero, q, v];
+            loose.hold();
+            (loose.state[4], loose.state[5]) = (loose.state[0], loose.state[2]);
         })?;
         self.wake(pendulum)
     }
