@@ -3,7 +3,7 @@
 #![allow(mixed_script_confusables, missing_docs)]
 
 use pendulum_runtime::error::Error;
-use pendulum_runtime::motion::{Analytic, Function, Motion, Orders, Sample, Side, Sinusoid};
+use pendulum_runtime::motion::{Analytic, Clip, Function, Interpolation, Motion, Orders, Projected, Sample, Side, Sinusoid};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::DoubleDouble;
 use pendulum_runtime::time::Time;
@@ -193,4 +193,29 @@ fn motions_of_ones_own_say_whether_they_have_series() {
     let known = solve(&known, (0.0, 1.0), [0.3], [0.0]).rtol(1e-14).run().unwrap();
     assert_eq!((silent.stats.method, known.stats.method), ("Picard", "Taylor"));
     assert!((silent.end.q[0] - known.end.q[0]).abs() < 1e-12);
+}
+
+#[test]
+fn what_is_seen_of_a_motion_knows_as_much_as_the_motion() {
+    let frames: Vec<[f64; 3]> =
+        (0..25).map(|k| [0.1 * f64::sin(0.7 * f64::from(k)), 0.3, 0.05 * f64::cos(f64::from(k))]).collect();
+    let rows = [[0.6, 0.0, 0.8], [0.0, 2.0, 0.0]];
+    let flat: Vec<[f64; 2]> =
+        frames.iter().map(|frame| rows.map(|row| (0..3).map(|axis| row[axis] * frame[axis]).sum())).collect();
+    let seen = Projected::new(Clip::new(24.0, &frames, 1, Interpolation::Spline).unwrap(), rows);
+    let system = || Moving { L: 0.5, g: 9.8 };
+    let series = solve(&system().driven_by(seen.clone()), (0.0, 1.0), [0.3], [0.0]).method(Taylor::new()).rtol(1e-14).run();
+    let (seen, flat) = (system().driven_by(seen), system().driven_by(Clip::new(24.0, &flat, 1, Interpolation::Spline).unwrap()));
+    for rtol in [1e-4, 1e-12] {
+        let runs = [
+            solve(&seen, (0.0, 1.0), [0.3], [0.0]).rtol(rtol).run().unwrap(),
+            solve(&flat, (0.0, 1.0), [0.3], [0.0]).rtol(rtol).run().unwrap(),
+        ];
+        assert_eq!(runs[0].stats.accepted, runs[1].stats.accepted);
+        assert!((runs[0].end.q[0] - runs[1].end.q[0]).abs() < 1e-13);
+        assert!((runs[0].end.q[0] - series.as_ref().unwrap().end.q[0]).abs() < 10.0 * rtol);
+    }
+    // What is seen of a function is a function.
+    let thrown = Function::new(|t| [0.0, t, t * t]).velocity(|t| [0.0, 1.0, 2.0 * t]).acceleration(|_| [0.0, 0.0, 2.0]);
+    assert!(Motion::<f64, 2>::analytic(&Projected::new(thrown, rows)).is_none());
 }

@@ -1,12 +1,17 @@
 //! Motions in space, seen in a plane.
 
-use super::{Motion, Orders, Sample, Side};
+use super::{Analytic, Motion, Orders, Sample, Side};
+use crate::jet::Series;
 use crate::real::Real;
 use crate::time::Time;
 
-/// A motion in space as it is seen in a plane: P x(t), with velocities and accelerations to match.
+/// A motion in space as it is seen in a plane: P x(t), with velocities and accelerations to match, and all derivatives if the motion knows them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Projected<M> {
+pub struct Projected<M>(Seen<M>);
+
+/// A motion of which it shows while running whether it is analytic.
+#[derive(Clone, Debug, PartialEq)]
+struct Seen<M> {
     motion: M,
     rows: [[f64; 3]; 2],
 }
@@ -17,7 +22,7 @@ impl<M> Projected<M> {
     /// `[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]` looks along the third axis, `[[0.01, 0.0, 0.0], [0.0, 0.01, 0.0]]` does so from
     /// centimetres.
     pub const fn new(motion: M, rows: [[f64; 3]; 2]) -> Self {
-        Self { motion, rows }
+        Self(Seen { motion, rows })
     }
 }
 
@@ -26,9 +31,10 @@ impl<T: Real, M: Motion<T, 3>> Motion<T, 2> for Projected<M> {
 
     #[inline]
     fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, 2> {
-        let sample = self.motion.sample(t, side, orders);
+        let Seen { motion, rows } = &self.0;
+        let sample = motion.sample(t, side, orders);
         let seen = |vector: [T; 3]| {
-            self.rows.map(|row| {
+            rows.map(|row| {
                 let [a, b, c] = row.map(T::from_f64);
                 a * vector[0] + b * vector[1] + c * vector[2]
             })
@@ -37,10 +43,70 @@ impl<T: Real, M: Motion<T, 3>> Motion<T, 2> for Projected<M> {
     }
 
     fn next_kink(&self, t: f64) -> Option<f64> {
-        self.motion.next_kink(t)
+        self.0.motion.next_kink(t)
+    }
+
+    fn analytic(&self) -> Option<&dyn Analytic<T, 2>> {
+        self.0.motion.analytic().map(|_| &self.0 as &dyn Analytic<T, 2>)
     }
 
     fn rest_until(&self, t: f64) -> f64 {
-        self.motion.rest_until(t)
+        self.0.motion.rest_until(t)
+    }
+}
+
+/// The series of one component of what is seen of `motion`.
+fn series<T: Real>(
+    motion: &(impl Analytic<T, 3> + ?Sized),
+    row: &[f64; 3],
+    (t, side): (Time, Side),
+    count: usize,
+    position: &mut Series<T>,
+) {
+    let (zero, mut along) = (T::from_f64(0.0), *position);
+    position[..count].fill(zero);
+    for (component, &weight) in row.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
+        motion.series(t, side, component, count, &mut along);
+        for (sum, &coefficient) in position[..count].iter_mut().zip(&along) {
+            *sum += T::from_f64(weight) * coefficient;
+        }
+    }
+}
+
+impl<T: Real, M: Analytic<T, 3>> Analytic<T, 2> for Projected<M> {
+    fn series(&self, t: Time, side: Side, component: usize, count: usize, position: &mut Series<T>) {
+        series(&self.0.motion, &self.0.rows[component], (t, side), count, position);
+    }
+
+    fn next_break(&self, t: f64) -> Option<f64> {
+        self.0.motion.next_break(t)
+    }
+
+    fn last_break(&self, t: f64) -> Option<f64> {
+        self.0.motion.last_break(t)
+    }
+
+    fn last_kink(&self, t: f64) -> Option<f64> {
+        self.0.motion.last_kink(t)
+    }
+}
+
+impl<T: Real, M: Motion<T, 3>> Analytic<T, 2> for Seen<M> {
+    fn series(&self, t: Time, side: Side, component: usize, count: usize, position: &mut Series<T>) {
+        if let Some(motion) = self.motion.analytic() {
+            series(motion, &self.rows[component], (t, side), count, position);
+        }
+    }
+
+    fn next_break(&self, t: f64) -> Option<f64> {
+        self.motion.analytic()?.next_break(t)
+    }
+
+    fn last_break(&self, t: f64) -> Option<f64> {
+        self.motion.analytic()?.last_break(t)
+    }
+
+    fn last_kink(&self, t: f64) -> Option<f64> {
+        self.motion.analytic()?.last_kink(t)
     }
 }
