@@ -34,7 +34,8 @@ pub mod prelude {
     pub use crate::{lagrangian, motion};
 }
 
-/// The blocks of the guide to scenes are tests.
+/// The blocks of the guides are tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/scenes.md")]
-struct Guide;
+#[doc = include_str!("../../docs/control.md")]
+struct Guides;

@@ -52,6 +52,9 @@ impl core::error::Error for ModeError {}
 /// Linearizes the equations of motion about the state `q`, `v` at time `t`.
 ///
 /// M is the mass matrix, C = −M ∂q̈/∂q̇ and K = −M ∂q̈/∂q. At an equilibrium (v = 0 and no acceleration) they describe small motions.
+///
+/// Driven inputs stay as they are. For the influence of one, as a controller needs it, declare it as a parameter:
+/// [`parameter_jacobian`](Jacobians::parameter_jacobian) is ∂q̈ by it.
 pub fn linearize<D, const N: usize>(dynamics: &D, t: f64, q: &[f64; N], v: &[f64; N]) -> Linearization<N>
 where
     D: Dynamics<N, Scalar = f64>,

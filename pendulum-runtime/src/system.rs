@@ -568,7 +568,12 @@ impl<S, M> Driven<S, M> {
         S: System<N>,
         M: Motions<S::Inputs>,
     {
-        const { assert!(sufficient(M::HAS, S::FACTS.inputs), "a motion lacks a derivative that the equations of motion need") };
+        const {
+            assert!(
+                sufficient(M::HAS, S::FACTS.inputs),
+                "a motion that `driven_by` was given lacks a derivative that the equations of motion need; a `Function` gets them by `.velocity(…)` and `.acceleration(…)`"
+            );
+        };
         Self { system, motions }
     }
 }

@@ -5,7 +5,8 @@ use crate::real::{Dual, Real};
 use crate::system::{Facts, Jacobians, System, VelocityFree};
 use nalgebra::{DMatrix, SMatrix};
 
-/// A system together with the variational equations along its motion: a system itself, which every integrator takes.
+/// A system together with the variational equations along its motion: a system itself, for every method that takes
+/// equations written by hand (name one: `Dop853`, `Tsit5`, `Gauss`, …).
 ///
 /// Its `M` coordinates are the `N` of the system and after them columns of `N`: ∂q/∂q₀ for each coordinate at the start, ∂q/∂q̇₀ for each velocity there,
 /// and ∂q/∂p for as many parameters as fit, in the order of `FACTS.parameters`; its velocities are the derivatives of q̇ likewise. Every column δq obeys

@@ -61,7 +61,9 @@ impl fmt::Display for DrawingError {
             Self::Syntax(message) => write!(f, "{message}; give the text of an SVG file"),
             Self::Unit { what, value } => write!(f, "{value} {what}; give a positive number"),
             Self::NoGroup { id } => write!(f, "the pivot `{id}` stands in no group of its name; put it into that group"),
-            Self::NoPlace { id } => write!(f, "the pivot `{id}` is not drawn; give it a size and a transform that keeps it"),
+            Self::NoPlace { id } => {
+                write!(f, "the pivot `{id}` is not drawn; give it a size, a transform that keeps it, and no `display=\"none\"`")
+            }
             Self::Twice { name } => write!(f, "`{name}` is there twice; give each joint a name and a pivot of its own"),
             Self::Sheared { name } => write!(f, "the joint `{name}` is sheared or stretched; apply the transform to its shapes"),
             Self::NoBody { name } => write!(f, "the pendulum `{name}` weighs nothing; fill one of its shapes"),

@@ -2,7 +2,7 @@
 //!
 //! A group is a joint if a small shape in it, such as a circle, names it and says what moves it: in the group `wing` the shape
 //! `wing.keyed` is the pivot of a joint moved by keys, in `feather-7` the shape `feather-7.pendulum` that of one that swings.
-//! Its middle is the pivot. It weighs nothing, need not be visible, and any editor can draw it. Groups within groups are joints on
+//! Its middle is the pivot. It weighs nothing, may be transparent or have `visibility="hidden"` (not `display="none"`), and any editor can draw it. Groups within groups are joints on
 //! joints; other groups only collect shapes.
 //!
 //! ```
@@ -27,7 +27,7 @@
 //! What a shape weighs: its area under its fill rule, Bézier curves and holes exactly ([`Outline`](crate::body::Outline)), times
 //! the density, times its opacity: that of its fill and those of the shape and of all groups around it. Of a gradient or a pattern
 //! only this opacity counts, not its colours'; that of a colour, as in `rgba`, has eight bits. Shapes that overlap weigh twice.
-//! Strokes weigh nothing; clip paths, masks and filters take nothing away; animations and scripts are passed over. A circle is
+//! Strokes weigh nothing; clip paths, masks and filters take nothing away unless they are empty; animations and scripts are passed over. A circle is
 //! weighed as drawn, of cubics, with an area within 3·10⁻⁴ of a true one. Coordinates are those of `usvg`, in single precision.
 //!
 //! What weighs nothing is listed in [`Drawing::skipped`] with its id. Texts are not read: turn them into paths.
@@ -131,7 +131,7 @@ pub enum Why {
     Image,
     /// It is a text.
     Text,
-    /// It is not drawn: it has no size, or a transform that is none.
+    /// It is not drawn: it has no size, a transform that leaves none, `display="none"`, or a clip path or filter that is empty or missing.
     NotDrawn,
 }
 
@@ -144,7 +144,9 @@ impl fmt::Display for Skipped {
             Why::NoArea => "has no area",
             Why::Image => "is an image",
             Why::Text => "is a text; turn it into paths",
-            Why::NotDrawn => "is not drawn: its size or its transform is none",
+            Why::NotDrawn => {
+                "is not drawn: it has no size, a transform that leaves none, `display=\"none\"`, or an empty clip path or filter"
+            }
         };
         write!(f, "`{}` {why}", self.id)
     }

@@ -127,7 +127,10 @@ fn what_weighs_nothing_is_listed() {
         ("word", Why::Text),
     ];
     assert_eq!(found, expected);
-    assert_eq!(drawing.skipped[0].to_string(), "`flat` is not drawn: its size or its transform is none");
+    assert_eq!(
+        drawing.skipped[0].to_string(),
+        "`flat` is not drawn: it has no size, a transform that leaves none, `display=\"none\"`, or an empty clip path or filter"
+    );
     same(drawing.joints[0].body.unwrap(), Body::rectangle(3.0 * 0.0016, 0.04, 0.04).unwrap().translated([-0.98, 0.18]));
 }
 
