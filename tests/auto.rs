@@ -3,7 +3,9 @@
 #![allow(mixed_script_confusables, missing_docs)]
 
 use pendulum_runtime::error::Error;
-use pendulum_runtime::motion::{Analytic, Clip, Function, Interpolation, Motion, Orders, Projected, Sample, Side, Sinusoid};
+use pendulum_runtime::motion::{
+    Analytic, CatmullRom, Clip, Function, Interpolation, Motion, Orders, Projected, Sample, Side, Sinusoid,
+};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::DoubleDouble;
 use pendulum_runtime::time::Time;
@@ -22,6 +24,16 @@ lagrangian! {
     let r = x + L*[sin(q), -cos(q)];
     kinetic = |ṙ|^2/2;
     potential = g*height(r);
+}
+
+lagrangian! {
+    pub struct Damped { L, c, g = 9.8 }
+    coordinate q;
+    driven x: [m; 2];
+    let r = x + L*[sin(q), -cos(q)];
+    kinetic = |ṙ|^2/2;
+    potential = g*height(r);
+    dissipation = c*q̇^2/2;
 }
 
 lagrangian! {
@@ -129,6 +141,16 @@ fn back_in_time_if_there_are_series() {
     let closed = Moving::new(0.5).driven_by(lift());
     let failure = solve(&closed, (1.0, 0.0), [0.3], [0.0]).run().unwrap_err();
     assert!(matches!(failure.error, Error::Interval { .. }));
+}
+
+#[test]
+fn fixed_steps_back_in_time_see_kinks_from_their_side() {
+    let keys = CatmullRom::new(&[-0.5, 0.7, 1.3, 2.5], &[[0.0, 0.0], [0.3, 0.0], [-0.2, 0.1], [0.4, 0.0]]).unwrap();
+    let damped = Damped::new(0.5, 0.1).driven_by(keys);
+    let there = solve(&damped, (0.0, 2.0), [0.3], [0.0]).method(Taylor::new()).rtol(1e-15).run().unwrap().end;
+    let back = solve(&damped, (2.0, 0.0), there.q, there.v).step(0.02).run().unwrap();
+    assert_eq!(back.stats.method, "Taylor");
+    assert!((back.end.q[0] - 0.3).abs() < 1e-12 && back.end.v[0].abs() < 1e-12, "{:?}", back.end);
 }
 
 #[test]

@@ -26,6 +26,7 @@ use crate::system::{Dynamics, System};
 /// | adaptive | [`Picard`] |
 /// | | [`Taylor`] for `rtol` below 1e-13 and back in time, where there are series: every motion is [`Analytic`](crate::motion::Analytic) and the accelerations contain no `abs`, `sign`, `min` or `max` of something that moves |
 /// | fixed | [`Srkn14a`], which is symplectic, for velocity-free systems, [`Dop853`] for others |
+/// | | [`Taylor`] back in time |
 ///
 /// Scalars of two words stand in no lanes. `Taylor` takes the place of `Picard` there, for every tolerance if the equations are short, as for one
 /// pendulum, below 2e-7 if they are longer, as for two or three links, and below 2e-14 if they are long; else `Dop853`.
@@ -118,7 +119,15 @@ impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Stepper<D, N> for Auto {
         from: &mut Node<D::Scalar, N>,
         room: &mut AnyRoom<D, N>,
     ) -> Node<D::Scalar, N> {
-        if <D::System as System<N>>::FACTS.velocity_free {
+        if span.h < 0.0 {
+            // The stages of the others would see a kink at the start from the wrong side.
+            room.choice = Some(Choice::Taylor);
+            let known = Known(field.dynamics);
+            let mut series = Counted::new(&known);
+            let to = Taylor::new().advance(&mut series, span, from, &mut room.taylor);
+            field.evaluations += series.evaluations;
+            to
+        } else if <D::System as System<N>>::FACTS.velocity_free {
             room.choice = Some(Choice::Srkn14a);
             Symplectic.step(field, span, from, &mut ())
         } else {
