@@ -67,6 +67,7 @@ impl FixedStep {
     #[inline]
     fn next(&self, plan: &mut Memory, t: Time, target: f64) -> Span {
         if target == f64::INFINITY {
+            plan.left = 0;
             return Span::by(t, self.step);
         }
         if plan.left == 0 || plan.target != target {
@@ -125,5 +126,10 @@ mod tests {
         assert_eq!(span.end, Time::new(0.15));
         let span = control.next(&mut plan, span.end, f64::INFINITY);
         assert_eq!(span.h, 0.1);
+        // A step towards nothing in between was none of the ten.
+        let span = control.next(&mut plan, Time::new(0.0), 1.0);
+        let span = control.next(&mut plan, span.end, f64::INFINITY);
+        control.next(&mut plan, span.end, 1.0);
+        assert_eq!(plan.left, 7);
     }
 }

@@ -69,6 +69,21 @@ fn a_reset_state_goes_on_from_there() {
 }
 
 #[test]
+fn a_reset_ends_the_plan_of_equal_steps() {
+    let driven = moving(|_| [[0.0; 2]; 3], 1.0);
+    let mut integrator = Integrator::new(&driven, Rk4, 0.0, [1.3], [0.0]).unwrap().control(FixedStep::new(0.1)).unwrap();
+    for _ in 0..3 {
+        integrator.step().unwrap();
+    }
+    integrator.reset(0.0, [1.3], [0.0]).unwrap();
+    for step in 1..=20 {
+        integrator.step().unwrap();
+        assert!((integrator.t() - 0.1 * f64::from(step)).abs() < 1e-15, "{}", integrator.t());
+    }
+    assert_eq!(integrator.stats().kinks, 2);
+}
+
+#[test]
 fn going_back_is_refused_and_changes_nothing() {
     let pendulum = pendulum();
     let mut integrator = Integrator::new(&pendulum, Dop853, 1.0, [1.3], [0.0]).unwrap();
