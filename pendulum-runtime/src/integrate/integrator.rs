@@ -111,7 +111,7 @@ where
         let before = steps(&self.driver.stats);
         self.found.clear();
         self.terminal = None;
-        while self.driver.node.t.since(t) != 0.0 && self.terminal.is_none() {
+        while self.t() != t && self.terminal.is_none() {
             if self.max_steps <= steps(&self.driver.stats) - before {
                 return Err(Error::MaxSteps { t: self.t(), max_steps: self.max_steps });
             }

@@ -31,6 +31,19 @@ fn advancing_ends_exactly_and_equals_solving() {
 }
 
 #[test]
+fn advancing_to_where_it_is_takes_no_step() {
+    let driven = moving(|_| [[0.0; 2]; 3], 1.0);
+    let mut integrator = Integrator::new(&driven, Dop853, 0.0, [1.3], [0.0]).unwrap();
+    for step in 1..=10 {
+        integrator.step().unwrap();
+        // The time has a low word that no `f64` tells.
+        let state = integrator.state();
+        integrator.advance_to(state.t).unwrap();
+        assert_eq!((integrator.state(), integrator.stats().accepted), (state, step));
+    }
+}
+
+#[test]
 fn adaptive_steps_survive_being_cut_into_frames() {
     let shaken = shaken();
     let control = AdaptiveStep::new().rtol(1e-10).atol(1e-10);
