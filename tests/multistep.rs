@@ -148,6 +148,21 @@ fn an_integration_by_hand_is_the_same() {
     assert!((integrator.q()[0] - exact.q[0]).abs() < 1e-9, "{} {}", integrator.q()[0], exact.q[0]);
 }
 
+/// The velocities of the state are no part of the recurrence, and the accelerations may be known: events have asked for them.
+#[test]
+fn other_velocities_begin_a_new_grid() {
+    let system = Simple { g: 9.8 };
+    let never = |_: f64, _: &[f64; 1], _: &[f64; 1]| 1.0;
+    let events = [Event::new(&never)];
+    let integrator = Integrator::new(&system, QuinlanTremaine::<8>::new(), 0.0, [0.0], [0.0]).unwrap();
+    let mut integrator = integrator.control(FixedStep::new(1.0 / 128.0)).unwrap().events(&events).unwrap();
+    integrator.advance_to(0.25).unwrap();
+    integrator.reset(0.25, [0.0], [1.0]).unwrap();
+    integrator.advance_to(0.5).unwrap();
+    let exact = solve(&system, (0.25, 0.5), [0.0], [1.0]).rtol(1e-14).atol(1e-14).run().unwrap().end;
+    assert!((integrator.q()[0] - exact.q[0]).abs() < 1e-11, "{} {}", integrator.q()[0], exact.q[0]);
+}
+
 #[test]
 fn dense_output_is_as_good_as_the_steps() {
     let system = Simple { g: 1.0 };
