@@ -45,7 +45,9 @@ impl Span {
     /// The part of it that has passed at `t`: 0 at the start, 1 at the end.
     pub fn fraction<T: Float>(&self, t: f64) -> T {
         let number = T::from_f64;
-        ((number(t) - number(self.start.to_f64())) - number(self.start.low())) / self.length()
+        // The difference of the high words and its rounding error: a short scalar does not hold the times themselves.
+        let passed = Time::new(t) + -self.start.to_f64();
+        (number(passed.to_f64()) + (number(passed.low()) - number(self.start.low()))) / self.length()
     }
 
     /// The time `start + c h` and the side from which a kink there is seen: a stage looks into the step.
@@ -65,6 +67,7 @@ impl Span {
 mod tests {
     use super::Span;
     use crate::motion::Side;
+    use crate::real::{DoubleDouble, Float, Real};
     use crate::time::Time;
 
     #[test]
@@ -74,6 +77,17 @@ mod tests {
         assert_eq!(span.at(0.4).1, Side::After);
         assert_eq!(span.at(0.6).1, Side::Before);
         assert_eq!(span.at(1.0), (Time::new(0.3), Side::Before));
+    }
+
+    #[test]
+    fn the_part_that_has_passed_is_as_good_as_the_scalar() {
+        let span = Span::by(Time::new(1e9) + 1e-9, 0.25);
+        assert!((span.fraction::<f32>(1e9 + 0.125) - 0.5).abs() < 1e-7);
+        let exact = (DoubleDouble::from(0.125) - DoubleDouble::from(1e-9)) / DoubleDouble::from(0.25);
+        assert!((span.fraction::<DoubleDouble>(1e9 + 0.125) - exact).abs().to_f64() < 1e-31);
+        // A difference that one word does not hold.
+        let exact = DoubleDouble::from(1.0) - DoubleDouble::from(1e-17);
+        assert!((Span::by(Time::new(1e-17), 1.0).fraction::<DoubleDouble>(1.0) - exact).abs().to_f64() < 1e-31);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Output at given times, at each step, and dense.
 
-use super::systems::{double_pendulum, pendulum};
+use super::systems::{Pendulum, double_pendulum, pendulum};
 use crate::error::Error;
 use crate::integrate::{Dop853, Leapfrog, Rk4, Srkn14a, Tsit5, solve};
 use crate::motion::Side;
@@ -55,6 +55,18 @@ fn regular_times_include_the_end_if_they_meet_it() {
     let tenths = run(0.1);
     assert_eq!((tenths.len(), tenths[10]), (11, 2.0));
     assert_eq!(run(5.0), [1.0]);
+}
+
+#[test]
+fn short_scalars_have_late_times() {
+    let system = Pendulum { length: 1.0_f32, g: 1.0 };
+    let run = |t: f64| solve(&system, (t, t + 1.0), [1.3], [0.0]).method(Dop853).every(0.125).dense().run().unwrap();
+    let (early, late) = (run(0.0), run(1e9));
+    for k in 0..=8 {
+        let t = 0.125 * f64::from(k);
+        assert!((early.q[k as usize][0] - late.q[k as usize][0]).abs() < 1e-6, "{t}");
+        assert!((early.at(t).unwrap().q[0] - late.at(1e9 + t).unwrap().q[0]).abs() < 1e-6, "{t}");
+    }
 }
 
 #[test]
