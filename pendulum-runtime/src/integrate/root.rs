@@ -92,7 +92,9 @@ pub(crate) fn dip<T: Float, E>(
         };
         count += 1;
         let rise = a.1.max(c.1) - b.1;
-        if 4 < count && tolerance < b.1 - (rise + rise) {
+        // Where `b` lies next to an end, the values say little about the minimum on the other side.
+        let balanced = number(0.3) * (c.0 - a.0) < (b.0 - a.0).min(c.0 - b.0);
+        if 4 < count && balanced && tolerance < b.1 - (rise + rise) {
             return Ok(Dip::Away);
         }
     }
@@ -171,5 +173,11 @@ mod tests {
         assert!(matches!(dip_of(|x| (x - 0.4) * (x - 0.4) - 1e-10, 0.0), Dip::Crosses(x) if (x - 0.4).abs() <= 1e-5));
         assert!(matches!(dip_of(|x| (x - 0.4) * (x - 0.4) - 1e-13, 1e-12), Dip::Touches(x) if (x - 0.4).abs() <= 1e-6));
         assert!(matches!(dip_of(|x| (x - 0.4).abs(), 1e-12), Dip::Touches(x) if (x - 0.4).abs() < 1e-12));
+        // The points at the end of a step are not in the middle.
+        let f = |x: f64| Ok::<f64, ()>((x - 0.9994) * (x - 0.9994));
+        for points in [[0.875, 0.9999, 1.0], [0.9988, 0.9989, 1.125]] {
+            let found = dip(&mut { f }, points.map(|x| (x, f(x).unwrap())), 1e-12).unwrap();
+            assert!(matches!(found, Dip::Touches(x) if (x - 0.9994).abs() < 1e-9), "{found:?}");
+        }
     }
 }
