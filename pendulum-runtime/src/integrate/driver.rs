@@ -22,7 +22,7 @@ pub(crate) struct Driver<T, const N: usize, M, C, R> {
     /// The state reached; at a kink the one beyond it.
     pub(crate) node: Node<T, N>,
     pub(crate) stats: Stats,
-    /// The last step and the node at its start; nothing before the first step.
+    /// The last step and the node at its start; nothing before the first step and after one that failed.
     last: Option<Span>,
     from: Node<T, N>,
     /// The motion within it, once somebody has asked.
@@ -133,6 +133,8 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
             Ok(span) => (self.last, self.within, self.from) = (Some(span), None, from),
             Err(error) => {
                 self.node = from;
+                // The stages are those of the step that failed.
+                (self.last, self.within) = (None, None);
                 return Err(error);
             }
         }

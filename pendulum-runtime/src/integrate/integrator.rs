@@ -156,7 +156,7 @@ where
         self.terminal
     }
 
-    /// The motion within the last step; `None` before the first.
+    /// The motion within the last step; `None` before the first and after one that failed.
     ///
     /// Methods that need further evaluations for it take them now.
     pub fn last_step(&mut self) -> Option<Piece<D::Scalar, N>> {

@@ -116,6 +116,8 @@ fn a_failed_step_leaves_the_state_before_it() {
     assert!(state.t == 1.0 && state.q[0].is_finite());
     assert!(integrator.step().is_err());
     assert_eq!(integrator.state(), state);
+    // What the method would tell about the motion belongs to the failed one.
+    assert!(integrator.last_step().is_none());
 }
 
 #[test]
