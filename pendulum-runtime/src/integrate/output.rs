@@ -31,8 +31,8 @@ impl Output<'_> {
             Output::Times(times) => in_order("t_eval", times, start, end),
             Output::Every(interval) => {
                 // More than this is a slip of the pen, and fills the memory before anybody looks at it.
-                let fine = 0.0 < interval && (end - start).abs() / interval <= MOST;
-                let required = "positive and give ten million states at most; lengthen it, or take the steps with an `Integrator` and keep what you need";
+                let fine = 0.0 < interval && interval < f64::INFINITY && (end - start).abs() / interval <= MOST;
+                let required = "positive, finite and give ten million states at most; lengthen it, or take the steps with an `Integrator` and keep what you need";
                 if fine { Ok(()) } else { Err(Error::Setting { name: "every", value: interval, required }) }
             }
             Output::End | Output::Steps => Ok(()),
@@ -43,10 +43,13 @@ impl Output<'_> {
     fn time(&self, index: usize, (start, end): (f64, f64)) -> Option<f64> {
         match *self {
             Output::Times(times) => times.get(index).copied(),
+            Output::Every(_) if index == 0 => Some(start),
             Output::Every(interval) => {
                 let t = start + direction(start, end) * (index as f64 * interval);
-                // A multiple that misses the end by rounding means the end.
-                let close = (t - end).abs() < 1e-9 * interval;
+                // A multiple that misses the end by rounding means the end; times far from zero are rounded more.
+                let rounding = 1e-9 * interval + 4.0 * f64::EPSILON * (start.abs() + end.abs());
+                let rounding = if rounding < 0.5 * interval { rounding } else { 0.5 * interval };
+                let close = (t - end).abs() < rounding;
                 if close { Some(end) } else { Some(t).filter(|t| precedes(*t, end, (start, end))) }
             }
             Output::End | Output::Steps => None,

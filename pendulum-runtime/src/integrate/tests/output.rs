@@ -55,6 +55,14 @@ fn regular_times_include_the_end_if_they_meet_it() {
     let tenths = run(0.1);
     assert_eq!((tenths.len(), tenths[10]), (11, 2.0));
     assert_eq!(run(5.0), [1.0]);
+    // So is every multiple far from zero.
+    let run = |start, end, every| solve(&pendulum(), (start, end), [1.3], [0.0]).method(Dop853).every(every).run().unwrap().t;
+    for (start, end) in [(1000000.01, 1000000.07), (-1000000.07, -1000000.01), (1e9, 1e9 + 0.06), (-0.06, 0.0)] {
+        let times = run(start, end, 0.01);
+        assert_eq!((times.len(), times[0], times[6]), (7, start, end));
+        assert!((times[5] - (end - 0.01)).abs() < 1e-6);
+    }
+    assert_eq!(run(0.0, 1e-12, 0.01), [0.0]);
 }
 
 #[test]
@@ -157,7 +165,7 @@ fn unusable_times_are_refused() {
     }
     let failure = solve(&pendulum(), (0.0, 1.0), [1.3], [0.0]).method(Dop853).t_stops(&[2.0]).run().unwrap_err();
     assert!(matches!(failure.error, Error::Times { name: "t_stops", index: 0, .. }), "{failure}");
-    for every in [0.0, -1.0, f64::NAN, 1e-12] {
+    for every in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-12] {
         let failure = solve(&pendulum(), (0.0, 1.0), [1.3], [0.0]).method(Dop853).every(every).run().unwrap_err();
         assert!(matches!(failure.error, Error::Setting { name: "every", .. }), "{failure}");
     }
