@@ -160,11 +160,13 @@ where
                 let error = log2(error);
                 let factor = response.safety * exp2(response.beta * memory.error - response.alpha * error);
                 memory.h = span.h * if factor < response.least { response.least } else { factor };
-                // A step that was cut says little about longer ones: what was wanted before stays possible.
+                // A step that was cut says little about longer ones, nothing if its error is rounding: what was wanted before stays possible.
                 let longest = if retried { span.h } else { span.h * response.greatest };
                 let longest = if longest < wanted && !retried { wanted } else { longest };
                 if longest < memory.h {
                     memory.h = longest;
+                } else if span.h < 0.5 * wanted && memory.h < wanted && !retried {
+                    memory.h = wanted;
                 }
                 if wanted <= span.h {
                     memory.error = if error < log2(1e-4) { log2(1e-4) } else { error };

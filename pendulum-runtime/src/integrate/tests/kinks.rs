@@ -1,6 +1,6 @@
 //! Motions whose velocity jumps: steps land on the kinks and the momenta go over them unchanged.
 
-use super::systems::{LinearKeys, MovingPendulum, moving};
+use super::systems::{LinearKeys, MovingPendulum, moving, pendulum};
 use crate::integrate::method::Suits;
 use crate::integrate::{Dop853, Integrator, Leapfrog, Rk4, Srkn6b, Srkn11b, Srkn14a, Tsit5, solve};
 use crate::motion::Side;
@@ -84,6 +84,23 @@ fn cutting_at_kinks_does_not_shorten_later_steps() {
     };
     let (smooth, kinked) = (run(f64::INFINITY), run(9.7));
     assert!(kinked <= smooth + 2 * 10, "{kinked} steps, {smooth} without kinks");
+}
+
+#[test]
+fn the_shortest_cut_does_not_shorten_later_steps() {
+    let system = pendulum();
+    let run = |stops: &[f64]| {
+        let problem = solve(&system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).rtol(1e-9).atol(1e-9);
+        let stats = problem.t_stops(stops).run().unwrap().stats;
+        stats.accepted + stats.rejected
+    };
+    let plain = run(&[]);
+    // The error of a step so short is rounding.
+    for gap in [1e-3, 1e-6, 1e-9, 1e-14] {
+        let stops: Vec<f64> = (1..10).flat_map(|k| [f64::from(k), f64::from(k) + gap]).collect();
+        let cut = run(&stops);
+        assert!(cut <= plain + 3 * 9, "{cut} steps with stops {gap:e} apart, {plain} without");
+    }
 }
 
 #[test]
