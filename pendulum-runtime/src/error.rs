@@ -160,7 +160,11 @@ impl fmt::Display for Error {
                 )
             }
             Self::Interval { start, end } if start.is_finite() && end.is_finite() => {
-                write!(f, "the end {end:?} lies before the start {start:?}; swap them, or go back in time with `Taylor`")
+                write!(
+                    f,
+                    "the end {end:?} lies before the start {start:?}; swap them, or go back in time with `Taylor` and without events, \
+                     which are looked for forwards only"
+                )
             }
             Self::Interval { start, end } => {
                 write!(f, "the interval from {start:?} to {end:?} is not finite; give two finite times")
@@ -290,7 +294,8 @@ mod tests {
 
     #[test]
     fn intervals_that_are_reversed_and_infinite_differ() {
-        assert!(Error::Interval { start: 1.0, end: 0.0 }.to_string().contains("before"));
+        let message = Error::Interval { start: 1.0, end: 0.0 }.to_string();
+        assert!(message.contains("before") && message.contains("`Taylor` and without events"), "{message}");
         assert!(Error::Interval { start: -1e308, end: 1e308 }.to_string().contains("beyond the range"));
         assert!(Error::Interval { start: 1.0, end: f64::INFINITY }.to_string().contains("finite"));
     }
