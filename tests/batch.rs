@@ -168,6 +168,11 @@ fn limits_hold_for_each_motion() {
         let alone = alone.first_step(1e-3).max_step(0.05).atol_each([1e-9], [1e-8]).run();
         assert_eq!(outcome.unwrap(), alone.unwrap());
     }
+    let refused = Batch::new().rtol(1e-12).first_step(1e-250).run(&problems).unwrap();
+    for (outcome, Problem { system, time, q, v }) in refused.into_iter().zip(&problems) {
+        let alone = solve(system, *time, *q, *v).method(Taylor::new()).rtol(1e-12).first_step(1e-250).run();
+        assert_eq!(outcome.unwrap_err().error, alone.unwrap_err().error);
+    }
 }
 
 #[test]

@@ -237,6 +237,12 @@ fn errors_say_where() {
     assert!(matches!(failure.error, Error::Interval { .. }));
     let failure = solve(&Simple::new(1.0), (0.0, 10.0), [1.3], [0.0]).method(Picard).rtol(0.0).run().unwrap_err();
     assert!(matches!(failure.error, Error::Setting { name: "rtol", .. }));
+    // A first step that time does not resolve is no singularity.
+    for (start, step) in [(0.0, 1e-250), (1e9, 1e-18)] {
+        let failure =
+            solve(&Simple::new(1.0), (start, start + 2.0), [1.3], [0.0]).method(Picard).first_step(step).run().unwrap_err();
+        assert!(matches!(failure.error, Error::Setting { name: "first_step", value, .. } if value == step), "{failure}");
+    }
 }
 
 /// Loose tolerances cost digits, not the motion.

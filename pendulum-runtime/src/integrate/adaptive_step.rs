@@ -140,10 +140,8 @@ where
         let (mut retried, mut last_fault) = (false, None);
         loop {
             if wanted <= resolution(from.t) && wanted < -from.t.since(target) {
-                if let (Some(value), 0, 0) = (self.first_step, stats.accepted, stats.rejected) {
-                    let required =
-                        "long enough to be told from zero at the start: above 1e-200 s, and above 1e-26 of the time there";
-                    return Err(Error::Setting { name: "first_step", value, required });
+                if let Some(error) = self.unresolved(stats.accepted + stats.rejected == 0, wanted) {
+                    return Err(error);
                 }
                 if let Some(fault) = last_fault {
                     return Err(at(fault, from.t));
@@ -219,6 +217,13 @@ impl<const N: usize> AdaptiveStep<N> {
             Some(step) if first && step < wanted => step,
             _ => wanted,
         }
+    }
+
+    /// The error for a step of the length `wanted`, which time does not resolve, if that was asked for.
+    pub(crate) fn unresolved(&self, first: bool, wanted: f64) -> Option<Error> {
+        let value = self.first_step.filter(|step| first && *step <= wanted)?;
+        let required = "long enough to be told from zero at the start: above 1e-200 s, and above 1e-26 of the time there";
+        Some(Error::Setting { name: "first_step", value, required })
     }
 
     /// Whether all settings are positive.

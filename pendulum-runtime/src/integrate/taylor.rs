@@ -224,7 +224,8 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         if wanted <= resolution(from.t) && wanted < from.t.since(target).abs() {
             let (_, index) = largest(&room.path, order, &weights);
             let coordinate = coordinate(&<D::System as System<N>>::FACTS, index);
-            return Err(Error::StepSizeUnderflow { t, step: wanted, coordinate });
+            let short = Error::StepSizeUnderflow { t, step: wanted, coordinate };
+            return Err(self.unresolved(memory.h == 0.0, wanted).unwrap_or(short));
         }
         memory.h = wanted;
         stats.accepted += 1;

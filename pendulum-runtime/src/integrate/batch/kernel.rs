@@ -218,7 +218,8 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
                 let span = if close { Span::to(from.t, end) } else { Span::by(from.t, h.0[l]) };
                 Some(self.not_finite(&from, &span, l))
             } else if is_short(from.t, end, wanted.0[l]) {
-                Some(self.underflow(before, &from, wanted.0[l], l))
+                let unresolved = self.batch.control.unresolved(steps == 1, wanted.0[l]);
+                Some(unresolved.unwrap_or_else(|| self.underflow(before, &from, wanted.0[l], l)))
             } else {
                 None
             };

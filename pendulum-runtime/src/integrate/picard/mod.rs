@@ -362,6 +362,7 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
             if wanted <= resolution(from.t) && wanted < -from.t.since(target) {
                 let coordinate = coordinate(&<D::System as System<N>>::FACTS, room.worst());
                 let short = Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate };
+                let short = self.unresolved(stats.accepted + stats.rejected == 0, wanted).unwrap_or(short);
                 return Err(last_fault.unwrap_or(short));
             }
             let span = planned(memory, from.t, wanted, target);
