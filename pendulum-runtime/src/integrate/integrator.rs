@@ -83,6 +83,7 @@ where
         C: Control<M, Ready<'a, D, N>, N>,
     {
         self.found.clear();
+        self.terminal = None;
         self.step_towards(f64::INFINITY)
     }
 
@@ -104,13 +105,13 @@ where
     where
         C: Control<M, Ready<'a, D, N>, N>,
     {
+        self.found.clear();
+        self.terminal = None;
         if !((self.t() <= t || self.driver.method.goes_back(&self.dynamics) && self.watch.is_idle()) && t.is_finite()) {
             return Err(Error::Interval { start: self.t(), end: t });
         }
         let steps = |stats: &Stats| stats.accepted + stats.rejected;
         let before = steps(&self.driver.stats);
-        self.found.clear();
-        self.terminal = None;
         while self.t() != t && self.terminal.is_none() {
             if self.max_steps <= steps(&self.driver.stats) - before {
                 return Err(Error::MaxSteps { t: self.t(), max_steps: self.max_steps });

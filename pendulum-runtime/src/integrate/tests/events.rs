@@ -200,6 +200,9 @@ fn an_integrator_stops_and_goes_on() {
     integrator.advance_to(50.0).unwrap();
     assert_times(&[integrator.t()], &[1.25 * PERIOD], 1e-8);
     assert_eq!(integrator.occurrences().len(), 1);
+    // Nothing happened in a call that was refused.
+    assert!(integrator.advance_to(0.0).is_err());
+    assert_eq!((integrator.terminal_event(), integrator.occurrences().len()), (None, 0));
     integrator.advance_to(9.0).unwrap();
     assert_eq!((integrator.t(), integrator.terminal_event(), integrator.occurrences().len()), (9.0, None, 0));
 }
@@ -293,6 +296,15 @@ fn a_function_that_gives_no_number_is_an_error() {
     let Error::Event { t, event: 1 } = failure.error else { panic!("{failure}") };
     assert!(failure.to_string().contains("event 1"));
     assert_eq!(failure.partial.status, Status::Failed);
+    // Nor did anything in a step that failed.
+    let late = |t: f64, _: &[f64; 1], _: &[f64; 1]| (1.75 - t).sqrt() + 1.0;
+    let events = [Event::at(&[1.75]).terminal(), Event::new(&late)];
+    let integrator = Integrator::new(&system, Rk4, 0.0, [1.3], [0.0]).unwrap();
+    let mut integrator = integrator.control(FixedStep::new(0.25)).unwrap().events(&events).unwrap();
+    integrator.advance_to(10.0).unwrap();
+    assert_eq!(integrator.terminal_event(), Some(0));
+    assert!(integrator.step().is_err());
+    assert_eq!((integrator.terminal_event(), integrator.occurrences().len()), (None, 0));
     // The last state is the one before the step.
     assert!(failure.partial.end.t < t && 0.5 <= failure.partial.end.q[0]);
     let start = |_: f64, _: &[f64; 1], _: &[f64; 1]| f64::NAN;
