@@ -65,7 +65,7 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
         })
     }
 
-    /// Puts the state elsewhere; counters and step size stay, the plan of equal steps ends.
+    /// Puts the state elsewhere; counters stay, steps are chosen as at a start.
     pub(crate) fn reset<D>(&mut self, dynamics: &D, t: f64, q: [T; N], v: [T; N]) -> Result<(), Error>
     where
         D: Dynamics<N, Scalar = T>,
@@ -74,7 +74,8 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
         check_start(dynamics, Time::new(t), &q, &v)?;
         self.kink = next_kink(&self.method, dynamics, t, false)?;
         self.backwards = false;
-        self.memory.left = 0;
+        // A long step from a state that it was not chosen for may go over events.
+        self.memory = Memory::default();
         self.node = Node::new(Time::new(t), q, v);
         (self.last, self.within, self.before_kink) = (None, None, None);
         Ok(())

@@ -121,7 +121,7 @@ where
         Ok(())
     }
 
-    /// Puts the state elsewhere, or the same state to another time.
+    /// Puts the state elsewhere, or the same state to another time; what follows is as if the integration began there.
     pub fn reset(&mut self, t: f64, q: [D::Scalar; N], v: [D::Scalar; N]) -> Result<(), Error> {
         self.driver.reset(&self.dynamics, t, q, v)?;
         self.watch.begin(&mut self.driver, &self.dynamics)
