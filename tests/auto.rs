@@ -251,34 +251,23 @@ lagrangian! {
 
 #[test]
 fn a_ball_that_is_put_back_bounces_as_if_it_began_there() {
-    // From 1 m with four fifths of the speed: closed form.
-    let (mut t, mut v, mut bounces) = ((2.0_f64 / 9.81).sqrt(), (2.0_f64 * 9.81).sqrt(), 0);
-    while t < 3.9 {
-        v *= 0.8;
-        t += 2.0 * v / 9.81;
-        bounces += 1;
-    }
     let ball = Ball::new(1.0);
     let floor = [Event::new(&|_, y: &[f64; 1], _| y[0]).direction(Direction::Falling).terminal()];
-    macro_rules! bounced {
+    macro_rules! bounces {
         ($($method:expr),+) => {$({
             let mut run = Integrator::new(&ball, $method, 0.0, [1.0], [0.0]).unwrap().events(&floor).unwrap();
-            let mut found = 0;
-            loop {
-                run.advance_to(3.9).unwrap();
-                if run.terminal_event().is_none() {
-                    break;
-                }
+            // From 1 m with four fifths of the speed, for ever shorter: all of it takes 4.06 s.
+            let (mut t, mut v) = ((2.0_f64 / 9.81).sqrt(), (2.0_f64 * 9.81).sqrt());
+            for _ in 0..20 {
+                run.advance_to(60.0).unwrap();
+                assert_eq!(run.terminal_event(), Some(0));
                 let at = run.state();
+                assert!((at.t - t).abs() < 1e-6 && (at.v[0] + v).abs() < 1e-6, "{at:?} at {t}");
                 run.reset(at.t, at.q, [-0.8 * at.v[0]]).unwrap();
-                found += 1;
+                v *= 0.8;
+                t += 2.0 * v / 9.81;
             }
-            assert_eq!(found, bounces);
-            // Between the last bounce and the next there are 3.9 s.
-            let after = 3.9 - (t - 2.0 * v / 9.81);
-            let y = v * after - 9.81 / 2.0 * after * after;
-            assert!((run.q()[0] - y).abs() < 1e-6, "{:?} for {y}", run.q());
         })+};
     }
-    bounced!(Auto::default(), Dop853, Tsit5, Picard, Taylor::new());
+    bounces!(Auto::default(), Dop853, Tsit5, Picard, Taylor::new());
 }
