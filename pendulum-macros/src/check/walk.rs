@@ -59,7 +59,7 @@ impl Walk<'_, '_, '_> {
                 self.constant(exponent);
             }
             ExprKind::Call(name, items)
-                if FUNCTIONS.iter().take(16).any(|(function, count)| name == function && *count == items.len()) =>
+                if scalar_functions().any(|(function, count)| name == function && *count == items.len()) =>
             {
                 for item in items {
                     self.constant(item);
@@ -242,6 +242,11 @@ impl Walk<'_, '_, '_> {
             .map(ToString::to_string)
             .collect()
     }
+}
+
+/// The functions of the table that take scalars to a scalar.
+fn scalar_functions() -> impl Iterator<Item = &'static (&'static str, usize)> {
+    FUNCTIONS.iter().take_while(|(function, _)| *function != "dot")
 }
 
 fn plural(count: usize) -> String {

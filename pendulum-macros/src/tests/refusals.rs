@@ -211,6 +211,11 @@ fn a_default_that_is_no_number_is_one_mistake() {
 
 #[test]
 fn a_right_block_is_not_refused() {
+    // Each function of scalars in a default, the last of the table too.
+    assert!(
+        refusals("struct N { c = min(1, 2), d = max(1, 2), e = atan2(1, sqrt(2)) } coordinate θ; kinetic = c*d*e*θ̇^2;")
+            .is_empty()
+    );
     // Bars inside bars, and an index that is called as the imaginary unit.
     assert!(refusals(&block("kinetic = m*L^2*θ̇^2; potential = m*g*|x + |x|*x/L|*sum(i in 0..3, i)*exp(-1)*8^(1/3);")).is_empty());
     assert!(refusals(&block(ENERGY)).is_empty());
