@@ -119,11 +119,11 @@ impl Rational {
         Self::new(numerator, (self.denominator / shared).checked_mul(other.denominator)?)
     }
 
-    /// Whether `self` is the smaller number; false where 128 bits do not tell.
-    pub(crate) fn less(self, other: Self) -> bool {
-        let left = self.numerator.checked_mul(other.denominator);
-        let right = other.numerator.checked_mul(self.denominator);
-        left.zip(right).is_some_and(|(left, right)| left < right)
+    /// Whether `self` is the smaller number; `None` where 128 bits do not tell.
+    pub(crate) fn less(self, other: Self) -> Option<bool> {
+        let left = self.numerator.checked_mul(other.denominator)?;
+        let right = other.numerator.checked_mul(self.denominator)?;
+        Some(left < right)
     }
 
     /// Reads a decimal literal such as `9.81`, `1e-3` or `12`.

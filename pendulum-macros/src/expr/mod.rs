@@ -146,8 +146,10 @@ impl Graph {
         if a == b {
             return a;
         }
-        if let (Node::Number(x), Node::Number(y)) = (self.node(a), self.node(b)) {
-            return if x.less(*y) { b } else { a };
+        if let (Node::Number(x), Node::Number(y)) = (self.node(a), self.node(b))
+            && let Some(less) = x.less(*y)
+        {
+            return if less { b } else { a };
         }
         self.intern(Node::Max(a.min(b), a.max(b)))
     }
@@ -192,5 +194,25 @@ impl Graph {
         self.contents.push(contents);
         self.ids.insert(node, id);
         id
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Graph, Node};
+    use crate::number::Rational;
+
+    #[test]
+    fn numbers_too_long_to_compare_stay_in_their_maximum() {
+        let mut g = Graph::new();
+        let [a, b, c] = ["0.12345678901234567891", "0.92345678901234567891", "0.5"].map(|digits| {
+            let value = Rational::decimal(digits).unwrap();
+            g.number(value)
+        });
+        for (first, second) in [(a, b), (b, a)] {
+            let max = g.max(first, second);
+            assert!(matches!(*g.node(max), Node::Max(x, y) if [x, y] == [a.min(b), a.max(b)]));
+        }
+        assert_eq!((g.max(a, c), g.max(b, c)), (c, b));
     }
 }

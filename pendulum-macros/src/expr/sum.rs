@@ -125,7 +125,7 @@ impl Graph {
             let factors = self.factors(id);
             common.retain_mut(|(base, exponent)| match factors.iter().find(|(other, _)| other == base) {
                 Some(&(_, other)) if other.is_negative() == exponent.is_negative() => {
-                    if other.abs().less(exponent.abs()) {
+                    if other.abs().less(exponent.abs()) == Some(true) {
                         *exponent = other;
                     }
                     true

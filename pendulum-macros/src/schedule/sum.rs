@@ -91,7 +91,7 @@ impl Schedule<'_> {
                 terms[index].factors.iter().find(|(other, exponent)| *other == factor && exponent.is_negative() == negative);
             found.map(|&(_, exponent)| exponent)
         });
-        let exponent = exponents.reduce(|a, b| if b.abs().less(a.abs()) { b } else { a })?;
+        let exponent = exponents.reduce(|a, b| if b.abs().less(a.abs()) == Some(true) { b } else { a })?;
         Some(((factor, exponent), places))
     }
 }
