@@ -267,7 +267,8 @@ pub struct Facts {
     /// The coordinates that do not stand in the Lagrangian, by index.
     pub cyclic: &'static [usize],
     /// The conserved quantities that [`System::conserved`] gives, in terms of the momenta: `p_φ`, `x·p_y − y·p_x`. The energy is
-    /// not among them; it is conserved if the system is autonomous and conservative.
+    /// not among them; it is conserved where [`System::power`] is zero, as it is without `dissipation` and `force` if neither time
+    /// nor a driven input stands in the energy.
     pub conserved: &'static [&'static str],
     /// The parameters that the accelerations do not need.
     pub unused: &'static [&'static str],

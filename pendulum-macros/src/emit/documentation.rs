@@ -1,6 +1,7 @@
 //! What hover and rustdoc say about a struct: its equations and what they cost.
 
 use super::Emitter;
+use crate::expr::Graph;
 use crate::print::{self, Names};
 use crate::schedule::{self, Count};
 use proc_macro2::TokenStream;
@@ -15,7 +16,8 @@ impl Emitter<'_, '_> {
         let accelerations = motion.accelerations.clone();
         let mut conserved: Vec<String> =
             motion.conserved.iter().map(|conserved| format!("`{}`", print::conserved(&names, conserved))).collect();
-        if motion.autonomous && !motion.nonconservative {
+        // An energy may contain a time that no equation does.
+        if motion.power == Graph::ZERO {
             conserved.push("the energy".into());
         }
         let count = schedule::program(&self.graph, &accelerations).count();
@@ -58,4 +60,26 @@ pub(crate) fn operations(count: Count) -> String {
         .map(|(number, what)| format!("{number} {what}{}", if number == 1 { "" } else { "s" }))
         .collect();
     if parts.is_empty() { "no operation".into() } else { parts.join(", ") }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::expand::expand;
+
+    #[test]
+    fn the_energy_is_announced_where_its_power_vanishes() {
+        for (conserved, statements) in [
+            (false, "driven h: m; potential = m*g*(h + q);"),
+            (false, "potential = m*g*q + m*g^2*t^2;"),
+            (false, "potential = m*g*q; dissipation = m*g/2*q_dot;"),
+            (false, "potential = m*g*q; force q = m*g;"),
+            (true, "potential = m*g*q;"),
+            (true, "potential = m*g*q; force q = 0;"),
+        ] {
+            let block = format!("::p; struct S {{ m: kg, g: m/s^2 }} coordinate q: m; kinetic = m/2*q_dot^2; {statements}");
+            let found = expand(block.parse().unwrap()).to_string();
+            assert!(!found.contains("compile_error"), "{found}");
+            assert_eq!(found.contains("the energy"), conserved, "{statements}");
+        }
+    }
 }
