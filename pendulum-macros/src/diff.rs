@@ -33,16 +33,20 @@ fn rule(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
             let terms: Vec<(Id, Rational)> = terms.iter().map(|&(term, coefficient)| (known(graph, term), coefficient)).collect();
             graph.sum(&terms)
         }
-        // The coefficient is part of the node itself.
-        Node::Product(_, factors) => {
+        Node::Product(coefficient, factors) => {
             let mut terms = Vec::new();
-            for &(base, exponent) in &factors {
+            for (place, &(base, exponent)) in factors.iter().enumerate() {
                 let inner = known(graph, base);
                 if inner != Graph::ZERO {
                     let power = graph.number(exponent);
-                    let parts =
-                        [(id, Rational::ONE), (base, Rational::MINUS_ONE), (inner, Rational::ONE), (power, Rational::ONE)];
-                    terms.push((graph.product(Rational::ONE, &parts), Rational::ONE));
+                    // Its own exponent is lowered, not the node divided: a broken power of a product would not cancel, and be NaN at zero.
+                    let mut parts = factors.clone();
+                    match exponent.add(Rational::MINUS_ONE) {
+                        Some(lowered) => parts[place].1 = lowered,
+                        None => parts.push((base, Rational::MINUS_ONE)),
+                    }
+                    parts.extend([(inner, Rational::ONE), (power, Rational::ONE)]);
+                    terms.push((graph.product(coefficient, &parts), Rational::ONE));
                 }
             }
             graph.sum(&terms)

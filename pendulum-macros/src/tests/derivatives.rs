@@ -48,3 +48,17 @@ fn the_step_is_the_derivative_of_the_ramp() {
         assert_eq!(evaluate(&graph, slope, &|_| a), expected);
     }
 }
+
+/// Where a power of a product is zero, so is its slope.
+#[test]
+fn a_power_has_its_slope_at_zero_too() {
+    for (expression, inside) in [("(c*a)^(5/2)", 5.0 * 2f64.powf(2.5) / 2.0), ("(max(0, a)/c)^(5/2)", 5.0 / 2f64.powf(3.5))] {
+        let mut graph = Graph::new();
+        let id = lowered(&mut graph, expression);
+        let slope = derivative(&mut graph, id, Symbol::Parameter(0));
+        for (a, expected) in [(0.0, 0.0), (1.0, inside)] {
+            let found = evaluate(&graph, slope, &|symbol| if symbol == Symbol::Parameter(0) { a } else { 2.0 });
+            assert!((found - expected).abs() < 1e-14, "d/da {expression} at {a}: {found}, not {expected}");
+        }
+    }
+}
