@@ -78,7 +78,7 @@ pub(super) fn quantity<'a>(
 }
 
 fn family_length(expr: &Expr, errors: &mut Errors) -> usize {
-    match integer(expr, &[]) {
+    match integer(expr, &|_| None) {
         Ok(length) if (1..=LONGEST).contains(&length) => usize::try_from(length).unwrap_or(1),
         Ok(_) => {
             errors.at(expr.range, format!("a length is between 1 and {LONGEST}; write another number"));

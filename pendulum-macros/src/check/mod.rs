@@ -182,25 +182,24 @@ fn roles(block: &Block, errors: &mut Errors) {
 }
 
 /// A whole number, with the values of the indices in scope; the range that is none otherwise.
-pub(crate) fn integer(expr: &Expr, scope: &[(String, i64)]) -> Result<i64, Range> {
-    let value = rational(expr, scope).ok_or(expr.range)?;
+pub(crate) fn integer(expr: &Expr, bound: &dyn Fn(&str) -> Option<i64>) -> Result<i64, Range> {
+    let value = rational(expr, bound).ok_or(expr.range)?;
     value.integer().ok_or(expr.range)
 }
 
-fn rational(expr: &Expr, scope: &[(String, i64)]) -> Option<Rational> {
+fn rational(expr: &Expr, bound: &dyn Fn(&str) -> Option<i64>) -> Option<Rational> {
     match &expr.kind {
         ExprKind::Name(ident) => {
             let name = name::read(&ident.to_string());
-            let &(_, value) = scope.iter().rev().find(|(known, _)| *known == name.base && name.dots == 0)?;
-            Some(Rational::whole(value))
+            bound(&name.base).filter(|_| name.dots == 0).map(Rational::whole)
         }
-        ExprKind::Negative(inner) => Some(rational(inner, scope)?.negative()),
+        ExprKind::Negative(inner) => Some(rational(inner, bound)?.negative()),
         ExprKind::Sum(terms) => terms.iter().try_fold(Rational::ZERO, |sum, (minus, term)| {
-            let term = rational(term, scope)?;
+            let term = rational(term, bound)?;
             sum.add(if *minus { term.negative() } else { term })
         }),
         ExprKind::Product(factors) => factors.iter().try_fold(Rational::ONE, |product, (over, factor)| {
-            let factor = rational(factor, scope)?;
+            let factor = rational(factor, bound)?;
             product.mul(if *over { factor.reciprocal()? } else { factor })
         }),
         _ => unit::constant(expr),

@@ -1,7 +1,7 @@
 //! Integrals over bodies: a polynomial of degree two in the point becomes mass, centre and second moments.
 
-use super::Lower;
 use super::value::Value;
+use super::{Local, Lower};
 use crate::ast::{Expr, ExprKind};
 use crate::check::{self, Meaning};
 use crate::collect;
@@ -14,7 +14,7 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn body(&self, expr: &Expr) -> Option<usize> {
         let ExprKind::Name(ident) = &expr.kind else { return None };
         let Name { base, dots: 0 } = name::read(&ident.to_string()) else { return None };
-        if self.scope.iter().any(|(name, _)| *name == base) {
+        if self.local(&base).is_some() {
             return None;
         }
         match self.model.names.get(&base) {
@@ -53,7 +53,7 @@ impl Lower<'_, '_, '_, '_> {
         }
         let level = self.integrals;
         let parts = [0, 1].map(|component| self.graph.symbol(Symbol::Point(level, component)));
-        self.scope.push((name::read(point).base, Value::Plane { parts, complex: false }));
+        self.scope.push((name::read(point).base, Local::Value(Value::Plane { parts, complex: false })));
         self.integrals += 1;
         let value = self.expr(integrand);
         self.integrals -= 1;

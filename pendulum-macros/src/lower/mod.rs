@@ -127,8 +127,6 @@ fn lower(model: &Model, graph: &mut Graph, errors: &mut Errors, positions: Optio
         graph,
         errors,
         scope: Vec::new(),
-        indices: Vec::new(),
-        ranges: Vec::new(),
         instances: BTreeMap::new(),
         open: Vec::new(),
         indexed: BTreeSet::new(),
@@ -160,16 +158,20 @@ pub(crate) fn total_derivative(graph: &mut Graph, id: Id) -> Id {
     graph.sum(&terms)
 }
 
+/// What a name that holds in one expression stands for.
+enum Local {
+    /// An argument of a function or a point of integration.
+    Value(Value),
+    /// An index, and the source of the end of its range.
+    Index { value: i64, source: usize },
+}
+
 struct Lower<'m, 'a, 'g, 'e> {
     model: &'m Model<'a>,
     graph: &'g mut Graph,
     errors: &'e mut Errors,
-    /// The arguments of the functions that are open.
-    scope: Vec<(String, Value)>,
-    /// The indices that are bound.
-    indices: Vec<(String, i64)>,
-    /// The end of the range of each of them.
-    ranges: Vec<usize>,
+    /// The indices, arguments and points that are bound, the inner ones last.
+    scope: Vec<(String, Local)>,
     /// The definitions that are done, by their index.
     instances: BTreeMap<(usize, Option<i64>), Value>,
     /// The definitions that are being evaluated.
@@ -302,15 +304,11 @@ impl Lower<'_, '_, '_, '_> {
             return Value::Bad;
         }
         self.open.push((index, k));
-        let indices = std::mem::take(&mut self.indices);
-        let ranges = std::mem::take(&mut self.ranges);
         let scope = std::mem::take(&mut self.scope);
         if let (Some(k), Some(binder)) = (k, &definition.index) {
             self.bind(binder, k);
         }
         let value = self.expr(&definition.expr);
-        self.indices = indices;
-        self.ranges = ranges;
         self.scope = scope;
         self.open.pop();
         if let Some(positions) = &mut self.positions {
@@ -336,24 +334,21 @@ impl Lower<'_, '_, '_, '_> {
             return Value::Bad;
         }
         self.open.push((index, None));
-        let indices = std::mem::take(&mut self.indices);
-        let ranges = std::mem::take(&mut self.ranges);
-        let bound = names.iter().map(|name| name::read(&name.to_string()).base).zip(arguments).collect();
+        let bound = names.iter().map(|name| name::read(&name.to_string()).base);
+        let bound = bound.zip(arguments.into_iter().map(Local::Value)).collect();
         let scope = std::mem::replace(&mut self.scope, bound);
         let value = self.expr(&definition.expr);
         self.scope = scope;
-        self.indices = indices;
-        self.ranges = ranges;
         self.open.pop();
         value
     }
 
     /// The whole numbers of a range; a bad or endless one is reported and empty.
     fn range(&mut self, binder: &Binder) -> std::ops::Range<i64> {
-        let mut end = |expr: &Expr, indices: &[(String, i64)]| match check::integer(expr, indices) {
+        let end = |lower: &mut Self, expr: &Expr| match lower.integer(expr) {
             Ok(value) => Some(value),
             Err(range) => {
-                self.errors.once(
+                lower.errors.once(
                     expr.source,
                     range,
                     "the end of a range is a whole number known while compiling; write numbers and indices only",
@@ -361,7 +356,7 @@ impl Lower<'_, '_, '_, '_> {
                 None
             }
         };
-        let (Some(low), Some(high)) = (end(&binder.low, &self.indices), end(&binder.high, &self.indices)) else { return 0..0 };
+        let (Some(low), Some(high)) = (end(self, &binder.low), end(self, &binder.high)) else { return 0..0 };
         let high = if binder.inclusive { high.saturating_add(1) } else { high };
         if 65536 < high.saturating_sub(low) {
             self.errors.once(
@@ -375,13 +370,15 @@ impl Lower<'_, '_, '_, '_> {
     }
 
     fn index(&mut self, expr: &Expr, length: usize, name: &str) -> Option<i64> {
-        match check::integer(expr, &self.indices) {
+        match self.integer(expr) {
             Ok(k) if (0..length as i64).contains(&k) => Some(k),
             Ok(k) => {
                 // A range that is too long is one mistake, however often its index is used.
                 let text = check::text(expr);
-                let bound = self.indices.iter().rposition(|(name, _)| *name == name::read(&text).base);
-                let source = bound.map_or(expr.source, |place| self.ranges[place]);
+                let source = match self.local(&name::read(&text).base) {
+                    Some(Local::Index { source, .. }) => *source,
+                    _ => expr.source,
+                };
                 self.errors.once(source, expr.range, outside(name, k, length));
                 None
             }
@@ -396,14 +393,26 @@ impl Lower<'_, '_, '_, '_> {
         }
     }
 
+    /// What a name that holds in one expression stands for.
+    fn local(&self, name: &str) -> Option<&Local> {
+        self.scope.iter().rev().find(|(own, _)| own == name).map(|(_, local)| local)
+    }
+
+    /// A whole number made of numbers and indices; the range that is none otherwise.
+    fn integer(&self, expr: &Expr) -> Result<i64, Range> {
+        let index = |name: &str| match self.local(name) {
+            Some(&Local::Index { value, .. }) => Some(value),
+            _ => None,
+        };
+        check::integer(expr, &index)
+    }
+
     fn bind(&mut self, binder: &Binder, k: i64) {
-        self.indices.push((plain(binder), k));
-        self.ranges.push(binder.high.source);
+        self.scope.push((plain(binder), Local::Index { value: k, source: binder.high.source }));
     }
 
     fn unbind(&mut self) {
-        self.indices.pop();
-        self.ranges.pop();
+        self.scope.pop();
     }
 }
 

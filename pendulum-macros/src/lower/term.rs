@@ -1,7 +1,7 @@
 //! Every kind of expression to its value.
 
 use super::value::Value;
-use super::{LIMIT, Lower};
+use super::{LIMIT, Local, Lower};
 use crate::ast::{Binder, Expr, ExprKind};
 use crate::check::{self, Meaning};
 use crate::expr::{Function, Graph, Id, Symbol};
@@ -64,11 +64,11 @@ impl Lower<'_, '_, '_, '_> {
 
     pub(super) fn name(&mut self, text: &str, expr: &Expr) -> Value {
         let Name { base, dots } = name::read(text);
-        if let Some(&(_, k)) = self.indices.iter().rev().find(|(name, _)| *name == base) {
-            return Value::Scalar(self.graph.whole(k));
-        }
-        if let Some((_, value)) = self.scope.iter().rev().find(|(name, _)| *name == base) {
-            let value = value.clone();
+        if let Some(local) = self.local(&base) {
+            let value = match local {
+                Local::Value(value) => value.clone(),
+                &Local::Index { value, .. } => Value::Scalar(self.graph.whole(value)),
+            };
             return self.dotted(value, dots, expr);
         }
         // A declaration of one of these names has been refused, but it is what the name means.
@@ -270,13 +270,13 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn member(&mut self, base: &Expr, index: &Expr) -> Value {
         if let ExprKind::Name(ident) = &base.kind {
             let Name { base: text, dots } = name::read(&ident.to_string());
-            let local = self.scope.iter().any(|(name, _)| *name == text);
+            let local = self.local(&text).is_some();
             if let Some(&Meaning::Let(definition)) = self.model.names.get(&text)
                 && !local
                 && let Some(binder) = &self.model.lets[definition].index
             {
                 let range = self.range(binder);
-                let k = match check::integer(index, &self.indices) {
+                let k = match self.integer(index) {
                     Ok(k) if range.contains(&k) => k,
                     Ok(k) => {
                         let message =
@@ -315,7 +315,7 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn indexed(&mut self, base: &Expr) -> Value {
         if let ExprKind::Name(ident) = &base.kind {
             let Name { base: text, dots: 0 } = name::read(&ident.to_string()) else { return self.expr(base) };
-            let local = self.scope.iter().any(|(name, _)| *name == text);
+            let local = self.local(&text).is_some();
             if let Some(&Meaning::Parameter(index)) = self.model.names.get(&text)
                 && !local
             {

@@ -212,11 +212,11 @@ impl Lower<'_, '_, '_, '_> {
         }
         match value {
             Value::Bad => Value::Bad,
-            Value::Scalar(Graph::ZERO) if check::integer(exponent, &self.indices).is_ok_and(|power| power < 0) => {
+            Value::Scalar(Graph::ZERO) if self.integer(exponent).is_ok_and(|power| power < 0) => {
                 self.wrong(base, "zero has no negative power; write another base")
             }
             Value::Scalar(id) => Value::Scalar(self.graph.general_power(id, power)),
-            Value::Plane { parts, complex: true } => match check::integer(exponent, &self.indices) {
+            Value::Plane { parts, complex: true } => match self.integer(exponent) {
                 Ok(count) if (0..=64).contains(&count) => {
                     let parts = (0..count).fold([Graph::ONE, Graph::ZERO], |product, _| self.complex_product(product, parts));
                     Value::Plane { parts, complex: true }

@@ -163,3 +163,19 @@ fn polar_and_cartesian_kepler_agree() {
     assert!((ddx - (radial * c - across * s)).abs() < 1e-14);
     assert!((ddy - (radial * s + across * c)).abs() < 1e-14);
 }
+
+/// The point of an integral hides an index of the same name outside of it.
+#[test]
+fn the_inner_name_holds() {
+    let energy = |potential: &str| {
+        let source = format!(
+            "struct S {{ B: body, g: m/s^2 }} coordinate θ: rad; kinetic = integral(p in B, |dot(cis(θ)*p)|^2/2); {potential}"
+        );
+        derive(&source, |_, graph, motion| {
+            let mut point = Point { random: Random(3), values: BTreeMap::new() };
+            point.value(graph, motion.energy)
+        })
+    };
+    let hidden = energy("potential = sum(p in 0..2, p*g*B.mass*height(B.center) + integral(p in B, g*height(cis(θ)*p)));");
+    assert_eq!(hidden, energy("potential = sum(k in 0..2, k*g*B.mass*height(B.center) + integral(p in B, g*height(cis(θ)*p)));"));
+}

@@ -18,6 +18,7 @@ const CASES: &[(&str, &str)] = &[
     ("kinetic = m*L^2*θ̇^2; potential = dot(θ̇);",               "the derivative of a velocity in `θ̇` is an acceleration, and a Lagrangian has none; only driven inputs have a second derivative"),
     ("kinetic = m*L^2*θ̇^2; potential = dot(m*L);",             "nothing in `m*L` moves, so its time derivative is zero; leave it out"),
     ("kinetic = m*L^2*θ̇^2; potential = m_dot;",                "`m` is a parameter, so nothing in `m_dot` moves; declare it `driven` or as a coordinate"),
+    ("kinetic = m*L^2*θ̇^2; potential = g*sum(k in 0..2, f[k]*k_dot*θ);", "nothing in `k_dot` moves, so its time derivative is zero; leave it out"),
     ("kinetic = m*L^2*θ̇^2; potential = x;",                    "`x` is a plane vector, but a scalar is needed here; write `inner(u, v)`, `|u|` or a component"),
     ("kinetic = m*L^2*θ̇^2; potential = inner(x, [1, 2, 3]);",  "`inner` takes two vectors of one length; these are a plane vector and a space vector"),
     ("kinetic = m*L^2*θ̇^2; potential = |x + [1, 2, 3]|;",      "`[1, 2, 3]` is a space vector, but the terms before it are plane vectors; a sum needs terms of one kind"),
