@@ -126,8 +126,8 @@ fn derive(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Er
         }
     }
     let mut motion = Motion { mass_matrix, ..Motion::default() };
-    no_jerk(model, graph, &momenta, errors);
-    if !solve::regular(model, graph, &motion.mass_matrix, errors) {
+    let jerk = has_jerk(model, graph, lagrangian, &momenta, errors);
+    if !solve::regular(model, graph, &motion.mass_matrix, errors) || jerk {
         return motion;
     }
 
@@ -260,7 +260,10 @@ fn explicit_rate(graph: &mut Graph, lagrangian: Id) -> Id {
     for symbol in graph.symbols(&[lagrangian]) {
         let rate = match symbol {
             Symbol::Time => Graph::ONE,
-            Symbol::Input { input, component, order } => graph.symbol(Symbol::Input { input, component, order: order + 1 }),
+            // A second derivative has been refused.
+            Symbol::Input { input, component, order } if order < 2 => {
+                graph.symbol(Symbol::Input { input, component, order: order + 1 })
+            }
             _ => continue,
         };
         let partial = derivative(graph, lagrangian, symbol);
@@ -269,21 +272,35 @@ fn explicit_rate(graph: &mut Graph, lagrangian: Id) -> Id {
     graph.sum(&terms)
 }
 
-/// The momenta contain at most ẋ, else their rates would contain a third derivative.
-fn no_jerk(model: &Model, graph: &Graph, momenta: &[Id], errors: &mut Errors) {
-    for symbol in graph.symbols(momenta) {
-        if let Symbol::Input { input, order: 2, .. } = symbol {
-            let name = model.inputs[input].name;
-            errors.at(
-                name.span(),
-                format!(
-                    "the momenta contain the acceleration of `{name}`, so the equations would contain its third derivative; \
-                     leave its second derivative out of the kinetic energy"
-                ),
-            );
-            return;
-        }
+/// Refuses a third derivative of a driven input, which there is not: the rates of the momenta would contain it, or else ∂L/∂t.
+fn has_jerk(model: &Model, graph: &Graph, lagrangian: Id, momenta: &[Id], errors: &mut Errors) -> bool {
+    let accelerated = |roots: &[Id]| {
+        graph.symbols(roots).into_iter().find_map(|symbol| match symbol {
+            Symbol::Input { input, order: 2, .. } => Some(model.inputs[input].name),
+            _ => None,
+        })
+    };
+    if let Some(name) = accelerated(momenta) {
+        errors.at(
+            name.span(),
+            format!(
+                "the momenta contain the acceleration of `{name}`, so the equations would contain its third derivative; \
+                 leave its second derivative out of the kinetic energy"
+            ),
+        );
+        return true;
     }
+    if let Some(name) = accelerated(&[lagrangian]) {
+        errors.at(
+            name.span(),
+            format!(
+                "the energy contains the acceleration of `{name}`, so its power would contain a third derivative; \
+                 write what it does to a coordinate as a `force`"
+            ),
+        );
+        return true;
+    }
+    false
 }
 
 /// q̇ = M⁻¹(p − b) for momenta M q̇ + b that are linear in the velocities.

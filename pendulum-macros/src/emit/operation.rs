@@ -96,7 +96,7 @@ impl Emitter<'_, '_> {
             Symbol::Momentum(index) => quote!(p[#index]),
             Symbol::Input { input, component, order } => {
                 let input = Literal::usize_unsuffixed(input);
-                let order = format_ident!("{}", ["position", "velocity", "acceleration"][usize::from(order.min(2))]);
+                let order = format_ident!("{}", ["position", "velocity", "acceleration"][usize::from(order)]);
                 quote!(inputs.#input.#order[#component])
             }
         }

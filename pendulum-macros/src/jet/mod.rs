@@ -398,7 +398,7 @@ impl Writer<'_, '_, '_> {
             Symbol::Velocity(index) => quote!(path.v[#index]),
             Symbol::Input { input, component, order } => {
                 let before: usize = self.emitter.model.inputs[..input].iter().map(Quantity::count).sum();
-                let (index, order) = (before + component, usize::from(order.min(2)));
+                let (index, order) = (before + component, usize::from(order));
                 let order = format_ident!("{}", ["position", "velocity", "acceleration"][order]);
                 quote!(drive[#index].#order)
             }

@@ -53,6 +53,7 @@ const CASES: &[(&str, &str)] = &[
     ("kinetic = m*L^2*θ̇^2; potential = x^2;",                  "`x` is a plane vector, and only scalars have powers; write `|u|^2`"),
     ("kinetic = m*L^2*θ̇^2; potential = dot(dot(dot(x))).x;",   "`dot(dot(x))` contains a third derivative of a driven input; they have two"),
     ("kinetic = m*L^2*θ̇^2 + m*L*t*θ̇*ẍ.x;",                 "the momenta contain the acceleration of `x`, so the equations would contain its third derivative; leave its second derivative out of the kinetic energy"),
+    ("kinetic = m*L^2*θ̇^2; potential = m*L*θ*ẍ.x;",           "the energy contains the acceleration of `x`, so its power would contain a third derivative; write what it does to a coordinate as a `force`"),
     ("kinetic = m*L^2*θ̇^2; coordinate φ; potential = m*φ^2;",   "`φ` has no kinetic energy, so its acceleration is undetermined; add the square of its velocity to `kinetic`"),
     ("coordinate φ; kinetic = m*L^2*(θ̇ + φ̇)^2;",               "the mass matrix is singular in the direction of `θ`: its kinetic energy is that of other coordinates; leave the redundant coordinate out"),
     ("coordinate φ[3]; kinetic = m*L^2*(θ̇^2 + (φ̇[0] + φ̇[2])^2 + (φ̇[1] - 2*φ̇[2])^2);", "the mass matrix is singular in the direction of `φ[0]`: its kinetic energy is that of other coordinates; leave the redundant coordinate out"),

@@ -15,7 +15,7 @@ impl Generator {
             self.system.kinetic.push(term);
         }
         for _ in 0..self.random.below(3) {
-            let term = self.scalar(3, May { orders: 2, ..still });
+            let term = self.scalar(3, still);
             self.system.potential.push(term);
         }
         self.system.joined = self.random.once_in(4);

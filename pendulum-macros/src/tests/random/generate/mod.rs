@@ -24,7 +24,7 @@ pub(crate) enum Manner {
 struct May {
     /// Velocities of coordinates.
     velocities: bool,
-    /// The highest derivative of driven inputs: none where the derivative of all is taken, the first in kinetic energies.
+    /// The highest derivative of driven inputs: none where the derivative of all is taken, the first in energies.
     orders: usize,
     /// Definitions with a smaller number than this.
     lets: usize,
