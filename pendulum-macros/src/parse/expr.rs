@@ -2,13 +2,13 @@
 
 use super::Parser;
 use super::foreign::{FOREIGN, method, no_operand};
-use super::token::{checked, comma, end, identifier, unexpected};
+use super::token::{checked, comma, end, fragment, identifier, unexpected};
 use crate::ast::{Expr, ExprKind, Literal};
 use crate::error::Range;
 use crate::number::Rational;
-use proc_macro2::{Ident, TokenTree};
+use proc_macro2::{Ident, TokenStream, TokenTree};
 use syn::ext::IdentExt;
-use syn::parse::{ParseStream, Result};
+use syn::parse::{ParseStream, Parser as Syn, Result};
 use syn::spanned::Spanned;
 use syn::{Lit, Token, bracketed, parenthesized};
 
@@ -67,7 +67,8 @@ impl Parser<'_> {
     }
 
     fn unary(&mut self, input: ParseStream) -> Result<Expr> {
-        if !input.peek(Token![-]) {
+        // A sign inside a fragment is that of its own operand.
+        if fragment(input).is_some() || !input.peek(Token![-]) {
             return self.power(input);
         }
         let sign: Range = input.parse::<TokenTree>()?.span().into();
@@ -103,7 +104,7 @@ impl Parser<'_> {
 
     fn postfix(&mut self, input: ParseStream) -> Result<Expr> {
         let mut expr = self.primary(input)?;
-        loop {
+        while fragment(input).is_none() {
             if input.peek(syn::token::Bracket) {
                 let content;
                 let brackets = bracketed!(content in input);
@@ -128,6 +129,10 @@ impl Parser<'_> {
     }
 
     fn primary(&mut self, input: ParseStream) -> Result<Expr> {
+        if let Some(tokens) = fragment(input) {
+            input.parse::<TokenTree>()?;
+            return self.inside(tokens, Self::expr);
+        }
         if input.peek(Lit) {
             return self.number(input);
         }
@@ -162,6 +167,20 @@ impl Parser<'_> {
             return Err(Range::from(input.span()).error("an expression is missing here"));
         }
         Err(unexpected(input, "a number, a name, `(`, `[` or `|`"))
+    }
+
+    /// What stands in a fragment, up to its end.
+    pub(super) fn inside<R>(
+        &mut self,
+        tokens: TokenStream,
+        parse: impl FnOnce(&mut Self, ParseStream) -> Result<R>,
+    ) -> Result<R> {
+        let content = |content: ParseStream| {
+            let result = parse(self, content)?;
+            end(content)?;
+            Ok(result)
+        };
+        Syn::parse2(content, tokens)
     }
 
     fn named(&mut self, input: ParseStream) -> Result<Expr> {

@@ -1,10 +1,11 @@
 //! What has no place in a formula, and what to write instead.
 
 use super::statement::STATEMENTS;
+use super::token::fragment;
 use crate::ast::{Expr, ExprKind};
 use crate::check::{FUNCTIONS, text};
 use crate::error::Range;
-use proc_macro2::{Ident, TokenTree};
+use proc_macro2::{Delimiter, Ident, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Result};
 use syn::{Lit, Token};
@@ -27,7 +28,8 @@ pub(super) fn no_operand(input: ParseStream, left: &Expr, barred: bool) -> Resul
     if input.peek(Token![as]) {
         return Err(Range::from(input.span()).error("`as` is Rust, which has no place in a formula; leave the type out"));
     }
-    if input.peek(Token![|]) && !barred
+    if fragment(input).is_some()
+        || input.peek(Token![|]) && !barred
         || input.peek(Ident::peek_any) && !input.peek(Token![in])
         || input.peek(Lit) && !input.peek(Token![-])
         || input.peek(syn::token::Paren)
@@ -38,7 +40,7 @@ pub(super) fn no_operand(input: ParseStream, left: &Expr, barred: bool) -> Resul
             return Err(right.error(format!("`;` is missing before `{token}`; end the statement above with `;`")));
         }
         return Err(match (&left.kind, &token) {
-            (_, TokenTree::Group(group)) => match &left.kind {
+            (_, TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis => match &left.kind {
                 ExprKind::Name(_) | ExprKind::Number(_) => {
                     Range::from(group.span_open()).error("there is no implicit multiplication; write `*` before `(`")
                 }

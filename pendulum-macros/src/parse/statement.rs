@@ -1,11 +1,11 @@
 //! Statements: coordinates, driven inputs, definitions, energies and forces.
 
 use super::Parser;
-use super::token::{end, equals, identifier, unexpected};
-use crate::ast::{Binder, ForceIndex, Kind, Let, Role, Statement};
+use super::token::{end, equals, fragment, identifier, unexpected};
+use crate::ast::{Binder, Expr, ForceIndex, Kind, Let, Role, Statement};
 use crate::error::Range;
 use crate::name;
-use proc_macro2::Ident;
+use proc_macro2::{Ident, Spacing, TokenStream, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Result};
 use syn::spanned::Spanned;
@@ -155,9 +155,21 @@ impl Parser<'_> {
             input.parse::<Token![..]>()?;
         } else {
             return Err(unexpected(input, "`..` and the end of the range"));
+        let (low, high, inclusive) = match fragment(input).filter(whole_range) {
+            None => self.range(input)?,
+            Some(tokens) => {
+                input.parse::<TokenTree>()?;
+                self.inside(tokens, Self::range)?
+            }
+        };
+        Ok(Binder { name, low, high, inclusive })
+    }
+
+    /// `0..5`.
+    fn range(&mut self, input: ParseStream) -> Result<(Expr, Expr, bool)> {
         }
         let high = self.expr(input)?;
-        Ok(Binder { name, low, high, inclusive })
+        Ok((low, high, inclusive))
     }
 }
 
@@ -169,5 +181,11 @@ fn unknown_statement(input: ParseStream, word: &str) -> syn::Error {
         Some(near) => format!("did you mean `{near}`?"),
         None => "a statement begins with `coordinate`, `driven`, `let`, `kinetic`, `potential`, `lagrangian`, `dissipation` or `force`".into(),
     };
+/// Whether a fragment is a range and not its lower end.
+fn whole_range(tokens: &TokenStream) -> bool {
+    let dots = |tree| matches!(tree, TokenTree::Punct(dot) if dot.as_char() == '.' && dot.spacing() == Spacing::Joint);
+    tokens.clone().into_iter().any(dots)
+}
+
     Range::from(input.span()).error(format!("unknown statement `{word}`; {hint}"))
 }

@@ -1,7 +1,7 @@
 //! Single tokens: names that may be declared, signs, brackets, and what is skipped after an error.
 
 use crate::error::Range;
-use proc_macro2::{Delimiter, Ident, TokenTree};
+use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
 use syn::Token;
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Result};
@@ -46,6 +46,21 @@ pub(super) fn comma(input: ParseStream) -> Result<()> {
         return Ok(());
     }
     Err(unexpected(input, "`,`"))
+}
+
+/// The tokens that a macro of the user's has handed over as one, as `$e:expr`, if they come next.
+///
+/// They stand between brackets that nobody sees and that syn looks through. A single name or number needs none: it may be called.
+pub(super) fn fragment(input: ParseStream) -> Option<TokenStream> {
+    let mut cursor = input.cursor();
+    loop {
+        let (content, ..) = cursor.group(Delimiter::None)?;
+        match content.token_tree() {
+            Some((TokenTree::Ident(_) | TokenTree::Literal(_), rest)) if rest.eof() => return None,
+            Some((TokenTree::Group(_), rest)) if rest.eof() => cursor = content,
+            _ => return Some(content.token_stream()),
+        }
+    }
 }
 
 /// Nothing may be left inside a pair of brackets.

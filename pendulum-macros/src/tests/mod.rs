@@ -11,6 +11,7 @@ use random::derive::derived;
 use std::collections::BTreeMap;
 
 mod derivatives;
+mod fragments;
 mod golden;
 mod growth;
 mod identities;
