@@ -219,10 +219,11 @@ fn quarter_turns(graph: &mut Graph, argument: Id, shift: i64) -> Option<Id> {
         }
         _ => return None,
     };
-    let quarters = turns.mul(Rational::whole(2))?.integer()?;
-    let sin_cos = if (quarters + shift) % 2 == 0 { Function::Sin } else { Function::Cos };
+    // Four quarters are a turn; the sum of what is left fits.
+    let quarters = (turns.mul(Rational::whole(2))?.integer()?.rem_euclid(4) + shift).rem_euclid(4);
+    let sin_cos = if quarters % 2 == 0 { Function::Sin } else { Function::Cos };
     let value = graph.call(sin_cos, rest);
-    Some(if (quarters + shift).rem_euclid(4) < 2 { value } else { graph.negative(value) })
+    Some(if quarters < 2 { value } else { graph.negative(value) })
 }
 
 fn abs_number(graph: &mut Graph, argument: Id) -> Option<Id> {

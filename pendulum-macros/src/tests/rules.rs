@@ -48,6 +48,19 @@ fn differences_are_found_among_other_terms() {
     }
 }
 
+#[test]
+fn the_largest_shift_is_reduced() {
+    for (shifted, plain) in [
+        ("cos(a + 9223372036854775807*π/2)", "sin(a)"),
+        ("cos(a - 9223372036854775807*π/2)", "-sin(a)"),
+        ("sin(a + 9223372036854775807*π/2)", "-cos(a)"),
+        ("cos(a + 9223372036854775806*π/2)", "-cos(a)"),
+    ] {
+        let mut graph = Graph::new();
+        assert_eq!(lowered(&mut graph, shifted), lowered(&mut graph, plain), "{shifted}");
+    }
+}
+
 /// The left side is evaluated from its syntax, without the graph.
 #[test]
 fn both_sides_have_one_value() {
