@@ -20,6 +20,12 @@ use value::Value;
 /// More evaluations, or operands in all expressions together, are refused: sums within sums would never end.
 const LIMIT: usize = 2_000_000;
 
+/// Expressions and definitions within one another beyond this are refused: they would overflow the compiler's stack.
+const DEEPEST: usize = 1000;
+
+/// The same for the nodes of an energy or a force, which definitions above one another nest as well.
+const DEEPEST_NODE: usize = 1200;
+
 /// An energy or a force of more nodes is refused: its equations would take minutes to derive and to compile.
 const LARGEST: usize = 8000;
 
@@ -132,6 +138,7 @@ fn lower(model: &Model, graph: &mut Graph, errors: &mut Errors, positions: Optio
         indexed: BTreeSet::new(),
         whole: BTreeSet::new(),
         work: 0,
+        depth: 0,
         integrals: 0,
         positions,
         constants: BTreeMap::new(),
@@ -180,6 +187,8 @@ struct Lower<'m, 'a, 'g, 'e> {
     indexed: BTreeSet<usize>,
     whole: BTreeSet<usize>,
     work: usize,
+    /// The number of expressions that are being evaluated.
+    depth: usize,
     /// The number of integrals that are open.
     integrals: usize,
     /// The positions whose velocities become symbols.
@@ -281,8 +290,21 @@ impl Lower<'_, '_, '_, '_> {
     /// An energy or a force, unless it is too long.
     fn outcome(&mut self, expr: &Expr) -> Option<Id> {
         let value = self.scalar(expr)?;
-        if LARGEST < self.graph.reachable(&[value]).len() {
+        let nodes = self.graph.reachable(&[value]);
+        if LARGEST < nodes.len() {
             let message = format!("this unfolds to more than {LARGEST} different expressions; write a shorter sum");
+            self.errors.once(expr.source, expr.range, message);
+            return None;
+        }
+        let mut depths: BTreeMap<Id, usize> = BTreeMap::new();
+        for id in nodes {
+            let depth = self.graph.children(id).iter().map(|child| depths[child] + 1).max().unwrap_or(0);
+            depths.insert(id, depth);
+        }
+        if DEEPEST_NODE < depths[&value] {
+            let message = format!(
+                "this unfolds to more than {DEEPEST_NODE} functions and operations within one another; write a shorter chain"
+            );
             self.errors.once(expr.source, expr.range, message);
             return None;
         }
@@ -295,7 +317,7 @@ impl Lower<'_, '_, '_, '_> {
             return value.clone();
         }
         let definition = self.model.lets[index];
-        if self.open.contains(&(index, k)) || 512 < self.open.len() {
+        if self.open.contains(&(index, k)) {
             self.errors.once(
                 definition.expr.source,
                 range,

@@ -1,7 +1,7 @@
 //! Every kind of expression to its value.
 
 use super::value::Value;
-use super::{LIMIT, Local, Lower};
+use super::{DEEPEST, LIMIT, Local, Lower};
 use crate::ast::{Binder, Expr, ExprKind};
 use crate::check::{self, Meaning};
 use crate::expr::{Function, Graph, Id, Symbol};
@@ -37,7 +37,14 @@ impl Lower<'_, '_, '_, '_> {
             self.errors.once(0, expr.range, "this block unfolds to more than two million expressions; write shorter sums");
             return Value::Bad;
         }
+        if DEEPEST <= self.depth {
+            let message = "definitions within definitions are nested too deeply here; write each `let` above its uses, and call fewer functions by functions";
+            self.errors.once(0, expr.range, message);
+            return Value::Bad;
+        }
+        self.depth += 1;
         let value = self.kind(expr);
+        self.depth -= 1;
         self.real(value, expr)
     }
 

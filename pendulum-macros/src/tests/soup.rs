@@ -133,3 +133,25 @@ fn deep_nesting_is_refused() {
     let signs = format!("::p; struct S {{ m }} coordinate q; kinetic = {}m;", "-".repeat(10_000));
     assert!(expand(signs.parse().unwrap()).to_string().contains("too many signs"));
 }
+
+/// Definitions within definitions: what is written above its uses is done when it is used.
+#[test]
+fn deep_definitions_are_refused() {
+    let deep = |count: usize, sines: usize, down: bool| {
+        let nested = |k: usize| format!("let a{k} = {}a{}{};", "sin(".repeat(sines), k + 1, ")".repeat(sines));
+        let mut lets: Vec<String> = (0..count).map(nested).collect();
+        if !down {
+            lets.reverse();
+        }
+        let (before, after) = if down { ("", "let a_last = q;") } else { ("let a_last = q;", "") };
+        let lets = lets.concat().replace(&format!("a{count}"), "a_last");
+        super::refusals(&format!("struct S {{ m }} coordinate q; kinetic = m*q_dot^2; {before} {lets} {after} potential = a0;"))
+    };
+    let message = "definitions within definitions are nested too deeply here; write each `let` above its uses, and call fewer functions by functions";
+    assert_eq!(deep(500, 4, true), [message]);
+    assert_eq!(deep(60, 100, true), [message]);
+    assert!(deep(400, 1, true).is_empty());
+    assert!(deep(250, 4, false).is_empty());
+    let message = "this unfolds to more than 1200 functions and operations within one another; write a shorter chain";
+    assert_eq!(deep(500, 4, false), [message]);
+}

@@ -12,14 +12,25 @@ use crate::name::{self, Name};
 use crate::number::Rational;
 use std::collections::BTreeMap;
 
+/// What is nested deeper is left alone: it would overflow the compiler's stack. Every definition is checked for itself as well.
+const DEEPEST: usize = 200;
+
 /// Checks a block, if any of its quantities has a unit.
 pub(crate) fn check(model: &Model, errors: &mut Errors) {
     let quantities = || model.parameters.iter().chain(&model.coordinates).chain(&model.inputs);
     if quantities().all(|quantity| quantity.unit.is_empty() && !quantity.body) {
         return;
     }
-    let mut units =
-        Units { model, errors, solved: BTreeMap::new(), scope: Vec::new(), lets: BTreeMap::new(), open: Vec::new(), unknowns: 0 };
+    let mut units = Units {
+        model,
+        errors,
+        solved: BTreeMap::new(),
+        scope: Vec::new(),
+        lets: BTreeMap::new(),
+        open: Vec::new(),
+        depth: 0,
+        unknowns: 0,
+    };
     units.block();
 }
 
@@ -65,6 +76,8 @@ struct Units<'m, 'a, 'e> {
     scope: Vec<(String, Found)>,
     lets: BTreeMap<usize, Found>,
     open: Vec<usize>,
+    /// The number of expressions that are being evaluated.
+    depth: usize,
     unknowns: usize,
 }
 
@@ -129,7 +142,8 @@ impl Units<'_, '_, '_> {
         if let Some(found) = self.lets.get(&index) {
             return found.clone();
         }
-        if self.open.contains(&index) {
+        // Half of the depth is left for the definition itself, whose unit stays.
+        if self.open.contains(&index) || DEEPEST / 2 <= self.depth {
             return None;
         }
         self.open.push(index);
@@ -242,6 +256,16 @@ impl Units<'_, '_, '_> {
     }
 
     fn expr(&mut self, expr: &Expr) -> Found {
+        if DEEPEST <= self.depth {
+            return None;
+        }
+        self.depth += 1;
+        let found = self.kind(expr);
+        self.depth -= 1;
+        found
+    }
+
+    fn kind(&mut self, expr: &Expr) -> Found {
         match &expr.kind {
             ExprKind::Number(Literal::Exact(Rational::ZERO)) => None,
             ExprKind::Number(_) => Some(Unit::pure()),
