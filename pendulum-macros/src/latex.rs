@@ -103,7 +103,18 @@ impl Writer<'_> {
         {
             return format!("{}^{{{exponent}}}{}", command(*function), self.argument(*argument));
         }
-        format!("{}^{{{exponent}}}", self.factor(base))
+        format!("{}^{{{exponent}}}", self.closed(base))
+    }
+
+    /// An expression to which the exponent behind it belongs as a whole.
+    fn closed(&self, id: Id) -> String {
+        let open = match self.graph.node(id) {
+            Node::Number(value) | Node::Opaque(Literal::Exact(value)) => value.is_negative() || !value.is_integer(),
+            Node::Product(..) => true,
+            Node::Atom(inner) => return self.closed(*inner),
+            _ => false,
+        };
+        if open { format!("\\left({}\\right)", self.sum(id)) } else { self.factor(id) }
     }
 
     /// An expression that something follows.

@@ -15,6 +15,7 @@ mod fragments;
 mod golden;
 mod growth;
 mod identities;
+mod printed;
 mod random;
 mod refusals;
 mod rules;
