@@ -5,7 +5,7 @@ use crate::expr::{Function, Graph, Id, Moment, Node, Symbol};
 use crate::motion::Motion;
 use crate::name;
 use crate::number::Rational;
-use crate::print::Names;
+use crate::print::{self, Names};
 
 /// The equations of motion, one line a coordinate, as `print::equations` gives them in Unicode.
 pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion) -> Vec<String> {
@@ -14,6 +14,10 @@ pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion) -> Ve
         let coupled: Vec<(usize, Id)> =
             motion.mass_matrix[row].iter().copied().enumerate().filter(|&(_, entry)| entry != Graph::ZERO).collect();
         let writer = Writer { graph, names };
+        if print::too_long(graph, motion, row) {
+            lines.push(format!("{} = \\ldots\\text{{ (too long to write out)}}", writer.coordinate(row, 2)));
+            continue;
+        }
         if coupled.len() == 1 {
             lines.push(format!("{} = {}", writer.coordinate(row, 2), writer.sum(acceleration)));
             continue;

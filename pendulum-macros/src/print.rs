@@ -7,7 +7,7 @@ use crate::motion::Motion;
 use crate::name;
 use crate::number::Rational;
 use crate::symmetry::Conserved;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The names of all symbols of a block, as the user writes them.
 pub(crate) struct Names {
@@ -283,10 +283,33 @@ pub(crate) fn conserved(names: &Names, conserved: &Conserved) -> String {
     text
 }
 
+/// A line of more symbols is not written out: what is shared stands once in the graph, but wherever it is used in a text.
+const LONGEST: usize = 1000;
+
+/// Whether the equation in a row, solved where its coordinate stands alone, is too long to be written out.
+pub(crate) fn too_long(graph: &Graph, motion: &Motion, row: usize) -> bool {
+    let mut roots: Vec<Id> = motion.mass_matrix[row].iter().copied().filter(|&entry| entry != Graph::ZERO).collect();
+    if roots.len() == 1 {
+        roots = vec![motion.accelerations[row]];
+    } else {
+        roots.push(motion.forces[row]);
+    }
+    let mut lengths: BTreeMap<Id, usize> = BTreeMap::new();
+    for id in graph.reachable(&roots) {
+        let length = graph.children(id).iter().fold(1, |sum: usize, child| sum.saturating_add(lengths[child]));
+        lengths.insert(id, length);
+    }
+    LONGEST < roots.iter().fold(0, |sum: usize, root| sum.saturating_add(lengths[root]))
+}
+
 /// The equations of motion, one line a coordinate: solved where a coordinate stands alone, a row of M q̈ = f where several are coupled.
 pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion) -> Vec<String> {
     let mut lines = Vec::new();
     for (row, &acceleration) in motion.accelerations.iter().enumerate() {
+        if too_long(graph, motion, row) {
+            lines.push(format!("{} = … (too long to write out)", names.acceleration(row)));
+            continue;
+        }
         let alone = motion.mass_matrix[row].iter().filter(|&&entry| entry != Graph::ZERO).count() == 1;
         if alone {
             lines.push(format!("{} = {}", names.acceleration(row), expression(graph, names, acceleration)));

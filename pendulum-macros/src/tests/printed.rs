@@ -29,3 +29,23 @@ fn powers_in_latex_hold_together() {
         assert_eq!(latex, [format!("\\ddot{{q}} = {expected}")], "{force}");
     }
 }
+
+/// What is shared stands once in the graph, but wherever it is used in a text.
+#[test]
+fn what_is_too_long_is_not_written_out() {
+    let shared: Vec<String> = (0..40).map(|k| format!("let a{} = sin(a{k})*exp(a{k});", k + 1)).collect();
+    let chain: Vec<String> = (0..1000).map(|k| format!("let a{} = sin(a{k});", k + 1)).collect();
+    for (lets, last) in [(shared.concat(), "a40"), (chain.concat(), "a1000")] {
+        let block = format!(
+            "struct S {{ m }} coordinate q; coordinate z; coordinate w; let a0 = q; {lets} kinetic = (q_dot^2 + w_dot^2 + w_dot*z_dot + z_dot^2)/2;"
+        );
+        let [text, latex] = printed(&format!("{block} potential = {last} + w;"));
+        assert_eq!(text[0], "q̈ = … (too long to write out)");
+        assert_eq!(latex[0], "\\ddot{q} = \\ldots\\text{ (too long to write out)}");
+        assert_eq!((&text[1][..], &latex[1][..]), ("z̈ + (1/2)·ẅ = 0", "\\ddot{z} + \\frac{1}{2} \\ddot{w} = 0"));
+        let [text, latex] = printed(&format!("{block} force z = {last};"));
+        assert_eq!((&text[0][..], &latex[0][..]), ("q̈ = 0", "\\ddot{q} = 0"));
+        assert_eq!(text[1], "z̈ = … (too long to write out)");
+        assert_eq!(latex[1], "\\ddot{z} = \\ldots\\text{ (too long to write out)}");
+    }
+}
