@@ -7,7 +7,8 @@ use quote::quote;
 
 impl Emitter<'_, '_> {
     pub(super) fn jacobians(&mut self) -> TokenStream {
-        let (krate, scalar, count, name) = (self.krate.clone(), self.scalar(), self.count(), &self.model.block.name);
+        let (krate, scalar, other, count) = (self.krate.clone(), self.scalar(), self.other_scalar(), self.count());
+        let name = &self.model.block.name;
         let written = self.motion.as_ref().is_none_or(|motion| motion.jacobians.is_some());
         let [positions, velocities, parameters] = if written { self.written_jacobians() } else { self.dual_jacobians() };
         let state = quote!(q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs);
@@ -16,16 +17,16 @@ impl Emitter<'_, '_> {
             #[automatically_derived]
             #[allow(non_snake_case, unused_variables, unused_mut, unused_parens, unreachable_code, clippy::all, clippy::pedantic)]
             impl<#scalar: #krate::real::Real> #krate::system::Jacobians<#count> for #name<#scalar> {
-                type Over<U: #krate::real::Real> = #name<U>;
+                type Over<#other: #krate::real::Real> = #name<#other>;
 
-                fn over<U: #krate::real::Real>(&self, map: impl ::core::ops::FnMut(#scalar) -> U) -> #name<U> {
+                fn over<#other: #krate::real::Real>(&self, map: impl ::core::ops::FnMut(#scalar) -> #other) -> #name<#other> {
                     #krate::system::System::map(self, map)
                 }
 
-                fn inputs_over<U: #krate::real::Real>(
+                fn inputs_over<#other: #krate::real::Real>(
                     inputs: &Self::Inputs,
-                    map: impl ::core::ops::Fn(#scalar) -> U,
-                ) -> <#name<U> as #krate::system::System<#count>>::Inputs {
+                    map: impl ::core::ops::Fn(#scalar) -> #other,
+                ) -> <#name<#other> as #krate::system::System<#count>>::Inputs {
                     (#(inputs.#inputs.map(&map),)*)
                 }
 

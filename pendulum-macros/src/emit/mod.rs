@@ -82,6 +82,11 @@ impl Emitter<'_, '_> {
     pub(crate) fn count(&self) -> usize {
         self.model.coordinates.iter().map(Quantity::count).sum()
     }
+    /// The type parameter of what has another scalar; another letter as well.
+    pub(crate) fn other_scalar(&self) -> Ident {
+        format_ident!("{}", if self.model.block.name == "U" { "V" } else { "U" })
+    }
+
 }
 
 /// A name of ours that no user can write.

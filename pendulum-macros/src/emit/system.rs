@@ -12,7 +12,7 @@ use quote::quote;
 
 impl Emitter<'_, '_> {
     pub(super) fn system(&mut self) -> TokenStream {
-        let (krate, scalar, count) = (self.krate.clone(), self.scalar(), self.count());
+        let (krate, scalar, other, count) = (self.krate.clone(), self.scalar(), self.other_scalar(), self.count());
         let name = &self.model.block.name;
         let dimensions = self.model.inputs.iter().map(Quantity::count);
         let facts = self.facts();
@@ -53,12 +53,12 @@ impl Emitter<'_, '_> {
             impl<#scalar: #krate::real::Real> #krate::system::System<#count> for #name<#scalar> {
                 type Scalar = #scalar;
                 type Inputs = (#(#krate::motion::Sample<#scalar, #dimensions>,)*);
-                type With<U: #krate::real::Real> = #name<U>;
+                type With<#other: #krate::real::Real> = #name<#other>;
                 type Prepared = [#scalar; #prepared];
 
                 const FACTS: #krate::system::Facts = #facts;
 
-                fn map<U: #krate::real::Real>(&self, mut map: impl ::core::ops::FnMut(#scalar) -> U) -> #name<U> {
+                fn map<#other: #krate::real::Real>(&self, mut map: impl ::core::ops::FnMut(#scalar) -> #other) -> #name<#other> {
                     #name { #(#mapped,)* #empty }
                 }
 

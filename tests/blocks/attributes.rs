@@ -1,0 +1,14 @@
+//! Names that the generated code takes itself.
+
+use pendulum_runtime::prelude::*;
+
+lagrangian! {
+    pub struct U { c }
+    coordinate q;
+    driven x;
+    kinetic = c*(q_dot + x_dot)^2/2;
+}
+
+fn main() {
+    assert_eq!(U::new(2.0).map(|c| c + 1.0).c, 3.0);
+}
