@@ -15,6 +15,13 @@ pub(crate) struct Block {
     pub(crate) lost: Lost,
 }
 
+impl Block {
+    /// The `cfg` attributes of the struct: what they leave out is left out with all that belongs to it.
+    pub(crate) fn conditions(&self) -> impl Iterator<Item = &Attribute> {
+        self.attributes.iter().filter(|attribute| attribute.path().is_ident("cfg"))
+    }
+}
+
 /// What could not be parsed: its absence is no second mistake.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Lost {

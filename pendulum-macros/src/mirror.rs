@@ -12,7 +12,9 @@ pub(crate) fn function(block: &Block) -> TokenStream {
     let mut mirror = Mirror { block, declared: Vec::new(), uses: TokenStream::new() };
     mirror.statements();
     let (name, declared, uses) = (&block.name, &mirror.declared, &mirror.uses);
+    let conditions = block.conditions();
     quote! {
+        #(#conditions)*
         #[allow(unexpected_cfgs)]
         const _: () = {
             #[cfg(rust_analyzer)]

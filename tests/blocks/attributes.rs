@@ -1,8 +1,16 @@
-//! Names that the generated code takes itself.
+//! Attributes of the struct that its implementations follow, and names that the generated code takes itself.
 
 use pendulum_runtime::prelude::*;
 
 lagrangian! {
+    #[cfg(any())]
+    pub struct Gone { c }
+    coordinate q;
+    kinetic = c*q_dot^2/2;
+}
+
+lagrangian! {
+    #[cfg(all())]
     pub struct U { c }
     coordinate q;
     driven x;

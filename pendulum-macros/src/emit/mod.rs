@@ -48,8 +48,10 @@ impl Emitter<'_, '_> {
         let jets = self.jets();
         let mirror = mirror::function(self.model.block);
         let open = self.open_names();
+        let conditions = self.model.block.conditions();
         quote! {
             #structure
+            #(#conditions)*
             const _: () = {
                 #open
                 #constructor #system #split #staged #marker #jacobians #jets
@@ -79,14 +81,14 @@ impl Emitter<'_, '_> {
         format_ident!("{}", if self.model.block.name == "T" { "S" } else { "T" })
     }
 
-    pub(crate) fn count(&self) -> usize {
-        self.model.coordinates.iter().map(Quantity::count).sum()
-    }
     /// The type parameter of what has another scalar; another letter as well.
     pub(crate) fn other_scalar(&self) -> Ident {
         format_ident!("{}", if self.model.block.name == "U" { "V" } else { "U" })
     }
 
+    pub(crate) fn count(&self) -> usize {
+        self.model.coordinates.iter().map(Quantity::count).sum()
+    }
 }
 
 /// A name of ours that no user can write.

@@ -7,6 +7,7 @@ use crate::error::Range;
 use proc_macro2::Ident;
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Result};
+use syn::spanned::Spanned;
 use syn::{Attribute, Token, Visibility, braced, bracketed};
 
 impl Parser<'_> {
@@ -55,7 +56,14 @@ impl Parser<'_> {
     }
 
     fn field(&mut self, input: ParseStream) -> Result<Field> {
-        let attributes = input.call(Attribute::parse_outer)?;
+        let mut attributes = input.call(Attribute::parse_outer)?;
+        let conditional = |attribute: &Attribute| attribute.path().is_ident("cfg");
+        if let Some(attribute) = attributes.iter().find(|attribute| conditional(attribute)) {
+            let range = Range { first: attribute.pound_token.spans[0], last: attribute.span() };
+            let message = "`cfg` has no place on a parameter, which the equations need in every build; write it above the struct";
+            self.errors.at(range, message);
+        }
+        attributes.retain(|attribute| !conditional(attribute));
         let _: Visibility = input.parse()?;
         let name = identifier(input, "the name of a parameter")?;
         let kind = if input.peek(Token![:]) {

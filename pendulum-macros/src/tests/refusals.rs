@@ -222,3 +222,12 @@ fn a_right_block_is_not_refused() {
     assert!(refusals(&block("kinetic = m*L^2*θ̇^2; potential = m*g*|x + |x|*x/L|*sum(i in 0..3, i)*exp(-1)*8^(1/3);")).is_empty());
     assert!(refusals(&block(ENERGY)).is_empty());
 }
+
+#[test]
+fn a_parameter_is_in_every_build() {
+    let source = "struct P { #[cfg(test)] m: kg, L } coordinate θ: rad; kinetic = m*L^2*θ̇^2;";
+    assert_eq!(
+        refusals(source),
+        ["`cfg` has no place on a parameter, which the equations need in every build; write it above the struct"]
+    );
+}
