@@ -15,7 +15,7 @@ pub(crate) fn function(block: &Block) -> TokenStream {
     let conditions = block.conditions();
     quote! {
         #(#conditions)*
-        #[allow(unexpected_cfgs)]
+        #[allow(unexpected_cfgs, deprecated)]
         const _: () = {
             #[cfg(rust_analyzer)]
             fn __names(parameters: &#name, #(#declared: f64),*) {

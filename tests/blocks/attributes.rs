@@ -1,5 +1,7 @@
 //! Attributes of the struct that its implementations follow, and names that the generated code takes itself.
 
+#![deny(warnings)]
+
 use pendulum_runtime::prelude::*;
 
 lagrangian! {
@@ -7,6 +9,17 @@ lagrangian! {
     pub struct Gone { c }
     coordinate q;
     kinetic = c*q_dot^2/2;
+}
+
+lagrangian! {
+    /// Still here.
+    #[deprecated = "take another one"]
+    #[derive(Clone, Debug)]
+    pub struct Old { c }
+    coordinate q;
+    driven x;
+    kinetic = c*(q_dot + x_dot)^2/2;
+    potential = c*q;
 }
 
 lagrangian! {
@@ -18,5 +31,8 @@ lagrangian! {
 }
 
 fn main() {
+    #[allow(deprecated)]
+    let old = Old::new(1.0);
+    assert_eq!(format!("{old:?}"), "Old { c: 1.0 }");
     assert_eq!(U::new(2.0).map(|c| c + 1.0).c, 3.0);
 }

@@ -52,6 +52,7 @@ impl Emitter<'_, '_> {
         quote! {
             #structure
             #(#conditions)*
+            #[allow(deprecated)]
             const _: () = {
                 #open
                 #constructor #system #split #staged #marker #jacobians #jets
