@@ -212,7 +212,8 @@ impl Walk<'_, '_, '_> {
         }
         if ident == "sum" {
             self.errors.at(range, "`sum` runs over an index; write `sum(k in 0..5, …)`");
-        } else if self.model.names.contains_key(&base) || self.scope.contains(&base) {
+        } else if self.model.names.contains_key(&base) || self.scope.contains(&base) || matches!(base.as_str(), "t" | "pi" | "i")
+        {
             self.errors.at(
                 ident.span(),
                 format!("`{ident}` is no function, and there is no implicit multiplication; write `{ident}*(…)`"),
