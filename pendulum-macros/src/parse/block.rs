@@ -44,6 +44,8 @@ impl Parser<'_> {
                 Ok(statement) => statements.push(statement),
                 Err(error) => {
                     self.errors.push(error);
+                    // The number of coordinates is part of the type: without one, every use of the system would be a mistake.
+                    statements.extend(self.begun.take());
                     match word.as_str() {
                         "kinetic" | "potential" | "lagrangian" | "dissipation" | "force" => self.lost.energies = true,
                         _ => self.lost = Lost { declarations: true, energies: true },

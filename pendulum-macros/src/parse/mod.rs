@@ -9,7 +9,7 @@ mod foreign;
 mod statement;
 mod token;
 
-use crate::ast::{Block, Lost};
+use crate::ast::{Block, Lost, Statement};
 use crate::error::Errors;
 use proc_macro2::{TokenStream, TokenTree};
 use syn::Token;
@@ -22,7 +22,8 @@ pub(crate) fn all(input: TokenStream, errors: &mut Errors) -> Option<(TokenStrea
     let outcome = Syn::parse2(
         |input: ParseStream| {
             let krate = runtime(input)?;
-            let mut parser = Parser { errors: &mut *errors, sources: 0, depth: 0, barred: false, lost: Lost::default() };
+            let mut parser =
+                Parser { errors: &mut *errors, sources: 0, depth: 0, barred: false, lost: Lost::default(), begun: None };
             match parser.block(input) {
                 Ok(block) => parsed = Some((krate, block)),
                 Err(error) => errors.push(error),
@@ -59,4 +60,6 @@ struct Parser<'a> {
     /// Whether a `|` closes what stands here.
     barred: bool,
     lost: Lost,
+    /// A coordinate whose statement ends in a mistake, as far as it could be read.
+    begun: Option<Statement>,
 }

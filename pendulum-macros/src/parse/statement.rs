@@ -43,6 +43,7 @@ impl Parser<'_> {
             }
         };
         if !input.peek(Token![;]) {
+            self.begun = Some(statement).filter(|statement| matches!(statement, Statement::Coordinate { .. }));
             return Err(unexpected(input, "`;`"));
         }
         input.parse::<Token![;]>()?;
@@ -52,28 +53,35 @@ impl Parser<'_> {
     fn coordinate(&mut self, input: ParseStream) -> Result<Statement> {
         input.call(Ident::parse_any)?;
         let name = identifier(input, "the name of a coordinate")?;
-        let length = if input.peek(syn::token::Bracket) {
+        let mut length = None;
+        let mut closed = Ok(());
+        if input.peek(syn::token::Bracket) {
             let content;
             bracketed!(content in input);
-            let length = self.expr(&content)?;
-            end(&content)?;
-            Some(length)
-        } else {
-            None
-        };
-        let unit = if input.peek(Token![:]) {
-            input.parse::<Token![:]>()?;
-            match self.kind(input)? {
-                Kind::Scalar(unit) => unit,
-                Kind::Array { unit, .. } => {
-                    return Err(unit.range.error("a coordinate is one number; declare one coordinate for each component"));
-                }
-                Kind::Body(range) => return Err(range.error("a coordinate has a unit; write `rad` or `m`")),
+            length = Some(self.expr(&content)?);
+            closed = end(&content);
+        }
+        match closed.and_then(|()| self.coordinate_unit(input)) {
+            Ok(unit) => Ok(Statement::Coordinate { name, length, unit }),
+            Err(error) => {
+                self.begun = Some(Statement::Coordinate { name, length, unit: None });
+                Err(error)
             }
-        } else {
-            None
-        };
-        Ok(Statement::Coordinate { name, length, unit })
+        }
+    }
+
+    fn coordinate_unit(&mut self, input: ParseStream) -> Result<Option<Expr>> {
+        if !input.peek(Token![:]) {
+            return Ok(None);
+        }
+        input.parse::<Token![:]>()?;
+        match self.kind(input)? {
+            Kind::Scalar(unit) => Ok(unit),
+            Kind::Array { unit, .. } => {
+                Err(unit.range.error("a coordinate is one number; declare one coordinate for each component"))
+            }
+            Kind::Body(range) => Err(range.error("a coordinate has a unit; write `rad` or `m`")),
+        }
     }
 
     fn driven(&mut self, input: ParseStream) -> Result<Statement> {
@@ -147,14 +155,6 @@ impl Parser<'_> {
             return Err(unexpected(input, "`in` and a range such as `0..5`"));
         }
         input.parse::<Token![in]>()?;
-        let low = self.expr(input)?;
-        let inclusive = input.peek(Token![..=]);
-        if inclusive {
-            input.parse::<Token![..=]>()?;
-        } else if input.peek(Token![..]) {
-            input.parse::<Token![..]>()?;
-        } else {
-            return Err(unexpected(input, "`..` and the end of the range"));
         let (low, high, inclusive) = match fragment(input).filter(whole_range) {
             None => self.range(input)?,
             Some(tokens) => {
@@ -167,10 +167,24 @@ impl Parser<'_> {
 
     /// `0..5`.
     fn range(&mut self, input: ParseStream) -> Result<(Expr, Expr, bool)> {
+        let low = self.expr(input)?;
+        let inclusive = input.peek(Token![..=]);
+        if inclusive {
+            input.parse::<Token![..=]>()?;
+        } else if input.peek(Token![..]) {
+            input.parse::<Token![..]>()?;
+        } else {
+            return Err(unexpected(input, "`..` and the end of the range"));
         }
         let high = self.expr(input)?;
         Ok((low, high, inclusive))
     }
+}
+
+/// Whether a fragment is a range and not its lower end.
+fn whole_range(tokens: &TokenStream) -> bool {
+    let dots = |tree| matches!(tree, TokenTree::Punct(dot) if dot.as_char() == '.' && dot.spacing() == Spacing::Joint);
+    tokens.clone().into_iter().any(dots)
 }
 
 fn unknown_statement(input: ParseStream, word: &str) -> syn::Error {
@@ -181,11 +195,5 @@ fn unknown_statement(input: ParseStream, word: &str) -> syn::Error {
         Some(near) => format!("did you mean `{near}`?"),
         None => "a statement begins with `coordinate`, `driven`, `let`, `kinetic`, `potential`, `lagrangian`, `dissipation` or `force`".into(),
     };
-/// Whether a fragment is a range and not its lower end.
-fn whole_range(tokens: &TokenStream) -> bool {
-    let dots = |tree| matches!(tree, TokenTree::Punct(dot) if dot.as_char() == '.' && dot.spacing() == Spacing::Joint);
-    tokens.clone().into_iter().any(dots)
-}
-
     Range::from(input.span()).error(format!("unknown statement `{word}`; {hint}"))
 }

@@ -226,6 +226,22 @@ fn a_right_block_is_not_refused() {
     assert!(refusals(&block(ENERGY)).is_empty());
 }
 
+/// A coordinate that could be read keeps its place: the number of coordinates is part of the type.
+#[test]
+fn a_broken_coordinate_is_counted() {
+    for (statements, count, messages) in [
+        ("coordinate x kinetic = m*x_dot^2;", 1, 1),
+        ("coordinate q[3]: [m]; kinetic = m*sum(k in 0..3, q_dot[k]^2);", 3, 1),
+        ("coordinate q[3, 4]; coordinate z; kinetic = m*(z_dot^2 + q_dot[2]^2);", 4, 1),
+        ("coordinate q: body; kinetic = m*q_dot^2;", 1, 1),
+    ] {
+        let block = format!("::p; struct S {{ m }} {statements}");
+        let found = crate::expand::expand(block.parse().unwrap()).to_string();
+        assert_eq!(found.matches("compile_error").count(), messages, "{statements}");
+        assert!(found.contains(&format!("System < {count}usize > for S")), "{statements}: {found}");
+    }
+}
+
 #[test]
 fn a_parameter_is_in_every_build() {
     let source = "struct P { #[cfg(test)] m: kg, L } coordinate θ: rad; kinetic = m*L^2*θ̇^2;";
