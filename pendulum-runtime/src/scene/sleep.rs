@@ -33,18 +33,21 @@ pub(super) struct Bed<T, const N: usize> {
     /// No velocity is larger with so little energy.
     speed: [T; N],
     /// No coordinate is farther from rest with so little energy.
+    near: T,
+    /// So far from rest it is known to come back to it.
     reach: T,
 }
 
 impl<T: Lane + Float, const N: usize> Bed<T, N> {
-    /// Whether another look would find no more: what moves fast does not fall asleep, and what is near its rest has no other.
+    /// Whether another look would find no more: what moves fast does not fall asleep, and what is not too far from its rest has no other.
     fn lasts(&self, q: &[T; N], v: &[T; N]) -> bool {
         let fast = (0..N).any(|i| T::from_f64(4.0) * self.speed[i] < Real::abs(v[i]));
-        fast || T::from_f64(0.0) < self.energy && self.is_near(q)
+        fast || T::from_f64(0.0) < self.energy && self.distance(q) <= self.reach
     }
 
-    fn is_near(&self, q: &[T; N]) -> bool {
-        (0..N).all(|i| Real::abs(q[i] - self.rest[i]) <= self.reach)
+    /// How far the coordinates are from rest.
+    fn distance(&self, q: &[T; N]) -> T {
+        (0..N).fold(T::from_f64(0.0), |distance, i| Real::max(distance, Real::abs(q[i] - self.rest[i])))
     }
 }
 
@@ -164,7 +167,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                 let bed = known.unwrap_or_else(|| self.bed(clock, places, id, tolerance, wake));
                 self.beds[id as usize] = Some(bed);
                 let slow = T::from_f64(0.0) < bed.energy && (0..N).all(|i| Real::abs(v[i]) <= bed.speed[i]);
-                if slow && bed.is_near(&q) && self.calm(clock, places, id, &q, &v, &bed) {
+                if slow && bed.distance(&q) <= bed.near && self.calm(clock, places, id, &q, &v, &bed) {
                     sleepers.push((id, wake));
                 }
             }
@@ -209,20 +212,23 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
 
     /// What decides whether a pendulum may sleep.
     fn bed(&self, clock: &Clock, places: &[Place<T>], id: u32, tolerance: f64, until: i64) -> Bed<T, N> {
-        let (loose, reach) = (self.read(id), T::from_f64(4.0 * tolerance));
+        let (loose, near) = (self.read(id), T::from_f64(4.0 * tolerance));
         let system = self.system_of(&loose.parameters);
         let still = AtRest::new(&system, clock, places, &loose);
         let [q, ..] = loose.state;
         // Where it may not sleep it is looked at again when it is slow.
         let omega = frequency::fastest(&system, still.t, &q, &still.forces);
-        let never = Bed { until, rest: q, energy: T::from_f64(-1.0), speed: [T::from_f64(omega * tolerance); N], reach };
+        let never =
+            Bed { until, rest: q, energy: T::from_f64(-1.0), speed: [T::from_f64(omega * tolerance); N], near, reach: near };
         let Some(rest) = self.rest_of(places, &loose, clock.time(clock.tick())) else { return never };
         let lifted = |by: &[f64; N]| still.lifted(&rest, &by.map(T::from_f64)).to_f64();
         let Some(energy) = barrier(tolerance, lifted) else { return never };
         let energy = T::from_f64(energy);
         // T = pᵀM⁻¹p/2 bounds q̇ᵢ by √(2T (M⁻¹)ᵢᵢ), with a tenth more because M is not the same everywhere.
         let speed = core::array::from_fn(|i| (T::from_f64(2.42) * energy * still.mobility(&rest, i)).sqrt());
-        Bed { until, rest, energy, speed, reach }
+        let bed = Bed { until, rest, energy, speed, near, reach: near };
+        // A tenth more, so that a swing that grows is not looked at in every turn.
+        Bed { reach: Real::max(near, T::from_f64(1.1) * bed.distance(&q)), ..bed }
     }
 }
 

@@ -134,6 +134,7 @@ impl<T: Lane + Float> Scene<T> {
         let mut loose = group.read(pendulum.index);
         change(&mut loose);
         group.write(&loose);
+        group.unmake_bed(pendulum.index);
         group.rouse(pendulum.index);
         self.dirty = true;
         Ok(())
