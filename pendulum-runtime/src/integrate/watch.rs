@@ -231,6 +231,16 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
                 _ => self.at(index, piece, theta)?,
             };
             let mut point = (theta, value);
+            if i == 1 && side_before == 0 {
+                // A long step from a root may lead over the next: it must show its side soon.
+                let soon = T::from_f64(NEAR);
+                let place = Place::on(piece, soon);
+                if let (Ok(value), Ok(least)) = (self.value(index, &place), self.allowance(index, &place))
+                    && least < value.abs()
+                {
+                    (point, side_before) = ((soon, value), side(value));
+                }
+            }
             let side_here = side(value);
             if 1 < i {
                 match (side_before, before) {
