@@ -35,7 +35,8 @@ pub enum Stop {
 }
 
 impl<T: Lane + Float> Scene<T> {
-    /// Lets a pendulum hang at rest where an overdamped one would creep to, with its joints at rest where they are now.
+    /// Lets a pendulum hang at rest where an overdamped one would creep to, within its limits, with its joints at rest where they are now. One that
+    /// has failed swings again.
     ///
     /// # Errors
     /// A pendulum of another scene, or one that comes to rest nowhere.
@@ -123,11 +124,12 @@ impl<T: Lane + Float> Scene<T> {
 
     /// Keeps coordinates within `low` and `high`, in place of the limits set before; infinite limits are none.
     ///
-    /// What lies beyond a hard limit is put on it. Hard stops act within the drifts of leapfrog and SRKN6b, where the path is straight, and at the ends of the steps of RK4; they turn the
-    /// velocity of the coordinate alone, which for coupled coordinates is not what a wall at the tip would do.
+    /// What lies beyond a hard limit is put on it. Hard stops act within the drifts of leapfrog and SRKN6b, where the path is straight, and at
+    /// the ends of the steps of RK4; they turn the velocity of the coordinate alone, which for coupled coordinates is not what a wall at the tip
+    /// would do.
     ///
     /// # Errors
-    /// A pendulum of another scene, limits in the wrong order, a restitution outside of [0, 1], a negative stiffness.
+    /// A pendulum of another scene, limits in the wrong order or that leave no finite place, a restitution outside of [0, 1], a negative stiffness.
     pub fn set_limits<S: Hung<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -144,7 +146,7 @@ impl<T: Lane + Float> Scene<T> {
                 return Err(SceneError::Setting {
                     name: "high",
                     value: high[i].to_f64(),
-                    required: "a place for the coordinate",
+                    required: "greater than minus infinity",
                 });
             }
         }

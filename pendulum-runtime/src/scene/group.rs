@@ -399,10 +399,12 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T,
                 let (old, new) = (inputs(before, Side::Before), inputs(places, Side::After));
                 let (system, t) = (self.system_of(&loose.parameters), scalar_time(time));
                 let [q, _, v, ..] = loose.state;
-                let after = system.velocities(t, &q, &system.momenta(t, &q, &v, &old), &new);
-                // One whose equations have no solution keeps its velocity, and fails in the next tick, which says why.
-                if old != new && after.iter().all(|v| v.is_finite()) {
-                    (loose.state[2], loose.state[3]) = (after, [T::from_f64(0.0); N]);
+                if old != new {
+                    let after = system.velocities(t, &q, &system.momenta(t, &q, &v, &old), &new);
+                    // One whose equations have no solution keeps its velocity, and fails in the next tick, which says why.
+                    if after.iter().all(|v| v.is_finite()) {
+                        (loose.state[2], loose.state[3]) = (after, [T::from_f64(0.0); N]);
+                    }
                 }
             }
             self.rewrite(clock, places, &loose);
