@@ -1,0 +1,170 @@
+//! The error control of the adaptive integrators on systems that are not gentle.
+
+#![allow(mixed_script_confusables)]
+
+mod blocks;
+mod case;
+mod families;
+mod measure;
+mod motions;
+mod random;
+mod report;
+
+pub use case::Method;
+use families::Family;
+use indicatif::{ProgressBar, ProgressStyle};
+use measure::{Measured, clock, measure};
+use report::Row;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// What is asked for.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// The starts of each family.
+    pub count: usize,
+    /// One run alone.
+    pub run: Option<usize>,
+    /// Families whose names contain one of these; all if there are none.
+    pub families: Vec<String>,
+    /// The scalars, by name; all if there are none.
+    pub scalars: Vec<String>,
+    /// The methods, by name; all if there are none. `Dop853` is always measured.
+    pub methods: Vec<String>,
+    /// Threads.
+    pub threads: usize,
+    /// Whether times are measured.
+    pub clock: bool,
+    /// Whether every run is printed.
+    pub verbose: bool,
+    /// Where the table goes.
+    pub markdown: Option<std::path::PathBuf>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            count: 60,
+            run: None,
+            families: Vec::new(),
+            scalars: Vec::new(),
+            methods: Vec::new(),
+            threads: 2,
+            clock: true,
+            verbose: false,
+            markdown: None,
+        }
+    }
+}
+
+impl Options {
+    fn wants(&self, method: Method) -> bool {
+        let wanted = |name: &String| name.eq_ignore_ascii_case(method.name());
+        method == Method::Dop853 || self.methods.is_empty() || self.methods.iter().any(wanted)
+    }
+
+    fn chosen(&self) -> Vec<&'static Family> {
+        let named = |family: &&Family| {
+            let name = |part: &String| family.name.contains(part.as_str());
+            let scalar = |name: &String| name == family.scalar.name();
+            (self.families.is_empty() || self.families.iter().any(name))
+                && (self.scalars.is_empty() || self.scalars.iter().any(scalar))
+        };
+        families::ALL.iter().filter(named).collect()
+    }
+}
+
+/// Measures and prints; whether all bars are met.
+pub fn run(options: &Options) -> std::io::Result<bool> {
+    let rows = measured(options);
+    if options.verbose {
+        for row in &rows {
+            for run in &row.runs {
+                println!(
+                    "{} run {}: tolerance {:.3e}, amplification {:.2e}, doubt {:.1e}\n    {}",
+                    row.family.name, run.run, run.tolerance, run.amplification, run.doubt, run.start
+                );
+                for m in &run.measurements {
+                    println!("    {:8} error {:.2e} merit {:?} {}", m.method.name(), m.error, m.merit, m.stats);
+                }
+            }
+        }
+    }
+    print!("{}\n{}\n{}", report::table(&rows, false), report::references(&rows), report::summary(&rows));
+    if let Some(path) = &options.markdown {
+        std::fs::write(path, report::table(&rows, true))?;
+    }
+    Ok(bars(options, &rows))
+}
+
+/// The bars of `Picard` and of the default.
+fn bars(options: &Options, rows: &[Row<'_>]) -> bool {
+    let mut met = true;
+    for method in [Method::Default, Method::Picard] {
+        if !options.wants(method) {
+            continue;
+        }
+        let wrong = report::wrong(rows, method, 1000.0);
+        let merits = report::merits(rows, method);
+        if merits.is_empty() {
+            continue;
+        }
+        let above = merits.iter().filter(|merit| !(**merit <= 100.0)).count();
+        let worse = report::worse(rows, method, 0.3);
+        let bars = [
+            ("median at most 1", report::quantile(&merits, 0.5) <= 1.0),
+            ("at most 1 % above 100", above * 100 <= merits.len()),
+            ("none above 1000", wrong.is_empty()),
+            ("90 % in no family above 3 × that of Dop853, which counts as 0.3 at least", worse.is_empty()),
+        ];
+        for (bar, fine) in bars {
+            println!("{:8} {} {bar}", method.name(), if fine { "meets " } else { "MISSES" });
+            met &= fine;
+        }
+        worse.iter().for_each(|line| println!("    {line}"));
+        wrong.iter().for_each(|line| println!("    {line}"));
+    }
+    met
+}
+
+/// All runs of all families asked for.
+fn measured(options: &Options) -> Vec<Row<'static>> {
+    let chosen = options.chosen();
+    let runs: Vec<usize> = options.run.map_or_else(|| (0..options.count).collect(), |run| vec![run]);
+    let jobs: Vec<(usize, usize)> = (0..chosen.len()).flat_map(|f| runs.iter().map(move |run| (f, *run))).collect();
+    let bar = ProgressBar::new(jobs.len() as u64);
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} {eta} {msg}") {
+        bar.set_style(style);
+    }
+    let (next, results) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    std::thread::scope(|scope| {
+        for _ in 0..options.threads {
+            scope.spawn(|| {
+                while let Some(&(f, run)) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let measured = measure(chosen[f], run, &|method| options.wants(method));
+                    if let Ok(mut results) = results.lock() {
+                        results.push((f, run, measured));
+                    }
+                    bar.set_message(chosen[f].name);
+                    bar.inc(1);
+                }
+            });
+        }
+    });
+    bar.finish_and_clear();
+    let mut results: Vec<(usize, usize, Result<Measured, String>)> = results.into_inner().unwrap_or_default();
+    results.sort_by_key(|(f, run, _)| (*f, *run));
+    let mut rows: Vec<Row<'static>> = chosen.iter().map(|family| Row { family, runs: Vec::new(), lost: Vec::new() }).collect();
+    for (f, run, result) in results {
+        match result {
+            Ok(mut measured) => {
+                if options.clock {
+                    clock(chosen[f], &mut measured);
+                }
+                rows[f].runs.push(measured);
+            }
+            Err(why) => rows[f].lost.push((run, why)),
+        }
+    }
+    rows
+}

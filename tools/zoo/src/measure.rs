@@ -1,0 +1,100 @@
+//! One run of one family: reference, amplification, and every method.
+
+use crate::case::{Case, Method, Scalar, amplification, distance};
+use crate::families::Family;
+use crate::random::Random;
+
+/// What one method has made of one run.
+#[derive(Clone, Debug)]
+pub(crate) struct Measurement {
+    pub(crate) method: Method,
+    /// The error at the end over tolerance and amplification, and the largest at the other output times; or the error that it returned.
+    pub(crate) merit: Result<(f64, f64), String>,
+    /// The error at the end.
+    pub(crate) error: f64,
+    /// Steps and evaluations.
+    pub(crate) stats: String,
+    /// The time over that of `Dop853`.
+    pub(crate) time: Option<f64>,
+}
+
+/// One run of one family.
+#[derive(Clone, Debug)]
+pub(crate) struct Measured {
+    pub(crate) run: usize,
+    pub(crate) tolerance: f64,
+    pub(crate) amplification: f64,
+    /// How far two references are from each other.
+    pub(crate) doubt: f64,
+    pub(crate) start: String,
+    pub(crate) measurements: Vec<Measurement>,
+}
+
+/// The parts of the interval at which dense output is looked at.
+const WITHIN: [f64; 2] = [0.37, 0.71];
+
+/// The problem of a run and its tolerance.
+fn problem(family: &Family, run: usize) -> (Box<dyn Case>, f64, Random) {
+    let (case, mut random) = family.problem(run);
+    let (least, most) = family.scalar.tolerances();
+    let tolerance = random.log_within(least, most);
+    (case, tolerance, random)
+}
+
+/// Measures the methods that `wanted` accepts.
+pub(crate) fn measure(family: &Family, run: usize, wanted: &dyn Fn(Method) -> bool) -> Result<Measured, String> {
+    let (case, tolerance, mut random) = problem(family, run);
+    let case = &*case;
+    let times = WITHIN.map(|part| part * case.end());
+    let amplification = amplification(case, &mut random).ok_or("the flow has no end")?;
+    let (exact, doubt) = reference(case, family.scalar, tolerance, &times)?;
+    let least = 100.0 * family.scalar.epsilon();
+    let unit = tolerance.max(least) * amplification;
+    let measurements = case.methods(family.scalar).iter().copied().filter(|method| wanted(*method)).map(|method| {
+        let mut error = f64::NAN;
+        let mut stats = String::new();
+        let merit = case.run(method, family.scalar, tolerance, &times).map(|run| {
+            let errors: Vec<f64> = run.states.iter().zip(&exact).map(|(state, exact)| distance(state, exact)).collect();
+            let (end, within) = (errors[times.len()], errors[..times.len()].iter().fold(0.0, |a: f64, b| a.max(*b)));
+            (error, stats) = (end, run.stats);
+            (end / unit, within / unit)
+        });
+        Measurement { method, merit, error, stats, time: None }
+    });
+    let measurements = measurements.collect();
+    let start = case.describe();
+    Ok(Measured { run, tolerance, amplification, doubt, start, measurements })
+}
+
+/// The states at the output times and at the end in two words, and how far a second reference with other steps is from them.
+fn reference(case: &dyn Case, scalar: Scalar, tolerance: f64, times: &[f64]) -> Result<(Vec<crate::case::State>, f64), String> {
+    let guide = case.guide();
+    let fine = if case.by_series() {
+        if scalar == Scalar::Wide { 1e-31 } else { 1e-24 }
+    } else {
+        (1e-6 * tolerance).max(1e-20).min(1e-14)
+    };
+    let fine = fine.max(guide.least);
+    let trusted = case.exact(fine, guide.max_step, times)?;
+    let other = case.exact(30.0 * fine, 0.7 * guide.max_step, times)?;
+    let doubt = trusted.iter().zip(&other).map(|(a, b)| distance(b, a)).fold(0.0, f64::max);
+    Ok((trusted, doubt))
+}
+
+/// The times of all methods over that of `Dop853`, each the least of a few.
+pub(crate) fn clock(family: &Family, measured: &mut Measured) {
+    let (case, tolerance, _) = problem(family, measured.run);
+    let time = |method| {
+        let times = (0..3).filter_map(|_| case.run(method, family.scalar, tolerance, &[]).ok()).map(|run| run.time);
+        times.min().map(|time| time.as_secs_f64())
+    };
+    let Some(unit) = time(Method::Dop853) else { return };
+    for measurement in &mut measured.measurements {
+        if measurement.merit.is_ok() {
+            measurement.time = match measurement.method {
+                Method::Dop853 => Some(1.0),
+                method => time(method).map(|time| time / unit),
+            };
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! Prescribed motions: as a user gives them, and in two words with every break declared.
+
+use pendulum_runtime::motion::{Analytic, CatmullRom, Function, Linear, Motion, Orders, Sample, Side, Sinusoid, Spline};
+use pendulum_runtime::real::{Lane, Octet, Real};
+use pendulum_runtime::system::scalar_time;
+use pendulum_runtime::time::Time;
+
+/// A function of time with two derivatives, over any scalar.
+#[derive(Clone, Debug)]
+pub(crate) enum Shape {
+    /// a sin(ωt + φ).
+    Sine { a: f64, ω: f64, φ: f64 },
+    /// An acceleration that begins at a time.
+    Jump { a: f64, at: f64 },
+}
+
+impl Shape {
+    /// Position, velocity and acceleration.
+    fn at<T: Real>(&self, t: T, early: impl Fn(f64) -> bool) -> [T; 3] {
+        let n = T::from_f64;
+        match *self {
+            Self::Sine { a, ω, φ } => {
+                let (sin, cos) = (n(ω) * t + n(φ)).sin_cos();
+                [n(a) * sin, n(a) * n(ω) * cos, -(n(a) * n(ω) * n(ω) * sin)]
+            }
+            Self::Jump { a, at } => {
+                let u = if early(at) { n(0.0) } else { t - n(at) };
+                let a = if early(at) { n(0.0) } else { n(a) };
+                [a * u * u * n(0.5), a * u, a]
+            }
+        }
+    }
+
+    /// The times at which it is not analytic.
+    fn breaks(&self) -> Vec<f64> {
+        match *self {
+            Self::Sine { .. } => Vec::new(),
+            Self::Jump { at, .. } => vec![at],
+        }
+    }
+}
+
+/// How a motion is given.
+#[derive(Clone, Debug)]
+pub(crate) enum Drive {
+    /// Closures that declare nothing.
+    Closure(Shape, [f64; 2]),
+    /// A `Sinusoid` of a sine.
+    Sinusoid(Shape, [f64; 2]),
+    Linear(Linear<2>),
+    CatmullRom(CatmullRom<2>),
+    Spline(Spline<2>),
+}
+
+type Closure = Box<dyn Fn(f64) -> [f64; 2]>;
+
+/// A motion of the kinds that users have.
+#[derive(Debug)]
+pub(crate) enum Given {
+    Function(Function<Closure, Closure, Closure>),
+    Sinusoid(Sinusoid<2>),
+    Linear(Linear<2>),
+    CatmullRom(CatmullRom<2>),
+    Spline(Spline<2>),
+}
+
+impl Drive {
+    /// The motion as a user gives it.
+    pub(crate) fn given(&self) -> Given {
+        match self {
+            Self::Closure(shape, along) => {
+                let part = |k: usize| -> Closure {
+                    let (shape, along) = (shape.clone(), *along);
+                    Box::new(move |t| along.map(|d| d * shape.at(t, |at| t < at)[k]))
+                };
+                Given::Function(Function::new(part(0)).velocity(part(1)).acceleration(part(2)))
+            }
+            Self::Sinusoid(Shape::Sine { a, ω, φ }, along) => Given::Sinusoid(Sinusoid::new(along.map(|d| d * a), *ω, [*φ; 2])),
+            Self::Sinusoid(..) => unreachable!("a sinusoid is a sine"),
+            Self::Linear(keys) => Given::Linear(keys.clone()),
+            Self::CatmullRom(keys) => Given::CatmullRom(keys.clone()),
+            Self::Spline(keys) => Given::Spline(keys.clone()),
+        }
+    }
+
+    /// The same motion in two words, which ends steps wherever it is not analytic.
+    pub(crate) fn exact(&self) -> Exact {
+        match self {
+            Self::Closure(shape, along) | Self::Sinusoid(shape, along) => {
+                Exact { shape: Some((shape.clone(), *along)), keyed: None, breaks: shape.breaks() }
+            }
+            keyed => Exact { shape: None, keyed: Some(keyed.given()), breaks: Vec::new() },
+        }
+    }
+}
+
+macro_rules! each {
+    ($given:expr, $motion:ident => $value:expr) => {
+        match $given {
+            Given::Function($motion) => $value,
+            Given::Sinusoid($motion) => $value,
+            Given::Linear($motion) => $value,
+            Given::CatmullRom($motion) => $value,
+            Given::Spline($motion) => $value,
+        }
+    };
+}
+
+impl<T: Real> Motion<T, 2> for Given {
+    const HAS: Orders = Orders::ALL;
+
+    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, 2> {
+        each!(self, motion => motion.sample(t, side, orders))
+    }
+
+    fn sample_all(&self, times: &[Time], orders: Orders, samples: &mut [Sample<T, 2>]) {
+        each!(self, motion => motion.sample_all(times, orders, samples));
+    }
+
+    fn sample_lanes(&self, times: &[Time; 8], orders: Orders) -> Sample<Octet<T>, 2>
+    where
+        T: Lane,
+    {
+        each!(self, motion => motion.sample_lanes(times, orders))
+    }
+
+    fn next_kink(&self, t: f64) -> Option<f64> {
+        each!(self, motion => Motion::<T, 2>::next_kink(motion, t))
+    }
+
+    fn analytic(&self) -> Option<&dyn Analytic<T, 2>> {
+        each!(self, motion => Motion::<T, 2>::analytic(motion))
+    }
+}
+
+/// A motion for references.
+#[derive(Debug)]
+pub(crate) struct Exact {
+    shape: Option<(Shape, [f64; 2])>,
+    keyed: Option<Given>,
+    breaks: Vec<f64>,
+}
+
+impl<T: Real> Motion<T, 2> for Exact {
+    const HAS: Orders = Orders::ALL;
+
+    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, 2> {
+        if let Some(keyed) = &self.keyed {
+            return keyed.sample(t, side, orders);
+        }
+        let mut sample = Sample::zero();
+        if let Some((shape, along)) = &self.shape {
+            let early = |at: f64| t.since(at) < 0.0 || t.since(at) == 0.0 && side == Side::Before;
+            let [x, v, a] = shape.at(scalar_time::<T>(t), early);
+            sample.position = along.map(|d| T::from_f64(d) * x);
+            sample.velocity = along.map(|d| T::from_f64(d) * v);
+            sample.acceleration = along.map(|d| T::from_f64(d) * a);
+        }
+        sample
+    }
+
+    fn next_kink(&self, t: f64) -> Option<f64> {
+        match &self.keyed {
+            // Pieces of a spline meet where it has no kink.
+            Some(keyed) => Motion::<T, 2>::analytic(keyed).and_then(|motion| motion.next_break(t)),
+            None => self.breaks.iter().copied().find(|at| t < *at),
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! Tables and bars.
+
+use crate::case::Method;
+use crate::families::Family;
+use crate::measure::{Measured, Measurement};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// A family with its runs.
+pub(crate) struct Row<'a> {
+    pub(crate) family: &'a Family,
+    pub(crate) runs: Vec<Measured>,
+    /// Runs without a reference.
+    pub(crate) lost: Vec<(usize, String)>,
+}
+
+/// The value below which this part of the sorted `values` lies.
+pub(crate) fn quantile(values: &[f64], part: f64) -> f64 {
+    if values.is_empty() {
+        return f64::NAN;
+    }
+    values[((values.len() - 1) as f64 * part).round() as usize]
+}
+
+fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+impl Row<'_> {
+    fn of(&self, method: Method) -> impl Iterator<Item = (&Measured, &Measurement)> {
+        self.runs.iter().flat_map(|run| run.measurements.iter().map(move |m| (run, m))).filter(move |(_, m)| m.method == method)
+    }
+
+    fn merits(&self, method: Method) -> Vec<f64> {
+        sorted(self.of(method).filter_map(|(_, m)| m.merit.as_ref().ok()).map(|merit| merit.0))
+    }
+
+    fn methods(&self) -> Vec<Method> {
+        Method::ALL.into_iter().filter(|method| self.of(*method).next().is_some()).collect()
+    }
+}
+
+/// Two significant digits.
+fn short(x: f64) -> String {
+    if x.is_nan() {
+        "–".into()
+    } else if x == 0.0 || (0.01..999.5).contains(&x) {
+        if x < 9.95 { format!("{x:.2}") } else { format!("{x:.0}") }
+    } else {
+        format!("{x:.0e}")
+    }
+}
+
+/// The table of families and methods.
+pub(crate) fn table(rows: &[Row<'_>], markdown: bool) -> String {
+    let mut text = String::new();
+    let heads = ["family", "method", "median", "90 %", "max", "> 100", "> 1000", "failed", "dense 90 %", "time"];
+    if markdown {
+        let _ = writeln!(text, "| {} |\n|{}", heads.join(" | "), "---|".repeat(heads.len()));
+    } else {
+        let _ = writeln!(
+            text,
+            "{:22} {:8} {:>8} {:>8} {:>8} {:>6} {:>6} {:>6} {:>10} {:>6}",
+            heads[0], heads[1], heads[2], heads[3], heads[4], heads[5], heads[6], heads[7], heads[8], heads[9]
+        );
+    }
+    for row in rows {
+        for method in row.methods() {
+            let merits = row.merits(method);
+            let dense = sorted(row.of(method).filter_map(|(_, m)| m.merit.as_ref().ok()).map(|merit| merit.1));
+            let times = sorted(row.of(method).filter_map(|(_, m)| m.time));
+            let above = |bound: f64| merits.iter().filter(|merit| !(**merit <= bound)).count();
+            let failed = row.of(method).filter(|(_, m)| m.merit.is_err()).count();
+            let cells = [
+                row.family.name.to_string(),
+                method.name().to_string(),
+                short(quantile(&merits, 0.5)),
+                short(quantile(&merits, 0.9)),
+                short(quantile(&merits, 1.0)),
+                above(100.0).to_string(),
+                above(1000.0).to_string(),
+                failed.to_string(),
+                short(quantile(&dense, 0.9)),
+                short(quantile(&times, 0.5)),
+            ];
+            if markdown {
+                let _ = writeln!(text, "| {} |", cells.join(" | "));
+            } else {
+                let [a, b, c, d, e, f, g, h, i, j] = cells;
+                let _ = writeln!(text, "{a:22} {b:8} {c:>8} {d:>8} {e:>8} {f:>6} {g:>6} {h:>6} {i:>10} {j:>6}");
+            }
+        }
+    }
+    text
+}
+
+/// What the references are worth, a line a family.
+pub(crate) fn references(rows: &[Row<'_>]) -> String {
+    let mut text = String::new();
+    for row in rows {
+        let worst = row.runs.iter().map(|run| run.doubt).fold(0.0, f64::max);
+        let part = row.runs.iter().map(|run| run.doubt / (run.tolerance * run.amplification)).fold(0.0, f64::max);
+        let amplifications = sorted(row.runs.iter().map(|run| run.amplification));
+        let _ = writeln!(
+            text,
+            "{:22} digits {:4.1}, doubt over tolerance {:7.0e}, amplification median {:7.1e} most {:7.1e}",
+            row.family.name,
+            -worst.log10(),
+            part,
+            quantile(&amplifications, 0.5),
+            quantile(&amplifications, 1.0)
+        );
+        for (run, why) in &row.lost {
+            let _ = writeln!(text, "    run {run} has no reference: {why}");
+        }
+    }
+    text
+}
+
+/// The summary of each method over all families, with every run that is wrong and every failure.
+pub(crate) fn summary(rows: &[Row<'_>]) -> String {
+    let mut text = String::new();
+    for method in Method::ALL {
+        let merits = sorted(rows.iter().flat_map(|row| row.merits(method)));
+        if merits.is_empty() {
+            continue;
+        }
+        let above = |bound: f64| merits.iter().filter(|merit| !(**merit <= bound)).count();
+        let mut failures = BTreeMap::<&str, usize>::new();
+        for why in rows.iter().flat_map(|row| row.of(method)).filter_map(|(_, m)| m.merit.as_ref().err()) {
+            *failures.entry(why).or_default() += 1;
+        }
+        let _ = writeln!(
+            text,
+            "{:8} {} runs: median {}, 90 % {}, above 100 {:.2} %, above 1000 {}, failures {:?}",
+            method.name(),
+            merits.len(),
+            short(quantile(&merits, 0.5)),
+            short(quantile(&merits, 0.9)),
+            100.0 * above(100.0) as f64 / merits.len() as f64,
+            above(1000.0),
+            failures
+        );
+        let worse: Vec<String> = worse(rows, method, 0.0);
+        if !worse.is_empty() {
+            let _ = writeln!(text, "         90 % above 3 × that of Dop853: {}", worse.join(", "));
+        }
+    }
+    text
+}
+
+/// The families in which the 90 % quantile is more than three times that of `Dop853`, which counts as `floor` at least.
+pub(crate) fn worse(rows: &[Row<'_>], method: Method, floor: f64) -> Vec<String> {
+    let mut names = Vec::new();
+    for row in rows {
+        let (own, other) = (quantile(&row.merits(method), 0.9), quantile(&row.merits(Method::Dop853), 0.9));
+        if own > 3.0 * other.max(floor) {
+            names.push(format!("{} ({} : {})", row.family.name, short(own), short(other)));
+        }
+    }
+    names
+}
+
+/// The runs above a bound, with what repeats each.
+pub(crate) fn wrong(rows: &[Row<'_>], method: Method, bound: f64) -> Vec<String> {
+    let mut lines = Vec::new();
+    for row in rows {
+        for (run, m) in row.of(method) {
+            if m.merit.as_ref().is_ok_and(|merit| !(merit.0 <= bound)) {
+                lines.push(format!(
+                    "--family '{}' --run {} --method {}: tolerance {:.2e}, amplification {:.1e}, merit {}, {}",
+                    row.family.name,
+                    run.run,
+                    method.name(),
+                    run.tolerance,
+                    run.amplification,
+                    short(m.merit.as_ref().map_or(f64::NAN, |merit| merit.0)),
+                    run.start
+                ));
+            }
+        }
+    }
+    lines
+}
+
+/// The merits of a method over all families.
+pub(crate) fn merits(rows: &[Row<'_>], method: Method) -> Vec<f64> {
+    sorted(rows.iter().flat_map(|row| row.merits(method)))
+}
