@@ -35,13 +35,14 @@ pub(super) fn piece<D: SideBySide<N>, const N: usize>(
             least: 2,
             most: FIXED,
             guessed: true,
+            closing: false,
         },
         a: &room.a[room.last],
         series: &mut series,
         scaled: &mut room.within,
         count: &mut count,
     });
-    field.evaluations += u64::from(count) * COUNT as u64;
+    field.evaluations += u64::from(count) * S as u64;
     let mut piece = Piece {
         basis: Basis::Legendre,
         terms: COUNT + 1,

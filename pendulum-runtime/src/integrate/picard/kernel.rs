@@ -5,7 +5,7 @@
 #![allow(clippy::inline_always)]
 
 use super::side_by_side::SideBySide;
-use super::tableau::{Columns, EIGHT, Nodes, REFINED, S, SIXTEEN};
+use super::tableau::{BETWEEN, Columns, EIGHT, Nodes, REFINED, S, SIXTEEN};
 use super::{RoomOf, Tolerances};
 use crate::integrate::node::Node;
 use crate::integrate::span::Span;
@@ -20,29 +20,35 @@ pub(super) type Wide<T> = Octet<T>;
 /// The accelerations at the nodes of a step, by vector and coordinate.
 pub(super) type Stages<T, const N: usize, const G: usize> = [[Wide<T>; N]; G];
 
-/// The error that may be left in the equations, over the one allowed, squared.
+/// The square of the error that may be left in the equations, over the one allowed: the change that one more sweep would make.
 const NEGLIGIBLE: f64 = 0.04;
+
+/// The square of the change that the last sweep of an adaptive step may make, over the error allowed, and of the one expected of it
+/// before it begins.
+const LAST_CHANGE: f64 = 1.0;
+const EXPECTED_CHANGE: f64 = 0.25;
 
 /// The system over lanes.
 type Of<D, const N: usize> = <D as SideBySide<N>>::Wide;
 
-/// The columns of h A and h² A², for steps of one length: multiplied once, and not in every sweep.
+/// The columns of h A and h² A² that lead from the values in `G` vectors to the points of one, for steps of one length: multiplied once, and
+/// not in every sweep.
 #[derive(Clone, Debug)]
 pub(super) struct Scaled<T, const G: usize> {
     h: T,
-    once: [[[Wide<T>; G]; S]; G],
-    twice: [[[Wide<T>; G]; S]; G],
+    once: [[[Wide<T>; 1]; S]; G],
+    twice: [[[Wide<T>; 1]; S]; G],
 }
 
 impl<T: Lane + Float, const G: usize> Scaled<T, G> {
     pub(super) fn new() -> Self {
-        let zero = [[[Wide::splat(T::from_f64(0.0)); G]; S]; G];
+        let zero = [[[Wide::splat(T::from_f64(0.0)); 1]; S]; G];
         Self { h: T::from_f64(0.0), once: zero, twice: zero }
     }
 
-    /// Makes them of A and A², if the length is another by more than rounding.
+    /// Makes them of the columns of A and A² for the vector `to`, if the length is another by more than rounding.
     #[inline(always)]
-    fn scale(&mut self, h: T, once: &'static Columns<G, G>, twice: &'static Columns<G, G>) {
+    fn scale<const H: usize>(&mut self, h: T, [once, twice]: [&'static Columns<G, H>; 2], to: usize) {
         if f64::abs(self.h.to_f64() - h.to_f64()) <= 1e-15 * self.h.to_f64() {
             return;
         }
@@ -50,12 +56,10 @@ impl<T: Lane + Float, const G: usize> Scaled<T, G> {
         let (h, square) = (Wide::splat(h), Wide::splat(h * h));
         for g in 0..G {
             for j in 0..S {
-                for to in 0..G {
-                    // One column at a time: the compiler would take a lane of each.
-                    let (once, twice) = black_box((&once[g][j][to], &twice[g][j][to]));
-                    self.once[g][j][to] = Wide::<T>::known(once) * h;
-                    self.twice[g][j][to] = Wide::<T>::known(twice) * square;
-                }
+                // One column at a time: the compiler would take a lane of each.
+                let (once, twice) = black_box((&once[g][j][to], &twice[g][j][to]));
+                self.once[g][j][0] = Wide::<T>::known(once) * h;
+                self.twice[g][j][0] = Wide::<T>::known(twice) * square;
             }
         }
     }
@@ -82,7 +86,7 @@ impl<T: Lane> Column<T> for Wide<T> {
 }
 
 /// The equations of a step at 8 `G` nodes, and how well they are to be solved.
-pub(super) struct Equations<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G: usize> {
+pub(super) struct Equations<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> {
     pub(super) dynamics: &'a D,
     pub(super) prepared: &'a <Of<D, N> as System<N>>::Prepared,
     pub(super) span: &'a Span,
@@ -95,13 +99,16 @@ pub(super) struct Equations<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, c
     pub(super) most: u32,
     /// Whether the change made by the first sweep means anything.
     pub(super) guessed: bool,
+    /// Whether the last sweeps look between the nodes too, and the very last one has to change little.
+    pub(super) closing: bool,
 }
 
 /// How the iteration has ended.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Progress<T> {
-    /// The number of sweeps.
+    /// The number of sweeps, and of the vectors evaluated in them.
     pub(super) sweeps: u32,
+    pub(super) vectors: u32,
     /// The square of the last change, over the error allowed.
     pub(super) change: T,
     /// What is left is negligible.
@@ -110,11 +117,16 @@ pub(super) struct Progress<T> {
     pub(super) spare: bool,
 }
 
+/// The number of coefficients by which the error of a step is judged.
+pub(super) const TAIL: usize = 5;
+
 /// What a step comes to.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ends<T, const N: usize> {
-    /// The last coefficient of the accelerations after Legendre and the one before it.
-    pub(super) last: [[T; 2]; N],
+    /// The coefficients α₁₅, α₁₄, α₁₃, α₁₂ and α₁₆ of the accelerations after Legendre.
+    pub(super) tail: [[T; TAIL]; N],
+    /// The accelerations just before its end.
+    pub(super) last: [T; N],
     /// The mean square of the accelerations.
     pub(super) square: [T; N],
     pub(super) progress: Progress<T>,
@@ -127,8 +139,8 @@ pub(super) struct Ends<T, const N: usize> {
 impl<T: Float, const N: usize> Ends<T, N> {
     pub(super) fn new() -> Self {
         let zero = [T::from_f64(0.0); N];
-        let progress = Progress { sweeps: 0, change: zero[0], done: false, spare: false };
-        Self { last: [[zero[0]; 2]; N], square: zero, progress, solved: false, error: 0.0 }
+        let progress = Progress { sweeps: 0, vectors: 0, change: zero[0], done: false, spare: false };
+        Self { tail: [[zero[0]; TAIL]; N], last: zero, square: zero, progress, solved: false, error: 0.0 }
     }
 }
 
@@ -147,23 +159,28 @@ pub(super) struct Onwards<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, con
     pub(super) tolerances: &'a Tolerances<N>,
     /// The most sweeps.
     pub(super) most: u32,
+    /// Whether the error is asked for.
+    pub(super) adaptive: bool,
 }
 
 impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Onwards<'_, D, T, N> {
     #[inline(always)]
     fn run(self) {
-        let Self { dynamics, span, from, to, room, ratio, tolerances, most } = self;
+        let Self { dynamics, span, from, to, room, ratio, tolerances, most, adaptive } = self;
         let (half, h, number) = (black_box(S / 2), span.length::<T>(), T::from_f64);
         room.weigh(span.h, from, tolerances);
-        let [scaled, ahead] = &mut room.scaled;
-        scaled.scale(h, &EIGHT.once, &EIGHT.twice);
+        let [scaled, ahead, between] = &mut room.scaled;
+        scaled.scale(h, [&EIGHT.once, &EIGHT.twice], 0);
+        if adaptive {
+            between.scale(h, [&BETWEEN.once, &BETWEEN.twice], 0);
+        }
         let [first, second] = &mut room.a;
         let (before, a) = if room.last == 0 { (&*first, second) } else { (&*second, first) };
         let goes_on = ratio == 1.0;
         // The first sweep of an equal step needs no guess, and what it changes is of interest only where a second may be the last.
         let guessed = !goes_on || room.sweeps < 3;
         if goes_on {
-            ahead.scale(h, &EIGHT.once_ahead, &EIGHT.twice_ahead);
+            ahead.scale(h, [&EIGHT.once_ahead, &EIGHT.twice_ahead], 0);
             if guessed {
                 [*a] = sums(black_box(before), [&EIGHT.ahead], half);
             }
@@ -174,7 +191,8 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Onw
         }
         // By way of memory: the compiler would take the vectors of the three cases apart to join them.
         let a = black_box(a);
-        let mut new = *a;
+        // At the nodes and between them.
+        let mut new = [a[0], [Wide::splat(number(0.0)); N]];
         let equations = Equations {
             dynamics,
             prepared: &room.prepared,
@@ -184,16 +202,19 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Onw
             least: room.sweeps,
             most,
             guessed,
+            closing: adaptive,
         };
         let first = if goes_on { (before, &*ahead) } else { (&*a, &*scaled) };
-        room.ends.progress = sweeps(&equations, &EIGHT.nodes, first, scaled, &mut new, half);
-        *a = new;
-        let [sums] = sums(black_box(a), [&EIGHT.ends], half);
+        let points = [&EIGHT.nodes[0], &BETWEEN.points[0]];
+        room.ends.progress = sweeps(&equations, points, first, [&*scaled, &*between], &mut new, half);
+        *a = [new[0]];
+        let [sums] = sums(black_box(&new), [&BETWEEN.ends], half);
         let [sums] = black_box(&sums);
         *to = Node { t: span.end, a: None, ..*from };
         for i in 0..N {
-            let [once, twice, last, before, ..] = sums[i].0;
-            room.ends.last[i] = [last, before];
+            let [once, twice, a15, a14, a13, a12, a16, _] = sums[i].0;
+            room.ends.tail[i] = [a15, a14, a13, a12, a16 + number(BETWEEN.start) * room.start[i]];
+            room.ends.last[i] = new[1][i].0[S - 1];
             room.ends.square[i] = total(black_box(&(new[0][i] * new[0][i]))) * number(1.0 / S as f64);
             to.q.add_product(i, h, from.v.high[i], h * (h * twice + from.v.low[i]));
             to.v.add_one(i, h * once);
@@ -205,13 +226,13 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Onw
 
 /// A step once more, at twice as many nodes: what is between its ends.
 pub(super) struct Within<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> {
-    pub(super) equations: Equations<'a, D, T, N, 2>,
+    pub(super) equations: Equations<'a, D, T, N>,
     /// The accelerations of the step.
     pub(super) a: &'a Stages<T, N, 1>,
     /// Where the coefficients of the accelerations after Legendre go.
     pub(super) series: &'a mut Stages<T, N, 2>,
-    /// The sums of a sweep.
-    pub(super) scaled: &'a mut Scaled<T, 2>,
+    /// The sums of a sweep, by vector.
+    pub(super) scaled: &'a mut [Scaled<T, 2>; 2],
     /// Where the number of sweeps goes.
     pub(super) count: &'a mut u32,
 }
@@ -221,9 +242,13 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Wit
     fn run(self) {
         let half = black_box(S / 2);
         let [mut a] = sums(black_box(self.a), [&REFINED], half);
-        self.scaled.scale(self.equations.span.length(), &SIXTEEN.once, &SIXTEEN.twice);
-        let guess = a;
-        *self.count = sweeps(&self.equations, &SIXTEEN.nodes, (&guess, self.scaled), self.scaled, &mut a, half).sweeps;
+        let h = self.equations.span.length();
+        for (to, scaled) in self.scaled.iter_mut().enumerate() {
+            scaled.scale(h, [&SIXTEEN.once, &SIXTEEN.twice], to);
+        }
+        let (guess, [first, second]) = (a, &*self.scaled);
+        let points = [&SIXTEEN.nodes[0], &SIXTEEN.nodes[1]];
+        *self.count = sweeps(&self.equations, points, (&guess, first), [first, second], &mut a, half).vectors;
         [*self.series] = sums(black_box(&a), [&SIXTEEN.legendre], half);
     }
 }
@@ -247,28 +272,31 @@ fn at_nodes<D: SideBySide<N>, const N: usize>(
 }
 
 /// Evaluates the accelerations where the last ones lead, again and again, until that changes nothing.
+///
+/// The values in the first `G` of the `H` vectors lead to the points of all of them. The others are evaluated only in the closing sweeps.
 #[inline(always)]
-fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G: usize>(
-    equations: &Equations<'_, D, T, N, G>,
-    nodes: &'static [Nodes; G],
-    first: (&Stages<T, N, G>, &Scaled<T, G>),
-    scaled: &Scaled<T, G>,
-    a: &mut Stages<T, N, G>,
+fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G: usize, const H: usize>(
+    equations: &Equations<'_, D, T, N>,
+    points: [&'static Nodes; H],
+    (first, first_by): (&Stages<T, N, G>, &Scaled<T, G>),
+    scaled: [&Scaled<T, G>; H],
+    a: &mut Stages<T, N, H>,
     half: usize,
 ) -> Progress<T> {
     let (zero, system) = (Wide::splat(T::from_f64(0.0)), equations.dynamics.widened());
     let (h, prepared) = (Wide::splat(equations.span.length()), equations.prepared);
     // Where the motion is without accelerations.
-    let mut straight = [[zero; N]; G];
-    let (t, inputs) = at_nodes(equations.dynamics, equations.span, &nodes[0]);
-    let mut known = [(t, inputs, Of::<D, N>::at_time(t, &inputs)); G];
-    for g in 0..G {
-        let elapsed = Wide::<T>::known(&nodes[g]) * h;
+    let mut straight = [[zero; N]; H];
+    let (t, inputs) = at_nodes(equations.dynamics, equations.span, points[0]);
+    let mut known = [(t, inputs, Of::<D, N>::at_time(t, &inputs)); H];
+    let all = if G == H || equations.closing { H } else { G };
+    for g in 0..all {
+        let elapsed = Wide::<T>::known(points[g]) * h;
         for i in 0..N {
             straight[g][i] = Wide::splat(equations.from.q.high[i]) + elapsed * Wide::splat(equations.from.v.high[i]);
         }
         if 0 < g {
-            let (t, inputs) = at_nodes(equations.dynamics, equations.span, &nodes[g]);
+            let (t, inputs) = at_nodes(equations.dynamics, equations.span, points[g]);
             known[g] = (t, inputs, Of::<D, N>::at_time(t, &inputs));
         }
     }
@@ -276,45 +304,63 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
     let lanes = (straight, equations.from.v.high.map(Wide::splat), equations.weights.map(Wide::splat));
     let (straight, v0, weights) = black_box(&lanes);
     let blind = if equations.guessed { 1 } else { 2 };
-    let mut progress = Progress { sweeps: 0, change: T::from_f64(0.0), done: false, spare: false };
-    let (mut values, mut by) = first;
+    let number = T::from_f64;
+    let mut progress = Progress { sweeps: 0, vectors: 0, change: number(0.0), done: false, spare: false };
+    let (mut values, mut by) = (first, first_by);
+    let groups_of = |closing| if closing || G == H { H } else { G };
+    let (mut groups, mut near, mut was_near) = (groups_of(false), false, false);
     let mut last;
     loop {
-        let [once, twice] = sums(black_box(values), [&by.once, &by.twice], half);
         let mut changes = zero;
-        for g in 0..G {
-            let (mut q, mut v) = (straight[g], once[g]);
+        for g in 0..groups {
+            let [once, twice] = sums(black_box(values), [&by.once, &by.twice], half);
+            let (mut q, mut v) = (straight[g], once[0]);
             for i in 0..N {
-                q[i] += twice[g][i];
+                q[i] += twice[0][i];
                 v[i] += v0[i];
             }
             let (t, inputs, at_time) = &known[g];
             let at_position = system.at_position(prepared, at_time, *t, &q, inputs);
             let new = system.accelerations_staged(prepared, at_time, &at_position, *t, &q, &v, inputs);
-            for i in 0..N {
-                let change = (new[i] - a[g][i]) * weights[i];
-                changes += change * change;
+            if g < G {
+                for i in 0..N {
+                    let change = (new[i] - a[g][i]) * weights[i];
+                    changes += change * change;
+                }
             }
             a[g] = new;
+            by = scaled[(g + 1) % H];
         }
         let (change, earlier) = (total(black_box(&changes)), progress.change);
         progress.sweeps += 1;
+        progress.vectors += groups as u32;
         progress.change = change;
-        // A change leaves that part of itself which it was of the one before. What is not a number is not less.
-        let enough = blind < progress.sweeps && change * change <= T::from_f64(NEGLIGIBLE) * earlier;
-        let shrinks = progress.sweeps <= blind || change < earlier;
-        let stays = shrinks || change <= T::from_f64(16.0) * earlier;
-        if equations.least <= progress.sweeps {
-            if enough || !shrinks || equations.most <= progress.sweeps {
-                progress.done = enough;
-                return progress;
-            }
-        } else if !stays {
+        // Convergence is taken to be linear: the next change is to this one as this one to the one before. NaN fails the comparisons.
+        let (is_known, next) = (blind < progress.sweeps, change * change);
+        let shrinks = !is_known || change < earlier;
+        let is_last = !equations.closing || groups == H;
+        let enough = is_known && next <= number(NEGLIGIBLE) * earlier && (!equations.closing || change <= number(LAST_CHANGE));
+        if equations.least <= progress.sweeps && is_last && (enough || !shrinks || equations.most <= progress.sweeps) {
+            progress.done = enough;
+            progress.spare = was_near;
             return progress;
         }
-        progress.spare = enough;
-        last = *a;
-        (values, by) = (&last, scaled);
+        if progress.sweeps < equations.least && !shrinks && !(change <= number(16.0) * earlier) {
+            return progress;
+        }
+        let expected = if equations.closing { EXPECTED_CHANGE } else { NEGLIGIBLE };
+        let is_near = is_known && next <= number(expected) * earlier;
+        if equations.closing {
+            // Whether the closing sweep could have come before this one.
+            (near, was_near) = (near || is_near, near);
+            if equations.least <= progress.sweeps + 1 && (near || !shrinks || equations.most <= progress.sweeps + 1) {
+                groups = groups_of(true);
+            }
+        } else {
+            was_near = is_near;
+        }
+        last = core::array::from_fn(|g| a[g]);
+        (values, by) = (&last, scaled[0]);
     }
 }
 

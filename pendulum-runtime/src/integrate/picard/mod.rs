@@ -34,22 +34,26 @@ use tableau::{EIGHT, S};
 /// evaluations on a machine with vectors of 64 or 32 bytes, and up to three times that with 16: this is the fastest method here for most
 /// systems and errors. It suits every system that `lagrangian!` has made and any motion, analytic or not.
 ///
-/// The error of a step is estimated as a quarter of a thousandth of h α₇²/|A| in the velocities, where α₇ is the larger of the last two coefficients of
-/// the accelerations after Legendre: the nodes are those for which what is left out counts only by its product with itself. Where accelerations
-/// do not have all derivatives (closures, `abs`, `max`) it is h α₇/16; steps end where a motion is known to break. The length of
-/// the steps stays the same as long as the error is within bounds; `rtol` may be as small as you like, and below about 1e-15 the error is that of
-/// rounding. A step is held to two fifths of the tolerance. Without `atol` it is `rtol`, in the units of each coordinate. The way to the next
-/// stop, break or end is divided into equal steps. Fixed steps are iterated down to rounding; while h·ω stays
-/// below about 1.5 that converges, and an iteration that does not is an [error](crate::error::Error::NoConvergence). A stiff spring or
-/// damper shortens the steps: take [`Rodas4`](super::Rodas4) or [`Gauss`](super::Gauss) there.
+/// The last sweep evaluates the accelerations at eight further points as well, which halve the gaps between the nodes. The error of a
+/// step in the velocities is estimated as h max(|α₁₆|, ε₇ min(1, ε₇/ε₆), ε₇/16), where α_k are the coefficients after Legendre of the
+/// accelerations at all these points and at the start, and ε_k is the larger of |α_2k| and |α_2k+1|. It falls with the power 17 of the
+/// step where the accelerations are smooth, and does not where they are not: at corners, jumps, stops and narrow kicks. Steps end where a
+/// motion is known to break.
+///
+/// An iteration has converged when its last change is below the tolerance, and the next one, if changes shrink as they did, below a fifth
+/// of it. The length of the steps stays the same as long as the error is within bounds; `rtol` may be as small as you like, and below about
+/// 1e-15 the error is that of rounding. Without `atol` it is `rtol`, in the units of each coordinate. The way to the next stop, break or end is
+/// divided into equal steps. Fixed steps are iterated down to rounding; while h·ω stays below about 1.5 that converges, and an iteration
+/// that does not is an [error](crate::error::Error::NoConvergence). A stiff spring or damper shortens the steps: take
+/// [`Rodas4`](super::Rodas4) or [`Gauss`](super::Gauss) there.
 ///
 /// The sum of the state is compensated; the coefficients have the digits of `f64`, so that over scalars of two words it is no better than over one.
 /// Dense output is the collocation polynomial at sixteen nodes, as exact as the ends; it costs about as much as the step.
 ///
 /// Source: van der Houwen and Sommeijer (1990), Parallel iteration of high-order Runge–Kutta methods with stepsize control, J. Comput. Appl.
 /// Math. 29, 111, here for second-order equations; for the iteration over the whole step Clenshaw and Norton (1963), The solution of
-/// nonlinear ordinary differential equations in Chebyshev series, Comput. J. 6, 88; for steps from the last coefficient Rein and Spiegel (2015), IAS15,
-/// Mon. Not. R. Astron. Soc. 446, 1424.
+/// nonlinear ordinary differential equations in Chebyshev series, Comput. J. 6, 88; for the points between the nodes Kronrod (1965), Nodes
+/// and weights of quadrature formulas.
 ///
 /// ```
 /// # use pendulum_runtime::{integrate::*, prelude::*};
@@ -79,8 +83,6 @@ pub struct Picard;
 pub struct Room<T: Lane, P, const N: usize> {
     /// What the parameters alone decide, over lanes.
     prepared: P,
-    /// Whether the accelerations have all derivatives.
-    smooth: bool,
     /// The accelerations at the nodes, of the last step and of the one under way.
     a: [Stages<T, N, 1>; 2],
     /// Which of the two is the last step.
@@ -89,9 +91,13 @@ pub struct Room<T: Lane, P, const N: usize> {
     end: Option<(Time, [T; N], [T; N])>,
     h: f64,
     ends: Ends<T, N>,
-    /// Sums for steps of the last length: of a sweep, of the first one after an equal step, and of one at sixteen nodes.
-    scaled: [Scaled<T, 1>; 2],
-    within: Scaled<T, 2>,
+    /// The mean square of the accelerations of the last step accepted, and the accelerations at its end.
+    square: [T; N],
+    start: [T; N],
+    /// Sums for steps of the last length: of a sweep, of the first one after an equal step, of the points between the nodes, and of a sweep at
+    /// sixteen nodes.
+    scaled: [Scaled<T, 1>; 3],
+    within: [Scaled<T, 2>; 2],
     /// The number of sweeps that is likely to suffice.
     sweeps: u32,
     /// How exactly the equations were solved.
@@ -106,12 +112,16 @@ type RoomOf<D, const N: usize> = Room<<D as Dynamics<N>>::Scalar, <<D as SideByS
 /// The errors allowed in a step: relative, and absolute of coordinates and velocities.
 type Tolerances<const N: usize> = (f64, ([f64; N], [f64; N]));
 
-/// The part of the tolerance that a step is allowed, for the errors of steps add up.
-const PART: f64 = 0.4;
-
 /// The most sweeps of an adaptive step and of a fixed one.
 const ADAPTIVE: u32 = 12;
 const FIXED: u32 = 60;
+
+/// The rounding of the scalar; the coefficients have the digits of `f64`.
+#[inline(always)]
+fn epsilon<T: Float>() -> f64 {
+    let epsilon = T::EPSILON.to_f64();
+    if epsilon < f64::EPSILON { f64::EPSILON } else { epsilon }
+}
 
 impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
     /// The part of the error allowed that a unit of each acceleration makes in a step of length `h`: by way of the velocity or of the coordinate.
@@ -120,20 +130,20 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
     /// of that, or a thousandth of the tolerance: so that the motion stays one.
     #[inline(always)]
     fn weigh(&mut self, h: f64, from: &Node<T, N>, (rtol, atol): &Tolerances<N>) {
-        let rounding = 0.125 * T::EPSILON.to_f64();
-        let square = self.ends.square.iter().fold(0.0, |largest, square| {
+        let rounding = 0.125 * epsilon::<T>();
+        let square = self.square.iter().fold(0.0, |largest, square| {
             let square = square.to_f64();
             if largest < square { square } else { largest }
         });
         let gain = h * square.sqrt();
         let allowed = |tolerance: f64, change: f64, value: f64| {
             let least = if 0.05 * change < 0.001 * tolerance { 0.001 * tolerance } else { 0.05 * change };
-            (if least < tolerance { least } else { tolerance }) + rounding * (value + T::EPSILON.to_f64())
+            (if least < tolerance { least } else { tolerance }) + rounding * (value + epsilon::<T>())
         };
         for i in 0..N {
             let (q, v) = (f64::abs(from.q.high[i].to_f64()), f64::abs(from.v.high[i].to_f64()));
-            let by_velocity = h / allowed(PART * (atol.1[i] + rtol * v), gain, v + gain);
-            let by_coordinate = h * h / allowed(PART * (atol.0[i] + rtol * q), h * gain, q + h * (v + gain));
+            let by_velocity = h / allowed(atol.1[i] + rtol * v, gain, v + gain);
+            let by_coordinate = h * h / allowed(atol.0[i] + rtol * q, h * gain, q + h * (v + gain));
             let weight = if by_velocity < by_coordinate { by_coordinate } else { by_velocity };
             self.weights[i] = T::from_f64(weight);
         }
@@ -148,37 +158,36 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
         }
         let mut rounding = 0.01;
         for i in 0..N {
-            let weight = self.weights[i].to_f64() * 8.0 * T::EPSILON.to_f64();
+            let weight = self.weights[i].to_f64() * 8.0 * epsilon::<T>();
             rounding += S as f64 * weight * weight * square[i].to_f64();
         }
         // Not so if it has led far away.
         rounding.is_finite() && progress.change.to_f64() <= rounding
     }
 
-    /// The error of the step over the one allowed: w α₇ (ρ/4096 + (4ρ)⁸) with ρ = α₇/|A|; w α₇/16 where accelerations do not have all derivatives.
+    /// The error of the step over the one allowed: in each coordinate w max(|α₁₆|, ε₇ min(1, ε₇/ε₆), ε₇/16), where ε_k is the larger of |α_2k| and
+    /// |α_2k+1|.
     ///
-    /// The first term is what the nodes of Gauss leave of the last coefficient. They do so only where the coefficients fall; the second
-    /// term sees to that.
+    /// Gauss's nodes leave out what is beyond α₁₅. Where the coefficients fall, both of the first terms are as large as that; at a corner, a jump or
+    /// a narrow kick ε₇ is as large as ε₆, and a jump between the start and the first node stands in α₁₆ alone.
+    /// Rounding is no coefficient: 32 ε of the accelerations, or 512 ε where all are alike.
     #[inline(always)]
     fn error(&self) -> f64 {
-        let mut error = 0.0;
+        let (mut error, epsilon) = (0.0, epsilon::<T>());
+        let larger = |a: f64, b: f64| if a < b { b } else { a };
         for i in 0..N {
-            let [last, before] = self.ends.last[i].map(|x| x.to_f64() * x.to_f64());
-            let tail = if last < before { before } else { last };
+            let [a15, a14, a13, a12, a16] = self.ends.tail[i].map(|x| f64::abs(x.to_f64()));
+            let (last, before) = (larger(a15, a14), larger(a13, a12));
             let square = self.ends.square[i].to_f64();
-            if 0.0 < square {
-                let (part, norm) = (tail / square, square.sqrt());
-                let steep = (16.0 * part) * (16.0 * part);
-                let weight = self.weights[i].to_f64();
-                let part = if self.smooth {
-                    weight * (tail / norm / 4096.0 + tail.sqrt() * (steep * steep))
-                } else {
-                    weight * tail.sqrt() / 16.0
-                };
-                if error < part {
+            let noise = if before < 4.0 * last { 512.0 } else { 32.0 } * epsilon * square.sqrt();
+            if noise < larger(last, a16) {
+                let by_decay = last * (last / larger(before, last));
+                let part = self.weights[i].to_f64() * larger(a16, larger(by_decay, last / 16.0));
+                // NaN is an error, too.
+                if !(part <= error) {
                     error = part;
                 }
-            } else if error < AIM && self.a[self.last ^ 1][0][i].0.iter().any(|&a| a != T::from_f64(0.0)) {
+            } else if square <= 0.0 && error < AIM && self.a[self.last ^ 1][0][i].0.iter().any(|&a| a != T::from_f64(0.0)) {
                 // Too small for squares, which is not zero: steps become no longer.
                 error = AIM;
             }
@@ -199,6 +208,7 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
         self.sweeps = (sweeps - u32::from(spare)).clamp(2, 8);
         self.last ^= 1;
         (self.end, self.h) = (Some((to.t, to.q.high, to.v.high)), h);
+        (self.square, self.start) = (self.ends.square, self.ends.last);
     }
 }
 
@@ -210,8 +220,7 @@ fn attempt<D: SideBySide<N>, const N: usize>(
     from: &mut Node<D::Scalar, N>,
     to: &mut Node<D::Scalar, N>,
     room: &mut RoomOf<D, N>,
-    tolerances: &Tolerances<N>,
-    most: u32,
+    tolerances: Option<&Tolerances<N>>,
 ) {
     let goes_on = room.end.as_ref().is_some_and(|(t, q, v)| *t == from.t && *q == from.q.high && *v == from.v.high);
     let ratio = if goes_on && span.h <= 2.0 * room.h { span.h / room.h } else { 0.0 };
@@ -220,10 +229,12 @@ fn attempt<D: SideBySide<N>, const N: usize>(
     if ratio == 0.0 {
         let a = from.start_acceleration(field);
         (room.a[room.last], room.sweeps) = ([a.map(Octet::splat)], 2);
-        room.ends.square = a.map(|a| a * a);
+        (room.square, room.start) = (a.map(|a| a * a), a);
     }
-    simd::widest(Onwards { dynamics: field.dynamics, span, from, to, room, ratio, tolerances, most });
-    field.evaluations += u64::from(room.ends.progress.sweeps) * S as u64;
+    let (most, adaptive) = if tolerances.is_some() { (ADAPTIVE, true) } else { (FIXED, false) };
+    let tolerances = tolerances.unwrap_or(&(0.0, ([0.0; N], [0.0; N])));
+    simd::widest(Onwards { dynamics: field.dynamics, span, from, to, room, ratio, tolerances, most, adaptive });
+    field.evaluations += u64::from(room.ends.progress.vectors) * S as u64;
 }
 
 impl<D: SideBySide<N>, const N: usize> Stepper<D, N> for Picard {
@@ -234,14 +245,15 @@ impl<D: SideBySide<N>, const N: usize> Stepper<D, N> for Picard {
         let zero = D::Scalar::from_f64(0.0);
         Room {
             prepared: dynamics.widened().prepare(),
-            smooth: dynamics.is_smooth(),
             a: [[[Octet::splat(zero); N]]; 2],
             last: 0,
             end: None,
             h: 0.0,
             ends: Ends::new(),
-            scaled: [Scaled::new(), Scaled::new()],
-            within: Scaled::new(),
+            square: [zero; N],
+            start: [zero; N],
+            scaled: [Scaled::new(), Scaled::new(), Scaled::new()],
+            within: [Scaled::new(), Scaled::new()],
             sweeps: 2,
             weights: [zero; N],
             unsolved: None,
@@ -257,7 +269,7 @@ impl<D: SideBySide<N>, const N: usize> Stepper<D, N> for Picard {
         room: &mut RoomOf<D, N>,
     ) -> Node<D::Scalar, N> {
         let mut to = *from;
-        attempt(field, span, from, &mut to, room, &(0.0, ([0.0; N], [0.0; N])), FIXED);
+        attempt(field, span, from, &mut to, room, None);
         room.unsolved = None;
         if room.ends.solved {
             room.accept(&to, span.h);
@@ -326,7 +338,7 @@ fn one_by_one<T: Float, const N: usize>(field: &mut impl Accelerations<T, N>, sp
 }
 
 /// The error that a step aims at, and those beyond which the next one becomes longer or shorter.
-const AIM: f64 = 1.0 / 64.0;
+const AIM: f64 = 1.0 / 16.0;
 /// `AIM` / 1.25¹⁵.
 const LOW: f64 = AIM * 0.0352;
 /// `AIM` / 0.86¹⁵.
@@ -366,7 +378,7 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
                 return Err(last_fault.unwrap_or(short));
             }
             let span = planned(memory, from.t, wanted, target);
-            attempt(field, &span, from, to, room, &tolerances, ADAPTIVE);
+            attempt(field, &span, from, to, room, Some(&tolerances));
             let error = room.ends.error;
             if error <= 1.0 {
                 room.accept(to, span.h);

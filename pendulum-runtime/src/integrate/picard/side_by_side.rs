@@ -27,10 +27,6 @@ pub trait SideBySide<const N: usize>: Dynamics<N, Scalar: Lane + Float> {
     #[doc(hidden)]
     fn inputs_at(&self, times: &[Time; 8]) -> <Self::Wide as System<N>>::Inputs;
 
-    /// Whether the accelerations have all derivatives between one break and the next.
-    #[doc(hidden)]
-    fn is_smooth(&self) -> bool;
-
     /// The first time after `t` at which a motion is known to stop having all derivatives.
     #[doc(hidden)]
     fn next_break(&self, t: f64) -> Option<f64>;
@@ -50,10 +46,6 @@ where
 
     #[inline(always)]
     fn inputs_at(&self, _: &[Time; S]) {}
-
-    fn is_smooth(&self) -> bool {
-        S0::FACTS.smooth
-    }
 
     #[inline]
     fn next_break(&self, _: f64) -> Option<f64> {
@@ -79,10 +71,6 @@ where
         self.motions.sample_all(times, S0::FACTS.inputs)
     }
 
-    fn is_smooth(&self) -> bool {
-        S0::FACTS.smooth && self.motions.is_analytic()
-    }
-
     #[inline]
     fn next_break(&self, t: f64) -> Option<f64> {
         self.motions.next_break(t)
@@ -100,10 +88,6 @@ impl<D: SideBySide<N>, const N: usize> SideBySide<N> for Prepared<'_, D, <D::Sys
     #[inline(always)]
     fn inputs_at(&self, times: &[Time; S]) -> <D::Wide as System<N>>::Inputs {
         self.dynamics().inputs_at(times)
-    }
-
-    fn is_smooth(&self) -> bool {
-        self.dynamics().is_smooth()
     }
 
     #[inline]

@@ -25,8 +25,7 @@ pub(super) struct Collocation<const G: usize> {
     pub(super) ahead: Columns<G, G>,
     pub(super) once_ahead: Columns<G, G>,
     pub(super) twice_ahead: Columns<G, G>,
-    /// The integral over the step, the integral of the integral, and the last two coefficients of the series in Legendre's polynomials;
-    /// the other lanes are zero.
+    /// The integral over the step and the integral of the integral; the other lanes are zero.
     pub(super) ends: Columns<G, 1>,
     /// All coefficients of Σ α_k P_k(2θ − 1), by vector and lane.
     pub(super) legendre: Columns<G, G>,
@@ -37,6 +36,124 @@ pub(super) struct Collocation<const G: usize> {
 // Not constants: these would be computed again in every crate that uses them.
 pub(super) static EIGHT: Collocation<1> = collocation(EIGHT_NODES);
 pub(super) static SIXTEEN: Collocation<2> = collocation(SIXTEEN_NODES);
+
+/// Points between the nodes of a step, where the closing sweeps look at the accelerations too.
+///
+/// They halve the gaps between neighbours: the points that Kronrod adds to the eight nodes, but for the first one, whose place the
+/// start of the step takes, and the last one, which is moved to the end.
+pub(super) static BETWEEN: Between = between();
+
+/// The coefficients of the points between the nodes.
+#[derive(Debug)]
+#[repr(C, align(64))]
+pub(super) struct Between {
+    /// The points on [0, 1].
+    pub(super) points: [Nodes; 1],
+    /// The integrals from 0 to the points, and the integrals of the polynomials through those to the nodes.
+    pub(super) once: Columns<1, 1>,
+    pub(super) twice: Columns<1, 1>,
+    /// From the values at the nodes, the integral over the step and the integral of the integral; from those at nodes and points, the
+    /// coefficients α₁₅, α₁₄, α₁₃, α₁₂ of the polynomial through all sixteen, after Legendre, and α₁₆ of the one through these and zero at
+    /// the start; the last lane is zero.
+    pub(super) ends: Columns<2, 1>,
+    /// The part of the value at the start in α₁₆.
+    pub(super) start: f64,
+}
+
+const fn between() -> Between {
+    let zero = [[[[0.0; S]; 1]; S]; 1];
+    let mut between = Between { points: [POINTS], once: zero, twice: zero, ends: [[[[0.0; S]; 1]; S]; 2], start: 0.0 };
+    let eight = collocation(EIGHT_NODES);
+    let mut j = 0;
+    while j < S {
+        let mut i = 0;
+        while i < S {
+            between.once[0][j][0][i] = integral(&EIGHT_NODES, j, POINTS[i]);
+            i += 1;
+        }
+        j += 1;
+    }
+    between.twice = product(&between.once, &eight.once);
+    j = 0;
+    while j < 2 * S {
+        let lanes = &mut between.ends[j / S][j % S][0];
+        if j < S {
+            lanes[0] = eight.ends[0][j][0][0];
+            lanes[1] = eight.ends[0][j][0][1];
+        }
+        let mut lane = 2;
+        while lane < 6 {
+            lanes[lane] = coefficient_of_all(2 * S + 1 - lane, j);
+            lane += 1;
+        }
+        lanes[6] = last_coefficient(j);
+        j += 1;
+    }
+    between.start = last_coefficient(2 * S);
+    between
+}
+
+/// The part of value j, at node, point or start, in the coefficient of P₁₆ of the polynomial through all seventeen: its leading coefficient,
+/// 1/∏ (x_j − x_i), over that of P₁₆, ∏ (4k − 2)/k.
+const fn last_coefficient(j: usize) -> f64 {
+    let (mut part, mut i) = (1.0, 0);
+    while i <= 2 * S {
+        if i != j {
+            part /= node_or_point(j) - node_or_point(i);
+        }
+        i += 1;
+    }
+    let mut k = 1;
+    while k <= 2 * S {
+        part *= k as f64 / (4 * k - 2) as f64;
+        k += 1;
+    }
+    part
+}
+
+/// The part of the value at node or point j in the coefficient of P_k of the polynomial through all sixteen, by Gauss's rule with as
+/// many nodes.
+const fn coefficient_of_all(k: usize, j: usize) -> f64 {
+    let (nodes, weights) = SIXTEEN_NODES;
+    let (mut sum, mut m) = (0.0, 0);
+    while m < 2 * S {
+        let (at, own) = (nodes[m / S][m % S], node_or_point(j));
+        let (mut lagrange, mut i) = (1.0, 0);
+        while i < 2 * S {
+            if i != j {
+                lagrange *= (at - node_or_point(i)) / (own - node_or_point(i));
+            }
+            i += 1;
+        }
+        sum += weights[m / S][m % S] * legendre(k, at) * lagrange;
+        m += 1;
+    }
+    (2 * k + 1) as f64 * sum
+}
+
+/// The nodes, after them the points between, and the start.
+const fn node_or_point(j: usize) -> f64 {
+    if j < S {
+        EIGHT_NODES.0[0][j]
+    } else if j < 2 * S {
+        POINTS[j - S]
+    } else {
+        0.0
+    }
+}
+
+/// The zeros of Stieltjes's polynomial of degree 9 but for the first and the last (Kronrod 1965), and 1 − 2⁻⁵²: so near the end that nothing lies
+/// between, and before a kink at the end.
+const POINTS: Nodes = [
+    0.052939546576271789,
+    0.163822964527420661,
+    0.319649451035934021,
+    0.5,
+    0.680350548964065979,
+    0.836177035472579339,
+    0.947060453423728211,
+    0.9999999999999998,
+];
 
 /// The values at sixteen nodes of the polynomial through those at eight.
 pub(super) static REFINED: Columns<1, 2> = {
@@ -83,16 +200,7 @@ const fn collocation<const G: usize>((nodes, weights): ([Nodes; G], [Nodes; G]))
         }
         // The nodes are symmetric: 1 − c_j is one of them.
         let mirrored = nodes[G - 1 - g][S - 1 - lane];
-        tableau.ends[g][lane][0] = [
-            weights[g][lane],
-            weights[g][lane] * mirrored,
-            coefficient(&(nodes, weights), all - 1, j),
-            coefficient(&(nodes, weights), all - 2, j),
-            0.0,
-            0.0,
-            0.0,
-            0.0,
-        ];
+        tableau.ends[g][lane][0] = [weights[g][lane], weights[g][lane] * mirrored, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         j += 1;
     }
     tableau.twice = product(&tableau.once, &tableau.once);
@@ -215,7 +323,7 @@ const SIXTEEN_NODES: ([Nodes; 2], [Nodes; 2]) = (
 
 #[cfg(test)]
 mod tests {
-    use super::{Collocation, EIGHT, EIGHT_NODES, Nodes, REFINED, S, SIXTEEN, SIXTEEN_NODES, legendre};
+    use super::{BETWEEN, Collocation, EIGHT, EIGHT_NODES, Nodes, REFINED, S, SIXTEEN, SIXTEEN_NODES, legendre};
 
     /// What the columns make of the values of θᵖ at the nodes.
     fn sums<const G: usize, const W: usize, const H: usize>(
@@ -273,6 +381,44 @@ mod tests {
     fn polynomials_are_integrated_exactly() {
         check(&EIGHT, &EIGHT_NODES.1);
         check(&SIXTEEN, &SIXTEEN_NODES.1);
+    }
+
+    #[test]
+    fn points_lie_between_the_nodes() {
+        let (nodes, points) = (&EIGHT.nodes[0], &BETWEEN.points[0]);
+        for k in 0..S {
+            assert!(nodes[k] < points[k] && points[k] < nodes.get(k + 1).copied().unwrap_or(1.0));
+        }
+        for p in 0..8 {
+            let degree = f64::from(p);
+            let (once, twice) = (sums(&EIGHT.nodes, &BETWEEN.once, p), sums(&EIGHT.nodes, &BETWEEN.twice, p));
+            for (k, c) in points.iter().enumerate() {
+                assert!((once[k] - c.powi(p + 1) / (degree + 1.0)).abs() < 4e-16);
+                assert!(p == 7 || (twice[k] - c.powi(p + 2) / ((degree + 1.0) * (degree + 2.0))).abs() < 4e-16);
+            }
+        }
+    }
+
+    /// P_k has the coefficient 1 of itself and 0 of the others; the ends take nothing from the points between.
+    #[test]
+    fn sixteen_values_give_the_last_coefficients() {
+        for k in 0..17 {
+            let mut lanes = [0.0; S];
+            for (g, points) in [EIGHT.nodes[0], BETWEEN.points[0]].iter().enumerate() {
+                for (j, c) in points.iter().enumerate() {
+                    for (sum, column) in lanes.iter_mut().zip(BETWEEN.ends[g][j][0]) {
+                        *sum += column * legendre(k, *c);
+                    }
+                    assert!(g == 0 || BETWEEN.ends[g][j][0][..2] == [0.0; 2]);
+                }
+            }
+            for lane in (2..6).filter(|_| k < 16) {
+                let expected = f64::from(u8::from(k + lane == 2 * S + 1));
+                assert!((lanes[lane] - expected).abs() < 1e-13, "{k} {lane}: {}", lanes[lane]);
+            }
+            let last = lanes[6] + BETWEEN.start * legendre(k, 0.0);
+            assert!((last - f64::from(u8::from(k == 16))).abs() < 1e-13, "{k}: {last}");
+        }
     }
 
     #[test]
