@@ -21,8 +21,9 @@ use crate::system::{Dynamics, System, scalar_time};
 /// The Taylor series of the motion: any order up to 30, adaptive, forwards and backwards in time.
 ///
 /// It suits every system that `lagrangian!` has made and every motion that is [`Analytic`](crate::motion::Analytic), and is the choice
-/// for the last digits and for the way back in time. Its steps are long and it rejects none: the coefficients tell the radius of convergence. It is
-/// explicit, so that a stiff spring or damper shortens its steps, and it is wrong where the equations themselves are not smooth: at the
+/// for the last digits and for the way back in time. Its steps are long and it rejects few: the coefficients tell the radius of convergence.
+/// A series knows nothing of a wall or a contact far from its centre, so that the accelerations at the end of each step are compared
+/// with its own, and a step at whose end they differ by more than the tolerance is halved. It is explicit, so that a stiff spring or damper shortens its steps, and it is wrong where the equations themselves are not smooth: at the
 /// zeros of `abs`, and where the larger of two numbers changes.
 ///
 /// The order is p = ⌈1 − c ln rtol⌉ with c = 0.8 for a coordinate that swings by itself and 0.7 else, and the step is
@@ -215,11 +216,18 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         let wanted = length(&room.path, &room.rule, &weights);
         // A uniform motion may go on for ever, but it has to come to an end.
         let wanted = if wanted == f64::INFINITY && target == wanted { 1.0 } else { wanted };
-        let wanted = self.limited(memory.h == 0.0, wanted);
-        let span = fit(from.t, wanted, target);
+        let mut wanted = self.limited(memory.h == 0.0, wanted);
+        let mut span = fit(from.t, wanted, target);
         *to = sum(room, from, &span);
         if !to.is_finite() {
             return Err(blame(method, field.dynamics, &span, from, room));
+        }
+        while resolution(from.t) < wanted && !holds(field, room, &span, to, &weights[1]) {
+            // The same series ends sooner.
+            stats.rejected += 1;
+            wanted = 0.5 * span.h.abs();
+            span = fit(from.t, wanted, target);
+            *to = sum(room, from, &span);
         }
         if wanted <= resolution(from.t) && wanted < from.t.since(target).abs() {
             let (_, index) = largest(&room.path, order, &weights);
@@ -273,6 +281,32 @@ fn sum<T: Float, W, X, const N: usize>(room: &Room<T, W, X, N>, from: &Node<T, N
         to.v.add_product(i, h, room.path.v[i][1], rest(&room.path.v[i], room.order, h));
     }
     to
+}
+
+/// The error of a step over the one allowed from which on the series does not hold at its end.
+const MISFIT: f64 = 30.0;
+
+/// Whether the accelerations at the end of a step are those of the series: h |a − Σ k v\[k\] hᵏ⁻¹|/p in units of the error allowed.
+///
+/// A series knows no more than its centre does: of a wall, a contact or a switch far away its coefficients tell nothing. Rounding is
+/// taken for a thousand ε of velocities and accelerations.
+fn holds<D: JetDynamics<N, Scalar: Float>, const N: usize>(
+    field: &mut Counted<'_, D>,
+    room: &RoomOf<D, N>,
+    span: &Span,
+    to: &Node<D::Scalar, N>,
+    weights: &[f64; N],
+) -> bool {
+    let (h, zero) = (span.length::<D::Scalar>(), D::Scalar::from_f64(0.0));
+    let a = field.at(span.end, side(span.h).opposite(), &to.q.high, &to.v.high);
+    let rounding = 1e3 * D::Scalar::EPSILON.to_f64();
+    let size = a.iter().fold(0.0, |size: f64, a| size.max(a.to_f64().abs()));
+    (0..N).all(|i| {
+        let series = (1..=room.order).rev().fold(zero, |sum, k| sum * h + D::Scalar::from_f64(k as f64) * room.path.v[i][k]);
+        let misfit = span.h.abs() * (a[i] - series).to_f64().abs() / room.order as f64;
+        let noise = rounding * (to.v.high[i].to_f64().abs() + span.h.abs() * size);
+        misfit * weights[i] <= MISFIT + noise * weights[i]
+    })
 }
 
 /// Σ x\[k\] hᵏ over 2 ≤ k ≤ `order`, beyond which all are zero: every fourth term after Horner (1819), the four sums side by side.
