@@ -173,6 +173,15 @@ fn limits_are_those_of_one_word() {
 }
 
 #[test]
+fn quotients_of_small_numbers_are_as_large_as_they_are() {
+    for (a, b) in [("1e-150", "1e-300"), ("1e-280", "1e-10"), ("1e300", "1e150"), ("1e150", "1e-150"), ("1e-200", "1e60")] {
+        let (a, b) = (number(a), number(b));
+        let quotient = a / b;
+        assert!(quotient.is_finite() && units(quotient * b, a) < 1e5, "{a:?} / {b:?} = {quotient:?}");
+    }
+}
+
+#[test]
 fn order_looks_at_both_words() {
     let (a, b) = (DoubleDouble::sum(1.0, -1e-20), DoubleDouble::sum(1.0, 1e-20));
     assert!(a < DoubleDouble::from(1.0) && DoubleDouble::from(1.0) < b && a != b);
