@@ -14,27 +14,26 @@ pub(crate) struct DenseOutput<T, const N: usize> {
     onwards: f64,
     /// The steps in order; those from a kink start with the state after it.
     spans: Vec<Span>,
+    /// For each step where its values end, and what its terms are multiplied by.
+    ends: Vec<(usize, Basis)>,
     /// For each step the state at its start and the terms of both polynomials.
     values: Vec<[T; N]>,
-    /// The number of terms, the same in all steps.
-    terms: usize,
-    basis: Basis,
     /// The last state.
     end: State<T, N>,
 }
 
 impl<T: Float, const N: usize> DenseOutput<T, N> {
     pub(crate) fn new(start: State<T, N>, onwards: f64) -> Self {
-        Self { start, onwards, spans: Vec::new(), values: Vec::new(), terms: 0, basis: Basis::Nested, end: start }
+        Self { start, onwards, spans: Vec::new(), ends: Vec::new(), values: Vec::new(), end: start }
     }
 
     /// Adds the next step and the state after it.
     pub(crate) fn push(&mut self, piece: &Piece<T, N>, end: State<T, N>) {
-        (self.terms, self.basis) = (piece.terms, piece.basis);
         self.spans.push(piece.span);
         self.values.extend([piece.q0, piece.v0]);
         self.values.extend_from_slice(&piece.q[..piece.terms]);
         self.values.extend_from_slice(&piece.v[..piece.terms]);
+        self.ends.push((self.values.len(), piece.basis));
         self.end = end;
     }
 
@@ -57,9 +56,10 @@ impl<T: Float, const N: usize> DenseOutput<T, N> {
         let span = &self.spans[index];
         let (theta, one) = (span.fraction(t), T::from_f64(1.0));
         let theta = if theta < one { theta } else { one };
-        let values = &self.values[index * 2 * (self.terms + 1)..][..2 * (self.terms + 1)];
-        let (states, terms) = values.split_at(2);
-        let (q, v) = terms.split_at(self.terms);
-        Some(State { t, q: self.basis.at(&states[0], q, theta), v: self.basis.at(&states[1], v, theta) })
+        let (end, basis) = self.ends[index];
+        let begin = if index == 0 { 0 } else { self.ends[index - 1].0 };
+        let (states, terms) = self.values[begin..end].split_at(2);
+        let (q, v) = terms.split_at(terms.len() / 2);
+        Some(State { t, q: basis.at(&states[0], q, theta), v: basis.at(&states[1], v, theta) })
     }
 }

@@ -1,10 +1,12 @@
 //! The loop that all ways of integrating share: one step at a time, onto kinks and over them.
 
+use super::blame::blame;
 use super::control::{Control, Course, Memory};
 use super::field::{Counted, coordinate, first_in_inputs, first_in_state};
 use super::inertia::{inertia, is_due, varies};
 use super::node::Node;
 use super::piece::Piece;
+use super::short::{is_short, straight};
 use super::solution::{State, Stats};
 use super::span::Span;
 use super::stepper::Stepper;
@@ -128,7 +130,8 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
             target,
             stats: &mut self.stats,
         };
-        let taken = self.control.step(&mut self.memory, course);
+        let left = -course.from.t.since(target);
+        let taken = if is_short::<T>(left) { short(course) } else { self.control.step(&mut self.memory, course) };
         self.stats.evaluations += field.evaluations;
         match taken.and_then(|span| self.arrive(dynamics, &span).map(|()| span)) {
             Ok(span) => (self.last, self.within, self.from) = (Some(span), None, from),
@@ -204,6 +207,10 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
             return self.within;
         }
         let to = self.before_kink.as_mut().unwrap_or(&mut self.node);
+        if is_short::<T>(span.h) {
+            self.within = Some(Piece::linear(span, &self.from, to));
+            return self.within;
+        }
         let mut field = Counted::new(dynamics);
         let piece = self.method.within(&mut field, span, &mut self.from, to, &mut self.stages);
         self.stats.evaluations += field.evaluations;
@@ -264,6 +271,24 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
     pub(crate) fn t(&self) -> f64 {
         self.node.t.to_f64()
     }
+}
+
+/// A single step to a target so near that the scalar does not hold the distance.
+#[cold]
+fn short<D, M, T, const N: usize>(course: Course<'_, '_, D, M, N>) -> Result<Span, Error>
+where
+    D: Dynamics<N, Scalar = T>,
+    M: Stepper<D, N>,
+    T: Float,
+{
+    let Course { method, field, from, to, stages, target, stats } = course;
+    let span = Span::to(from.t, target);
+    *to = straight(field, &span, from);
+    if !to.is_finite() {
+        return Err(blame(method, field.dynamics, &span, from, stages));
+    }
+    stats.accepted += 1;
+    Ok(span)
 }
 
 /// The side of the start of a step.

@@ -2,6 +2,7 @@
 
 use super::blame::blame;
 use super::control::{Control, Course, Memory};
+use super::short::{is_short, straight};
 use super::span::Span;
 use super::stepper::Stepper;
 use crate::error::Error;
@@ -52,7 +53,8 @@ impl<M: Stepper<D, N>, D: Dynamics<N, Scalar: Float>, const N: usize> Control<M,
         let Course { method, field, from, to, stages, target, stats } = course;
         let mut plan = *memory;
         let span = self.next(&mut plan, from.t, target);
-        *to = method.advance(field, &span, from, stages);
+        *to =
+            if is_short::<D::Scalar>(span.h) { straight(field, &span, from) } else { method.advance(field, &span, from, stages) };
         if !to.is_finite() {
             return Err(blame(method, field.dynamics, &span, from, stages));
         }

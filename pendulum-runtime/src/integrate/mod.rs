@@ -61,6 +61,7 @@ mod rk4;
 mod rodas4;
 mod root;
 mod runge_kutta;
+mod short;
 mod solution;
 mod solve;
 pub(crate) mod span;
