@@ -9,6 +9,7 @@ use super::field::{Accelerations, coordinate};
 use super::method::{Embedded, Suits, Weights};
 use super::node::Node;
 use super::power::{exp2, log2};
+use super::short::shortest;
 use super::span::Span;
 use super::stepper::Stepper;
 use crate::error::{Error, Quantity};
@@ -16,6 +17,9 @@ use crate::motion::Side;
 use crate::real::Float;
 use crate::system::{Dynamics, System};
 use crate::time::Time;
+
+/// The least tolerance that coefficients with the digits of `f64` hold over any scalar.
+const ONE_WORD: f64 = 10.0 * f64::EPSILON;
 
 /// Steps as long as the error allows.
 ///
@@ -46,7 +50,8 @@ impl<const N: usize> AdaptiveStep<N> {
         Self::default()
     }
 
-    /// The relative tolerance; at least ten machine epsilons of the scalar.
+    /// The relative tolerance; at least ten machine epsilons of the scalar. Over two words methods other than [`Taylor`](super::Taylor) hold none
+    /// below 2.3e-15, and what lies below counts as that.
     pub fn rtol(mut self, rtol: f64) -> Self {
         self.rtol = Some(rtol);
         self
@@ -126,6 +131,9 @@ where
     fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, M, N>) -> Result<Span, Error> {
         let Course { method, field, from, to, stages, target, stats } = course;
         let response = M::RESPONSE;
+        // Coefficients that are rounded to one word leave an error of their own that no step is short enough for.
+        let rtol = self.relative::<D::Scalar>();
+        let this = Self { rtol: Some(if rtol < ONE_WORD { ONE_WORD } else { rtol }), ..*self };
         if memory.h == 0.0 {
             let at_once = Span::by(from.t, 0.0);
             let a = from.start_acceleration(field);
@@ -133,26 +141,26 @@ where
                 return Err(blame(method, field.dynamics, &at_once, from, stages));
             }
             let left = -from.t.since(target);
-            memory.h = self.first_step.unwrap_or_else(|| self.automatic_step(M::ORDER, field, from, left));
+            memory.h = self.first_step.unwrap_or_else(|| this.automatic_step(M::ORDER, field, from, left));
             memory.error = log2(1e-4);
         }
         let mut wanted = if memory.h < self.max_step { memory.h } else { self.max_step };
         let (mut retried, mut last_fault) = (false, None);
         loop {
-            if wanted <= resolution(from.t) && wanted < -from.t.since(target) {
+            if wanted <= resolution_of::<D::Scalar>(from.t) && wanted < -from.t.since(target) {
                 if let Some(error) = self.unresolved(stats.accepted + stats.rejected == 0, wanted) {
                     return Err(error);
                 }
                 if let Some(fault) = last_fault {
                     return Err(at(fault, from.t));
                 }
-                let index = self.worst(method, stages, memory, from);
+                let index = this.worst(method, stages, memory, from);
                 let coordinate = coordinate(&<D::System as System<N>>::FACTS, index);
                 return Err(Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate });
             }
             let span = fit(from.t, wanted, target);
             *to = method.step(field, &span, from, stages);
-            let weights = self.weights(from, to);
+            let weights = this.weights(from, to);
             let error = if to.is_finite() { method.error(stages, span.h, &weights) } else { f64::NAN };
             if error <= 1.0 {
                 let error = log2(error);
@@ -275,7 +283,7 @@ impl<const N: usize> AdaptiveStep<N> {
         };
         let step = if longer < 100.0 * h { longer } else { 100.0 * h };
         // What time does not resolve is no step; the error of a longer one decides.
-        let least = 2.0 * resolution(from.t);
+        let least = 2.0 * resolution_of::<T>(from.t);
         if step < least { least } else { step }
     }
 
@@ -300,6 +308,13 @@ impl<const N: usize> AdaptiveStep<N> {
 pub(crate) fn resolution(t: Time) -> f64 {
     let resolution = 1e-26 * t.to_f64().abs();
     if resolution < 1e-200 { 1e-200 } else { resolution }
+}
+
+/// The same in a scalar that may not hold so short a length.
+#[inline(always)]
+pub(crate) fn resolution_of<T: Float>(t: Time) -> f64 {
+    let (time, scalar) = (resolution(t), shortest::<T>());
+    if time < scalar { scalar } else { time }
 }
 
 /// A fault that shorter steps ran after, at the time from which none gets away.

@@ -3,11 +3,12 @@
 use super::dense::DenseOutput;
 use super::driver::Driver;
 use super::event::{Occurrence, Status};
+use super::field::first_in_state;
 use super::solution::{Failure, Solution, State, Stats};
 use super::stepper::Stepper;
 use crate::error::Error;
 use crate::real::Float;
-use crate::system::Dynamics;
+use crate::system::{Dynamics, System};
 
 /// The greatest number of states that an interval between outputs may ask for.
 const MOST: f64 = 1e7;
@@ -132,13 +133,13 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
 
     /// Takes in the step that `driver` has just taken.
     #[inline]
-    pub(crate) fn step<D, M, C>(&mut self, driver: &mut Driver<T, N, M, C, M::Stages>, dynamics: &D)
+    pub(crate) fn step<D, M, C>(&mut self, driver: &mut Driver<T, N, M, C, M::Stages>, dynamics: &D) -> Result<(), Error>
     where
         D: Dynamics<N, Scalar = T>,
         M: Stepper<D, N>,
     {
         if self.dense.is_some() || self.onwards * self.next <= self.onwards * driver.t() {
-            self.within(driver, dynamics);
+            self.within(driver, dynamics)?;
         }
         if let Output::Steps = self.output {
             if let Some(before) = driver.before_kink() {
@@ -146,6 +147,7 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
             }
             self.push((&driver.node).into());
         }
+        Ok(())
     }
 
     /// Takes in what happened in it.
@@ -154,16 +156,27 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
     }
 
     /// The states within the step and at its end.
-    fn within<D, M, C>(&mut self, driver: &mut Driver<T, N, M, C, M::Stages>, dynamics: &D)
+    ///
+    /// Between two ends that are finite a polynomial need not be: over a long step h² is beyond the range before h is.
+    fn within<D, M, C>(&mut self, driver: &mut Driver<T, N, M, C, M::Stages>, dynamics: &D) -> Result<(), Error>
     where
         D: Dynamics<N, Scalar = T>,
         M: Stepper<D, N>,
     {
         let (end, state) = (driver.node.t, State::from(&driver.node));
         if self.dense.is_some() || 0.0 < self.onwards * end.since(self.next) {
-            let Some(piece) = driver.piece(dynamics) else { return };
+            let Some(piece) = driver.piece(dynamics) else { return Ok(()) };
+            let not_finite = |t: f64, q: &[T; N], v: &[T; N]| {
+                let what = first_in_state(&<D::System as System<N>>::FACTS, q, v);
+                what.map_or(Ok(()), |what| Err(Error::NotFinite { t, what, suspects: Vec::new() }))
+            };
+            if self.dense.is_some() {
+                let terms = piece.q[..piece.terms].iter().zip(&piece.v);
+                terms.into_iter().try_for_each(|(q, v)| not_finite(end.to_f64(), q, v))?;
+            }
             while 0.0 < self.onwards * end.since(self.next) {
                 let (q, v) = piece.at(piece.span.fraction(self.next));
+                not_finite(self.next, &q, &v)?;
                 self.push(State { t: self.next, q, v });
                 self.advance();
             }
@@ -172,6 +185,7 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
             }
         }
         self.push_while_next_is(state);
+        Ok(())
     }
 
     fn push_while_next_is(&mut self, state: State<T, N>) {

@@ -3,7 +3,7 @@
 // What lanes use too has to be compiled for their vectors.
 #![allow(clippy::inline_always)]
 
-use super::adaptive_step::{AdaptiveStep, fit, resolution};
+use super::adaptive_step::{AdaptiveStep, fit, resolution_of};
 use super::blame::{self, blame};
 use super::control::{Control, Course, Memory};
 use super::field::{Accelerations, Counted, Watched, coordinate, first_in_state};
@@ -222,14 +222,14 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         if !to.is_finite() {
             return Err(blame(method, field.dynamics, &span, from, room));
         }
-        while resolution(from.t) < wanted && !holds(field, room, &span, to, &weights[1]) {
+        while resolution_of::<D::Scalar>(from.t) < wanted && !holds(field, room, &span, to, &weights[1]) {
             // The same series ends sooner.
             stats.rejected += 1;
             wanted = 0.5 * span.h.abs();
             span = fit(from.t, wanted, target);
             *to = sum(room, from, &span);
         }
-        if wanted <= resolution(from.t) && wanted < from.t.since(target).abs() {
+        if wanted <= resolution_of::<D::Scalar>(from.t) && wanted < from.t.since(target).abs() {
             let (_, index) = largest(&room.path, order, &weights);
             let coordinate = coordinate(&<D::System as System<N>>::FACTS, index);
             let short = Error::StepSizeUnderflow { t, step: wanted, coordinate };
