@@ -94,7 +94,7 @@ impl<T: Real, const D: usize> Analytic<T, D> for Sinusoid<D> {
     /// k(k−1) x\[k\] = −ω² x\[k−2\].
     fn series(&self, t: Time, _: Side, component: usize, count: usize, position: &mut Series<T>) {
         let (a, w) = (self.amplitude[component], self.frequency);
-        let (sin, cos) = Real::sin_cos(w * t.to_f64() + (self.phase[component] + w * t.low()));
+        let (sin, cos) = self.sin_cos(component, t);
         let (mut even, mut odd) = (a * sin, a * w * cos);
         for (k, coefficient) in position.iter_mut().take(count).enumerate() {
             *coefficient = T::from_f64(even);
