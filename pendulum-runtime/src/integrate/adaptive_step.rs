@@ -25,7 +25,8 @@ const ONE_WORD: f64 = 10.0 * f64::EPSILON;
 ///
 /// A step is accepted if √(mean (eᵢ/(atolᵢ + rtol·max(|yᵢ|, |yᵢ′|)))²) ≤ 1 over all coordinates and velocities, where e is the
 /// method's estimate and y, y′ are the values before and after. Tolerances bound the error of one step; the error at the end also depends
-/// on how the motion amplifies it.
+/// on how the motion amplifies it, and on how many steps there are: the errors of N steps that do not cancel add up to N tolerances. A
+/// drive of a kilohertz takes thousands of steps a second; ask for a tolerance that is smaller by as many digits.
 ///
 /// A step that would end beyond a time to be met (kink, stop, end) is cut there; one that would end less than 1 % before it is
 /// stretched to it; and if less than two steps are left they are made equal, so that no sliver is left. The size before a cut is
