@@ -1,6 +1,8 @@
 //! What a pendulum costs in a scene: `cargo bench -p pendulum-runtime --bench scene [--features rayon] [-- --quick] [CASE…]`, written to
 //! `target/scene.csv`.
 //!
+//! With `--threads`, `driven` at 10² to 10⁶ pendulums alternately on one thread and on all: medians, least times and the ratio.
+//!
 //! Each case is the median of its runs, and beside it in the same run a scalar loop written by hand: leapfrog with `f64::sin` (`f32::sin`), one
 //! pendulum for a long time. A step is one evaluation. Awake or asleep, all pendulums count.
 //!
@@ -199,9 +201,46 @@ impl Case<'_> {
     }
 }
 
+/// Takes driven pendulums alternately with one thread and with all, so that both see the same disturbances.
+fn one_and_all(threads: usize) {
+    println!("driven pendulums, f64, ns a step: median and least, alternately on one thread and on {threads}");
+    for pendulums in [100, 1_000, 10_000, 100_000, 1_000_000] {
+        let mut scenes = [false, true].map(|parallel| {
+            let mut scene = scene::<f64>(pendulums, pendulums / 10, Kind::Driven);
+            scene.set_parallel(parallel);
+            scene.advance_ticks(100 * TICKS);
+            scene
+        });
+        let frames = (200_000 / pendulums).clamp(2, 500);
+        let mut times = [const { Vec::new() }; 2];
+        for _ in 0..if pendulums < 1_000_000 { 101 } else { 25 } {
+            for (scene, times) in scenes.iter_mut().zip(&mut times) {
+                let start = Instant::now();
+                for _ in 0..frames {
+                    black_box(scene.advance_ticks(TICKS));
+                }
+                times.push(1e9 * start.elapsed().as_secs_f64() / (frames * pendulums * TICKS as usize) as f64);
+            }
+        }
+        let [one, all] = times.map(|times| (times.iter().copied().fold(f64::INFINITY, f64::min), median(times)));
+        println!(
+            "{pendulums:>8}  one {:7.3} {:7.3}  all {:7.3} {:7.3}  all over one {:.3} {:.3}",
+            one.1,
+            one.0,
+            all.1,
+            all.0,
+            all.1 / one.1,
+            all.0 / one.0
+        );
+    }
+}
+
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
     let quick = words.iter().any(|word| word == "--quick");
+    if words.iter().any(|word| word == "--threads") {
+        return one_and_all(std::thread::available_parallelism().map_or(1, usize::from));
+    }
     let names: Vec<&String> = words.iter().filter(|word| !word.starts_with("--")).collect();
     let mut csv = String::from("case,pendulums,joints,threads,scalar,ns_per_pendulum_step,baseline_ns\n");
     let many = if cfg!(feature = "rayon") { std::thread::available_parallelism().map_or(1, usize::from) } else { 1 };

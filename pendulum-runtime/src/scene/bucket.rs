@@ -271,7 +271,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     }
 
     /// Goes through a batch of ticks; gives the lanes that failed.
-    pub(super) fn run(&mut self, sampled: &Sampled<'_, T>, parallel: bool, failed: &mut Vec<Failed>) {
+    pub(super) fn run(&mut self, sampled: &Sampled<'_, T>, fork: bool, failed: &mut Vec<Failed>) {
         if self.awake == 0 {
             return;
         }
@@ -280,7 +280,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         if still {
             self.tracks.load_still(layout, S::FACTS.inputs, sampled.clock.time(sampled.tick), sampled.places);
         } else {
-            self.tracks.load(grid, layout, momenta, S::FACTS.inputs, sampled, parallel);
+            self.tracks.load(grid, layout, momenta, S::FACTS.inputs, sampled, fork);
         }
         self.times.clear();
         for tick in 0..sampled.ticks {
@@ -298,7 +298,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         };
         let blocks = &mut self.blocks[..self.awake.div_ceil(W)];
         let lanes_of_last = (self.awake - 1) % W + 1;
-        through(blocks, &self.rare, lanes_of_last, &batch, parallel);
+        through(blocks, &self.rare, lanes_of_last, &batch, fork);
         if !batch.failed.into_inner() {
             return;
         }
@@ -318,16 +318,17 @@ fn through<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     rare: &[Rare<S, T, N>],
     lanes_of_last: usize,
     batch: &Batch<'_, T>,
-    parallel: bool,
+    fork: bool,
 ) {
-    use rayon::prelude::*;
-    const CHUNK: usize = 32;
-    if !parallel || blocks.len() < 2 * CHUNK {
+    use super::threads::{part, share};
+    const LEAST: usize = 32;
+    if !fork || blocks.len() < 2 * LEAST {
         return widest(Run { blocks, rare, lanes_of_last, batch });
     }
-    let last = blocks.len().div_ceil(CHUNK) - 1;
-    let chunks = blocks.par_chunks_mut(CHUNK).zip(rare.par_chunks(CHUNK));
-    chunks.enumerate().for_each(|(index, (blocks, rare))| {
+    let part = part(blocks.len(), LEAST);
+    let last = blocks.len().div_ceil(part) - 1;
+    let parts = blocks.chunks_mut(part).zip(rare.chunks(part)).enumerate();
+    share(parts, |(index, (blocks, rare))| {
         widest(Run { blocks, rare, lanes_of_last: if index == last { lanes_of_last } else { W }, batch });
     });
 }

@@ -32,7 +32,7 @@ pub(super) trait AnyGroup<T>: Send + Sync {
     /// Makes ready for a batch.
     fn settle(&mut self, clock: &Clock);
     /// Goes through a batch.
-    fn run(&mut self, sampled: &Sampled<'_, T>, parallel: bool, failed: &mut Vec<Failed>);
+    fn run(&mut self, sampled: &Sampled<'_, T>, fork: bool, failed: &mut Vec<Failed>);
     /// Takes a pendulum that has failed in a tick away from those that are computed, and says why it failed.
     fn fail(&mut self, clock: &Clock, places: &[Place<T>], id: u32, tick: i64) -> Failure;
     /// All that changes while running.
@@ -316,9 +316,9 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T,
         }
     }
 
-    fn run(&mut self, sampled: &Sampled<'_, T>, parallel: bool, failed: &mut Vec<Failed>) {
+    fn run(&mut self, sampled: &Sampled<'_, T>, fork: bool, failed: &mut Vec<Failed>) {
         for bucket in &mut self.buckets {
-            bucket.run(sampled, parallel, failed);
+            bucket.run(sampled, fork, failed);
         }
     }
 

@@ -5,6 +5,8 @@ use super::bucket::Failed;
 use super::clock::Clock;
 use super::error::SceneError;
 use super::joint::{Active, Place};
+#[cfg(feature = "rayon")]
+use super::threads::{part, share};
 use super::timetable::Timetable;
 use super::tracks::{BATCH, Sampled};
 use crate::real::{Float, Lane};
@@ -65,15 +67,23 @@ impl<T: Lane + Float> Scene<T> {
         if self.dirty {
             self.assign();
         }
+        let mut threads = self.threads;
+        let work = if self.parallel { self.awake().0 * ticks } else { 0 };
+        threads.measured(work, |fork| self.computed(ticks, fork));
+        self.threads = threads;
+    }
+
+    /// The same, on all threads or on one.
+    fn computed(&mut self, ticks: usize, fork: bool) {
         let tick = self.clock.tick();
-        let kinks = self.sample(tick, ticks);
-        let Self { clock, places, actives, numbers, timetable, groups, failures, parallel, .. } = self;
+        let kinks = self.sample(tick, ticks, fork);
+        let Self { clock, places, actives, numbers, timetable, groups, failures, .. } = self;
         let mut all: Vec<(u8, usize, u32)> = Vec::new();
         let mut failed: Vec<Failed> = Vec::new();
         for (index, (_, group)) in groups.iter_mut().enumerate() {
             group.settle(clock);
             let sampled = Sampled { clock, tick, ticks, places, actives, numbers, timetable, kinks };
-            group.run(&sampled, *parallel, &mut failed);
+            group.run(&sampled, fork, &mut failed);
             all.extend(failed.drain(..).map(|(id, at)| (at, index, id)));
         }
         self.dirty |= !all.is_empty();
@@ -119,7 +129,7 @@ impl<T: Lane + Float> Scene<T> {
     }
 
     /// Samples all joints that somebody needs; whether there are kinks.
-    fn sample(&mut self, tick: i64, ticks: usize) -> bool {
+    fn sample(&mut self, tick: i64, ticks: usize, fork: bool) -> bool {
         let Self { clock, places, actives, numbers, timetable, .. } = self;
         timetable.begin(clock, tick, ticks);
         let mut length = 0;
@@ -130,7 +140,7 @@ impl<T: Lane + Float> Scene<T> {
             length += shared.length(active);
         }
         numbers.resize(length, T::from_f64(0.0));
-        shared.sample_all(places, actives, numbers, self.parallel);
+        shared.sample_all(places, actives, numbers, fork);
         kinks.into_inner()
     }
 }
@@ -169,20 +179,17 @@ impl Times<'_> {
 
     /// Samples joints, on all threads if there are many.
     #[cfg(feature = "rayon")]
-    fn sample_all<T: Lane + Float>(&self, places: &[Place<T>], actives: &mut [Active], numbers: &mut [T], parallel: bool) {
-        const CHUNK: usize = 256;
-        if !parallel || actives.len() < 2 * CHUNK {
+    fn sample_all<T: Lane + Float>(&self, places: &[Place<T>], actives: &mut [Active], numbers: &mut [T], fork: bool) {
+        const LEAST: usize = 256;
+        if !fork || actives.len() < 2 * LEAST {
             return self.sample(places, actives, numbers);
         }
-        rayon::scope(|scope| {
-            let mut rest = numbers;
-            for chunk in actives.chunks_mut(CHUNK) {
-                let size = chunk.iter().map(|active| self.length(active)).sum();
-                let (mine, after) = rest.split_at_mut(size);
-                rest = after;
-                scope.spawn(move |_| self.sample(places, chunk, mine));
-            }
+        let (part, mut rest) = (part(actives.len(), LEAST), numbers);
+        let parts = actives.chunks_mut(part).map(|actives| {
+            let size = actives.iter().map(|active| self.length(active)).sum();
+            (actives, rest.split_off_mut(..size).unwrap_or_default())
         });
+        share(parts, |(actives, numbers)| self.sample(places, actives, numbers));
     }
 
     /// Samples joints.

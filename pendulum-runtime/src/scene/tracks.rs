@@ -126,7 +126,7 @@ impl<T: Real + Float> Tracks<T> {
         momenta: &Layout,
         inputs: &[Input],
         sampled: &Sampled<'_, T>,
-        parallel: bool,
+        fork: bool,
     ) {
         let tracks = self.count();
         self.cuts.clear();
@@ -135,7 +135,7 @@ impl<T: Real + Float> Tracks<T> {
         self.stride = sampled.ticks * grid.count();
         let mut records = core::mem::take(&mut self.records);
         records.resize(self.stride * tracks * layout.width, T::from_f64(0.0));
-        self.read_all(grid, layout, inputs, sampled, &mut records, parallel);
+        self.read_all(grid, layout, inputs, sampled, &mut records, fork);
         self.records = records;
         if !sampled.kinks {
             return;
@@ -162,23 +162,16 @@ impl<T: Real + Float> Tracks<T> {
 
     /// Reads the records of all tracks, on all threads if there are many.
     #[cfg(feature = "rayon")]
-    fn read_all(
-        &self,
-        grid: Grid,
-        layout: &Layout,
-        inputs: &[Input],
-        sampled: &Sampled<'_, T>,
-        records: &mut [T],
-        parallel: bool,
-    ) {
-        use rayon::prelude::*;
-        const CHUNK: usize = 512;
+    fn read_all(&self, grid: Grid, layout: &Layout, inputs: &[Input], sampled: &Sampled<'_, T>, records: &mut [T], fork: bool) {
+        use super::threads::{part, share};
+        const LEAST: usize = 512;
         let length = self.stride * layout.width;
-        if !parallel || self.count() < 2 * CHUNK || length == 0 {
+        if !fork || self.count() < 2 * LEAST || length == 0 {
             return self.read(0, grid, layout, inputs, sampled, records);
         }
-        records.par_chunks_mut(CHUNK * length).enumerate().for_each(|(index, records)| {
-            self.read(index * CHUNK, grid, layout, inputs, sampled, records);
+        let part = part(self.count(), LEAST);
+        share(records.chunks_mut(part * length).enumerate(), |(index, records)| {
+            self.read(index * part, grid, layout, inputs, sampled, records);
         });
     }
 
