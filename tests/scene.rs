@@ -585,7 +585,7 @@ fn snapshots_can_be_written_and_read() {
 #[test]
 fn bits_are_the_same_on_every_machine() {
     // With and without vectors and threads, whatever their width and number; found once and kept.
-    for (tolerance, expected) in [(1e-3, 0x1a02fa2b79cc01bb), (1e-9, 0x2288a7dc2fafee30)] {
+    for (tolerance, expected) in [(1e-3, 0xcb06e6ec8ba8f2dd), (1e-9, 0xf7d4fa07f9ca4d7a)] {
         let mut scene = zoo(tolerance);
         scene.advance(3.0).unwrap();
         assert_eq!(scene.checksum(), expected, "{:#x}", scene.checksum());
