@@ -1,4 +1,5 @@
-//! Intervals, states, parameters and tolerances far from one: finite numbers or an error that says what to do, soon.
+//! Intervals, states, parameters and tolerances far from one: finite numbers or an error that says
+//! what to do, soon.
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -9,7 +10,8 @@ use pendulum_runtime::real::{DoubleDouble, Float};
 use std::time::{Duration, Instant};
 
 lagrangian! {
-    /// A pendulum with a spring at its pivot, which moves: without `k` and with the pivot at rest a plain one, without `g` an oscillator.
+    /// A pendulum with a spring at its pivot, which moves: without `k` and with the pivot at rest a
+    /// plain one, without `g` an oscillator.
     #[derive(Clone, Debug)]
     pub struct Swing { l, g, k }
     coordinate θ;
@@ -165,7 +167,8 @@ over!(single f32);
 over!(double f64);
 over!(double_double DoubleDouble);
 
-/// Coefficients with the digits of `f64` leave an error that no step brings below a tolerance of two words.
+/// Coefficients with the digits of `f64` leave an error that no step brings below a tolerance of
+/// two words.
 #[test]
 fn tolerances_beyond_the_coefficients_come_to_an_end() {
     let number = DoubleDouble::from_f64;

@@ -1,7 +1,8 @@
 //! What a pendulum costs in a scene: `cargo bench -p pendulum-runtime --bench scene [--features rayon] [-- --quick] [CASE…]`, written to
 //! `target/scene.csv`.
 //!
-//! With `--threads`, `driven` at 10² to 10⁶ pendulums alternately on one thread and on all: medians, least times and the ratio.
+//! With `--threads`, `driven` at 10² to 10⁶ pendulums alternately on one thread and on all:
+//! medians, least times and the ratio.
 //!
 //! Each case is the median of its runs, and beside it in the same run a scalar loop written by hand: leapfrog with `f64::sin` (`f32::sin`), one
 //! pendulum for a long time. A step is one evaluation. Awake or asleep, all pendulums count.
@@ -201,7 +202,8 @@ impl Case<'_> {
     }
 }
 
-/// Takes driven pendulums alternately with one thread and with all, so that both see the same disturbances.
+/// Takes driven pendulums alternately with one thread and with all, so that both see the same
+/// disturbances.
 fn one_and_all(threads: usize) {
     println!("driven pendulums, f64, ns a step: median and least, alternately on one thread and on {threads}");
     for pendulums in [100, 1_000, 10_000, 100_000, 1_000_000] {

@@ -25,8 +25,9 @@ const ONE_WORD: f64 = 10.0 * f64::EPSILON;
 ///
 /// A step is accepted if √(mean (eᵢ/(atolᵢ + rtol·max(|yᵢ|, |yᵢ′|)))²) ≤ 1 over all coordinates and velocities, where e is the
 /// method's estimate and y, y′ are the values before and after. Tolerances bound the error of one step; the error at the end also depends
-/// on how the motion amplifies it, and on how many steps there are: the errors of N steps that do not cancel add up to N tolerances. A
-/// drive of a kilohertz takes thousands of steps a second; ask for a tolerance that is smaller by as many digits.
+/// on how the motion amplifies it, and on how many steps there are: the errors of N steps that do
+/// not cancel add up to N tolerances. A drive of a kilohertz takes thousands of steps a second; ask
+/// for a tolerance that is smaller by as many digits.
 ///
 /// A step that would end beyond a time to be met (kink, stop, end) is cut there; one that would end less than 1 % before it is
 /// stretched to it; and if less than two steps are left they are made equal, so that no sliver is left. The size before a cut is
@@ -51,8 +52,9 @@ impl<const N: usize> AdaptiveStep<N> {
         Self::default()
     }
 
-    /// The relative tolerance; at least ten machine epsilons of the scalar. Over two words methods other than [`Taylor`](super::Taylor) hold none
-    /// below 2.3e-15, and what lies below counts as that.
+    /// The relative tolerance; at least ten machine epsilons of the scalar. Over two words methods
+    /// other than [`Taylor`](super::Taylor) hold none below 2.3e-15, and what lies below counts as
+    /// that.
     pub fn rtol(mut self, rtol: f64) -> Self {
         self.rtol = Some(rtol);
         self
@@ -132,7 +134,8 @@ where
     fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, M, N>) -> Result<Span, Error> {
         let Course { method, field, from, to, stages, target, stats } = course;
         let response = M::RESPONSE;
-        // Coefficients that are rounded to one word leave an error of their own that no step is short enough for.
+        // Coefficients that are rounded to one word leave an error of their own that no step is
+        // short enough for.
         let rtol = self.relative::<D::Scalar>();
         let this = Self { rtol: Some(if rtol < ONE_WORD { ONE_WORD } else { rtol }), ..*self };
         if memory.h == 0.0 {

@@ -13,7 +13,9 @@ use crate::system::System;
 /// step, adaptive.
 ///
 /// It suits every system and is the best general choice for errors from 1e-6 to 1e-12. It is not symplectic: over very many periods
-/// the energy drifts, at tight tolerances by rounding alone; the errors of a thousand periods of a shaken pivot add up to a few tolerances. At loose tolerances its long steps may miss a short pulse of a motion
+/// the energy drifts, at tight tolerances by rounding alone; the errors of a thousand periods of a
+/// shaken pivot add up to a few tolerances. At loose tolerances its long steps may miss a short
+/// pulse of a motion
 /// without kinks; set `max_step` then. It is explicit: a stiff spring or damper forces h·ω below about 6 whatever the tolerance.
 ///
 /// A rejected step costs eleven evaluations. Dense output is of order 7 and takes three more evaluations, only in those steps where

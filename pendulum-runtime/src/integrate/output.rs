@@ -157,7 +157,8 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
 
     /// The states within the step and at its end.
     ///
-    /// Between two ends that are finite a polynomial need not be: over a long step h² is beyond the range before h is.
+    /// Between two ends that are finite a polynomial need not be: over a long step h² is beyond the
+    /// range before h is.
     fn within<D, M, C>(&mut self, driver: &mut Driver<T, N, M, C, M::Stages>, dynamics: &D) -> Result<(), Error>
     where
         D: Dynamics<N, Scalar = T>,

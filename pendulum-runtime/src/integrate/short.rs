@@ -5,7 +5,8 @@ use super::node::Node;
 use super::span::Span;
 use crate::real::Float;
 
-/// The least length of a step that the scalar holds with all its digits; 0 where its range is that of time.
+/// The least length of a step that the scalar holds with all its digits; 0 where its range is that
+/// of time.
 #[inline]
 pub(crate) fn shortest<T: Float>() -> f64 {
     if T::from_f64(1e300).is_finite() { 0.0 } else { f32::MIN_POSITIVE as f64 }
@@ -19,8 +20,9 @@ pub(crate) fn is_short<T: Float>(h: f64) -> bool {
 
 /// The end of a step with constant accelerations.
 ///
-/// In 1e-38 s no finite acceleration of single precision moves a coordinate by more than 1e-38, and no velocity by more than a rounding error
-/// of what made it so large: what a method of higher order adds is nothing.
+/// In 1e-38 s no finite acceleration of single precision moves a coordinate by more than 1e-38, and
+/// no velocity by more than a rounding error of what made it so large: what a method of higher
+/// order adds is nothing.
 #[cold]
 pub(crate) fn straight<T: Float, const N: usize>(
     field: &mut impl Accelerations<T, N>,

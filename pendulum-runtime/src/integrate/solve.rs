@@ -131,8 +131,8 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
 impl<const N: usize, D: Dynamics<N>, M> Solve<'_, N, D, M, AdaptiveStep<N>> {
     /// The relative tolerance, 1e-6 without this call (1.2e-5 for `f32`); at least ten machine epsilons of the scalar.
     ///
-    /// Over two words methods whose coefficients have the digits of `f64` hold none below 2.3e-15: what lies below counts as that. Only
-    /// [`Taylor`](super::Taylor) goes on to 5e-31.
+    /// Over two words methods whose coefficients have the digits of `f64` hold none below 2.3e-15:
+    /// what lies below counts as that. Only [`Taylor`](super::Taylor) goes on to 5e-31.
     pub fn rtol(mut self, rtol: f64) -> Self {
         self.control = self.control.rtol(rtol);
         self

@@ -44,7 +44,8 @@ impl Span {
 
     /// The part of it that has passed at `t`: 0 at the start, 1 at the end.
     pub fn fraction<T: Float>(&self, t: f64) -> T {
-        // Near the ends of the range, which is shorter for some scalars, both lengths are brought to its middle.
+        // Near the ends of the range, which is shorter for some scalars, both lengths are brought
+        // to its middle.
         let exponent = (self.h.to_bits() >> 52) & 0x7ff;
         let scale = if exponent.abs_diff(1023) < 64 { 1.0 } else { f64::from_bits((2046 - exponent.min(2045)) << 52) };
         let number = |x: f64| T::from_f64(scale * x);

@@ -26,7 +26,8 @@ impl<const D: usize> Sinusoid<D> {
         Self { amplitude, frequency, phase, offset: [0.0; D] }
     }
 
-    /// The angle of component `d` in two words: one alone is rounded by 1e-12 after a second at 1 kHz, and the acceleration with it.
+    /// The angle of component `d` in two words: one alone is rounded by 1e-12 after a second at 1
+    /// kHz, and the acceleration with it.
     #[inline(always)]
     #[allow(clippy::inline_always)]
     fn angle(&self, d: usize, t: Time) -> (f64, f64) {
@@ -125,7 +126,8 @@ fn of_component<T: Real>(orders: Orders, offset: f64, a: f64, w: f64, sin: f64, 
     component
 }
 
-/// A product and its rounding error (Dekker 1971); the halves are cut by bits, so that nothing overflows before the product does.
+/// A product and its rounding error (Dekker 1971); the halves are cut by bits, so that nothing
+/// overflows before the product does.
 #[inline(always)]
 #[allow(clippy::inline_always)]
 fn product(a: f64, b: f64) -> (f64, f64) {

@@ -154,7 +154,8 @@ fn sinusoids_have_exact_derivatives() {
     consistent(&circle, (0..20).map(f64::from));
 }
 
-/// After hours at a kilohertz the phase is as good as at the start; all ways to sample agree to the last bit.
+/// After hours at a kilohertz the phase is as good as at the start; all ways to sample agree to the
+/// last bit.
 #[test]
 fn fast_sinusoids_keep_their_phase() {
     use crate::real::{DoubleDouble, Float};

@@ -252,10 +252,11 @@ impl<T: Lane + Float> Scene<T> {
         Ok(())
     }
 
-    /// Whether all threads may be used, as at first; the bits are the same. Without the feature `rayon` there is only one.
+    /// Whether all threads may be used, as at first; the bits are the same. Without the feature
+    /// `rayon` there is only one.
     ///
-    /// They are used where that is quicker: batches that take less than 0.2 ms never fork, the others as long as it pays, which is
-    /// measured while running.
+    /// They are used where that is quicker: batches that take less than 0.2 ms never fork, the
+    /// others as long as it pays, which is measured while running.
     pub fn set_parallel(&mut self, parallel: bool) {
         self.parallel = parallel;
     }

@@ -1,7 +1,8 @@
 //! Whether a batch of ticks is worth more than one thread.
 //!
-//! A fork wakes threads that sleep, which takes as long as a thousand pendulums or, where others want the same cores, a million. How long nobody
-//! knows beforehand, so it is measured: the same bits come out either way.
+//! A fork wakes threads that sleep, which takes as long as a thousand pendulums or, where others
+//! want the same cores, a million. How long nobody knows beforehand, so it is measured: the same
+//! bits come out either way.
 
 #[cfg(feature = "rayon")]
 use std::time::Instant;
@@ -9,10 +10,12 @@ use std::time::Instant;
 /// Nanoseconds that a batch has to take alone to be worth a fork.
 const LEAST: f64 = 200_000.0;
 
-/// Batches are tried the other way in pairs: the first wakes the threads, the second shows what they can do.
+/// Batches are tried the other way in pairs: the first wakes the threads, the second shows what
+/// they can do.
 const TRIAL: u32 = 2;
 
-/// The batches from one trial to the next, at first and at most: each trial that shows nothing new doubles them.
+/// The batches from one trial to the next, at first and at most: each trial that shows nothing new
+/// doubles them.
 const SOON: u32 = 32;
 const LATE: u32 = 1024;
 
@@ -72,11 +75,13 @@ impl Threads {
     #[cfg_attr(not(feature = "rayon"), allow(dead_code))]
     fn took(&mut self, way: Way, pendulum_ticks: f64, nanoseconds: f64) {
         let (pace, now) = (&mut self.pace[way as usize], nanoseconds / pendulum_ticks);
-        // An interruption may take a thousand times as long and says nothing; what lasts is believed after a few batches.
+        // An interruption may take a thousand times as long and says nothing; what lasts is
+        // believed after a few batches.
         *pace = if *pace == 0.0 || now < *pace { now } else { *pace + 0.25 * (now - *pace).min(*pace) };
     }
 
-    /// Does `batch`, which takes so many pendulums through so many ticks; it is told whether to fork.
+    /// Does `batch`, which takes so many pendulums through so many ticks; it is told whether to
+    /// fork.
     #[cfg(feature = "rayon")]
     pub(super) fn measured<R>(&mut self, pendulum_ticks: usize, batch: impl FnOnce(bool) -> R) -> R {
         // Less than this is not worth a fork whatever the equations are.
@@ -132,7 +137,8 @@ pub(super) fn share<P: Send>(parts: impl Iterator<Item = P> + Send, work: impl F
 mod tests {
     use super::{LATE, LEAST, Threads, Way};
 
-    /// The parts of `batches` that went together where the two ways take so many nanoseconds a pendulum and tick.
+    /// The parts of `batches` that went together where the two ways take so many nanoseconds a
+    /// pendulum and tick.
     fn share_together(threads: &mut Threads, batches: u32, pendulum_ticks: f64, alone: f64, together: f64) -> f64 {
         let mut count = 0;
         for _ in 0..batches {
