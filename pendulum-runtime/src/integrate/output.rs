@@ -172,8 +172,8 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
                 what.map_or(Ok(()), |what| Err(Error::NotFinite { t, what, suspects: Vec::new() }))
             };
             if self.dense.is_some() {
-                let terms = piece.q[..piece.terms].iter().zip(&piece.v);
-                terms.into_iter().try_for_each(|(q, v)| not_finite(end.to_f64(), q, v))?;
+                let mut terms = piece.q[..piece.terms].iter().zip(&piece.v);
+                terms.try_for_each(|(q, v)| not_finite(end.to_f64(), q, v))?;
             }
             while 0.0 < self.onwards * end.since(self.next) {
                 let (q, v) = piece.at(piece.span.fraction(self.next));

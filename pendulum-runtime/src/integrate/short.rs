@@ -9,7 +9,7 @@ use crate::real::Float;
 /// of time.
 #[inline]
 pub(crate) fn shortest<T: Float>() -> f64 {
-    if T::from_f64(1e300).is_finite() { 0.0 } else { f32::MIN_POSITIVE as f64 }
+    if T::from_f64(1e300).is_finite() { 0.0 } else { f64::from(f32::MIN_POSITIVE) }
 }
 
 /// Whether the scalar cannot hold a step of the length `h`.
@@ -44,7 +44,7 @@ fn times<T: Float>(mut h: f64, mut x: T) -> T {
     const PART: f64 = f64::from_bits((1023 - 100) << 52);
     while h.abs() < PART && h != 0.0 {
         h /= PART;
-        x = x * T::from_f64(PART);
+        x *= T::from_f64(PART);
     }
     x * T::from_f64(h)
 }

@@ -98,6 +98,7 @@ impl Threads {
 
     /// Does `batch`, alone.
     #[cfg(not(feature = "rayon"))]
+    #[allow(clippy::unused_self)]
     pub(super) fn measured<R>(&mut self, _: usize, batch: impl FnOnce(bool) -> R) -> R {
         batch(false)
     }
