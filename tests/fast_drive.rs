@@ -30,7 +30,7 @@ struct Exact {
 }
 
 impl Exact {
-    fn at(&self, t: Time) -> [DoubleDouble; 3] {
+    fn at(self, t: Time) -> [DoubleDouble; 3] {
         let [a, w, phase] = [self.amplitude, FREQUENCY, PHASE].map(DoubleDouble::from);
         let (sin, cos) = (w * (DoubleDouble::from(t.to_f64()) + DoubleDouble::from(t.low())) + phase).sin_cos();
         [a * sin, a * w * cos, -(a * w * w * sin)]
