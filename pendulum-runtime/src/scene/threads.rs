@@ -54,7 +54,8 @@ impl Threads {
         if together == 0.0 {
             return Way::Together;
         }
-        let better = if together < 0.9 * alone { Way::Together } else { Way::Alone };
+        // Less is not worth the cores of others, and may be chance.
+        let better = if together < 0.8 * alone { Way::Together } else { Way::Alone };
         if better != self.better {
             (self.better, self.period) = (better, SOON);
             self.left = self.left.min(SOON);
