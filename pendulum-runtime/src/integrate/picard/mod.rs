@@ -8,7 +8,7 @@ mod kernel;
 mod side_by_side;
 mod tableau;
 
-use super::adaptive_step::{AdaptiveStep, resolution};
+use super::adaptive_step::{AdaptiveStep, resolution_of};
 use super::blame::{self, blame};
 use super::control::{Control, Course, Memory};
 use super::field::{Accelerations, Counted, Watched, coordinate, first_in_state};
@@ -371,7 +371,7 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
         let mut wanted = self.limited(false, memory.h);
         let (mut retried, mut last_fault) = (false, None);
         loop {
-            if wanted <= resolution(from.t) && wanted < -from.t.since(target) {
+            if wanted <= resolution_of::<D::Scalar>(from.t) && wanted < -from.t.since(target) {
                 let coordinate = coordinate(&<D::System as System<N>>::FACTS, room.worst());
                 let short = Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate };
                 let short = self.unresolved(stats.accepted + stats.rejected == 0, wanted).unwrap_or(short);
