@@ -470,7 +470,23 @@ pub fn scalar_time<T: Real>(t: Time) -> T {
     T::from_f64(t.to_f64()) + T::from_f64(t.low())
 }
 
-impl<const N: usize, S: System<N, Inputs = ()>> Dynamics<N> for S {
+/// The samples of the driven inputs of a system `S` that has none: `()`.
+#[diagnostic::on_unimplemented(
+    message = "`{S}` has driven inputs; give their motions by `.driven_by(…)`",
+    label = "the motions of its driven inputs are missing",
+    note = "`driven_by` takes one motion for each driven input, in the order of declaration"
+)]
+pub trait NoInputs<S>: Samples {
+    /// No samples.
+    fn none() -> Self;
+}
+
+impl<S> NoInputs<S> for () {
+    #[inline]
+    fn none() {}
+}
+
+impl<const N: usize, S: System<N, Inputs: NoInputs<S>>> Dynamics<N> for S {
     type System = S;
     type Scalar = S::Scalar;
 
@@ -479,7 +495,9 @@ impl<const N: usize, S: System<N, Inputs = ()>> Dynamics<N> for S {
     }
 
     #[inline]
-    fn inputs(&self, _: Time, _: Side, _: Purpose) {}
+    fn inputs(&self, _: Time, _: Side, _: Purpose) -> S::Inputs {
+        NoInputs::none()
+    }
 
     fn next_kink(&self, _: f64) -> Option<f64> {
         None

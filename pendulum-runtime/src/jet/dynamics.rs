@@ -2,7 +2,7 @@
 
 use super::{InputSeries, Jets};
 use crate::motion::{AnalyticMotions, PerhapsAnalytic, Side};
-use crate::system::{Driven, Dynamics, Prepared, Purpose, System};
+use crate::system::{Driven, Dynamics, NoInputs, Prepared, Purpose, System};
 use crate::time::Time;
 
 /// Dynamics of which [`Taylor`](crate::integrate::Taylor) can compute the jets.
@@ -88,11 +88,11 @@ macro_rules! of_inner {
     };
 }
 
-impl<const N: usize, S: Jets<N> + System<N, Inputs = ()>> JetDynamics<N> for S {
+impl<const N: usize, S: Jets<N, Inputs: NoInputs<S>>> JetDynamics<N> for S {
     none!(next_break last_break last_kink);
 }
 
-impl<const N: usize, S: Jets<N> + System<N, Inputs = ()>> PerhapsJets<N> for S {
+impl<const N: usize, S: Jets<N, Inputs: NoInputs<S>>> PerhapsJets<N> for S {
     fn is_analytic(&self) -> bool {
         true
     }

@@ -4,7 +4,7 @@
 
 use crate::motion::{Motion, PerhapsAnalytic, Sample, orders};
 use crate::real::{Float, Lane, Octet, Real};
-use crate::system::{Driven, Dynamics, Input, Prepared, Purpose, Samples, Staged, System};
+use crate::system::{Driven, Dynamics, Input, NoInputs, Prepared, Purpose, Samples, Staged, System};
 use crate::time::Time;
 
 use super::tableau::S;
@@ -34,8 +34,8 @@ pub trait SideBySide<const N: usize>: Dynamics<N, Scalar: Lane + Float> {
 
 impl<S0, const N: usize> SideBySide<N> for S0
 where
-    S0: System<N, Scalar: Lane + Float, Inputs = ()>,
-    S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = ()>,
+    S0: System<N, Scalar: Lane + Float, Inputs: NoInputs<S0>>,
+    S0::With<Octet<S0::Scalar>>: Staged<N, Inputs: NoInputs<S0>>,
 {
     type Wide = S0::With<Octet<S0::Scalar>>;
 
@@ -45,7 +45,9 @@ where
     }
 
     #[inline(always)]
-    fn inputs_at(&self, _: &[Time; S]) {}
+    fn inputs_at(&self, _: &[Time; S]) -> <Self::Wide as System<N>>::Inputs {
+        NoInputs::none()
+    }
 
     #[inline]
     fn next_break(&self, _: f64) -> Option<f64> {
