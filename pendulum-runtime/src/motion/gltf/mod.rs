@@ -133,7 +133,12 @@ impl Gltf {
         // By the nodes that they move.
         let mut channels: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (number, channel) in played.channels.iter().enumerate() {
-            channels.entry(channel.target.node.value()).or_default().push(number);
+            let target = channel.target.node.value();
+            if self.root.nodes.len() <= target {
+                let what = format!("its target nodes[{target}] does not exist");
+                return Err(GltfError::new(format!("{outer}: channels[{number}]"), what, MEND));
+            }
+            channels.entry(target).or_default().push(number);
         }
         let mut chain = Vec::new();
         let mut next = Some(node);

@@ -36,6 +36,11 @@ fn errors_say_what_and_where() {
         ("[0,0,0,1]", "[0,0,0,0]", "nodes[3]: its rotation is no unit quaternion"),
         ("[0.1,1,0]", "[1e39,1,0]", "nodes[1]: a number that is infinite or none"),
         ("0,0.5,0,1]", "0,0.5,0,2]", "nodes[2]: its matrix is no affine map"),
+        (
+            r#""node":3"#,
+            r#""node":4"#,
+            "animations[0]: channels[4]: its target nodes[4] does not exist; mend the file or export it again",
+        ),
         (r#""node":3"#, r#""node":2"#, "nodes[2]: it is animated, but stands on its parent by a matrix"),
         ("data:application/octet-stream;base64,", "data:application/octet-stream,", "buffers[0]: a data URI that is not base64"),
         ("data:application/octet-stream;base64,", "dance.bin?", "buffers[0]: its bytes are in the file `dance.bin?"),
