@@ -400,6 +400,11 @@ impl Input {
 /// A system with a motion for each of its driven inputs: what an integrator takes.
 ///
 /// Every system without driven inputs is one; a driven one becomes one by its method `driven_by`, which gives a [`Driven`].
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot be integrated",
+    label = "no system whose driven inputs have motions",
+    note = "integrators take systems that `lagrangian!` has made; driven inputs get their motions by `.driven_by(…)`"
+)]
 pub trait Dynamics<const N: usize> {
     /// The system.
     type System: System<N, Scalar = Self::Scalar>;
