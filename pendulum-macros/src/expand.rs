@@ -1,15 +1,16 @@
 //! The compiler: parse, check, lower, derive, emit.
 
 use crate::error::Errors;
-use crate::{check, emit, expr, lower, motion, parse, unit};
+use crate::{check, derive, emit, expr, lower, motion, parse, unit};
 use proc_macro2::TokenStream;
 
 /// The items of a block. They are always there, whatever is wrong with the block.
 pub(crate) fn expand(input: TokenStream) -> TokenStream {
     let mut errors = Errors::default();
-    let Some((krate, block)) = parse::all(input, &mut errors) else {
+    let Some((krate, mut block)) = parse::all(input, &mut errors) else {
         return errors.into_tokens();
     };
+    derive::check(&mut block.attributes, &mut errors);
     let model = check::resolve(&block, &mut errors);
     let mut graph = expr::Graph::new();
     let mut energies = lower::energies(&model, &mut graph, &mut errors);

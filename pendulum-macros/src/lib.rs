@@ -4,6 +4,7 @@ mod articulated;
 mod ast;
 mod check;
 mod collect;
+mod derive;
 mod diff;
 mod emit;
 mod error;
