@@ -72,9 +72,8 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// The derivatives of each driven input that each purpose needs.
-    fn inputs(&self) -> Vec<TokenStream> {
-        let krate = &self.krate;
+    /// For each purpose, whether it needs the position, the velocity and the acceleration of each driven input.
+    pub(super) fn needed(&self) -> Vec<Vec<[bool; 3]>> {
         let purposes: Vec<Vec<Symbol>> = match &self.motion {
             None => vec![Vec::new(); 4],
             Some(motion) => {
@@ -89,17 +88,28 @@ impl Emitter<'_, '_> {
                 ]
             }
         };
+        let of = |symbols: &Vec<Symbol>| {
+            let mut needed = vec![[false; 3]; self.model.inputs.len()];
+            for symbol in symbols {
+                if let Symbol::Input { input, order, .. } = *symbol {
+                    needed[input][usize::from(order)] = true;
+                }
+            }
+            needed
+        };
+        purposes.iter().map(of).collect()
+    }
+
+    /// The derivatives of each driven input that each purpose needs.
+    fn inputs(&self) -> Vec<TokenStream> {
+        let (krate, needed) = (&self.krate, self.needed());
         let describe = |(index, quantity): (usize, &Quantity)| {
             let (name, components) = (quantity.name.to_string(), quantity.count());
-            let orders = purposes.iter().map(|symbols| {
-                let has = |wanted: u8| {
-                    symbols
-                        .iter()
-                        .any(|symbol| matches!(symbol, Symbol::Input { input, order, .. } if *input == index && *order == wanted))
-                };
-                let parts = [("POSITION", 0), ("VELOCITY", 1), ("ACCELERATION", 2)]
+            let orders = needed.iter().map(|inputs| {
+                let parts = ["POSITION", "VELOCITY", "ACCELERATION"]
                     .into_iter()
-                    .filter(|&(_, order)| has(order))
+                    .zip(inputs[index])
+                    .filter(|&(_, needed)| needed)
                     .map(|(part, _)| format_ident!("{part}"));
                 quote!(#krate::motion::Orders::NONE #(.and(#krate::motion::Orders::#parts))*)
             });

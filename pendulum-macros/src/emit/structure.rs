@@ -3,8 +3,8 @@
 use super::Emitter;
 use crate::check::Quantity;
 use crate::schedule;
-use proc_macro2::{Ident, TokenStream};
-use quote::{format_ident, quote};
+use proc_macro2::{Ident, Span, TokenStream, TokenTree};
+use quote::{ToTokens, format_ident, quote};
 
 impl Emitter<'_, '_> {
     pub(super) fn structure(&mut self) -> TokenStream {
@@ -26,11 +26,14 @@ impl Emitter<'_, '_> {
         });
         let empty =
             block.fields.is_empty().then(|| quote! { #[doc(hidden)] pub __scalar: ::core::marker::PhantomData<#scalar>, });
+        // Where another item has the name too, rustc shows the tokens from the visibility to the name, and not the whole block.
+        let visibility = located(visibility.to_token_stream(), None);
+        let head = located(quote!(struct #name<#scalar = ::core::primitive::f64> { #(#fields)* #empty }), Some(name.span()));
         quote! {
             #(#attributes)*
             #documentation
             #[allow(non_snake_case)]
-            #visibility struct #name<#scalar = f64> { #(#fields)* #empty }
+            #visibility #head
         }
     }
 
@@ -79,19 +82,59 @@ impl Emitter<'_, '_> {
         if self.model.inputs.is_empty() {
             return None;
         }
-        let (krate, scalar, count, visibility) = (&self.krate, self.scalar(), self.count(), &self.model.block.visibility);
+        let (krate, scalar, visibility) = (&self.krate, self.scalar(), &self.model.block.visibility);
         let names: Vec<&Ident> = self.model.inputs.iter().map(|input| input.name).collect();
         let types: Vec<Ident> = (0..names.len()).map(|index| format_ident!("M{index}")).collect();
         let bounds = self.model.inputs.iter().zip(&types).map(|(input, motion)| {
             let dimension = input.count();
             quote!(#motion: #krate::motion::Motion<#scalar, #dimension>)
         });
+        let sufficient = self.sufficient();
         Some(quote! {
             /// The system driven by a motion for each of its driven inputs, in the order of declaration.
+            ///
+            /// Does not compile if a motion lacks a derivative that the equations need.
             #visibility fn driven_by<#(#bounds),*>(self, #(#names: #types),*) -> #krate::system::Driven<Self, (#(#types,)*)> {
-                #krate::system::Driven::new::<#count>(self, (#(#names,)*))
+                #sufficient
+                #krate::system::Driven { system: self, motions: (#(#names,)*) }
             }
         })
+    }
+
+    /// What asserts, while `driven_by` is compiled for its motions, that they have all derivatives that the system needs.
+    ///
+    /// It stands in `driven_by` itself, so that rustc names the call, and at the declaration of the input.
+    fn sufficient(&self) -> TokenStream {
+        let (krate, scalar, system) = (&self.krate, self.scalar(), &self.model.block.name);
+        let purposes = self.needed();
+        let assertions = self.model.inputs.iter().enumerate().filter_map(|(index, quantity)| {
+            let needs = |order: usize| purposes.iter().any(|inputs| inputs[index][order]);
+            let (name, motion, dimension) = (quantity.name, format_ident!("M{index}"), quantity.count());
+            let (constants, what, calls) = match (needs(1), needs(2)) {
+                (true, true) => (
+                    &["VELOCITY", "ACCELERATION"][..],
+                    "velocity and the acceleration",
+                    "`.velocity(…)` and `.acceleration(…)`",
+                ),
+                (true, false) => (&["VELOCITY"][..], "velocity", "`.velocity(…)`"),
+                (false, true) => (&["ACCELERATION"][..], "acceleration", "`.acceleration(…)`"),
+                (false, false) => return None,
+            };
+            let constants = constants.iter().map(|constant| format_ident!("{constant}"));
+            let message = format!(
+                "`{system}` needs the {what} of `{name}`, and its motion lacks a derivative; give the `Function` its {calls}, \
+                 or take another motion"
+            );
+            let assertion = quote! {
+                ::core::assert!(
+                    true #(&& <#motion as #krate::motion::Motion<#scalar, #dimension>>::HAS.contains(#krate::motion::Orders::#constants))*,
+                    #message
+                );
+            };
+            Some(located(assertion, Some(name.span())))
+        });
+        let assertions: TokenStream = assertions.collect();
+        if assertions.is_empty() { assertions } else { quote!(const { #assertions };) }
     }
 
     fn field_type(&self, quantity: &Quantity, scalar: &Ident) -> TokenStream {
@@ -102,4 +145,13 @@ impl Emitter<'_, '_> {
             Some(length) => quote!([#scalar; #length]),
         }
     }
+}
+
+/// The same tokens, as the macro's own and shown at `place`, or each where it stands.
+fn located(tokens: TokenStream, place: Option<Span>) -> TokenStream {
+    let own = |mut token: TokenTree| {
+        token.set_span(Span::call_site().located_at(place.unwrap_or(token.span())));
+        token
+    };
+    tokens.into_iter().map(own).collect()
 }

@@ -1,0 +1,18 @@
+//! A motion without the acceleration that the equations need.
+
+use pendulum_runtime::prelude::*;
+
+lagrangian! {
+    pub struct MovingPendulum { m: kg, L: m, g: m/s^2 = 9.81 }
+    coordinate theta: rad;
+    driven x: [m; 2];
+    let y = L * [sin(theta), -cos(theta)];
+    kinetic   = m/2 * |x_dot + dot(y)|^2;
+    potential = m*g * (height(x) + height(y));
+}
+
+fn main() {
+    let lift = motion::Function::new(|t: f64| [0.0, 0.5 * t * t]);
+    let driven = MovingPendulum::new(1.0, 1.0).driven_by(lift);
+    let _ = solve(&driven, (0.0, 10.0), [1.0], [0.0]).run();
+}
