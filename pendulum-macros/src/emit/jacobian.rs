@@ -20,13 +20,13 @@ impl Emitter<'_, '_> {
                 type Over<#other: #krate::real::Real> = #name<#other>;
 
                 fn over<#other: #krate::real::Real>(&self, map: impl ::core::ops::FnMut(#scalar) -> #other) -> #name<#other> {
-                    #krate::system::System::map(self, map)
+                    <Self as #krate::system::System<#count>>::map(self, map)
                 }
 
                 fn inputs_over<#other: #krate::real::Real>(
                     inputs: &Self::Inputs,
                     map: impl ::core::ops::Fn(#scalar) -> #other,
-                ) -> <#name<#other> as #krate::system::System<#count>>::Inputs {
+                ) -> <Self::Over<#other> as #krate::system::System<#count>>::Inputs {
                     (#(inputs.#inputs.map(&map),)*)
                 }
 
@@ -71,7 +71,9 @@ impl Emitter<'_, '_> {
     fn dual_jacobians(&self) -> [TokenStream; 3] {
         let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
         let inputs = (0..self.model.inputs.len()).map(Literal::usize_unsuffixed);
-        let dual = quote!(#krate::real::Dual::<#scalar>);
+        let (dual, name) = (quote!(#krate::real::Dual::<#scalar>), &self.model.block.name);
+        let map = quote!(<Self as #krate::system::System<#count>>::map);
+        let accelerations = quote!(<#name<#dual> as #krate::system::System<#count>>::accelerations);
         let lifted = quote! {
             let inputs = (#(inputs.#inputs.map(#dual::constant),)*);
             let (mut q, mut v) = (q.map(#dual::constant), v.map(#dual::constant));
@@ -79,12 +81,12 @@ impl Emitter<'_, '_> {
         };
         let matrix = |variable: TokenStream| {
             quote! {
-                let system = #krate::system::System::map(self, #dual::constant);
+                let system = #map(self, #dual::constant);
                 #lifted
                 let mut columns = [[#scalar::from_f64(0.0); #count]; #count];
                 for k in 0..#count {
                     #variable[k].derivative = #scalar::from_f64(1.0);
-                    columns[k] = #krate::system::System::accelerations(&system, t, &q, &v, &inputs).map(|acceleration| acceleration.derivative);
+                    columns[k] = #accelerations(&system, t, &q, &v, &inputs).map(|acceleration| acceleration.derivative);
                     #variable[k].derivative = #scalar::from_f64(0.0);
                 }
                 #krate::__private::SMatrix::<#scalar, #count, #count>::from_fn(|row, column| columns[column][row])
@@ -94,12 +96,12 @@ impl Emitter<'_, '_> {
             #lifted
             for k in 0..columns.len() {
                 let mut index = 0usize;
-                let system = #krate::system::System::map(self, |parameter| {
+                let system = #map(self, |parameter| {
                     let lifted = if index == k { #dual::variable(parameter) } else { #dual::constant(parameter) };
                     index += 1;
                     lifted
                 });
-                columns[k] = #krate::system::System::accelerations(&system, t, &q, &v, &inputs).map(|acceleration| acceleration.derivative);
+                columns[k] = #accelerations(&system, t, &q, &v, &inputs).map(|acceleration| acceleration.derivative);
             }
         };
         [matrix(quote!(q)), matrix(quote!(v)), parameters]

@@ -34,7 +34,7 @@ impl Emitter<'_, '_> {
         let power = vector(self, |motion| vec![motion.power]);
         let hamilton = self.hamilton();
         let velocities = self.output(|motion| motion.velocities.clone());
-        let velocities = velocities.unwrap_or_else(|| quote!(#krate::__private::newton(self, t, q, p, inputs)));
+        let velocities = velocities.unwrap_or_else(|| quote!(#krate::__private::newton::<#count, Self>(self, t, q, p, inputs)));
         let matrix = self.mass_matrix();
         let conserved = self.output(|motion| Some(motion.conserved.iter().map(|conserved| conserved.value).collect()));
         let length = self.motion.as_ref().map_or(0, |motion| motion.conserved.len());
@@ -47,6 +47,7 @@ impl Emitter<'_, '_> {
             }
         };
         let state = quote!(q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs);
+        let system = quote!(#krate::system::System<#count>);
         quote! {
             #[automatically_derived]
             #[allow(non_snake_case, unused_variables, unused_mut, unused_parens, unreachable_code, clippy::all, clippy::pedantic)]
@@ -59,7 +60,7 @@ impl Emitter<'_, '_> {
                 const FACTS: #krate::system::Facts = #facts;
 
                 fn map<#other: #krate::real::Real>(&self, mut map: impl ::core::ops::FnMut(#scalar) -> #other) -> #name<#other> {
-                    #name { #(#mapped,)* #empty }
+                    Self::With::<#other> { #(#mapped,)* #empty }
                 }
 
                 #[inline]
@@ -72,7 +73,7 @@ impl Emitter<'_, '_> {
 
                 #[inline]
                 fn accelerations(&self, t: #scalar, #state) -> [#scalar; #count] {
-                    #krate::system::System::accelerations_prepared(self, &#krate::system::System::prepare(self), t, q, v, inputs)
+                    <Self as #system>::accelerations_prepared(self, &<Self as #system>::prepare(self), t, q, v, inputs)
                 }
 
                 #[inline]
