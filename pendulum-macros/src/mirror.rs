@@ -18,7 +18,7 @@ pub(crate) fn function(block: &Block) -> TokenStream {
         #[allow(unexpected_cfgs, deprecated)]
         const _: () = {
             #[cfg(rust_analyzer)]
-            fn __names(parameters: &#name, #(#declared: f64),*) {
+            fn __names(parameters: &#name, #(#declared: ::core::primitive::f64),*) {
                 #uses
             }
         };

@@ -365,7 +365,8 @@ impl Writer<'_, '_, '_> {
                     }
                     Op::Load(Symbol::Auxiliary(rate)) => {
                         let scalar = self.emitter.scalar();
-                        known(&gains, plan.carried[rate]).map(|gain| quote!(#scalar::from_f64((k + 1) as f64) * #gain))
+                        known(&gains, plan.carried[rate])
+                            .map(|gain| quote!(#scalar::from_f64((k + 1) as ::core::primitive::f64) * #gain))
                     }
                     Op::Negative(a) => known(&gains, a).map(|a| quote!(-#a)),
                     Op::Add(a, b) => match (known(&gains, a), known(&gains, b)) {

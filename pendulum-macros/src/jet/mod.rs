@@ -99,7 +99,7 @@ impl Emitter<'_, '_> {
                 type Work = #kind;
                 type Drive = [#krate::jet::InputSeries<#scalar>; #components];
                 type Orders = #krate::jet::#orders;
-                const PER_DIGIT: f64 = #per_digit;
+                const PER_DIGIT: ::core::primitive::f64 = #per_digit;
 
                 fn work(&self) -> Self::Work { #work }
 

@@ -14,9 +14,7 @@ const MARK: &str = "\n---\n";
 
 #[test]
 fn golden_files_hold() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden");
-    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    files.sort();
+    let files = files();
     assert!(!files.is_empty());
     for file in files {
         let text = std::fs::read_to_string(&file).unwrap();
@@ -31,6 +29,20 @@ fn golden_files_hold() {
             assert_eq!(found, expected, "{}", file.display());
         }
     }
+}
+
+/// The golden files.
+fn files() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden");
+    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    files
+}
+
+/// The blocks of the golden files.
+pub(super) fn sources_of_blocks() -> Vec<String> {
+    let texts = files().into_iter().map(|file| std::fs::read_to_string(file).unwrap());
+    texts.map(|text| text.split_once(MARK).map_or_else(|| text.clone(), |(source, _)| source.to_owned())).collect()
 }
 
 /// Every other system in the repository: tests, examples, documentation.

@@ -10,6 +10,7 @@ use random::Random;
 use random::derive::derived;
 use std::collections::BTreeMap;
 
+mod absolute;
 mod derivatives;
 mod fragments;
 mod golden;
