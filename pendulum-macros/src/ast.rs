@@ -13,6 +13,8 @@ pub(crate) struct Block {
     pub(crate) fields: Vec<Field>,
     pub(crate) statements: Vec<Statement>,
     pub(crate) lost: Lost,
+    /// No name in it has a letter beyond ASCII.
+    pub(crate) ascii: bool,
 }
 
 impl Block {

@@ -1,4 +1,6 @@
 //! Equations in Unicode, as one would write them: θ̈ = −g·sin θ/L.
+//!
+//! Those of a block that is written in ASCII are in ASCII, as the language reads them: `theta_ddot = -g*sin(theta)/L`.
 
 use crate::ast::Literal;
 use crate::check::{Model, Quantity};
@@ -14,6 +16,8 @@ pub(crate) struct Names {
     pub(crate) parameters: Vec<String>,
     pub(crate) coordinates: Vec<String>,
     inputs: Vec<(String, bool)>,
+    /// The signs and spellings of the language in ASCII.
+    ascii: bool,
 }
 
 impl Names {
@@ -24,6 +28,31 @@ impl Names {
             parameters: parameters.flat_map(|(index, quantity)| quantity_names(quantity, families.contains(&index))).collect(),
             coordinates: model.coordinates.iter().flat_map(|quantity| quantity_names(quantity, true)).collect(),
             inputs: model.inputs.iter().map(|quantity| (quantity.name.to_string(), quantity.length.is_some())).collect(),
+            ascii: model.block.ascii,
+        }
+    }
+
+    /// The sign of a negative number or term.
+    fn minus(&self) -> &'static str {
+        if self.ascii { "-" } else { "−" }
+    }
+
+    /// What stands between factors.
+    fn times(&self) -> &'static str {
+        if self.ascii { "*" } else { "·" }
+    }
+
+    /// A name with dots.
+    fn dotted(&self, name: &str, dots: u8) -> String {
+        dotted(name, dots, self.ascii)
+    }
+
+    /// An exponent, with what raises it.
+    fn exponent(&self, exponent: Rational) -> String {
+        match exponent.integer() {
+            Some(count) if !self.ascii => superscript(count),
+            Some(count) if !exponent.is_negative() => format!("^{count}"),
+            _ => format!("^({exponent})"),
         }
     }
 
@@ -33,7 +62,7 @@ impl Names {
             Symbol::Parameter(index) => self.parameters[index].clone(),
             Symbol::Time => "t".into(),
             Symbol::Coordinate(index) => self.coordinates[index].clone(),
-            Symbol::Velocity(index) => dotted(&self.coordinates[index], 1),
+            Symbol::Velocity(index) => self.dotted(&self.coordinates[index], 1),
             Symbol::Momentum(index) => format!("p_{}", self.coordinates[index]),
             Symbol::Auxiliary(index) => format!("u[{index}]"),
             Symbol::Point(_, component) => ["p.x", "p.y"][component.min(1)].into(),
@@ -41,13 +70,13 @@ impl Names {
                 let body = self.parameters[body].trim_end_matches(".mass");
                 match moment {
                     Moment::Inertia => format!("{body}.inertia"),
-                    Moment::Difference => format!("({body}.xx − {body}.yy)"),
+                    Moment::Difference => format!("({body}.xx {} {body}.yy)", self.minus()),
                     Moment::Product => format!("{body}.xy"),
                 }
             }
             Symbol::Input { input, component, order } => {
                 let (name, vector) = &self.inputs[input];
-                let name = dotted(name, order);
+                let name = self.dotted(name, order);
                 if *vector { format!("{name}.{}", ["x", "y", "z"][component.min(2)]) } else { name }
             }
         }
@@ -61,7 +90,7 @@ impl Names {
 
     /// A coordinate with two dots.
     pub(crate) fn acceleration(&self, index: usize) -> String {
-        dotted(&self.coordinates[index], 2)
+        self.dotted(&self.coordinates[index], 2)
     }
 }
 
@@ -79,13 +108,13 @@ fn quantity_names(quantity: &Quantity, family: bool) -> Vec<String> {
     }
 }
 
-/// A name with dots over its first letter, or with the ASCII suffix if the name is ASCII.
-fn dotted(name: &str, dots: u8) -> String {
+/// A name with dots over its first letter, or with the ASCII suffix if the name is a word in ASCII or the block is in ASCII.
+fn dotted(name: &str, dots: u8, ascii: bool) -> String {
     if dots == 0 {
         return name.into();
     }
     let (stem, index) = name.split_at(name.find('[').unwrap_or(name.len()));
-    if stem.is_ascii() && 1 < stem.len() {
+    if ascii || stem.is_ascii() && 1 < stem.len() {
         return format!("{stem}{}{index}", if dots == 1 { "_dot" } else { "_ddot" });
     }
     let mark = if dots == 1 { '\u{307}' } else { '\u{308}' };
@@ -110,19 +139,24 @@ pub(crate) fn expression(graph: &Graph, names: &Names, id: Id) -> String {
 
 fn write(graph: &Graph, names: &Names, id: Id, level: Level) -> String {
     let (text, own) = match graph.node(id) {
-        Node::Number(value) => return number(*value, level),
+        Node::Number(value) => return number(names, *value, level),
         Node::Opaque(Literal::Decimal(digits)) => return digits.clone(),
-        Node::Opaque(Literal::Exact(value)) => return number(*value, level),
-        Node::Pi => return "π".into(),
+        Node::Opaque(Literal::Exact(value)) => return number(names, *value, level),
+        Node::Pi => return if names.ascii { "pi" } else { "π" }.into(),
         Node::Symbol(symbol) => return names.symbol(*symbol),
         Node::Sum(terms) => (sum(graph, names, terms), Level::Sum),
         Node::Product(coefficient, factors) => product(graph, names, *coefficient, factors),
         Node::Call(Function::Abs, argument) => return format!("|{}|", write(graph, names, *argument, Level::Sum)),
+        // The language has no word for it.
+        Node::Call(Function::Step, argument) if names.ascii => {
+            return format!("((1 + sign({}))/2)", write(graph, names, *argument, Level::Sum));
+        }
         Node::Call(function, argument) => {
-            let name = function_name(*function);
-            let inner = write(graph, names, *argument, Level::Power);
-            let spaced = if inner.starts_with('(') { format!("{name}{inner}") } else { format!("{name} {inner}") };
-            (spaced, Level::Product)
+            let text = format!("{}{}", function_name(*function), operand(graph, names, *argument));
+            if names.ascii {
+                return text;
+            }
+            (text, Level::Product)
         }
         Node::Atan2(y, x) => {
             return format!("atan2({}, {})", write(graph, names, *y, Level::Sum), write(graph, names, *x, Level::Sum));
@@ -136,26 +170,39 @@ fn write(graph: &Graph, names: &Names, id: Id, level: Level) -> String {
     if own < level && !(call && level == Level::Product) { format!("({text})") } else { text }
 }
 
+/// What a function is applied to, with what stands before it.
+fn operand(graph: &Graph, names: &Names, argument: Id) -> String {
+    if names.ascii {
+        return format!("({})", write(graph, names, argument, Level::Sum));
+    }
+    let inner = write(graph, names, argument, Level::Power);
+    if inner.starts_with('(') { inner } else { format!(" {inner}") }
+}
+
 fn sum(graph: &Graph, names: &Names, terms: &[(Id, Rational)]) -> String {
     let mut ordered: Vec<&(Id, Rational)> = terms.iter().collect();
     ordered.sort_by_key(|(_, coefficient)| coefficient.is_negative());
     let mut text = String::new();
     for (index, &&(term, coefficient)) in ordered.iter().enumerate() {
-        let sign = match (index, coefficient.is_negative()) {
-            (0, true) => "−",
-            (0, false) => "",
-            (_, true) => " − ",
-            (_, false) => " + ",
-        };
-        text.push_str(sign);
+        text.push_str(&sign(names, index == 0, coefficient.is_negative()));
         let factors = if term == Graph::ONE { Vec::new() } else { graph.factors(term) };
         text.push_str(&product(graph, names, coefficient.abs(), &factors).0);
     }
     text
 }
 
+/// The sign before a term.
+fn sign(names: &Names, first: bool, negative: bool) -> String {
+    match (first, negative) {
+        (true, true) => names.minus().into(),
+        (true, false) => String::new(),
+        (false, true) => format!(" {} ", names.minus()),
+        (false, false) => " + ".into(),
+    }
+}
+
 fn product(graph: &Graph, names: &Names, coefficient: Rational, factors: &[(Id, Rational)]) -> (String, Level) {
-    let sign = if coefficient.is_negative() { "−" } else { "" };
+    let sign = if coefficient.is_negative() { names.minus() } else { "" };
     let coefficient = coefficient.abs();
     let mut ordered: Vec<&(Id, Rational)> = factors.iter().collect();
     ordered.sort_by_key(|(base, _)| rank(graph, *base));
@@ -173,13 +220,13 @@ fn product(graph: &Graph, names: &Names, coefficient: Rational, factors: &[(Id, 
         side.push(power(graph, names, base, exponent.abs()));
     }
     // A function's name would swallow what follows it: functions stand last, in brackets if several do.
-    let top = if above.is_empty() { "1".to_owned() } else { above.join("·") };
+    let top = if above.is_empty() { "1".to_owned() } else { above.join(names.times()) };
     let level = if above.len() + below.len() < 2 && sign.is_empty() { Level::Power } else { Level::Product };
     if below.is_empty() {
         let level = if one(&above) && sign.is_empty() && !above[0].contains(' ') { level } else { Level::Product };
         return (format!("{sign}{top}"), if sign.is_empty() { level } else { Level::Sum });
     }
-    let bottom = if one(&below) { below[0].clone() } else { format!("({})", below.join("·")) };
+    let bottom = if one(&below) { below[0].clone() } else { format!("({})", below.join(names.times())) };
     (format!("{sign}{top}/{bottom}"), if sign.is_empty() { Level::Product } else { Level::Sum })
 }
 
@@ -209,25 +256,22 @@ fn power(graph: &Graph, names: &Names, base: Id, exponent: Rational) -> String {
         return write(graph, names, base, Level::Product);
     }
     if exponent == Rational::HALF {
-        return format!("√({})", write(graph, names, base, Level::Sum));
+        let root = if names.ascii { "sqrt" } else { "√" };
+        return format!("{root}({})", write(graph, names, base, Level::Sum));
     }
-    let raised = match exponent.integer() {
-        Some(count) => superscript(count),
-        None => format!("^({exponent})"),
-    };
+    let raised = names.exponent(exponent);
     if let Node::Call(function, argument) = graph.node(base)
         && *function != Function::Abs
+        && !names.ascii
     {
-        let inner = write(graph, names, *argument, Level::Power);
-        let space = if inner.starts_with('(') { "" } else { " " };
-        return format!("{}{raised}{space}{inner}", function_name(*function));
+        return format!("{}{raised}{}", function_name(*function), operand(graph, names, *argument));
     }
     let inner = write(graph, names, base, Level::Power);
     format!("{inner}{raised}")
 }
 
-fn number(value: Rational, level: Level) -> String {
-    let text = value.to_string().replace('-', "−");
+fn number(names: &Names, value: Rational, level: Level) -> String {
+    let text = value.to_string().replace('-', names.minus());
     if Level::Sum < level && (value.is_negative() || !value.is_integer()) { format!("({text})") } else { text }
 }
 
@@ -266,19 +310,14 @@ pub(crate) fn conserved(names: &Names, conserved: &Conserved) -> String {
     }
     let mut text = String::new();
     for (index, &(factor, coordinate, momentum)) in terms.iter().enumerate() {
-        text.push_str(match (index, factor.is_negative()) {
-            (0, false) => "",
-            (0, true) => "−",
-            (_, false) => " + ",
-            (_, true) => " − ",
-        });
+        text.push_str(&sign(names, index == 0, factor.is_negative()));
         let mut parts = Vec::new();
         if factor.abs() != Rational::ONE {
-            parts.push(number(factor.abs(), Level::Product));
+            parts.push(number(names, factor.abs(), Level::Product));
         }
         parts.extend(coordinate.map(|index| names.coordinates[index].clone()));
         parts.push(names.symbol(Symbol::Momentum(momentum)));
-        text.push_str(&parts.join("·"));
+        text.push_str(&parts.join(names.times()));
     }
     text
 }
@@ -307,7 +346,8 @@ pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion) -> Ve
     let mut lines = Vec::new();
     for (row, &acceleration) in motion.accelerations.iter().enumerate() {
         if too_long(graph, motion, row) {
-            lines.push(format!("{} = … (too long to write out)", names.acceleration(row)));
+            let dots = if names.ascii { "..." } else { "…" };
+            lines.push(format!("{} = {dots} (too long to write out)", names.acceleration(row)));
             continue;
         }
         let alone = motion.mass_matrix[row].iter().filter(|&&entry| entry != Graph::ZERO).count() == 1;
@@ -328,14 +368,10 @@ pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion) -> Ve
                 symbol
             } else {
                 let text = write(graph, names, magnitude, Level::Product);
-                if open(&text) { format!("({text})·{symbol}") } else { format!("{text}·{symbol}") }
+                let times = names.times();
+                if open(&text) { format!("({text}){times}{symbol}") } else { format!("{text}{times}{symbol}") }
             };
-            left.push_str(match (left.is_empty(), negative) {
-                (true, true) => "−",
-                (true, false) => "",
-                (false, true) => " − ",
-                (false, false) => " + ",
-            });
+            left.push_str(&sign(names, left.is_empty(), negative));
             left.push_str(&part);
         }
         lines.push(format!("{left} = {}", expression(graph, names, motion.forces[row])));

@@ -54,7 +54,7 @@ impl Parser<'_> {
                 }
             }
         }
-        Ok(Block { attributes, visibility, name, fields, statements, lost: self.lost })
+        Ok(Block { attributes, visibility, name, fields, statements, lost: self.lost, ascii: self.ascii })
     }
 
     fn field(&mut self, input: ParseStream) -> Result<Field> {

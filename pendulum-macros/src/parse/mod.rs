@@ -19,11 +19,12 @@ use token::drain;
 /// Parses the path of the runtime and a block; `None` if not even the struct could be read.
 pub(crate) fn all(input: TokenStream, errors: &mut Errors) -> Option<(TokenStream, Block)> {
     let mut parsed = None;
+    let ascii = is_ascii(input.clone());
     let outcome = Syn::parse2(
         |input: ParseStream| {
             let krate = runtime(input)?;
             let mut parser =
-                Parser { errors: &mut *errors, sources: 0, depth: 0, barred: false, lost: Lost::default(), begun: None };
+                Parser { errors: &mut *errors, sources: 0, depth: 0, barred: false, lost: Lost::default(), begun: None, ascii };
             match parser.block(input) {
                 Ok(block) => parsed = Some((krate, block)),
                 Err(error) => errors.push(error),
@@ -41,6 +42,15 @@ pub(crate) fn all(input: TokenStream, errors: &mut Errors) -> Option<(TokenStrea
         parsed = None;
     }
     parsed
+}
+
+/// Whether no name has a letter beyond ASCII; comments and other literals may.
+fn is_ascii(tokens: TokenStream) -> bool {
+    tokens.into_iter().all(|tree| match tree {
+        TokenTree::Ident(name) => name.to_string().is_ascii(),
+        TokenTree::Group(group) => is_ascii(group.stream()),
+        TokenTree::Punct(_) | TokenTree::Literal(_) => true,
+    })
 }
 
 /// The path of the runtime, up to the first `;`.
@@ -62,4 +72,5 @@ struct Parser<'a> {
     lost: Lost,
     /// A coordinate whose statement ends in a mistake, as far as it could be read.
     begun: Option<Statement>,
+    ascii: bool,
 }

@@ -40,12 +40,54 @@ fn what_is_too_long_is_not_written_out() {
             "struct S {{ m }} coordinate q; coordinate z; coordinate w; let a0 = q; {lets} kinetic = (q_dot^2 + w_dot^2 + w_dot*z_dot + z_dot^2)/2;"
         );
         let [text, latex] = printed(&format!("{block} potential = {last} + w;"));
-        assert_eq!(text[0], "q̈ = … (too long to write out)");
+        assert_eq!(text[0], "q_ddot = ... (too long to write out)");
         assert_eq!(latex[0], "\\ddot{q} = \\ldots\\text{ (too long to write out)}");
-        assert_eq!((&text[1][..], &latex[1][..]), ("z̈ + (1/2)·ẅ = 0", "\\ddot{z} + \\frac{1}{2} \\ddot{w} = 0"));
+        assert_eq!((&text[1][..], &latex[1][..]), ("z_ddot + (1/2)*w_ddot = 0", "\\ddot{z} + \\frac{1}{2} \\ddot{w} = 0"));
         let [text, latex] = printed(&format!("{block} force z = {last};"));
-        assert_eq!((&text[0][..], &latex[0][..]), ("q̈ = 0", "\\ddot{q} = 0"));
-        assert_eq!(text[1], "z̈ = … (too long to write out)");
+        assert_eq!((&text[0][..], &latex[0][..]), ("q_ddot = 0", "\\ddot{q} = 0"));
+        assert_eq!(text[1], "z_ddot = ... (too long to write out)");
         assert_eq!(latex[1], "\\ddot{z} = \\ldots\\text{ (too long to write out)}");
+    }
+}
+
+/// What is printed of a block in ASCII can be read: it prints itself.
+#[test]
+fn what_is_printed_in_ascii_can_be_read() {
+    let bare = "struct S { a, b, c } coordinate q; driven x;";
+    let units = "struct S { y: [1; 4] } coordinate q: 1; driven x: [1; 2];";
+    for (declarations, force) in [
+        (bare, "-a*sin(q)/b"),
+        (bare, "(a + q_dot)^2/(b*c^3)*q"),
+        (bare, "sqrt(a + q^2) - 2^(1/3)*(a*q)^(5/2)/3"),
+        (bare, "-(a - q)*abs(q - t)^3*x_ddot - x_dot^(-2)"),
+        (bare, "exp(-q/2)*(1 + q^2)^(-3/2) + tanh(sin(q)^2)"),
+        (bare, "atan2(a, q)*max(b, -q) - pi*sign(q)/7"),
+        (units, "x_ddot.x*y[1]*cos(q - x.y) - x_dot.y^2/(1 + y[0])"),
+    ] {
+        let block = |force: &str| format!("{declarations} kinetic = q_dot^2/2; force q = {force};");
+        let [first, _] = printed(&block(force));
+        assert!(first[0].is_ascii(), "{first:?}");
+        let right = first[0].strip_prefix("q_ddot = ").unwrap();
+        assert_eq!(printed(&block(right))[0], first, "{force}");
+    }
+    let [first, _] = printed(&format!("{bare} kinetic = q_dot^2/2; potential = a*max(0, q)^3;"));
+    let right = first[0].strip_prefix("q_ddot = ").unwrap();
+    assert_eq!(right, "-3*a*max(0, q)^2*((1 + sign(q))/2)");
+    printed(&format!("{bare} kinetic = q_dot^2/2; force q = {right};"));
+}
+
+/// One name beyond ASCII, and the equations are in Unicode; a comment is no name.
+#[test]
+fn a_block_in_ascii_is_printed_in_ascii() {
+    for (block, expected) in [
+        (
+            "struct P { L, g } coordinate theta; kinetic = L*theta_dot^2/2; potential = -g*cos(theta);",
+            "theta_ddot = -g*sin(theta)/L",
+        ),
+        ("/** α */ struct P { L, g } coordinate x; kinetic = L*x_dot^2/2; potential = g*x^4;", "x_ddot = -4*g*x^3/L"),
+        ("struct P { L, g } coordinate θ; kinetic = L*theta_dot^2/2; potential = -g*cos(θ);", "θ̈ = −g·sin θ/L"),
+        ("struct P { L, g } coordinate x; kinetic = L*ẋ^2/2; potential = g*x^4;", "ẍ = −4·g·x³/L"),
+    ] {
+        assert_eq!(printed(block)[0], [expected]);
     }
 }
