@@ -19,7 +19,7 @@ pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion) -> Ve
             continue;
         }
         if coupled.len() == 1 {
-            lines.push(format!("{} = {}", writer.coordinate(row, 2), writer.sum(acceleration)));
+            lines.push(format!("{} = {}", writer.coordinate(row, 2), writer.side(acceleration)));
             continue;
         }
         let terms: Vec<String> = coupled
@@ -29,7 +29,7 @@ pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion) -> Ve
                 if entry == Graph::ONE { symbol } else { format!("{} {symbol}", writer.coefficient(entry)) }
             })
             .collect();
-        lines.push(format!("{} = {}", terms.join(" + "), writer.sum(motion.forces[row])));
+        lines.push(format!("{} = {}", terms.join(" + "), writer.side(motion.forces[row])));
     }
     lines
 }
@@ -40,6 +40,14 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
+    /// The right-hand side of an equation, without the terms that cancel.
+    fn side(&self, id: Id) -> String {
+        match print::short(self.graph, self.names, id) {
+            Some((graph, id)) => Writer { graph: &graph, names: self.names }.sum(id),
+            None => self.sum(id),
+        }
+    }
+
     /// An expression that nothing follows.
     fn sum(&self, id: Id) -> String {
         match self.graph.node(id) {

@@ -2,6 +2,7 @@
 
 mod articulated;
 mod ast;
+mod cancel;
 mod check;
 mod collect;
 mod derive;

@@ -3,6 +3,7 @@
 //! Those of a block that is written in ASCII are in ASCII, as the language reads them: `theta_ddot = -g*sin(theta)/L`.
 
 use crate::ast::Literal;
+use crate::cancel;
 use crate::check::{Model, Quantity};
 use crate::expr::{Function, Graph, Id, Moment, Node, Symbol};
 use crate::motion::Motion;
@@ -135,6 +136,19 @@ enum Level {
 /// An expression as text.
 pub(crate) fn expression(graph: &Graph, names: &Names, id: Id) -> String {
     write(graph, names, id, Level::Sum)
+}
+
+/// The right-hand side of an equation, in a graph of its own if terms of it cancel.
+pub(crate) fn short(graph: &Graph, names: &Names, id: Id) -> Option<(Graph, Id)> {
+    cancel::shorter(graph, id, |graph, id| expression(graph, names, id).chars().count())
+}
+
+/// The right-hand side of an equation as text.
+fn side(graph: &Graph, names: &Names, id: Id) -> String {
+    match short(graph, names, id) {
+        Some((graph, id)) => expression(&graph, names, id),
+        None => expression(graph, names, id),
+    }
 }
 
 fn write(graph: &Graph, names: &Names, id: Id, level: Level) -> String {
@@ -352,7 +366,7 @@ pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion) -> Ve
         }
         let alone = motion.mass_matrix[row].iter().filter(|&&entry| entry != Graph::ZERO).count() == 1;
         if alone {
-            lines.push(format!("{} = {}", names.acceleration(row), expression(graph, names, acceleration)));
+            lines.push(format!("{} = {}", names.acceleration(row), side(graph, names, acceleration)));
             continue;
         }
         let mut left = String::new();
@@ -374,7 +388,7 @@ pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion) -> Ve
             left.push_str(&sign(names, left.is_empty(), negative));
             left.push_str(&part);
         }
-        lines.push(format!("{left} = {}", expression(graph, names, motion.forces[row])));
+        lines.push(format!("{left} = {}", side(graph, names, motion.forces[row])));
     }
     lines
 }

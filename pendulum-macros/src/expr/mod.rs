@@ -26,7 +26,7 @@ pub(crate) type Terms = BTreeMap<Id, Rational>;
 type Hasher = BuildHasherDefault<DefaultHasher>;
 
 /// All expressions of a block.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Graph {
     nodes: Vec<Node>,
     /// The number of operands in all sums and products.

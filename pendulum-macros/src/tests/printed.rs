@@ -50,6 +50,24 @@ fn what_is_too_long_is_not_written_out() {
     }
 }
 
+/// A term that stands in two brackets with opposite signs is not printed.
+#[test]
+fn terms_cancel() {
+    for (force, expected) in [
+        ("(w + q)*q_dot^2 - w*q_dot^2 + b", "b + q*q_dot^2"),
+        ("(w + b)*sin(q) - w*sin(q) + c*cos(q)", "b*sin(q) + c*cos(q)"),
+        ("sin((w + q)*b - w*b + c)", "sin(c + b*q)"),
+        ("b/((w + q)*q_dot - w*q_dot + c)", "b/(c + q*q_dot)"),
+        // Nothing meets, or what meets makes it longer.
+        ("(w + q)*(b + q_dot) + c", "c + b*(w + q) + q_dot*(w + q)"),
+        ("(w + q)^2*(b + sin(q)) + c", "c + (w + q)^2*(b + sin(q))"),
+    ] {
+        let [text, latex] = printed(&format!("struct S {{ w, b, c }} coordinate q; kinetic = q_dot^2/2; force q = {force};"));
+        assert_eq!(text, [format!("q_ddot = {expected}")], "{force}");
+        assert_eq!(latex[0].contains('w'), expected.contains('w'), "{force}: {latex:?}");
+    }
+}
+
 /// What is printed of a block in ASCII can be read: it prints itself.
 #[test]
 fn what_is_printed_in_ascii_can_be_read() {
