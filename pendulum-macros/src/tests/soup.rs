@@ -44,7 +44,7 @@ fn the_items_survive_a_mistake() {
         "System < 1usize > for M",
         "SplitEnergy < 1usize > for M",
         "fn driven_by",
-        "fn __names (parameters : & M , θ : f64 , x : f64 , y : f64)",
+        "fn __names (parameters : & M , θ : :: core :: primitive :: f64 , x : ",
         "let _ = & parameters . L ;",
     ] {
         assert!(good.contains(item), "{item} in {good}");
