@@ -1,14 +1,14 @@
 //! Expressions: operators by descending precedence, then names, calls and numbers.
 
-use super::Parser;
 use super::foreign::{FOREIGN, method, no_operand};
 use super::token::{checked, comma, end, fragment, identifier, unexpected};
+use super::{Parser, to_the_last};
 use crate::ast::{Expr, ExprKind, Literal};
 use crate::error::Range;
 use crate::number::Rational;
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use syn::ext::IdentExt;
-use syn::parse::{ParseStream, Parser as Syn, Result};
+use syn::parse::{ParseStream, Result};
 use syn::spanned::Spanned;
 use syn::{Lit, Token, bracketed, parenthesized};
 
@@ -180,7 +180,7 @@ impl Parser<'_> {
             end(content)?;
             Ok(result)
         };
-        Syn::parse2(content, tokens)
+        to_the_last(tokens, content)
     }
 
     fn named(&mut self, input: ParseStream) -> Result<Expr> {

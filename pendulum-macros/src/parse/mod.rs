@@ -11,18 +11,18 @@ mod token;
 
 use crate::ast::{Block, Lost, Statement};
 use crate::error::Errors;
-use proc_macro2::{TokenStream, TokenTree};
-use syn::Token;
+use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use syn::parse::{ParseStream, Parser as Syn, Result};
+use syn::{Token, braced};
 use token::drain;
 
 /// Parses the path of the runtime and a block; `None` if not even the struct could be read.
 pub(crate) fn all(input: TokenStream, errors: &mut Errors) -> Option<(TokenStream, Block)> {
     let mut parsed = None;
     let ascii = is_ascii(input.clone());
-    let outcome = Syn::parse2(
-        |input: ParseStream| {
-            let krate = runtime(input)?;
+    let outcome = Syn::parse2(|input: ParseStream| Ok((runtime(input)?, input.parse()?)), input);
+    let outcome = outcome.and_then(|(krate, tokens): (TokenStream, TokenStream)| {
+        to_the_last(tokens, |input| {
             let mut parser =
                 Parser { errors: &mut *errors, sources: 0, depth: 0, barred: false, lost: Lost::default(), begun: None, ascii };
             match parser.block(input) {
@@ -31,9 +31,8 @@ pub(crate) fn all(input: TokenStream, errors: &mut Errors) -> Option<(TokenStrea
             }
             drain(input);
             Ok(())
-        },
-        input,
-    );
+        })
+    });
     // What recovery has left in some bracket has been reported already.
     if let Err(error) = outcome
         && errors.is_empty()
@@ -61,6 +60,23 @@ fn runtime(input: ParseStream) -> Result<TokenStream> {
     }
     input.parse::<Token![;]>()?;
     Ok(path)
+}
+
+/// Parses tokens so that what is missing at their end is missing at the last of them, and not at the whole macro.
+fn to_the_last<R>(tokens: TokenStream, parse: impl FnOnce(ParseStream) -> Result<R>) -> Result<R> {
+    let last = match tokens.clone().into_iter().last() {
+        Some(TokenTree::Group(group)) => group.span_close(),
+        Some(token) => token.span(),
+        None => Span::call_site(),
+    };
+    let mut group = Group::new(Delimiter::Brace, tokens);
+    group.set_span(last);
+    let parse = |input: ParseStream| {
+        let content;
+        braced!(content in input);
+        parse(&content)
+    };
+    Syn::parse2(parse, TokenTree::Group(group).into())
 }
 
 struct Parser<'a> {

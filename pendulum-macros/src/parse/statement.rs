@@ -42,6 +42,11 @@ impl Parser<'_> {
                 _ => return Err(unknown_statement(input, &word)),
             }
         };
+        if input.is_empty() {
+            // All of the statement has been read.
+            self.errors.at(input.span(), "`;` is missing after this; end the last statement with `;`");
+            return Ok(statement);
+        }
         if !input.peek(Token![;]) {
             self.begun = Some(statement).filter(|statement| matches!(statement, Statement::Coordinate { .. }));
             return Err(unexpected(input, "`;`"));

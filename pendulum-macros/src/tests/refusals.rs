@@ -36,7 +36,7 @@ const CASES: &[(&str, &str)] = &[
     ("kinetic = m*L^2*θ̇^2; potential = __m;",                  "names that begin with `__` are reserved; choose another name"),
     ("kinetic = m*L^2*θ̇^2; potential = m**2;",                 "`**` is not an operator; write `^`"),
     ("kinetic = m*L^2*θ̇^2; potential = |θ;",                   "this `|` is not closed; write `|u|`"),
-    ("kinetic = m*L^2*θ̇^2; potential = m*g",                   "the input ends too early; expected `;`"),
+    ("kinetic = m*L^2*θ̇^2; potential = m*g",                   "`;` is missing after this; end the last statement with `;`"),
     ("kinetic = m*L^2*θ̇^2 potential = m*g;",                   "`;` is missing before `potential`; end the statement above with `;`"),
     ("kinetic = m*L^2*θ̇^2; potental = m*g;",                   "unknown statement `potental`; did you mean `potential`?"),
     ("kinetic = m*L^2*θ̇^2; lagrangian = m*g;",                 "`lagrangian` is kinetic minus potential energy already; write either one or the other"),
