@@ -44,8 +44,8 @@ pub(crate) struct Field {
 pub(crate) enum Kind {
     /// A scalar with or without a unit.
     Scalar(Option<Expr>),
-    /// `[unit; length]`.
-    Array { unit: Expr, length: Expr },
+    /// `[unit; length]`, where `_` is no unit.
+    Array { unit: Option<Expr>, length: Expr },
     /// `body`.
     Body(Range),
 }

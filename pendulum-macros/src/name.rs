@@ -39,6 +39,30 @@ pub(crate) fn read(text: &str) -> Name {
     Name { base, dots }
 }
 
+/// A name without the accents that someone took for dots; `None` if it has none.
+pub(crate) fn unaccented(text: &str) -> Option<String> {
+    let marks = ['\u{300}', '\u{301}'];
+    let plain = |letter: char| match ACCENTED.iter().find(|row| row.0.contains(letter)) {
+        Some(&(_, plain)) => plain,
+        None => letter,
+    };
+    let result: String = text.chars().filter(|letter| !marks.contains(letter)).map(plain).collect();
+    Some(result).filter(|result| result != text)
+}
+
+/// The spellings of a velocity: a dot over a letter, if the name is one, and the suffix.
+pub(crate) fn dotted(text: &str) -> String {
+    let suffixed = format!("`{}_dot`", read(text).base);
+    let mut letters = text.chars();
+    match letters.next() {
+        Some(letter) if letters.clone().all(|letter| letter.is_ascii_digit()) => {
+            let composed = compose(&letter.to_string(), 1).map_or_else(|| format!("{letter}\u{307}"), String::from);
+            format!("`{composed}{}` or {suffixed}", letters.as_str())
+        }
+        _ => suffixed,
+    }
+}
+
 /// Whether a word is the English name of a Greek letter that LaTeX knows by it.
 pub(crate) fn is_greek(word: &str) -> bool {
     GREEK.iter().any(|row| row.1 == word) && word != "omicron"
@@ -110,6 +134,17 @@ const DOTTED: &[(char, char, u8)] = &[
     ('Ä', 'A', 2), ('Ë', 'E', 2), ('Ḧ', 'H', 2), ('Ï', 'I', 2), ('Ö', 'O', 2), ('Ü', 'U', 2), ('Ẅ', 'W', 2), ('Ẍ', 'X', 2), ('Ÿ', 'Y', 2),
     ('ä', 'a', 2), ('ë', 'e', 2), ('ḧ', 'h', 2), ('ï', 'i', 2), ('ö', 'o', 2), ('ẗ', 't', 2), ('ü', 'u', 2), ('ẅ', 'w', 2), ('ẍ', 'x', 2), ('ÿ', 'y', 2),
     ('Ϊ', 'Ι', 2), ('ϊ', 'ι', 2), ('Ϋ', 'Υ', 2), ('ϋ', 'υ', 2),
+];
+
+/// Letters with an acute or a grave accent, by the letter without.
+#[rustfmt::skip]
+const ACCENTED: &[(&str, char)] = &[
+    ("άὰ", 'α'), ("έὲ", 'ε'), ("ήὴ", 'η'), ("ίὶ", 'ι'), ("όὸ", 'ο'), ("ύὺ", 'υ'), ("ώὼ", 'ω'),
+    ("ΆᾺ", 'Α'), ("ΈῈ", 'Ε'), ("ΉῊ", 'Η'), ("ΊῚ", 'Ι'), ("ΌῸ", 'Ο'), ("ΎῪ", 'Υ'), ("ΏῺ", 'Ω'),
+    ("áà", 'a'), ("ć", 'c'), ("éè", 'e'), ("ǵ", 'g'), ("íì", 'i'), ("ḱ", 'k'), ("ĺ", 'l'), ("ḿ", 'm'), ("ńǹ", 'n'),
+    ("óò", 'o'), ("ṕ", 'p'), ("ŕ", 'r'), ("ś", 's'), ("úù", 'u'), ("ẃẁ", 'w'), ("ýỳ", 'y'), ("ź", 'z'),
+    ("ÁÀ", 'A'), ("Ć", 'C'), ("ÉÈ", 'E'), ("Ǵ", 'G'), ("ÍÌ", 'I'), ("Ḱ", 'K'), ("Ĺ", 'L'), ("Ḿ", 'M'), ("ŃǸ", 'N'),
+    ("ÓÒ", 'O'), ("Ṕ", 'P'), ("Ŕ", 'R'), ("Ś", 'S'), ("ÚÙ", 'U'), ("ẂẀ", 'W'), ("ÝỲ", 'Y'), ("Ź", 'Z'),
 ];
 
 /// The Greek alphabet.

@@ -64,7 +64,7 @@ pub(super) fn quantity<'a>(
 ) -> Quantity<'a> {
     let (unit, length) = match shape {
         Shape::Kind(Kind::Scalar(unit)) => (unit.as_ref(), None),
-        Shape::Kind(Kind::Array { unit, length }) => (Some(unit), Some(length)),
+        Shape::Kind(Kind::Array { unit, length }) => (unit.as_ref(), Some(length)),
         Shape::Kind(Kind::Body(_)) => (None, None),
         Shape::Family(length, unit) => (unit, length),
     };

@@ -1,6 +1,7 @@
 //! Names to symbols: what every name of a block means, and every name that means nothing.
 
 mod declare;
+mod elsewhere;
 mod text;
 mod walk;
 
@@ -10,6 +11,7 @@ use crate::name::{self, Name};
 use crate::number::Rational;
 use crate::unit::{self, Dimension};
 use declare::{Declared, Shape, quantity, twice};
+pub(crate) use elsewhere::constant;
 use proc_macro2::Ident;
 use std::collections::BTreeMap;
 pub(crate) use text::text;

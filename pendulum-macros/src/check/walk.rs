@@ -1,9 +1,10 @@
 //! A walk over all expressions: names that nobody declared, functions with the wrong number of arguments.
 
-use super::{FUNCTIONS, Meaning, Model, plain, unknown};
+use super::{FUNCTIONS, Meaning, Model, constant, elsewhere, plain, text, unknown};
 use crate::ast::{Binder, Expr, ExprKind, ForceIndex};
 use crate::error::{Errors, Range};
 use crate::name::{self, Name};
+use crate::unit::Dimension;
 use proc_macro2::Ident;
 
 /// A walk over all expressions that reports what no one declared.
@@ -106,7 +107,7 @@ impl Walk<'_, '_, '_> {
                 self.expr(exponent);
             }
             ExprKind::Call(name, items) => {
-                self.function(name, items.len(), expr.range);
+                self.function(name, items, expr.range);
                 for item in items {
                     self.expr(item);
                 }
@@ -175,10 +176,9 @@ impl Walk<'_, '_, '_> {
                     plain(ident)
                 ),
             ),
-            (_, Some(Meaning::Coordinate(_))) if 1 < dots => self.errors.at(
-                ident.span(),
-                format!("`{ident}` is an acceleration, and a Lagrangian has none; only driven inputs have a second derivative"),
-            ),
+            (_, Some(Meaning::Coordinate(_))) if 1 < dots => {
+                self.errors.at(ident.span(), acceleration(&ident.to_string()));
+            }
             (_, Some(Meaning::Input(_))) if 2 < dots => {
                 self.errors.at(ident.span(), format!("`{ident}` is a third derivative; driven inputs have two"));
             }
@@ -188,13 +188,47 @@ impl Walk<'_, '_, '_> {
                 self.errors.at(ident.span(), format!("`{ident}` is a function; write `{ident}(…)`"));
             }
             (_, None) => {
-                let known = self.known();
-                self.errors.at(ident.span(), unknown(&ident.to_string(), known.iter().map(String::as_str)));
+                let message = self.unknown(&ident.to_string());
+                self.errors.at(ident.span(), message);
             }
         }
     }
 
-    fn function(&mut self, ident: &Ident, count: usize, range: Range) {
+    /// What is wrong with a name that nobody declared.
+    fn unknown(&self, text: &str) -> String {
+        let moving = |stem: &str| {
+            let Name { base, dots } = name::read(stem);
+            self.model.names.get(&base).filter(|meaning| dots == 0 && !matches!(meaning, Meaning::Parameter(_)))
+        };
+        if let Some(plain) = name::unaccented(text)
+            && moving(&plain).is_some()
+        {
+            return format!("`{text}` has an accent, and a derivative has a dot; write {}", name::dotted(&plain));
+        }
+        for suffix in ["ddot", "dot"] {
+            if let Some(stem) = text.strip_suffix(suffix)
+                && let Some(meaning) = moving(stem)
+            {
+                return match meaning {
+                    Meaning::Coordinate(_) if suffix == "ddot" => acceleration(text),
+                    _ => format!("unknown name `{text}`; did you mean `{stem}_{suffix}`?"),
+                };
+            }
+        }
+        let known = self.known();
+        if !known.iter().any(|known| known.eq_ignore_ascii_case(text)) {
+            if Dimension::of(text).is_some() {
+                return format!("unknown name `{text}`; units stand in declarations only, as in `g: m/s^2 = 9.81`");
+            }
+            if let Some(constant) = constant(text) {
+                return format!("unknown name `{text}`; write `{constant}`");
+            }
+        }
+        unknown(text, known.iter().map(String::as_str))
+    }
+
+    fn function(&mut self, ident: &Ident, items: &[Expr], range: Range) {
+        let count = items.len();
         let Name { base, .. } = name::read(&ident.to_string());
         if let Some(Meaning::Let(index)) = self.model.names.get(&base)
             && let Some(arguments) = &self.model.lets[*index].arguments
@@ -205,7 +239,10 @@ impl Walk<'_, '_, '_> {
             return;
         }
         if let Some(&(_, expected)) = FUNCTIONS.iter().find(|(function, _)| ident == function) {
-            if expected != count {
+            if let ("dot", [a, b]) = (ident.to_string().as_str(), items) {
+                let product = format!("inner({}, {})", text(a), text(b));
+                self.errors.at(range, format!("`dot` is the derivative of one argument; write `{product}` for a scalar product"));
+            } else if expected != count {
                 self.errors.at(range, format!("`{ident}` takes {}; {count} stand here", plural(expected)));
             }
             return;
@@ -226,9 +263,11 @@ impl Walk<'_, '_, '_> {
                 .filter(|definition| definition.arguments.is_some())
                 .map(|definition| definition.name.to_string());
             let known: Vec<String> = FUNCTIONS.iter().map(|(function, _)| (*function).to_owned()).chain(lets).collect();
-            let message = match name::nearest(&ident.to_string(), known.iter().map(String::as_str)) {
-                Some(near) => format!("unknown function `{ident}`; did you mean `{near}`?"),
-                None => format!("unknown function `{ident}`; define it with `let {ident}(p) = …;`"),
+            let nearest = || name::nearest(&ident.to_string(), known.iter().map(String::as_str));
+            let message = match (elsewhere::function(&ident.to_string(), items), nearest()) {
+                (Some(call), _) => format!("unknown function `{ident}`; write `{call}`"),
+                (None, Some(near)) => format!("unknown function `{ident}`; did you mean `{near}`?"),
+                (None, None) => format!("unknown function `{ident}`; define it with `let {ident}(p) = …;`"),
             };
             self.errors.at(ident.span(), message);
         }
@@ -248,6 +287,10 @@ impl Walk<'_, '_, '_> {
 /// The functions of the table that take scalars to a scalar.
 fn scalar_functions() -> impl Iterator<Item = &'static (&'static str, usize)> {
     FUNCTIONS.iter().take_while(|(function, _)| *function != "dot")
+}
+
+fn acceleration(name: &str) -> String {
+    format!("`{name}` is an acceleration, and a Lagrangian has none; only driven inputs have a second derivative")
 }
 
 fn plural(count: usize) -> String {

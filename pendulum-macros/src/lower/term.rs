@@ -13,16 +13,39 @@ impl Lower<'_, '_, '_, '_> {
             Value::Scalar(id) => Some(id),
             Value::Bad => None,
             other => {
-                self.wrong(
-                    expr,
-                    &format!(
-                        "`{}` is {}, but a scalar is needed here; write `inner(u, v)`, `|u|` or a component",
-                        check::text(expr),
-                        other.kind()
-                    ),
-                );
+                if self.vector_product(expr).is_none() {
+                    self.wrong(
+                        expr,
+                        &format!(
+                            "`{}` is {}, but a scalar is needed here; write `inner(u, v)`, `|u|` or a component",
+                            check::text(expr),
+                            other.kind()
+                        ),
+                    );
+                }
                 None
             }
+        }
+    }
+
+    /// Reports an expression that is the product of two plane vectors where a scalar is meant.
+    fn vector_product(&mut self, expr: &Expr) -> Option<Value> {
+        match &expr.kind {
+            ExprKind::Negative(inner) => self.vector_product(inner),
+            ExprKind::Product(items) => {
+                let factors = items.iter().map(|(_, item)| item);
+                let vectors: Vec<String> = factors
+                    .filter(|item| matches!(self.expr(item), Value::Plane { complex: false, .. }))
+                    .map(check::text)
+                    .collect();
+                let [a, b] = vectors.as_slice() else { return None };
+                let message = format!(
+                    "`{}` is the complex product of two plane vectors, but a scalar is needed here; write `inner({a}, {b})`",
+                    check::text(expr)
+                );
+                Some(self.wrong(expr, &message))
+            }
+            _ => None,
         }
     }
 
@@ -139,14 +162,25 @@ impl Lower<'_, '_, '_, '_> {
 
     pub(super) fn sum(&mut self, items: &[(bool, Expr)]) -> Value {
         let mut total = None;
-        for (minus, item) in items {
+        for (index, (minus, item)) in items.iter().enumerate() {
             let mut value = self.expr(item);
             if *minus {
                 value = self.map(value, Graph::negative);
             }
             total = Some(match total {
                 None => value,
-                Some(sum) => self.add(sum, value, item),
+                Some(sum) => {
+                    let product = match (&sum, &value) {
+                        (Value::Plane { complex: false, .. }, Value::Scalar(scalar))
+                        | (Value::Scalar(scalar), Value::Plane { complex: false, .. })
+                            if *scalar != Graph::ZERO =>
+                        {
+                            items[..=index].iter().find_map(|(_, item)| self.vector_product(item))
+                        }
+                        _ => None,
+                    };
+                    product.unwrap_or_else(|| self.add(sum, value, item))
+                }
             });
         }
         total.unwrap_or(Value::Bad)
@@ -154,8 +188,18 @@ impl Lower<'_, '_, '_, '_> {
 
     pub(super) fn product(&mut self, items: &[(bool, Expr)]) -> Value {
         let mut total = Value::Scalar(Graph::ONE);
+        let mut vector: Option<&Expr> = None;
         for (index, (over, item)) in items.iter().enumerate() {
             let value = self.expr(item);
+            if let Value::Space(_) = value {
+                if let (Value::Space(_), Some(left), false) = (&total, vector, *over) {
+                    let (a, b) = (check::text(left), check::text(item));
+                    let message =
+                        format!("the product of two space vectors is ambiguous; write `inner({a}, {b})` or `cross({a}, {b})`");
+                    return self.wrong(item, &message);
+                }
+                vector = Some(item);
+            }
             total = if *over {
                 self.divide(total, value, item)
             } else if index == 0 {
@@ -235,6 +279,13 @@ impl Lower<'_, '_, '_, '_> {
     }
 
     pub(super) fn scalar_call(&mut self, name: &str, items: &[Expr]) -> Value {
+        if !check::FUNCTIONS.contains(&(name, items.len())) {
+            // The call has been reported, and the kind of its arguments is open.
+            for item in items {
+                self.expr(item);
+            }
+            return Value::Bad;
+        }
         // What is wrong with one argument is wrong with the call.
         let values: Option<Vec<Id>> = items.iter().map(|item| self.scalar(item)).collect();
         let Some(values) = values else { return Value::Bad };

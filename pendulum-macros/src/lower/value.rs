@@ -224,7 +224,8 @@ impl Lower<'_, '_, '_, '_> {
                 _ => self.wrong(exponent, "a complex number has whole powers from 0 to 64 here; write `exp(i*φ)` for others"),
             },
             other => {
-                let message = format!("`{}` is {}, and only scalars have powers; write `|u|^2`", check::text(base), other.kind());
+                let text = check::text(base);
+                let message = format!("`{text}` is {}, and only scalars have powers; write `|{text}|^2`", other.kind());
                 self.wrong(base, &message)
             }
         }

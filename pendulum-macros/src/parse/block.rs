@@ -2,9 +2,10 @@
 
 use super::Parser;
 use super::token::{end, identifier, skip, unexpected};
-use crate::ast::{Block, ExprKind, Field, Kind, Lost};
+use crate::ast::{Block, Expr, ExprKind, Field, Kind, Literal, Lost};
+use crate::check::text;
 use crate::error::Range;
-use proc_macro2::Ident;
+use proc_macro2::{Ident, TokenStream};
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Result};
 use syn::spanned::Spanned;
@@ -45,7 +46,7 @@ impl Parser<'_> {
                 Err(error) => {
                     self.errors.push(error);
                     // The number of coordinates is part of the type: without one, every use of the system would be a mistake.
-                    statements.extend(self.begun.take());
+                    statements.append(&mut self.begun);
                     match word.as_str() {
                         "kinetic" | "potential" | "lagrangian" | "dissipation" | "force" => self.lost.energies = true,
                         _ => self.lost = Lost { declarations: true, energies: true },
@@ -67,13 +68,8 @@ impl Parser<'_> {
         }
         attributes.retain(|attribute| !conditional(attribute));
         let _: Visibility = input.parse()?;
-        let name = identifier(input, "the name of a parameter")?;
-        let kind = if input.peek(Token![:]) {
-            input.parse::<Token![:]>()?;
-            self.kind(input)?
-        } else {
-            Kind::Scalar(None)
-        };
+        let name = self.declared(input, "the name of a parameter")?;
+        let kind = self.declared_kind(input, &name)?;
         let default = if input.peek(Token![=]) {
             input.parse::<Token![=]>()?;
             Some(self.expr(input)?)
@@ -89,25 +85,75 @@ impl Parser<'_> {
         Ok(Field { attributes, name, kind, default })
     }
 
+    /// What stands after the name of a parameter or of a driven input: a colon and a kind, or nothing.
+    pub(super) fn declared_kind(&mut self, input: ParseStream, name: &Ident) -> Result<Kind> {
+        if input.peek(syn::token::Bracket) {
+            let brackets = Range::from(input.span());
+            let content;
+            bracketed!(content in input);
+            let length = content.parse::<TokenStream>()?.to_string();
+            let unit = if input.peek(Token![:]) {
+                input.parse::<Token![:]>()?;
+                self.unit(input)?.map_or_else(|| "_".to_owned(), |unit| text(&unit))
+            } else {
+                "_".to_owned()
+            };
+            let message = format!("the length stands with the unit; write `{name}: [{unit}; {length}]`");
+            return Err(brackets.error(message));
+        }
+        if !input.peek(Token![:]) {
+            return Ok(Kind::Scalar(None));
+        }
+        input.parse::<Token![:]>()?;
+        self.kind(input)
+    }
+
     pub(super) fn kind(&mut self, input: ParseStream) -> Result<Kind> {
         if input.peek(syn::token::Bracket) {
             let content;
             bracketed!(content in input);
-            let unit = self.expr(&content)?;
+            if content.peek(Token![;]) {
+                return Err(Range::from(content.span()).error(unit_missing(&content.to_string().replace(';', " ").trim())));
+            }
+            let unit = self.unit(&content)?;
             if !content.peek(Token![;]) {
-                return Err(
-                    Range::from(content.span()).error("a length is missing; write `[m; 2]` for a vector, `[kg; 5]` for a family")
-                );
+                return Err(no_length(&content, unit.as_ref()));
             }
             content.parse::<Token![;]>()?;
             let length = self.expr(&content)?;
             end(&content)?;
             return Ok(Kind::Array { unit, length });
         }
-        let unit = self.expr(input)?;
-        match &unit.kind {
-            ExprKind::Name(name) if name == "body" => Ok(Kind::Body(unit.range)),
-            _ => Ok(Kind::Scalar(Some(unit))),
+        match self.unit(input)? {
+            Some(Expr { kind: ExprKind::Name(name), range, .. }) if name == "body" => Ok(Kind::Body(range)),
+            unit => Ok(Kind::Scalar(unit)),
         }
     }
+
+    /// A unit, or `_` where none is known.
+    fn unit(&mut self, input: ParseStream) -> Result<Option<Expr>> {
+        if input.peek(Token![_]) {
+            input.parse::<Token![_]>()?;
+            return Ok(None);
+        }
+        self.quantity(input).map(Some)
+    }
+}
+
+/// What is wrong between brackets that hold a unit without a length, or a length without a unit.
+fn no_length(content: ParseStream, unit: Option<&Expr>) -> syn::Error {
+    match unit {
+        Some(Expr { kind: ExprKind::Number(Literal::Exact(length)), range, .. }) if content.is_empty() => {
+            range.error(unit_missing(&length.to_string()))
+        }
+        Some(unit) if content.peek(Token![,]) => {
+            let message = format!("all components have one unit; write `[{}; 2]` for a vector", text(unit));
+            Range::from(content.span()).error(message)
+        }
+        _ => Range::from(content.span()).error("a length is missing; write `[m; 2]` for a vector, `[kg; 5]` for a family"),
+    }
+}
+
+fn unit_missing(length: &str) -> String {
+    format!("a unit is missing; write `[m; {length}]`, or `[_; {length}]` for a vector without a unit")
 }

@@ -1,12 +1,13 @@
 //! Expressions: operators by descending precedence, then names, calls and numbers.
 
-use super::foreign::{FOREIGN, method, no_operand};
+use super::foreign::{FOREIGN, UNIT, method, no_condition, path};
 use super::token::{checked, comma, end, fragment, identifier, unexpected};
 use super::{Parser, to_the_last};
 use crate::ast::{Expr, ExprKind, Literal};
 use crate::error::Range;
 use crate::number::Rational;
 use proc_macro2::{Ident, TokenStream, TokenTree};
+use quote::ToTokens;
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Result};
 use syn::spanned::Spanned;
@@ -17,6 +18,13 @@ const DEPTH: usize = 128;
 
 impl Parser<'_> {
     pub(super) fn expr(&mut self, input: ParseStream) -> Result<Expr> {
+        let expr = self.expr_in(input, false)?;
+        no_condition(input)?;
+        Ok(expr)
+    }
+
+    /// A unit is written as an expression is.
+    pub(super) fn quantity(&mut self, input: ParseStream) -> Result<Expr> {
         self.expr_in(input, false)
     }
 
@@ -89,6 +97,7 @@ impl Parser<'_> {
         if !input.peek(Token![^]) {
             return Ok(base);
         }
+        self.no_powered_function(input, &base)?;
         input.parse::<Token![^]>()?;
         self.depth += 1;
         let exponent = if DEPTH < self.depth {
@@ -124,7 +133,7 @@ impl Parser<'_> {
                 break;
             }
         }
-        no_operand(input, &expr, self.barred)?;
+        self.no_operand(input, &expr)?;
         Ok(expr)
     }
 
@@ -153,6 +162,7 @@ impl Parser<'_> {
         if input.peek(Token![|]) {
             let open = input.parse::<Token![|]>()?;
             let inner = self.expr_in(input, true)?;
+            no_condition(input)?;
             if !input.peek(Token![|]) {
                 return Err(Range::from(open.span()).error("this `|` is not closed; write `|u|`"));
             }
@@ -162,6 +172,15 @@ impl Parser<'_> {
         }
         if input.peek(Ident::peek_any) {
             return self.named(input);
+        }
+        if input.peek(Token![::]) {
+            return Err(path(input, None));
+        }
+        if input.peek(Token![.]) && input.peek2(Lit) {
+            let dot = Range::from(input.parse::<Token![.]>()?.span());
+            let digits: Lit = input.parse()?;
+            let range = dot.to(digits.span().into());
+            return Err(range.error(format!("a number begins with a digit; write `0.{}`", digits.to_token_stream())));
         }
         if input.is_empty() {
             return Err(Range::from(input.span()).error("an expression is missing here"));
@@ -188,6 +207,9 @@ impl Parser<'_> {
         checked(&name)?;
         if let Some(row) = FOREIGN.iter().find(|row| name == row.0) {
             return Err(Range::from(name.span()).error(format!("`{name}` is Rust, which has no place in a formula; {}", row.1)));
+        }
+        if input.peek(Token![::]) {
+            return Err(path(input, Some(&name)));
         }
         let start = Range::from(name.span());
         if !input.peek(syn::token::Paren) {
@@ -245,6 +267,8 @@ impl Parser<'_> {
         if !suffix.is_empty() {
             let message = if suffix == "f32" || suffix == "f64" {
                 format!("numbers here are exact and have no suffix; write `{digits}`")
+            } else if self.is_unit(Some(&suffix), input) {
+                UNIT.to_owned()
             } else {
                 format!("there is no implicit multiplication; write `{digits}*{suffix}`")
             };

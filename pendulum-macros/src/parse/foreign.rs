@@ -1,14 +1,17 @@
 //! What has no place in a formula, and what to write instead.
 
+use super::Parser;
 use super::statement::STATEMENTS;
 use super::token::fragment;
 use crate::ast::{Expr, ExprKind};
-use crate::check::{FUNCTIONS, text};
+use crate::check::{FUNCTIONS, constant, text};
 use crate::error::Range;
+use crate::name;
+use crate::unit::Dimension;
 use proc_macro2::{Delimiter, Ident, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Result};
-use syn::{Lit, Token};
+use syn::{Lifetime, Lit, Token, parenthesized};
 
 /// Words that begin Rust expressions, and what to write instead.
 #[rustfmt::skip]
@@ -23,33 +26,137 @@ pub(super) const FOREIGN: &[(&str, &str)] = &[
     ("move", "leave it out"),
 ];
 
-/// Two operands side by side: there is no implicit multiplication.
-pub(super) fn no_operand(input: ParseStream, left: &Expr, barred: bool) -> Result<()> {
-    if input.peek(Token![as]) {
-        return Err(Range::from(input.span()).error("`as` is Rust, which has no place in a formula; leave the type out"));
-    }
-    if fragment(input).is_some()
-        || input.peek(Token![|]) && !barred
-        || input.peek(Ident::peek_any) && !input.peek(Token![in])
-        || input.peek(Lit) && !input.peek(Token![-])
-        || input.peek(syn::token::Paren)
-    {
-        let token = input.fork().parse::<TokenTree>()?;
-        let right = Range::from(token.span());
-        if STATEMENTS.iter().any(|word| token.to_string() == *word) {
-            return Err(right.error(format!("`;` is missing before `{token}`; end the statement above with `;`")));
+/// What to do about a unit in a formula.
+pub(super) const UNIT: &str = "a number in a formula has no unit; units stand in declarations only, as in `g: m/s^2 = 9.81`";
+
+impl Parser<'_> {
+    /// Two operands side by side: there is no implicit multiplication.
+    pub(super) fn no_operand(&self, input: ParseStream, left: &Expr) -> Result<()> {
+        if input.peek(Token![as]) {
+            return Err(Range::from(input.span()).error("`as` is Rust, which has no place in a formula; leave the type out"));
         }
-        return Err(match (&left.kind, &token) {
-            (_, TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis => match &left.kind {
-                ExprKind::Name(_) | ExprKind::Number(_) => {
-                    Range::from(group.span_open()).error("there is no implicit multiplication; write `*` before `(`")
+        if let (ExprKind::Name(name), true) = (&left.kind, input.peek(Lifetime)) {
+            let message = format!("`'` is no derivative; write {}", name::dotted(&name.to_string()));
+            return Err(Range::from(input.span()).error(message));
+        }
+        if fragment(input).is_some()
+            || input.peek(Token![|]) && !self.barred
+            || input.peek(Ident::peek_any) && !input.peek(Token![in])
+            || input.peek(Lit) && !input.peek(Token![-])
+            || input.peek(syn::token::Paren)
+        {
+            let token = input.fork().parse::<TokenTree>()?;
+            let right = Range::from(token.span());
+            if STATEMENTS.iter().any(|word| token.to_string() == *word) {
+                return Err(right.error(format!("`;` is missing before `{token}`; end the statement above with `;`")));
+            }
+            return Err(match (&left.kind, &token) {
+                (_, TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis => match &left.kind {
+                    ExprKind::Name(_) | ExprKind::Number(_) => {
+                        Range::from(group.span_open()).error("there is no implicit multiplication; write `*` before `(`")
+                    }
+                    _ => Range::from(group.span_open()).error("an operator is missing before `(`; write `*` to multiply"),
+                },
+                (ExprKind::Name(name), _) if self.is_function(name) => {
+                    let argument = match token {
+                        TokenTree::Ident(_) | TokenTree::Literal(_) if FUNCTIONS.contains(&(&name.to_string(), 1)) => {
+                            token.to_string()
+                        }
+                        _ => "…".to_owned(),
+                    };
+                    right.error(format!("the argument of `{name}` stands in parentheses; write `{name}({argument})`"))
                 }
-                _ => Range::from(group.span_open()).error("an operator is missing before `(`; write `*` to multiply"),
-            },
-            _ => right.error(format!("there is no implicit multiplication; write `*` before `{token}`")),
-        });
+                (ExprKind::Number(_), _) if self.is_unit(None, input) => right.error(UNIT),
+                _ => right.error(format!("there is no implicit multiplication; write `*` before `{token}`")),
+            });
+        }
+        Ok(())
+    }
+
+    /// The power of a function before its argument, as in `cos^2(θ)`.
+    pub(super) fn no_powered_function(&mut self, input: ParseStream, base: &Expr) -> Result<()> {
+        let ExprKind::Name(name) = &base.kind else { return Ok(()) };
+        if !self.is_function(name) {
+            return Ok(());
+        }
+        let ahead = input.fork();
+        ahead.parse::<Token![^]>()?;
+        let minus = if ahead.peek(Token![-]) { ahead.parse::<TokenTree>()?.to_string() } else { String::new() };
+        let Ok(power) = ahead.parse::<TokenTree>().map(|power| minus + &power.to_string()) else { return Ok(()) };
+        let (argument, last) = if ahead.peek(syn::token::Paren) {
+            let content;
+            let parens = parenthesized!(content in ahead);
+            (self.expr(&content).map_or_else(|_| "…".to_owned(), |argument| text(&argument)), parens.span.close())
+        } else if ahead.peek(syn::Ident) {
+            let argument: Ident = ahead.parse()?;
+            (argument.to_string(), argument.span())
+        } else {
+            return Ok(());
+        };
+        let inverse = format!("a{name}");
+        let instead = if power == "-1" && FUNCTIONS.contains(&(inverse.as_str(), 1)) {
+            format!("`{inverse}({argument})`, or `1/{name}({argument})`")
+        } else {
+            format!("`{name}({argument})^{power}`")
+        };
+        let message = format!("a function is raised to a power after its argument; write {instead}");
+        Err(base.range.to(last.into()).error(message))
+    }
+
+    /// Whether a unit begins behind a number, with a `suffix` or at the next token: one of its names at least is nothing else.
+    pub(super) fn is_unit(&self, suffix: Option<&str>, input: ParseStream) -> bool {
+        let ahead = input.fork();
+        let mut name = suffix.map(str::to_owned);
+        loop {
+            let next = match name.take() {
+                Some(name) => name,
+                None => match ahead.parse::<TokenTree>() {
+                    Ok(TokenTree::Ident(ident)) => ident.to_string(),
+                    Ok(TokenTree::Punct(sign)) if matches!(sign.as_char(), '*' | '/' | '^') => continue,
+                    Ok(TokenTree::Literal(_)) => continue,
+                    _ => return false,
+                },
+            };
+            match (Dimension::of(&next), self.is_declared(&next)) {
+                (None, _) => return false,
+                (Some(_), false) => return true,
+                (Some(_), true) => {}
+            }
+        }
+    }
+
+    fn is_function(&self, name: &Ident) -> bool {
+        FUNCTIONS.iter().any(|row| name == row.0) && !self.is_declared(&name.to_string())
+    }
+}
+
+/// A comparison, which Rust has and formulas have not.
+pub(super) fn no_condition(input: ParseStream) -> Result<()> {
+    let equal = input.peek(Token![==]) || input.peek(Token![!=]);
+    if equal || input.peek(Token![<]) || input.peek(Token![>]) || input.peek(Token![&&]) || input.peek(Token![?]) {
+        let sign = input.fork().parse::<TokenTree>()?;
+        return Err(Range::from(sign.span())
+            .error("a formula has no conditions; write `max`, `min`, `abs` or `sign` to tell cases apart, as in `max(0, θ)`"));
     }
     Ok(())
+}
+
+/// A path, and what to write instead.
+pub(super) fn path(input: ParseStream, first: Option<&Ident>) -> syn::Error {
+    let start = first.map_or_else(|| input.span(), Ident::span);
+    let (mut text, mut last) = (first.map(Ident::to_string).unwrap_or_default(), (String::new(), start));
+    while input.parse::<Token![::]>().is_ok()
+        && let Ok(name) = input.call(Ident::parse_any)
+    {
+        text = format!("{text}::{name}");
+        last = (name.to_string(), name.span());
+    }
+    let instead = match constant(&last.0) {
+        Some(constant) => format!("`{constant}`"),
+        None if FUNCTIONS.iter().any(|row| row.0 == last.0) => format!("`{}(…)`", last.0),
+        None => "a number, or declare a parameter".to_owned(),
+    };
+    Range { first: start, last: last.1 }.error(format!("`{text}` is Rust, which has no place in a formula; write {instead}"))
 }
 
 /// A method call, and what to write instead.

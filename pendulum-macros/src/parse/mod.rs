@@ -11,10 +11,12 @@ mod token;
 
 use crate::ast::{Block, Lost, Statement};
 use crate::error::Errors;
-use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
+use crate::name;
+use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
+use std::collections::BTreeSet;
 use syn::parse::{ParseStream, Parser as Syn, Result};
 use syn::{Token, braced};
-use token::drain;
+use token::{drain, identifier};
 
 /// Parses the path of the runtime and a block; `None` if not even the struct could be read.
 pub(crate) fn all(input: TokenStream, errors: &mut Errors) -> Option<(TokenStream, Block)> {
@@ -23,8 +25,16 @@ pub(crate) fn all(input: TokenStream, errors: &mut Errors) -> Option<(TokenStrea
     let outcome = Syn::parse2(|input: ParseStream| Ok((runtime(input)?, input.parse()?)), input);
     let outcome = outcome.and_then(|(krate, tokens): (TokenStream, TokenStream)| {
         to_the_last(tokens, |input| {
-            let mut parser =
-                Parser { errors: &mut *errors, sources: 0, depth: 0, barred: false, lost: Lost::default(), begun: None, ascii };
+            let mut parser = Parser {
+                errors: &mut *errors,
+                sources: 0,
+                depth: 0,
+                barred: false,
+                lost: Lost::default(),
+                begun: Vec::new(),
+                declared: BTreeSet::new(),
+                ascii,
+            };
             match parser.block(input) {
                 Ok(block) => parsed = Some((krate, block)),
                 Err(error) => errors.push(error),
@@ -86,7 +96,23 @@ struct Parser<'a> {
     /// Whether a `|` closes what stands here.
     barred: bool,
     lost: Lost,
-    /// A coordinate whose statement ends in a mistake, as far as it could be read.
-    begun: Option<Statement>,
+    /// The coordinates of a statement that ends in a mistake, as far as they could be read.
+    begun: Vec<Statement>,
+    /// The names that have been declared so far.
+    declared: BTreeSet<String>,
+    /// Whether no name of the block has a letter beyond ASCII.
     ascii: bool,
+}
+
+impl Parser<'_> {
+    /// A name that is declared.
+    fn declared(&mut self, input: ParseStream, what: &str) -> Result<Ident> {
+        let name = identifier(input, what)?;
+        self.declared.insert(name::read(&name.to_string()).base);
+        Ok(name)
+    }
+
+    fn is_declared(&self, name: &str) -> bool {
+        self.declared.contains(&name::read(name).base)
+    }
 }

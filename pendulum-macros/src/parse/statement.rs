@@ -15,6 +15,16 @@ use syn::{Attribute, Token, bracketed, parenthesized};
 pub(super) const STATEMENTS: [&str; 8] =
     ["coordinate", "driven", "let", "kinetic", "potential", "lagrangian", "dissipation", "force"];
 
+/// Statements that there are not yet, and what to write instead.
+#[rustfmt::skip]
+const UNSUPPORTED: &[(&str, &str)] = &[
+    ("constraint", "constraints, as closed loops need them, are not supported yet; choose coordinates in which they hold by themselves"),
+    ("redundant", "constraints, as closed loops need them, are not supported yet; choose coordinates in which they hold by themselves"),
+    ("output", "outputs are not supported yet; compute the value in the program, from the coordinates and the velocities"),
+    ("input", "inputs are not supported yet; declare it `driven` and bind a motion to it"),
+    ("limit", "limits are not supported yet; write a soft stop, as in `potential = k/2*max(0, θ - w)^2;`, or let the program stop at an event"),
+];
+
 impl Parser<'_> {
     pub(super) fn statement(&mut self, input: ParseStream) -> Result<Statement> {
         let attributes = input.call(Attribute::parse_outer)?;
@@ -22,25 +32,20 @@ impl Parser<'_> {
             return Err(Range { first: attribute.pound_token.spans[0], last: attribute.span() }
                 .error("an attribute has no effect here; attributes belong on the struct and its fields"));
         }
-        let statement = if input.peek(Token![let]) {
-            input.parse::<Token![let]>()?;
-            Statement::Let(self.definition(input)?)
-        } else {
-            let fork = input.fork();
-            let word = match fork.call(Ident::parse_any) {
-                Ok(word) => word.to_string(),
-                Err(_) => String::new(),
-            };
-            match word.as_str() {
-                "coordinate" => self.coordinate(input)?,
-                "driven" => self.driven(input)?,
-                "force" => self.force(input)?,
-                "kinetic" => self.energy(input, Role::Kinetic)?,
-                "potential" => self.energy(input, Role::Potential)?,
-                "lagrangian" => self.energy(input, Role::Lagrangian)?,
-                "dissipation" => self.energy(input, Role::Dissipation)?,
-                _ => return Err(unknown_statement(input, &word)),
-            }
+        let word = match input.fork().call(Ident::parse_any) {
+            Ok(word) => word.to_string(),
+            Err(_) => String::new(),
+        };
+        let statement = match word.as_str() {
+            "coordinate" => self.coordinate(input)?,
+            "driven" => self.driven(input)?,
+            "let" => self.definition(input)?,
+            "force" => self.force(input)?,
+            "kinetic" => self.energy(input, Role::Kinetic)?,
+            "potential" => self.energy(input, Role::Potential)?,
+            "lagrangian" => self.energy(input, Role::Lagrangian)?,
+            "dissipation" => self.energy(input, Role::Dissipation)?,
+            _ => return Err(unknown_statement(input, &word)),
         };
         if input.is_empty() {
             // All of the statement has been read.
@@ -48,16 +53,46 @@ impl Parser<'_> {
             return Ok(statement);
         }
         if !input.peek(Token![;]) {
-            self.begun = Some(statement).filter(|statement| matches!(statement, Statement::Coordinate { .. }));
-            return Err(unexpected(input, "`;`"));
+            self.begun.extend(Some(statement).filter(|statement| matches!(statement, Statement::Coordinate { .. })));
+            return Err(if input.peek(Token![,]) { self.several(input, &word) } else { unexpected(input, "`;`") });
         }
         input.parse::<Token![;]>()?;
         Ok(statement)
     }
 
+    /// Several names in one statement, which declares one.
+    fn several(&mut self, input: ParseStream, word: &str) -> syn::Error {
+        let comma = Range::from(input.span());
+        let mut example = None;
+        while input.parse::<Token![,]>().is_ok()
+            && let Ok(name) = input.fork().call(Ident::parse_any)
+        {
+            example.get_or_insert(match word {
+                "coordinate" | "driven" => format!("{word} {name};"),
+                "let" => format!("let {name} = …;"),
+                _ => break,
+            });
+            if word != "coordinate" {
+                break;
+            }
+            match self.named_coordinate(input) {
+                Ok(coordinate) => self.begun.push(coordinate),
+                Err(_) => break,
+            }
+        }
+        comma.error(match example {
+            Some(example) => format!("a statement declares one name; write `{example}` as a statement of its own"),
+            None => "`,` is not expected here; expected `;`".to_owned(),
+        })
+    }
+
     fn coordinate(&mut self, input: ParseStream) -> Result<Statement> {
         input.call(Ident::parse_any)?;
-        let name = identifier(input, "the name of a coordinate")?;
+        self.named_coordinate(input)
+    }
+
+    fn named_coordinate(&mut self, input: ParseStream) -> Result<Statement> {
+        let name = self.declared(input, "the name of a coordinate")?;
         let mut length = None;
         let mut closed = Ok(());
         if input.peek(syn::token::Bracket) {
@@ -69,7 +104,7 @@ impl Parser<'_> {
         match closed.and_then(|()| self.coordinate_unit(input)) {
             Ok(unit) => Ok(Statement::Coordinate { name, length, unit }),
             Err(error) => {
-                self.begun = Some(Statement::Coordinate { name, length, unit: None });
+                self.begun.push(Statement::Coordinate { name, length, unit: None });
                 Err(error)
             }
         }
@@ -82,8 +117,9 @@ impl Parser<'_> {
         input.parse::<Token![:]>()?;
         match self.kind(input)? {
             Kind::Scalar(unit) => Ok(unit),
-            Kind::Array { unit, .. } => {
-                Err(unit.range.error("a coordinate is one number; declare one coordinate for each component"))
+            Kind::Array { unit, length } => {
+                let range = unit.map_or(length.range, |unit| unit.range);
+                Err(range.error("a coordinate is one number; declare one coordinate for each component"))
             }
             Kind::Body(range) => Err(range.error("a coordinate has a unit; write `rad` or `m`")),
         }
@@ -91,21 +127,17 @@ impl Parser<'_> {
 
     fn driven(&mut self, input: ParseStream) -> Result<Statement> {
         input.call(Ident::parse_any)?;
-        let name = identifier(input, "the name of a driven input")?;
-        let kind = if input.peek(Token![:]) {
-            input.parse::<Token![:]>()?;
-            self.kind(input)?
-        } else {
-            Kind::Scalar(None)
-        };
+        let name = self.declared(input, "the name of a driven input")?;
+        let kind = self.declared_kind(input, &name)?;
         if let Kind::Body(range) = kind {
             return Err(range.error("a driven input has a unit; write `[m; 2]` for a motion in the plane"));
         }
         Ok(Statement::Driven { name, kind })
     }
 
-    fn definition(&mut self, input: ParseStream) -> Result<Let> {
-        let name = identifier(input, "the name of a definition")?;
+    fn definition(&mut self, input: ParseStream) -> Result<Statement> {
+        input.parse::<Token![let]>()?;
+        let name = self.declared(input, "the name of a definition")?;
         let mut index = None;
         let mut arguments = None;
         if input.peek(syn::token::Bracket) {
@@ -127,7 +159,7 @@ impl Parser<'_> {
         }
         equals(input)?;
         let expr = self.expr(input)?;
-        Ok(Let { name, index, arguments, expr })
+        Ok(Statement::Let(Let { name, index, arguments, expr }))
     }
 
     fn energy(&mut self, input: ParseStream, role: Role) -> Result<Statement> {
@@ -195,6 +227,9 @@ fn whole_range(tokens: &TokenStream) -> bool {
 fn unknown_statement(input: ParseStream, word: &str) -> syn::Error {
     if word.is_empty() {
         return unexpected(input, "a statement such as `coordinate θ: rad;`");
+    }
+    if let Some((_, message)) = UNSUPPORTED.iter().find(|row| row.0 == word) {
+        return Range::from(input.span()).error(message);
     }
     let hint = match name::nearest(word, STATEMENTS.into_iter()) {
         Some(near) => format!("did you mean `{near}`?"),

@@ -23,8 +23,13 @@ pub(super) fn identifier(input: ParseStream, what: &str) -> Result<Ident> {
 pub(super) fn checked(name: &Ident) -> Result<()> {
     let text = name.to_string();
     if text.contains('\u{b7}') {
-        let parts = text.replace('\u{b7}', "*");
-        return Err(Range::from(name.span()).error(format!("`·` is part of a name in Rust; write `*`, as in `{parts}`")));
+        let parts: Vec<&str> = text.split('\u{b7}').filter(|part| !part.is_empty()).collect();
+        let instead = match parts[..] {
+            [a, b] => format!("`*`, as in `{a}*{b}`, or `inner({a}, {b})` for vectors"),
+            [_, _, ..] => format!("`*`, as in `{}`, or `inner(u, v)` for vectors", parts.join("*")),
+            _ => "`*`, or `inner(u, v)` for vectors".to_owned(),
+        };
+        return Err(Range::from(name.span()).error(format!("`·` is part of a name in Rust; write {instead}")));
     }
     if text.starts_with("__") {
         return Err(Range::from(name.span()).error("names that begin with `__` are reserved; choose another name"));

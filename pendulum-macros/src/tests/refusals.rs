@@ -32,7 +32,7 @@ const CASES: &[(&str, &str)] = &[
     ("kinetic = m*L^2*θ̇^2; potential = m*π(2);",               "`π` is no function, and there is no implicit multiplication; write `π*(…)`"),
     ("kinetic = m*L^2*θ̇^2; potential = |m*i(2)|;",             "`i` is no function, and there is no implicit multiplication; write `i*(…)`"),
     ("kinetic = m*L^2*θ̇^2; potential = 1.5f64*g;",             "numbers here are exact and have no suffix; write `1.5`"),
-    ("kinetic = m*L^2*θ̇^2; potential = m·g;",                  "`·` is part of a name in Rust; write `*`, as in `m*g`"),
+    ("kinetic = m*L^2*θ̇^2; potential = m·g;",                  "`·` is part of a name in Rust; write `*`, as in `m*g`, or `inner(m, g)` for vectors"),
     ("kinetic = m*L^2*θ̇^2; potential = __m;",                  "names that begin with `__` are reserved; choose another name"),
     ("kinetic = m*L^2*θ̇^2; potential = m**2;",                 "`**` is not an operator; write `^`"),
     ("kinetic = m*L^2*θ̇^2; potential = |θ;",                   "this `|` is not closed; write `|u|`"),
@@ -53,7 +53,7 @@ const CASES: &[(&str, &str)] = &[
     ("kinetic = m*L^2*θ̇^2; force m = 1;",                      "`m` is no coordinate; a force acts on a coordinate, as in `force θ = …;`"),
     ("kinetic = m*L^2*θ̇^2; potential = sum(k in 0..100000000, k);", "this range has more than 65536 members; write a shorter one"),
     ("kinetic = m*L^2*θ̇^2; potential = sum(k in 0..θ, k);",    "the end of a range is a whole number known while compiling; write numbers and indices only"),
-    ("kinetic = m*L^2*θ̇^2; potential = x^2;",                  "`x` is a plane vector, and only scalars have powers; write `|u|^2`"),
+    ("kinetic = m*L^2*θ̇^2; potential = x^2;",                  "`x` is a plane vector, and only scalars have powers; write `|x|^2`"),
     ("kinetic = m*L^2*θ̇^2; potential = dot(dot(dot(x))).x;",   "`dot(dot(x))` contains a third derivative of a driven input; they have two"),
     ("kinetic = m*L^2*θ̇^2 + m*L*t*θ̇*ẍ.x;",                 "the momenta contain the acceleration of `x`, so the equations would contain its third derivative; leave its second derivative out of the kinetic energy"),
     ("kinetic = m*L^2*θ̇^2; potential = m*L*θ*ẍ.x;",           "the energy contains the acceleration of `x`, so its power would contain a third derivative; write what it does to a coordinate as a `force`"),
@@ -104,6 +104,108 @@ fn one_mistake_gives_one_message() {
     for (statements, expected) in CASES {
         assert_eq!(refusals(&block(statements)), [*expected], "{statements}");
     }
+}
+
+/// What another notation writes, and what to write here.
+#[rustfmt::skip]
+const NOTATIONS: &[(&str, &str)] = &[
+    ("potential = -cos^2(θ);",                 "a function is raised to a power after its argument; write `cos(θ)^2`"),
+    ("potential = m*sin^2(θ + 1);",            "a function is raised to a power after its argument; write `sin(θ + 1)^2`"),
+    ("potential = m*sin^-1(θ);",               "a function is raised to a power after its argument; write `asin(θ)`, or `1/sin(θ)`"),
+    ("potential = m*exp^-1(θ);",               "a function is raised to a power after its argument; write `exp(θ)^-1`"),
+    ("potential = m*cos^2 θ;",                 "a function is raised to a power after its argument; write `cos(θ)^2`"),
+    ("potential = m*cos^2;",                   "`cos` is a function; write `cos(…)`"),
+    ("potential = cos θ;",                     "the argument of `cos` stands in parentheses; write `cos(θ)`"),
+    ("potential = inner u u;",                 "the argument of `inner` stands in parentheses; write `inner(…)`"),
+    ("let a = x; potential = ȧ·ȧ;",            "`·` is part of a name in Rust; write `*`, as in `ȧ*ȧ`, or `inner(ȧ, ȧ)` for vectors"),
+    ("potential = m·L·g;",                     "`·` is part of a name in Rust; write `*`, as in `m*L*g`, or `inner(u, v)` for vectors"),
+    ("potential = m·(L);",                     "`·` is part of a name in Rust; write `*`, or `inner(u, v)` for vectors"),
+    ("let a = x; potential = -m/2*ȧ*ȧ;",       "`-m/2*ȧ*ȧ` is the complex product of two plane vectors, but a scalar is needed here; write `inner(ȧ, ȧ)`"),
+    ("potential = m*g*L - m/2*ẋ*ẋ;",           "`m/2*ẋ*ẋ` is the complex product of two plane vectors, but a scalar is needed here; write `inner(ẋ, ẋ)`"),
+    ("let a = [1, 2, θ]; potential = a*m*a;",  "the product of two space vectors is ambiguous; write `inner(a, a)` or `cross(a, a)`"),
+    ("potential = dot(x, ẋ);",                 "`dot` is the derivative of one argument; write `inner(x, ẋ)` for a scalar product"),
+    ("potential = m*9.81 m/s^2*L;",            "a number in a formula has no unit; units stand in declarations only, as in `g: m/s^2 = 9.81`"),
+    ("potential = m*9.81m/s^2*L;",             "a number in a formula has no unit; units stand in declarations only, as in `g: m/s^2 = 9.81`"),
+    ("potential = 2 kg;",                      "a number in a formula has no unit; units stand in declarations only, as in `g: m/s^2 = 9.81`"),
+    ("potential = m*9.81*m/s^2;",              "unknown name `s`; units stand in declarations only, as in `g: m/s^2 = 9.81`"),
+    ("potential = 2 m;",                       "there is no implicit multiplication; write `*` before `m`"),
+    ("potential = 2m/L;",                      "there is no implicit multiplication; write `2*m`"),
+    ("potential = log(θ + 2);",                "unknown function `log`; write `ln(θ + 2)`"),
+    ("potential = norm(x);",                   "unknown function `norm`; write `|x|`"),
+    ("potential = arctan(θ);",                 "unknown function `arctan`; write `atan(θ)`"),
+    ("potential = pow(θ + 1, 2);",             "unknown function `pow`; write `(θ + 1)^2`"),
+    ("potential = |xdot|;",                    "unknown name `xdot`; did you mean `x_dot`?"),
+    ("potential = |xddot|;",                   "unknown name `xddot`; did you mean `x_ddot`?"),
+    ("potential = θdot;",                      "unknown name `θdot`; did you mean `θ_dot`?"),
+    ("potential = thetaddot;",                 "`thetaddot` is an acceleration, and a Lagrangian has none; only driven inputs have a second derivative"),
+    ("potential = std::f64::consts::PI;",      "`std::f64::consts::PI` is Rust, which has no place in a formula; write `π`"),
+    ("potential = 2*::core::f64::consts::E;",  "`::core::f64::consts::E` is Rust, which has no place in a formula; write `exp(1)`"),
+    ("potential = f64::sin(θ);",               "`f64::sin` is Rust, which has no place in a formula; write `sin(…)`"),
+    ("potential = crate::GRAVITY;",            "`crate::GRAVITY` is Rust, which has no place in a formula; write a number, or declare a parameter"),
+    ("potential = θ*TAU;",                     "unknown name `TAU`; write `2*π`"),
+    ("potential = .5*m;",                      "a number begins with a digit; write `0.5`"),
+    ("potential = m*θ > 0;",                   "a formula has no conditions; write `max`, `min`, `abs` or `sign` to tell cases apart, as in `max(0, θ)`"),
+    ("potential = m*(θ <= 0);",                "a formula has no conditions; write `max`, `min`, `abs` or `sign` to tell cases apart, as in `max(0, θ)`"),
+    ("potential = |θ != 0|;",                  "a formula has no conditions; write `max`, `min`, `abs` or `sign` to tell cases apart, as in `max(0, θ)`"),
+    ("potential = θ\u{301};",                  "`θ\u{301}` has an accent, and a derivative has a dot; write `θ̇` or `theta_dot`"),
+    ("potential = θ\u{300};",                  "`θ\u{300}` has an accent, and a derivative has a dot; write `θ̇` or `theta_dot`"),
+    ("potential = |x\u{301}|;",                "`x\u{301}` has an accent, and a derivative has a dot; write `ẋ` or `x_dot`"),
+    ("let ω = θ; potential = ώ;",              "`ώ` has an accent, and a derivative has a dot; write `ω̇` or `omega_dot`"),
+    ("let ab = θ; potential = áb;",            "`áb` has an accent, and a derivative has a dot; write `ab_dot`"),
+    ("potential = m\u{301};",                  "unknown name `m\u{301}`; did you mean `m`?"),
+    ("potential = θ'a;",                       "`'` is no derivative; write `θ̇` or `theta_dot`"),
+];
+
+#[test]
+fn other_notations_are_translated() {
+    for (statements, expected) in NOTATIONS {
+        assert_eq!(refusals(&block(&format!("kinetic = m*L^2*θ̇^2; {statements}"))), [*expected], "{statements}");
+    }
+}
+
+/// Declarations of other shapes, and statements that there are not yet.
+#[rustfmt::skip]
+const DECLARATIONS: &[(&str, &str)] = &[
+    ("coordinate a, b: m;",                    "a statement declares one name; write `coordinate b;` as a statement of its own"),
+    ("driven a: m, b: m;",                     "a statement declares one name; write `driven b;` as a statement of its own"),
+    ("let a = 1, b = 2;",                      "a statement declares one name; write `let b = …;` as a statement of its own"),
+    ("potential = θ, b;",                      "`,` is not expected here; expected `;`"),
+    ("driven a: [2];",                         "a unit is missing; write `[m; 2]`, or `[_; 2]` for a vector without a unit"),
+    ("driven a: [; 3];",                       "a unit is missing; write `[m; 3]`, or `[_; 3]` for a vector without a unit"),
+    ("driven a[2];",                           "the length stands with the unit; write `a: [_; 2]`"),
+    ("driven a[2]: m/s;",                      "the length stands with the unit; write `a: [m/s; 2]`"),
+    ("driven a: [m, m];",                      "all components have one unit; write `[m; 2]` for a vector"),
+    ("driven a: [m];",                         "a length is missing; write `[m; 2]` for a vector, `[kg; 5]` for a family"),
+    ("coordinate a: [_; 2];",                  "a coordinate is one number; declare one coordinate for each component"),
+    ("constraint loop: θ = 0;",                "constraints, as closed loops need them, are not supported yet; choose coordinates in which they hold by themselves"),
+    ("redundant constraint loop: θ = 0;",      "constraints, as closed loops need them, are not supported yet; choose coordinates in which they hold by themselves"),
+    ("output tip: [m; 2] = x;",                "outputs are not supported yet; compute the value in the program, from the coordinates and the velocities"),
+    ("input u: N;",                            "inputs are not supported yet; declare it `driven` and bind a motion to it"),
+    ("limit rail: L - θ >= 0;",                "limits are not supported yet; write a soft stop, as in `potential = k/2*max(0, θ - w)^2;`, or let the program stop at an event"),
+];
+
+#[test]
+fn other_declarations_are_translated() {
+    for (statements, expected) in DECLARATIONS {
+        assert_eq!(refusals(&block(&format!("kinetic = m*L^2*θ̇^2; {statements}"))), [*expected], "{statements}");
+    }
+    assert_eq!(
+        refusals("struct P { m[3]: kg } coordinate θ; kinetic = m[0]*θ̇^2;"),
+        ["the length stands with the unit; write `m: [kg; 3]`"]
+    );
+}
+
+/// What has no unit takes no part in the checks, vectors and families neither.
+#[test]
+fn a_vector_may_have_no_unit() {
+    let source = |unit: &str| {
+        format!(
+            "struct P {{ m: kg, l: m, f: [{unit}; 5] }} coordinate θ: _; driven x: [{unit}; 2];
+             kinetic = m/2*|ẋ + dot(l*cis(θ))|^2; potential = m*f[0]*height(x);"
+        )
+    };
+    assert!(refusals(&source("_")).is_empty());
+    assert_eq!(refusals(&source("1")), ["`dot(l*cis(θ))` is m/s, but `ẋ` is 1/s; a sum needs one unit"]);
 }
 
 /// Units, each mistake at the smallest expression that is wrong.
@@ -234,6 +336,7 @@ fn a_broken_coordinate_is_counted() {
         ("coordinate q[3]: [m]; kinetic = m*sum(k in 0..3, q_dot[k]^2);", 3, 1),
         ("coordinate q[3, 4]; coordinate z; kinetic = m*(z_dot^2 + q_dot[2]^2);", 4, 1),
         ("coordinate q: body; kinetic = m*q_dot^2;", 1, 1),
+        ("coordinate x: m, y[2]: m; kinetic = m*(x_dot^2 + y_dot[0]^2 + y_dot[1]^2);", 3, 1),
     ] {
         let block = format!("::p; struct S {{ m }} {statements}");
         let found = crate::expand::expand(block.parse().unwrap()).to_string();

@@ -15,7 +15,7 @@ pub(crate) struct Dimension(pub(crate) [Rational; 3]);
 impl Dimension {
     pub(crate) const PURE: Self = Self([Rational::ZERO; 3]);
 
-    fn of(name: &str) -> Option<Self> {
+    pub(crate) fn of(name: &str) -> Option<Self> {
         #[rustfmt::skip]
         let exponents = match name {
             "rad" => [0, 0,  0],
