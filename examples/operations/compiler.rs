@@ -47,6 +47,8 @@ mod print;
 mod rule;
 #[path = "../../pendulum-macros/src/schedule/mod.rs"]
 mod schedule;
+#[path = "../../pendulum-macros/src/sign.rs"]
+mod sign;
 #[path = "../../pendulum-macros/src/solve.rs"]
 mod solve;
 #[path = "../../pendulum-macros/src/symmetry.rs"]

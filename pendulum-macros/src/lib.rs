@@ -25,6 +25,7 @@ mod parse;
 mod print;
 mod rule;
 mod schedule;
+mod sign;
 mod solve;
 mod symmetry;
 #[cfg(test)]

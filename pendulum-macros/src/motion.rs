@@ -14,6 +14,7 @@ use crate::number::Rational;
 use crate::order;
 use crate::rule;
 use crate::schedule;
+use crate::sign;
 use crate::solve;
 use crate::symmetry::{self, Conserved};
 use crate::value;
@@ -127,7 +128,8 @@ fn derive(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Er
     }
     let mut motion = Motion { mass_matrix, ..Motion::default() };
     let jerk = has_jerk(model, graph, lagrangian, &momenta, errors);
-    if !solve::regular(model, graph, &motion.mass_matrix, errors) || jerk {
+    let regular = solve::regular(model, graph, &motion.mass_matrix, errors);
+    if !regular || !sign::positive(model, graph, energies, &motion.mass_matrix, errors) || jerk {
         return motion;
     }
 

@@ -208,6 +208,46 @@ fn a_vector_may_have_no_unit() {
     assert_eq!(refusals(&source("1")), ["`dot(l*cis(θ))` is m/s, but `ẋ` is 1/s; a sum needs one unit"]);
 }
 
+/// Kinetic energies that are negative at every state.
+#[rustfmt::skip]
+const NEGATIVE: &[(&str, &str)] = &[
+    ("kinetic = -m/2*L^2*θ̇^2;",                          "the kinetic energy of `θ` is negative in `-m/2*L^2*θ̇^2`; write it with a positive sign"),
+    ("kinetic = -(m/2*L^2*θ̇^2);",                        "the kinetic energy of `θ` is negative in `-(m/2*L^2*θ̇^2)`; write it with a positive sign"),
+    ("kinetic = m*-sum(k in 0..2, (L*θ̇)^2);",            "the kinetic energy of `θ` is negative in `m*(-sum(k in …, (L*θ̇)^2))`; write it with a positive sign"),
+    ("coordinate z: m; kinetic = m*ż^2 - m/2*(L*θ̇)^2;",  "the kinetic energy of `θ` is negative in `-m/2*(L*θ̇)^2`; write it with a positive sign"),
+    ("coordinate z: m; kinetic = m*ż^2; kinetic = m*L^2*θ̇^2; kinetic = -2*m*L^2*(θ̇*sin(θ) - ż/L)^2;",
+                                                           "the kinetic energy of `z` is negative in `-2*m*L^2*((θ̇*sin(θ)) - (ż/L))^2`; write it with a positive sign"),
+    ("coordinate z: m; kinetic = -m/2*|dot([z, L*θ])|^2;", "the kinetic energy of `θ` is negative in `-m/2*|dot([z, L*θ])|^2`; write it with a positive sign"),
+    ("let K = -J/2*θ̇^2; kinetic = K;",                   "the kinetic energy of `θ` is negative in `K`; write it with a positive sign"),
+    ("kinetic = -B.inertia/2*θ̇^2;",                      "the kinetic energy of `θ` is negative in `-B.inertia/2*θ̇^2`; write it with a positive sign"),
+];
+
+#[test]
+fn a_negative_kinetic_energy_is_refused() {
+    let block = |statements: &str| {
+        format!("struct P {{ m: kg, M: kg, L: m, S: kg*m, J: kg*m^2, c, B: body }} coordinate θ: rad; {statements}")
+    };
+    for (statements, expected) in NEGATIVE {
+        assert_eq!(refusals(&block(statements)), [*expected], "{statements}");
+    }
+    // Any sign may be meant, or the whole is positive for some values.
+    for statements in [
+        "lagrangian = -m/2*L^2*θ̇^2;",
+        "kinetic = -c/2*θ̇^2;",
+        "kinetic = -S/2*L*θ̇^2;",
+        "kinetic = (m - M)/2*L^2*θ̇^2;",
+        "kinetic = m/2*L^2*θ̇^2 - M/2*L^2*θ̇^2*cos(θ)^2;",
+        "kinetic = -m/2*L^2*cos(θ)*θ̇^2;",
+        "coordinate z: m; kinetic = m/2*(L*θ̇ - ż)^2 - M*L*θ̇*ż;",
+    ] {
+        assert_eq!(refusals(&block(statements)), [""; 0], "{statements}");
+    }
+    // Without units, a number has a sign and a parameter has none.
+    let source = "struct P { m } coordinate q; kinetic = -q_dot^2/2; potential = m*q^2;";
+    assert_eq!(refusals(source), ["the kinetic energy of `q` is negative in `-q_dot^2/2`; write it with a positive sign"]);
+    assert!(refusals(&source.replace("-q_dot^2/2", "-m*q_dot^2")).is_empty());
+}
+
 /// Units, each mistake at the smallest expression that is wrong.
 #[rustfmt::skip]
 const UNITS: &[(&str, &str)] = &[
