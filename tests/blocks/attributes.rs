@@ -1,6 +1,7 @@
 //! Attributes of the struct that its implementations follow, and names that the generated code takes itself.
 
 #![deny(warnings)]
+#![allow(non_upper_case_globals)]
 
 use pendulum_runtime::prelude::*;
 
@@ -30,9 +31,41 @@ lagrangian! {
     kinetic = c*(q_dot + x_dot)^2/2;
 }
 
+lagrangian! {
+    /// Nobody mentions what begins with an underscore, what is allowed and what is left out.
+    pub struct Quiet {
+        m,
+        _spare: [kg; 2],
+        #[allow(unused)]
+        known,
+    }
+    coordinate q;
+    kinetic = m*q_dot^2/2;
+}
+
+lagrangian! {
+    #[allow(unused_variables)]
+    #[derive(Clone, Debug)]
+    pub struct Allowed { m, c }
+    coordinate q;
+    kinetic = m*q_dot^2/2;
+}
+
+lagrangian! {
+    #[cfg(any())]
+    pub struct Nowhere { m, c }
+    coordinate q;
+    kinetic = m*q_dot^2/2;
+}
+
+/// A constant of the name of a parameter that is not mentioned.
+const c: f64 = 1.0;
+
 fn main() {
+    assert_eq!(Allowed::new(1.0, c).clone().c, c);
+    assert_eq!(Quiet::new(c, [2.0, 3.0], 4.0)._spare, [2.0, 3.0]);
     #[allow(deprecated)]
     let old = Old::new(1.0);
     assert_eq!(format!("{old:?}"), "Old { c: 1.0 }");
-    assert_eq!(U::new(2.0).map(|c| c + 1.0).c, 3.0);
+    assert_eq!(U::new(2.0).map(|x| x + 1.0).c, 3.0);
 }

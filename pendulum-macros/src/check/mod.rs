@@ -13,7 +13,7 @@ use crate::unit::{self, Dimension};
 use declare::{Declared, Shape, quantity, twice};
 pub(crate) use elsewhere::constant;
 use proc_macro2::Ident;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 pub(crate) use text::text;
 use walk::Walk;
 
@@ -27,6 +27,8 @@ pub(crate) struct Model<'a> {
     pub(crate) energies: Vec<(Role, &'a Expr)>,
     pub(crate) forces: Vec<Force<'a>>,
     pub(crate) names: BTreeMap<String, Meaning>,
+    /// The parameters that no statement mentions.
+    pub(crate) unmentioned: BTreeSet<usize>,
 }
 
 /// A declared parameter, coordinate or driven input.
@@ -86,6 +88,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         energies: Vec::new(),
         forces: Vec::new(),
         names: BTreeMap::new(),
+        unmentioned: BTreeSet::new(),
     };
     let mut declared = Declared::default();
     let (mut parameters, mut coordinates, mut inputs) = (0, 0, 0);
@@ -134,8 +137,10 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     if model.coordinates.is_empty() && !block.lost.declarations {
         errors.at(block.name.span(), "no coordinate; write `coordinate θ: rad;` below the struct");
     }
-    let mut walk = Walk { model: &model, errors, scope: Vec::new() };
+    let mut walk = Walk { model: &model, errors, scope: Vec::new(), mentioned: BTreeSet::new() };
     walk.block();
+    let mentioned = walk.mentioned;
+    model.unmentioned = (0..model.parameters.len()).filter(|index| !mentioned.contains(index)).collect();
     model
 }
 

@@ -6,12 +6,15 @@ use crate::error::{Errors, Range};
 use crate::name::{self, Name};
 use crate::unit::Dimension;
 use proc_macro2::Ident;
+use std::collections::BTreeSet;
 
 /// A walk over all expressions that reports what no one declared.
 pub(super) struct Walk<'m, 'a, 'e> {
     pub(super) model: &'m Model<'a>,
     pub(super) errors: &'e mut Errors,
     pub(super) scope: Vec<String>,
+    /// The parameters that have been met.
+    pub(super) mentioned: BTreeSet<usize>,
 }
 
 impl Walk<'_, '_, '_> {
@@ -138,7 +141,9 @@ impl Walk<'_, '_, '_> {
             ExprKind::Integral { point, body, integrand } => {
                 let Name { base, dots } = name::read(&body.to_string());
                 match self.model.names.get(&base) {
-                    Some(&Meaning::Parameter(index)) if dots == 0 && self.model.parameters[index].body => {}
+                    Some(&Meaning::Parameter(index)) if dots == 0 && self.model.parameters[index].body => {
+                        self.mentioned.insert(index);
+                    }
                     Some(_) => {
                         self.errors.at(body.span(), format!("`{body}` is no body; declare it as `{body}: body` in the struct"));
                     }
@@ -163,6 +168,9 @@ impl Walk<'_, '_, '_> {
         let Name { base, dots } = name::read(&ident.to_string());
         if self.scope.contains(&base) {
             return;
+        }
+        if let Some(&Meaning::Parameter(index)) = self.model.names.get(&base) {
+            self.mentioned.insert(index);
         }
         match (base.as_str(), self.model.names.get(&base)) {
             ("t" | "pi" | "i", _) if dots == 0 => {}

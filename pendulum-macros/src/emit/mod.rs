@@ -8,6 +8,7 @@ mod program;
 mod staged;
 mod structure;
 mod system;
+mod unmentioned;
 
 use crate::check::{Model, Quantity};
 use crate::expr::Graph;
@@ -48,6 +49,7 @@ impl Emitter<'_, '_> {
         let jets = self.jets();
         let mirror = mirror::function(self.model.block);
         let open = self.open_names();
+        let unmentioned = self.unmentioned();
         let conditions = self.model.block.conditions();
         quote! {
             #structure
@@ -55,7 +57,7 @@ impl Emitter<'_, '_> {
             #[allow(deprecated)]
             const _: () = {
                 #open
-                #constructor #system #split #staged #marker #jacobians #jets
+                #constructor #system #split #staged #marker #jacobians #jets #unmentioned
             };
             #mirror
         }

@@ -393,3 +393,23 @@ fn a_parameter_is_in_every_build() {
         ["`cfg` has no place on a parameter, which the equations need in every build; write it above the struct"]
     );
 }
+
+/// The parameters that no statement mentions, of which rustc warns.
+#[test]
+fn unmentioned_parameters_are_found() {
+    let unmentioned = |source: &str| {
+        super::derive(source, |model, _, _| {
+            model.unmentioned.iter().map(|&index| model.parameters[index].name.to_string()).collect::<Vec<_>>()
+        })
+    };
+    let source = "struct P { m: J*s^2, L: m, c, _d, B: body, C: body, h = 2, n: [kg; 2] } coordinate θ: rad;";
+    // A mass that cancels is mentioned, and so is what stands in a definition that nobody uses.
+    let statements = "let unused = L; kinetic = m*θ̇^2/2 + integral(p in B, 0*|p|^2); potential = 0*n[1]*θ;";
+    assert_eq!(unmentioned(&format!("{source} {statements}")), ["c", "_d", "C", "h"]);
+    // An argument of the same name hides it.
+    assert_eq!(unmentioned("struct P { m, c } coordinate q; let r(c) = m*c; kinetic = r(q_dot)^2;"), ["c"]);
+    assert_eq!(
+        unmentioned("struct P { m, c, d } coordinate q; kinetic = m*q_dot^2; dissipation = c*q_dot^2; force q = d;"),
+        [""; 0]
+    );
+}
