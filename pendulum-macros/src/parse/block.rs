@@ -113,7 +113,8 @@ impl Parser<'_> {
             let content;
             bracketed!(content in input);
             if content.peek(Token![;]) {
-                return Err(Range::from(content.span()).error(unit_missing(&content.to_string().replace(';', " ").trim())));
+                let place = Range::from(content.parse::<Token![;]>()?.span());
+                return Err(place.error(unit_missing(&content.parse::<TokenStream>()?.to_string())));
             }
             let unit = self.unit(&content)?;
             if !content.peek(Token![;]) {
@@ -155,5 +156,6 @@ fn no_length(content: ParseStream, unit: Option<&Expr>) -> syn::Error {
 }
 
 fn unit_missing(length: &str) -> String {
+    let length = if length.is_empty() { "2" } else { length };
     format!("a unit is missing; write `[m; {length}]`, or `[_; {length}]` for a vector without a unit")
 }

@@ -172,6 +172,7 @@ const DECLARATIONS: &[(&str, &str)] = &[
     ("potential = θ, b;",                      "`,` is not expected here; expected `;`"),
     ("driven a: [2];",                         "a unit is missing; write `[m; 2]`, or `[_; 2]` for a vector without a unit"),
     ("driven a: [; 3];",                       "a unit is missing; write `[m; 3]`, or `[_; 3]` for a vector without a unit"),
+    ("driven a: [;];",                         "a unit is missing; write `[m; 2]`, or `[_; 2]` for a vector without a unit"),
     ("driven a[2];",                           "the length stands with the unit; write `a: [_; 2]`"),
     ("driven a[2]: m/s;",                      "the length stands with the unit; write `a: [m/s; 2]`"),
     ("driven a: [m, m];",                      "all components have one unit; write `[m; 2]` for a vector"),
