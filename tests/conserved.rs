@@ -46,6 +46,16 @@ lagrangian! {
 }
 
 lagrangian! {
+    /// Three bodies in a plane that attract each other.
+    pub struct ThreeBodies { m: [kg; 3], G: N*m^2/kg^2 }
+    coordinate x[3]: m;
+    coordinate y[3]: m;
+    let r[k in 0..3] = [x[k], y[k]];
+    kinetic = sum(k in 0..3, m[k]/2*|ṙ[k]|^2);
+    potential = -G*sum(j in 0..3, sum(k in 0..j, m[j]*m[k]/|r[j] - r[k]|));
+}
+
+lagrangian! {
     /// Friction on the cart: its momentum is lost.
     pub struct Rubbing { M: kg, c: kg/s }
     coordinate x: m;
@@ -97,6 +107,15 @@ fn a_planet_keeps_its_angular_momentum() {
 fn a_free_chain_keeps_both_momenta_and_its_angular_momentum() {
     assert_eq!(<FreeChain as System<4>>::FACTS.conserved, ["p_x", "p_y", "p_θ[0] + p_θ[1] − y·p_x + x·p_y"]);
     constant::<3>(values(&FreeChain::new([1.0, 0.4, 0.7], [0.5, 0.8]), [0.0, 0.0, 0.3, 1.5], [1.0, 2.0, 3.0, -4.0]));
+}
+
+#[test]
+fn three_bodies_keep_both_momenta_and_their_angular_momentum() {
+    let turn = "x[0]·p_y[0] − y[0]·p_x[0] − y[1]·p_x[1] − y[2]·p_x[2] + x[1]·p_y[1] + x[2]·p_y[2]";
+    let sums = ["p_x[0] + p_x[1] + p_x[2]", "p_y[0] + p_y[1] + p_y[2]"];
+    assert_eq!(<ThreeBodies as System<6>>::FACTS.conserved, [sums[0], sums[1], turn]);
+    let bodies = ThreeBodies::new([3.0, 1.0, 0.5], 1.0);
+    constant::<3>(values(&bodies, [0.0, 2.0, -3.0, 0.1, 0.3, -1.0], [0.1, -0.2, 0.3, -0.2, 1.1, -0.8]));
 }
 
 #[test]

@@ -2,37 +2,55 @@
 //!
 //! An expression that vanishes at random points modulo a large prime vanishes (Schwartz 1980, Zippel 1979), and nothing is rounded.
 //! Angles are points of the unit circle of the field, square roots are roots of the field, and every other function is a random
-//! value that depends on its argument's value alone. Points at which a root does not exist are thrown away.
+//! value that depends on its argument's value alone. Points at which a root does not exist are thrown away: each root halves what
+//! is left. With i, the root of −1, every number of the prime field has a root, so that points with many roots are never rare.
 
 use crate::expr::{Function, Graph, Id, Node, Symbol};
 use crate::number::Rational;
 use std::collections::BTreeMap;
 
-/// 2⁶¹ − 1, which is 3 modulo 4: square roots are powers.
+/// 2⁶¹ − 1, which is 3 modulo 4: square roots are powers, and −1 has none.
 const PRIME: u64 = (1 << 61) - 1;
 
-/// An element of the field.
+/// An element a + b·i of the prime field with i² = −1; b is zero unless a root of the extension made it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Residue(u64);
+pub(crate) struct Residue(u64, u64);
+
+fn sum(a: u64, b: u64) -> u64 {
+    let sum = a + b;
+    if PRIME <= sum { sum - PRIME } else { sum }
+}
+
+fn negated(a: u64) -> u64 {
+    if a == 0 { 0 } else { PRIME - a }
+}
+
+fn product(a: u64, b: u64) -> u64 {
+    let product = u128::from(a) * u128::from(b);
+    // 2⁶¹ is 1: the upper bits are added to the lower ones.
+    sum(product as u64 & PRIME, (product >> 61) as u64)
+}
 
 impl Residue {
-    pub(crate) const ZERO: Self = Self(0);
-    pub(crate) const ONE: Self = Self(1);
+    pub(crate) const ZERO: Self = Self(0, 0);
+    pub(crate) const ONE: Self = Self(1, 0);
 
     pub(crate) fn add(self, other: Self) -> Self {
-        let sum = self.0 + other.0;
-        Self(if PRIME <= sum { sum - PRIME } else { sum })
+        Self(sum(self.0, other.0), sum(self.1, other.1))
     }
 
     pub(crate) fn negative(self) -> Self {
-        Self(if self.0 == 0 { 0 } else { PRIME - self.0 })
+        Self(negated(self.0), negated(self.1))
     }
 
     pub(crate) fn mul(self, other: Self) -> Self {
-        let product = u128::from(self.0) * u128::from(other.0);
-        // 2⁶¹ is 1: the upper bits are added to the lower ones.
-        let sum = (product as u64 & PRIME) + (product >> 61) as u64;
-        Self(if PRIME <= sum { sum - PRIME } else { sum })
+        if self.1 == 0 && other.1 == 0 {
+            return Self(product(self.0, other.0), 0);
+        }
+        Self(
+            sum(product(self.0, other.0), negated(product(self.1, other.1))),
+            sum(product(self.0, other.1), product(self.1, other.0)),
+        )
     }
 
     fn power(self, mut exponent: u64) -> Self {
@@ -49,24 +67,64 @@ impl Residue {
 
     /// The reciprocal; `None` for zero.
     pub(crate) fn reciprocal(self) -> Option<Self> {
-        (self.0 != 0).then(|| self.power(PRIME - 2))
+        if self.1 == 0 {
+            return (self.0 != 0).then(|| self.power(PRIME - 2));
+        }
+        // 1/(a + b·i) = (a − b·i)/(a² + b²), and a² + b² is not zero because −1 is no square.
+        Some(Self(self.0, negated(self.1)).mul(self.norm().reciprocal()?))
     }
 
+    /// a² + b².
+    fn norm(self) -> Self {
+        Self(sum(product(self.0, self.0), product(self.1, self.1)), 0)
+    }
+
+    /// The real and the imaginary part.
+    pub(crate) fn parts(self) -> [Self; 2] {
+        [Self(self.0, 0), Self(self.1, 0)]
+    }
+
+    /// The root of a real number in the prime field.
     fn root(self) -> Option<Self> {
         let root = self.power(PRIME.div_ceil(4));
         (root.mul(root) == self).then_some(root)
     }
 
+    /// The root in the field with i: every real number has one, and half of all others have.
+    fn extended_root(self) -> Option<Self> {
+        if self.1 == 0 {
+            // Either a or −a is a square, because −1 is none.
+            return self.root().or_else(|| Some(Self(0, self.negative().root()?.0)));
+        }
+        // (x + y·i)² = a + b·i: x² is (a ± √(a² + b²))/2, of which one is a square, because their product is −(b/2)².
+        let length = self.norm().root()?;
+        let half = Self(PRIME.div_ceil(2), 0);
+        let square = |length: Self| half.mul(Self(self.0, 0).add(length)).root();
+        let x = square(length).or_else(|| square(length.negative()))?;
+        let y = half.mul(Self(self.1, 0)).mul(x.reciprocal()?);
+        Some(Self(x.0, y.0))
+    }
+
+    /// A number that stands for this one where functions take random values.
+    fn key(self) -> u64 {
+        self.0 ^ self.1.wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    }
+
     fn of(value: Rational) -> Option<Self> {
         let reduce = |number: i128| {
             let magnitude = u64::try_from(number.unsigned_abs() % u128::from(PRIME)).unwrap_or(0);
-            if number < 0 { Self(magnitude).negative() } else { Self(magnitude) }
+            if number < 0 { Self(magnitude, 0).negative() } else { Self(magnitude, 0) }
         };
-        Some(reduce(value.numerator()).mul(reduce(value.denominator()).reciprocal()?))
+        let numerator = reduce(value.numerator());
+        // Most are whole, and a reciprocal costs a hundred products.
+        if value.denominator() == 1 { Some(numerator) } else { Some(numerator.mul(reduce(value.denominator()).reciprocal()?)) }
     }
 
     /// The fraction of small numbers that this residue is, if there is one (Wang 1981).
     pub(crate) fn rational(self) -> Option<Rational> {
+        if self.1 != 0 {
+            return None;
+        }
         let (mut a, mut b) = (i128::from(PRIME), i128::from(self.0));
         let (mut s, mut t) = (0i128, 1i128);
         while 1 << 20 < b {
@@ -84,8 +142,18 @@ pub(crate) struct Point {
     seed: u64,
     /// The common denominator of all angles.
     denominator: i64,
-    /// Whether roots are unknown functions, not roots in the field.
-    formal: bool,
+    roots: Roots,
+}
+
+/// What square roots are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Roots {
+    /// Roots in the prime field, as far as they exist there.
+    Prime,
+    /// Roots in the prime field with i.
+    Extended,
+    /// Unknown functions.
+    Formal,
 }
 
 /// The value of every node that some roots are made of.
@@ -105,18 +173,36 @@ impl Point {
                 }
             }
         }
-        Self { seed, denominator, formal: false }
+        Self { seed, denominator, roots: Roots::Prime }
     }
 
     /// A point at which roots are unknown functions: equal values belong to expressions that are equal wherever both are real.
     pub(crate) fn formal(graph: &Graph, roots: &[Id], seed: u64) -> Self {
-        Self { formal: true, ..Self::new(graph, roots, seed) }
+        Self { roots: Roots::Formal, ..Self::new(graph, roots, seed) }
+    }
+
+    /// A point with all roots of real numbers.
+    ///
+    /// The root of a product is that of its factors up to a sign that changes from point to point: what vanishes at many such points
+    /// vanishes, but not all that vanishes does so here.
+    pub(crate) fn extended(graph: &Graph, roots: &[Id], seed: u64) -> Self {
+        Self { roots: Roots::Extended, ..Self::new(graph, roots, seed) }
+    }
+
+    /// Another point for the same expressions.
+    pub(crate) fn again(&self, seed: u64) -> Self {
+        Self { seed, ..*self }
     }
 
     /// The values of `roots`; `None` where a root or a reciprocal does not exist.
     pub(crate) fn values(&self, graph: &Graph, roots: &[Id]) -> Option<Values> {
+        self.values_of(graph, &graph.reachable(roots))
+    }
+
+    /// The values of `nodes`, which contain their own parts, those first.
+    pub(crate) fn values_of(&self, graph: &Graph, nodes: &[Id]) -> Option<Values> {
         let mut known = Values::new();
-        for id in graph.reachable(roots) {
+        for &id in nodes {
             let value = match graph.node(id) {
                 Node::Number(value) => Residue::of(*value)?,
                 Node::Opaque(_) | Node::Pi => self.random(&[u64::from(id.index() as u32), 1]),
@@ -139,9 +225,9 @@ impl Point {
                     let (cos, sin) = self.circle(graph, *argument, known[argument])?;
                     if *function == Function::Sin { sin } else { cos }
                 }
-                Node::Call(function, argument) => self.random(&[*function as u64, known[argument].0, 3]),
-                Node::Atan2(a, b) => self.random(&[known[a].0, known[b].0, 4]),
-                Node::Max(a, b) => self.random(&[known[a].0, known[b].0, 5]),
+                Node::Call(function, argument) => self.random(&[*function as u64, known[argument].key(), 3]),
+                Node::Atan2(a, b) => self.random(&[known[a].key(), known[b].key(), 4]),
+                Node::Max(a, b) => self.random(&[known[a].key(), known[b].key(), 5]),
                 Node::Atom(inner) => known[inner],
             };
             known.insert(id, value);
@@ -152,8 +238,9 @@ impl Point {
     fn power(&self, base: Residue, exponent: Rational) -> Option<Residue> {
         let root = match exponent.denominator() {
             1 => base,
-            2 if !self.formal => base.root()?,
-            other => self.random(&[base.0, u64::try_from(other).ok()?, 6]),
+            2 if self.roots == Roots::Prime => base.root()?,
+            2 if self.roots == Roots::Extended => base.extended_root()?,
+            other => self.random(&[base.key(), u64::try_from(other).ok()?, 6]),
         };
         let root = if exponent.is_negative() { root.reciprocal()? } else { root };
         Some(root.power(u64::try_from(exponent.numerator().unsigned_abs()).ok()?))
@@ -161,7 +248,7 @@ impl Point {
 
     /// Cosine and sine of an angle: a product of rotations for a linear one, a random rotation otherwise.
     fn circle(&self, graph: &Graph, argument: Id, value: Residue) -> Option<(Residue, Residue)> {
-        let Some(terms) = linear(graph, argument) else { return self.rotation(&[value.0, 7]) };
+        let Some(terms) = linear(graph, argument) else { return self.rotation(&[value.key(), 7]) };
         let mut total = (Residue::ONE, Residue::ZERO);
         for (base, coefficient) in terms {
             let steps = coefficient.mul(Rational::whole(self.denominator))?.integer()?;
@@ -207,7 +294,7 @@ impl Point {
             state = (state ^ (state >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
             state ^= state >> 31;
         }
-        Residue(state % PRIME)
+        Residue(state % PRIME, 0)
     }
 }
 
@@ -289,6 +376,25 @@ mod tests {
         assert!(vanishes("exp(a*(b + 1)) - exp(a*b + a)"));
         assert!(!vanishes("sin(a + b) - sin(a) - sin(b)"));
         assert!(!vanishes("(a + b)^3 - a^3 - b^3"));
+    }
+
+    #[test]
+    fn every_number_has_a_root_beside_the_root_of_minus_one() {
+        let number = |value: i64| Residue::of(Rational::whole(value)).unwrap();
+        let i = number(-1).extended_root().unwrap();
+        assert_eq!(number(-1).root(), None);
+        for value in -40..40 {
+            let root = number(value).extended_root().unwrap();
+            assert_eq!(root.mul(root), number(value));
+            let mixed = number(value).add(i.mul(number(3 * value + 7)));
+            let reciprocal = mixed.reciprocal().unwrap();
+            assert_eq!(mixed.mul(reciprocal), Residue::ONE);
+            // A square has the root that it is made of, up to sign.
+            let again = mixed.mul(mixed).extended_root().unwrap();
+            assert!(again == mixed || again == mixed.negative(), "{mixed:?} and {again:?}");
+        }
+        let exist = (0..400).filter(|&value| number(value).add(i).extended_root().is_some()).count();
+        assert!((150..250).contains(&exist), "{exist} roots of 400");
     }
 
     #[test]

@@ -22,6 +22,7 @@ mod refusals;
 mod rules;
 mod soup;
 mod sparse;
+mod symmetries;
 
 /// What is wrong with a block.
 fn refusals(source: &str) -> Vec<String> {
