@@ -50,6 +50,13 @@ pub enum Error {
         /// belongs to a finite momentum, that is not finite.
         suspects: Vec<Suspect>,
     },
+    /// No velocity was found that gives a finite momentum, at a kink or within an implicit step.
+    NoVelocity {
+        /// The time.
+        t: f64,
+        /// The coordinate with the momentum.
+        coordinate: Coordinate,
+    },
     /// The mass matrix is not positive definite: a negative mass, or inertia that ends on the way.
     NegativeInertia {
         /// The time at which it was seen.
@@ -197,6 +204,11 @@ impl fmt::Display for Error {
                     (_, None) => write!(f, "the motion has left the range of numbers, try a smaller step or tolerance"),
                 }
             }
+            Self::NoVelocity { t, coordinate } => write!(
+                f,
+                "at t = {t:?} no velocity was found for the momentum of {coordinate}; the Lagrangian may not reach it at any velocity: \
+                 check the forces and the jumps of driven inputs before"
+            ),
             Self::NegativeInertia { t, coordinate, pivot, ref suspects } => {
                 write!(f, "at t = {t:?} the inertia of {coordinate} is negative, {pivot:?}; ")?;
                 match suspects.split_first() {
@@ -285,6 +297,13 @@ mod tests {
 
         let error = Error::InitialState { part: Part::Velocity, coordinate: THETA, value: f64::NAN };
         assert_eq!(error.to_string(), "the initial velocity of `θ` is NaN; give a finite number");
+    }
+
+    #[test]
+    fn a_momentum_without_a_velocity_is_not_blamed_on_the_step() {
+        let message = Error::NoVelocity { t: 0.5, coordinate: THETA }.to_string();
+        assert!(message.starts_with("at t = 0.5 no velocity was found for the momentum of `θ`; "), "{message}");
+        assert!(!message.contains("step"), "{message}");
     }
 
     #[test]

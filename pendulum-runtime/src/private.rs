@@ -57,9 +57,12 @@ pub fn columns<T, const N: usize>(entries: &[T]) -> &[[T; N]] {
     entries.as_chunks().0
 }
 
-/// q̇ from p by Newton's method, for Lagrangians that are not quadratic in the velocities.
+/// q̇ from p by Newton's method, for Lagrangians that are not quadratic in the velocities; not a number for a coordinate where none is
+/// found.
 ///
-/// Starts from rest and takes a fixed number of steps, because lanes have no common moment of convergence.
+/// Starts from rest. A step is halved until it stays where the momenta are numbers and makes what is missing less, in the norm of the
+/// inverse mass matrix, which has no units of its own (Deuflhard 1974). Each lane goes on alone until its steps do not move it any more, and
+/// then stays: how many rounds the others take does not change its bits.
 pub fn newton<const N: usize, S: System<N>>(
     system: &S,
     t: S::Scalar,
@@ -67,33 +70,111 @@ pub fn newton<const N: usize, S: System<N>>(
     p: &[S::Scalar; N],
     inputs: &S::Inputs,
 ) -> [S::Scalar; N] {
-    let zero = S::Scalar::from_f64(0.0);
+    let number = S::Scalar::from_f64;
+    let (zero, one) = (number(0.0), number(1.0));
+    let momenta = |v: &[S::Scalar; N]| system.momenta(t, q, v, inputs);
+    let missing = |found: &[S::Scalar; N]| -> [S::Scalar; N] { core::array::from_fn(|i| p[i] - found[i]) };
+    let factors = |v: &[S::Scalar; N]| Factors::new(system.mass_matrix(t, q, v, inputs));
     let mut v = [zero; N];
-    for _ in 0..64 {
-        let momenta = system.momenta(t, q, &v, inputs);
-        let mut matrix = system.mass_matrix(t, q, &v, inputs);
-        let mut step = [zero; N];
+    let rest = momenta(&v);
+    let mut left = missing(&rest);
+    // The share of a step that is taken, and whether the lane still moves.
+    let (mut share, mut moving) = (one, one);
+    for _ in 0..ROUNDS {
+        let factors = factors(&v);
+        let (step, size) = factors.solve(left);
+        let trial: [S::Scalar; N] = core::array::from_fn(|i| v[i] + share * step[i]);
+        let left_then = missing(&momenta(&trial));
+        let gain = moving.where_positive(size - factors.solve(left_then).1, zero);
+        let moved = (0..N).fold(zero, |sum, i| sum + (trial[i] - v[i]).abs());
         for i in 0..N {
-            step[i] = p[i] - momenta[i];
+            v[i] = gain.where_positive(trial[i], v[i]);
+            left[i] = gain.where_positive(left_then[i], left[i]);
         }
-        // LDLᵀ in place: the mass matrix is symmetric and positive definite.
+        share = gain.where_positive((share + share).min(one), number(0.5) * share);
+        moving = moved.where_positive(moving, zero);
+        if moving == zero {
+            break;
+        }
+    }
+    // Two steps that only have to stay where there are numbers: derivatives come one step after the values, second ones another.
+    for _ in 0..2 {
+        let step = factors(&v).solve(left).0;
+        let trial: [S::Scalar; N] = core::array::from_fn(|i| v[i] + step[i]);
+        let left_then = missing(&momenta(&trial));
+        let finite = (0..N).fold(one, |sum, i| sum + zero * (left_then[i] + trial[i]));
+        for i in 0..N {
+            v[i] = finite.where_positive(trial[i], v[i]);
+            left[i] = finite.where_positive(left_then[i], left[i]);
+        }
+    }
+    checked(p, &rest, &left, v)
+}
+
+/// The greatest number of trials. Towards a limit of the velocities each step halves the way that is left at least, and two words hold a
+/// hundred halves.
+const ROUNDS: usize = 256;
+
+/// The velocities `v`, not numbers where the momenta that are `left` are not the rounding of `p` or of what is added up in it.
+fn checked<T: Real, const N: usize>(p: &[T; N], rest: &[T; N], left: &[T; N], v: [T; N]) -> [T; N] {
+    let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+    // Four thirds are rounded, and what is left of them shows by how much.
+    let epsilon = (T::from_f64(3.0) * (T::ratio(4.0, 3.0) - one) - one).abs();
+    // Products with velocities are energies, which coordinates have in common.
+    let weights: [T; N] = core::array::from_fn(|i| v[i].abs().where_positive(v[i].abs(), one));
+    let scales: [T; N] = core::array::from_fn(|i| {
+        let gained = (p[i] - left[i] - rest[i]).abs() + (p[i] - rest[i]).abs();
+        weights[i] * gained
+    });
+    let total = scales.iter().fold(zero, |sum, &scale| sum + scale);
+    core::array::from_fn(|i| {
+        let rounding = T::from_f64(64.0) * epsilon * (p[i].abs() + rest[i].abs());
+        let allowed = T::from_f64(1e-3) * scales[i] + T::from_f64(1e-5) * total + weights[i] * rounding;
+        let wrong = T::from_f64(f64::NAN);
+        let found = (allowed - weights[i] * left[i].abs()).where_positive(v[i], wrong);
+        (one - left[i].abs().sign()).where_positive(v[i], found)
+    })
+}
+
+/// L and D of a symmetric matrix L D Lᵀ.
+struct Factors<T, const N: usize>(SMatrix<T, N, N>);
+
+impl<T: Real, const N: usize> Factors<T, N> {
+    /// The upper triangle becomes D Lᵀ, the lower one L.
+    fn new(mut matrix: SMatrix<T, N, N>) -> Self {
         for j in 0..N {
             for i in j + 1..N {
                 let factor = matrix[(i, j)] / matrix[(j, j)];
-                for k in j + 1..N {
+                for k in i..N {
                     let part = factor * matrix[(j, k)];
                     matrix[(i, k)] -= part;
+                    matrix[(k, i)] = matrix[(i, k)];
                 }
-                step[i] -= factor * step[j];
+                matrix[(i, j)] = factor;
             }
+        }
+        Self(matrix)
+    }
+
+    /// x = M⁻¹ b, and b·x with the absolute values of all terms.
+    fn solve(&self, mut b: [T; N]) -> ([T; N], T) {
+        let Self(matrix) = self;
+        let mut size = T::from_f64(0.0);
+        for j in 0..N {
+            for i in j + 1..N {
+                let part = matrix[(i, j)] * b[j];
+                b[i] -= part;
+            }
+            let scaled = b[j] / matrix[(j, j)];
+            size += (b[j] * scaled).abs();
+            b[j] = scaled;
         }
         for j in (0..N).rev() {
             for k in j + 1..N {
-                step[j] -= matrix[(j, k)] * step[k];
+                let part = matrix[(k, j)] * b[k];
+                b[j] -= part;
             }
-            step[j] /= matrix[(j, j)];
-            v[j] += step[j];
         }
+        (b, size)
     }
-    v
 }

@@ -1,13 +1,15 @@
 //! Who is to blame for a step that failed.
 
 use super::field::{Watched, first_in_state};
+use super::linear::Factors;
 use super::method::Suits;
 use super::node::Node;
 use super::span::Span;
 use super::stepper::Stepper;
 use crate::error::{Error, Quantity, Suspect};
-use crate::real::Float;
-use crate::system::{Dynamics, System};
+use crate::motion::Side;
+use crate::real::{Float, Real};
+use crate::system::{Dynamics, Purpose, System, scalar_time};
 use crate::time::Time;
 
 /// The error for a step, with what it has left in `stages`, that led to a number that is not finite.
@@ -32,19 +34,36 @@ pub(crate) fn fault<D: Dynamics<N, Scalar: Float>, M: Suits<D::System, N>, const
     stages: &M::Stages<D::Scalar, N>,
 ) -> Option<Error> {
     let facts = &<D::System as System<N>>::FACTS;
+    let unsolved = M::unsolved(stages);
+    let mut watched = Watched::new(dynamics);
+    let to = method.step(&mut watched, span, &mut Node { a: None, ..*from }, &mut M::stages());
+    if let Some((t, coordinate)) = watched.lost
+        && regular(dynamics, from)
+    {
+        return Some(Error::NoVelocity { t: t.to_f64(), coordinate });
+    }
     // Where an iteration went astray, numbers that are not finite are not the cause but the effect.
-    if let Some((t, index)) = M::unsolved(stages) {
+    if let Some((t, index)) = unsolved {
         let coordinate = super::field::coordinate(facts, index);
         return Some(Error::NoConvergence { t: t.to_f64(), step: span.h, coordinate });
     }
-    let mut watched = Watched::new(dynamics);
-    let to = method.step(&mut watched, span, &mut Node { a: None, ..*from }, &mut M::stages());
     let at_end = || first_in_state(facts, &to.q.high, &to.v.high).map(|what| (span.end, what));
     let (t, what) = watched.first.or_else(at_end)?;
     if watched.singular {
         return Some(Error::NotFinite { t: t.to_f64(), what, suspects: suspects(dynamics.system()) });
     }
     Some(not_finite(dynamics.system(), t, what))
+}
+
+/// Whether the mass matrix at the start of a step leads from velocities to momenta and back.
+fn regular<D: Dynamics<N, Scalar: Float>, const N: usize>(dynamics: &D, from: &Node<D::Scalar, N>) -> bool {
+    let (t, q, v) = (scalar_time(from.t), &from.q.high, &from.v.high);
+    let inputs = dynamics.inputs(from.t, Side::After, Purpose::Momenta);
+    let mass = dynamics.system().mass_matrix(t, q, v, &inputs);
+    let momenta = Factors::<_, N, 1>::new(|_, _| core::array::from_fn(|i| core::array::from_fn(|j| mass[(i, j)])));
+    let mut unit = [[D::Scalar::from_f64(1.0); N]];
+    momenta.solve(&mut unit);
+    unit[0].iter().all(|x| x.is_finite())
 }
 
 /// The error for a number that is not finite, with the parameters that may be the cause.

@@ -10,7 +10,7 @@ use super::short::{is_short, straight};
 use super::solution::{State, Stats};
 use super::span::Span;
 use super::stepper::Stepper;
-use crate::error::{Error, Part};
+use crate::error::{Error, Part, Quantity};
 use crate::motion::Side;
 use crate::real::Float;
 use crate::system::{Dynamics, Purpose, System};
@@ -340,8 +340,13 @@ where
     let facts = &<D::System as System<N>>::FACTS;
     if let Some(velocity) = first_in_state(facts, &node.q.high, &v) {
         let input = |side| first_in_inputs(facts, &dynamics.inputs(node.t, side, Purpose::Momenta));
-        let what = input(Side::Before).or_else(|| input(Side::After)).unwrap_or(velocity);
-        return Err(Error::NotFinite { t: node.t.to_f64(), what, suspects: Vec::new() });
+        let t = node.t.to_f64();
+        return Err(match (input(Side::Before).or_else(|| input(Side::After)), velocity) {
+            (Some(what), _) => Error::NotFinite { t, what, suspects: Vec::new() },
+            // The state and the inputs are numbers.
+            (None, Quantity::Velocity(coordinate)) => Error::NoVelocity { t, coordinate },
+            (None, what) => Error::NotFinite { t, what, suspects: Vec::new() },
+        });
     }
     for i in 0..N {
         // Where nothing jumps, the low words stay.

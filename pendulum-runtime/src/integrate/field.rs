@@ -134,8 +134,10 @@ fn jacobians<const N: usize, D: Dynamics<N, System: Jacobians<N>>>(
 pub(crate) struct Watched<'a, D> {
     pub(crate) dynamics: &'a D,
     pub(crate) first: Option<(Time, Quantity)>,
-    /// It is a velocity that belongs to a finite momentum: the mass matrix has no inverse there.
+    /// It is a velocity that belongs to a finite momentum: the mass matrix has no inverse there, or no velocity gives that momentum.
     pub(crate) singular: bool,
+    /// The time and the coordinate if it is one that was not found, and not one beyond all numbers.
+    pub(crate) lost: Option<(Time, Coordinate)>,
 }
 
 impl<const N: usize, D: Dynamics<N, Scalar: Float>> Accelerations<D::Scalar, N> for Watched<'_, D> {
@@ -153,7 +155,7 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>> Accelerations<D::Scalar, N> 
 
 impl<'a, D> Watched<'a, D> {
     pub(crate) fn new(dynamics: &'a D) -> Self {
-        Self { dynamics, first: None, singular: false }
+        Self { dynamics, first: None, singular: false, lost: None }
     }
 
     fn look(&mut self, t: Time, what: impl FnOnce() -> Option<Quantity>) {
@@ -190,6 +192,12 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>> Field<D::System, N> for Watc
     ) -> [D::Scalar; N] {
         let v = self.dynamics.system().velocities(scalar_time(t), q, p, inputs);
         self.singular |= self.first.is_none() && first_in(p).is_none() && first_in(q).is_none() && first_in(&v).is_some();
+        if self.singular && self.lost.is_none() && self.first.is_none() {
+            let facts = &<D::System as System<N>>::FACTS;
+            // Only what is no number has no order.
+            self.lost =
+                v.iter().position(|velocity| velocity.partial_cmp(velocity).is_none()).map(|index| (t, coordinate(facts, index)));
+        }
         self.look(t, || first_in_state(&<D::System as System<N>>::FACTS, q, &v));
         v
     }

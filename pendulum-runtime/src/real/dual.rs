@@ -214,6 +214,11 @@ impl<T: Real> Real for Dual<T> {
     fn min(self, other: Self) -> Self {
         -Real::max(-self, -other)
     }
+
+    fn where_positive(self, then: Self, otherwise: Self) -> Self {
+        let value = self.value.where_positive(then.value, otherwise.value);
+        Self { value, derivative: self.value.where_positive(then.derivative, otherwise.derivative) }
+    }
 }
 
 /// √(1 − x²) without cancellation near ±1.

@@ -232,6 +232,15 @@ macro_rules! number {
 
             unary! { tan asin acos atan sinh cosh tanh exp ln sqrt abs sign step }
             binary! { atan2 powf max min }
+
+            #[inline(always)]
+            fn where_positive(self, then: Self, otherwise: Self) -> Self {
+                let mut result = otherwise;
+                for (k, positive) in self.0.iter().enumerate() {
+                    result.0[k] = positive.where_positive(then.0[k], otherwise.0[k]);
+                }
+                result
+            }
         }
     };
 }
@@ -265,6 +274,8 @@ mod tests {
         check(a.exp(), |x, _| Real::exp(x), "exponential");
         check(a.abs().sqrt(), |x, _| Real::abs(x).sqrt(), "root");
         check(a.sign(), |x, _| Real::sign(x), "sign");
+        check(a.where_positive(b, -a), |x, y| x.where_positive(y, -x), "choice");
+        check((a / b).sqrt().where_positive(b, a), |x, y| (x / y).sqrt().where_positive(y, x), "choice beside no number");
     }
 
     #[test]

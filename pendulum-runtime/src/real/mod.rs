@@ -96,6 +96,13 @@ pub trait Real:
     fn max(self, other: Self) -> Self;
     /// The smaller of two numbers.
     fn min(self, other: Self) -> Self;
+
+    /// `then` where `self` is positive, `otherwise` where it is not or is no number.
+    ///
+    /// What is correct for a single number stands here; types of several numbers choose for each.
+    fn where_positive(self, then: Self, otherwise: Self) -> Self {
+        if self.sign() == Self::from_f64(1.0) { then } else { otherwise }
+    }
 }
 
 /// A real number that can be compared: what step control needs beyond [`Real`].
