@@ -29,6 +29,12 @@ const ONE_WORD: f64 = 10.0 * f64::EPSILON;
 /// not cancel add up to N tolerances. A drive of a kilohertz takes thousands of steps a second; ask
 /// for a tolerance that is smaller by as many digits.
 ///
+/// Without `atol` it is `rtol`, in the units of each coordinate and velocity, whatever the method. The sum atol + rtol·|y| decides, and where
+/// y passes through zero or comes to rest atol alone: one that follows `rtol` makes the error there follow it too. A fixed number
+/// does not: beside `rtol` 1e-3, 1e-9 asks for six digits more near zero than elsewhere, in steps that nobody wanted, and beside 1e-12 it allows
+/// a thousand times the error that was asked for. Where coordinates are much smaller or greater than one, only you know what is
+/// small: say it by [`atol`](Self::atol) or [`atol_each`](Self::atol_each).
+///
 /// A step that would end beyond a time to be met (kink, stop, end) is cut there; one that would end less than 1 % before it is
 /// stretched to it; and if less than two steps are left they are made equal, so that no sliver is left. The size before a cut is
 /// remembered. The first step follows Hairer, Nørsett and Wanner (1993), II.4.
@@ -47,7 +53,7 @@ impl<const N: usize> Default for AdaptiveStep<N> {
 }
 
 impl<const N: usize> AdaptiveStep<N> {
-    /// `rtol` 1e-6 (100 machine epsilons for `f32`), `atol` 1e-9.
+    /// `rtol` 1e-6 (100 machine epsilons for `f32`), and `atol` the same.
     pub fn new() -> Self {
         Self::default()
     }
@@ -60,7 +66,7 @@ impl<const N: usize> AdaptiveStep<N> {
         self
     }
 
-    /// The absolute tolerance of all coordinates and velocities.
+    /// The absolute tolerance of all coordinates and velocities; without this call `rtol`.
     pub fn atol(self, atol: f64) -> Self {
         self.atol_each([atol; N], [atol; N])
     }
@@ -88,19 +94,9 @@ impl<const N: usize> AdaptiveStep<N> {
         self.rtol.unwrap_or(if 1e-6 < least { least } else { 1e-6 })
     }
 
-    /// The same with this absolute tolerance if none was given.
-    pub(crate) fn atol_or(self, atol: f64) -> Self {
-        if self.atol.is_some() { self } else { self.atol(atol) }
-    }
-
-    /// The absolute tolerances of coordinates and velocities, `default` where none were given.
-    fn absolute(&self, default: f64) -> ([f64; N], [f64; N]) {
-        self.atol.unwrap_or(([default; N], [default; N]))
-    }
-
     /// One over the error allowed between `from` and `to`.
     fn weights<T: Float>(&self, from: &Node<T, N>, to: &Node<T, N>) -> Weights<N> {
-        let (rtol, atol) = (self.relative::<T>(), self.absolute(1e-9));
+        let (rtol, atol) = self.tolerances::<T>();
         let larger = |a: T, b: T| {
             let (a, b) = (a.to_f64().abs(), b.to_f64().abs());
             if a < b { b } else { a }
@@ -204,11 +200,11 @@ where
 }
 
 impl<const N: usize> AdaptiveStep<N> {
-    /// The tolerances of a method for which small ones are possible: without `atol` it is `rtol`.
+    /// The relative tolerance, and the absolute ones of coordinates and velocities.
     #[inline]
     pub(crate) fn tolerances<T: Float>(&self) -> (f64, ([f64; N], [f64; N])) {
         let rtol = self.relative::<T>();
-        (rtol, self.absolute(rtol))
+        (rtol, self.atol.unwrap_or(([rtol; N], [rtol; N])))
     }
 
     /// A lower bound of the number of steps over an interval.

@@ -31,8 +31,6 @@ use crate::system::{Dynamics, System};
 /// Scalars of two words stand in no lanes. `Taylor` takes the place of `Picard` there, for every tolerance if the equations are short, as for one
 /// pendulum, below 2e-7 if they are longer, as for two or three links, and below 2e-14 if they are long; else `Dop853`.
 ///
-/// Without `atol`, `Picard` and `Taylor` take `rtol` for it and `Dop853` the smaller of `rtol` and 1e-9.
-///
 /// Nothing shows beforehand that a system is stiff: for stiff springs and dampers name [`Rodas4`](super::Rodas4) or
 /// [`Gauss`](super::Gauss), for long runs of a conservative system with fixed steps `Gauss`. Systems written by hand have no
 /// recurrences to choose by, and name a method too:
@@ -204,9 +202,8 @@ impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Control<Auto, D, N> for 
                 Course { method: &Picard, field, from, to, stages: &mut room.picard, target, stats },
             );
         }
-        let control = self.atol_or(if rtol < 1e-9 { rtol } else { 1e-9 });
-        Control::<Dop853, D, N>::check(&control)?;
-        control.step(memory, Course { method: &Dop853, field, from, to, stages: &mut room.dop853, target, stats })
+        Control::<Dop853, D, N>::check(self)?;
+        Control::step(self, memory, Course { method: &Dop853, field, from, to, stages: &mut room.dop853, target, stats })
     }
 }
 

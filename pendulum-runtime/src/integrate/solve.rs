@@ -16,7 +16,7 @@ use crate::system::{Dynamics, Prepared, System};
 
 /// Integrates `dynamics` over the interval `time = (start, end)` in seconds from the coordinates `q` and the velocities `v`.
 ///
-/// Without further calls it uses the method that [`Auto`] chooses, with `rtol` 1e-6, and gives the end state; [`Stats`] say which
+/// Without further calls it uses the method that [`Auto`] chooses, with `rtol` and `atol` 1e-6, and gives the end state; [`Stats`] say which
 /// method it was. If motions have a kink at the start, `v` is the velocity after it. An interval that ends before it starts leads back
 /// in time; of the methods here only [`Taylor`](super::Taylor) does that.
 pub fn solve<const N: usize, D: Dynamics<N>>(
@@ -138,7 +138,8 @@ impl<const N: usize, D: Dynamics<N>, M> Solve<'_, N, D, M, AdaptiveStep<N>> {
         self
     }
 
-    /// The absolute tolerance of all coordinates and velocities; without this call 1e-9, or what the method says.
+    /// The absolute tolerance of all coordinates and velocities; without this call `rtol`, in the units of each, as
+    /// [`AdaptiveStep`] explains.
     pub fn atol(mut self, atol: f64) -> Self {
         self.control = self.control.atol(atol);
         self

@@ -30,7 +30,7 @@ use crate::system::{Dynamics, System, scalar_time};
 /// h = ρ rtol^(1/p) e^(−0.7/(p−1)), where ρ is the least of the radii of convergence (rtol · max |xᵢ\[k\]|/εᵢ)^(−1/k) that the last four
 /// orders k tell, with εᵢ = atolᵢ + rtol·|xᵢ| over all coordinates and velocities; where they vanish, the orders before tell it.
 /// (With c = ½ the work would be least if it grew with p²; measured, it grows with p^1.4 and less.) `rtol` may be as small as you like: 1e-18
-/// takes the truncation well below rounding. Without `atol` it is `rtol`, in the units of each coordinate. Fixed steps have the order
+/// takes the truncation well below rounding. Fixed steps have the order
 /// for the machine epsilon and c = 0.7, without [`order`](Self::order).
 ///
 /// The sum of the series is compensated. Dense output is the series itself and costs nothing.

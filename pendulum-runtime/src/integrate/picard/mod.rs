@@ -42,7 +42,7 @@ use tableau::{EIGHT, S};
 ///
 /// An iteration has converged when its last change is below the tolerance, and the next one, if changes shrink as they did, below a fifth
 /// of it. The length of the steps stays the same as long as the error is within bounds; `rtol` may be as small as you like, and below about
-/// 1e-15 the error is that of rounding. Without `atol` it is `rtol`, in the units of each coordinate. The way to the next stop, break or end is
+/// 1e-15 the error is that of rounding. The way to the next stop, break or end is
 /// divided into equal steps. Fixed steps are iterated down to rounding; while h·ω stays below about 1.5 that converges, and an iteration
 /// that does not is an [error](crate::error::Error::NoConvergence). A stiff spring or damper shortens the steps: take
 /// [`Rodas4`](super::Rodas4) or [`Gauss`](super::Gauss) there.
@@ -366,7 +366,7 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
                 return Err(blame(method, field.dynamics, &Span::by(from.t, 0.0), from, room));
             }
             let left = -from.t.since(target);
-            memory.h = self.limited(true, self.atol_or(tolerances.0).automatic_step(2 * S as u32, field, from, left));
+            memory.h = self.limited(true, self.automatic_step(2 * S as u32, field, from, left));
         }
         let mut wanted = self.limited(false, memory.h);
         let (mut retried, mut last_fault) = (false, None);
