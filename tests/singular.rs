@@ -54,8 +54,8 @@ fn everybody(system: &Double) -> [(&'static str, Outcome, f64); 6] {
     let run = || solve(system, TEN, START, [0.0; 2]);
     [
         ("Rk4", run().method(Rk4).step(0.01).run(), 0.3),
-        ("Tsit5", run().method(Tsit5).max_steps(20_000).run(), 0.01),
-        ("Dop853", run().method(Dop853).max_steps(20_000).run(), 0.01),
+        ("Tsit5", run().method(Tsit5).atol(1e-9).max_steps(20_000).run(), 0.01),
+        ("Dop853", run().method(Dop853).atol(1e-9).max_steps(20_000).run(), 0.01),
         ("Taylor", run().method(Taylor::new()).max_steps(20_000).run(), 0.01),
         ("Gauss", run().method(Gauss::<3>::new()).step(0.01).run(), 0.3),
         ("Rodas4", run().method(Rodas4).step(0.01).run(), f64::INFINITY),
