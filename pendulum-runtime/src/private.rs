@@ -57,6 +57,15 @@ pub fn columns<T, const N: usize>(entries: &[T]) -> &[[T; N]] {
     entries.as_chunks().0
 }
 
+/// The least of max(w·`widths`, |d|/2) over functions of time, given one over their width w and the time d since their middle.
+pub fn longest_step<T: Real>(all: &[T], widths: T) -> T {
+    let mut longest = T::from_f64(f64::INFINITY);
+    for feature in all.as_chunks::<2>().0 {
+        longest = longest.min((widths / feature[0]).max(T::from_f64(0.5) * feature[1].abs()));
+    }
+    longest
+}
+
 /// q̇ from p by Newton's method, for Lagrangians that are not quadratic in the velocities; not a number for a coordinate where none is
 /// found.
 ///

@@ -108,6 +108,16 @@ pub trait System<const N: usize> {
         inputs: &Self::Inputs,
     ) -> [Self::Scalar; N];
 
+    /// The longest step from `t` that cannot go unseen over what time alone does to the accelerations, in seconds; infinite if it stands nowhere.
+    ///
+    /// A step may be `widths` times as long as the narrowest function of time is wide, w for exp(−((t − t₀)/w)²), and half as
+    /// long as it is to one that is farther off. Generated code knows the arguments of functions and powers that are polynomials in
+    /// time with coefficients made of parameters, and magnitudes of such; nothing is known of systems written by hand that do not say it.
+    fn longest_step(&self, t: Self::Scalar, widths: Self::Scalar) -> Self::Scalar {
+        let _ = (t, widths);
+        Self::Scalar::from_f64(f64::INFINITY)
+    }
+
     /// Hamilton's equations: the velocities q̇ = ∂H/∂p that give the momenta `p`, and dp/dt there.
     ///
     /// Generated code computes once what both need of a position.
@@ -420,6 +430,14 @@ pub trait Dynamics<const N: usize> {
     /// The first time after `t` at which a derivative of a driven input jumps.
     fn next_kink(&self, t: f64) -> Option<f64>;
 
+    /// The longest step from `t` over the motions, as [`Motion::longest_step`](crate::motion::Motion::longest_step); `unknown` stands for the
+    /// answer of those that do not know.
+    #[inline]
+    fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
+        let _ = (t, widths, unknown);
+        f64::INFINITY
+    }
+
     /// The accelerations at `t`, seen from `side`.
     #[inline]
     fn accelerations_at(&self, t: Time, side: Side, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> [Self::Scalar; N] {
@@ -558,6 +576,11 @@ impl<const N: usize, D: Dynamics<N>> Dynamics<N> for Prepared<'_, D, <D::System 
     }
 
     #[inline]
+    fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
+        self.dynamics.longest_step(t, widths, unknown)
+    }
+
+    #[inline]
     fn accelerations_at(&self, t: Time, side: Side, q: &[D::Scalar; N], v: &[D::Scalar; N]) -> [D::Scalar; N] {
         self.dynamics.accelerations_with(&self.prepared, t, side, q, v)
     }
@@ -617,5 +640,10 @@ impl<const N: usize, S: System<N>, M: Motions<S::Inputs>> Dynamics<N> for Driven
 
     fn next_kink(&self, t: f64) -> Option<f64> {
         self.motions.next_kink(t)
+    }
+
+    #[inline]
+    fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
+        self.motions.longest_step(t, widths, unknown)
     }
 }

@@ -288,6 +288,11 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
         self.system.conserved(t, &column(q, 0), &column(v, 0), inputs, values);
     }
 
+    /// That of the system: derivatives of its functions of time are as narrow as they.
+    fn longest_step(&self, t: S::Scalar, widths: S::Scalar) -> S::Scalar {
+        self.system.longest_step(t, widths)
+    }
+
     fn momentum_rates(&self, t: S::Scalar, q: &[S::Scalar; M], v: &[S::Scalar; M], inputs: &S::Inputs) -> [S::Scalar; M] {
         let own = self.system.momentum_rates(t, &column(q, 0), &column(v, 0), inputs);
         self.derivatives(own, (t, q, v, inputs), System::momentum_rates)

@@ -150,6 +150,11 @@ impl<const N: usize, D: Dynamics<N>> Dynamics<N> for Known<'_, D> {
     }
 
     #[inline]
+    fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
+        self.0.longest_step(t, widths, unknown)
+    }
+
+    #[inline]
     fn accelerations_at(&self, t: Time, side: Side, q: &[D::Scalar; N], v: &[D::Scalar; N]) -> [D::Scalar; N] {
         self.0.accelerations_at(t, side, q, v)
     }

@@ -67,6 +67,11 @@ impl<T: Real, const D: usize> Motion<T, D> for CatmullRom<D> {
         self.0.next_kink(t)
     }
 
+    // No bound: steps end at all keys but those at which the acceleration does not jump.
+    fn longest_step(&self, _: f64, _: f64) -> Option<f64> {
+        Some(f64::INFINITY)
+    }
+
     fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
         Some(self)
     }

@@ -106,6 +106,14 @@ impl<T: Real, const D: usize> Motion<T, D> for Clip<D> {
         }
     }
 
+    fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
+        match &self.curve {
+            Curve::Linear(curve) => Motion::<T, D>::longest_step(curve, t, widths),
+            Curve::CatmullRom(curve) => Motion::<T, D>::longest_step(curve, t, widths),
+            Curve::Spline(curve) => Motion::<T, D>::longest_step(curve, t, widths),
+        }
+    }
+
     fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
         Some(self)
     }

@@ -37,6 +37,8 @@ pub enum MotionError {
     Gain(f64),
     /// A limit of the speed is not positive.
     SpeedLimit(f64),
+    /// The resolution of a function of time is not a positive number of seconds.
+    Resolution(f64),
 }
 
 impl fmt::Display for MotionError {
@@ -52,6 +54,12 @@ impl fmt::Display for MotionError {
             Self::Rate(rate) => write!(f, "a frame rate of {rate} Hz; give a positive number of frames a second"),
             Self::Gain(gain) => write!(f, "a gain of {gain}; give a finite number, 1 for the motion as it is"),
             Self::SpeedLimit(limit) => write!(f, "a speed limit of {limit} m/s; give a positive number, infinity for none"),
+            Self::Resolution(seconds) => {
+                write!(
+                    f,
+                    "a resolution of {seconds} s; give a positive number of seconds, the shortest time in which the motion changes"
+                )
+            }
             Self::Every => write!(f, "`every` is 0, and no frame is kept; give 1 to keep all of them"),
         }
     }

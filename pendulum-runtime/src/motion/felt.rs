@@ -140,6 +140,10 @@ impl<T: Real, const D: usize, M: Motion<T, D> + Motion<f64, D>> Motion<T, D> for
         super::earlier(own, self.crossing(t, own.unwrap_or(f64::INFINITY)))
     }
 
+    fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
+        Motion::<f64, D>::longest_step(&self.motion, t, widths)
+    }
+
     fn rest_until(&self, t: f64) -> f64 {
         Motion::<f64, D>::rest_until(&self.motion, t)
     }

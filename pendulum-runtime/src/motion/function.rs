@@ -1,6 +1,6 @@
 //! Motions given by functions of time.
 
-use super::{Motion, Orders, Sample, Side};
+use super::{Motion, MotionError, Orders, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 use core::fmt;
@@ -13,12 +13,27 @@ use core::fmt;
 /// use pendulum_runtime::motion::Function;
 /// let lift = Function::new(|t| [0.0, 0.5 * t * t]).velocity(|t| [0.0, t]).acceleration(|_| [0.0, 1.0]);
 /// ```
+///
+/// A method asks a function a few times in each step and knows nothing of what it does in between: a kick of ten milliseconds while the pendulum rests and
+/// the steps are long would stay unseen. Without [`resolution`](Self::resolution) a step is at most a fiftieth of the interval of
+/// [`solve`](crate::integrate::solve), or one second in an [`Integrator`](crate::integrate::Integrator), which knows no end.
+///
+/// ```
+/// use pendulum_runtime::motion::{Function, MotionError};
+/// # fn main() -> Result<(), MotionError> {
+/// let push = |t: f64| (-((t - 40.0) / 0.01).powi(2)).exp();
+/// let kick = Function::new(move |t| [0.1 * push(t)]).resolution(0.01)?;
+/// # let _ = kick;
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone)]
 pub struct Function<X, V = Missing, A = Missing> {
     position: X,
     velocity: V,
     acceleration: A,
     kinks: Vec<f64>,
+    resolution: Option<f64>,
 }
 
 /// A derivative that a [`Function`] does not have.
@@ -56,19 +71,21 @@ impl<X> Function<X> {
     where
         X: Fn(f64) -> [f64; D],
     {
-        Self { position, velocity: Missing, acceleration: Missing, kinks: Vec::new() }
+        Self { position, velocity: Missing, acceleration: Missing, kinks: Vec::new(), resolution: None }
     }
 }
 
 impl<X, V, A> Function<X, V, A> {
     /// The same motion with its velocity.
     pub fn velocity<const D: usize, F: Fn(f64) -> [f64; D]>(self, velocity: F) -> Function<X, F, A> {
-        Function { position: self.position, velocity, acceleration: self.acceleration, kinks: self.kinks }
+        let Self { position, acceleration, kinks, resolution, .. } = self;
+        Function { position, velocity, acceleration, kinks, resolution }
     }
 
     /// The same motion with its acceleration.
     pub fn acceleration<const D: usize, F: Fn(f64) -> [f64; D]>(self, acceleration: F) -> Function<X, V, F> {
-        Function { position: self.position, velocity: self.velocity, acceleration, kinks: self.kinks }
+        let Self { position, velocity, kinks, resolution, .. } = self;
+        Function { position, velocity, acceleration, kinks, resolution }
     }
 
     /// The same motion with the times at which a derivative jumps; the functions give the values after each jump.
@@ -82,9 +99,27 @@ impl<X, V, A> Function<X, V, A> {
     }
 }
 
+impl<X, V, A> Function<X, V, A> {
+    /// The same motion with the shortest time in seconds within which it does something: w for exp(−((t − t₀)/w)²).
+    ///
+    /// Adaptive steps are then short enough to see it: no two samples of a step lie farther apart than 1.5 w, so that the steps of
+    /// [`Picard`](crate::integrate::Picard) are at most 8.2 w long, those of [`Dop853`](crate::integrate::Dop853) 5.6 w. Fixed steps are taken as they
+    /// are asked for.
+    ///
+    /// # Errors
+    /// A time that is not positive or not finite.
+    pub fn resolution(self, seconds: f64) -> Result<Self, MotionError> {
+        if 0.0 < seconds && seconds < f64::INFINITY {
+            Ok(Self { resolution: Some(seconds), ..self })
+        } else {
+            Err(MotionError::Resolution(seconds))
+        }
+    }
+}
+
 impl<X, V, A> fmt::Debug for Function<X, V, A> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Function").field("kinks", &self.kinks).finish_non_exhaustive()
+        f.debug_struct("Function").field("kinks", &self.kinks).field("resolution", &self.resolution).finish_non_exhaustive()
     }
 }
 
@@ -116,5 +151,9 @@ impl<T: Real, const D: usize, X: Part<D>, V: Part<D>, A: Part<D>> Motion<T, D> f
     fn next_kink(&self, t: f64) -> Option<f64> {
         let index = self.kinks.partition_point(|&kink| kink <= t);
         self.kinks.get(index).copied()
+    }
+
+    fn longest_step(&self, _: f64, widths: f64) -> Option<f64> {
+        self.resolution.map(|resolution| widths * resolution)
     }
 }

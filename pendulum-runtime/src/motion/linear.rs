@@ -52,6 +52,11 @@ impl<T: Real, const D: usize> Motion<T, D> for Linear<D> {
         self.0.next_kink(t)
     }
 
+    // No bound: steps end at all keys.
+    fn longest_step(&self, _: f64, _: f64) -> Option<f64> {
+        Some(f64::INFINITY)
+    }
+
     fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
         Some(self)
     }

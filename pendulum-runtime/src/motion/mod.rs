@@ -73,6 +73,17 @@ pub trait Motion<T: Real, const D: usize> {
     /// The first time after `t` (never `t` itself) at which the position, the velocity or the acceleration jumps.
     fn next_kink(&self, t: f64) -> Option<f64>;
 
+    /// The longest step from `t` that cannot go unseen over anything that the motion does, in seconds, where a step may be `widths` times as
+    /// long as the narrowest of it; infinite if nothing is too narrow for any step, and `None` if that is not known.
+    ///
+    /// Steps end at kinks, so that only what lies between two of them counts. Where nothing is known, a step is at most a fiftieth of
+    /// the interval of [`solve`](crate::integrate::solve), or one second in an [`Integrator`](crate::integrate::Integrator). What lies farther
+    /// off may be approached: half the distance to it is short enough.
+    fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
+        let _ = (t, widths);
+        None
+    }
+
     /// The motion as one that knows all its derivatives: `Some(self)` where it is [`Analytic`].
     ///
     /// [`Auto`](crate::integrate::Auto) asks for it.
@@ -181,6 +192,12 @@ pub trait Motions<Inputs> {
 
     /// The first kink of any of them after `t`.
     fn next_kink(&self, t: f64) -> Option<f64>;
+
+    /// The least of the answers of [`Motion::longest_step`], with `unknown` for those that do not know.
+    fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
+        let _ = (t, widths);
+        unknown
+    }
 }
 
 /// Whether motions that have the derivatives `has` can drive `inputs`.
@@ -205,6 +222,17 @@ impl Motions<()> for () {
     fn next_kink(&self, _: f64) -> Option<f64> {
         None
     }
+
+    #[inline]
+    fn longest_step(&self, _: f64, _: f64, _: f64) -> f64 {
+        f64::INFINITY
+    }
+}
+
+/// The shorter of two steps; what is no number stays, so that somebody says so.
+#[inline]
+pub(crate) fn shorter(a: f64, b: f64) -> f64 {
+    if b < a || b.is_nan() { b } else { a }
 }
 
 /// The earlier of two kinks.
@@ -235,6 +263,13 @@ macro_rules! tuples {
                 let mut next = None;
                 $(next = earlier(next, self.$index.next_kink(t));)+
                 next
+            }
+
+            #[inline]
+            fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
+                let mut longest = f64::INFINITY;
+                $(longest = shorter(longest, self.$index.longest_step(t, widths).unwrap_or(unknown));)+
+                longest
             }
         }
     )+};

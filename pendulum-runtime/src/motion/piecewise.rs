@@ -15,6 +15,16 @@ pub(super) struct Piecewise<const D: usize> {
     looped: bool,
     /// Where position, velocity or acceleration jumps, within the keys.
     kinks: Vec<f64>,
+    /// The shortest time between two keys.
+    finest: f64,
+}
+
+/// So many pieces ahead are compared with a step.
+const MOST_AHEAD: u32 = 64;
+
+/// The shortest time between two keys.
+fn finest(times: &[f64]) -> f64 {
+    times.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, |a, b| if b < a { b } else { a })
 }
 
 /// Where a time lies among the keys.
@@ -61,7 +71,7 @@ impl<const D: usize> Piecewise<D> {
             pieces.push(piece);
         }
         let last = values[values.len() - 1];
-        Self { times: times.to_vec(), pieces, last, looped: false, kinks: Vec::new() }
+        Self { times: times.to_vec(), pieces, last, looped: false, kinks: Vec::new(), finest: finest(times) }
     }
 
     /// Straight lines; the velocity jumps at the keys.
@@ -85,7 +95,7 @@ impl<const D: usize> Piecewise<D> {
         let rest = [0.0; D];
         let pieces = values[..last].iter().map(|&value| [value, rest, rest, rest]).collect();
         let kinks = (0..last).filter(|&key| values[key] != values[key + 1]).map(|key| times[key + 1]).collect();
-        Self { times: times.to_vec(), pieces, last: values[last], looped: false, kinks }
+        Self { times: times.to_vec(), pieces, last: values[last], looped: false, kinks, finest: finest(times) }
     }
 
     /// Where position, velocity or acceleration jumps, within the keys.
@@ -234,6 +244,30 @@ impl<const D: usize> Piecewise<D> {
                 [a + u * (b + u * (c + u * d)), b + u * (2.0 * c + u * (3.0 * d)), c + u * (3.0 * d), d]
             }
         }
+    }
+
+    /// The longest step from `t` that does not go unseen over a piece: `widths` times as long as any that it may reach.
+    pub(super) fn longest_step(&self, t: f64, widths: f64) -> f64 {
+        let Some(mut from) = self.next_key(t) else { return f64::INFINITY };
+        // The piece under way, or nothing before the first key.
+        let mut longest = self.last_key(from).map_or(f64::INFINITY, |last| widths * (from - last));
+        if longest <= 1.5 * widths * self.finest {
+            return widths * self.finest;
+        }
+        for _ in 0..MOST_AHEAD {
+            let distance = 0.5 * (from - t);
+            if longest <= distance {
+                return longest;
+            }
+            let Some(to) = self.next_key(from) else { return longest };
+            let own = widths * (to - from);
+            let own = if own < distance { distance } else { own };
+            longest = if own < longest { own } else { longest };
+            from = to;
+        }
+        // Longer steps would go over more pieces than one looks at.
+        let distance = 0.5 * (from - t);
+        if distance < longest { distance } else { longest }
     }
 
     pub(super) fn next_kink(&self, t: f64) -> Option<f64> {

@@ -46,6 +46,10 @@ impl<T: Real, M: Motion<T, 3>> Motion<T, 2> for Projected<M> {
         self.0.motion.next_kink(t)
     }
 
+    fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
+        self.0.motion.longest_step(t, widths)
+    }
+
     fn analytic(&self) -> Option<&dyn Analytic<T, 2>> {
         self.0.motion.analytic().map(|_| &self.0 as &dyn Analytic<T, 2>)
     }

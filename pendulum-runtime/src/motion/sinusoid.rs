@@ -104,6 +104,11 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
         None
     }
 
+    // No bound: it never pauses, so that every step sees it.
+    fn longest_step(&self, _: f64, _: f64) -> Option<f64> {
+        Some(f64::INFINITY)
+    }
+
     fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
         Some(self)
     }

@@ -178,6 +178,11 @@ impl<T: Real, const D: usize> Motion<T, D> for Spline<D> {
         self.0.next_kink(t)
     }
 
+    // Only some methods end their steps at keys without a kink.
+    fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
+        Some(self.0.longest_step(t, widths))
+    }
+
     fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
         Some(self)
     }

@@ -34,6 +34,11 @@ impl<T: Real, const D: usize> Motion<T, D> for Still<D> {
         None
     }
 
+    // No bound: nothing happens.
+    fn longest_step(&self, _: f64, _: f64) -> Option<f64> {
+        Some(f64::INFINITY)
+    }
+
     fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
         Some(self)
     }

@@ -302,3 +302,37 @@ fn what_is_felt_is_cut_and_scaled() {
             && Felt::new(whole, 1.0, f64::NAN).is_err()
     );
 }
+
+/// The longest step from `t` where a step may be ten times as long as anything is wide.
+fn bound<const D: usize, M: Motion<f64, D>>(motion: &M, t: f64) -> Option<f64> {
+    motion.longest_step(t, 10.0)
+}
+
+#[test]
+fn functions_bound_steps_by_their_resolution() {
+    let unknown = || Function::new(|t: f64| [t, 0.0, 0.0]);
+    assert_eq!(bound(&unknown(), 1.0), None);
+    let known = unknown().resolution(0.25).unwrap().velocity(|_| [1.0, 0.0, 0.0]).acceleration(|_| [0.0; 3]);
+    assert_eq!(bound(&known, 1.0), Some(2.5));
+    let plane = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    assert_eq!(bound(&Projected::new(known.clone(), plane), 1.0), Some(2.5));
+    let felt = Felt::new(known, 0.5, 1.0).unwrap();
+    assert_eq!(bound(&felt, 1.0), Some(2.5));
+    assert_eq!(bound(&Still { position: [0.0] }, 1.0), Some(f64::INFINITY));
+}
+
+#[test]
+fn splines_bound_steps_by_their_keys() {
+    let through = |times: &[f64]| Spline::natural(times, &vec![[0.0]; times.len()]).unwrap();
+    let even = through(&[0.0, 1.0, 2.0, 3.0]);
+    assert_eq!([0.0, 0.5, 2.9].map(|t| bound(&even, t)), [Some(10.0); 3]);
+    assert_eq!(bound(&even, 3.0), Some(f64::INFINITY));
+    // Two keys in a hundredth of a second: half the way to them, or ten times their distance.
+    let dense = through(&[0.0, 50.0, 50.01, 100.0]);
+    assert_eq!([-1.0, 10.0, 49.9].map(|t| bound(&dense, t).unwrap()), [25.5, 20.0, 10.0 * (50.01 - 50.0)]);
+    assert_eq!(bound(&dense, 50.5), Some(10.0 * (100.0 - 50.01)));
+    let again = Spline::periodic(&[0.0, 0.5, 2.0], &[[0.0], [1.0], [0.0]]).unwrap();
+    assert_eq!([0.2, 1.0].map(|t| bound(&again, t).unwrap()), [5.0, 5.0]);
+    let clip = Clip::new(100.0, &[[0.0]; 50], 1, Interpolation::Spline).unwrap();
+    assert!((bound(&clip, 0.2).unwrap() - 0.1).abs() < 1e-12);
+}

@@ -21,6 +21,7 @@ pub(super) trait Drive<T>: Send + Sync {
     fn sample_all(&self, times: &[Time], orders: Orders, numbers: &mut [T]);
     fn next_kink(&self, t: f64) -> Option<f64>;
     fn rest_until(&self, t: f64) -> f64;
+    fn longest_step(&self, t: f64, widths: f64) -> Option<f64>;
 }
 
 /// The times that are sampled at once.
@@ -99,6 +100,10 @@ impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Forgot
 
     fn rest_until(&self, t: f64) -> f64 {
         self.0.rest_until(t)
+    }
+
+    fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
+        self.0.longest_step(t, widths)
     }
 }
 

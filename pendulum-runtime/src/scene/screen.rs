@@ -6,7 +6,7 @@ use super::hung::Hung;
 use super::joint::Place;
 use super::{Handle, Scene};
 use crate::integrate::{Dop853, solve};
-use crate::motion::Side;
+use crate::motion::{Side, shorter};
 use crate::real::{Float, Lane};
 use crate::system::{Dynamics, Purpose, scalar_time};
 use crate::time::Time;
@@ -48,6 +48,11 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Dynamics<N> for Hanging<'_,
     fn next_kink(&self, t: f64) -> Option<f64> {
         let next = |&joint: &u32| self.places[joint as usize].drive.next_kink(t).filter(|&kink| t < kink);
         self.joints.iter().filter_map(next).min_by(f64::total_cmp)
+    }
+
+    fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
+        let longest = |&joint: &u32| self.places[joint as usize].drive.longest_step(t, widths).unwrap_or(unknown);
+        self.joints.iter().map(longest).fold(f64::INFINITY, shorter)
     }
 
     fn accelerations_with(&self, prepared: &S::Prepared, t: Time, side: Side, q: &[T; N], v: &[T; N]) -> [T; N] {

@@ -184,6 +184,11 @@ impl<T: Real> Motion<T, 3> for NodeMotion {
             .find_map(|turn| self.kinks.iter().map(|&kink| kink + turn * period).find(|&kink| t + slack < kink))
     }
 
+    // No bound: between the kinks of all channels nothing is narrower than the way from key to key.
+    fn longest_step(&self, _: f64, _: f64) -> Option<f64> {
+        Some(f64::INFINITY)
+    }
+
     fn rest_until(&self, t: f64) -> f64 {
         let rest = |t: f64| self.chain.iter().map(|local| local.rest_until(t)).fold(f64::INFINITY, Real::min);
         if !self.looped || !t.is_finite() {
