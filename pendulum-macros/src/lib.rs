@@ -4,6 +4,7 @@ mod articulated;
 mod ast;
 mod cancel;
 mod check;
+mod clock;
 mod collect;
 mod derive;
 mod diff;

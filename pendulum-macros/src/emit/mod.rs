@@ -1,5 +1,6 @@
 //! Rust for a derived block: the struct, its constructor and the implementation of the runtime's traits.
 
+mod clock;
 pub(crate) mod documentation;
 mod facts;
 mod jacobian;
@@ -23,7 +24,7 @@ use std::collections::BTreeMap;
 #[rustfmt::skip]
 const OWN: &[&str] = &[
     "acceleration", "all", "at_position", "at_time", "both", "column", "columns", "drive", "entries", "index", "inputs", "k", "lifted",
-    "map", "order", "p", "parameter", "path", "prepared", "q", "row", "system", "t", "v", "value", "values", "work",
+    "map", "order", "p", "parameter", "path", "prepared", "q", "row", "system", "t", "v", "value", "values", "widths", "work",
 ];
 
 /// What the emitter writes about and with.

@@ -32,7 +32,7 @@ impl Emitter<'_, '_> {
         let momentum_rates = vector(self, |motion| motion.momentum_rates.clone());
         let energy = vector(self, |motion| vec![motion.energy]);
         let power = vector(self, |motion| vec![motion.power]);
-        let hamilton = self.hamilton();
+        let (hamilton, longest_step) = (self.hamilton(), self.longest_step());
         let velocities = self.output(|motion| motion.velocities.clone());
         let velocities = velocities.unwrap_or_else(|| quote!(#krate::__private::newton::<#count, Self>(self, t, q, p, inputs)));
         let matrix = self.mass_matrix();
@@ -102,6 +102,8 @@ impl Emitter<'_, '_> {
                 fn momentum_rates(&self, t: #scalar, #state) -> [#scalar; #count] { #momentum_rates }
 
                 #hamilton
+
+                #longest_step
             }
         }
     }

@@ -11,6 +11,7 @@ use random::derive::derived;
 use std::collections::BTreeMap;
 
 mod absolute;
+mod clock;
 mod derivatives;
 mod fragments;
 mod golden;
