@@ -38,6 +38,12 @@ const ONE_WORD: f64 = 10.0 * f64::EPSILON;
 /// A step that would end beyond a time to be met (kink, stop, end) is cut there; one that would end less than 1 % before it is
 /// stretched to it; and if less than two steps are left they are made equal, so that no sliver is left. The size before a cut is
 /// remembered. The first step follows Hairer, Nørsett and Wanner (1993), II.4.
+///
+/// The estimate knows the accelerations at a few times only; what is over between two of them it does not see. So no two of them lie
+/// farther apart than 1.5 times the width of what time alone does: of functions of time in the equations, as far as `lagrangian!` finds it
+/// ([`System::longest_step`]), and of motions, as far as they say it ([`Motion::longest_step`](crate::motion::Motion::longest_step)).
+/// A [`Function`](crate::motion::Function) says it by its `resolution`; without that a step over it is at most a fiftieth of the interval, or one
+/// second where an [`Integrator`](super::Integrator) knows no end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdaptiveStep<const N: usize> {
     rtol: Option<f64>,
@@ -144,7 +150,8 @@ where
             memory.h = self.first_step.unwrap_or_else(|| this.automatic_step(M::ORDER, field, from, left));
             memory.error = log2(1e-4);
         }
-        let mut wanted = if memory.h < self.max_step { memory.h } else { self.max_step };
+        let wanted = if memory.h < self.max_step { memory.h } else { self.max_step };
+        let mut wanted = memory.within_sight(wanted, field.dynamics, from.t, M::GAP)?;
         let (mut retried, mut last_fault) = (false, None);
         loop {
             if wanted <= resolution_of::<D::Scalar>(from.t) && wanted < -from.t.since(target) {

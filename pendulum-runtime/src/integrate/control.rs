@@ -1,6 +1,7 @@
 //! What decides about the length of steps: the interface that fixed and adaptive steps share.
 
 use super::field::Counted;
+use super::gap::WITHOUT_INTERVAL;
 use super::node::Node;
 use super::solution::Stats;
 use super::span::Span;
@@ -27,7 +28,7 @@ where
 }
 
 /// What a control remembers from step to step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Memory {
     /// The length of the steps towards `target`, or the next one that the error suggests; 0 before the first.
     pub(crate) h: f64,
@@ -38,6 +39,14 @@ pub struct Memory {
     pub(crate) target: f64,
     /// The binary logarithm of the error of the last step.
     pub(crate) error: f64,
+    /// The longest step over a motion of which nobody knows how fast it changes.
+    pub(crate) unknown: f64,
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Self { h: 0.0, left: 0, equal: 0.0, target: 0.0, error: 0.0, unknown: WITHOUT_INTERVAL }
+    }
 }
 
 /// What a control works with.

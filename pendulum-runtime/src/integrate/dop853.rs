@@ -1,6 +1,7 @@
 //! The method of Dormand and Prince of order 8, in the form of Hairer.
 
 use super::field::Field;
+use super::gap::widest;
 use super::method::{Embedded, Method, Response, Suits, Weights};
 use super::node::Node;
 use super::piece::Piece;
@@ -100,6 +101,7 @@ impl Embedded for Dop853 {
     // A little memory of the last error and a safety factor below the usual 0.9 reject one step in twenty instead of one in five, and
     // take a tenth fewer evaluations for the same error of pendulums and orbits.
     const RESPONSE: Response = Response { alpha: 0.11, beta: 0.02, safety: 0.8, least: 1.0 / 3.0, greatest: 6.0 };
+    const GAP: f64 = widest(&C, &E5);
 
     #[inline]
     fn error<T: Float, const N: usize>(&self, stages: &Stages<T, N>, h: f64, weights: &Weights<N>) -> f64 {

@@ -1,6 +1,7 @@
 //! The Nyström pair of Dormand, El-Mikkawy and Prince of order 12.
 
 use super::field::Field;
+use super::gap::widest;
 use super::method::{Embedded, Method, Response, Suits, Weights};
 use super::node::Node;
 use super::nystrom::Kicks;
@@ -97,6 +98,7 @@ impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Dprkn12 
 
 impl Embedded for Dprkn12 {
     const RESPONSE: Response = Response { alpha: 0.08, beta: 0.015, safety: 0.8, least: 0.2, greatest: 6.0 };
+    const GAP: f64 = widest(&C, &EV);
 
     #[inline]
     fn error<T: Float, const N: usize>(&self, k: &Kicks<T, N, 18>, h: f64, weights: &Weights<N>) -> f64 {

@@ -1,6 +1,7 @@
 //! The Nyström pair of Dormand, El-Mikkawy and Prince of order 8.
 
 use super::field::Field;
+use super::gap::widest;
 use super::method::{Embedded, Method, Response, Suits, Weights};
 use super::node::Node;
 use super::nystrom::Kicks;
@@ -87,6 +88,7 @@ impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Dprkn8 {
 
 impl Embedded for Dprkn8 {
     const RESPONSE: Response = Response { alpha: 0.125, beta: 0.025, safety: 0.8, least: 0.2, greatest: 6.0 };
+    const GAP: f64 = widest(&C, &EV);
 
     #[inline]
     fn error<T: Float, const N: usize>(&self, k: &Kicks<T, N, 9>, h: f64, weights: &Weights<N>) -> f64 {

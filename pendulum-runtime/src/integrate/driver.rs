@@ -3,6 +3,7 @@
 use super::blame::blame;
 use super::control::{Control, Course, Memory};
 use super::field::{Counted, coordinate, first_in_inputs, first_in_state};
+use super::gap::PART;
 use super::inertia::{inertia, is_due, varies};
 use super::node::Node;
 use super::piece::Piece;
@@ -77,7 +78,7 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
         self.kink = next_kink(&self.method, dynamics, t, false)?;
         self.backwards = false;
         // A long step from a state that it was not chosen for may go over events.
-        self.memory = Memory::default();
+        self.memory = Memory { unknown: self.memory.unknown, ..Memory::default() };
         self.node = Node::new(Time::new(t), q, v);
         (self.last, self.within, self.before_kink) = (None, None, None);
         Ok(())
@@ -98,9 +99,15 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
 
     /// The same integration under another control.
     pub(crate) fn controlled<B>(self, control: B) -> Driver<T, N, M, B, R> {
-        let Self { method, node, stats, last, from, within, before_kink, stages, backwards, kink, .. } = self;
-        let memory = Memory::default();
+        let Self { method, node, stats, last, from, within, before_kink, stages, memory, backwards, kink, .. } = self;
+        let memory = Memory { unknown: memory.unknown, ..Memory::default() };
         Driver { method, control, node, stats, last, from, within, before_kink, stages, memory, backwards, kink }
+    }
+
+    /// The same integration, which is known to go over an interval of this length.
+    pub(crate) fn over(mut self, length: f64) -> Self {
+        self.memory.unknown = PART * length;
+        self
     }
 
     /// Takes one step towards `target`, which may be infinite, and over a kink if it ends on one.

@@ -17,6 +17,8 @@ type Ready<'a, D, const N: usize> = Prepared<'a, D, <<D as Dynamics<N>>::System 
 
 /// An integration that goes on for as long as somebody asks for the next step; no step allocates.
 ///
+/// It knows no interval: an adaptive step over a [`Function`](crate::motion::Function) without a resolution is at most one second long.
+///
 /// After an error the state is the one before the failed step.
 #[derive(Clone, Debug)]
 pub struct Integrator<'a, const N: usize, D, M, C = AdaptiveStep<N>>

@@ -64,6 +64,9 @@ pub trait Embedded: Method {
     /// How the step size answers to the error.
     const RESPONSE: Response;
 
+    /// The widest gap between two times whose accelerations the estimate contains, in steps: what is narrower may stay unseen.
+    const GAP: f64 = 1.0;
+
     /// The error of the step just taken, times `weights`, as a root mean square.
     fn error<T: Float, const N: usize>(&self, stages: &Self::Stages<T, N>, h: f64, weights: &Weights<N>) -> f64;
 }

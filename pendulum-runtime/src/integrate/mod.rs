@@ -43,6 +43,7 @@ mod event;
 pub(crate) mod field;
 mod fit;
 mod fixed_step;
+pub(crate) mod gap;
 mod gauss;
 mod hermite;
 pub(crate) mod inertia;

@@ -1,6 +1,7 @@
 //! The Rosenbrock method of Hairer and Wanner of order 4, for stiff springs and dampers.
 
 use super::field::Field;
+use super::gap::{all, widest};
 use super::linear::{Factors, Square, times};
 use super::method::{Embedded, Method, Response, Suits, Weights};
 use super::node::Node;
@@ -95,6 +96,7 @@ impl<S: Jacobians<N, Scalar: Float>, const N: usize> Suits<S, N> for Rodas4 {
 
 impl Embedded for Rodas4 {
     const RESPONSE: Response = Response { alpha: 0.25, beta: 0.0, safety: 0.9, least: 0.2, greatest: 6.0 };
+    const GAP: f64 = widest(&C, &all::<6>());
 
     #[inline]
     fn error<T: Float, const N: usize>(&self, k: &Slopes<T, N, 6>, _: f64, weights: &Weights<N>) -> f64 {

@@ -19,6 +19,9 @@ use crate::system::{Dynamics, Prepared, System};
 /// Without further calls it uses the method that [`Auto`] chooses, with `rtol` and `atol` 1e-6, and gives the end state; [`Stats`] say which
 /// method it was. If motions have a kink at the start, `v` is the velocity after it. An interval that ends before it starts leads back
 /// in time; of the methods here only [`Taylor`](super::Taylor) does that.
+///
+/// Steps over a [`Function`](crate::motion::Function) without a resolution are at most a fiftieth of the interval long, as
+/// [`AdaptiveStep`] describes.
 pub fn solve<const N: usize, D: Dynamics<N>>(
     dynamics: &D,
     time: (f64, f64),
@@ -180,10 +183,13 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         match self.check(&dynamics).and_then(|()| Driver::new(&dynamics, self.method, self.control, self.time.0, self.q, self.v))
         {
             Err(error) => Err(recorder.fail(error, given, Stats::new(M::NAME))),
-            Ok(mut driver) => match self.integrate(&dynamics, &mut driver, &mut recorder) {
-                Err(error) => Err(recorder.fail(error, State::from(&driver.node), driver.stats::<Prepared<'a, D, _>>())),
-                Ok(status) => Ok(recorder.finish(State::from(&driver.node), status, driver.stats::<Prepared<'a, D, _>>())),
-            },
+            Ok(driver) => {
+                let mut driver = driver.over((self.time.1 - self.time.0).abs());
+                match self.integrate(&dynamics, &mut driver, &mut recorder) {
+                    Err(error) => Err(recorder.fail(error, State::from(&driver.node), driver.stats::<Prepared<'a, D, _>>())),
+                    Ok(status) => Ok(recorder.finish(State::from(&driver.node), status, driver.stats::<Prepared<'a, D, _>>())),
+                }
+            }
         }
     }
 

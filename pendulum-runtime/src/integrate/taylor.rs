@@ -216,7 +216,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         let wanted = length(&room.path, &room.rule, &weights);
         // A uniform motion may go on for ever, but it has to come to an end.
         let wanted = if wanted == f64::INFINITY && target == wanted { 1.0 } else { wanted };
-        let mut wanted = self.limited(memory.h == 0.0, wanted);
+        let mut wanted = memory.within_sight(self.limited(memory.h == 0.0, wanted), field.dynamics, from.t, GAP)?;
         let mut span = fit(from.t, wanted, target);
         *to = sum(room, from, &span);
         if !to.is_finite() {
@@ -240,6 +240,9 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         Ok(span)
     }
 }
+
+/// A series knows the start of its step alone. It tells a bell from two widths away, and the bound is to leave a sine its steps of 3/ω.
+pub(super) const GAP: f64 = 0.7;
 
 /// The side from which the start of a step is seen.
 fn side(h: f64) -> Side {

@@ -1,6 +1,7 @@
 //! The method of Tsitouras of order 5.
 
 use super::field::Field;
+use super::gap::widest;
 use super::method::{Embedded, Method, Response, Suits, Weights};
 use super::node::Node;
 use super::piece::Piece;
@@ -84,6 +85,7 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Tsit5 {
 
 impl Embedded for Tsit5 {
     const RESPONSE: Response = Response { alpha: 0.17, beta: 0.04, safety: 0.8, least: 0.2, greatest: 10.0 };
+    const GAP: f64 = widest(&C, &E);
 
     #[inline]
     fn error<T: Float, const N: usize>(&self, k: &Slopes<T, N, 7>, h: f64, weights: &Weights<N>) -> f64 {

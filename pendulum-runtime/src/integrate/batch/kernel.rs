@@ -12,13 +12,14 @@ use crate::error::Error;
 use crate::integrate::adaptive_step::resolution;
 use crate::integrate::blame::blame;
 use crate::integrate::field::coordinate;
+use crate::integrate::gap;
 use crate::integrate::node::Node;
 use crate::integrate::power::power;
 use crate::integrate::solution::{State, Stats};
 use crate::integrate::span::Span;
 use crate::integrate::stepper::Stepper;
 use crate::integrate::sum::{Sum, splitter};
-use crate::integrate::taylor::{Rule, TELLING, Taylor, largest, rest};
+use crate::integrate::taylor::{GAP, Rule, TELLING, Taylor, largest, rest};
 use crate::jet::{Jets, Orders, Path};
 use crate::real::{Float, Lane, Lanes, Real};
 use crate::simd::Work;
@@ -147,7 +148,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         let mut unusual = wanted;
         for l in 0..W {
             unusual.0[l] = if UNTOLD < wanted.0[l] { 1.0 } else { 0.0 };
-            wanted.0[l] = self.batch.control.limited(false, wanted.0[l]);
+            wanted.0[l] = self.limited(&from, l, false, wanted.0[l]);
         }
         let h = fit(&from, wanted, &mut unusual);
         if any(unusual) | self.first | (self.round + 1 == self.deadline) {
@@ -155,6 +156,18 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         } else if any(self.advance(&from, [h, Wide::from_f64(0.0)])) {
             self.settle(&from, wanted, h);
         }
+    }
+
+    /// A length of step of a lane within the limits set, and short enough to see what time alone does.
+    #[inline(always)]
+    fn limited(&self, from: &Flight<S::Scalar, N>, l: usize, first: bool, wanted: f64) -> f64 {
+        let wanted = self.batch.control.limited(first, wanted);
+        if !S::FACTS.explicit_time {
+            return wanted;
+        }
+        let Some(index) = self.problem[l] else { return wanted };
+        let longest = gap::longest(&self.problems[index].system, Time::from_words(from.high.0[l], from.low.0[l]), GAP);
+        if longest < wanted { longest } else { wanted }
     }
 
     /// Goes to the ends of steps of the lengths `h`, which come in two words; not zero where the state there is not finite.
@@ -189,7 +202,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
     fn unusual_steps(&mut self, from: &Flight<S::Scalar, N>, told: Wide<f64>, weights: &[[Wide<f64>; N]; 2]) {
         let mut wanted = longer(&self.room.path, &self.rule, weights, told);
         for l in 0..W {
-            wanted.0[l] = self.batch.control.limited(self.begun[l] == self.round, wanted.0[l]);
+            wanted.0[l] = self.limited(from, l, self.begun[l] == self.round, wanted.0[l]);
         }
         let mut h = [fit(from, wanted, &mut Wide::from_f64(0.0)), Wide::from_f64(0.0)];
         for l in 0..W {

@@ -368,7 +368,7 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
             let left = -from.t.since(target);
             memory.h = self.limited(true, self.automatic_step(2 * S as u32, field, from, left));
         }
-        let mut wanted = self.limited(false, memory.h);
+        let mut wanted = memory.within_sight(self.limited(false, memory.h), field.dynamics, from.t, tableau::GAP)?;
         let (mut retried, mut last_fault) = (false, None);
         loop {
             if wanted <= resolution_of::<D::Scalar>(from.t) && wanted < -from.t.since(target) {

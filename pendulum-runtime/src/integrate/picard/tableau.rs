@@ -1,5 +1,6 @@
 //! The coefficients of collocation at the nodes of Gauss and Legendre, eight to a vector.
 
+use crate::integrate::gap;
 use crate::integrate::gauss::Tableau;
 
 /// The lanes of a vector: as many as an `f64` has room for in 64 bytes.
@@ -271,6 +272,9 @@ const EIGHT_NODES: ([Nodes; 1], [Nodes; 1]) = {
     let Tableau { nodes, weights, .. } = Tableau::<S>::GAUSS;
     ([nodes], [weights])
 };
+
+/// The widest gap between two nodes.
+pub(super) const GAP: f64 = gap::widest(&EIGHT_NODES.0[0], &gap::all::<S>());
 
 // Printed by tests/data/gauss.py.
 
