@@ -273,8 +273,15 @@ const EIGHT_NODES: ([Nodes; 1], [Nodes; 1]) = {
     ([nodes], [weights])
 };
 
-/// The widest gap between two nodes.
-pub(super) const GAP: f64 = gap::widest(&EIGHT_NODES.0[0], &gap::all::<S>());
+/// The widest gap between two nodes or points.
+pub(super) const GAP: f64 = {
+    let (mut all, mut j) = ([0.0; 2 * S], 0);
+    while j < 2 * S {
+        all[j] = node_or_point(j);
+        j += 1;
+    }
+    gap::widest(&all, &gap::all::<{ 2 * S }>())
+};
 
 // Printed by tests/data/gauss.py.
 
@@ -327,7 +334,7 @@ const SIXTEEN_NODES: ([Nodes; 2], [Nodes; 2]) = (
 
 #[cfg(test)]
 mod tests {
-    use super::{BETWEEN, Collocation, EIGHT, EIGHT_NODES, Nodes, REFINED, S, SIXTEEN, SIXTEEN_NODES, legendre};
+    use super::{BETWEEN, Collocation, EIGHT, EIGHT_NODES, GAP, Nodes, REFINED, S, SIXTEEN, SIXTEEN_NODES, legendre};
 
     /// What the columns make of the values of θᵖ at the nodes.
     fn sums<const G: usize, const W: usize, const H: usize>(
@@ -385,6 +392,11 @@ mod tests {
     fn polynomials_are_integrated_exactly() {
         check(&EIGHT, &EIGHT_NODES.1);
         check(&SIXTEEN, &SIXTEEN_NODES.1);
+    }
+
+    #[test]
+    fn gaps_are_halved() {
+        assert!((GAP - 0.0917).abs() < 1e-4, "{GAP}");
     }
 
     #[test]
