@@ -274,6 +274,8 @@ pub struct Facts {
     pub nonconservative: bool,
     /// No `abs`, `sign`, `min` or `max` of something that moves stands in the accelerations.
     pub smooth: bool,
+    /// The accelerations are linear in coordinates and velocities, with coefficients that the parameters alone decide.
+    pub linear: bool,
     /// The coordinates that do not stand in the Lagrangian, by index.
     pub cyclic: &'static [usize],
     /// The conserved quantities that [`System::conserved`] gives, in terms of the momenta: `p_φ`, `x·p_y − y·p_x`. The energy is
@@ -305,6 +307,7 @@ impl Facts {
             constant_mass_matrix: false,
             nonconservative: true,
             smooth: false,
+            linear: false,
             cyclic: &[],
             conserved: &[],
             unused: &[],

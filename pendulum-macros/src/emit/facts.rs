@@ -25,7 +25,7 @@ impl Emitter<'_, '_> {
             return quote!(#krate::__private::facts(#krate::__private::Known {
                 name: #name, coordinates: &[#(#coordinates),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*],
                 autonomous: false, explicit_time: false, separable: false, velocity_free: false, constant_mass_matrix: false, nonconservative: false,
-                smooth: false, cyclic: &[], conserved: &[], unused: &[], equations: "", latex: "",
+                smooth: false, linear: false, cyclic: &[], conserved: &[], unused: &[], equations: "", latex: "",
             }));
         };
         let (autonomous, explicit_time, separable, velocity_free, constant_mass_matrix, nonconservative) = (
@@ -37,6 +37,7 @@ impl Emitter<'_, '_> {
             motion.nonconservative,
         );
         let smooth = self.graph.smooth(&motion.accelerations);
+        let linear = motion.linear;
         let cyclic = motion.cyclic.clone();
         let conserved: Vec<String> = motion.conserved.iter().map(|conserved| print::conserved(&names, conserved)).collect();
         let unused = self.unused(&names);
@@ -48,7 +49,7 @@ impl Emitter<'_, '_> {
         quote!(#krate::__private::facts(#krate::__private::Known {
             name: #name, coordinates: &[#(#coordinates),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*],
             autonomous: #autonomous, explicit_time: #explicit_time, separable: #separable, velocity_free: #velocity_free, constant_mass_matrix: #constant_mass_matrix,
-            nonconservative: #nonconservative, smooth: #smooth, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], equations: #equations, latex: #latex,
+            nonconservative: #nonconservative, smooth: #smooth, linear: #linear, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], equations: #equations, latex: #latex,
         }))
     }
 

@@ -24,7 +24,8 @@ use crate::system::{Dynamics, System};
 /// | steps | choice |
 /// |---|---|
 /// | adaptive | [`Picard`] |
-/// | | [`Taylor`] for `rtol` below 1e-13 and back in time, where there are series: every motion is [`Analytic`](crate::motion::Analytic) and the accelerations contain no `abs`, `sign`, `min` or `max` of something that moves |
+/// | | [`Taylor`] for linear systems without time and driven inputs, whose series converge everywhere |
+/// | | [`Taylor`] back in time, where there are series: every motion is [`Analytic`](crate::motion::Analytic) and the accelerations contain no `abs`, `sign`, `min` or `max` of something that moves |
 /// | fixed | [`Srkn14a`], which is symplectic, for velocity-free systems, [`Dop853`] for others |
 /// | | [`Taylor`] back in time |
 ///
@@ -69,9 +70,10 @@ type AnyRoom<D, const N: usize> =
 impl Auto {
     /// The choice for adaptive steps.
     fn adaptive<D: PerhapsJets<N, Scalar: Float>, const N: usize>(dynamics: &D, rtol: f64, backwards: bool) -> Choice {
+        let facts = &<D::System as System<N>>::FACTS;
         let two_words = D::Scalar::EPSILON.to_f64() < 1e-17;
-        let pays_below = if two_words { <D::System as Jets<N>>::Orders::PAYS_BELOW } else { 1e-13 };
-        if (rtol < pays_below || backwards) && goes_by_series(dynamics) {
+        let pays = if two_words { rtol < <D::System as Jets<N>>::Orders::PAYS_BELOW } else { facts.linear && facts.autonomous };
+        if (pays || backwards) && goes_by_series(dynamics) {
             Choice::Taylor
         } else if two_words {
             Choice::Dop853
