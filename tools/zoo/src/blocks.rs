@@ -1,13 +1,11 @@
-//! The systems. Parameters, starts and intervals make families of them.
+//! The systems that the short test needs too.
 
 #![allow(missing_docs)]
 
-use crate::case::{Case, Guide, MOST, Method, Run, Scalar, State, Widened};
-use crate::motions::Drive;
-use pendulum_runtime::integrate::{Failure, Solution};
+use crate::case::{Case, Guide, MOST, Method, Run, Scalar, State};
+use crate::trial::{Trial, finished};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::DoubleDouble;
-use std::fmt::Debug;
 use std::time::{Duration, Instant};
 
 lagrangian! {
@@ -27,15 +25,6 @@ lagrangian! {
     kinetic = ẋ^2/2;
     potential = k*x^2/2;
     force x = f*cos(ω*t) - μ*(1 + s*exp(-(ẋ/u)^2))*tanh(ẋ/w);
-}
-
-lagrangian! {
-    /// A valley with a sharp bottom.
-    #[derive(Clone, Debug)]
-    pub struct Valley { k, d }
-    coordinate x;
-    kinetic = ẋ^2/2;
-    potential = k*sqrt(x^2 + d) + x^2/2;
 }
 
 lagrangian! {
@@ -70,15 +59,6 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// An atom about another.
-    #[derive(Clone, Debug)]
-    pub struct Atoms { ε }
-    coordinate r;
-    coordinate φ;
-    lagrangian = (ṙ^2 + r^2*φ̇^2)/2 - 4*ε*(r^(-12) - r^(-6));
-}
-
-lagrangian! {
     #[derive(Clone, Debug)]
     pub struct Simple { g }
     coordinate q;
@@ -86,200 +66,32 @@ lagrangian! {
     potential = -g*cos(q);
 }
 
-lagrangian! {
-    #[derive(Clone, Debug)]
-    pub struct Double { m: [1; 2], l: [1; 2], g }
-    coordinate θ[2];
-    let y[k in 0..2] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]);
-    kinetic = sum(k in 0..2, m[k]/2*|ẏ[k]|^2);
-    potential = sum(k in 0..2, m[k]*g*height(y[k]));
-}
+// The last two of a line are for systems whose accelerations contain no velocity.
+#[cfg(feature = "all")]
+case!(Wall, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12],
+    f32 [Default Picard Dop853 Tsit5], dd [Default Taylor Dop853]);
+#[cfg(feature = "all")]
+case!(Friction, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4], f32 [Default Picard Dop853 Tsit5]);
+#[cfg(feature = "all")]
+case!(Forced, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12],
+    f32 [Default Picard Dop853 Tsit5], dd [Default Taylor Dop853]);
+#[cfg(feature = "all")]
+case!(Relay, 1, free, Dop853, f64 [Default Picard Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12]);
+#[cfg(feature = "all")]
+case!(Hung, 1, driven, Dop853, f64 [Default Picard Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12], f32 [Default Picard Dop853 Tsit5]);
+#[cfg(feature = "all")]
+case!(Simple, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12],
+    f32 [Default Picard Dop853 Tsit5], dd [Default Taylor Dop853]);
 
-lagrangian! {
-    #[derive(Clone, Debug)]
-    pub struct Kepler { μ }
-    coordinate x;
-    coordinate y;
-    kinetic = (ẋ^2 + ẏ^2)/2;
-    potential = -μ/|[x, y]|;
-}
-
-/// A system with a start and an interval.
-#[derive(Clone, Debug)]
-pub(crate) struct Trial<S, const N: usize> {
-    system: S,
-    q: [f64; N],
-    v: [f64; N],
-    end: f64,
-    guide: Guide,
-    drive: Option<Drive>,
-}
-
-impl<S: System<N, Scalar = f64, With<f64> = S>, const N: usize> Trial<S, N> {
-    /// A problem whose numbers the scalar holds exactly.
-    pub(crate) fn new(scalar: Scalar, system: &S, q: [f64; N], v: [f64; N], end: f64, guide: Guide) -> Self {
-        let round = |x| scalar.round(x);
-        Self { system: system.map(round), q: q.map(round), v: v.map(round), end, guide, drive: None }
-    }
-
-    /// The same with a motion.
-    pub(crate) fn driven(self, drive: Drive) -> Self {
-        Self { drive: Some(drive), ..self }
-    }
-}
-
-/// Coordinates and velocities in one list.
-fn joined<T: Widened, const N: usize>(q: &[T; N], v: &[T; N]) -> State {
-    q.iter().chain(v).map(|x| x.widened()).collect()
-}
-
-fn finished<T: Widened, const N: usize>(
-    result: Result<Solution<T, N>, Failure<T, N>>,
-    time: Duration,
-    times: &[f64],
-) -> Result<Run, String> {
-    let solution = result.map_err(|failure| kind(&failure.error))?;
-    let mut states: Vec<State> = solution.q.iter().zip(&solution.v).take(times.len()).map(|(q, v)| joined(q, v)).collect();
-    states.push(joined(&solution.end.q, &solution.end.v));
-    Ok(Run { states, time, stats: solution.stats.to_string() })
-}
-
-/// The name of an error.
-fn kind(error: &impl Debug) -> String {
-    format!("{error:?}").chars().take_while(|c| c.is_alphanumeric()).collect()
-}
-
-/// A system with its motion, as a user gives it or for references.
-macro_rules! bind {
-    (free, $system:expr, $trial:ident, $kind:ident) => {
-        $system
-    };
-    (driven, $system:expr, $trial:ident, $kind:ident) => {
-        $system.driven_by($trial.drive.as_ref().expect("a motion").$kind())
-    };
-}
-
-macro_rules! with {
-    (Default, $problem:expr) => {
-        $problem
-    };
-    (Taylor, $problem:expr) => {
-        $problem.method(Taylor::new())
-    };
-    ($method:ident, $problem:expr) => {
-        $problem.method($method)
-    };
-}
-
-macro_rules! over {
-    ($trial:ident, $binding:ident, $scalar:ty, $n:literal, $convert:expr, $method:ident, $tolerance:ident, $times:ident, [$($name:ident)*]) => {{
-        let dynamics = bind!($binding, System::map(&$trial.system, $convert), $trial, given);
-        let (q, v) = ($trial.q.map($convert), $trial.v.map($convert));
-        let problem = solve(&dynamics, (0.0, $trial.end), q, v)
-            .rtol($tolerance)
-            .atol_each([$tolerance; $n], [$tolerance; $n])
-            .t_eval($times)
-            .max_steps(MOST);
-        match $method {
-            $(Method::$name => {
-                let begin = Instant::now();
-                let result = with!($name, problem).run();
-                finished::<$scalar, $n>(result, begin.elapsed(), $times)
-            })*
-            _ => Err("NotMeasured".into()),
-        }
-    }};
-}
-
-/// The implementation of `Case` for a system: how its reference is computed, and what is measured over which scalar.
-macro_rules! case {
-    ($system:ident, $n:literal, $binding:ident, $reference:ident, f64 [$($double:ident)*] $(, f32 [$($single:ident)+])? $(, dd [$($wide:ident)+])?) => {
-        impl Case for Trial<$system<f64>, $n> {
-            fn methods(&self, scalar: Scalar) -> &'static [Method] {
-                match scalar {
-                    Scalar::F64 => &[$(Method::$double),*],
-                    Scalar::F32 => &[$($(Method::$single),+)?],
-                    Scalar::Wide => &[$($(Method::$wide),+)?],
-                }
-            }
-
-            fn end(&self) -> f64 {
-                self.end
-            }
-
-            fn start(&self) -> Vec<f64> {
-                self.q.iter().chain(&self.v).copied().collect()
-            }
-
-            fn describe(&self) -> String {
-                format!("{:?} q = {:?} v = {:?} end = {:?} {:?}", self.system, self.q, self.v, self.end, self.drive)
-            }
-
-            fn run(&self, method: Method, scalar: Scalar, tolerance: f64, times: &[f64]) -> Result<Run, String> {
-                match scalar {
-                    Scalar::F64 => {
-                        over!(self, $binding, f64, $n, |x| x, method, tolerance, times, [$($double)*])
-                    }
-                    $(Scalar::F32 => {
-                        over!(self, $binding, f32, $n, |x| x as f32, method, tolerance, times, [$($single)+])
-                    })?
-                    $(Scalar::Wide => {
-                        over!(self, $binding, DoubleDouble, $n, DoubleDouble::from, method, tolerance, times, [$($wide)+])
-                    })?
-                    #[allow(unreachable_patterns)]
-                    _ => Err("NotMeasured".into()),
-                }
-            }
-
-            fn exact(&self, tolerance: f64, max_step: f64, times: &[f64]) -> Result<Vec<State>, String> {
-                let dynamics = bind!($binding, System::map(&self.system, DoubleDouble::from), self, exact);
-                let (q, v) = (self.q.map(DoubleDouble::from), self.v.map(DoubleDouble::from));
-                let stops = self.guide.between(0.0, self.end);
-                let problem = solve(&dynamics, (0.0, self.end), q, v)
-                    .rtol(tolerance)
-                    .atol_each([tolerance; $n], [tolerance; $n])
-                    .max_step(max_step)
-                    .t_stops(&stops)
-                    .t_eval(times);
-                let result = with!($reference, problem).run();
-                Ok(finished::<DoubleDouble, $n>(result, Duration::ZERO, times)?.states)
-            }
-
-            fn by_series(&self) -> bool {
-                stringify!($reference) == "Taylor"
-            }
-
-            fn flow(&self, t: f64, state: &[f64], steps: bool, tolerance: f64) -> Option<Vec<(f64, Vec<f64>)>> {
-                let dynamics = bind!($binding, self.system.clone(), self, exact);
-                let q: [f64; $n] = core::array::from_fn(|i| state[i]);
-                let v: [f64; $n] = core::array::from_fn(|i| state[$n + i]);
-                let stops = self.guide.between(t, self.end);
-                let problem = solve(&dynamics, (t, self.end), q, v)
-                    .method(Dop853)
-                    .rtol(tolerance)
-                    .atol_each([tolerance; $n], [tolerance; $n])
-                    .max_step(self.guide.max_step)
-                    .t_stops(&stops)
-                    .max_steps(MOST);
-                let solution = if steps { problem.every_step().run() } else { problem.run() }.ok()?;
-                let states = solution.q.iter().zip(&solution.v).map(|(q, v)| q.iter().chain(v).copied().collect());
-                Some(solution.t.iter().copied().zip(states).collect())
-            }
-
-            fn guide(&self) -> &Guide {
-                &self.guide
-            }
-        }
-    };
-}
-
+#[cfg(not(feature = "all"))]
 case!(Wall, 1, free, Taylor, f64 [Default Picard Dop853]);
+#[cfg(not(feature = "all"))]
 case!(Friction, 1, free, Taylor, f64 [Default Picard Dop853]);
-case!(Valley, 1, free, Taylor, f64 [Default Picard Dop853]);
+#[cfg(not(feature = "all"))]
 case!(Forced, 1, free, Taylor, f64 [Default Picard Dop853]);
+#[cfg(not(feature = "all"))]
 case!(Relay, 1, free, Dop853, f64 [Default Picard Dop853]);
+#[cfg(not(feature = "all"))]
 case!(Hung, 1, driven, Dop853, f64 [Default Picard Dop853]);
-case!(Atoms, 2, free, Taylor, f64 [Default Picard Dop853], f32 [Default Picard Dop853]);
+#[cfg(not(feature = "all"))]
 case!(Simple, 1, free, Taylor, f64 [Default Picard Dop853]);
-case!(Double, 2, free, Taylor, f64 [Default Picard Dop853]);
-case!(Kepler, 2, free, Taylor, f64 [Default Picard Dop853]);

@@ -30,6 +30,11 @@ impl Method {
     pub(crate) const ALL: [Self; 8] =
         [Self::Default, Self::Picard, Self::Taylor, Self::Dop853, Self::Tsit5, Self::Rodas4, Self::Dprkn8, Self::Dprkn12];
 
+    /// The least tolerance at which it is measured: below, methods of low order take millions of steps.
+    pub(crate) fn least(self) -> f64 {
+        if matches!(self, Self::Tsit5 | Self::Rodas4) { 1e-9 } else { 0.0 }
+    }
+
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Default => "default",

@@ -2,10 +2,17 @@
 
 #![allow(mixed_script_confusables)]
 
+#[macro_use]
+mod trial;
+
 mod blocks;
 mod case;
 mod families;
 mod measure;
+#[cfg(feature = "all")]
+mod more_blocks;
+#[cfg(feature = "all")]
+mod more_families;
 mod motions;
 mod random;
 mod report;
@@ -13,7 +20,7 @@ mod report;
 pub use case::Method;
 use families::Family;
 use indicatif::{ProgressBar, ProgressStyle};
-use measure::{Measured, clock, measure};
+use measure::{Measured, Measurement, clock, measure};
 use report::Row;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -39,6 +46,8 @@ pub struct Options {
     pub verbose: bool,
     /// Where the table goes.
     pub markdown: Option<std::path::PathBuf>,
+    /// Where a line for each measurement goes.
+    pub csv: Option<std::path::PathBuf>,
 }
 
 impl Default for Options {
@@ -53,6 +62,7 @@ impl Default for Options {
             clock: true,
             verbose: false,
             markdown: None,
+            csv: None,
         }
     }
 }
@@ -65,18 +75,22 @@ impl Options {
 
     fn chosen(&self) -> Vec<&'static Family> {
         let named = |family: &&Family| {
-            let name = |part: &String| family.name.contains(part.as_str());
+            let exact = |part: &String| families::all().any(|family| family.name == part);
+            let name = |part: &String| if exact(part) { family.name == part } else { family.name.contains(part.as_str()) };
             let scalar = |name: &String| name == family.scalar.name();
             (self.families.is_empty() || self.families.iter().any(name))
                 && (self.scalars.is_empty() || self.scalars.iter().any(scalar))
         };
-        families::ALL.iter().filter(named).collect()
+        families::all().filter(named).collect()
     }
 }
 
 /// Measures and prints; whether all bars are met.
 pub fn run(options: &Options) -> std::io::Result<bool> {
     let rows = measured(options);
+    if !cfg!(feature = "all") {
+        println!("The families of the short test; `--features all` has the others, and more methods.");
+    }
     if options.verbose {
         for row in &rows {
             for run in &row.runs {
@@ -94,13 +108,58 @@ pub fn run(options: &Options) -> std::io::Result<bool> {
     if let Some(path) = &options.markdown {
         std::fs::write(path, report::table(&rows, true))?;
     }
+    if let Some(path) = &options.csv {
+        std::fs::write(path, report::lines(&rows))?;
+    }
+    for method in Method::ALL.into_iter().filter(|method| !BARRED.contains(method)) {
+        tell(&report::wrong(&rows, method, 1000.0), 5);
+    }
     Ok(bars(options, &rows))
+}
+
+/// The methods for which the bars hold.
+const BARRED: [Method; 2] = [Method::Default, Method::Picard];
+
+/// Prints the first lines.
+fn tell(lines: &[String], most: usize) {
+    lines.iter().take(most).for_each(|line| println!("    {line}"));
+    if most < lines.len() {
+        println!("    and {} more", lines.len() - most);
+    }
+}
+
+/// The error of one method in one run over tolerance and amplification, or the error that it returned.
+#[derive(Clone, Debug)]
+pub struct Finding {
+    /// The family.
+    pub family: &'static str,
+    /// The run.
+    pub run: usize,
+    /// The method.
+    pub method: Method,
+    /// The tolerance.
+    pub tolerance: f64,
+    /// The figure of merit.
+    pub merit: Result<f64, String>,
+}
+
+/// What is asked for, without a word. Runs without a reference are left out.
+pub fn findings(options: &Options) -> Vec<Finding> {
+    let rows = measured(options);
+    let finding = |family, run: &Measured, m: &Measurement| {
+        let (run, tolerance) = (run.run, run.tolerance);
+        Finding { family, run, method: m.method, tolerance, merit: m.merit.clone().map(|merit| merit.0) }
+    };
+    let of = |row: &Row<'static>| -> Vec<Finding> {
+        row.runs.iter().flat_map(|run| run.measurements.iter().map(move |m| finding(row.family.name, run, m))).collect()
+    };
+    rows.iter().flat_map(of).collect()
 }
 
 /// The bars of `Picard` and of the default.
 fn bars(options: &Options, rows: &[Row<'_>]) -> bool {
     let mut met = true;
-    for method in [Method::Default, Method::Picard] {
+    for method in BARRED {
         if !options.wants(method) {
             continue;
         }
@@ -122,7 +181,7 @@ fn bars(options: &Options, rows: &[Row<'_>]) -> bool {
             met &= fine;
         }
         worse.iter().for_each(|line| println!("    {line}"));
-        wrong.iter().for_each(|line| println!("    {line}"));
+        tell(&wrong, 40);
     }
     met
 }

@@ -1,5 +1,8 @@
-//! The program: `cargo run --release -p zoo -- [--quick] [--family NAME] [--scalar f32|f64|dd] [--method NAME] [--count N] [--run K]
-//! [--threads N] [--no-time] [--verbose] [--markdown PATH]`.
+//! The table of error control: `cargo run --release -p zoo --features all -- [--quick] [--family NAME] [--scalar f32|f64|dd]
+//! [--method NAME] [--count N] [--run K] [--threads N] [--no-time] [--verbose] [--markdown PATH] [--csv PATH]`.
+//!
+//! Without `--features all` it builds in a fraction of the time and has the families of the short test; `--profile zoo` instead of
+//! `--release` builds faster after a change. `--family` and `--method` may stand several times. It fails where a bar is missed.
 
 use lexopt::prelude::*;
 use std::process::ExitCode;
@@ -37,6 +40,7 @@ fn read() -> Result<Options, lexopt::Error> {
             Long("threads") => options.threads = parser.value()?.parse()?,
             Long("no-time") => options.clock = false,
             Long("verbose") => options.verbose = true,
+            Long("csv") => options.csv = Some(parser.value()?.into()),
             Long("markdown") => options.markdown = Some(parser.value()?.into()),
             _ => return Err(argument.unexpected()),
         }

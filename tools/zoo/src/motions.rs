@@ -12,6 +12,14 @@ pub(crate) enum Shape {
     Sine { a: f64, ω: f64, φ: f64 },
     /// An acceleration that begins at a time.
     Jump { a: f64, at: f64 },
+    /// From 0 to a along 3u² − 2u³; the acceleration jumps at both ends.
+    Ramp { a: f64, from: f64, long: f64 },
+    /// Cubics that meet where the third derivative jumps between j and −j.
+    Cubics { j: f64, every: f64 },
+    /// a exp(−((t − c)/s)²).
+    Pulse { a: f64, c: f64, s: f64 },
+    /// From 0 to a along a hyperbolic tangent.
+    Rise { a: f64, c: f64, s: f64 },
 }
 
 impl Shape {
@@ -28,14 +36,50 @@ impl Shape {
                 let a = if early(at) { n(0.0) } else { n(a) };
                 [a * u * u * n(0.5), a * u, a]
             }
+            Self::Ramp { a, from, long } => {
+                let (zero, one) = (n(0.0), n(1.0));
+                if early(from) {
+                    return [zero; 3];
+                }
+                if !early(from + long) {
+                    return [n(a), zero, zero];
+                }
+                let u = (t - n(from)) / n(long);
+                let (speed, a) = (n(6.0) * u * (one - u) / n(long), n(a));
+                let bend = n(6.0) * (one - u - u) / (n(long) * n(long));
+                [a * u * u * (n(3.0) - u - u), a * speed, a * bend]
+            }
+            Self::Cubics { j, every } => {
+                // Which piece it is says the time in one word: at the ends of pieces both agree up to the third derivative.
+                let mut piece = 0.0;
+                while !early((piece + 1.0) * every) {
+                    piece += 1.0;
+                }
+                let (p, u) = (n(every), t - n(piece) * n(every));
+                let x = n(j) * (u * u * u / n(6.0) - p * u * u / n(4.0));
+                let (v, a) = (n(j) * (u * u - p * u) / n(2.0), n(j) * (u - p / n(2.0)));
+                if piece % 2.0 == 0.0 { [x, v, a] } else { [-(n(j) * p * p * p / n(12.0)) - x, -v, -a] }
+            }
+            Self::Pulse { a, c, s } => {
+                let u = (t - n(c)) / n(s);
+                let x = n(a) * (-(u * u)).exp();
+                [x, -(n(2.0) * u * x) / n(s), (n(4.0) * u * u - n(2.0)) * x / (n(s) * n(s))]
+            }
+            Self::Rise { a, c, s } => {
+                let tanh = ((t - n(c)) / n(s)).tanh();
+                let (half, slope) = (n(0.5) * n(a), n(1.0) - tanh * tanh);
+                [half * (n(1.0) + tanh), half * slope / n(s), -(n(a) * slope * tanh) / (n(s) * n(s))]
+            }
         }
     }
 
     /// The times at which it is not analytic.
     fn breaks(&self) -> Vec<f64> {
         match *self {
-            Self::Sine { .. } => Vec::new(),
+            Self::Sine { .. } | Self::Pulse { .. } | Self::Rise { .. } => Vec::new(),
             Self::Jump { at, .. } => vec![at],
+            Self::Ramp { from, long, .. } => vec![from, from + long],
+            Self::Cubics { every, .. } => (1..400).map(|piece| f64::from(piece) * every).collect(),
         }
     }
 }

@@ -123,13 +123,14 @@ pub(crate) fn references(rows: &[Row<'_>]) -> String {
 pub(crate) fn summary(rows: &[Row<'_>]) -> String {
     let mut text = String::new();
     for method in Method::ALL {
-        let merits = sorted(rows.iter().flat_map(|row| row.merits(method)));
+        let merits = merits(rows, method);
         if merits.is_empty() {
             continue;
         }
         let above = |bound: f64| merits.iter().filter(|merit| !(**merit <= bound)).count();
         let mut failures = BTreeMap::<&str, usize>::new();
-        for why in rows.iter().flat_map(|row| row.of(method)).filter_map(|(_, m)| m.merit.as_ref().err()) {
+        let counted = rows.iter().filter(|row| row.family.counts);
+        for why in counted.flat_map(|row| row.of(method)).filter_map(|(_, m)| m.merit.as_ref().err()) {
             *failures.entry(why).or_default() += 1;
         }
         let _ = writeln!(
@@ -154,7 +155,7 @@ pub(crate) fn summary(rows: &[Row<'_>]) -> String {
 /// The families in which the 90 % quantile is more than three times that of `Dop853`, which counts as `floor` at least.
 pub(crate) fn worse(rows: &[Row<'_>], method: Method, floor: f64) -> Vec<String> {
     let mut names = Vec::new();
-    for row in rows {
+    for row in rows.iter().filter(|row| row.family.counts) {
         let (own, other) = (quantile(&row.merits(method), 0.9), quantile(&row.merits(Method::Dop853), 0.9));
         if own > 3.0 * other.max(floor) {
             names.push(format!("{} ({} : {})", row.family.name, short(own), short(other)));
@@ -166,7 +167,7 @@ pub(crate) fn worse(rows: &[Row<'_>], method: Method, floor: f64) -> Vec<String>
 /// The runs above a bound, with what repeats each.
 pub(crate) fn wrong(rows: &[Row<'_>], method: Method, bound: f64) -> Vec<String> {
     let mut lines = Vec::new();
-    for row in rows {
+    for row in rows.iter().filter(|row| row.family.counts) {
         for (run, m) in row.of(method) {
             if m.merit.as_ref().is_ok_and(|merit| !(merit.0 <= bound)) {
                 lines.push(format!(
@@ -187,5 +188,29 @@ pub(crate) fn wrong(rows: &[Row<'_>], method: Method, bound: f64) -> Vec<String>
 
 /// The merits of a method over all families.
 pub(crate) fn merits(rows: &[Row<'_>], method: Method) -> Vec<f64> {
-    sorted(rows.iter().flat_map(|row| row.merits(method)))
+    sorted(rows.iter().filter(|row| row.family.counts).flat_map(|row| row.merits(method)))
+}
+
+/// A line for each measurement, with a head.
+pub(crate) fn lines(rows: &[Row<'_>]) -> String {
+    let mut text = String::from("family,scalar,run,method,tolerance,amplification,error,merit,dense,time,failure\n");
+    for row in rows {
+        for run in &row.runs {
+            for m in &run.measurements {
+                let (merit, dense, failure) = match &m.merit {
+                    Ok((merit, dense)) => (merit.to_string(), dense.to_string(), ""),
+                    Err(why) => (String::new(), String::new(), why.as_str()),
+                };
+                let time = m.time.map_or(String::new(), |time| time.to_string());
+                let (name, scalar, method) = (row.family.name, row.family.scalar.name(), m.method.name());
+                let Measured { run, tolerance, amplification, .. } = run;
+                let _ = writeln!(
+                    text,
+                    "{name},{scalar},{run},{method},{tolerance:e},{amplification:e},{:e},{merit},{dense},{time},{failure}",
+                    m.error
+                );
+            }
+        }
+    }
+    text
 }

@@ -1,0 +1,25 @@
+//! The default and `Picard` on systems that are not gentle: no error is far above the tolerance.
+
+#![allow(missing_docs)]
+
+use zoo::{Finding, Method, Options, findings};
+
+/// Eight families and six starts of each; the program has sixty starts of many more.
+#[test]
+fn errors_are_those_asked_for() {
+    let names =
+        ["simple", "contact 1e-2", "friction", "square wave 1e-2", "sign(sin 10t)", "kick", "closure step", "kapitza 100 Hz"];
+    let families = names.map(String::from).to_vec();
+    let methods = vec!["default".into(), "picard".into()];
+    let found = findings(&Options { count: 6, families, methods, clock: false, ..Options::default() });
+    for method in [Method::Default, Method::Picard] {
+        let of = |bound: f64| -> Vec<&Finding> {
+            let wrong = |finding: &&Finding| finding.merit.as_ref().is_ok_and(|merit| !(*merit <= bound));
+            found.iter().filter(|finding| finding.method == method).filter(wrong).collect()
+        };
+        let runs = found.iter().filter(|finding| finding.method == method && finding.merit.is_ok()).count();
+        assert!(runs >= 46, "{runs} runs of {method:?} came to an end");
+        assert!(of(1000.0).is_empty(), "{:#?}", of(1000.0));
+        assert!(of(100.0).len() <= 1, "{:#?}", of(100.0));
+    }
+}
