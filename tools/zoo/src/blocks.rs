@@ -58,14 +58,6 @@ lagrangian! {
     potential = g*height(x + y);
 }
 
-lagrangian! {
-    #[derive(Clone, Debug)]
-    pub struct Simple { g }
-    coordinate q;
-    kinetic = q̇^2/2;
-    potential = -g*cos(q);
-}
-
 // The last two of a line are for systems whose accelerations contain no velocity.
 #[cfg(feature = "all")]
 case!(Wall, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12],
@@ -79,9 +71,6 @@ case!(Forced, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dp
 case!(Relay, 1, free, Dop853, f64 [Default Picard Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12]);
 #[cfg(feature = "all")]
 case!(Hung, 1, driven, Dop853, f64 [Default Picard Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12], f32 [Default Picard Dop853 Tsit5]);
-#[cfg(feature = "all")]
-case!(Simple, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12],
-    f32 [Default Picard Dop853 Tsit5], dd [Default Taylor Dop853]);
 
 #[cfg(not(feature = "all"))]
 case!(Wall, 1, free, Taylor, f64 [Default Picard Dop853]);
@@ -93,5 +82,3 @@ case!(Forced, 1, free, Taylor, f64 [Default Picard Dop853]);
 case!(Relay, 1, free, Dop853, f64 [Default Picard Dop853]);
 #[cfg(not(feature = "all"))]
 case!(Hung, 1, driven, Dop853, f64 [Default Picard Dop853]);
-#[cfg(not(feature = "all"))]
-case!(Simple, 1, free, Taylor, f64 [Default Picard Dop853]);

@@ -1,6 +1,6 @@
 //! The families: a system with a distribution of parameters, starts and intervals.
 
-use crate::blocks::{Forced, Friction, Hung, Relay, Simple, Wall};
+use crate::blocks::{Forced, Friction, Hung, Relay, Wall};
 use crate::case::{Case, Guide, Scalar};
 use crate::motions::{Drive, Shape};
 use crate::random::Random;
@@ -38,7 +38,6 @@ const fn uncounted(family: Family) -> Family {
 
 /// What the short test knows too.
 const SHORT: &[Family] = &[
-    double("simple", simple),
     double("moving", moving),
     double("closure gentle", |r, s| closure(r, s, |r| Shape::Sine { a: r.within(0.05, 0.2), ω: r.within(1.0, 5.0), φ: 0.0 })),
     double("contact 1e-2", |r, s| contact(r, s, 1e-2)),
@@ -53,10 +52,6 @@ const SHORT: &[Family] = &[
     double("kick at rest, limited", |r, s| Box::new(kick_at_rest(r, s).limited(0.05))),
     uncounted(double("kick at rest", |r, s| Box::new(kick_at_rest(r, s)))),
     double("burst", burst),
-    double("unstable", |r, s| {
-        let (q, v) = ([core::f64::consts::PI - r.log_within(1e-6, 1e-2)], [0.0]);
-        Box::new(Trial::new(s, &Simple { g: 1.0 }, q, v, 8.0, Guide::FREE))
-    }),
     double("closure step", |r, s| closure(r, s, |r| Shape::Jump { a: r.within(1.0, 5.0), at: r.within(1.0, 6.0) })),
     double("closure ramp", |r, s| {
         closure(r, s, |r| Shape::Ramp { a: r.within(0.1, 0.5), from: r.within(1.0, 5.0), long: r.within(0.2, 1.0) })
@@ -189,9 +184,4 @@ pub(crate) fn kapitza(r: &mut Random, scalar: Scalar, frequency: f64, end: f64) 
     let drive = Drive::Sinusoid(Shape::Sine { a: r.within(3.0, 6.0) / ω, ω, φ: r.within(0.0, 6.0) }, [0.0, 1.0]);
     let (q, v) = ([r.within(2.0, 4.2)], [r.within(-2.0, 2.0)]);
     Box::new(Trial::new(scalar, &hung, q, v, end, Guide::max_step(0.1 / frequency)).driven(drive))
-}
-
-pub(crate) fn simple(r: &mut Random, scalar: Scalar) -> Problem {
-    let (q, v) = ([r.within(-2.5, 2.5)], [r.within(-2.0, 2.0)]);
-    Box::new(Trial::new(scalar, &Simple { g: r.within(1.0, 10.0) }, q, v, shorter(scalar, 10.0), Guide::FREE))
 }

@@ -9,6 +9,14 @@ use pendulum_runtime::real::DoubleDouble;
 use std::time::{Duration, Instant};
 
 lagrangian! {
+    #[derive(Clone, Debug)]
+    pub struct Simple { g }
+    coordinate q;
+    kinetic = q̇^2/2;
+    potential = -g*cos(q);
+}
+
+lagrangian! {
     /// A pendulum with a soft stop at the angle m.
     #[derive(Clone, Debug)]
     pub struct SoftStop { g, k, m, w }
@@ -207,3 +215,5 @@ case!(Restricted, 2, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas
 case!(Stars, 6, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Dprkn8 Dprkn12]);
 case!(HenonHeiles, 2, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12]);
 case!(Toda, 3, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12]);
+case!(Simple, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12],
+    f32 [Default Picard Dop853 Tsit5], dd [Default Taylor Dop853]);

@@ -1,12 +1,10 @@
 //! The families that are measured with `--features all` only.
 
 use crate::case::{Guide, Scalar};
-use crate::families::{
-    Family, Problem, closure, contact, double, friction, kick, moving, pendulum, shorter, simple, square_wave,
-};
+use crate::families::{Family, Problem, closure, contact, double, friction, kick, moving, pendulum, shorter, square_wave};
 use crate::more_blocks::{
-    Atoms, Charged, Double, Eight, Elastic, Five, HenonHeiles, Hoop, Kepler, Kinked, Lifted, Oscillator, Restricted, SoftStop,
-    Stars, Steep, Toda, Valley, Wilberforce,
+    Atoms, Charged, Double, Eight, Elastic, Five, HenonHeiles, Hoop, Kepler, Kinked, Lifted, Oscillator, Restricted, Simple,
+    SoftStop, Stars, Steep, Toda, Valley, Wilberforce,
 };
 use crate::motions::{Drive, Shape};
 use crate::random::Random;
@@ -21,6 +19,7 @@ const fn wide(name: &'static str, make: fn(&mut Random, Scalar) -> Problem) -> F
 }
 
 pub(crate) const MORE: &[Family] = &[
+    double("simple", simple),
     // Controls.
     double("double", coupled),
     double("kepler", |r, s| {
@@ -79,6 +78,10 @@ pub(crate) const MORE: &[Family] = &[
         let morse = Oscillator { D: 2.0, s: r.within(2.0, 6.0), ..PLAIN };
         let (q, v) = ([r.within(-0.1, 0.3)], [r.within(-1.0, 1.0)]);
         Box::new(Trial::new(s, &morse, q, v, 5.0, Guide::FREE))
+    }),
+    double("unstable", |r, s| {
+        let (q, v) = ([core::f64::consts::PI - r.log_within(1e-6, 1e-2)], [0.0]);
+        Box::new(Trial::new(s, &Simple { g: 1.0 }, q, v, 8.0, Guide::FREE))
     }),
     // Orbits and lattices.
     double("kepler 0.99", |r, s| {
@@ -242,4 +245,9 @@ fn toda(r: &mut Random, scalar: Scalar) -> Problem {
     let q = core::array::from_fn(|_| r.within(-1.0, 1.0));
     let v = core::array::from_fn(|_| r.within(-2.0, 2.0));
     Box::new(Trial::new(scalar, &Toda { a: r.within(1.0, 3.0) }, q, v, 5.0, Guide::FREE))
+}
+
+fn simple(r: &mut Random, scalar: Scalar) -> Problem {
+    let (q, v) = ([r.within(-2.5, 2.5)], [r.within(-2.0, 2.0)]);
+    Box::new(Trial::new(scalar, &Simple { g: r.within(1.0, 10.0) }, q, v, shorter(scalar, 10.0), Guide::FREE))
 }

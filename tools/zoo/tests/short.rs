@@ -8,7 +8,7 @@ use zoo::{Finding, Method, Options, findings};
 #[test]
 fn errors_are_those_asked_for() {
     let names =
-        ["simple", "contact 1e-2", "friction", "square wave 1e-2", "sign(sin 10t)", "kick", "closure step", "kapitza 100 Hz"];
+        ["moving", "contact 1e-2", "friction", "square wave 1e-2", "sign(sin 10t)", "kick", "closure step", "kapitza 100 Hz"];
     let families = names.map(String::from).to_vec();
     let methods = vec!["default".into(), "picard".into()];
     let found = findings(&Options { count: 6, families, methods, clock: false, ..Options::default() });
