@@ -31,8 +31,12 @@ impl Method {
         [Self::Default, Self::Picard, Self::Taylor, Self::Dop853, Self::Tsit5, Self::Rodas4, Self::Dprkn8, Self::Dprkn12];
 
     /// The least tolerance at which it is measured: below, methods of low order take millions of steps.
-    pub(crate) fn least(self) -> f64 {
-        if matches!(self, Self::Tsit5 | Self::Rodas4) { 1e-9 } else { 0.0 }
+    pub(crate) fn least(self, scalar: Scalar) -> f64 {
+        match self {
+            Self::Tsit5 | Self::Rodas4 => 1e-9,
+            Self::Dop853 if scalar == Scalar::Wide => 1e-18,
+            _ => 0.0,
+        }
     }
 
     pub(crate) fn name(self) -> &'static str {
@@ -181,10 +185,10 @@ pub(crate) trait Case {
     fn guide(&self) -> &Guide;
 }
 
-/// The greatest difference of any coordinate or velocity in units of 1 + its magnitude.
+/// The greatest difference of any coordinate or velocity in units of 1 + its magnitude; infinite where there is no number.
 pub(crate) fn distance(state: &State, exact: &State) -> f64 {
     let parts = state.iter().zip(exact).map(|(x, exact)| (*x - *exact).to_f64().abs() / (1.0 + exact.to_f64().abs()));
-    parts.fold(0.0, |largest, x| if x <= largest { largest } else { x })
+    parts.fold(0.0, |largest: f64, x| if x.is_nan() { f64::INFINITY } else { largest.max(x) })
 }
 
 /// The number of instants at which the flow is disturbed, and of disturbances at each.

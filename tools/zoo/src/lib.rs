@@ -168,7 +168,7 @@ fn bars(options: &Options, rows: &[Row<'_>]) -> bool {
         if merits.is_empty() {
             continue;
         }
-        let above = merits.iter().filter(|merit| !(**merit <= 100.0)).count();
+        let above = merits.iter().filter(|merit| 100.0 < **merit).count();
         let worse = report::worse(rows, method, 0.3);
         let bars = [
             ("median at most 1", report::quantile(&merits, 0.5) <= 1.0),
@@ -180,7 +180,7 @@ fn bars(options: &Options, rows: &[Row<'_>]) -> bool {
             println!("{:8} {} {bar}", method.name(), if fine { "meets " } else { "MISSES" });
             met &= fine;
         }
-        worse.iter().for_each(|line| println!("    {line}"));
+        tell(&worse, worse.len());
         tell(&wrong, 40);
     }
     met

@@ -50,10 +50,10 @@ pub(crate) fn measure(family: &Family, run: usize, wanted: &dyn Fn(Method) -> bo
     let (exact, doubt) = reference(case, family.scalar, tolerance, &times)?;
     let least = 100.0 * family.scalar.epsilon();
     let unit = tolerance.max(least) * amplification;
-    if !(doubt <= 0.01 * unit) {
+    if 0.01 * unit < doubt {
         return Err(format!("two references differ by {doubt:.1e}, the tolerance is {tolerance:.1e}, {}", case.describe()));
     }
-    let measured = |method: &Method| wanted(*method) && method.least() <= tolerance;
+    let measured = |method: &Method| wanted(*method) && method.least(family.scalar) <= tolerance;
     let measurements = case.methods(family.scalar).iter().copied().filter(measured).map(|method| {
         let mut error = f64::NAN;
         let mut stats = String::new();
@@ -76,7 +76,7 @@ fn reference(case: &dyn Case, scalar: Scalar, tolerance: f64, times: &[f64]) -> 
     let fine = if case.by_series() {
         if scalar == Scalar::Wide { 1e-31 } else { 1e-24 }
     } else {
-        (1e-6 * tolerance).max(1e-20).min(1e-14)
+        (1e-6 * tolerance).clamp(1e-20, 1e-14)
     };
     let fine = fine.max(guide.least);
     let trusted = case.exact(fine, guide.max_step, times)?;

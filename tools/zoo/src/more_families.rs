@@ -37,10 +37,10 @@ pub(crate) const MORE: &[Family] = &[
         let kinked = Kinked { g: 9.81, a: 0.0, k: 1e3, m: r.within(-0.3, 0.5), c: 0.0 };
         pendulum(r, |q, v| Trial::new(s, &kinked, [q - 1.5], v, 5.0, Guide::FREE))
     }),
-    double("two walls", |r, s| steep(r, s, Steep { e: (-200.0f64).exp(), k: 200.0, ..FLAT }, 0.05)),
-    double("x^12", |r, s| steep(r, s, Steep { a: 1.0, ..FLAT }, 1e300)),
-    double("exp(20 x)", |r, s| steep(r, s, Steep { e: 1e-6, k: 20.0, ..FLAT }, 0.1)),
-    double("needle", |r, s| steep(r, s, Steep { a: 1.0, h: 0.1, p: 0.02, ..FLAT }, 0.02)),
+    double("two walls", |r, s| steep(r, s, &Steep { e: (-200.0f64).exp(), k: 200.0, ..FLAT }, 0.05)),
+    double("x^12", |r, s| steep(r, s, &Steep { a: 1.0, ..FLAT }, 1e300)),
+    double("exp(20 x)", |r, s| steep(r, s, &Steep { e: 1e-6, k: 20.0, ..FLAT }, 0.1)),
+    double("needle", |r, s| steep(r, s, &Steep { a: 1.0, h: 0.1, p: 0.02, ..FLAT }, 0.02)),
     double("double well", double_well),
     double("lennard-jones", lennard_jones),
     // Friction and corners.
@@ -131,9 +131,9 @@ fn soft_stop(r: &mut Random, scalar: Scalar) -> Problem {
 
 const FLAT: Steep = Steep { a: 0.0, e: 0.0, k: 1.0, d: 0.0, h: 0.0, p: 1.0 };
 
-fn steep(r: &mut Random, scalar: Scalar, steep: Steep, max_step: f64) -> Problem {
+fn steep(r: &mut Random, scalar: Scalar, steep: &Steep, max_step: f64) -> Problem {
     let (q, v) = ([r.within(-0.5, 0.5)], [r.within(0.7, 2.0)]);
-    Box::new(Trial::new(scalar, &steep, q, v, 8.0, Guide::max_step(max_step)))
+    Box::new(Trial::new(scalar, steep, q, v, 8.0, Guide::max_step(max_step)))
 }
 
 fn double_well(r: &mut Random, scalar: Scalar) -> Problem {

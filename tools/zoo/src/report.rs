@@ -71,7 +71,7 @@ pub(crate) fn table(rows: &[Row<'_>], markdown: bool) -> String {
             let merits = row.merits(method);
             let dense = sorted(row.of(method).filter_map(|(_, m)| m.merit.as_ref().ok()).map(|merit| merit.1));
             let times = sorted(row.of(method).filter_map(|(_, m)| m.time));
-            let above = |bound: f64| merits.iter().filter(|merit| !(**merit <= bound)).count();
+            let above = |bound: f64| merits.iter().filter(|merit| bound < **merit).count();
             let failed = row.of(method).filter(|(_, m)| m.merit.is_err()).count();
             let cells = [
                 row.family.name.to_string(),
@@ -127,7 +127,7 @@ pub(crate) fn summary(rows: &[Row<'_>]) -> String {
         if merits.is_empty() {
             continue;
         }
-        let above = |bound: f64| merits.iter().filter(|merit| !(**merit <= bound)).count();
+        let above = |bound: f64| merits.iter().filter(|merit| bound < **merit).count();
         let mut failures = BTreeMap::<&str, usize>::new();
         let counted = rows.iter().filter(|row| row.family.counts);
         for why in counted.flat_map(|row| row.of(method)).filter_map(|(_, m)| m.merit.as_ref().err()) {
@@ -169,7 +169,7 @@ pub(crate) fn wrong(rows: &[Row<'_>], method: Method, bound: f64) -> Vec<String>
     let mut lines = Vec::new();
     for row in rows.iter().filter(|row| row.family.counts) {
         for (run, m) in row.of(method) {
-            if m.merit.as_ref().is_ok_and(|merit| !(merit.0 <= bound)) {
+            if m.merit.as_ref().is_ok_and(|merit| bound < merit.0) {
                 lines.push(format!(
                     "--family '{}' --run {} --method {}: tolerance {:.2e}, amplification {:.1e}, merit {}, {}",
                     row.family.name,

@@ -14,7 +14,7 @@ fn errors_are_those_asked_for() {
     let found = findings(&Options { count: 6, families, methods, clock: false, ..Options::default() });
     for method in [Method::Default, Method::Picard] {
         let of = |bound: f64| -> Vec<&Finding> {
-            let wrong = |finding: &&Finding| finding.merit.as_ref().is_ok_and(|merit| !(*merit <= bound));
+            let wrong = |finding: &&Finding| finding.merit.as_ref().is_ok_and(|merit| bound < *merit);
             found.iter().filter(|finding| finding.method == method).filter(wrong).collect()
         };
         let runs = found.iter().filter(|finding| finding.method == method && finding.merit.is_ok()).count();
