@@ -5,10 +5,16 @@
 mod articulated;
 #[path = "../../pendulum-macros/src/ast.rs"]
 mod ast;
+#[path = "../../pendulum-macros/src/cancel.rs"]
+mod cancel;
 #[path = "../../pendulum-macros/src/check/mod.rs"]
 mod check;
+#[path = "../../pendulum-macros/src/clock.rs"]
+mod clock;
 #[path = "../../pendulum-macros/src/collect.rs"]
 mod collect;
+#[path = "../../pendulum-macros/src/derive.rs"]
+mod derive;
 #[path = "../../pendulum-macros/src/diff.rs"]
 mod diff;
 #[path = "../../pendulum-macros/src/emit/mod.rs"]

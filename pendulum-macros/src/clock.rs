@@ -313,12 +313,11 @@ impl Search {
         let mut known = BTreeMap::new();
         for node in self.graph.reachable(&[id]) {
             let argument = magnitudes.iter().find(|(magnitude, _)| *magnitude == node).map(|(_, argument)| *argument);
-            let result = match argument {
-                Some(argument) => known[&argument],
-                None => {
-                    let old = self.graph.node(node).clone();
-                    self.graph.rebuilt(&old, |child| known[&child])
-                }
+            let result = if let Some(argument) = argument {
+                known[&argument]
+            } else {
+                let old = self.graph.node(node).clone();
+                self.graph.rebuilt(&old, |child| known[&child])
             };
             known.insert(node, result);
         }

@@ -11,7 +11,7 @@ use pendulum_runtime::real::{DoubleDouble, Float};
 use pendulum_runtime::system::Staged;
 use polynomial::Driving;
 
-#[allow(clippy::all, clippy::pedantic, unused_imports, non_snake_case)]
+#[allow(clippy::all, clippy::pedantic, unused_imports, unused_variables, non_snake_case)]
 #[rustfmt::skip]
 mod blocks;
 

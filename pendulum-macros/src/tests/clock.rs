@@ -3,6 +3,7 @@
 use super::{derive, evaluate};
 use crate::clock::features;
 use crate::expr::Symbol;
+use std::fmt::Write;
 
 /// One over the width of each function of time in a force at t = 3, and the time since its middle, with a = 5, b = 0.5 and c = 2.
 fn found(force: &str) -> Vec<(f64, f64)> {
@@ -105,7 +106,7 @@ fn long_polynomials() {
     check(&format!("exp(-{})", product.join("*")), &[]);
     let mut lets = String::from("let u0 = t;");
     for k in 0..40 {
-        lets += &format!("let u{} = u{k} + u{k}*(1 + u{k});", k + 1);
+        write!(lets, "let u{} = u{k} + u{k}*(1 + u{k});", k + 1).unwrap();
     }
     let block = format!("struct S {{ a }} coordinate q; {lets} kinetic = q_dot^2/2; force q = sin(a*u40);");
     derive(&block, |_, graph, motion| assert!(features(graph, &motion.accelerations).1.is_empty()));

@@ -30,7 +30,8 @@ fn gravity(count: usize) -> String {
 /// The momenta along both axes and the angular momentum of `count` bodies.
 fn momenta(count: usize) -> Vec<String> {
     let sum = |axis: &str| (0..count).map(|k| format!("p_{axis}[{k}]")).collect::<Vec<_>>().join(" + ");
-    let parts = |sign: &str, a: &str, b: &str| (1..count).map(|k| format!(" {sign} {a}[{k}]·p_{b}[{k}]")).collect::<String>();
+    let parts =
+        |sign: &str, a: &str, b: &str| (1..count).map(|k| format!(" {sign} {a}[{k}]·p_{b}[{k}]")).collect::<Vec<_>>().concat();
     let turn = format!("x[0]·p_y[0] − y[0]·p_x[0]{}{}", parts("−", "y", "x"), parts("+", "x", "y"));
     vec![sum("x"), sum("y"), turn]
 }

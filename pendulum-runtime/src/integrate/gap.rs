@@ -85,7 +85,7 @@ impl Memory {
     {
         let own = longest(dynamics.system(), t, gap);
         let driven = dynamics.longest_step(t.to_f64(), APART / gap, self.unknown);
-        if !(0.0 < driven) {
+        if driven <= 0.0 || driven.is_nan() {
             let required = "positive; it is what a motion or a tuple of motions answers";
             return Err(Error::Setting { name: "longest_step", value: driven, required });
         }

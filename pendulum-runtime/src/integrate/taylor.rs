@@ -219,15 +219,16 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         let mut wanted = memory.within_sight(self.limited(memory.h == 0.0, wanted), field.dynamics, from.t, GAP)?;
         let mut span = fit(from.t, wanted, target);
         *to = sum(room, from, &span);
-        if !to.is_finite() {
-            return Err(blame(method, field.dynamics, &span, from, room));
-        }
+        let whole = span;
         while resolution_of::<D::Scalar>(from.t) < wanted && !holds(field, room, &span, to, &weights[1]) {
             // The same series ends sooner.
             stats.rejected += 1;
             wanted = 0.5 * span.h.abs();
             span = fit(from.t, wanted, target);
             *to = sum(room, from, &span);
+        }
+        if !to.is_finite() {
+            return Err(blame(method, field.dynamics, &whole, from, room));
         }
         if wanted <= resolution_of::<D::Scalar>(from.t) && wanted < from.t.since(target).abs() {
             let (_, index) = largest(&room.path, order, &weights);
@@ -304,12 +305,14 @@ fn holds<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     let a = field.at(span.end, side(span.h).opposite(), &to.q.high, &to.v.high);
     let rounding = 1e3 * D::Scalar::EPSILON.to_f64();
     let size = a.iter().fold(0.0, |size: f64, a| size.max(a.to_f64().abs()));
-    (0..N).all(|i| {
-        let series = (1..=room.order).rev().fold(zero, |sum, k| sum * h + D::Scalar::from_f64(k as f64) * room.path.v[i][k]);
-        let misfit = span.h.abs() * (a[i] - series).to_f64().abs() / room.order as f64;
-        let noise = rounding * (to.v.high[i].to_f64().abs() + span.h.abs() * size);
-        misfit * weights[i] <= MISFIT + noise * weights[i]
-    })
+    to.is_finite()
+        && size.is_finite()
+        && (0..N).all(|i| {
+            let series = (1..=room.order).rev().fold(zero, |sum, k| sum * h + D::Scalar::from_f64(k as f64) * room.path.v[i][k]);
+            let misfit = span.h.abs() * (a[i] - series).to_f64().abs() / room.order as f64;
+            let noise = rounding * (to.v.high[i].to_f64().abs() + span.h.abs() * size);
+            misfit * weights[i] <= MISFIT + noise * weights[i]
+        })
 }
 
 /// Σ x\[k\] hᵏ over 2 ≤ k ≤ `order`, beyond which all are zero: every fourth term after Horner (1819), the four sums side by side.

@@ -345,7 +345,8 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
             progress.spare = was_near;
             return progress;
         }
-        if progress.sweeps < equations.least && !shrinks && !(change <= number(16.0) * earlier) {
+        let stays = shrinks || change <= number(16.0) * earlier;
+        if progress.sweeps < equations.least && !stays {
             return progress;
         }
         let expected = if equations.closing { EXPECTED_CHANGE } else { NEGLIGIBLE };

@@ -184,7 +184,7 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
                 let by_decay = last * (last / larger(before, last));
                 let part = self.weights[i].to_f64() * larger(a16, larger(by_decay, last / 16.0));
                 // NaN is an error, too.
-                if !(part <= error) {
+                if error < part || part.is_nan() {
                     error = part;
                 }
             } else if square <= 0.0 && error < AIM && self.a[self.last ^ 1][0][i].0.iter().any(|&a| a != T::from_f64(0.0)) {
