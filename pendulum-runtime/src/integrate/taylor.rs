@@ -220,7 +220,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         let mut span = fit(from.t, wanted, target);
         *to = sum(room, from, &span);
         let whole = span;
-        while resolution_of::<D::Scalar>(from.t) < wanted && !holds(field, room, &span, to, &weights[1]) {
+        while resolution_of::<D::Scalar>(from.t) < wanted && !holds(field.dynamics, room, &span, to, &weights[1]) {
             // The same series ends sooner.
             stats.rejected += 1;
             wanted = 0.5 * span.h.abs();
@@ -293,22 +293,28 @@ const MISFIT: f64 = 30.0;
 /// Whether the accelerations at the end of a step are those of the series: h |a − Σ k v\[k\] hᵏ⁻¹|/p in units of the error allowed.
 ///
 /// A series knows no more than its centre does: of a wall, a contact or a switch far away its coefficients tell nothing. Rounding is
-/// taken for a thousand ε of velocities and accelerations.
+/// taken for a thousand ε of velocities, accelerations and coordinates.
 fn holds<D: JetDynamics<N, Scalar: Float>, const N: usize>(
-    field: &mut Counted<'_, D>,
+    dynamics: &D,
     room: &RoomOf<D, N>,
     span: &Span,
     to: &Node<D::Scalar, N>,
     weights: &[f64; N],
 ) -> bool {
     let (h, zero) = (span.length::<D::Scalar>(), D::Scalar::from_f64(0.0));
-    let a = field.at(span.end, side(span.h).opposite(), &to.q.high, &to.v.high);
+    // Beside the orders of the series, which are what evaluations of this method count.
+    let a = Counted::new(dynamics).at(span.end, side(span.h).opposite(), &to.q.high, &to.v.high);
     let rounding = 1e3 * D::Scalar::EPSILON.to_f64();
-    let size = a.iter().fold(0.0, |size: f64, a| size.max(a.to_f64().abs()));
+    let largest = |values: &dyn Fn(usize) -> D::Scalar| (0..N).fold(0.0, |largest: f64, i| largest.max(values(i).to_f64().abs()));
+    let (q, v) = (&room.path.q, &room.path.v);
+    let (way, turn) = (largest(&|i| to.q.high[i] - q[i][0]), largest(&|i| a[i] - v[i][1]));
+    // A coordinate is rounded too, and the accelerations change with it as they do on the way.
+    let by_place = if 0.0 < way { largest(&|i| to.q.high[i]) * (turn / way) } else { 0.0 };
+    let size = largest(&|i| a[i]) + by_place;
     to.is_finite()
         && size.is_finite()
         && (0..N).all(|i| {
-            let series = (1..=room.order).rev().fold(zero, |sum, k| sum * h + D::Scalar::from_f64(k as f64) * room.path.v[i][k]);
+            let series = (1..=room.order).rev().fold(zero, |sum, k| sum * h + D::Scalar::from_f64(k as f64) * v[i][k]);
             let misfit = span.h.abs() * (a[i] - series).to_f64().abs() / room.order as f64;
             let noise = rounding * (to.v.high[i].to_f64().abs() + span.h.abs() * size);
             misfit * weights[i] <= MISFIT + noise * weights[i]

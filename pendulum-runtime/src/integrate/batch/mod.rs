@@ -23,6 +23,7 @@ const W: usize = 8;
 /// Parameters, intervals and start states may differ from motion to motion, and each takes the steps that `Taylor` would choose for it
 /// alone: the solution of a motion has, in state and counters, the bits of
 /// [`solve`](super::solve)`(&system, time, q, v).method(Taylor::new())`, whatever its neighbours do. Where one ends, the next one takes its lane.
+/// But the ends of steps are not compared with the accelerations there, and no step is halved: for walls and contacts, take `solve`.
 /// Worth it from about four motions on; it suits every system that `lagrangian!` has made without driven inputs.
 ///
 /// A failure ends one motion only. A step allocates nothing; the end of a motion does.
