@@ -17,7 +17,7 @@ use random::Random;
 
 lagrangian! {
     #[derive(Clone, Debug)]
-    pub struct Strung { m: kg, k: N/m }
+    pub struct Strung { m: kg, k: N/m, #[allow(unused)] g: m/s^2 = 9.81 }
     coordinate u: m;
     driven a: m;
     driven b: [m; 2];

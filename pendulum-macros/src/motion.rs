@@ -346,20 +346,6 @@ fn at_rest(graph: &mut Graph, id: Id) -> Id {
     crate::diff::substitute(graph, id, |symbol| matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO))
 }
 
-/// Whether expressions are linear in coordinates and velocities: no slope contains anything that moves.
-fn are_linear(graph: &Graph, roots: &[Id]) -> bool {
-    // Aside, for the slopes are nobody's nodes.
-    let mut graph = graph.clone();
-    roots.iter().all(|&root| {
-        let symbols = graph.symbols(&[root]).into_iter();
-        let state: Vec<Symbol> = symbols.filter(|symbol| matches!(symbol, Symbol::Coordinate(_) | Symbol::Velocity(_))).collect();
-        state.into_iter().all(|symbol| {
-            let slope = crate::diff::derivative(&mut graph, root, symbol);
-            !graph.contents(slope).any(Contents::STATE)
-        })
-    })
-}
-
 fn facts(graph: &mut Graph, motion: &mut Motion) {
     let all = |roots: &[Id]| roots.iter().fold(Contents::default(), |all, &id| all.or(graph.contents(id)));
     let masses = motion.mass_matrix.iter().flatten().fold(Contents::default(), |all, &id| all.or(graph.contents(id)));
@@ -368,7 +354,7 @@ fn facts(graph: &mut Graph, motion: &mut Motion) {
     let forces = all(&motion.forces);
     motion.constant_mass_matrix = !masses.any(state.or(time));
     motion.velocity_free = motion.constant_mass_matrix && !forces.any(Contents::VELOCITY);
-    motion.linear = motion.constant_mass_matrix && graph.smooth(&motion.forces) && are_linear(graph, &motion.forces);
+    motion.linear = motion.constant_mass_matrix && graph.linear(&motion.forces);
     let contents = forces.or(all(&motion.momenta)).or(masses);
     motion.autonomous = !contents.any(time);
     motion.explicit_time = contents.any(Contents::TIME);

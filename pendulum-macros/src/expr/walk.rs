@@ -52,6 +52,29 @@ impl Graph {
         !self.reachable(roots).iter().filter(|id| cornered(id)).any(|&id| self.contents(id).any(Contents::STATE))
     }
 
+    /// Whether `roots` are written as sums of coordinates and velocities with coefficients that parameters alone decide, and of what contains
+    /// neither.
+    pub(crate) fn linear(&self, roots: &[Id]) -> bool {
+        let moving = Contents::COORDINATE.or(Contents::VELOCITY).or(Contents::MOMENTUM).or(Contents::AUXILIARY);
+        let mut linear = vec![false; roots.iter().map(|id| id.index() + 1).max().unwrap_or(0)];
+        for id in self.reachable(roots) {
+            linear[id.index()] = !self.contents(id).any(moving)
+                || match self.node(id) {
+                    Node::Symbol(_) => true,
+                    Node::Sum(terms) => terms.iter().all(|(term, _)| linear[term.index()]),
+                    Node::Product(_, factors) => {
+                        let mut changing = factors.iter().filter(|(factor, _)| self.contents(*factor).any(Contents::STATE));
+                        let only =
+                            changing.next().is_some_and(|(factor, power)| *power == Rational::ONE && linear[factor.index()]);
+                        only && changing.next().is_none()
+                    }
+                    Node::Atom(inner) => linear[inner.index()],
+                    _ => false,
+                };
+        }
+        roots.iter().all(|root| linear[root.index()])
+    }
+
     /// The symbols in `roots`.
     pub(crate) fn symbols(&self, roots: &[Id]) -> BTreeSet<Symbol> {
         let symbol = |id: Id| match self.node(id) {
