@@ -220,7 +220,9 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         let mut span = fit(from.t, wanted, target);
         *to = sum(room, from, &span);
         let whole = span;
-        while resolution_of::<D::Scalar>(from.t) < wanted && !holds(field.dynamics, room, &span, to, &weights[1]) {
+        let finite = |series: &Series<D::Scalar>| series[..=order].iter().all(|x| x.is_finite());
+        let known = to.is_finite() || (0..N).all(|i| finite(&room.path.q[i]) && finite(&room.path.v[i]));
+        while known && resolution_of::<D::Scalar>(from.t) < wanted && !holds(field.dynamics, room, &span, to, &weights[1]) {
             // The same series ends sooner.
             stats.rejected += 1;
             wanted = 0.5 * span.h.abs();
@@ -293,7 +295,7 @@ const MISFIT: f64 = 30.0;
 /// Whether the accelerations at the end of a step are those of the series: h |a − Σ k v\[k\] hᵏ⁻¹|/p in units of the error allowed.
 ///
 /// A series knows no more than its centre does: of a wall, a contact or a switch far away its coefficients tell nothing. Rounding is
-/// taken for a thousand ε of velocities, accelerations and coordinates.
+/// taken for a thousand ε of velocities, accelerations, coordinates and time.
 fn holds<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     room: &RoomOf<D, N>,
@@ -308,9 +310,10 @@ fn holds<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     let largest = |values: &dyn Fn(usize) -> D::Scalar| (0..N).fold(0.0, |largest: f64, i| largest.max(values(i).to_f64().abs()));
     let (q, v) = (&room.path.q, &room.path.v);
     let (way, turn) = (largest(&|i| to.q.high[i] - q[i][0]), largest(&|i| a[i] - v[i][1]));
-    // A coordinate is rounded too, and the accelerations change with it as they do on the way.
+    // Coordinates and time are rounded too, and the accelerations change with them as they do on the way.
     let by_place = if 0.0 < way { largest(&|i| to.q.high[i]) * (turn / way) } else { 0.0 };
-    let size = largest(&|i| a[i]) + by_place;
+    let by_time = span.end.to_f64().abs() * (turn / span.h.abs());
+    let size = largest(&|i| a[i]) + by_place + if <D::System as System<N>>::FACTS.autonomous { 0.0 } else { by_time };
     to.is_finite()
         && size.is_finite()
         && (0..N).all(|i| {
