@@ -222,9 +222,17 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         let whole = span;
         let finite = |series: &Series<D::Scalar>| series[..=order].iter().all(|x| x.is_finite());
         let known = to.is_finite() || (0..N).all(|i| finite(&room.path.q[i]) && finite(&room.path.v[i]));
+        let mut halved = 0;
         while known && resolution_of::<D::Scalar>(from.t) < wanted && !holds(field.dynamics, room, &span, to, &weights[1]) {
-            // The same series ends sooner.
             stats.rejected += 1;
+            halved += 1;
+            if halved == MOST_HALVED {
+                // The series of so short a step is right, and what does not fit is rounding.
+                (wanted, span) = (whole.h.abs(), whole);
+                *to = sum(room, from, &span);
+                break;
+            }
+            // The same series ends sooner.
             wanted = 0.5 * span.h.abs();
             span = fit(from.t, wanted, target);
             *to = sum(room, from, &span);
@@ -292,6 +300,9 @@ fn sum<T: Float, W, X, const N: usize>(room: &Room<T, W, X, N>, from: &Node<T, N
 /// The error of a step over the one allowed from which on the series does not hold at its end.
 const MISFIT: f64 = 30.0;
 
+/// How often a step is halved at most.
+const MOST_HALVED: u32 = 40;
+
 /// Whether the accelerations at the end of a step are those of the series: h |a − Σ k v\[k\] hᵏ⁻¹|/p in units of the error allowed.
 ///
 /// A series knows no more than its centre does: of a wall, a contact or a switch far away its coefficients tell nothing. Rounding is
@@ -306,14 +317,17 @@ fn holds<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     let (h, zero) = (span.length::<D::Scalar>(), D::Scalar::from_f64(0.0));
     // Beside the orders of the series, which are what evaluations of this method count.
     let a = Counted::new(dynamics).at(span.end, side(span.h).opposite(), &to.q.high, &to.v.high);
-    let rounding = 1e3 * D::Scalar::EPSILON.to_f64();
+    // Motions have the digits of `f64`.
+    let facts = &<D::System as System<N>>::FACTS;
+    let epsilon = D::Scalar::EPSILON.to_f64();
+    let rounding = 1e3 * if facts.inputs.is_empty() || f64::EPSILON < epsilon { epsilon } else { f64::EPSILON };
     let largest = |values: &dyn Fn(usize) -> D::Scalar| (0..N).fold(0.0, |largest: f64, i| largest.max(values(i).to_f64().abs()));
     let (q, v) = (&room.path.q, &room.path.v);
     let (way, turn) = (largest(&|i| to.q.high[i] - q[i][0]), largest(&|i| a[i] - v[i][1]));
     // Coordinates and time are rounded too, and the accelerations change with them as they do on the way.
     let by_place = if 0.0 < way { largest(&|i| to.q.high[i]) * (turn / way) } else { 0.0 };
     let by_time = span.end.to_f64().abs() * (turn / span.h.abs());
-    let size = largest(&|i| a[i]) + by_place + if <D::System as System<N>>::FACTS.autonomous { 0.0 } else { by_time };
+    let size = largest(&|i| a[i]) + by_place + if facts.autonomous { 0.0 } else { by_time };
     to.is_finite()
         && size.is_finite()
         && (0..N).all(|i| {
