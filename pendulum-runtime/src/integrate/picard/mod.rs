@@ -180,7 +180,7 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
             let (last, before) = (larger(a15, a14), larger(a13, a12));
             let square = self.ends.square[i].to_f64();
             let noise = if before < 4.0 * last { 512.0 } else { 32.0 } * epsilon * square.sqrt();
-            if noise < larger(last, a16) {
+            if 0.0 < square && noise < larger(last, a16) {
                 let by_decay = last * (last / larger(before, last));
                 let part = self.weights[i].to_f64() * larger(a16, larger(by_decay, last / 16.0));
                 // NaN is an error, too.
