@@ -180,14 +180,16 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
             let (last, before) = (larger(a15, a14), larger(a13, a12));
             let square = self.ends.square[i].to_f64();
             let noise = if before < 4.0 * last { 512.0 } else { 32.0 } * epsilon * square.sqrt();
-            if 0.0 < square && noise < larger(last, a16) {
+            let tail = larger(last, a16);
+            // NaN is an error, too.
+            if noise < tail || tail.is_nan() {
                 let by_decay = last * (last / larger(before, last));
                 let part = self.weights[i].to_f64() * larger(a16, larger(by_decay, last / 16.0));
-                // NaN is an error, too.
                 if error < part || part.is_nan() {
                     error = part;
                 }
-            } else if square <= 0.0 && error < AIM && self.a[self.last ^ 1][0][i].0.iter().any(|&a| a != T::from_f64(0.0)) {
+            }
+            if square <= 0.0 && error < AIM && self.a[self.last ^ 1][0][i].0.iter().any(|&a| a != T::from_f64(0.0)) {
                 // Too small for squares, which is not zero: steps become no longer.
                 error = AIM;
             }
