@@ -14,8 +14,6 @@ pub(crate) type Problem = Box<dyn Case>;
 pub(crate) struct Family {
     pub(crate) name: &'static str,
     pub(crate) scalar: Scalar,
-    /// Whether the bars hold for it; they do not where no method can know of what is to come.
-    pub(crate) counts: bool,
     pub(crate) make: fn(&mut Random, Scalar) -> Problem,
 }
 
@@ -29,11 +27,7 @@ impl Family {
 }
 
 pub(crate) const fn double(name: &'static str, make: fn(&mut Random, Scalar) -> Problem) -> Family {
-    Family { name, scalar: Scalar::F64, counts: true, make }
-}
-
-const fn uncounted(name: &'static str, make: fn(&mut Random, Scalar) -> Problem) -> Family {
-    Family { counts: false, ..double(name, make) }
+    Family { name, scalar: Scalar::F64, make }
 }
 
 /// What the short test knows too.
@@ -50,7 +44,7 @@ const SHORT: &[Family] = &[
     double("sign(sin 10t)", relay),
     double("kick", kick),
     double("kick at rest, limited", |r, s| Box::new(kick_at_rest(r, s).limited(0.05))),
-    uncounted("kick at rest", |r, s| Box::new(kick_at_rest(r, s))),
+    double("kick at rest", |r, s| Box::new(kick_at_rest(r, s))),
     double("burst", burst),
     double("closure step", |r, s| closure(r, s, |r| Shape::Jump { a: r.within(1.0, 5.0), at: r.within(1.0, 6.0) })),
     double("closure ramp", |r, s| {

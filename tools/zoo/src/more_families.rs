@@ -11,11 +11,11 @@ use crate::random::Random;
 use crate::trial::Trial;
 
 const fn single(name: &'static str, make: fn(&mut Random, Scalar) -> Problem) -> Family {
-    Family { name, scalar: Scalar::F32, counts: true, make }
+    Family { name, scalar: Scalar::F32, make }
 }
 
 const fn wide(name: &'static str, make: fn(&mut Random, Scalar) -> Problem) -> Family {
-    Family { name, scalar: Scalar::Wide, counts: true, make }
+    Family { name, scalar: Scalar::Wide, make }
 }
 
 pub(crate) const MORE: &[Family] = &[

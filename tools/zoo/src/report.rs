@@ -54,18 +54,14 @@ fn short(x: f64) -> String {
 }
 
 /// The table of families and methods.
-pub(crate) fn table(rows: &[Row<'_>], markdown: bool) -> String {
+pub(crate) fn table(rows: &[Row<'_>]) -> String {
     let mut text = String::new();
     let heads = ["family", "method", "median", "90 %", "max", "> 100", "> 1000", "failed", "dense 90 %", "time"];
-    if markdown {
-        let _ = writeln!(text, "| {} |\n|{}", heads.join(" | "), "---|".repeat(heads.len()));
-    } else {
-        let _ = writeln!(
-            text,
-            "{:22} {:8} {:>8} {:>8} {:>8} {:>6} {:>6} {:>6} {:>10} {:>6}",
-            heads[0], heads[1], heads[2], heads[3], heads[4], heads[5], heads[6], heads[7], heads[8], heads[9]
-        );
-    }
+    let _ = writeln!(
+        text,
+        "{:22} {:8} {:>8} {:>8} {:>8} {:>6} {:>6} {:>6} {:>10} {:>6}",
+        heads[0], heads[1], heads[2], heads[3], heads[4], heads[5], heads[6], heads[7], heads[8], heads[9]
+    );
     for row in rows {
         for method in row.methods() {
             let merits = row.merits(method);
@@ -73,27 +69,60 @@ pub(crate) fn table(rows: &[Row<'_>], markdown: bool) -> String {
             let times = sorted(row.of(method).filter_map(|(_, m)| m.time));
             let above = |bound: f64| merits.iter().filter(|merit| bound < **merit).count();
             let failed = row.of(method).filter(|(_, m)| m.merit.is_err()).count();
-            let cells = [
-                row.family.name.to_string(),
-                method.name().to_string(),
-                short(quantile(&merits, 0.5)),
-                short(quantile(&merits, 0.9)),
-                short(quantile(&merits, 1.0)),
-                above(100.0).to_string(),
-                above(1000.0).to_string(),
-                failed.to_string(),
-                short(quantile(&dense, 0.9)),
-                short(quantile(&times, 0.5)),
-            ];
-            if markdown {
-                let _ = writeln!(text, "| {} |", cells.join(" | "));
-            } else {
-                let [a, b, c, d, e, f, g, h, i, j] = cells;
-                let _ = writeln!(text, "{a:22} {b:8} {c:>8} {d:>8} {e:>8} {f:>6} {g:>6} {h:>6} {i:>10} {j:>6}");
-            }
+            let [a, b, c] = [0.5, 0.9, 1.0].map(|part| short(quantile(&merits, part)));
+            let [i, j] = [short(quantile(&dense, 0.9)), short(quantile(&times, 0.5))];
+            let (name, method, d, e) = (row.family.name, method.name(), above(100.0), above(1000.0));
+            let _ = writeln!(text, "{name:22} {method:8} {a:>8} {b:>8} {c:>8} {d:>6} {e:>6} {failed:>6} {i:>10} {j:>6}");
         }
     }
     text
+}
+
+/// The tables of the documentation: all families by method, and each family with the median amplification, the runs without a reference,
+/// and for each method the median, the 90 % quantile and the largest merit, and its time over that of `Dop853`.
+pub(crate) fn markdown(rows: &[Row<'_>]) -> String {
+    let mut text =
+        String::from("| all | runs | median | 90 % | above 100 | above 1000 | errors |\n|---|---|---|---|---|---|---|\n");
+    for method in Method::ALL {
+        let merits = merits(rows, method);
+        if merits.is_empty() {
+            continue;
+        }
+        let above = |bound: f64| merits.iter().filter(|merit| bound < **merit).count();
+        let [median, most] = [0.5, 0.9].map(|part| short(quantile(&merits, part)));
+        let (name, runs, failed) = (method.name(), merits.len(), failed(rows, method));
+        let _ = writeln!(text, "| {name} | {runs} | {median} | {most} | {} | {} | {failed} |", above(100.0), above(1000.0));
+    }
+    let names = Method::ALL.map(Method::name).join(" | ");
+    let _ = writeln!(text, "\n| family | amplified | lost | {names} |\n|{}", "---|".repeat(3 + Method::ALL.len()));
+    for row in rows {
+        let amplifications = sorted(row.runs.iter().map(|run| run.amplification));
+        let (amplified, lost) = (short(quantile(&amplifications, 0.5)), row.lost.len());
+        let _ = write!(text, "| {} | {amplified} | {lost}", row.family.name);
+        for method in Method::ALL {
+            let merits = row.merits(method);
+            let times = sorted(row.of(method).filter_map(|(_, m)| m.time));
+            let [a, b, c] = [0.5, 0.9, 1.0].map(|part| short(quantile(&merits, part)));
+            let _ = match (merits.is_empty(), times.is_empty()) {
+                (true, _) => write!(text, " | –"),
+                (_, true) => write!(text, " | {a} / {b} / {c}"),
+                _ => write!(text, " | {a} / {b} / {c}, {}", short(quantile(&times, 0.5))),
+            };
+        }
+        let _ = writeln!(text, " |");
+    }
+    text
+}
+
+/// The runs that ended in an error.
+pub(crate) fn failed(rows: &[Row<'_>], method: Method) -> usize {
+    rows.iter().flat_map(|row| row.of(method)).filter(|(_, m)| m.merit.is_err()).count()
+}
+
+/// The runs without a reference, and all.
+pub(crate) fn lost(rows: &[Row<'_>]) -> (usize, usize) {
+    let lost = rows.iter().map(|row| row.lost.len()).sum();
+    (lost, lost + rows.iter().map(|row| row.runs.len()).sum::<usize>())
 }
 
 /// What the references are worth, a line a family.
@@ -129,8 +158,7 @@ pub(crate) fn summary(rows: &[Row<'_>]) -> String {
         }
         let above = |bound: f64| merits.iter().filter(|merit| bound < **merit).count();
         let mut failures = BTreeMap::<&str, usize>::new();
-        let counted = rows.iter().filter(|row| row.family.counts);
-        for why in counted.flat_map(|row| row.of(method)).filter_map(|(_, m)| m.merit.as_ref().err()) {
+        for why in rows.iter().flat_map(|row| row.of(method)).filter_map(|(_, m)| m.merit.as_ref().err()) {
             *failures.entry(why).or_default() += 1;
         }
         let _ = writeln!(
@@ -155,7 +183,7 @@ pub(crate) fn summary(rows: &[Row<'_>]) -> String {
 /// The families in which the 90 % quantile is more than three times that of `Dop853`, which counts as `floor` at least.
 pub(crate) fn worse(rows: &[Row<'_>], method: Method, floor: f64) -> Vec<String> {
     let mut names = Vec::new();
-    for row in rows.iter().filter(|row| row.family.counts) {
+    for row in rows {
         let (own, other) = (quantile(&row.merits(method), 0.9), quantile(&row.merits(Method::Dop853), 0.9));
         if own > 3.0 * other.max(floor) {
             names.push(format!("{} ({} : {})", row.family.name, short(own), short(other)));
@@ -167,7 +195,7 @@ pub(crate) fn worse(rows: &[Row<'_>], method: Method, floor: f64) -> Vec<String>
 /// The runs above a bound, with what repeats each.
 pub(crate) fn wrong(rows: &[Row<'_>], method: Method, bound: f64) -> Vec<String> {
     let mut lines = Vec::new();
-    for row in rows.iter().filter(|row| row.family.counts) {
+    for row in rows {
         for (run, m) in row.of(method) {
             if m.merit.as_ref().is_ok_and(|merit| bound < merit.0) {
                 lines.push(format!(
@@ -188,7 +216,7 @@ pub(crate) fn wrong(rows: &[Row<'_>], method: Method, bound: f64) -> Vec<String>
 
 /// The merits of a method over all families.
 pub(crate) fn merits(rows: &[Row<'_>], method: Method) -> Vec<f64> {
-    sorted(rows.iter().filter(|row| row.family.counts).flat_map(|row| row.merits(method)))
+    sorted(rows.iter().flat_map(|row| row.merits(method)))
 }
 
 /// A line for each measurement, with a head.
@@ -206,7 +234,7 @@ pub(crate) fn lines(rows: &[Row<'_>]) -> String {
                 let Measured { run, tolerance, amplification, .. } = run;
                 let _ = writeln!(
                     text,
-                    "{name},{scalar},{run},{method},{tolerance:e},{amplification:e},{:e},{merit},{dense},{time},{failure}",
+                    "\"{name}\",{scalar},{run},{method},{tolerance:e},{amplification:e},{:e},{merit},{dense},{time},{failure}",
                     m.error
                 );
             }
