@@ -26,22 +26,48 @@ impl<const D: usize> Sinusoid<D> {
         Self { amplitude, frequency, phase, offset: [0.0; D] }
     }
 
-    /// The angle of component `d` in two words: one alone is rounded by 1e-12 after a second at 1
-    /// kHz, and the acceleration with it.
+    /// The angle ω t in two words, of times in two words: one alone is rounded by 1e-12 after a
+    /// second at 1 kHz, and the acceleration with it.
     #[inline(always)]
     #[allow(clippy::inline_always)]
-    fn angle(&self, d: usize, t: Time) -> (f64, f64) {
-        let (product, rounded) = product(self.frequency, t.to_f64());
-        let (angle, left) = sum(product, self.phase[d]);
-        (angle, left + (rounded + self.frequency * t.low()))
+    fn angle<L: Halved>(&self, high: L, low: L) -> (L, L) {
+        let frequency = L::from_f64(self.frequency);
+        let (angle, rounded) = product(frequency, high);
+        (angle, rounded + frequency * low)
     }
 
     /// Sine and cosine of the angle of component `d`.
     #[inline]
     pub(super) fn sin_cos(&self, d: usize, t: Time) -> (f64, f64) {
-        let (angle, low) = self.angle(d, t);
-        let (sin, cos) = Real::sin_cos(angle);
-        turned(sin, cos, low)
+        self.sin_cos_at(d, self.angle(t.to_f64(), t.low()))
+    }
+
+    /// The same where ω t is known.
+    #[inline(always)]
+    #[allow(clippy::inline_always)]
+    fn sin_cos_at<L: Halved>(&self, d: usize, (angle, low): (L, L)) -> (L, L) {
+        let (angle, left) = sum(angle, L::from_f64(self.phase[d]));
+        let (sin, cos) = angle.sin_cos();
+        turned(sin, cos, left + low)
+    }
+
+    /// Position, velocity and acceleration of component `d` where its angle has this sine and cosine;
+    /// those that `orders` leaves out are zero.
+    #[inline(always)]
+    #[allow(clippy::inline_always)]
+    fn of_component<L: Real>(&self, orders: Orders, d: usize, (sin, cos): (L, L)) -> [L; 3] {
+        let (a, w, number) = (self.amplitude[d], self.frequency, L::from_f64);
+        let mut component = [number(0.0); 3];
+        if orders.contains(Orders::POSITION) {
+            component[0] = number(self.offset[d]) + number(a) * sin;
+        }
+        if orders.contains(Orders::VELOCITY) {
+            component[1] = number(a * w) * cos;
+        }
+        if orders.contains(Orders::ACCELERATION) {
+            component[2] = -(number(a * w * w) * sin);
+        }
+        component
     }
 
     /// The sample where the components have these sines and cosines.
@@ -50,8 +76,7 @@ impl<const D: usize> Sinusoid<D> {
     fn at<T: Real>(&self, orders: Orders, sin_cos: impl Fn(usize) -> (f64, f64)) -> Sample<T, D> {
         let mut sample = Sample::zero();
         for d in 0..D {
-            let ((sin, cos), a, w) = (sin_cos(d), self.amplitude[d], self.frequency);
-            let component = of_component(orders, self.offset[d], a, w, sin, cos);
+            let component = self.of_component(orders, d, sin_cos(d)).map(T::from_f64);
             [sample.position[d], sample.velocity[d], sample.acceleration[d]] = component;
         }
         sample
@@ -84,18 +109,14 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
         T: Lane,
     {
         let mut lanes = Sample::<Octet<T>, D>::zero();
+        let angle = self.angle(Octet(times.map(Time::to_f64)), Octet(times.map(Time::low)));
+        let mut sin_cos = (angle.0, angle.1);
         for d in 0..D {
-            let (mut angles, mut lows) = ([0.0; 8], [0.0; 8]);
-            for k in 0..8 {
-                (angles[k], lows[k]) = self.angle(d, times[k]);
+            if d == 0 || self.phase[d].to_bits() != self.phase[d - 1].to_bits() {
+                sin_cos = self.sin_cos_at(d, angle);
             }
-            let (sin, cos) = f64::sin_cos_lanes(&angles);
-            let (a, w) = (self.amplitude[d], self.frequency);
-            for k in 0..8 {
-                let (sin, cos) = turned(sin[k], cos[k], lows[k]);
-                let sample = of_component::<T>(orders, self.offset[d], a, w, sin, cos);
-                [lanes.position[d].0[k], lanes.velocity[d].0[k], lanes.acceleration[d].0[k]] = sample;
-            }
+            let component = self.of_component(orders, d, sin_cos).map(|octet| Octet(octet.0.map(T::from_f64)));
+            [lanes.position[d], lanes.velocity[d], lanes.acceleration[d]] = component;
         }
         lanes
     }
@@ -114,30 +135,31 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
     }
 }
 
-/// Position, velocity and acceleration of a component; those that `orders` leaves out are zero.
-#[inline(always)]
-#[allow(clippy::inline_always)]
-fn of_component<T: Real>(orders: Orders, offset: f64, a: f64, w: f64, sin: f64, cos: f64) -> [T; 3] {
-    let mut component = [T::from_f64(0.0); 3];
-    if orders.contains(Orders::POSITION) {
-        component[0] = T::from_f64(offset + a * sin);
-    }
-    if orders.contains(Orders::VELOCITY) {
-        component[1] = T::from_f64(a * w * cos);
-    }
-    if orders.contains(Orders::ACCELERATION) {
-        component[2] = T::from_f64(-(a * w * w * sin));
-    }
-    component
+/// Numbers that can be cut in halves.
+trait Halved: Real {
+    /// The upper half of the digits, cut by bits, so that nothing overflows.
+    fn upper(self) -> Self;
 }
 
-/// A product and its rounding error (Dekker 1971); the halves are cut by bits, so that nothing
-/// overflows before the product does.
+impl Halved for f64 {
+    #[inline(always)]
+    fn upper(self) -> Self {
+        Self::from_bits(self.to_bits() & !0x07ff_ffff)
+    }
+}
+
+impl Halved for Octet<f64> {
+    #[inline(always)]
+    fn upper(self) -> Self {
+        Self(self.0.map(Halved::upper))
+    }
+}
+
+/// A product and its rounding error (Dekker 1971).
 #[inline(always)]
 #[allow(clippy::inline_always)]
-fn product(a: f64, b: f64) -> (f64, f64) {
-    let half = |x: f64| f64::from_bits(x.to_bits() & !0x07ff_ffff);
-    let (product, a_high, b_high) = (a * b, half(a), half(b));
+fn product<L: Halved>(a: L, b: L) -> (L, L) {
+    let (product, a_high, b_high) = (a * b, a.upper(), b.upper());
     let (a_low, b_low) = (a - a_high, b - b_high);
     (product, ((a_high * b_high - product) + (a_high * b_low + a_low * b_high)) + a_low * b_low)
 }
@@ -145,7 +167,7 @@ fn product(a: f64, b: f64) -> (f64, f64) {
 /// A sum and its rounding error (Knuth 1969).
 #[inline(always)]
 #[allow(clippy::inline_always)]
-fn sum(a: f64, b: f64) -> (f64, f64) {
+fn sum<L: Real>(a: L, b: L) -> (L, L) {
     let sum = a + b;
     let part = sum - a;
     (sum, (a - (sum - part)) + (b - part))
@@ -154,8 +176,8 @@ fn sum(a: f64, b: f64) -> (f64, f64) {
 /// Sine and cosine of an angle that is larger by a rounding error.
 #[inline(always)]
 #[allow(clippy::inline_always)]
-fn turned(sin: f64, cos: f64, low: f64) -> (f64, f64) {
-    let half = 0.5 * low;
+fn turned<L: Real>(sin: L, cos: L, low: L) -> (L, L) {
+    let half = L::from_f64(0.5) * low;
     (sin + low * (cos - half * sin), cos - low * (sin + half * cos))
 }
 
@@ -184,13 +206,13 @@ impl<T: Real, const D: usize> Work for Several<'_, T, D> {
             let components = first..D.min(first + together);
             for (d, (angles, lows)) in components.clone().zip(angles.chunks_mut(count).zip(lows.chunks_mut(count))) {
                 for ((angle, low), &t) in angles.iter_mut().zip(lows).zip(self.times) {
-                    (*angle, *low) = self.sinusoid.angle(d, t);
+                    let (turns, rest) = self.sinusoid.angle(t.to_f64(), t.low());
+                    let (whole, left) = sum(turns, self.sinusoid.phase[d]);
+                    (*angle, *low) = (whole, left + rest);
                 }
             }
-            let (mut sines, mut cosines) = f64::sin_cos_lanes(&angles);
-            for k in 0..AT_ONCE {
-                (sines[k], cosines[k]) = turned(sines[k], cosines[k], lows[k]);
-            }
+            let (sines, cosines) = f64::sin_cos_lanes(&angles);
+            let (Octet(sines), Octet(cosines)) = turned(Octet(sines), Octet(cosines), Octet(lows));
             for (d, (sines, cosines)) in components.zip(sines.chunks(count).zip(cosines.chunks(count))) {
                 sin[d][..sines.len()].copy_from_slice(sines);
                 cos[d][..cosines.len()].copy_from_slice(cosines);
