@@ -345,7 +345,8 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
             progress.spare = was_near;
             return progress;
         }
-        let stays = shrinks || change <= number(16.0) * earlier;
+        // A change of nothing may be followed by one of rounding.
+        let stays = shrinks || change <= number(16.0) * earlier || equations.closing && change <= number(LAST_CHANGE);
         if progress.sweeps < equations.least && !stays {
             return progress;
         }
