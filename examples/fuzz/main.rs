@@ -12,7 +12,7 @@
 mod bvh;
 mod files;
 mod memory;
-#[path = "../../pendulum-macros/src/tests/random/mod.rs"]
+#[path = "../../pendulum-compiler/src/tests/random/mod.rs"]
 mod random;
 mod target;
 mod watch;

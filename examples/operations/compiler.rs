@@ -1,65 +1,65 @@
 // The compiler itself: a macro cannot be called by a program. Its modules name each other from the root of the crate, so that this list is
 // included there.
 
-#[path = "../../pendulum-macros/src/articulated/mod.rs"]
+#[path = "../../pendulum-compiler/src/articulated/mod.rs"]
 mod articulated;
-#[path = "../../pendulum-macros/src/ast.rs"]
+#[path = "../../pendulum-compiler/src/ast.rs"]
 mod ast;
-#[path = "../../pendulum-macros/src/cancel.rs"]
+#[path = "../../pendulum-compiler/src/cancel.rs"]
 mod cancel;
-#[path = "../../pendulum-macros/src/check/mod.rs"]
+#[path = "../../pendulum-compiler/src/check/mod.rs"]
 mod check;
-#[path = "../../pendulum-macros/src/clock.rs"]
+#[path = "../../pendulum-compiler/src/clock.rs"]
 mod clock;
-#[path = "../../pendulum-macros/src/collect.rs"]
+#[path = "../../pendulum-compiler/src/collect.rs"]
 mod collect;
-#[path = "../../pendulum-macros/src/derive.rs"]
+#[path = "../../pendulum-compiler/src/derive.rs"]
 mod derive;
-#[path = "../../pendulum-macros/src/diff.rs"]
+#[path = "../../pendulum-compiler/src/diff.rs"]
 mod diff;
-#[path = "../../pendulum-macros/src/emit/mod.rs"]
+#[path = "../../pendulum-compiler/src/emit/mod.rs"]
 mod emit;
-#[path = "../../pendulum-macros/src/error.rs"]
+#[path = "../../pendulum-compiler/src/error.rs"]
 mod error;
-#[path = "../../pendulum-macros/src/expand.rs"]
+#[path = "../../pendulum-compiler/src/expand.rs"]
 mod expand;
-#[path = "../../pendulum-macros/src/expr/mod.rs"]
+#[path = "../../pendulum-compiler/src/expr/mod.rs"]
 mod expr;
-#[path = "../../pendulum-macros/src/jacobian.rs"]
+#[path = "../../pendulum-compiler/src/jacobian.rs"]
 mod jacobian;
-#[path = "../../pendulum-macros/src/jet/mod.rs"]
+#[path = "../../pendulum-compiler/src/jet/mod.rs"]
 mod jet;
-#[path = "../../pendulum-macros/src/latex.rs"]
+#[path = "../../pendulum-compiler/src/latex.rs"]
 mod latex;
-#[path = "../../pendulum-macros/src/lower/mod.rs"]
+#[path = "../../pendulum-compiler/src/lower/mod.rs"]
 mod lower;
-#[path = "../../pendulum-macros/src/mirror.rs"]
+#[path = "../../pendulum-compiler/src/mirror.rs"]
 mod mirror;
-#[path = "../../pendulum-macros/src/modular.rs"]
+#[path = "../../pendulum-compiler/src/modular.rs"]
 mod modular;
-#[path = "../../pendulum-macros/src/motion.rs"]
+#[path = "../../pendulum-compiler/src/motion.rs"]
 mod motion;
-#[path = "../../pendulum-macros/src/name.rs"]
+#[path = "../../pendulum-compiler/src/name.rs"]
 mod name;
-#[path = "../../pendulum-macros/src/number.rs"]
+#[path = "../../pendulum-compiler/src/number.rs"]
 mod number;
-#[path = "../../pendulum-macros/src/order.rs"]
+#[path = "../../pendulum-compiler/src/order.rs"]
 mod order;
-#[path = "../../pendulum-macros/src/parse/mod.rs"]
+#[path = "../../pendulum-compiler/src/parse/mod.rs"]
 mod parse;
-#[path = "../../pendulum-macros/src/print.rs"]
+#[path = "../../pendulum-compiler/src/print.rs"]
 mod print;
-#[path = "../../pendulum-macros/src/rule.rs"]
+#[path = "../../pendulum-compiler/src/rule.rs"]
 mod rule;
-#[path = "../../pendulum-macros/src/schedule/mod.rs"]
+#[path = "../../pendulum-compiler/src/schedule/mod.rs"]
 mod schedule;
-#[path = "../../pendulum-macros/src/sign.rs"]
+#[path = "../../pendulum-compiler/src/sign.rs"]
 mod sign;
-#[path = "../../pendulum-macros/src/solve.rs"]
+#[path = "../../pendulum-compiler/src/solve.rs"]
 mod solve;
-#[path = "../../pendulum-macros/src/symmetry.rs"]
+#[path = "../../pendulum-compiler/src/symmetry.rs"]
 mod symmetry;
-#[path = "../../pendulum-macros/src/unit/mod.rs"]
+#[path = "../../pendulum-compiler/src/unit/mod.rs"]
 mod unit;
-#[path = "../../pendulum-macros/src/value.rs"]
+#[path = "../../pendulum-compiler/src/value.rs"]
 mod value;

@@ -1,42 +1,8 @@
 //! The `lagrangian!` macro of the `pendulum` workspace: a Lagrangian in, Rust out.
 
-mod articulated;
-mod ast;
-mod cancel;
-mod check;
-mod clock;
-mod collect;
-mod derive;
-mod diff;
-mod emit;
-mod error;
-mod expand;
-mod expr;
-mod jacobian;
-mod jet;
-mod latex;
-mod lower;
-mod mirror;
-mod modular;
-mod motion;
-mod name;
-mod number;
-mod order;
-mod parse;
-mod print;
-mod rule;
-mod schedule;
-mod sign;
-mod solve;
-mod symmetry;
-#[cfg(test)]
-mod tests;
-mod unit;
-mod value;
-
 /// Takes a Lagrangian and emits a type that implements `pendulum_runtime::system::System`.
 #[doc = include_str!("../language.md")]
 #[proc_macro]
 pub fn lagrangian(input: proc_macro::TokenStream) -> proc_macro::TokenStream {
-    expand::expand(input.into()).into()
+    pendulum_compiler::expand(input.into()).into()
 }

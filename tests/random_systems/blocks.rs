@@ -1,5 +1,5 @@
-//! Random systems and what they do at a random state, in 31 digits. Written by the generator in `pendulum-macros/src/tests/random`:
-//! `UPDATE_GOLDEN=1 cargo test -p pendulum-macros written` writes it anew.
+//! Random systems and what they do at a random state, in 31 digits. Written by the generator in `pendulum-compiler/src/tests/random`:
+//! `UPDATE_GOLDEN=1 cargo test -p pendulum-compiler written` writes it anew.
 
 use super::{Case, words};
 use pendulum_runtime::body::Body;

@@ -16,8 +16,8 @@ const COUNT: usize = 40;
 /// The file.
 pub(crate) fn file() -> String {
     let mut text = String::from(
-        "//! Random systems and what they do at a random state, in 31 digits. Written by the generator in `pendulum-macros/src/tests/random`:\n\
-         //! `UPDATE_GOLDEN=1 cargo test -p pendulum-macros written` writes it anew.\n\n\
+        "//! Random systems and what they do at a random state, in 31 digits. Written by the generator in `pendulum-compiler/src/tests/random`:\n\
+         //! `UPDATE_GOLDEN=1 cargo test -p pendulum-compiler written` writes it anew.\n\n\
          use super::{Case, words};\nuse pendulum_runtime::body::Body;\nuse pendulum_runtime::real::Real;\nuse pendulum_runtime::motion::Sample;\n",
     );
     let mut names = Vec::new();

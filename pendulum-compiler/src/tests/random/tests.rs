@@ -155,5 +155,5 @@ fn written_systems_are_up_to_date() {
         std::fs::write(path, &text).unwrap();
     }
     let found = std::fs::read_to_string(path).unwrap_or_default();
-    assert!(found == text, "`UPDATE_GOLDEN=1 cargo test -p pendulum-macros written` writes {path} anew");
+    assert!(found == text, "`UPDATE_GOLDEN=1 cargo test -p pendulum-compiler written` writes {path} anew");
 }

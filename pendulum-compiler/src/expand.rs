@@ -5,7 +5,7 @@ use crate::{check, derive, emit, expr, lower, motion, parse, unit};
 use proc_macro2::TokenStream;
 
 /// The items of a block. They are always there, whatever is wrong with the block.
-pub(crate) fn expand(input: TokenStream) -> TokenStream {
+pub fn expand(input: TokenStream) -> TokenStream {
     let mut errors = Errors::default();
     let Some((krate, mut block)) = parse::all(input, &mut errors) else {
         return errors.into_tokens();

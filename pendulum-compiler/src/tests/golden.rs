@@ -1,6 +1,6 @@
 //! Golden files: a block, its printed equations, its operations and its facts.
 //!
-//! `UPDATE_GOLDEN=1 cargo test -p pendulum-macros` rewrites them; the difference is read in review.
+//! `UPDATE_GOLDEN=1 cargo test -p pendulum-compiler` rewrites them; the difference is read in review.
 
 use super::derived;
 use crate::error::Errors;
