@@ -242,3 +242,29 @@ fn errors_say_where() {
         assert!(matches!(failure.error, Error::Setting { name: "first_step", value, .. } if value == step), "{failure}");
     }
 }
+
+/// A wall that a series cannot know, at the last moment before which the steps are halved: no step goes through it.
+#[test]
+fn no_step_goes_through_a_wall() {
+    lagrangian! {
+        pub struct Floor { g, k }
+        coordinate y;
+        kinetic = ẏ^2/2;
+        potential = g*y;
+        force y = k*(1 - sign(y))/2;
+    }
+    // Down with g to 0, up with k − g, which takes a part g/(k − g) of the time and of the height, up with the first speed again.
+    let expected = |k: f64| {
+        let (g, y) = (10.0, 1.0);
+        let (fall, speed) = ((2.0 * y / g).sqrt(), (2.0 * g * y).sqrt());
+        let t = 1.0 - fall - 2.0 * speed / (k - g);
+        speed * t - g * t * t / 2.0
+    };
+    for (k, rtol) in [(1e3, 1e-14), (1e4, 1e-13), (1e5, 1e-12), (1e6, 1e-11), (1e3, 1e-6), (1e3, 1e-9)] {
+        let floor = Floor::new(10.0, k);
+        let down = solve(&floor, (0.0, 1.0), [1.0], [0.0]).method(Taylor::new()).rtol(rtol).atol(rtol).run().unwrap();
+        let error = (down.end.q[0] - expected(k)).abs();
+        assert!(error < 100.0 * rtol.max(1e-10), "k = {k:e}, rtol = {rtol:e}: {error:e}");
+        assert!(down.stats.rejected < 200, "k = {k:e}, rtol = {rtol:e}: {:?}", down.stats);
+    }
+}

@@ -76,7 +76,16 @@ pub struct Room<T, W, X, const N: usize> {
     order: usize,
     /// What the tolerance decides.
     rule: Rule,
+    /// The last time at which a series did not hold.
+    refuted: Option<f64>,
+    /// Whether the last step went over a jump.
+    crossed: bool,
+    /// One more for each step that was halved, two less for each that was not.
+    doubts: u32,
 }
+
+/// A jump is found within so many steps; if the series go on not to hold, the accelerations are not exact.
+const MOST_DOUBTS: u32 = 64;
 
 /// What the tolerance decides about the length of a step.
 #[derive(Clone, Debug, Default)]
@@ -125,7 +134,16 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Stepper<D, N> for Taylor 
     }
 
     fn room(&self, dynamics: &D) -> RoomOf<D, N> {
-        Room { path: Path::new(), drive: D::System::drive(), work: dynamics.system().work(), order: 0, rule: Rule::default() }
+        Room {
+            path: Path::new(),
+            drive: D::System::drive(),
+            work: dynamics.system().work(),
+            order: 0,
+            rule: Rule::default(),
+            refuted: None,
+            crossed: false,
+            doubts: 0,
+        }
     }
 
     fn advance(
@@ -217,19 +235,40 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         // A uniform motion may go on for ever, but it has to come to an end.
         let wanted = if wanted == f64::INFINITY && target == wanted { 1.0 } else { wanted };
         let mut wanted = memory.within_sight(self.limited(memory.h == 0.0, wanted), field.dynamics, from.t, GAP)?;
+        // Towards a time at which the last series did not hold.
+        room.refuted = room.refuted.filter(|&refuted| {
+            let left = -from.t.since(refuted);
+            (left < 0.0) == backwards && resolution_of::<D::Scalar>(from.t) < left.abs()
+        });
+        if let Some(refuted) = room.refuted {
+            let left = from.t.since(refuted).abs();
+            wanted = if left < wanted { left } else { wanted };
+        }
         let mut span = fit(from.t, wanted, target);
         *to = sum(room, from, &span);
         let whole = span;
         let finite = |series: &Series<D::Scalar>| series[..=order].iter().all(|x| x.is_finite());
         let known = to.is_finite() || (0..N).all(|i| finite(&room.path.q[i]) && finite(&room.path.v[i]));
-        let mut halved = 0;
-        while known && resolution_of::<D::Scalar>(from.t) < wanted && !holds(field.dynamics, room, &span, to, &weights[1]) {
+        let (mut halved, mut crosses) = (0, false);
+        // At the resolution of times no step can be shorter.
+        while known && resolution_of::<D::Scalar>(from.t) < wanted {
+            let strict = room.doubts < MOST_DOUBTS && (0 < halved || room.refuted.is_some());
+            let misfit = misfit(field.dynamics, room, &span, to, &weights[1], strict);
+            if misfit.allowed {
+                break;
+            }
             stats.rejected += 1;
             halved += 1;
+            room.refuted = Some(span.end.to_f64());
             if halved == MOST_HALVED {
-                // The series of so short a step is right, and what does not fit is rounding.
-                (wanted, span) = (whole.h.abs(), whole);
-                *to = sum(room, from, &span);
+                // Something jumps within so short a step, which goes over that; or its series is right, and what does not fit is
+                // rounding. Behind a jump there is no other.
+                crosses = !misfit.rounding && !room.crossed;
+                if !crosses {
+                    (wanted, span) = (whole.h.abs(), whole);
+                    *to = sum(room, from, &span);
+                }
+                room.refuted = None;
                 break;
             }
             // The same series ends sooner.
@@ -245,6 +284,11 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
             let coordinate = coordinate(&<D::System as System<N>>::FACTS, index);
             let short = Error::StepSizeUnderflow { t, step: wanted, coordinate };
             return Err(self.unresolved(memory.h == 0.0, wanted).unwrap_or(short));
+        }
+        room.crossed = crosses;
+        room.doubts = if 0 < halved { room.doubts + 1 } else { room.doubts.saturating_sub(2) };
+        if MOST_DOUBTS <= room.doubts {
+            room.refuted = None;
         }
         memory.h = wanted;
         stats.accepted += 1;
@@ -303,17 +347,26 @@ const MISFIT: f64 = 30.0;
 /// How often a step is halved at most.
 const MOST_HALVED: u32 = 40;
 
-/// Whether the accelerations at the end of a step are those of the series: h |a − Σ k v\[k\] hᵏ⁻¹|/p in units of the error allowed.
+/// How well a series holds at the end of its step.
+struct Misfit {
+    /// The accelerations are those of the series.
+    allowed: bool,
+    /// They differ by no more than a thousand times what rounding is taken for.
+    rounding: bool,
+}
+
+/// How far the accelerations at the end of a step are from those of the series: h |a − Σ k v\[k\] hᵏ⁻¹|/p in units of the error allowed.
 ///
 /// A series knows no more than its centre does: of a wall, a contact or a switch far away its coefficients tell nothing. Rounding is
 /// taken for a thousand ε of velocities, accelerations, coordinates and time.
-fn holds<D: JetDynamics<N, Scalar: Float>, const N: usize>(
+fn misfit<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     room: &RoomOf<D, N>,
     span: &Span,
     to: &Node<D::Scalar, N>,
     weights: &[f64; N],
-) -> bool {
+    strict: bool,
+) -> Misfit {
     let (h, zero) = (span.length::<D::Scalar>(), D::Scalar::from_f64(0.0));
     // Beside the orders of the series, which are what evaluations of this method count.
     let a = Counted::new(dynamics).at(span.end, side(span.h).opposite(), &to.q.high, &to.v.high);
@@ -328,14 +381,18 @@ fn holds<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     let by_place = if 0.0 < way { largest(&|i| to.q.high[i]) * (turn / way) } else { 0.0 };
     let by_time = span.end.to_f64().abs() * (turn / span.h.abs());
     let size = largest(&|i| a[i]) + by_place + if facts.autonomous { 0.0 } else { by_time };
-    to.is_finite()
-        && size.is_finite()
-        && (0..N).all(|i| {
-            let series = (1..=room.order).rev().fold(zero, |sum, k| sum * h + D::Scalar::from_f64(k as f64) * v[i][k]);
-            let misfit = span.h.abs() * (a[i] - series).to_f64().abs() / room.order as f64;
-            let noise = rounding * (to.v.high[i].to_f64().abs() + span.h.abs() * size);
-            misfit * weights[i] <= MISFIT + noise * weights[i]
-        })
+    let (mut allowed, mut is_rounding) = (to.is_finite() && size.is_finite(), true);
+    for i in 0..N {
+        let series = (1..=room.order).rev().fold(zero, |sum, k| sum * h + D::Scalar::from_f64(k as f64) * v[i][k]);
+        let difference = (a[i] - series).to_f64().abs();
+        // That of a smooth series is gone after a halving; that of a jump is not, and the velocity is off by all of it.
+        let (share, most) = if strict { (1.0, 1.0) } else { (room.order as f64, MISFIT) };
+        let misfit = span.h.abs() * difference / share;
+        let noise = rounding * (to.v.high[i].to_f64().abs() + span.h.abs() * size);
+        allowed &= misfit * weights[i] <= most + noise * weights[i];
+        is_rounding &= difference <= 1e3 * rounding * size;
+    }
+    Misfit { allowed, rounding: is_rounding }
 }
 
 /// Σ x\[k\] hᵏ over 2 ≤ k ≤ `order`, beyond which all are zero: every fourth term after Horner (1819), the four sums side by side.
