@@ -3,6 +3,7 @@
 #![allow(mixed_script_confusables, missing_docs)]
 
 use pendulum_runtime::error::Error;
+use pendulum_runtime::integrate::{AdaptiveStep, FixedStep};
 use pendulum_runtime::motion::{
     Analytic, CatmullRom, Clip, Function, Interpolation, Motion, Orders, Projected, Sample, Side, Sinusoid,
 };
@@ -296,4 +297,21 @@ fn a_ball_that_is_put_back_bounces_as_if_it_began_there() {
         })+};
     }
     bounces!(Auto, Dop853, Tsit5, Picard, Taylor::new());
+}
+
+#[test]
+fn what_fixed_steps_took_is_not_kept_for_adaptive_ones() {
+    lagrangian! {
+        pub struct Duffing {}
+        coordinate x;
+        kinetic = ẋ^2/2;
+        potential = x^4/4 - x^2/2;
+    }
+    let duffing = Duffing::new();
+    let one = Integrator::new(&duffing, Auto, 0.0, [1.2], [0.0]).unwrap();
+    let mut one = one.control(FixedStep::new(0.05)).unwrap();
+    one.step().unwrap();
+    let mut one = one.control(AdaptiveStep::default().rtol(1e-9)).unwrap();
+    one.advance_to(2.0).unwrap();
+    assert_eq!(one.stats().method, "Picard");
 }
