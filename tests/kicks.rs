@@ -298,3 +298,27 @@ fn a_bound_that_is_none_is_refused() {
         assert!(matches!(failed.error, Error::Setting { name: "longest_step", .. }), "{wrong}: {:?}", failed.error);
     }
 }
+
+/// A pulse that is switched off has no width; another that drives the same system is seen all the same.
+#[test]
+fn what_is_switched_off_hides_nothing() {
+    lagrangian! {
+        pub struct Switched { A, k, b }
+        coordinate q;
+        driven f;
+        kinetic = q̇^2/2;
+        force q = f + A*exp(-(k*t - b)^2);
+    }
+    let expected = 0.01 * core::f64::consts::PI.sqrt() * 4.0;
+    for b in [0.0, 1.0] {
+        let gust = Function::new(|t: f64| [4.0 * (-((t - 40.123) / 0.01).powi(2)).exp()]).resolution(0.01).unwrap();
+        let switched = Switched::new(0.0, 0.0, b).driven_by(gust);
+        macro_rules! check {
+            ($($method:expr),+) => {$(
+                let end = solve(&switched, (0.0, 45.0), [0.0], [0.0]).method($method).rtol(1e-6).atol(1e-6).run().unwrap().end;
+                assert!((end.v[0] - expected).abs() < 1e-4, "b = {b}: {} for {expected}", end.v[0]);
+            )+};
+        }
+        check!(Picard, Dop853, Tsit5);
+    }
+}

@@ -66,7 +66,13 @@ pub(crate) fn longest<S: System<N, Scalar: Float>, const N: usize>(system: &S, t
     let longest = system.longest_step(scalar_time(t), S::Scalar::from_f64(APART / gap)).to_f64();
     let least = least(t);
     // What is no number shows in the accelerations.
-    if least < longest || longest.is_nan() { longest } else { least }
+    if longest.is_nan() {
+        f64::INFINITY
+    } else if least < longest {
+        longest
+    } else {
+        least
+    }
 }
 
 /// What is narrower can hardly be told from a moment.
