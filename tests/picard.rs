@@ -4,6 +4,7 @@
 #![allow(mixed_script_confusables, missing_docs)]
 
 use pendulum_runtime::error::{Error, Quantity};
+use pendulum_runtime::integrate::{AdaptiveStep, FixedStep};
 use pendulum_runtime::motion::{CatmullRom, Function, Linear, Sinusoid, Spline};
 use pendulum_runtime::prelude::*;
 
@@ -256,4 +257,69 @@ fn loose_tolerances() {
             [([0.5, -0.25], [0.0; 2]), (solution.end.q, solution.end.v)].map(|(q, v)| double.energy(0.0, &q, &v, &()));
         assert!((after - before).abs() < 30.0 * rtol, "{rtol}: {before} became {after}");
     }
+}
+
+/// A step that ends at a kink sees the side before it, and the next one the side after it: no estimate takes the kink for an error.
+#[test]
+fn kinks_cost_no_attempts() {
+    let pendulum = Hanging::new(1.0, 1.0);
+    let times: Vec<f64> = (0..40).map(|k| 0.73 * f64::from(k)).collect();
+    let keys: Vec<[f64; 2]> = (0..40).map(|k| [0.2 * f64::sin(f64::from(k)), 0.1 * f64::cos(2.0 * f64::from(k))]).collect();
+    let curve = CatmullRom::new(&times, &keys).unwrap();
+    let end = 0.73 * 39.0;
+    for rtol in [1e-6, 1e-12] {
+        let of_keys =
+            solve(&pendulum.clone().driven_by(curve.clone()), (0.0, end), [0.4], [0.0]).method(Picard).rtol(rtol).run().unwrap();
+        assert!(of_keys.stats.rejected < 20, "{rtol:e}: {:?}", of_keys.stats);
+        // Pushed to and fro.
+        let turns = times[1..].to_vec();
+        let push = Function::new(|t| {
+            let before = turns.partition_point(|&turn| turn <= t);
+            [if before % 2 == 0 { 1.0 } else { -1.0 }]
+        });
+        let pushed = Pushed::new().driven_by(push.kinks(&turns).resolution(1.0).unwrap());
+        let pushed = solve(&pushed, (0.0, end), [0.4], [0.0]).method(Picard).rtol(rtol).run().unwrap();
+        assert!(pushed.stats.rejected < 20, "{rtol:e}: {:?}", pushed.stats);
+    }
+}
+
+lagrangian! {
+    pub struct Pushed {}
+    coordinate θ;
+    driven f;
+    kinetic = θ̇^2/2;
+    potential = -cos(θ);
+    force θ = f;
+}
+
+/// Fixed steps do not look at their end; adaptive ones after them do not take that for a jump.
+#[test]
+fn adaptive_steps_go_on_after_fixed_ones() {
+    let pendulum = Simple::new(9.8);
+    let fixed = || Integrator::new(&pendulum, Picard, 0.0, [0.4], [0.0]).unwrap().control(FixedStep::new(0.05)).unwrap();
+    let mut one = fixed();
+    one.advance_to(10.0).unwrap();
+    let mut alone = Integrator::new(&pendulum, Picard, 10.0, *one.q(), *one.v()).unwrap();
+    alone.advance_to(12.0).unwrap();
+    let before = one.stats();
+    let mut one = one.control(AdaptiveStep::default()).unwrap();
+    one.advance_to(12.0).unwrap();
+    let (rejected, most) = (one.stats().rejected - before.rejected, alone.stats().rejected + 3);
+    assert!(rejected <= most, "{rejected} steps rejected after fixed ones, {most} at most");
+}
+
+/// Squares of accelerations that `f32` does not hold.
+#[test]
+fn large_and_small_accelerations_in_single_precision() {
+    lagrangian! {
+        pub struct Oscillator { w }
+        coordinate x;
+        kinetic = ẋ^2/2;
+        potential = w^2*x^2/2;
+    }
+    let fast = Oscillator::<f32>::new(1e16);
+    let end = solve(&fast, (0.0, 2e-15), [1e-10], [0.0]).method(Picard).rtol(1e-5).atol(1e-16).run().unwrap().end;
+    assert!((end.q[0] - 1e-10 * 20.0f32.cos()).abs() < 1e-13, "{:e}", end.q[0]);
+    let faint = solve(&Oscillator::<f32>::new(1.0), (0.0, 100.0), [1e-24], [0.0]).method(Picard).rtol(1e-5).run().unwrap();
+    assert!(faint.stats.accepted < 1000, "{:?}", faint.stats);
 }

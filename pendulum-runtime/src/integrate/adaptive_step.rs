@@ -325,7 +325,7 @@ pub(crate) fn resolution_of<T: Float>(t: Time) -> f64 {
 }
 
 /// A fault that shorter steps ran after, at the time from which none gets away.
-fn at(fault: Error, t: Time) -> Error {
+pub(crate) fn at(fault: Error, t: Time) -> Error {
     match fault {
         Error::NotFinite { what, suspects, .. } => Error::NotFinite { t: t.to_f64(), what, suspects },
         other => other,

@@ -12,6 +12,7 @@ use crate::integrate::span::Span;
 use crate::real::{Float, Lane, Octet};
 use crate::simd::Work;
 use crate::system::{Staged, System, scalar_time};
+use crate::time::Time;
 use core::hint::black_box;
 
 /// One number for each node of a vector.
@@ -115,6 +116,8 @@ pub(super) struct Progress<T> {
     pub(super) done: bool,
     /// It was after one sweep less.
     pub(super) spare: bool,
+    /// All vectors that were to be evaluated are.
+    pub(super) complete: bool,
 }
 
 /// The number of coefficients by which the error of a step is judged.
@@ -127,8 +130,8 @@ pub(super) struct Ends<T, const N: usize> {
     pub(super) tail: [[T; TAIL]; N],
     /// The accelerations just before its end.
     pub(super) last: [T; N],
-    /// The mean square of the accelerations.
-    pub(super) square: [T; N],
+    /// The mean square of the accelerations: a short scalar does not hold the squares of all its numbers.
+    pub(super) square: [f64; N],
     pub(super) progress: Progress<T>,
     /// Whether the equations are solved.
     pub(super) solved: bool,
@@ -139,8 +142,8 @@ pub(super) struct Ends<T, const N: usize> {
 impl<T: Float, const N: usize> Ends<T, N> {
     pub(super) fn new() -> Self {
         let zero = [T::from_f64(0.0); N];
-        let progress = Progress { sweeps: 0, vectors: 0, change: zero[0], done: false, spare: false };
-        Self { tail: [[zero[0]; TAIL]; N], last: zero, square: zero, progress, solved: false, error: 0.0 }
+        let progress = Progress { sweeps: 0, vectors: 0, change: zero[0], done: false, spare: false, complete: false };
+        Self { tail: [[zero[0]; TAIL]; N], last: zero, square: [0.0; N], progress, solved: false, error: 0.0 }
     }
 }
 
@@ -215,7 +218,8 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Onw
             let [once, twice, a15, a14, a13, a12, a16, _] = sums[i].0;
             room.ends.tail[i] = [a15, a14, a13, a12, a16 + number(BETWEEN.start) * room.start[i]];
             room.ends.last[i] = new[1][i].0[S - 1];
-            room.ends.square[i] = total(black_box(&(new[0][i] * new[0][i]))) * number(1.0 / S as f64);
+            let a = Octet(new[0][i].0.map(Float::to_f64));
+            room.ends.square[i] = total(black_box(&(a * a))) / S as f64;
             to.q.add_product(i, h, from.v.high[i], h * (h * twice + from.v.low[i]));
             to.v.add_one(i, h * once);
         }
@@ -253,12 +257,13 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Wit
     }
 }
 
-/// The times of the nodes and the inputs there.
+/// The times of the nodes and the inputs there, in the last lane those just before `last`.
 #[inline(always)]
 fn at_nodes<D: SideBySide<N>, const N: usize>(
     dynamics: &D,
     span: &Span,
     nodes: &Nodes,
+    last: Option<Time>,
 ) -> (Wide<D::Scalar>, <D::Wide as System<N>>::Inputs) {
     let (mut times, mut lanes) = ([span.start; S], Wide::splat(scalar_time(span.start)));
     // Otherwise nobody looks at them.
@@ -268,7 +273,7 @@ fn at_nodes<D: SideBySide<N>, const N: usize>(
             lanes.0[k] = scalar_time(times[k]);
         }
     }
-    (lanes, dynamics.inputs_at(&times))
+    (lanes, dynamics.inputs_at(&times, last))
 }
 
 /// Evaluates the accelerations where the last ones lead, again and again, until that changes nothing.
@@ -287,7 +292,7 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
     let (h, prepared) = (Wide::splat(equations.span.length()), equations.prepared);
     // Where the motion is without accelerations.
     let mut straight = [[zero; N]; H];
-    let (t, inputs) = at_nodes(equations.dynamics, equations.span, points[0]);
+    let (t, inputs) = at_nodes(equations.dynamics, equations.span, points[0], None);
     let mut known = [(t, inputs, Of::<D, N>::at_time(t, &inputs)); H];
     let all = if G == H || equations.closing { H } else { G };
     for g in 0..all {
@@ -296,7 +301,10 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
             straight[g][i] = Wide::splat(equations.from.q.high[i]) + elapsed * Wide::splat(equations.from.v.high[i]);
         }
         if 0 < g {
-            let (t, inputs) = at_nodes(equations.dynamics, equations.span, points[g]);
+            // The last of the points between the nodes is just before the end, at which a motion may have a kink.
+            let end = equations.span.end;
+            let last = if G < H && g + 1 == H && end.low() == 0.0 { Some(end) } else { None };
+            let (t, inputs) = at_nodes(equations.dynamics, equations.span, points[g], last);
             known[g] = (t, inputs, Of::<D, N>::at_time(t, &inputs));
         }
     }
@@ -305,7 +313,7 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
     let (straight, v0, weights) = black_box(&lanes);
     let blind = if equations.guessed { 1 } else { 2 };
     let number = T::from_f64;
-    let mut progress = Progress { sweeps: 0, vectors: 0, change: number(0.0), done: false, spare: false };
+    let mut progress = Progress { sweeps: 0, vectors: 0, change: number(0.0), done: false, spare: false, complete: false };
     let (mut values, mut by) = (first, first_by);
     let groups_of = |closing| if closing || G == H { H } else { G };
     let (mut groups, mut near, mut was_near) = (groups_of(false), false, false);
@@ -339,6 +347,7 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
         let (is_known, next) = (blind < progress.sweeps, change * change);
         let shrinks = !is_known || change < earlier;
         let is_last = !equations.closing || groups == H;
+        progress.complete = is_last;
         let enough = is_known && next <= number(NEGLIGIBLE) * earlier && (!equations.closing || change <= number(LAST_CHANGE));
         if equations.least <= progress.sweeps && is_last && (enough || !shrinks || equations.most <= progress.sweeps) {
             progress.done = enough;

@@ -8,7 +8,7 @@ mod kernel;
 mod side_by_side;
 mod tableau;
 
-use super::adaptive_step::{AdaptiveStep, resolution_of};
+use super::adaptive_step::{AdaptiveStep, at, resolution_of};
 use super::blame::{self, blame};
 use super::control::{Control, Course, Memory};
 use super::field::{Accelerations, Counted, Watched, coordinate, first_in_state};
@@ -92,8 +92,10 @@ pub struct Room<T: Lane, P, const N: usize> {
     h: f64,
     ends: Ends<T, N>,
     /// The mean square of the accelerations of the last step accepted, and the accelerations at its end.
-    square: [T; N],
+    square: [f64; N],
     start: [T; N],
+    /// Whether the latter are known: fixed steps do not look there.
+    seen: bool,
     /// Sums for steps of the last length: of a sweep, of the first one after an equal step, of the points between the nodes, and of a sweep at
     /// sixteen nodes.
     scaled: [Scaled<T, 1>; 3],
@@ -131,10 +133,7 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
     #[inline(always)]
     fn weigh(&mut self, h: f64, from: &Node<T, N>, (rtol, atol): &Tolerances<N>) {
         let rounding = 0.125 * epsilon::<T>();
-        let square = self.square.iter().fold(0.0, |largest, square| {
-            let square = square.to_f64();
-            if largest < square { square } else { largest }
-        });
+        let square = self.square.iter().fold(0.0, |largest, square| if largest < *square { *square } else { largest });
         let gain = h * square.sqrt();
         let allowed = |tolerance: f64, change: f64, value: f64| {
             let least = if 0.05 * change < 0.001 * tolerance { 0.001 * tolerance } else { 0.05 * change };
@@ -153,13 +152,17 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
     #[inline(always)]
     fn is_solved(&self) -> bool {
         let Ends { square, progress, .. } = &self.ends;
+        // Squares of very large accelerations are no scale.
+        if !(progress.complete && square.iter().all(|square| square.is_finite())) {
+            return false;
+        }
         if progress.done {
             return true;
         }
         let mut rounding = 0.01;
         for i in 0..N {
             let weight = self.weights[i].to_f64() * 8.0 * epsilon::<T>();
-            rounding += S as f64 * weight * weight * square[i].to_f64();
+            rounding += S as f64 * weight * weight * square[i];
         }
         // Not so if it has led far away.
         rounding.is_finite() && progress.change.to_f64() <= rounding
@@ -178,7 +181,7 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
         for i in 0..N {
             let [a15, a14, a13, a12, a16] = self.ends.tail[i].map(|x| f64::abs(x.to_f64()));
             let (last, before) = (larger(a15, a14), larger(a13, a12));
-            let square = self.ends.square[i].to_f64();
+            let square = self.ends.square[i];
             let noise = if before < 4.0 * last { 512.0 } else { 32.0 } * epsilon * square.sqrt();
             let tail = larger(last, a16);
             // NaN is an error, too.
@@ -199,7 +202,7 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
 
     /// The coordinate with the largest accelerations, over those allowed.
     fn worst(&self) -> usize {
-        let part = |i: usize| self.weights[i].to_f64() * self.weights[i].to_f64() * self.ends.square[i].to_f64();
+        let part = |i: usize| self.weights[i].to_f64() * self.weights[i].to_f64() * self.ends.square[i];
         (1..N).fold(0, |worst, i| if part(worst) < part(i) { i } else { worst })
     }
 
@@ -231,7 +234,12 @@ fn attempt<D: SideBySide<N>, const N: usize>(
     if ratio == 0.0 {
         let a = from.start_acceleration(field);
         (room.a[room.last], room.sweeps) = ([a.map(Octet::splat)], 2);
-        (room.square, room.start) = (a.map(|a| a * a), a);
+        room.square = a.map(|a| a.to_f64() * a.to_f64());
+    }
+    // Behind a kink the accelerations are not those before it. Kinks and stops have times of one word.
+    let may_break = !<D::System as System<N>>::FACTS.autonomous && from.t.low() == 0.0;
+    if tolerances.is_some() && (ratio == 0.0 || !room.seen || may_break) {
+        (room.start, room.seen) = (from.start_acceleration(field), true);
     }
     let (most, adaptive) = if tolerances.is_some() { (ADAPTIVE, true) } else { (FIXED, false) };
     let tolerances = tolerances.unwrap_or(&(0.0, ([0.0; N], [0.0; N])));
@@ -252,8 +260,9 @@ impl<D: SideBySide<N>, const N: usize> Stepper<D, N> for Picard {
             end: None,
             h: 0.0,
             ends: Ends::new(),
-            square: [zero; N],
+            square: [0.0; N],
             start: [zero; N],
+            seen: false,
             scaled: [Scaled::new(), Scaled::new(), Scaled::new()],
             within: [Scaled::new(), Scaled::new()],
             sweeps: 2,
@@ -275,6 +284,7 @@ impl<D: SideBySide<N>, const N: usize> Stepper<D, N> for Picard {
         room.unsolved = None;
         if room.ends.solved {
             room.accept(&to, span.h);
+            room.seen = false;
         } else {
             if room.ends.progress.change.is_finite() {
                 room.unsolved = Some((span.end, room.worst()));
@@ -376,8 +386,8 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
             if wanted <= resolution_of::<D::Scalar>(from.t) && wanted < -from.t.since(target) {
                 let coordinate = coordinate(&<D::System as System<N>>::FACTS, room.worst());
                 let short = Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate };
-                let short = self.unresolved(stats.accepted + stats.rejected == 0, wanted).unwrap_or(short);
-                return Err(last_fault.unwrap_or(short));
+                let unresolved = self.unresolved(stats.accepted + stats.rejected == 0, wanted);
+                return Err(unresolved.or(last_fault.map(|fault| at(fault, from.t))).unwrap_or(short));
             }
             let span = planned(memory, from.t, wanted, target);
             attempt(field, &span, from, to, room, Some(&tolerances));
@@ -405,9 +415,11 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
             (retried, room.sweeps, memory.left) = (true, 2, 0);
             wanted = span.h
                 * if error.is_finite() {
+                    last_fault = None;
                     let factor = scaled(error);
                     if factor < 0.2 { 0.2 } else { factor }
                 } else if to.is_finite() {
+                    last_fault = None;
                     0.5
                 } else {
                     // A function may have left its domain, and a shorter step may stay inside; but no step is short enough for an

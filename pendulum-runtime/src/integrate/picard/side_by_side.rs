@@ -2,7 +2,7 @@
 
 #![allow(clippy::inline_always)]
 
-use crate::motion::{Motion, PerhapsAnalytic, Sample, orders};
+use crate::motion::{Motion, Orders, PerhapsAnalytic, Sample, Side, orders};
 use crate::real::{Float, Lane, Octet, Real};
 use crate::system::{Driven, Dynamics, Input, NoInputs, Prepared, Purpose, Samples, Staged, System};
 use crate::time::Time;
@@ -23,9 +23,10 @@ pub trait SideBySide<const N: usize>: Dynamics<N, Scalar: Lane + Float> {
     #[doc(hidden)]
     fn widened(&self) -> Self::Wide;
 
-    /// The samples of all driven inputs at eight times without a kink among them.
+    /// The samples of all driven inputs at eight times without a kink among them; in the last lane those before a kink at
+    /// `last`, if it is given.
     #[doc(hidden)]
-    fn inputs_at(&self, times: &[Time; 8]) -> <Self::Wide as System<N>>::Inputs;
+    fn inputs_at(&self, times: &[Time; 8], last: Option<Time>) -> <Self::Wide as System<N>>::Inputs;
 
     /// The first time after `t` at which a motion is known to stop having all derivatives.
     #[doc(hidden)]
@@ -45,7 +46,7 @@ where
     }
 
     #[inline(always)]
-    fn inputs_at(&self, _: &[Time; S]) -> <Self::Wide as System<N>>::Inputs {
+    fn inputs_at(&self, _: &[Time; S], _: Option<Time>) -> <Self::Wide as System<N>>::Inputs {
         NoInputs::none()
     }
 
@@ -69,8 +70,8 @@ where
     }
 
     #[inline(always)]
-    fn inputs_at(&self, times: &[Time; S]) -> M::Wide {
-        self.motions.sample_all(times, S0::FACTS.inputs)
+    fn inputs_at(&self, times: &[Time; S], last: Option<Time>) -> M::Wide {
+        self.motions.sample_all(times, last, S0::FACTS.inputs)
     }
 
     #[inline]
@@ -88,8 +89,8 @@ impl<D: SideBySide<N>, const N: usize> SideBySide<N> for Prepared<'_, D, <D::Sys
     }
 
     #[inline(always)]
-    fn inputs_at(&self, times: &[Time; S]) -> <D::Wide as System<N>>::Inputs {
-        self.dynamics().inputs_at(times)
+    fn inputs_at(&self, times: &[Time; S], last: Option<Time>) -> <D::Wide as System<N>>::Inputs {
+        self.dynamics().inputs_at(times, last)
     }
 
     #[inline]
@@ -104,15 +105,36 @@ pub trait MotionsSideBySide<Inputs, T>: crate::motion::Motions<Inputs> {
     /// One sample for each motion, with a time in each lane.
     type Wide: Samples;
 
-    /// The samples at `times`, with the derivatives that each motion is asked for.
-    fn sample_all(&self, times: &[Time; 8], inputs: &[Input]) -> Self::Wide;
+    /// The samples at `times`, with the derivatives that each motion is asked for; in the last lane those before a kink at
+    /// `last`, if it is given.
+    fn sample_all(&self, times: &[Time; 8], last: Option<Time>, inputs: &[Input]) -> Self::Wide;
 }
 
 impl<T: Real> MotionsSideBySide<(), T> for () {
     type Wide = ();
 
     #[inline(always)]
-    fn sample_all(&self, _: &[Time; S], _: &[Input]) {}
+    fn sample_all(&self, _: &[Time; S], _: Option<Time>, _: &[Input]) {}
+}
+
+/// The samples of one motion.
+#[inline(always)]
+fn sampled<T: Lane, M: Motion<T, DIM>, const DIM: usize>(
+    motion: &M,
+    times: &[Time; S],
+    last: Option<Time>,
+    orders: Orders,
+) -> Sample<Octet<T>, DIM> {
+    let mut lanes = motion.sample_lanes(times, orders);
+    if let Some(last) = last {
+        let sample = motion.sample(last, Side::Before, orders);
+        for d in 0..DIM {
+            lanes.position[d].0[S - 1] = sample.position[d];
+            lanes.velocity[d].0[S - 1] = sample.velocity[d];
+            lanes.acceleration[d].0[S - 1] = sample.acceleration[d];
+        }
+    }
+    lanes
 }
 
 macro_rules! tuples {
@@ -121,8 +143,8 @@ macro_rules! tuples {
             type Wide = ($(Sample<Octet<T>, $dim>,)+);
 
             #[inline(always)]
-            fn sample_all(&self, times: &[Time; S], inputs: &[Input]) -> Self::Wide {
-                ($(self.$index.sample_lanes(times, orders(inputs, $index, Purpose::Accelerations)),)+)
+            fn sample_all(&self, times: &[Time; S], last: Option<Time>, inputs: &[Input]) -> Self::Wide {
+                ($(sampled(&self.$index, times, last, orders(inputs, $index, Purpose::Accelerations)),)+)
             }
         }
     )+};
