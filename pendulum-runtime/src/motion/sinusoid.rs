@@ -139,6 +139,9 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
 trait Halved: Real {
     /// The upper half of the digits, cut by bits, so that nothing overflows.
     fn upper(self) -> Self;
+
+    /// Whether the magnitude of any of them is greater.
+    fn exceeds(self, limit: f64) -> bool;
 }
 
 impl Halved for f64 {
@@ -146,12 +149,26 @@ impl Halved for f64 {
     fn upper(self) -> Self {
         Self::from_bits(self.to_bits() & !0x07ff_ffff)
     }
+
+    #[inline(always)]
+    fn exceeds(self, limit: f64) -> bool {
+        limit < self.abs()
+    }
 }
 
 impl Halved for Octet<f64> {
     #[inline(always)]
     fn upper(self) -> Self {
         Self(self.0.map(Halved::upper))
+    }
+
+    #[inline(always)]
+    fn exceeds(self, limit: f64) -> bool {
+        let mut exceeds = false;
+        for lane in self.0 {
+            exceeds |= lane.exceeds(limit);
+        }
+        exceeds
     }
 }
 
@@ -176,10 +193,33 @@ fn sum<L: Real>(a: L, b: L) -> (L, L) {
 /// Sine and cosine of an angle that is larger by a rounding error.
 #[inline(always)]
 #[allow(clippy::inline_always)]
-fn turned<L: Real>(sin: L, cos: L, low: L) -> (L, L) {
+fn turned<L: Halved>(sin: L, cos: L, low: L) -> (L, L) {
+    if low.exceeds(SMALL) {
+        return turned_far(sin, cos, low);
+    }
+    turned_little(sin, cos, low)
+}
+
+/// The same where that is small: its third power is lost in the rounding.
+#[inline(always)]
+#[allow(clippy::inline_always)]
+fn turned_little<L: Real>(sin: L, cos: L, low: L) -> (L, L) {
     let half = L::from_f64(0.5) * low;
     (sin + low * (cos - half * sin), cos - low * (sin + half * cos))
 }
+
+/// The same where some of them are not: angles of 1e11 and more.
+#[cold]
+#[inline(never)]
+fn turned_far<L: Real>(sin: L, cos: L, low: L) -> (L, L) {
+    let little = turned_little(sin, cos, low);
+    let (low_sin, low_cos) = low.sin_cos();
+    let large = low.abs() - L::from_f64(SMALL);
+    (large.where_positive(sin * low_cos + cos * low_sin, little.0), large.where_positive(cos * low_cos - sin * low_sin, little.1))
+}
+
+/// Up to this magnitude a low word is small.
+const SMALL: f64 = 1e-5;
 
 /// The times that are done at once.
 const AT_ONCE: usize = 8;

@@ -154,6 +154,39 @@ fn sinusoids_have_exact_derivatives() {
     consistent(&circle, (0..20).map(f64::from));
 }
 
+/// However far the phase is, an amplitude is an amplitude; all ways to sample agree to the last bit.
+#[test]
+fn sinusoids_stay_within_their_amplitude() {
+    use crate::real::{DoubleDouble, Float};
+    let word = DoubleDouble::from;
+    for w in [6.3e9, 1.0, 7e4, 1e150, 1e270] {
+        let motion = Sinusoid::new([1.0, 1.0], w, [0.3, 1e17]);
+        for scale in [1.0, 1.7e5, 1e8 / 3.0, 1.1e8, 7e30] {
+            // Small and large low words side by side.
+            let times: [Time; 8] = core::array::from_fn(|lane| {
+                Time::new(if lane < 3 { scale * (lane as f64 - 1.3) } else { f64::from(lane as i32) / w }) + 1e-9 / w
+            });
+            let lanes = Motion::<f64, 2>::sample_lanes(&motion, &times, Orders::POSITION);
+            let mut all = [Sample::<f64, 2>::zero(); 8];
+            motion.sample_all(&times, Orders::POSITION, &mut all);
+            for (lane, &t) in times.iter().enumerate() {
+                let sample: Sample<f64, 2> = motion.sample(t, Side::After, Orders::POSITION);
+                for d in 0..2 {
+                    let x = sample.position[d];
+                    assert!(x.abs() <= 1.0 + 4.0 * f64::EPSILON, "{w:e} · {t:?}: {x}");
+                    assert_eq!(x.to_bits(), all[lane].position[d].to_bits(), "{w:e} · {t:?}");
+                    assert_eq!(x.to_bits(), lanes.position[d].0[lane].to_bits(), "{w:e} · {t:?}");
+                }
+                let angle = word(w) * (word(t.to_f64()) + word(t.low())) + word(0.3);
+                if angle.abs().to_f64() < 1e18 {
+                    let error = (word(sample.position[0]) - angle.sin()).abs().to_f64();
+                    assert!(error < 4e-16 + 1e-31 * angle.abs().to_f64(), "{w:e} · {t:?}: {error:e}");
+                }
+            }
+        }
+    }
+}
+
 /// After hours at a kilohertz the phase is as good as at the start; all ways to sample agree to the
 /// last bit.
 #[test]
