@@ -358,12 +358,16 @@ fn functions_bound_steps_by_their_resolution() {
 fn splines_bound_steps_by_their_keys() {
     let through = |times: &[f64]| Spline::natural(times, &vec![[0.0]; times.len()]).unwrap();
     let even = through(&[0.0, 1.0, 2.0, 3.0]);
-    assert_eq!([0.0, 0.5, 2.9].map(|t| bound(&even, t)), [Some(10.0); 3]);
-    assert_eq!(bound(&even, 3.0), Some(f64::INFINITY));
+    assert_eq!([0.0, 0.5, 2.9, 3.0].map(|t| bound(&even, t)), [Some(10.0); 4]);
+    assert_eq!(bound(&through(&[0.0]), 3.0), Some(f64::INFINITY));
     // Two keys in a hundredth of a second: half the way to them, or ten times their distance.
     let dense = through(&[0.0, 50.0, 50.01, 100.0]);
     assert_eq!([-1.0, 10.0, 49.9].map(|t| bound(&dense, t).unwrap()), [25.5, 20.0, 10.0 * (50.01 - 50.0)]);
-    assert_eq!(bound(&dense, 50.5), Some(10.0 * (100.0 - 50.01)));
+    // On the way back too, from wherever it begins.
+    assert_eq!(
+        [50.05, 60.0, 100.0, 101.0].map(|t| bound(&dense, t).unwrap()),
+        [10.0 * (50.01 - 50.0), 0.5 * (60.0 - 50.01), 0.5 * (100.0 - 50.01), 0.5 * (101.0 - 50.01)]
+    );
     let again = Spline::periodic(&[0.0, 0.5, 2.0], &[[0.0], [1.0], [0.0]]).unwrap();
     assert_eq!([0.2, 1.0].map(|t| bound(&again, t).unwrap()), [5.0, 5.0]);
     let clip = Clip::new(100.0, &[[0.0]; 50], 1, Interpolation::Spline).unwrap();
