@@ -1,6 +1,7 @@
 //! A harmonic motion.
 
 use super::{Analytic, Motion, Orders, Sample, Side};
+use crate::real::exact::{two_product, two_sum};
 use crate::real::{Lane, Octet, Real};
 use crate::simd::{Work, widest};
 use crate::time::Time;
@@ -32,7 +33,7 @@ impl<const D: usize> Sinusoid<D> {
     #[allow(clippy::inline_always)]
     fn angle<L: Halved>(&self, high: L, low: L) -> (L, L) {
         let frequency = L::from_f64(self.frequency);
-        let (angle, rounded) = product(frequency, high);
+        let (angle, rounded) = two_product(frequency.halves(), high.halves());
         (angle, rounded + frequency * low)
     }
 
@@ -46,7 +47,7 @@ impl<const D: usize> Sinusoid<D> {
     #[inline(always)]
     #[allow(clippy::inline_always)]
     fn sin_cos_at<L: Halved>(&self, d: usize, (angle, low): (L, L)) -> (L, L) {
-        let (angle, left) = sum(angle, L::from_f64(self.phase[d]));
+        let (angle, left) = two_sum(angle, L::from_f64(self.phase[d]));
         let (sin, cos) = angle.sin_cos();
         turned(sin, cos, left + low)
     }
@@ -140,6 +141,13 @@ trait Halved: Real {
     /// The upper half of the digits, cut by bits, so that nothing overflows.
     fn upper(self) -> Self;
 
+    /// The number itself and both halves.
+    #[inline(always)]
+    fn halves(self) -> (Self, [Self; 2]) {
+        let upper = self.upper();
+        (self, [upper, self - upper])
+    }
+
     /// Whether the magnitude of any of them is greater.
     fn exceeds(self, limit: f64) -> bool;
 }
@@ -170,24 +178,6 @@ impl Halved for Octet<f64> {
         }
         exceeds
     }
-}
-
-/// A product and its rounding error (Dekker 1971).
-#[inline(always)]
-#[allow(clippy::inline_always)]
-fn product<L: Halved>(a: L, b: L) -> (L, L) {
-    let (product, a_high, b_high) = (a * b, a.upper(), b.upper());
-    let (a_low, b_low) = (a - a_high, b - b_high);
-    (product, ((a_high * b_high - product) + (a_high * b_low + a_low * b_high)) + a_low * b_low)
-}
-
-/// A sum and its rounding error (Knuth 1969).
-#[inline(always)]
-#[allow(clippy::inline_always)]
-fn sum<L: Real>(a: L, b: L) -> (L, L) {
-    let sum = a + b;
-    let part = sum - a;
-    (sum, (a - (sum - part)) + (b - part))
 }
 
 /// Sine and cosine of an angle that is larger by a rounding error.
@@ -247,7 +237,7 @@ impl<T: Real, const D: usize> Work for Several<'_, T, D> {
             for (d, (angles, lows)) in components.clone().zip(angles.chunks_mut(count).zip(lows.chunks_mut(count))) {
                 for ((angle, low), &t) in angles.iter_mut().zip(lows).zip(self.times) {
                     let (turns, rest) = self.sinusoid.angle(t.to_f64(), t.low());
-                    let (whole, left) = sum(turns, self.sinusoid.phase[d]);
+                    let (whole, left) = two_sum(turns, self.sinusoid.phase[d]);
                     (*angle, *low) = (whole, left + rest);
                 }
             }
