@@ -1,5 +1,8 @@
 //! A harmonic motion.
 
+// Lanes have to be compiled for their vectors.
+#![allow(clippy::inline_always)]
+
 use super::{Analytic, Motion, Orders, Sample, Side};
 use crate::real::exact::{two_product, two_sum};
 use crate::real::{Lane, Octet, Real};
@@ -30,7 +33,6 @@ impl<const D: usize> Sinusoid<D> {
     /// The angle ω t in two words, of times in two words: one alone is rounded by 1e-12 after a
     /// second at 1 kHz, and the acceleration with it.
     #[inline(always)]
-    #[allow(clippy::inline_always)]
     fn angle<L: Halved>(&self, high: L, low: L) -> (L, L) {
         let frequency = L::from_f64(self.frequency);
         let (angle, rounded) = two_product(frequency.halves(), high.halves());
@@ -45,7 +47,6 @@ impl<const D: usize> Sinusoid<D> {
 
     /// The same where ω t is known.
     #[inline(always)]
-    #[allow(clippy::inline_always)]
     fn sin_cos_at<L: Halved>(&self, d: usize, (angle, low): (L, L)) -> (L, L) {
         let (angle, left) = two_sum(angle, L::from_f64(self.phase[d]));
         let (sin, cos) = angle.sin_cos();
@@ -55,7 +56,6 @@ impl<const D: usize> Sinusoid<D> {
     /// Position, velocity and acceleration of component `d` where its angle has this sine and cosine;
     /// those that `orders` leaves out are zero.
     #[inline(always)]
-    #[allow(clippy::inline_always)]
     fn of_component<L: Real>(&self, orders: Orders, d: usize, (sin, cos): (L, L)) -> [L; 3] {
         let (a, w, number) = (self.amplitude[d], self.frequency, L::from_f64);
         let mut component = [number(0.0); 3];
@@ -73,7 +73,6 @@ impl<const D: usize> Sinusoid<D> {
 
     /// The sample where the components have these sines and cosines.
     #[inline(always)]
-    #[allow(clippy::inline_always)]
     fn at<T: Real>(&self, orders: Orders, sin_cos: impl Fn(usize) -> (f64, f64)) -> Sample<T, D> {
         let mut sample = Sample::zero();
         for d in 0..D {
@@ -104,7 +103,6 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
     }
 
     #[inline(always)]
-    #[allow(clippy::inline_always)]
     fn sample_lanes(&self, times: &[Time; 8], orders: Orders) -> Sample<Octet<T>, D>
     where
         T: Lane,
@@ -182,7 +180,6 @@ impl Halved for Octet<f64> {
 
 /// Sine and cosine of an angle that is larger by a rounding error.
 #[inline(always)]
-#[allow(clippy::inline_always)]
 fn turned<L: Halved>(sin: L, cos: L, low: L) -> (L, L) {
     if low.exceeds(SMALL) {
         return turned_far(sin, cos, low);
@@ -192,7 +189,6 @@ fn turned<L: Halved>(sin: L, cos: L, low: L) -> (L, L) {
 
 /// The same where that is small: its third power is lost in the rounding.
 #[inline(always)]
-#[allow(clippy::inline_always)]
 fn turned_little<L: Real>(sin: L, cos: L, low: L) -> (L, L) {
     let half = L::from_f64(0.5) * low;
     (sin + low * (cos - half * sin), cos - low * (sin + half * cos))
@@ -224,7 +220,6 @@ struct Several<'a, T, const D: usize> {
 
 impl<T: Real, const D: usize> Work for Several<'_, T, D> {
     #[inline(always)]
-    #[allow(clippy::inline_always)]
     fn run(self) {
         let (mut sin, mut cos) = ([[0.0; AT_ONCE]; D], [[0.0; AT_ONCE]; D]);
         // As many components as there is room for go together.
