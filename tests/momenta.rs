@@ -175,6 +175,56 @@ fn a_momentum_without_a_velocity_is_named() {
     assert!((end.v[0] - p / (1.0 - p * p).sqrt()).abs() < 1e-12, "{end:?}");
 }
 
+lagrangian! {
+    /// Momenta below `m` and below `n`, in coordinates that mix them.
+    pub struct Ranges { m: 1, n: 1 }
+    coordinate x: s;
+    coordinate y: s;
+    lagrangian = m*sqrt(1 + ẋ^2) + n*sqrt(1 + (ẋ + ẏ)^2);
+}
+
+/// Velocities exist for momenta below one only, up to their rounding.
+fn momenta_end_at_their_limit<T: Float>(shares: &[f64]) {
+    let (system, zero) = (Pushed::<T>::new(T::from_f64(0.0)), T::from_f64(0.0));
+    for &share in shares {
+        for sign in [1.0, -1.0] {
+            let velocity = |p: f64| system.velocities(zero, &[zero], &[T::from_f64(p)], &())[0];
+            let (beyond, within) = (velocity(sign * (1.0 + share)), velocity(sign * (1.0 - share)).to_f64());
+            assert!(!beyond.is_finite(), "1 + {share:e}: {beyond:?}");
+            let exact = sign * (1.0 - share) / (share * (2.0 - share)).sqrt();
+            assert!((within / exact - 1.0).abs() < 0.01, "1 - {share:e}: {within} for {exact}");
+        }
+    }
+}
+
+#[test]
+fn momenta_just_beyond_their_limit_have_no_velocities() {
+    momenta_end_at_their_limit::<f32>(&[1e-4, 5e-4, 1e-3, 2e-3, 0.01, 0.1]);
+    momenta_end_at_their_limit::<f64>(&[1e-12, 1e-9, 1e-4, 5e-4, 1e-3, 2e-3, 0.01, 0.1]);
+    momenta_end_at_their_limit::<DoubleDouble>(&[1e-12, 1e-9, 1e-4, 1e-3, 0.01]);
+    let number = Octet::from_f64;
+    let momenta = [0.5, 1.0001, -1.002, 0.999, -0.25, 1.000_000_1, 1.01, 0.0];
+    let p = [Octet(momenta), number(0.0)];
+    let system = Ranges::<Octet<f64>>::new(number(1.0), number(1.0));
+    let found = system.velocities(number(0.0), &[number(0.0); 2], &p, &())[0];
+    for (v, p) in found.0.iter().zip(momenta) {
+        assert_eq!(v.is_finite(), p.abs() < 1.0, "{p}: {v}");
+    }
+}
+
+/// Momenta of which large parts leave little, or nothing but rounding.
+#[test]
+fn momenta_that_cancel_have_velocities() {
+    for v in [1e-6_f64, 0.1, 1.0, 30.0, 1e3, 1e4] {
+        for other in [0.0, -v, -2.0 * v, -2.0 * v * (1.0 + 1e-9), 1.0, 1e-12] {
+            let found = back(&Ranges::new(1.0, 1.0), [0.0; 2], [v, other]);
+            // What the rounding of a momentum by ε does: dv/dp = (1 + v²)^(3/2).
+            let error = 1e-14 * (1.0 + v.max((v + other).abs())).powi(3);
+            assert!((found[0] - v).abs() < error && (found[1] - other).abs() < 2.0 * error, "{v}, {other}: {found:?}");
+        }
+    }
+}
+
 /// A force that carries the momentum beyond what velocities reach, within an implicit step.
 #[test]
 fn a_momentum_that_leaves_its_range_is_named() {

@@ -121,30 +121,34 @@ pub fn newton<const N: usize, S: System<N>>(
             left[i] = finite.where_positive(left_then[i], left[i]);
         }
     }
-    checked(p, &rest, &left, v)
+    checked(p, &rest, &left, v, &system.mass_matrix(t, q, &v, inputs))
 }
 
 /// The greatest number of trials. Towards a limit of the velocities each step halves the way that is left at least, and two words hold a
 /// hundred halves.
 const ROUNDS: usize = 256;
 
-/// The velocities `v`, not numbers where the momenta that are `left` are not the rounding of `p` or of what is added up in it.
-fn checked<T: Real, const N: usize>(p: &[T; N], rest: &[T; N], left: &[T; N], v: [T; N]) -> [T; N] {
+/// The velocities `v`, not numbers where the momenta that are `left` are neither the rounding of `p`
+/// nor what a unit in the last place of `v` does to the momenta by the mass matrix there.
+///
+/// Towards a limit of the velocities that matrix is huge, and the number nearest to the velocity may
+/// miss a large part of the momentum; towards a limit of the momenta it vanishes, and nothing may be
+/// missed.
+fn checked<T: Real, const N: usize>(p: &[T; N], rest: &[T; N], left: &[T; N], v: [T; N], mass: &SMatrix<T, N, N>) -> [T; N] {
     let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
     // Four thirds are rounded, and what is left of them shows by how much.
     let epsilon = (T::from_f64(3.0) * (T::ratio(4.0, 3.0) - one) - one).abs();
-    // Products with velocities are energies, which coordinates have in common.
-    let weights: [T; N] = core::array::from_fn(|i| v[i].abs().where_positive(v[i].abs(), one));
-    let scales: [T; N] = core::array::from_fn(|i| {
-        let gained = (p[i] - left[i] - rest[i]).abs() + (p[i] - rest[i]).abs();
-        weights[i] * gained
-    });
-    let total = scales.iter().fold(zero, |sum, &scale| sum + scale);
+    let sizes: [T; N] = core::array::from_fn(|i| p[i].abs() + rest[i].abs());
+    // Products with velocities are energies, which coordinates have in common: a momentum may be what
+    // greater ones leave of each other.
+    let total = (0..N).fold(zero, |sum, i| sum + v[i].abs() * sizes[i]);
     core::array::from_fn(|i| {
-        let rounding = T::from_f64(64.0) * epsilon * (p[i].abs() + rest[i].abs());
-        let allowed = T::from_f64(1e-3) * scales[i] + T::from_f64(1e-5) * total + weights[i] * rounding;
+        let weight = v[i].abs().where_positive(v[i].abs(), one);
+        let moved = (0..N).fold(zero, |sum, j| sum + mass[(i, j)].abs() * v[j].abs());
+        let rounding = T::from_f64(64.0) * sizes[i] + T::from_f64(8.0) * moved;
+        let allowed = epsilon * (weight * rounding + T::from_f64(8.0) * total);
         let wrong = T::from_f64(f64::NAN);
-        let found = (allowed - weights[i] * left[i].abs()).where_positive(v[i], wrong);
+        let found = (allowed - weight * left[i].abs()).where_positive(v[i], wrong);
         (one - left[i].abs().sign()).where_positive(v[i], found)
     })
 }

@@ -434,11 +434,11 @@ pub trait Dynamics<const N: usize> {
     fn next_kink(&self, t: f64) -> Option<f64>;
 
     /// The longest step from `t` over the motions, as [`Motion::longest_step`](crate::motion::Motion::longest_step); `unknown` stands for the
-    /// answer of those that do not know.
+    /// answer of those that do not know, and of dynamics with inputs that do not say it.
     #[inline]
     fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
-        let _ = (t, widths, unknown);
-        f64::INFINITY
+        let _ = (t, widths);
+        if <Self::System as System<N>>::FACTS.inputs.is_empty() { f64::INFINITY } else { unknown }
     }
 
     /// The accelerations at `t`, seen from `side`.

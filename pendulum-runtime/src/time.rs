@@ -3,6 +3,7 @@
 // Loops over lanes have to be compiled for their vectors.
 #![allow(clippy::inline_always)]
 
+use crate::real::exact::{ordered_sum, two_sum};
 use core::ops::{Add, AddAssign};
 
 /// A time in seconds, `hi + lo` with |lo| at most half a unit in the last place of `hi`.
@@ -54,15 +55,11 @@ impl From<f64> for Time {
 impl Add<f64> for Time {
     type Output = Self;
 
-    /// Knuth (1969), the two-sum: the sum and its rounding error.
     #[inline(always)]
     fn add(self, step: f64) -> Self {
-        let sum = self.hi + step;
-        let part = sum - self.hi;
-        let error = (self.hi - (sum - part)) + (step - part);
-        let low = self.lo + error;
-        let hi = sum + low;
-        Self { hi, lo: low - (hi - sum) }
+        let (sum, error) = two_sum(self.hi, step);
+        let (hi, lo) = ordered_sum(sum, self.lo + error);
+        Self { hi, lo }
     }
 }
 

@@ -13,11 +13,15 @@ use crate::system::System;
 /// The explicit Runge–Kutta method of order 8 of Dormand and Prince with error estimates of orders 5 and 3: twelve evaluations a
 /// step, adaptive.
 ///
-/// It suits every system and is the best general choice for errors from 1e-6 to 1e-12. It is not symplectic: over very many periods
-/// the energy drifts, at tight tolerances by rounding alone; the errors of a thousand periods of a
-/// shaken pivot add up to a few tolerances. At loose tolerances its long steps may miss a short
-/// pulse of a motion
-/// without kinks; set `max_step` then. It is explicit: a stiff spring or damper forces h·ω below about 6 whatever the tolerance.
+/// It suits every system and is the best general choice for errors from 1e-6 to 1e-12. It is not
+/// symplectic: over very many periods the energy drifts, at tight tolerances by rounding alone; the
+/// errors of a thousand periods of a shaken pivot add up to a few tolerances. It is explicit: a stiff
+/// spring or damper forces h·ω below about 6 whatever the tolerance.
+///
+/// A step never goes unseen over a short pulse of a motion whose time scale is known: a
+/// [`Function`](crate::motion::Function) says it by [`resolution`](crate::motion::Function::resolution),
+/// a motion of your own by [`longest_step`](crate::motion::Motion::longest_step). Where it is not known,
+/// a step is at most a fiftieth of the interval, which at loose tolerances may be too long.
 ///
 /// A rejected step costs eleven evaluations. Dense output is of order 7 and takes three more evaluations, only in those steps where
 /// it is asked for.

@@ -106,7 +106,8 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
 
     /// The same integration, which is known to go over an interval of this length.
     pub(crate) fn over(mut self, length: f64) -> Self {
-        self.memory.unknown = PART * length;
+        // Part of a length of few units in the last place may be none, which is no length of a step.
+        self.memory.unknown = f64::max(PART * length, f64::MIN_POSITIVE);
         self
     }
 

@@ -5,6 +5,7 @@
 
 use crate::motion::Side;
 use crate::real::Float;
+use crate::real::exact::two_sum;
 use crate::time::Time;
 
 /// One step in time, free of kinks inside.
@@ -29,10 +30,7 @@ impl Span {
     /// The step from `start` to exactly `end`.
     pub fn to(start: Time, end: f64) -> Self {
         let h = -start.since(end);
-        // The difference of the high words and its rounding error, Knuth (1969).
-        let difference = end - start.to_f64();
-        let part = difference - end;
-        let error = (end - (difference - part)) - (start.to_f64() + part);
+        let (difference, error) = two_sum(end, -start.to_f64());
         Self { start, end: Time::new(end), h, low: (difference - h) + (error - start.low()) }
     }
 

@@ -2,6 +2,7 @@
 
 #![allow(clippy::inline_always)]
 
+use crate::real::exact::{two_product, two_sum};
 use crate::real::{Float, Real};
 
 /// `N` numbers to which small increments are added without losing their low digits.
@@ -41,9 +42,7 @@ impl<T: Real, const N: usize> Sum<T, N> {
     /// [`splitter`] divides the factors.
     #[inline(always)]
     pub(crate) fn add_split_product(&mut self, index: usize, a: T, b: T, rest: T, splitter: T) {
-        let product = a * b;
-        let ((a, a_low), (b, b_low)) = (halves(a, splitter), halves(b, splitter));
-        let error = ((a * b - product) + (a * b_low + a_low * b)) + a_low * b_low;
+        let (product, error) = two_product((a, halves(a, splitter)), (b, halves(b, splitter)));
         let (sum, left) = two_sum(self.high[index], product);
         let (sum, rounded) = two_sum(sum, rest + ((left + error) + self.low[index]));
         (self.high[index], self.low[index]) = (sum, rounded);
@@ -78,14 +77,6 @@ impl<T: Float, const N: usize> Sum<T, N> {
     }
 }
 
-/// A sum and its rounding error (Knuth 1969).
-#[inline(always)]
-fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
-    let sum = a + b;
-    let part = sum - a;
-    (sum, (a - (sum - part)) + (b - part))
-}
-
 /// One more than the power of two that has half the digits of a number.
 #[inline(always)]
 pub(crate) fn splitter<T: Float>() -> T {
@@ -96,10 +87,10 @@ pub(crate) fn splitter<T: Float>() -> T {
 
 /// A number as the sum of two with half the digits each.
 #[inline(always)]
-fn halves<T: Real>(x: T, splitter: T) -> (T, T) {
+fn halves<T: Real>(x: T, splitter: T) -> [T; 2] {
     let scaled = splitter * x;
     let high = scaled - (scaled - x);
-    (high, x - high)
+    [high, x - high]
 }
 
 #[cfg(test)]

@@ -103,7 +103,7 @@ impl<X, V, A> Function<X, V, A> {
     /// The same motion with the shortest time in seconds within which it does something: w for exp(−((t − t₀)/w)²).
     ///
     /// Adaptive steps are then short enough to see it: no two samples of a step lie farther apart than 1.5 w, so that the steps of
-    /// [`Picard`](crate::integrate::Picard) are at most 8.2 w long, those of [`Dop853`](crate::integrate::Dop853) 5.6 w. Fixed steps are taken as they
+    /// [`Picard`](crate::integrate::Picard) are at most 16.4 w long, those of [`Dop853`](crate::integrate::Dop853) 5.6 w. Fixed steps are taken as they
     /// are asked for.
     ///
     /// # Errors

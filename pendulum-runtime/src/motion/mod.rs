@@ -78,7 +78,8 @@ pub trait Motion<T: Real, const D: usize> {
     ///
     /// Steps end at kinks, so that only what lies between two of them counts. Where nothing is known, a step is at most a fiftieth of
     /// the interval of [`solve`](crate::integrate::solve), or one second in an [`Integrator`](crate::integrate::Integrator). What lies farther
-    /// off may be approached: half the distance to it is short enough.
+    /// off may be approached: for something as wide as w the answer is the longer of `widths`·w and
+    /// half the distance to its middle, which is always positive; an answer of 0 is an error.
     fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
         let _ = (t, widths);
         None

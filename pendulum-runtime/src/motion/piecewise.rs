@@ -248,25 +248,37 @@ impl<const D: usize> Piecewise<D> {
 
     /// The longest step from `t` that does not go unseen over a piece: `widths` times as long as any that it may reach.
     pub(super) fn longest_step(&self, t: f64, widths: f64) -> f64 {
-        let Some(mut from) = self.next_key(t) else { return f64::INFINITY };
-        // The piece under way, or nothing before the first key.
-        let mut longest = self.last_key(from).map_or(f64::INFINITY, |last| widths * (from - last));
-        if longest <= 1.5 * widths * self.finest {
+        let length = |key: Option<f64>, other: Option<f64>| Some(widths * (key? - other?).abs());
+        // The piece under way, or nothing beyond the keys.
+        let next = self.next_key(t);
+        let ahead = length(next, next.and_then(|key| self.last_key(key))).unwrap_or(f64::INFINITY);
+        if ahead <= 1.5 * widths * self.finest {
             return widths * self.finest;
         }
+        let longest = Self::longest_past(t, widths, ahead, next, |key| self.next_key(key));
+        // Nobody says whether the step goes back in time. On a key another piece is under way then.
+        let last = self.last_key(t);
+        let behind = length(last, last.and_then(|key| self.next_key(key))).unwrap_or(f64::INFINITY);
+        let longest = if behind < longest { behind } else { longest };
+        Self::longest_past(t, widths, longest, last, |key| self.last_key(key))
+    }
+
+    /// `longest`, or less where a piece beyond the key `from` asks for it; `beyond` gives the key that follows.
+    fn longest_past(t: f64, widths: f64, mut longest: f64, from: Option<f64>, beyond: impl Fn(f64) -> Option<f64>) -> f64 {
+        let Some(mut from) = from else { return longest };
         for _ in 0..MOST_AHEAD {
-            let distance = 0.5 * (from - t);
+            let distance = 0.5 * (from - t).abs();
             if longest <= distance {
                 return longest;
             }
-            let Some(to) = self.next_key(from) else { return longest };
-            let own = widths * (to - from);
+            let Some(to) = beyond(from) else { return longest };
+            let own = widths * (to - from).abs();
             let own = if own < distance { distance } else { own };
             longest = if own < longest { own } else { longest };
             from = to;
         }
         // Longer steps would go over more pieces than one looks at.
-        let distance = 0.5 * (from - t);
+        let distance = 0.5 * (from - t).abs();
         if distance < longest { distance } else { longest }
     }
 

@@ -1,6 +1,10 @@
 //! A harmonic motion.
 
+// Lanes have to be compiled for their vectors.
+#![allow(clippy::inline_always)]
+
 use super::{Analytic, Motion, Orders, Sample, Side};
+use crate::real::exact::{two_product, two_sum};
 use crate::real::{Lane, Octet, Real};
 use crate::simd::{Work, widest};
 use crate::time::Time;
@@ -29,10 +33,9 @@ impl<const D: usize> Sinusoid<D> {
     /// The angle ω t in two words, of times in two words: one alone is rounded by 1e-12 after a
     /// second at 1 kHz, and the acceleration with it.
     #[inline(always)]
-    #[allow(clippy::inline_always)]
     fn angle<L: Halved>(&self, high: L, low: L) -> (L, L) {
         let frequency = L::from_f64(self.frequency);
-        let (angle, rounded) = product(frequency, high);
+        let (angle, rounded) = two_product(frequency.halves(), high.halves());
         (angle, rounded + frequency * low)
     }
 
@@ -44,9 +47,8 @@ impl<const D: usize> Sinusoid<D> {
 
     /// The same where ω t is known.
     #[inline(always)]
-    #[allow(clippy::inline_always)]
     fn sin_cos_at<L: Halved>(&self, d: usize, (angle, low): (L, L)) -> (L, L) {
-        let (angle, left) = sum(angle, L::from_f64(self.phase[d]));
+        let (angle, left) = two_sum(angle, L::from_f64(self.phase[d]));
         let (sin, cos) = angle.sin_cos();
         turned(sin, cos, left + low)
     }
@@ -54,7 +56,6 @@ impl<const D: usize> Sinusoid<D> {
     /// Position, velocity and acceleration of component `d` where its angle has this sine and cosine;
     /// those that `orders` leaves out are zero.
     #[inline(always)]
-    #[allow(clippy::inline_always)]
     fn of_component<L: Real>(&self, orders: Orders, d: usize, (sin, cos): (L, L)) -> [L; 3] {
         let (a, w, number) = (self.amplitude[d], self.frequency, L::from_f64);
         let mut component = [number(0.0); 3];
@@ -72,7 +73,6 @@ impl<const D: usize> Sinusoid<D> {
 
     /// The sample where the components have these sines and cosines.
     #[inline(always)]
-    #[allow(clippy::inline_always)]
     fn at<T: Real>(&self, orders: Orders, sin_cos: impl Fn(usize) -> (f64, f64)) -> Sample<T, D> {
         let mut sample = Sample::zero();
         for d in 0..D {
@@ -103,7 +103,6 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
     }
 
     #[inline(always)]
-    #[allow(clippy::inline_always)]
     fn sample_lanes(&self, times: &[Time; 8], orders: Orders) -> Sample<Octet<T>, D>
     where
         T: Lane,
@@ -139,12 +138,27 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
 trait Halved: Real {
     /// The upper half of the digits, cut by bits, so that nothing overflows.
     fn upper(self) -> Self;
+
+    /// The number itself and both halves.
+    #[inline(always)]
+    fn halves(self) -> (Self, [Self; 2]) {
+        let upper = self.upper();
+        (self, [upper, self - upper])
+    }
+
+    /// Whether the magnitude of any of them is greater.
+    fn exceeds(self, limit: f64) -> bool;
 }
 
 impl Halved for f64 {
     #[inline(always)]
     fn upper(self) -> Self {
         Self::from_bits(self.to_bits() & !0x07ff_ffff)
+    }
+
+    #[inline(always)]
+    fn exceeds(self, limit: f64) -> bool {
+        limit < self.abs()
     }
 }
 
@@ -153,33 +167,45 @@ impl Halved for Octet<f64> {
     fn upper(self) -> Self {
         Self(self.0.map(Halved::upper))
     }
-}
 
-/// A product and its rounding error (Dekker 1971).
-#[inline(always)]
-#[allow(clippy::inline_always)]
-fn product<L: Halved>(a: L, b: L) -> (L, L) {
-    let (product, a_high, b_high) = (a * b, a.upper(), b.upper());
-    let (a_low, b_low) = (a - a_high, b - b_high);
-    (product, ((a_high * b_high - product) + (a_high * b_low + a_low * b_high)) + a_low * b_low)
-}
-
-/// A sum and its rounding error (Knuth 1969).
-#[inline(always)]
-#[allow(clippy::inline_always)]
-fn sum<L: Real>(a: L, b: L) -> (L, L) {
-    let sum = a + b;
-    let part = sum - a;
-    (sum, (a - (sum - part)) + (b - part))
+    #[inline(always)]
+    fn exceeds(self, limit: f64) -> bool {
+        let mut exceeds = false;
+        for lane in self.0 {
+            exceeds |= lane.exceeds(limit);
+        }
+        exceeds
+    }
 }
 
 /// Sine and cosine of an angle that is larger by a rounding error.
 #[inline(always)]
-#[allow(clippy::inline_always)]
-fn turned<L: Real>(sin: L, cos: L, low: L) -> (L, L) {
+fn turned<L: Halved>(sin: L, cos: L, low: L) -> (L, L) {
+    if low.exceeds(SMALL) {
+        return turned_far(sin, cos, low);
+    }
+    turned_little(sin, cos, low)
+}
+
+/// The same where that is small: its third power is lost in the rounding.
+#[inline(always)]
+fn turned_little<L: Real>(sin: L, cos: L, low: L) -> (L, L) {
     let half = L::from_f64(0.5) * low;
     (sin + low * (cos - half * sin), cos - low * (sin + half * cos))
 }
+
+/// The same where some of them are not: angles of 1e11 and more.
+#[cold]
+#[inline(never)]
+fn turned_far<L: Real>(sin: L, cos: L, low: L) -> (L, L) {
+    let little = turned_little(sin, cos, low);
+    let (low_sin, low_cos) = low.sin_cos();
+    let large = low.abs() - L::from_f64(SMALL);
+    (large.where_positive(sin * low_cos + cos * low_sin, little.0), large.where_positive(cos * low_cos - sin * low_sin, little.1))
+}
+
+/// Up to this magnitude a low word is small.
+const SMALL: f64 = 1e-5;
 
 /// The times that are done at once.
 const AT_ONCE: usize = 8;
@@ -194,7 +220,6 @@ struct Several<'a, T, const D: usize> {
 
 impl<T: Real, const D: usize> Work for Several<'_, T, D> {
     #[inline(always)]
-    #[allow(clippy::inline_always)]
     fn run(self) {
         let (mut sin, mut cos) = ([[0.0; AT_ONCE]; D], [[0.0; AT_ONCE]; D]);
         // As many components as there is room for go together.
@@ -207,7 +232,7 @@ impl<T: Real, const D: usize> Work for Several<'_, T, D> {
             for (d, (angles, lows)) in components.clone().zip(angles.chunks_mut(count).zip(lows.chunks_mut(count))) {
                 for ((angle, low), &t) in angles.iter_mut().zip(lows).zip(self.times) {
                     let (turns, rest) = self.sinusoid.angle(t.to_f64(), t.low());
-                    let (whole, left) = sum(turns, self.sinusoid.phase[d]);
+                    let (whole, left) = two_sum(turns, self.sinusoid.phase[d]);
                     (*angle, *low) = (whole, left + rest);
                 }
             }

@@ -154,6 +154,39 @@ fn sinusoids_have_exact_derivatives() {
     consistent(&circle, (0..20).map(f64::from));
 }
 
+/// However far the phase is, an amplitude is an amplitude; all ways to sample agree to the last bit.
+#[test]
+fn sinusoids_stay_within_their_amplitude() {
+    use crate::real::{DoubleDouble, Float};
+    let word = DoubleDouble::from;
+    for w in [6.3e9, 1.0, 7e4, 1e150, 1e270] {
+        let motion = Sinusoid::new([1.0, 1.0], w, [0.3, 1e17]);
+        for scale in [1.0, 1.7e5, 1e8 / 3.0, 1.1e8, 7e30] {
+            // Small and large low words side by side.
+            let times: [Time; 8] = core::array::from_fn(|lane| {
+                Time::new(if lane < 3 { scale * (lane as f64 - 1.3) } else { f64::from(lane as i32) / w }) + 1e-9 / w
+            });
+            let lanes = Motion::<f64, 2>::sample_lanes(&motion, &times, Orders::POSITION);
+            let mut all = [Sample::<f64, 2>::zero(); 8];
+            motion.sample_all(&times, Orders::POSITION, &mut all);
+            for (lane, &t) in times.iter().enumerate() {
+                let sample: Sample<f64, 2> = motion.sample(t, Side::After, Orders::POSITION);
+                for d in 0..2 {
+                    let x = sample.position[d];
+                    assert!(x.abs() <= 1.0 + 4.0 * f64::EPSILON, "{w:e} · {t:?}: {x}");
+                    assert_eq!(x.to_bits(), all[lane].position[d].to_bits(), "{w:e} · {t:?}");
+                    assert_eq!(x.to_bits(), lanes.position[d].0[lane].to_bits(), "{w:e} · {t:?}");
+                }
+                let angle = word(w) * (word(t.to_f64()) + word(t.low())) + word(0.3);
+                if angle.abs().to_f64() < 1e18 {
+                    let error = (word(sample.position[0]) - angle.sin()).abs().to_f64();
+                    assert!(error < 4e-16 + 1e-31 * angle.abs().to_f64(), "{w:e} · {t:?}: {error:e}");
+                }
+            }
+        }
+    }
+}
+
 /// After hours at a kilohertz the phase is as good as at the start; all ways to sample agree to the
 /// last bit.
 #[test]
@@ -325,12 +358,16 @@ fn functions_bound_steps_by_their_resolution() {
 fn splines_bound_steps_by_their_keys() {
     let through = |times: &[f64]| Spline::natural(times, &vec![[0.0]; times.len()]).unwrap();
     let even = through(&[0.0, 1.0, 2.0, 3.0]);
-    assert_eq!([0.0, 0.5, 2.9].map(|t| bound(&even, t)), [Some(10.0); 3]);
-    assert_eq!(bound(&even, 3.0), Some(f64::INFINITY));
+    assert_eq!([0.0, 0.5, 2.9, 3.0].map(|t| bound(&even, t)), [Some(10.0); 4]);
+    assert_eq!(bound(&through(&[0.0]), 3.0), Some(f64::INFINITY));
     // Two keys in a hundredth of a second: half the way to them, or ten times their distance.
     let dense = through(&[0.0, 50.0, 50.01, 100.0]);
     assert_eq!([-1.0, 10.0, 49.9].map(|t| bound(&dense, t).unwrap()), [25.5, 20.0, 10.0 * (50.01 - 50.0)]);
-    assert_eq!(bound(&dense, 50.5), Some(10.0 * (100.0 - 50.01)));
+    // On the way back too, from wherever it begins.
+    assert_eq!(
+        [50.05, 60.0, 100.0, 101.0].map(|t| bound(&dense, t).unwrap()),
+        [10.0 * (50.01 - 50.0), 0.5 * (60.0 - 50.01), 0.5 * (100.0 - 50.01), 0.5 * (101.0 - 50.01)]
+    );
     let again = Spline::periodic(&[0.0, 0.5, 2.0], &[[0.0], [1.0], [0.0]]).unwrap();
     assert_eq!([0.2, 1.0].map(|t| bound(&again, t).unwrap()), [5.0, 5.0]);
     let clip = Clip::new(100.0, &[[0.0]; 50], 1, Interpolation::Spline).unwrap();

@@ -2,6 +2,7 @@
 
 mod double_double;
 mod dual;
+pub(crate) mod exact;
 mod float;
 mod lanes;
 mod trig;

@@ -55,6 +55,8 @@ mod hung;
 mod inputs;
 mod joint;
 mod kernel;
+#[cfg(any(feature = "rayon", test))]
+mod pace;
 mod rest;
 mod run;
 mod scheme;
@@ -256,7 +258,9 @@ impl<T: Lane + Float> Scene<T> {
     /// `rayon` there is only one.
     ///
     /// They are used where that is quicker: batches that take less than 0.2 ms never fork, the
-    /// others as long as it pays, which is measured while running.
+    /// others as long as it pays, which is measured while running: from time to time two batches go
+    /// the other way, after every 1024 at most, and are then the slower ones. As long as all threads
+    /// take less than half as long as one, none does.
     pub fn set_parallel(&mut self, parallel: bool) {
         self.parallel = parallel;
     }

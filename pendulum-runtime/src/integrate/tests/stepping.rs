@@ -1,8 +1,11 @@
 //! Integration by hand.
 
-use super::systems::{moving, pendulum, shaken};
+use super::systems::{MovingPendulum, moving, pendulum, shaken};
 use crate::error::Error;
 use crate::integrate::{AdaptiveStep, Dop853, FixedStep, Integrator, Leapfrog, Rk4, Srkn14a, solve};
+use crate::motion::{Function, Sample, Side};
+use crate::system::{Driven, Dynamics, Purpose};
+use crate::time::Time;
 
 #[test]
 fn steps_have_the_length_asked_for() {
@@ -152,4 +155,40 @@ fn displaced_coordinates_keep_what_rounding_has_left_off() {
     let error = there.displace([f64::INFINITY], [0.0]).unwrap_err();
     assert!(matches!(error, Error::InitialState { part: crate::error::Part::Position, .. }), "{error}");
     assert!(there.q()[0].is_finite());
+}
+
+#[test]
+fn intervals_without_a_fiftieth_have_steps() {
+    let still = Function::new(|_| [0.0, 0.0]).velocity(|_| [0.0, 0.0]).acceleration(|_| [0.0, 0.0]);
+    let driven = Driven::new(MovingPendulum { length: 1.0_f64, g: 1.0 }, (still,));
+    for end in [5e-324, 1e-323, 1e-310, f64::MIN_POSITIVE, 1e-300] {
+        let end = solve(&driven, (0.0, end), [1.3], [0.0]).method(Dop853).run().unwrap().end;
+        assert_eq!((end.q, end.v[0].abs() < 1e-299), ([1.3], true));
+    }
+}
+
+/// Inputs of which nobody says how fast they change.
+struct Inputs(MovingPendulum<f64>);
+
+impl Dynamics<1> for Inputs {
+    type System = MovingPendulum<f64>;
+    type Scalar = f64;
+
+    fn system(&self) -> &MovingPendulum<f64> {
+        &self.0
+    }
+
+    fn inputs(&self, _: Time, _: Side, _: Purpose) -> (Sample<f64, 2>,) {
+        (Sample::zero(),)
+    }
+
+    fn next_kink(&self, _: f64) -> Option<f64> {
+        None
+    }
+}
+
+#[test]
+fn inputs_of_unknown_resolution_bound_steps() {
+    assert_eq!(Inputs(MovingPendulum { length: 1.0, g: 1.0 }).longest_step(0.0, 5.0, 0.25), 0.25);
+    assert_eq!(pendulum().longest_step(0.0, 5.0, 0.25), f64::INFINITY);
 }

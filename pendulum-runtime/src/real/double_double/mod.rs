@@ -6,6 +6,7 @@ mod exponential;
 
 pub use decimal::ParseError;
 
+use super::exact::{ordered_sum, two_sum};
 use super::{Float, Real};
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -76,8 +77,8 @@ impl DoubleDouble {
     /// high + low, where `high` is not the smaller one.
     #[inline]
     fn ordered(high: f64, low: f64) -> Self {
-        let sum = high + low;
-        Self::finite(sum, low - (sum - high))
+        let (high, low) = ordered_sum(high, low);
+        Self::finite(high, low)
     }
 
     /// The product with a power of two.
@@ -138,15 +139,7 @@ impl DoubleDouble {
     }
 }
 
-/// a + b and its rounding error, Knuth (1969).
-#[inline]
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
-    let sum = a + b;
-    let part = sum - a;
-    (sum, (a - (sum - part)) + (b - part))
-}
-
-/// a · b and its rounding error, Dekker (1971).
+/// a · b and its rounding error, Dekker (1971), up to the ends of the range.
 #[inline]
 fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;

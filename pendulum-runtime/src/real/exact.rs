@@ -1,0 +1,50 @@
+//! Sums and products with what their rounding leaves off.
+
+// Steps and lanes are compiled for several instruction sets.
+#![allow(clippy::inline_always)]
+
+use super::Real;
+
+/// a + b and its rounding error, exact whatever the magnitudes (Knuth 1969, the two-sum).
+#[inline(always)]
+pub(crate) fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
+    let sum = a + b;
+    let part = sum - a;
+    (sum, (a - (sum - part)) + (b - part))
+}
+
+/// The same where `high` is not the smaller one or is zero (Dekker 1971).
+#[inline(always)]
+pub(crate) fn ordered_sum<T: Real>(high: T, low: T) -> (T, T) {
+    let sum = high + low;
+    (sum, low - (sum - high))
+}
+
+/// a · b and its rounding error, for factors that come as they are and cut in halves (Dekker 1971).
+///
+/// How they are cut depends on the scalar and on what may overflow.
+#[inline(always)]
+pub(crate) fn two_product<T: Real>((a, [a_high, a_low]): (T, [T; 2]), (b, [b_high, b_low]): (T, [T; 2])) -> (T, T) {
+    let product = a * b;
+    (product, ((a_high * b_high - product) + (a_high * b_low + a_low * b_high)) + a_low * b_low)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ordered_sum, two_product, two_sum};
+    use crate::real::Octet;
+
+    #[test]
+    fn nothing_is_left_off() {
+        let tiny = f64::EPSILON * f64::EPSILON;
+        for (a, b) in [(1.0, tiny), (tiny, 1.0), (-1.0, tiny)] {
+            assert_eq!(two_sum(a, b), if a == tiny { (b, a) } else { (a, b) });
+        }
+        assert_eq!(two_sum(1.0_f32, 1e-10), (1.0, 1e-10));
+        assert_eq!(two_sum(Octet([1e20; 8]), Octet([3.0; 8])), (Octet([1e20; 8]), Octet([3.0; 8])));
+        assert_eq!(ordered_sum(1.0, 0.75 * f64::EPSILON), (1.0 + f64::EPSILON, -0.25 * f64::EPSILON));
+        // (1 + ε)² = 1 + 2ε + ε².
+        let a = (1.0 + f64::EPSILON, [1.0, f64::EPSILON]);
+        assert_eq!(two_product(a, a), (1.0 + 2.0 * f64::EPSILON, tiny));
+    }
+}
