@@ -136,6 +136,7 @@ fn back_in_time_and_in_a_batch() {
         .map(|_| Problem { system: kicked(random.uniform(1.0, 98.0), WIDTH), time: (0.0, END), q: [0.0], v: [0.0] })
         .collect();
     let batch = Batch::new().rtol(TOLERANCE).atol(TOLERANCE).run(&problems).unwrap();
+    let mut same = 0;
     for (problem, together) in problems.iter().zip(batch) {
         let (system, t0) = (&problem.system, problem.system.t0);
         let alone =
@@ -143,6 +144,7 @@ fn back_in_time_and_in_a_batch() {
         let together = together.unwrap();
         if alone.stats.rejected == 0 {
             assert_eq!((alone.end, alone.stats), (together.end, together.stats), "kick at {t0}");
+            same += 1;
         }
         let apart = (alone.end.q[0] - together.end.q[0]).abs();
         assert!(apart <= 100.0 * TOLERANCE, "kick at {t0}: {apart:e} between a motion alone and in a batch");
@@ -153,6 +155,8 @@ fn back_in_time_and_in_a_batch() {
         let error = off(&back.unwrap(), [expected[0], -expected[1]]);
         assert!(error <= 100.0, "back over a kick at {t0}: {error} tolerances");
     }
+    // Without a rejected step a batch has the bits of `Taylor`, and that is the rule.
+    assert!(30 <= same, "{same} of 40 kicks without a rejected step");
 }
 
 /// Square waves, pulses and kicks that come again.
@@ -180,9 +184,10 @@ fn other_shapes() {
     for _ in 0..50 {
         let t0 = random.uniform(1.0, 98.0);
         let pulse = solve(&Pulsed::new(t0, t0 + 0.02), (0.0, END), [0.0], [0.0]).rtol(1e-6).run().unwrap().end;
-        assert!((pulse.v[0] - 0.04).abs() < 0.01, "pulse at {t0}: {}", pulse.v[0]);
+        // Measured are at most 5e-7 and 6e-7.
+        assert!((pulse.v[0] - 0.04).abs() < 3e-6, "pulse at {t0}: {}", pulse.v[0]);
         let tent = solve(&Tent::new(t0, 0.02), (0.0, END), [0.0], [0.0]).rtol(1e-6).run().unwrap().end;
-        assert!((tent.v[0] - 0.02).abs() < 0.005, "tent at {t0}: {}", tent.v[0]);
+        assert!((tent.v[0] - 0.02).abs() < 3e-6, "tent at {t0}: {}", tent.v[0]);
     }
     // e^(−k/2) I₀(k/2) is the mean, near 1/√(πk) (1 + 1/(4k)); sixteen kicks from one between two of them to another.
     let (k, tau) = (10_000.0, core::f64::consts::TAU);
