@@ -37,11 +37,19 @@ pub(super) struct Threads {
     left: u32,
     /// The batches from one trial to the next.
     period: u32,
+    /// Whether every batch forks, whatever that costs.
+    #[cfg_attr(not(feature = "rayon"), allow(dead_code))]
+    always: bool,
 }
 
 impl Threads {
     pub(super) const fn new() -> Self {
-        Self { pace: [0.0; 2], better: Way::Alone, left: SOON, period: SOON }
+        Self { pace: [0.0; 2], better: Way::Alone, left: SOON, period: SOON, always: false }
+    }
+
+    /// Forks for every batch and measures nothing, or chooses again.
+    pub(super) fn set_always(&mut self, always: bool) {
+        self.always = always;
     }
 
     /// How to go through so many pendulums times ticks.
@@ -85,6 +93,9 @@ impl Threads {
     /// fork.
     #[cfg(feature = "rayon")]
     pub(super) fn measured<R>(&mut self, pendulum_ticks: usize, batch: impl FnOnce(bool) -> R) -> R {
+        if self.always {
+            return batch(0 < pendulum_ticks);
+        }
         // Less than this is not worth a fork whatever the equations are.
         if pendulum_ticks < 1000 || rayon::current_num_threads() < 2 {
             return batch(false);
@@ -149,6 +160,19 @@ mod tests {
             threads.took(way, pendulum_ticks, pendulum_ticks * if way == Way::Together { together } else { alone });
         }
         f64::from(count) / f64::from(batches)
+    }
+
+    #[test]
+    #[cfg(feature = "rayon")]
+    fn who_asks_for_it_forks_always() {
+        let mut threads = Threads::new();
+        threads.set_always(true);
+        let forks = |threads: &mut Threads, work| (0..100).filter(|_| threads.measured(work, |fork| fork)).count();
+        assert_eq!((forks(&mut threads, 1), forks(&mut threads, 1_000_000)), (100, 100));
+        // Where threads are forbidden there is no work for them.
+        assert_eq!(forks(&mut threads, 0), 0);
+        threads.set_always(false);
+        assert_eq!(forks(&mut threads, 1), 0);
     }
 
     #[test]
