@@ -1,4 +1,5 @@
-//! Kicks that are over between two samples of a long step: bounds of steps see to it that none is missed.
+//! Kicks that are over between two samples of a long step: bounds of steps see to it that none is
+//! missed.
 
 #![allow(missing_docs, mixed_script_confusables)]
 
@@ -48,7 +49,8 @@ fn push(t: f64, t0: f64, w: f64) -> f64 {
     STRENGTH * (-((t - t0) / w).powi(2)).exp()
 }
 
-/// Angle and velocity a second after the middle of the kick: the motion begins with it, in short steps.
+/// Angle and velocity a second after the middle of the kick: the motion begins with it, in short
+/// steps.
 fn reference(w: f64) -> [f64; 2] {
     let begin = solve(&kicked(1.0, w), (1.0 - 10.0 * w, 1.0 + 10.0 * w), [0.0], [0.0])
         .method(Dop853)
@@ -189,7 +191,8 @@ fn other_shapes() {
         let tent = solve(&Tent::new(t0, 0.02), (0.0, END), [0.0], [0.0]).rtol(1e-6).run().unwrap().end;
         assert!((tent.v[0] - 0.02).abs() < 3e-6, "tent at {t0}: {}", tent.v[0]);
     }
-    // e^(−k/2) I₀(k/2) is the mean, near 1/√(πk) (1 + 1/(4k)); sixteen kicks from one between two of them to another.
+    // e^(−k/2) I₀(k/2) is the mean, near 1/√(πk) (1 + 1/(4k)); sixteen kicks from one between two
+    // of them to another.
     let (k, tau) = (10_000.0, core::f64::consts::TAU);
     let end = solve(&Ticking::new(k), (-0.5 * tau, 15.5 * tau), [0.0], [0.0]).rtol(1e-8).run().unwrap().end;
     let expected = 16.0 * tau * (1.0 + 0.25 / k) / (core::f64::consts::PI * k).sqrt();
@@ -237,7 +240,8 @@ fn keys_close_together() {
     assert!(solution.stats.accepted < 1000, "{:?}", solution.stats);
 }
 
-/// Without a resolution a step is at most a fiftieth of the interval, and a second where there is none.
+/// Without a resolution a step is at most a fiftieth of the interval, and a second where there is
+/// none.
 #[test]
 fn functions_of_unknown_resolution() {
     let mut random = Random::new(11);

@@ -266,10 +266,8 @@ fn loose_tolerances() {
     }
 }
 
-/// An atom that falls on the wall of another, again and again: at a loose tolerance it stays bound.
-///
-/// `Dop853` and `Taylor` at 1e-14 agree in the digits below; the energies are small, so that a wrong
-/// one lets it escape.
+/// An atom that falls on the wall of another, again and again: at a loose tolerance it stays bound,
+/// and near where it belongs. `Dop853` and `Picard` at 1e-14 agree in the digits below.
 #[test]
 fn atoms_do_not_escape() {
     macro_rules! check {

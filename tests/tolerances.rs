@@ -57,7 +57,8 @@ fn work<S: System<N, Scalar = f64, Inputs = ()>, const N: usize>(
     (found.stats.evaluations, pairs.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs())))
 }
 
-/// The figures of `docs/accuracy.md`: with an absolute tolerance of 1e-9, and with one that follows.
+/// The figures of `docs/accuracy.md`: with an absolute tolerance of 1e-9, and with one that
+/// follows.
 #[test]
 fn a_tolerance_that_follows_keeps_the_error_at_it() {
     for rtol in [1e-3, 1e-6, 1e-9, 1e-12] {
@@ -65,7 +66,8 @@ fn a_tolerance_that_follows_keeps_the_error_at_it() {
             let [fixed, follows] = [1e-9, rtol].map(run);
             println!("| {name} | {rtol:e} | {} | {:.1e} | {} | {:.1e} |", fixed.0, fixed.1, follows.0, follows.1);
             assert!(follows.1 < amplified * rtol, "{name} at {rtol:e}: {:e}", follows.1);
-            // Loose tolerances cost no more than a fixed one, and tight ones are worth what they cost.
+            // Loose tolerances cost no more than a fixed one, and tight ones are worth what they
+            // cost.
             if 1e-9 < rtol {
                 assert!(follows.0 <= fixed.0, "{name} at {rtol:e}: {} and {}", follows.0, fixed.0);
             } else if rtol < 1e-9 {

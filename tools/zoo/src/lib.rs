@@ -158,7 +158,8 @@ fn tell(lines: &[String], most: usize) {
     }
 }
 
-/// The error of one method in one run over tolerance and amplification, or the error that it returned.
+/// The error of one method in one run over tolerance and amplification, or the error that it
+/// returned.
 #[derive(Clone, Debug)]
 pub struct Finding {
     /// The family.

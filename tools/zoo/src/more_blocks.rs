@@ -19,7 +19,8 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A pendulum with what the language has for corners: a sharp valley, a stop and a drag that grows with the square of the velocity.
+    /// A pendulum with what the language has for corners: a sharp valley, a stop and a drag that
+    /// grows with the square of the velocity.
     #[derive(Clone, Debug)]
     pub struct Kinked { g, a, k, m, c }
     coordinate q;
