@@ -464,6 +464,8 @@ mod tests {
         }
     }
 
+    const PLANET: Kepler<f64> = Kepler { mu: 1.0 };
+
     /// A planet on its way, with all that a step knows of the one before.
     #[derive(Clone)]
     struct Flight {
@@ -474,14 +476,14 @@ mod tests {
     }
 
     impl Flight {
-        fn new(planet: &Kepler<f64>) -> Self {
+        fn new() -> Self {
             let node = Node::new(Time::new(0.0), [0.5, 0.0], [0.0, 3.0_f64.sqrt()]);
-            Self { node, memory: Memory::default(), room: Picard.room(planet), rejected: 0 }
+            Self { node, memory: Memory::default(), room: Picard.room(&PLANET), rejected: 0 }
         }
 
         /// Takes a step, the first attempt of the length `h`; the length of the one accepted.
-        fn step(&mut self, planet: &Kepler<f64>, h: f64) -> f64 {
-            let (mut field, mut stats, mut to) = (Counted::new(planet), Stats::new("Picard"), self.node);
+        fn step(&mut self, h: f64) -> f64 {
+            let (mut field, mut stats, mut to) = (Counted::new(&PLANET), Stats::new("Picard"), self.node);
             (self.memory.h, self.memory.left) = (h, 0);
             let course = Course {
                 method: &Picard,
@@ -507,19 +509,18 @@ mod tests {
     /// A step after an attempt that was rejected is the one that would have come without it.
     #[test]
     fn nothing_of_a_rejected_attempt_stays() {
-        let planet = Kepler { mu: 1.0 };
-        let (mut flight, mut rejected) = (Flight::new(&planet), Vec::new());
+        let (mut flight, mut rejected) = (Flight::new(), Vec::new());
         for k in 0..60 {
             let (mut tried, mut fresh) = (flight.clone(), flight.clone());
-            let h = tried.step(&planet, if k == 0 { 3.0 } else { 2.0 * flight.room.h });
+            let h = tried.step(if k == 0 { 3.0 } else { 2.0 * flight.room.h });
             if 0 < tried.rejected {
                 // Sweeps are counted anew after a rejection.
                 fresh.room.sweeps = 2;
-                assert_eq!((fresh.step(&planet, h), fresh.rejected), (h, 0), "step {k}");
+                assert_eq!((fresh.step(h), fresh.rejected), (h, 0), "step {k}");
                 assert_eq!(tried.bits(), fresh.bits(), "step {k}");
                 rejected.push(k);
             }
-            flight.step(&planet, if k == 0 { 0.01 } else { flight.memory.h });
+            flight.step(if k == 0 { 0.01 } else { flight.memory.h });
         }
         // The first one, which knows nothing of a step before, and others that go on from one.
         assert!(rejected[0] == 0 && 20 <= rejected.len(), "{rejected:?}");
