@@ -6,8 +6,11 @@ use pendulum_runtime::prelude::*;
 
 #[path = "common/pendulums.rs"]
 mod pendulums;
+#[path = "common/planet.rs"]
+mod planet;
 
 use pendulums::Hanging;
+use planet::Kepler;
 
 lagrangian! {
     pub struct CartPole { M: kg, m: kg, l: m, g: m/s^2 = 9.81 }
@@ -25,14 +28,6 @@ lagrangian! {
     let r = l*[sin(θ)*cos(φ), sin(θ)*sin(φ), -cos(θ)];
     kinetic = m/2*|ṙ|^2;
     potential = m*g*height(r);
-}
-
-lagrangian! {
-    pub struct Kepler { μ: m^3/s^2 }
-    coordinate x: m;
-    coordinate y: m;
-    kinetic = (ẋ^2 + ẏ^2)/2;
-    potential = -μ/|[x, y]|;
 }
 
 lagrangian! {

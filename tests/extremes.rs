@@ -109,6 +109,10 @@ impl Complaints {
             }
         }
         if !(T::from_f64(case.q).is_finite() && T::from_f64(case.v).is_finite()) {
+            // The scalar has no such number: nothing can come of it but an error.
+            if error.is_none() {
+                say(format!("is complete with {:?}", solution.q));
+            }
             return;
         }
         let states = solution.q.iter().chain(&solution.v).chain([&solution.end.q, &solution.end.v]);
@@ -156,7 +160,17 @@ macro_rules! over {
                 Srkn14a,
                 QuinlanTremaine::<8>
             );
-            tried!(complaints, $scalar, fixed, Gauss::<2>::new(), Gauss::<2>::new(), Picard, Taylor::new(), Dop853, Rodas4);
+            tried!(
+                complaints,
+                $scalar,
+                fixed,
+                Gauss::<2>::new(),
+                Gauss::<2>::new().newton(),
+                Picard,
+                Taylor::new(),
+                Dop853,
+                Rodas4
+            );
             let Complaints(all) = complaints;
             assert!(all.is_empty(), "{} complaints: {:#?}", all.len(), &all[..all.len().min(20)]);
         }

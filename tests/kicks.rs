@@ -1,4 +1,5 @@
-//! Kicks that are over between two samples of a long step: bounds of steps see to it that none is missed.
+//! Kicks that are over between two samples of a long step: bounds of steps see to it that none is
+//! missed.
 
 #![allow(missing_docs, mixed_script_confusables)]
 
@@ -48,7 +49,8 @@ fn push(t: f64, t0: f64, w: f64) -> f64 {
     STRENGTH * (-((t - t0) / w).powi(2)).exp()
 }
 
-/// Angle and velocity a second after the middle of the kick: the motion begins with it, in short steps.
+/// Angle and velocity a second after the middle of the kick: the motion begins with it, in short
+/// steps.
 fn reference(w: f64) -> [f64; 2] {
     let begin = solve(&kicked(1.0, w), (1.0 - 10.0 * w, 1.0 + 10.0 * w), [0.0], [0.0])
         .method(Dop853)
@@ -136,6 +138,7 @@ fn back_in_time_and_in_a_batch() {
         .map(|_| Problem { system: kicked(random.uniform(1.0, 98.0), WIDTH), time: (0.0, END), q: [0.0], v: [0.0] })
         .collect();
     let batch = Batch::new().rtol(TOLERANCE).atol(TOLERANCE).run(&problems).unwrap();
+    let mut same = 0;
     for (problem, together) in problems.iter().zip(batch) {
         let (system, t0) = (&problem.system, problem.system.t0);
         let alone =
@@ -143,6 +146,7 @@ fn back_in_time_and_in_a_batch() {
         let together = together.unwrap();
         if alone.stats.rejected == 0 {
             assert_eq!((alone.end, alone.stats), (together.end, together.stats), "kick at {t0}");
+            same += 1;
         }
         let apart = (alone.end.q[0] - together.end.q[0]).abs();
         assert!(apart <= 100.0 * TOLERANCE, "kick at {t0}: {apart:e} between a motion alone and in a batch");
@@ -153,6 +157,8 @@ fn back_in_time_and_in_a_batch() {
         let error = off(&back.unwrap(), [expected[0], -expected[1]]);
         assert!(error <= 100.0, "back over a kick at {t0}: {error} tolerances");
     }
+    // Without a rejected step a batch has the bits of `Taylor`, and that is the rule.
+    assert!(30 <= same, "{same} of 40 kicks without a rejected step");
 }
 
 /// Square waves, pulses and kicks that come again.
@@ -180,11 +186,13 @@ fn other_shapes() {
     for _ in 0..50 {
         let t0 = random.uniform(1.0, 98.0);
         let pulse = solve(&Pulsed::new(t0, t0 + 0.02), (0.0, END), [0.0], [0.0]).rtol(1e-6).run().unwrap().end;
-        assert!((pulse.v[0] - 0.04).abs() < 0.01, "pulse at {t0}: {}", pulse.v[0]);
+        // Measured are at most 5e-7 and 6e-7.
+        assert!((pulse.v[0] - 0.04).abs() < 3e-6, "pulse at {t0}: {}", pulse.v[0]);
         let tent = solve(&Tent::new(t0, 0.02), (0.0, END), [0.0], [0.0]).rtol(1e-6).run().unwrap().end;
-        assert!((tent.v[0] - 0.02).abs() < 0.005, "tent at {t0}: {}", tent.v[0]);
+        assert!((tent.v[0] - 0.02).abs() < 3e-6, "tent at {t0}: {}", tent.v[0]);
     }
-    // e^(−k/2) I₀(k/2) is the mean, near 1/√(πk) (1 + 1/(4k)); sixteen kicks from one between two of them to another.
+    // e^(−k/2) I₀(k/2) is the mean, near 1/√(πk) (1 + 1/(4k)); sixteen kicks from one between two
+    // of them to another.
     let (k, tau) = (10_000.0, core::f64::consts::TAU);
     let end = solve(&Ticking::new(k), (-0.5 * tau, 15.5 * tau), [0.0], [0.0]).rtol(1e-8).run().unwrap().end;
     let expected = 16.0 * tau * (1.0 + 0.25 / k) / (core::f64::consts::PI * k).sqrt();
@@ -232,7 +240,8 @@ fn keys_close_together() {
     assert!(solution.stats.accepted < 1000, "{:?}", solution.stats);
 }
 
-/// Without a resolution a step is at most a fiftieth of the interval, and a second where there is none.
+/// Without a resolution a step is at most a fiftieth of the interval, and a second where there is
+/// none.
 #[test]
 fn functions_of_unknown_resolution() {
     let mut random = Random::new(11);

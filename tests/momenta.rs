@@ -1,4 +1,5 @@
-//! Velocities from momenta where the Lagrangian is not quadratic in them: relativistic particles up to the speed of light.
+//! Velocities from momenta where the Lagrangian is not quadratic in them: relativistic particles up
+//! to the speed of light.
 
 #![allow(missing_docs)]
 
@@ -161,7 +162,8 @@ fn a_long_fall_approaches_the_speed_of_light() {
 
 #[test]
 fn a_momentum_without_a_velocity_is_named() {
-    // The pivot's velocity jumps by two at t = 1: the momentum of the particle would have to be beyond one.
+    // The pivot's velocity jumps by two at t = 1: the momentum of the particle would have to be
+    // beyond one.
     let keys = Linear::new(&[0.0, 1.0, 2.0], &[[0.0, 0.0], [0.0, 0.0], [-2.0, 0.0]]).unwrap();
     let driven = Bounded::new(1.0).driven_by(keys);
     let failure = solve(&driven, (0.0, 2.0), [0.0], [0.5]).method(Dop853).run().unwrap_err();

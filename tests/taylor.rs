@@ -26,6 +26,14 @@ lagrangian! {
     potential = g*y;
 }
 
+lagrangian! {
+    /// A ball and a wall at the origin, e-fold on 1/k.
+    pub struct Thrown { k }
+    coordinate x;
+    kinetic = ẋ^2/2;
+    potential = exp(-k*x);
+}
+
 /// How far from its start a pendulum of small swings ends that `there` takes to t = 1000 and `back` to 0.
 fn there_and_back(start: [f64; 2], there: impl Fn([f64; 2]) -> [f64; 2], back: impl Fn([f64; 2]) -> [f64; 2]) -> f64 {
     let [q, v] = back(there(start));
@@ -266,5 +274,25 @@ fn no_step_goes_through_a_wall() {
         let error = (down.end.q[0] - expected(k)).abs();
         assert!(error < 100.0 * rtol.max(1e-10), "k = {k:e}, rtol = {rtol:e}: {error:e}");
         assert!(down.stats.rejected < 200, "k = {k:e}, rtol = {rtol:e}: {:?}", down.stats);
+    }
+}
+
+/// A wall of which the series far from it know nothing, but the accelerations at the end of a step
+/// do: v = u tanh(k u (t − s)/2) and e^(−kx) = (u²/2)/cosh²(k u (t − s)/2), with the time s of the
+/// bounce.
+#[test]
+fn walls_are_met() {
+    for (k, x, v) in [(200.0f64, 1.0f64, -1.0f64), (200.0, 0.3, -3.0), (500.0, 1.0, -1.0)] {
+        let u = (v * v + 2.0 * (-k * x).exp()).sqrt();
+        let s = 2.0 / (k * u) * (0.5 * u * u * (k * x).exp()).sqrt().acosh();
+        let end = 2.0 * s;
+        // Far from the wall cosh z is e^z/2.
+        let exact = [u * (end - s) + (2.0 / (u * u)).ln() / k - 4.0f64.ln() / k, u];
+        for rtol in [1e-6, 1e-9, 1e-12] {
+            let run = solve(&Thrown::new(k), (0.0, end), [x], [v]).method(Taylor::new()).rtol(rtol).run().unwrap();
+            let off = (run.end.q[0] - exact[0]).abs().max((run.end.v[0] - exact[1]).abs()) / rtol;
+            assert!(off < 100.0, "k = {k}, {rtol}: {off} tolerances");
+            assert!(0 < run.stats.rejected, "k = {k}, {rtol}: {}", run.stats);
+        }
     }
 }

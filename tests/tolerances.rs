@@ -6,8 +6,11 @@ use pendulum_runtime::prelude::*;
 
 #[path = "common/pendulums.rs"]
 mod pendulums;
+#[path = "common/planet.rs"]
+mod planet;
 
 use pendulums::Simple;
+use planet::Kepler;
 
 lagrangian! {
     /// A pendulum that friction brings to rest.
@@ -16,15 +19,6 @@ lagrangian! {
     kinetic = θ̇^2/2;
     potential = -k*cos(θ);
     dissipation = c/2*θ̇^2;
-}
-
-lagrangian! {
-    /// A planet.
-    pub struct Kepler { μ: m^3/s^2 }
-    coordinate x: m;
-    coordinate y: m;
-    kinetic = (ẋ^2 + ẏ^2)/2;
-    potential = -μ/|[x, y]|;
 }
 
 /// One tolerance for all methods: what is not said is `rtol`.
@@ -63,7 +57,8 @@ fn work<S: System<N, Scalar = f64, Inputs = ()>, const N: usize>(
     (found.stats.evaluations, pairs.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs())))
 }
 
-/// The figures of `docs/accuracy.md`: with an absolute tolerance of 1e-9, and with one that follows.
+/// The figures of `docs/accuracy.md`: with an absolute tolerance of 1e-9, and with one that
+/// follows.
 #[test]
 fn a_tolerance_that_follows_keeps_the_error_at_it() {
     for rtol in [1e-3, 1e-6, 1e-9, 1e-12] {
@@ -71,15 +66,17 @@ fn a_tolerance_that_follows_keeps_the_error_at_it() {
             let [fixed, follows] = [1e-9, rtol].map(run);
             println!("| {name} | {rtol:e} | {} | {:.1e} | {} | {:.1e} |", fixed.0, fixed.1, follows.0, follows.1);
             assert!(follows.1 < amplified * rtol, "{name} at {rtol:e}: {:e}", follows.1);
-            // Loose tolerances cost no more than a fixed one, and tight ones are worth what they cost.
+            // Loose tolerances cost no more than a fixed one, and tight ones are worth what they
+            // cost.
             if 1e-9 < rtol {
                 assert!(follows.0 <= fixed.0, "{name} at {rtol:e}: {} and {}", follows.0, fixed.0);
             } else if rtol < 1e-9 {
                 assert!(follows.1 < fixed.1, "{name} at {rtol:e}: {:e} and {:e}", follows.1, fixed.1);
             }
         };
+        // Measured are at most 16, 0.12 and 110 tolerances.
         both("swinging", &|atol| work(&Simple::new(1.0, 0.5), 10.0, ([1.3], [0.0]), rtol, atol), 30.0);
-        both("coming to rest", &|atol| work(&Damped::new(10.0, 0.6), 60.0, ([1.3], [0.0]), rtol, atol), 30.0);
-        both("orbit", &|atol| work(&Kepler::new(1.0), 20.0, ([0.1, 0.0], [0.0, 19.0_f64.sqrt()]), rtol, atol), 1e4);
+        both("coming to rest", &|atol| work(&Damped::new(10.0, 0.6), 60.0, ([1.3], [0.0]), rtol, atol), 0.5);
+        both("orbit", &|atol| work(&Kepler::new(1.0), 20.0, ([0.1, 0.0], [0.0, 19.0_f64.sqrt()]), rtol, atol), 400.0);
     }
 }

@@ -205,13 +205,11 @@ fn tolerances(scale: Scale, report: &mut Report) {
                 .because("the error of a step changes the period of an orbit, and what that costs grows with time");
             report.at_most(format!("{}: the same, 1e-3 to 0.1", $name), orbit.worst[1], 100.0).because(LOOSE);
             report.at_most(format!("{}: runs that fail", $name), all().map(|spread| spread.failed).sum::<usize>() as f64, 0.0);
-            let turned = report.at_most(
-                format!("{}: errors that grow as the tolerance falls", $name),
-                all().map(|spread| spread.turned).sum::<usize>() as f64,
-                0.0,
-            );
-            if $name == "Picard" {
-                turned.because("at 1e-8 on P01 and 1e-10 on P31 the error is 3e-5 and 8e-3 of the tolerance, by accident");
+            let turned = all().map(|spread| spread.turned).sum::<usize>();
+            let check = report.at_most(format!("{}: errors that grow as the tolerance falls", $name), turned as f64, 0.0);
+            // The two that are known, and no more.
+            if $name == "Picard" && turned <= 2 {
+                check.because("at 1e-8 on P01 and 1e-10 on P31 the error is 3e-5 and 8e-3 of the tolerance, by accident");
             }
         }};
     }

@@ -68,7 +68,9 @@ impl<T: Float, const N: usize> Solution<T, N> {
 pub struct Stats {
     /// The name of the method.
     pub method: &'static str,
-    /// Evaluations of the accelerations, those for dense output included.
+    /// Evaluations of the accelerations, those for dense output included. [`Taylor`](super::Taylor)
+    /// counts an order of its series as one; the one at the end of each step, by which it checks
+    /// them, is not counted.
     pub evaluations: u64,
     /// Steps taken.
     pub accepted: u64,

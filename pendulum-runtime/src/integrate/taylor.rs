@@ -23,10 +23,10 @@ use crate::system::{Dynamics, System, scalar_time};
 /// It suits every system that `lagrangian!` has made and every motion that is [`Analytic`](crate::motion::Analytic), and is the choice
 /// for the last digits and for the way back in time. Its steps are long and it rejects few: the coefficients tell the radius of convergence.
 /// A series knows nothing of a wall or a contact far from its centre, so that the accelerations at the end of each step are compared
-/// with its own, and a step at whose end they differ by more than the tolerance is halved. It is
-/// explicit, so that a stiff spring or damper shortens its steps, and it is wrong where the equations
-/// themselves are not smooth: at the
-/// zeros of `abs`, and where the larger of two numbers changes.
+/// with its own, and a step at whose end they differ by more than the tolerance is halved. That is one evaluation a step, which
+/// [`Stats`](super::Stats) do not count: there each order of the series is one. Nobody looks between the ends: a wall or a needle
+/// that a step leads over goes unseen. It is explicit, so that a stiff spring or damper shortens its steps, and it is wrong where
+/// the equations themselves are not smooth: at the zeros of `abs`, and where the larger of two numbers changes.
 ///
 /// The order is p = ⌈1 − c ln rtol⌉ with c = 0.8 for a coordinate that swings by itself and 0.7 else, and the step is
 /// h = ρ rtol^(1/p) e^(−0.7/(p−1)), where ρ is the least of the radii of convergence (rtol · max |xᵢ\[k\]|/εᵢ)^(−1/k) that the last four

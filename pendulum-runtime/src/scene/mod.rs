@@ -265,6 +265,14 @@ impl<T: Lane + Float> Scene<T> {
         self.parallel = parallel;
     }
 
+    /// Whether every batch forks where threads are allowed, however short it is: for tests, which
+    /// are to see the bits of both ways.
+    #[cfg(feature = "rayon")]
+    #[doc(hidden)]
+    pub fn set_always_fork(&mut self, always: bool) {
+        self.threads.set_always(always);
+    }
+
     /// The time of the last tick, in seconds.
     pub fn time(&self) -> f64 {
         self.clock.time(self.clock.tick())

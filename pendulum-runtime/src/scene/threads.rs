@@ -10,6 +10,9 @@ use std::time::Instant;
 pub(super) struct Threads {
     #[cfg(feature = "rayon")]
     choice: Choice,
+    /// Whether every batch forks, whatever that costs.
+    #[cfg(feature = "rayon")]
+    always: bool,
 }
 
 impl Threads {
@@ -17,13 +20,24 @@ impl Threads {
         Self {
             #[cfg(feature = "rayon")]
             choice: Choice::new(),
+            #[cfg(feature = "rayon")]
+            always: false,
         }
+    }
+
+    /// Forks for every batch and measures nothing, or chooses again.
+    #[cfg(feature = "rayon")]
+    pub(super) fn set_always(&mut self, always: bool) {
+        self.always = always;
     }
 
     /// Does `batch`, which takes so many pendulums through so many ticks; it is told whether to
     /// fork.
     #[cfg(feature = "rayon")]
     pub(super) fn measured<R>(&mut self, pendulum_ticks: usize, batch: impl FnOnce(bool) -> R) -> R {
+        if self.always {
+            return batch(0 < pendulum_ticks);
+        }
         // Less than this is not worth a fork whatever the equations are.
         if pendulum_ticks < 1000 || rayon::current_num_threads() < 2 {
             return batch(false);
@@ -72,4 +86,21 @@ pub(super) fn share<P: Send>(parts: impl Iterator<Item = P> + Send, work: impl F
         }
         all();
     });
+}
+
+#[cfg(all(test, feature = "rayon"))]
+mod tests {
+    use super::Threads;
+
+    #[test]
+    fn who_asks_for_it_forks_always() {
+        let mut threads = Threads::new();
+        threads.set_always(true);
+        let forks = |threads: &mut Threads, work| (0..100).filter(|_| threads.measured(work, |fork| fork)).count();
+        assert_eq!((forks(&mut threads, 1), forks(&mut threads, 1_000_000)), (100, 100));
+        // Where threads are forbidden there is no work for them.
+        assert_eq!(forks(&mut threads, 0), 0);
+        threads.set_always(false);
+        assert_eq!(forks(&mut threads, 1), 0);
+    }
 }

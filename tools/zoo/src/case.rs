@@ -30,7 +30,8 @@ impl Method {
     pub(crate) const ALL: [Self; 8] =
         [Self::Default, Self::Picard, Self::Taylor, Self::Dop853, Self::Tsit5, Self::Rodas4, Self::Dprkn8, Self::Dprkn12];
 
-    /// The least tolerance at which it is measured: below, methods of low order take millions of steps.
+    /// The least tolerance at which it is measured: below, methods of low order take millions of
+    /// steps.
     pub(crate) fn least(self, scalar: Scalar) -> f64 {
         match self {
             Self::Tsit5 | Self::Rodas4 => 1e-9,
@@ -122,7 +123,8 @@ pub(crate) type State = Vec<DoubleDouble>;
 /// What one integration gives.
 #[derive(Clone, Debug)]
 pub(crate) struct Run {
-    /// The states at the output times, the last one at the end; that alone if no others were asked for.
+    /// The states at the output times, the last one at the end; that alone if no others were asked
+    /// for.
     pub(crate) states: Vec<State>,
     pub(crate) time: Duration,
     /// The steps, evaluations and the method that was chosen.
@@ -169,7 +171,8 @@ pub(crate) trait Case {
     /// The parameters and the motion, for who wants to repeat the run.
     fn describe(&self) -> String;
 
-    /// What is measured, with `rtol` and `atol` at this tolerance: at the end, and at other times if there are any.
+    /// What is measured, with `rtol` and `atol` at this tolerance: at the end, and at other times
+    /// if there are any.
     fn run(&self, method: Method, scalar: Scalar, tolerance: f64, times: &[f64]) -> Result<Run, String>;
 
     /// The states at `times` in two words.
@@ -178,14 +181,16 @@ pub(crate) trait Case {
     /// Whether the reference is a Taylor series.
     fn by_series(&self) -> bool;
 
-    /// The flow in `f64` with nearly all its digits: the state at the end from one at `t`; every step if asked for.
+    /// The flow in `f64` with nearly all its digits: the state at the end from one at `t`; every
+    /// step if asked for.
     fn flow(&self, t: f64, state: &[f64], steps: bool, tolerance: f64) -> Option<Vec<(f64, Vec<f64>)>>;
 
     /// What bounds the reference.
     fn guide(&self) -> &Guide;
 }
 
-/// The greatest difference of any coordinate or velocity in units of 1 + its magnitude; infinite where there is no number.
+/// The greatest difference of any coordinate or velocity in units of 1 + its magnitude; infinite
+/// where there is no number.
 pub(crate) fn distance(state: &State, exact: &State) -> f64 {
     let parts = state.iter().zip(exact).map(|(x, exact)| (*x - *exact).to_f64().abs() / (1.0 + exact.to_f64().abs()));
     parts.fold(0.0, |largest: f64, x| if x.is_nan() { f64::INFINITY } else { largest.max(x) })
@@ -197,7 +202,8 @@ const DIRECTIONS: usize = 2;
 
 /// How much a disturbance is larger at the end, at most; at least one.
 ///
-/// The instants divide the steps of a run into equal parts, so that they crowd where the motion changes fast: there most local errors arise.
+/// The instants divide the steps of a run into equal parts, so that they crowd where the motion
+/// changes fast: there most local errors arise.
 pub(crate) fn amplification(case: &dyn Case, random: &mut Random) -> Option<f64> {
     const SIZE: f64 = 1e-9;
     const EXACT: f64 = 1e-14;

@@ -16,6 +16,10 @@ mod more_families;
 mod motions;
 mod random;
 mod report;
+// What tests and benchmarks integrate too.
+#[cfg(feature = "all")]
+#[path = "../../../tests/common/systems.rs"]
+mod systems;
 
 pub use case::Method;
 use case::Scalar;
@@ -154,7 +158,8 @@ fn tell(lines: &[String], most: usize) {
     }
 }
 
-/// The error of one method in one run over tolerance and amplification, or the error that it returned.
+/// The error of one method in one run over tolerance and amplification, or the error that it
+/// returned.
 #[derive(Clone, Debug)]
 pub struct Finding {
     /// The family.

@@ -8,7 +8,8 @@ use crate::random::Random;
 #[derive(Clone, Debug)]
 pub(crate) struct Measurement {
     pub(crate) method: Method,
-    /// The error at the end over tolerance and amplification, and the largest at the other output times; or the error that it returned.
+    /// The error at the end over tolerance and amplification, and the largest at the other output
+    /// times; or the error that it returned.
     pub(crate) merit: Result<(f64, f64), String>,
     /// The error at the end.
     pub(crate) error: f64,
@@ -70,7 +71,8 @@ pub(crate) fn measure(family: &Family, run: usize, wanted: &dyn Fn(Method) -> bo
     Ok(Measured { run, tolerance, amplification, doubt, start, measurements })
 }
 
-/// The states at the output times and at the end in two words, and how far a second reference with other steps is from them.
+/// The states at the output times and at the end in two words, and how far a second reference with
+/// other steps is from them.
 fn reference(case: &dyn Case, scalar: Scalar, tolerance: f64, times: &[f64]) -> Result<(Vec<crate::case::State>, f64), String> {
     let guide = case.guide();
     let fine = if case.by_series() {

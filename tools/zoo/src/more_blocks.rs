@@ -3,18 +3,11 @@
 #![allow(missing_docs)]
 
 use crate::case::{Case, Guide, MOST, Method, Run, Scalar, State};
+use crate::systems::{Double, HenonHeiles, Kepler, Simple};
 use crate::trial::{Trial, finished};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::DoubleDouble;
 use std::time::{Duration, Instant};
-
-lagrangian! {
-    #[derive(Clone, Debug)]
-    pub struct Simple { g }
-    coordinate q;
-    kinetic = q̇^2/2;
-    potential = -g*cos(q);
-}
 
 lagrangian! {
     /// A pendulum with a soft stop at the angle m.
@@ -26,7 +19,8 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A pendulum with what the language has for corners: a sharp valley, a stop and a drag that grows with the square of the velocity.
+    /// A pendulum with what the language has for corners: a sharp valley, a stop and a drag that
+    /// grows with the square of the velocity.
     #[derive(Clone, Debug)]
     pub struct Kinked { g, a, k, m, c }
     coordinate q;
@@ -81,15 +75,6 @@ lagrangian! {
     coordinate r;
     coordinate φ;
     lagrangian = (ṙ^2 + r^2*φ̇^2)/2 - 4*ε*(r^(-12) - r^(-6));
-}
-
-lagrangian! {
-    #[derive(Clone, Debug)]
-    pub struct Double { m: [1; 2], l: [1; 2], g }
-    coordinate θ[2];
-    let y[k in 0..2] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]);
-    kinetic = sum(k in 0..2, m[k]/2*|ẏ[k]|^2);
-    potential = sum(k in 0..2, m[k]*g*height(y[k]));
 }
 
 lagrangian! {
@@ -149,15 +134,6 @@ lagrangian! {
 }
 
 lagrangian! {
-    #[derive(Clone, Debug)]
-    pub struct Kepler { μ }
-    coordinate x;
-    coordinate y;
-    kinetic = (ẋ^2 + ẏ^2)/2;
-    potential = -μ/|[x, y]|;
-}
-
-lagrangian! {
     /// A satellite of the earth and the moon, in the frame that turns with them.
     #[derive(Clone, Debug)]
     pub struct Restricted { μ }
@@ -174,15 +150,6 @@ lagrangian! {
     coordinate y[3];
     kinetic = sum(k in 0..3, (ẋ[k]^2 + ẏ[k]^2)/2);
     potential = -G*(1/|[x[0] - x[1], y[0] - y[1]]| + 1/|[x[1] - x[2], y[1] - y[2]]| + 1/|[x[2] - x[0], y[2] - y[0]]|);
-}
-
-lagrangian! {
-    #[derive(Clone, Debug)]
-    pub struct HenonHeiles { λ }
-    coordinate x;
-    coordinate y;
-    kinetic = (ẋ^2 + ẏ^2)/2;
-    potential = (x^2 + y^2)/2 + λ*(x^2*y - y^3/3);
 }
 
 lagrangian! {

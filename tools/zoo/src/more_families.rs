@@ -3,11 +3,12 @@
 use crate::case::{Guide, Scalar};
 use crate::families::{Family, Problem, closure, contact, double, friction, kick, moving, pendulum, shorter, square_wave};
 use crate::more_blocks::{
-    Atoms, Charged, Double, Eight, Elastic, Five, HenonHeiles, Hoop, Kepler, Kinked, Lifted, Oscillator, Restricted, Simple,
-    SoftStop, Stars, Steep, Toda, Valley, Wilberforce,
+    Atoms, Charged, Eight, Elastic, Five, Hoop, Kinked, Lifted, Oscillator, Restricted, SoftStop, Stars, Steep, Toda, Valley,
+    Wilberforce,
 };
 use crate::motions::{Drive, Shape};
 use crate::random::Random;
+use crate::systems::{Double, HenonHeiles, Kepler, Simple};
 use crate::trial::Trial;
 
 const fn single(name: &'static str, make: fn(&mut Random, Scalar) -> Problem) -> Family {

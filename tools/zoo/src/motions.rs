@@ -50,7 +50,8 @@ impl Shape {
                 [a * u * u * (n(3.0) - u - u), a * speed, a * bend]
             }
             Self::Cubics { j, every } => {
-                // Which piece it is says the time in one word: at the ends of pieces both agree up to the third derivative.
+                // Which piece it is says the time in one word: at the ends of pieces both agree up
+                // to the third derivative.
                 let mut piece = 0.0;
                 while !early((piece + 1.0) * every) {
                     piece += 1.0;

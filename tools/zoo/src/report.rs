@@ -78,8 +78,9 @@ pub(crate) fn table(rows: &[Row<'_>]) -> String {
     text
 }
 
-/// The tables of the documentation: all families by method, and each family with the median amplification, the runs without a reference,
-/// and for each method the median, the 90 % quantile and the largest merit, and its time over that of `Dop853`.
+/// The tables of the documentation: all families by method, and each family with the median
+/// amplification, the runs without a reference, and for each method the median, the 90 % quantile
+/// and the largest merit, and its time over that of `Dop853`.
 pub(crate) fn markdown(rows: &[Row<'_>]) -> String {
     let mut text =
         String::from("| all | runs | median | 90 % | above 100 | above 1000 | errors |\n|---|---|---|---|---|---|---|\n");
@@ -180,7 +181,8 @@ pub(crate) fn summary(rows: &[Row<'_>]) -> String {
     text
 }
 
-/// The families in which the 90 % quantile is more than three times that of `Dop853`, which counts as `floor` at least.
+/// The families in which the 90 % quantile is more than three times that of `Dop853`, which counts
+/// as `floor` at least.
 pub(crate) fn worse(rows: &[Row<'_>], method: Method, floor: f64) -> Vec<String> {
     let mut names = Vec::new();
     for row in rows {

@@ -103,7 +103,8 @@ macro_rules! over {
     }};
 }
 
-/// The implementation of `Case` for a system: how its reference is computed, and what is measured over which scalar.
+/// The implementation of `Case` for a system: how its reference is computed, and what is measured
+/// over which scalar.
 macro_rules! case {
     ($system:ident, $n:literal, $binding:ident, $reference:ident, f64 [$($double:ident)*] $(, f32 [$($single:ident)+])? $(, dd [$($wide:ident)+])?) => {
         impl Case for Trial<$system<f64>, $n> {

@@ -20,10 +20,12 @@ const W: usize = 8;
 
 /// Many motions of one type of system by their [`Taylor`] series, side by side in the lanes of the widest vectors that the machine has.
 ///
-/// Parameters, intervals and start states may differ from motion to motion, and each takes the steps that `Taylor` would choose for it
-/// alone: the solution of a motion has, in state and counters, the bits of
-/// [`solve`](super::solve)`(&system, time, q, v).method(Taylor::new())`, whatever its neighbours do. Where one ends, the next one takes its lane.
-/// But the ends of steps are not compared with the accelerations there, and no step is halved: for walls and contacts, take `solve`.
+/// Parameters, intervals and start states may differ from motion to motion, and each takes its own steps: its solution has the same
+/// bits whatever its neighbours do. Where one ends, the next one takes its lane. The steps are those that `Taylor` chooses before it
+/// looks at their ends: `Taylor` alone compares the accelerations there with its series and halves a step that leads through a wall,
+/// a batch does not. Where it halves none, which `rejected` in its [`Stats`] says, the solution has, in state and counters, the bits of
+/// [`solve`](super::solve)`(&system, time, q, v).method(Taylor::new())`; where it does, as at walls, contacts and narrow kicks, take
+/// `solve`.
 /// Worth it from about four motions on; it suits every system that `lagrangian!` has made without driven inputs.
 ///
 /// A failure ends one motion only. A step allocates nothing; the end of a motion does.

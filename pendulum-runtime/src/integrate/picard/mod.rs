@@ -455,8 +455,88 @@ fn scaled(error: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Memory, planned};
+    use super::{AdaptiveStep, Control, Counted, Course, Memory, Node, Picard, Room, Stepper, planned};
+    use crate::integrate::solution::Stats;
+    use crate::integrate::tests::systems::Kepler;
+    use crate::real::Real;
+    use crate::system::{Staged, System};
     use crate::time::Time;
+
+    /// Without stages.
+    impl<T: Real> Staged<2> for Kepler<T> {
+        type AtTime = ();
+        type AtPosition = ();
+
+        fn at_time(_: T, (): &()) {}
+
+        fn at_position(&self, (): &(), (): &(), _: T, _: &[T; 2], (): &()) {}
+
+        fn accelerations_staged(&self, (): &(), (): &(), (): &(), t: T, q: &[T; 2], v: &[T; 2], (): &()) -> [T; 2] {
+            self.accelerations(t, q, v, &())
+        }
+    }
+
+    const PLANET: Kepler<f64> = Kepler { mu: 1.0 };
+
+    /// A planet on its way, with all that a step knows of the one before.
+    #[derive(Clone)]
+    struct Flight {
+        node: Node<f64, 2>,
+        memory: Memory,
+        room: Room<f64, (), 2>,
+        rejected: u64,
+    }
+
+    impl Flight {
+        fn new() -> Self {
+            let node = Node::new(Time::new(0.0), [0.5, 0.0], [0.0, 3.0_f64.sqrt()]);
+            Self { node, memory: Memory::default(), room: Picard.room(&PLANET), rejected: 0 }
+        }
+
+        /// Takes a step, the first attempt of the length `h`; the length of the one accepted.
+        fn step(&mut self, h: f64) -> f64 {
+            let (mut field, mut stats, mut to) = (Counted::new(&PLANET), Stats::new("Picard"), self.node);
+            (self.memory.h, self.memory.left) = (h, 0);
+            let course = Course {
+                method: &Picard,
+                field: &mut field,
+                from: &mut self.node,
+                to: &mut to,
+                stages: &mut self.room,
+                target: f64::INFINITY,
+                stats: &mut stats,
+            };
+            let span = AdaptiveStep::new().rtol(1e-6).step(&mut self.memory, course).unwrap();
+            (self.node, self.rejected) = (to, stats.rejected);
+            span.h
+        }
+
+        /// The state and what the next step will see, with every bit.
+        fn bits(&self) -> String {
+            let Room { a, last, end, h, square, start, weights, ends, .. } = &self.room;
+            format!("{:?} {:?} {end:?} {h} {square:?} {start:?} {weights:?} {}", self.node, a[*last], ends.error)
+        }
+    }
+
+    /// A step after an attempt that was rejected is the one that would have come without it.
+    #[test]
+    fn nothing_of_a_rejected_attempt_stays() {
+        let (mut flight, mut rejected) = (Flight::new(), Vec::new());
+        for k in 0..60 {
+            let (mut tried, mut fresh) = (flight.clone(), flight.clone());
+            let h = tried.step(if k == 0 { 3.0 } else { 2.0 * flight.room.h });
+            if 0 < tried.rejected {
+                // Sweeps are counted anew after a rejection.
+                fresh.room.sweeps = 2;
+                assert_eq!((fresh.step(h), fresh.rejected), (h, 0), "step {k}");
+                assert_eq!(tried.bits(), fresh.bits(), "step {k}");
+                rejected.push(k);
+            }
+            flight.step(if k == 0 { 0.01 } else { flight.memory.h });
+        }
+        // The first one, which knows nothing of a step before, and others that go on from one.
+        assert!(rejected[0] == 0 && 20 <= rejected.len(), "{rejected:?}");
+    }
 
     /// The lengths of the steps to `target`.
     fn lengths(wanted: f64, start: f64, target: f64) -> Vec<f64> {

@@ -8,7 +8,7 @@ mod kinks;
 mod order;
 mod output;
 mod stepping;
-mod systems;
+pub(super) mod systems;
 
 use crate::integrate::method::Suits;
 use crate::integrate::{State, solve};
