@@ -1,7 +1,7 @@
 //! What other languages call constants and functions, and what to write here.
 
-use super::text;
-use crate::ast::{Expr, ExprKind};
+use super::text::{closed, operand, text};
+use crate::ast::Expr;
 
 /// The value of a constant of Rust, as it is written here.
 pub(crate) fn constant(name: &str) -> Option<&'static str> {
@@ -24,11 +24,7 @@ pub(crate) fn constant(name: &str) -> Option<&'static str> {
 }
 
 /// The call of a function that has another name here, or is an operator.
-pub(super) fn function(name: &str, arguments: &[Expr]) -> Option<String> {
-    let operand = |expr: &Expr| match expr.kind {
-        ExprKind::Sum(_) | ExprKind::Product(_) | ExprKind::Negative(_) | ExprKind::Power(..) => format!("({})", text(expr)),
-        _ => text(expr),
-    };
+pub(crate) fn function(name: &str, arguments: &[Expr]) -> Option<String> {
     Some(match (name, arguments) {
         ("log", [a]) => format!("ln({})", text(a)),
         ("log2", [a]) => format!("ln({})/ln(2)", text(a)),
@@ -38,15 +34,16 @@ pub(super) fn function(name: &str, arguments: &[Expr]) -> Option<String> {
         ("arcsin" | "arccos" | "arctan", [a]) => format!("a{}({})", &name[3..], text(a)),
         ("arctan2", [a, b]) => format!("atan2({}, {})", text(a), text(b)),
         ("sgn" | "signum", [a]) => format!("sign({})", text(a)),
-        ("pow" | "powi" | "powf", [a, b]) => format!("{}^{}", operand(a), operand(b)),
+        ("pow" | "powi" | "powf", [a, b]) => format!("{}^{}", operand(a), closed(b)),
         ("square" | "sq", [a]) => format!("{}^2", operand(a)),
         ("cbrt", [a]) => format!("{}^(1/3)", operand(a)),
+        ("sinc", [a]) => format!("sin({})/{}", text(a), operand(a)),
         ("sinc", [a]) => format!("sin({})/{}", text(a), operand(a)),
         ("sec", [a]) => format!("1/cos({})", text(a)),
         ("csc", [a]) => format!("1/sin({})", text(a)),
         ("cot", [a]) => format!("1/tan({})", text(a)),
         ("diff" | "ddt" | "derivative", [a]) => format!("dot({})", text(a)),
-        ("scalar" | "dot_product", [a, b]) => format!("inner({}, {})", text(a), text(b)),
+        ("dot" | "scalar" | "dot_product", [a, b]) => format!("inner({}, {})", text(a), text(b)),
         _ => return None,
     })
 }

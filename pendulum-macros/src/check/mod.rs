@@ -11,7 +11,7 @@ use crate::name::{self, Name};
 use crate::number::Rational;
 use crate::unit::{self, Dimension};
 use declare::{Declared, Shape, quantity, twice};
-pub(crate) use elsewhere::constant;
+pub(crate) use elsewhere::{constant, function};
 use proc_macro2::Ident;
 use std::collections::{BTreeMap, BTreeSet};
 pub(crate) use text::text;

@@ -1,6 +1,6 @@
 //! Expressions: operators by descending precedence, then names, calls and numbers.
 
-use super::foreign::{FOREIGN, UNIT, method, no_condition, path};
+use super::foreign::{FOREIGN, UNIT, no_condition, path};
 use super::token::{checked, comma, end, fragment, identifier, unexpected};
 use super::{Parser, to_the_last};
 use crate::ast::{Expr, ExprKind, Literal};
@@ -125,7 +125,7 @@ impl Parser<'_> {
                 input.parse::<Token![.]>()?;
                 let component = identifier(input, "a component, `x`, `y` or `z`")?;
                 if input.peek(syn::token::Paren) {
-                    return Err(method(input, &expr, &component));
+                    return Err(self.method(input, expr, &component));
                 }
                 let range = expr.range.to(component.span().into());
                 expr = self.node(ExprKind::Component(Box::new(expr), component), range);
@@ -241,7 +241,7 @@ impl Parser<'_> {
         Ok(self.node(kind, range))
     }
 
-    fn list(&mut self, content: ParseStream) -> Result<Vec<Expr>> {
+    pub(super) fn list(&mut self, content: ParseStream) -> Result<Vec<Expr>> {
         let mut items = Vec::new();
         while !content.is_empty() {
             items.push(self.expr(content)?);

@@ -4,7 +4,7 @@ use super::Parser;
 use super::statement::STATEMENTS;
 use super::token::fragment;
 use crate::ast::{Expr, ExprKind};
-use crate::check::{FUNCTIONS, constant, text};
+use crate::check::{FUNCTIONS, constant, function, text};
 use crate::error::Range;
 use crate::name;
 use crate::unit::Dimension;
@@ -125,6 +125,30 @@ impl Parser<'_> {
         }
     }
 
+    /// A method call, and what to write instead.
+    pub(super) fn method(&mut self, input: ParseStream, base: Expr, name: &Ident) -> syn::Error {
+        let method = name.to_string();
+        let mut operands = vec![base];
+        let instead = match self.arguments(input) {
+            Ok(arguments) => {
+                operands.extend(arguments);
+                let list = || operands.iter().map(text).collect::<Vec<_>>().join(", ");
+                let own = FUNCTIONS.contains(&(&method, operands.len())).then(|| format!("{method}({})", list()));
+                own.or_else(|| function(&method, &operands))
+            }
+            Err(_) => None,
+        };
+        let instead = instead.map_or_else(|| "a function of the language, as in `sin(θ)`".to_owned(), |call| format!("`{call}`"));
+        Range::from(name.span()).error(format!("`.{method}()` is Rust, which has no place in a formula; write {instead}"))
+    }
+
+    /// The expressions between a pair of parentheses.
+    fn arguments(&mut self, input: ParseStream) -> Result<Vec<Expr>> {
+        let content;
+        parenthesized!(content in input);
+        self.list(&content)
+    }
+
     fn is_function(&self, name: &Ident) -> bool {
         FUNCTIONS.iter().any(|row| name == row.0) && !self.is_declared(&name.to_string())
     }
@@ -157,17 +181,4 @@ pub(super) fn path(input: ParseStream, first: Option<&Ident>) -> syn::Error {
         None => "a number, or declare a parameter".to_owned(),
     };
     Range { first: start, last: last.1 }.error(format!("`{text}` is Rust, which has no place in a formula; write {instead}"))
-}
-
-/// A method call, and what to write instead.
-pub(super) fn method(input: ParseStream, base: &Expr, name: &Ident) -> syn::Error {
-    let function = name.to_string();
-    let base = text(base);
-    let arguments = input.fork().parse::<TokenTree>().map(|group| group.to_string()).unwrap_or_default();
-    let instead = match function.as_str() {
-        "powi" | "powf" => format!("`{base}^{}`", arguments.trim_start_matches('(').trim_end_matches(')')),
-        _ if FUNCTIONS.contains(&(&function, 1)) => format!("`{function}({base})`"),
-        _ => "a function of the language, as in `sin(θ)`".to_owned(),
-    };
-    Range::from(name.span()).error(format!("`.{function}()` is Rust, which has no place in a formula; write {instead}"))
 }

@@ -134,6 +134,13 @@ const NOTATIONS: &[(&str, &str)] = &[
     ("potential = norm(x);",                   "unknown function `norm`; write `|x|`"),
     ("potential = arctan(θ);",                 "unknown function `arctan`; write `atan(θ)`"),
     ("potential = pow(θ + 1, 2);",             "unknown function `pow`; write `(θ + 1)^2`"),
+    ("potential = pow(θ^2, -3);",              "unknown function `pow`; write `(θ^2)^(-3)`"),
+    ("potential = (m + L).powi(2);",           "`.powi()` is Rust, which has no place in a formula; write `(m + L)^2`"),
+    ("potential = (θ^2).powf((g + 1)*2);",     "`.powf()` is Rust, which has no place in a formula; write `(θ^2)^((g + 1)*2)`"),
+    ("potential = (m*L).hypot(-θ);",           "`.hypot()` is Rust, which has no place in a formula; write `|[m*L, -θ]|`"),
+    ("potential = (m*L).atan2(g - 1);",        "`.atan2()` is Rust, which has no place in a formula; write `atan2(m*L, g - 1)`"),
+    ("potential = x.dot(ẋ);",                  "`.dot()` is Rust, which has no place in a formula; write `inner(x, ẋ)`"),
+    ("potential = m*L.powi(θ +);",             "`.powi()` is Rust, which has no place in a formula; write a function of the language, as in `sin(θ)`"),
     ("potential = |xdot|;",                    "unknown name `xdot`; did you mean `x_dot`?"),
     ("potential = |xddot|;",                   "unknown name `xddot`; did you mean `x_ddot`?"),
     ("potential = θdot;",                      "unknown name `θdot`; did you mean `θ_dot`?"),
@@ -217,7 +224,7 @@ const NEGATIVE: &[(&str, &str)] = &[
     ("kinetic = m*-sum(k in 0..2, (L*θ̇)^2);",            "the kinetic energy of `θ` is negative in `m*(-sum(k in …, (L*θ̇)^2))`; write it with a positive sign"),
     ("coordinate z: m; kinetic = m*ż^2 - m/2*(L*θ̇)^2;",  "the kinetic energy of `θ` is negative in `-m/2*(L*θ̇)^2`; write it with a positive sign"),
     ("coordinate z: m; kinetic = m*ż^2; kinetic = m*L^2*θ̇^2; kinetic = -2*m*L^2*(θ̇*sin(θ) - ż/L)^2;",
-                                                           "the kinetic energy of `z` is negative in `-2*m*L^2*((θ̇*sin(θ)) - (ż/L))^2`; write it with a positive sign"),
+                                                           "the kinetic energy of `z` is negative in `-2*m*L^2*(θ̇*sin(θ) - ż/L)^2`; write it with a positive sign"),
     ("coordinate z: m; kinetic = -m/2*|dot([z, L*θ])|^2;", "the kinetic energy of `θ` is negative in `-m/2*|dot([z, L*θ])|^2`; write it with a positive sign"),
     ("let K = -J/2*θ̇^2; kinetic = K;",                   "the kinetic energy of `θ` is negative in `K`; write it with a positive sign"),
     ("kinetic = -B.inertia/2*θ̇^2;",                      "the kinetic energy of `θ` is negative in `-B.inertia/2*θ̇^2`; write it with a positive sign"),
@@ -268,6 +275,9 @@ const UNITS: &[(&str, &str)] = &[
     ("force θ = m*g;",                                      "`m*g` is kg·m/s², but a force on `θ` is kg·m²/s², an energy per unit of the coordinate"),
     ("let r(p) = p + L; potential = m*g*r(t);",             "`L` is m, but `p` is s; a sum needs one unit"),
     ("let w = g*L; potential = m*w + m*L;",                 "`m*L` is kg·m, but `m*w` is kg·m²/s²; a sum needs one unit"),
+    // Brackets stand where the language needs them, and nowhere else.
+    ("potential = m*g*(L - (x.x^2)^3*2 - -m*t);",            "`(x.x^2)^3*2` is m⁶, but `L` is m; a sum needs one unit"),
+    ("potential = m*g*height(x + L*(θ*2 - (-θ)*2)*[t, t]);", "`L*(θ*2 - (-θ*2))*[t, t]` is m·s, but `x` is m; a sum needs one unit"),
     // A quantity without a unit is decided by its first use and checked at the next.
     ("potential = k*θ^2 + k*L;",                            "`k*L` is m times the unit of `k`, but `k*θ^2` is a pure number times the unit of `k`; a sum needs one unit"),
 ];
