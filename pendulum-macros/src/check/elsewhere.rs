@@ -37,8 +37,6 @@ pub(crate) fn function(name: &str, arguments: &[Expr]) -> Option<String> {
         ("pow" | "powi" | "powf", [a, b]) => format!("{}^{}", operand(a), closed(b)),
         ("square" | "sq", [a]) => format!("{}^2", operand(a)),
         ("cbrt", [a]) => format!("{}^(1/3)", operand(a)),
-        ("sinc", [a]) => format!("sin({})/{}", text(a), operand(a)),
-        ("sinc", [a]) => format!("sin({})/{}", text(a), operand(a)),
         ("sec", [a]) => format!("1/cos({})", text(a)),
         ("csc", [a]) => format!("1/sin({})", text(a)),
         ("cot", [a]) => format!("1/tan({})", text(a)),
