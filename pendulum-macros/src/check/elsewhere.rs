@@ -3,10 +3,10 @@
 use super::text::{closed, operand, text};
 use crate::ast::Expr;
 
-/// The value of a constant of Rust, as it is written here.
-pub(crate) fn constant(name: &str) -> Option<&'static str> {
-    Some(match name {
-        "PI" => "π",
+/// The value of a constant of Rust, as it is written here; in `ascii`, if the block is.
+pub(crate) fn constant(name: &str, ascii: bool) -> Option<String> {
+    let value = match name {
+        "PI" | "Pi" => "π",
         "TAU" => "2*π",
         "E" => "exp(1)",
         "SQRT_2" => "sqrt(2)",
@@ -20,7 +20,8 @@ pub(crate) fn constant(name: &str) -> Option<&'static str> {
         "FRAC_1_PI" => "1/π",
         "FRAC_1_SQRT_2" => "1/sqrt(2)",
         _ => return None,
-    })
+    };
+    Some(if ascii { value.replace('π', "pi") } else { value.to_owned() })
 }
 
 /// The call of a function that has another name here, or is an operator.

@@ -77,6 +77,9 @@ pub(crate) const FUNCTIONS: &[(&str, usize)] = &[
     ("dot", 1), ("inner", 2), ("cross", 2), ("perp", 1), ("height", 1), ("cis", 1),
 ];
 
+/// What to do about a unit in a formula.
+pub(crate) const UNITS: &str = "units stand in declarations only, as in `g: m/s^2 = 9.81`";
+
 /// Resolves every name, reports those that cannot be.
 pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     let mut model = Model {

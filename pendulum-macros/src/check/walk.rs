@@ -1,6 +1,6 @@
 //! A walk over all expressions: names that nobody declared, functions with the wrong number of arguments.
 
-use super::{FUNCTIONS, Meaning, Model, constant, function, plain, unknown};
+use super::{FUNCTIONS, Meaning, Model, UNITS, constant, function, plain, unknown};
 use crate::ast::{Binder, Expr, ExprKind, ForceIndex};
 use crate::error::{Errors, Range};
 use crate::name::{self, Name};
@@ -226,9 +226,10 @@ impl Walk<'_, '_, '_> {
         let known = self.known();
         if !known.iter().any(|known| known.eq_ignore_ascii_case(text)) {
             if Dimension::of(text).is_some() {
-                return format!("unknown name `{text}`; units stand in declarations only, as in `g: m/s^2 = 9.81`");
+                return format!("unknown name `{text}`; declare it as a parameter; {UNITS}");
             }
-            if let Some(constant) = constant(text) {
+            // A letter alone is a quantity more often than a constant.
+            if let Some(constant) = constant(text, self.model.block.ascii).filter(|_| 1 < text.len()) {
                 return format!("unknown name `{text}`; write `{constant}`");
             }
         }

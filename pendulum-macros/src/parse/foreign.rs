@@ -4,7 +4,7 @@ use super::Parser;
 use super::statement::STATEMENTS;
 use super::token::fragment;
 use crate::ast::{Expr, ExprKind};
-use crate::check::{FUNCTIONS, constant, function, text};
+use crate::check::{FUNCTIONS, UNITS, constant, function, text};
 use crate::error::Range;
 use crate::name;
 use crate::unit::Dimension;
@@ -26,8 +26,10 @@ pub(super) const FOREIGN: &[(&str, &str)] = &[
     ("move", "leave it out"),
 ];
 
-/// What to do about a unit in a formula.
-pub(super) const UNIT: &str = "a number in a formula has no unit; units stand in declarations only, as in `g: m/s^2 = 9.81`";
+/// What is wrong with a number that has a unit.
+pub(super) fn no_unit() -> String {
+    format!("a number in a formula has no unit; {UNITS}")
+}
 
 impl Parser<'_> {
     /// Two operands side by side: there is no implicit multiplication.
@@ -66,7 +68,7 @@ impl Parser<'_> {
                     };
                     right.error(format!("the argument of `{name}` stands in parentheses; write `{name}({argument})`"))
                 }
-                (ExprKind::Number(_), _) if self.is_unit(None, input) => right.error(UNIT),
+                (ExprKind::Number(_), _) if self.is_unit(None, input) => right.error(no_unit()),
                 _ => right.error(format!("there is no implicit multiplication; write `*` before `{token}`")),
             });
         }
@@ -166,7 +168,7 @@ pub(super) fn no_condition(input: ParseStream) -> Result<()> {
 }
 
 /// A path, and what to write instead.
-pub(super) fn path(input: ParseStream, first: Option<&Ident>) -> syn::Error {
+pub(super) fn path(input: ParseStream, first: Option<&Ident>, ascii: bool) -> syn::Error {
     let start = first.map_or_else(|| input.span(), Ident::span);
     let (mut text, mut last) = (first.map(Ident::to_string).unwrap_or_default(), (String::new(), start));
     while input.parse::<Token![::]>().is_ok()
@@ -175,7 +177,7 @@ pub(super) fn path(input: ParseStream, first: Option<&Ident>) -> syn::Error {
         text = format!("{text}::{name}");
         last = (name.to_string(), name.span());
     }
-    let instead = match constant(&last.0) {
+    let instead = match constant(&last.0, ascii) {
         Some(constant) => format!("`{constant}`"),
         None if FUNCTIONS.iter().any(|row| row.0 == last.0) => format!("`{}(…)`", last.0),
         None => "a number, or declare a parameter".to_owned(),

@@ -127,7 +127,9 @@ const NOTATIONS: &[(&str, &str)] = &[
     ("potential = m*9.81 m/s^2*L;",            "a number in a formula has no unit; units stand in declarations only, as in `g: m/s^2 = 9.81`"),
     ("potential = m*9.81m/s^2*L;",             "a number in a formula has no unit; units stand in declarations only, as in `g: m/s^2 = 9.81`"),
     ("potential = 2 kg;",                      "a number in a formula has no unit; units stand in declarations only, as in `g: m/s^2 = 9.81`"),
-    ("potential = m*9.81*m/s^2;",              "unknown name `s`; units stand in declarations only, as in `g: m/s^2 = 9.81`"),
+    ("potential = m*9.81*m/s^2;",              "unknown name `s`; declare it as a parameter; units stand in declarations only, as in `g: m/s^2 = 9.81`"),
+    ("potential = N*θ;",                    "unknown name `N`; declare it as a parameter; units stand in declarations only, as in `g: m/s^2 = 9.81`"),
+    ("potential = E*θ;",                    "unknown name `E`; declare it as a parameter, a coordinate, a driven input or with `let`"),
     ("potential = 2 m;",                       "there is no implicit multiplication; write `*` before `m`"),
     ("potential = 2m/L;",                      "there is no implicit multiplication; write `2*m`"),
     ("potential = log(θ + 2);",                "unknown function `log`; write `ln(θ + 2)`"),
@@ -150,6 +152,8 @@ const NOTATIONS: &[(&str, &str)] = &[
     ("potential = f64::sin(θ);",               "`f64::sin` is Rust, which has no place in a formula; write `sin(…)`"),
     ("potential = crate::GRAVITY;",            "`crate::GRAVITY` is Rust, which has no place in a formula; write a number, or declare a parameter"),
     ("potential = θ*TAU;",                     "unknown name `TAU`; write `2*π`"),
+    ("potential = θ*PI;",                   "unknown name `PI`; write `π`"),
+    ("potential = θ*Pi;",                   "unknown name `Pi`; write `π`"),
     ("potential = .5*m;",                      "a number begins with a digit; write `0.5`"),
     ("potential = m*θ > 0;",                   "a formula has no conditions; write `max`, `min`, `abs` or `sign` to tell cases apart, as in `max(0, θ)`"),
     ("potential = m*(θ <= 0);",                "a formula has no conditions; write `max`, `min`, `abs` or `sign` to tell cases apart, as in `max(0, θ)`"),
@@ -167,6 +171,19 @@ const NOTATIONS: &[(&str, &str)] = &[
 fn other_notations_are_translated() {
     for (statements, expected) in NOTATIONS {
         assert_eq!(refusals(&block(&format!("kinetic = m*L^2*θ̇^2; {statements}"))), [*expected], "{statements}");
+    }
+}
+
+/// What is written in ASCII is answered in ASCII.
+#[test]
+fn constants_are_translated_into_the_letters_of_the_block() {
+    for (constant, expected) in [
+        ("PI", "unknown name `PI`; write `pi`"),
+        ("FRAC_PI_2", "unknown name `FRAC_PI_2`; write `pi/2`"),
+        ("f64::consts::PI", "`f64::consts::PI` is Rust, which has no place in a formula; write `pi`"),
+    ] {
+        let source = format!("struct P {{ m }} coordinate q; kinetic = m*q_dot^2; potential = m*{constant};");
+        assert_eq!(refusals(&source), [expected]);
     }
 }
 
