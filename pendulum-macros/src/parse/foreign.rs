@@ -60,13 +60,14 @@ impl Parser<'_> {
                     _ => Range::from(group.span_open()).error("an operator is missing before `(`; write `*` to multiply"),
                 },
                 (ExprKind::Name(name), _) if self.is_function(name) => {
-                    let argument = match token {
-                        TokenTree::Ident(_) | TokenTree::Literal(_) if FUNCTIONS.contains(&(&name.to_string(), 1)) => {
-                            token.to_string()
-                        }
-                        _ => "…".to_owned(),
+                    let count = FUNCTIONS.iter().find(|row| name == row.0).map_or(1, |row| row.1);
+                    let arguments = match token {
+                        TokenTree::Ident(_) | TokenTree::Literal(_) if count == 1 => token.to_string(),
+                        _ => vec!["…"; count].join(", "),
                     };
-                    right.error(format!("the argument of `{name}` stands in parentheses; write `{name}({argument})`"))
+                    let (plural, verb) = if count == 1 { ("", "stands") } else { ("s", "stand") };
+                    let message = format!("the argument{plural} of `{name}` {verb} in parentheses; write `{name}({arguments})`");
+                    right.error(message)
                 }
                 (ExprKind::Number(_), _) if self.is_unit(None, input) => right.error(no_unit()),
                 _ => right.error(format!("there is no implicit multiplication; write `*` before `{token}`")),
