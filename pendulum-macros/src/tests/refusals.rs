@@ -241,15 +241,26 @@ fn a_vector_may_have_no_unit() {
 /// Kinetic energies that are negative at every state.
 #[rustfmt::skip]
 const NEGATIVE: &[(&str, &str)] = &[
-    ("kinetic = -m/2*L^2*θ̇^2;",                          "the kinetic energy of `θ` is negative in `-m/2*L^2*θ̇^2`; write it with a positive sign"),
-    ("kinetic = -(m/2*L^2*θ̇^2);",                        "the kinetic energy of `θ` is negative in `-(m/2*L^2*θ̇^2)`; write it with a positive sign"),
-    ("kinetic = m*-sum(k in 0..2, (L*θ̇)^2);",            "the kinetic energy of `θ` is negative in `m*(-sum(k in …, (L*θ̇)^2))`; write it with a positive sign"),
-    ("coordinate z: m; kinetic = m*ż^2 - m/2*(L*θ̇)^2;",  "the kinetic energy of `θ` is negative in `-m/2*(L*θ̇)^2`; write it with a positive sign"),
+    ("kinetic = -m/2*L^2*θ̇^2;",                          "the kinetic energy of `θ` is negative in `-m/2*L^2*θ̇^2`"),
+    ("kinetic = -(m/2*L^2*θ̇^2);",                        "the kinetic energy of `θ` is negative in `-(m/2*L^2*θ̇^2)`"),
+    ("kinetic = m*-sum(k in 0..2, (L*θ̇)^2);",            "the kinetic energy of `θ` is negative in `m*(-sum(k in …, (L*θ̇)^2))`"),
+    ("coordinate z: m; kinetic = m*ż^2 - m/2*(L*θ̇)^2;",  "the kinetic energy of `θ` is negative in `-m/2*(L*θ̇)^2`"),
     ("coordinate z: m; kinetic = m*ż^2; kinetic = m*L^2*θ̇^2; kinetic = -2*m*L^2*(θ̇*sin(θ) - ż/L)^2;",
-                                                           "the kinetic energy of `z` is negative in `-2*m*L^2*(θ̇*sin(θ) - ż/L)^2`; write it with a positive sign"),
-    ("coordinate z: m; kinetic = -m/2*|dot([z, L*θ])|^2;", "the kinetic energy of `θ` is negative in `-m/2*|dot([z, L*θ])|^2`; write it with a positive sign"),
-    ("let K = -J/2*θ̇^2; kinetic = K;",                   "the kinetic energy of `θ` is negative in `K`; write it with a positive sign"),
-    ("kinetic = -B.inertia/2*θ̇^2;",                      "the kinetic energy of `θ` is negative in `-B.inertia/2*θ̇^2`; write it with a positive sign"),
+                                                           "the kinetic energy of `z` is negative in `-2*m*L^2*(θ̇*sin(θ) - ż/L)^2`"),
+    ("coordinate z: m; kinetic = -m/2*|dot([z, L*θ])|^2;", "the kinetic energy of `θ` is negative in `-m/2*|dot([z, L*θ])|^2`"),
+    ("let K = -J/2*θ̇^2; kinetic = K;",                   "the kinetic energy of `θ` is negative in `-J/2*θ̇^2`"),
+    ("let K = J/2*θ̇^2; kinetic = -K;",                   "the kinetic energy of `θ` is negative in `-K`"),
+    ("let K = -J/2*θ̇^2; let E = 2*K; kinetic = E;",      "the kinetic energy of `θ` is negative in `2*K`"),
+    ("let n = -1; kinetic = n*J*θ̇^2;",                   "the kinetic energy of `θ` is negative in `n*J*θ̇^2`"),
+    ("coordinate z: m; let y = m/2*ż^2; let K = -J/2*θ̇^2; kinetic = y + K;",
+                                                           "the kinetic energy of `θ` is negative in `-J/2*θ̇^2`"),
+    ("coordinate z: m; let y = [0, z]; let w = L*cis(θ); kinetic = m/2*|ẏ|^2 - m/4*|ẇ|^2 - (-m)*ż^2;",
+                                                           "the kinetic energy of `θ` is negative in `-m/4*|ẇ|^2`"),
+    ("let K(p) = -p*L^2*θ̇^2; kinetic = K(m);",           "the kinetic energy of `θ` is negative in `-p*L^2*θ̇^2`"),
+    ("let K[k in 0..2] = -m*L^2*θ̇^2; kinetic = sum(k in 0..2, K[k]);",
+                                                           "the kinetic energy of `θ` is negative in `-m*L^2*θ̇^2`"),
+    ("kinetic = J*θ̇^2*(-3)^101;",                        "the kinetic energy of `θ` is negative in `J*θ̇^2*(-3)^101`"),
+    ("kinetic = -B.inertia/2*θ̇^2;",                      "the kinetic energy of `θ` is negative in `-B.inertia/2*θ̇^2`"),
 ];
 
 #[test]
@@ -257,9 +268,16 @@ fn a_negative_kinetic_energy_is_refused() {
     let block = |statements: &str| {
         format!("struct P {{ m: kg, M: kg, L: m, S: kg*m, J: kg*m^2, c, B: body }} coordinate θ: rad; {statements}")
     };
+    let way_out =
+        "write it with a positive sign, or write `lagrangian = …;`, which may have any, instead of `kinetic` and `potential`";
     for (statements, expected) in NEGATIVE {
-        assert_eq!(refusals(&block(statements)), [*expected], "{statements}");
+        let found = refusals(&block(statements));
+        assert_eq!(found, [format!("{expected}; {way_out}")], "{statements}");
     }
+    // Definitions that double each time are followed once.
+    let doubled = (0..60).map(|k| format!("let u{} = u{k} + u{k};", k + 1)).collect::<Vec<_>>().concat();
+    let expected = format!("the kinetic energy of `θ` is negative in `-J*θ̇^2`; {way_out}");
+    assert_eq!(refusals(&block(&format!("let u0 = -J*θ̇^2; {doubled} kinetic = u60;"))), [expected]);
     // Any sign may be meant, or the whole is positive for some values.
     for statements in [
         "lagrangian = -m/2*L^2*θ̇^2;",
@@ -274,7 +292,7 @@ fn a_negative_kinetic_energy_is_refused() {
     }
     // Without units, a number has a sign and a parameter has none.
     let source = "struct P { m } coordinate q; kinetic = -q_dot^2/2; potential = m*q^2;";
-    assert_eq!(refusals(source), ["the kinetic energy of `q` is negative in `-q_dot^2/2`; write it with a positive sign"]);
+    assert_eq!(refusals(source), [format!("the kinetic energy of `q` is negative in `-q_dot^2/2`; {way_out}")]);
     assert!(refusals(&source.replace("-q_dot^2/2", "-m*q_dot^2")).is_empty());
 }
 
