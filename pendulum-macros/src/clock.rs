@@ -42,7 +42,7 @@ const HIGHEST: i64 = 8;
 const CORNERS: usize = 8;
 
 /// What may vary beside the time.
-const STATE: Contents = Contents::COORDINATE
+const BESIDE_TIME: Contents = Contents::COORDINATE
     .or(Contents::VELOCITY)
     .or(Contents::INPUT)
     .or(Contents::MOMENTUM)
@@ -78,7 +78,7 @@ impl Search {
     }
 
     fn has_state(&self, id: Id) -> bool {
-        self.graph.contents(id).any(STATE)
+        self.graph.contents(id).any(BESIDE_TIME)
     }
 
     fn visit(&mut self, id: Id) {
