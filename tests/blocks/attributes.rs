@@ -52,6 +52,25 @@ lagrangian! {
 }
 
 lagrangian! {
+    pub struct Expected {
+        m,
+        #[expect(unused_variables, reason = "not yet")]
+        c,
+        #[expect(unused)]
+        d,
+    }
+    coordinate q;
+    kinetic = m*q_dot^2/2;
+}
+
+lagrangian! {
+    #[expect(unused_variables)]
+    pub struct AllExpected { m, c, d }
+    coordinate q;
+    kinetic = m*q_dot^2/2;
+}
+
+lagrangian! {
     #[derive(Copy, PartialOrd)]
     pub struct Written { m }
     coordinate q;

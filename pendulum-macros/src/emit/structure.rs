@@ -7,14 +7,16 @@ use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use quote::{ToTokens, format_ident, quote};
 
 impl Emitter<'_, '_> {
-    pub(super) fn structure(&mut self) -> TokenStream {
+    pub(super) fn structure(&self) -> TokenStream {
         let block = self.model.block;
-        let (attributes, visibility, name, scalar) = (&block.attributes, &block.visibility, &block.name, self.scalar());
+        let (visibility, name, scalar) = (&block.visibility, &block.name, self.scalar());
+        let attributes = block.attributes.iter().filter(|attribute| !self.is_moved(attribute, None));
         let documentation = self.documentation();
-        let fields = block.fields.iter().zip(&self.model.parameters).map(|(field, quantity)| {
-            let (attributes, name) = (&field.attributes, &field.name);
+        let fields = block.fields.iter().zip(&self.model.parameters).enumerate().map(|(index, (field, quantity))| {
+            let attributes = field.attributes.iter().filter(|attribute| !self.is_moved(attribute, Some(index)));
+            let name = &field.name;
             let kind = self.field_type(quantity, &scalar);
-            let documented = attributes.iter().any(|attribute| attribute.path().is_ident("doc"));
+            let documented = field.attributes.iter().any(|attribute| attribute.path().is_ident("doc"));
             let text = match (documented, quantity.unit.as_str()) {
                 (true, "") => String::new(),
                 (true, unit) => format!("\n\nUnit: {unit}."),
