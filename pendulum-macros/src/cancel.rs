@@ -1,7 +1,8 @@
 //! Terms that cancel in what is printed.
 //!
-//! Equations are derived without expanding anything, so that a term may stand in one bracket with a plus and in another with a
-//! minus. What is computed stays so; what is printed is expanded where that makes it shorter.
+//! Equations are derived without expanding anything, so that a term may stand in one bracket with a
+//! plus and in another with a minus. What is computed stays so; what is printed is expanded where
+//! that makes it shorter.
 
 use crate::expr::{Contents, Graph, Id, Node};
 use crate::number::Rational;

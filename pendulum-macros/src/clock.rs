@@ -1,7 +1,9 @@
-//! What time alone does to the equations: how narrow the functions of time are that stand in them, and when they have their middle.
+//! What time alone does to the equations: how narrow the functions of time are that stand in them,
+//! and when they have their middle.
 //!
-//! A method samples accelerations at a few times in a step. Between two of them exp(−((t − t₀)/w)²) would stay unseen if w
-//! is small, so that steps are bounded by w. A function f(u) of a polynomial u = a tᵈ + … is as narrow as |a|^(−1/d).
+//! A method samples accelerations at a few times in a step. Between two of them exp(−((t − t₀)/w)²)
+//! would stay unseen if w is small, so that steps are bounded by w. A function f(u) of a polynomial
+//! u = a tᵈ + … is as narrow as |a|^(−1/d).
 
 use crate::diff::{derivative, substitute};
 use crate::expr::{Contents, Function, Graph, Id, Node, Symbol};
@@ -44,9 +46,11 @@ pub(crate) fn features(graph: &Graph, roots: &[Id]) -> (Graph, Vec<Feature>) {
 /// Polynomials in time of a higher degree are left alone.
 const HIGHEST: i64 = 8;
 
-/// Times at which something has a corner; if there are more of them, pairs of neighbours alone are looked at.
+/// Times at which something has a corner; if there are more of them, pairs of neighbours alone are
+/// looked at.
 ///
-/// The number of features is at most that of the functions and powers in the equations times this, and that of the pairs.
+/// The number of features is at most that of the functions and powers in the equations times this,
+/// and that of the pairs.
 const CORNERS: usize = 8;
 
 /// What may vary beside the time.
@@ -68,7 +72,8 @@ struct Search {
     polynomials: BTreeMap<Id, Option<Polynomial>>,
 }
 
-/// A polynomial in time: what is known of u = a tᵈ + …, in which |u| stands for u where that is linear.
+/// A polynomial in time: what is known of u = a tᵈ + …, in which |u| stands for u where that is
+/// linear.
 #[derive(Clone)]
 struct Polynomial {
     /// The same with its arguments for magnitudes, if there is one at most.
@@ -76,8 +81,8 @@ struct Polynomial {
     degree: i64,
     /// a, which contains nothing that moves; for several magnitudes the steepest slope.
     leading: Id,
-    /// The time at which the derivative of the order d − 1 is zero, or those of the corners if magnitudes stand there; none if
-    /// there are too many.
+    /// The time at which the derivative of the order d − 1 is zero, or those of the corners if
+    /// magnitudes stand there; none if there are too many.
     middles: Vec<Id>,
     cornered: bool,
     /// Nothing else of the expression contains the time.
@@ -144,7 +149,8 @@ impl Search {
         }
     }
 
-    /// A term k sinⁿ ωt in the argument of such a function: at a zero of the sine it leaves zero as k (ωt)ⁿ.
+    /// A term k sinⁿ ωt in the argument of such a function: at a zero of the sine it leaves zero as
+    /// k (ωt)ⁿ.
     fn swings(&mut self, argument: Id) {
         for (term, coefficient) in self.terms(argument) {
             let mut factors = self.graph.factors(term);
@@ -169,7 +175,8 @@ impl Search {
         }
     }
 
-    /// A function without a width of its own, such as the reciprocal: it has that of a u that is not zero at its middle.
+    /// A function without a width of its own, such as the reciprocal: it has that of a u that is
+    /// not zero at its middle.
     fn bump(&mut self, argument: Id) {
         let Some(polynomial) = self.polynomial(argument) else { return };
         if !polynomial.whole || polynomial.degree == 1 && !polynomial.cornered {
@@ -254,8 +261,8 @@ impl Search {
         }
     }
 
-    /// What is known of those terms of an expression that are a polynomial in time; `None` without any, or if its leading
-    /// coefficient moves.
+    /// What is known of those terms of an expression that are a polynomial in time; `None` without
+    /// any, or if its leading coefficient moves.
     fn polynomial(&mut self, id: Id) -> Option<Polynomial> {
         if let Some(known) = self.polynomials.get(&id) {
             return known.clone();
@@ -317,7 +324,8 @@ impl Search {
         substitute(&mut self.graph, id, |symbol| (symbol == Symbol::Time).then_some(time))
     }
 
-    /// The degree in time of what is a polynomial but for magnitudes of linear functions; `None` for all else.
+    /// The degree in time of what is a polynomial but for magnitudes of linear functions; `None`
+    /// for all else.
     fn degree(&mut self, id: Id) -> Option<i64> {
         if let Some(&known) = self.degrees.get(&id) {
             return known;
@@ -361,7 +369,8 @@ impl Search {
         self.graph.reachable(&[id]).into_iter().filter(moving).collect()
     }
 
-    /// An expression with its argument for each of its magnitudes, with a minus if that has a bit in `signs`.
+    /// An expression with its argument for each of its magnitudes, with a minus if that has a bit
+    /// in `signs`.
     fn branch(&mut self, id: Id, magnitudes: &[Id], signs: usize) -> Id {
         if magnitudes.is_empty() {
             return id;
@@ -379,8 +388,8 @@ impl Search {
         known[&id]
     }
 
-    /// The times at which these magnitudes of linear functions have a corner, with either sign of those within them; none if there
-    /// are too many.
+    /// The times at which these magnitudes of linear functions have a corner, with either sign of
+    /// those within them; none if there are too many.
     fn corners_of(&mut self, magnitudes: &[Id]) -> Vec<Id> {
         let mut corners = Vec::new();
         for &magnitude in magnitudes {
@@ -401,7 +410,8 @@ impl Search {
         if CORNERS < corners.len() { Vec::new() } else { corners }
     }
 
-    /// A bound of the slope of a sum of magnitudes of linear functions: all slopes add. `None` if it moves.
+    /// A bound of the slope of a sum of magnitudes of linear functions: all slopes add. `None` if
+    /// it moves.
     fn steepest(&mut self, id: Id) -> Option<Id> {
         let mut slopes: BTreeMap<Id, Id> = BTreeMap::new();
         for node in self.graph.reachable(&[id]) {

@@ -15,8 +15,8 @@ const EXACT: &[(&str, &str)] = &[
     ("Hash", "leave it out and hash the bits of the fields"),
 ];
 
-/// Reports the derived traits that the struct cannot have, and takes them from its attributes: rustc would say it of code that the
-/// user has not written.
+/// Reports the derived traits that the struct cannot have, and takes them from its attributes:
+/// rustc would say it of code that the user has not written.
 pub(crate) fn check(attributes: &mut [Attribute], errors: &mut Errors) {
     for attribute in attributes {
         let all = paths(attribute);
@@ -47,7 +47,8 @@ fn paths(attribute: &Attribute) -> Punctuated<Path, Token![,]> {
     Punctuated::parse_terminated.parse2(tokens).unwrap_or_default()
 }
 
-/// The name of a trait of the standard library: alone, or in a path that begins with `core` or `std`.
+/// The name of a trait of the standard library: alone, or in a path that begins with `core` or
+/// `std`.
 fn standard(path: &Path) -> Option<String> {
     let first = path.segments.first()?;
     let known = path.segments.len() == 1 || first.ident == "core" || first.ident == "std";

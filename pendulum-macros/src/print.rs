@@ -1,6 +1,7 @@
 //! Equations in Unicode, as one would write them: θ̈ = −g·sin θ/L.
 //!
-//! Those of a block that is written in ASCII are in ASCII, as the language reads them: `theta_ddot = -g*sin(theta)/L`.
+//! Those of a block that is written in ASCII are in ASCII, as the language reads them:
+//! `theta_ddot = -g*sin(theta)/L`.
 
 use crate::ast::Literal;
 use crate::cancel;
@@ -109,7 +110,8 @@ fn quantity_names(quantity: &Quantity, family: bool) -> Vec<String> {
     }
 }
 
-/// A name with dots over its first letter, or with the ASCII suffix if the name is a word in ASCII or the block is in ASCII.
+/// A name with dots over its first letter, or with the ASCII suffix if the name is a word in ASCII
+/// or the block is in ASCII.
 fn dotted(name: &str, dots: u8, ascii: bool) -> String {
     if dots == 0 {
         return name.into();
@@ -152,7 +154,8 @@ pub(crate) fn sides(graph: &Graph, names: &Names, motion: &Motion) -> Sides {
     (0..motion.accelerations.len()).map(short).collect()
 }
 
-/// The right-hand side of the equation in a row: the acceleration where its coordinate stands alone, the force otherwise.
+/// The right-hand side of the equation in a row: the acceleration where its coordinate stands
+/// alone, the force otherwise.
 fn right(motion: &Motion, row: usize) -> Id {
     if alone(motion, row) { motion.accelerations[row] } else { motion.forces[row] }
 }

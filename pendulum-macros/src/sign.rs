@@ -1,4 +1,5 @@
-//! Expressions whose sign does not depend on the state: a kinetic energy that is negative shows in its mass matrix.
+//! Expressions whose sign does not depend on the state: a kinetic energy that is negative shows in
+//! its mass matrix.
 
 use crate::ast::{Expr, ExprKind, Literal, Role};
 use crate::check::{Meaning, Model, Quantity, text};
@@ -11,7 +12,8 @@ use crate::unit::Dimension;
 use proc_macro2::Ident;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Reports the coordinates whose entries on the diagonal of the mass matrix are negative at every state.
+/// Reports the coordinates whose entries on the diagonal of the mass matrix are negative at every
+/// state.
 ///
 /// A Lagrangian that is not split may have any sign, and so may a parameter that is no mass.
 pub(crate) fn positive(model: &Model, graph: &Graph, energies: &Energies, matrix: &[Vec<Id>], errors: &mut Errors) -> bool {
@@ -40,7 +42,8 @@ pub(crate) fn positive(model: &Model, graph: &Graph, energies: &Energies, matrix
     before == errors.len()
 }
 
-/// The negative term of the kinetic energy that is guilty of a coordinate, and whether a minus stands before it.
+/// The negative term of the kinetic energy that is guilty of a coordinate, and whether a minus
+/// stands before it.
 fn guilty<'a>(model: &Model<'a>, coordinate: &str) -> Option<(bool, &'a Expr)> {
     let mut source = Source { model, negative: BTreeMap::new(), followed: BTreeSet::new() };
     let kinetic: Vec<&'a Expr> =
@@ -82,7 +85,8 @@ impl<'a> Source<'_, 'a> {
         }
     }
 
-    /// The negative terms of an expression, each where it is written, and whether a minus stands before it.
+    /// The negative terms of an expression, each where it is written, and whether a minus stands
+    /// before it.
     fn negative_terms<'e>(&mut self, minus: bool, expr: &'e Expr, found: &mut Vec<(bool, &'e Expr)>)
     where
         'a: 'e,
@@ -127,7 +131,8 @@ impl<'a> Source<'_, 'a> {
         }
     }
 
-    /// Whether a name stands in an expression or in a definition that it uses, with or without dots.
+    /// Whether a name stands in an expression or in a definition that it uses, with or without
+    /// dots.
     fn mention(&mut self, expr: &Expr, base: &str) -> bool {
         self.followed.clear();
         self.mentions(expr, base)

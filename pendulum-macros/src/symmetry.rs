@@ -1,8 +1,9 @@
 //! Conserved quantities: every symmetry q → q + ε(a + Bq) of the Lagrangian, and the energy where nothing depends on time.
 //!
-//! The Lagrangian is unchanged if Σ ∂L/∂q_i ξ_i + ∂L/∂q̇_i ξ̇_i vanishes for ξ = a + Bq (Noether 1918), which is linear in a and B:
-//! their values are the null space of that sum at random points of a prime field. Where too few points have all square roots, the
-//! field gets a root of −1 and the sum's real and imaginary part both vanish. Then Σ p_i ξ_i is conserved, if the forces do no
+//! The Lagrangian is unchanged if Σ ∂L/∂q_i ξ_i + ∂L/∂q̇_i ξ̇_i vanishes for ξ = a + Bq (Noether
+//! 1918), which is linear in a and B: their values are the null space of that sum at random points
+//! of a prime field. Where too few points have all square roots, the field gets a root of −1 and
+//! the sum's real and imaginary part both vanish. Then Σ p_i ξ_i is conserved, if the forces do no
 //! work along ξ either.
 
 use crate::diff::derivative;
@@ -13,7 +14,8 @@ use crate::number::Rational;
 /// With more coordinates than this only displacements q → q + εa are looked for.
 const MOST_LINEAR: usize = 8;
 
-/// So many points of the prime field show whether there are enough of them: more than an eighth has to have all roots.
+/// So many points of the prime field show whether there are enough of them: more than an eighth has
+/// to have all roots.
 const SAMPLE: usize = 32;
 
 /// A conserved quantity.
@@ -36,9 +38,10 @@ pub(crate) fn conserved(graph: &mut Graph, lagrangian: Id, momenta: &[Id], exter
         unknowns.extend((0..count).flat_map(|i| (0..count).map(move |j| (i, Some(j)))));
     }
     let roots: Vec<Id> = [&slopes[..], momenta, external, &coordinates, &velocities].concat();
-    // Each point adds to the rank until it is full, but for a chance of D/2⁶¹, D the degree of a minor's norm: the product over the
-    // signs of all k roots has at most 2^k times the degree of one factor. Nine points more than there are unknowns must all fail
-    // for a displacement that is no symmetry to pass: for D < 2³⁰ with a chance below 2⁻²⁰⁰.
+    // Each point adds to the rank until it is full, but for a chance of D/2⁶¹, D the degree of a
+    // minor's norm: the product over the signs of all k roots has at most 2^k times the degree of
+    // one factor. Nine points more than there are unknowns must all fail for a displacement that is
+    // no symmetry to pass: for D < 2³⁰ with a chance below 2⁻²⁰⁰.
     let wanted = unknowns.len() + 9;
     let nodes = graph.reachable(&roots);
     // What a point demands of the unknowns; its values are dropped at once.

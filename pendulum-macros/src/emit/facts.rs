@@ -61,7 +61,8 @@ impl Emitter<'_, '_> {
         all.filter(|(index, _)| !needed.contains(&Symbol::Parameter(*index))).map(|(_, name)| name.clone()).collect()
     }
 
-    /// For each purpose, whether it needs the position, the velocity and the acceleration of each driven input.
+    /// For each purpose, whether it needs the position, the velocity and the acceleration of each
+    /// driven input.
     pub(super) fn needed(&self) -> Vec<Vec<[bool; 3]>> {
         let purposes: Vec<Vec<Symbol>> = match &self.motion {
             None => vec![Vec::new(); 4],

@@ -28,7 +28,8 @@ impl Emitter<'_, '_> {
         });
         let empty =
             block.fields.is_empty().then(|| quote! { #[doc(hidden)] pub __scalar: ::core::marker::PhantomData<#scalar>, });
-        // Where another item has the name too, rustc shows the tokens from the visibility to the name, and not the whole block.
+        // Where another item has the name too, rustc shows the tokens from the visibility to the
+        // name, and not the whole block.
         let visibility = located(visibility.to_token_stream(), None);
         let head = located(quote!(struct #name<#scalar = ::core::primitive::f64> { #(#fields)* #empty }), Some(name.span()));
         quote! {
@@ -103,10 +104,11 @@ impl Emitter<'_, '_> {
         })
     }
 
-    /// Assertions, while `driven_by` is compiled for its motions, that they have all derivatives that the system needs.
+    /// Assertions, while `driven_by` is compiled for its motions, that they have all derivatives
+    /// that the system needs.
     ///
-    /// They stand in `driven_by` itself, so that rustc names the call; each has a constant of its own at the declaration of the input,
-    /// so that one that fails hides no other.
+    /// They stand in `driven_by` itself, so that rustc names the call; each has a constant of its
+    /// own at the declaration of the input, so that one that fails hides no other.
     fn sufficient(&self) -> TokenStream {
         let (krate, scalar, system) = (&self.krate, self.scalar(), &self.model.block.name);
         let purposes = self.needed();

@@ -8,7 +8,8 @@ use syn::Attribute;
 impl Emitter<'_, '_> {
     /// A function that reads none of these parameters: each is unused at its own name in the block.
     ///
-    /// A leading underscore silences it, and so do `allow` and `expect` on the field or on the struct.
+    /// A leading underscore silences it, and so do `allow` and `expect` on the field or on the
+    /// struct.
     pub(super) fn unmentioned(&self) -> Option<TokenStream> {
         // What a mistake has left out may have mentioned them.
         if self.motion.is_none() || self.model.unmentioned.is_empty() {
@@ -32,7 +33,8 @@ impl Emitter<'_, '_> {
         })
     }
 
-    /// Whether an attribute of the struct, or of the field with an index, is for the function of the unmentioned parameters alone.
+    /// Whether an attribute of the struct, or of the field with an index, is for the function of
+    /// the unmentioned parameters alone.
     ///
     /// An expectation is fulfilled where the variable is unused, and not at the struct.
     pub(super) fn is_moved(&self, attribute: &Attribute, field: Option<usize>) -> bool {

@@ -85,7 +85,8 @@ impl Parser<'_> {
         Ok(Field { attributes, name, kind, default })
     }
 
-    /// What stands after the name of a parameter or of a driven input: a colon and a kind, or nothing.
+    /// What stands after the name of a parameter or of a driven input: a colon and a kind, or
+    /// nothing.
     pub(super) fn declared_kind(&mut self, input: ParseStream, name: &Ident) -> Result<Kind> {
         if input.peek(syn::token::Bracket) {
             let brackets = Range::from(input.span());

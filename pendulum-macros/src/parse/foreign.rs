@@ -106,7 +106,8 @@ impl Parser<'_> {
         Err(base.range.to(last.into()).error(message))
     }
 
-    /// Whether a unit begins behind a number, with a `suffix` or at the next token: one of its names at least is nothing else.
+    /// Whether a unit begins behind a number, with a `suffix` or at the next token: one of its
+    /// names at least is nothing else.
     pub(super) fn is_unit(&self, suffix: Option<&str>, input: ParseStream) -> bool {
         let ahead = input.fork();
         let mut name = suffix.map(str::to_owned);

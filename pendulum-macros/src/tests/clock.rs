@@ -5,7 +5,8 @@ use crate::clock::features;
 use crate::expr::Symbol;
 use std::fmt::Write;
 
-/// One over the width of each function of time in a force at t = 3, and the time since its middle, with a = 5, b = 0.5 and c = 2.
+/// One over the width of each function of time in a force at t = 3, and the time since its middle,
+/// with a = 5, b = 0.5 and c = 2.
 fn found(force: &str) -> Vec<(f64, f64)> {
     let block = format!("struct S {{ a, b, c }} coordinate q; kinetic = q_dot^2/2; force q = {force};");
     derive(&block, |_, graph, motion| {
