@@ -1,7 +1,9 @@
-//! What time alone does to the equations: how narrow the functions of time are that stand in them, and when they have their middle.
+//! What time alone does to the equations: how narrow the functions of time are that stand in them,
+//! and when they have their middle.
 //!
-//! A method samples accelerations at a few times in a step. Between two of them exp(−((t − t₀)/w)²) would stay unseen if w
-//! is small, so that steps are bounded by w. A function f(u) of a polynomial u = a tᵈ + … is as narrow as |a|^(−1/d).
+//! A method samples accelerations at a few times in a step. Between two of them exp(−((t − t₀)/w)²)
+//! would stay unseen if w is small, so that steps are bounded by w. A function f(u) of a polynomial
+//! u = a tᵈ + … is as narrow as |a|^(−1/d).
 
 use crate::diff::{derivative, substitute};
 use crate::expr::{Contents, Function, Graph, Id, Node, Symbol};
@@ -25,7 +27,13 @@ pub(crate) fn features(graph: &Graph, roots: &[Id]) -> (Graph, Vec<Feature>) {
     }
     let mut roots = roots.to_vec();
     let graph = order::canonical(graph, &mut roots.iter_mut().collect::<Vec<_>>());
-    let mut search = Search { graph, found: BTreeSet::new(), corners: BTreeSet::new(), degrees: BTreeMap::new() };
+    let mut search = Search {
+        graph,
+        found: BTreeSet::new(),
+        corners: BTreeSet::new(),
+        degrees: BTreeMap::new(),
+        polynomials: BTreeMap::new(),
+    };
     for id in search.graph.reachable(&roots) {
         if search.moves(id) {
             search.visit(id);
@@ -38,11 +46,15 @@ pub(crate) fn features(graph: &Graph, roots: &[Id]) -> (Graph, Vec<Feature>) {
 /// Polynomials in time of a higher degree are left alone.
 const HIGHEST: i64 = 8;
 
-/// Times at which something has a corner; if there are more of them, no pair of them is looked at.
+/// Times at which something has a corner; if there are more of them, pairs of neighbours alone are
+/// looked at.
+///
+/// The number of features is at most that of the functions and powers in the equations times this,
+/// and that of the pairs.
 const CORNERS: usize = 8;
 
 /// What may vary beside the time.
-const STATE: Contents = Contents::COORDINATE
+const BESIDE_TIME: Contents = Contents::COORDINATE
     .or(Contents::VELOCITY)
     .or(Contents::INPUT)
     .or(Contents::MOMENTUM)
@@ -56,17 +68,22 @@ struct Search {
     corners: BTreeSet<Id>,
     /// The degrees of polynomials in time that are known.
     degrees: BTreeMap<Id, Option<i64>>,
+    /// The polynomials that are known.
+    polynomials: BTreeMap<Id, Option<Polynomial>>,
 }
 
-/// A polynomial in time: what is known of u = a tᵈ + …, in which |u| stands for u where that is linear.
+/// A polynomial in time: what is known of u = a tᵈ + …, in which |u| stands for u where that is
+/// linear.
+#[derive(Clone)]
 struct Polynomial {
-    /// The same without magnitudes.
+    /// The same with its arguments for magnitudes, if there is one at most.
     smooth: Id,
     degree: i64,
-    /// a, which contains nothing that moves.
+    /// a, which contains nothing that moves; for several magnitudes the steepest slope.
     leading: Id,
-    /// The time at which the derivative of the order d − 1 is zero, or u itself if its magnitude stands there.
-    middle: Id,
+    /// The time at which the derivative of the order d − 1 is zero, or those of the corners if
+    /// magnitudes stand there; none if there are too many.
+    middles: Vec<Id>,
     cornered: bool,
     /// Nothing else of the expression contains the time.
     whole: bool,
@@ -78,7 +95,7 @@ impl Search {
     }
 
     fn has_state(&self, id: Id) -> bool {
-        self.graph.contents(id).any(STATE)
+        self.graph.contents(id).any(BESIDE_TIME)
     }
 
     fn visit(&mut self, id: Id) {
@@ -124,10 +141,16 @@ impl Search {
         self.swings(argument);
         let Some(polynomial) = self.polynomial(argument) else { return };
         let rate = self.root(polynomial.leading, polynomial.degree);
-        self.find(rate, polynomial.whole.then_some(polynomial.middle));
+        if !polynomial.whole || polynomial.middles.is_empty() {
+            return self.find(rate, None);
+        }
+        for middle in polynomial.middles {
+            self.find(rate, Some(middle));
+        }
     }
 
-    /// A term k sinⁿ ωt in the argument of such a function: at a zero of the sine it leaves zero as k (ωt)ⁿ.
+    /// A term k sinⁿ ωt in the argument of such a function: at a zero of the sine it leaves zero as
+    /// k (ωt)ⁿ.
     fn swings(&mut self, argument: Id) {
         for (term, coefficient) in self.terms(argument) {
             let mut factors = self.graph.factors(term);
@@ -152,20 +175,22 @@ impl Search {
         }
     }
 
-    /// A function without a width of its own, such as the reciprocal: it has that of a u that is not zero at its middle.
+    /// A function without a width of its own, such as the reciprocal: it has that of a u that is
+    /// not zero at its middle.
     fn bump(&mut self, argument: Id) {
         let Some(polynomial) = self.polynomial(argument) else { return };
         if !polynomial.whole || polynomial.degree == 1 && !polynomial.cornered {
             return;
         }
-        let middle = polynomial.middle;
-        let value = substitute(&mut self.graph, polynomial.smooth, |symbol| (symbol == Symbol::Time).then_some(middle));
-        if value == Graph::ZERO || self.has_state(value) || self.moves(value) {
-            return;
+        for middle in polynomial.middles {
+            let value = self.at(polynomial.smooth, middle);
+            if value == Graph::ZERO || self.has_state(value) || self.moves(value) {
+                continue;
+            }
+            let ratio = self.graph.div(polynomial.leading, value);
+            let rate = self.root(ratio, polynomial.degree);
+            self.find(rate, Some(middle));
         }
-        let ratio = self.graph.div(polynomial.leading, value);
-        let rate = self.root(ratio, polynomial.degree);
-        self.find(rate, Some(middle));
     }
 
     /// A corner where u is zero, or a pulse between two zeros.
@@ -174,25 +199,34 @@ impl Search {
         if let Some(polynomial) = self.polynomial(argument)
             && polynomial.degree == 1
             && polynomial.whole
-            && !self.has_state(polynomial.middle)
+            && !polynomial.cornered
         {
-            self.corners.insert(polynomial.middle);
+            let zeros = polynomial.middles.into_iter().filter(|&zero| !self.graph.contents(zero).any(BESIDE_TIME));
+            self.corners.extend(zeros);
         }
     }
 
     /// Two corners may be the ends of a pulse.
     fn pairs(&mut self) {
-        let corners: Vec<Id> = self.corners.iter().copied().collect();
-        if CORNERS < corners.len() {
-            return;
-        }
-        for (index, &first) in corners.iter().enumerate() {
-            for &second in &corners[index + 1..] {
-                let (length, sum) = (self.graph.sub(second, first), self.graph.add(first, second));
-                let rate = self.graph.product(Rational::whole(2), &[(length, Rational::MINUS_ONE)]);
-                let (rate, middle) = (self.root(rate, 1), self.graph.scale(Rational::HALF, sum));
-                self.find(rate, Some(middle));
-            }
+        let mut corners: Vec<Id> = self.corners.iter().copied().collect();
+        let pairs: Vec<(Id, Id)> = if corners.len() <= CORNERS {
+            let others = |(index, &first): (usize, &Id)| corners[index + 1..].iter().map(move |&second| (first, second));
+            corners.iter().enumerate().flat_map(others).collect()
+        } else {
+            // Which corners are neighbours is known of numbers alone.
+            let time = |id: Id| match *self.graph.node(id) {
+                Node::Number(time) => time.numerator() as f64 / time.denominator() as f64,
+                _ => f64::NAN,
+            };
+            corners.retain(|&corner| !time(corner).is_nan());
+            corners.sort_by(|&a, &b| time(a).total_cmp(&time(b)));
+            corners.windows(2).map(|pair| (pair[0], pair[1])).collect()
+        };
+        for (first, second) in pairs {
+            let (length, sum) = (self.graph.sub(second, first), self.graph.add(first, second));
+            let rate = self.graph.product(Rational::whole(2), &[(length, Rational::MINUS_ONE)]);
+            let (rate, middle) = (self.root(rate, 1), self.graph.scale(Rational::HALF, sum));
+            self.find(rate, Some(middle));
         }
     }
 
@@ -227,15 +261,31 @@ impl Search {
         }
     }
 
-    /// What is known of those terms of an expression that are a polynomial in time; `None` without any, or if its leading
-    /// coefficient moves.
+    /// What is known of those terms of an expression that are a polynomial in time; `None` without
+    /// any, or if its leading coefficient moves.
     fn polynomial(&mut self, id: Id) -> Option<Polynomial> {
+        if let Some(known) = self.polynomials.get(&id) {
+            return known.clone();
+        }
+        let polynomial = self.derived_polynomial(id);
+        self.polynomials.insert(id, polynomial.clone());
+        polynomial
+    }
+
+    fn derived_polynomial(&mut self, id: Id) -> Option<Polynomial> {
         let all = self.terms(id);
         let mut terms = all.clone();
         terms.retain(|&(term, _)| self.degree(term).is_some());
+        let whole = terms.len() == all.len();
         let sum = self.graph.sum(&terms);
         let mut degree = self.degree(sum).filter(|degree| (1..=HIGHEST).contains(degree))?;
-        let (smooth, corner) = self.smoothed(sum);
+        let magnitudes = self.magnitudes(sum);
+        if degree == 1 && 1 < magnitudes.len() {
+            let leading = self.steepest(sum)?;
+            let middles = self.corners_of(&magnitudes);
+            return Some(Polynomial { smooth: sum, degree, leading, middles, cornered: true, whole });
+        }
+        let smooth = self.branch(sum, &magnitudes, 0);
         let mut derivatives = vec![smooth];
         for order in 0..degree {
             let next = derivative(&mut self.graph, derivatives[order as usize], Symbol::Time);
@@ -250,18 +300,32 @@ impl Search {
         }
         let factorial: i64 = (1..=degree).product();
         let leading = self.graph.product(Rational::new(1, factorial.into())?, &[(last, Rational::ONE)]);
-        // The last derivative but one is linear: its zero.
-        let (line, slope) = match corner {
-            Some(corner) if degree == 1 => (corner, derivative(&mut self.graph, corner, Symbol::Time)),
-            _ => (derivatives[degree as usize - 1], last),
+        let middles = match magnitudes.as_slice() {
+            [_] if degree == 1 => self.corners_of(&magnitudes),
+            // The last derivative but one is linear.
+            _ => vec![self.zero(derivatives[degree as usize - 1])?],
         };
-        let start = substitute(&mut self.graph, line, |symbol| (symbol == Symbol::Time).then_some(Graph::ZERO));
-        let quotient = self.graph.div(start, slope);
-        let middle = self.graph.negative(quotient);
-        Some(Polynomial { smooth, degree, leading, middle, cornered: corner.is_some(), whole: terms.len() == all.len() })
+        Some(Polynomial { smooth, degree, leading, middles, cornered: !magnitudes.is_empty(), whole })
     }
 
-    /// The degree in time of what is a polynomial but for magnitudes of linear functions; `None` for all else.
+    /// The time at which a linear function of it is zero; `None` for a constant.
+    fn zero(&mut self, line: Id) -> Option<Id> {
+        let slope = derivative(&mut self.graph, line, Symbol::Time);
+        if slope == Graph::ZERO {
+            return None;
+        }
+        let start = self.at(line, Graph::ZERO);
+        let quotient = self.graph.div(start, slope);
+        Some(self.graph.negative(quotient))
+    }
+
+    /// An expression at a time.
+    fn at(&mut self, id: Id, time: Id) -> Id {
+        substitute(&mut self.graph, id, |symbol| (symbol == Symbol::Time).then_some(time))
+    }
+
+    /// The degree in time of what is a polynomial but for magnitudes of linear functions; `None`
+    /// for all else.
     fn degree(&mut self, id: Id) -> Option<i64> {
         if let Some(&known) = self.degrees.get(&id) {
             return known;
@@ -296,32 +360,79 @@ impl Search {
         }
     }
 
-    /// A polynomial with its arguments for magnitudes, and that argument if there is one alone.
-    fn smoothed(&mut self, id: Id) -> (Id, Option<Id>) {
-        let magnitudes: Vec<(Id, Id)> = self
-            .graph
-            .reachable(&[id])
-            .into_iter()
-            .filter_map(|node| match *self.graph.node(node) {
-                Node::Call(Function::Abs, argument) if self.moves(argument) => Some((node, argument)),
-                _ => None,
-            })
-            .collect();
+    /// The magnitudes of what moves in an expression, the inner ones first.
+    fn magnitudes(&self, id: Id) -> Vec<Id> {
+        let moving = |node: &Id| match *self.graph.node(*node) {
+            Node::Call(Function::Abs, argument) => self.moves(argument),
+            _ => false,
+        };
+        self.graph.reachable(&[id]).into_iter().filter(moving).collect()
+    }
+
+    /// An expression with its argument for each of its magnitudes, with a minus if that has a bit
+    /// in `signs`.
+    fn branch(&mut self, id: Id, magnitudes: &[Id], signs: usize) -> Id {
         if magnitudes.is_empty() {
-            return (id, None);
+            return id;
         }
-        let mut known = BTreeMap::new();
+        let mut known: BTreeMap<Id, Id> = BTreeMap::new();
         for node in self.graph.reachable(&[id]) {
-            let argument = magnitudes.iter().find(|(magnitude, _)| *magnitude == node).map(|(_, argument)| *argument);
-            let result = if let Some(argument) = argument {
-                known[&argument]
-            } else {
-                let old = self.graph.node(node).clone();
-                self.graph.rebuilt(&old, |child| known[&child])
+            let old = self.graph.node(node).clone();
+            let result = match (&old, magnitudes.iter().position(|magnitude| *magnitude == node)) {
+                (Node::Call(_, argument), Some(place)) if signs >> place & 1 == 1 => self.graph.negative(known[argument]),
+                (Node::Call(_, argument), Some(_)) => known[argument],
+                _ => self.graph.rebuilt(&old, |child| known[&child]),
             };
             known.insert(node, result);
         }
-        let alone = if magnitudes.len() == 1 { known.get(&magnitudes[0].1).copied() } else { None };
-        (known[&id], alone)
+        known[&id]
+    }
+
+    /// The times at which these magnitudes of linear functions have a corner, with either sign of
+    /// those within them; none if there are too many.
+    fn corners_of(&mut self, magnitudes: &[Id]) -> Vec<Id> {
+        let mut corners = Vec::new();
+        for &magnitude in magnitudes {
+            let argument = self.graph.children(magnitude)[0];
+            let inner = self.magnitudes(argument);
+            if CORNERS < corners.len() + inner.len() {
+                return Vec::new();
+            }
+            for signs in 0..1 << inner.len() {
+                let line = self.branch(argument, &inner, signs);
+                if let Some(corner) = self.zero(line)
+                    && !corners.contains(&corner)
+                {
+                    corners.push(corner);
+                }
+            }
+        }
+        if CORNERS < corners.len() { Vec::new() } else { corners }
+    }
+
+    /// A bound of the slope of a sum of magnitudes of linear functions: all slopes add. `None` if
+    /// it moves.
+    fn steepest(&mut self, id: Id) -> Option<Id> {
+        let mut slopes: BTreeMap<Id, Id> = BTreeMap::new();
+        for node in self.graph.reachable(&[id]) {
+            let slope = match self.graph.node(node).clone() {
+                _ if !self.moves(node) => Graph::ZERO,
+                Node::Sum(terms) => {
+                    let slopes: Vec<(Id, Rational)> =
+                        terms.iter().map(|(term, coefficient)| (slopes[term], coefficient.abs())).collect();
+                    self.graph.sum(&slopes)
+                }
+                Node::Product(coefficient, factors) => {
+                    let (moving, still): (Vec<_>, Vec<_>) = factors.into_iter().partition(|&(base, _)| self.moves(base));
+                    let constant = self.graph.product(coefficient, &still);
+                    let magnitude = self.graph.call(Function::Abs, constant);
+                    self.graph.mul(magnitude, slopes[&moving.first()?.0])
+                }
+                Node::Call(_, argument) | Node::Atom(argument) => slopes[&argument],
+                _ => Graph::ONE,
+            };
+            slopes.insert(node, slope);
+        }
+        Some(slopes[&id]).filter(|&slope| slope != Graph::ZERO && !self.moves(slope) && !self.has_state(slope))
     }
 }

@@ -15,18 +15,14 @@ const EXACT: &[(&str, &str)] = &[
     ("Hash", "leave it out and hash the bits of the fields"),
 ];
 
-/// What cannot be derived without another.
-const SECOND: &[(&str, &str)] = &[("Copy", "Clone"), ("PartialOrd", "PartialEq")];
-
-/// Reports the derived traits that the struct cannot have, and takes them from its attributes: rustc would say it of code that the
-/// user has not written.
+/// Reports the derived traits that the struct cannot have, and takes them from its attributes:
+/// rustc would say it of code that the user has not written.
 pub(crate) fn check(attributes: &mut [Attribute], errors: &mut Errors) {
-    let derived: Vec<String> = attributes.iter().flat_map(paths).filter_map(|path| standard(&path)).collect();
     for attribute in attributes {
         let all = paths(attribute);
         let mut kept: Punctuated<Path, Token![,]> = Punctuated::new();
         for path in &all {
-            match refusal(path, &derived) {
+            match refusal(path) {
                 Some(message) => {
                     let last = path.segments.last().map_or(path.span(), Spanned::span);
                     errors.at(Range { first: path.span(), last }, message);
@@ -51,22 +47,17 @@ fn paths(attribute: &Attribute) -> Punctuated<Path, Token![,]> {
     Punctuated::parse_terminated.parse2(tokens).unwrap_or_default()
 }
 
-/// The name of a trait of the standard library: alone, or in a path that begins with `core` or `std`.
+/// The name of a trait of the standard library: alone, or in a path that begins with `core` or
+/// `std`.
 fn standard(path: &Path) -> Option<String> {
     let first = path.segments.first()?;
     let known = path.segments.len() == 1 || first.ident == "core" || first.ident == "std";
     known.then(|| path.segments.last().map(|last| last.ident.to_string()))?
 }
 
-/// Why a trait cannot be derived beside others.
-fn refusal(path: &Path, derived: &[String]) -> Option<String> {
+/// Why a trait cannot be derived.
+fn refusal(path: &Path) -> Option<String> {
     let name = standard(path)?;
-    if let Some((_, advice)) = EXACT.iter().find(|(exact, _)| *exact == name) {
-        return Some(format!(
-            "`{name}` cannot be derived: the parameters are floating-point numbers, which do not have it; {advice}"
-        ));
-    }
-    let (_, first) = SECOND.iter().find(|(second, _)| *second == name)?;
-    let missing = !derived.iter().any(|other| other == first);
-    missing.then(|| format!("`{name}` needs `{first}`, which is not derived; write `{first}, {name}`"))
+    let (_, advice) = EXACT.iter().find(|(exact, _)| *exact == name)?;
+    Some(format!("`{name}` cannot be derived: the parameters are floating-point numbers, which do not have it; {advice}"))
 }

@@ -18,7 +18,7 @@ pub fn expand(input: TokenStream) -> TokenStream {
         unit::infer::check(&model, &mut errors);
     }
     let motion = if errors.is_empty() { motion::canonical(&model, &mut graph, &mut energies, &mut errors) } else { None };
-    let items = emit::Emitter { krate, model: &model, graph, motion, energies }.items();
+    let items = emit::Emitter::new(krate, &model, graph, motion, energies).items();
     let errors = errors.into_tokens();
     quote::quote!(#errors #items)
 }

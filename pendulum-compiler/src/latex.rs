@@ -5,12 +5,12 @@ use crate::expr::{Function, Graph, Id, Moment, Node, Symbol};
 use crate::motion::Motion;
 use crate::name;
 use crate::number::Rational;
-use crate::print::{self, Names};
+use crate::print::{self, Names, Sides};
 
 /// The equations of motion, one line a coordinate, as `print::equations` gives them in Unicode.
-pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion) -> Vec<String> {
+pub(crate) fn equations(graph: &Graph, names: &Names, motion: &Motion, sides: &Sides) -> Vec<String> {
     let mut lines = Vec::new();
-    for (row, &acceleration) in motion.accelerations.iter().enumerate() {
+    for row in 0..motion.accelerations.len() {
         let coupled: Vec<(usize, Id)> =
             motion.mass_matrix[row].iter().copied().enumerate().filter(|&(_, entry)| entry != Graph::ZERO).collect();
         let writer = Writer { graph, names };
@@ -18,8 +18,10 @@ pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion) -> Ve
             lines.push(format!("{} = \\ldots\\text{{ (too long to write out)}}", writer.coordinate(row, 2)));
             continue;
         }
+        let (own, id) = print::side(graph, motion, sides, row);
+        let side = Writer { graph: own, names }.sum(id);
         if coupled.len() == 1 {
-            lines.push(format!("{} = {}", writer.coordinate(row, 2), writer.side(acceleration)));
+            lines.push(format!("{} = {side}", writer.coordinate(row, 2)));
             continue;
         }
         let terms: Vec<String> = coupled
@@ -29,7 +31,7 @@ pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion) -> Ve
                 if entry == Graph::ONE { symbol } else { format!("{} {symbol}", writer.coefficient(entry)) }
             })
             .collect();
-        lines.push(format!("{} = {}", terms.join(" + "), writer.side(motion.forces[row])));
+        lines.push(format!("{} = {side}", terms.join(" + ")));
     }
     lines
 }
@@ -40,14 +42,6 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// The right-hand side of an equation, without the terms that cancel.
-    fn side(&self, id: Id) -> String {
-        match print::short(self.graph, self.names, id) {
-            Some((graph, id)) => Writer { graph: &graph, names: self.names }.sum(id),
-            None => self.sum(id),
-        }
-    }
-
     /// An expression that nothing follows.
     fn sum(&self, id: Id) -> String {
         match self.graph.node(id) {

@@ -1,9 +1,11 @@
 //! Values of expressions in a prime field: an oracle for what is identically zero.
 //!
-//! An expression that vanishes at random points modulo a large prime vanishes (Schwartz 1980, Zippel 1979), and nothing is rounded.
-//! Angles are points of the unit circle of the field, square roots are roots of the field, and every other function is a random
-//! value that depends on its argument's value alone. Points at which a root does not exist are thrown away: each root halves what
-//! is left. With i, the root of −1, every number of the prime field has a root, so that points with many roots are never rare.
+//! An expression that vanishes at random points modulo a large prime vanishes (Schwartz 1980,
+//! Zippel 1979), and nothing is rounded. Angles are points of the unit circle of the field, square
+//! roots are roots of the field, and every other function is a random value that depends on its
+//! argument's value alone. Points at which a root does not exist are thrown away: each root halves
+//! what is left. With i, the root of −1, every number of the prime field has a root, so that points
+//! with many roots are never rare.
 
 use crate::expr::{Function, Graph, Id, Node, Symbol};
 use crate::number::Rational;
@@ -12,7 +14,8 @@ use std::collections::BTreeMap;
 /// 2⁶¹ − 1, which is 3 modulo 4: square roots are powers, and −1 has none.
 const PRIME: u64 = (1 << 61) - 1;
 
-/// An element a + b·i of the prime field with i² = −1; b is zero unless a root of the extension made it.
+/// An element a + b·i of the prime field with i² = −1; b is zero unless a root of the extension
+/// made it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Residue(u64, u64);
 
@@ -96,7 +99,8 @@ impl Residue {
             // Either a or −a is a square, because −1 is none.
             return self.root().or_else(|| Some(Self(0, self.negative().root()?.0)));
         }
-        // (x + y·i)² = a + b·i: x² is (a ± √(a² + b²))/2, of which one is a square, because their product is −(b/2)².
+        // (x + y·i)² = a + b·i: x² is (a ± √(a² + b²))/2, of which one is a square, because their
+        // product is −(b/2)².
         let length = self.norm().root()?;
         let half = Self(PRIME.div_ceil(2), 0);
         let square = |length: Self| half.mul(Self(self.0, 0).add(length)).root();
@@ -183,8 +187,8 @@ impl Point {
 
     /// A point with all roots of real numbers.
     ///
-    /// The root of a product is that of its factors up to a sign that changes from point to point: what vanishes at many such points
-    /// vanishes, but not all that vanishes does so here.
+    /// The root of a product is that of its factors up to a sign that changes from point to point:
+    /// what vanishes at many such points vanishes, but not all that vanishes does so here.
     pub(crate) fn extended(graph: &Graph, roots: &[Id], seed: u64) -> Self {
         Self { roots: Roots::Extended, ..Self::new(graph, roots, seed) }
     }

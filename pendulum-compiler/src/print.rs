@@ -1,6 +1,7 @@
 //! Equations in Unicode, as one would write them: θ̈ = −g·sin θ/L.
 //!
-//! Those of a block that is written in ASCII are in ASCII, as the language reads them: `theta_ddot = -g*sin(theta)/L`.
+//! Those of a block that is written in ASCII are in ASCII, as the language reads them:
+//! `theta_ddot = -g*sin(theta)/L`.
 
 use crate::ast::Literal;
 use crate::cancel;
@@ -109,7 +110,8 @@ fn quantity_names(quantity: &Quantity, family: bool) -> Vec<String> {
     }
 }
 
-/// A name with dots over its first letter, or with the ASCII suffix if the name is a word in ASCII or the block is in ASCII.
+/// A name with dots over its first letter, or with the ASCII suffix if the name is a word in ASCII
+/// or the block is in ASCII.
 fn dotted(name: &str, dots: u8, ascii: bool) -> String {
     if dots == 0 {
         return name.into();
@@ -138,16 +140,36 @@ pub(crate) fn expression(graph: &Graph, names: &Names, id: Id) -> String {
     write(graph, names, id, Level::Sum)
 }
 
-/// The right-hand side of an equation, in a graph of its own if terms of it cancel.
-pub(crate) fn short(graph: &Graph, names: &Names, id: Id) -> Option<(Graph, Id)> {
-    cancel::shorter(graph, id, |graph, id| expression(graph, names, id).chars().count())
+/// The right-hand sides in which terms cancel, each in a graph of its own; `None` for all others.
+pub(crate) type Sides = Vec<Option<(Graph, Id)>>;
+
+/// The right-hand sides of the equations, without what cancels.
+pub(crate) fn sides(graph: &Graph, names: &Names, motion: &Motion) -> Sides {
+    let short = |row: usize| {
+        if too_long(graph, motion, row) {
+            return None;
+        }
+        cancel::shorter(graph, right(motion, row), |graph, id| expression(graph, names, id).chars().count())
+    };
+    (0..motion.accelerations.len()).map(short).collect()
 }
 
-/// The right-hand side of an equation as text.
-fn side(graph: &Graph, names: &Names, id: Id) -> String {
-    match short(graph, names, id) {
-        Some((graph, id)) => expression(&graph, names, id),
-        None => expression(graph, names, id),
+/// The right-hand side of the equation in a row: the acceleration where its coordinate stands
+/// alone, the force otherwise.
+fn right(motion: &Motion, row: usize) -> Id {
+    if alone(motion, row) { motion.accelerations[row] } else { motion.forces[row] }
+}
+
+/// Whether a row of the mass matrix has one entry.
+fn alone(motion: &Motion, row: usize) -> bool {
+    motion.mass_matrix[row].iter().filter(|&&entry| entry != Graph::ZERO).count() == 1
+}
+
+/// The right-hand side of the equation in a row, with the graph in which it is written.
+pub(crate) fn side<'g>(graph: &'g Graph, motion: &Motion, sides: &'g Sides, row: usize) -> (&'g Graph, Id) {
+    match &sides[row] {
+        Some((own, id)) => (own, *id),
+        None => (graph, right(motion, row)),
     }
 }
 
@@ -341,11 +363,9 @@ const LONGEST: usize = 1000;
 
 /// Whether the equation in a row, solved where its coordinate stands alone, is too long to be written out.
 pub(crate) fn too_long(graph: &Graph, motion: &Motion, row: usize) -> bool {
-    let mut roots: Vec<Id> = motion.mass_matrix[row].iter().copied().filter(|&entry| entry != Graph::ZERO).collect();
-    if roots.len() == 1 {
-        roots = vec![motion.accelerations[row]];
-    } else {
-        roots.push(motion.forces[row]);
+    let mut roots = vec![right(motion, row)];
+    if !alone(motion, row) {
+        roots.extend(motion.mass_matrix[row].iter().filter(|&&entry| entry != Graph::ZERO));
     }
     let mut lengths: BTreeMap<Id, usize> = BTreeMap::new();
     for id in graph.reachable(&roots) {
@@ -356,17 +376,18 @@ pub(crate) fn too_long(graph: &Graph, motion: &Motion, row: usize) -> bool {
 }
 
 /// The equations of motion, one line a coordinate: solved where a coordinate stands alone, a row of M q̈ = f where several are coupled.
-pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion) -> Vec<String> {
+pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion, sides: &Sides) -> Vec<String> {
     let mut lines = Vec::new();
-    for (row, &acceleration) in motion.accelerations.iter().enumerate() {
+    for row in 0..motion.accelerations.len() {
         if too_long(graph, motion, row) {
             let dots = if names.ascii { "..." } else { "…" };
             lines.push(format!("{} = {dots} (too long to write out)", names.acceleration(row)));
             continue;
         }
-        let alone = motion.mass_matrix[row].iter().filter(|&&entry| entry != Graph::ZERO).count() == 1;
-        if alone {
-            lines.push(format!("{} = {}", names.acceleration(row), side(graph, names, acceleration)));
+        let (own, id) = side(graph, motion, sides, row);
+        let side = expression(own, names, id);
+        if alone(motion, row) {
+            lines.push(format!("{} = {side}", names.acceleration(row)));
             continue;
         }
         let mut left = String::new();
@@ -388,7 +409,7 @@ pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion) -> Ve
             left.push_str(&sign(names, left.is_empty(), negative));
             left.push_str(&part);
         }
-        lines.push(format!("{left} = {}", side(graph, names, motion.forces[row])));
+        lines.push(format!("{left} = {side}"));
     }
     lines
 }

@@ -52,6 +52,44 @@ lagrangian! {
 }
 
 lagrangian! {
+    pub struct Expected {
+        m,
+        #[expect(unused_variables, reason = "not yet")]
+        c,
+        #[expect(unused)]
+        d,
+    }
+    coordinate q;
+    kinetic = m*q_dot^2/2;
+}
+
+lagrangian! {
+    #[expect(unused_variables)]
+    pub struct AllExpected { m, c, d }
+    coordinate q;
+    kinetic = m*q_dot^2/2;
+}
+
+lagrangian! {
+    #[derive(Copy, PartialOrd)]
+    pub struct Written { m }
+    coordinate q;
+    kinetic = m*q_dot^2/2;
+}
+
+impl<T: Copy> Clone for Written<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T: PartialEq> PartialEq for Written<T> {
+    fn eq(&self, other: &Self) -> bool {
+        self.m == other.m
+    }
+}
+
+lagrangian! {
     #[cfg(any())]
     pub struct Nowhere { m, c }
     coordinate q;
@@ -67,5 +105,8 @@ fn main() {
     #[allow(deprecated)]
     let old = Old::new(1.0);
     assert_eq!(format!("{old:?}"), "Old { c: 1.0 }");
+    let written = Written::new(1.0);
+    let copy = written;
+    assert!(copy < Written::new(2.0) && copy == written.clone());
     assert_eq!(U::new(2.0).map(|x| x + 1.0).c, 3.0);
 }

@@ -1,10 +1,10 @@
-//! Derived traits that floating-point numbers do not have, and one without what it needs.
+//! Derived traits that floating-point numbers do not have.
 
 use pendulum_runtime::prelude::*;
 
 lagrangian! {
-    #[derive(Debug, Copy, Eq)]
-    #[derive(std::hash::Hash, PartialOrd)]
+    #[derive(Debug, Clone, PartialEq, Eq)]
+    #[derive(std::hash::Hash, PartialOrd, Ord)]
     pub struct Pendulum { m: kg, L: m, g: m/s^2 = 9.81 }
     coordinate theta: rad;
     kinetic   = m/2 * L^2*theta_dot^2;

@@ -1,12 +1,12 @@
 //! What other languages call constants and functions, and what to write here.
 
-use super::text;
-use crate::ast::{Expr, ExprKind};
+use super::text::{closed, operand, text};
+use crate::ast::Expr;
 
-/// The value of a constant of Rust, as it is written here.
-pub(crate) fn constant(name: &str) -> Option<&'static str> {
-    Some(match name {
-        "PI" => "π",
+/// The value of a constant of Rust, as it is written here; in `ascii`, if the block is.
+pub(crate) fn constant(name: &str, ascii: bool) -> Option<String> {
+    let value = match name {
+        "PI" | "Pi" => "π",
         "TAU" => "2*π",
         "E" => "exp(1)",
         "SQRT_2" => "sqrt(2)",
@@ -20,15 +20,12 @@ pub(crate) fn constant(name: &str) -> Option<&'static str> {
         "FRAC_1_PI" => "1/π",
         "FRAC_1_SQRT_2" => "1/sqrt(2)",
         _ => return None,
-    })
+    };
+    Some(if ascii { value.replace('π', "pi") } else { value.to_owned() })
 }
 
 /// The call of a function that has another name here, or is an operator.
-pub(super) fn function(name: &str, arguments: &[Expr]) -> Option<String> {
-    let operand = |expr: &Expr| match expr.kind {
-        ExprKind::Sum(_) | ExprKind::Product(_) | ExprKind::Negative(_) | ExprKind::Power(..) => format!("({})", text(expr)),
-        _ => text(expr),
-    };
+pub(crate) fn function(name: &str, arguments: &[Expr]) -> Option<String> {
     Some(match (name, arguments) {
         ("log", [a]) => format!("ln({})", text(a)),
         ("log2", [a]) => format!("ln({})/ln(2)", text(a)),
@@ -38,15 +35,14 @@ pub(super) fn function(name: &str, arguments: &[Expr]) -> Option<String> {
         ("arcsin" | "arccos" | "arctan", [a]) => format!("a{}({})", &name[3..], text(a)),
         ("arctan2", [a, b]) => format!("atan2({}, {})", text(a), text(b)),
         ("sgn" | "signum", [a]) => format!("sign({})", text(a)),
-        ("pow" | "powi" | "powf", [a, b]) => format!("{}^{}", operand(a), operand(b)),
+        ("pow" | "powi" | "powf", [a, b]) => format!("{}^{}", operand(a), closed(b)),
         ("square" | "sq", [a]) => format!("{}^2", operand(a)),
         ("cbrt", [a]) => format!("{}^(1/3)", operand(a)),
-        ("sinc", [a]) => format!("sin({})/{}", text(a), operand(a)),
         ("sec", [a]) => format!("1/cos({})", text(a)),
         ("csc", [a]) => format!("1/sin({})", text(a)),
         ("cot", [a]) => format!("1/tan({})", text(a)),
         ("diff" | "ddt" | "derivative", [a]) => format!("dot({})", text(a)),
-        ("scalar" | "dot_product", [a, b]) => format!("inner({}, {})", text(a), text(b)),
+        ("dot" | "scalar" | "dot_product", [a, b]) => format!("inner({}, {})", text(a), text(b)),
         _ => return None,
     })
 }

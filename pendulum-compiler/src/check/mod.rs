@@ -11,7 +11,7 @@ use crate::name::{self, Name};
 use crate::number::Rational;
 use crate::unit::{self, Dimension};
 use declare::{Declared, Shape, quantity, twice};
-pub(crate) use elsewhere::constant;
+pub(crate) use elsewhere::{constant, function};
 use proc_macro2::Ident;
 use std::collections::{BTreeMap, BTreeSet};
 pub(crate) use text::text;
@@ -76,6 +76,9 @@ pub(crate) const FUNCTIONS: &[(&str, usize)] = &[
     ("sinh", 1), ("cosh", 1), ("tanh", 1), ("abs", 1), ("sign", 1), ("min", 2), ("max", 2),
     ("dot", 1), ("inner", 2), ("cross", 2), ("perp", 1), ("height", 1), ("cis", 1),
 ];
+
+/// What to do about a unit in a formula.
+pub(crate) const UNITS: &str = "units stand in declarations only, as in `g: m/s^2 = 9.81`";
 
 /// Resolves every name, reports those that cannot be.
 pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {

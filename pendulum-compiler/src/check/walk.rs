@@ -1,6 +1,6 @@
 //! A walk over all expressions: names that nobody declared, functions with the wrong number of arguments.
 
-use super::{FUNCTIONS, Meaning, Model, constant, elsewhere, plain, text, unknown};
+use super::{FUNCTIONS, Meaning, Model, UNITS, constant, function, plain, unknown};
 use crate::ast::{Binder, Expr, ExprKind, ForceIndex};
 use crate::error::{Errors, Range};
 use crate::name::{self, Name};
@@ -226,9 +226,10 @@ impl Walk<'_, '_, '_> {
         let known = self.known();
         if !known.iter().any(|known| known.eq_ignore_ascii_case(text)) {
             if Dimension::of(text).is_some() {
-                return format!("unknown name `{text}`; units stand in declarations only, as in `g: m/s^2 = 9.81`");
+                return format!("unknown name `{text}`; declare it as a parameter; {UNITS}");
             }
-            if let Some(constant) = constant(text) {
+            // A letter alone is a quantity more often than a constant.
+            if let Some(constant) = constant(text, self.model.block.ascii).filter(|_| 1 < text.len()) {
                 return format!("unknown name `{text}`; write `{constant}`");
             }
         }
@@ -247,8 +248,7 @@ impl Walk<'_, '_, '_> {
             return;
         }
         if let Some(&(_, expected)) = FUNCTIONS.iter().find(|(function, _)| ident == function) {
-            if let ("dot", [a, b]) = (ident.to_string().as_str(), items) {
-                let product = format!("inner({}, {})", text(a), text(b));
+            if let ("dot", Some(product)) = (ident.to_string().as_str(), function(&ident.to_string(), items)) {
                 self.errors.at(range, format!("`dot` is the derivative of one argument; write `{product}` for a scalar product"));
             } else if expected != count {
                 self.errors.at(range, format!("`{ident}` takes {}; {count} stand here", plural(expected)));
@@ -272,7 +272,7 @@ impl Walk<'_, '_, '_> {
                 .map(|definition| definition.name.to_string());
             let known: Vec<String> = FUNCTIONS.iter().map(|(function, _)| (*function).to_owned()).chain(lets).collect();
             let nearest = || name::nearest(&ident.to_string(), known.iter().map(String::as_str));
-            let message = match (elsewhere::function(&ident.to_string(), items), nearest()) {
+            let message = match (function(&ident.to_string(), items), nearest()) {
                 (Some(call), _) => format!("unknown function `{ident}`; write `{call}`"),
                 (None, Some(near)) => format!("unknown function `{ident}`; did you mean `{near}`?"),
                 (None, None) => format!("unknown function `{ident}`; define it with `let {ident}(p) = …;`"),

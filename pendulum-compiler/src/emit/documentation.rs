@@ -10,7 +10,7 @@ use std::fmt::Write;
 
 impl Emitter<'_, '_> {
     /// The equations, their cost and what they leave out, for hover and rustdoc.
-    pub(super) fn documentation(&mut self) -> TokenStream {
+    pub(super) fn documentation(&self) -> TokenStream {
         let names = Names::new(self.model, &self.energies.families);
         let Some(motion) = &self.motion else { return TokenStream::new() };
         let accelerations = motion.accelerations.clone();
@@ -27,8 +27,8 @@ impl Emitter<'_, '_> {
             text.push_str("\n\n");
         }
         text.push_str("# Equations of motion\n\n```text\n");
-        for line in self.equations(&names) {
-            text.push_str(&line);
+        for line in &self.equations[0] {
+            text.push_str(line);
             text.push('\n');
         }
         text.push_str("```\n\n");

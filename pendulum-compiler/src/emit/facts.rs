@@ -3,13 +3,12 @@
 use super::Emitter;
 use crate::check::Quantity;
 use crate::expr::{Id, Symbol};
-use crate::latex;
 use crate::print::{self, Names};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 impl Emitter<'_, '_> {
-    pub(super) fn facts(&mut self) -> TokenStream {
+    pub(super) fn facts(&self) -> TokenStream {
         let krate = self.krate.clone();
         let names = Names::new(self.model, &self.energies.families);
         let name = self.model.block.name.to_string();
@@ -41,11 +40,7 @@ impl Emitter<'_, '_> {
         let cyclic = motion.cyclic.clone();
         let conserved: Vec<String> = motion.conserved.iter().map(|conserved| print::conserved(&names, conserved)).collect();
         let unused = self.unused(&names);
-        let equations = self.equations(&names).join("\n");
-        let latex = match &self.motion {
-            Some(motion) => latex::equations(&mut self.graph, &names, motion).join("\n"),
-            None => String::new(),
-        };
+        let [equations, latex] = self.equations.each_ref().map(|lines| lines.join("\n"));
         quote!(#krate::__private::facts(#krate::__private::Known {
             name: #name, coordinates: &[#(#coordinates),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*],
             autonomous: #autonomous, explicit_time: #explicit_time, separable: #separable, velocity_free: #velocity_free, constant_mass_matrix: #constant_mass_matrix,
@@ -66,14 +61,8 @@ impl Emitter<'_, '_> {
         all.filter(|(index, _)| !needed.contains(&Symbol::Parameter(*index))).map(|(_, name)| name.clone()).collect()
     }
 
-    pub(super) fn equations(&mut self, names: &Names) -> Vec<String> {
-        match &self.motion {
-            None => Vec::new(),
-            Some(motion) => print::equations(&mut self.graph, names, motion),
-        }
-    }
-
-    /// For each purpose, whether it needs the position, the velocity and the acceleration of each driven input.
+    /// For each purpose, whether it needs the position, the velocity and the acceleration of each
+    /// driven input.
     pub(super) fn needed(&self) -> Vec<Vec<[bool; 3]>> {
         let purposes: Vec<Vec<Symbol>> = match &self.motion {
             None => vec![Vec::new(); 4],

@@ -13,9 +13,11 @@ mod unmentioned;
 
 use crate::check::{Model, Quantity};
 use crate::expr::Graph;
+use crate::latex;
 use crate::lower::Energies;
 use crate::mirror;
 use crate::motion::Motion;
+use crate::print::{self, Names};
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 use std::collections::BTreeMap;
@@ -35,9 +37,30 @@ pub(crate) struct Emitter<'m, 'a> {
     /// `None` after an error: then every body is left open, so that the mistake gives one message.
     pub(crate) motion: Option<Motion>,
     pub(crate) energies: Energies,
+    /// The equations of motion in Unicode and in LaTeX.
+    equations: [Vec<String>; 2],
 }
 
-impl Emitter<'_, '_> {
+impl<'m, 'a> Emitter<'m, 'a> {
+    pub(crate) fn new(
+        krate: TokenStream,
+        model: &'m Model<'a>,
+        mut graph: Graph,
+        motion: Option<Motion>,
+        energies: Energies,
+    ) -> Self {
+        let names = Names::new(model, &energies.families);
+        let equations = match &motion {
+            Some(motion) => {
+                let sides = print::sides(&graph, &names, motion);
+                let latex = latex::equations(&graph, &names, motion, &sides);
+                [print::equations(&mut graph, &names, motion, &sides), latex]
+            }
+            None => [Vec::new(), Vec::new()],
+        };
+        Self { krate, model, graph, motion, energies, equations }
+    }
+
     /// All items of a block.
     pub(crate) fn items(mut self) -> TokenStream {
         let structure = self.structure();

@@ -7,14 +7,16 @@ use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use quote::{ToTokens, format_ident, quote};
 
 impl Emitter<'_, '_> {
-    pub(super) fn structure(&mut self) -> TokenStream {
+    pub(super) fn structure(&self) -> TokenStream {
         let block = self.model.block;
-        let (attributes, visibility, name, scalar) = (&block.attributes, &block.visibility, &block.name, self.scalar());
+        let (visibility, name, scalar) = (&block.visibility, &block.name, self.scalar());
+        let attributes = block.attributes.iter().filter(|attribute| !self.is_moved(attribute, None));
         let documentation = self.documentation();
-        let fields = block.fields.iter().zip(&self.model.parameters).map(|(field, quantity)| {
-            let (attributes, name) = (&field.attributes, &field.name);
+        let fields = block.fields.iter().zip(&self.model.parameters).enumerate().map(|(index, (field, quantity))| {
+            let attributes = field.attributes.iter().filter(|attribute| !self.is_moved(attribute, Some(index)));
+            let name = &field.name;
             let kind = self.field_type(quantity, &scalar);
-            let documented = attributes.iter().any(|attribute| attribute.path().is_ident("doc"));
+            let documented = field.attributes.iter().any(|attribute| attribute.path().is_ident("doc"));
             let text = match (documented, quantity.unit.as_str()) {
                 (true, "") => String::new(),
                 (true, unit) => format!("\n\nUnit: {unit}."),
@@ -26,7 +28,8 @@ impl Emitter<'_, '_> {
         });
         let empty =
             block.fields.is_empty().then(|| quote! { #[doc(hidden)] pub __scalar: ::core::marker::PhantomData<#scalar>, });
-        // Where another item has the name too, rustc shows the tokens from the visibility to the name, and not the whole block.
+        // Where another item has the name too, rustc shows the tokens from the visibility to the
+        // name, and not the whole block.
         let visibility = located(visibility.to_token_stream(), None);
         let head = located(quote!(struct #name<#scalar = ::core::primitive::f64> { #(#fields)* #empty }), Some(name.span()));
         quote! {
@@ -101,40 +104,43 @@ impl Emitter<'_, '_> {
         })
     }
 
-    /// What asserts, while `driven_by` is compiled for its motions, that they have all derivatives that the system needs.
+    /// Assertions, while `driven_by` is compiled for its motions, that they have all derivatives
+    /// that the system needs.
     ///
-    /// It stands in `driven_by` itself, so that rustc names the call, and at the declaration of the input.
+    /// They stand in `driven_by` itself, so that rustc names the call; each has a constant of its
+    /// own at the declaration of the input, so that one that fails hides no other.
     fn sufficient(&self) -> TokenStream {
         let (krate, scalar, system) = (&self.krate, self.scalar(), &self.model.block.name);
         let purposes = self.needed();
         let assertions = self.model.inputs.iter().enumerate().filter_map(|(index, quantity)| {
             let needs = |order: usize| purposes.iter().any(|inputs| inputs[index][order]);
             let (name, motion, dimension) = (quantity.name, format_ident!("M{index}"), quantity.count());
-            let (constants, what, calls) = match (needs(1), needs(2)) {
-                (true, true) => (
-                    &["VELOCITY", "ACCELERATION"][..],
-                    "velocity and the acceleration",
-                    "`.velocity(…)` and `.acceleration(…)`",
-                ),
-                (true, false) => (&["VELOCITY"][..], "velocity", "`.velocity(…)`"),
-                (false, true) => (&["ACCELERATION"][..], "acceleration", "`.acceleration(…)`"),
-                (false, false) => return None,
+            let has = |constant: &str| {
+                let constant = format_ident!("{constant}");
+                quote!(<#motion as #krate::motion::Motion<#scalar, #dimension>>::HAS.contains(#krate::motion::Orders::#constant))
             };
-            let constants = constants.iter().map(|constant| format_ident!("{constant}"));
-            let message = format!(
-                "`{system}` needs the {what} of `{name}`, and its motion lacks a derivative; give the `Function` its {calls}, \
-                 or take another motion"
-            );
-            let assertion = quote! {
-                ::core::assert!(
-                    true #(&& <#motion as #krate::motion::Motion<#scalar, #dimension>>::HAS.contains(#krate::motion::Orders::#constants))*,
-                    #message
-                );
+            let lacks = |what: &str, calls: &str| {
+                format!(
+                    "`{system}` needs the {what} of `{name}`, which its motion lacks; give the `Function` its {calls}, or take another \
+                     motion"
+                )
             };
-            Some(located(assertion, Some(name.span())))
+            let velocity = needs(1).then(|| (has("VELOCITY"), lacks("velocity", "`.velocity(…)`")));
+            let acceleration = needs(2).then(|| (has("ACCELERATION"), lacks("acceleration", "`.acceleration(…)`")));
+            let both = match (&velocity, &acceleration) {
+                (Some((velocity, _)), Some((acceleration, _))) => {
+                    let message = lacks("velocity and the acceleration", "`.velocity(…)` and `.acceleration(…)`");
+                    Some((quote!(#velocity || #acceleration), message))
+                }
+                (None, None) => return None,
+                _ => None,
+            };
+            let each = [both, velocity, acceleration].into_iter().flatten();
+            let place = Some(name.span());
+            let each = each.map(|(condition, message)| located(quote!(::core::assert!(#condition, #message);), place));
+            Some(located(quote!(const { #(#each)* };), place))
         });
-        let assertions: TokenStream = assertions.collect();
-        if assertions.is_empty() { assertions } else { quote!(const { #assertions };) }
+        assertions.collect()
     }
 
     fn field_type(&self, quantity: &Quantity, scalar: &Ident) -> TokenStream {

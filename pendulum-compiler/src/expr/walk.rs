@@ -52,8 +52,8 @@ impl Graph {
         !self.reachable(roots).iter().filter(|id| cornered(id)).any(|&id| self.contents(id).any(Contents::STATE))
     }
 
-    /// Whether `roots` are written as sums of coordinates and velocities with coefficients that parameters alone decide, and of what contains
-    /// neither.
+    /// Whether `roots` are written as sums of coordinates and velocities with coefficients that
+    /// parameters alone decide, and of what contains neither.
     pub(crate) fn linear(&self, roots: &[Id]) -> bool {
         let moving = Contents::COORDINATE.or(Contents::VELOCITY).or(Contents::MOMENTUM).or(Contents::AUXILIARY);
         let mut linear = vec![false; roots.iter().map(|id| id.index() + 1).max().unwrap_or(0)];

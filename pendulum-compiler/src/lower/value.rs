@@ -161,9 +161,6 @@ impl Lower<'_, '_, '_, '_> {
             (Value::Plane { parts: a, complex: left }, Value::Plane { parts: b, complex: right }) => {
                 Value::Plane { parts: self.complex_product(a, b), complex: left && right }
             }
-            (Value::Space(_), Value::Space(_)) => {
-                self.wrong(expr, "the product of two space vectors is ambiguous; write `inner(u, v)` or `cross(u, v)`")
-            }
             (a, b) => {
                 let message = format!("{} cannot be multiplied by {}; write a component or an index", a.kind(), b.kind());
                 self.wrong(expr, &message)

@@ -5,7 +5,7 @@ use super::token::{end, identifier, skip, unexpected};
 use crate::ast::{Block, Expr, ExprKind, Field, Kind, Literal, Lost};
 use crate::check::text;
 use crate::error::Range;
-use proc_macro2::{Ident, TokenStream};
+use proc_macro2::{Ident, TokenStream, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Result};
 use syn::spanned::Spanned;
@@ -85,7 +85,8 @@ impl Parser<'_> {
         Ok(Field { attributes, name, kind, default })
     }
 
-    /// What stands after the name of a parameter or of a driven input: a colon and a kind, or nothing.
+    /// What stands after the name of a parameter or of a driven input: a colon and a kind, or
+    /// nothing.
     pub(super) fn declared_kind(&mut self, input: ParseStream, name: &Ident) -> Result<Kind> {
         if input.peek(syn::token::Bracket) {
             let brackets = Range::from(input.span());
@@ -148,8 +149,12 @@ fn no_length(content: ParseStream, unit: Option<&Expr>) -> syn::Error {
             range.error(unit_missing(&length.to_string()))
         }
         Some(unit) if content.peek(Token![,]) => {
-            let message = format!("all components have one unit; write `[{}; 2]` for a vector", text(unit));
-            Range::from(content.span()).error(message)
+            let place = Range::from(content.span());
+            let rest = content.parse::<TokenStream>().unwrap_or_default().into_iter();
+            // A comma at the end is none between components.
+            let commas = rest.map(|tree| matches!(tree, TokenTree::Punct(sign) if sign.as_char() == ',')).collect::<Vec<_>>();
+            let length = commas.iter().filter(|comma| **comma).count() + usize::from(commas.last() == Some(&false));
+            place.error(format!("all components have one unit; write `[{}; {}]` for a vector", text(unit), length.max(2)))
         }
         _ => Range::from(content.span()).error("a length is missing; write `[m; 2]` for a vector, `[kg; 5]` for a family"),
     }

@@ -1,6 +1,6 @@
 //! Expressions: operators by descending precedence, then names, calls and numbers.
 
-use super::foreign::{FOREIGN, UNIT, method, no_condition, path};
+use super::foreign::{FOREIGN, no_condition, no_unit, path};
 use super::token::{checked, comma, end, fragment, identifier, unexpected};
 use super::{Parser, to_the_last};
 use crate::ast::{Expr, ExprKind, Literal};
@@ -125,7 +125,7 @@ impl Parser<'_> {
                 input.parse::<Token![.]>()?;
                 let component = identifier(input, "a component, `x`, `y` or `z`")?;
                 if input.peek(syn::token::Paren) {
-                    return Err(method(input, &expr, &component));
+                    return Err(self.method(input, expr, &component));
                 }
                 let range = expr.range.to(component.span().into());
                 expr = self.node(ExprKind::Component(Box::new(expr), component), range);
@@ -174,7 +174,7 @@ impl Parser<'_> {
             return self.named(input);
         }
         if input.peek(Token![::]) {
-            return Err(path(input, None));
+            return Err(path(input, None, self.ascii));
         }
         if input.peek(Token![.]) && input.peek2(Lit) {
             let dot = Range::from(input.parse::<Token![.]>()?.span());
@@ -209,7 +209,7 @@ impl Parser<'_> {
             return Err(Range::from(name.span()).error(format!("`{name}` is Rust, which has no place in a formula; {}", row.1)));
         }
         if input.peek(Token![::]) {
-            return Err(path(input, Some(&name)));
+            return Err(path(input, Some(&name), self.ascii));
         }
         let start = Range::from(name.span());
         if !input.peek(syn::token::Paren) {
@@ -241,7 +241,7 @@ impl Parser<'_> {
         Ok(self.node(kind, range))
     }
 
-    fn list(&mut self, content: ParseStream) -> Result<Vec<Expr>> {
+    pub(super) fn list(&mut self, content: ParseStream) -> Result<Vec<Expr>> {
         let mut items = Vec::new();
         while !content.is_empty() {
             items.push(self.expr(content)?);
@@ -268,7 +268,7 @@ impl Parser<'_> {
             let message = if suffix == "f32" || suffix == "f64" {
                 format!("numbers here are exact and have no suffix; write `{digits}`")
             } else if self.is_unit(Some(&suffix), input) {
-                UNIT.to_owned()
+                no_unit()
             } else {
                 format!("there is no implicit multiplication; write `{digits}*{suffix}`")
             };

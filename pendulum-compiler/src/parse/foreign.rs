@@ -4,7 +4,7 @@ use super::Parser;
 use super::statement::STATEMENTS;
 use super::token::fragment;
 use crate::ast::{Expr, ExprKind};
-use crate::check::{FUNCTIONS, constant, text};
+use crate::check::{FUNCTIONS, UNITS, constant, function, text};
 use crate::error::Range;
 use crate::name;
 use crate::unit::Dimension;
@@ -26,8 +26,10 @@ pub(super) const FOREIGN: &[(&str, &str)] = &[
     ("move", "leave it out"),
 ];
 
-/// What to do about a unit in a formula.
-pub(super) const UNIT: &str = "a number in a formula has no unit; units stand in declarations only, as in `g: m/s^2 = 9.81`";
+/// What is wrong with a number that has a unit.
+pub(super) fn no_unit() -> String {
+    format!("a number in a formula has no unit; {UNITS}")
+}
 
 impl Parser<'_> {
     /// Two operands side by side: there is no implicit multiplication.
@@ -58,15 +60,16 @@ impl Parser<'_> {
                     _ => Range::from(group.span_open()).error("an operator is missing before `(`; write `*` to multiply"),
                 },
                 (ExprKind::Name(name), _) if self.is_function(name) => {
-                    let argument = match token {
-                        TokenTree::Ident(_) | TokenTree::Literal(_) if FUNCTIONS.contains(&(&name.to_string(), 1)) => {
-                            token.to_string()
-                        }
-                        _ => "…".to_owned(),
+                    let count = FUNCTIONS.iter().find(|row| name == row.0).map_or(1, |row| row.1);
+                    let arguments = match token {
+                        TokenTree::Ident(_) | TokenTree::Literal(_) if count == 1 => token.to_string(),
+                        _ => vec!["…"; count].join(", "),
                     };
-                    right.error(format!("the argument of `{name}` stands in parentheses; write `{name}({argument})`"))
+                    let (plural, verb) = if count == 1 { ("", "stands") } else { ("s", "stand") };
+                    let message = format!("the argument{plural} of `{name}` {verb} in parentheses; write `{name}({arguments})`");
+                    right.error(message)
                 }
-                (ExprKind::Number(_), _) if self.is_unit(None, input) => right.error(UNIT),
+                (ExprKind::Number(_), _) if self.is_unit(None, input) => right.error(no_unit()),
                 _ => right.error(format!("there is no implicit multiplication; write `*` before `{token}`")),
             });
         }
@@ -103,7 +106,8 @@ impl Parser<'_> {
         Err(base.range.to(last.into()).error(message))
     }
 
-    /// Whether a unit begins behind a number, with a `suffix` or at the next token: one of its names at least is nothing else.
+    /// Whether a unit begins behind a number, with a `suffix` or at the next token: one of its
+    /// names at least is nothing else.
     pub(super) fn is_unit(&self, suffix: Option<&str>, input: ParseStream) -> bool {
         let ahead = input.fork();
         let mut name = suffix.map(str::to_owned);
@@ -125,6 +129,30 @@ impl Parser<'_> {
         }
     }
 
+    /// A method call, and what to write instead.
+    pub(super) fn method(&mut self, input: ParseStream, base: Expr, name: &Ident) -> syn::Error {
+        let method = name.to_string();
+        let mut operands = vec![base];
+        let instead = match self.arguments(input) {
+            Ok(arguments) => {
+                operands.extend(arguments);
+                let list = || operands.iter().map(text).collect::<Vec<_>>().join(", ");
+                let own = FUNCTIONS.contains(&(&method, operands.len())).then(|| format!("{method}({})", list()));
+                own.or_else(|| function(&method, &operands))
+            }
+            Err(_) => None,
+        };
+        let instead = instead.map_or_else(|| "a function of the language, as in `sin(θ)`".to_owned(), |call| format!("`{call}`"));
+        Range::from(name.span()).error(format!("`.{method}()` is Rust, which has no place in a formula; write {instead}"))
+    }
+
+    /// The expressions between a pair of parentheses.
+    fn arguments(&mut self, input: ParseStream) -> Result<Vec<Expr>> {
+        let content;
+        parenthesized!(content in input);
+        self.list(&content)
+    }
+
     fn is_function(&self, name: &Ident) -> bool {
         FUNCTIONS.iter().any(|row| name == row.0) && !self.is_declared(&name.to_string())
     }
@@ -142,7 +170,7 @@ pub(super) fn no_condition(input: ParseStream) -> Result<()> {
 }
 
 /// A path, and what to write instead.
-pub(super) fn path(input: ParseStream, first: Option<&Ident>) -> syn::Error {
+pub(super) fn path(input: ParseStream, first: Option<&Ident>, ascii: bool) -> syn::Error {
     let start = first.map_or_else(|| input.span(), Ident::span);
     let (mut text, mut last) = (first.map(Ident::to_string).unwrap_or_default(), (String::new(), start));
     while input.parse::<Token![::]>().is_ok()
@@ -151,23 +179,10 @@ pub(super) fn path(input: ParseStream, first: Option<&Ident>) -> syn::Error {
         text = format!("{text}::{name}");
         last = (name.to_string(), name.span());
     }
-    let instead = match constant(&last.0) {
+    let instead = match constant(&last.0, ascii) {
         Some(constant) => format!("`{constant}`"),
         None if FUNCTIONS.iter().any(|row| row.0 == last.0) => format!("`{}(…)`", last.0),
         None => "a number, or declare a parameter".to_owned(),
     };
     Range { first: start, last: last.1 }.error(format!("`{text}` is Rust, which has no place in a formula; write {instead}"))
-}
-
-/// A method call, and what to write instead.
-pub(super) fn method(input: ParseStream, base: &Expr, name: &Ident) -> syn::Error {
-    let function = name.to_string();
-    let base = text(base);
-    let arguments = input.fork().parse::<TokenTree>().map(|group| group.to_string()).unwrap_or_default();
-    let instead = match function.as_str() {
-        "powi" | "powf" => format!("`{base}^{}`", arguments.trim_start_matches('(').trim_end_matches(')')),
-        _ if FUNCTIONS.contains(&(&function, 1)) => format!("`{function}({base})`"),
-        _ => "a function of the language, as in `sin(θ)`".to_owned(),
-    };
-    Range::from(name.span()).error(format!("`.{function}()` is Rust, which has no place in a formula; write {instead}"))
 }

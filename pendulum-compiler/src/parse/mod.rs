@@ -72,7 +72,8 @@ fn runtime(input: ParseStream) -> Result<TokenStream> {
     Ok(path)
 }
 
-/// Parses tokens so that what is missing at their end is missing at the last of them, and not at the whole macro.
+/// Parses tokens so that what is missing at their end is missing at the last of them, and not at
+/// the whole macro.
 fn to_the_last<R>(tokens: TokenStream, parse: impl FnOnce(ParseStream) -> Result<R>) -> Result<R> {
     let last = match tokens.clone().into_iter().last() {
         Some(TokenTree::Group(group)) => group.span_close(),

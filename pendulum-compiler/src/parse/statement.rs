@@ -3,6 +3,7 @@
 use super::Parser;
 use super::token::{end, equals, fragment, identifier, unexpected};
 use crate::ast::{Binder, Expr, ForceIndex, Kind, Let, Role, Statement};
+use crate::check::text;
 use crate::error::Range;
 use crate::name;
 use proc_macro2::{Ident, Spacing, TokenStream, TokenTree};
@@ -67,17 +68,19 @@ impl Parser<'_> {
         while input.parse::<Token![,]>().is_ok()
             && let Ok(name) = input.fork().call(Ident::parse_any)
         {
-            example.get_or_insert(match word {
-                "coordinate" | "driven" => format!("{word} {name};"),
-                "let" => format!("let {name} = …;"),
+            let statement = match word {
+                "coordinate" => self.named_coordinate(input),
+                "driven" => self.named_input(input),
+                "let" => {
+                    example = Some(format!("let {name} = …;"));
+                    break;
+                }
                 _ => break,
-            });
-            if word != "coordinate" {
-                break;
-            }
-            match self.named_coordinate(input) {
-                Ok(coordinate) => self.begun.push(coordinate),
-                Err(_) => break,
+            };
+            example.get_or_insert_with(|| statement.as_ref().map_or_else(|_| format!("{word} {name};"), written));
+            match statement {
+                Ok(coordinate @ Statement::Coordinate { .. }) => self.begun.push(coordinate),
+                _ => break,
             }
         }
         comma.error(match example {
@@ -101,7 +104,7 @@ impl Parser<'_> {
             length = Some(self.expr(&content)?);
             closed = end(&content);
         }
-        match closed.and_then(|()| self.coordinate_unit(input)) {
+        match closed.and_then(|()| self.coordinate_unit(input, &name)) {
             Ok(unit) => Ok(Statement::Coordinate { name, length, unit }),
             Err(error) => {
                 self.begun.push(Statement::Coordinate { name, length, unit: None });
@@ -110,7 +113,7 @@ impl Parser<'_> {
         }
     }
 
-    fn coordinate_unit(&mut self, input: ParseStream) -> Result<Option<Expr>> {
+    fn coordinate_unit(&mut self, input: ParseStream, name: &Ident) -> Result<Option<Expr>> {
         if !input.peek(Token![:]) {
             return Ok(None);
         }
@@ -118,8 +121,9 @@ impl Parser<'_> {
         match self.kind(input)? {
             Kind::Scalar(unit) => Ok(unit),
             Kind::Array { unit, length } => {
-                let range = unit.map_or(length.range, |unit| unit.range);
-                Err(range.error("a coordinate is one number; declare one coordinate for each component"))
+                let range = unit.as_ref().map_or(length.range, |unit| unit.range);
+                let family = written(&Statement::Coordinate { name: name.clone(), length: Some(length), unit });
+                Err(range.error(format!("a coordinate is one number; write `{family}` for several")))
             }
             Kind::Body(range) => Err(range.error("a coordinate has a unit; write `rad` or `m`")),
         }
@@ -127,6 +131,10 @@ impl Parser<'_> {
 
     fn driven(&mut self, input: ParseStream) -> Result<Statement> {
         input.call(Ident::parse_any)?;
+        self.named_input(input)
+    }
+
+    fn named_input(&mut self, input: ParseStream) -> Result<Statement> {
         let name = self.declared(input, "the name of a driven input")?;
         let kind = self.declared_kind(input, &name)?;
         if let Kind::Body(range) = kind {
@@ -215,6 +223,23 @@ impl Parser<'_> {
         }
         let high = self.expr(input)?;
         Ok((low, high, inclusive))
+    }
+}
+
+/// A declaration as one would write it.
+fn written(statement: &Statement) -> String {
+    let unit = |unit: &Option<Expr>| unit.as_ref().map_or_else(String::new, |unit| format!(": {}", text(unit)));
+    match statement {
+        Statement::Coordinate { name, length: None, unit: own } => format!("coordinate {name}{};", unit(own)),
+        Statement::Coordinate { name, length: Some(length), unit: own } => {
+            format!("coordinate {name}[{}]{};", text(length), unit(own))
+        }
+        Statement::Driven { name, kind: Kind::Scalar(own) } => format!("driven {name}{};", unit(own)),
+        Statement::Driven { name, kind: Kind::Array { unit, length } } => {
+            let unit = unit.as_ref().map_or_else(|| "_".to_owned(), text);
+            format!("driven {name}: [{unit}; {}];", text(length))
+        }
+        _ => "…".to_owned(),
     }
 }
 

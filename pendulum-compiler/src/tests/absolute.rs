@@ -4,7 +4,8 @@ use super::golden;
 use crate::expand::expand;
 use proc_macro2::{TokenStream, TokenTree};
 
-/// The primitive types, and what the prelude and the crates of the standard library bring into every scope.
+/// The primitive types, and what the prelude and the crates of the standard library bring into
+/// every scope.
 #[rustfmt::skip]
 const COMMON: &[&str] = &[
     "f32", "f64", "u8", "u16", "u32", "u64", "u128", "usize", "i8", "i16", "i32", "i64", "i128", "isize", "bool", "char", "str",
@@ -57,8 +58,8 @@ fn generated_paths_are_absolute() {
     }
 }
 
-/// Where another system took the struct's name, an implementation that leaves its number of coordinates to inference would be a
-/// second mistake.
+/// Where another system took the struct's name, an implementation that leaves its number of
+/// coordinates to inference would be a second mistake.
 #[test]
 fn generated_code_names_the_number_of_coordinates() {
     for source in golden::sources_of_blocks() {

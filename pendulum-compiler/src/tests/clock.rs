@@ -5,7 +5,8 @@ use crate::clock::features;
 use crate::expr::Symbol;
 use std::fmt::Write;
 
-/// One over the width of each function of time in a force at t = 3, and the time since its middle, with a = 5, b = 0.5 and c = 2.
+/// One over the width of each function of time in a force at t = 3, and the time since its middle,
+/// with a = 5, b = 0.5 and c = 2.
 fn found(force: &str) -> Vec<(f64, f64)> {
     let block = format!("struct S {{ a, b, c }} coordinate q; kinetic = q_dot^2/2; force q = {force};");
     derive(&block, |_, graph, motion| {
@@ -87,6 +88,25 @@ fn corners() {
     check("1/(b + abs(t - a))", &[(2.0, -2.0)]);
     // A pulse from a to a + b.
     check("sign(t - a) - sign(t - a - b)", &[(4.0, 3.0 - 5.25)]);
+}
+
+/// Magnitudes of magnitudes and sums of them: a place at each corner, with the steepest slope.
+#[test]
+fn several_corners() {
+    check("exp(-abs(abs(t - a) - b)/c)", &[(0.5, -2.5), (0.5, -2.0), (0.5, -1.5), (2.0, -2.0)]);
+    check("exp(-abs(t - a)/b - abs(t - 1)/c)", &[(0.5, 0.0), (2.5, -2.0), (2.5, 2.0)]);
+    check("tanh((abs(t - a) - abs(t - 1))/b)", &[(0.5, 0.0), (4.0, -2.0), (4.0, 2.0)]);
+    // More corners than are looked at: as wide as that at all times.
+    let many: Vec<String> = (0..10).map(|k| format!("abs(t - {k})")).collect();
+    assert!(found(&format!("exp(-({})/b)", many.join(" + "))).contains(&(20.0, 0.0)));
+}
+
+/// Of many corners at times that are numbers, neighbours are the ends of pulses.
+#[test]
+fn many_pulses() {
+    let pulses: Vec<String> = (0..6).map(|k| format!("sign(t - {k}) - sign(t - {k}.5)")).collect();
+    let expected: Vec<(f64, f64)> = (0..11).rev().map(|k| (4.0, 3.0 - 0.25 - 0.5 * f64::from(k))).collect();
+    check(&pulses.join(" + "), &expected);
 }
 
 #[test]

@@ -143,10 +143,11 @@ fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
     derived(source, errors, |model, graph, motion, energies| {
         let names = print::Names::new(model, &energies.families);
         let mut text = String::new();
-        for line in print::equations(graph, &names, motion) {
+        let sides = print::sides(graph, &names, motion);
+        for line in print::equations(graph, &names, motion, &sides) {
             writeln!(text, "{line}").unwrap();
         }
-        for line in latex::equations(graph, &names, motion).into_iter().filter(|_| whole) {
+        for line in latex::equations(graph, &names, motion, &sides).into_iter().filter(|_| whole) {
             writeln!(text, "latex: {line}").unwrap();
         }
         let operations = |graph: &Graph, roots: &[_]| emit::documentation::operations(schedule::program(graph, roots).count());

@@ -18,6 +18,7 @@ mod golden;
 mod growth;
 mod identities;
 mod printed;
+mod quantities;
 mod random;
 mod refusals;
 mod rules;

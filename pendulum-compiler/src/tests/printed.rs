@@ -8,7 +8,9 @@ use std::collections::BTreeSet;
 fn printed(source: &str) -> [Vec<String>; 2] {
     derive(source, |model, graph, motion| {
         let names = print::Names::new(model, &BTreeSet::new());
-        [print::equations(graph, &names, motion), latex::equations(graph, &names, motion)]
+        let sides = print::sides(graph, &names, motion);
+        let latex = latex::equations(graph, &names, motion, &sides);
+        [print::equations(graph, &names, motion, &sides), latex]
     })
 }
 

@@ -3,7 +3,7 @@
 use super::refusals;
 
 /// A block with one statement to vary.
-fn block(statements: &str) -> String {
+pub(super) fn block(statements: &str) -> String {
     format!("struct P {{ m: kg, L: m, c: [m; 2], f: [kg; 5], g }} coordinate θ: rad; driven x: [m; 2]; {statements}")
 }
 
@@ -19,12 +19,6 @@ const CASES: &[(&str, &str)] = &[
     ("kinetic = m*L^2*θ̇^2; potential = dot(m*L);",             "nothing in `m*L` moves, so its time derivative is zero; leave it out"),
     ("kinetic = m*L^2*θ̇^2; potential = m_dot;",                "`m` is a parameter, so nothing in `m_dot` moves; declare it `driven` or as a coordinate"),
     ("kinetic = m*L^2*θ̇^2; potential = g*sum(k in 0..2, f[k]*k_dot*θ);", "nothing in `k_dot` moves, so its time derivative is zero; leave it out"),
-    ("kinetic = m*L^2*θ̇^2; potential = x;",                    "`x` is a plane vector, but a scalar is needed here; write `inner(u, v)`, `|u|` or a component"),
-    ("kinetic = m*L^2*θ̇^2; potential = inner(x, [1, 2, 3]);",  "`inner` takes two vectors of one length; these are a plane vector and a space vector"),
-    ("kinetic = m*L^2*θ̇^2; potential = |x + [1, 2, 3]|;",      "`[1, 2, 3]` is a space vector, but the terms before it are plane vectors; a sum needs terms of one kind"),
-    ("kinetic = m*L^2*θ̇^2; potential = f[5]*g;",               "index 5 is out of range; `f` has 5 members, `f[0]` to `f[4]`"),
-    ("kinetic = m*L^2*θ̇^2; potential = sum(k in 0..7, f[k]);", "index 5 is out of range; `f` has 5 members, `f[0]` to `f[4]`"),
-    ("kinetic = m*L^2*θ̇^2; potential = f*g;",                  "a family cannot be multiplied by a scalar; write a component or an index"),
     ("kinetic = m*L^2*θ̇^2; potential = 2g;",                   "there is no implicit multiplication; write `2*g`"),
     ("kinetic = m*L^2*θ̇^2; potential = m g;",                  "there is no implicit multiplication; write `*` before `g`"),
     ("kinetic = m*L^2*θ̇^2; potential = m(g);",                 "`m` is no function, and there is no implicit multiplication; write `m*(…)`"),
@@ -45,15 +39,10 @@ const CASES: &[(&str, &str)] = &[
     ("kinetic = m*L^2*θ̇^2; let r(p) = p; potential = r(θ, θ);", "`r` takes one argument; 2 stand here"),
     ("kinetic = m*L^2*θ̇^2; potential = sin(θ, θ);",            "`sin` takes one argument; 2 stand here"),
     ("kinetic = m*L^2*θ̇^2; potential = sin;",                  "`sin` is a function; write `sin(…)`"),
-    ("kinetic = m*L^2*θ̇^2; potential = x/x;",                  "`x` is a plane vector, and nothing can be divided by that; divide by its length `|u|`"),
     ("kinetic = m*L^2*θ̇^2; potential = m/0;",                  "division by zero; write another divisor"),
     ("kinetic = m*L^2*θ̇^2; potential = θ^10000000000000000000000;", "this exponent is too long for exact arithmetic; write one of at most eighteen digits"),
-    ("kinetic = m*L^2*θ̇^2; potential = x.w;",                  "unknown component `w`; there are `.x`, `.y`, `.z`"),
-    ("kinetic = m*L^2*θ̇^2; potential = x.z;",                  "`x` is a plane vector, it has no `.z`; write a vector"),
     ("kinetic = m*L^2*θ̇^2; force m = 1;",                      "`m` is no coordinate; a force acts on a coordinate, as in `force θ = …;`"),
-    ("kinetic = m*L^2*θ̇^2; potential = sum(k in 0..100000000, k);", "this range has more than 65536 members; write a shorter one"),
     ("kinetic = m*L^2*θ̇^2; potential = sum(k in 0..θ, k);",    "the end of a range is a whole number known while compiling; write numbers and indices only"),
-    ("kinetic = m*L^2*θ̇^2; potential = x^2;",                  "`x` is a plane vector, and only scalars have powers; write `|x|^2`"),
     ("kinetic = m*L^2*θ̇^2; potential = dot(dot(dot(x))).x;",   "`dot(dot(x))` contains a third derivative of a driven input; they have two"),
     ("kinetic = m*L^2*θ̇^2 + m*L*t*θ̇*ẍ.x;",                 "the momenta contain the acceleration of `x`, so the equations would contain its third derivative; leave its second derivative out of the kinetic energy"),
     ("kinetic = m*L^2*θ̇^2; potential = m*L*θ*ẍ.x;",           "the energy contains the acceleration of `x`, so its power would contain a third derivative; write what it does to a coordinate as a `force`"),
@@ -74,7 +63,6 @@ const CASES: &[(&str, &str)] = &[
     ("kinetic = m*L^2*θ̇^2; let gen = 2;",                      "`gen` is a word of the Rust language; choose another name"),
     ("kinetic = m*L^2*θ̇^2; let i = 3; potential = i*L;",       "`i` is the imaginary unit; choose another name"),
     ("kinetic = m*L^2*θ̇^2; driven ẏ; potential = y*ẏ;",        "`ẏ` is a time derivative; declare the name without dots, `y`"),
-    ("kinetic = m*L^2*θ̇^2; potential = max(x, x);",            "`x` is a plane vector, but a scalar is needed here; write `inner(u, v)`, `|u|` or a component"),
     ("kinetic = m*L^2*θ̇^2; let y(p, p) = p; potential = y(θ, θ);", "the argument `p` stands twice; rename one of the two"),
     ("kinetic = m*L^2*θ̇^2; let y(α, alpha) = α; potential = y(θ, θ);", "the argument `alpha` stands twice; rename one of the two"),
     ("kinetic = m*L^2*θ̇^2; potential = sum(θ in 0..2, g*θ);",  "`θ` is a coordinate, and an index of this name would hide it; choose another name"),
@@ -116,7 +104,7 @@ const NOTATIONS: &[(&str, &str)] = &[
     ("potential = m*cos^2 θ;",                 "a function is raised to a power after its argument; write `cos(θ)^2`"),
     ("potential = m*cos^2;",                   "`cos` is a function; write `cos(…)`"),
     ("potential = cos θ;",                     "the argument of `cos` stands in parentheses; write `cos(θ)`"),
-    ("potential = inner u u;",                 "the argument of `inner` stands in parentheses; write `inner(…)`"),
+    ("potential = inner u u;",                 "the arguments of `inner` stand in parentheses; write `inner(…, …)`"),
     ("let a = x; potential = ȧ·ȧ;",            "`·` is part of a name in Rust; write `*`, as in `ȧ*ȧ`, or `inner(ȧ, ȧ)` for vectors"),
     ("potential = m·L·g;",                     "`·` is part of a name in Rust; write `*`, as in `m*L*g`, or `inner(u, v)` for vectors"),
     ("potential = m·(L);",                     "`·` is part of a name in Rust; write `*`, or `inner(u, v)` for vectors"),
@@ -127,13 +115,22 @@ const NOTATIONS: &[(&str, &str)] = &[
     ("potential = m*9.81 m/s^2*L;",            "a number in a formula has no unit; units stand in declarations only, as in `g: m/s^2 = 9.81`"),
     ("potential = m*9.81m/s^2*L;",             "a number in a formula has no unit; units stand in declarations only, as in `g: m/s^2 = 9.81`"),
     ("potential = 2 kg;",                      "a number in a formula has no unit; units stand in declarations only, as in `g: m/s^2 = 9.81`"),
-    ("potential = m*9.81*m/s^2;",              "unknown name `s`; units stand in declarations only, as in `g: m/s^2 = 9.81`"),
+    ("potential = m*9.81*m/s^2;",              "unknown name `s`; declare it as a parameter; units stand in declarations only, as in `g: m/s^2 = 9.81`"),
+    ("potential = N*θ;",                    "unknown name `N`; declare it as a parameter; units stand in declarations only, as in `g: m/s^2 = 9.81`"),
+    ("potential = E*θ;",                    "unknown name `E`; declare it as a parameter, a coordinate, a driven input or with `let`"),
     ("potential = 2 m;",                       "there is no implicit multiplication; write `*` before `m`"),
     ("potential = 2m/L;",                      "there is no implicit multiplication; write `2*m`"),
     ("potential = log(θ + 2);",                "unknown function `log`; write `ln(θ + 2)`"),
     ("potential = norm(x);",                   "unknown function `norm`; write `|x|`"),
     ("potential = arctan(θ);",                 "unknown function `arctan`; write `atan(θ)`"),
     ("potential = pow(θ + 1, 2);",             "unknown function `pow`; write `(θ + 1)^2`"),
+    ("potential = pow(θ^2, -3);",              "unknown function `pow`; write `(θ^2)^(-3)`"),
+    ("potential = (m + L).powi(2);",           "`.powi()` is Rust, which has no place in a formula; write `(m + L)^2`"),
+    ("potential = (θ^2).powf((g + 1)*2);",     "`.powf()` is Rust, which has no place in a formula; write `(θ^2)^((g + 1)*2)`"),
+    ("potential = (m*L).hypot(-θ);",           "`.hypot()` is Rust, which has no place in a formula; write `|[m*L, -θ]|`"),
+    ("potential = (m*L).atan2(g - 1);",        "`.atan2()` is Rust, which has no place in a formula; write `atan2(m*L, g - 1)`"),
+    ("potential = x.dot(ẋ);",                  "`.dot()` is Rust, which has no place in a formula; write `inner(x, ẋ)`"),
+    ("potential = m*L.powi(θ +);",             "`.powi()` is Rust, which has no place in a formula; write a function of the language, as in `sin(θ)`"),
     ("potential = |xdot|;",                    "unknown name `xdot`; did you mean `x_dot`?"),
     ("potential = |xddot|;",                   "unknown name `xddot`; did you mean `x_ddot`?"),
     ("potential = θdot;",                      "unknown name `θdot`; did you mean `θ_dot`?"),
@@ -143,6 +140,8 @@ const NOTATIONS: &[(&str, &str)] = &[
     ("potential = f64::sin(θ);",               "`f64::sin` is Rust, which has no place in a formula; write `sin(…)`"),
     ("potential = crate::GRAVITY;",            "`crate::GRAVITY` is Rust, which has no place in a formula; write a number, or declare a parameter"),
     ("potential = θ*TAU;",                     "unknown name `TAU`; write `2*π`"),
+    ("potential = θ*PI;",                   "unknown name `PI`; write `π`"),
+    ("potential = θ*Pi;",                   "unknown name `Pi`; write `π`"),
     ("potential = .5*m;",                      "a number begins with a digit; write `0.5`"),
     ("potential = m*θ > 0;",                   "a formula has no conditions; write `max`, `min`, `abs` or `sign` to tell cases apart, as in `max(0, θ)`"),
     ("potential = m*(θ <= 0);",                "a formula has no conditions; write `max`, `min`, `abs` or `sign` to tell cases apart, as in `max(0, θ)`"),
@@ -163,11 +162,27 @@ fn other_notations_are_translated() {
     }
 }
 
+/// What is written in ASCII is answered in ASCII.
+#[test]
+fn constants_are_translated_into_the_letters_of_the_block() {
+    for (constant, expected) in [
+        ("PI", "unknown name `PI`; write `pi`"),
+        ("FRAC_PI_2", "unknown name `FRAC_PI_2`; write `pi/2`"),
+        ("f64::consts::PI", "`f64::consts::PI` is Rust, which has no place in a formula; write `pi`"),
+    ] {
+        let source = format!("struct P {{ m }} coordinate q; kinetic = m*q_dot^2; potential = m*{constant};");
+        assert_eq!(refusals(&source), [expected]);
+    }
+}
+
 /// Declarations of other shapes, and statements that there are not yet.
 #[rustfmt::skip]
 const DECLARATIONS: &[(&str, &str)] = &[
-    ("coordinate a, b: m;",                    "a statement declares one name; write `coordinate b;` as a statement of its own"),
-    ("driven a: m, b: m;",                     "a statement declares one name; write `driven b;` as a statement of its own"),
+    ("coordinate a, b: m;",                    "a statement declares one name; write `coordinate b: m;` as a statement of its own"),
+    ("driven a: m, b: m;",                     "a statement declares one name; write `driven b: m;` as a statement of its own"),
+    ("coordinate a, b[3]: m/s, d;",            "a statement declares one name; write `coordinate b[3]: m/s;` as a statement of its own"),
+    ("coordinate a, b: [m];",                  "a statement declares one name; write `coordinate b;` as a statement of its own"),
+    ("driven a, b: [m; 2];",                   "a statement declares one name; write `driven b: [m; 2];` as a statement of its own"),
     ("let a = 1, b = 2;",                      "a statement declares one name; write `let b = …;` as a statement of its own"),
     ("potential = θ, b;",                      "`,` is not expected here; expected `;`"),
     ("driven a: [2];",                         "a unit is missing; write `[m; 2]`, or `[_; 2]` for a vector without a unit"),
@@ -176,8 +191,10 @@ const DECLARATIONS: &[(&str, &str)] = &[
     ("driven a[2];",                           "the length stands with the unit; write `a: [_; 2]`"),
     ("driven a[2]: m/s;",                      "the length stands with the unit; write `a: [m/s; 2]`"),
     ("driven a: [m, m];",                      "all components have one unit; write `[m; 2]` for a vector"),
+    ("driven a: [m, m, m,];",                  "all components have one unit; write `[m; 3]` for a vector"),
     ("driven a: [m];",                         "a length is missing; write `[m; 2]` for a vector, `[kg; 5]` for a family"),
-    ("coordinate a: [_; 2];",                  "a coordinate is one number; declare one coordinate for each component"),
+    ("coordinate a: [_; 2];",                  "a coordinate is one number; write `coordinate a[2];` for several"),
+    ("coordinate a: [m/s; 3];",                "a coordinate is one number; write `coordinate a[3]: m/s;` for several"),
     ("constraint loop: θ = 0;",                "constraints, as closed loops need them, are not supported yet; choose coordinates in which they hold by themselves"),
     ("redundant constraint loop: θ = 0;",      "constraints, as closed loops need them, are not supported yet; choose coordinates in which they hold by themselves"),
     ("output tip: [m; 2] = x;",                "outputs are not supported yet; compute the value in the program, from the coordinates and the velocities"),
@@ -196,31 +213,29 @@ fn other_declarations_are_translated() {
     );
 }
 
-/// What has no unit takes no part in the checks, vectors and families neither.
-#[test]
-fn a_vector_may_have_no_unit() {
-    let source = |unit: &str| {
-        format!(
-            "struct P {{ m: kg, l: m, f: [{unit}; 5] }} coordinate θ: _; driven x: [{unit}; 2];
-             kinetic = m/2*|ẋ + dot(l*cis(θ))|^2; potential = m*f[0]*height(x);"
-        )
-    };
-    assert!(refusals(&source("_")).is_empty());
-    assert_eq!(refusals(&source("1")), ["`dot(l*cis(θ))` is m/s, but `ẋ` is 1/s; a sum needs one unit"]);
-}
-
 /// Kinetic energies that are negative at every state.
 #[rustfmt::skip]
 const NEGATIVE: &[(&str, &str)] = &[
-    ("kinetic = -m/2*L^2*θ̇^2;",                          "the kinetic energy of `θ` is negative in `-m/2*L^2*θ̇^2`; write it with a positive sign"),
-    ("kinetic = -(m/2*L^2*θ̇^2);",                        "the kinetic energy of `θ` is negative in `-(m/2*L^2*θ̇^2)`; write it with a positive sign"),
-    ("kinetic = m*-sum(k in 0..2, (L*θ̇)^2);",            "the kinetic energy of `θ` is negative in `m*(-sum(k in …, (L*θ̇)^2))`; write it with a positive sign"),
-    ("coordinate z: m; kinetic = m*ż^2 - m/2*(L*θ̇)^2;",  "the kinetic energy of `θ` is negative in `-m/2*(L*θ̇)^2`; write it with a positive sign"),
+    ("kinetic = -m/2*L^2*θ̇^2;",                          "the kinetic energy of `θ` is negative in `-m/2*L^2*θ̇^2`"),
+    ("kinetic = -(m/2*L^2*θ̇^2);",                        "the kinetic energy of `θ` is negative in `-(m/2*L^2*θ̇^2)`"),
+    ("kinetic = m*-sum(k in 0..2, (L*θ̇)^2);",            "the kinetic energy of `θ` is negative in `m*(-sum(k in …, (L*θ̇)^2))`"),
+    ("coordinate z: m; kinetic = m*ż^2 - m/2*(L*θ̇)^2;",  "the kinetic energy of `θ` is negative in `-m/2*(L*θ̇)^2`"),
     ("coordinate z: m; kinetic = m*ż^2; kinetic = m*L^2*θ̇^2; kinetic = -2*m*L^2*(θ̇*sin(θ) - ż/L)^2;",
-                                                           "the kinetic energy of `z` is negative in `-2*m*L^2*((θ̇*sin(θ)) - (ż/L))^2`; write it with a positive sign"),
-    ("coordinate z: m; kinetic = -m/2*|dot([z, L*θ])|^2;", "the kinetic energy of `θ` is negative in `-m/2*|dot([z, L*θ])|^2`; write it with a positive sign"),
-    ("let K = -J/2*θ̇^2; kinetic = K;",                   "the kinetic energy of `θ` is negative in `K`; write it with a positive sign"),
-    ("kinetic = -B.inertia/2*θ̇^2;",                      "the kinetic energy of `θ` is negative in `-B.inertia/2*θ̇^2`; write it with a positive sign"),
+                                                           "the kinetic energy of `z` is negative in `-2*m*L^2*(θ̇*sin(θ) - ż/L)^2`"),
+    ("coordinate z: m; kinetic = -m/2*|dot([z, L*θ])|^2;", "the kinetic energy of `θ` is negative in `-m/2*|dot([z, L*θ])|^2`"),
+    ("let K = -J/2*θ̇^2; kinetic = K;",                   "the kinetic energy of `θ` is negative in `-J/2*θ̇^2`"),
+    ("let K = J/2*θ̇^2; kinetic = -K;",                   "the kinetic energy of `θ` is negative in `-K`"),
+    ("let K = -J/2*θ̇^2; let E = 2*K; kinetic = E;",      "the kinetic energy of `θ` is negative in `2*K`"),
+    ("let n = -1; kinetic = n*J*θ̇^2;",                   "the kinetic energy of `θ` is negative in `n*J*θ̇^2`"),
+    ("coordinate z: m; let y = m/2*ż^2; let K = -J/2*θ̇^2; kinetic = y + K;",
+                                                           "the kinetic energy of `θ` is negative in `-J/2*θ̇^2`"),
+    ("coordinate z: m; let y = [0, z]; let w = L*cis(θ); kinetic = m/2*|ẏ|^2 - m/4*|ẇ|^2 - (-m)*ż^2;",
+                                                           "the kinetic energy of `θ` is negative in `-m/4*|ẇ|^2`"),
+    ("let K(p) = -p*L^2*θ̇^2; kinetic = K(m);",           "the kinetic energy of `θ` is negative in `-p*L^2*θ̇^2`"),
+    ("let K[k in 0..2] = -m*L^2*θ̇^2; kinetic = sum(k in 0..2, K[k]);",
+                                                           "the kinetic energy of `θ` is negative in `-m*L^2*θ̇^2`"),
+    ("kinetic = J*θ̇^2*(-3)^101;",                        "the kinetic energy of `θ` is negative in `J*θ̇^2*(-3)^101`"),
+    ("kinetic = -B.inertia/2*θ̇^2;",                      "the kinetic energy of `θ` is negative in `-B.inertia/2*θ̇^2`"),
 ];
 
 #[test]
@@ -228,9 +243,16 @@ fn a_negative_kinetic_energy_is_refused() {
     let block = |statements: &str| {
         format!("struct P {{ m: kg, M: kg, L: m, S: kg*m, J: kg*m^2, c, B: body }} coordinate θ: rad; {statements}")
     };
+    let way_out =
+        "write it with a positive sign, or write `lagrangian = …;`, which may have any, instead of `kinetic` and `potential`";
     for (statements, expected) in NEGATIVE {
-        assert_eq!(refusals(&block(statements)), [*expected], "{statements}");
+        let found = refusals(&block(statements));
+        assert_eq!(found, [format!("{expected}; {way_out}")], "{statements}");
     }
+    // Definitions that double each time are followed once.
+    let doubled = (0..60).map(|k| format!("let u{} = u{k} + u{k};", k + 1)).collect::<Vec<_>>().concat();
+    let expected = format!("the kinetic energy of `θ` is negative in `-J*θ̇^2`; {way_out}");
+    assert_eq!(refusals(&block(&format!("let u0 = -J*θ̇^2; {doubled} kinetic = u60;"))), [expected]);
     // Any sign may be meant, or the whole is positive for some values.
     for statements in [
         "lagrangian = -m/2*L^2*θ̇^2;",
@@ -245,57 +267,8 @@ fn a_negative_kinetic_energy_is_refused() {
     }
     // Without units, a number has a sign and a parameter has none.
     let source = "struct P { m } coordinate q; kinetic = -q_dot^2/2; potential = m*q^2;";
-    assert_eq!(refusals(source), ["the kinetic energy of `q` is negative in `-q_dot^2/2`; write it with a positive sign"]);
+    assert_eq!(refusals(source), [format!("the kinetic energy of `q` is negative in `-q_dot^2/2`; {way_out}")]);
     assert!(refusals(&source.replace("-q_dot^2/2", "-m*q_dot^2")).is_empty());
-}
-
-/// Units, each mistake at the smallest expression that is wrong.
-#[rustfmt::skip]
-const UNITS: &[(&str, &str)] = &[
-    ("potential = m*9.81*L*cos(θ);",                        "`m*9.81*L*cos(θ)` is kg·m, but `m/2*L^2*θ̇^2` is kg·m²/s²; all energies of a block have one unit"),
-    ("potential = m*g*(L + θ);",                            "`θ` is a pure number, but `L` is m; a sum needs one unit"),
-    ("potential = m*g*L*cos(L);",                           "`L` is m, but the argument of `cos` is a pure number; divide by a unit of its kind"),
-    ("potential = m*g*L*sin(t);",                           "`t` is s, but the argument of `sin` is a pure number; divide by a unit of its kind"),
-    ("potential = m*g*L*exp(t*θ̇ + t);",                     "`t` is s, but `t*θ̇` is a pure number; a sum needs one unit"),
-    ("potential = m*g*height([L, θ]);",                     "`θ` is a pure number, but `L` is m; a vector needs one unit"),
-    ("potential = m*g*height(x + ẋ);",                      "`ẋ` is m/s, but `x` is m; a sum needs one unit"),
-    ("potential = m*g*max(0, L*θ - t);",                    "`t` is s, but `L*θ` is m; a sum needs one unit"),
-    ("potential = m*g*max(L, θ);",                          "`θ` is a pure number, but `L` is m; `max` needs one unit"),
-    ("potential = m*g*L*atan2(L, t);",                      "`t` is s, but `L` is m; `atan2` needs one unit"),
-    ("potential = m*g*L*L^θ;",                              "`L` is m, but the base of a power whose exponent is no number is a pure number; divide by a unit of its kind"),
-    ("potential = m*g*L*2^t;",                              "`t` is s, but an exponent is a pure number; divide by a unit of its kind"),
-    ("dissipation = m*L^2*θ̇^2;",                            "`m*L^2*θ̇^2` times a second is kg·m²/s, but `m/2*L^2*θ̇^2` is kg·m²/s²; all energies of a block have one unit"),
-    ("force θ = m*g;",                                      "`m*g` is kg·m/s², but a force on `θ` is kg·m²/s², an energy per unit of the coordinate"),
-    ("let r(p) = p + L; potential = m*g*r(t);",             "`L` is m, but `p` is s; a sum needs one unit"),
-    ("let w = g*L; potential = m*w + m*L;",                 "`m*L` is kg·m, but `m*w` is kg·m²/s²; a sum needs one unit"),
-    // A quantity without a unit is decided by its first use and checked at the next.
-    ("potential = k*θ^2 + k*L;",                            "`k*L` is m times the unit of `k`, but `k*θ^2` is a pure number times the unit of `k`; a sum needs one unit"),
-];
-
-#[test]
-fn units_are_checked() {
-    for (statements, expected) in UNITS {
-        let source = format!(
-            "struct P {{ m: kg, L: m, g: m/s^2, k }} coordinate θ: rad; driven x: [m; 2]; kinetic = m/2*L^2*θ̇^2; {statements}"
-        );
-        assert_eq!(refusals(&source), [*expected], "{statements}");
-    }
-}
-
-#[test]
-fn units_give_no_false_alarm() {
-    let blocks = [
-        // Divided by the mass, an energy is as good.
-        "struct P { L: m, g: m/s^2 } coordinate θ: rad; kinetic = L^2*θ̇^2/2; potential = -g*L*cos(θ);",
-        // Nothing has a unit: nothing is checked.
-        "struct P { L, g } coordinate θ; kinetic = θ̇^2 + t*θ̇^2; potential = sin(t);",
-        // Unknowns are inferred or left alone; a zero has every unit.
-        "struct P { m: kg, L, g, c, k, s: N/m^(3/2) } coordinate θ: rad; coordinate z: m; driven x: [m; 2]; kinetic = m/2*|ẋ + dot(L*cis(θ))|^2 + m/2*ż^2;
-         potential = m*g*(height(x) + height(L*cis(θ))) + k/2*max(0, z)^2 + s*|z|^(5/2)*sign(z); dissipation = c*θ̇^2; force θ = [c, 0].x*θ̇; force z = k*z;",
-    ];
-    for source in blocks {
-        assert!(refusals(source).is_empty(), "{:?}", refusals(source));
-    }
 }
 
 #[test]
@@ -323,30 +296,6 @@ fn a_lost_declaration_gives_no_second_message() {
 #[test]
 fn no_coordinate() {
     assert_eq!(refusals("struct P { m } kinetic = m;"), ["no coordinate; write `coordinate θ: rad;` below the struct"]);
-}
-
-#[rustfmt::skip]
-const BODIES: &[(&str, &str)] = &[
-    ("potential = B;",                                  "`B` is a body; write `B.mass`, `B.center`, `B.inertia` or `integral(p in B, …)`"),
-    ("potential = B.weight;",                           "unknown component `weight`; there are `.mass`, `.center`, `.inertia`"),
-    ("potential = integral(p in g, height(p));",        "`g` is no body; declare it as `g: body` in the struct"),
-    ("potential = integral(p in C, height(p));",        "unknown name `C`; declare it as a parameter, a coordinate, a driven input or with `let`"),
-    ("potential = integral(p in B, |p|^3);",            "`|p|^3` is no polynomial in `p`, and a body knows its moments up to the second; write a polynomial of degree two or less"),
-    ("potential = integral(p in B, p.x*|p|^2);",        "`p.x*|p|^2` is of higher degree than two in `p`, and a body knows its moments up to the second; write a polynomial of degree two or less"),
-    ("potential = integral(p in B, sin(p.x));",         "`sin(p.x)` is no polynomial in `p`, and a body knows its moments up to the second; write a polynomial of degree two or less"),
-    ("potential = integral(p in B, p);",                "`integral(p in B, …)` is a plane vector, but a scalar is needed here; write `inner(u, v)`, `|u|` or a component"),
-    ("potential = B.mass*g*B.inertia;",                 "`B.mass*g*B.inertia` is kg²·m³/s², but `integral(p in B, …)` is kg·m²/s²; all energies of a block have one unit"),
-    ("potential = integral(p in B, g*|p|^2);",          "`integral(p in B, …)` is kg·m³/s², but `integral(p in B, …)` is kg·m²/s²; all energies of a block have one unit"),
-];
-
-#[test]
-fn bodies_are_integrated_to_the_second_degree() {
-    for (statements, expected) in BODIES {
-        let source = format!(
-            "struct P {{ B: body, g: m/s^2 }} coordinate θ: rad; let r(p) = cis(θ)*p; kinetic = integral(p in B, |dot(r(p))|^2/2); {statements}"
-        );
-        assert_eq!(refusals(&source), [*expected], "{statements}");
-    }
 }
 
 #[test]

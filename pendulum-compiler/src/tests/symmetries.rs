@@ -5,13 +5,10 @@ use crate::print;
 
 /// The conserved quantities of a block, as printed.
 fn conserved(source: &str) -> Vec<String> {
-    let start = std::time::Instant::now();
-    let found = derive(source, |model, _, motion| {
+    derive(source, |model, _, motion| {
         let names = print::Names::new(model, &std::collections::BTreeSet::default());
         motion.conserved.iter().map(|conserved| print::conserved(&names, conserved)).collect()
-    });
-    println!("{:?}", start.elapsed());
-    found
+    })
 }
 
 /// Bodies in the plane; `potential` in terms of `r[k]`.

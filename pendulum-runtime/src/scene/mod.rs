@@ -267,7 +267,6 @@ impl<T: Lane + Float> Scene<T> {
 
     /// Whether every batch forks where threads are allowed, however short it is: for tests, which
     /// are to see the bits of both ways.
-    #[cfg(feature = "rayon")]
     #[doc(hidden)]
     pub fn set_always_fork(&mut self, always: bool) {
         self.threads.set_always(always);

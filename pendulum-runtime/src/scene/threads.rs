@@ -50,6 +50,11 @@ impl Threads {
         result
     }
 
+    /// Without threads nothing forks.
+    #[cfg(not(feature = "rayon"))]
+    #[allow(clippy::unused_self)]
+    pub(super) fn set_always(&mut self, _: bool) {}
+
     /// Does `batch`, alone.
     #[cfg(not(feature = "rayon"))]
     #[allow(clippy::unused_self)]
