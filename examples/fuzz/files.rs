@@ -1,6 +1,6 @@
 //! Files with something wrong in them.
 
-use crate::random::Random;
+use random_systems::Random;
 
 /// What readers of numbers and of lengths trip over.
 const SPLINTERS: [&[u8]; 16] = [

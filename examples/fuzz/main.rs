@@ -5,19 +5,14 @@
 //! line for each target and fails if a case panicked, took longer than ten seconds, or needed more than a gigabyte.
 //! `--only TARGET --seed N --count 1` repeats one case, `--only equations --count 100000` draws so many of one.
 
-// Not all of the compiler is called.
-#![allow(dead_code)]
-
+// Files are read here, and not played.
+#[allow(dead_code)]
 #[path = "../mocap/bvh.rs"]
 mod bvh;
 mod files;
 mod memory;
-#[path = "../../pendulum-compiler/src/tests/random/mod.rs"]
-mod random;
 mod target;
 mod watch;
-
-include!("../operations/compiler.rs");
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::panic::{AssertUnwindSafe, catch_unwind};

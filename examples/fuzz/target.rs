@@ -1,14 +1,14 @@
 //! What is fed with random input.
 
 use crate::bvh::Bvh;
-use crate::expand::expand;
 use crate::files::mutated;
 #[cfg(any(feature = "gltf", feature = "svg"))]
 use crate::files::renumbered;
-use crate::random::generate::{self, Manner};
-use crate::random::tokens::{BLOCKS, mutate, soup, transplant};
-use crate::random::{Outcome, Random, outcome};
+use pendulum_compiler::{compile, expand};
 use proc_macro2::TokenStream;
+use random_systems::Random;
+use random_systems::generate::{self, Manner};
+use random_systems::tokens::{BLOCKS, mutate, soup, transplant};
 
 /// What became of a case.
 pub(crate) enum Verdict {
@@ -64,16 +64,21 @@ fn blocks(seed: u64) -> Verdict {
     expansion(parsed(&format!("::p; {}", generate::system(seed, Manner::Wild).source("S"))))
 }
 
-/// Random systems whose equations are compared with those of the reference.
+/// Random tame systems, compiled as text: none is refused.
 fn equations(seed: u64) -> Verdict {
-    match outcome(&generate::system(seed, Manner::Tame)) {
-        Outcome::Refused(messages) => Verdict::Wrong(format!("refused: {messages}")),
-        Outcome::Unsound => Verdict::Refused,
-        Outcome::Compared(findings) => match findings.wrong().as_slice() {
-            [] => Verdict::Taken,
-            wrong => Verdict::Wrong(format!("{wrong:?}")),
-        },
-    }
+    let source = generate::system(seed, Manner::Tame).source("Random");
+    let verdict = match compile(&source) {
+        Ok(compiled) if compiled.equations.is_empty() => Verdict::Wrong(format!("no equations of {source}")),
+        Ok(_) => Verdict::Taken,
+        Err(mistakes) => Verdict::Wrong(format!("refused: {mistakes:?}")),
+    };
+    forget_sources();
+    verdict
+}
+
+/// Places of tokens are kept for ever unless they are given up.
+fn forget_sources() {
+    proc_macro2::extra::invalidate_current_thread_spans();
 }
 
 const JUMPS: &[u8] = include_bytes!("../data/jumps.bvh");
@@ -134,6 +139,7 @@ fn svg(seed: u64) -> Verdict {
 /// The expansion, which is there whatever is wrong.
 fn expansion(tokens: TokenStream) -> Verdict {
     let refused = expand(tokens).into_iter().any(|token| token.to_string().contains("compile_error"));
+    forget_sources();
     if refused { Verdict::Refused } else { Verdict::Taken }
 }
 

@@ -22,7 +22,7 @@ pub(crate) fn all() -> Vec<(String, String)> {
     ];
     let note = note.map(|(name, text)| (name.to_owned(), text.to_owned()));
     let chains = (1..=10).chain([16, 32]).map(|n| (format!("chain{n}"), chain(n)));
-    note.into_iter().chain(chains).map(|(name, text)| (name, format!("::pendulum_runtime; {text}"))).collect()
+    note.into_iter().chain(chains).collect()
 }
 
 /// A chain of `n` links, all masses and lengths parameters.

@@ -71,3 +71,12 @@ impl Errors {
         self.errors.iter().map(syn::Error::to_compile_error).collect()
     }
 }
+
+impl IntoIterator for Errors {
+    type Item = syn::Error;
+    type IntoIter = std::vec::IntoIter<syn::Error>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.errors.into_iter()
+    }
+}

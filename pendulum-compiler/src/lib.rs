@@ -6,11 +6,11 @@ mod cancel;
 mod check;
 mod clock;
 mod collect;
+mod compile;
 mod derive;
 mod diff;
 mod emit;
 mod error;
-mod expand;
 mod expr;
 mod jacobian;
 mod jet;
@@ -34,4 +34,4 @@ mod tests;
 mod unit;
 mod value;
 
-pub use expand::expand;
+pub use compile::{Compiled, Declaration, Message, Operations, Place, compile, expand};

@@ -1,4 +1,4 @@
-//! Random systems and what they do at a random state, in 31 digits. Written by the generator in `pendulum-compiler/src/tests/random`:
+//! Random systems and what they do at a random state, in 31 digits. Written by the generator in `tools/random-systems`:
 //! `UPDATE_GOLDEN=1 cargo test -p pendulum-compiler written` writes it anew.
 
 use super::{Case, words};

@@ -3,7 +3,7 @@
 use super::Emitter;
 use crate::expr::Graph;
 use crate::print::{self, Names};
-use crate::schedule::{self, Count};
+use crate::schedule::Count;
 use proc_macro2::TokenStream;
 use quote::quote;
 use std::fmt::Write;
@@ -12,15 +12,14 @@ impl Emitter<'_, '_> {
     /// The equations, their cost and what they leave out, for hover and rustdoc.
     pub(super) fn documentation(&self) -> TokenStream {
         let names = Names::new(self.model, &self.energies.families);
-        let Some(motion) = &self.motion else { return TokenStream::new() };
-        let accelerations = motion.accelerations.clone();
+        let (Some(motion), Some(accelerations)) = (&self.motion, &self.accelerations) else { return TokenStream::new() };
         let mut conserved: Vec<String> =
             motion.conserved.iter().map(|conserved| format!("`{}`", print::conserved(&names, conserved))).collect();
         // An energy may contain a time that no equation does.
         if motion.power == Graph::ZERO {
             conserved.push("the energy".into());
         }
-        let count = schedule::program(&self.graph, &accelerations).count();
+        let count = accelerations.count();
         let documented = self.model.block.attributes.iter().any(|attribute| attribute.path().is_ident("doc"));
         let mut text = String::new();
         if documented {
@@ -64,7 +63,7 @@ pub(crate) fn operations(count: Count) -> String {
 
 #[cfg(test)]
 mod tests {
-    use crate::expand::expand;
+    use crate::compile::expand;
 
     #[test]
     fn the_energy_is_announced_where_its_power_vanishes() {

@@ -12,12 +12,12 @@ mod system;
 mod unmentioned;
 
 use crate::check::{Model, Quantity};
+use crate::compile::Analysis;
 use crate::expr::Graph;
-use crate::latex;
 use crate::lower::Energies;
 use crate::mirror;
 use crate::motion::Motion;
-use crate::print::{self, Names};
+use crate::schedule::Program;
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 use std::collections::BTreeMap;
@@ -36,31 +36,21 @@ pub(crate) struct Emitter<'m, 'a> {
     pub(crate) graph: Graph,
     /// `None` after an error: then every body is left open, so that the mistake gives one message.
     pub(crate) motion: Option<Motion>,
+    /// The program of the accelerations, as long as there are equations.
+    pub(crate) accelerations: Option<Program>,
     pub(crate) energies: Energies,
     /// The equations of motion in Unicode and in LaTeX.
     equations: [Vec<String>; 2],
 }
 
 impl<'m, 'a> Emitter<'m, 'a> {
-    pub(crate) fn new(
-        krate: TokenStream,
-        model: &'m Model<'a>,
-        mut graph: Graph,
-        motion: Option<Motion>,
-        energies: Energies,
-    ) -> Self {
-        let names = Names::new(model, &energies.families);
-        let equations = match &motion {
-            Some(motion) => {
-                let sides = print::sides(&graph, &names, motion);
-                let latex = latex::equations(&graph, &names, motion, &sides);
-                [print::equations(&mut graph, &names, motion, &sides), latex]
-            }
-            None => [Vec::new(), Vec::new()],
-        };
-        Self { krate, model, graph, motion, energies, equations }
+    pub(crate) fn new(analysis: Analysis<'m, 'a>) -> Self {
+        let Analysis { krate, model, graph, energies, motion, equations, accelerations } = analysis;
+        Self { krate, model, graph, motion, accelerations, energies, equations }
     }
+}
 
+impl Emitter<'_, '_> {
     /// All items of a block.
     pub(crate) fn items(mut self) -> TokenStream {
         let structure = self.structure();

@@ -1,7 +1,7 @@
 //! The accelerations in stages, for callers that keep what stays the same from one evaluation to the next.
 
 use super::Emitter;
-use crate::schedule::{self, Place, Stage};
+use crate::schedule::{Place, Stage};
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -11,13 +11,12 @@ impl Emitter<'_, '_> {
         let (krate, scalar, count, name) = (&self.krate, self.scalar(), self.count(), &self.model.block.name);
         let missing = || (quote!(::core::unimplemented!()), 0);
         let (mut at_time, mut at_position, mut rest) = (missing(), missing(), missing().0);
-        if let Some(motion) = &self.motion {
-            let program = schedule::program(&self.graph, &motion.accelerations);
+        if let Some(program) = &self.accelerations {
             let [prepared, time, position] = [Stage::Parameters, Stage::Time, Stage::Position].map(|stage| program.kept(stage));
             let known: [(&str, &[Place]); 3] = [("prepared", &prepared), ("at_time", &time), ("at_position", &position)];
-            at_time = (self.body_after(&program, &time, &[]), time.len());
-            at_position = (self.body_after(&program, &position, &known[..2]), position.len());
-            rest = self.body_after(&program, &program.results, &known);
+            at_time = (self.body_after(program, &time, &[]), time.len());
+            at_position = (self.body_after(program, &position, &known[..2]), position.len());
+            rest = self.body_after(program, &program.results, &known);
         }
         let ((at_time, times), (at_position, positions)) = (at_time, at_position);
         let system = quote!(#krate::system::System<#count>);

@@ -156,13 +156,12 @@ impl Emitter<'_, '_> {
 
     /// The accelerations in two parts: what parameters alone decide, and the rest; with the number of values between them.
     fn accelerations(&self) -> (TokenStream, TokenStream, usize) {
-        let Some(motion) = &self.motion else {
+        let Some(program) = &self.accelerations else {
             return (quote!(::core::unimplemented!()), quote!(::core::unimplemented!()), 0);
         };
-        let program = schedule::program(&self.graph, &motion.accelerations);
         let prepared = program.kept(Stage::Parameters);
-        let prepare = self.body_after(&program, &prepared, &[]);
-        (prepare, self.body_after(&program, &program.results, &[("prepared", &prepared)]), prepared.len())
+        let prepare = self.body_after(program, &prepared, &[]);
+        (prepare, self.body_after(program, &program.results, &[("prepared", &prepared)]), prepared.len())
     }
 
     /// Velocities and momentum rates from momenta, with what they share computed once; `None` where velocities are found by iteration.

@@ -1,7 +1,7 @@
 //! Paths: whatever the user calls a type, the generated code means Rust's own.
 
 use super::golden;
-use crate::expand::expand;
+use crate::compile::expand;
 use proc_macro2::{TokenStream, TokenTree};
 
 /// The primitive types, and what the prelude and the crates of the standard library bring into

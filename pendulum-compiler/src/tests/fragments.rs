@@ -1,6 +1,6 @@
 //! What a macro of the user's hands over as `$e:expr` comes in brackets that nobody sees.
 
-use crate::expand::expand;
+use crate::compile::expand;
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
 /// The stream with each `?(…)` replaced: by a fragment, or by what is written in its place.

@@ -1,13 +1,13 @@
 //! Tests of whole blocks, in process.
 
 use crate::check::Model;
+use crate::compile::derived;
 use crate::error::Errors;
 use crate::expr::{Graph, Id, Symbol};
 use crate::lower::constant;
 use crate::motion::Motion;
 use crate::{check, lower, parse};
-use random::Random;
-use random::derive::derived;
+use random_systems::Random;
 use std::collections::BTreeMap;
 
 mod absolute;

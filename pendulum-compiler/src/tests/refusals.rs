@@ -329,7 +329,7 @@ fn a_broken_coordinate_is_counted() {
         ("coordinate x: m, y[2]: m; kinetic = m*(x_dot^2 + y_dot[0]^2 + y_dot[1]^2);", 3, 1),
     ] {
         let block = format!("::p; struct S {{ m }} {statements}");
-        let found = crate::expand::expand(block.parse().unwrap()).to_string();
+        let found = crate::compile::expand(block.parse().unwrap()).to_string();
         assert_eq!(found.matches("compile_error").count(), messages, "{statements}");
         assert!(found.contains(&format!("System < {count}usize > for S")), "{statements}: {found}");
     }

@@ -1,9 +1,9 @@
 //! Whatever tokens come, the expansion neither panics nor hangs.
 
-use super::random::Random;
-use super::random::tokens::{BLOCKS, mutate, soup, transplant};
-use crate::expand::expand;
+use crate::compile::expand;
 use proc_macro2::{TokenStream, TokenTree};
+use random_systems::Random;
+use random_systems::tokens::{BLOCKS, mutate, soup, transplant};
 
 /// How many of each; `SOUP=1000000` for more.
 fn rounds() -> u64 {

@@ -144,7 +144,7 @@ fn comb(n: usize) -> String {
 fn jets_of_longer_chains_come_from_equations_that_are_not_solved() {
     for (links, turned) in [(2, false), (3, true), (8, true)] {
         let source = format!("::p; {}", chain(links));
-        let tokens = crate::expand::expand(source.parse().unwrap()).to_string();
+        let tokens = crate::compile::expand(source.parse().unwrap()).to_string();
         assert_eq!(tokens.contains("series :: turned"), turned, "{links} links");
     }
 }

@@ -1,13 +1,13 @@
 //! Everything that the macro derives of one system, against the reference.
 
 use super::interpret::Values;
-use super::reference::{Reference, State, reference};
-use super::state::{precise, state};
-use super::tree::System;
 use crate::check::Model;
 use crate::expr::{Graph, Id};
 use crate::motion::Motion;
 use pendulum_runtime::real::{DoubleDouble, Dual, Float};
+use random_systems::reference::{Reference, State, reference};
+use random_systems::state::{precise, state};
+use random_systems::tree::System;
 
 /// What came out for a system.
 #[derive(Clone, Debug, Default)]

@@ -1,12 +1,12 @@
 //! What the macro derived, computed at a state by the program that it would emit.
 
-use super::reference::State;
 use crate::ast::Literal;
 use crate::check::{Model, Quantity};
 use crate::expr::{Function, Graph, Id, Moment, Symbol};
 use crate::number::Rational;
 use crate::schedule::{self, Op};
 use pendulum_runtime::real::Real;
+use random_systems::reference::State;
 
 /// Values for all symbols of a block.
 #[derive(Clone, Debug)]

@@ -1,15 +1,15 @@
 //! What must hold for every random system. `RANDOM_SEED=17 RANDOM_COUNT=1` looks at one, `RANDOM_COUNT=100000` at more.
 
 use super::check::{Derived, PLAIN, PRECISE};
-use super::derive::derived;
-use super::generate::{self, Manner};
 use super::interpret::Values;
-use super::reference::State;
-use super::state::{precise, state};
-use super::transform::{SCALE, back, gauged, moved, reversed, scaled, turned};
-use super::tree::System;
 use super::{Outcome, outcome};
+use crate::compile::derived;
 use pendulum_runtime::real::{DoubleDouble, Float};
+use random_systems::generate::{self, Manner};
+use random_systems::reference::State;
+use random_systems::state::{precise, state};
+use random_systems::transform::{SCALE, back, gauged, moved, reversed, scaled, turned};
+use random_systems::tree::System;
 
 fn variable(name: &str) -> Option<u64> {
     std::env::var(name).ok().and_then(|text| text.parse().ok())

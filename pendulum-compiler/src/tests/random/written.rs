@@ -1,13 +1,13 @@
 //! Some random systems as a source file that is compiled and run, with what the reference says about each.
 
 use super::check::{Derived, compare};
-use super::derive::derived;
-use super::generate::{self, Manner};
 use super::interpret::Values;
-use super::reference::{Reference, State, reference};
-use super::state::{precise, state};
-use super::tree::{Kind, System};
+use crate::compile::derived;
 use pendulum_runtime::real::{DoubleDouble, Dual, Float, Real};
+use random_systems::generate::{self, Manner};
+use random_systems::reference::{Reference, State, reference};
+use random_systems::state::{precise, state};
+use random_systems::tree::{Kind, System};
 use std::fmt::Write;
 
 /// The number of systems.
@@ -16,7 +16,7 @@ const COUNT: usize = 40;
 /// The file.
 pub(crate) fn file() -> String {
     let mut text = String::from(
-        "//! Random systems and what they do at a random state, in 31 digits. Written by the generator in `pendulum-compiler/src/tests/random`:\n\
+        "//! Random systems and what they do at a random state, in 31 digits. Written by the generator in `tools/random-systems`:\n\
          //! `UPDATE_GOLDEN=1 cargo test -p pendulum-compiler written` writes it anew.\n\n\
          use super::{Case, words};\nuse pendulum_runtime::body::Body;\nuse pendulum_runtime::real::Real;\nuse pendulum_runtime::motion::Sample;\n",
     );

@@ -1,11 +1,11 @@
 //! Scalar expressions: anything, and what is bounded, positive or wild.
 
-use super::super::nilpotent::Function;
-use super::super::tree::{Expr, Kind, Type, number, power, product, quotient, sum};
 use super::{Generator, Manner, May};
+use crate::nilpotent::Function;
+use crate::tree::{Expr, Kind, Type, number, power, product, quotient, sum};
 
 impl Generator {
-    pub(super) fn scalar(&mut self, depth: usize, may: May) -> Expr {
+    pub(crate) fn scalar(&mut self, depth: usize, may: May) -> Expr {
         if depth == 0 {
             return self.leaf(may);
         }
@@ -49,7 +49,7 @@ impl Generator {
     }
 
     /// Anything of no more than moderate size.
-    pub(super) fn bounded(&mut self, depth: usize, may: May) -> Expr {
+    pub(crate) fn bounded(&mut self, depth: usize, may: May) -> Expr {
         let inner = depth.saturating_sub(1);
         let call = |function, argument| Expr::Call(function, Box::new(argument));
         let angle = |generator: &mut Self| generator.angle(inner, may);
@@ -90,7 +90,7 @@ impl Generator {
     }
 
     /// A sum that a trigonometric function may take apart.
-    pub(super) fn angle(&mut self, depth: usize, may: May) -> Expr {
+    pub(crate) fn angle(&mut self, depth: usize, may: May) -> Expr {
         if 0 < depth && self.random.once_in(3) {
             return self.scalar(depth - 1, may);
         }
@@ -106,7 +106,7 @@ impl Generator {
     }
 
     /// At least one half.
-    pub(super) fn positive(&mut self, depth: usize, may: May) -> Expr {
+    pub(crate) fn positive(&mut self, depth: usize, may: May) -> Expr {
         match self.random.below(5) {
             0 => sum(number(1), power(self.scalar(depth, may), 2)),
             1 => sum(number(2), Expr::Call(Function::Sin, Box::new(self.angle(depth, may)))),

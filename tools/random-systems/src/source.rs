@@ -12,7 +12,7 @@ const ATOM: u8 = 5;
 
 impl System {
     /// The block, without the name of the macro.
-    pub(crate) fn source(&self, name: &str) -> String {
+    pub fn source(&self, name: &str) -> String {
         let mut text = format!("pub struct {name} {{");
         for parameter in &self.parameters {
             let own = &parameter.name;

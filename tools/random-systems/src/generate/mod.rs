@@ -12,7 +12,7 @@ use super::tree::{Expr, Kind, System, Type, number, power, product, quotient, su
 
 /// What a system is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Manner {
+pub enum Manner {
     /// Every function has an argument for which it is real and smooth, kinetic energies are positive, nothing is large.
     Tame,
     /// Anything that is well formed.
@@ -35,7 +35,7 @@ struct May {
 }
 
 /// The system of a seed.
-pub(crate) fn system(seed: u64, manner: Manner) -> System {
+pub fn system(seed: u64, manner: Manner) -> System {
     let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5eed);
     random.next();
     let mut generator = Generator { random, system: System { seed, ..System::default() }, manner };
@@ -46,7 +46,7 @@ pub(crate) fn system(seed: u64, manner: Manner) -> System {
 }
 
 /// A function of coordinates and time.
-pub(crate) fn gauge(system: &System, random: &mut Random) -> Expr {
+pub fn gauge(system: &System, random: &mut Random) -> Expr {
     let mut generator = Generator { random: random.clone(), system: system.clone(), manner: Manner::Tame };
     let may = May { velocities: false, orders: 0, lets: 0, bound: None, arguments: &[] };
     let coordinate = generator.coordinate(may);
@@ -56,7 +56,7 @@ pub(crate) fn gauge(system: &System, random: &mut Random) -> Expr {
 }
 
 /// The parameter that a kind of quantity is measured in.
-pub(crate) fn measure(system: &System, kind: Kind) -> Expr {
+pub fn measure(system: &System, kind: Kind) -> Expr {
     let found = system.parameters.iter().position(|parameter| parameter.kind == kind);
     Expr::Parameter(found.expect("a system has a measure for what it has"))
 }

@@ -1,15 +1,15 @@
 //! Parameters, coordinates and driven inputs.
 
-use super::super::split_mix::Random;
-use super::super::tree::{Coordinate, Input, Kind, Parameter};
 use super::Generator;
+use crate::split_mix::Random;
+use crate::tree::{Coordinate, Input, Kind, Parameter};
 
 const PARAMETERS: [&str; 12] = ["m", "c", "l", "g", "κ", "b", "μ", "s", "R", "a", "ε", "d"];
 const COORDINATES: [&str; 8] = ["θ", "φ", "x", "y", "ψ", "r", "q", "h"];
 const INPUTS: [&str; 3] = ["u", "z", "f"];
 
 impl Generator {
-    pub(super) fn declare(&mut self) {
+    pub(crate) fn declare(&mut self) {
         self.system.units = self.random.below(5) < 2;
         let units = self.system.units;
         let mut names = PARAMETERS.to_vec();

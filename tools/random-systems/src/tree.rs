@@ -4,31 +4,31 @@ use super::nilpotent::Function;
 
 /// A system to be written as a block.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct System {
+pub struct System {
     /// The seed it was made from.
-    pub(crate) seed: u64,
+    pub seed: u64,
     /// Whether everything is a pure number, velocities are divided by a rate, and units are written.
-    pub(crate) units: bool,
-    pub(crate) parameters: Vec<Parameter>,
-    pub(crate) coordinates: Vec<Coordinate>,
-    pub(crate) inputs: Vec<Input>,
-    pub(crate) lets: Vec<Let>,
+    pub units: bool,
+    pub parameters: Vec<Parameter>,
+    pub coordinates: Vec<Coordinate>,
+    pub inputs: Vec<Input>,
+    pub lets: Vec<Let>,
     /// L = Σ kinetic − Σ potential; written as one `lagrangian` if `joined`.
-    pub(crate) kinetic: Vec<Expr>,
-    pub(crate) potential: Vec<Expr>,
-    pub(crate) joined: bool,
-    pub(crate) dissipation: Vec<Expr>,
-    pub(crate) forces: Vec<Force>,
+    pub kinetic: Vec<Expr>,
+    pub potential: Vec<Expr>,
+    pub joined: bool,
+    pub dissipation: Vec<Expr>,
+    pub forces: Vec<Force>,
 }
 
 #[derive(Clone, Debug)]
-pub(crate) struct Parameter {
-    pub(crate) name: String,
-    pub(crate) kind: Kind,
+pub struct Parameter {
+    pub name: String,
+    pub kind: Kind,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub enum Kind {
     /// A pure number.
     Scalar,
     /// The rate that velocities are measured in.
@@ -43,7 +43,7 @@ pub(crate) enum Kind {
 
 impl Kind {
     /// The number of its scalars.
-    pub(crate) fn count(self) -> usize {
+    pub fn count(self) -> usize {
         match self {
             Self::Scalar | Self::Rate | Self::Mass | Self::Length => 1,
             Self::Vector(count) | Self::Family(count) => count,
@@ -53,28 +53,28 @@ impl Kind {
 }
 
 #[derive(Clone, Debug)]
-pub(crate) struct Coordinate {
-    pub(crate) name: String,
-    pub(crate) length: Option<usize>,
+pub struct Coordinate {
+    pub name: String,
+    pub length: Option<usize>,
 }
 
 #[derive(Clone, Debug)]
-pub(crate) struct Input {
-    pub(crate) name: String,
-    pub(crate) components: usize,
+pub struct Input {
+    pub name: String,
+    pub components: usize,
 }
 
 /// A definition.
 #[derive(Clone, Debug)]
-pub(crate) struct Let {
-    pub(crate) name: String,
-    pub(crate) shape: Shape,
-    pub(crate) kind: Type,
-    pub(crate) expr: Expr,
+pub struct Let {
+    pub name: String,
+    pub shape: Shape,
+    pub kind: Type,
+    pub expr: Expr,
 }
 
 #[derive(Clone, Debug)]
-pub(crate) enum Shape {
+pub enum Shape {
     Plain,
     /// One for each index below the count; the index is [`INDICES`]\[0\].
     Indexed(usize),
@@ -83,7 +83,7 @@ pub(crate) enum Shape {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Type {
+pub enum Type {
     Scalar,
     Plane,
     /// A plane vector that is written as a complex number.
@@ -93,18 +93,18 @@ pub(crate) enum Type {
 
 /// A generalized force on a coordinate, on one of its members, or on each of them.
 #[derive(Clone, Debug)]
-pub(crate) struct Force {
-    pub(crate) coordinate: usize,
-    pub(crate) member: Option<usize>,
-    pub(crate) expr: Expr,
+pub struct Force {
+    pub coordinate: usize,
+    pub member: Option<usize>,
+    pub expr: Expr,
 }
 
 /// The names of indices, by how deep they are bound.
-pub(crate) const INDICES: [&str; 3] = ["k", "j", "n"];
+pub const INDICES: [&str; 3] = ["k", "j", "n"];
 
 /// A member of a family.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Index {
+pub enum Index {
     Number(usize),
     /// What an index is bound to.
     Bound(usize),
@@ -113,7 +113,7 @@ pub(crate) enum Index {
 }
 
 #[derive(Clone, Debug)]
-pub(crate) enum Expr {
+pub enum Expr {
     Number(i64, i64),
     Pi,
     Imaginary,
@@ -166,7 +166,7 @@ pub(crate) enum Expr {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Property {
+pub enum Property {
     Mass,
     Center,
     Inertia,
@@ -174,24 +174,24 @@ pub(crate) enum Property {
 
 impl System {
     /// The number of scalar coordinates.
-    pub(crate) fn count(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.coordinates.iter().map(|coordinate| coordinate.length.unwrap_or(1)).sum()
     }
 
     /// The number of scalars before a coordinate.
-    pub(crate) fn first_coordinate(&self, index: usize) -> usize {
+    pub fn first_coordinate(&self, index: usize) -> usize {
         self.coordinates[..index].iter().map(|coordinate| coordinate.length.unwrap_or(1)).sum()
     }
 
     /// The number of scalars before a parameter.
-    pub(crate) fn first_parameter(&self, index: usize) -> usize {
+    pub fn first_parameter(&self, index: usize) -> usize {
         self.parameters[..index].iter().map(|parameter| parameter.kind.count()).sum()
     }
 }
 
 impl Expr {
     /// Changes every part, from the leaves up.
-    pub(crate) fn each(&mut self, change: &impl Fn(&mut Expr)) {
+    pub fn each(&mut self, change: &impl Fn(&mut Expr)) {
         let boxed = |inner: &mut Box<Expr>| inner.each(change);
         match self {
             Expr::Sum(items) | Expr::Product(items) => items.iter_mut().for_each(|(_, item)| item.each(change)),
@@ -220,25 +220,25 @@ impl Expr {
 }
 
 /// `a + b`.
-pub(crate) fn sum(a: Expr, b: Expr) -> Expr {
+pub fn sum(a: Expr, b: Expr) -> Expr {
     Expr::Sum(vec![(false, a), (false, b)])
 }
 
 /// `a * b`.
-pub(crate) fn product(a: Expr, b: Expr) -> Expr {
+pub fn product(a: Expr, b: Expr) -> Expr {
     Expr::Product(vec![(false, a), (false, b)])
 }
 
 /// `a / b`.
-pub(crate) fn quotient(a: Expr, b: Expr) -> Expr {
+pub fn quotient(a: Expr, b: Expr) -> Expr {
     Expr::Product(vec![(false, a), (true, b)])
 }
 
 /// `a ^ n`.
-pub(crate) fn power(a: Expr, exponent: i64) -> Expr {
+pub fn power(a: Expr, exponent: i64) -> Expr {
     Expr::Power(Box::new(a), exponent, 1)
 }
 
-pub(crate) fn number(value: i64) -> Expr {
+pub fn number(value: i64) -> Expr {
     Expr::Number(value, 1)
 }

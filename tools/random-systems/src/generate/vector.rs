@@ -1,11 +1,11 @@
 //! Vectors in the plane and in space, and complex numbers.
 
-use super::super::nilpotent::Function;
-use super::super::tree::{Expr, Kind, Property, Type, number, power, product, quotient, sum};
 use super::{Generator, May};
+use crate::nilpotent::Function;
+use crate::tree::{Expr, Kind, Property, Type, number, power, product, quotient, sum};
 
 impl Generator {
-    pub(super) fn plane(&mut self, depth: usize, may: May) -> Expr {
+    pub(crate) fn plane(&mut self, depth: usize, may: May) -> Expr {
         let whole = self.whole(2, may);
         if depth == 0 {
             return whole.unwrap_or_else(|| Expr::Vector(vec![self.leaf(may), self.leaf(may)]));
@@ -55,7 +55,7 @@ impl Generator {
     }
 
     /// Something that is written as a complex number.
-    pub(super) fn complex(&mut self, depth: usize, may: May) -> Expr {
+    pub(crate) fn complex(&mut self, depth: usize, may: May) -> Expr {
         let inner = depth.saturating_sub(1);
         let cis = |generator: &mut Self| {
             let angle = Box::new(generator.angle(inner, may));
@@ -74,7 +74,7 @@ impl Generator {
         }
     }
 
-    pub(super) fn space(&mut self, depth: usize, may: May) -> Expr {
+    pub(crate) fn space(&mut self, depth: usize, may: May) -> Expr {
         let plain = |generator: &mut Self, depth| Expr::Vector((0..3).map(|_| generator.scalar(depth, may)).collect());
         if depth == 0 {
             return self.whole(3, may).unwrap_or_else(|| plain(self, 0));
@@ -91,7 +91,7 @@ impl Generator {
     }
 
     /// A vector that moves, so that its derivative may be taken.
-    pub(super) fn moved(&mut self, vector: Expr) -> Expr {
+    pub(crate) fn moved(&mut self, vector: Expr) -> Expr {
         let may = May { velocities: false, orders: 0, lets: 0, bound: None, arguments: &[] };
         let shift = Expr::Vector(vec![self.coordinate(may), product(number(2), self.coordinate(may))]);
         sum(vector, shift)

@@ -1,14 +1,14 @@
 //! Definitions, and where they are used.
 
-use super::super::nilpotent::Function;
-use super::super::tree::{Expr, Let, Shape, Type};
 use super::{Generator, May};
+use crate::nilpotent::Function;
+use crate::tree::{Expr, Let, Shape, Type};
 
 const LETS: [&str; 6] = ["P", "ζ", "G", "H", "W", "Z"];
 const FUNCTIONS: [&[Type]; 4] = [&[Type::Scalar], &[Type::Plane], &[Type::Scalar, Type::Plane], &[Type::Scalar, Type::Scalar]];
 
 impl Generator {
-    pub(super) fn define(&mut self) {
+    pub(crate) fn define(&mut self) {
         for index in 0..self.random.below(4) {
             let kind = self.random.of(&[Type::Scalar, Type::Plane, Type::Plane, Type::Complex, Type::Space]);
             let mut may = May { velocities: false, orders: 0, lets: index, bound: None, arguments: &[] };
@@ -29,7 +29,7 @@ impl Generator {
         }
     }
 
-    pub(super) fn use_let(&mut self, kind: Type, depth: usize, may: May) -> Option<Expr> {
+    pub(crate) fn use_let(&mut self, kind: Type, depth: usize, may: May) -> Option<Expr> {
         if may.lets == 0 {
             return None;
         }

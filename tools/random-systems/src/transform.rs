@@ -7,7 +7,7 @@ use super::split_mix::Random;
 use super::tree::{Coordinate, Expr, Index, Kind, Let, Shape, System, Type, number, product, quotient, sum};
 
 /// L + dF/dt for a random F(q, t).
-pub(crate) fn gauged(system: &System) -> System {
+pub fn gauged(system: &System) -> System {
     let mut gauged = system.clone();
     let term = generate::gauge(system, &mut Random(system.seed ^ 0xf0));
     let rate = Expr::Dot(Box::new(term));
@@ -17,10 +17,10 @@ pub(crate) fn gauged(system: &System) -> System {
 }
 
 /// The factor of [`scaled`].
-pub(crate) const SCALE: f64 = 0.75;
+pub const SCALE: f64 = 0.75;
 
 /// Everything times three quarters.
-pub(crate) fn scaled(system: &System) -> System {
+pub fn scaled(system: &System) -> System {
     let mut scaled = system.clone();
     let lists = [&mut scaled.kinetic, &mut scaled.potential, &mut scaled.dissipation];
     let exprs = lists.into_iter().flatten().chain(scaled.forces.iter_mut().map(|force| &mut force.expr));
@@ -31,7 +31,7 @@ pub(crate) fn scaled(system: &System) -> System {
 }
 
 /// The system whose motions are those of `system` run backwards: L(−t, q, −q̇), −R(−q̇), forces of −t and −q̇, and driven inputs that run backwards.
-pub(crate) fn reversed(system: &System) -> System {
+pub fn reversed(system: &System) -> System {
     let mut reversed = system.clone();
     let turn = |expr: &mut Expr| {
         // What has been differentiated an odd number of times changes its sign.
@@ -53,7 +53,7 @@ pub(crate) fn reversed(system: &System) -> System {
 }
 
 /// The state at which [`reversed`] does backwards what the system does at `state`.
-pub(crate) fn turned(state: &State<f64>) -> State<f64> {
+pub fn turned(state: &State<f64>) -> State<f64> {
     let mut turned = state.clone();
     turned.t = -state.t;
     for v in &mut turned.v {
@@ -66,7 +66,7 @@ pub(crate) fn turned(state: &State<f64>) -> State<f64> {
 }
 
 /// The system without its forces in coordinates Q with q = Q + sin(Q₁)/3, where Q₁ is the first of the coordinates declared next.
-pub(crate) fn moved(system: &System) -> System {
+pub fn moved(system: &System) -> System {
     let mut moved = system.clone();
     moved.forces.clear();
     let count = system.coordinates.len();
@@ -99,7 +99,7 @@ pub(crate) fn moved(system: &System) -> System {
 }
 
 /// The old coordinates, velocities and accelerations from those of [`moved`].
-pub(crate) fn back(system: &System, [q, v, a]: [&[f64]; 3]) -> [Vec<f64>; 3] {
+pub fn back(system: &System, [q, v, a]: [&[f64]; 3]) -> [Vec<f64>; 3] {
     let mut old = [q.to_vec(), v.to_vec(), a.to_vec()];
     for index in 0..system.coordinates.len() {
         let next = system.first_coordinate((index + 1) % system.coordinates.len());

@@ -6,7 +6,7 @@ use pendulum_runtime::real::Float;
 
 /// Scalar, plane or space vector.
 #[derive(Clone, Debug)]
-pub(crate) enum Value<T> {
+pub enum Value<T> {
     Scalar(Nilpotent<T>),
     Plane([Nilpotent<T>; 2]),
     Space([Nilpotent<T>; 3]),
@@ -14,35 +14,35 @@ pub(crate) enum Value<T> {
 
 /// A body as point masses: what an integral over it is made of.
 #[derive(Clone, Debug)]
-pub(crate) struct Points<T>(pub(crate) Vec<(T, [T; 2])>);
+pub struct Points<T>(pub Vec<(T, [T; 2])>);
 
 /// What never moves.
 #[derive(Clone, Debug)]
-pub(crate) struct Constants<T> {
+pub struct Constants<T> {
     /// All scalars of the parameters in order.
-    pub(crate) parameters: Vec<T>,
+    pub parameters: Vec<T>,
     /// The body that each parameter is.
-    pub(crate) bodies: Vec<Option<Points<T>>>,
+    pub bodies: Vec<Option<Points<T>>>,
 }
 
 /// What moves, with its rates and all with the same infinitesimals.
 #[derive(Clone, Debug)]
-pub(crate) struct Leaves<T> {
-    pub(crate) time: Nilpotent<T>,
-    pub(crate) q: Vec<Nilpotent<T>>,
-    pub(crate) v: Vec<Nilpotent<T>>,
-    pub(crate) a: Vec<Nilpotent<T>>,
+pub struct Leaves<T> {
+    pub time: Nilpotent<T>,
+    pub q: Vec<Nilpotent<T>>,
+    pub v: Vec<Nilpotent<T>>,
+    pub a: Vec<Nilpotent<T>>,
     /// For each driven input and component the value and its derivatives up to the third.
-    pub(crate) inputs: Vec<Vec<[Nilpotent<T>; 4]>>,
+    pub inputs: Vec<Vec<[Nilpotent<T>; 4]>>,
 }
 
 impl<T: Float> Leaves<T> {
-    pub(crate) fn infinitesimals(&self) -> usize {
+    pub fn infinitesimals(&self) -> usize {
         self.time.infinitesimals()
     }
 
     /// A moment later: everything that moves, plus its rate times a new infinitesimal.
-    pub(crate) fn later(&self) -> Self {
+    pub fn later(&self) -> Self {
         let zero = Nilpotent::constant(T::from_f64(0.0), self.infinitesimals());
         let one = Nilpotent::constant(T::from_f64(1.0), self.infinitesimals());
         let step = |values: &[Nilpotent<T>], rates: &[Nilpotent<T>]| {
@@ -61,7 +61,7 @@ impl<T: Float> Leaves<T> {
     }
 
     /// The same with a new infinitesimal that nothing contains yet.
-    pub(crate) fn widened(&self) -> Self {
+    pub fn widened(&self) -> Self {
         let zero = Nilpotent::constant(T::from_f64(0.0), self.infinitesimals());
         let wide = |value: &Nilpotent<T>| value.clone().join(zero.clone());
         let all = |values: &[Nilpotent<T>]| values.iter().map(wide).collect::<Vec<_>>();
@@ -85,12 +85,12 @@ struct Scope<'s, T> {
 }
 
 /// Evaluates a scalar.
-pub(crate) fn scalar<T: Float>(system: &System, constants: &Constants<T>, leaves: &Leaves<T>, expr: &Expr) -> Nilpotent<T> {
+pub fn scalar<T: Float>(system: &System, constants: &Constants<T>, leaves: &Leaves<T>, expr: &Expr) -> Nilpotent<T> {
     indexed(system, constants, leaves, expr, None)
 }
 
 /// Evaluates a scalar in which the outermost index is bound.
-pub(crate) fn indexed<T: Float>(
+pub fn indexed<T: Float>(
     system: &System,
     constants: &Constants<T>,
     leaves: &Leaves<T>,

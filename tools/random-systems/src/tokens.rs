@@ -83,14 +83,14 @@ const WORDS: &[&str] = &[
 ];
 
 /// Blocks without mistakes.
-pub(crate) const BLOCKS: &[&str] = &[
+pub const BLOCKS: &[&str] = &[
     "::p; pub struct M { m: kg, L: m, g: m/s^2 = 9.81, } coordinate θ: rad; driven x: [m; 2]; let y = L * [sin(θ), -cos(θ)]; kinetic = m/2 * |ẋ + ẏ|^2; potential = m*g * (height(x) + height(y));",
     "::p; struct C { m: [kg; 3], l: [m; 3], g } coordinate θ[3]: rad; let y[k in 0..3] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]); kinetic = sum(k in 0..3, m[k]/2*|ẏ[k]|^2); potential = sum(k in 0..3, m[k]*g*height(y[k])); dissipation = θ̇[0]^2; force θ[1] = sin(t);",
     "::p; struct C { c: [m; 2], I: kg*m^2 } coordinate θ; let r(p) = cis(θ)*p; lagrangian = I/2*θ̇^2 - height(r(c)) + max(0, θ - 1)^2 - exp(i*θ).x;",
 ];
 
 /// Any tokens at all.
-pub(crate) fn soup(random: &mut Random, depth: usize) -> TokenStream {
+pub fn soup(random: &mut Random, depth: usize) -> TokenStream {
     let mut tokens = TokenStream::new();
     for _ in 0..random.below(12) {
         if depth < 5 && random.below(6) == 0 {
@@ -104,7 +104,7 @@ pub(crate) fn soup(random: &mut Random, depth: usize) -> TokenStream {
 }
 
 /// Drops, doubles, swaps or replaces some tokens.
-pub(crate) fn mutate(tokens: TokenStream, random: &mut Random) -> TokenStream {
+pub fn mutate(tokens: TokenStream, random: &mut Random) -> TokenStream {
     let mut list: Vec<TokenTree> = tokens.into_iter().collect();
     for tree in &mut list {
         if let TokenTree::Group(group) = tree
@@ -133,7 +133,7 @@ pub(crate) fn mutate(tokens: TokenStream, random: &mut Random) -> TokenStream {
 }
 
 /// Puts other names and numbers of the block, or of another, where some stand: what comes out often parses and seldom makes sense.
-pub(crate) fn transplant(tokens: TokenStream, random: &mut Random) -> TokenStream {
+pub fn transplant(tokens: TokenStream, random: &mut Random) -> TokenStream {
     let mut donors = Vec::new();
     leaves(tokens.clone(), &mut donors);
     if let Ok(other) = BLOCKS[random.below(BLOCKS.len())].parse() {

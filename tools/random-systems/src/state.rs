@@ -6,7 +6,7 @@ use super::split_mix::Random;
 use super::tree::{Kind, System};
 
 /// The state of a seed. Every number is one of `f64` but the moments of bodies, which are those of `f64` points.
-pub(crate) fn state(system: &System, seed: u64) -> State<f64> {
+pub fn state(system: &System, seed: u64) -> State<f64> {
     let mut random = Random(seed);
     let count = system.count();
     let mut bodies = Vec::new();
@@ -32,7 +32,7 @@ pub(crate) fn state(system: &System, seed: u64) -> State<f64> {
 }
 
 /// Mass, centre and central moments.
-pub(crate) fn moments<T: pendulum_runtime::real::Real>(points: &Points<T>) -> [T; 6] {
+pub fn moments<T: pendulum_runtime::real::Real>(points: &Points<T>) -> [T; 6] {
     let zero = T::from_f64(0.0);
     let sum = |part: &dyn Fn(T, [T; 2]) -> T| points.0.iter().fold(zero, |sum, &(w, p)| sum + part(w, p));
     let mass = sum(&|w, _| w);
@@ -44,7 +44,7 @@ pub(crate) fn moments<T: pendulum_runtime::real::Real>(points: &Points<T>) -> [T
 }
 
 /// The state in more digits: the moments of bodies are computed anew.
-pub(crate) fn precise<T: pendulum_runtime::real::Real>(system: &System, state: &State<f64>) -> State<T> {
+pub fn precise<T: pendulum_runtime::real::Real>(system: &System, state: &State<f64>) -> State<T> {
     let mut precise = state.map(T::from_f64);
     for (index, body) in precise.constants.bodies.iter().enumerate() {
         if let Some(points) = body {

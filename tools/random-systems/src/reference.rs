@@ -7,37 +7,37 @@ use pendulum_runtime::real::Float;
 
 /// A state with the motion of everything around it.
 #[derive(Clone, Debug)]
-pub(crate) struct State<T> {
-    pub(crate) constants: Constants<T>,
-    pub(crate) t: T,
-    pub(crate) q: Vec<T>,
-    pub(crate) v: Vec<T>,
+pub struct State<T> {
+    pub constants: Constants<T>,
+    pub t: T,
+    pub q: Vec<T>,
+    pub v: Vec<T>,
     /// For each driven input and component the value and its derivatives up to the third.
-    pub(crate) inputs: Vec<Vec<[T; 4]>>,
+    pub inputs: Vec<Vec<[T; 4]>>,
 }
 
 /// What the source says at a state: M q̈ = f and what goes with it.
 #[derive(Clone, Debug)]
-pub(crate) struct Reference<T> {
-    pub(crate) lagrangian: T,
+pub struct Reference<T> {
+    pub lagrangian: T,
     /// Σ `kinetic` and Σ `potential`.
-    pub(crate) kinetic: T,
-    pub(crate) potential: T,
-    pub(crate) momenta: Vec<T>,
-    pub(crate) masses: Vec<Vec<T>>,
+    pub kinetic: T,
+    pub potential: T,
+    pub momenta: Vec<T>,
+    pub masses: Vec<Vec<T>>,
     /// ∂L/∂q.
-    pub(crate) slopes: Vec<T>,
+    pub slopes: Vec<T>,
     /// dp/dt at q̈ = 0.
-    pub(crate) drifts: Vec<T>,
+    pub drifts: Vec<T>,
     /// Q − ∂R/∂q̇.
-    pub(crate) externals: Vec<T>,
+    pub externals: Vec<T>,
     /// ∂L/∂t at constant coordinates and velocities.
-    pub(crate) explicit: T,
+    pub explicit: T,
 }
 
 impl<T: Float> State<T> {
     /// The leaves without infinitesimals.
-    pub(crate) fn leaves(&self, accelerations: &[T]) -> Leaves<T> {
+    pub fn leaves(&self, accelerations: &[T]) -> Leaves<T> {
         let constant = |&value: &T| Nilpotent::constant(value, 0);
         let all = |values: &[T]| values.iter().map(constant).collect::<Vec<_>>();
         let input = |orders: &[T; 4]| orders.each_ref().map(constant);
@@ -51,7 +51,7 @@ impl<T: Float> State<T> {
     }
 
     /// The state over another scalar.
-    pub(crate) fn map<U>(&self, map: impl Fn(T) -> U + Copy) -> State<U> {
+    pub fn map<U>(&self, map: impl Fn(T) -> U + Copy) -> State<U> {
         use super::evaluate::Points;
         let all = |values: &[T]| values.iter().map(|&value| map(value)).collect::<Vec<_>>();
         let points = |points: &Points<T>| Points(points.0.iter().map(|&(w, p)| (map(w), p.map(map))).collect());
@@ -69,7 +69,7 @@ impl<T: Float> State<T> {
 }
 
 /// Σ kinetic − Σ potential.
-pub(crate) fn lagrangian<T: Float>(system: &System, constants: &Constants<T>, leaves: &Leaves<T>) -> Nilpotent<T> {
+pub fn lagrangian<T: Float>(system: &System, constants: &Constants<T>, leaves: &Leaves<T>) -> Nilpotent<T> {
     let mut total = Nilpotent::constant(T::from_f64(0.0), leaves.infinitesimals());
     for expr in &system.kinetic {
         total = total.add(&scalar(system, constants, leaves, expr));
@@ -105,7 +105,7 @@ fn shifted<T: Float>(leaves: &Leaves<T>, coordinate: usize) -> Leaves<T> {
 }
 
 /// Everything at a state.
-pub(crate) fn reference<T: Float>(system: &System, state: &State<T>) -> Reference<T> {
+pub fn reference<T: Float>(system: &System, state: &State<T>) -> Reference<T> {
     let count = system.count();
     let zero = T::from_f64(0.0);
     let constants = &state.constants;

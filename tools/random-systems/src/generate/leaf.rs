@@ -1,10 +1,10 @@
 //! Leaves: numbers, parameters, coordinates, velocities and driven inputs as pure numbers.
 
-use super::super::tree::{Expr, Index, Kind, Property, Type, power, product, quotient};
 use super::{Generator, May, measure};
+use crate::tree::{Expr, Index, Kind, Property, Type, power, product, quotient};
 
 impl Generator {
-    pub(super) fn leaf(&mut self, may: May) -> Expr {
+    pub(crate) fn leaf(&mut self, may: May) -> Expr {
         if let Some(index) = (!may.arguments.is_empty()).then(|| self.random.below(may.arguments.len()))
             && self.random.once_in(2)
         {
@@ -30,7 +30,7 @@ impl Generator {
     }
 
     /// An index below `count`.
-    pub(super) fn index(&mut self, count: usize, may: May) -> Index {
+    pub(crate) fn index(&mut self, count: usize, may: May) -> Index {
         match may.bound {
             Some(bound) if bound <= count && self.random.below(4) != 0 => {
                 if self.random.once_in(4) {
@@ -43,19 +43,19 @@ impl Generator {
         }
     }
 
-    pub(super) fn coordinate(&mut self, may: May) -> Expr {
+    pub(crate) fn coordinate(&mut self, may: May) -> Expr {
         let coordinate = self.random.below(self.system.coordinates.len());
         let member = self.system.coordinates[coordinate].length.map(|length| self.index(length, may));
         Expr::Coordinate(coordinate, member)
     }
 
-    pub(super) fn velocity(&mut self, may: May) -> Expr {
+    pub(crate) fn velocity(&mut self, may: May) -> Expr {
         let coordinate = self.random.below(self.system.coordinates.len());
         let member = self.system.coordinates[coordinate].length.map(|length| self.index(length, may));
         self.velocity_of(coordinate, member)
     }
 
-    pub(super) fn velocity_of(&mut self, coordinate: usize, member: Option<Index>) -> Expr {
+    pub(crate) fn velocity_of(&mut self, coordinate: usize, member: Option<Index>) -> Expr {
         let velocity = Expr::Velocity(coordinate, member, self.random.below(3));
         self.rate(velocity)
     }
@@ -80,7 +80,7 @@ impl Generator {
         }
     }
 
-    pub(super) fn positive_parameter(&mut self) -> Expr {
+    pub(crate) fn positive_parameter(&mut self) -> Expr {
         let scalars: Vec<usize> =
             (0..self.system.parameters.len()).filter(|&index| self.system.parameters[index].kind == Kind::Scalar).collect();
         Expr::Parameter(self.random.of(&scalars))
@@ -102,7 +102,7 @@ impl Generator {
     }
 
     /// A property of a body as a pure number.
-    pub(super) fn property(&self, body: usize, property: Property) -> Expr {
+    pub(crate) fn property(&self, body: usize, property: Property) -> Expr {
         let own = Expr::Property(body, property);
         match property {
             Property::Mass => quotient(own, self.measure(Kind::Mass)),
@@ -111,16 +111,16 @@ impl Generator {
         }
     }
 
-    pub(super) fn frequency(&self) -> Expr {
+    pub(crate) fn frequency(&self) -> Expr {
         self.measure(Kind::Rate)
     }
 
-    pub(super) fn measure(&self, kind: Kind) -> Expr {
+    pub(crate) fn measure(&self, kind: Kind) -> Expr {
         measure(&self.system, kind)
     }
 
     /// A rate as a pure number, where units are checked.
-    pub(super) fn rate(&mut self, rate: Expr) -> Expr {
+    pub(crate) fn rate(&mut self, rate: Expr) -> Expr {
         if self.system.units || self.random.once_in(4) { quotient(rate, self.frequency()) } else { rate }
     }
 }

@@ -1,11 +1,11 @@
 //! Kinetic and potential energies, friction and forces.
 
-use super::super::nilpotent::Function;
-use super::super::tree::{Expr, Force, Index, Type, number, power, product, quotient, sum};
 use super::{Generator, Manner, May};
+use crate::nilpotent::Function;
+use crate::tree::{Expr, Force, Index, Type, number, power, product, quotient, sum};
 
 impl Generator {
-    pub(super) fn energies(&mut self) {
+    pub(crate) fn energies(&mut self) {
         let lets = self.system.lets.len();
         let still = May { velocities: false, orders: 1, lets, bound: None, arguments: &[] };
         let moving = May { velocities: true, ..still };

@@ -7,11 +7,11 @@ use pendulum_runtime::real::Float;
 
 /// The coefficients of a number; bit j of their index is set for those of εⱼ.
 #[derive(Clone, Debug)]
-pub(crate) struct Nilpotent<T>(pub(crate) Vec<T>);
+pub struct Nilpotent<T>(pub Vec<T>);
 
 /// A function of one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Function {
+pub enum Function {
     Sqrt,
     Exp,
     Ln,
@@ -30,49 +30,49 @@ pub(crate) enum Function {
 
 impl Function {
     /// As the language writes it.
-    pub(crate) fn name(self) -> String {
+    pub fn name(self) -> String {
         format!("{self:?}").to_lowercase()
     }
 }
 
 impl<T: Float> Nilpotent<T> {
     /// A number without infinitesimals where there are some.
-    pub(crate) fn constant(value: T, infinitesimals: usize) -> Self {
+    pub fn constant(value: T, infinitesimals: usize) -> Self {
         let mut coefficients = vec![T::from_f64(0.0); 1 << infinitesimals];
         coefficients[0] = value;
         Self(coefficients)
     }
 
     /// The number of infinitesimals.
-    pub(crate) fn infinitesimals(&self) -> usize {
+    pub fn infinitesimals(&self) -> usize {
         self.0.len().trailing_zeros() as usize
     }
 
     /// `self` + `slope` ε for a new ε.
-    pub(crate) fn join(mut self, slope: Self) -> Self {
+    pub fn join(mut self, slope: Self) -> Self {
         self.0.extend(slope.0);
         self
     }
 
     /// The parts a and b of a + bε, where ε is the newest infinitesimal.
-    pub(crate) fn split(&self) -> (Self, Self) {
+    pub fn split(&self) -> (Self, Self) {
         let (a, b) = self.0.split_at(self.0.len() / 2);
         (Self(a.to_vec()), Self(b.to_vec()))
     }
 
-    pub(crate) fn add(&self, other: &Self) -> Self {
+    pub fn add(&self, other: &Self) -> Self {
         Self(self.0.iter().zip(&other.0).map(|(&a, &b)| a + b).collect())
     }
 
-    pub(crate) fn sub(&self, other: &Self) -> Self {
+    pub fn sub(&self, other: &Self) -> Self {
         Self(self.0.iter().zip(&other.0).map(|(&a, &b)| a - b).collect())
     }
 
-    pub(crate) fn neg(&self) -> Self {
+    pub fn neg(&self) -> Self {
         Self(self.0.iter().map(|&a| -a).collect())
     }
 
-    pub(crate) fn mul(&self, other: &Self) -> Self {
+    pub fn mul(&self, other: &Self) -> Self {
         let coefficient = |all: usize| {
             let mut sum = self.0[0] * other.0[all];
             let mut part = all;
@@ -85,11 +85,11 @@ impl<T: Float> Nilpotent<T> {
         Self((0..self.0.len()).map(coefficient).collect())
     }
 
-    pub(crate) fn div(&self, other: &Self) -> Self {
+    pub fn div(&self, other: &Self) -> Self {
         self.mul(&other.reciprocal())
     }
 
-    pub(crate) fn reciprocal(&self) -> Self {
+    pub fn reciprocal(&self) -> Self {
         if let [value] = self.0[..] {
             return Self(vec![T::from_f64(1.0) / value]);
         }
@@ -100,19 +100,19 @@ impl<T: Float> Nilpotent<T> {
     }
 
     /// A whole power.
-    pub(crate) fn whole_power(&self, exponent: i64) -> Self {
+    pub fn whole_power(&self, exponent: i64) -> Self {
         let one = self.like(1.0);
         let power = (0..exponent.unsigned_abs()).fold(one, |power, _| power.mul(self));
         if exponent < 0 { power.reciprocal() } else { power }
     }
 
     /// `self` to a number that moves: exp(b ln a).
-    pub(crate) fn power(&self, exponent: &Self) -> Self {
+    pub fn power(&self, exponent: &Self) -> Self {
         exponent.mul(&self.call(Function::Ln)).call(Function::Exp)
     }
 
     /// `self` to a fraction, by the powers of the scalar.
-    pub(crate) fn rational_power(&self, top: i64, bottom: i64) -> Self {
+    pub fn rational_power(&self, top: i64, bottom: i64) -> Self {
         if top % bottom == 0 {
             return self.whole_power(top / bottom);
         }
@@ -126,12 +126,12 @@ impl<T: Float> Nilpotent<T> {
     }
 
     /// The larger one; the first of two equal ones, or one that is not a number.
-    pub(crate) fn max(&self, other: &Self) -> Self {
+    pub fn max(&self, other: &Self) -> Self {
         if self.0[0] < other.0[0] || other.undefined() { other.clone() } else { self.clone() }
     }
 
     /// The smaller one; the first of two equal ones, or one that is not a number.
-    pub(crate) fn min(&self, other: &Self) -> Self {
+    pub fn min(&self, other: &Self) -> Self {
         if other.0[0] < self.0[0] || other.undefined() { other.clone() } else { self.clone() }
     }
 
@@ -140,7 +140,7 @@ impl<T: Float> Nilpotent<T> {
     }
 
     /// The angle of the point (`x`, `self`).
-    pub(crate) fn atan2(&self, x: &Self) -> Self {
+    pub fn atan2(&self, x: &Self) -> Self {
         if let ([y], [x]) = (&self.0[..], &x.0[..]) {
             return Self(vec![y.atan2(*x)]);
         }
@@ -150,7 +150,7 @@ impl<T: Float> Nilpotent<T> {
         y.atan2(&x).join(slope)
     }
 
-    pub(crate) fn call(&self, function: Function) -> Self {
+    pub fn call(&self, function: Function) -> Self {
         if let [value] = self.0[..] {
             return Self(vec![of_scalar(function, value)]);
         }
