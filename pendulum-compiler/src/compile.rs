@@ -1,14 +1,21 @@
 //! The compiler: its passes, in order.
 
-use crate::check::{Model, Quantity};
-use crate::emit::Emitter;
-use crate::error::Errors;
-use crate::expr::Graph;
-use crate::lower::Energies;
-use crate::motion::Motion;
-use crate::print::Names;
+use crate::algebra::expr::Graph;
+use crate::backend::latex;
+use crate::backend::rust::Emitter;
+use crate::backend::unicode;
+use crate::backend::unicode::Names;
+use crate::mechanics::lower;
+use crate::mechanics::lower::Energies;
+use crate::mechanics::motion;
+use crate::mechanics::motion::Motion;
+use crate::messages::Errors;
+use crate::model;
+use crate::model::unit;
+use crate::model::{Model, Quantity};
 use crate::schedule::{self, Count, Program};
-use crate::{check, derive, latex, lower, motion, parse, print, unit};
+use crate::syntax::derive;
+use crate::syntax::parse;
 use proc_macro2::{LineColumn, TokenStream};
 use quote::quote;
 
@@ -74,7 +81,7 @@ pub(crate) struct Analysis<'m, 'a> {
 fn passes<R>(input: TokenStream, errors: &mut Errors, backend: impl FnOnce(Analysis<'_, '_>) -> R) -> Option<R> {
     let (krate, mut block) = parse::all(input, errors)?;
     derive::check(&mut block.attributes, errors);
-    let model = check::resolve(&block, errors);
+    let model = model::resolve(&block, errors);
     let mut graph = Graph::new();
     let mut energies = lower::energies(&model, &mut graph, errors);
     if errors.is_empty() {
@@ -89,9 +96,9 @@ fn passes<R>(input: TokenStream, errors: &mut Errors, backend: impl FnOnce(Analy
 /// The equations of motion in Unicode and in LaTeX; what they have in common is simplified once.
 fn printed(model: &Model, graph: &mut Graph, energies: &Energies, motion: &Motion) -> [Vec<String>; 2] {
     let names = Names::new(model, &energies.families);
-    let sides = print::sides(graph, &names, motion);
+    let sides = unicode::sides(graph, &names, motion);
     let latex = latex::equations(graph, &names, motion, &sides);
-    [print::equations(graph, &names, motion, &sides), latex]
+    [unicode::equations(graph, &names, motion, &sides), latex]
 }
 
 /// A block as its tests see it; `None` if it is refused.
@@ -210,7 +217,7 @@ impl Compiled {
         let Analysis { model, graph, energies, motion, equations: [equations, latex], accelerations, .. } = analysis;
         let (motion, accelerations) = (motion?, accelerations?);
         let names = Names::new(model, &energies.families);
-        let text = |id| print::expression(&graph, &names, id);
+        let text = |id| unicode::expression(&graph, &names, id);
         let declared = |quantities: &[Quantity<'_>]| {
             let declaration = |quantity: &Quantity<'_>| Declaration {
                 name: quantity.name.to_string(),
@@ -227,7 +234,7 @@ impl Compiled {
             energy: text(motion.energy),
             power: text(motion.power),
             momenta: motion.momenta.iter().copied().map(text).collect(),
-            conserved: motion.conserved.iter().map(|conserved| print::conserved(&names, conserved)).collect(),
+            conserved: motion.conserved.iter().map(|conserved| unicode::conserved(&names, conserved)).collect(),
             operations: accelerations.count().into(),
             equations,
             latex,

@@ -1,7 +1,7 @@
 //! What a program costs: its operations of each kind.
 
 use super::{Op, Program};
-use crate::expr::Function;
+use crate::algebra::expr::Function;
 
 /// How many of each operation a program has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -11,8 +11,8 @@ mod stage;
 mod sum;
 mod term;
 
-use crate::expr::{Contents, Function, Graph, Id, Node};
-use crate::number::Rational;
+use crate::algebra::expr::{Contents, Function, Graph, Id, Node};
+use crate::algebra::number::Rational;
 pub(crate) use cost::Count;
 pub(crate) use program::{Op, Place, Program, operands};
 use program::{mul, prune};

@@ -3,8 +3,8 @@
 use super::program::mul;
 use super::term::{Factor, Term, unit};
 use super::{Op, Place, Schedule};
-use crate::expr::{Contents, Id};
-use crate::number::Rational;
+use crate::algebra::expr::{Contents, Id};
+use crate::algebra::number::Rational;
 
 impl Schedule<'_> {
     /// A product without its sign, and whether that is minus.

@@ -2,8 +2,8 @@
 
 use super::term::{Term, multiply};
 use super::{Place, Schedule};
-use crate::expr::{Graph, Id, Node};
-use crate::number::Rational;
+use crate::algebra::expr::{Graph, Id, Node};
+use crate::algebra::number::Rational;
 
 impl Schedule<'_> {
     /// A sum each of whose terms has taken in a constant.

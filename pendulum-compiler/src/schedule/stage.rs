@@ -1,7 +1,7 @@
 //! Stages of a program: what parameters decide, what time and inputs decide, what the position adds, and the rest.
 
 use super::{Op, Place, Program, operands};
-use crate::expr::Symbol;
+use crate::algebra::expr::Symbol;
 
 /// What has to be known before an operation can be done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

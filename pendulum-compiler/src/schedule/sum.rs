@@ -3,7 +3,7 @@
 use super::program::{add, mul};
 use super::term::{Factor, Term, common_coefficient, take};
 use super::{Op, Place, Schedule};
-use crate::number::Rational;
+use crate::algebra::number::Rational;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Polynomials are nested as Horner does down to this depth, and no deeper: the stack is finite.

@@ -1,9 +1,9 @@
 //! Everything that the macro derives of one system, against the reference.
 
 use super::interpret::Values;
-use crate::check::Model;
-use crate::expr::{Graph, Id};
-use crate::motion::Motion;
+use crate::algebra::expr::{Graph, Id};
+use crate::mechanics::motion::Motion;
+use crate::model::Model;
 use pendulum_runtime::real::{DoubleDouble, Dual, Float};
 use random_systems::reference::{Reference, State, reference};
 use random_systems::state::{precise, state};
