@@ -1,19 +1,20 @@
 //! The compiler: its passes, in order.
 
 use crate::algebra::expr::Graph;
+use crate::backend::Analysis;
 use crate::backend::latex;
 use crate::backend::rust::Emitter;
 use crate::backend::unicode;
 use crate::backend::unicode::Names;
+use crate::mechanics::euler_lagrange;
 use crate::mechanics::lower;
 use crate::mechanics::lower::Energies;
-use crate::mechanics::motion;
 use crate::mechanics::motion::Motion;
 use crate::messages::Errors;
 use crate::model;
 use crate::model::unit;
 use crate::model::{Model, Quantity};
-use crate::schedule::{self, Count, Program};
+use crate::schedule::{self, Count};
 use crate::syntax::derive;
 use crate::syntax::parse;
 use proc_macro2::{LineColumn, TokenStream};
@@ -62,21 +63,6 @@ pub fn compile(source: &str) -> Result<Compiled, Vec<Message>> {
     }
 }
 
-/// A block before a backend writes it.
-pub(crate) struct Analysis<'m, 'a> {
-    /// The path of the runtime.
-    pub(crate) krate: TokenStream,
-    pub(crate) model: &'m Model<'a>,
-    pub(crate) graph: Graph,
-    pub(crate) energies: Energies,
-    /// The equations of motion; `None` after a mistake.
-    pub(crate) motion: Option<Motion>,
-    /// The equations in Unicode and in LaTeX, a line each.
-    pub(crate) equations: [Vec<String>; 2],
-    /// The program of the accelerations.
-    pub(crate) accelerations: Option<Program>,
-}
-
 /// All passes, before `backend`; `None` if there is no block at all.
 fn passes<R>(input: TokenStream, errors: &mut Errors, backend: impl FnOnce(Analysis<'_, '_>) -> R) -> Option<R> {
     let (krate, mut block) = parse::all(input, errors)?;
@@ -87,7 +73,7 @@ fn passes<R>(input: TokenStream, errors: &mut Errors, backend: impl FnOnce(Analy
     if errors.is_empty() {
         unit::infer::check(&model, errors);
     }
-    let motion = if errors.is_empty() { motion::canonical(&model, &mut graph, &mut energies, errors) } else { None };
+    let motion = if errors.is_empty() { euler_lagrange::derive(&model, &mut graph, &mut energies, errors) } else { None };
     let equations = motion.as_ref().map(|motion| printed(&model, &mut graph, &energies, motion)).unwrap_or_default();
     let accelerations = motion.as_ref().map(|motion| schedule::program(&graph, &motion.accelerations));
     Some(backend(Analysis { krate, model: &model, graph, energies, motion, equations, accelerations }))

@@ -1,6 +1,7 @@
 //! Expressions as a graph in which equal ones are one, with exact numbers.
 
 pub(crate) mod diff;
+pub(crate) mod dimension;
 pub(crate) mod expr;
 pub(crate) mod number;
 pub(crate) mod order;

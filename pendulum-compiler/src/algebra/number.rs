@@ -190,6 +190,19 @@ fn whole_root(value: i128, degree: u32) -> Option<i128> {
     (low.checked_pow(degree) == Some(value)).then_some(low)
 }
 
+/// A number as written: exact where it fits, else its digits.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(crate) enum Literal {
+    Exact(Rational),
+    Decimal(String),
+}
+
+/// A whole number as an exponent: ⁻¹, ², ³.
+pub(crate) fn superscript(value: i64) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    value.to_string().chars().map(|digit| digit.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize])).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::Rational;

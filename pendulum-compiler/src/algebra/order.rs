@@ -8,7 +8,7 @@ use crate::algebra::number::Rational;
 use std::collections::BTreeMap;
 
 /// Rebuilds `roots` in a new graph.
-pub(crate) fn canonical(old: &Graph, roots: &mut [&mut Id]) -> Graph {
+pub(crate) fn canonicalize(old: &Graph, roots: &mut [&mut Id]) -> Graph {
     let reachable = old.reachable(&roots.iter().map(|id| **id).collect::<Vec<Id>>());
     let mut heights: BTreeMap<Id, usize> = BTreeMap::new();
     let mut levels: Vec<Vec<Id>> = Vec::new();

@@ -24,7 +24,7 @@ type Terms = BTreeMap<Vec<(Id, Rational)>, Rational>;
 pub(crate) fn shorter(graph: &Graph, root: Id, length: impl Fn(&Graph, Id) -> usize) -> Option<(Graph, Id)> {
     let whole = length(graph, root);
     let mut root = root;
-    let mut own = order::canonical(graph, &mut [&mut root]);
+    let mut own = order::canonicalize(graph, &mut [&mut root]);
     let nodes = own.reachable(&[root]);
     let mut expansions = [false, true].map(|parameters| Expansions { parameters, known: BTreeMap::new() });
     let mut promising = |&id: &Id| {

@@ -1,10 +1,10 @@
 //! Equations in LaTeX: `\ddot{\theta} = -\frac{g \sin\theta}{L}`.
 
 use crate::algebra::expr::{Function, Graph, Id, Moment, Node, Symbol};
+use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::backend::unicode::{self, Names, Sides};
 use crate::mechanics::motion::Motion;
-use crate::syntax::ast::Literal;
 use crate::syntax::name;
 
 /// The equations of motion, one line a coordinate, as `unicode::equations` gives them in Unicode.

@@ -4,12 +4,11 @@
 //! `theta_ddot = -g*sin(theta)/L`.
 
 use crate::algebra::expr::{Function, Graph, Id, Moment, Node, Symbol};
-use crate::algebra::number::Rational;
+use crate::algebra::number::{Literal, Rational, superscript};
 use crate::backend::cancel;
 use crate::mechanics::motion::Motion;
 use crate::mechanics::symmetry::Conserved;
 use crate::model::{Model, Quantity};
-use crate::syntax::ast::Literal;
 use crate::syntax::name;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -309,12 +308,6 @@ fn power(graph: &Graph, names: &Names, base: Id, exponent: Rational) -> String {
 fn number(names: &Names, value: Rational, level: Level) -> String {
     let text = value.to_string().replace('-', names.minus());
     if Level::Sum < level && (value.is_negative() || !value.is_integer()) { format!("({text})") } else { text }
-}
-
-/// A whole number as an exponent.
-pub(crate) fn superscript(value: i64) -> String {
-    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    value.to_string().chars().map(|digit| digit.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize])).collect()
 }
 
 fn function_name(function: Function) -> &'static str {

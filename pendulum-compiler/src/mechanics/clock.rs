@@ -26,7 +26,7 @@ pub(crate) fn features(graph: &Graph, roots: &[Id]) -> (Graph, Vec<Feature>) {
         return (Graph::new(), Vec::new());
     }
     let mut roots = roots.to_vec();
-    let graph = order::canonical(graph, &mut roots.iter_mut().collect::<Vec<_>>());
+    let graph = order::canonicalize(graph, &mut roots.iter_mut().collect::<Vec<_>>());
     let mut search = Search {
         graph,
         found: BTreeSet::new(),

@@ -1,14 +1,16 @@
 //! Expressions whose sign does not depend on the state: a kinetic energy that is negative shows in
 //! its mass matrix.
 
+use crate::algebra::dimension::Dimension;
 use crate::algebra::expr::{Contents, Function, Graph, Id, Moment, Node, Symbol};
+use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::mechanics::lower::Energies;
 use crate::messages::Errors;
-use crate::model::unit::Dimension;
-use crate::model::{Meaning, Model, Quantity, text};
-use crate::syntax::ast::{Expr, ExprKind, Literal, Role};
+use crate::model::{Meaning, Model, Quantity};
+use crate::syntax::ast::{Expr, ExprKind, Role};
 use crate::syntax::name;
+use crate::syntax::text::text;
 use proc_macro2::Ident;
 use std::collections::{BTreeMap, BTreeSet};
 

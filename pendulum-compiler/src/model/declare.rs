@@ -1,10 +1,11 @@
 //! Declarations: what a name is declared as, once, with its unit and length.
 
-use super::{Meaning, Quantity, integer, plain, text};
+use super::{Meaning, Quantity, integer, plain};
 use crate::messages::Errors;
 use crate::model::unit;
 use crate::syntax::ast::{Expr, Kind, Let};
 use crate::syntax::name::{self, Name};
+use crate::syntax::text::text;
 use proc_macro2::Ident;
 use std::collections::BTreeMap;
 

@@ -1,21 +1,17 @@
 //! Names to symbols: what every name of a block means, and every name that means nothing.
 
 mod declare;
-mod elsewhere;
-mod text;
 pub(crate) mod unit;
 mod walk;
 
+use crate::algebra::dimension::Dimension;
 use crate::algebra::number::Rational;
 use crate::messages::{Errors, Range};
 use crate::syntax::ast::{Block, Expr, ExprKind, ForceIndex, Let, Role, Statement};
 use crate::syntax::name::{self, Name};
 use declare::{Declared, Shape, quantity, twice};
-pub(crate) use elsewhere::{constant, function};
 use proc_macro2::Ident;
 use std::collections::{BTreeMap, BTreeSet};
-pub(crate) use text::text;
-use unit::Dimension;
 use walk::Walk;
 
 /// A block with its names resolved.
@@ -69,17 +65,6 @@ pub(crate) enum Meaning {
     Input(usize),
     Let(usize),
 }
-
-/// The functions of the language, with their number of arguments; those before `dot` take scalars to a scalar.
-#[rustfmt::skip]
-pub(crate) const FUNCTIONS: &[(&str, usize)] = &[
-    ("sqrt", 1), ("exp", 1), ("ln", 1), ("sin", 1), ("cos", 1), ("tan", 1), ("asin", 1), ("acos", 1), ("atan", 1), ("atan2", 2),
-    ("sinh", 1), ("cosh", 1), ("tanh", 1), ("abs", 1), ("sign", 1), ("min", 2), ("max", 2),
-    ("dot", 1), ("inner", 2), ("cross", 2), ("perp", 1), ("height", 1), ("cis", 1),
-];
-
-/// What to do about a unit in a formula.
-pub(crate) const UNITS: &str = "units stand in declarations only, as in `g: m/s^2 = 9.81`";
 
 /// Resolves every name, reports those that cannot be.
 pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {

@@ -1,10 +1,12 @@
 //! A walk over all expressions: names that nobody declared, functions with the wrong number of arguments.
 
-use super::{FUNCTIONS, Meaning, Model, UNITS, constant, function, plain, unknown};
+use super::{Meaning, Model, plain, unknown};
+use crate::algebra::dimension::Dimension;
 use crate::messages::{Errors, Range};
-use crate::model::unit::Dimension;
 use crate::syntax::ast::{Binder, Expr, ExprKind, ForceIndex};
+use crate::syntax::elsewhere::{constant, function};
 use crate::syntax::name::{self, Name};
+use crate::syntax::words::{FUNCTIONS, UNITS};
 use proc_macro2::Ident;
 use std::collections::BTreeSet;
 

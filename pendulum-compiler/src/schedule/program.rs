@@ -1,8 +1,8 @@
 //! Straight programs: binary operations in order, each of which reads earlier ones.
 
 use crate::algebra::expr::{Function, Symbol};
+use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
-use crate::syntax::ast::Literal;
 use std::collections::BTreeMap;
 
 /// The place of an operation in its program.

@@ -1,6 +1,6 @@
 //! A block as written: spans, no meaning.
 
-use crate::algebra::number::Rational;
+use crate::algebra::number::Literal;
 use crate::messages::Range;
 use proc_macro2::Ident;
 use syn::{Attribute, Visibility};
@@ -123,11 +123,4 @@ pub(crate) enum ExprKind {
         body: Ident,
         integrand: Box<Expr>,
     },
-}
-
-/// A number as written: exact where it fits, else its digits.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(crate) enum Literal {
-    Exact(Rational),
-    Decimal(String),
 }

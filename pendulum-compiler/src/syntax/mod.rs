@@ -2,5 +2,8 @@
 
 pub(crate) mod ast;
 pub(crate) mod derive;
+pub(crate) mod elsewhere;
 pub(crate) mod name;
 pub(crate) mod parse;
+pub(crate) mod text;
+pub(crate) mod words;

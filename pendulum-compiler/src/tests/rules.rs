@@ -2,10 +2,11 @@
 
 use super::{Random, evaluate, lowered};
 use crate::algebra::expr::{Graph, Symbol};
+use crate::algebra::number::Literal;
 use crate::algebra::rule::{CANCELLATIONS, RULES, without_cancellation};
 use crate::messages::Errors;
 use crate::model;
-use crate::syntax::ast::{Expr, ExprKind, Literal};
+use crate::syntax::ast::{Expr, ExprKind};
 use crate::syntax::parse;
 
 #[test]

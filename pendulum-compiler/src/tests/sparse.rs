@@ -6,7 +6,7 @@ use crate::algebra::expr::{Graph, Id, Symbol};
 use crate::algebra::number::Rational;
 use crate::algebra::prime_field::{Point, Residue};
 use crate::mechanics::articulated;
-use crate::mechanics::motion;
+use crate::mechanics::euler_lagrange;
 use crate::mechanics::solve;
 use crate::messages::Errors;
 use crate::schedule;
@@ -41,7 +41,7 @@ fn compare(source: &str) -> [schedule::Count; 2] {
         }
         let energy = graph.sum(&energy);
         let accelerations = solve::solve(graph, &motion.mass_matrix, &motion.forces);
-        let velocities = motion::invert(graph, &motion.mass_matrix, &momenta).unwrap();
+        let velocities = euler_lagrange::invert(graph, &motion.mass_matrix, &momenta).unwrap();
         let pairs: Vec<(&str, Id, Id)> = [
             ("q̈", &accelerations, &sparse.accelerations),
             ("q̇", &velocities, &sparse.velocities),

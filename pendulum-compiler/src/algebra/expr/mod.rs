@@ -11,9 +11,9 @@ mod product;
 mod sum;
 mod walk;
 
+use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::algebra::rule;
-use crate::syntax::ast::Literal;
 pub(crate) use contents::Contents;
 pub(crate) use node::{Function, Id, Moment, Node, Symbol};
 use std::collections::{BTreeMap, HashMap};
@@ -194,6 +194,12 @@ impl Graph {
         self.contents.push(contents);
         self.ids.insert(node, id);
         id
+    }
+}
+
+impl Default for Id {
+    fn default() -> Self {
+        Graph::ZERO
     }
 }
 

@@ -1,7 +1,7 @@
 //! What the graph is made of: nodes and their leaves.
 
+use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
-use crate::syntax::ast::Literal;
 
 /// A node of the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -1,9 +1,9 @@
 //! Products: flat, sorted, with a coefficient and an exponent for each base.
 
 use super::{Contents, Function, Graph, Id, Node, Terms};
+use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::algebra::rule;
-use crate::syntax::ast::Literal;
 
 impl Graph {
     /// coefficient · Π base^exponent.

@@ -13,8 +13,8 @@ mod system;
 mod unmentioned;
 
 use crate::algebra::expr::Graph;
+use crate::backend::Analysis;
 use crate::backend::ide;
-use crate::compile::Analysis;
 use crate::mechanics::lower::Energies;
 use crate::mechanics::motion::Motion;
 use crate::model::{Model, Quantity};

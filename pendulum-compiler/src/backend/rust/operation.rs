@@ -2,9 +2,9 @@
 
 use super::{Emitter, local};
 use crate::algebra::expr::{Function, Moment, Symbol};
+use crate::algebra::number;
 use crate::algebra::number::Rational;
 use crate::schedule::{Op, Place};
-use crate::syntax::ast;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -117,10 +117,10 @@ fn number(value: Rational, scalar: &Ident) -> TokenStream {
     if value.is_integer() { quote!(#scalar::from_f64(#sign #top)) } else { quote!(#scalar::ratio(#sign #top, #bottom)) }
 }
 
-fn decimal(literal: &ast::Literal, scalar: &Ident) -> TokenStream {
+fn decimal(literal: &number::Literal, scalar: &Ident) -> TokenStream {
     match literal {
-        ast::Literal::Exact(value) => number(*value, scalar),
-        ast::Literal::Decimal(digits) => {
+        number::Literal::Exact(value) => number(*value, scalar),
+        number::Literal::Decimal(digits) => {
             let value = Literal::f64_unsuffixed(digits.parse().unwrap_or(f64::NAN));
             quote!(#scalar::from_f64(#value))
         }

@@ -5,9 +5,10 @@ use super::{Local, Lower};
 use crate::algebra::expr::{Contents, Graph, Id, Moment, Symbol};
 use crate::algebra::number::Rational;
 use crate::algebra::velocity_polynomial;
-use crate::model::{self, Meaning};
+use crate::model::Meaning;
 use crate::syntax::ast::{Expr, ExprKind};
 use crate::syntax::name::{self, Name};
+use crate::syntax::text::text;
 
 impl Lower<'_, '_, '_, '_> {
     /// The body that an expression names.
@@ -72,7 +73,7 @@ impl Lower<'_, '_, '_, '_> {
             Some(what) => {
                 let message = format!(
                     "`{}` is {what} in `{point}`, and a body knows its moments up to the second; write a polynomial of degree two or less",
-                    model::text(integrand)
+                    text(integrand)
                 );
                 self.wrong(integrand, &message)
             }

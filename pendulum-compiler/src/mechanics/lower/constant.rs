@@ -3,9 +3,10 @@
 use super::Lower;
 use super::value::Value;
 use crate::algebra::expr::{Contents, Function, Graph, Id, Node, Symbol};
+use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
-use crate::model;
-use crate::syntax::ast::{Expr, Literal};
+use crate::syntax::ast::Expr;
+use crate::syntax::text::text;
 
 impl Lower<'_, '_, '_, '_> {
     /// A value, unless it is a constant that is not finite.
@@ -18,7 +19,7 @@ impl Lower<'_, '_, '_, '_> {
         if number.is_finite() {
             return value;
         }
-        let text = model::text(expr);
+        let text = text(expr);
         if number.is_nan() {
             return self.wrong(expr, &format!("`{text}` is no real number; write an operand for which it is"));
         }

@@ -14,6 +14,7 @@ use crate::messages::{Errors, Range};
 use crate::model::{self, Model};
 use crate::syntax::ast::{Binder, Expr, ForceIndex, Role};
 use crate::syntax::name;
+use crate::syntax::text::text;
 use std::collections::{BTreeMap, BTreeSet};
 use value::Value;
 
@@ -396,7 +397,7 @@ impl Lower<'_, '_, '_, '_> {
             Ok(k) if (0..length as i64).contains(&k) => Some(k),
             Ok(k) => {
                 // A range that is too long is one mistake, however often its index is used.
-                let text = model::text(expr);
+                let text = text(expr);
                 let source = match self.local(&name::read(&text).base) {
                     Some(Local::Index { source, .. }) => *source,
                     _ => expr.source,

@@ -6,6 +6,8 @@ use crate::algebra::expr::{Function, Graph, Id, Symbol};
 use crate::model::{self, Meaning};
 use crate::syntax::ast::{Binder, Expr, ExprKind};
 use crate::syntax::name::{self, Name};
+use crate::syntax::text::text;
+use crate::syntax::words::FUNCTIONS;
 
 impl Lower<'_, '_, '_, '_> {
     pub(super) fn scalar(&mut self, expr: &Expr) -> Option<Id> {
@@ -18,7 +20,7 @@ impl Lower<'_, '_, '_, '_> {
                         expr,
                         &format!(
                             "`{}` is {}, but a scalar is needed here; write `inner(u, v)`, `|u|` or a component",
-                            model::text(expr),
+                            text(expr),
                             other.kind()
                         ),
                     );
@@ -34,14 +36,12 @@ impl Lower<'_, '_, '_, '_> {
             ExprKind::Negative(inner) => self.vector_product(inner),
             ExprKind::Product(items) => {
                 let factors = items.iter().map(|(_, item)| item);
-                let vectors: Vec<String> = factors
-                    .filter(|item| matches!(self.expr(item), Value::Plane { complex: false, .. }))
-                    .map(model::text)
-                    .collect();
+                let vectors: Vec<String> =
+                    factors.filter(|item| matches!(self.expr(item), Value::Plane { complex: false, .. })).map(text).collect();
                 let [a, b] = vectors.as_slice() else { return None };
                 let message = format!(
                     "`{}` is the complex product of two plane vectors, but a scalar is needed here; write `inner({a}, {b})`",
-                    model::text(expr)
+                    text(expr)
                 );
                 Some(self.wrong(expr, &message))
             }
@@ -193,7 +193,7 @@ impl Lower<'_, '_, '_, '_> {
             let value = self.expr(item);
             if let Value::Space(_) = value {
                 if let (Value::Space(_), Some(left), false) = (&total, vector, *over) {
-                    let (a, b) = (model::text(left), model::text(item));
+                    let (a, b) = (text(left), text(item));
                     let message =
                         format!("the product of two space vectors is ambiguous; write `inner({a}, {b})` or `cross({a}, {b})`");
                     return self.wrong(item, &message);
@@ -235,7 +235,7 @@ impl Lower<'_, '_, '_, '_> {
                     item,
                     &format!(
                         "`{}` is {}, and a quarter turn needs a plane vector; write `perp([x, y])`",
-                        model::text(item),
+                        text(item),
                         other.kind()
                     ),
                 ),
@@ -246,11 +246,7 @@ impl Lower<'_, '_, '_, '_> {
                 Value::Space(parts) => Value::Scalar(parts[2]),
                 other => self.wrong(
                     item,
-                    &format!(
-                        "`{}` is {}, and a height is that of a vector; write the scalar itself",
-                        model::text(item),
-                        other.kind()
-                    ),
+                    &format!("`{}` is {}, and a height is that of a vector; write the scalar itself", text(item), other.kind()),
                 ),
             },
             ("cis", [item]) => match self.scalar(item) {
@@ -267,11 +263,7 @@ impl Lower<'_, '_, '_, '_> {
                 Value::Bad => Value::Bad,
                 other => self.wrong(
                     item,
-                    &format!(
-                        "`{}` is {}, but the exponent is a number; write `exp(i*φ)` for a turn",
-                        model::text(item),
-                        other.kind()
-                    ),
+                    &format!("`{}` is {}, but the exponent is a number; write `exp(i*φ)` for a turn", text(item), other.kind()),
                 ),
             },
             _ => self.scalar_call(name, items),
@@ -279,7 +271,7 @@ impl Lower<'_, '_, '_, '_> {
     }
 
     pub(super) fn scalar_call(&mut self, name: &str, items: &[Expr]) -> Value {
-        if !model::FUNCTIONS.contains(&(name, items.len())) {
+        if !FUNCTIONS.contains(&(name, items.len())) {
             // The call has been reported, and the kind of its arguments is open.
             for item in items {
                 self.expr(item);
@@ -360,10 +352,10 @@ impl Lower<'_, '_, '_, '_> {
             Value::Plane { parts, .. } => parts.map(Value::Scalar).to_vec(),
             Value::Space(parts) => parts.map(Value::Scalar).to_vec(),
             Value::Scalar(_) => {
-                return self.wrong(base, &format!("`{}` is a scalar, it has no members; leave out the index", model::text(base)));
+                return self.wrong(base, &format!("`{}` is a scalar, it has no members; leave out the index", text(base)));
             }
         };
-        match self.index(index, members.len(), &model::text(base)) {
+        match self.index(index, members.len(), &text(base)) {
             Some(k) => members[usize::try_from(k).unwrap_or(0)].clone(),
             None => Value::Bad,
         }
@@ -399,8 +391,7 @@ impl Lower<'_, '_, '_, '_> {
             Value::Bad => Value::Bad,
             Value::Plane { parts, .. } if which < 2 => Value::Scalar(parts[which]),
             Value::Space(parts) => Value::Scalar(parts[which]),
-            other => self
-                .wrong(expr, &format!("`{}` is {}, it has no `.{component}`; write a vector", model::text(base), other.kind())),
+            other => self.wrong(expr, &format!("`{}` is {}, it has no `.{component}`; write a vector", text(base), other.kind())),
         }
     }
 }

@@ -3,8 +3,8 @@
 use super::{Lower, total_derivative};
 use crate::algebra::expr::{Contents, Function, Graph, Id, Node, Symbol};
 use crate::algebra::number::Rational;
-use crate::model;
 use crate::syntax::ast::Expr;
+use crate::syntax::text::text;
 
 /// An expression by its components.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +49,7 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn dot(&mut self, value: Value, expr: &Expr, still: bool) -> Value {
         let contents = self.contents(&value);
         let moving = Contents::TIME.or(Contents::COORDINATE).or(Contents::VELOCITY).or(Contents::INPUT);
-        let what = model::text(expr);
+        let what = text(expr);
         if value == Value::Bad {
             return value;
         }
@@ -114,7 +114,7 @@ impl Lower<'_, '_, '_, '_> {
             (a, b) => {
                 let message = format!(
                     "`{}` is {}, but the terms before it are {}; a sum needs terms of one kind",
-                    model::text(expr),
+                    text(expr),
                     b.kind(),
                     a.kind_plural()
                 );
@@ -191,7 +191,7 @@ impl Lower<'_, '_, '_, '_> {
             other => {
                 let message = format!(
                     "`{}` is {}, and nothing can be divided by that; divide by its length `|u|`",
-                    model::text(expr),
+                    text(expr),
                     other.kind()
                 );
                 self.wrong(expr, &message)
@@ -221,7 +221,7 @@ impl Lower<'_, '_, '_, '_> {
                 _ => self.wrong(exponent, "a complex number has whole powers from 0 to 64 here; write `exp(i*φ)` for others"),
             },
             other => {
-                let text = model::text(base);
+                let text = text(base);
                 let message = format!("`{text}` is {}, and only scalars have powers; write `|{text}|^2`", other.kind());
                 self.wrong(base, &message)
             }
@@ -281,7 +281,7 @@ impl Lower<'_, '_, '_, '_> {
                 Value::Scalar(self.graph.sqrt(square))
             }
             other @ Value::Family(_) => {
-                let message = format!("`{}` is {}; write one of its members", model::text(inner), other.kind());
+                let message = format!("`{}` is {}; write one of its members", text(inner), other.kind());
                 self.wrong(inner, &message)
             }
         }

@@ -5,11 +5,13 @@
 //! not hold is the mistake.
 
 use super::{Dimension, constant};
+use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::messages::Errors;
 use crate::model::{self, Meaning, Model};
-use crate::syntax::ast::{Expr, ExprKind, ForceIndex, Literal, Role};
+use crate::syntax::ast::{Expr, ExprKind, ForceIndex, Role};
 use crate::syntax::name::{self, Name};
+use crate::syntax::text::text;
 use std::collections::BTreeMap;
 
 /// What is nested deeper is left alone: it would overflow the compiler's stack. Every definition is checked for itself as well.
@@ -106,8 +108,8 @@ impl Units<'_, '_, '_> {
                         let per = if role == Role::Dissipation { " times a second" } else { "" };
                         let message = format!(
                             "`{}`{per} is {found}, but `{}` is {expected}; all energies of a block have one unit",
-                            model::text(expr),
-                            model::text(first)
+                            text(expr),
+                            text(first)
                         );
                         self.errors.once(expr.source, expr.range, message);
                     }
@@ -130,7 +132,7 @@ impl Units<'_, '_, '_> {
                 let (found, expected) = (self.shown(&found), self.shown(&expected));
                 let message = format!(
                     "`{}` is {found}, but a force on `{}` is {expected}, an energy per unit of the coordinate",
-                    model::text(force.expr),
+                    text(force.expr),
                     force.name
                 );
                 self.errors.once(force.expr.source, force.expr.range, message);
@@ -225,7 +227,7 @@ impl Units<'_, '_, '_> {
             self.errors.once(
                 expr.source,
                 expr.range,
-                format!("`{}` is {unit}, but {what} is a pure number; divide by a unit of its kind", model::text(expr)),
+                format!("`{}` is {unit}, but {what} is a pure number; divide by a unit of its kind", text(expr)),
             );
         }
     }
@@ -241,9 +243,9 @@ impl Units<'_, '_, '_> {
                     if !self.unify(&found, expected) {
                         let message = format!(
                             "`{}` is {}, but `{}` is {}; {what} needs one unit",
-                            model::text(item),
+                            text(item),
                             self.shown(&found),
-                            model::text(first),
+                            text(first),
                             self.shown(expected)
                         );
                         self.errors.once(item.source, item.range, message);

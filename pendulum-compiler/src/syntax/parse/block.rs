@@ -2,9 +2,10 @@
 
 use super::Parser;
 use super::token::{end, identifier, skip, unexpected};
+use crate::algebra::number::Literal;
 use crate::messages::Range;
-use crate::model::text;
-use crate::syntax::ast::{Block, Expr, ExprKind, Field, Kind, Literal, Lost};
+use crate::syntax::ast::{Block, Expr, ExprKind, Field, Kind, Lost};
+use crate::syntax::text::text;
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Result};

@@ -3,9 +3,10 @@
 use super::foreign::{FOREIGN, no_condition, no_unit, path};
 use super::token::{checked, comma, end, fragment, identifier, unexpected};
 use super::{Parser, to_the_last};
+use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::messages::Range;
-use crate::syntax::ast::{Expr, ExprKind, Literal};
+use crate::syntax::ast::{Expr, ExprKind};
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use quote::ToTokens;
 use syn::ext::IdentExt;

@@ -3,11 +3,13 @@
 use super::Parser;
 use super::statement::STATEMENTS;
 use super::token::fragment;
+use crate::algebra::dimension::Dimension;
 use crate::messages::Range;
-use crate::model::unit::Dimension;
-use crate::model::{FUNCTIONS, UNITS, constant, function, text};
 use crate::syntax::ast::{Expr, ExprKind};
+use crate::syntax::elsewhere::{constant, function};
 use crate::syntax::name;
+use crate::syntax::text::text;
+use crate::syntax::words::{FUNCTIONS, UNITS};
 use proc_macro2::{Delimiter, Ident, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Result};

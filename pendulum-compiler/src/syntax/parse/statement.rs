@@ -3,9 +3,9 @@
 use super::Parser;
 use super::token::{end, equals, fragment, identifier, unexpected};
 use crate::messages::Range;
-use crate::model::text;
 use crate::syntax::ast::{Binder, Expr, ForceIndex, Kind, Let, Role, Statement};
 use crate::syntax::name;
+use crate::syntax::text::text;
 use proc_macro2::{Ident, Spacing, TokenStream, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Result};

@@ -1,6 +1,7 @@
 //! Expressions as text, for messages and facts.
 
-use crate::syntax::ast::{Expr, ExprKind, Literal};
+use crate::algebra::number::Literal;
+use crate::syntax::ast::{Expr, ExprKind};
 
 /// The text of a small expression, for messages and facts.
 pub(crate) fn text(expr: &Expr) -> String {
