@@ -9,21 +9,21 @@ pub(crate) fn derivative(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
     let mut unknown = BTreeSet::new();
     let mut pending = vec![id];
     while let Some(node) = pending.pop() {
-        if graph.slope(symbol, node).is_none() && unknown.insert(node) {
+        if graph.cached_derivative(symbol, node).is_none() && unknown.insert(node) {
             pending.extend(graph.children(node));
         }
     }
     // Children have smaller ids than their parents.
     for node in unknown {
         let slope = rule(graph, node, symbol);
-        graph.set_slope(symbol, node, slope);
+        graph.cache_derivative(symbol, node, slope);
     }
-    graph.slope(symbol, id).unwrap_or_default()
+    graph.cached_derivative(symbol, id).unwrap_or_default()
 }
 
 /// The derivative of one node from those of its children.
 fn rule(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
-    let known = |graph: &Graph, id: Id| graph.slope(symbol, id).unwrap_or_default();
+    let known = |graph: &Graph, id: Id| graph.cached_derivative(symbol, id).unwrap_or_default();
     match graph.node(id).clone() {
         Node::Number(_) | Node::Opaque(_) | Node::Pi => Graph::ZERO,
         Node::Symbol(own) if own == symbol => Graph::ONE,

@@ -3,7 +3,7 @@
 //! Ids grow with use, and sums and products are sorted by id. Rebuilding a graph from its leaves upwards, each level sorted by
 //! what it is made of, gives equal systems equal graphs, whatever notation they came in: the same operations in the same order.
 
-use crate::algebra::expr::{Contents, Graph, Id, Node};
+use crate::algebra::expr::{Dependencies, Graph, Id, Node};
 use crate::algebra::number::Rational;
 use std::collections::BTreeMap;
 
@@ -40,9 +40,9 @@ pub(crate) fn canonicalize(old: &Graph, roots: &mut [&mut Id]) -> Graph {
 type Key = (u8, Node, Vec<(Id, Rational)>);
 
 fn key(old: &Graph, id: Id, graph: &mut Graph, known: &BTreeMap<Id, Id>) -> Key {
-    let contents = old.contents(id);
-    let rank = [Contents::VELOCITY, Contents::COORDINATE, Contents::INPUT, Contents::TIME];
-    let rank = rank.into_iter().position(|kind| contents.any(kind)).map_or(0, |place| 4 - u8::try_from(place).unwrap_or(0));
+    let dependencies = old.dependencies(id);
+    let rank = [Dependencies::VELOCITY, Dependencies::COORDINATE, Dependencies::INPUT, Dependencies::TIME];
+    let rank = rank.into_iter().position(|kind| dependencies.any(kind)).map_or(0, |place| 4 - u8::try_from(place).unwrap_or(0));
     let bare = |id: Id, graph: &mut Graph| graph.split(known[&id]);
     let (shape, mut parts) = match old.node(id) {
         node @ (Node::Number(_) | Node::Opaque(_) | Node::Pi | Node::Symbol(_)) => (node.clone(), Vec::new()),

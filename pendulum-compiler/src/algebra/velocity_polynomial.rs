@@ -4,7 +4,7 @@
 //! coefficient simplifies on its own (sin² + cos², cos a cos b + sin a sin b, equal masses), and the equations of motion come out
 //! as a careful person would write them.
 
-use crate::algebra::expr::{Contents, Graph, Id, Node};
+use crate::algebra::expr::{Dependencies, Graph, Id, Node};
 use crate::algebra::number::Rational;
 use std::collections::BTreeMap;
 
@@ -30,15 +30,15 @@ pub(crate) fn by_velocities(graph: &mut Graph, id: Id) -> Option<Id> {
     Some(graph.sum(&terms))
 }
 
-fn moving() -> Contents {
-    Contents::VELOCITY.or(Contents::AUXILIARY).or(Contents::VELOCITY_INPUT).or(Contents::ACCELERATION_INPUT)
+fn moving() -> Dependencies {
+    Dependencies::VELOCITY.or(Dependencies::AUXILIARY).or(Dependencies::VELOCITY_INPUT).or(Dependencies::ACCELERATION_INPUT)
 }
 
 /// The polynomial that an expression is in all symbols of some kinds, from those of its children.
-pub(crate) fn polynomial(graph: &mut Graph, root: Id, variables: Contents) -> Option<Polynomial> {
+pub(crate) fn polynomial(graph: &mut Graph, root: Id, variables: Dependencies) -> Option<Polynomial> {
     let mut known: BTreeMap<Id, Polynomial> = BTreeMap::new();
     for id in graph.reachable(&[root]) {
-        if !graph.contents(id).any(variables) {
+        if !graph.dependencies(id).any(variables) {
             continue;
         }
         let value = match graph.node(id).clone() {
@@ -62,10 +62,10 @@ pub(crate) fn polynomial(graph: &mut Graph, root: Id, variables: Contents) -> Op
             }
             Node::Product(coefficient, factors) => {
                 let mut product = Polynomial::from([(Vec::new(), vec![(Graph::ONE, coefficient)])]);
-                let mut still = Vec::new();
+                let mut fixed = Vec::new();
                 for (base, exponent) in factors {
                     match known.get(&base) {
-                        None => still.push((base, exponent)),
+                        None => fixed.push((base, exponent)),
                         Some(part) => {
                             let count = exponent.integer().filter(|count| (1..=8).contains(count))?;
                             for _ in 0..count {
@@ -74,8 +74,8 @@ pub(crate) fn polynomial(graph: &mut Graph, root: Id, variables: Contents) -> Op
                         }
                     }
                 }
-                let still = graph.product(Rational::ONE, &still);
-                let constant = Polynomial::from([(Vec::new(), vec![(still, Rational::ONE)])]);
+                let fixed = graph.product(Rational::ONE, &fixed);
+                let constant = Polynomial::from([(Vec::new(), vec![(fixed, Rational::ONE)])]);
                 multiply(graph, &product, &constant)?
             }
             Node::Atom(inner) => known.get(&inner)?.clone(),

@@ -4,7 +4,7 @@
 //! plus and in another with a minus. What is computed stays so; what is printed is expanded where
 //! that makes it shorter.
 
-use crate::algebra::expr::{Contents, Graph, Id, Node};
+use crate::algebra::expr::{Dependencies, Graph, Id, Node};
 use crate::algebra::number::Rational;
 use crate::algebra::order;
 use std::collections::BTreeMap;
@@ -92,7 +92,7 @@ impl Expansions {
         match graph.node(id) {
             Node::Number(value) => Some(Expansion::one(Vec::new(), *value)),
             Node::Atom(inner) => self.expand(graph, *inner),
-            Node::Sum(terms) if self.parameters || graph.contents(id).any(Contents::STATE) => {
+            Node::Sum(terms) if self.parameters || graph.dependencies(id).any(Dependencies::STATE) => {
                 let mut all = Expansion { terms: Terms::new(), met: false };
                 for &(term, coefficient) in terms {
                     let part = self.expand(graph, term)?;

@@ -6,7 +6,7 @@
 //! u = a tᵈ + … is as narrow as |a|^(−1/d).
 
 use crate::algebra::diff::{derivative, substitute};
-use crate::algebra::expr::{Contents, Function, Graph, Id, Node, Symbol};
+use crate::algebra::expr::{Dependencies, Function, Graph, Id, Node, Symbol};
 use crate::algebra::number::Rational;
 use crate::algebra::order;
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,7 +22,7 @@ pub(crate) struct Feature {
 
 /// The features of some expressions, in a graph of their own.
 pub(crate) fn features(graph: &Graph, roots: &[Id]) -> (Graph, Vec<Feature>) {
-    if !roots.iter().any(|&root| graph.contents(root).any(Contents::TIME)) {
+    if !roots.iter().any(|&root| graph.dependencies(root).any(Dependencies::TIME)) {
         return (Graph::new(), Vec::new());
     }
     let mut roots = roots.to_vec();
@@ -54,12 +54,12 @@ const HIGHEST: i64 = 8;
 const CORNERS: usize = 8;
 
 /// What may vary beside the time.
-const BESIDE_TIME: Contents = Contents::COORDINATE
-    .or(Contents::VELOCITY)
-    .or(Contents::INPUT)
-    .or(Contents::MOMENTUM)
-    .or(Contents::POINT)
-    .or(Contents::AUXILIARY);
+const BESIDE_TIME: Dependencies = Dependencies::COORDINATE
+    .or(Dependencies::VELOCITY)
+    .or(Dependencies::INPUT)
+    .or(Dependencies::MOMENTUM)
+    .or(Dependencies::POINT)
+    .or(Dependencies::AUXILIARY);
 
 struct Search {
     graph: Graph,
@@ -91,11 +91,11 @@ struct Polynomial {
 
 impl Search {
     fn moves(&self, id: Id) -> bool {
-        self.graph.contents(id).any(Contents::TIME)
+        self.graph.dependencies(id).any(Dependencies::TIME)
     }
 
     fn has_state(&self, id: Id) -> bool {
-        self.graph.contents(id).any(BESIDE_TIME)
+        self.graph.dependencies(id).any(BESIDE_TIME)
     }
 
     fn visit(&mut self, id: Id) {
@@ -201,7 +201,7 @@ impl Search {
             && polynomial.whole
             && !polynomial.cornered
         {
-            let zeros = polynomial.middles.into_iter().filter(|&zero| !self.graph.contents(zero).any(BESIDE_TIME));
+            let zeros = polynomial.middles.into_iter().filter(|&zero| !self.graph.dependencies(zero).any(BESIDE_TIME));
             self.corners.extend(zeros);
         }
     }
@@ -423,8 +423,8 @@ impl Search {
                     self.graph.sum(&slopes)
                 }
                 Node::Product(coefficient, factors) => {
-                    let (moving, still): (Vec<_>, Vec<_>) = factors.into_iter().partition(|&(base, _)| self.moves(base));
-                    let constant = self.graph.product(coefficient, &still);
+                    let (moving, fixed): (Vec<_>, Vec<_>) = factors.into_iter().partition(|&(base, _)| self.moves(base));
+                    let constant = self.graph.product(coefficient, &fixed);
                     let magnitude = self.graph.call(Function::Abs, constant);
                     self.graph.mul(magnitude, slopes[&moving.first()?.0])
                 }

@@ -3,7 +3,7 @@
 //! d/dt ∂L/∂q̇ − ∂L/∂q = Q − ∂R/∂q̇, where d/dt runs through the coordinates, the driven inputs and the time.
 
 use crate::algebra::diff::derivative;
-use crate::algebra::expr::{Contents, Function, Graph, Id, Node, Symbol};
+use crate::algebra::expr::{Dependencies, Function, Graph, Id, Node, Symbol};
 use crate::algebra::number::Rational;
 use crate::algebra::order;
 use crate::algebra::rule;
@@ -250,7 +250,7 @@ fn has_jerk(model: &Model, graph: &Graph, lagrangian: Id, momenta: &[Id], errors
 
 /// q̇ = M⁻¹(p − b) for momenta M q̇ + b that are linear in the velocities.
 pub(crate) fn invert(graph: &mut Graph, mass_matrix: &[Vec<Id>], momenta: &[Id]) -> Option<Vec<Id>> {
-    if mass_matrix.iter().flatten().any(|&entry| graph.contents(entry).any(Contents::VELOCITY)) {
+    if mass_matrix.iter().flatten().any(|&entry| graph.dependencies(entry).any(Dependencies::VELOCITY)) {
         return None;
     }
     let count = momenta.len();
@@ -267,7 +267,7 @@ pub(crate) fn invert(graph: &mut Graph, mass_matrix: &[Vec<Id>], momenta: &[Id])
             return None;
         }
         // What structure does not cancel vanishes at q̇ = 0.
-        let rest = if graph.contents(rest).any(Contents::VELOCITY) { at_rest(graph, rest) } else { rest };
+        let rest = if graph.dependencies(rest).any(Dependencies::VELOCITY) { at_rest(graph, rest) } else { rest };
         let momentum = graph.symbol(Symbol::Momentum(i));
         right.push(graph.add(momentum, rest));
     }
@@ -277,10 +277,10 @@ pub(crate) fn invert(graph: &mut Graph, mass_matrix: &[Vec<Id>], momenta: &[Id])
 /// Whether an expression jumps where a function of the velocities changes sign: its derivative does not show that it contains them.
 fn jumps(graph: &Graph, id: Id) -> bool {
     let jumps = |id: &Id| match graph.node(*id) {
-        Node::Call(Function::Sign | Function::Step, argument) => graph.contents(*argument).any(Contents::VELOCITY),
+        Node::Call(Function::Sign | Function::Step, argument) => graph.dependencies(*argument).any(Dependencies::VELOCITY),
         _ => false,
     };
-    graph.contents(id).any(Contents::VELOCITY) && graph.reachable(&[id]).iter().any(jumps)
+    graph.dependencies(id).any(Dependencies::VELOCITY) && graph.reachable(&[id]).iter().any(jumps)
 }
 
 /// An expression with all velocities of coordinates set to zero.
@@ -289,18 +289,18 @@ fn at_rest(graph: &mut Graph, id: Id) -> Id {
 }
 
 fn facts(graph: &mut Graph, motion: &mut Motion) {
-    let all = |roots: &[Id]| roots.iter().fold(Contents::default(), |all, &id| all.or(graph.contents(id)));
-    let masses = motion.mass_matrix.iter().flatten().fold(Contents::default(), |all, &id| all.or(graph.contents(id)));
-    let state = Contents::COORDINATE.or(Contents::VELOCITY);
-    let time = Contents::TIME.or(Contents::INPUT);
+    let all = |roots: &[Id]| roots.iter().fold(Dependencies::default(), |all, &id| all.or(graph.dependencies(id)));
+    let masses = motion.mass_matrix.iter().flatten().fold(Dependencies::default(), |all, &id| all.or(graph.dependencies(id)));
+    let state = Dependencies::COORDINATE.or(Dependencies::VELOCITY);
+    let time = Dependencies::TIME.or(Dependencies::INPUT);
     let forces = all(&motion.forces);
     motion.constant_mass_matrix = !masses.any(state.or(time));
-    motion.velocity_free = motion.constant_mass_matrix && !forces.any(Contents::VELOCITY);
+    motion.velocity_free = motion.constant_mass_matrix && !forces.any(Dependencies::VELOCITY);
     motion.linear = motion.constant_mass_matrix && graph.linear(&motion.forces);
-    let contents = forces.or(all(&motion.momenta)).or(masses);
-    motion.autonomous = !contents.any(time);
-    motion.explicit_time = contents.any(Contents::TIME);
-    let moving = motion.velocities.iter().flatten().fold(Contents::default(), |all, &id| all.or(graph.contents(id)));
-    let explicit = motion.velocities.is_some() && !moving.any(Contents::COORDINATE);
+    let dependencies = forces.or(all(&motion.momenta)).or(masses);
+    motion.autonomous = !dependencies.any(time);
+    motion.explicit_time = dependencies.any(Dependencies::TIME);
+    let moving = motion.velocities.iter().flatten().fold(Dependencies::default(), |all, &id| all.or(graph.dependencies(id)));
+    let explicit = motion.velocities.is_some() && !moving.any(Dependencies::COORDINATE);
     motion.separable = motion.constant_mass_matrix && explicit && !motion.nonconservative;
 }

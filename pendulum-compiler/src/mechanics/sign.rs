@@ -2,7 +2,7 @@
 //! its mass matrix.
 
 use crate::algebra::dimension::Dimension;
-use crate::algebra::expr::{Contents, Function, Graph, Id, Moment, Node, Symbol};
+use crate::algebra::expr::{Dependencies, Function, Graph, Id, Moment, Node, Symbol};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::mechanics::lower::Energies;
@@ -20,7 +20,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A Lagrangian that is not split may have any sign, and so may a parameter that is no mass.
 pub(crate) fn positive(model: &Model, graph: &Graph, energies: &Energies, matrix: &[Vec<Id>], errors: &mut Errors) -> bool {
     let potential = energies.potential.unwrap_or_default();
-    if energies.lagrangian.is_some() || graph.contents(potential).any(Contents::VELOCITY) {
+    if energies.lagrangian.is_some() || graph.dependencies(potential).any(Dependencies::VELOCITY) {
         return true;
     }
     let diagonal: Vec<Id> = matrix.iter().enumerate().map(|(index, row)| row[index]).collect();

@@ -1,6 +1,6 @@
 //! M x = f on the graph: `LDLᵀ` without square roots, structural zeros skipped, independent blocks apart.
 
-use crate::algebra::expr::{Contents, Graph, Id};
+use crate::algebra::expr::{Dependencies, Graph, Id};
 use crate::algebra::number::Rational;
 use crate::algebra::prime_field::{Point, Residue};
 use crate::algebra::velocity_polynomial;
@@ -98,13 +98,17 @@ pub(crate) fn solve(graph: &mut Graph, matrix: &[Vec<Id>], right: &[Id]) -> Vec<
         let pivot =
             graph.product(Rational::ONE, &[(matrix[block[0]][block[0]], Rational::ONE), (scales[0], Rational::whole(-2))]);
         // The first pivot becomes one where parameters alone decide it.
-        let unit = if graph.contents(pivot).any(Contents::STATE) { Graph::ONE } else { pivot };
+        let unit = if graph.dependencies(pivot).any(Dependencies::STATE) { Graph::ONE } else { pivot };
         let scaled: Vec<Vec<Id>> = (0..block.len())
             .map(|i| {
                 let entry = |j: usize| {
                     let entry = over(graph, matrix[block[i]][block[j]], &[scales[i], scales[j], unit]);
                     // Multiplied out, a constant shows what cancels against squares: 1 − cos² is sin².
-                    if graph.contents(entry).any(Contents::STATE) { entry } else { velocity_polynomial::expanded(graph, entry) }
+                    if graph.dependencies(entry).any(Dependencies::STATE) {
+                        entry
+                    } else {
+                        velocity_polynomial::expanded(graph, entry)
+                    }
                 };
                 (0..block.len()).map(entry).collect()
             })
@@ -133,13 +137,13 @@ fn scales(graph: &mut Graph, matrix: &[Vec<Id>], block: &[usize]) -> Vec<Id> {
         let common: Vec<(Id, Rational)> = diagonal
             .into_iter()
             .filter(|&(base, exponent)| {
-                let still = !graph.contents(base).any(Contents::STATE) && exponent == Rational::whole(2);
+                let parameters_alone = !graph.dependencies(base).any(Dependencies::STATE) && exponent == Rational::whole(2);
                 let stands = |&column: &usize| {
                     let entry = matrix[row][column];
                     entry == Graph::ZERO
                         || graph.factors(entry).iter().any(|&(other, power)| other == base && !power.is_negative())
                 };
-                still && block.iter().all(stands)
+                parameters_alone && block.iter().all(stands)
             })
             .map(|(base, _)| (base, Rational::ONE))
             .collect();

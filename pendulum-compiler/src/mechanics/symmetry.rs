@@ -96,7 +96,7 @@ pub(crate) fn conserved(graph: &mut Graph, lagrangian: Id, momenta: &[Id], exter
         }
         let value = graph.sum(&sum);
         // A momentum that is a constant is no news: gauge terms make such.
-        if graph.contents(value).any(crate::algebra::expr::Contents::VELOCITY) {
+        if graph.dependencies(value).any(crate::algebra::expr::Dependencies::VELOCITY) {
             found.push(Conserved { terms, value });
         }
     }

@@ -123,7 +123,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         }
     }
     roles(block, errors);
-    if model.coordinates.is_empty() && !block.lost.declarations {
+    if model.coordinates.is_empty() && !block.recovery.declarations {
         errors.at(block.name.span(), "no coordinate; write `coordinate θ: rad;` below the struct");
     }
     let mut walk = Walk { model: &model, errors, scope: Vec::new(), mentioned: BTreeSet::new() };
@@ -145,7 +145,7 @@ fn force<'a>(model: &mut Model<'a>, name: &'a Ident, index: Option<&'a ForceInde
         Some(_) => {
             errors.at(name.span(), format!("`{name}` is no coordinate; a force acts on a coordinate, as in `force θ = …;`"));
         }
-        None if model.block.lost.declarations => {}
+        None if model.block.recovery.declarations => {}
         None => {
             let known = model.coordinates.iter().map(|coordinate| coordinate.name.to_string()).collect::<Vec<_>>();
             errors.at(name.span(), unknown(&name.to_string(), known.iter().map(String::as_str)));
@@ -172,7 +172,7 @@ fn roles(block: &Block, errors: &mut Errors) {
     if let (Some(_), Some(split)) = (lagrangian, split) {
         errors.at(split, "`lagrangian` is kinetic minus potential energy already; write either one or the other");
     }
-    if lagrangian.is_none() && split.is_none() && !block.lost.energies {
+    if lagrangian.is_none() && split.is_none() && !block.recovery.energies {
         errors.at(block.name.span(), "no energy; write `kinetic = …;` and `potential = …;` below the struct");
     }
 }

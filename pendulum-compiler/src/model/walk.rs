@@ -193,7 +193,7 @@ impl Walk<'_, '_, '_> {
                 self.errors.at(ident.span(), format!("`{ident}` is a third derivative; driven inputs have two"));
             }
             (_, Some(_)) => {}
-            (_, None) if self.model.block.lost.declarations => {}
+            (_, None) if self.model.block.recovery.declarations => {}
             (text, None) if FUNCTIONS.iter().any(|(function, _)| *function == text) => {
                 self.errors.at(ident.span(), format!("`{ident}` is a function; write `{ident}(…)`"));
             }
@@ -265,7 +265,7 @@ impl Walk<'_, '_, '_> {
                 ident.span(),
                 format!("`{ident}` is no function, and there is no implicit multiplication; write `{ident}*(…)`"),
             );
-        } else if !self.model.block.lost.declarations {
+        } else if !self.model.block.recovery.declarations {
             let lets = self
                 .model
                 .lets

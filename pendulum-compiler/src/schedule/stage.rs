@@ -26,7 +26,7 @@ impl Stage {
 
 impl Program {
     /// Whether each operation is made of parameters and numbers alone.
-    pub(crate) fn still(&self) -> Vec<bool> {
+    pub(crate) fn parameter_only(&self) -> Vec<bool> {
         self.stages().into_iter().map(|stage| stage <= Stage::Parameters).collect()
     }
 

@@ -12,7 +12,7 @@ pub(crate) struct Block {
     pub(crate) name: Ident,
     pub(crate) fields: Vec<Field>,
     pub(crate) statements: Vec<Statement>,
-    pub(crate) lost: Lost,
+    pub(crate) recovery: Recovery,
     /// No name in it has a letter beyond ASCII.
     pub(crate) ascii: bool,
 }
@@ -26,7 +26,7 @@ impl Block {
 
 /// What could not be parsed: its absence is no second mistake.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Lost {
+pub(crate) struct Recovery {
     pub(crate) declarations: bool,
     pub(crate) energies: bool,
 }

@@ -1,6 +1,6 @@
 //! Atoms: expressions closed to rewriting, on which elimination works.
 
-use super::{Contents, Graph, Id, Node};
+use super::{Dependencies, Graph, Id, Node};
 use crate::algebra::number::Rational;
 
 impl Graph {
@@ -9,13 +9,13 @@ impl Graph {
     pub(crate) fn atom(&mut self, id: Id) -> Id {
         let (coefficient, bare) = self.split(id);
         match self.node(bare).clone() {
-            Node::Sum(_) if self.contents(bare).any(Contents::STATE) => {
+            Node::Sum(_) if self.dependencies(bare).any(Dependencies::STATE) => {
                 let atom = self.intern(Node::Atom(bare));
                 self.scale(coefficient, atom)
             }
             Node::Product(_, factors) => {
                 let close = |graph: &mut Self, id: Id| {
-                    let moving = graph.contents(id).any(Contents::STATE);
+                    let moving = graph.dependencies(id).any(Dependencies::STATE);
                     if moving && matches!(graph.node(id), Node::Sum(_)) { graph.intern(Node::Atom(id)) } else { id }
                 };
                 let closed: Vec<(Id, Rational)> =

@@ -5,7 +5,7 @@
 //! topological order.
 
 mod atom;
-mod contents;
+mod dependencies;
 mod node;
 mod product;
 mod sum;
@@ -14,7 +14,7 @@ mod walk;
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::algebra::rule;
-pub(crate) use contents::Contents;
+pub(crate) use dependencies::Dependencies;
 pub(crate) use node::{Function, Id, Moment, Node, Symbol};
 use std::collections::{BTreeMap, HashMap};
 use std::hash::{BuildHasherDefault, DefaultHasher};
@@ -31,7 +31,7 @@ pub(crate) struct Graph {
     nodes: Vec<Node>,
     /// The number of operands in all sums and products.
     size: usize,
-    contents: Vec<Contents>,
+    dependencies: Vec<Dependencies>,
     ids: HashMap<Node, Id, Hasher>,
     /// The derivatives that are known.
     slopes: HashMap<(Symbol, Id), Id, Hasher>,
@@ -43,7 +43,7 @@ impl Graph {
 
     pub(crate) fn new() -> Self {
         let mut graph =
-            Self { nodes: Vec::new(), size: 0, contents: Vec::new(), ids: HashMap::default(), slopes: HashMap::default() };
+            Self { nodes: Vec::new(), size: 0, dependencies: Vec::new(), ids: HashMap::default(), slopes: HashMap::default() };
         graph.intern(Node::Number(Rational::ZERO));
         graph.intern(Node::Number(Rational::ONE));
         graph
@@ -58,8 +58,8 @@ impl Graph {
         self.size
     }
 
-    pub(crate) fn contents(&self, id: Id) -> Contents {
-        self.contents[id.index()]
+    pub(crate) fn dependencies(&self, id: Id) -> Dependencies {
+        self.dependencies[id.index()]
     }
 
     pub(crate) fn number(&mut self, value: Rational) -> Id {
@@ -163,13 +163,17 @@ impl Graph {
     }
 
     /// The derivative of a node, if it is known.
-    pub(crate) fn slope(&self, symbol: Symbol, id: Id) -> Option<Id> {
+    pub(crate) fn cached_derivative(&self, symbol: Symbol, id: Id) -> Option<Id> {
         // What contains nothing of the symbol's kind does not depend on it.
-        if self.contents(id).any(Contents::of(symbol)) { self.slopes.get(&(symbol, id)).copied() } else { Some(Self::ZERO) }
+        if self.dependencies(id).any(Dependencies::of(symbol)) {
+            self.slopes.get(&(symbol, id)).copied()
+        } else {
+            Some(Self::ZERO)
+        }
     }
 
     /// Remembers a derivative.
-    pub(crate) fn set_slope(&mut self, symbol: Symbol, id: Id, slope: Id) {
+    pub(crate) fn cache_derivative(&mut self, symbol: Symbol, id: Id, slope: Id) {
         self.slopes.insert((symbol, id), slope);
     }
 
@@ -178,20 +182,20 @@ impl Graph {
             return id;
         }
         let id = Id(u32::try_from(self.nodes.len()).unwrap_or(u32::MAX));
-        let contents = match &node {
-            Node::Symbol(symbol) => Contents::of(*symbol),
+        let dependencies = match &node {
+            Node::Symbol(symbol) => Dependencies::of(*symbol),
             Node::Sum(list) | Node::Product(_, list) => {
-                list.iter().fold(Contents::default(), |all, &(id, _)| all.or(self.contents(id)))
+                list.iter().fold(Dependencies::default(), |all, &(id, _)| all.or(self.dependencies(id)))
             }
-            Node::Call(_, a) | Node::Atom(a) => self.contents(*a),
-            Node::Atan2(a, b) | Node::Max(a, b) => self.contents(*a).or(self.contents(*b)),
-            Node::Number(_) | Node::Opaque(_) | Node::Pi => Contents::default(),
+            Node::Call(_, a) | Node::Atom(a) => self.dependencies(*a),
+            Node::Atan2(a, b) | Node::Max(a, b) => self.dependencies(*a).or(self.dependencies(*b)),
+            Node::Number(_) | Node::Opaque(_) | Node::Pi => Dependencies::default(),
         };
         if let Node::Sum(list) | Node::Product(_, list) = &node {
             self.size += list.len();
         }
         self.nodes.push(node.clone());
-        self.contents.push(contents);
+        self.dependencies.push(dependencies);
         self.ids.insert(node, id);
         id
     }

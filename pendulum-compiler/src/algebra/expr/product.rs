@@ -1,6 +1,6 @@
 //! Products: flat, sorted, with a coefficient and an exponent for each base.
 
-use super::{Contents, Function, Graph, Id, Node, Terms};
+use super::{Dependencies, Function, Graph, Id, Node, Terms};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::algebra::rule;
@@ -68,7 +68,7 @@ impl Graph {
     /// Whether an expression is a quotient by something that moves.
     pub(crate) fn moving_quotient(&self, id: Id) -> bool {
         let factors = self.factors(id);
-        factors.iter().any(|&(base, exponent)| exponent.is_negative() && self.contents(base).any(Contents::STATE))
+        factors.iter().any(|&(base, exponent)| exponent.is_negative() && self.dependencies(base).any(Dependencies::STATE))
     }
 
     fn add_factor(&mut self, coefficient: &mut Rational, bases: &mut Terms, base: Id, exponent: Rational) {

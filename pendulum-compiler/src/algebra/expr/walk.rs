@@ -1,6 +1,6 @@
 //! Walks through the graph: from an expression to all that it is made of, and to the same with other children.
 
-use super::{Contents, Function, Graph, Id, Node, Symbol};
+use super::{Dependencies, Function, Graph, Id, Node, Symbol};
 use crate::algebra::number::Rational;
 use std::collections::BTreeSet;
 
@@ -49,21 +49,22 @@ impl Graph {
     pub(crate) fn smooth(&self, roots: &[Id]) -> bool {
         let cornered =
             |&id: &Id| matches!(self.node(id), Node::Max(..) | Node::Call(Function::Abs | Function::Sign | Function::Step, _));
-        !self.reachable(roots).iter().filter(|id| cornered(id)).any(|&id| self.contents(id).any(Contents::STATE))
+        !self.reachable(roots).iter().filter(|id| cornered(id)).any(|&id| self.dependencies(id).any(Dependencies::STATE))
     }
 
     /// Whether `roots` are written as sums of coordinates and velocities with coefficients that
     /// parameters alone decide, and of what contains neither.
     pub(crate) fn linear(&self, roots: &[Id]) -> bool {
-        let moving = Contents::COORDINATE.or(Contents::VELOCITY).or(Contents::MOMENTUM).or(Contents::AUXILIARY);
+        let moving = Dependencies::COORDINATE.or(Dependencies::VELOCITY).or(Dependencies::MOMENTUM).or(Dependencies::AUXILIARY);
         let mut linear = vec![false; roots.iter().map(|id| id.index() + 1).max().unwrap_or(0)];
         for id in self.reachable(roots) {
-            linear[id.index()] = !self.contents(id).any(moving)
+            linear[id.index()] = !self.dependencies(id).any(moving)
                 || match self.node(id) {
                     Node::Symbol(_) => true,
                     Node::Sum(terms) => terms.iter().all(|(term, _)| linear[term.index()]),
                     Node::Product(_, factors) => {
-                        let mut changing = factors.iter().filter(|(factor, _)| self.contents(*factor).any(Contents::STATE));
+                        let mut changing =
+                            factors.iter().filter(|(factor, _)| self.dependencies(*factor).any(Dependencies::STATE));
                         let only =
                             changing.next().is_some_and(|(factor, power)| *power == Rational::ONE && linear[factor.index()]);
                         only && changing.next().is_none()

@@ -3,7 +3,7 @@
 use super::Tree;
 use super::joint::Joint;
 use super::quadratic::Quadratic;
-use crate::algebra::expr::{Contents, Graph, Id};
+use crate::algebra::expr::{Dependencies, Graph, Id};
 use crate::algebra::number::Rational;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -154,12 +154,12 @@ impl Tree<'_> {
         }
         let inverse = self.graph.power(pivot, Rational::MINUS_ONE);
         // A moving reciprocal is taken once; one of parameters stays open and cancels.
-        let inverse = if self.graph.contents(pivot).any(Contents::STATE) { self.graph.closed(inverse) } else { inverse };
+        let inverse = if self.graph.dependencies(pivot).any(Dependencies::STATE) { self.graph.closed(inverse) } else { inverse };
         let row: Vec<(usize, Id)> = system.row(unknown);
         let right = system.right.remove(&unknown).unwrap_or_default();
         let times = |graph: &mut Graph, value: Id| {
             let value = graph.mul(value, inverse);
-            if graph.contents(value).any(Contents::STATE) { graph.closed(value) } else { value }
+            if graph.dependencies(value).any(Dependencies::STATE) { graph.closed(value) } else { value }
         };
         let constant = times(self.graph, right);
         let mut terms = Vec::new();

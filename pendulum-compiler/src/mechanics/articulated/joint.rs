@@ -2,7 +2,7 @@
 
 use super::Tree;
 use crate::algebra::diff::{derivative, substitute};
-use crate::algebra::expr::{Contents, Graph, Id, Symbol};
+use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
 use crate::algebra::number::Rational;
 use crate::mechanics::lower::{Extended, total_derivative};
 use std::collections::BTreeSet;
@@ -24,7 +24,7 @@ pub(super) struct Joint {
 
 impl Tree<'_> {
     /// Finds a parent for each position: the one from which the fewest coordinates lead to it.
-    pub(super) fn grow(&mut self, extended: &Extended, used: &BTreeSet<Symbol>) {
+    pub(super) fn build_tree(&mut self, extended: &Extended, used: &BTreeSet<Symbol>) {
         let mut open: Vec<(BTreeSet<usize>, usize)> = Vec::new();
         for (index, position) in extended.positions.iter().enumerate() {
             let scalars: Vec<Id> = position.iter().map(|&scalar| extended.scalars[scalar]).collect();
@@ -86,8 +86,8 @@ impl Tree<'_> {
         };
         let jacobian = places.iter().map(|&place| slope(self.graph, place)).collect();
         let slip: Vec<Id> = places.iter().map(|&place| total_derivative(self.graph, place)).collect();
-        let still = |symbol: Symbol| matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO);
-        let drive = slip.iter().map(|&slip| substitute(self.graph, slip, still)).collect();
+        let resting = |symbol: Symbol| matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO);
+        let drive = slip.iter().map(|&slip| substitute(self.graph, slip, resting)).collect();
         let drift = slip.iter().map(|&slip| total_derivative(self.graph, slip)).collect();
         Joint { scalars, parents, coordinates, jacobian, slip, drive, drift }
     }
@@ -103,7 +103,7 @@ impl Tree<'_> {
                         continue;
                     }
                     let mut factors = self.graph.factors(row[column]);
-                    factors.retain(|&(base, _)| !self.graph.contents(base).any(Contents::STATE));
+                    factors.retain(|&(base, _)| !self.graph.dependencies(base).any(Dependencies::STATE));
                     common = Some(match common {
                         None => factors,
                         Some(common) => common.into_iter().filter(|factor| factors.contains(factor)).collect(),

@@ -6,13 +6,13 @@
 //! 1829). Putting the leaves into their parents and eliminating each joint behind them is the articulated-body recursion (Featherstone
 //! 1983): the cost grows with the number of joints, and trees branch without fill-in.
 
-mod carry;
 mod eliminate;
 mod joint;
+mod propagate;
 mod quadratic;
 
 use crate::algebra::diff::{derivative, substitute};
-use crate::algebra::expr::{Contents, Graph, Id, Symbol};
+use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
 use crate::algebra::number::Rational;
 use crate::algebra::velocity_polynomial;
 use crate::mechanics::lower::{Extended, total_derivative};
@@ -48,7 +48,7 @@ pub(crate) fn sparse(graph: &mut Graph, extended: &Extended, count: usize) -> Op
         return None;
     }
     let mut tree = Tree { graph, count, joints: Vec::new(), units: vec![Graph::ONE; count] };
-    tree.grow(extended, &used);
+    tree.build_tree(extended, &used);
     tree.forms(extended, lagrangian)
 }
 
@@ -73,11 +73,11 @@ impl Tree<'_> {
         let momenta: BTreeMap<usize, Id> =
             symbols.iter().map(|(&place, &symbol)| (place, derivative(self.graph, lagrangian, symbol))).collect();
         let mut masses = BTreeMap::new();
-        let moving = Contents::VELOCITY.or(Contents::AUXILIARY);
+        let moving = Dependencies::VELOCITY.or(Dependencies::AUXILIARY);
         for (&row, &momentum) in &momenta {
             for (&column, &symbol) in symbols.range(..=row) {
                 let entry = derivative(self.graph, momentum, symbol);
-                if self.graph.contents(entry).any(moving) {
+                if self.graph.dependencies(entry).any(moving) {
                     return None;
                 }
                 if entry != Graph::ZERO {
@@ -124,7 +124,7 @@ impl Tree<'_> {
         let drive: Vec<Vec<Id>> = self.joints.iter().map(|joint| joint.drive.clone()).collect();
         let from_momenta = self.solve(&masses, right, &drive)?;
 
-        let (all_momenta, all_rates) = self.gather(&momenta, &rates, &velocities);
+        let (all_momenta, all_rates) = self.backward_pass(&momenta, &rates, &velocities);
         let unsolved = self.unsolved(&momenta, &rates, &velocities);
         let mut energy = vec![(lagrangian, Rational::MINUS_ONE)];
         for (&place, &symbol) in &symbols {

@@ -2,7 +2,7 @@
 
 use super::value::Value;
 use super::{Local, Lower};
-use crate::algebra::expr::{Contents, Graph, Id, Moment, Symbol};
+use crate::algebra::expr::{Dependencies, Graph, Id, Moment, Symbol};
 use crate::algebra::number::Rational;
 use crate::algebra::velocity_polynomial;
 use crate::model::Meaning;
@@ -82,7 +82,7 @@ impl Lower<'_, '_, '_, '_> {
 
     /// The integral of one scalar.
     fn moment(&mut self, body: usize, point: [Id; 2], id: Id, wrong: &mut Option<&'static str>) -> Id {
-        let Some(polynomial) = velocity_polynomial::polynomial(self.graph, id, Contents::POINT) else {
+        let Some(polynomial) = velocity_polynomial::polynomial(self.graph, id, Dependencies::POINT) else {
             *wrong = Some("no polynomial");
             return Graph::ZERO;
         };

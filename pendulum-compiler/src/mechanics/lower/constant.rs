@@ -2,7 +2,7 @@
 
 use super::Lower;
 use super::value::Value;
-use crate::algebra::expr::{Contents, Function, Graph, Id, Node, Symbol};
+use crate::algebra::expr::{Dependencies, Function, Graph, Id, Node, Symbol};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::syntax::ast::Expr;
@@ -12,7 +12,7 @@ impl Lower<'_, '_, '_, '_> {
     /// A value, unless it is a constant that is not finite.
     pub(super) fn real(&mut self, value: Value, expr: &Expr) -> Value {
         let Value::Scalar(id) = value else { return value };
-        if self.graph.contents(id) != Contents::default() || matches!(self.graph.node(id), Node::Number(_)) {
+        if self.graph.dependencies(id) != Dependencies::default() || matches!(self.graph.node(id), Node::Number(_)) {
             return value;
         }
         let number = self.constant(id);

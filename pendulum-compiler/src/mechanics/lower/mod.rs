@@ -8,7 +8,7 @@ mod term;
 mod value;
 
 use crate::algebra::diff;
-use crate::algebra::expr::{Contents, Graph, Id, Symbol};
+use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
 use crate::algebra::number::Rational;
 use crate::messages::{Errors, Range};
 use crate::model::{self, Model};
@@ -84,8 +84,8 @@ pub(crate) fn energies(model: &Model, graph: &mut Graph, errors: &mut Errors) ->
 
 /// Lowers a block once more, with the velocities of its positions as unknowns.
 fn extended(model: &Model, graph: &mut Graph, errors: &mut Errors) -> Option<Extended> {
-    let (energies, positions) = lower(model, graph, errors, Some(Noted::default()));
-    let Noted { scalars, positions, .. } = positions?;
+    let (energies, positions) = lower(model, graph, errors, Some(PositionTracker::default()));
+    let PositionTracker { scalars, positions, .. } = positions?;
     let lagrangian = match energies.lagrangian {
         Some(lagrangian) => lagrangian,
         None => graph.sub(energies.kinetic.unwrap_or_default(), energies.potential.unwrap_or_default()),
@@ -96,13 +96,13 @@ fn extended(model: &Model, graph: &mut Graph, errors: &mut Errors) -> Option<Ext
 
 /// The positions written with `let` that have been met.
 #[derive(Debug, Default)]
-struct Noted {
+struct PositionTracker {
     scalars: Vec<Id>,
     positions: Vec<Vec<usize>>,
     places: BTreeMap<Id, usize>,
 }
 
-impl Noted {
+impl PositionTracker {
     /// Notes the scalars of a value that move with the coordinates.
     fn note(&mut self, graph: &Graph, value: &Value) {
         let parts = match value {
@@ -112,9 +112,10 @@ impl Noted {
             Value::Space(parts) => parts.to_vec(),
             Value::Family(members) => return members.iter().for_each(|member| self.note(graph, member)),
         };
-        let other = Contents::VELOCITY.or(Contents::AUXILIARY).or(Contents::POINT).or(Contents::ACCELERATION_INPUT);
-        let other = other.or(Contents::VELOCITY_INPUT);
-        let position = |id: &Id| graph.contents(*id).any(Contents::COORDINATE) && !graph.contents(*id).any(other);
+        let other =
+            Dependencies::VELOCITY.or(Dependencies::AUXILIARY).or(Dependencies::POINT).or(Dependencies::ACCELERATION_INPUT);
+        let other = other.or(Dependencies::VELOCITY_INPUT);
+        let position = |id: &Id| graph.dependencies(*id).any(Dependencies::COORDINATE) && !graph.dependencies(*id).any(other);
         if !parts.iter().all(position) || parts.iter().any(|id| self.places.contains_key(id)) {
             return;
         }
@@ -128,7 +129,12 @@ impl Noted {
 }
 
 /// Lowers all energies of a block, and notes its positions if that is wanted.
-fn lower(model: &Model, graph: &mut Graph, errors: &mut Errors, positions: Option<Noted>) -> (Energies, Option<Noted>) {
+fn lower(
+    model: &Model,
+    graph: &mut Graph,
+    errors: &mut Errors,
+    positions: Option<PositionTracker>,
+) -> (Energies, Option<PositionTracker>) {
     let mut lower = Lower {
         model,
         graph,
@@ -193,7 +199,7 @@ struct Lower<'m, 'a, 'g, 'e> {
     /// The number of integrals that are open.
     integrals: usize,
     /// The positions whose velocities become symbols.
-    positions: Option<Noted>,
+    positions: Option<PositionTracker>,
     /// The values of expressions without symbols.
     constants: BTreeMap<Id, f64>,
 }

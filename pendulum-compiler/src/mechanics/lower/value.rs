@@ -1,7 +1,7 @@
 //! Arithmetic of scalars, vectors and complex numbers.
 
 use super::{Lower, total_derivative};
-use crate::algebra::expr::{Contents, Function, Graph, Id, Node, Symbol};
+use crate::algebra::expr::{Dependencies, Function, Graph, Id, Node, Symbol};
 use crate::algebra::number::Rational;
 use crate::syntax::ast::Expr;
 use crate::syntax::text::text;
@@ -45,21 +45,21 @@ impl Value {
 }
 
 impl Lower<'_, '_, '_, '_> {
-    /// The total time derivative; `still` if the operand may be at rest.
-    pub(super) fn dot(&mut self, value: Value, expr: &Expr, still: bool) -> Value {
-        let contents = self.contents(&value);
-        let moving = Contents::TIME.or(Contents::COORDINATE).or(Contents::VELOCITY).or(Contents::INPUT);
+    /// The total time derivative; `may_rest` if the operand may be at rest.
+    pub(super) fn dot(&mut self, value: Value, expr: &Expr, may_rest: bool) -> Value {
+        let dependencies = self.dependencies(&value);
+        let moving = Dependencies::TIME.or(Dependencies::COORDINATE).or(Dependencies::VELOCITY).or(Dependencies::INPUT);
         let what = text(expr);
         if value == Value::Bad {
             return value;
         }
-        if contents.any(Contents::VELOCITY) {
+        if dependencies.any(Dependencies::VELOCITY) {
             return self.wrong(expr, &format!("the derivative of a velocity in `{what}` is an acceleration, and a Lagrangian has none; only driven inputs have a second derivative"));
         }
-        if contents.any(Contents::ACCELERATION_INPUT) {
+        if dependencies.any(Dependencies::ACCELERATION_INPUT) {
             return self.wrong(expr, &format!("`{what}` contains a third derivative of a driven input; they have two"));
         }
-        if !contents.any(moving) && !still {
+        if !dependencies.any(moving) && !may_rest {
             return self.wrong(expr, &format!("nothing in `{what}` moves, so its time derivative is zero; leave it out"));
         }
         let positions = self.positions.take();
@@ -72,13 +72,17 @@ impl Lower<'_, '_, '_, '_> {
         value
     }
 
-    pub(super) fn contents(&self, value: &Value) -> Contents {
+    pub(super) fn dependencies(&self, value: &Value) -> Dependencies {
         match value {
-            Value::Bad => Contents::default(),
-            Value::Scalar(id) => self.graph.contents(*id),
-            Value::Plane { parts, .. } => parts.iter().fold(Contents::default(), |all, &id| all.or(self.graph.contents(id))),
-            Value::Space(parts) => parts.iter().fold(Contents::default(), |all, &id| all.or(self.graph.contents(id))),
-            Value::Family(members) => members.iter().fold(Contents::default(), |all, member| all.or(self.contents(member))),
+            Value::Bad => Dependencies::default(),
+            Value::Scalar(id) => self.graph.dependencies(*id),
+            Value::Plane { parts, .. } => {
+                parts.iter().fold(Dependencies::default(), |all, &id| all.or(self.graph.dependencies(id)))
+            }
+            Value::Space(parts) => parts.iter().fold(Dependencies::default(), |all, &id| all.or(self.graph.dependencies(id))),
+            Value::Family(members) => {
+                members.iter().fold(Dependencies::default(), |all, member| all.or(self.dependencies(member)))
+            }
         }
     }
 

@@ -4,7 +4,7 @@ use super::Parser;
 use super::token::{end, identifier, skip, unexpected};
 use crate::algebra::number::Literal;
 use crate::messages::Range;
-use crate::syntax::ast::{Block, Expr, ExprKind, Field, Kind, Lost};
+use crate::syntax::ast::{Block, Expr, ExprKind, Field, Kind, Recovery};
 use crate::syntax::text::text;
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use syn::ext::IdentExt;
@@ -34,7 +34,7 @@ impl Parser<'_> {
                 Ok(field) => fields.push(field),
                 Err(error) => {
                     self.errors.push(error);
-                    self.lost.declarations = true;
+                    self.recovery.declarations = true;
                     skip(&content, ',');
                 }
             }
@@ -49,14 +49,14 @@ impl Parser<'_> {
                     // The number of coordinates is part of the type: without one, every use of the system would be a mistake.
                     statements.append(&mut self.begun);
                     match word.as_str() {
-                        "kinetic" | "potential" | "lagrangian" | "dissipation" | "force" => self.lost.energies = true,
-                        _ => self.lost = Lost { declarations: true, energies: true },
+                        "kinetic" | "potential" | "lagrangian" | "dissipation" | "force" => self.recovery.energies = true,
+                        _ => self.recovery = Recovery { declarations: true, energies: true },
                     }
                     skip(input, ';');
                 }
             }
         }
-        Ok(Block { attributes, visibility, name, fields, statements, lost: self.lost, ascii: self.ascii })
+        Ok(Block { attributes, visibility, name, fields, statements, recovery: self.recovery, ascii: self.ascii })
     }
 
     fn field(&mut self, input: ParseStream) -> Result<Field> {

@@ -10,7 +10,7 @@ mod statement;
 mod token;
 
 use crate::messages::Errors;
-use crate::syntax::ast::{Block, Lost, Statement};
+use crate::syntax::ast::{Block, Recovery, Statement};
 use crate::syntax::name;
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use std::collections::BTreeSet;
@@ -30,7 +30,7 @@ pub(crate) fn all(input: TokenStream, errors: &mut Errors) -> Option<(TokenStrea
                 sources: 0,
                 depth: 0,
                 barred: false,
-                lost: Lost::default(),
+                recovery: Recovery::default(),
                 begun: Vec::new(),
                 declared: BTreeSet::new(),
                 ascii,
@@ -96,7 +96,7 @@ struct Parser<'a> {
     depth: usize,
     /// Whether a `|` closes what stands here.
     barred: bool,
-    lost: Lost,
+    recovery: Recovery,
     /// The coordinates of a statement that ends in a mistake, as far as they could be read.
     begun: Vec<Statement>,
     /// The names that have been declared so far.

@@ -112,14 +112,14 @@ impl Writer<'_, '_, '_> {
 
     /// A power: one recurrence if the exponent does not move, else exp(b ln a).
     pub(super) fn power(&mut self, place: Place, a: Place, b: Place) {
-        if self.still[b.0] {
+        if self.parameter_only[b.0] {
             let (a, b, slot, lead) = (self.whole(a), self.constant(b), self.slot(), self.lead());
             self.halves += 3;
             let value = quote!(series::power(&#a, #b, &#slot, #lead, &path.reciprocals, order));
             self.name_in(place, &value, slot);
             return;
         }
-        if self.still[a.0] {
+        if self.parameter_only[a.0] {
             let (a, b, lead) = (self.constant(a), self.value(b), self.lead());
             let logarithm = self.shared("l", place, &quote!(series::leading(|| #a.ln(), #lead, order)));
             self.exponential(place, &quote!(#b * #logarithm));

@@ -4,22 +4,22 @@
 //! Where coordinates are coupled by a mass matrix that moves, M q̈ = f is solved order by order:
 //! M\[0\] q̈\[k\] = f\[k\] − Σ M\[j\] q̈\[k−j\] over 1 ≤ j ≤ k, with M\[0\] factored once. Loops over the order live in the runtime.
 
-mod ahead;
 mod function;
-mod swing;
+mod momentum_form;
+mod sine_oscillator;
 
-use crate::algebra::expr::{Contents, Function, Graph, Id, Symbol};
+use crate::algebra::expr::{Dependencies, Function, Graph, Id, Symbol};
 use crate::backend::rust::{Emitter, local};
 use crate::mechanics::articulated::Unsolved;
 use crate::mechanics::motion::Motion;
 use crate::mechanics::solve;
 use crate::model::Quantity;
 use crate::schedule::{self, Op, Place, Program, Stage};
-use ahead::Plan;
+use momentum_form::Plan;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
+use sine_oscillator::swing;
 use std::collections::BTreeMap;
-use swing::swing;
 
 /// The most convolutions, in halves, of a system whose orders are unrolled, and of one whose sums are loops in their places.
 const MOST_UNROLLED: usize = 10;
@@ -46,8 +46,8 @@ pub(crate) enum Block {
 pub(crate) fn equations(graph: &Graph, motion: &Motion) -> Equations {
     let blocks = solve::blocks(&motion.mass_matrix);
     let moving = |rows: &[usize]| {
-        let contents = |&row: &usize| rows.iter().map(move |&column| graph.contents(motion.mass_matrix[row][column]));
-        1 < rows.len() && rows.iter().flat_map(contents).any(|contents| contents.any(Contents::STATE))
+        let dependencies = |&row: &usize| rows.iter().map(move |&column| graph.dependencies(motion.mass_matrix[row][column]));
+        1 < rows.len() && rows.iter().flat_map(dependencies).any(|dependencies| dependencies.any(Dependencies::STATE))
     };
     let mut roots: Vec<Id> = Vec::new();
     for rows in &blocks {
@@ -139,18 +139,18 @@ impl Emitter<'_, '_> {
 
     /// The recurrences of accelerations, where coordinates are coupled in series with the mass matrix.
     fn solved(&self, program: &Program, blocks: &[Block]) -> Recurrences {
-        let (still, prepared) = (program.still(), program.kept(Stage::Parameters));
-        let mut writer = Writer::new(self, program, still, &prepared);
+        let (parameter_only, prepared) = (program.parameter_only(), program.kept(Stage::Parameters));
+        let mut writer = Writer::new(self, program, parameter_only, &prepared);
         let explicit = blocks.iter().filter_map(|block| match block {
             Block::Explicit(rows) => Some(rows),
             Block::Coupled { .. } => None,
         });
         let swings: BTreeMap<usize, _> = explicit
             .flatten()
-            .filter_map(|&(row, place)| swing(program, &writer.still, row, place).map(|own| (row, own)))
+            .filter_map(|&(row, place)| swing(program, &writer.parameter_only, row, place).map(|own| (row, own)))
             .collect();
         for place in 0..program.ops.len() {
-            if !writer.still[place] && !swings.values().any(|own| own.contains(&Place(place))) {
+            if !writer.parameter_only[place] && !swings.values().any(|own| own.contains(&Place(place))) {
                 writer.operation(Place(place));
             }
         }
@@ -178,10 +178,10 @@ impl Emitter<'_, '_> {
 
     /// The recurrences of equations that are not solved, where they have any.
     fn unsolved(&self, motion: &Motion, unsolved: &Unsolved) -> Option<Recurrences> {
-        let program = schedule::of_series(&self.graph, &ahead::roots(unsolved));
-        let (still, prepared) = (program.still(), program.kept(Stage::Parameters));
-        let plan = Plan::new(&program, &still, unsolved)?;
-        let mut writer = Writer::new(self, &program, still.clone(), &prepared);
+        let program = schedule::of_series(&self.graph, &momentum_form::roots(unsolved));
+        let (parameter_only, prepared) = (program.parameter_only(), program.kept(Stage::Parameters));
+        let plan = Plan::new(&program, &parameter_only, unsolved)?;
+        let mut writer = Writer::new(self, &program, parameter_only.clone(), &prepared);
         writer.unsolved(&plan, motion);
         Some(writer.finish(&[unsolved.equations.len()]))
     }
@@ -200,7 +200,7 @@ struct Writer<'e, 'm, 'a> {
     emitter: &'e Emitter<'m, 'a>,
     program: &'e Program,
     /// Whether each place is decided by parameters alone.
-    still: Vec<bool>,
+    parameter_only: Vec<bool>,
     prepared: &'e [Place],
     lines: TokenStream,
     /// The coefficients of the places that move.
@@ -219,10 +219,10 @@ struct Writer<'e, 'm, 'a> {
 
 impl<'e, 'm, 'a> Writer<'e, 'm, 'a> {
     /// Nothing written yet.
-    fn new(emitter: &'e Emitter<'m, 'a>, program: &'e Program, still: Vec<bool>, prepared: &'e [Place]) -> Self {
+    fn new(emitter: &'e Emitter<'m, 'a>, program: &'e Program, parameter_only: Vec<bool>, prepared: &'e [Place]) -> Self {
         Self {
             emitter,
-            still,
+            parameter_only,
             program,
             prepared,
             lines: TokenStream::new(),
@@ -261,7 +261,7 @@ impl Writer<'_, '_, '_> {
 
     /// The coefficient at this order.
     fn value(&self, place: Place) -> TokenStream {
-        if self.still[place.0] {
+        if self.parameter_only[place.0] {
             let constant = self.constant(place);
             return quote!(series::constant(#constant, order));
         }
@@ -407,7 +407,7 @@ impl Writer<'_, '_, '_> {
     }
 
     fn product(&mut self, place: Place, a: Place, b: Place) {
-        let value = match (self.still[a.0], self.still[b.0]) {
+        let value = match (self.parameter_only[a.0], self.parameter_only[b.0]) {
             (true, _) => {
                 let (a, b) = (self.constant(a), self.value(b));
                 quote!(#a * #b)
@@ -452,7 +452,7 @@ impl Writer<'_, '_, '_> {
         for (i, &force) in forces.iter().enumerate() {
             let mut sum = self.value(force);
             for (j, &column) in rows.iter().enumerate() {
-                if let Some(mass) = entry(i, j).filter(|mass| !self.still[mass.0]) {
+                if let Some(mass) = entry(i, j).filter(|mass| !self.parameter_only[mass.0]) {
                     let mass = self.whole(mass);
                     self.halves += 2;
                     sum.extend(quote!(- series::behind(&#mass, &path.a[#column], order)));

@@ -11,13 +11,18 @@ use quote::quote;
 use std::collections::BTreeSet;
 
 /// The operations between the coordinate and its acceleration, if they make it swing and nothing else reads them.
-pub(super) fn swing(program: &Program, still: &[bool], coordinate: usize, acceleration: Place) -> Option<BTreeSet<Place>> {
+pub(super) fn swing(
+    program: &Program,
+    parameter_only: &[bool],
+    coordinate: usize,
+    acceleration: Place,
+) -> Option<BTreeSet<Place>> {
     let mut own = BTreeSet::new();
-    if !combines(program, still, coordinate, acceleration, &mut own) {
+    if !combines(program, parameter_only, coordinate, acceleration, &mut own) {
         return None;
     }
     let read_outside = |(place, op): (usize, &Op)| {
-        !own.contains(&Place(place)) && operands(op).iter().any(|operand| own.contains(operand) && !still[operand.0])
+        !own.contains(&Place(place)) && operands(op).iter().any(|operand| own.contains(operand) && !parameter_only[operand.0])
     };
     let results = program.results.iter().filter(|result| own.contains(result)).count();
     let alone = results == 1 && !program.ops.iter().enumerate().any(read_outside);
@@ -58,7 +63,7 @@ impl Writer<'_, '_, '_> {
                 let (a, b) = (self.combination(a), self.combination(b));
                 quote!(#a - (#b))
             }
-            Op::Mul(a, b) if self.still[a.0] => {
+            Op::Mul(a, b) if self.parameter_only[a.0] => {
                 let (a, b) = (self.constant(a), self.combination(b));
                 quote!(#a * (#b))
             }
@@ -76,8 +81,8 @@ impl Writer<'_, '_, '_> {
 }
 
 /// Whether a place is a sum of multiples of the sine and the cosine of the coordinate; collects what moves on the way there.
-fn combines(program: &Program, still: &[bool], coordinate: usize, place: Place, own: &mut BTreeSet<Place>) -> bool {
-    if still[place.0] {
+fn combines(program: &Program, parameter_only: &[bool], coordinate: usize, place: Place, own: &mut BTreeSet<Place>) -> bool {
+    if parameter_only[place.0] {
         return false;
     }
     own.insert(place);
@@ -88,12 +93,12 @@ fn combines(program: &Program, still: &[bool], coordinate: usize, place: Place, 
             own.insert(pair);
             matches!(program.ops[pair.0], Op::SinCos(a) if angle(a))
         }
-        Op::Negative(a) => combines(program, still, coordinate, a, own),
+        Op::Negative(a) => combines(program, parameter_only, coordinate, a, own),
         Op::Add(a, b) | Op::Sub(a, b) => {
-            combines(program, still, coordinate, a, own) && combines(program, still, coordinate, b, own)
+            combines(program, parameter_only, coordinate, a, own) && combines(program, parameter_only, coordinate, b, own)
         }
-        Op::Mul(a, b) if still[a.0] => combines(program, still, coordinate, b, own),
-        Op::Mul(a, b) | Op::Div(a, b) if still[b.0] => combines(program, still, coordinate, a, own),
+        Op::Mul(a, b) if parameter_only[a.0] => combines(program, parameter_only, coordinate, b, own),
+        Op::Mul(a, b) | Op::Div(a, b) if parameter_only[b.0] => combines(program, parameter_only, coordinate, a, own),
         _ => false,
     }
 }

@@ -4,9 +4,9 @@ use super::Symbol;
 
 /// What stands in an expression, anywhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Contents(u16);
+pub(crate) struct Dependencies(u16);
 
-impl Contents {
+impl Dependencies {
     pub(crate) const PARAMETER: Self = Self(1);
     pub(crate) const TIME: Self = Self(2);
     pub(crate) const COORDINATE: Self = Self(4);

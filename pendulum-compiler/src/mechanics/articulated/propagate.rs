@@ -2,7 +2,7 @@
 
 use super::{Tree, Unsolved};
 use crate::algebra::diff::{derivative, substitute};
-use crate::algebra::expr::{Contents, Graph, Id, Symbol};
+use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
 use crate::algebra::number::Rational;
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ impl Tree<'_> {
 
     /// An expression with the velocities of positions put in.
     pub(super) fn at(&mut self, id: Id, velocities: &BTreeMap<usize, Id>) -> Id {
-        if !self.graph.contents(id).any(Contents::AUXILIARY) {
+        if !self.graph.dependencies(id).any(Dependencies::AUXILIARY) {
             return id;
         }
         substitute(self.graph, id, |symbol| match symbol {
@@ -34,7 +34,7 @@ impl Tree<'_> {
     }
 
     /// Momenta and their rates: what the positions carry goes from the leaves to the root.
-    pub(super) fn gather(
+    pub(super) fn backward_pass(
         &mut self,
         momenta: &BTreeMap<usize, Id>,
         rates: &BTreeMap<usize, Id>,

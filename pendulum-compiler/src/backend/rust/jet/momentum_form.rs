@@ -33,7 +33,7 @@ struct Dot {
 /// What each operation belongs to.
 pub(super) struct Plan<'p> {
     program: &'p Program,
-    still: &'p [bool],
+    parameter_only: &'p [bool],
     carried: Vec<Place>,
     equations: Vec<Place>,
     /// The operations that the momenta need, and of them those with velocities.
@@ -54,7 +54,7 @@ pub(super) fn roots(unsolved: &Unsolved) -> Vec<Id> {
 
 impl<'p> Plan<'p> {
     /// The plan for the program of [`roots`]; `None` where a momentum is not affine in the velocities by sums and products.
-    pub(super) fn new(program: &'p Program, still: &'p [bool], unsolved: &Unsolved) -> Option<Self> {
+    pub(super) fn new(program: &'p Program, parameter_only: &'p [bool], unsolved: &Unsolved) -> Option<Self> {
         let (carried, equations) = program.results.split_at(unsolved.carried.len());
         let (carried, equations) = (carried.to_vec(), equations.to_vec());
         let count = program.ops.len();
@@ -64,7 +64,7 @@ impl<'p> Plan<'p> {
         }
         let (mut moved, mut rated) = (vec![false; count], vec![false; count]);
         for (place, op) in program.ops.iter().enumerate().rev() {
-            ahead[place] &= !still[place];
+            ahead[place] &= !parameter_only[place];
             if ahead[place] {
                 mark(&mut ahead, op);
             }
@@ -93,7 +93,7 @@ impl<'p> Plan<'p> {
             }
         }
         let (turns, dots, inside) = (BTreeMap::new(), BTreeMap::new(), vec![false; count]);
-        let mut plan = Self { program, still, carried, equations, ahead, moved, rated, turns, dots, inside };
+        let mut plan = Self { program, parameter_only, carried, equations, ahead, moved, rated, turns, dots, inside };
         for place in (0..count).map(Place).filter(|place| plan.moved[place.0]) {
             if let Some(turn) = plan.turn(place) {
                 plan.turns.insert(place, turn);
@@ -120,7 +120,9 @@ impl<'p> Plan<'p> {
         let product = |place: Place| {
             let Op::Mul(a, b) = self.program.ops[place.0] else { return None };
             let of = |part: Place, factor: Place| match self.program.ops[part.0] {
-                Op::Part(function, pair) if !self.still[factor.0] && !self.ahead[factor.0] => Some((function, pair, factor)),
+                Op::Part(function, pair) if !self.parameter_only[factor.0] && !self.ahead[factor.0] => {
+                    Some((function, pair, factor))
+                }
                 _ => None,
             };
             of(a, b).or_else(|| of(b, a)).filter(|_| uses[place.0] == 1)
@@ -138,7 +140,7 @@ impl<'p> Plan<'p> {
         let mut open = vec![a, b];
         while let Some(factor) = open.pop() {
             match self.program.ops[factor.0] {
-                _ if self.still[factor.0] => constants.push(factor),
+                _ if self.parameter_only[factor.0] => constants.push(factor),
                 Op::Mul(a, b) => open.extend([a, b]),
                 Op::Load(Symbol::Velocity(index)) if velocity.is_none() => velocity = Some(index),
                 Op::Part(function, pair) if part.is_none() => part = Some((function, pair)),
@@ -219,7 +221,8 @@ impl Writer<'_, '_, '_> {
             }
         }
         // What is read at the order before, or as a rate, has to stay.
-        let late = (0..plan.program.ops.len()).filter(|&index| !plan.ahead[index] && !plan.still[index] && !plan.inside[index]);
+        let late =
+            (0..plan.program.ops.len()).filter(|&index| !plan.ahead[index] && !plan.parameter_only[index] && !plan.inside[index]);
         let read: Vec<Place> = late.flat_map(|index| operands(&plan.program.ops[index])).chain(plan.carried.clone()).collect();
         for place in read.into_iter().chain(plan.equations.clone()) {
             if plan.ahead[place.0] && !matches!(plan.program.ops[place.0], Op::SinCos(_)) {
@@ -233,7 +236,7 @@ impl Writer<'_, '_, '_> {
     /// What the equations leave at q̈ = 0.
     fn remainders(&mut self, plan: &Plan<'_>) {
         for (index, op) in plan.program.ops.iter().enumerate() {
-            if plan.ahead[index] || plan.still[index] || plan.inside[index] {
+            if plan.ahead[index] || plan.parameter_only[index] || plan.inside[index] {
                 continue;
             }
             if let Some(Dot { pair, factors: [a, b] }) = plan.dots.get(&Place(index)) {
@@ -248,7 +251,7 @@ impl Writer<'_, '_, '_> {
             match *op {
                 Op::Load(Symbol::Auxiliary(rate)) => {
                     let carried = plan.carried[rate];
-                    let value = if plan.still[carried.0] {
+                    let value = if plan.parameter_only[carried.0] {
                         let scalar = self.emitter.scalar();
                         quote!(#scalar::from_f64(0.0))
                     } else {
@@ -434,7 +437,7 @@ impl Writer<'_, '_, '_> {
 
     /// The leading coefficient of a place.
     fn leading_value(&mut self, place: Place) -> TokenStream {
-        if self.still[place.0] {
+        if self.parameter_only[place.0] {
             return self.constant(place);
         }
         let series = self.whole(place);
