@@ -1,14 +1,22 @@
 //! The compiler: its passes, in order.
 
-use crate::check::{Model, Quantity};
-use crate::emit::Emitter;
-use crate::error::Errors;
-use crate::expr::Graph;
-use crate::lower::Energies;
-use crate::motion::Motion;
-use crate::print::Names;
-use crate::schedule::{self, Count, Program};
-use crate::{check, derive, latex, lower, motion, parse, print, unit};
+use crate::algebra::expr::Graph;
+use crate::backend::Analysis;
+use crate::backend::latex;
+use crate::backend::rust::Emitter;
+use crate::backend::unicode;
+use crate::backend::unicode::Names;
+use crate::mechanics::euler_lagrange;
+use crate::mechanics::lower;
+use crate::mechanics::lower::Energies;
+use crate::mechanics::motion::Motion;
+use crate::messages::Errors;
+use crate::model;
+use crate::model::unit;
+use crate::model::{Model, Quantity};
+use crate::schedule::{self, Count};
+use crate::syntax::derive;
+use crate::syntax::parse;
 use proc_macro2::{LineColumn, TokenStream};
 use quote::quote;
 
@@ -55,32 +63,17 @@ pub fn compile(source: &str) -> Result<Compiled, Vec<Message>> {
     }
 }
 
-/// A block before a backend writes it.
-pub(crate) struct Analysis<'m, 'a> {
-    /// The path of the runtime.
-    pub(crate) krate: TokenStream,
-    pub(crate) model: &'m Model<'a>,
-    pub(crate) graph: Graph,
-    pub(crate) energies: Energies,
-    /// The equations of motion; `None` after a mistake.
-    pub(crate) motion: Option<Motion>,
-    /// The equations in Unicode and in LaTeX, a line each.
-    pub(crate) equations: [Vec<String>; 2],
-    /// The program of the accelerations.
-    pub(crate) accelerations: Option<Program>,
-}
-
 /// All passes, before `backend`; `None` if there is no block at all.
 fn passes<R>(input: TokenStream, errors: &mut Errors, backend: impl FnOnce(Analysis<'_, '_>) -> R) -> Option<R> {
     let (krate, mut block) = parse::all(input, errors)?;
     derive::check(&mut block.attributes, errors);
-    let model = check::resolve(&block, errors);
+    let model = model::resolve(&block, errors);
     let mut graph = Graph::new();
     let mut energies = lower::energies(&model, &mut graph, errors);
     if errors.is_empty() {
         unit::infer::check(&model, errors);
     }
-    let motion = if errors.is_empty() { motion::canonical(&model, &mut graph, &mut energies, errors) } else { None };
+    let motion = if errors.is_empty() { euler_lagrange::derive(&model, &mut graph, &mut energies, errors) } else { None };
     let equations = motion.as_ref().map(|motion| printed(&model, &mut graph, &energies, motion)).unwrap_or_default();
     let accelerations = motion.as_ref().map(|motion| schedule::program(&graph, &motion.accelerations));
     Some(backend(Analysis { krate, model: &model, graph, energies, motion, equations, accelerations }))
@@ -89,9 +82,9 @@ fn passes<R>(input: TokenStream, errors: &mut Errors, backend: impl FnOnce(Analy
 /// The equations of motion in Unicode and in LaTeX; what they have in common is simplified once.
 fn printed(model: &Model, graph: &mut Graph, energies: &Energies, motion: &Motion) -> [Vec<String>; 2] {
     let names = Names::new(model, &energies.families);
-    let sides = print::sides(graph, &names, motion);
+    let sides = unicode::sides(graph, &names, motion);
     let latex = latex::equations(graph, &names, motion, &sides);
-    [print::equations(graph, &names, motion, &sides), latex]
+    [unicode::equations(graph, &names, motion, &sides), latex]
 }
 
 /// A block as its tests see it; `None` if it is refused.
@@ -210,7 +203,7 @@ impl Compiled {
         let Analysis { model, graph, energies, motion, equations: [equations, latex], accelerations, .. } = analysis;
         let (motion, accelerations) = (motion?, accelerations?);
         let names = Names::new(model, &energies.families);
-        let text = |id| print::expression(&graph, &names, id);
+        let text = |id| unicode::expression(&graph, &names, id);
         let declared = |quantities: &[Quantity<'_>]| {
             let declaration = |quantity: &Quantity<'_>| Declaration {
                 name: quantity.name.to_string(),
@@ -227,7 +220,7 @@ impl Compiled {
             energy: text(motion.energy),
             power: text(motion.power),
             momenta: motion.momenta.iter().copied().map(text).collect(),
-            conserved: motion.conserved.iter().map(|conserved| print::conserved(&names, conserved)).collect(),
+            conserved: motion.conserved.iter().map(|conserved| unicode::conserved(&names, conserved)).collect(),
             operations: accelerations.count().into(),
             equations,
             latex,

@@ -1,37 +1,28 @@
 //! The compiler behind `lagrangian!` of the `pendulum` workspace: a Lagrangian as tokens in, Rust out.
+//!
+//! [`compile()`] takes source text outside of any macro. The folders are layers, each of which uses those
+//! below it alone:
+//!
+//! ```text
+//! compile     the order of the passes
+//! backend     Rust with its jets, Unicode, LaTeX, and the copy for editors
+//! mechanics   energies, Euler–Lagrange, elimination, symmetries, Jacobians
+//! schedule    expressions to straight programs
+//! model       names resolved, shapes and units
+//! syntax      tokens to a tree
+//! algebra     the graph of expressions: exact numbers, rules, derivatives, order
+//! messages    what is wrong, at the tokens at fault
+//! ```
 
-mod articulated;
-mod ast;
-mod cancel;
-mod check;
-mod clock;
-mod collect;
+mod algebra;
+mod backend;
 mod compile;
-mod derive;
-mod diff;
-mod emit;
-mod error;
-mod expr;
-mod jacobian;
-mod jet;
-mod latex;
-mod lower;
-mod mirror;
-mod modular;
-mod motion;
-mod name;
-mod number;
-mod order;
-mod parse;
-mod print;
-mod rule;
+mod mechanics;
+mod messages;
+mod model;
 mod schedule;
-mod sign;
-mod solve;
-mod symmetry;
+mod syntax;
 #[cfg(test)]
 mod tests;
-mod unit;
-mod value;
 
 pub use compile::{Compiled, Declaration, Message, Operations, Place, compile, expand};

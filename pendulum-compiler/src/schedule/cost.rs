@@ -1,7 +1,7 @@
 //! What a program costs: its operations of each kind.
 
 use super::{Op, Program};
-use crate::expr::Function;
+use crate::algebra::expr::Function;
 
 /// How many of each operation a program has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,8 +24,8 @@ impl Program {
     /// The operations of one evaluation, after what parameters alone decide has been prepared.
     pub(crate) fn count(&self) -> Count {
         let mut count = Count::default();
-        let still = self.still();
-        for (op, _) in self.ops.iter().zip(still).filter(|(_, still)| !still) {
+        let parameter_only = self.parameter_only();
+        for (op, _) in self.ops.iter().zip(parameter_only).filter(|(_, parameter_only)| !parameter_only) {
             match op {
                 Op::SinCos(_) | Op::Call(Function::Sin | Function::Cos, _) => count.sincos += 1,
                 Op::Mul(..) => count.mul += 1,

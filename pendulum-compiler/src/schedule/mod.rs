@@ -11,8 +11,8 @@ mod stage;
 mod sum;
 mod term;
 
-use crate::expr::{Contents, Function, Graph, Id, Node};
-use crate::number::Rational;
+use crate::algebra::expr::{Dependencies, Function, Graph, Id, Node};
+use crate::algebra::number::Rational;
 pub(crate) use cost::Count;
 pub(crate) use program::{Op, Place, Program, operands};
 use program::{mul, prune};
@@ -168,9 +168,9 @@ impl Schedule<'_> {
     }
 
     /// Whether an expression is made of parameters and numbers alone.
-    fn still(&self, id: Id) -> bool {
-        let contents = self.graph.contents(id);
-        !contents.any(Contents::STATE)
+    fn parameter_only(&self, id: Id) -> bool {
+        let dependencies = self.graph.dependencies(id);
+        !dependencies.any(Dependencies::STATE)
     }
 
     fn count_uses(&mut self, roots: &[Id]) {

@@ -3,18 +3,18 @@
 use super::program::mul;
 use super::term::{Factor, Term, unit};
 use super::{Op, Place, Schedule};
-use crate::expr::{Contents, Id};
-use crate::number::Rational;
+use crate::algebra::expr::{Dependencies, Id};
+use crate::algebra::number::Rational;
 
 impl Schedule<'_> {
     /// A product without its sign, and whether that is minus.
     ///
     /// What does not move stands together: it is computed once by whoever prepares it.
     pub(super) fn product(&mut self, term: &Term) -> (Place, bool) {
-        let (still, mut moving) = self.split(term);
+        let (parameter_only, mut moving) = self.split(term);
         let mut negative = term.coefficient.is_negative();
-        let mut still = Some(still).filter(|still| *still != unit());
-        if let Some(constant) = &still
+        let mut parameter_only = Some(parameter_only).filter(|parameter_only| *parameter_only != unit());
+        if let Some(constant) = &parameter_only
             && constant.coefficient.within(60).is_some()
             && let Some(index) =
                 moving.iter().position(|&(factor, exponent)| exponent == Rational::ONE && self.takes_in(factor.id, 1))
@@ -22,7 +22,7 @@ impl Schedule<'_> {
         {
             let scale = self.scale(constant.clone());
             moving[index].0.scale = Some(scale);
-            still = None;
+            parameter_only = None;
         }
         let (mut above, mut below) = (Vec::new(), Vec::new());
         for (factor, exponent) in moving {
@@ -31,7 +31,7 @@ impl Schedule<'_> {
         }
         let top = self.side(above, &mut negative);
         let bottom = self.side(below, &mut negative);
-        let constant = still.map(|still| self.constant(&still));
+        let constant = parameter_only.map(|parameter_only| self.constant(&parameter_only));
         let top = match (constant, top) {
             (Some(constant), Some(top)) => Some(self.program.push(mul(constant, top))),
             (constant, top) => constant.or(top),
@@ -52,7 +52,8 @@ impl Schedule<'_> {
 
     /// The magnitude of what does not move in a product, and its other factors.
     pub(super) fn split(&self, term: &Term) -> (Term, Vec<(Factor, Rational)>) {
-        let (factors, moving) = term.factors.iter().partition(|(factor, _)| factor.scale.is_none() && self.still(factor.id));
+        let (factors, moving) =
+            term.factors.iter().partition(|(factor, _)| factor.scale.is_none() && self.parameter_only(factor.id));
         (Term { coefficient: term.coefficient.abs(), factors }, moving)
     }
 
@@ -103,13 +104,13 @@ impl Schedule<'_> {
 
     /// What changes least comes first in a product.
     fn rank(&self, base: Id) -> u8 {
-        let contents = self.graph.contents(base);
-        if contents.any(Contents::VELOCITY.or(Contents::MOMENTUM)) {
+        let dependencies = self.graph.dependencies(base);
+        if dependencies.any(Dependencies::VELOCITY.or(Dependencies::MOMENTUM)) {
             3
-        } else if contents.any(Contents::COORDINATE) {
+        } else if dependencies.any(Dependencies::COORDINATE) {
             2
         } else {
-            u8::from(contents.any(Contents::TIME.or(Contents::INPUT)))
+            u8::from(dependencies.any(Dependencies::TIME.or(Dependencies::INPUT)))
         }
     }
 

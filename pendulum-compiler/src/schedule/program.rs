@@ -1,8 +1,8 @@
 //! Straight programs: binary operations in order, each of which reads earlier ones.
 
-use crate::ast::Literal;
-use crate::expr::{Function, Symbol};
-use crate::number::Rational;
+use crate::algebra::expr::{Function, Symbol};
+use crate::algebra::number::Literal;
+use crate::algebra::number::Rational;
 use std::collections::BTreeMap;
 
 /// The place of an operation in its program.
@@ -42,12 +42,12 @@ pub(crate) struct Program {
 impl Program {
     /// The same values, with products by reciprocals for quotients by what parameters alone decide.
     pub(super) fn with_reciprocals(self) -> Self {
-        let still = self.still();
+        let parameter_only = self.parameter_only();
         let mut program = Self::default();
         let mut moved: Vec<Place> = Vec::with_capacity(self.ops.len());
         for (index, op) in self.ops.into_iter().enumerate() {
             let place = match op {
-                Op::Div(a, b) if !still[index] && still[b.0] => {
+                Op::Div(a, b) if !parameter_only[index] && parameter_only[b.0] => {
                     let one = program.push(Op::Number(Rational::ONE));
                     let reciprocal = program.push(Op::Div(one, moved[b.0]));
                     program.push(mul(moved[a.0], reciprocal))

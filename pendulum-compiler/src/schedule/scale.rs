@@ -2,8 +2,8 @@
 
 use super::term::{Term, multiply};
 use super::{Place, Schedule};
-use crate::expr::{Graph, Id, Node};
-use crate::number::Rational;
+use crate::algebra::expr::{Graph, Id, Node};
+use crate::algebra::number::Rational;
 
 impl Schedule<'_> {
     /// A sum each of whose terms has taken in a constant.
@@ -38,7 +38,7 @@ impl Schedule<'_> {
     /// A sum that stands in more than `most` places is left alone: it would be computed twice.
     pub(super) fn takes_in(&self, id: Id, most: usize) -> bool {
         let Some(terms) = self.terms(id) else { return false };
-        if self.still(id) || most < self.uses.get(&id).copied().unwrap_or(0) {
+        if self.parameter_only(id) || most < self.uses.get(&id).copied().unwrap_or(0) {
             return false;
         }
         let terms = &terms;
@@ -47,8 +47,9 @@ impl Schedule<'_> {
                 return false;
             }
             let factors = self.graph.factors(term);
-            let constant =
-                coefficient.abs() != Rational::ONE || term == Graph::ONE || factors.iter().any(|&(base, _)| self.still(base));
+            let constant = coefficient.abs() != Rational::ONE
+                || term == Graph::ONE
+                || factors.iter().any(|&(base, _)| self.parameter_only(base));
             constant
                 || factors
                     .iter()

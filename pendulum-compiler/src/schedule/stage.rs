@@ -1,7 +1,7 @@
 //! Stages of a program: what parameters decide, what time and inputs decide, what the position adds, and the rest.
 
 use super::{Op, Place, Program, operands};
-use crate::expr::Symbol;
+use crate::algebra::expr::Symbol;
 
 /// What has to be known before an operation can be done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -26,7 +26,7 @@ impl Stage {
 
 impl Program {
     /// Whether each operation is made of parameters and numbers alone.
-    pub(crate) fn still(&self) -> Vec<bool> {
+    pub(crate) fn parameter_only(&self) -> Vec<bool> {
         self.stages().into_iter().map(|stage| stage <= Stage::Parameters).collect()
     }
 

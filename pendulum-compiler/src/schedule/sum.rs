@@ -3,7 +3,7 @@
 use super::program::{add, mul};
 use super::term::{Factor, Term, common_coefficient, take};
 use super::{Op, Place, Schedule};
-use crate::number::Rational;
+use crate::algebra::number::Rational;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Polynomials are nested as Horner does down to this depth, and no deeper: the stack is finite.
@@ -71,8 +71,8 @@ impl Schedule<'_> {
         }
         let mut best: Option<(usize, (Factor, bool), BTreeSet<usize>)> = None;
         for (key, places) in shared {
-            let still = key.0.scale.is_none() && self.still(key.0.id);
-            let saved = if still {
+            let parameter_only = key.0.scale.is_none() && self.parameter_only(key.0.id);
+            let saved = if parameter_only {
                 let alone = |&&index: &&usize| {
                     let (constant, _) = self.split(&terms[index]);
                     constant.coefficient == Rational::ONE && constant.factors.len() == 1

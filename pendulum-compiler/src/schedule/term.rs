@@ -1,7 +1,7 @@
 //! Products on their way into a sum.
 
-use crate::expr::Id;
-use crate::number::Rational;
+use crate::algebra::expr::Id;
+use crate::algebra::number::Rational;
 
 /// A product on its way into a sum.
 #[derive(Clone, Debug, PartialEq)]

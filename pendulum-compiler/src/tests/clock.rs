@@ -1,8 +1,8 @@
 //! How narrow functions of time are, and when they have their middle.
 
 use super::{derive, evaluate};
-use crate::clock::features;
-use crate::expr::Symbol;
+use crate::algebra::expr::Symbol;
+use crate::mechanics::clock::features;
 use std::fmt::Write;
 
 /// One over the width of each function of time in a force at t = 3, and the time since its middle,

@@ -1,8 +1,8 @@
 //! Every row of the derivative table against fourth-order central differences.
 
 use super::{Random, evaluate, lowered};
-use crate::diff::derivative;
-use crate::expr::{Graph, Symbol};
+use crate::algebra::diff::derivative;
+use crate::algebra::expr::{Graph, Symbol};
 
 #[rustfmt::skip]
 const EXPRESSIONS: &[&str] = &[

@@ -3,10 +3,13 @@
 //! `UPDATE_GOLDEN=1 cargo test -p pendulum-compiler` rewrites them; the difference is read in review.
 
 use super::derived;
-use crate::error::Errors;
-use crate::expr::{Graph, Symbol};
-use crate::motion::Motion;
-use crate::{emit, latex, print, schedule};
+use crate::algebra::expr::{Graph, Symbol};
+use crate::backend::latex;
+use crate::backend::rust;
+use crate::backend::unicode;
+use crate::mechanics::motion::Motion;
+use crate::messages::Errors;
+use crate::schedule;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -141,22 +144,22 @@ fn report(source: &str) -> String {
 /// What a golden file holds, without energies, momenta and LaTeX unless it is the whole; `None` if the block is refused.
 fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
     derived(source, errors, |model, graph, motion, energies| {
-        let names = print::Names::new(model, &energies.families);
+        let names = unicode::Names::new(model, &energies.families);
         let mut text = String::new();
-        let sides = print::sides(graph, &names, motion);
-        for line in print::equations(graph, &names, motion, &sides) {
+        let sides = unicode::sides(graph, &names, motion);
+        for line in unicode::equations(graph, &names, motion, &sides) {
             writeln!(text, "{line}").unwrap();
         }
         for line in latex::equations(graph, &names, motion, &sides).into_iter().filter(|_| whole) {
             writeln!(text, "latex: {line}").unwrap();
         }
-        let operations = |graph: &Graph, roots: &[_]| emit::documentation::operations(schedule::program(graph, roots).count());
+        let operations = |graph: &Graph, roots: &[_]| rust::documentation::operations(schedule::program(graph, roots).count());
         writeln!(text, "accelerations: {}", operations(graph, &motion.accelerations)).unwrap();
         if whole {
             outputs(&mut text, graph, &names, motion);
         }
         for conserved in &motion.conserved {
-            writeln!(text, "conserved: {}", print::conserved(&names, conserved)).unwrap();
+            writeln!(text, "conserved: {}", unicode::conserved(&names, conserved)).unwrap();
         }
         let facts = [
             (motion.autonomous, "autonomous"),
@@ -179,10 +182,10 @@ fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
     })
 }
 
-fn outputs(text: &mut String, graph: &Graph, names: &print::Names, motion: &Motion) {
-    writeln!(text, "energy = {}", print::expression(graph, names, motion.energy)).unwrap();
-    writeln!(text, "power = {}", print::expression(graph, names, motion.power)).unwrap();
+fn outputs(text: &mut String, graph: &Graph, names: &unicode::Names, motion: &Motion) {
+    writeln!(text, "energy = {}", unicode::expression(graph, names, motion.energy)).unwrap();
+    writeln!(text, "power = {}", unicode::expression(graph, names, motion.power)).unwrap();
     for (index, &momentum) in motion.momenta.iter().enumerate() {
-        writeln!(text, "p_{} = {}", names.coordinates[index], print::expression(graph, names, momentum)).unwrap();
+        writeln!(text, "p_{} = {}", names.coordinates[index], unicode::expression(graph, names, momentum)).unwrap();
     }
 }

@@ -1,8 +1,8 @@
 //! Identities that need no digits, at random states of systems of every kind.
 
 use super::{Random, derive, evaluate};
-use crate::diff::derivative;
-use crate::expr::{Graph, Id, Symbol};
+use crate::algebra::diff::derivative;
+use crate::algebra::expr::{Graph, Id, Symbol};
 use std::collections::BTreeMap;
 
 const SYSTEMS: &[&str] = &[

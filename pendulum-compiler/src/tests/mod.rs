@@ -1,12 +1,14 @@
 //! Tests of whole blocks, in process.
 
-use crate::check::Model;
+use crate::algebra::expr::{Graph, Id, Symbol};
 use crate::compile::derived;
-use crate::error::Errors;
-use crate::expr::{Graph, Id, Symbol};
-use crate::lower::constant;
-use crate::motion::Motion;
-use crate::{check, lower, parse};
+use crate::mechanics::lower;
+use crate::mechanics::lower::constant;
+use crate::mechanics::motion::Motion;
+use crate::messages::Errors;
+use crate::model;
+use crate::model::Model;
+use crate::syntax::parse;
 use random_systems::Random;
 use std::collections::BTreeMap;
 
@@ -46,7 +48,7 @@ pub(crate) fn lowered(graph: &mut Graph, expression: &str) -> Id {
     let source = format!("::p; struct S {{ a, b, c }} coordinate q; potential = {expression};");
     let mut errors = Errors::default();
     let (_, block) = parse::all(source.parse().unwrap(), &mut errors).unwrap();
-    let model = check::resolve(&block, &mut errors);
+    let model = model::resolve(&block, &mut errors);
     let energies = lower::energies(&model, graph, &mut errors);
     assert!(errors.is_empty(), "{expression}: {:?}", errors.messages());
     energies.potential.unwrap()

@@ -1,16 +1,17 @@
 //! Equations as text.
 
 use super::derive;
-use crate::{latex, print};
+use crate::backend::latex;
+use crate::backend::unicode;
 use std::collections::BTreeSet;
 
 /// The equations of a block in Unicode and in LaTeX.
 fn printed(source: &str) -> [Vec<String>; 2] {
     derive(source, |model, graph, motion| {
-        let names = print::Names::new(model, &BTreeSet::new());
-        let sides = print::sides(graph, &names, motion);
+        let names = unicode::Names::new(model, &BTreeSet::new());
+        let sides = unicode::sides(graph, &names, motion);
         let latex = latex::equations(graph, &names, motion, &sides);
-        [print::equations(graph, &names, motion, &sides), latex]
+        [unicode::equations(graph, &names, motion, &sides), latex]
     })
 }
 

@@ -1,11 +1,13 @@
 //! Every rule of the table, at random points: both sides agree, and the left side becomes the right.
 
 use super::{Random, evaluate, lowered};
-use crate::ast::{Expr, ExprKind, Literal};
-use crate::error::Errors;
-use crate::expr::{Graph, Symbol};
-use crate::rule::{CANCELLATIONS, RULES, without_cancellation};
-use crate::{check, parse};
+use crate::algebra::expr::{Graph, Symbol};
+use crate::algebra::number::Literal;
+use crate::algebra::rule::{CANCELLATIONS, RULES, without_cancellation};
+use crate::messages::Errors;
+use crate::model;
+use crate::syntax::ast::{Expr, ExprKind};
+use crate::syntax::parse;
 
 #[test]
 fn the_left_side_becomes_the_right() {
@@ -93,7 +95,7 @@ fn value(source: &str, point: [f64; 3]) -> f64 {
     let source = format!("::p; struct S {{ a, b, c }} coordinate q; potential = {source};");
     let mut errors = Errors::default();
     let (_, block) = parse::all(source.parse().unwrap(), &mut errors).unwrap();
-    let model = check::resolve(&block, &mut errors);
+    let model = model::resolve(&block, &mut errors);
     assert!(errors.is_empty(), "{:?}", errors.messages());
     tree(model.energies[0].1, point)
 }

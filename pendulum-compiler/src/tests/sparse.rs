@@ -1,12 +1,15 @@
 //! The sparse form against the dense one: equal at random points of a prime field, and cheaper where it should be.
 
 use super::derived;
-use crate::diff::derivative;
-use crate::error::Errors;
-use crate::expr::{Graph, Id, Symbol};
-use crate::modular::{Point, Residue};
-use crate::number::Rational;
-use crate::{articulated, motion, schedule, solve};
+use crate::algebra::diff::derivative;
+use crate::algebra::expr::{Graph, Id, Symbol};
+use crate::algebra::number::Rational;
+use crate::algebra::prime_field::{Point, Residue};
+use crate::mechanics::articulated;
+use crate::mechanics::euler_lagrange;
+use crate::mechanics::solve;
+use crate::messages::Errors;
+use crate::schedule;
 
 /// Compares every output of the two forms and gives the operations of both accelerations.
 fn compare(source: &str) -> [schedule::Count; 2] {
@@ -38,7 +41,7 @@ fn compare(source: &str) -> [schedule::Count; 2] {
         }
         let energy = graph.sum(&energy);
         let accelerations = solve::solve(graph, &motion.mass_matrix, &motion.forces);
-        let velocities = motion::invert(graph, &motion.mass_matrix, &momenta).unwrap();
+        let velocities = euler_lagrange::invert(graph, &motion.mass_matrix, &momenta).unwrap();
         let pairs: Vec<(&str, Id, Id)> = [
             ("q̈", &accelerations, &sparse.accelerations),
             ("q̇", &velocities, &sparse.velocities),

@@ -1,13 +1,13 @@
 //! Conserved quantities of systems with many roots.
 
 use super::derive;
-use crate::print;
+use crate::backend::unicode;
 
 /// The conserved quantities of a block, as printed.
 fn conserved(source: &str) -> Vec<String> {
     derive(source, |model, _, motion| {
-        let names = print::Names::new(model, &std::collections::BTreeSet::default());
-        motion.conserved.iter().map(|conserved| print::conserved(&names, conserved)).collect()
+        let names = unicode::Names::new(model, &std::collections::BTreeSet::default());
+        motion.conserved.iter().map(|conserved| unicode::conserved(&names, conserved)).collect()
     })
 }
 

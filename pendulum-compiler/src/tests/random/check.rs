@@ -1,9 +1,9 @@
 //! Everything that the macro derives of one system, against the reference.
 
 use super::interpret::Values;
-use crate::check::Model;
-use crate::expr::{Graph, Id};
-use crate::motion::Motion;
+use crate::algebra::expr::{Graph, Id};
+use crate::mechanics::motion::Motion;
+use crate::model::Model;
 use pendulum_runtime::real::{DoubleDouble, Dual, Float};
 use random_systems::reference::{Reference, State, reference};
 use random_systems::state::{precise, state};
@@ -187,7 +187,7 @@ fn jacobians<T: Float>(derived: &Derived<'_, '_>, values: &Values<T>, errors: &m
     let Some(jacobians) = &motion.jacobians else { return };
     let constants = |values: &[T]| values.iter().map(|&value| Dual::constant(value)).collect::<Vec<_>>();
     let input = |orders: &[T; 4]| orders.map(Dual::constant);
-    let still = Values {
+    let resting = Values {
         parameters: constants(&values.parameters),
         time: Dual::constant(values.time),
         q: constants(&values.q),
@@ -197,7 +197,7 @@ fn jacobians<T: Float>(derived: &Derived<'_, '_>, values: &Values<T>, errors: &m
     };
     for (kind, columns) in jacobians.iter().enumerate() {
         for (index, column) in columns.iter().enumerate() {
-            let mut pushed = still.clone();
+            let mut pushed = resting.clone();
             let slots = [&mut pushed.q, &mut pushed.v, &mut pushed.parameters];
             let [q, v, parameters] = slots;
             [q, v, parameters][kind][index].derivative = T::from_f64(1.0);

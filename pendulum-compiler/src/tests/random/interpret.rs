@@ -1,9 +1,9 @@
 //! What the macro derived, computed at a state by the program that it would emit.
 
-use crate::ast::Literal;
-use crate::check::{Model, Quantity};
-use crate::expr::{Function, Graph, Id, Moment, Symbol};
-use crate::number::Rational;
+use crate::algebra::expr::{Function, Graph, Id, Moment, Symbol};
+use crate::algebra::number::Literal;
+use crate::algebra::number::Rational;
+use crate::model::{Model, Quantity};
 use crate::schedule::{self, Op};
 use pendulum_runtime::real::Real;
 use random_systems::reference::State;

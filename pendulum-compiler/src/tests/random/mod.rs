@@ -8,7 +8,7 @@ mod tests;
 mod written;
 
 use crate::compile::derived;
-use crate::error::Errors;
+use crate::messages::Errors;
 use random_systems::tree;
 
 /// What became of a random system.

@@ -63,7 +63,7 @@ fn wild_systems_are_derived_or_refused() {
 /// Accelerations and momenta of a system.
 fn outputs<T: Float>(system: &System, state: &State<T>) -> [Vec<T>; 2] {
     let source = system.source("Random");
-    let mut errors = crate::error::Errors::default();
+    let mut errors = crate::messages::Errors::default();
     let found = derived(&source, &mut errors, |model, graph, motion, _| {
         let derived = Derived { model, graph, motion };
         let values = Values::new(state);

@@ -44,7 +44,7 @@ fn module(system: &System) -> Option<String> {
     let source = system.source("Random");
     let plain = state(system, system.seed);
     let precise: State<DoubleDouble> = precise(system, &plain);
-    let mut errors = crate::error::Errors::default();
+    let mut errors = crate::messages::Errors::default();
     let (findings, jerk, snap) = derived(&source, &mut errors, |model, graph, motion, _| {
         let derived = Derived { model, graph, motion };
         let [jerk, snap] = higher(&derived, &Values::new(&precise));

@@ -1,0 +1,162 @@
+//! Derivatives: one row per function, sums and products by their rules, each shared node once.
+
+use crate::algebra::expr::{Function, Graph, Id, Moment, Node, Symbol};
+use crate::algebra::number::Rational;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// ∂`id`/∂`symbol`.
+pub(crate) fn derivative(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
+    let mut unknown = BTreeSet::new();
+    let mut pending = vec![id];
+    while let Some(node) = pending.pop() {
+        if graph.cached_derivative(symbol, node).is_none() && unknown.insert(node) {
+            pending.extend(graph.children(node));
+        }
+    }
+    // Children have smaller ids than their parents.
+    for node in unknown {
+        let slope = rule(graph, node, symbol);
+        graph.cache_derivative(symbol, node, slope);
+    }
+    graph.cached_derivative(symbol, id).unwrap_or_default()
+}
+
+/// The derivative of one node from those of its children.
+fn rule(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
+    let known = |graph: &Graph, id: Id| graph.cached_derivative(symbol, id).unwrap_or_default();
+    match graph.node(id).clone() {
+        Node::Number(_) | Node::Opaque(_) | Node::Pi => Graph::ZERO,
+        Node::Symbol(own) if own == symbol => Graph::ONE,
+        Node::Symbol(Symbol::Moment(first, moment)) => moment_derivative(graph, first, moment, symbol),
+        Node::Symbol(_) => Graph::ZERO,
+        Node::Sum(terms) => {
+            let terms: Vec<(Id, Rational)> = terms.iter().map(|&(term, coefficient)| (known(graph, term), coefficient)).collect();
+            graph.sum(&terms)
+        }
+        Node::Product(coefficient, factors) => {
+            let mut terms = Vec::new();
+            for (place, &(base, exponent)) in factors.iter().enumerate() {
+                let inner = known(graph, base);
+                if inner != Graph::ZERO {
+                    let power = graph.number(exponent);
+                    // Its own exponent is lowered, not the node divided: a broken power of a product would not cancel, and be NaN at zero.
+                    let mut parts = factors.clone();
+                    match exponent.add(Rational::MINUS_ONE) {
+                        Some(lowered) => parts[place].1 = lowered,
+                        None => parts.push((base, Rational::MINUS_ONE)),
+                    }
+                    parts.extend([(inner, Rational::ONE), (power, Rational::ONE)]);
+                    terms.push((graph.product(coefficient, &parts), Rational::ONE));
+                }
+            }
+            graph.sum(&terms)
+        }
+        Node::Call(function, argument) => {
+            let inner = known(graph, argument);
+            if inner == Graph::ZERO {
+                return Graph::ZERO;
+            }
+            let outer = function_derivative(graph, function, argument, id);
+            graph.mul(outer, inner)
+        }
+        Node::Atan2(y, x) => {
+            let (dy, dx) = (known(graph, y), known(graph, x));
+            let left = graph.mul(x, dy);
+            let right = graph.mul(y, dx);
+            let top = graph.sub(left, right);
+            let squares = [graph.power(x, Rational::whole(2)), graph.power(y, Rational::whole(2))];
+            let bottom = graph.add(squares[0], squares[1]);
+            graph.div(top, bottom)
+        }
+        Node::Max(a, b) => {
+            let difference = graph.sub(a, b);
+            let opposite = graph.sub(b, a);
+            let first = graph.call(Function::Step, difference);
+            let second = graph.call(Function::Step, opposite);
+            let left = graph.mul(first, known(graph, a));
+            let right = graph.mul(second, known(graph, b));
+            graph.add(left, right)
+        }
+        Node::Atom(inner) => {
+            let value = known(graph, inner);
+            graph.atom(value)
+        }
+    }
+}
+
+/// f′(u), where `value` is f(u).
+#[rustfmt::skip]
+fn function_derivative(g: &mut Graph, function: Function, u: Id, value: Id) -> Id {
+    match function {
+        Function::Sin  => g.call(Function::Cos, u),                                 // cos u
+        Function::Cos  => { let s = g.call(Function::Sin, u); g.negative(s) }       // -sin u
+        Function::Tan  => one_plus_square(g, value, Rational::ONE),                 // 1 + tan²u
+        Function::Asin => { let s = one_plus_square(g, u, Rational::MINUS_ONE); g.power(s, minus_half()) }
+        Function::Acos => { let s = one_plus_square(g, u, Rational::MINUS_ONE); let r = g.power(s, minus_half()); g.negative(r) }
+        Function::Atan => { let s = one_plus_square(g, u, Rational::ONE); g.power(s, Rational::MINUS_ONE) }
+        Function::Sinh => g.call(Function::Cosh, u),                                // cosh u
+        Function::Cosh => g.call(Function::Sinh, u),                                // sinh u
+        Function::Tanh => one_plus_square(g, value, Rational::MINUS_ONE),           // 1 - tanh²u
+        Function::Exp  => value,                                                    // exp u
+        Function::Ln   => g.power(u, Rational::MINUS_ONE),                          // 1/u
+        Function::Abs  => g.call(Function::Sign, u),                                // sign u
+        Function::Sign | Function::Step => Graph::ZERO,                             // 0 where they are smooth
+    }
+}
+
+/// The derivative of a second moment about the pivot, S = C + m c cᵀ, to mass, centre and central moments.
+fn moment_derivative(graph: &mut Graph, first: usize, moment: Moment, symbol: Symbol) -> Id {
+    let Symbol::Parameter(parameter) = symbol else { return Graph::ZERO };
+    let [m, x, y] = [0, 1, 2].map(|offset| graph.symbol(Symbol::Parameter(first + offset)));
+    let signs = match moment {
+        Moment::Inertia => [Rational::ONE, Rational::ONE],
+        Moment::Difference => [Rational::ONE, Rational::MINUS_ONE],
+        Moment::Product => {
+            return match parameter.wrapping_sub(first) {
+                0 => graph.mul(x, y),
+                1 => graph.mul(m, y),
+                2 => graph.mul(m, x),
+                4 => Graph::ONE,
+                _ => Graph::ZERO,
+            };
+        }
+    };
+    match parameter.wrapping_sub(first) {
+        0 => {
+            let squares = [x, y].map(|c| graph.power(c, Rational::whole(2)));
+            graph.sum(&[(squares[0], signs[0]), (squares[1], signs[1])])
+        }
+        1 => graph.product(Rational::whole(2), &[(m, Rational::ONE), (x, Rational::ONE)]),
+        2 => {
+            let slope = graph.product(Rational::whole(2), &[(m, Rational::ONE), (y, Rational::ONE)]);
+            graph.scale(signs[1], slope)
+        }
+        3 => Graph::ONE,
+        5 => graph.number(signs[1]),
+        _ => Graph::ZERO,
+    }
+}
+
+fn one_plus_square(graph: &mut Graph, u: Id, sign: Rational) -> Id {
+    let square = graph.power(u, Rational::whole(2));
+    graph.sum(&[(Graph::ONE, Rational::ONE), (square, sign)])
+}
+
+fn minus_half() -> Rational {
+    Rational::HALF.negative()
+}
+
+/// `id` with some of its symbols replaced.
+pub(crate) fn substitute(graph: &mut Graph, id: Id, value: impl Fn(Symbol) -> Option<Id>) -> Id {
+    let mut known: BTreeMap<Id, Id> = BTreeMap::new();
+    for node in graph.reachable(&[id]) {
+        let result = if let Node::Symbol(symbol) = *graph.node(node) {
+            value(symbol).unwrap_or(node)
+        } else {
+            let old = graph.node(node).clone();
+            graph.rebuilt(&old, |child| known[&child])
+        };
+        known.insert(node, result);
+    }
+    known[&id]
+}

@@ -1,0 +1,68 @@
+//! Dimensions: products of powers of kilograms, metres and seconds.
+
+use super::number::{Rational, superscript};
+use std::fmt;
+
+/// Exponents of kilogram, metre and second; the radian is a pure number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Dimension(pub(crate) [Rational; 3]);
+
+impl Dimension {
+    pub(crate) const PURE: Self = Self([Rational::ZERO; 3]);
+
+    pub(crate) fn of(name: &str) -> Option<Self> {
+        #[rustfmt::skip]
+        let exponents = match name {
+            "rad" => [0, 0,  0],
+            "kg"  => [1, 0,  0],
+            "m"   => [0, 1,  0],
+            "s"   => [0, 0,  1],
+            "Hz"  => [0, 0, -1],
+            "N"   => [1, 1, -2],
+            "J"   => [1, 2, -2],
+            "W"   => [1, 2, -3],
+            _ => return None,
+        };
+        Some(Self(exponents.map(Rational::whole)))
+    }
+
+    /// `self` · `other`^`power`.
+    pub(crate) fn times(self, other: Self, power: Rational) -> Option<Self> {
+        let mut result = self;
+        for (own, other) in result.0.iter_mut().zip(other.0) {
+            *own = own.add(other.mul(power)?)?;
+        }
+        Some(result)
+    }
+}
+
+impl fmt::Display for Dimension {
+    /// As one would write it: kg·m/s².
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let named = |sign: bool| {
+            let powers = ["kg", "m", "s"]
+                .into_iter()
+                .zip(self.0)
+                .filter(move |(_, power)| !power.is_zero() && power.is_negative() == sign);
+            powers.map(|(name, power)| match power.abs() {
+                Rational::ONE => name.to_owned(),
+                power => match power.integer() {
+                    Some(power) => format!("{name}{}", superscript(power)),
+                    None => format!("{name}^({power})"),
+                },
+            })
+        };
+        let above: Vec<String> = named(false).collect();
+        let below: Vec<String> = named(true).collect();
+        let top = match (above.is_empty(), below.is_empty()) {
+            (true, true) => return write!(f, "a pure number"),
+            (true, false) => "1".to_owned(),
+            _ => above.join("·"),
+        };
+        match below.as_slice() {
+            [] => write!(f, "{top}"),
+            [one] => write!(f, "{top}/{one}"),
+            several => write!(f, "{top}/({})", several.join("·")),
+        }
+    }
+}

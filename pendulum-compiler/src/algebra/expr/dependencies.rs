@@ -1,0 +1,47 @@
+//! What stands in an expression: parameters, time, coordinates, inputs.
+
+use super::Symbol;
+
+/// What stands in an expression, anywhere.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Dependencies(u16);
+
+impl Dependencies {
+    pub(crate) const PARAMETER: Self = Self(1);
+    pub(crate) const TIME: Self = Self(2);
+    pub(crate) const COORDINATE: Self = Self(4);
+    pub(crate) const VELOCITY: Self = Self(8);
+    pub(crate) const POSITION_INPUT: Self = Self(16);
+    pub(crate) const VELOCITY_INPUT: Self = Self(32);
+    pub(crate) const ACCELERATION_INPUT: Self = Self(64);
+    pub(crate) const MOMENTUM: Self = Self(128);
+    pub(crate) const POINT: Self = Self(256);
+    pub(crate) const AUXILIARY: Self = Self(512);
+    pub(crate) const INPUT: Self = Self(16 | 32 | 64);
+    /// Everything but parameters.
+    pub(crate) const STATE: Self = Self(!1);
+
+    pub(crate) const fn or(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Whether anything of `other` is in `self`.
+    pub(crate) const fn any(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
+    pub(super) fn of(symbol: Symbol) -> Self {
+        match symbol {
+            Symbol::Parameter(_) | Symbol::Moment(..) => Self::PARAMETER,
+            Symbol::Point(..) => Self::POINT,
+            Symbol::Time => Self::TIME,
+            Symbol::Coordinate(_) => Self::COORDINATE,
+            Symbol::Velocity(_) => Self::VELOCITY,
+            Symbol::Input { order: 0, .. } => Self::POSITION_INPUT,
+            Symbol::Input { order: 1, .. } => Self::VELOCITY_INPUT,
+            Symbol::Input { .. } => Self::ACCELERATION_INPUT,
+            Symbol::Momentum(_) => Self::MOMENTUM,
+            Symbol::Auxiliary(_) => Self::AUXILIARY,
+        }
+    }
+}

@@ -1,0 +1,228 @@
+//! The hash-consed expression graph: equal expressions are one node, numbers are exact.
+//!
+//! Sums and products are flat and sorted. A sum is primitive: its numeric content and the factors common to all its terms stand
+//! before it, so that `a*b + a*c` and `a*(b + c)` are one node. Children are always older than their parents: ascending ids are a
+//! topological order.
+
+mod atom;
+mod dependencies;
+mod node;
+mod product;
+mod sum;
+mod walk;
+
+use crate::algebra::number::Literal;
+use crate::algebra::number::Rational;
+use crate::algebra::rule;
+pub(crate) use dependencies::Dependencies;
+pub(crate) use node::{Function, Id, Moment, Node, Symbol};
+use std::collections::{BTreeMap, HashMap};
+use std::hash::{BuildHasherDefault, DefaultHasher};
+
+/// The terms of a sum under construction.
+pub(crate) type Terms = BTreeMap<Id, Rational>;
+
+/// The same in every run; the maps that use it are asked, never listed, so that no order of theirs can be seen.
+type Hasher = BuildHasherDefault<DefaultHasher>;
+
+/// All expressions of a block.
+#[derive(Clone, Debug)]
+pub(crate) struct Graph {
+    nodes: Vec<Node>,
+    /// The number of operands in all sums and products.
+    size: usize,
+    dependencies: Vec<Dependencies>,
+    ids: HashMap<Node, Id, Hasher>,
+    /// The derivatives that are known.
+    slopes: HashMap<(Symbol, Id), Id, Hasher>,
+}
+
+impl Graph {
+    pub(crate) const ZERO: Id = Id(0);
+    pub(crate) const ONE: Id = Id(1);
+
+    pub(crate) fn new() -> Self {
+        let mut graph =
+            Self { nodes: Vec::new(), size: 0, dependencies: Vec::new(), ids: HashMap::default(), slopes: HashMap::default() };
+        graph.intern(Node::Number(Rational::ZERO));
+        graph.intern(Node::Number(Rational::ONE));
+        graph
+    }
+
+    pub(crate) fn node(&self, id: Id) -> &Node {
+        &self.nodes[id.index()]
+    }
+
+    /// The number of operands in all sums and products made so far.
+    pub(crate) fn size(&self) -> usize {
+        self.size
+    }
+
+    pub(crate) fn dependencies(&self, id: Id) -> Dependencies {
+        self.dependencies[id.index()]
+    }
+
+    pub(crate) fn number(&mut self, value: Rational) -> Id {
+        self.intern(Node::Number(value))
+    }
+
+    pub(crate) fn whole(&mut self, value: i64) -> Id {
+        self.number(Rational::whole(value))
+    }
+
+    pub(crate) fn literal(&mut self, literal: &Literal) -> Id {
+        match literal {
+            Literal::Exact(value) => self.number(*value),
+            Literal::Decimal(_) => self.intern(Node::Opaque(literal.clone())),
+        }
+    }
+
+    pub(crate) fn pi(&mut self) -> Id {
+        self.intern(Node::Pi)
+    }
+
+    pub(crate) fn symbol(&mut self, symbol: Symbol) -> Id {
+        self.intern(Node::Symbol(symbol))
+    }
+
+    /// `a + b`.
+    pub(crate) fn add(&mut self, a: Id, b: Id) -> Id {
+        self.sum(&[(a, Rational::ONE), (b, Rational::ONE)])
+    }
+
+    /// `a - b`.
+    pub(crate) fn sub(&mut self, a: Id, b: Id) -> Id {
+        self.sum(&[(a, Rational::ONE), (b, Rational::MINUS_ONE)])
+    }
+
+    pub(crate) fn negative(&mut self, a: Id) -> Id {
+        self.scale(Rational::MINUS_ONE, a)
+    }
+
+    pub(crate) fn scale(&mut self, coefficient: Rational, a: Id) -> Id {
+        self.product(coefficient, &[(a, Rational::ONE)])
+    }
+
+    /// `a * b`.
+    pub(crate) fn mul(&mut self, a: Id, b: Id) -> Id {
+        self.product(Rational::ONE, &[(a, Rational::ONE), (b, Rational::ONE)])
+    }
+
+    /// `a / b`.
+    pub(crate) fn div(&mut self, a: Id, b: Id) -> Id {
+        self.product(Rational::ONE, &[(a, Rational::ONE), (b, Rational::MINUS_ONE)])
+    }
+
+    pub(crate) fn power(&mut self, a: Id, exponent: Rational) -> Id {
+        self.product(Rational::ONE, &[(a, exponent)])
+    }
+
+    pub(crate) fn sqrt(&mut self, a: Id) -> Id {
+        self.power(a, Rational::HALF)
+    }
+
+    /// `a` to a power that is no number: exp(b ln a).
+    pub(crate) fn general_power(&mut self, a: Id, b: Id) -> Id {
+        if let Node::Number(exponent) = *self.node(b) {
+            return self.power(a, exponent);
+        }
+        let logarithm = self.call(Function::Ln, a);
+        let exponent = self.mul(b, logarithm);
+        self.call(Function::Exp, exponent)
+    }
+
+    pub(crate) fn call(&mut self, function: Function, argument: Id) -> Id {
+        match rule::rewrite_call(self, function, argument) {
+            Some(id) => id,
+            None => self.intern(Node::Call(function, argument)),
+        }
+    }
+
+    pub(crate) fn atan2(&mut self, y: Id, x: Id) -> Id {
+        self.intern(Node::Atan2(y, x))
+    }
+
+    pub(crate) fn max(&mut self, a: Id, b: Id) -> Id {
+        if a == b {
+            return a;
+        }
+        if let (Node::Number(x), Node::Number(y)) = (self.node(a), self.node(b))
+            && let Some(less) = x.less(*y)
+        {
+            return if less { b } else { a };
+        }
+        self.intern(Node::Max(a.min(b), a.max(b)))
+    }
+
+    /// -max(-a, -b).
+    pub(crate) fn min(&mut self, a: Id, b: Id) -> Id {
+        let a = self.negative(a);
+        let b = self.negative(b);
+        let max = self.max(a, b);
+        self.negative(max)
+    }
+
+    /// The derivative of a node, if it is known.
+    pub(crate) fn cached_derivative(&self, symbol: Symbol, id: Id) -> Option<Id> {
+        // What contains nothing of the symbol's kind does not depend on it.
+        if self.dependencies(id).any(Dependencies::of(symbol)) {
+            self.slopes.get(&(symbol, id)).copied()
+        } else {
+            Some(Self::ZERO)
+        }
+    }
+
+    /// Remembers a derivative.
+    pub(crate) fn cache_derivative(&mut self, symbol: Symbol, id: Id, slope: Id) {
+        self.slopes.insert((symbol, id), slope);
+    }
+
+    fn intern(&mut self, node: Node) -> Id {
+        if let Some(&id) = self.ids.get(&node) {
+            return id;
+        }
+        let id = Id(u32::try_from(self.nodes.len()).unwrap_or(u32::MAX));
+        let dependencies = match &node {
+            Node::Symbol(symbol) => Dependencies::of(*symbol),
+            Node::Sum(list) | Node::Product(_, list) => {
+                list.iter().fold(Dependencies::default(), |all, &(id, _)| all.or(self.dependencies(id)))
+            }
+            Node::Call(_, a) | Node::Atom(a) => self.dependencies(*a),
+            Node::Atan2(a, b) | Node::Max(a, b) => self.dependencies(*a).or(self.dependencies(*b)),
+            Node::Number(_) | Node::Opaque(_) | Node::Pi => Dependencies::default(),
+        };
+        if let Node::Sum(list) | Node::Product(_, list) = &node {
+            self.size += list.len();
+        }
+        self.nodes.push(node.clone());
+        self.dependencies.push(dependencies);
+        self.ids.insert(node, id);
+        id
+    }
+}
+
+impl Default for Id {
+    fn default() -> Self {
+        Graph::ZERO
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Graph, Node};
+    use crate::algebra::number::Rational;
+
+    #[test]
+    fn numbers_too_long_to_compare_stay_in_their_maximum() {
+        let mut g = Graph::new();
+        let [a, b, c] = ["0.12345678901234567891", "0.92345678901234567891", "0.5"].map(|digits| {
+            let value = Rational::decimal(digits).unwrap();
+            g.number(value)
+        });
+        for (first, second) in [(a, b), (b, a)] {
+            let max = g.max(first, second);
+            assert!(matches!(*g.node(max), Node::Max(x, y) if [x, y] == [a.min(b), a.max(b)]));
+        }
+        assert_eq!((g.max(a, c), g.max(b, c)), (c, b));
+    }
+}

@@ -1,0 +1,87 @@
+//! Walks through the graph: from an expression to all that it is made of, and to the same with other children.
+
+use super::{Dependencies, Function, Graph, Id, Node, Symbol};
+use crate::algebra::number::Rational;
+use std::collections::BTreeSet;
+
+impl Graph {
+    /// A node with other children.
+    pub(crate) fn rebuilt(&mut self, node: &Node, child: impl Fn(Id) -> Id) -> Id {
+        let list = |items: &[(Id, Rational)]| items.iter().map(|&(id, number)| (child(id), number)).collect::<Vec<_>>();
+        match node {
+            Node::Number(_) | Node::Opaque(_) | Node::Pi | Node::Symbol(_) => self.intern(node.clone()),
+            Node::Sum(terms) => self.sum(&list(terms)),
+            Node::Product(coefficient, factors) => self.product(*coefficient, &list(factors)),
+            Node::Call(function, argument) => self.call(*function, child(*argument)),
+            Node::Atan2(y, x) => self.atan2(child(*y), child(*x)),
+            Node::Max(a, b) => self.max(child(*a), child(*b)),
+            Node::Atom(inner) => {
+                let inner = child(*inner);
+                let (_, bare) = self.split(inner);
+                if matches!(self.node(bare), Node::Sum(_)) { self.atom(inner) } else { self.closed(inner) }
+            }
+        }
+    }
+
+    /// The nodes from which an expression is made directly.
+    pub(crate) fn children(&self, id: Id) -> Vec<Id> {
+        match self.node(id) {
+            Node::Number(_) | Node::Opaque(_) | Node::Pi | Node::Symbol(_) => Vec::new(),
+            Node::Sum(list) | Node::Product(_, list) => list.iter().map(|&(id, _)| id).collect(),
+            Node::Call(_, a) | Node::Atom(a) => vec![*a],
+            Node::Atan2(a, b) | Node::Max(a, b) => vec![*a, *b],
+        }
+    }
+
+    /// Everything from which `roots` are made, children first.
+    pub(crate) fn reachable(&self, roots: &[Id]) -> Vec<Id> {
+        let mut found = vec![false; roots.iter().map(|id| id.index() + 1).max().unwrap_or(0)];
+        let mut pending = roots.to_vec();
+        while let Some(id) = pending.pop() {
+            if !std::mem::replace(&mut found[id.index()], true) {
+                pending.extend(self.children(id));
+            }
+        }
+        (0..).zip(found).filter(|&(_, found)| found).map(|(index, _)| Id(index)).collect()
+    }
+
+    /// Whether nothing that moves goes through a function that has a corner or jumps.
+    pub(crate) fn smooth(&self, roots: &[Id]) -> bool {
+        let cornered =
+            |&id: &Id| matches!(self.node(id), Node::Max(..) | Node::Call(Function::Abs | Function::Sign | Function::Step, _));
+        !self.reachable(roots).iter().filter(|id| cornered(id)).any(|&id| self.dependencies(id).any(Dependencies::STATE))
+    }
+
+    /// Whether `roots` are written as sums of coordinates and velocities with coefficients that
+    /// parameters alone decide, and of what contains neither.
+    pub(crate) fn linear(&self, roots: &[Id]) -> bool {
+        let moving = Dependencies::COORDINATE.or(Dependencies::VELOCITY).or(Dependencies::MOMENTUM).or(Dependencies::AUXILIARY);
+        let mut linear = vec![false; roots.iter().map(|id| id.index() + 1).max().unwrap_or(0)];
+        for id in self.reachable(roots) {
+            linear[id.index()] = !self.dependencies(id).any(moving)
+                || match self.node(id) {
+                    Node::Symbol(_) => true,
+                    Node::Sum(terms) => terms.iter().all(|(term, _)| linear[term.index()]),
+                    Node::Product(_, factors) => {
+                        let mut changing =
+                            factors.iter().filter(|(factor, _)| self.dependencies(*factor).any(Dependencies::STATE));
+                        let only =
+                            changing.next().is_some_and(|(factor, power)| *power == Rational::ONE && linear[factor.index()]);
+                        only && changing.next().is_none()
+                    }
+                    Node::Atom(inner) => linear[inner.index()],
+                    _ => false,
+                };
+        }
+        roots.iter().all(|root| linear[root.index()])
+    }
+
+    /// The symbols in `roots`.
+    pub(crate) fn symbols(&self, roots: &[Id]) -> BTreeSet<Symbol> {
+        let symbol = |id: Id| match self.node(id) {
+            Node::Symbol(symbol) => Some(*symbol),
+            _ => None,
+        };
+        self.reachable(roots).into_iter().filter_map(symbol).collect()
+    }
+}

@@ -1,0 +1,425 @@
+//! Values of expressions in a prime field: an oracle for what is identically zero.
+//!
+//! An expression that vanishes at random points modulo a large prime vanishes (Schwartz 1980,
+//! Zippel 1979), and nothing is rounded. Angles are points of the unit circle of the field, square
+//! roots are roots of the field, and every other function is a random value that depends on its
+//! argument's value alone. Points at which a root does not exist are thrown away: each root halves
+//! what is left. With i, the root of −1, every number of the prime field has a root, so that points
+//! with many roots are never rare.
+
+use crate::algebra::expr::{Function, Graph, Id, Node, Symbol};
+use crate::algebra::number::Rational;
+use std::collections::BTreeMap;
+
+/// 2⁶¹ − 1, which is 3 modulo 4: square roots are powers, and −1 has none.
+const PRIME: u64 = (1 << 61) - 1;
+
+/// An element a + b·i of the prime field with i² = −1; b is zero unless a root of the extension
+/// made it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Residue(u64, u64);
+
+fn sum(a: u64, b: u64) -> u64 {
+    let sum = a + b;
+    if PRIME <= sum { sum - PRIME } else { sum }
+}
+
+fn negated(a: u64) -> u64 {
+    if a == 0 { 0 } else { PRIME - a }
+}
+
+fn product(a: u64, b: u64) -> u64 {
+    let product = u128::from(a) * u128::from(b);
+    // 2⁶¹ is 1: the upper bits are added to the lower ones.
+    sum(product as u64 & PRIME, (product >> 61) as u64)
+}
+
+impl Residue {
+    pub(crate) const ZERO: Self = Self(0, 0);
+    pub(crate) const ONE: Self = Self(1, 0);
+
+    pub(crate) fn add(self, other: Self) -> Self {
+        Self(sum(self.0, other.0), sum(self.1, other.1))
+    }
+
+    pub(crate) fn negative(self) -> Self {
+        Self(negated(self.0), negated(self.1))
+    }
+
+    pub(crate) fn mul(self, other: Self) -> Self {
+        if self.1 == 0 && other.1 == 0 {
+            return Self(product(self.0, other.0), 0);
+        }
+        Self(
+            sum(product(self.0, other.0), negated(product(self.1, other.1))),
+            sum(product(self.0, other.1), product(self.1, other.0)),
+        )
+    }
+
+    fn power(self, mut exponent: u64) -> Self {
+        let (mut base, mut result) = (self, Self::ONE);
+        while 0 < exponent {
+            if exponent % 2 == 1 {
+                result = result.mul(base);
+            }
+            base = base.mul(base);
+            exponent /= 2;
+        }
+        result
+    }
+
+    /// The reciprocal; `None` for zero.
+    pub(crate) fn reciprocal(self) -> Option<Self> {
+        if self.1 == 0 {
+            return (self.0 != 0).then(|| self.power(PRIME - 2));
+        }
+        // 1/(a + b·i) = (a − b·i)/(a² + b²), and a² + b² is not zero because −1 is no square.
+        Some(Self(self.0, negated(self.1)).mul(self.norm().reciprocal()?))
+    }
+
+    /// a² + b².
+    fn norm(self) -> Self {
+        Self(sum(product(self.0, self.0), product(self.1, self.1)), 0)
+    }
+
+    /// The real and the imaginary part.
+    pub(crate) fn parts(self) -> [Self; 2] {
+        [Self(self.0, 0), Self(self.1, 0)]
+    }
+
+    /// The root of a real number in the prime field.
+    fn root(self) -> Option<Self> {
+        let root = self.power(PRIME.div_ceil(4));
+        (root.mul(root) == self).then_some(root)
+    }
+
+    /// The root in the field with i: every real number has one, and half of all others have.
+    fn extended_root(self) -> Option<Self> {
+        if self.1 == 0 {
+            // Either a or −a is a square, because −1 is none.
+            return self.root().or_else(|| Some(Self(0, self.negative().root()?.0)));
+        }
+        // (x + y·i)² = a + b·i: x² is (a ± √(a² + b²))/2, of which one is a square, because their
+        // product is −(b/2)².
+        let length = self.norm().root()?;
+        let half = Self(PRIME.div_ceil(2), 0);
+        let square = |length: Self| half.mul(Self(self.0, 0).add(length)).root();
+        let x = square(length).or_else(|| square(length.negative()))?;
+        let y = half.mul(Self(self.1, 0)).mul(x.reciprocal()?);
+        Some(Self(x.0, y.0))
+    }
+
+    /// A number that stands for this one where functions take random values.
+    fn key(self) -> u64 {
+        self.0 ^ self.1.wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    }
+
+    fn of(value: Rational) -> Option<Self> {
+        let reduce = |number: i128| {
+            let magnitude = u64::try_from(number.unsigned_abs() % u128::from(PRIME)).unwrap_or(0);
+            if number < 0 { Self(magnitude, 0).negative() } else { Self(magnitude, 0) }
+        };
+        let numerator = reduce(value.numerator());
+        // Most are whole, and a reciprocal costs a hundred products.
+        if value.denominator() == 1 { Some(numerator) } else { Some(numerator.mul(reduce(value.denominator()).reciprocal()?)) }
+    }
+
+    /// The fraction of small numbers that this residue is, if there is one (Wang 1981).
+    pub(crate) fn rational(self) -> Option<Rational> {
+        if self.1 != 0 {
+            return None;
+        }
+        let (mut a, mut b) = (i128::from(PRIME), i128::from(self.0));
+        let (mut s, mut t) = (0i128, 1i128);
+        while 1 << 20 < b {
+            let quotient = a / b;
+            (a, b) = (b, a - quotient * b);
+            (s, t) = (t, s - quotient * t);
+        }
+        if t.abs() < 1 << 20 { Rational::new(b, t) } else { None }
+    }
+}
+
+/// A point of the field for every symbol, made as they are asked for.
+#[derive(Debug)]
+pub(crate) struct Point {
+    seed: u64,
+    /// The common denominator of all angles.
+    denominator: i64,
+    roots: Roots,
+}
+
+/// What square roots are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Roots {
+    /// Roots in the prime field, as far as they exist there.
+    Prime,
+    /// Roots in the prime field with i.
+    Extended,
+    /// Unknown functions.
+    Formal,
+}
+
+/// The value of every node that some roots are made of.
+pub(crate) type Values = BTreeMap<Id, Residue>;
+
+impl Point {
+    /// A point for the expressions in `roots`.
+    pub(crate) fn new(graph: &Graph, roots: &[Id], seed: u64) -> Self {
+        let mut denominator = 1i64;
+        for id in graph.reachable(roots) {
+            if let Node::Call(Function::Sin | Function::Cos, argument) = *graph.node(id) {
+                for (_, coefficient) in linear(graph, argument).unwrap_or_default() {
+                    let own = i64::try_from(coefficient.denominator()).unwrap_or(1);
+                    if denominator % own != 0 && denominator.checked_mul(own).is_some_and(|product| product < 1 << 20) {
+                        denominator *= own;
+                    }
+                }
+            }
+        }
+        Self { seed, denominator, roots: Roots::Prime }
+    }
+
+    /// A point at which roots are unknown functions: equal values belong to expressions that are equal wherever both are real.
+    pub(crate) fn formal(graph: &Graph, roots: &[Id], seed: u64) -> Self {
+        Self { roots: Roots::Formal, ..Self::new(graph, roots, seed) }
+    }
+
+    /// A point with all roots of real numbers.
+    ///
+    /// The root of a product is that of its factors up to a sign that changes from point to point:
+    /// what vanishes at many such points vanishes, but not all that vanishes does so here.
+    pub(crate) fn extended(graph: &Graph, roots: &[Id], seed: u64) -> Self {
+        Self { roots: Roots::Extended, ..Self::new(graph, roots, seed) }
+    }
+
+    /// Another point for the same expressions.
+    pub(crate) fn again(&self, seed: u64) -> Self {
+        Self { seed, ..*self }
+    }
+
+    /// The values of `roots`; `None` where a root or a reciprocal does not exist.
+    pub(crate) fn values(&self, graph: &Graph, roots: &[Id]) -> Option<Values> {
+        self.values_of(graph, &graph.reachable(roots))
+    }
+
+    /// The values of `nodes`, which contain their own parts, those first.
+    pub(crate) fn values_of(&self, graph: &Graph, nodes: &[Id]) -> Option<Values> {
+        let mut known = Values::new();
+        for &id in nodes {
+            let value = match graph.node(id) {
+                Node::Number(value) => Residue::of(*value)?,
+                Node::Opaque(_) | Node::Pi => self.random(&[u64::from(id.index() as u32), 1]),
+                Node::Symbol(symbol) => self.symbol(*symbol, 2),
+                Node::Sum(terms) => {
+                    let mut sum = Residue::ZERO;
+                    for (term, coefficient) in terms {
+                        sum = sum.add(known[term].mul(Residue::of(*coefficient)?));
+                    }
+                    sum
+                }
+                Node::Product(coefficient, factors) => {
+                    let mut product = Residue::of(*coefficient)?;
+                    for (base, exponent) in factors {
+                        product = product.mul(self.power(known[base], *exponent)?);
+                    }
+                    product
+                }
+                Node::Call(function @ (Function::Sin | Function::Cos), argument) => {
+                    let (cos, sin) = self.circle(graph, *argument, known[argument])?;
+                    if *function == Function::Sin { sin } else { cos }
+                }
+                Node::Call(function, argument) => self.random(&[*function as u64, known[argument].key(), 3]),
+                Node::Atan2(a, b) => self.random(&[known[a].key(), known[b].key(), 4]),
+                Node::Max(a, b) => self.random(&[known[a].key(), known[b].key(), 5]),
+                Node::Atom(inner) => known[inner],
+            };
+            known.insert(id, value);
+        }
+        Some(known)
+    }
+
+    fn power(&self, base: Residue, exponent: Rational) -> Option<Residue> {
+        let root = match exponent.denominator() {
+            1 => base,
+            2 if self.roots == Roots::Prime => base.root()?,
+            2 if self.roots == Roots::Extended => base.extended_root()?,
+            other => self.random(&[base.key(), u64::try_from(other).ok()?, 6]),
+        };
+        let root = if exponent.is_negative() { root.reciprocal()? } else { root };
+        Some(root.power(u64::try_from(exponent.numerator().unsigned_abs()).ok()?))
+    }
+
+    /// Cosine and sine of an angle: a product of rotations for a linear one, a random rotation otherwise.
+    fn circle(&self, graph: &Graph, argument: Id, value: Residue) -> Option<(Residue, Residue)> {
+        let Some(terms) = linear(graph, argument) else { return self.rotation(&[value.key(), 7]) };
+        let mut total = (Residue::ONE, Residue::ZERO);
+        for (base, coefficient) in terms {
+            let steps = coefficient.mul(Rational::whole(self.denominator))?.integer()?;
+            let (cos, sin) = self.rotation(&[base.index() as u64, 8])?;
+            let sin = if steps < 0 { sin.negative() } else { sin };
+            for _ in 0..steps.unsigned_abs().min(1 << 12) {
+                total = (total.0.mul(cos).add(total.1.mul(sin).negative()), total.0.mul(sin).add(total.1.mul(cos)));
+            }
+        }
+        Some(total)
+    }
+
+    /// A random point of the unit circle: ((1 − t²)/(1 + t²), 2t/(1 + t²)).
+    fn rotation(&self, key: &[u64]) -> Option<(Residue, Residue)> {
+        let t = self.random(key);
+        let square = t.mul(t);
+        let scale = square.add(Residue::ONE).reciprocal()?;
+        Some((Residue::ONE.add(square.negative()).mul(scale), t.add(t).mul(scale)))
+    }
+
+    fn symbol(&self, symbol: Symbol, salt: u64) -> Residue {
+        let key = match symbol {
+            Symbol::Parameter(index) => [0, index as u64, 0, 0],
+            Symbol::Time => [1, 0, 0, 0],
+            Symbol::Coordinate(index) => [2, index as u64, 0, 0],
+            Symbol::Velocity(index) => [3, index as u64, 0, 0],
+            Symbol::Input { input, component, order } => [4, input as u64, component as u64, u64::from(order)],
+            Symbol::Momentum(index) => [5, index as u64, 0, 0],
+            Symbol::Moment(first, moment) => [6, first as u64, moment as u64, 0],
+            Symbol::Point(level, component) => [7, level as u64, component as u64, 0],
+            Symbol::Auxiliary(index) => [8, index as u64, 0, 0],
+        };
+        self.random(&[key[0], key[1], key[2], key[3], salt])
+    }
+
+    /// A residue that depends on the seed and the key alone.
+    fn random(&self, key: &[u64]) -> Residue {
+        let mut state = self.seed;
+        for part in key {
+            // SplitMix64 (Steele, Lea and Flood 2014).
+            state = state.wrapping_add(*part).wrapping_add(0x9e37_79b9_7f4a_7c15);
+            state = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            state = (state ^ (state >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            state ^= state >> 31;
+        }
+        Residue(state % PRIME, 0)
+    }
+}
+
+/// An angle as a rational combination of symbols.
+fn linear(graph: &Graph, argument: Id) -> Option<Vec<(Id, Rational)>> {
+    let symbol = |id: Id| matches!(graph.node(id), Node::Symbol(_) | Node::Pi);
+    match graph.node(argument) {
+        Node::Symbol(_) | Node::Pi => Some(vec![(argument, Rational::ONE)]),
+        Node::Product(coefficient, factors) => match factors.as_slice() {
+            [(base, Rational::ONE)] if symbol(*base) => Some(vec![(*base, *coefficient)]),
+            [(base, Rational::ONE)] => {
+                let terms = linear(graph, *base)?;
+                terms.into_iter().map(|(id, own)| Some((id, own.mul(*coefficient)?))).collect()
+            }
+            _ => None,
+        },
+        Node::Sum(terms) => terms.iter().all(|(id, _)| symbol(*id)).then(|| terms.clone()),
+        _ => None,
+    }
+}
+
+/// A basis of the vectors that all `rows` are orthogonal to, in reduced echelon form.
+pub(crate) fn null_space(mut rows: Vec<Vec<Residue>>, width: usize) -> Vec<Vec<Residue>> {
+    let mut pivots = Vec::new();
+    for column in 0..width {
+        let done = pivots.len();
+        let Some(found) = (done..rows.len()).find(|&row| rows[row][column] != Residue::ZERO) else { continue };
+        rows.swap(done, found);
+        let Some(inverse) = rows[done][column].reciprocal() else { continue };
+        for entry in &mut rows[done] {
+            *entry = entry.mul(inverse);
+        }
+        let pivot = rows[done].clone();
+        for (row, entries) in rows.iter_mut().enumerate() {
+            let factor = entries[column].negative();
+            if row != done && factor != Residue::ZERO {
+                for (entry, own) in entries.iter_mut().zip(&pivot) {
+                    *entry = entry.add(own.mul(factor));
+                }
+            }
+        }
+        pivots.push(column);
+    }
+    let free = (0..width).filter(|column| !pivots.contains(column));
+    free.map(|column| {
+        let mut vector = vec![Residue::ZERO; width];
+        vector[column] = Residue::ONE;
+        for (row, &pivot) in pivots.iter().enumerate() {
+            vector[pivot] = rows[row][column].negative();
+        }
+        vector
+    })
+    .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Point, Residue, null_space};
+    use crate::algebra::expr::Graph;
+    use crate::algebra::number::Rational;
+    use crate::tests::lowered;
+
+    fn vanishes(expression: &str) -> bool {
+        let mut graph = Graph::new();
+        let id = lowered(&mut graph, expression);
+        let values = (0..64).filter_map(|seed| Point::new(&graph, &[id], seed).values(&graph, &[id]));
+        let mut count = 0;
+        let all = values.inspect(|_| count += 1).all(|values| values[&id] == Residue::ZERO);
+        assert!(0 < count);
+        all
+    }
+
+    #[test]
+    fn what_vanishes_is_found_and_what_does_not_is_not() {
+        assert!(vanishes("(a + b)^2 - a^2 - 2*a*b - b^2"));
+        assert!(vanishes("sin(a + b)*sin(a - b) - sin(a)^2 + sin(b)^2"));
+        assert!(vanishes("sin(a/2)*cos(a/2) - sin(a)/2"));
+        assert!(vanishes("sqrt(a^2 + b^2)*(a - b) - (a^2 - b^2)*sqrt(a^2 + b^2)/(a + b)"));
+        assert!(vanishes("exp(a*(b + 1)) - exp(a*b + a)"));
+        assert!(!vanishes("sin(a + b) - sin(a) - sin(b)"));
+        assert!(!vanishes("(a + b)^3 - a^3 - b^3"));
+    }
+
+    #[test]
+    fn every_number_has_a_root_beside_the_root_of_minus_one() {
+        let number = |value: i64| Residue::of(Rational::whole(value)).unwrap();
+        let i = number(-1).extended_root().unwrap();
+        assert_eq!(number(-1).root(), None);
+        for value in -40..40 {
+            let root = number(value).extended_root().unwrap();
+            assert_eq!(root.mul(root), number(value));
+            let mixed = number(value).add(i.mul(number(3 * value + 7)));
+            let reciprocal = mixed.reciprocal().unwrap();
+            assert_eq!(mixed.mul(reciprocal), Residue::ONE);
+            // A square has the root that it is made of, up to sign.
+            let again = mixed.mul(mixed).extended_root().unwrap();
+            assert!(again == mixed || again == mixed.negative(), "{mixed:?} and {again:?}");
+        }
+        let exist = (0..400).filter(|&value| number(value).add(i).extended_root().is_some()).count();
+        assert!((150..250).contains(&exist), "{exist} roots of 400");
+    }
+
+    #[test]
+    fn fractions_come_back() {
+        for (top, bottom) in [(1, 2), (-3, 7), (12, 1), (0, 1)] {
+            let value = Rational::new(top, bottom).unwrap();
+            assert_eq!(Residue::of(value).unwrap().rational(), Some(value));
+        }
+    }
+
+    #[test]
+    fn the_null_space_is_orthogonal_to_every_row() {
+        let row = |values: [i64; 4]| values.map(|value| Residue::of(Rational::whole(value)).unwrap()).to_vec();
+        let rows = vec![row([1, 2, 3, 4]), row([2, 4, 6, 8]), row([0, 1, -1, 5])];
+        let basis = null_space(rows.clone(), 4);
+        assert_eq!(basis.len(), 2);
+        for vector in basis {
+            for row in &rows {
+                let product = row.iter().zip(&vector).fold(Residue::ZERO, |sum, (a, b)| sum.add(a.mul(*b)));
+                assert_eq!(product, Residue::ZERO);
+            }
+        }
+    }
+}

@@ -1,0 +1,438 @@
+//! The simplifier: one table of named rules, tried whenever a node is made.
+//!
+//! Each row names the rule, the pattern, the result and, last, the function that finds the one and answers the other. The
+//! patterns are text that the tests parse: both sides are evaluated at random points, and the left side must become the right.
+
+use crate::algebra::expr::{Function, Graph, Id, Node, Terms};
+use crate::algebra::number::Rational;
+use std::collections::BTreeMap;
+
+/// A rule on one kind of node.
+#[cfg_attr(not(test), allow(dead_code, reason = "name and patterns are for the reader and the tests"))]
+pub(crate) struct Rule {
+    pub(crate) name: &'static str,
+    pub(crate) left: &'static str,
+    pub(crate) right: &'static str,
+    apply: Apply,
+}
+
+enum Apply {
+    Call(Function, fn(&mut Graph, Id) -> Option<Id>),
+    Sum(fn(&mut Graph, &Terms) -> Option<Edit>),
+    Product(fn(&mut Graph, &Terms) -> Option<Edit>),
+}
+
+/// Terms of a sum, or factors of a product, that others replace.
+pub(crate) struct Edit {
+    pub(crate) removed: Vec<Id>,
+    pub(crate) added: Vec<(Id, Rational)>,
+}
+
+#[rustfmt::skip]
+pub(crate) const RULES: &[Rule] = &[
+    call(Function::Sin,  "sin-zero",      "sin(0)",                                "0",              |_, u| zero(u)),
+    call(Function::Sin,  "sin-odd",       "sin(-a)",                               "-sin(a)",        |g, u| odd(g, Function::Sin, u)),
+    call(Function::Sin,  "sin-quarter",   "sin(a + 3*π/2)",                        "-cos(a)",        |g, u| quarter_turns(g, u, 0)),
+    call(Function::Cos,  "cos-zero",      "cos(0)",                                "1",              |_, u| one_at_zero(u)),
+    call(Function::Cos,  "cos-even",      "cos(-a)",                               "cos(a)",         |g, u| even(g, Function::Cos, u)),
+    call(Function::Cos,  "cos-quarter",   "cos(a + π/2)",                          "-sin(a)",        |g, u| quarter_turns(g, u, 1)),
+    call(Function::Sin,  "sin-asin",      "sin(asin(a/9))",                        "a/9",            |g, u| inverse(g, Function::Asin, u)),
+    call(Function::Cos,  "cos-acos",      "cos(acos(a/9))",                        "a/9",            |g, u| inverse(g, Function::Acos, u)),
+    call(Function::Tan,  "tan-zero",      "tan(0)",                                "0",              |_, u| zero(u)),
+    call(Function::Tan,  "tan-odd",       "tan(-a)",                               "-tan(a)",        |g, u| odd(g, Function::Tan, u)),
+    call(Function::Tan,  "tan-atan",      "tan(atan(a))",                          "a",              |g, u| inverse(g, Function::Atan, u)),
+    call(Function::Asin, "asin-zero",     "asin(0)",                               "0",              |_, u| zero(u)),
+    call(Function::Asin, "asin-odd",      "asin(-a/9)",                            "-asin(a/9)",     |g, u| odd(g, Function::Asin, u)),
+    call(Function::Atan, "atan-zero",     "atan(0)",                               "0",              |_, u| zero(u)),
+    call(Function::Atan, "atan-odd",      "atan(-a)",                              "-atan(a)",       |g, u| odd(g, Function::Atan, u)),
+    call(Function::Sinh, "sinh-zero",     "sinh(0)",                               "0",              |_, u| zero(u)),
+    call(Function::Sinh, "sinh-odd",      "sinh(-a)",                              "-sinh(a)",       |g, u| odd(g, Function::Sinh, u)),
+    call(Function::Cosh, "cosh-zero",     "cosh(0)",                               "1",              |_, u| one_at_zero(u)),
+    call(Function::Cosh, "cosh-even",     "cosh(-a)",                              "cosh(a)",        |g, u| even(g, Function::Cosh, u)),
+    call(Function::Tanh, "tanh-zero",     "tanh(0)",                               "0",              |_, u| zero(u)),
+    call(Function::Tanh, "tanh-odd",      "tanh(-a)",                              "-tanh(a)",       |g, u| odd(g, Function::Tanh, u)),
+    call(Function::Exp,  "exp-zero",      "exp(0)",                                "1",              |_, u| one_at_zero(u)),
+    call(Function::Exp,  "exp-ln",        "exp(ln(a))",                            "a",              |g, u| inverse(g, Function::Ln, u)),
+    call(Function::Ln,   "ln-one",        "ln(1)",                                 "0",              |_, u| (u == Graph::ONE).then_some(Graph::ZERO)),
+    call(Function::Ln,   "ln-exp",        "ln(exp(a))",                            "a",              |g, u| inverse(g, Function::Exp, u)),
+    call(Function::Abs,  "abs-number",    "abs(-3/2)",                             "3/2",            abs_number),
+    call(Function::Abs,  "abs-even",      "abs(-a)",                               "abs(a)",         |g, u| even(g, Function::Abs, u)),
+    call(Function::Abs,  "abs-abs",       "abs(abs(a - 2))",                       "abs(a - 2)",     |g, u| idempotent(g, Function::Abs, u)),
+    call(Function::Abs,  "abs-square",    "abs(a^2)",                              "a^2",            abs_square),
+    call(Function::Sign, "sign-number",   "sign(-3/2)",                            "-1",             sign_number),
+    call(Function::Sign, "sign-odd",      "sign(-a)",                              "-sign(a)",       |g, u| odd(g, Function::Sign, u)),
+    product("abs-even-power",             "abs(a - 2)^2",                          "(a - 2)^2",      abs_even_power),
+    product("sign-abs",                   "sign(a - 2)*abs(a - 2)",                "a - 2",          sign_abs),
+    sum("pythagoras",                     "b*sin(a)^2 + b*cos(a)^2",               "b",              pythagoras),
+    sum("one-minus-square",               "b - b*cos(a)^2",                        "b*sin(a)^2",     one_minus_square),
+    sum("hyperbolic-pythagoras",          "b*cosh(a)^2 - b*sinh(a)^2",             "b",              hyperbolic_pythagoras),
+    sum("cos-difference",                 "c*cos(a)*cos(b) + c*sin(a)*sin(b)",     "c*cos(a - b)",   angle_sum),
+    sum("cos-sum",                        "cos(a)*cos(b) - sin(a)*sin(b)",         "cos(a + b)",     angle_sum),
+    sum("sin-difference",                 "sin(a)*cos(b) - cos(a)*sin(b)",         "sin(a - b)",     angle_sum),
+    sum("sin-sum",                        "sin(a)*cos(b) + cos(a)*sin(b)",         "sin(a + b)",     angle_sum),
+];
+
+/// Rules that keep digits: where the two sides of the left form are close, their difference has few digits left, the product on the right
+/// has all of them. They cost more than they save, so that they are tried on energies only, which are read as values; equations of
+/// motion are derivatives, which do not cancel there.
+#[rustfmt::skip]
+pub(crate) const CANCELLATIONS: &[Rule] = &[
+    sum("one-minus-cos",                  "b - b*cos(a)",                          "2*b*sin(a/2)^2", one_and_cosines),
+    sum("one-plus-cos",                   "b + b*cos(a)",                          "2*b*cos(a/2)^2", one_and_cosines),
+    sum("cos-minus-cos",                  "c*cos(a) - c*cos(b)",                   "2*c*sin((a + b)/2)*sin((b - a)/2)", cosines),
+];
+
+/// `root` without the differences that the rules of `CANCELLATIONS` know.
+pub(crate) fn without_cancellation(graph: &mut Graph, root: Id) -> Id {
+    let mut known: BTreeMap<Id, Id> = BTreeMap::new();
+    for id in graph.reachable(&[root]) {
+        let node = graph.node(id).clone();
+        let mut value = graph.rebuilt(&node, |child| known[&child]);
+        // Each rewrite leaves fewer cosines.
+        while let Some(next) = rewrite_cancellation(graph, value) {
+            value = next;
+        }
+        known.insert(id, value);
+    }
+    known[&root]
+}
+
+fn rewrite_cancellation(graph: &mut Graph, id: Id) -> Option<Id> {
+    let Node::Sum(terms) = graph.node(id).clone() else { return None };
+    let terms: Terms = terms.into_iter().collect();
+    CANCELLATIONS.iter().find_map(|rule| {
+        let Apply::Sum(apply) = rule.apply else { return None };
+        let Edit { removed, mut added } = apply(graph, &terms)?;
+        added.extend(terms.iter().filter(|(term, _)| !removed.contains(term)).map(|(&term, &coefficient)| (term, coefficient)));
+        Some(graph.sum(&added))
+    })
+}
+
+/// The simpler form of a function's value, if a rule knows one.
+pub(crate) fn rewrite_call(graph: &mut Graph, function: Function, argument: Id) -> Option<Id> {
+    RULES.iter().find_map(|rule| match rule.apply {
+        Apply::Call(of, apply) if of == function => apply(graph, argument),
+        _ => None,
+    })
+}
+
+/// The first simplification of a sum that a rule finds.
+pub(crate) fn rewrite_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
+    if terms.len() < 2 {
+        return None;
+    }
+    let mut tried: Vec<fn(&mut Graph, &Terms) -> Option<Edit>> = Vec::new();
+    for rule in RULES {
+        if let Apply::Sum(apply) = rule.apply
+            && !tried.iter().any(|&other| std::ptr::fn_addr_eq(other, apply))
+        {
+            tried.push(apply);
+            if let Some(edit) = apply(graph, terms) {
+                return Some(edit);
+            }
+        }
+    }
+    None
+}
+
+/// The first simplification of a product that a rule finds.
+pub(crate) fn rewrite_product(graph: &mut Graph, factors: &Terms) -> Option<Edit> {
+    RULES.iter().find_map(|rule| match rule.apply {
+        Apply::Product(apply) => apply(graph, factors),
+        _ => None,
+    })
+}
+
+const fn call(
+    function: Function,
+    name: &'static str,
+    left: &'static str,
+    right: &'static str,
+    apply: fn(&mut Graph, Id) -> Option<Id>,
+) -> Rule {
+    Rule { name, left, right, apply: Apply::Call(function, apply) }
+}
+
+const fn sum(name: &'static str, left: &'static str, right: &'static str, apply: fn(&mut Graph, &Terms) -> Option<Edit>) -> Rule {
+    Rule { name, left, right, apply: Apply::Sum(apply) }
+}
+
+const fn product(
+    name: &'static str,
+    left: &'static str,
+    right: &'static str,
+    apply: fn(&mut Graph, &Terms) -> Option<Edit>,
+) -> Rule {
+    Rule { name, left, right, apply: Apply::Product(apply) }
+}
+
+fn zero(argument: Id) -> Option<Id> {
+    (argument == Graph::ZERO).then_some(Graph::ZERO)
+}
+
+fn one_at_zero(argument: Id) -> Option<Id> {
+    (argument == Graph::ZERO).then_some(Graph::ONE)
+}
+
+/// f(-u) = -f(u).
+fn odd(graph: &mut Graph, function: Function, argument: Id) -> Option<Id> {
+    let positive = opposite(graph, argument)?;
+    let value = graph.call(function, positive);
+    Some(graph.negative(value))
+}
+
+/// f(-u) = f(u).
+fn even(graph: &mut Graph, function: Function, argument: Id) -> Option<Id> {
+    let positive = opposite(graph, argument)?;
+    Some(graph.call(function, positive))
+}
+
+/// `-argument`, if the argument begins with a minus.
+fn opposite(graph: &mut Graph, argument: Id) -> Option<Id> {
+    let (coefficient, _) = graph.split(argument);
+    coefficient.is_negative().then(|| graph.negative(argument))
+}
+
+/// f(f⁻¹(u)) = u.
+fn inverse(graph: &mut Graph, inverse: Function, argument: Id) -> Option<Id> {
+    match *graph.node(argument) {
+        Node::Call(function, inner) if function == inverse => Some(inner),
+        _ => None,
+    }
+}
+
+fn idempotent(graph: &mut Graph, function: Function, argument: Id) -> Option<Id> {
+    matches!(*graph.node(argument), Node::Call(inner, _) if inner == function).then_some(argument)
+}
+
+/// sin(u + kπ/2), where `shift` quarter turns are added first: cos u is sin(u + π/2).
+fn quarter_turns(graph: &mut Graph, argument: Id, shift: i64) -> Option<Id> {
+    let pi = graph.pi();
+    let (scale, bare) = graph.split(argument);
+    let (turns, rest) = match graph.node(bare).clone() {
+        Node::Pi => (scale, Graph::ZERO),
+        Node::Sum(terms) => {
+            let &(_, coefficient) = terms.iter().find(|&&(id, _)| id == pi)?;
+            let total = coefficient.mul(scale)?;
+            let removed = graph.sum(&[(argument, Rational::ONE), (pi, total.negative())]);
+            (total, removed)
+        }
+        _ => return None,
+    };
+    // Four quarters are a turn; the sum of what is left fits.
+    let quarters = (turns.mul(Rational::whole(2))?.integer()?.rem_euclid(4) + shift).rem_euclid(4);
+    let sin_cos = if quarters % 2 == 0 { Function::Sin } else { Function::Cos };
+    let value = graph.call(sin_cos, rest);
+    Some(if quarters < 2 { value } else { graph.negative(value) })
+}
+
+fn abs_number(graph: &mut Graph, argument: Id) -> Option<Id> {
+    match *graph.node(argument) {
+        Node::Number(value) => Some(graph.number(value.abs())),
+        _ => None,
+    }
+}
+
+fn sign_number(graph: &mut Graph, argument: Id) -> Option<Id> {
+    match *graph.node(argument) {
+        Node::Number(value) if !value.is_zero() => Some(graph.whole(if value.is_negative() { -1 } else { 1 })),
+        _ => None,
+    }
+}
+
+/// |u²| = u², and |c u²| = |c| u².
+fn abs_square(graph: &mut Graph, argument: Id) -> Option<Id> {
+    match graph.node(argument) {
+        Node::Product(coefficient, factors) if factors.iter().all(|(_, exponent)| exponent.is_even()) => {
+            let positive = !coefficient.is_negative();
+            Some(if positive { argument } else { graph.negative(argument) })
+        }
+        _ => None,
+    }
+}
+
+/// |u|² = u².
+fn abs_even_power(graph: &mut Graph, factors: &Terms) -> Option<Edit> {
+    factors.iter().find_map(|(&id, &exponent)| match *graph.node(id) {
+        Node::Call(Function::Abs, inner) if exponent.is_even() => {
+            Some(Edit { removed: vec![id], added: vec![(inner, exponent)] })
+        }
+        _ => None,
+    })
+}
+
+/// sign(u)·|u| = u.
+fn sign_abs(graph: &mut Graph, factors: &Terms) -> Option<Edit> {
+    factors.iter().find_map(|(&id, &exponent)| {
+        let Node::Call(Function::Sign, inner) = *graph.node(id) else { return None };
+        let magnitude = graph.call(Function::Abs, inner);
+        if exponent != Rational::ONE || factors.get(&magnitude) != Some(&Rational::ONE) {
+            return None;
+        }
+        Some(Edit { removed: vec![id, magnitude], added: vec![(inner, Rational::ONE)] })
+    })
+}
+
+/// c·r·sin²u + c·r·cos²u = c·r.
+fn pythagoras(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
+    terms.iter().find_map(|(&term, &coefficient)| {
+        squares(graph, term, Function::Sin).into_iter().find_map(|(argument, rest)| {
+            let cos = graph.call(Function::Cos, argument);
+            let partner = graph.product(Rational::ONE, &[(rest, Rational::ONE), (cos, Rational::whole(2))]);
+            (terms.get(&partner) == Some(&coefficient))
+                .then(|| Edit { removed: vec![term, partner], added: vec![(rest, coefficient)] })
+        })
+    })
+}
+
+/// c·r - c·r·cos²u = c·r·sin²u, and with the two exchanged.
+fn one_minus_square(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
+    terms.iter().find_map(|(&term, &coefficient)| {
+        [(Function::Cos, Function::Sin), (Function::Sin, Function::Cos)].into_iter().find_map(|(from, to)| {
+            squares(graph, term, from).into_iter().find_map(|(argument, rest)| {
+                if terms.get(&rest) != Some(&coefficient.negative()) {
+                    return None;
+                }
+                let other = graph.call(to, argument);
+                let square = graph.product(Rational::ONE, &[(rest, Rational::ONE), (other, Rational::whole(2))]);
+                Some(Edit { removed: vec![term, rest], added: vec![(square, coefficient.negative())] })
+            })
+        })
+    })
+}
+
+/// c·r·cosh²u - c·r·sinh²u = c·r.
+fn hyperbolic_pythagoras(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
+    terms.iter().find_map(|(&term, &coefficient)| {
+        squares(graph, term, Function::Cosh).into_iter().find_map(|(argument, rest)| {
+            let sinh = graph.call(Function::Sinh, argument);
+            let partner = graph.product(Rational::ONE, &[(rest, Rational::ONE), (sinh, Rational::whole(2))]);
+            (terms.get(&partner) == Some(&coefficient.negative()))
+                .then(|| Edit { removed: vec![term, partner], added: vec![(rest, coefficient)] })
+        })
+    })
+}
+
+/// The arguments whose `function` stands squared in `term`, each with what is left without that square.
+fn squares(graph: &mut Graph, term: Id, function: Function) -> Vec<(Id, Id)> {
+    let mut found = Vec::new();
+    for (base, exponent) in graph.factors(term) {
+        if let Node::Call(of, argument) = *graph.node(base)
+            && of == function
+            && exponent.integer().is_some_and(|exponent| 2 <= exponent)
+        {
+            found.push((argument, graph.product(Rational::ONE, &[(term, Rational::ONE), (base, Rational::whole(-2))])));
+        }
+    }
+    found
+}
+
+/// The four addition theorems, read from right to left.
+fn angle_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
+    terms.iter().find_map(|(&term, &coefficient)| {
+        let trig: Vec<(Id, Function, Id)> = graph
+            .factors(term)
+            .into_iter()
+            .filter(|(_, exponent)| exponent.is_integer() && !exponent.is_negative())
+            .filter_map(|(base, _)| match *graph.node(base) {
+                Node::Call(function @ (Function::Sin | Function::Cos), argument) => Some((base, function, argument)),
+                _ => None,
+            })
+            .collect();
+        for (index, &(left, f, a)) in trig.iter().enumerate() {
+            for &(right, g, b) in &trig[index + 1..] {
+                if a == b {
+                    continue;
+                }
+                let over = [(term, Rational::ONE), (left, Rational::MINUS_ONE), (right, Rational::MINUS_ONE)];
+                let rest = graph.product(Rational::ONE, &over);
+                let exchanged = [graph.call(other(f), a), graph.call(other(g), b)].map(|id| (id, Rational::ONE));
+                let partner = graph.product(Rational::ONE, &[(rest, Rational::ONE), exchanged[0], exchanged[1]]);
+                let Some(&second) = terms.get(&partner) else { continue };
+                let same = second == coefficient;
+                if !same && second != coefficient.negative() {
+                    continue;
+                }
+                // sin a cos b ± cos a sin b, cos a cos b ± sin a sin b: the coefficient is that of the first product.
+                let (function, angle, sign) = match (f, g) {
+                    (Function::Cos, Function::Cos) if same => (Function::Cos, graph.sub(a, b), coefficient),
+                    (Function::Cos, Function::Cos) => (Function::Cos, graph.add(a, b), coefficient),
+                    (Function::Sin, Function::Sin) if same => (Function::Cos, graph.sub(a, b), coefficient),
+                    (Function::Sin, Function::Sin) => (Function::Cos, graph.add(a, b), second),
+                    (_, _) if same => (Function::Sin, graph.add(a, b), coefficient),
+                    (Function::Sin, _) => (Function::Sin, graph.sub(a, b), coefficient),
+                    (_, _) => (Function::Sin, graph.sub(b, a), coefficient),
+                };
+                let value = graph.call(function, angle);
+                let value = graph.mul(rest, value);
+                return Some(Edit { removed: vec![term, partner], added: vec![(value, sign)] });
+            }
+        }
+        None
+    })
+}
+
+/// The terms r·cos u of a sum: r, the term, its coefficient and u.
+fn cosine_terms(graph: &mut Graph, terms: &Terms) -> Vec<(Id, Id, Rational, Id)> {
+    let mut found = Vec::new();
+    for (&term, &coefficient) in terms {
+        let cosine = graph.factors(term).into_iter().find_map(|(base, exponent)| match *graph.node(base) {
+            Node::Call(Function::Cos, argument) if exponent == Rational::ONE => Some((base, argument)),
+            _ => None,
+        });
+        if let Some((base, argument)) = cosine {
+            let rest = graph.product(Rational::ONE, &[(term, Rational::ONE), (base, Rational::MINUS_ONE)]);
+            found.push((rest, term, coefficient, argument));
+        }
+    }
+    found
+}
+
+/// r - r·cos u = 2r·sin²(u/2) and r + r·cos u = 2r·cos²(u/2), where the cosines of r use its coefficient up.
+fn one_and_cosines(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
+    let cosines = cosine_terms(graph, terms);
+    let half = Rational::new(1, 2)?;
+    terms.iter().find_map(|(&rest, &whole)| {
+        let own: Vec<&(Id, Id, Rational, Id)> = cosines.iter().filter(|(other, ..)| *other == rest).collect();
+        let used = own.iter().try_fold(Rational::ZERO, |sum, (_, _, coefficient, _)| sum.add(coefficient.abs()))?;
+        if own.is_empty() || used != whole.abs() {
+            return None;
+        }
+        let (mut removed, mut added) = (vec![rest], Vec::new());
+        for &&(_, term, coefficient, argument) in &own {
+            let same = coefficient.is_negative() == whole.is_negative();
+            let angle = graph.scale(half, argument);
+            let value = graph.call(if same { Function::Cos } else { Function::Sin }, angle);
+            let square = graph.product(Rational::ONE, &[(rest, Rational::ONE), (value, Rational::whole(2))]);
+            let twice = coefficient.abs().mul(Rational::whole(if whole.is_negative() { -2 } else { 2 }))?;
+            removed.push(term);
+            added.push((square, twice));
+        }
+        Some(Edit { removed, added })
+    })
+}
+
+/// r·cos a - r·cos b = 2r·sin((a + b)/2)·sin((b - a)/2).
+fn cosines(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
+    let cosines = cosine_terms(graph, terms);
+    let half = Rational::new(1, 2)?;
+    for (index, &(rest, first, coefficient, a)) in cosines.iter().enumerate() {
+        for &(other, second, opposite, b) in &cosines[index + 1..] {
+            if other != rest || opposite != coefficient.negative() {
+                continue;
+            }
+            let (sum, difference) = (graph.add(a, b), graph.sub(b, a));
+            let factors = [sum, difference].map(|angle| {
+                let angle = graph.scale(half, angle);
+                (graph.call(Function::Sin, angle), Rational::ONE)
+            });
+            let value = graph.product(Rational::ONE, &[(rest, Rational::ONE), factors[0], factors[1]]);
+            return Some(Edit { removed: vec![first, second], added: vec![(value, coefficient.mul(Rational::whole(2))?)] });
+        }
+    }
+    None
+}
+
+fn other(function: Function) -> Function {
+    if function == Function::Sin { Function::Cos } else { Function::Sin }
+}

@@ -1,0 +1,193 @@
+//! A Lagrangian as a polynomial in the velocities.
+//!
+//! Written naively, kinetic energy is a sum of squares of Cartesian velocities. Collected by powers of the velocities, each
+//! coefficient simplifies on its own (sin² + cos², cos a cos b + sin a sin b, equal masses), and the equations of motion come out
+//! as a careful person would write them.
+
+use crate::algebra::expr::{Dependencies, Graph, Id, Node};
+use crate::algebra::number::Rational;
+use std::collections::BTreeMap;
+
+/// Powers of the variables, sorted.
+pub(crate) type Monomial = Vec<(Id, i64)>;
+
+/// The terms of each coefficient.
+pub(crate) type Polynomial = BTreeMap<Monomial, Vec<(Id, Rational)>>;
+
+/// More terms than this are left as they stand.
+const LIMIT: usize = 100_000;
+
+/// `id` collected by powers of its velocities (of coordinates and driven inputs), if it is a polynomial in them.
+pub(crate) fn by_velocities(graph: &mut Graph, id: Id) -> Option<Id> {
+    let polynomial = polynomial(graph, id, moving())?;
+    let mut terms = Vec::new();
+    for (monomial, coefficient) in polynomial {
+        let coefficient = simplest(graph, &coefficient);
+        let mut factors: Vec<(Id, Rational)> = monomial.iter().map(|&(base, power)| (base, Rational::whole(power))).collect();
+        factors.push((coefficient, Rational::ONE));
+        terms.push((graph.product(Rational::ONE, &factors), Rational::ONE));
+    }
+    Some(graph.sum(&terms))
+}
+
+fn moving() -> Dependencies {
+    Dependencies::VELOCITY.or(Dependencies::AUXILIARY).or(Dependencies::VELOCITY_INPUT).or(Dependencies::ACCELERATION_INPUT)
+}
+
+/// The polynomial that an expression is in all symbols of some kinds, from those of its children.
+pub(crate) fn polynomial(graph: &mut Graph, root: Id, variables: Dependencies) -> Option<Polynomial> {
+    let mut known: BTreeMap<Id, Polynomial> = BTreeMap::new();
+    for id in graph.reachable(&[root]) {
+        if !graph.dependencies(id).any(variables) {
+            continue;
+        }
+        let value = match graph.node(id).clone() {
+            Node::Symbol(_) => Polynomial::from([(vec![(id, 1)], vec![(Graph::ONE, Rational::ONE)])]),
+            Node::Sum(terms) => {
+                let mut sum = Polynomial::new();
+                for (term, coefficient) in terms {
+                    match known.get(&term) {
+                        None => sum.entry(Vec::new()).or_default().push((term, coefficient)),
+                        Some(part) => {
+                            for (monomial, list) in part {
+                                let entry = sum.entry(monomial.clone()).or_default();
+                                for &(own, factor) in list {
+                                    entry.push((own, factor.mul(coefficient)?));
+                                }
+                            }
+                        }
+                    }
+                }
+                sum
+            }
+            Node::Product(coefficient, factors) => {
+                let mut product = Polynomial::from([(Vec::new(), vec![(Graph::ONE, coefficient)])]);
+                let mut fixed = Vec::new();
+                for (base, exponent) in factors {
+                    match known.get(&base) {
+                        None => fixed.push((base, exponent)),
+                        Some(part) => {
+                            let count = exponent.integer().filter(|count| (1..=8).contains(count))?;
+                            for _ in 0..count {
+                                product = multiply(graph, &product, part)?;
+                            }
+                        }
+                    }
+                }
+                let fixed = graph.product(Rational::ONE, &fixed);
+                let constant = Polynomial::from([(Vec::new(), vec![(fixed, Rational::ONE)])]);
+                multiply(graph, &product, &constant)?
+            }
+            Node::Atom(inner) => known.get(&inner)?.clone(),
+            _ => return None,
+        };
+        if LIMIT < value.values().map(Vec::len).sum() {
+            return None;
+        }
+        known.insert(id, value);
+    }
+    match known.remove(&root) {
+        Some(polynomial) => Some(polynomial),
+        None => Some(Polynomial::from([(Vec::new(), vec![(root, Rational::ONE)])])),
+    }
+}
+
+fn multiply(graph: &mut Graph, a: &Polynomial, b: &Polynomial) -> Option<Polynomial> {
+    let size = |polynomial: &Polynomial| polynomial.values().map(Vec::len).sum::<usize>();
+    if LIMIT < size(a).saturating_mul(size(b)) {
+        return None;
+    }
+    let mut product = Polynomial::new();
+    for (left, left_terms) in a {
+        for (right, right_terms) in b {
+            let mut powers: BTreeMap<Id, i64> = left.iter().copied().collect();
+            for &(base, power) in right {
+                *powers.entry(base).or_default() += power;
+            }
+            let entry = product.entry(powers.into_iter().collect()).or_default();
+            for &(x, p) in left_terms {
+                for &(y, q) in right_terms {
+                    entry.push((graph.mul(x, y), p.mul(q)?));
+                }
+            }
+        }
+    }
+    Some(product)
+}
+
+/// The cheaper of a coefficient as it came and multiplied out.
+pub(crate) fn simplest(graph: &mut Graph, terms: &[(Id, Rational)]) -> Id {
+    let plain = graph.sum(terms);
+    let mut flat = Vec::new();
+    for &(term, coefficient) in terms {
+        match expand(graph, term) {
+            Some(parts) => {
+                for (part, own) in parts {
+                    match own.mul(coefficient) {
+                        Some(own) => flat.push((part, own)),
+                        None => return plain,
+                    }
+                }
+            }
+            None => return plain,
+        }
+    }
+    let flat = graph.sum(&flat);
+    if cost(graph, flat) < cost(graph, plain) { flat } else { plain }
+}
+
+/// An expression multiplied out, unless that would be too long.
+pub(crate) fn expanded(graph: &mut Graph, id: Id) -> Id {
+    match expand(graph, id) {
+        Some(terms) => graph.sum(&terms),
+        None => id,
+    }
+}
+
+/// A product of sums multiplied out, as often as sums stand in it; `None` if that would be too long.
+fn expand(graph: &mut Graph, term: Id) -> Option<Vec<(Id, Rational)>> {
+    let mut open = vec![(term, Rational::ONE)];
+    let mut done = Vec::new();
+    while let Some((term, outer)) = open.pop() {
+        let (own, bare) = graph.split(term);
+        let outer = outer.mul(own)?;
+        let sum = graph.factors(bare).into_iter().find_map(|(base, exponent)| match graph.node(base) {
+            Node::Sum(terms) if exponent.is_integer() && !exponent.is_negative() => Some((base, terms.clone())),
+            _ => None,
+        });
+        let Some((base, terms)) = sum else {
+            done.push((bare, outer));
+            continue;
+        };
+        if 256 < open.len() + done.len() + terms.len() {
+            return None;
+        }
+        for (part, coefficient) in terms {
+            let factors = [(bare, Rational::ONE), (base, Rational::MINUS_ONE), (part, Rational::ONE)];
+            open.push((graph.product(Rational::ONE, &factors), outer.mul(coefficient)?));
+        }
+    }
+    Some(done)
+}
+
+/// A rough count of the operations of an expression, shared nodes once.
+pub(crate) fn cost(graph: &Graph, root: Id) -> usize {
+    let price = |id: Id| match graph.node(id) {
+        Node::Number(_) | Node::Opaque(_) | Node::Pi | Node::Symbol(_) | Node::Atom(_) => 0,
+        Node::Sum(terms) => terms.len() - 1 + terms.iter().filter(|(_, coefficient)| coefficient.abs() != Rational::ONE).count(),
+        Node::Product(coefficient, factors) => {
+            let powers: usize = factors
+                .iter()
+                .map(|(_, exponent)| match exponent.integer() {
+                    Some(1) => 1,
+                    Some(power) if 0 < power => power.unsigned_abs().ilog2() as usize + 2,
+                    Some(_) => 8,
+                    None => 16,
+                })
+                .sum();
+            powers - 1 + usize::from(coefficient.abs() != Rational::ONE)
+        }
+        Node::Call(..) | Node::Atan2(..) | Node::Max(..) => 20,
+    };
+    graph.reachable(&[root]).into_iter().map(price).sum()
+}

@@ -1,0 +1,29 @@
+//! What is written of a block: Rust, its equations in Unicode and LaTeX, and a copy for editors.
+
+mod cancel;
+pub(crate) mod ide;
+pub(crate) mod latex;
+pub(crate) mod rust;
+pub(crate) mod unicode;
+
+use crate::algebra::expr::Graph;
+use crate::mechanics::lower::Energies;
+use crate::mechanics::motion::Motion;
+use crate::model::Model;
+use crate::schedule::Program;
+use proc_macro2::TokenStream;
+
+/// A block before a backend writes it.
+pub(crate) struct Analysis<'m, 'a> {
+    /// The path of the runtime.
+    pub(crate) krate: TokenStream,
+    pub(crate) model: &'m Model<'a>,
+    pub(crate) graph: Graph,
+    pub(crate) energies: Energies,
+    /// The equations of motion; `None` after a mistake.
+    pub(crate) motion: Option<Motion>,
+    /// The equations in Unicode and in LaTeX, a line each.
+    pub(crate) equations: [Vec<String>; 2],
+    /// The program of the accelerations.
+    pub(crate) accelerations: Option<Program>,
+}

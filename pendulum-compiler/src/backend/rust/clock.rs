@@ -1,0 +1,29 @@
+//! The bound of steps that what time alone does to the equations asks for.
+
+use super::Emitter;
+use crate::algebra::expr::Id;
+use crate::mechanics::clock;
+use crate::schedule;
+use proc_macro2::TokenStream;
+use quote::quote;
+
+impl Emitter<'_, '_> {
+    /// `longest_step`, where a function of time stands in the accelerations.
+    pub(super) fn longest_step(&self) -> Option<TokenStream> {
+        let motion = self.motion.as_ref()?;
+        let (graph, features) = clock::features(&self.graph, &motion.accelerations);
+        if features.is_empty() {
+            return None;
+        }
+        let (krate, scalar, count) = (&self.krate, self.scalar(), features.len());
+        let roots: Vec<Id> = features.iter().flat_map(|feature| [feature.rate, feature.since]).collect();
+        let values = self.body(&schedule::program(&graph, &roots));
+        let numbers = 2 * count;
+        Some(quote! {
+            fn longest_step(&self, t: #scalar, widths: #scalar) -> #scalar {
+                let all: [#scalar; #numbers] = #values;
+                #krate::__private::longest_step(&all, widths)
+            }
+        })
+    }
+}

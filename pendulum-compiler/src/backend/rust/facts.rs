@@ -1,0 +1,111 @@
+//! The facts of a system: its names and units, what its equations contain and what they leave out.
+
+use super::Emitter;
+use crate::algebra::expr::{Id, Symbol};
+use crate::backend::unicode::{self, Names};
+use crate::model::Quantity;
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+
+impl Emitter<'_, '_> {
+    pub(super) fn facts(&self) -> TokenStream {
+        let krate = self.krate.clone();
+        let names = Names::new(self.model, &self.energies.families);
+        let name = self.model.block.name.to_string();
+        let (coordinates, parameters) = (&names.coordinates, &names.parameters);
+        let units = self.model.parameters.iter().flat_map(|quantity| {
+            if quantity.body {
+                return ["kg", "m", "m", "kg*m^2", "kg*m^2", "kg*m^2"].map(String::from).to_vec();
+            }
+            vec![quantity.unit.clone(); quantity.count()]
+        });
+        let inputs = self.inputs();
+        let Some(motion) = &self.motion else {
+            return quote!(#krate::__private::facts(#krate::__private::Known {
+                name: #name, coordinates: &[#(#coordinates),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*],
+                autonomous: false, explicit_time: false, separable: false, velocity_free: false, constant_mass_matrix: false, nonconservative: false,
+                smooth: false, linear: false, cyclic: &[], conserved: &[], unused: &[], equations: "", latex: "",
+            }));
+        };
+        let (autonomous, explicit_time, separable, velocity_free, constant_mass_matrix, nonconservative) = (
+            motion.autonomous,
+            motion.explicit_time,
+            motion.separable,
+            motion.velocity_free,
+            motion.constant_mass_matrix,
+            motion.nonconservative,
+        );
+        let smooth = self.graph.smooth(&motion.accelerations);
+        let linear = motion.linear;
+        let cyclic = motion.cyclic.clone();
+        let conserved: Vec<String> = motion.conserved.iter().map(|conserved| unicode::conserved(&names, conserved)).collect();
+        let unused = self.unused(&names);
+        let [equations, latex] = self.equations.each_ref().map(|lines| lines.join("\n"));
+        quote!(#krate::__private::facts(#krate::__private::Known {
+            name: #name, coordinates: &[#(#coordinates),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*],
+            autonomous: #autonomous, explicit_time: #explicit_time, separable: #separable, velocity_free: #velocity_free, constant_mass_matrix: #constant_mass_matrix,
+            nonconservative: #nonconservative, smooth: #smooth, linear: #linear, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], equations: #equations, latex: #latex,
+        }))
+    }
+
+    pub(super) fn unused(&self, names: &Names) -> Vec<String> {
+        let Some(motion) = &self.motion else { return Vec::new() };
+        let mut needed = self.graph.symbols(&motion.accelerations);
+        for quantity in &self.model.parameters {
+            // A moment about the pivot is made of all that a body has.
+            if needed.iter().any(|symbol| matches!(symbol, Symbol::Moment(first, _) if *first == quantity.first)) {
+                needed.extend((quantity.first..quantity.first + quantity.count()).map(Symbol::Parameter));
+            }
+        }
+        let all = names.parameters.iter().enumerate();
+        all.filter(|(index, _)| !needed.contains(&Symbol::Parameter(*index))).map(|(_, name)| name.clone()).collect()
+    }
+
+    /// For each purpose, whether it needs the position, the velocity and the acceleration of each
+    /// driven input.
+    pub(super) fn needed(&self) -> Vec<Vec<[bool; 3]>> {
+        let purposes: Vec<Vec<Symbol>> = match &self.motion {
+            None => vec![Vec::new(); 4],
+            Some(motion) => {
+                let of = |lists: &[&[Id]]| self.graph.symbols(&lists.concat()).into_iter().collect();
+                let masses = motion.mass_matrix.concat();
+                let energies: Vec<Id> = [Some(motion.energy), motion.kinetic, motion.potential].into_iter().flatten().collect();
+                vec![
+                    of(&[&motion.accelerations, &motion.forces]),
+                    of(&[&motion.momenta, &motion.momentum_rates, motion.velocities.as_deref().unwrap_or_default(), &masses]),
+                    of(&[&energies]),
+                    of(&[&[motion.power]]),
+                ]
+            }
+        };
+        let of = |symbols: &Vec<Symbol>| {
+            let mut needed = vec![[false; 3]; self.model.inputs.len()];
+            for symbol in symbols {
+                if let Symbol::Input { input, order, .. } = *symbol {
+                    needed[input][usize::from(order)] = true;
+                }
+            }
+            needed
+        };
+        purposes.iter().map(of).collect()
+    }
+
+    /// The derivatives of each driven input that each purpose needs.
+    fn inputs(&self) -> Vec<TokenStream> {
+        let (krate, needed) = (&self.krate, self.needed());
+        let describe = |(index, quantity): (usize, &Quantity)| {
+            let (name, components) = (quantity.name.to_string(), quantity.count());
+            let orders = needed.iter().map(|inputs| {
+                let parts = ["POSITION", "VELOCITY", "ACCELERATION"]
+                    .into_iter()
+                    .zip(inputs[index])
+                    .filter(|&(_, needed)| needed)
+                    .map(|(part, _)| format_ident!("{part}"));
+                quote!(#krate::motion::Orders::NONE #(.and(#krate::motion::Orders::#parts))*)
+            });
+            let purposes = ["accelerations", "momenta", "energy", "power"].map(|purpose| format_ident!("{purpose}"));
+            quote!(#krate::system::Input { name: #name, components: #components, #(#purposes: #orders),* })
+        };
+        self.model.inputs.iter().enumerate().map(describe).collect()
+    }
+}

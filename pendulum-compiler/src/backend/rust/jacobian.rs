@@ -1,0 +1,109 @@
+//! The Jacobians of the accelerations: as expressions where those are small, else by dual numbers.
+
+use super::Emitter;
+use crate::model::Quantity;
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+impl Emitter<'_, '_> {
+    pub(super) fn jacobians(&mut self) -> TokenStream {
+        let (krate, scalar, other, count) = (self.krate.clone(), self.scalar(), self.other_scalar(), self.count());
+        let name = &self.model.block.name;
+        let written = self.motion.as_ref().is_none_or(|motion| motion.jacobians.is_some());
+        let [positions, velocities, parameters] = if written { self.written_jacobians() } else { self.dual_jacobians() };
+        let state = quote!(q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs);
+        let inputs = (0..self.model.inputs.len()).map(Literal::usize_unsuffixed);
+        quote! {
+            #[automatically_derived]
+            #[allow(non_snake_case, unused_variables, unused_mut, unused_parens, unreachable_code, clippy::all, clippy::pedantic)]
+            impl<#scalar: #krate::real::Real> #krate::system::Jacobians<#count> for #name<#scalar> {
+                type Over<#other: #krate::real::Real> = #name<#other>;
+
+                fn over<#other: #krate::real::Real>(&self, map: impl ::core::ops::FnMut(#scalar) -> #other) -> #name<#other> {
+                    <Self as #krate::system::System<#count>>::map(self, map)
+                }
+
+                fn inputs_over<#other: #krate::real::Real>(
+                    inputs: &Self::Inputs,
+                    map: impl ::core::ops::Fn(#scalar) -> #other,
+                ) -> <Self::Over<#other> as #krate::system::System<#count>>::Inputs {
+                    (#(inputs.#inputs.map(&map),)*)
+                }
+
+                fn position_jacobian(&self, t: #scalar, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #positions }
+
+                fn velocity_jacobian(&self, t: #scalar, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #velocities }
+
+                fn parameter_jacobian(&self, t: #scalar, #state, columns: &mut [[#scalar; #count]]) { #parameters }
+            }
+        }
+    }
+
+    /// The Jacobians as expressions.
+    fn written_jacobians(&mut self) -> [TokenStream; 3] {
+        let (krate, scalar, count) = (self.krate.clone(), self.scalar(), self.count());
+        let size = count * count;
+        let flat = [0, 1, 2].map(|which| self.output(|motion| Some(motion.jacobians.as_ref()?[which].concat())));
+        let [positions, velocities, parameters] = flat;
+        if self.motion.is_none() {
+            return [quote!(#positions), quote!(#velocities), quote!(#parameters)];
+        }
+        let matrix = |entries: Option<TokenStream>| {
+            quote! {
+                let entries: [#scalar; #size] = #entries;
+                #krate::__private::SMatrix::<#scalar, #count, #count>::from_column_slice(&entries)
+            }
+        };
+        let length = count * self.model.parameters.iter().map(Quantity::count).sum::<usize>();
+        let parameters = quote! {
+            let entries: [#scalar; #length] = #parameters;
+            let all = #krate::__private::columns::<#scalar, #count>(&entries);
+            for k in 0..all.len() {
+                if k < columns.len() {
+                    columns[k] = all[k];
+                }
+            }
+        };
+        [matrix(positions), matrix(velocities), parameters]
+    }
+
+    /// The Jacobians by dual numbers: one evaluation of the accelerations for each column.
+    fn dual_jacobians(&self) -> [TokenStream; 3] {
+        let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
+        let inputs = (0..self.model.inputs.len()).map(Literal::usize_unsuffixed);
+        let (dual, name) = (quote!(#krate::real::Dual::<#scalar>), &self.model.block.name);
+        let map = quote!(<Self as #krate::system::System<#count>>::map);
+        let accelerations = quote!(<#name<#dual> as #krate::system::System<#count>>::accelerations);
+        let lifted = quote! {
+            let inputs = (#(inputs.#inputs.map(#dual::constant),)*);
+            let (mut q, mut v) = (q.map(#dual::constant), v.map(#dual::constant));
+            let t = #dual::constant(t);
+        };
+        let matrix = |variable: TokenStream| {
+            quote! {
+                let system = #map(self, #dual::constant);
+                #lifted
+                let mut columns = [[#scalar::from_f64(0.0); #count]; #count];
+                for k in 0..#count {
+                    #variable[k].derivative = #scalar::from_f64(1.0);
+                    columns[k] = #accelerations(&system, t, &q, &v, &inputs).map(|acceleration| acceleration.derivative);
+                    #variable[k].derivative = #scalar::from_f64(0.0);
+                }
+                #krate::__private::SMatrix::<#scalar, #count, #count>::from_fn(|row, column| columns[column][row])
+            }
+        };
+        let parameters = quote! {
+            #lifted
+            for k in 0..columns.len() {
+                let mut index = 0usize;
+                let system = #map(self, |parameter| {
+                    let lifted = if index == k { #dual::variable(parameter) } else { #dual::constant(parameter) };
+                    index += 1;
+                    lifted
+                });
+                columns[k] = #accelerations(&system, t, &q, &v, &inputs).map(|acceleration| acceleration.derivative);
+            }
+        };
+        [matrix(quote!(q)), matrix(quote!(v)), parameters]
+    }
+}

@@ -1,0 +1,135 @@
+//! The recurrences of functions and powers.
+
+use super::Writer;
+use crate::algebra::expr::Function;
+use crate::backend::rust::local;
+use crate::schedule::Place;
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+
+impl Writer<'_, '_, '_> {
+    /// A function of one argument.
+    pub(super) fn call(&mut self, place: Place, function: Function, a: Place) {
+        let scalar = self.emitter.scalar();
+        let one = quote!(series::constant(#scalar::from_f64(1.0), order));
+        match function {
+            Function::Sin | Function::Cos => {
+                self.sin_cos(place, a);
+                let name = local(if function == Function::Sin { "s" } else { "c" }, place.0);
+                self.values[place.0] = quote!(#name);
+            }
+            Function::Sinh | Function::Cosh => {
+                let (pair, x) = (self.pair(), self.value(a));
+                let (x, both) = (self.shared("a", place, &x), local("b", place.0));
+                let rate = self.rate(&x);
+                let part = usize::from(function == Function::Cosh);
+                self.lines.extend(quote! {
+                    let #both = series::sinh_cosh(#x, &#rate, &#pair, &path.reciprocals, order);
+                    #pair[k] = #both;
+                });
+                self.values[place.0] = quote!(#both[#part]);
+            }
+            Function::Exp => {
+                let x = self.value(a);
+                self.exponential(place, &x);
+            }
+            Function::Tan | Function::Tanh => {
+                let (x, slot, slope) = (self.value(a), self.slot(), self.slot());
+                let x = self.shared("a", place, &x);
+                let rate = self.rate(&x);
+                self.halves += 3;
+                let (name, sign) = if function == Function::Tan { ("tan", quote!(+)) } else { ("tanh", quote!(-)) };
+                let name = format_ident!("{name}");
+                let value = quote!(series::integral(|| #x.#name(), &#rate, &#slope, &path.reciprocals, order));
+                self.name_in(place, &value, slot.clone());
+                self.lines.extend(quote!(#slope[k] = #one #sign series::square(&#slot, order);));
+            }
+            Function::Ln => {
+                let (x, divisor) = (self.value(a), self.whole(a));
+                let x = self.shared("a", place, &x);
+                self.inverse(place, &quote!(#x.ln()), &quote!(series::rate(#x, order)), &divisor, false);
+            }
+            Function::Atan => {
+                let (x, series) = (self.value(a), self.whole(a));
+                let x = self.shared("a", place, &x);
+                self.halves += 1;
+                let divisor = self.kept(&quote!(#one + series::square(&#series, order)));
+                self.inverse(place, &quote!(#x.atan()), &quote!(series::rate(#x, order)), &divisor, false);
+            }
+            Function::Asin | Function::Acos => {
+                let (x, series) = (self.value(a), self.whole(a));
+                let (x, root, lead) = (self.shared("a", place, &x), self.slot(), self.lead());
+                self.halves += 2;
+                let below = self.shared("b", place, &quote!(#one - series::square(&#series, order)));
+                self.lines.extend(quote!(#root[k] = series::sqrt(#below, &#root, #lead, order);));
+                let name = format_ident!("{}", if function == Function::Asin { "asin" } else { "acos" });
+                let rate = quote!(series::rate(#x, order));
+                self.inverse(place, &quote!(#x.#name()), &rate, &root, function == Function::Acos);
+            }
+            Function::Abs => {
+                let (x, lead) = (self.value(a), self.lead());
+                let x = self.shared("a", place, &x);
+                self.name(place, &quote!(series::leading(|| #x.sign(), #lead, order) * #x));
+            }
+            Function::Sign | Function::Step => {
+                let x = self.value(a);
+                let name = format_ident!("{}", if function == Function::Sign { "sign" } else { "step" });
+                // The value at order 0 is all there is; that of another order means nothing and is not used.
+                self.name(place, &quote!(series::constant(#x.#name(), order)));
+            }
+        }
+    }
+
+    /// exp x.
+    fn exponential(&mut self, place: Place, x: &TokenStream) {
+        let (x, slot) = (self.shared("e", place, x), self.slot());
+        let rate = self.rate(&x);
+        self.halves += 2;
+        let value = quote!(series::integral(|| #x.exp(), &#rate, &#slot, &path.reciprocals, order));
+        self.name_in(place, &value, slot);
+    }
+
+    /// A function with the value `start` whose rate is `rate` over `divisor`.
+    fn inverse(&mut self, place: Place, start: &TokenStream, rate: &TokenStream, divisor: &TokenStream, negative: bool) {
+        let (slot, lead, sign) = (self.slot(), self.lead(), negative.then(|| quote!(-)));
+        self.halves += 2;
+        let slope = self.shared("r", place, &quote!(series::slope(#sign #rate, &#divisor, &#slot, #lead, order)));
+        self.lines.extend(quote!(#slot[k] = #slope;));
+        self.name(place, &quote!(series::from_rate(|| #start, #slope, &path.reciprocals, order)));
+    }
+
+    /// (x ẏ − y ẋ)/(x² + y²) is the rate of the angle of the point (x, y).
+    pub(super) fn angle(&mut self, place: Place, y: Place, x: Place) {
+        let (y_value, x_value) = (self.value(y), self.value(x));
+        let (y_value, x_value) = (self.shared("a", place, &y_value), self.shared("b", place, &x_value));
+        let (y, x) = (self.whole(y), self.whole(x));
+        let (y_rate, x_rate) = (self.rate(&y_value), self.rate(&x_value));
+        self.halves += 6;
+        let divisor = self.kept(&quote!(series::square(&#x, order) + series::square(&#y, order)));
+        let rate = quote!((series::behind(&#y_rate, &#x, order) - series::behind(&#x_rate, &#y, order)));
+        self.inverse(place, &quote!(#y_value.atan2(#x_value)), &rate, &divisor, false);
+    }
+
+    /// A power: one recurrence if the exponent does not move, else exp(b ln a).
+    pub(super) fn power(&mut self, place: Place, a: Place, b: Place) {
+        if self.parameter_only[b.0] {
+            let (a, b, slot, lead) = (self.whole(a), self.constant(b), self.slot(), self.lead());
+            self.halves += 3;
+            let value = quote!(series::power(&#a, #b, &#slot, #lead, &path.reciprocals, order));
+            self.name_in(place, &value, slot);
+            return;
+        }
+        if self.parameter_only[a.0] {
+            let (a, b, lead) = (self.constant(a), self.value(b), self.lead());
+            let logarithm = self.shared("l", place, &quote!(series::leading(|| #a.ln(), #lead, order)));
+            self.exponential(place, &quote!(#b * #logarithm));
+            return;
+        }
+        self.call(place, Function::Ln, a);
+        let logarithm = self.values[place.0].clone();
+        let (logarithm, b) = (self.kept(&logarithm), self.whole(b));
+        self.halves += 2;
+        self.series.remove(&place);
+        self.exponential(place, &quote!(series::product(&#b, &#logarithm, order)));
+    }
+}

@@ -1,0 +1,115 @@
+//! Rust for a derived block: the struct, its constructor and the implementation of the runtime's traits.
+
+mod clock;
+pub(crate) mod documentation;
+mod facts;
+mod jacobian;
+pub(crate) mod jet;
+mod operation;
+mod program;
+mod staged;
+mod structure;
+mod system;
+mod unmentioned;
+
+use crate::algebra::expr::Graph;
+use crate::backend::Analysis;
+use crate::backend::ide;
+use crate::mechanics::lower::Energies;
+use crate::mechanics::motion::Motion;
+use crate::model::{Model, Quantity};
+use crate::schedule::Program;
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::{format_ident, quote};
+use std::collections::BTreeMap;
+
+/// The names of ours that the generated code binds, besides those of the block and those that begin with `__`.
+#[rustfmt::skip]
+const OWN: &[&str] = &[
+    "acceleration", "all", "at_position", "at_time", "both", "column", "columns", "drive", "entries", "index", "inputs", "k", "lifted",
+    "map", "order", "p", "parameter", "path", "prepared", "q", "row", "system", "t", "v", "value", "values", "widths", "work",
+];
+
+/// What the emitter writes about and with.
+pub(crate) struct Emitter<'m, 'a> {
+    pub(crate) krate: TokenStream,
+    pub(crate) model: &'m Model<'a>,
+    pub(crate) graph: Graph,
+    /// `None` after an error: then every body is left open, so that the mistake gives one message.
+    pub(crate) motion: Option<Motion>,
+    /// The program of the accelerations, as long as there are equations.
+    pub(crate) accelerations: Option<Program>,
+    pub(crate) energies: Energies,
+    /// The equations of motion in Unicode and in LaTeX.
+    equations: [Vec<String>; 2],
+}
+
+impl<'m, 'a> Emitter<'m, 'a> {
+    pub(crate) fn new(analysis: Analysis<'m, 'a>) -> Self {
+        let Analysis { krate, model, graph, energies, motion, equations, accelerations } = analysis;
+        Self { krate, model, graph, motion, accelerations, energies, equations }
+    }
+}
+
+impl Emitter<'_, '_> {
+    /// All items of a block.
+    pub(crate) fn items(mut self) -> TokenStream {
+        let structure = self.structure();
+        let constructor = self.constructor();
+        let system = self.system();
+        let split = self.split_energy();
+        let marker = self.marker();
+        let staged = self.staged();
+        let jacobians = self.jacobians();
+        let jets = self.jets();
+        let mirror = ide::function(self.model.block);
+        let open = self.open_names();
+        let unmentioned = self.unmentioned();
+        let conditions = self.model.block.conditions();
+        quote! {
+            #structure
+            #(#conditions)*
+            #[allow(deprecated)]
+            const _: () = {
+                #open
+                #constructor #system #split #staged #marker #jacobians #jets #unmentioned
+            };
+            #mirror
+        }
+    }
+
+    /// Functions of the names that the generated code binds.
+    ///
+    /// A constant or a unit struct of such a name in the user's scope would turn the binding into a pattern; behind a function of
+    /// the name it is out of sight, and a binding may shadow a function.
+    fn open_names(&self) -> TokenStream {
+        let own = OWN.iter().map(|name| Ident::new(name, Span::call_site()));
+        let declared = self.model.parameters.iter().chain(&self.model.inputs).map(|quantity| {
+            let mut name = quantity.name.clone();
+            name.set_span(name.span().located_at(Span::call_site()));
+            name
+        });
+        let names: BTreeMap<String, Ident> = own.chain(declared).map(|name| (name.to_string(), name)).collect();
+        let names = names.values();
+        quote!(#(#[allow(dead_code, non_snake_case)] fn #names() {})*)
+    }
+
+    /// The scalar's type parameter; another letter if the struct took the usual one.
+    pub(crate) fn scalar(&self) -> Ident {
+        format_ident!("{}", if self.model.block.name == "T" { "S" } else { "T" })
+    }
+
+    /// The type parameter of what has another scalar; another letter as well.
+    pub(crate) fn other_scalar(&self) -> Ident {
+        format_ident!("{}", if self.model.block.name == "U" { "V" } else { "U" })
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.model.coordinates.iter().map(Quantity::count).sum()
+    }
+}
+
+/// A name of ours that no user can write.
+pub(crate) fn local(prefix: &str, index: usize) -> Ident {
+    Ident::new(&format!("__{prefix}{index}"), Span::mixed_site())
+}

@@ -1,0 +1,147 @@
+//! One operation of a program: arithmetic, functions, numbers, and where the values of symbols are read.
+
+use super::{Emitter, local};
+use crate::algebra::expr::{Function, Moment, Symbol};
+use crate::algebra::number;
+use crate::algebra::number::Rational;
+use crate::schedule::{Op, Place};
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
+
+impl Emitter<'_, '_> {
+    pub(crate) fn operation(&self, op: &Op, at: impl Fn(Place) -> TokenStream) -> TokenStream {
+        let scalar = self.scalar();
+        let call = |method: &str, place: Place| {
+            let (value, method) = (at(place), format_ident!("{method}"));
+            quote!(#value.#method())
+        };
+        let binary = |method: &str, a: Place, b: Place| {
+            let (a, b, method) = (at(a), at(b), format_ident!("{method}"));
+            quote!(#a.#method(#b))
+        };
+        match *op {
+            Op::Number(value) => number(value, &scalar),
+            Op::Literal(ref literal) => decimal(literal, &scalar),
+            Op::Pi => quote!(#scalar::pi()),
+            Op::Load(symbol) => self.load(symbol),
+            Op::Negative(a) => {
+                let a = at(a);
+                quote!((-#a))
+            }
+            Op::Add(a, b) => {
+                let (a, b) = (at(a), at(b));
+                quote!((#a + #b))
+            }
+            Op::Sub(a, b) => {
+                let (a, b) = (at(a), at(b));
+                quote!((#a - #b))
+            }
+            Op::Mul(a, b) => {
+                let (a, b) = (at(a), at(b));
+                quote!((#a * #b))
+            }
+            Op::Div(a, b) => {
+                let (a, b) = (at(a), at(b));
+                quote!((#a / #b))
+            }
+            Op::Sqrt(a) => call("sqrt", a),
+            Op::Powf(a, b) => binary("powf", a, b),
+            Op::Atan2(a, b) => binary("atan2", a, b),
+            Op::Max(a, b) => binary("max", a, b),
+            Op::Call(function, a) => call(method(function), a),
+            Op::SinCos(_) => TokenStream::new(),
+            Op::Part(function, pair) => {
+                let name = local(if function == Function::Sin { "s" } else { "c" }, pair.0);
+                quote!(#name)
+            }
+        }
+    }
+
+    fn load(&self, symbol: Symbol) -> TokenStream {
+        match symbol {
+            Symbol::Parameter(scalar) => {
+                let quantity = self.model.parameters.iter().rfind(|quantity| quantity.first <= scalar);
+                let Some(quantity) = quantity else { return TokenStream::new() };
+                let (name, offset) = (quantity.name, scalar - quantity.first);
+                match quantity.length {
+                    _ if quantity.body => match offset {
+                        0 => quote!(self.#name.mass),
+                        1 | 2 => {
+                            let component = offset - 1;
+                            quote!(self.#name.center[#component])
+                        }
+                        _ => {
+                            let component = offset - 3;
+                            quote!(self.#name.central[#component])
+                        }
+                    },
+                    Some(_) => quote!(self.#name[#offset]),
+                    None => quote!(self.#name),
+                }
+            }
+            Symbol::Moment(first, moment) => {
+                let body = self.model.parameters.iter().rfind(|quantity| quantity.first <= first);
+                let Some(name) = body.map(|body| body.name) else { return TokenStream::new() };
+                match moment {
+                    Moment::Inertia => quote!(self.#name.inertia()),
+                    Moment::Difference => quote!((self.#name.moments()[0] - self.#name.moments()[2])),
+                    Moment::Product => quote!(self.#name.moments()[1]),
+                }
+            }
+            // Points of integration are gone when the integral is done, velocities of positions when the equations are solved.
+            Symbol::Point(..) | Symbol::Auxiliary(_) => quote!(::core::unreachable!()),
+            Symbol::Time => quote!(t),
+            Symbol::Coordinate(index) => quote!(q[#index]),
+            Symbol::Velocity(index) => quote!(v[#index]),
+            Symbol::Momentum(index) => quote!(p[#index]),
+            Symbol::Input { input, component, order } => {
+                let input = Literal::usize_unsuffixed(input);
+                let order = format_ident!("{}", ["position", "velocity", "acceleration"][usize::from(order)]);
+                quote!(inputs.#input.#order[#component])
+            }
+        }
+    }
+}
+
+fn number(value: Rational, scalar: &Ident) -> TokenStream {
+    let sign = value.is_negative().then(|| quote!(-));
+    if !value.fits_double() {
+        // The nearest double, and what it leaves off for scalars of more digits.
+        let (high, low) = value.abs().words();
+        let (high, rest) = (Literal::f64_unsuffixed(high), Literal::f64_unsuffixed(low.abs()));
+        let rest_sign = (value.is_negative() != (low < 0.0)).then(|| quote!(-));
+        return quote!((#scalar::from_f64(#sign #high) + #scalar::from_f64(#rest_sign #rest)));
+    }
+    let (top, bottom) = (value.numerator() as f64, value.denominator() as f64);
+    let (top, bottom) = (Literal::f64_unsuffixed(top.abs()), Literal::f64_unsuffixed(bottom));
+    if value.is_integer() { quote!(#scalar::from_f64(#sign #top)) } else { quote!(#scalar::ratio(#sign #top, #bottom)) }
+}
+
+fn decimal(literal: &number::Literal, scalar: &Ident) -> TokenStream {
+    match literal {
+        number::Literal::Exact(value) => number(*value, scalar),
+        number::Literal::Decimal(digits) => {
+            let value = Literal::f64_unsuffixed(digits.parse().unwrap_or(f64::NAN));
+            quote!(#scalar::from_f64(#value))
+        }
+    }
+}
+
+fn method(function: Function) -> &'static str {
+    match function {
+        Function::Sin => "sin",
+        Function::Cos => "cos",
+        Function::Tan => "tan",
+        Function::Asin => "asin",
+        Function::Acos => "acos",
+        Function::Atan => "atan",
+        Function::Sinh => "sinh",
+        Function::Cosh => "cosh",
+        Function::Tanh => "tanh",
+        Function::Exp => "exp",
+        Function::Ln => "ln",
+        Function::Abs => "abs",
+        Function::Sign => "sign",
+        Function::Step => "step",
+    }
+}

@@ -1,0 +1,163 @@
+//! The struct of a block, its constructor and what binds motions to its driven inputs.
+
+use super::Emitter;
+use crate::model::Quantity;
+use crate::schedule;
+use proc_macro2::{Ident, Span, TokenStream, TokenTree};
+use quote::{ToTokens, format_ident, quote};
+
+impl Emitter<'_, '_> {
+    pub(super) fn structure(&self) -> TokenStream {
+        let block = self.model.block;
+        let (visibility, name, scalar) = (&block.visibility, &block.name, self.scalar());
+        let attributes = block.attributes.iter().filter(|attribute| !self.is_moved(attribute, None));
+        let documentation = self.documentation();
+        let fields = block.fields.iter().zip(&self.model.parameters).enumerate().map(|(index, (field, quantity))| {
+            let attributes = field.attributes.iter().filter(|attribute| !self.is_moved(attribute, Some(index)));
+            let name = &field.name;
+            let kind = self.field_type(quantity, &scalar);
+            let documented = field.attributes.iter().any(|attribute| attribute.path().is_ident("doc"));
+            let text = match (documented, quantity.unit.as_str()) {
+                (true, "") => String::new(),
+                (true, unit) => format!("\n\nUnit: {unit}."),
+                (false, "") => format!("The parameter `{name}`."),
+                (false, unit) => format!("The parameter `{name}` in {unit}."),
+            };
+            let text = (!text.is_empty()).then(|| quote!(#[doc = #text]));
+            quote! { #(#attributes)* #text pub #name: #kind, }
+        });
+        let empty =
+            block.fields.is_empty().then(|| quote! { #[doc(hidden)] pub __scalar: ::core::marker::PhantomData<#scalar>, });
+        // Where another item has the name too, rustc shows the tokens from the visibility to the
+        // name, and not the whole block.
+        let visibility = located(visibility.to_token_stream(), None);
+        let head = located(quote!(struct #name<#scalar = ::core::primitive::f64> { #(#fields)* #empty }), Some(name.span()));
+        quote! {
+            #(#attributes)*
+            #documentation
+            #[allow(non_snake_case)]
+            #visibility #head
+        }
+    }
+
+    pub(super) fn constructor(&self) -> TokenStream {
+        let (name, scalar, krate) = (&self.model.block.name, self.scalar(), &self.krate);
+        let mut arguments = Vec::new();
+        let mut values = Vec::new();
+        for (index, quantity) in self.model.parameters.iter().enumerate() {
+            let field = quantity.name;
+            match self.energies.defaults.get(index).copied().flatten() {
+                Some(default) => {
+                    let program = schedule::program(&self.graph, &[default]);
+                    let body = self.body(&program);
+                    values.push(quote!(#field: { let [value] = #body; value }));
+                }
+                None if quantity.default.is_some() => values.push(quote!(#field: ::core::unimplemented!())),
+                None => {
+                    let kind = self.field_type(quantity, &scalar);
+                    arguments.push(quote!(#field: #kind));
+                    values.push(quote!(#field));
+                }
+            }
+        }
+        if self.model.parameters.is_empty() {
+            values.push(quote!(__scalar: ::core::marker::PhantomData));
+        }
+        let driven = self.driven_by();
+        let visibility = &self.model.block.visibility;
+        quote! {
+            #[automatically_derived]
+            #[allow(non_snake_case, unreachable_code, clippy::all, clippy::pedantic)]
+            impl<#scalar: #krate::real::Real> #name<#scalar> {
+                /// The system with the given parameters, in the order of declaration; those with a default take it.
+                #[must_use]
+                #visibility fn new(#(#arguments),*) -> Self {
+                    Self { #(#values),* }
+                }
+
+                #driven
+            }
+        }
+    }
+
+    /// The method that binds a motion to each driven input.
+    fn driven_by(&self) -> Option<TokenStream> {
+        if self.model.inputs.is_empty() {
+            return None;
+        }
+        let (krate, scalar, visibility) = (&self.krate, self.scalar(), &self.model.block.visibility);
+        let names: Vec<&Ident> = self.model.inputs.iter().map(|input| input.name).collect();
+        let types: Vec<Ident> = (0..names.len()).map(|index| format_ident!("M{index}")).collect();
+        let bounds = self.model.inputs.iter().zip(&types).map(|(input, motion)| {
+            let dimension = input.count();
+            quote!(#motion: #krate::motion::Motion<#scalar, #dimension>)
+        });
+        let sufficient = self.sufficient();
+        Some(quote! {
+            /// The system driven by a motion for each of its driven inputs, in the order of declaration.
+            ///
+            /// Does not compile if a motion lacks a derivative that the equations need.
+            #visibility fn driven_by<#(#bounds),*>(self, #(#names: #types),*) -> #krate::system::Driven<Self, (#(#types,)*)> {
+                #sufficient
+                #krate::system::Driven { system: self, motions: (#(#names,)*) }
+            }
+        })
+    }
+
+    /// Assertions, while `driven_by` is compiled for its motions, that they have all derivatives
+    /// that the system needs.
+    ///
+    /// They stand in `driven_by` itself, so that rustc names the call; each has a constant of its
+    /// own at the declaration of the input, so that one that fails hides no other.
+    fn sufficient(&self) -> TokenStream {
+        let (krate, scalar, system) = (&self.krate, self.scalar(), &self.model.block.name);
+        let purposes = self.needed();
+        let assertions = self.model.inputs.iter().enumerate().filter_map(|(index, quantity)| {
+            let needs = |order: usize| purposes.iter().any(|inputs| inputs[index][order]);
+            let (name, motion, dimension) = (quantity.name, format_ident!("M{index}"), quantity.count());
+            let has = |constant: &str| {
+                let constant = format_ident!("{constant}");
+                quote!(<#motion as #krate::motion::Motion<#scalar, #dimension>>::HAS.contains(#krate::motion::Orders::#constant))
+            };
+            let lacks = |what: &str, calls: &str| {
+                format!(
+                    "`{system}` needs the {what} of `{name}`, which its motion lacks; give the `Function` its {calls}, or take another \
+                     motion"
+                )
+            };
+            let velocity = needs(1).then(|| (has("VELOCITY"), lacks("velocity", "`.velocity(…)`")));
+            let acceleration = needs(2).then(|| (has("ACCELERATION"), lacks("acceleration", "`.acceleration(…)`")));
+            let both = match (&velocity, &acceleration) {
+                (Some((velocity, _)), Some((acceleration, _))) => {
+                    let message = lacks("velocity and the acceleration", "`.velocity(…)` and `.acceleration(…)`");
+                    Some((quote!(#velocity || #acceleration), message))
+                }
+                (None, None) => return None,
+                _ => None,
+            };
+            let each = [both, velocity, acceleration].into_iter().flatten();
+            let place = Some(name.span());
+            let each = each.map(|(condition, message)| located(quote!(::core::assert!(#condition, #message);), place));
+            Some(located(quote!(const { #(#each)* };), place))
+        });
+        assertions.collect()
+    }
+
+    fn field_type(&self, quantity: &Quantity, scalar: &Ident) -> TokenStream {
+        let krate = &self.krate;
+        match quantity.length {
+            _ if quantity.body => quote!(#krate::body::Body<#scalar>),
+            None => quote!(#scalar),
+            Some(length) => quote!([#scalar; #length]),
+        }
+    }
+}
+
+/// The same tokens, as the macro's own and shown at `place`, or each where it stands.
+fn located(tokens: TokenStream, place: Option<Span>) -> TokenStream {
+    let own = |mut token: TokenTree| {
+        token.set_span(Span::call_site().located_at(place.unwrap_or(token.span())));
+        token
+    };
+    tokens.into_iter().map(own).collect()
+}

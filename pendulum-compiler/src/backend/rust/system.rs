@@ -1,0 +1,196 @@
+//! The accelerations, energies, momenta and forces: `System`, and the traits of those systems whose energy splits or whose forces are
+//! free of velocities.
+
+use super::Emitter;
+use crate::algebra::diff;
+use crate::algebra::expr::{Id, Symbol};
+use crate::mechanics::motion::Motion;
+use crate::model::Quantity;
+use crate::schedule::{self, Stage};
+use proc_macro2::TokenStream;
+use quote::quote;
+
+impl Emitter<'_, '_> {
+    pub(super) fn system(&mut self) -> TokenStream {
+        let (krate, scalar, other, count) = (self.krate.clone(), self.scalar(), self.other_scalar(), self.count());
+        let name = &self.model.block.name;
+        let dimensions = self.model.inputs.iter().map(Quantity::count);
+        let facts = self.facts();
+        let mapped = self.model.parameters.iter().map(|quantity| {
+            let field = quantity.name;
+            if quantity.body || quantity.length.is_some() {
+                quote!(#field: self.#field.map(&mut map))
+            } else {
+                quote!(#field: map(self.#field))
+            }
+        });
+        let empty = self.model.parameters.is_empty().then(|| quote!(__scalar: ::core::marker::PhantomData));
+        let vector = |emitter: &mut Self, pick: fn(&Motion) -> Vec<Id>| emitter.output(|motion| Some(pick(motion)));
+        let (prepare, accelerations, prepared) = self.accelerations();
+        let momenta = vector(self, |motion| motion.momenta.clone());
+        let forces = vector(self, |motion| motion.forces.clone());
+        let momentum_rates = vector(self, |motion| motion.momentum_rates.clone());
+        let energy = vector(self, |motion| vec![motion.energy]);
+        let power = vector(self, |motion| vec![motion.power]);
+        let (hamilton, longest_step) = (self.hamilton(), self.longest_step());
+        let velocities = self.output(|motion| motion.velocities.clone());
+        let velocities = velocities.unwrap_or_else(|| quote!(#krate::__private::newton::<#count, Self>(self, t, q, p, inputs)));
+        let matrix = self.mass_matrix();
+        let conserved = self.output(|motion| Some(motion.conserved.iter().map(|conserved| conserved.value).collect()));
+        let length = self.motion.as_ref().map_or(0, |motion| motion.conserved.len());
+        let conserved = quote! {
+            let all: [#scalar; #length] = #conserved;
+            for k in 0..#length {
+                if k < values.len() {
+                    values[k] = all[k];
+                }
+            }
+        };
+        let state = quote!(q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs);
+        let system = quote!(#krate::system::System<#count>);
+        quote! {
+            #[automatically_derived]
+            #[allow(non_snake_case, unused_variables, unused_mut, unused_parens, unreachable_code, clippy::all, clippy::pedantic)]
+            impl<#scalar: #krate::real::Real> #krate::system::System<#count> for #name<#scalar> {
+                type Scalar = #scalar;
+                type Inputs = (#(#krate::motion::Sample<#scalar, #dimensions>,)*);
+                type With<#other: #krate::real::Real> = #name<#other>;
+                type Prepared = [#scalar; #prepared];
+
+                const FACTS: #krate::system::Facts = #facts;
+
+                fn map<#other: #krate::real::Real>(&self, mut map: impl ::core::ops::FnMut(#scalar) -> #other) -> #name<#other> {
+                    Self::With::<#other> { #(#mapped,)* #empty }
+                }
+
+                #[inline]
+                fn prepare(&self) -> [#scalar; #prepared] { #prepare }
+
+                #[inline]
+                fn accelerations_prepared(&self, prepared: &[#scalar; #prepared], t: #scalar, #state) -> [#scalar; #count] {
+                    #accelerations
+                }
+
+                #[inline]
+                fn accelerations(&self, t: #scalar, #state) -> [#scalar; #count] {
+                    <Self as #system>::accelerations_prepared(self, &<Self as #system>::prepare(self), t, q, v, inputs)
+                }
+
+                #[inline]
+                fn energy(&self, t: #scalar, #state) -> #scalar { let [value] = #energy; value }
+
+                #[inline]
+                fn power(&self, t: #scalar, #state) -> #scalar { let [value] = #power; value }
+
+                #[inline]
+                fn momenta(&self, t: #scalar, #state) -> [#scalar; #count] { #momenta }
+
+                #[inline]
+                fn velocities(&self, t: #scalar, q: &[#scalar; #count], p: &[#scalar; #count], inputs: &Self::Inputs) -> [#scalar; #count] {
+                    #velocities
+                }
+
+                #[inline]
+                fn mass_matrix(&self, t: #scalar, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #matrix }
+
+                #[inline]
+                fn forces(&self, t: #scalar, #state) -> [#scalar; #count] { #forces }
+
+                fn conserved(&self, t: #scalar, #state, values: &mut [#scalar]) { #conserved }
+
+                #[inline]
+                fn momentum_rates(&self, t: #scalar, #state) -> [#scalar; #count] { #momentum_rates }
+
+                #hamilton
+
+                #longest_step
+            }
+        }
+    }
+
+    pub(super) fn split_energy(&mut self) -> Option<TokenStream> {
+        if self.motion.as_ref().is_some_and(|motion| motion.potential.is_none()) {
+            return None;
+        }
+        let kinetic = self.output(|motion| motion.kinetic.map(|id| vec![id]));
+        let potential = self.output(|motion| motion.potential.map(|id| vec![id]));
+        let (krate, scalar, count) = (self.krate.clone(), self.scalar(), self.count());
+        let name = &self.model.block.name;
+        let state = quote!(q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs);
+        Some(quote! {
+            #[automatically_derived]
+            #[allow(unused_variables, unused_parens, unreachable_code, clippy::all, clippy::pedantic)]
+            impl<#scalar: #krate::real::Real> #krate::system::SplitEnergy<#count> for #name<#scalar> {
+                #[inline]
+                fn kinetic_energy(&self, t: #scalar, #state) -> #scalar { let [value] = #kinetic; value }
+
+                #[inline]
+                fn potential_energy(&self, t: #scalar, #state) -> #scalar { let [value] = #potential; value }
+            }
+        })
+    }
+
+    pub(super) fn marker(&self) -> Option<TokenStream> {
+        if self.motion.as_ref().is_some_and(|motion| !motion.velocity_free) {
+            return None;
+        }
+        let (krate, scalar, count, name) = (&self.krate, self.scalar(), self.count(), &self.model.block.name);
+        Some(quote! {
+            #[automatically_derived]
+            impl<#scalar: #krate::real::Real> #krate::system::VelocityFree<#count> for #name<#scalar> {}
+        })
+    }
+
+    fn mass_matrix(&mut self) -> TokenStream {
+        let (krate, scalar, count) = (self.krate.clone(), self.scalar(), self.count());
+        let flat = self.output(|motion| Some(motion.mass_matrix.concat()));
+        if self.motion.is_none() {
+            return quote!(#flat);
+        }
+        let size = count * count;
+        quote! {
+            let entries: [#scalar; #size] = #flat;
+            #krate::__private::SMatrix::<#scalar, #count, #count>::from_row_slice(&entries)
+        }
+    }
+
+    /// The accelerations in two parts: what parameters alone decide, and the rest; with the number of values between them.
+    fn accelerations(&self) -> (TokenStream, TokenStream, usize) {
+        let Some(program) = &self.accelerations else {
+            return (quote!(::core::unimplemented!()), quote!(::core::unimplemented!()), 0);
+        };
+        let prepared = program.kept(Stage::Parameters);
+        let prepare = self.body_after(program, &prepared, &[]);
+        (prepare, self.body_after(program, &program.results, &[("prepared", &prepared)]), prepared.len())
+    }
+
+    /// Velocities and momentum rates from momenta, with what they share computed once; `None` where velocities are found by iteration.
+    fn hamilton(&mut self) -> Option<TokenStream> {
+        let (mut roots, rates) = {
+            let motion = self.motion.as_ref()?;
+            (motion.velocities.clone()?, motion.momentum_rates.clone())
+        };
+        let velocities: Vec<Id> = roots.iter().map(|&velocity| self.graph.closed(velocity)).collect();
+        for rate in rates {
+            let value = |symbol| match symbol {
+                Symbol::Velocity(index) => velocities.get(index).copied(),
+                _ => None,
+            };
+            roots.push(diff::substitute(&mut self.graph, rate, value));
+        }
+        let program = schedule::program(&self.graph, &roots);
+        let both = self.body(&program);
+        let (scalar, count) = (self.scalar(), self.count());
+        let (all, parts) = (2 * count, 0..count);
+        let (first, second) = (parts.clone(), parts.map(|index| index + count));
+        Some(quote! {
+            #[inline]
+            fn hamilton(
+                &self, t: #scalar, q: &[#scalar; #count], p: &[#scalar; #count], inputs: &Self::Inputs,
+            ) -> ([#scalar; #count], [#scalar; #count]) {
+                let both: [#scalar; #all] = #both;
+                ([#(both[#first]),*], [#(both[#second]),*])
+            }
+        })
+    }
+}

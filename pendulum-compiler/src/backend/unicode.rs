@@ -1,0 +1,408 @@
+//! Equations in Unicode, as one would write them: θ̈ = −g·sin θ/L.
+//!
+//! Those of a block that is written in ASCII are in ASCII, as the language reads them:
+//! `theta_ddot = -g*sin(theta)/L`.
+
+use crate::algebra::expr::{Function, Graph, Id, Moment, Node, Symbol};
+use crate::algebra::number::{Literal, Rational, superscript};
+use crate::backend::cancel;
+use crate::mechanics::motion::Motion;
+use crate::mechanics::symmetry::Conserved;
+use crate::model::{Model, Quantity};
+use crate::syntax::name;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The names of all symbols of a block, as the user writes them.
+pub(crate) struct Names {
+    pub(crate) parameters: Vec<String>,
+    pub(crate) coordinates: Vec<String>,
+    inputs: Vec<(String, bool)>,
+    /// The signs and spellings of the language in ASCII.
+    ascii: bool,
+}
+
+impl Names {
+    /// `families` are the parameters of two or three components that are no vectors.
+    pub(crate) fn new(model: &Model, families: &BTreeSet<usize>) -> Self {
+        let parameters = model.parameters.iter().enumerate();
+        Self {
+            parameters: parameters.flat_map(|(index, quantity)| quantity_names(quantity, families.contains(&index))).collect(),
+            coordinates: model.coordinates.iter().flat_map(|quantity| quantity_names(quantity, true)).collect(),
+            inputs: model.inputs.iter().map(|quantity| (quantity.name.to_string(), quantity.length.is_some())).collect(),
+            ascii: model.block.ascii,
+        }
+    }
+
+    /// The sign of a negative number or term.
+    fn minus(&self) -> &'static str {
+        if self.ascii { "-" } else { "−" }
+    }
+
+    /// What stands between factors.
+    fn times(&self) -> &'static str {
+        if self.ascii { "*" } else { "·" }
+    }
+
+    /// A name with dots.
+    fn dotted(&self, name: &str, dots: u8) -> String {
+        dotted(name, dots, self.ascii)
+    }
+
+    /// An exponent, with what raises it.
+    fn exponent(&self, exponent: Rational) -> String {
+        match exponent.integer() {
+            Some(count) if !self.ascii => superscript(count),
+            Some(count) if !exponent.is_negative() => format!("^{count}"),
+            _ => format!("^({exponent})"),
+        }
+    }
+
+    /// A symbol's name with its dots.
+    pub(crate) fn symbol(&self, symbol: Symbol) -> String {
+        match symbol {
+            Symbol::Parameter(index) => self.parameters[index].clone(),
+            Symbol::Time => "t".into(),
+            Symbol::Coordinate(index) => self.coordinates[index].clone(),
+            Symbol::Velocity(index) => self.dotted(&self.coordinates[index], 1),
+            Symbol::Momentum(index) => format!("p_{}", self.coordinates[index]),
+            Symbol::Auxiliary(index) => format!("u[{index}]"),
+            Symbol::Point(_, component) => ["p.x", "p.y"][component.min(1)].into(),
+            Symbol::Moment(body, moment) => {
+                let body = self.parameters[body].trim_end_matches(".mass");
+                match moment {
+                    Moment::Inertia => format!("{body}.inertia"),
+                    Moment::Difference => format!("({body}.xx {} {body}.yy)", self.minus()),
+                    Moment::Product => format!("{body}.xy"),
+                }
+            }
+            Symbol::Input { input, component, order } => {
+                let (name, vector) = &self.inputs[input];
+                let name = self.dotted(name, order);
+                if *vector { format!("{name}.{}", ["x", "y", "z"][component.min(2)]) } else { name }
+            }
+        }
+    }
+
+    /// The name of a driven input, and whether it is a vector.
+    pub(crate) fn input(&self, index: usize) -> (&str, bool) {
+        let (name, vector) = &self.inputs[index];
+        (name, *vector)
+    }
+
+    /// A coordinate with two dots.
+    pub(crate) fn acceleration(&self, index: usize) -> String {
+        self.dotted(&self.coordinates[index], 2)
+    }
+}
+
+/// The scalars of a quantity: `c.x`, `m[3]` or the name itself.
+fn quantity_names(quantity: &Quantity, family: bool) -> Vec<String> {
+    let name = quantity.name.to_string();
+    if quantity.body {
+        let parts = ["mass", "center.x", "center.y", "central.xx", "central.xy", "central.yy"];
+        return parts.map(|part| format!("{name}.{part}")).to_vec();
+    }
+    match quantity.length {
+        None => vec![name],
+        Some(length @ (2 | 3)) if !family => (0..length).map(|k| format!("{name}.{}", ["x", "y", "z"][k])).collect(),
+        Some(length) => (0..length).map(|k| format!("{name}[{k}]")).collect(),
+    }
+}
+
+/// A name with dots over its first letter, or with the ASCII suffix if the name is a word in ASCII
+/// or the block is in ASCII.
+fn dotted(name: &str, dots: u8, ascii: bool) -> String {
+    if dots == 0 {
+        return name.into();
+    }
+    let (stem, index) = name.split_at(name.find('[').unwrap_or(name.len()));
+    if ascii || stem.is_ascii() && 1 < stem.len() {
+        return format!("{stem}{}{index}", if dots == 1 { "_dot" } else { "_ddot" });
+    }
+    let mark = if dots == 1 { '\u{307}' } else { '\u{308}' };
+    let mut letters = stem.chars();
+    let first: String = letters.next().into_iter().collect();
+    let composed = name::compose(&first, dots).map_or_else(|| format!("{first}{mark}"), String::from);
+    format!("{composed}{}{index}", letters.as_str())
+}
+
+/// How tightly an expression must hold together.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Level {
+    Sum,
+    Product,
+    Power,
+}
+
+/// An expression as text.
+pub(crate) fn expression(graph: &Graph, names: &Names, id: Id) -> String {
+    write(graph, names, id, Level::Sum)
+}
+
+/// The right-hand sides in which terms cancel, each in a graph of its own; `None` for all others.
+pub(crate) type Sides = Vec<Option<(Graph, Id)>>;
+
+/// The right-hand sides of the equations, without what cancels.
+pub(crate) fn sides(graph: &Graph, names: &Names, motion: &Motion) -> Sides {
+    let short = |row: usize| {
+        if too_long(graph, motion, row) {
+            return None;
+        }
+        cancel::shorter(graph, right(motion, row), |graph, id| expression(graph, names, id).chars().count())
+    };
+    (0..motion.accelerations.len()).map(short).collect()
+}
+
+/// The right-hand side of the equation in a row: the acceleration where its coordinate stands
+/// alone, the force otherwise.
+fn right(motion: &Motion, row: usize) -> Id {
+    if alone(motion, row) { motion.accelerations[row] } else { motion.forces[row] }
+}
+
+/// Whether a row of the mass matrix has one entry.
+fn alone(motion: &Motion, row: usize) -> bool {
+    motion.mass_matrix[row].iter().filter(|&&entry| entry != Graph::ZERO).count() == 1
+}
+
+/// The right-hand side of the equation in a row, with the graph in which it is written.
+pub(crate) fn side<'g>(graph: &'g Graph, motion: &Motion, sides: &'g Sides, row: usize) -> (&'g Graph, Id) {
+    match &sides[row] {
+        Some((own, id)) => (own, *id),
+        None => (graph, right(motion, row)),
+    }
+}
+
+fn write(graph: &Graph, names: &Names, id: Id, level: Level) -> String {
+    let (text, own) = match graph.node(id) {
+        Node::Number(value) => return number(names, *value, level),
+        Node::Opaque(Literal::Decimal(digits)) => return digits.clone(),
+        Node::Opaque(Literal::Exact(value)) => return number(names, *value, level),
+        Node::Pi => return if names.ascii { "pi" } else { "π" }.into(),
+        Node::Symbol(symbol) => return names.symbol(*symbol),
+        Node::Sum(terms) => (sum(graph, names, terms), Level::Sum),
+        Node::Product(coefficient, factors) => product(graph, names, *coefficient, factors),
+        Node::Call(Function::Abs, argument) => return format!("|{}|", write(graph, names, *argument, Level::Sum)),
+        // The language has no word for it.
+        Node::Call(Function::Step, argument) if names.ascii => {
+            return format!("((1 + sign({}))/2)", write(graph, names, *argument, Level::Sum));
+        }
+        Node::Call(function, argument) => {
+            let text = format!("{}{}", function_name(*function), operand(graph, names, *argument));
+            if names.ascii {
+                return text;
+            }
+            (text, Level::Product)
+        }
+        Node::Atan2(y, x) => {
+            return format!("atan2({}, {})", write(graph, names, *y, Level::Sum), write(graph, names, *x, Level::Sum));
+        }
+        Node::Max(a, b) => {
+            return format!("max({}, {})", write(graph, names, *a, Level::Sum), write(graph, names, *b, Level::Sum));
+        }
+        Node::Atom(inner) => return write(graph, names, *inner, level),
+    };
+    let call = matches!(graph.node(id), Node::Call(..));
+    if own < level && !(call && level == Level::Product) { format!("({text})") } else { text }
+}
+
+/// What a function is applied to, with what stands before it.
+fn operand(graph: &Graph, names: &Names, argument: Id) -> String {
+    if names.ascii {
+        return format!("({})", write(graph, names, argument, Level::Sum));
+    }
+    let inner = write(graph, names, argument, Level::Power);
+    if inner.starts_with('(') { inner } else { format!(" {inner}") }
+}
+
+fn sum(graph: &Graph, names: &Names, terms: &[(Id, Rational)]) -> String {
+    let mut ordered: Vec<&(Id, Rational)> = terms.iter().collect();
+    ordered.sort_by_key(|(_, coefficient)| coefficient.is_negative());
+    let mut text = String::new();
+    for (index, &&(term, coefficient)) in ordered.iter().enumerate() {
+        text.push_str(&sign(names, index == 0, coefficient.is_negative()));
+        let factors = if term == Graph::ONE { Vec::new() } else { graph.factors(term) };
+        text.push_str(&product(graph, names, coefficient.abs(), &factors).0);
+    }
+    text
+}
+
+/// The sign before a term.
+fn sign(names: &Names, first: bool, negative: bool) -> String {
+    match (first, negative) {
+        (true, true) => names.minus().into(),
+        (true, false) => String::new(),
+        (false, true) => format!(" {} ", names.minus()),
+        (false, false) => " + ".into(),
+    }
+}
+
+fn product(graph: &Graph, names: &Names, coefficient: Rational, factors: &[(Id, Rational)]) -> (String, Level) {
+    let sign = if coefficient.is_negative() { names.minus() } else { "" };
+    let coefficient = coefficient.abs();
+    let mut ordered: Vec<&(Id, Rational)> = factors.iter().collect();
+    ordered.sort_by_key(|(base, _)| rank(graph, *base));
+    let one = |side: &[String]| side.len() == 1;
+    let mut above = Vec::new();
+    let mut below = Vec::new();
+    if coefficient.numerator() != 1 {
+        above.push(coefficient.numerator().to_string());
+    }
+    if coefficient.denominator() != 1 {
+        below.push(coefficient.denominator().to_string());
+    }
+    for &(base, exponent) in ordered {
+        let side = if exponent.is_negative() { &mut below } else { &mut above };
+        side.push(power(graph, names, base, exponent.abs()));
+    }
+    // A function's name would swallow what follows it: functions stand last, in brackets if several do.
+    let top = if above.is_empty() { "1".to_owned() } else { above.join(names.times()) };
+    let level = if above.len() + below.len() < 2 && sign.is_empty() { Level::Power } else { Level::Product };
+    if below.is_empty() {
+        let level = if one(&above) && sign.is_empty() && !above[0].contains(' ') { level } else { Level::Product };
+        return (format!("{sign}{top}"), if sign.is_empty() { level } else { Level::Sum });
+    }
+    let bottom = if one(&below) { below[0].clone() } else { format!("({})", below.join(names.times())) };
+    (format!("{sign}{top}/{bottom}"), if sign.is_empty() { Level::Product } else { Level::Sum })
+}
+
+/// Whether a space stands outside all brackets: a function's argument would swallow what follows.
+fn open(text: &str) -> bool {
+    let mut depth = 0;
+    text.chars().any(|letter| {
+        depth += i32::from(letter == '(') - i32::from(letter == ')');
+        depth == 0 && letter == ' '
+    })
+}
+
+/// Numbers, parameters, inputs, velocities, functions, sums: the usual order of a product.
+fn rank(graph: &Graph, base: Id) -> u8 {
+    match graph.node(base) {
+        Node::Number(_) | Node::Opaque(_) | Node::Pi => 0,
+        Node::Symbol(Symbol::Parameter(_)) => 1,
+        Node::Symbol(_) => 2,
+        Node::Sum(_) | Node::Atom(_) | Node::Product(..) => 3,
+        Node::Atan2(..) | Node::Max(..) => 4,
+        Node::Call(..) => 5,
+    }
+}
+
+fn power(graph: &Graph, names: &Names, base: Id, exponent: Rational) -> String {
+    if exponent == Rational::ONE {
+        return write(graph, names, base, Level::Product);
+    }
+    if exponent == Rational::HALF {
+        let root = if names.ascii { "sqrt" } else { "√" };
+        return format!("{root}({})", write(graph, names, base, Level::Sum));
+    }
+    let raised = names.exponent(exponent);
+    if let Node::Call(function, argument) = graph.node(base)
+        && *function != Function::Abs
+        && !names.ascii
+    {
+        return format!("{}{raised}{}", function_name(*function), operand(graph, names, *argument));
+    }
+    let inner = write(graph, names, base, Level::Power);
+    format!("{inner}{raised}")
+}
+
+fn number(names: &Names, value: Rational, level: Level) -> String {
+    let text = value.to_string().replace('-', names.minus());
+    if Level::Sum < level && (value.is_negative() || !value.is_integer()) { format!("({text})") } else { text }
+}
+
+fn function_name(function: Function) -> &'static str {
+    match function {
+        Function::Sin => "sin",
+        Function::Cos => "cos",
+        Function::Tan => "tan",
+        Function::Asin => "asin",
+        Function::Acos => "acos",
+        Function::Atan => "atan",
+        Function::Sinh => "sinh",
+        Function::Cosh => "cosh",
+        Function::Tanh => "tanh",
+        Function::Exp => "exp",
+        Function::Ln => "ln",
+        Function::Abs => "abs",
+        Function::Sign => "sign",
+        Function::Step => "step",
+    }
+}
+
+/// The name of a conserved quantity in terms of the momenta: `p_φ`, `x·p_y − y·p_x`.
+pub(crate) fn conserved(names: &Names, conserved: &Conserved) -> String {
+    let mut terms = conserved.terms.clone();
+    // Begin with a plus.
+    if let Some(first) = terms.iter().position(|(factor, ..)| !factor.is_negative()) {
+        let first = terms.remove(first);
+        terms.insert(0, first);
+    }
+    let mut text = String::new();
+    for (index, &(factor, coordinate, momentum)) in terms.iter().enumerate() {
+        text.push_str(&sign(names, index == 0, factor.is_negative()));
+        let mut parts = Vec::new();
+        if factor.abs() != Rational::ONE {
+            parts.push(number(names, factor.abs(), Level::Product));
+        }
+        parts.extend(coordinate.map(|index| names.coordinates[index].clone()));
+        parts.push(names.symbol(Symbol::Momentum(momentum)));
+        text.push_str(&parts.join(names.times()));
+    }
+    text
+}
+
+/// A line of more symbols is not written out: what is shared stands once in the graph, but wherever it is used in a text.
+const LONGEST: usize = 1000;
+
+/// Whether the equation in a row, solved where its coordinate stands alone, is too long to be written out.
+pub(crate) fn too_long(graph: &Graph, motion: &Motion, row: usize) -> bool {
+    let mut roots = vec![right(motion, row)];
+    if !alone(motion, row) {
+        roots.extend(motion.mass_matrix[row].iter().filter(|&&entry| entry != Graph::ZERO));
+    }
+    let mut lengths: BTreeMap<Id, usize> = BTreeMap::new();
+    for id in graph.reachable(&roots) {
+        let length = graph.children(id).iter().fold(1, |sum: usize, child| sum.saturating_add(lengths[child]));
+        lengths.insert(id, length);
+    }
+    LONGEST < roots.iter().fold(0, |sum: usize, root| sum.saturating_add(lengths[root]))
+}
+
+/// The equations of motion, one line a coordinate: solved where a coordinate stands alone, a row of M q̈ = f where several are coupled.
+pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion, sides: &Sides) -> Vec<String> {
+    let mut lines = Vec::new();
+    for row in 0..motion.accelerations.len() {
+        if too_long(graph, motion, row) {
+            let dots = if names.ascii { "..." } else { "…" };
+            lines.push(format!("{} = {dots} (too long to write out)", names.acceleration(row)));
+            continue;
+        }
+        let (own, id) = side(graph, motion, sides, row);
+        let side = expression(own, names, id);
+        if alone(motion, row) {
+            lines.push(format!("{} = {side}", names.acceleration(row)));
+            continue;
+        }
+        let mut left = String::new();
+        for (column, &entry) in motion.mass_matrix[row].iter().enumerate() {
+            if entry == Graph::ZERO {
+                continue;
+            }
+            let symbol = names.acceleration(column);
+            let (coefficient, _) = graph.split(entry);
+            let negative = coefficient.is_negative();
+            let magnitude = if negative { graph.negative(entry) } else { entry };
+            let part = if let Node::Number(Rational::ONE) = graph.node(magnitude) {
+                symbol
+            } else {
+                let text = write(graph, names, magnitude, Level::Product);
+                let times = names.times();
+                if open(&text) { format!("({text}){times}{symbol}") } else { format!("{text}{times}{symbol}") }
+            };
+            left.push_str(&sign(names, left.is_empty(), negative));
+            left.push_str(&part);
+        }
+        lines.push(format!("{left} = {side}"));
+    }
+    lines
+}

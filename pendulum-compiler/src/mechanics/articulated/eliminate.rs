@@ -1,0 +1,184 @@
+//! The elimination of positions and coordinates, from the leaves to the root.
+
+use super::Tree;
+use super::joint::Joint;
+use super::quadratic::Quadratic;
+use crate::algebra::expr::{Dependencies, Graph, Id};
+use crate::algebra::number::Rational;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// How an unknown comes from those that are found before it.
+#[derive(Debug)]
+struct Step {
+    unknown: usize,
+    constant: Id,
+    terms: Vec<(usize, Id)>,
+}
+
+impl Tree<'_> {
+    /// The unknowns of the coordinates, from masses, right sides and what each joint adds by itself.
+    pub(super) fn solve(
+        &mut self,
+        masses: &BTreeMap<(usize, usize), Id>,
+        right: BTreeMap<usize, Id>,
+        drift: &[Vec<Id>],
+    ) -> Option<Vec<Id>> {
+        let mut system = Quadratic { entries: masses.clone(), right };
+        let mut steps: Vec<Step> = Vec::new();
+        let mut open: Vec<usize> = (0..self.count).rev().collect();
+        let joints = std::mem::take(&mut self.joints);
+        for index in (0..joints.len()).rev() {
+            self.fold(&mut system, &joints[index], &drift[index], &mut steps);
+            let (ready, rest) = open.iter().partition(|j| !joints[..index].iter().any(|joint| joint.coordinates.contains(j)));
+            open = rest;
+            let ready: Vec<usize> = ready;
+            // What no position needs waits until the others are done.
+            let (now, later): (Vec<usize>, Vec<usize>) =
+                ready.into_iter().partition(|j| index == 0 || joints.iter().any(|joint| joint.coordinates.contains(j)));
+            open.extend(later);
+            for j in now {
+                self.eliminate(&mut system, j, &mut steps)?;
+            }
+        }
+        self.joints = joints;
+        let mut found: BTreeMap<usize, Id> = BTreeMap::new();
+        for step in steps.iter().rev() {
+            let mut terms = vec![(step.constant, Rational::ONE)];
+            for &(other, factor) in &step.terms {
+                terms.push((self.graph.mul(factor, found[&other]), Rational::ONE));
+            }
+            let value = self.graph.sum(&terms);
+            found.insert(step.unknown, self.graph.atom(value));
+        }
+        Some((0..self.count).map(|j| self.graph.div(found[&j], self.units[j])).collect())
+    }
+
+    /// Puts u̇ = u̇ₚ + J q̈ + γ in for the scalars of a joint.
+    fn fold(&mut self, system: &mut Quadratic, joint: &Joint, drift: &[Id], steps: &mut Vec<Step>) {
+        let count = self.count;
+        let places: Vec<usize> = joint.scalars.iter().map(|&scalar| count + scalar).collect();
+        // What each scalar is made of: unknowns with their factors.
+        let parts: Vec<Vec<(usize, Id)>> = (0..places.len())
+            .map(|row| {
+                let parent = joint.parents[row].map(|parent| (count + parent, Graph::ONE));
+                let own = joint.coordinates.iter().zip(&joint.jacobian[row]).map(|(&j, &factor)| (j, factor));
+                parent.into_iter().chain(own).filter(|&(_, factor)| factor != Graph::ZERO).collect()
+            })
+            .collect();
+        for (row, &place) in places.iter().enumerate() {
+            steps.push(Step { unknown: place, constant: drift[row], terms: parts[row].clone() });
+        }
+        // Right sides of what stays, and of the scalars themselves.
+        let touched: BTreeSet<usize> =
+            system.entries.keys().filter(|(a, b)| places.contains(a) || places.contains(b)).flat_map(|&(a, b)| [a, b]).collect();
+        for &other in &touched {
+            let mut terms = vec![(system.right.get(&other).copied().unwrap_or_default(), Rational::ONE)];
+            for (row, &place) in places.iter().enumerate() {
+                let entry = system.entry(place, other);
+                terms.push((self.graph.mul(entry, drift[row]), Rational::MINUS_ONE));
+            }
+            let value = self.graph.sum(&terms);
+            system.right.insert(other, self.graph.atom(value));
+        }
+        let mut added: BTreeMap<usize, Vec<(Id, Rational)>> = BTreeMap::new();
+        for (row, &place) in places.iter().enumerate() {
+            let own = system.right.remove(&place).unwrap_or_default();
+            for &(other, factor) in &parts[row] {
+                added.entry(other).or_default().push((self.graph.mul(factor, own), Rational::ONE));
+            }
+        }
+        for (other, mut terms) in added {
+            terms.push((system.right.get(&other).copied().unwrap_or_default(), Rational::ONE));
+            let value = self.graph.sum(&terms);
+            system.right.insert(other, self.graph.atom(value));
+        }
+        self.congruence(system, &places, &parts, &touched);
+    }
+
+    /// H ← KᵀHK for the scalars at `places`, each of which is made of its `parts`.
+    fn congruence(&mut self, system: &mut Quadratic, places: &[usize], parts: &[Vec<(usize, Id)>], touched: &BTreeSet<usize>) {
+        // H K: one row for each scalar and each other unknown that is coupled to it, one column for each part.
+        let others: Vec<usize> = touched.iter().copied().filter(|other| !places.contains(other)).collect();
+        let targets: BTreeSet<usize> = parts.iter().flatten().map(|&(target, _)| target).collect();
+        let mut half: BTreeMap<(usize, usize), Id> = BTreeMap::new();
+        for &row in places.iter().chain(&others) {
+            for &target in &targets {
+                let mut terms = Vec::new();
+                for (index, &place) in places.iter().enumerate() {
+                    let entry = system.entry(row, place);
+                    for &(_, factor) in parts[index].iter().filter(|&&(part, _)| part == target) {
+                        terms.push((self.graph.mul(entry, factor), Rational::ONE));
+                    }
+                }
+                let value = self.graph.sum(&terms);
+                half.insert((row, target), self.graph.atom(value));
+            }
+        }
+        let mut added: BTreeMap<(usize, usize), Vec<(Id, Rational)>> = BTreeMap::new();
+        let mut add = |a: usize, b: usize, value: Id| added.entry((a.min(b), a.max(b))).or_default().push((value, Rational::ONE));
+        for &other in &others {
+            for &target in &targets {
+                let value = half[&(other, target)];
+                add(other, target, value);
+                // Both triangles of a product with itself.
+                if other == target {
+                    add(other, target, value);
+                }
+            }
+        }
+        for &column in &targets {
+            for &row in targets.range(..=column) {
+                let mut terms = Vec::new();
+                for (index, &place) in places.iter().enumerate() {
+                    for &(_, factor) in parts[index].iter().filter(|&&(part, _)| part == row) {
+                        terms.push((self.graph.mul(factor, half[&(place, column)]), Rational::ONE));
+                    }
+                }
+                let value = self.graph.sum(&terms);
+                add(row, column, value);
+            }
+        }
+        system.entries.retain(|(a, b), _| !places.contains(a) && !places.contains(b));
+        for (key, mut terms) in added {
+            terms.push((system.entries.get(&key).copied().unwrap_or_default(), Rational::ONE));
+            let value = self.graph.sum(&terms);
+            system.set(key, self.graph.atom(value));
+        }
+    }
+
+    /// Solves the row of `unknown` for it and puts it into the others.
+    fn eliminate(&mut self, system: &mut Quadratic, unknown: usize, steps: &mut Vec<Step>) -> Option<()> {
+        let pivot = system.entry(unknown, unknown);
+        if pivot == Graph::ZERO {
+            return None;
+        }
+        let inverse = self.graph.power(pivot, Rational::MINUS_ONE);
+        // A moving reciprocal is taken once; one of parameters stays open and cancels.
+        let inverse = if self.graph.dependencies(pivot).any(Dependencies::STATE) { self.graph.closed(inverse) } else { inverse };
+        let row: Vec<(usize, Id)> = system.row(unknown);
+        let right = system.right.remove(&unknown).unwrap_or_default();
+        let times = |graph: &mut Graph, value: Id| {
+            let value = graph.mul(value, inverse);
+            if graph.dependencies(value).any(Dependencies::STATE) { graph.closed(value) } else { value }
+        };
+        let constant = times(self.graph, right);
+        let mut terms = Vec::new();
+        for &(other, entry) in &row {
+            let factor = times(self.graph, entry);
+            terms.push((other, self.graph.negative(factor)));
+            for &(next, own) in row.iter().filter(|&&(next, _)| next <= other) {
+                let old = system.entry(next, other);
+                let product = self.graph.mul(own, factor);
+                let value = self.graph.sub(old, product);
+                system.set((next, other), self.graph.atom(value));
+            }
+            let old = system.right.get(&other).copied().unwrap_or_default();
+            let product = self.graph.mul(entry, constant);
+            let value = self.graph.sub(old, product);
+            system.right.insert(other, self.graph.atom(value));
+        }
+        system.entries.retain(|(a, b), _| *a != unknown && *b != unknown);
+        steps.push(Step { unknown, constant, terms });
+        Some(())
+    }
+}

@@ -1,0 +1,153 @@
+//! The equations of motion in sparse form: the velocities of `let` positions as further unknowns, eliminated from the leaves to the root.
+//!
+//! A chain written with positions yₖ has a full mass matrix, but one that comes from few numbers: yₖ is yₖ₋₁ and a link. With the
+//! velocities uₛ of such positions z beside the coordinates' the Lagrangian Λ(q, q̇, u) has a sparse Hessian H, and the motion is the
+//! stationary point of ½wᵀHw − Gᵀw over the accelerations w = (q̈, u̇) with u̇ᵢ = u̇ₚ + J q̈ + γ for each position zᵢ and its parent zₚ (Gauss
+//! 1829). Putting the leaves into their parents and eliminating each joint behind them is the articulated-body recursion (Featherstone
+//! 1983): the cost grows with the number of joints, and trees branch without fill-in.
+
+mod eliminate;
+mod joint;
+mod propagate;
+mod quadratic;
+
+use crate::algebra::diff::{derivative, substitute};
+use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
+use crate::algebra::number::Rational;
+use crate::algebra::velocity_polynomial;
+use crate::mechanics::lower::{Extended, total_derivative};
+use joint::Joint;
+use std::collections::BTreeMap;
+
+/// What the sparse form gives; the same functions as those of the dense form.
+#[derive(Debug)]
+pub(crate) struct Sparse {
+    pub(crate) accelerations: Vec<Id>,
+    pub(crate) velocities: Vec<Id>,
+    pub(crate) momenta: Vec<Id>,
+    pub(crate) momentum_rates: Vec<Id>,
+    pub(crate) energy: Id,
+    pub(crate) kinetic: Option<Id>,
+    pub(crate) unsolved: Unsolved,
+}
+
+/// The equations of motion before they are solved.
+#[derive(Debug, Default)]
+pub(crate) struct Unsolved {
+    /// The momenta of the coordinates and of the positions, in q and q̇.
+    pub(crate) carried: Vec<Id>,
+    /// What vanishes along the motion, one for each coordinate; the symbol `Auxiliary(k)` is the rate of `carried[k]`.
+    pub(crate) equations: Vec<Id>,
+}
+
+/// The sparse form of a Lagrangian whose positions are written with `let`; `None` if there are none, or if it has none.
+pub(crate) fn sparse(graph: &mut Graph, extended: &Extended, count: usize) -> Option<Sparse> {
+    let lagrangian = velocity_polynomial::by_velocities(graph, extended.lagrangian)?;
+    let used = graph.symbols(&[lagrangian, extended.dissipation]);
+    if !used.iter().any(|symbol| matches!(symbol, Symbol::Auxiliary(_))) {
+        return None;
+    }
+    let mut tree = Tree { graph, count, joints: Vec::new(), units: vec![Graph::ONE; count] };
+    tree.build_tree(extended, &used);
+    tree.forms(extended, lagrangian)
+}
+
+struct Tree<'g> {
+    graph: &'g mut Graph,
+    count: usize,
+    /// Parents before children.
+    joints: Vec<Joint>,
+    /// The parameters that each coordinate always stands with, such as the length of its link.
+    units: Vec<Id>,
+}
+
+impl Tree<'_> {
+    fn forms(&mut self, extended: &Extended, lagrangian: Id) -> Option<Sparse> {
+        let count = self.count;
+        let scalars: Vec<usize> = self.joints.iter().flat_map(|joint| joint.scalars.clone()).collect();
+        // The place of a scalar among the unknowns comes after those of the coordinates.
+        let symbols: BTreeMap<usize, Symbol> = (0..count)
+            .map(|j| (j, Symbol::Velocity(j)))
+            .chain(scalars.iter().map(|&scalar| (count + scalar, Symbol::Auxiliary(scalar))))
+            .collect();
+        let momenta: BTreeMap<usize, Id> =
+            symbols.iter().map(|(&place, &symbol)| (place, derivative(self.graph, lagrangian, symbol))).collect();
+        let mut masses = BTreeMap::new();
+        let moving = Dependencies::VELOCITY.or(Dependencies::AUXILIARY);
+        for (&row, &momentum) in &momenta {
+            for (&column, &symbol) in symbols.range(..=row) {
+                let entry = derivative(self.graph, momentum, symbol);
+                if self.graph.dependencies(entry).any(moving) {
+                    return None;
+                }
+                if entry != Graph::ZERO {
+                    let entry = self.scaled(entry, &[row, column]);
+                    masses.insert((column, row), entry);
+                }
+            }
+        }
+        let (velocities, drives) = self.rates();
+
+        // Accelerations: the rates of the momenta at constant velocities, and the forces.
+        let mut forces = BTreeMap::new();
+        let mut rates = BTreeMap::new();
+        for (&place, &symbol) in &symbols {
+            let friction = derivative(self.graph, extended.dissipation, symbol);
+            let mut terms = vec![(friction, Rational::MINUS_ONE)];
+            if place < count {
+                terms.push((extended.forces[place], Rational::ONE));
+                terms.push((derivative(self.graph, lagrangian, Symbol::Coordinate(place)), Rational::ONE));
+            }
+            let rate = self.graph.sum(&terms);
+            let drift = total_derivative(self.graph, momenta[&place]);
+            let force = self.graph.sub(rate, drift);
+            let force = velocity_polynomial::by_velocities(self.graph, force).unwrap_or(force);
+            let force = self.at(force, &velocities);
+            let rate = self.at(rate, &velocities);
+            rates.insert(place, rate);
+            let force = self.scaled(force, &[place]);
+            forces.insert(place, force);
+        }
+        let drifts: Vec<Vec<Id>> = self.joints.iter().map(|joint| joint.drift.clone()).collect();
+        let accelerations = self.solve(&masses, forces, &drifts)?;
+
+        // Velocities from momenta: the same unknowns, with the drive in place of the drift.
+        let rest = |symbol: Symbol| matches!(symbol, Symbol::Velocity(_) | Symbol::Auxiliary(_)).then_some(Graph::ZERO);
+        let mut right = BTreeMap::new();
+        for (&place, &momentum) in &momenta {
+            let offset = substitute(self.graph, momentum, rest);
+            let own = if place < count { self.graph.symbol(Symbol::Momentum(place)) } else { Graph::ZERO };
+            let value = self.graph.sub(own, offset);
+            let value = self.scaled(value, &[place]);
+            right.insert(place, value);
+        }
+        let drive: Vec<Vec<Id>> = self.joints.iter().map(|joint| joint.drive.clone()).collect();
+        let from_momenta = self.solve(&masses, right, &drive)?;
+
+        let (all_momenta, all_rates) = self.backward_pass(&momenta, &rates, &velocities);
+        let unsolved = self.unsolved(&momenta, &rates, &velocities);
+        let mut energy = vec![(lagrangian, Rational::MINUS_ONE)];
+        for (&place, &symbol) in &symbols {
+            let velocity = self.graph.symbol(symbol);
+            let drive = drives.get(&(place.wrapping_sub(count))).copied().unwrap_or_default();
+            let velocity = self.graph.sub(velocity, drive);
+            energy.push((self.graph.mul(velocity, momenta[&place]), Rational::ONE));
+        }
+        let energy = self.graph.sum(&energy);
+        let energy = velocity_polynomial::by_velocities(self.graph, energy).unwrap_or(energy);
+        let energy = self.at(energy, &velocities);
+        let kinetic = extended.kinetic.map(|kinetic| {
+            let kinetic = velocity_polynomial::by_velocities(self.graph, kinetic).unwrap_or(kinetic);
+            self.at(kinetic, &velocities)
+        });
+        let (momenta, momentum_rates) = (all_momenta, all_rates);
+        Some(Sparse { accelerations, velocities: from_momenta, momenta, momentum_rates, energy, kinetic, unsolved })
+    }
+
+    /// An entry in the units of its unknowns.
+    fn scaled(&mut self, entry: Id, places: &[usize]) -> Id {
+        let mut factors = vec![(entry, Rational::ONE)];
+        factors.extend(places.iter().filter(|&&place| place < self.count).map(|&place| (self.units[place], Rational::MINUS_ONE)));
+        self.graph.product(Rational::ONE, &factors)
+    }
+}

@@ -1,0 +1,116 @@
+//! What goes along the tree: velocities from the root to the leaves, momenta and their rates from the leaves to the root.
+
+use super::{Tree, Unsolved};
+use crate::algebra::diff::{derivative, substitute};
+use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
+use crate::algebra::number::Rational;
+use std::collections::BTreeMap;
+
+impl Tree<'_> {
+    /// The velocity of each scalar and the part of it that the drive alone makes, from the root to the leaves.
+    pub(super) fn rates(&mut self) -> (BTreeMap<usize, Id>, BTreeMap<usize, Id>) {
+        let (mut velocities, mut drives) = (BTreeMap::new(), BTreeMap::new());
+        for joint in &self.joints {
+            for (row, (&scalar, parent)) in joint.scalars.iter().zip(&joint.parents).enumerate() {
+                for (known, own) in [(&mut velocities, joint.slip[row]), (&mut drives, joint.drive[row])] {
+                    let before = parent.and_then(|parent| known.get(&parent).copied()).unwrap_or_default();
+                    let value = self.graph.add(before, own);
+                    known.insert(scalar, self.graph.atom(value));
+                }
+            }
+        }
+        (velocities, drives)
+    }
+
+    /// An expression with the velocities of positions put in.
+    pub(super) fn at(&mut self, id: Id, velocities: &BTreeMap<usize, Id>) -> Id {
+        if !self.graph.dependencies(id).any(Dependencies::AUXILIARY) {
+            return id;
+        }
+        substitute(self.graph, id, |symbol| match symbol {
+            Symbol::Auxiliary(scalar) => velocities.get(&scalar).copied(),
+            _ => None,
+        })
+    }
+
+    /// Momenta and their rates: what the positions carry goes from the leaves to the root.
+    pub(super) fn backward_pass(
+        &mut self,
+        momenta: &BTreeMap<usize, Id>,
+        rates: &BTreeMap<usize, Id>,
+        velocities: &BTreeMap<usize, Id>,
+    ) -> (Vec<Id>, Vec<Id>) {
+        let count = self.count;
+        let mut carried: BTreeMap<usize, Vec<(Id, Rational)>> = BTreeMap::new();
+        let mut pushed: BTreeMap<usize, Vec<(Id, Rational)>> = BTreeMap::new();
+        for (&place, &momentum) in momenta {
+            let momentum = self.at(momentum, velocities);
+            carried.insert(place, vec![(momentum, Rational::ONE)]);
+            pushed.insert(place, vec![(rates[&place], Rational::ONE)]);
+        }
+        let joints = std::mem::take(&mut self.joints);
+        for joint in joints.iter().rev() {
+            for (row, (&scalar, parent)) in joint.scalars.iter().zip(&joint.parents).enumerate() {
+                let total = |tree: &mut Self, terms: &[(Id, Rational)]| {
+                    let sum = tree.graph.sum(terms);
+                    tree.graph.atom(sum)
+                };
+                let momentum = total(self, &carried[&(count + scalar)]);
+                let force = total(self, &pushed[&(count + scalar)]);
+                if let Some(parent) = parent {
+                    carried.entry(count + parent).or_default().push((momentum, Rational::ONE));
+                    pushed.entry(count + parent).or_default().push((force, Rational::ONE));
+                }
+                for (column, &j) in joint.coordinates.iter().enumerate() {
+                    let arm = self.graph.mul(joint.jacobian[row][column], self.units[j]);
+                    let turn = derivative(self.graph, joint.slip[row], Symbol::Coordinate(j));
+                    carried.entry(j).or_default().push((self.graph.mul(arm, momentum), Rational::ONE));
+                    pushed.entry(j).or_default().push((self.graph.mul(arm, force), Rational::ONE));
+                    pushed.entry(j).or_default().push((self.graph.mul(turn, momentum), Rational::ONE));
+                }
+            }
+        }
+        self.joints = joints;
+        let sums = |graph: &mut Graph, lists: &BTreeMap<usize, Vec<(Id, Rational)>>| {
+            (0..count).map(|j| graph.sum(&lists[&j])).collect::<Vec<Id>>()
+        };
+        (sums(self.graph, &carried), sums(self.graph, &pushed))
+    }
+
+    /// d'Alembert's principle: ṗ less its cause, for the coordinates and for the positions, which hand it on from the leaves to the root. The
+    /// rates of the lever arms ∂z/∂q are those of the velocities, ∂u/∂q, and go out.
+    pub(super) fn unsolved(
+        &mut self,
+        momenta: &BTreeMap<usize, Id>,
+        rates: &BTreeMap<usize, Id>,
+        velocities: &BTreeMap<usize, Id>,
+    ) -> Unsolved {
+        let mut carried = Vec::new();
+        let mut lost: BTreeMap<usize, Vec<(Id, Rational)>> = BTreeMap::new();
+        for (&place, &momentum) in momenta {
+            let mut terms = vec![(rates[&place], Rational::MINUS_ONE)];
+            if momentum != Graph::ZERO {
+                terms.push((self.graph.symbol(Symbol::Auxiliary(carried.len())), Rational::ONE));
+                carried.push(self.at(momentum, velocities));
+            }
+            lost.insert(place, terms);
+        }
+        let joints = std::mem::take(&mut self.joints);
+        for joint in joints.iter().rev() {
+            for (row, (&scalar, parent)) in joint.scalars.iter().zip(&joint.parents).enumerate() {
+                let total = self.graph.sum(&lost[&(self.count + scalar)]);
+                let total = self.graph.atom(total);
+                if let Some(parent) = parent {
+                    lost.entry(self.count + parent).or_default().push((total, Rational::ONE));
+                }
+                for (column, &j) in joint.coordinates.iter().enumerate() {
+                    let arm = self.graph.mul(joint.jacobian[row][column], self.units[j]);
+                    lost.entry(j).or_default().push((self.graph.mul(arm, total), Rational::ONE));
+                }
+            }
+        }
+        self.joints = joints;
+        let equations = (0..self.count).map(|j| self.graph.sum(&lost[&j])).collect();
+        Unsolved { carried, equations }
+    }
+}

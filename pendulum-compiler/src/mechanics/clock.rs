@@ -1,0 +1,438 @@
+//! What time alone does to the equations: how narrow the functions of time are that stand in them,
+//! and when they have their middle.
+//!
+//! A method samples accelerations at a few times in a step. Between two of them exp(−((t − t₀)/w)²)
+//! would stay unseen if w is small, so that steps are bounded by w. A function f(u) of a polynomial
+//! u = a tᵈ + … is as narrow as |a|^(−1/d).
+
+use crate::algebra::diff::{derivative, substitute};
+use crate::algebra::expr::{Dependencies, Function, Graph, Id, Node, Symbol};
+use crate::algebra::number::Rational;
+use crate::algebra::order;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A function of time that stands in the equations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Feature {
+    /// One over its width.
+    pub(crate) rate: Id,
+    /// The time since its middle; zero for what goes on for ever.
+    pub(crate) since: Id,
+}
+
+/// The features of some expressions, in a graph of their own.
+pub(crate) fn features(graph: &Graph, roots: &[Id]) -> (Graph, Vec<Feature>) {
+    if !roots.iter().any(|&root| graph.dependencies(root).any(Dependencies::TIME)) {
+        return (Graph::new(), Vec::new());
+    }
+    let mut roots = roots.to_vec();
+    let graph = order::canonicalize(graph, &mut roots.iter_mut().collect::<Vec<_>>());
+    let mut search = Search {
+        graph,
+        found: BTreeSet::new(),
+        corners: BTreeSet::new(),
+        degrees: BTreeMap::new(),
+        polynomials: BTreeMap::new(),
+    };
+    for id in search.graph.reachable(&roots) {
+        if search.moves(id) {
+            search.visit(id);
+        }
+    }
+    search.pairs();
+    (search.graph, search.found.into_iter().collect())
+}
+
+/// Polynomials in time of a higher degree are left alone.
+const HIGHEST: i64 = 8;
+
+/// Times at which something has a corner; if there are more of them, pairs of neighbours alone are
+/// looked at.
+///
+/// The number of features is at most that of the functions and powers in the equations times this,
+/// and that of the pairs.
+const CORNERS: usize = 8;
+
+/// What may vary beside the time.
+const BESIDE_TIME: Dependencies = Dependencies::COORDINATE
+    .or(Dependencies::VELOCITY)
+    .or(Dependencies::INPUT)
+    .or(Dependencies::MOMENTUM)
+    .or(Dependencies::POINT)
+    .or(Dependencies::AUXILIARY);
+
+struct Search {
+    graph: Graph,
+    found: BTreeSet<Feature>,
+    /// The times at which `abs`, `sign` or `max` has a corner.
+    corners: BTreeSet<Id>,
+    /// The degrees of polynomials in time that are known.
+    degrees: BTreeMap<Id, Option<i64>>,
+    /// The polynomials that are known.
+    polynomials: BTreeMap<Id, Option<Polynomial>>,
+}
+
+/// A polynomial in time: what is known of u = a tᵈ + …, in which |u| stands for u where that is
+/// linear.
+#[derive(Clone)]
+struct Polynomial {
+    /// The same with its arguments for magnitudes, if there is one at most.
+    smooth: Id,
+    degree: i64,
+    /// a, which contains nothing that moves; for several magnitudes the steepest slope.
+    leading: Id,
+    /// The time at which the derivative of the order d − 1 is zero, or those of the corners if
+    /// magnitudes stand there; none if there are too many.
+    middles: Vec<Id>,
+    cornered: bool,
+    /// Nothing else of the expression contains the time.
+    whole: bool,
+}
+
+impl Search {
+    fn moves(&self, id: Id) -> bool {
+        self.graph.dependencies(id).any(Dependencies::TIME)
+    }
+
+    fn has_state(&self, id: Id) -> bool {
+        self.graph.dependencies(id).any(BESIDE_TIME)
+    }
+
+    fn visit(&mut self, id: Id) {
+        match self.graph.node(id).clone() {
+            Node::Call(Function::Sin | Function::Cos | Function::Tan, angle) => self.oscillation(angle),
+            Node::Call(Function::Ln, argument) => self.bump(argument),
+            Node::Call(Function::Abs | Function::Sign | Function::Step, argument) => self.corner(argument),
+            Node::Call(_, argument) => self.bell(argument),
+            Node::Max(a, b) => {
+                let difference = self.graph.sub(a, b);
+                self.corner(difference);
+            }
+            Node::Atan2(y, x) => {
+                let squares = [x, y].map(|part| self.graph.power(part, Rational::whole(2)));
+                let square = self.graph.add(squares[0], squares[1]);
+                self.bump(square);
+            }
+            Node::Product(_, factors) => {
+                for (base, exponent) in factors {
+                    if !exponent.is_integer() || exponent.is_negative() {
+                        self.bump(base);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Sine and cosine are as narrow as the bell that has the curvature of a crest: 1 − ω²t²/2.
+    fn oscillation(&mut self, angle: Id) {
+        let Some(polynomial) = self.polynomial(angle) else { return };
+        let rate = if polynomial.degree == 1 {
+            let half = self.graph.product(Rational::HALF, &[(polynomial.leading, Rational::whole(2))]);
+            self.root(half, 2)
+        } else {
+            self.root(polynomial.leading, polynomial.degree)
+        };
+        self.find(rate, None);
+    }
+
+    /// Functions that change where their argument is of the order of one.
+    fn bell(&mut self, argument: Id) {
+        self.swings(argument);
+        let Some(polynomial) = self.polynomial(argument) else { return };
+        let rate = self.root(polynomial.leading, polynomial.degree);
+        if !polynomial.whole || polynomial.middles.is_empty() {
+            return self.find(rate, None);
+        }
+        for middle in polynomial.middles {
+            self.find(rate, Some(middle));
+        }
+    }
+
+    /// A term k sinⁿ ωt in the argument of such a function: at a zero of the sine it leaves zero as
+    /// k (ωt)ⁿ.
+    fn swings(&mut self, argument: Id) {
+        for (term, coefficient) in self.terms(argument) {
+            let mut factors = self.graph.factors(term);
+            let own = match self.graph.node(term) {
+                Node::Product(own, _) => *own,
+                _ => Rational::ONE,
+            };
+            let Some(place) = factors.iter().position(|&(base, _)| self.moves(base)) else { continue };
+            let (swing, exponent) = factors.remove(place);
+            let Node::Call(Function::Sin | Function::Cos, angle) = *self.graph.node(swing) else { continue };
+            if factors.iter().any(|&(base, _)| self.moves(base) || self.has_state(base)) {
+                continue;
+            }
+            let Some(power) = exponent.integer().filter(|power| (1..=HIGHEST).contains(power)) else { continue };
+            let Some(polynomial) = self.polynomial(angle).filter(|polynomial| polynomial.degree == 1) else { continue };
+            let numbers = [own, coefficient].map(|number| self.graph.number(number));
+            factors.extend(numbers.map(|number| (number, Rational::ONE)));
+            let factor = self.graph.product(Rational::ONE, &factors);
+            let (steepness, speed) = (self.root(factor, power), self.root(polynomial.leading, 1));
+            let rate = self.graph.mul(steepness, speed);
+            self.find(rate, None);
+        }
+    }
+
+    /// A function without a width of its own, such as the reciprocal: it has that of a u that is
+    /// not zero at its middle.
+    fn bump(&mut self, argument: Id) {
+        let Some(polynomial) = self.polynomial(argument) else { return };
+        if !polynomial.whole || polynomial.degree == 1 && !polynomial.cornered {
+            return;
+        }
+        for middle in polynomial.middles {
+            let value = self.at(polynomial.smooth, middle);
+            if value == Graph::ZERO || self.has_state(value) || self.moves(value) {
+                continue;
+            }
+            let ratio = self.graph.div(polynomial.leading, value);
+            let rate = self.root(ratio, polynomial.degree);
+            self.find(rate, Some(middle));
+        }
+    }
+
+    /// A corner where u is zero, or a pulse between two zeros.
+    fn corner(&mut self, argument: Id) {
+        self.bump(argument);
+        if let Some(polynomial) = self.polynomial(argument)
+            && polynomial.degree == 1
+            && polynomial.whole
+            && !polynomial.cornered
+        {
+            let zeros = polynomial.middles.into_iter().filter(|&zero| !self.graph.dependencies(zero).any(BESIDE_TIME));
+            self.corners.extend(zeros);
+        }
+    }
+
+    /// Two corners may be the ends of a pulse.
+    fn pairs(&mut self) {
+        let mut corners: Vec<Id> = self.corners.iter().copied().collect();
+        let pairs: Vec<(Id, Id)> = if corners.len() <= CORNERS {
+            let others = |(index, &first): (usize, &Id)| corners[index + 1..].iter().map(move |&second| (first, second));
+            corners.iter().enumerate().flat_map(others).collect()
+        } else {
+            // Which corners are neighbours is known of numbers alone.
+            let time = |id: Id| match *self.graph.node(id) {
+                Node::Number(time) => time.numerator() as f64 / time.denominator() as f64,
+                _ => f64::NAN,
+            };
+            corners.retain(|&corner| !time(corner).is_nan());
+            corners.sort_by(|&a, &b| time(a).total_cmp(&time(b)));
+            corners.windows(2).map(|pair| (pair[0], pair[1])).collect()
+        };
+        for (first, second) in pairs {
+            let (length, sum) = (self.graph.sub(second, first), self.graph.add(first, second));
+            let rate = self.graph.product(Rational::whole(2), &[(length, Rational::MINUS_ONE)]);
+            let (rate, middle) = (self.root(rate, 1), self.graph.scale(Rational::HALF, sum));
+            self.find(rate, Some(middle));
+        }
+    }
+
+    fn find(&mut self, rate: Id, middle: Option<Id>) {
+        let since = match middle.filter(|&middle| !self.has_state(middle) && !self.moves(middle)) {
+            Some(middle) => {
+                let time = self.graph.symbol(Symbol::Time);
+                self.graph.sub(time, middle)
+            }
+            None => Graph::ZERO,
+        };
+        if rate != Graph::ZERO {
+            self.found.insert(Feature { rate, since });
+        }
+    }
+
+    /// |x|^(1/d).
+    fn root(&mut self, x: Id, degree: i64) -> Id {
+        let magnitude = self.graph.call(Function::Abs, x);
+        match Rational::new(1, degree.into()) {
+            Some(exponent) => self.graph.power(magnitude, exponent),
+            None => magnitude,
+        }
+    }
+
+    /// The terms of a sum with their coefficients.
+    fn terms(&self, id: Id) -> Vec<(Id, Rational)> {
+        match self.graph.node(id) {
+            Node::Sum(terms) => terms.clone(),
+            Node::Atom(inner) => self.terms(*inner),
+            _ => vec![(id, Rational::ONE)],
+        }
+    }
+
+    /// What is known of those terms of an expression that are a polynomial in time; `None` without
+    /// any, or if its leading coefficient moves.
+    fn polynomial(&mut self, id: Id) -> Option<Polynomial> {
+        if let Some(known) = self.polynomials.get(&id) {
+            return known.clone();
+        }
+        let polynomial = self.derived_polynomial(id);
+        self.polynomials.insert(id, polynomial.clone());
+        polynomial
+    }
+
+    fn derived_polynomial(&mut self, id: Id) -> Option<Polynomial> {
+        let all = self.terms(id);
+        let mut terms = all.clone();
+        terms.retain(|&(term, _)| self.degree(term).is_some());
+        let whole = terms.len() == all.len();
+        let sum = self.graph.sum(&terms);
+        let mut degree = self.degree(sum).filter(|degree| (1..=HIGHEST).contains(degree))?;
+        let magnitudes = self.magnitudes(sum);
+        if degree == 1 && 1 < magnitudes.len() {
+            let leading = self.steepest(sum)?;
+            let middles = self.corners_of(&magnitudes);
+            return Some(Polynomial { smooth: sum, degree, leading, middles, cornered: true, whole });
+        }
+        let smooth = self.branch(sum, &magnitudes, 0);
+        let mut derivatives = vec![smooth];
+        for order in 0..degree {
+            let next = derivative(&mut self.graph, derivatives[order as usize], Symbol::Time);
+            derivatives.push(next);
+        }
+        while 0 < degree && derivatives[degree as usize] == Graph::ZERO {
+            degree -= 1;
+        }
+        let last = derivatives[degree as usize];
+        if degree == 0 || self.moves(last) || self.has_state(last) {
+            return None;
+        }
+        let factorial: i64 = (1..=degree).product();
+        let leading = self.graph.product(Rational::new(1, factorial.into())?, &[(last, Rational::ONE)]);
+        let middles = match magnitudes.as_slice() {
+            [_] if degree == 1 => self.corners_of(&magnitudes),
+            // The last derivative but one is linear.
+            _ => vec![self.zero(derivatives[degree as usize - 1])?],
+        };
+        Some(Polynomial { smooth, degree, leading, middles, cornered: !magnitudes.is_empty(), whole })
+    }
+
+    /// The time at which a linear function of it is zero; `None` for a constant.
+    fn zero(&mut self, line: Id) -> Option<Id> {
+        let slope = derivative(&mut self.graph, line, Symbol::Time);
+        if slope == Graph::ZERO {
+            return None;
+        }
+        let start = self.at(line, Graph::ZERO);
+        let quotient = self.graph.div(start, slope);
+        Some(self.graph.negative(quotient))
+    }
+
+    /// An expression at a time.
+    fn at(&mut self, id: Id, time: Id) -> Id {
+        substitute(&mut self.graph, id, |symbol| (symbol == Symbol::Time).then_some(time))
+    }
+
+    /// The degree in time of what is a polynomial but for magnitudes of linear functions; `None`
+    /// for all else.
+    fn degree(&mut self, id: Id) -> Option<i64> {
+        if let Some(&known) = self.degrees.get(&id) {
+            return known;
+        }
+        for node in self.graph.reachable(&[id]) {
+            if !self.degrees.contains_key(&node) {
+                let degree = self.degree_from_children(node);
+                self.degrees.insert(node, degree);
+            }
+        }
+        self.degrees[&id]
+    }
+
+    fn degree_from_children(&self, id: Id) -> Option<i64> {
+        if !self.moves(id) {
+            return Some(0);
+        }
+        match self.graph.node(id) {
+            Node::Symbol(Symbol::Time) => Some(1),
+            Node::Sum(terms) => terms.iter().try_fold(0, |most, (term, _)| Some(self.degrees[term]?.max(most))),
+            Node::Product(_, factors) => factors.iter().try_fold(0i64, |sum, (base, exponent)| {
+                let degree = self.degrees[base]?;
+                if degree == 0 {
+                    return Some(sum);
+                }
+                let exponent = exponent.integer().filter(|exponent| (1..=HIGHEST).contains(exponent))?;
+                Some(sum + degree * exponent).filter(|degree| *degree <= HIGHEST)
+            }),
+            Node::Atom(inner) => self.degrees[inner],
+            Node::Call(Function::Abs, inner) => self.degrees[inner].filter(|degree| *degree == 1),
+            _ => None,
+        }
+    }
+
+    /// The magnitudes of what moves in an expression, the inner ones first.
+    fn magnitudes(&self, id: Id) -> Vec<Id> {
+        let moving = |node: &Id| match *self.graph.node(*node) {
+            Node::Call(Function::Abs, argument) => self.moves(argument),
+            _ => false,
+        };
+        self.graph.reachable(&[id]).into_iter().filter(moving).collect()
+    }
+
+    /// An expression with its argument for each of its magnitudes, with a minus if that has a bit
+    /// in `signs`.
+    fn branch(&mut self, id: Id, magnitudes: &[Id], signs: usize) -> Id {
+        if magnitudes.is_empty() {
+            return id;
+        }
+        let mut known: BTreeMap<Id, Id> = BTreeMap::new();
+        for node in self.graph.reachable(&[id]) {
+            let old = self.graph.node(node).clone();
+            let result = match (&old, magnitudes.iter().position(|magnitude| *magnitude == node)) {
+                (Node::Call(_, argument), Some(place)) if signs >> place & 1 == 1 => self.graph.negative(known[argument]),
+                (Node::Call(_, argument), Some(_)) => known[argument],
+                _ => self.graph.rebuilt(&old, |child| known[&child]),
+            };
+            known.insert(node, result);
+        }
+        known[&id]
+    }
+
+    /// The times at which these magnitudes of linear functions have a corner, with either sign of
+    /// those within them; none if there are too many.
+    fn corners_of(&mut self, magnitudes: &[Id]) -> Vec<Id> {
+        let mut corners = Vec::new();
+        for &magnitude in magnitudes {
+            let argument = self.graph.children(magnitude)[0];
+            let inner = self.magnitudes(argument);
+            if CORNERS < corners.len() + inner.len() {
+                return Vec::new();
+            }
+            for signs in 0..1 << inner.len() {
+                let line = self.branch(argument, &inner, signs);
+                if let Some(corner) = self.zero(line)
+                    && !corners.contains(&corner)
+                {
+                    corners.push(corner);
+                }
+            }
+        }
+        if CORNERS < corners.len() { Vec::new() } else { corners }
+    }
+
+    /// A bound of the slope of a sum of magnitudes of linear functions: all slopes add. `None` if
+    /// it moves.
+    fn steepest(&mut self, id: Id) -> Option<Id> {
+        let mut slopes: BTreeMap<Id, Id> = BTreeMap::new();
+        for node in self.graph.reachable(&[id]) {
+            let slope = match self.graph.node(node).clone() {
+                _ if !self.moves(node) => Graph::ZERO,
+                Node::Sum(terms) => {
+                    let slopes: Vec<(Id, Rational)> =
+                        terms.iter().map(|(term, coefficient)| (slopes[term], coefficient.abs())).collect();
+                    self.graph.sum(&slopes)
+                }
+                Node::Product(coefficient, factors) => {
+                    let (moving, fixed): (Vec<_>, Vec<_>) = factors.into_iter().partition(|&(base, _)| self.moves(base));
+                    let constant = self.graph.product(coefficient, &fixed);
+                    let magnitude = self.graph.call(Function::Abs, constant);
+                    self.graph.mul(magnitude, slopes[&moving.first()?.0])
+                }
+                Node::Call(_, argument) | Node::Atom(argument) => slopes[&argument],
+                _ => Graph::ONE,
+            };
+            slopes.insert(node, slope);
+        }
+        Some(slopes[&id]).filter(|&slope| slope != Graph::ZERO && !self.moves(slope) && !self.has_state(slope))
+    }
+}

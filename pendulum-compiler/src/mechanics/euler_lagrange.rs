@@ -1,0 +1,306 @@
+//! Euler–Lagrange: momenta, mass matrix, forces, accelerations, energy and power from the Lagrangian.
+//!
+//! d/dt ∂L/∂q̇ − ∂L/∂q = Q − ∂R/∂q̇, where d/dt runs through the coordinates, the driven inputs and the time.
+
+use crate::algebra::diff::derivative;
+use crate::algebra::expr::{Dependencies, Function, Graph, Id, Node, Symbol};
+use crate::algebra::number::Rational;
+use crate::algebra::order;
+use crate::algebra::rule;
+use crate::algebra::value_numbering;
+use crate::algebra::velocity_polynomial;
+use crate::mechanics::articulated::{self, Sparse};
+use crate::mechanics::jacobian;
+use crate::mechanics::lower::{Energies, total_derivative};
+use crate::mechanics::motion::Motion;
+use crate::mechanics::sign;
+use crate::mechanics::solve;
+use crate::mechanics::symmetry;
+use crate::messages::Errors;
+use crate::model::{Model, Quantity};
+use crate::schedule;
+
+/// Jacobians of more operations than this are left to dual numbers: an expansion stays small.
+const LONGEST_JACOBIAN: usize = 4000;
+
+/// Mass matrices of more rows than this are only solved in dense form if there is no cheaper sparse one.
+const LARGEST_DENSE: usize = 12;
+
+/// The sparse form must save almost half: its operations wait for each other from the leaves to the root and back. Chains of nine links
+/// and more are faster in it (`cargo bench -p pendulum-runtime --bench chains`).
+const CLEARLY: f64 = 0.55;
+
+/// An energy that keeps its digits may cost up to this much more: the half angle is one more sine and cosine.
+const DEARER: f64 = 2.5;
+
+/// Derives the equations of motion so that they do not depend on how the energies were written.
+pub(crate) fn derive(model: &Model, graph: &mut Graph, energies: &mut Energies, errors: &mut Errors) -> Option<Motion> {
+    *graph = order::canonicalize(graph, &mut energies.roots());
+    let mut motion = equations(model, graph, energies, errors);
+    if !errors.is_empty() {
+        return None;
+    }
+    let mut roots = motion.roots();
+    roots.extend(energies.roots());
+    *graph = order::canonicalize(graph, &mut roots);
+    Some(motion)
+}
+
+/// The equations of motion; reports directions without kinetic energy.
+fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Errors) -> Motion {
+    let kinetic = energies.kinetic.map(|id| collected(graph, id));
+    let potential = energies.potential.map(|id| collected(graph, id));
+    let lagrangian = if let Some(lagrangian) = energies.lagrangian {
+        collected(graph, lagrangian)
+    } else {
+        let difference = graph.sub(kinetic.unwrap_or_default(), potential.unwrap_or_default());
+        collected(graph, difference)
+    };
+    let count = energies.forces.len();
+    let dissipation = energies.dissipation.map(|id| collected(graph, id)).unwrap_or_default();
+
+    let velocity: Vec<Id> = (0..count).map(|i| graph.symbol(Symbol::Velocity(i))).collect();
+    let momenta: Vec<Id> = (0..count).map(|i| derivative(graph, lagrangian, Symbol::Velocity(i))).collect();
+    let mut mass_matrix = vec![vec![Graph::ZERO; count]; count];
+    for i in 0..count {
+        for j in 0..=i {
+            let entry = derivative(graph, momenta[i], Symbol::Velocity(j));
+            mass_matrix[i][j] = entry;
+            mass_matrix[j][i] = entry;
+        }
+    }
+    let mut motion = Motion { mass_matrix, ..Motion::default() };
+    let jerk = has_jerk(model, graph, lagrangian, &momenta, errors);
+    let regular = solve::regular(model, graph, &motion.mass_matrix, errors);
+    if !regular || !sign::positive(model, graph, energies, &motion.mass_matrix, errors) || jerk {
+        return motion;
+    }
+
+    let mut power = Vec::new();
+    let mut externals = Vec::new();
+    for i in 0..count {
+        let slope = derivative(graph, lagrangian, Symbol::Coordinate(i));
+        if slope == Graph::ZERO {
+            motion.cyclic.push(i);
+        }
+        let friction = derivative(graph, dissipation, Symbol::Velocity(i));
+        let external = graph.sub(energies.forces[i], friction);
+        externals.push(external);
+        power.push((graph.mul(velocity[i], external), Rational::ONE));
+        let rate = graph.add(slope, external);
+        motion.momentum_rates.push(rate);
+        // dp/dt along the motion at constant velocities: the acceleration stands in M q̈.
+        let drift = total_derivative(graph, momenta[i]);
+        let force = graph.sub(rate, drift);
+        motion.forces.push(collected(graph, force));
+    }
+    let sparse = energies.extended.as_ref().and_then(|extended| articulated::sparse(graph, extended, count));
+    solved(graph, &mut motion, &momenta, sparse.as_ref());
+
+    let actions: Vec<(Id, Rational)> = (0..count).map(|i| (graph.mul(velocity[i], momenta[i]), Rational::ONE)).collect();
+    let action = graph.sum(&actions);
+    let energy = graph.sub(action, lagrangian);
+    motion.energy = collected(graph, energy);
+    let explicit = explicit_rate(graph, lagrangian);
+    power.push((explicit, Rational::MINUS_ONE));
+    motion.power = graph.sum(&power);
+
+    motion.kinetic = energies.kinetic.map(|_| kinetic.unwrap_or_default());
+    motion.potential = energies.lagrangian.is_none().then(|| potential.unwrap_or_default());
+    motion.kinetic = motion.kinetic.or(motion.potential.map(|_| Graph::ZERO));
+    motion.nonconservative = energies.dissipation.is_some() || !model.forces.is_empty();
+    motion.conserved = symmetry::conserved(graph, lagrangian, &momenta, &externals);
+    motion.momenta = momenta;
+    facts(graph, &mut motion);
+    motion.jacobians = jacobians(model, graph, &motion);
+    if let Some(sparse) = sparse {
+        shorten(graph, &mut motion.momenta, &sparse.momenta, CLEARLY);
+        shorten(graph, &mut motion.momentum_rates, &sparse.momentum_rates, CLEARLY);
+        shorten(graph, std::slice::from_mut(&mut motion.energy), &[sparse.energy], CLEARLY);
+        if let (Some(kinetic), Some(short)) = (&mut motion.kinetic, sparse.kinetic) {
+            shorten(graph, std::slice::from_mut(kinetic), &[short], CLEARLY);
+        }
+        motion.unsolved = Some(sparse.unsolved);
+    }
+    number(graph, &mut motion);
+    for energy in [&mut motion.energy].into_iter().chain(&mut motion.kinetic).chain(&mut motion.potential) {
+        let kept = rule::without_cancellation(graph, *energy);
+        if kept != *energy {
+            shorten(graph, std::slice::from_mut(energy), &[kept], DEARER);
+        }
+    }
+    motion
+}
+
+/// Makes equal expressions one in each output, where that is cheaper.
+fn number(graph: &mut Graph, motion: &mut Motion) {
+    let lists = [&mut motion.accelerations, &mut motion.momenta, &mut motion.forces, &mut motion.momentum_rates];
+    let single = [&mut motion.energy, &mut motion.power].into_iter().chain(&mut motion.kinetic).chain(&mut motion.potential);
+    let all = lists.into_iter().chain(&mut motion.velocities).map(Vec::as_mut_slice).chain(single.map(std::slice::from_mut));
+    for roots in all {
+        let numbered = value_numbering::numbered(graph, roots);
+        if numbered != roots {
+            shorten(graph, roots, &numbered, 1.0);
+        }
+    }
+}
+
+/// Solves for the accelerations and for the velocities, in the form that costs less.
+fn solved(graph: &mut Graph, motion: &mut Motion, momenta: &[Id], sparse: Option<&Sparse>) {
+    let largest = solve::blocks(&motion.mass_matrix).iter().map(Vec::len).max().unwrap_or(0);
+    if let Some(sparse) = sparse
+        && LARGEST_DENSE < largest
+        && !momenta.iter().any(|&momentum| jumps(graph, momentum))
+        && schedule::program(graph, &sparse.accelerations).count().cost() < largest.pow(3) / 3
+    {
+        // Elimination without structure would take n³/3 operations and as long to write down.
+        motion.accelerations.clone_from(&sparse.accelerations);
+        motion.velocities = Some(sparse.velocities.clone());
+        return;
+    }
+    motion.accelerations = solve::solve(graph, &motion.mass_matrix, &motion.forces);
+    motion.velocities = invert(graph, &motion.mass_matrix, momenta);
+    if let Some(sparse) = sparse {
+        shorten(graph, &mut motion.accelerations, &sparse.accelerations, CLEARLY);
+        if let Some(velocities) = &mut motion.velocities {
+            shorten(graph, velocities, &sparse.velocities, CLEARLY);
+        }
+    }
+}
+
+/// Takes `other` where its cost is below a share of the own one.
+fn shorten(graph: &Graph, own: &mut [Id], other: &[Id], share: f64) {
+    let cost = |roots: &[Id]| schedule::program(graph, roots).count().cost() as f64;
+    if cost(other) < share * cost(own) {
+        own.clone_from_slice(other);
+    }
+}
+
+/// The Jacobians, if they are short: each column costs about as much as the accelerations.
+fn jacobians(model: &Model, graph: &mut Graph, motion: &Motion) -> Option<[Vec<Vec<Id>>; 3]> {
+    let count = motion.accelerations.len();
+    let parameters: usize = model.parameters.iter().map(Quantity::count).sum();
+    let operations = schedule::program(graph, &motion.accelerations).ops.len();
+    if LONGEST_JACOBIAN < operations * (2 * count + parameters) {
+        return None;
+    }
+    let symbols: [Vec<Symbol>; 3] = [
+        (0..count).map(Symbol::Coordinate).collect(),
+        (0..count).map(Symbol::Velocity).collect(),
+        (0..parameters).map(Symbol::Parameter).collect(),
+    ];
+    Some(symbols.map(|symbols| jacobian::columns(graph, motion, &symbols)))
+}
+
+fn collected(graph: &mut Graph, id: Id) -> Id {
+    match velocity_polynomial::by_velocities(graph, id) {
+        Some(collected) => collected,
+        None => id,
+    }
+}
+
+/// ∂L/∂t at constant coordinates and velocities: through the time and the driven inputs.
+fn explicit_rate(graph: &mut Graph, lagrangian: Id) -> Id {
+    let mut terms = Vec::new();
+    for symbol in graph.symbols(&[lagrangian]) {
+        let rate = match symbol {
+            Symbol::Time => Graph::ONE,
+            // A second derivative has been refused.
+            Symbol::Input { input, component, order } if order < 2 => {
+                graph.symbol(Symbol::Input { input, component, order: order + 1 })
+            }
+            _ => continue,
+        };
+        let partial = derivative(graph, lagrangian, symbol);
+        terms.push((graph.mul(partial, rate), Rational::ONE));
+    }
+    graph.sum(&terms)
+}
+
+/// Refuses a third derivative of a driven input, which there is not: the rates of the momenta would contain it, or else ∂L/∂t.
+fn has_jerk(model: &Model, graph: &Graph, lagrangian: Id, momenta: &[Id], errors: &mut Errors) -> bool {
+    let accelerated = |roots: &[Id]| {
+        graph.symbols(roots).into_iter().find_map(|symbol| match symbol {
+            Symbol::Input { input, order: 2, .. } => Some(model.inputs[input].name),
+            _ => None,
+        })
+    };
+    if let Some(name) = accelerated(momenta) {
+        errors.at(
+            name.span(),
+            format!(
+                "the momenta contain the acceleration of `{name}`, so the equations would contain its third derivative; \
+                 leave its second derivative out of the kinetic energy"
+            ),
+        );
+        return true;
+    }
+    if let Some(name) = accelerated(&[lagrangian]) {
+        errors.at(
+            name.span(),
+            format!(
+                "the energy contains the acceleration of `{name}`, so its power would contain a third derivative; \
+                 write what it does to a coordinate as a `force`"
+            ),
+        );
+        return true;
+    }
+    false
+}
+
+/// q̇ = M⁻¹(p − b) for momenta M q̇ + b that are linear in the velocities.
+pub(crate) fn invert(graph: &mut Graph, mass_matrix: &[Vec<Id>], momenta: &[Id]) -> Option<Vec<Id>> {
+    if mass_matrix.iter().flatten().any(|&entry| graph.dependencies(entry).any(Dependencies::VELOCITY)) {
+        return None;
+    }
+    let count = momenta.len();
+    let mut right = Vec::new();
+    for i in 0..count {
+        let mut terms = vec![(momenta[i], Rational::MINUS_ONE)];
+        for (j, &entry) in mass_matrix[i].iter().enumerate() {
+            let velocity = graph.symbol(Symbol::Velocity(j));
+            terms.push((graph.mul(entry, velocity), Rational::ONE));
+        }
+        let rest = graph.sum(&terms);
+        let rest = collected(graph, rest);
+        if jumps(graph, rest) {
+            return None;
+        }
+        // What structure does not cancel vanishes at q̇ = 0.
+        let rest = if graph.dependencies(rest).any(Dependencies::VELOCITY) { at_rest(graph, rest) } else { rest };
+        let momentum = graph.symbol(Symbol::Momentum(i));
+        right.push(graph.add(momentum, rest));
+    }
+    Some(solve::solve(graph, mass_matrix, &right))
+}
+
+/// Whether an expression jumps where a function of the velocities changes sign: its derivative does not show that it contains them.
+fn jumps(graph: &Graph, id: Id) -> bool {
+    let jumps = |id: &Id| match graph.node(*id) {
+        Node::Call(Function::Sign | Function::Step, argument) => graph.dependencies(*argument).any(Dependencies::VELOCITY),
+        _ => false,
+    };
+    graph.dependencies(id).any(Dependencies::VELOCITY) && graph.reachable(&[id]).iter().any(jumps)
+}
+
+/// An expression with all velocities of coordinates set to zero.
+fn at_rest(graph: &mut Graph, id: Id) -> Id {
+    crate::algebra::diff::substitute(graph, id, |symbol| matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO))
+}
+
+fn facts(graph: &mut Graph, motion: &mut Motion) {
+    let all = |roots: &[Id]| roots.iter().fold(Dependencies::default(), |all, &id| all.or(graph.dependencies(id)));
+    let masses = motion.mass_matrix.iter().flatten().fold(Dependencies::default(), |all, &id| all.or(graph.dependencies(id)));
+    let state = Dependencies::COORDINATE.or(Dependencies::VELOCITY);
+    let time = Dependencies::TIME.or(Dependencies::INPUT);
+    let forces = all(&motion.forces);
+    motion.constant_mass_matrix = !masses.any(state.or(time));
+    motion.velocity_free = motion.constant_mass_matrix && !forces.any(Dependencies::VELOCITY);
+    motion.linear = motion.constant_mass_matrix && graph.linear(&motion.forces);
+    let dependencies = forces.or(all(&motion.momenta)).or(masses);
+    motion.autonomous = !dependencies.any(time);
+    motion.explicit_time = dependencies.any(Dependencies::TIME);
+    let moving = motion.velocities.iter().flatten().fold(Dependencies::default(), |all, &id| all.or(graph.dependencies(id)));
+    let explicit = motion.velocities.is_some() && !moving.any(Dependencies::COORDINATE);
+    motion.separable = motion.constant_mass_matrix && explicit && !motion.nonconservative;
+}

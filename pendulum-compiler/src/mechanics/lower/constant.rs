@@ -1,0 +1,83 @@
+//! What is known while compiling: constants that are no real number are refused where they are written.
+
+use super::Lower;
+use super::value::Value;
+use crate::algebra::expr::{Dependencies, Function, Graph, Id, Node, Symbol};
+use crate::algebra::number::Literal;
+use crate::algebra::number::Rational;
+use crate::syntax::ast::Expr;
+use crate::syntax::text::text;
+
+impl Lower<'_, '_, '_, '_> {
+    /// A value, unless it is a constant that is not finite.
+    pub(super) fn real(&mut self, value: Value, expr: &Expr) -> Value {
+        let Value::Scalar(id) = value else { return value };
+        if self.graph.dependencies(id) != Dependencies::default() || matches!(self.graph.node(id), Node::Number(_)) {
+            return value;
+        }
+        let number = self.constant(id);
+        if number.is_finite() {
+            return value;
+        }
+        let text = text(expr);
+        if number.is_nan() {
+            return self.wrong(expr, &format!("`{text}` is no real number; write an operand for which it is"));
+        }
+        self.wrong(expr, &format!("`{text}` is infinite or beyond the range of `f64`; write another operand"))
+    }
+
+    fn constant(&mut self, id: Id) -> f64 {
+        if let Some(&known) = self.constants.get(&id) {
+            return known;
+        }
+        for child in self.graph.children(id) {
+            self.constant(child);
+        }
+        let number = evaluate(self.graph, id, |child| self.constants[&child], &|_| f64::NAN);
+        self.constants.insert(id, number);
+        number
+    }
+}
+
+/// The value of a node in floating point, from those of its children and of the symbols.
+pub(crate) fn evaluate(graph: &Graph, id: Id, known: impl Fn(Id) -> f64, symbol: &dyn Fn(Symbol) -> f64) -> f64 {
+    match graph.node(id) {
+        Node::Number(number) | Node::Opaque(Literal::Exact(number)) => ratio(*number),
+        Node::Opaque(Literal::Decimal(digits)) => digits.parse().unwrap_or(f64::NAN),
+        Node::Pi => std::f64::consts::PI,
+        Node::Symbol(own) => symbol(*own),
+        Node::Sum(terms) => terms.iter().map(|&(term, coefficient)| ratio(coefficient) * known(term)).sum(),
+        Node::Product(coefficient, factors) => {
+            factors.iter().fold(ratio(*coefficient), |product, &(base, exponent)| product * known(base).powf(ratio(exponent)))
+        }
+        Node::Call(function, argument) => function_value(*function, known(*argument)),
+        Node::Atan2(y, x) => known(*y).atan2(known(*x)),
+        Node::Max(a, b) => known(*a).max(known(*b)),
+        Node::Atom(inner) => known(*inner),
+    }
+}
+
+fn ratio(number: Rational) -> f64 {
+    number.numerator() as f64 / number.denominator() as f64
+}
+
+fn function_value(function: Function, x: f64) -> f64 {
+    match function {
+        Function::Sin => x.sin(),
+        Function::Cos => x.cos(),
+        Function::Tan => x.tan(),
+        Function::Asin => x.asin(),
+        Function::Acos => x.acos(),
+        Function::Atan => x.atan(),
+        Function::Sinh => x.sinh(),
+        Function::Cosh => x.cosh(),
+        Function::Tanh => x.tanh(),
+        Function::Exp => x.exp(),
+        Function::Ln => x.ln(),
+        Function::Abs => x.abs(),
+        Function::Sign if x == 0.0 => 0.0,
+        Function::Sign => x.signum(),
+        Function::Step if x == 0.0 => 0.5,
+        Function::Step => f64::from(0.0 < x),
+    }
+}

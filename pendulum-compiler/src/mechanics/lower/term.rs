@@ -1,0 +1,419 @@
+//! Every kind of expression to its value.
+
+use super::value::Value;
+use super::{DEEPEST, LIMIT, Local, Lower};
+use crate::algebra::expr::{Function, Graph, Id, Symbol};
+use crate::model::{self, Meaning};
+use crate::syntax::ast::{Binder, Expr, ExprKind};
+use crate::syntax::name::{self, Name};
+use crate::syntax::text::text;
+use crate::syntax::words::FUNCTIONS;
+
+impl Lower<'_, '_, '_, '_> {
+    pub(super) fn scalar(&mut self, expr: &Expr) -> Option<Id> {
+        match self.expr(expr) {
+            Value::Scalar(id) => Some(id),
+            Value::Bad => None,
+            other => {
+                if self.vector_product(expr).is_none() {
+                    self.wrong(
+                        expr,
+                        &format!(
+                            "`{}` is {}, but a scalar is needed here; write `inner(u, v)`, `|u|` or a component",
+                            text(expr),
+                            other.kind()
+                        ),
+                    );
+                }
+                None
+            }
+        }
+    }
+
+    /// Reports an expression that is the product of two plane vectors where a scalar is meant.
+    fn vector_product(&mut self, expr: &Expr) -> Option<Value> {
+        match &expr.kind {
+            ExprKind::Negative(inner) => self.vector_product(inner),
+            ExprKind::Product(items) => {
+                let factors = items.iter().map(|(_, item)| item);
+                let vectors: Vec<String> =
+                    factors.filter(|item| matches!(self.expr(item), Value::Plane { complex: false, .. })).map(text).collect();
+                let [a, b] = vectors.as_slice() else { return None };
+                let message = format!(
+                    "`{}` is the complex product of two plane vectors, but a scalar is needed here; write `inner({a}, {b})`",
+                    text(expr)
+                );
+                Some(self.wrong(expr, &message))
+            }
+            _ => None,
+        }
+    }
+
+    pub(super) fn wrong(&mut self, expr: &Expr, message: &str) -> Value {
+        self.errors.once(expr.source, expr.range, message);
+        Value::Bad
+    }
+
+    pub(super) fn expr(&mut self, expr: &Expr) -> Value {
+        self.work += 1;
+        if LIMIT < self.work || LIMIT < self.graph.size() {
+            self.errors.once(0, expr.range, "this block unfolds to more than two million expressions; write shorter sums");
+            return Value::Bad;
+        }
+        if DEEPEST <= self.depth {
+            let message = "definitions within definitions are nested too deeply here; write each `let` above its uses, and call fewer functions by functions";
+            self.errors.once(0, expr.range, message);
+            return Value::Bad;
+        }
+        self.depth += 1;
+        let value = self.kind(expr);
+        self.depth -= 1;
+        self.real(value, expr)
+    }
+
+    fn kind(&mut self, expr: &Expr) -> Value {
+        match &expr.kind {
+            ExprKind::Number(literal) => Value::Scalar(self.graph.literal(literal)),
+            ExprKind::Name(name) => self.name(&name.to_string(), expr),
+            ExprKind::Sum(items) => self.sum(items),
+            ExprKind::Product(items) => self.product(items),
+            ExprKind::Negative(inner) => {
+                let value = self.expr(inner);
+                self.map(value, Graph::negative)
+            }
+            ExprKind::Power(base, exponent) => self.power(base, exponent),
+            ExprKind::Call(name, items) => self.call(&name.to_string(), items, expr),
+            ExprKind::Index(base, index) => self.member(base, index),
+            ExprKind::Component(base, component) => self.component(base, &component.to_string(), expr),
+            ExprKind::Vector(items) => self.vector(items, expr),
+            ExprKind::Magnitude(inner) => self.magnitude(inner),
+            ExprKind::SumOver(binder, term) => self.sum_over(binder, term),
+            ExprKind::Integral { point, body, integrand } => self.integral(&point.to_string(), &body.to_string(), integrand),
+        }
+    }
+
+    pub(super) fn name(&mut self, text: &str, expr: &Expr) -> Value {
+        let Name { base, dots } = name::read(text);
+        if let Some(local) = self.local(&base) {
+            let value = match local {
+                Local::Value(value) => value.clone(),
+                &Local::Index { value, .. } => Value::Scalar(self.graph.whole(value)),
+            };
+            return self.dotted(value, dots, expr);
+        }
+        // A declaration of one of these names has been refused, but it is what the name means.
+        if dots == 0 && !self.model.names.contains_key(&base) {
+            match base.as_str() {
+                "t" => return Value::Scalar(self.graph.symbol(Symbol::Time)),
+                "pi" => return Value::Scalar(self.graph.pi()),
+                "i" => return Value::Plane { parts: [Graph::ZERO, Graph::ONE], complex: true },
+                _ => {}
+            }
+        }
+        match self.model.names.get(&base) {
+            Some(&Meaning::Parameter(index)) if dots == 0 && self.model.parameters[index].body => self.wrong(
+                expr,
+                &format!(
+                    "`{text}` is a body; write `{text}.mass`, `{text}.center`, `{text}.inertia` or `integral(p in {text}, …)`"
+                ),
+            ),
+            Some(&Meaning::Parameter(index)) if dots == 0 => {
+                self.whole.insert(index);
+                self.quantity(&self.model.parameters[index], Symbol::Parameter)
+            }
+            Some(&Meaning::Coordinate(index)) if dots == 0 => self.quantity(&self.model.coordinates[index], Symbol::Coordinate),
+            Some(&Meaning::Coordinate(index)) if dots == 1 => self.quantity(&self.model.coordinates[index], Symbol::Velocity),
+            Some(&Meaning::Input(input)) if dots <= 2 => {
+                let quantity = &self.model.inputs[input];
+                let first = quantity.first;
+                self.quantity(quantity, |scalar| Symbol::Input { input, component: scalar - first, order: dots })
+            }
+            Some(&Meaning::Let(index)) => {
+                let definition = self.model.lets[index];
+                if definition.arguments.is_some() {
+                    return self.wrong(expr, &format!("`{text}` is a function; write `{text}(…)`"));
+                }
+                let value = match &definition.index {
+                    None => self.definition(index, None, expr.range),
+                    Some(binder) => {
+                        Value::Family(self.range(binder).map(|k| self.definition(index, Some(k), expr.range)).collect())
+                    }
+                };
+                self.dotted(value, dots, expr)
+            }
+            _ => Value::Bad,
+        }
+    }
+
+    pub(super) fn quantity(&mut self, quantity: &model::Quantity, symbol: impl Fn(usize) -> Symbol) -> Value {
+        let mut scalar = |offset: usize| self.graph.symbol(symbol(quantity.first + offset));
+        let coordinate = matches!(symbol(quantity.first), Symbol::Coordinate(_) | Symbol::Velocity(_));
+        match quantity.length {
+            None => Value::Scalar(scalar(0)),
+            Some(2) if !coordinate => Value::Plane { parts: [scalar(0), scalar(1)], complex: false },
+            Some(3) if !coordinate => Value::Space([scalar(0), scalar(1), scalar(2)]),
+            Some(length) => Value::Family((0..length).map(|k| Value::Scalar(scalar(k))).collect()),
+        }
+    }
+
+    pub(super) fn dotted(&mut self, value: Value, dots: u8, expr: &Expr) -> Value {
+        (0..dots).fold(value, |value, _| self.dot(value, expr, false))
+    }
+
+    pub(super) fn sum(&mut self, items: &[(bool, Expr)]) -> Value {
+        let mut total = None;
+        for (index, (minus, item)) in items.iter().enumerate() {
+            let mut value = self.expr(item);
+            if *minus {
+                value = self.map(value, Graph::negative);
+            }
+            total = Some(match total {
+                None => value,
+                Some(sum) => {
+                    let product = match (&sum, &value) {
+                        (Value::Plane { complex: false, .. }, Value::Scalar(scalar))
+                        | (Value::Scalar(scalar), Value::Plane { complex: false, .. })
+                            if *scalar != Graph::ZERO =>
+                        {
+                            items[..=index].iter().find_map(|(_, item)| self.vector_product(item))
+                        }
+                        _ => None,
+                    };
+                    product.unwrap_or_else(|| self.add(sum, value, item))
+                }
+            });
+        }
+        total.unwrap_or(Value::Bad)
+    }
+
+    pub(super) fn product(&mut self, items: &[(bool, Expr)]) -> Value {
+        let mut total = Value::Scalar(Graph::ONE);
+        let mut vector: Option<&Expr> = None;
+        for (index, (over, item)) in items.iter().enumerate() {
+            let value = self.expr(item);
+            if let Value::Space(_) = value {
+                if let (Value::Space(_), Some(left), false) = (&total, vector, *over) {
+                    let (a, b) = (text(left), text(item));
+                    let message =
+                        format!("the product of two space vectors is ambiguous; write `inner({a}, {b})` or `cross({a}, {b})`");
+                    return self.wrong(item, &message);
+                }
+                vector = Some(item);
+            }
+            total = if *over {
+                self.divide(total, value, item)
+            } else if index == 0 {
+                value
+            } else {
+                self.multiply(total, value, item)
+            };
+        }
+        total
+    }
+
+    pub(super) fn call(&mut self, name: &str, items: &[Expr], expr: &Expr) -> Value {
+        let base = name::read(name).base;
+        if let Some(&Meaning::Let(index)) = self.model.names.get(&base)
+            && self.model.lets[index].arguments.is_some()
+        {
+            let dots = name::read(name).dots;
+            let arguments = items.iter().map(|item| self.expr(item)).collect();
+            let value = self.apply(index, arguments, expr.range);
+            return self.dotted(value, dots, expr);
+        }
+        match (name, items) {
+            ("dot", [item]) => {
+                let value = self.expr(item);
+                self.dot(value, item, has_index(item))
+            }
+            ("inner", [a, b]) => self.inner(a, b),
+            ("cross", [a, b]) => self.cross(a, b),
+            ("perp", [item]) => match self.expr(item) {
+                Value::Bad => Value::Bad,
+                Value::Plane { parts: [x, y], complex } => Value::Plane { parts: [self.graph.negative(y), x], complex },
+                other => self.wrong(
+                    item,
+                    &format!(
+                        "`{}` is {}, and a quarter turn needs a plane vector; write `perp([x, y])`",
+                        text(item),
+                        other.kind()
+                    ),
+                ),
+            },
+            ("height", [item]) => match self.expr(item) {
+                Value::Bad => Value::Bad,
+                Value::Plane { parts, .. } => Value::Scalar(parts[1]),
+                Value::Space(parts) => Value::Scalar(parts[2]),
+                other => self.wrong(
+                    item,
+                    &format!("`{}` is {}, and a height is that of a vector; write the scalar itself", text(item), other.kind()),
+                ),
+            },
+            ("cis", [item]) => match self.scalar(item) {
+                Some(angle) => self.cis(angle),
+                None => Value::Bad,
+            },
+            ("exp", [item]) => match self.expr(item) {
+                Value::Plane { parts: [re, im], complex: true } => {
+                    let magnitude = self.graph.call(Function::Exp, re);
+                    let turn = self.cis(im);
+                    self.map(turn, |graph, id| graph.mul(magnitude, id))
+                }
+                Value::Scalar(id) => Value::Scalar(self.graph.call(Function::Exp, id)),
+                Value::Bad => Value::Bad,
+                other => self.wrong(
+                    item,
+                    &format!("`{}` is {}, but the exponent is a number; write `exp(i*φ)` for a turn", text(item), other.kind()),
+                ),
+            },
+            _ => self.scalar_call(name, items),
+        }
+    }
+
+    pub(super) fn scalar_call(&mut self, name: &str, items: &[Expr]) -> Value {
+        if !FUNCTIONS.contains(&(name, items.len())) {
+            // The call has been reported, and the kind of its arguments is open.
+            for item in items {
+                self.expr(item);
+            }
+            return Value::Bad;
+        }
+        // What is wrong with one argument is wrong with the call.
+        let values: Option<Vec<Id>> = items.iter().map(|item| self.scalar(item)).collect();
+        let Some(values) = values else { return Value::Bad };
+        let graph = &mut *self.graph;
+        Value::Scalar(match (name, values.as_slice()) {
+            ("sqrt", &[a]) => graph.sqrt(a),
+            ("atan2", &[y, x]) => graph.atan2(y, x),
+            ("min", &[a, b]) => graph.min(a, b),
+            ("max", &[a, b]) => graph.max(a, b),
+            (_, &[a]) => match SCALAR.iter().find(|row| row.0 == name) {
+                Some(&(_, function)) => graph.call(function, a),
+                None => return Value::Bad,
+            },
+            _ => return Value::Bad,
+        })
+    }
+
+    pub(super) fn vector(&mut self, items: &[Expr], expr: &Expr) -> Value {
+        let parts: Vec<Option<Id>> = items.iter().map(|item| self.scalar(item)).collect();
+        if !(2..=3).contains(&parts.len()) {
+            return self.wrong(expr, &format!("a vector has two or three components; {} stand here", items.len()));
+        }
+        match *parts.as_slice() {
+            [Some(x), Some(y)] => Value::Plane { parts: [x, y], complex: false },
+            [Some(x), Some(y), Some(z)] => Value::Space([x, y, z]),
+            _ => Value::Bad,
+        }
+    }
+
+    pub(super) fn sum_over(&mut self, binder: &Binder, term: &Expr) -> Value {
+        let mut values = Vec::new();
+        for k in self.range(binder) {
+            self.bind(binder, k);
+            values.push(self.expr(term));
+            self.unbind();
+        }
+        self.total(values, term)
+    }
+
+    pub(super) fn member(&mut self, base: &Expr, index: &Expr) -> Value {
+        if let ExprKind::Name(ident) = &base.kind {
+            let Name { base: text, dots } = name::read(&ident.to_string());
+            let local = self.local(&text).is_some();
+            if let Some(&Meaning::Let(definition)) = self.model.names.get(&text)
+                && !local
+                && let Some(binder) = &self.model.lets[definition].index
+            {
+                let range = self.range(binder);
+                let k = match self.integer(index) {
+                    Ok(k) if range.contains(&k) => k,
+                    Ok(k) => {
+                        let message =
+                            format!("`{text}[{k}]` does not exist; `{text}` is defined for {} to {}", range.start, range.end - 1);
+                        return self.wrong(index, &message);
+                    }
+                    Err(_) => {
+                        return self
+                            .wrong(index, "an index is a whole number known while compiling; write numbers and indices only");
+                    }
+                };
+                let mut value = self.definition(definition, Some(k), base.range);
+                for _ in 0..dots {
+                    value = self.dot(value, base, true);
+                }
+                return value;
+            }
+        }
+        let value = self.indexed(base);
+        let members: Vec<Value> = match value {
+            Value::Bad => return Value::Bad,
+            Value::Family(members) => members,
+            Value::Plane { parts, .. } => parts.map(Value::Scalar).to_vec(),
+            Value::Space(parts) => parts.map(Value::Scalar).to_vec(),
+            Value::Scalar(_) => {
+                return self.wrong(base, &format!("`{}` is a scalar, it has no members; leave out the index", text(base)));
+            }
+        };
+        match self.index(index, members.len(), &text(base)) {
+            Some(k) => members[usize::try_from(k).unwrap_or(0)].clone(),
+            None => Value::Bad,
+        }
+    }
+
+    /// What an index is put to.
+    pub(super) fn indexed(&mut self, base: &Expr) -> Value {
+        if let ExprKind::Name(ident) = &base.kind {
+            let Name { base: text, dots: 0 } = name::read(&ident.to_string()) else { return self.expr(base) };
+            let local = self.local(&text).is_some();
+            if let Some(&Meaning::Parameter(index)) = self.model.names.get(&text)
+                && !local
+            {
+                self.indexed.insert(index);
+                return self.quantity(&self.model.parameters[index], Symbol::Parameter);
+            }
+        }
+        self.expr(base)
+    }
+
+    pub(super) fn component(&mut self, base: &Expr, component: &str, expr: &Expr) -> Value {
+        if let Some(index) = self.body(base) {
+            return self.property(index, component);
+        }
+        let value = self.expr(base);
+        let which = match component {
+            "x" => 0,
+            "y" => 1,
+            "z" => 2,
+            _ => return Value::Bad,
+        };
+        match value {
+            Value::Bad => Value::Bad,
+            Value::Plane { parts, .. } if which < 2 => Value::Scalar(parts[which]),
+            Value::Space(parts) => Value::Scalar(parts[which]),
+            other => self.wrong(expr, &format!("`{}` is {}, it has no `.{component}`; write a vector", text(base), other.kind())),
+        }
+    }
+}
+
+/// The functions of one scalar.
+#[rustfmt::skip]
+const SCALAR: &[(&str, Function)] = &[
+    ("ln", Function::Ln), ("sin", Function::Sin), ("cos", Function::Cos), ("tan", Function::Tan),
+    ("asin", Function::Asin), ("acos", Function::Acos), ("atan", Function::Atan),
+    ("sinh", Function::Sinh), ("cosh", Function::Cosh), ("tanh", Function::Tanh),
+    ("abs", Function::Abs), ("sign", Function::Sign),
+];
+
+/// Whether an index stands in an expression: one member of a family may be at rest.
+fn has_index(expr: &Expr) -> bool {
+    match &expr.kind {
+        ExprKind::Number(_) | ExprKind::Name(_) | ExprKind::Integral { .. } => false,
+        ExprKind::Index(..) => true,
+        ExprKind::Sum(items) | ExprKind::Product(items) => items.iter().any(|(_, item)| has_index(item)),
+        ExprKind::Negative(a) | ExprKind::Magnitude(a) | ExprKind::Component(a, _) => has_index(a),
+        ExprKind::Power(a, b) => has_index(a) || has_index(b),
+        ExprKind::Call(_, items) | ExprKind::Vector(items) => items.iter().any(has_index),
+        ExprKind::SumOver(_, term) => has_index(term),
+    }
+}

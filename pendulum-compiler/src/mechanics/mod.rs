@@ -1,0 +1,11 @@
+//! From the energies to the equations of motion.
+
+pub(crate) mod articulated;
+pub(crate) mod clock;
+pub(crate) mod euler_lagrange;
+pub(crate) mod jacobian;
+pub(crate) mod lower;
+pub(crate) mod motion;
+pub(crate) mod sign;
+pub(crate) mod solve;
+pub(crate) mod symmetry;

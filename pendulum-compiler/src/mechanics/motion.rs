@@ -1,0 +1,58 @@
+//! The equations of motion of a block, and what goes with them.
+
+use crate::algebra::expr::Id;
+use crate::mechanics::articulated::Unsolved;
+use crate::mechanics::symmetry::Conserved;
+
+/// The equations of motion and what goes with them: roots in one graph.
+#[derive(Debug, Default)]
+pub(crate) struct Motion {
+    pub(crate) accelerations: Vec<Id>,
+    pub(crate) momenta: Vec<Id>,
+    /// Row by row; symmetric.
+    pub(crate) mass_matrix: Vec<Vec<Id>>,
+    pub(crate) forces: Vec<Id>,
+    pub(crate) momentum_rates: Vec<Id>,
+    /// The equations before they are solved, where positions are written with `let`.
+    pub(crate) unsolved: Option<Unsolved>,
+    /// q̇ from p; `None` if L is not quadratic in the velocities.
+    pub(crate) velocities: Option<Vec<Id>>,
+    pub(crate) energy: Id,
+    pub(crate) power: Id,
+    pub(crate) kinetic: Option<Id>,
+    pub(crate) potential: Option<Id>,
+    /// ∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂parameters, column by column; `None` where they would be too long to write out.
+    pub(crate) jacobians: Option<[Vec<Vec<Id>>; 3]>,
+    pub(crate) cyclic: Vec<usize>,
+    pub(crate) conserved: Vec<Conserved>,
+    pub(crate) autonomous: bool,
+    pub(crate) explicit_time: bool,
+    pub(crate) separable: bool,
+    pub(crate) velocity_free: bool,
+    pub(crate) linear: bool,
+    pub(crate) constant_mass_matrix: bool,
+    pub(crate) nonconservative: bool,
+}
+
+impl Motion {
+    /// Every expression in it.
+    pub(crate) fn roots(&mut self) -> Vec<&mut Id> {
+        let lists = [&mut self.accelerations, &mut self.momenta, &mut self.forces, &mut self.momentum_rates];
+        let single = [Some(&mut self.energy), Some(&mut self.power), self.kinetic.as_mut(), self.potential.as_mut()];
+        let masses = self.mass_matrix.iter_mut().flatten();
+        let velocities = self.velocities.iter_mut().flatten();
+        let conserved = self.conserved.iter_mut().map(|conserved| &mut conserved.value);
+        let jacobians = self.jacobians.iter_mut().flatten().flatten().flatten();
+        let unsolved = self.unsolved.iter_mut().flat_map(|unsolved| unsolved.carried.iter_mut().chain(&mut unsolved.equations));
+        lists
+            .into_iter()
+            .flatten()
+            .chain(masses)
+            .chain(velocities)
+            .chain(conserved)
+            .chain(jacobians)
+            .chain(unsolved)
+            .chain(single.into_iter().flatten())
+            .collect()
+    }
+}

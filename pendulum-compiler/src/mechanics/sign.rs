@@ -1,0 +1,228 @@
+//! Expressions whose sign does not depend on the state: a kinetic energy that is negative shows in
+//! its mass matrix.
+
+use crate::algebra::dimension::Dimension;
+use crate::algebra::expr::{Dependencies, Function, Graph, Id, Moment, Node, Symbol};
+use crate::algebra::number::Literal;
+use crate::algebra::number::Rational;
+use crate::mechanics::lower::Energies;
+use crate::messages::Errors;
+use crate::model::{Meaning, Model, Quantity};
+use crate::syntax::ast::{Expr, ExprKind, Role};
+use crate::syntax::name;
+use crate::syntax::text::text;
+use proc_macro2::Ident;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Reports the coordinates whose entries on the diagonal of the mass matrix are negative at every
+/// state.
+///
+/// A Lagrangian that is not split may have any sign, and so may a parameter that is no mass.
+pub(crate) fn positive(model: &Model, graph: &Graph, energies: &Energies, matrix: &[Vec<Id>], errors: &mut Errors) -> bool {
+    let potential = energies.potential.unwrap_or_default();
+    if energies.lagrangian.is_some() || graph.dependencies(potential).any(Dependencies::VELOCITY) {
+        return true;
+    }
+    let diagonal: Vec<Id> = matrix.iter().enumerate().map(|(index, row)| row[index]).collect();
+    let signs = signs(model, graph, &diagonal);
+    let negative = |coordinate: &&Quantity| {
+        let rows = coordinate.first..coordinate.first + coordinate.count();
+        diagonal[rows].iter().any(|entry| signs[entry] == Some(Sign::Negative))
+    };
+    let before = errors.len();
+    for coordinate in model.coordinates.iter().filter(negative) {
+        let Some((minus, term)) = guilty(model, &coordinate.name.to_string()) else { continue };
+        let (sign, name) = (if minus { "-" } else { "" }, coordinate.name);
+        let message = format!(
+            "the kinetic energy of `{name}` is negative in `{sign}{}`; write it with a positive sign, or write `lagrangian = …;`, \
+             which may have any, instead of `kinetic` and `potential`",
+            text(term)
+        );
+        // A term that is negative for two coordinates is wrong once.
+        errors.once(term.source, term.range, message);
+    }
+    before == errors.len()
+}
+
+/// The negative term of the kinetic energy that is guilty of a coordinate, and whether a minus
+/// stands before it.
+fn guilty<'a>(model: &Model<'a>, coordinate: &str) -> Option<(bool, &'a Expr)> {
+    let mut source = Source { model, negative: BTreeMap::new(), followed: BTreeSet::new() };
+    let kinetic: Vec<&'a Expr> =
+        model.energies.iter().filter(|(role, _)| *role == Role::Kinetic).map(|&(_, expr)| expr).collect();
+    let mut negative = Vec::new();
+    for expr in &kinetic {
+        source.negative_terms(false, expr, &mut negative);
+    }
+    let base = name::read(coordinate).base;
+    let whole = kinetic.iter().map(|expr| (false, *expr));
+    let all: Vec<(bool, &Expr)> = if negative.is_empty() { whole.collect() } else { negative };
+    all.iter().find(|(_, term)| source.mention(term, &base)).or(all.first()).copied()
+}
+
+/// Expressions as written, with the definitions that they use; each is followed once.
+struct Source<'m, 'a> {
+    model: &'m Model<'a>,
+    /// Whether definitions begin with a minus.
+    negative: BTreeMap<usize, bool>,
+    /// The definitions that a search has been through.
+    followed: BTreeSet<usize>,
+}
+
+impl<'a> Source<'_, 'a> {
+    /// The definition that an expression stands for.
+    fn definition(&self, expr: &Expr) -> Option<usize> {
+        match &expr.kind {
+            ExprKind::Name(name) | ExprKind::Call(name, _) if name::read(&name.to_string()).dots == 0 => self.named(name),
+            ExprKind::Index(base, _) => self.definition(base),
+            _ => None,
+        }
+    }
+
+    /// The definition of a name, with or without dots.
+    fn named(&self, name: &Ident) -> Option<usize> {
+        match self.model.names.get(&name::read(&name.to_string()).base) {
+            Some(&Meaning::Let(index)) => Some(index),
+            _ => None,
+        }
+    }
+
+    /// The negative terms of an expression, each where it is written, and whether a minus stands
+    /// before it.
+    fn negative_terms<'e>(&mut self, minus: bool, expr: &'e Expr, found: &mut Vec<(bool, &'e Expr)>)
+    where
+        'a: 'e,
+    {
+        match (&expr.kind, self.definition(expr)) {
+            (ExprKind::Sum(terms), _) => {
+                for (own, term) in terms {
+                    self.negative_terms(minus != *own, term, found);
+                }
+            }
+            (ExprKind::SumOver(_, term), _) if !minus => self.negative_terms(false, term, found),
+            // A minus before a definition is to blame, and not what is defined.
+            (_, Some(index)) if !minus => {
+                if !self.followed.insert(index) {
+                    return;
+                }
+                self.negative_terms(false, &self.model.lets[index].expr, found);
+            }
+            _ if minus != self.begins_negative(expr) => found.push((minus, expr)),
+            _ => {}
+        }
+    }
+
+    /// Whether an odd number of signs stands before the factors of an expression.
+    fn begins_negative(&mut self, expr: &Expr) -> bool {
+        match &expr.kind {
+            ExprKind::Negative(inner) => !self.begins_negative(inner),
+            ExprKind::Product(factors) => {
+                factors.iter().fold(false, |negative, (_, factor)| negative != self.begins_negative(factor))
+            }
+            ExprKind::SumOver(_, term) => self.begins_negative(term),
+            _ => {
+                let Some(index) = self.definition(expr) else { return false };
+                if let Some(&known) = self.negative.get(&index) {
+                    return known;
+                }
+                self.negative.insert(index, false);
+                let negative = self.begins_negative(&self.model.lets[index].expr);
+                self.negative.insert(index, negative);
+                negative
+            }
+        }
+    }
+
+    /// Whether a name stands in an expression or in a definition that it uses, with or without
+    /// dots.
+    fn mention(&mut self, expr: &Expr, base: &str) -> bool {
+        self.followed.clear();
+        self.mentions(expr, base)
+    }
+
+    fn mentions(&mut self, expr: &Expr, base: &str) -> bool {
+        match &expr.kind {
+            ExprKind::Number(_) => false,
+            ExprKind::Name(ident) => name::read(&ident.to_string()).base == base || self.defined_with(ident, base),
+            ExprKind::Sum(items) | ExprKind::Product(items) => items.iter().any(|(_, item)| self.mentions(item, base)),
+            ExprKind::Negative(a) | ExprKind::Magnitude(a) | ExprKind::Component(a, _) => self.mentions(a, base),
+            ExprKind::Power(a, b) | ExprKind::Index(a, b) => self.mentions(a, base) || self.mentions(b, base),
+            ExprKind::Call(ident, items) => items.iter().any(|item| self.mentions(item, base)) || self.defined_with(ident, base),
+            ExprKind::Vector(items) => items.iter().any(|item| self.mentions(item, base)),
+            ExprKind::SumOver(_, term) => self.mentions(term, base),
+            ExprKind::Integral { integrand, .. } => self.mentions(integrand, base),
+        }
+    }
+
+    /// Whether a name is that of a definition in which another stands.
+    fn defined_with(&mut self, name: &Ident, base: &str) -> bool {
+        match self.named(name).filter(|&index| self.followed.insert(index)) {
+            Some(index) => self.mentions(&self.model.lets[index].expr, base),
+            None => false,
+        }
+    }
+}
+
+/// A sign that no state changes; what has one may be zero at some states.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sign {
+    Positive,
+    Negative,
+}
+
+impl Sign {
+    fn of(value: Rational) -> Self {
+        if value.is_negative() { Self::Negative } else { Self::Positive }
+    }
+
+    fn times(self, other: Self) -> Self {
+        if self == other { Self::Positive } else { Self::Negative }
+    }
+}
+
+/// The signs of all expressions that stand in `roots`; `None` for those that may have either.
+fn signs(model: &Model, graph: &Graph, roots: &[Id]) -> BTreeMap<Id, Option<Sign>> {
+    let mut signs: BTreeMap<Id, Option<Sign>> = BTreeMap::new();
+    for id in graph.reachable(roots) {
+        let sign = match graph.node(id) {
+            Node::Number(value) => Some(Sign::of(*value)),
+            Node::Opaque(Literal::Exact(value)) => Some(Sign::of(*value)),
+            // A number with too many digits is written without a sign.
+            Node::Opaque(Literal::Decimal(_)) | Node::Pi | Node::Symbol(Symbol::Moment(_, Moment::Inertia)) => {
+                Some(Sign::Positive)
+            }
+            Node::Symbol(Symbol::Parameter(scalar)) => is_mass(model, *scalar).then_some(Sign::Positive),
+            Node::Symbol(_) | Node::Atan2(..) => None,
+            Node::Sum(terms) => {
+                let mut each = terms.iter().map(|(term, coefficient)| Some(signs[term]?.times(Sign::of(*coefficient))));
+                let first = each.next().flatten();
+                first.filter(|_| each.all(|sign| sign == first))
+            }
+            Node::Product(coefficient, factors) => {
+                factors.iter().try_fold(Sign::of(*coefficient), |sign, (base, exponent)| {
+                    // An even power, and a root where it is real.
+                    let square = exponent.numerator() % 2 == 0 || exponent.denominator() % 2 == 0;
+                    Some(if square { sign } else { sign.times(signs[base]?) })
+                })
+            }
+            Node::Call(Function::Exp | Function::Cosh | Function::Abs | Function::Step, _) => Some(Sign::Positive),
+            Node::Call(..) => None,
+            Node::Max(a, b) => [signs[a], signs[b]].contains(&Some(Sign::Positive)).then_some(Sign::Positive),
+            Node::Atom(inner) => signs[inner],
+        };
+        signs.insert(id, sign);
+    }
+    signs
+}
+
+/// Whether a scalar is a mass, a moment of inertia or a density; a first moment may have any sign.
+fn is_mass(model: &Model, scalar: usize) -> bool {
+    let own = |quantity: &&Quantity| (quantity.first..quantity.first + quantity.count()).contains(&scalar);
+    let one = Rational::ONE;
+    let massive = |Dimension([mass, length, time])| mass == one && time.is_zero() && length != one;
+    match model.parameters.iter().find(own) {
+        Some(quantity) if quantity.body => scalar == quantity.first,
+        Some(quantity) => quantity.dimension.is_some_and(massive),
+        None => false,
+    }
+}

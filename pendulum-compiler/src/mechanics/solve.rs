@@ -1,0 +1,251 @@
+//! M x = f on the graph: `LDLᵀ` without square roots, structural zeros skipped, independent blocks apart.
+
+use crate::algebra::expr::{Dependencies, Graph, Id};
+use crate::algebra::number::Rational;
+use crate::algebra::prime_field::{Point, Residue};
+use crate::algebra::velocity_polynomial;
+use crate::messages::Errors;
+use crate::model::{Model, Quantity};
+
+/// Whether every direction has kinetic energy at a random state; reports the coordinates that have none.
+pub(crate) fn regular(model: &Model, graph: &mut Graph, matrix: &[Vec<Id>], errors: &mut Errors) -> bool {
+    let before = errors.len();
+    for coordinate in &model.coordinates {
+        let rows = coordinate.first..coordinate.first + coordinate.count();
+        if let Some(row) = rows.clone().find(|&row| matrix[row].iter().all(|&entry| entry == Graph::ZERO)) {
+            let name = named(coordinate, row);
+            errors.at(
+                coordinate.name.span(),
+                format!(
+                    "`{name}` has no kinetic energy, so its acceleration is undetermined; \
+                     add the square of its velocity to `kinetic`"
+                ),
+            );
+        }
+    }
+    if before < errors.len() {
+        return false;
+    }
+    let Some(values) = at_random(graph, matrix) else { return true };
+    for block in blocks(matrix) {
+        let Some((row, deficient)) = zero_pivot(&values, &block) else { continue };
+        let found =
+            model.coordinates.iter().find(|coordinate| (coordinate.first..coordinate.first + coordinate.count()).contains(&row));
+        let Some(coordinate) = found else { continue };
+        let name = named(coordinate, row);
+        let message = if deficient {
+            format!(
+                "the mass matrix is singular in the direction of `{name}`: its kinetic energy is that of other coordinates; \
+                 leave the redundant coordinate out"
+            )
+        } else {
+            format!(
+                "the kinetic energy is not positive: in the direction of `{name}` it is zero at every state; \
+                 take coordinates whose squared velocities stand in it"
+            )
+        };
+        errors.at(coordinate.name.span(), message);
+    }
+    errors.len() == before
+}
+
+/// The scalar coordinate of a row, as written.
+fn named(coordinate: &Quantity, row: usize) -> String {
+    match coordinate.length {
+        Some(_) => format!("{}[{}]", coordinate.name, row - coordinate.first),
+        None => coordinate.name.to_string(),
+    }
+}
+
+/// The entries of a matrix at a random point of a prime field. Half of all numbers have a root: where there are too many to meet a point
+/// at which all exist, roots are unknown functions, and what vanishes then vanishes too.
+fn at_random(graph: &Graph, matrix: &[Vec<Id>]) -> Option<Vec<Vec<Residue>>> {
+    let roots: Vec<Id> = matrix.iter().flatten().copied().collect();
+    let exact = (0..64).find_map(|seed| Point::new(graph, &roots, seed).values(graph, &roots));
+    let formal = || (0..64).find_map(|seed| Point::formal(graph, &roots, seed).values(graph, &roots));
+    let values = exact.or_else(formal)?;
+    Some(matrix.iter().map(|row| row.iter().map(|entry| values[entry]).collect()).collect())
+}
+
+/// The row in which elimination meets a pivot that is zero, and whether the rows are dependent then.
+fn zero_pivot(values: &[Vec<Residue>], block: &[usize]) -> Option<(usize, bool)> {
+    let mut rows: Vec<Vec<Residue>> = block.iter().map(|&i| block.iter().map(|&j| values[i][j]).collect()).collect();
+    for pivot in 0..block.len() {
+        let Some(inverse) = rows[pivot][pivot].reciprocal() else {
+            let deficient = rows[pivot].iter().skip(pivot).all(|&entry| entry == Residue::ZERO);
+            return Some((block[pivot], deficient));
+        };
+        let (done, rest) = rows.split_at_mut(pivot + 1);
+        for row in rest {
+            let factor = row[pivot].mul(inverse).negative();
+            for (entry, &own) in row.iter_mut().zip(&done[pivot]) {
+                *entry = entry.add(own.mul(factor));
+            }
+        }
+    }
+    None
+}
+
+/// Solves M x = f for a symmetric matrix that `regular` has passed.
+pub(crate) fn solve(graph: &mut Graph, matrix: &[Vec<Id>], right: &[Id]) -> Vec<Id> {
+    let mut solution = vec![Graph::ZERO; right.len()];
+    for block in blocks(matrix) {
+        if let [row] = block[..] {
+            solution[row] = graph.div(right[row], matrix[row][row]);
+            continue;
+        }
+        let scales = scales(graph, matrix, &block);
+        let pivot =
+            graph.product(Rational::ONE, &[(matrix[block[0]][block[0]], Rational::ONE), (scales[0], Rational::whole(-2))]);
+        // The first pivot becomes one where parameters alone decide it.
+        let unit = if graph.dependencies(pivot).any(Dependencies::STATE) { Graph::ONE } else { pivot };
+        let scaled: Vec<Vec<Id>> = (0..block.len())
+            .map(|i| {
+                let entry = |j: usize| {
+                    let entry = over(graph, matrix[block[i]][block[j]], &[scales[i], scales[j], unit]);
+                    // Multiplied out, a constant shows what cancels against squares: 1 − cos² is sin².
+                    if graph.dependencies(entry).any(Dependencies::STATE) {
+                        entry
+                    } else {
+                        velocity_polynomial::expanded(graph, entry)
+                    }
+                };
+                (0..block.len()).map(entry).collect()
+            })
+            .collect();
+        let order: Vec<usize> = (0..block.len()).collect();
+        let Ok(factors) = factor(graph, &scaled, &order) else { continue };
+        let right: Vec<Id> = block.iter().zip(&scales).map(|(&row, &scale)| over(graph, right[row], &[scale, unit])).collect();
+        for ((value, &row), &scale) in substitute(graph, &factors, right).into_iter().zip(&block).zip(&scales) {
+            solution[row] = over(graph, value, &[scale]);
+        }
+    }
+    solution
+}
+
+/// The coordinates that no other is coupled to.
+pub(crate) fn alone(matrix: &[Vec<Id>]) -> Vec<bool> {
+    matrix.iter().map(|row| row.iter().filter(|&&entry| entry != Graph::ZERO).count() == 1).collect()
+}
+
+/// A product of parameters for each row that stands in all its entries, twice on the diagonal: in chains the lengths. The unknowns are
+/// solved for in these units, so that fewer products move.
+fn scales(graph: &mut Graph, matrix: &[Vec<Id>], block: &[usize]) -> Vec<Id> {
+    let mut scales = Vec::new();
+    for &row in block {
+        let diagonal = graph.factors(matrix[row][row]);
+        let common: Vec<(Id, Rational)> = diagonal
+            .into_iter()
+            .filter(|&(base, exponent)| {
+                let parameters_alone = !graph.dependencies(base).any(Dependencies::STATE) && exponent == Rational::whole(2);
+                let stands = |&column: &usize| {
+                    let entry = matrix[row][column];
+                    entry == Graph::ZERO
+                        || graph.factors(entry).iter().any(|&(other, power)| other == base && !power.is_negative())
+                };
+                parameters_alone && block.iter().all(stands)
+            })
+            .map(|(base, _)| (base, Rational::ONE))
+            .collect();
+        scales.push(graph.product(Rational::ONE, &common));
+    }
+    scales
+}
+
+/// `id` divided by some others.
+fn over(graph: &mut Graph, id: Id, divisors: &[Id]) -> Id {
+    let mut factors = vec![(id, Rational::ONE)];
+    factors.extend(divisors.iter().map(|&divisor| (divisor, Rational::MINUS_ONE)));
+    graph.product(Rational::ONE, &factors)
+}
+
+/// Unit lower triangle and reciprocal pivots.
+struct Factors {
+    lower: Vec<Vec<Id>>,
+    reciprocal: Vec<Id>,
+}
+
+/// The rows of a block, last first: chains eliminate from the leaf to the root.
+pub(crate) fn blocks(matrix: &[Vec<Id>]) -> Vec<Vec<usize>> {
+    let mut seen = vec![false; matrix.len()];
+    let mut blocks = Vec::new();
+    for start in 0..matrix.len() {
+        if seen[start] {
+            continue;
+        }
+        let mut block = Vec::new();
+        let mut pending = vec![start];
+        seen[start] = true;
+        while let Some(row) = pending.pop() {
+            block.push(row);
+            for (column, &entry) in matrix[row].iter().enumerate() {
+                if entry != Graph::ZERO && !seen[column] {
+                    seen[column] = true;
+                    pending.push(column);
+                }
+            }
+        }
+        block.sort_unstable_by(|a, b| b.cmp(a));
+        blocks.push(block);
+    }
+    blocks
+}
+
+/// M = L D Lᵀ on atoms; the row whose pivot is structurally zero otherwise.
+fn factor(graph: &mut Graph, matrix: &[Vec<Id>], block: &[usize]) -> Result<Factors, usize> {
+    let size = block.len();
+    let mut lower = vec![vec![Graph::ZERO; size]; size];
+    // What stands left of the pivot before it is divided by it.
+    let mut scaled = vec![vec![Graph::ZERO; size]; size];
+    let mut reciprocal: Vec<Id> = Vec::with_capacity(size);
+    for j in 0..size {
+        for i in j..size {
+            let entry = graph.atom(matrix[block[i]][block[j]]);
+            let mut terms = vec![(entry, Rational::ONE)];
+            for k in 0..j {
+                if scaled[i][k] != Graph::ZERO && lower[j][k] != Graph::ZERO {
+                    terms.push((graph.mul(scaled[i][k], lower[j][k]), Rational::MINUS_ONE));
+                }
+            }
+            let value = graph.sum(&terms);
+            scaled[i][j] = graph.atom(value);
+        }
+        let pivot = scaled[j][j];
+        if pivot == Graph::ZERO {
+            return Err(block[j]);
+        }
+        let inverse = graph.power(pivot, Rational::MINUS_ONE);
+        let inverse = graph.atom(inverse);
+        for i in j + 1..size {
+            if scaled[i][j] != Graph::ZERO {
+                let entry = graph.mul(scaled[i][j], inverse);
+                // A division is done once; a quotient by parameters stays open and cancels.
+                lower[i][j] = if graph.moving_quotient(entry) { graph.closed(entry) } else { graph.atom(entry) };
+            }
+        }
+        reciprocal.push(inverse);
+    }
+    Ok(Factors { lower, reciprocal })
+}
+
+fn substitute(graph: &mut Graph, factors: &Factors, mut right: Vec<Id>) -> Vec<Id> {
+    let size = right.len();
+    for i in 0..size {
+        let start = graph.atom(right[i]);
+        let mut terms = vec![(start, Rational::ONE)];
+        for k in 0..i {
+            terms.push((graph.mul(factors.lower[i][k], right[k]), Rational::MINUS_ONE));
+        }
+        let value = graph.sum(&terms);
+        right[i] = graph.atom(value);
+    }
+    for i in (0..size).rev() {
+        let mut terms = vec![(graph.mul(right[i], factors.reciprocal[i]), Rational::ONE)];
+        for k in i + 1..size {
+            terms.push((graph.mul(factors.lower[k][i], right[k]), Rational::MINUS_ONE));
+        }
+        let value = graph.sum(&terms);
+        right[i] = graph.atom(value);
+    }
+    right
+}

@@ -1,0 +1,103 @@
+//! Declarations: what a name is declared as, once, with its unit and length.
+
+use super::{Meaning, Quantity, integer, plain};
+use crate::messages::Errors;
+use crate::model::unit;
+use crate::syntax::ast::{Expr, Kind, Let};
+use crate::syntax::name::{self, Name};
+use crate::syntax::text::text;
+use proc_macro2::Ident;
+use std::collections::BTreeMap;
+
+/// A family longer than this is refused: its equations would not compile within a day.
+const LONGEST: i64 = 1024;
+
+/// Where each name was first declared.
+#[derive(Default)]
+pub(super) struct Declared<'a> {
+    places: BTreeMap<String, &'a Ident>,
+}
+
+impl<'a> Declared<'a> {
+    pub(super) fn declare(
+        &mut self,
+        names: &mut BTreeMap<String, Meaning>,
+        ident: &'a Ident,
+        meaning: Meaning,
+        errors: &mut Errors,
+    ) {
+        let Name { base, dots } = name::read(&ident.to_string());
+        let refusal = match base.as_str() {
+            _ if 0 < dots => Some(format!("`{ident}` is a time derivative; declare the name without dots, `{}`", plain(ident))),
+            "t" => Some("`t` is the time; choose another name".to_owned()),
+            "pi" => Some(format!("`{ident}` is the number π; choose another name")),
+            "i" => Some("`i` is the imaginary unit; choose another name".to_owned()),
+            _ => None,
+        };
+        if let Some(message) = refusal {
+            errors.at(ident.span(), message);
+            // Whoever uses the name means this declaration: one mistake gives one message.
+            names.entry(base).or_insert(meaning);
+            return;
+        }
+        if let Some(first) = self.places.get(&base) {
+            errors.at(ident.span(), format!("`{ident}` is declared twice; rename one of the two"));
+            errors.at(first.span(), format!("`{first}` is declared here first"));
+            return;
+        }
+        self.places.insert(base.clone(), ident);
+        names.insert(base, meaning);
+    }
+}
+
+#[derive(Clone, Copy)]
+pub(super) enum Shape<'a> {
+    Kind(&'a Kind),
+    Family(Option<&'a Expr>, Option<&'a Expr>),
+}
+
+pub(super) fn quantity<'a>(
+    name: &'a Ident,
+    shape: Shape<'a>,
+    first: usize,
+    default: Option<&'a Expr>,
+    errors: &mut Errors,
+) -> Quantity<'a> {
+    let (unit, length) = match shape {
+        Shape::Kind(Kind::Scalar(unit)) => (unit.as_ref(), None),
+        Shape::Kind(Kind::Array { unit, length }) => (unit.as_ref(), Some(length)),
+        Shape::Kind(Kind::Body(_)) => (None, None),
+        Shape::Family(length, unit) => (unit, length),
+    };
+    let length = length.map(|expr| family_length(expr, errors));
+    let body = matches!(shape, Shape::Kind(Kind::Body(_)));
+    if let (true, Some(default)) = (body || length.is_some(), default) {
+        errors.at(default.range, "only a scalar has a default; leave it out and pass the value to `new`");
+    }
+    let dimension = unit.and_then(|unit| unit::dimension(unit, errors));
+    Quantity { name, length, first, dimension, unit: unit.map(text).unwrap_or_default(), default, body }
+}
+
+fn family_length(expr: &Expr, errors: &mut Errors) -> usize {
+    match integer(expr, &|_| None) {
+        Ok(length) if (1..=LONGEST).contains(&length) => usize::try_from(length).unwrap_or(1),
+        Ok(_) => {
+            errors.at(expr.range, format!("a length is between 1 and {LONGEST}; write another number"));
+            1
+        }
+        Err(range) => {
+            errors.at(range, "a length is a whole number; write it out, as in `[kg; 5]`");
+            1
+        }
+    }
+}
+
+/// Arguments of one name.
+pub(super) fn twice(definition: &Let, errors: &mut Errors) {
+    let arguments = definition.arguments.as_deref().unwrap_or_default();
+    for (index, argument) in arguments.iter().enumerate() {
+        if arguments[..index].iter().any(|other| plain(other) == plain(argument)) {
+            errors.at(argument.span(), format!("the argument `{argument}` stands twice; rename one of the two"));
+        }
+    }
+}

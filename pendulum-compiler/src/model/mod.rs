@@ -1,0 +1,211 @@
+//! Names to symbols: what every name of a block means, and every name that means nothing.
+
+mod declare;
+pub(crate) mod unit;
+mod walk;
+
+use crate::algebra::dimension::Dimension;
+use crate::algebra::number::Rational;
+use crate::messages::{Errors, Range};
+use crate::syntax::ast::{Block, Expr, ExprKind, ForceIndex, Let, Role, Statement};
+use crate::syntax::name::{self, Name};
+use declare::{Declared, Shape, quantity, twice};
+use proc_macro2::Ident;
+use std::collections::{BTreeMap, BTreeSet};
+use walk::Walk;
+
+/// A block with its names resolved.
+pub(crate) struct Model<'a> {
+    pub(crate) block: &'a Block,
+    pub(crate) parameters: Vec<Quantity<'a>>,
+    pub(crate) coordinates: Vec<Quantity<'a>>,
+    pub(crate) inputs: Vec<Quantity<'a>>,
+    pub(crate) lets: Vec<&'a Let>,
+    pub(crate) energies: Vec<(Role, &'a Expr)>,
+    pub(crate) forces: Vec<Force<'a>>,
+    pub(crate) names: BTreeMap<String, Meaning>,
+    /// The parameters that no statement mentions.
+    pub(crate) unmentioned: BTreeSet<usize>,
+}
+
+/// A declared parameter, coordinate or driven input.
+pub(crate) struct Quantity<'a> {
+    pub(crate) name: &'a Ident,
+    /// `None` for a scalar, the length of a vector or family otherwise.
+    pub(crate) length: Option<usize>,
+    /// The number of scalars declared before it.
+    pub(crate) first: usize,
+    pub(crate) dimension: Option<Dimension>,
+    pub(crate) unit: String,
+    pub(crate) default: Option<&'a Expr>,
+    /// A rigid body: mass, centre and central moments.
+    pub(crate) body: bool,
+}
+
+impl Quantity<'_> {
+    /// The number of its scalars.
+    pub(crate) fn count(&self) -> usize {
+        if self.body { 6 } else { self.length.unwrap_or(1) }
+    }
+}
+
+/// A `force` statement.
+pub(crate) struct Force<'a> {
+    pub(crate) coordinate: usize,
+    pub(crate) name: &'a Ident,
+    pub(crate) index: Option<&'a ForceIndex>,
+    pub(crate) expr: &'a Expr,
+}
+
+/// What a name stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Meaning {
+    Parameter(usize),
+    Coordinate(usize),
+    Input(usize),
+    Let(usize),
+}
+
+/// Resolves every name, reports those that cannot be.
+pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
+    let mut model = Model {
+        block,
+        parameters: Vec::new(),
+        coordinates: Vec::new(),
+        inputs: Vec::new(),
+        lets: Vec::new(),
+        energies: Vec::new(),
+        forces: Vec::new(),
+        names: BTreeMap::new(),
+        unmentioned: BTreeSet::new(),
+    };
+    let mut declared = Declared::default();
+    let (mut parameters, mut coordinates, mut inputs) = (0, 0, 0);
+    for field in &block.fields {
+        let meaning = Meaning::Parameter(model.parameters.len());
+        declared.declare(&mut model.names, &field.name, meaning, errors);
+        let quantity = quantity(&field.name, Shape::Kind(&field.kind), parameters, field.default.as_ref(), errors);
+        parameters += quantity.count();
+        model.parameters.push(quantity);
+    }
+    for statement in &block.statements {
+        match statement {
+            Statement::Coordinate { name, length, unit } => {
+                declared.declare(&mut model.names, name, Meaning::Coordinate(model.coordinates.len()), errors);
+                let quantity = quantity(name, Shape::Family(length.as_ref(), unit.as_ref()), coordinates, None, errors);
+                coordinates += quantity.count();
+                model.coordinates.push(quantity);
+            }
+            Statement::Driven { name, kind } => {
+                declared.declare(&mut model.names, name, Meaning::Input(model.inputs.len()), errors);
+                let quantity = quantity(name, Shape::Kind(kind), inputs, None, errors);
+                if quantity.length.is_some_and(|length| !(2..=3).contains(&length)) {
+                    errors.at(name.span(), "a driven input is a scalar or a vector; write `[m; 2]` or `[m; 3]`");
+                }
+                inputs += quantity.count();
+                model.inputs.push(quantity);
+            }
+            Statement::Let(definition) => {
+                declared.declare(&mut model.names, &definition.name, Meaning::Let(model.lets.len()), errors);
+                twice(definition, errors);
+                model.lets.push(definition);
+            }
+            Statement::Energy { role, expr, .. } => model.energies.push((*role, expr)),
+            Statement::Force { .. } => {}
+        }
+    }
+    if model.inputs.len() > 8 {
+        errors.at(model.inputs[8].name.span(), "more than eight driven inputs; join some of them into vectors");
+    }
+    for statement in &block.statements {
+        if let Statement::Force { name, index, expr, .. } = statement {
+            force(&mut model, name, index.as_ref(), expr, errors);
+        }
+    }
+    roles(block, errors);
+    if model.coordinates.is_empty() && !block.recovery.declarations {
+        errors.at(block.name.span(), "no coordinate; write `coordinate θ: rad;` below the struct");
+    }
+    let mut walk = Walk { model: &model, errors, scope: Vec::new(), mentioned: BTreeSet::new() };
+    walk.block();
+    let mentioned = walk.mentioned;
+    model.unmentioned = (0..model.parameters.len()).filter(|index| !mentioned.contains(index)).collect();
+    model
+}
+
+/// A dotted name without its dots, as the user would write it.
+fn plain(ident: &Ident) -> String {
+    name::read(&ident.to_string()).base
+}
+
+fn force<'a>(model: &mut Model<'a>, name: &'a Ident, index: Option<&'a ForceIndex>, expr: &'a Expr, errors: &mut Errors) {
+    let Name { base, dots } = name::read(&name.to_string());
+    match model.names.get(&base) {
+        Some(&Meaning::Coordinate(coordinate)) if dots == 0 => model.forces.push(Force { coordinate, name, index, expr }),
+        Some(_) => {
+            errors.at(name.span(), format!("`{name}` is no coordinate; a force acts on a coordinate, as in `force θ = …;`"));
+        }
+        None if model.block.recovery.declarations => {}
+        None => {
+            let known = model.coordinates.iter().map(|coordinate| coordinate.name.to_string()).collect::<Vec<_>>();
+            errors.at(name.span(), unknown(&name.to_string(), known.iter().map(String::as_str)));
+        }
+    }
+}
+
+/// Either `lagrangian`, once, or `kinetic` and `potential`.
+fn roles(block: &Block, errors: &mut Errors) {
+    let mut lagrangian = None;
+    let mut split = None;
+    for statement in &block.statements {
+        if let Statement::Energy { role, keyword, .. } = statement {
+            match role {
+                Role::Lagrangian if lagrangian.is_some() => {
+                    errors.at(*keyword, "`lagrangian` stands twice; write one sum");
+                }
+                Role::Lagrangian => lagrangian = Some(*keyword),
+                Role::Kinetic | Role::Potential => split = split.or(Some(*keyword)),
+                Role::Dissipation => {}
+            }
+        }
+    }
+    if let (Some(_), Some(split)) = (lagrangian, split) {
+        errors.at(split, "`lagrangian` is kinetic minus potential energy already; write either one or the other");
+    }
+    if lagrangian.is_none() && split.is_none() && !block.recovery.energies {
+        errors.at(block.name.span(), "no energy; write `kinetic = …;` and `potential = …;` below the struct");
+    }
+}
+
+/// A whole number, with the values of the indices in scope; the range that is none otherwise.
+pub(crate) fn integer(expr: &Expr, bound: &dyn Fn(&str) -> Option<i64>) -> Result<i64, Range> {
+    let value = rational(expr, bound).ok_or(expr.range)?;
+    value.integer().ok_or(expr.range)
+}
+
+fn rational(expr: &Expr, bound: &dyn Fn(&str) -> Option<i64>) -> Option<Rational> {
+    match &expr.kind {
+        ExprKind::Name(ident) => {
+            let name = name::read(&ident.to_string());
+            bound(&name.base).filter(|_| name.dots == 0).map(Rational::whole)
+        }
+        ExprKind::Negative(inner) => Some(rational(inner, bound)?.negative()),
+        ExprKind::Sum(terms) => terms.iter().try_fold(Rational::ZERO, |sum, (minus, term)| {
+            let term = rational(term, bound)?;
+            sum.add(if *minus { term.negative() } else { term })
+        }),
+        ExprKind::Product(factors) => factors.iter().try_fold(Rational::ONE, |product, (over, factor)| {
+            let factor = rational(factor, bound)?;
+            product.mul(if *over { factor.reciprocal()? } else { factor })
+        }),
+        _ => unit::constant(expr),
+    }
+}
+
+/// "unknown name, with the nearest known one".
+fn unknown<'b>(name: &str, known: impl Iterator<Item = &'b str>) -> String {
+    match name::nearest(name, known) {
+        Some(near) => format!("unknown name `{name}`; did you mean `{near}`?"),
+        None => format!("unknown name `{name}`; declare it as a parameter, a coordinate, a driven input or with `let`"),
+    }
+}

@@ -1,0 +1,388 @@
+//! The units of a block: checked where they are written, inferred where the sums decide them.
+//!
+//! Every quantity without a unit is an unknown. A dimension is a known one times powers of unknowns; each sum, function
+//! argument and energy gives an equation that is linear in the exponents, and the first equation that has no unknown left and does
+//! not hold is the mistake.
+
+use super::{Dimension, constant};
+use crate::algebra::number::Literal;
+use crate::algebra::number::Rational;
+use crate::messages::Errors;
+use crate::model::{self, Meaning, Model};
+use crate::syntax::ast::{Expr, ExprKind, ForceIndex, Role};
+use crate::syntax::name::{self, Name};
+use crate::syntax::text::text;
+use std::collections::BTreeMap;
+
+/// What is nested deeper is left alone: it would overflow the compiler's stack. Every definition is checked for itself as well.
+const DEEPEST: usize = 200;
+
+/// Checks a block, if any of its quantities has a unit.
+pub(crate) fn check(model: &Model, errors: &mut Errors) {
+    let quantities = || model.parameters.iter().chain(&model.coordinates).chain(&model.inputs);
+    if quantities().all(|quantity| quantity.unit.is_empty() && !quantity.body) {
+        return;
+    }
+    let mut units = Units {
+        model,
+        errors,
+        solved: BTreeMap::new(),
+        scope: Vec::new(),
+        lets: BTreeMap::new(),
+        open: Vec::new(),
+        depth: 0,
+        unknowns: 0,
+    };
+    units.block();
+}
+
+/// A known dimension times powers of unknowns.
+#[derive(Clone, Debug, PartialEq)]
+struct Unit {
+    known: Dimension,
+    unknown: BTreeMap<usize, Rational>,
+}
+
+impl Unit {
+    fn of(known: Dimension) -> Self {
+        Self { known, unknown: BTreeMap::new() }
+    }
+
+    fn pure() -> Self {
+        Self::of(Dimension::PURE)
+    }
+
+    /// `self` · `other`^`power`.
+    fn times(&self, other: &Self, power: Rational) -> Option<Self> {
+        let mut unknown = self.unknown.clone();
+        for (&name, &exponent) in &other.unknown {
+            let total = unknown.get(&name).copied().unwrap_or(Rational::ZERO).add(exponent.mul(power)?)?;
+            if total.is_zero() {
+                unknown.remove(&name);
+            } else {
+                unknown.insert(name, total);
+            }
+        }
+        Some(Self { known: self.known.times(other.known, power)?, unknown })
+    }
+}
+
+/// What an expression has: a unit, or any, or one that has been reported.
+type Found = Option<Unit>;
+
+struct Units<'m, 'a, 'e> {
+    model: &'m Model<'a>,
+    errors: &'e mut Errors,
+    /// Unknowns that are decided, in terms of others.
+    solved: BTreeMap<usize, Unit>,
+    scope: Vec<(String, Found)>,
+    lets: BTreeMap<usize, Found>,
+    open: Vec<usize>,
+    /// The number of expressions that are being evaluated.
+    depth: usize,
+    unknowns: usize,
+}
+
+impl Units<'_, '_, '_> {
+    fn block(&mut self) {
+        let model = self.model;
+        // One unknown for each quantity, whether it has a unit or not.
+        self.unknowns = model.parameters.len() + model.coordinates.len() + model.inputs.len();
+        for index in 0..model.lets.len() {
+            if model.lets[index].arguments.is_none() {
+                self.definition(index);
+            }
+        }
+        let mut energy: Option<(Unit, &Expr)> = None;
+        for &(role, expr) in &model.energies {
+            let Some(found) = self.expr(expr) else { continue };
+            let found = match role {
+                Role::Dissipation => found.times(&Unit::of(second()), Rational::ONE).unwrap_or(found),
+                _ => found,
+            };
+            match &energy {
+                None => energy = Some((found, expr)),
+                Some((expected, first)) => {
+                    if !self.unify(&found, expected) {
+                        let (found, expected) = (self.shown(&found), self.shown(expected));
+                        let per = if role == Role::Dissipation { " times a second" } else { "" };
+                        let message = format!(
+                            "`{}`{per} is {found}, but `{}` is {expected}; all energies of a block have one unit",
+                            text(expr),
+                            text(first)
+                        );
+                        self.errors.once(expr.source, expr.range, message);
+                    }
+                }
+            }
+        }
+        let Some((energy, _)) = energy else { return };
+        for force in &model.forces {
+            let depth = self.scope.len();
+            if let Some(ForceIndex::Each(binder)) = force.index {
+                self.scope.push((name::read(&binder.name.to_string()).base, Some(Unit::pure())));
+            }
+            let found = self.expr(force.expr);
+            self.scope.truncate(depth);
+            let coordinate = Self::quantity(model.parameters.len() + force.coordinate, &model.coordinates[force.coordinate]);
+            let expected = energy.times(&coordinate, Rational::MINUS_ONE);
+            if let (Some(found), Some(expected)) = (found, expected)
+                && !self.unify(&found, &expected)
+            {
+                let (found, expected) = (self.shown(&found), self.shown(&expected));
+                let message = format!(
+                    "`{}` is {found}, but a force on `{}` is {expected}, an energy per unit of the coordinate",
+                    text(force.expr),
+                    force.name
+                );
+                self.errors.once(force.expr.source, force.expr.range, message);
+            }
+        }
+    }
+
+    fn definition(&mut self, index: usize) -> Found {
+        if let Some(found) = self.lets.get(&index) {
+            return found.clone();
+        }
+        // Half of the depth is left for the definition itself, whose unit stays.
+        if self.open.contains(&index) || DEEPEST / 2 <= self.depth {
+            return None;
+        }
+        self.open.push(index);
+        let definition = self.model.lets[index];
+        let scope = std::mem::take(&mut self.scope);
+        if let Some(binder) = &definition.index {
+            self.scope.push((name::read(&binder.name.to_string()).base, Some(Unit::pure())));
+        }
+        let found = self.expr(&definition.expr);
+        self.scope = scope;
+        self.open.pop();
+        self.lets.insert(index, found.clone());
+        found
+    }
+
+    fn apply(&mut self, index: usize, arguments: Vec<Found>) -> Found {
+        if self.open.contains(&index) {
+            return None;
+        }
+        self.open.push(index);
+        let definition = self.model.lets[index];
+        let names = definition.arguments.iter().flatten().map(|name| name::read(&name.to_string()).base);
+        let scope = std::mem::replace(&mut self.scope, names.zip(arguments).collect());
+        let found = self.expr(&definition.expr);
+        self.scope = scope;
+        self.open.pop();
+        found
+    }
+
+    fn quantity(unknown: usize, quantity: &model::Quantity) -> Unit {
+        match quantity.dimension {
+            Some(known) => Unit::of(known),
+            None => Unit { known: Dimension::PURE, unknown: BTreeMap::from([(unknown, Rational::ONE)]) },
+        }
+    }
+
+    /// A unit with every decided unknown replaced.
+    fn resolved(&self, unit: &Unit) -> Unit {
+        let mut result = Unit::of(unit.known);
+        for (&name, &exponent) in &unit.unknown {
+            let part = match self.solved.get(&name) {
+                Some(solution) => self.resolved(solution),
+                None => Unit { known: Dimension::PURE, unknown: BTreeMap::from([(name, Rational::ONE)]) },
+            };
+            result = result.times(&part, exponent).unwrap_or(result);
+        }
+        result
+    }
+
+    /// Makes two units equal, by deciding an unknown if need be; false if they cannot be.
+    fn unify(&mut self, a: &Unit, b: &Unit) -> bool {
+        let Some(quotient) = a.times(b, Rational::MINUS_ONE) else { return true };
+        let mut rest = self.resolved(&quotient);
+        let Some((name, exponent)) = rest.unknown.pop_last() else { return rest.known == Dimension::PURE };
+        // name^exponent · rest = 1.
+        if let Some(solution) = exponent.reciprocal().and_then(|power| Unit::pure().times(&rest, power.negative())) {
+            self.solved.insert(name, solution);
+        }
+        true
+    }
+
+    fn shown(&self, unit: &Unit) -> String {
+        let resolved = self.resolved(unit);
+        if resolved.unknown.is_empty() {
+            return resolved.known.to_string();
+        }
+        let quantities = self.model.parameters.iter().chain(&self.model.coordinates).chain(&self.model.inputs);
+        let names: Vec<String> = quantities.map(|quantity| quantity.name.to_string()).collect();
+        let unknown: Vec<String> = resolved.unknown.keys().map(|&index| format!("the unit of `{}`", names[index])).collect();
+        format!("{} times {}", resolved.known, unknown.join(" and "))
+    }
+
+    /// Reports a unit that is not pure.
+    fn pure(&mut self, expr: &Expr, what: &str) {
+        if let Some(unit) = self.expr(expr)
+            && !self.unify(&unit, &Unit::pure())
+        {
+            let unit = self.shown(&unit);
+            self.errors.once(
+                expr.source,
+                expr.range,
+                format!("`{}` is {unit}, but {what} is a pure number; divide by a unit of its kind", text(expr)),
+            );
+        }
+    }
+
+    /// The common unit of several expressions; the first that differs is reported.
+    fn common<'x>(&mut self, items: impl Iterator<Item = &'x Expr>, what: &str) -> Found {
+        let mut common: Option<(Unit, &Expr)> = None;
+        for item in items {
+            let Some(found) = self.expr(item) else { continue };
+            match &common {
+                None => common = Some((found, item)),
+                Some((expected, first)) => {
+                    if !self.unify(&found, expected) {
+                        let message = format!(
+                            "`{}` is {}, but `{}` is {}; {what} needs one unit",
+                            text(item),
+                            self.shown(&found),
+                            text(first),
+                            self.shown(expected)
+                        );
+                        self.errors.once(item.source, item.range, message);
+                        return None;
+                    }
+                }
+            }
+        }
+        common.map(|(unit, _)| unit)
+    }
+
+    fn expr(&mut self, expr: &Expr) -> Found {
+        if DEEPEST <= self.depth {
+            return None;
+        }
+        self.depth += 1;
+        let found = self.kind(expr);
+        self.depth -= 1;
+        found
+    }
+
+    fn kind(&mut self, expr: &Expr) -> Found {
+        match &expr.kind {
+            ExprKind::Number(Literal::Exact(Rational::ZERO)) => None,
+            ExprKind::Number(_) => Some(Unit::pure()),
+            ExprKind::Name(ident) => self.name(&ident.to_string()),
+            ExprKind::Sum(items) => self.common(items.iter().map(|(_, item)| item), "a sum"),
+            ExprKind::Product(items) => {
+                let mut product = Some(Unit::pure());
+                for (over, item) in items {
+                    let factor = self.expr(item);
+                    let power = if *over { Rational::MINUS_ONE } else { Rational::ONE };
+                    product = product.zip(factor).and_then(|(product, factor)| product.times(&factor, power));
+                }
+                product
+            }
+            ExprKind::Component(inner, component) if self.body(inner) => {
+                let exponents = match component.to_string().as_str() {
+                    "mass" => [1, 0, 0],
+                    "center" => [0, 1, 0],
+                    _ => [1, 2, 0],
+                };
+                Some(Unit::of(Dimension(exponents.map(Rational::whole))))
+            }
+            ExprKind::Negative(inner)
+            | ExprKind::Magnitude(inner)
+            | ExprKind::Component(inner, _)
+            | ExprKind::Index(inner, _) => self.expr(inner),
+            ExprKind::Power(base, exponent) => {
+                if let Some(power) = constant(exponent) {
+                    return self.expr(base).and_then(|unit| Unit::pure().times(&unit, power));
+                }
+                self.pure(base, "the base of a power whose exponent is no number");
+                self.pure(exponent, "an exponent");
+                Some(Unit::pure())
+            }
+            ExprKind::Call(name, items) => self.call(&name.to_string(), items),
+            ExprKind::Vector(items) => self.common(items.iter(), "a vector"),
+            ExprKind::SumOver(binder, term) => {
+                self.scope.push((name::read(&binder.name.to_string()).base, Some(Unit::pure())));
+                let found = self.expr(term);
+                self.scope.pop();
+                found
+            }
+            ExprKind::Integral { point, integrand, .. } => {
+                let length = Dimension([Rational::ZERO, Rational::ONE, Rational::ZERO]);
+                let mass = Dimension([Rational::ONE, Rational::ZERO, Rational::ZERO]);
+                self.scope.push((name::read(&point.to_string()).base, Some(Unit::of(length))));
+                let found = self.expr(integrand);
+                self.scope.pop();
+                found.and_then(|unit| unit.times(&Unit::of(mass), Rational::ONE))
+            }
+        }
+    }
+
+    /// Whether an expression is the name of a body.
+    fn body(&self, expr: &Expr) -> bool {
+        let ExprKind::Name(ident) = &expr.kind else { return false };
+        let base = name::read(&ident.to_string()).base;
+        matches!(self.model.names.get(&base), Some(&Meaning::Parameter(index)) if self.model.parameters[index].body)
+    }
+
+    fn name(&mut self, text: &str) -> Found {
+        let Name { base, dots } = name::read(text);
+        let model = self.model;
+        let found = if let Some((_, found)) = self.scope.iter().rev().find(|(name, _)| *name == base) {
+            found.clone()
+        } else {
+            let (parameters, coordinates) = (model.parameters.len(), model.coordinates.len());
+            match (base.as_str(), model.names.get(&base)) {
+                (_, Some(&Meaning::Parameter(index))) => Some(Self::quantity(index, &model.parameters[index])),
+                (_, Some(&Meaning::Coordinate(index))) => Some(Self::quantity(parameters + index, &model.coordinates[index])),
+                (_, Some(&Meaning::Input(index))) => Some(Self::quantity(parameters + coordinates + index, &model.inputs[index])),
+                (_, Some(&Meaning::Let(index))) => self.definition(index),
+                ("t", None) => Some(Unit::of(second())),
+                _ => Some(Unit::pure()),
+            }
+        };
+        found.and_then(|unit| unit.times(&Unit::of(second()), Rational::whole(-i64::from(dots))))
+    }
+
+    fn call(&mut self, name: &str, items: &[Expr]) -> Found {
+        let Name { base, dots } = name::read(name);
+        if let Some(&Meaning::Let(index)) = self.model.names.get(&base)
+            && self.model.lets[index].arguments.is_some()
+        {
+            let arguments = items.iter().map(|item| self.expr(item)).collect();
+            let found = self.apply(index, arguments);
+            return found.and_then(|unit| unit.times(&Unit::of(second()), Rational::whole(-i64::from(dots))));
+        }
+        match (name, items) {
+            ("dot", [item]) => self.expr(item).and_then(|unit| unit.times(&Unit::of(second()), Rational::MINUS_ONE)),
+            ("sqrt", [item]) => self.expr(item).and_then(|unit| Unit::pure().times(&unit, Rational::HALF)),
+            ("inner" | "cross", [a, b]) => {
+                let (a, b) = (self.expr(a), self.expr(b));
+                a.zip(b).and_then(|(a, b)| a.times(&b, Rational::ONE))
+            }
+            ("perp" | "height" | "abs", [item]) => self.expr(item),
+            ("sign", [item]) => {
+                self.expr(item);
+                Some(Unit::pure())
+            }
+            ("min" | "max", items) => self.common(items.iter(), &format!("`{name}`")),
+            ("atan2", items) => {
+                self.common(items.iter(), "`atan2`");
+                Some(Unit::pure())
+            }
+            _ => {
+                for item in items {
+                    self.pure(item, &format!("the argument of `{name}`"));
+                }
+                Some(Unit::pure())
+            }
+        }
+    }
+}
+
+fn second() -> Dimension {
+    Dimension([Rational::ZERO, Rational::ZERO, Rational::ONE])
+}

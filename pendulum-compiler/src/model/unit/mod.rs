@@ -1,0 +1,59 @@
+//! Dimensions: what a unit expression means in kilograms, metres and seconds.
+
+pub(crate) mod infer;
+
+use crate::algebra::dimension::Dimension;
+use crate::algebra::number::Literal;
+use crate::algebra::number::Rational;
+use crate::messages::Errors;
+use crate::syntax::ast::{Expr, ExprKind};
+
+/// Reads a unit expression; reports what is no unit.
+pub(crate) fn dimension(expr: &Expr, errors: &mut Errors) -> Option<Dimension> {
+    let refuse = |errors: &mut Errors, what: &str| {
+        errors.once(
+            expr.source,
+            expr.range,
+            format!("{what}; a unit is a product, quotient or power of `kg`, `m`, `s`, `rad`, `N`, `J`, `W`, `Hz` and `1`"),
+        );
+        None
+    };
+    match &expr.kind {
+        ExprKind::Name(name) => {
+            let text = name.to_string();
+            Dimension::of(&text).or_else(|| refuse(errors, &format!("unknown unit `{text}`")))
+        }
+        ExprKind::Number(Literal::Exact(Rational::ONE)) => Some(Dimension::PURE),
+        ExprKind::Product(factors) => {
+            let mut product = Dimension::PURE;
+            for (over, factor) in factors {
+                let power = if *over { Rational::MINUS_ONE } else { Rational::ONE };
+                product = product.times(dimension(factor, errors)?, power)?;
+            }
+            Some(product)
+        }
+        ExprKind::Power(base, exponent) => match constant(exponent) {
+            Some(power) => Dimension::PURE.times(dimension(base, errors)?, power),
+            None => refuse(errors, "this exponent is no number"),
+        },
+        ExprKind::Number(_) => refuse(errors, "a number is no unit"),
+        _ => refuse(errors, "this is no unit"),
+    }
+}
+
+/// The value of an expression of numbers.
+pub(crate) fn constant(expr: &Expr) -> Option<Rational> {
+    match &expr.kind {
+        ExprKind::Number(Literal::Exact(value)) => Some(*value),
+        ExprKind::Negative(inner) => Some(constant(inner)?.negative()),
+        ExprKind::Product(factors) => factors.iter().try_fold(Rational::ONE, |product, (over, factor)| {
+            let factor = constant(factor)?;
+            product.mul(if *over { factor.reciprocal()? } else { factor })
+        }),
+        ExprKind::Sum(terms) => terms.iter().try_fold(Rational::ZERO, |sum, (minus, term)| {
+            let term = constant(term)?;
+            sum.add(if *minus { term.negative() } else { term })
+        }),
+        _ => None,
+    }
+}

@@ -1,0 +1,308 @@
+//! A walk over all expressions: names that nobody declared, functions with the wrong number of arguments.
+
+use super::{Meaning, Model, plain, unknown};
+use crate::algebra::dimension::Dimension;
+use crate::messages::{Errors, Range};
+use crate::syntax::ast::{Binder, Expr, ExprKind, ForceIndex};
+use crate::syntax::elsewhere::{constant, function};
+use crate::syntax::name::{self, Name};
+use crate::syntax::words::{FUNCTIONS, UNITS};
+use proc_macro2::Ident;
+use std::collections::BTreeSet;
+
+/// A walk over all expressions that reports what no one declared.
+pub(super) struct Walk<'m, 'a, 'e> {
+    pub(super) model: &'m Model<'a>,
+    pub(super) errors: &'e mut Errors,
+    pub(super) scope: Vec<String>,
+    /// The parameters that have been met.
+    pub(super) mentioned: BTreeSet<usize>,
+}
+
+impl Walk<'_, '_, '_> {
+    pub(super) fn block(&mut self) {
+        let model = self.model;
+        for quantity in &model.parameters {
+            if let Some(default) = quantity.default.filter(|_| quantity.length.is_none() && !quantity.body) {
+                self.constant(default);
+            }
+        }
+        for definition in &model.lets {
+            let depth = self.scope.len();
+            if let Some(binder) = &definition.index {
+                self.bind(binder);
+            }
+            for argument in definition.arguments.iter().flatten() {
+                self.local(argument, "an argument");
+            }
+            self.expr(&definition.expr);
+            self.scope.truncate(depth);
+        }
+        for (_, expr) in &model.energies {
+            self.expr(expr);
+        }
+        for force in &model.forces {
+            let depth = self.scope.len();
+            match force.index {
+                Some(ForceIndex::Each(binder)) => self.bind(binder),
+                Some(ForceIndex::One(index)) => self.expr(index),
+                None => {}
+            }
+            self.expr(force.expr);
+            self.scope.truncate(depth);
+        }
+    }
+
+    /// A default is made of numbers.
+    fn constant(&mut self, expr: &Expr) {
+        match &expr.kind {
+            ExprKind::Number(_) => {}
+            ExprKind::Name(name) if name::read(&name.to_string()) == (Name { base: "pi".into(), dots: 0 }) => {}
+            ExprKind::Sum(items) | ExprKind::Product(items) => items.iter().for_each(|(_, item)| self.constant(item)),
+            ExprKind::Negative(inner) => self.constant(inner),
+            ExprKind::Power(base, exponent) => {
+                self.constant(base);
+                self.constant(exponent);
+            }
+            ExprKind::Call(name, items)
+                if scalar_functions().any(|(function, count)| name == function && *count == items.len()) =>
+            {
+                for item in items {
+                    self.constant(item);
+                }
+            }
+            _ => self.errors.at(expr.range, "a default is a number; write its value, as in `g: m/s^2 = 9.81`"),
+        }
+    }
+
+    fn bind(&mut self, binder: &Binder) {
+        self.expr(&binder.low);
+        self.expr(&binder.high);
+        self.local(&binder.name, "an index");
+    }
+
+    /// A name that holds in one expression; it may hide a parameter or a definition, but nothing that moves.
+    fn local(&mut self, ident: &Ident, what: &str) {
+        let Name { base, dots } = name::read(&ident.to_string());
+        let hidden = match base.as_str() {
+            _ if 0 < dots => Some(format!("`{ident}` is a time derivative")),
+            "t" => Some(format!("`{ident}` is the time")),
+            "pi" => Some(format!("`{ident}` is the number π")),
+            "i" if what != "an index" => Some(format!("`{ident}` is the imaginary unit")),
+            _ => match self.model.names.get(&base) {
+                Some(Meaning::Coordinate(_)) => Some(format!("`{ident}` is a coordinate")),
+                Some(Meaning::Input(_)) => Some(format!("`{ident}` is a driven input")),
+                _ => None,
+            },
+        };
+        if let Some(hidden) = hidden {
+            self.errors.at(ident.span(), format!("{hidden}, and {what} of this name would hide it; choose another name"));
+        }
+        self.scope.push(base);
+    }
+
+    fn expr(&mut self, expr: &Expr) {
+        match &expr.kind {
+            ExprKind::Number(_) => {}
+            ExprKind::Name(name) => self.name(name),
+            ExprKind::Sum(items) | ExprKind::Product(items) => items.iter().for_each(|(_, item)| self.expr(item)),
+            ExprKind::Negative(inner) | ExprKind::Magnitude(inner) => self.expr(inner),
+            ExprKind::Power(base, exponent) => {
+                self.expr(base);
+                self.expr(exponent);
+            }
+            ExprKind::Call(name, items) => {
+                self.function(name, items, expr.range);
+                for item in items {
+                    self.expr(item);
+                }
+            }
+            ExprKind::Index(base, index) => {
+                self.expr(base);
+                self.expr(index);
+            }
+            ExprKind::Component(base, component) => {
+                self.expr(base);
+                let known: &[&str] = if self.body(base) { &["mass", "center", "inertia"] } else { &["x", "y", "z"] };
+                if !known.iter().any(|known| component == known) {
+                    let list = known.iter().map(|name| format!("`.{name}`")).collect::<Vec<_>>().join(", ");
+                    self.errors.at(component.span(), format!("unknown component `{component}`; there are {list}"));
+                }
+            }
+            ExprKind::Vector(items) => {
+                for item in items {
+                    self.expr(item);
+                }
+            }
+            ExprKind::SumOver(binder, term) => {
+                let depth = self.scope.len();
+                self.bind(binder);
+                self.expr(term);
+                self.scope.truncate(depth);
+            }
+            ExprKind::Integral { point, body, integrand } => {
+                let Name { base, dots } = name::read(&body.to_string());
+                match self.model.names.get(&base) {
+                    Some(&Meaning::Parameter(index)) if dots == 0 && self.model.parameters[index].body => {
+                        self.mentioned.insert(index);
+                    }
+                    Some(_) => {
+                        self.errors.at(body.span(), format!("`{body}` is no body; declare it as `{body}: body` in the struct"));
+                    }
+                    None => self.name(body),
+                }
+                self.local(point, "a point");
+                self.expr(integrand);
+                self.scope.pop();
+            }
+        }
+    }
+
+    /// Whether an expression is the name of a body.
+    fn body(&self, expr: &Expr) -> bool {
+        let ExprKind::Name(ident) = &expr.kind else { return false };
+        let Name { base, dots } = name::read(&ident.to_string());
+        let meaning = self.model.names.get(&base).filter(|_| dots == 0 && !self.scope.contains(&base));
+        matches!(meaning, Some(&Meaning::Parameter(index)) if self.model.parameters[index].body)
+    }
+
+    fn name(&mut self, ident: &Ident) {
+        let Name { base, dots } = name::read(&ident.to_string());
+        if self.scope.contains(&base) {
+            return;
+        }
+        if let Some(&Meaning::Parameter(index)) = self.model.names.get(&base) {
+            self.mentioned.insert(index);
+        }
+        match (base.as_str(), self.model.names.get(&base)) {
+            ("t" | "pi" | "i", _) if dots == 0 => {}
+            ("t" | "pi" | "i", _) => {
+                self.errors.at(ident.span(), format!("`{ident}` does not move as a coordinate does; write a number"));
+            }
+            (_, Some(Meaning::Parameter(_))) if 0 < dots => self.errors.at(
+                ident.span(),
+                format!(
+                    "`{}` is a parameter, so nothing in `{ident}` moves; declare it `driven` or as a coordinate",
+                    plain(ident)
+                ),
+            ),
+            (_, Some(Meaning::Coordinate(_))) if 1 < dots => {
+                self.errors.at(ident.span(), acceleration(&ident.to_string()));
+            }
+            (_, Some(Meaning::Input(_))) if 2 < dots => {
+                self.errors.at(ident.span(), format!("`{ident}` is a third derivative; driven inputs have two"));
+            }
+            (_, Some(_)) => {}
+            (_, None) if self.model.block.recovery.declarations => {}
+            (text, None) if FUNCTIONS.iter().any(|(function, _)| *function == text) => {
+                self.errors.at(ident.span(), format!("`{ident}` is a function; write `{ident}(…)`"));
+            }
+            (_, None) => {
+                let message = self.unknown(&ident.to_string());
+                self.errors.at(ident.span(), message);
+            }
+        }
+    }
+
+    /// What is wrong with a name that nobody declared.
+    fn unknown(&self, text: &str) -> String {
+        let moving = |stem: &str| {
+            let Name { base, dots } = name::read(stem);
+            self.model.names.get(&base).filter(|meaning| dots == 0 && !matches!(meaning, Meaning::Parameter(_)))
+        };
+        if let Some(plain) = name::unaccented(text)
+            && moving(&plain).is_some()
+        {
+            return format!("`{text}` has an accent, and a derivative has a dot; write {}", name::dotted(&plain));
+        }
+        for suffix in ["ddot", "dot"] {
+            if let Some(stem) = text.strip_suffix(suffix)
+                && let Some(meaning) = moving(stem)
+            {
+                return match meaning {
+                    Meaning::Coordinate(_) if suffix == "ddot" => acceleration(text),
+                    _ => format!("unknown name `{text}`; did you mean `{stem}_{suffix}`?"),
+                };
+            }
+        }
+        let known = self.known();
+        if !known.iter().any(|known| known.eq_ignore_ascii_case(text)) {
+            if Dimension::of(text).is_some() {
+                return format!("unknown name `{text}`; declare it as a parameter; {UNITS}");
+            }
+            // A letter alone is a quantity more often than a constant.
+            if let Some(constant) = constant(text, self.model.block.ascii).filter(|_| 1 < text.len()) {
+                return format!("unknown name `{text}`; write `{constant}`");
+            }
+        }
+        unknown(text, known.iter().map(String::as_str))
+    }
+
+    fn function(&mut self, ident: &Ident, items: &[Expr], range: Range) {
+        let count = items.len();
+        let Name { base, .. } = name::read(&ident.to_string());
+        if let Some(Meaning::Let(index)) = self.model.names.get(&base)
+            && let Some(arguments) = &self.model.lets[*index].arguments
+        {
+            if arguments.len() != count {
+                self.errors.at(range, format!("`{ident}` takes {}; {count} stand here", plural(arguments.len())));
+            }
+            return;
+        }
+        if let Some(&(_, expected)) = FUNCTIONS.iter().find(|(function, _)| ident == function) {
+            if let ("dot", Some(product)) = (ident.to_string().as_str(), function(&ident.to_string(), items)) {
+                self.errors.at(range, format!("`dot` is the derivative of one argument; write `{product}` for a scalar product"));
+            } else if expected != count {
+                self.errors.at(range, format!("`{ident}` takes {}; {count} stand here", plural(expected)));
+            }
+            return;
+        }
+        if ident == "sum" {
+            self.errors.at(range, "`sum` runs over an index; write `sum(k in 0..5, …)`");
+        } else if self.model.names.contains_key(&base) || self.scope.contains(&base) || matches!(base.as_str(), "t" | "pi" | "i")
+        {
+            self.errors.at(
+                ident.span(),
+                format!("`{ident}` is no function, and there is no implicit multiplication; write `{ident}*(…)`"),
+            );
+        } else if !self.model.block.recovery.declarations {
+            let lets = self
+                .model
+                .lets
+                .iter()
+                .filter(|definition| definition.arguments.is_some())
+                .map(|definition| definition.name.to_string());
+            let known: Vec<String> = FUNCTIONS.iter().map(|(function, _)| (*function).to_owned()).chain(lets).collect();
+            let nearest = || name::nearest(&ident.to_string(), known.iter().map(String::as_str));
+            let message = match (function(&ident.to_string(), items), nearest()) {
+                (Some(call), _) => format!("unknown function `{ident}`; write `{call}`"),
+                (None, Some(near)) => format!("unknown function `{ident}`; did you mean `{near}`?"),
+                (None, None) => format!("unknown function `{ident}`; define it with `let {ident}(p) = …;`"),
+            };
+            self.errors.at(ident.span(), message);
+        }
+    }
+
+    /// Every declared name as written.
+    fn known(&self) -> Vec<String> {
+        let quantities = self.model.parameters.iter().chain(&self.model.coordinates).chain(&self.model.inputs);
+        quantities
+            .map(|quantity| quantity.name)
+            .chain(self.model.lets.iter().map(|definition| &definition.name))
+            .map(ToString::to_string)
+            .collect()
+    }
+}
+
+/// The functions of the table that take scalars to a scalar.
+fn scalar_functions() -> impl Iterator<Item = &'static (&'static str, usize)> {
+    FUNCTIONS.iter().take_while(|(function, _)| *function != "dot")
+}
+
+fn acceleration(name: &str) -> String {
+    format!("`{name}` is an acceleration, and a Lagrangian has none; only driven inputs have a second derivative")
+}
+
+fn plural(count: usize) -> String {
+    if count == 1 { "one argument".into() } else { format!("{count} arguments") }
+}

@@ -1,0 +1,126 @@
+//! A block as written: spans, no meaning.
+
+use crate::algebra::number::Literal;
+use crate::messages::Range;
+use proc_macro2::Ident;
+use syn::{Attribute, Visibility};
+
+/// A whole `lagrangian!` block.
+pub(crate) struct Block {
+    pub(crate) attributes: Vec<Attribute>,
+    pub(crate) visibility: Visibility,
+    pub(crate) name: Ident,
+    pub(crate) fields: Vec<Field>,
+    pub(crate) statements: Vec<Statement>,
+    pub(crate) recovery: Recovery,
+    /// No name in it has a letter beyond ASCII.
+    pub(crate) ascii: bool,
+}
+
+impl Block {
+    /// The `cfg` attributes of the struct: what they leave out is left out with all that belongs to it.
+    pub(crate) fn conditions(&self) -> impl Iterator<Item = &Attribute> {
+        self.attributes.iter().filter(|attribute| attribute.path().is_ident("cfg"))
+    }
+}
+
+/// What could not be parsed: its absence is no second mistake.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Recovery {
+    pub(crate) declarations: bool,
+    pub(crate) energies: bool,
+}
+
+/// `m: kg,` or `g: m/s^2 = 9.81,`.
+pub(crate) struct Field {
+    pub(crate) attributes: Vec<Attribute>,
+    pub(crate) name: Ident,
+    pub(crate) kind: Kind,
+    pub(crate) default: Option<Expr>,
+}
+
+/// What stands after the colon of a declaration.
+#[derive(Debug)]
+pub(crate) enum Kind {
+    /// A scalar with or without a unit.
+    Scalar(Option<Expr>),
+    /// `[unit; length]`, where `_` is no unit.
+    Array { unit: Option<Expr>, length: Expr },
+    /// `body`.
+    Body(Range),
+}
+
+/// A line that ends in `;`.
+#[derive(Debug)]
+pub(crate) enum Statement {
+    Coordinate { name: Ident, length: Option<Expr>, unit: Option<Expr> },
+    Driven { name: Ident, kind: Kind },
+    Let(Let),
+    Energy { role: Role, keyword: Range, expr: Expr },
+    Force { name: Ident, index: Option<ForceIndex>, expr: Expr },
+}
+
+/// `let y = …`, `let y[k in 0..5] = …` or `let r(p) = …`.
+#[derive(Debug)]
+pub(crate) struct Let {
+    pub(crate) name: Ident,
+    pub(crate) index: Option<Binder>,
+    pub(crate) arguments: Option<Vec<Ident>>,
+    pub(crate) expr: Expr,
+}
+
+/// `k in 0..5`.
+#[derive(Debug)]
+pub(crate) struct Binder {
+    pub(crate) name: Ident,
+    pub(crate) low: Expr,
+    pub(crate) high: Expr,
+    pub(crate) inclusive: bool,
+}
+
+/// The index of a `force` statement: one coordinate of a family, or all of them.
+#[derive(Debug)]
+pub(crate) enum ForceIndex {
+    One(Expr),
+    Each(Binder),
+}
+
+/// What an expression contributes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    Kinetic,
+    Potential,
+    Lagrangian,
+    Dissipation,
+}
+
+/// An expression; `source` numbers it within the block.
+#[derive(Debug)]
+pub(crate) struct Expr {
+    pub(crate) kind: ExprKind,
+    pub(crate) range: Range,
+    pub(crate) source: usize,
+}
+
+#[derive(Debug)]
+pub(crate) enum ExprKind {
+    Number(Literal),
+    Name(Ident),
+    /// Each term with its sign; true is minus.
+    Sum(Vec<(bool, Expr)>),
+    /// Each factor; true is divided by.
+    Product(Vec<(bool, Expr)>),
+    Negative(Box<Expr>),
+    Power(Box<Expr>, Box<Expr>),
+    Call(Ident, Vec<Expr>),
+    Index(Box<Expr>, Box<Expr>),
+    Component(Box<Expr>, Ident),
+    Vector(Vec<Expr>),
+    Magnitude(Box<Expr>),
+    SumOver(Box<Binder>, Box<Expr>),
+    Integral {
+        point: Ident,
+        body: Ident,
+        integrand: Box<Expr>,
+    },
+}

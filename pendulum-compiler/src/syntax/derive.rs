@@ -1,0 +1,63 @@
+//! The traits that a block derives for its struct: those that cannot be are told at their names.
+
+use crate::messages::{Errors, Range};
+use proc_macro2::TokenStream;
+use quote::quote;
+use syn::parse::Parser;
+use syn::punctuated::Punctuated;
+use syn::spanned::Spanned;
+use syn::{Attribute, Path, Token};
+
+/// What cannot be derived over floating-point numbers, and what takes its place.
+const EXACT: &[(&str, &str)] = &[
+    ("Eq", "leave it out, `PartialEq` compares them"),
+    ("Ord", "leave it out, `PartialOrd` compares them"),
+    ("Hash", "leave it out and hash the bits of the fields"),
+];
+
+/// Reports the derived traits that the struct cannot have, and takes them from its attributes:
+/// rustc would say it of code that the user has not written.
+pub(crate) fn check(attributes: &mut [Attribute], errors: &mut Errors) {
+    for attribute in attributes {
+        let all = paths(attribute);
+        let mut kept: Punctuated<Path, Token![,]> = Punctuated::new();
+        for path in &all {
+            match refusal(path) {
+                Some(message) => {
+                    let last = path.segments.last().map_or(path.span(), Spanned::span);
+                    errors.at(Range { first: path.span(), last }, message);
+                }
+                None => kept.push(path.clone()),
+            }
+        }
+        if kept.len() < all.len()
+            && let syn::Meta::List(list) = &mut attribute.meta
+        {
+            list.tokens = quote!(#kept);
+        }
+    }
+}
+
+/// The traits of a `derive` attribute; none of any other.
+fn paths(attribute: &Attribute) -> Punctuated<Path, Token![,]> {
+    let tokens = match &attribute.meta {
+        syn::Meta::List(list) if list.path.is_ident("derive") => list.tokens.clone(),
+        _ => TokenStream::new(),
+    };
+    Punctuated::parse_terminated.parse2(tokens).unwrap_or_default()
+}
+
+/// The name of a trait of the standard library: alone, or in a path that begins with `core` or
+/// `std`.
+fn standard(path: &Path) -> Option<String> {
+    let first = path.segments.first()?;
+    let known = path.segments.len() == 1 || first.ident == "core" || first.ident == "std";
+    known.then(|| path.segments.last().map(|last| last.ident.to_string()))?
+}
+
+/// Why a trait cannot be derived.
+fn refusal(path: &Path) -> Option<String> {
+    let name = standard(path)?;
+    let (_, advice) = EXACT.iter().find(|(exact, _)| *exact == name)?;
+    Some(format!("`{name}` cannot be derived: the parameters are floating-point numbers, which do not have it; {advice}"))
+}

@@ -1,0 +1,167 @@
+//! A block: its struct, the fields with their units and the statements, each on its own.
+
+use super::Parser;
+use super::token::{end, identifier, skip, unexpected};
+use crate::algebra::number::Literal;
+use crate::messages::Range;
+use crate::syntax::ast::{Block, Expr, ExprKind, Field, Kind, Recovery};
+use crate::syntax::text::text;
+use proc_macro2::{Ident, TokenStream, TokenTree};
+use syn::ext::IdentExt;
+use syn::parse::{ParseStream, Result};
+use syn::spanned::Spanned;
+use syn::{Attribute, Token, Visibility, braced, bracketed};
+
+impl Parser<'_> {
+    pub(super) fn block(&mut self, input: ParseStream) -> Result<Block> {
+        let attributes = input.call(Attribute::parse_outer)?;
+        let visibility: Visibility = input.parse()?;
+        if !input.peek(Token![struct]) {
+            return Err(Range::from(input.span())
+                .error("a block begins with its struct; write `pub struct Name { … }` with the parameters"));
+        }
+        input.parse::<Token![struct]>()?;
+        let name = identifier(input, "the name of the struct")?;
+        if !input.peek(syn::token::Brace) {
+            return Err(Range::from(input.span())
+                .error("the parameters are missing; write `{ m: kg, L: m }` after the name of the struct"));
+        }
+        let content;
+        braced!(content in input);
+        let mut fields = Vec::new();
+        while !content.is_empty() {
+            match self.field(&content) {
+                Ok(field) => fields.push(field),
+                Err(error) => {
+                    self.errors.push(error);
+                    self.recovery.declarations = true;
+                    skip(&content, ',');
+                }
+            }
+        }
+        let mut statements = Vec::new();
+        while !input.is_empty() {
+            let word = input.fork().call(Ident::parse_any).map(|word| word.to_string()).unwrap_or_default();
+            match self.statement(input) {
+                Ok(statement) => statements.push(statement),
+                Err(error) => {
+                    self.errors.push(error);
+                    // The number of coordinates is part of the type: without one, every use of the system would be a mistake.
+                    statements.append(&mut self.begun);
+                    match word.as_str() {
+                        "kinetic" | "potential" | "lagrangian" | "dissipation" | "force" => self.recovery.energies = true,
+                        _ => self.recovery = Recovery { declarations: true, energies: true },
+                    }
+                    skip(input, ';');
+                }
+            }
+        }
+        Ok(Block { attributes, visibility, name, fields, statements, recovery: self.recovery, ascii: self.ascii })
+    }
+
+    fn field(&mut self, input: ParseStream) -> Result<Field> {
+        let mut attributes = input.call(Attribute::parse_outer)?;
+        let conditional = |attribute: &Attribute| attribute.path().is_ident("cfg");
+        if let Some(attribute) = attributes.iter().find(|attribute| conditional(attribute)) {
+            let range = Range { first: attribute.pound_token.spans[0], last: attribute.span() };
+            let message = "`cfg` has no place on a parameter, which the equations need in every build; write it above the struct";
+            self.errors.at(range, message);
+        }
+        attributes.retain(|attribute| !conditional(attribute));
+        let _: Visibility = input.parse()?;
+        let name = self.declared(input, "the name of a parameter")?;
+        let kind = self.declared_kind(input, &name)?;
+        let default = if input.peek(Token![=]) {
+            input.parse::<Token![=]>()?;
+            Some(self.expr(input)?)
+        } else {
+            None
+        };
+        if !input.is_empty() && !input.peek(Token![,]) {
+            return Err(unexpected(input, "`,`"));
+        }
+        if !input.is_empty() {
+            input.parse::<Token![,]>()?;
+        }
+        Ok(Field { attributes, name, kind, default })
+    }
+
+    /// What stands after the name of a parameter or of a driven input: a colon and a kind, or
+    /// nothing.
+    pub(super) fn declared_kind(&mut self, input: ParseStream, name: &Ident) -> Result<Kind> {
+        if input.peek(syn::token::Bracket) {
+            let brackets = Range::from(input.span());
+            let content;
+            bracketed!(content in input);
+            let length = content.parse::<TokenStream>()?.to_string();
+            let unit = if input.peek(Token![:]) {
+                input.parse::<Token![:]>()?;
+                self.unit(input)?.map_or_else(|| "_".to_owned(), |unit| text(&unit))
+            } else {
+                "_".to_owned()
+            };
+            let message = format!("the length stands with the unit; write `{name}: [{unit}; {length}]`");
+            return Err(brackets.error(message));
+        }
+        if !input.peek(Token![:]) {
+            return Ok(Kind::Scalar(None));
+        }
+        input.parse::<Token![:]>()?;
+        self.kind(input)
+    }
+
+    pub(super) fn kind(&mut self, input: ParseStream) -> Result<Kind> {
+        if input.peek(syn::token::Bracket) {
+            let content;
+            bracketed!(content in input);
+            if content.peek(Token![;]) {
+                let place = Range::from(content.parse::<Token![;]>()?.span());
+                return Err(place.error(unit_missing(&content.parse::<TokenStream>()?.to_string())));
+            }
+            let unit = self.unit(&content)?;
+            if !content.peek(Token![;]) {
+                return Err(no_length(&content, unit.as_ref()));
+            }
+            content.parse::<Token![;]>()?;
+            let length = self.expr(&content)?;
+            end(&content)?;
+            return Ok(Kind::Array { unit, length });
+        }
+        match self.unit(input)? {
+            Some(Expr { kind: ExprKind::Name(name), range, .. }) if name == "body" => Ok(Kind::Body(range)),
+            unit => Ok(Kind::Scalar(unit)),
+        }
+    }
+
+    /// A unit, or `_` where none is known.
+    fn unit(&mut self, input: ParseStream) -> Result<Option<Expr>> {
+        if input.peek(Token![_]) {
+            input.parse::<Token![_]>()?;
+            return Ok(None);
+        }
+        self.quantity(input).map(Some)
+    }
+}
+
+/// What is wrong between brackets that hold a unit without a length, or a length without a unit.
+fn no_length(content: ParseStream, unit: Option<&Expr>) -> syn::Error {
+    match unit {
+        Some(Expr { kind: ExprKind::Number(Literal::Exact(length)), range, .. }) if content.is_empty() => {
+            range.error(unit_missing(&length.to_string()))
+        }
+        Some(unit) if content.peek(Token![,]) => {
+            let place = Range::from(content.span());
+            let rest = content.parse::<TokenStream>().unwrap_or_default().into_iter();
+            // A comma at the end is none between components.
+            let commas = rest.map(|tree| matches!(tree, TokenTree::Punct(sign) if sign.as_char() == ',')).collect::<Vec<_>>();
+            let length = commas.iter().filter(|comma| **comma).count() + usize::from(commas.last() == Some(&false));
+            place.error(format!("all components have one unit; write `[{}; {}]` for a vector", text(unit), length.max(2)))
+        }
+        _ => Range::from(content.span()).error("a length is missing; write `[m; 2]` for a vector, `[kg; 5]` for a family"),
+    }
+}
+
+fn unit_missing(length: &str) -> String {
+    let length = if length.is_empty() { "2" } else { length };
+    format!("a unit is missing; write `[m; {length}]`, or `[_; {length}]` for a vector without a unit")
+}

@@ -1,0 +1,290 @@
+//! Expressions: operators by descending precedence, then names, calls and numbers.
+
+use super::foreign::{FOREIGN, no_condition, no_unit, path};
+use super::token::{checked, comma, end, fragment, identifier, unexpected};
+use super::{Parser, to_the_last};
+use crate::algebra::number::Literal;
+use crate::algebra::number::Rational;
+use crate::messages::Range;
+use crate::syntax::ast::{Expr, ExprKind};
+use proc_macro2::{Ident, TokenStream, TokenTree};
+use quote::ToTokens;
+use syn::ext::IdentExt;
+use syn::parse::{ParseStream, Result};
+use syn::spanned::Spanned;
+use syn::{Lit, Token, bracketed, parenthesized};
+
+/// Deeper expressions are refused: they would overflow the stack before they meant anything.
+const DEPTH: usize = 128;
+
+impl Parser<'_> {
+    pub(super) fn expr(&mut self, input: ParseStream) -> Result<Expr> {
+        let expr = self.expr_in(input, false)?;
+        no_condition(input)?;
+        Ok(expr)
+    }
+
+    /// A unit is written as an expression is.
+    pub(super) fn quantity(&mut self, input: ParseStream) -> Result<Expr> {
+        self.expr_in(input, false)
+    }
+
+    fn expr_in(&mut self, input: ParseStream, barred: bool) -> Result<Expr> {
+        let outside = std::mem::replace(&mut self.barred, barred);
+        self.depth += 1;
+        let result = if DEPTH < self.depth {
+            Err(Range::from(input.span()).error("this expression is nested too deeply; name a part of it with `let`"))
+        } else {
+            self.sum(input)
+        };
+        self.depth -= 1;
+        self.barred = outside;
+        result
+    }
+
+    fn sum(&mut self, input: ParseStream) -> Result<Expr> {
+        let first = self.product(input)?;
+        if !input.peek(Token![+]) && !input.peek(Token![-]) {
+            return Ok(first);
+        }
+        let mut terms = vec![(false, first)];
+        while input.peek(Token![+]) || input.peek(Token![-]) {
+            let minus = input.peek(Token![-]);
+            input.parse::<TokenTree>()?;
+            terms.push((minus, self.product(input)?));
+        }
+        let range = terms[0].1.range.to(terms[terms.len() - 1].1.range);
+        Ok(self.node(ExprKind::Sum(terms), range))
+    }
+
+    fn product(&mut self, input: ParseStream) -> Result<Expr> {
+        let first = self.unary(input)?;
+        if !input.peek(Token![*]) && !input.peek(Token![/]) {
+            return Ok(first);
+        }
+        let mut factors = vec![(false, first)];
+        while input.peek(Token![*]) || input.peek(Token![/]) {
+            let over = input.peek(Token![/]);
+            input.parse::<TokenTree>()?;
+            if input.peek(Token![*]) {
+                return Err(Range::from(input.span()).error("`**` is not an operator; write `^`"));
+            }
+            factors.push((over, self.unary(input)?));
+        }
+        let range = factors[0].1.range.to(factors[factors.len() - 1].1.range);
+        Ok(self.node(ExprKind::Product(factors), range))
+    }
+
+    fn unary(&mut self, input: ParseStream) -> Result<Expr> {
+        // A sign inside a fragment is that of its own operand.
+        if fragment(input).is_some() || !input.peek(Token![-]) {
+            return self.power(input);
+        }
+        let sign: Range = input.parse::<TokenTree>()?.span().into();
+        self.depth += 1;
+        let operand = if DEPTH < self.depth {
+            Err(Range::from(input.span()).error("too many signs in a row; write one"))
+        } else {
+            self.unary(input)
+        };
+        self.depth -= 1;
+        let operand = operand?;
+        let range = sign.to(operand.range);
+        Ok(self.node(ExprKind::Negative(Box::new(operand)), range))
+    }
+
+    fn power(&mut self, input: ParseStream) -> Result<Expr> {
+        let base = self.postfix(input)?;
+        if !input.peek(Token![^]) {
+            return Ok(base);
+        }
+        self.no_powered_function(input, &base)?;
+        input.parse::<Token![^]>()?;
+        self.depth += 1;
+        let exponent = if DEPTH < self.depth {
+            Err(Range::from(input.span()).error("too many powers in a row; name a part with `let`"))
+        } else {
+            self.unary(input)
+        };
+        self.depth -= 1;
+        let exponent = exponent?;
+        let range = base.range.to(exponent.range);
+        Ok(self.node(ExprKind::Power(Box::new(base), Box::new(exponent)), range))
+    }
+
+    fn postfix(&mut self, input: ParseStream) -> Result<Expr> {
+        let mut expr = self.primary(input)?;
+        while fragment(input).is_none() {
+            if input.peek(syn::token::Bracket) {
+                let content;
+                let brackets = bracketed!(content in input);
+                let index = self.expr(&content)?;
+                end(&content)?;
+                let range = expr.range.to(brackets.span.close().into());
+                expr = self.node(ExprKind::Index(Box::new(expr), Box::new(index)), range);
+            } else if input.peek(Token![.]) && !input.peek(Token![..]) {
+                input.parse::<Token![.]>()?;
+                let component = identifier(input, "a component, `x`, `y` or `z`")?;
+                if input.peek(syn::token::Paren) {
+                    return Err(self.method(input, expr, &component));
+                }
+                let range = expr.range.to(component.span().into());
+                expr = self.node(ExprKind::Component(Box::new(expr), component), range);
+            } else {
+                break;
+            }
+        }
+        self.no_operand(input, &expr)?;
+        Ok(expr)
+    }
+
+    fn primary(&mut self, input: ParseStream) -> Result<Expr> {
+        if let Some(tokens) = fragment(input) {
+            input.parse::<TokenTree>()?;
+            return self.inside(tokens, Self::expr);
+        }
+        if input.peek(Lit) {
+            return self.number(input);
+        }
+        if input.peek(syn::token::Paren) {
+            let content;
+            parenthesized!(content in input);
+            let inner = self.expr(&content)?;
+            end(&content)?;
+            return Ok(inner);
+        }
+        if input.peek(syn::token::Bracket) {
+            let content;
+            let brackets = bracketed!(content in input);
+            let items = self.list(&content)?;
+            let range = Range { first: brackets.span.open(), last: brackets.span.close() };
+            return Ok(self.node(ExprKind::Vector(items), range));
+        }
+        if input.peek(Token![|]) {
+            let open = input.parse::<Token![|]>()?;
+            let inner = self.expr_in(input, true)?;
+            no_condition(input)?;
+            if !input.peek(Token![|]) {
+                return Err(Range::from(open.span()).error("this `|` is not closed; write `|u|`"));
+            }
+            let close = input.parse::<Token![|]>()?;
+            let range = Range { first: open.span(), last: close.span() };
+            return Ok(self.node(ExprKind::Magnitude(Box::new(inner)), range));
+        }
+        if input.peek(Ident::peek_any) {
+            return self.named(input);
+        }
+        if input.peek(Token![::]) {
+            return Err(path(input, None, self.ascii));
+        }
+        if input.peek(Token![.]) && input.peek2(Lit) {
+            let dot = Range::from(input.parse::<Token![.]>()?.span());
+            let digits: Lit = input.parse()?;
+            let range = dot.to(digits.span().into());
+            return Err(range.error(format!("a number begins with a digit; write `0.{}`", digits.to_token_stream())));
+        }
+        if input.is_empty() {
+            return Err(Range::from(input.span()).error("an expression is missing here"));
+        }
+        Err(unexpected(input, "a number, a name, `(`, `[` or `|`"))
+    }
+
+    /// What stands in a fragment, up to its end.
+    pub(super) fn inside<R>(
+        &mut self,
+        tokens: TokenStream,
+        parse: impl FnOnce(&mut Self, ParseStream) -> Result<R>,
+    ) -> Result<R> {
+        let content = |content: ParseStream| {
+            let result = parse(self, content)?;
+            end(content)?;
+            Ok(result)
+        };
+        to_the_last(tokens, content)
+    }
+
+    fn named(&mut self, input: ParseStream) -> Result<Expr> {
+        let name = input.call(Ident::parse_any)?;
+        checked(&name)?;
+        if let Some(row) = FOREIGN.iter().find(|row| name == row.0) {
+            return Err(Range::from(name.span()).error(format!("`{name}` is Rust, which has no place in a formula; {}", row.1)));
+        }
+        if input.peek(Token![::]) {
+            return Err(path(input, Some(&name), self.ascii));
+        }
+        let start = Range::from(name.span());
+        if !input.peek(syn::token::Paren) {
+            return Ok(self.node(ExprKind::Name(name), start));
+        }
+        let content;
+        let parens = parenthesized!(content in input);
+        let range = start.to(parens.span.close().into());
+        let kind = if name == "sum" && content.peek2(Token![in]) {
+            let binder = self.binder(&content)?;
+            comma(&content)?;
+            let term = self.expr(&content)?;
+            end(&content)?;
+            ExprKind::SumOver(Box::new(binder), Box::new(term))
+        } else if name == "integral" {
+            let point = identifier(&content, "the point of integration; write `integral(p in B, …)`")?;
+            if !content.peek(Token![in]) {
+                return Err(unexpected(&content, "`in` and the name of a body"));
+            }
+            content.parse::<Token![in]>()?;
+            let body = identifier(&content, "the name of a body")?;
+            comma(&content)?;
+            let integrand = Box::new(self.expr(&content)?);
+            end(&content)?;
+            ExprKind::Integral { point, body, integrand }
+        } else {
+            ExprKind::Call(name, self.list(&content)?)
+        };
+        Ok(self.node(kind, range))
+    }
+
+    pub(super) fn list(&mut self, content: ParseStream) -> Result<Vec<Expr>> {
+        let mut items = Vec::new();
+        while !content.is_empty() {
+            items.push(self.expr(content)?);
+            if !content.is_empty() {
+                comma(content)?;
+            }
+        }
+        Ok(items)
+    }
+
+    fn number(&mut self, input: ParseStream) -> Result<Expr> {
+        let literal: Lit = input.parse()?;
+        let span = literal.span();
+        let (digits, suffix) = match &literal {
+            Lit::Int(literal) => (literal.base10_digits().to_owned(), literal.suffix().to_owned()),
+            Lit::Float(literal) => (literal.base10_digits().to_owned(), literal.suffix().to_owned()),
+            _ => {
+                return Err(
+                    Range::from(span).error("only numbers and names can stand in a formula; write a number such as `9.81`")
+                );
+            }
+        };
+        if !suffix.is_empty() {
+            let message = if suffix == "f32" || suffix == "f64" {
+                format!("numbers here are exact and have no suffix; write `{digits}`")
+            } else if self.is_unit(Some(&suffix), input) {
+                no_unit()
+            } else {
+                format!("there is no implicit multiplication; write `{digits}*{suffix}`")
+            };
+            return Err(Range::from(span).error(message));
+        }
+        let literal = match Rational::decimal(&digits) {
+            Some(value) => Literal::Exact(value),
+            None if digits.parse::<f64>().is_ok_and(f64::is_finite) => Literal::Decimal(digits),
+            None => return Err(Range::from(span).error("this number is beyond the range of `f64`; write a smaller one")),
+        };
+        Ok(self.node(ExprKind::Number(literal), span.into()))
+    }
+
+    fn node(&mut self, kind: ExprKind, range: Range) -> Expr {
+        self.sources += 1;
+        Expr { kind, range, source: self.sources }
+    }
+}

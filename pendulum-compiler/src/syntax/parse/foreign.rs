@@ -1,0 +1,190 @@
+//! What has no place in a formula, and what to write instead.
+
+use super::Parser;
+use super::statement::STATEMENTS;
+use super::token::fragment;
+use crate::algebra::dimension::Dimension;
+use crate::messages::Range;
+use crate::syntax::ast::{Expr, ExprKind};
+use crate::syntax::elsewhere::{constant, function};
+use crate::syntax::name;
+use crate::syntax::text::text;
+use crate::syntax::words::{FUNCTIONS, UNITS};
+use proc_macro2::{Delimiter, Ident, TokenTree};
+use syn::ext::IdentExt;
+use syn::parse::{ParseStream, Result};
+use syn::{Lifetime, Lit, Token, parenthesized};
+
+/// Words that begin Rust expressions, and what to write instead.
+#[rustfmt::skip]
+pub(super) const FOREIGN: &[(&str, &str)] = &[
+    ("if", "write `max`, `min`, `abs` or `sign` to tell cases apart"),
+    ("match", "write `max`, `min`, `abs` or `sign` to tell cases apart"),
+    ("for", "write `sum(k in 0..5, …)`"),
+    ("while", "write `sum(k in 0..5, …)`"),
+    ("loop", "write `sum(k in 0..5, …)`"),
+    ("return", "leave it out"),
+    ("unsafe", "leave it out"),
+    ("move", "leave it out"),
+];
+
+/// What is wrong with a number that has a unit.
+pub(super) fn no_unit() -> String {
+    format!("a number in a formula has no unit; {UNITS}")
+}
+
+impl Parser<'_> {
+    /// Two operands side by side: there is no implicit multiplication.
+    pub(super) fn no_operand(&self, input: ParseStream, left: &Expr) -> Result<()> {
+        if input.peek(Token![as]) {
+            return Err(Range::from(input.span()).error("`as` is Rust, which has no place in a formula; leave the type out"));
+        }
+        if let (ExprKind::Name(name), true) = (&left.kind, input.peek(Lifetime)) {
+            let message = format!("`'` is no derivative; write {}", name::dotted(&name.to_string()));
+            return Err(Range::from(input.span()).error(message));
+        }
+        if fragment(input).is_some()
+            || input.peek(Token![|]) && !self.barred
+            || input.peek(Ident::peek_any) && !input.peek(Token![in])
+            || input.peek(Lit) && !input.peek(Token![-])
+            || input.peek(syn::token::Paren)
+        {
+            let token = input.fork().parse::<TokenTree>()?;
+            let right = Range::from(token.span());
+            if STATEMENTS.iter().any(|word| token.to_string() == *word) {
+                return Err(right.error(format!("`;` is missing before `{token}`; end the statement above with `;`")));
+            }
+            return Err(match (&left.kind, &token) {
+                (_, TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis => match &left.kind {
+                    ExprKind::Name(_) | ExprKind::Number(_) => {
+                        Range::from(group.span_open()).error("there is no implicit multiplication; write `*` before `(`")
+                    }
+                    _ => Range::from(group.span_open()).error("an operator is missing before `(`; write `*` to multiply"),
+                },
+                (ExprKind::Name(name), _) if self.is_function(name) => {
+                    let count = FUNCTIONS.iter().find(|row| name == row.0).map_or(1, |row| row.1);
+                    let arguments = match token {
+                        TokenTree::Ident(_) | TokenTree::Literal(_) if count == 1 => token.to_string(),
+                        _ => vec!["…"; count].join(", "),
+                    };
+                    let (plural, verb) = if count == 1 { ("", "stands") } else { ("s", "stand") };
+                    let message = format!("the argument{plural} of `{name}` {verb} in parentheses; write `{name}({arguments})`");
+                    right.error(message)
+                }
+                (ExprKind::Number(_), _) if self.is_unit(None, input) => right.error(no_unit()),
+                _ => right.error(format!("there is no implicit multiplication; write `*` before `{token}`")),
+            });
+        }
+        Ok(())
+    }
+
+    /// The power of a function before its argument, as in `cos^2(θ)`.
+    pub(super) fn no_powered_function(&mut self, input: ParseStream, base: &Expr) -> Result<()> {
+        let ExprKind::Name(name) = &base.kind else { return Ok(()) };
+        if !self.is_function(name) {
+            return Ok(());
+        }
+        let ahead = input.fork();
+        ahead.parse::<Token![^]>()?;
+        let minus = if ahead.peek(Token![-]) { ahead.parse::<TokenTree>()?.to_string() } else { String::new() };
+        let Ok(power) = ahead.parse::<TokenTree>().map(|power| minus + &power.to_string()) else { return Ok(()) };
+        let (argument, last) = if ahead.peek(syn::token::Paren) {
+            let content;
+            let parens = parenthesized!(content in ahead);
+            (self.expr(&content).map_or_else(|_| "…".to_owned(), |argument| text(&argument)), parens.span.close())
+        } else if ahead.peek(syn::Ident) {
+            let argument: Ident = ahead.parse()?;
+            (argument.to_string(), argument.span())
+        } else {
+            return Ok(());
+        };
+        let inverse = format!("a{name}");
+        let instead = if power == "-1" && FUNCTIONS.contains(&(inverse.as_str(), 1)) {
+            format!("`{inverse}({argument})`, or `1/{name}({argument})`")
+        } else {
+            format!("`{name}({argument})^{power}`")
+        };
+        let message = format!("a function is raised to a power after its argument; write {instead}");
+        Err(base.range.to(last.into()).error(message))
+    }
+
+    /// Whether a unit begins behind a number, with a `suffix` or at the next token: one of its
+    /// names at least is nothing else.
+    pub(super) fn is_unit(&self, suffix: Option<&str>, input: ParseStream) -> bool {
+        let ahead = input.fork();
+        let mut name = suffix.map(str::to_owned);
+        loop {
+            let next = match name.take() {
+                Some(name) => name,
+                None => match ahead.parse::<TokenTree>() {
+                    Ok(TokenTree::Ident(ident)) => ident.to_string(),
+                    Ok(TokenTree::Punct(sign)) if matches!(sign.as_char(), '*' | '/' | '^') => continue,
+                    Ok(TokenTree::Literal(_)) => continue,
+                    _ => return false,
+                },
+            };
+            match (Dimension::of(&next), self.is_declared(&next)) {
+                (None, _) => return false,
+                (Some(_), false) => return true,
+                (Some(_), true) => {}
+            }
+        }
+    }
+
+    /// A method call, and what to write instead.
+    pub(super) fn method(&mut self, input: ParseStream, base: Expr, name: &Ident) -> syn::Error {
+        let method = name.to_string();
+        let mut operands = vec![base];
+        let instead = match self.arguments(input) {
+            Ok(arguments) => {
+                operands.extend(arguments);
+                let list = || operands.iter().map(text).collect::<Vec<_>>().join(", ");
+                let own = FUNCTIONS.contains(&(&method, operands.len())).then(|| format!("{method}({})", list()));
+                own.or_else(|| function(&method, &operands))
+            }
+            Err(_) => None,
+        };
+        let instead = instead.map_or_else(|| "a function of the language, as in `sin(θ)`".to_owned(), |call| format!("`{call}`"));
+        Range::from(name.span()).error(format!("`.{method}()` is Rust, which has no place in a formula; write {instead}"))
+    }
+
+    /// The expressions between a pair of parentheses.
+    fn arguments(&mut self, input: ParseStream) -> Result<Vec<Expr>> {
+        let content;
+        parenthesized!(content in input);
+        self.list(&content)
+    }
+
+    fn is_function(&self, name: &Ident) -> bool {
+        FUNCTIONS.iter().any(|row| name == row.0) && !self.is_declared(&name.to_string())
+    }
+}
+
+/// A comparison, which Rust has and formulas have not.
+pub(super) fn no_condition(input: ParseStream) -> Result<()> {
+    let equal = input.peek(Token![==]) || input.peek(Token![!=]);
+    if equal || input.peek(Token![<]) || input.peek(Token![>]) || input.peek(Token![&&]) || input.peek(Token![?]) {
+        let sign = input.fork().parse::<TokenTree>()?;
+        return Err(Range::from(sign.span())
+            .error("a formula has no conditions; write `max`, `min`, `abs` or `sign` to tell cases apart, as in `max(0, θ)`"));
+    }
+    Ok(())
+}
+
+/// A path, and what to write instead.
+pub(super) fn path(input: ParseStream, first: Option<&Ident>, ascii: bool) -> syn::Error {
+    let start = first.map_or_else(|| input.span(), Ident::span);
+    let (mut text, mut last) = (first.map(Ident::to_string).unwrap_or_default(), (String::new(), start));
+    while input.parse::<Token![::]>().is_ok()
+        && let Ok(name) = input.call(Ident::parse_any)
+    {
+        text = format!("{text}::{name}");
+        last = (name.to_string(), name.span());
+    }
+    let instead = match constant(&last.0, ascii) {
+        Some(constant) => format!("`{constant}`"),
+        None if FUNCTIONS.iter().any(|row| row.0 == last.0) => format!("`{}(…)`", last.0),
+        None => "a number, or declare a parameter".to_owned(),
+    };
+    Range { first: start, last: last.1 }.error(format!("`{text}` is Rust, which has no place in a formula; write {instead}"))
+}

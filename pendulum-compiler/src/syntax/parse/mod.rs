@@ -1,0 +1,119 @@
+//! Tokens to syntax: a recovering parser whose operators bind as in mathematics, not as in Rust.
+//!
+//! Precedence, low to high: `+ -`, `* /`, unary `-`, `^` (to the right), call, index, `|…|`. A statement that does not parse is
+//! reported and skipped to its `;`, so that two mistakes give two messages.
+
+mod block;
+mod expr;
+mod foreign;
+mod statement;
+mod token;
+
+use crate::messages::Errors;
+use crate::syntax::ast::{Block, Recovery, Statement};
+use crate::syntax::name;
+use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
+use std::collections::BTreeSet;
+use syn::parse::{ParseStream, Parser as Syn, Result};
+use syn::{Token, braced};
+use token::{drain, identifier};
+
+/// Parses the path of the runtime and a block; `None` if not even the struct could be read.
+pub(crate) fn all(input: TokenStream, errors: &mut Errors) -> Option<(TokenStream, Block)> {
+    let mut parsed = None;
+    let ascii = is_ascii(input.clone());
+    let outcome = Syn::parse2(|input: ParseStream| Ok((runtime(input)?, input.parse()?)), input);
+    let outcome = outcome.and_then(|(krate, tokens): (TokenStream, TokenStream)| {
+        to_the_last(tokens, |input| {
+            let mut parser = Parser {
+                errors: &mut *errors,
+                sources: 0,
+                depth: 0,
+                barred: false,
+                recovery: Recovery::default(),
+                begun: Vec::new(),
+                declared: BTreeSet::new(),
+                ascii,
+            };
+            match parser.block(input) {
+                Ok(block) => parsed = Some((krate, block)),
+                Err(error) => errors.push(error),
+            }
+            drain(input);
+            Ok(())
+        })
+    });
+    // What recovery has left in some bracket has been reported already.
+    if let Err(error) = outcome
+        && errors.is_empty()
+    {
+        errors.push(error);
+        parsed = None;
+    }
+    parsed
+}
+
+/// Whether no name has a letter beyond ASCII; comments and other literals may.
+fn is_ascii(tokens: TokenStream) -> bool {
+    tokens.into_iter().all(|tree| match tree {
+        TokenTree::Ident(name) => name.to_string().is_ascii(),
+        TokenTree::Group(group) => is_ascii(group.stream()),
+        TokenTree::Punct(_) | TokenTree::Literal(_) => true,
+    })
+}
+
+/// The path of the runtime, up to the first `;`.
+fn runtime(input: ParseStream) -> Result<TokenStream> {
+    let mut path = TokenStream::new();
+    while !input.is_empty() && !input.peek(Token![;]) {
+        path.extend([input.parse::<TokenTree>()?]);
+    }
+    input.parse::<Token![;]>()?;
+    Ok(path)
+}
+
+/// Parses tokens so that what is missing at their end is missing at the last of them, and not at
+/// the whole macro.
+fn to_the_last<R>(tokens: TokenStream, parse: impl FnOnce(ParseStream) -> Result<R>) -> Result<R> {
+    let last = match tokens.clone().into_iter().last() {
+        Some(TokenTree::Group(group)) => group.span_close(),
+        Some(token) => token.span(),
+        None => Span::call_site(),
+    };
+    let mut group = Group::new(Delimiter::Brace, tokens);
+    group.set_span(last);
+    let parse = |input: ParseStream| {
+        let content;
+        braced!(content in input);
+        parse(&content)
+    };
+    Syn::parse2(parse, TokenTree::Group(group).into())
+}
+
+struct Parser<'a> {
+    errors: &'a mut Errors,
+    sources: usize,
+    depth: usize,
+    /// Whether a `|` closes what stands here.
+    barred: bool,
+    recovery: Recovery,
+    /// The coordinates of a statement that ends in a mistake, as far as they could be read.
+    begun: Vec<Statement>,
+    /// The names that have been declared so far.
+    declared: BTreeSet<String>,
+    /// Whether no name of the block has a letter beyond ASCII.
+    ascii: bool,
+}
+
+impl Parser<'_> {
+    /// A name that is declared.
+    fn declared(&mut self, input: ParseStream, what: &str) -> Result<Ident> {
+        let name = identifier(input, what)?;
+        self.declared.insert(name::read(&name.to_string()).base);
+        Ok(name)
+    }
+
+    fn is_declared(&self, name: &str) -> bool {
+        self.declared.contains(&name::read(name).base)
+    }
+}

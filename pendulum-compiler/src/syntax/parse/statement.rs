@@ -1,0 +1,264 @@
+//! Statements: coordinates, driven inputs, definitions, energies and forces.
+
+use super::Parser;
+use super::token::{end, equals, fragment, identifier, unexpected};
+use crate::messages::Range;
+use crate::syntax::ast::{Binder, Expr, ForceIndex, Kind, Let, Role, Statement};
+use crate::syntax::name;
+use crate::syntax::text::text;
+use proc_macro2::{Ident, Spacing, TokenStream, TokenTree};
+use syn::ext::IdentExt;
+use syn::parse::{ParseStream, Result};
+use syn::spanned::Spanned;
+use syn::{Attribute, Token, bracketed, parenthesized};
+
+/// The words with which statements begin.
+pub(super) const STATEMENTS: [&str; 8] =
+    ["coordinate", "driven", "let", "kinetic", "potential", "lagrangian", "dissipation", "force"];
+
+/// Statements that there are not yet, and what to write instead.
+#[rustfmt::skip]
+const UNSUPPORTED: &[(&str, &str)] = &[
+    ("constraint", "constraints, as closed loops need them, are not supported yet; choose coordinates in which they hold by themselves"),
+    ("redundant", "constraints, as closed loops need them, are not supported yet; choose coordinates in which they hold by themselves"),
+    ("output", "outputs are not supported yet; compute the value in the program, from the coordinates and the velocities"),
+    ("input", "inputs are not supported yet; declare it `driven` and bind a motion to it"),
+    ("limit", "limits are not supported yet; write a soft stop, as in `potential = k/2*max(0, θ - w)^2;`, or let the program stop at an event"),
+];
+
+impl Parser<'_> {
+    pub(super) fn statement(&mut self, input: ParseStream) -> Result<Statement> {
+        let attributes = input.call(Attribute::parse_outer)?;
+        if let Some(attribute) = attributes.iter().find(|attribute| !attribute.path().is_ident("doc")) {
+            return Err(Range { first: attribute.pound_token.spans[0], last: attribute.span() }
+                .error("an attribute has no effect here; attributes belong on the struct and its fields"));
+        }
+        let word = match input.fork().call(Ident::parse_any) {
+            Ok(word) => word.to_string(),
+            Err(_) => String::new(),
+        };
+        let statement = match word.as_str() {
+            "coordinate" => self.coordinate(input)?,
+            "driven" => self.driven(input)?,
+            "let" => self.definition(input)?,
+            "force" => self.force(input)?,
+            "kinetic" => self.energy(input, Role::Kinetic)?,
+            "potential" => self.energy(input, Role::Potential)?,
+            "lagrangian" => self.energy(input, Role::Lagrangian)?,
+            "dissipation" => self.energy(input, Role::Dissipation)?,
+            _ => return Err(unknown_statement(input, &word)),
+        };
+        if input.is_empty() {
+            // All of the statement has been read.
+            self.errors.at(input.span(), "`;` is missing after this; end the last statement with `;`");
+            return Ok(statement);
+        }
+        if !input.peek(Token![;]) {
+            self.begun.extend(Some(statement).filter(|statement| matches!(statement, Statement::Coordinate { .. })));
+            return Err(if input.peek(Token![,]) { self.several(input, &word) } else { unexpected(input, "`;`") });
+        }
+        input.parse::<Token![;]>()?;
+        Ok(statement)
+    }
+
+    /// Several names in one statement, which declares one.
+    fn several(&mut self, input: ParseStream, word: &str) -> syn::Error {
+        let comma = Range::from(input.span());
+        let mut example = None;
+        while input.parse::<Token![,]>().is_ok()
+            && let Ok(name) = input.fork().call(Ident::parse_any)
+        {
+            let statement = match word {
+                "coordinate" => self.named_coordinate(input),
+                "driven" => self.named_input(input),
+                "let" => {
+                    example = Some(format!("let {name} = …;"));
+                    break;
+                }
+                _ => break,
+            };
+            example.get_or_insert_with(|| statement.as_ref().map_or_else(|_| format!("{word} {name};"), written));
+            match statement {
+                Ok(coordinate @ Statement::Coordinate { .. }) => self.begun.push(coordinate),
+                _ => break,
+            }
+        }
+        comma.error(match example {
+            Some(example) => format!("a statement declares one name; write `{example}` as a statement of its own"),
+            None => "`,` is not expected here; expected `;`".to_owned(),
+        })
+    }
+
+    fn coordinate(&mut self, input: ParseStream) -> Result<Statement> {
+        input.call(Ident::parse_any)?;
+        self.named_coordinate(input)
+    }
+
+    fn named_coordinate(&mut self, input: ParseStream) -> Result<Statement> {
+        let name = self.declared(input, "the name of a coordinate")?;
+        let mut length = None;
+        let mut closed = Ok(());
+        if input.peek(syn::token::Bracket) {
+            let content;
+            bracketed!(content in input);
+            length = Some(self.expr(&content)?);
+            closed = end(&content);
+        }
+        match closed.and_then(|()| self.coordinate_unit(input, &name)) {
+            Ok(unit) => Ok(Statement::Coordinate { name, length, unit }),
+            Err(error) => {
+                self.begun.push(Statement::Coordinate { name, length, unit: None });
+                Err(error)
+            }
+        }
+    }
+
+    fn coordinate_unit(&mut self, input: ParseStream, name: &Ident) -> Result<Option<Expr>> {
+        if !input.peek(Token![:]) {
+            return Ok(None);
+        }
+        input.parse::<Token![:]>()?;
+        match self.kind(input)? {
+            Kind::Scalar(unit) => Ok(unit),
+            Kind::Array { unit, length } => {
+                let range = unit.as_ref().map_or(length.range, |unit| unit.range);
+                let family = written(&Statement::Coordinate { name: name.clone(), length: Some(length), unit });
+                Err(range.error(format!("a coordinate is one number; write `{family}` for several")))
+            }
+            Kind::Body(range) => Err(range.error("a coordinate has a unit; write `rad` or `m`")),
+        }
+    }
+
+    fn driven(&mut self, input: ParseStream) -> Result<Statement> {
+        input.call(Ident::parse_any)?;
+        self.named_input(input)
+    }
+
+    fn named_input(&mut self, input: ParseStream) -> Result<Statement> {
+        let name = self.declared(input, "the name of a driven input")?;
+        let kind = self.declared_kind(input, &name)?;
+        if let Kind::Body(range) = kind {
+            return Err(range.error("a driven input has a unit; write `[m; 2]` for a motion in the plane"));
+        }
+        Ok(Statement::Driven { name, kind })
+    }
+
+    fn definition(&mut self, input: ParseStream) -> Result<Statement> {
+        input.parse::<Token![let]>()?;
+        let name = self.declared(input, "the name of a definition")?;
+        let mut index = None;
+        let mut arguments = None;
+        if input.peek(syn::token::Bracket) {
+            let content;
+            bracketed!(content in input);
+            index = Some(self.binder(&content)?);
+            end(&content)?;
+        } else if input.peek(syn::token::Paren) {
+            let content;
+            parenthesized!(content in input);
+            let mut names = Vec::new();
+            while !content.is_empty() {
+                names.push(identifier(&content, "the name of an argument")?);
+                if !content.is_empty() {
+                    content.parse::<Token![,]>()?;
+                }
+            }
+            arguments = Some(names);
+        }
+        equals(input)?;
+        let expr = self.expr(input)?;
+        Ok(Statement::Let(Let { name, index, arguments, expr }))
+    }
+
+    fn energy(&mut self, input: ParseStream, role: Role) -> Result<Statement> {
+        let keyword = input.call(Ident::parse_any)?.span().into();
+        equals(input)?;
+        Ok(Statement::Energy { role, keyword, expr: self.expr(input)? })
+    }
+
+    fn force(&mut self, input: ParseStream) -> Result<Statement> {
+        input.call(Ident::parse_any)?;
+        let name = identifier(input, "the coordinate on which the force acts")?;
+        let index = if input.peek(syn::token::Bracket) {
+            let content;
+            bracketed!(content in input);
+            let each = content.peek2(Token![in]);
+            let index = if each { ForceIndex::Each(self.binder(&content)?) } else { ForceIndex::One(self.expr(&content)?) };
+            end(&content)?;
+            Some(index)
+        } else {
+            None
+        };
+        equals(input)?;
+        Ok(Statement::Force { name, index, expr: self.expr(input)? })
+    }
+
+    /// `k in 0..5`.
+    pub(super) fn binder(&mut self, input: ParseStream) -> Result<Binder> {
+        let name = identifier(input, "the name of an index")?;
+        if !input.peek(Token![in]) {
+            return Err(unexpected(input, "`in` and a range such as `0..5`"));
+        }
+        input.parse::<Token![in]>()?;
+        let (low, high, inclusive) = match fragment(input).filter(whole_range) {
+            None => self.range(input)?,
+            Some(tokens) => {
+                input.parse::<TokenTree>()?;
+                self.inside(tokens, Self::range)?
+            }
+        };
+        Ok(Binder { name, low, high, inclusive })
+    }
+
+    /// `0..5`.
+    fn range(&mut self, input: ParseStream) -> Result<(Expr, Expr, bool)> {
+        let low = self.expr(input)?;
+        let inclusive = input.peek(Token![..=]);
+        if inclusive {
+            input.parse::<Token![..=]>()?;
+        } else if input.peek(Token![..]) {
+            input.parse::<Token![..]>()?;
+        } else {
+            return Err(unexpected(input, "`..` and the end of the range"));
+        }
+        let high = self.expr(input)?;
+        Ok((low, high, inclusive))
+    }
+}
+
+/// A declaration as one would write it.
+fn written(statement: &Statement) -> String {
+    let unit = |unit: &Option<Expr>| unit.as_ref().map_or_else(String::new, |unit| format!(": {}", text(unit)));
+    match statement {
+        Statement::Coordinate { name, length: None, unit: own } => format!("coordinate {name}{};", unit(own)),
+        Statement::Coordinate { name, length: Some(length), unit: own } => {
+            format!("coordinate {name}[{}]{};", text(length), unit(own))
+        }
+        Statement::Driven { name, kind: Kind::Scalar(own) } => format!("driven {name}{};", unit(own)),
+        Statement::Driven { name, kind: Kind::Array { unit, length } } => {
+            let unit = unit.as_ref().map_or_else(|| "_".to_owned(), text);
+            format!("driven {name}: [{unit}; {}];", text(length))
+        }
+        _ => "…".to_owned(),
+    }
+}
+
+/// Whether a fragment is a range and not its lower end.
+fn whole_range(tokens: &TokenStream) -> bool {
+    let dots = |tree| matches!(tree, TokenTree::Punct(dot) if dot.as_char() == '.' && dot.spacing() == Spacing::Joint);
+    tokens.clone().into_iter().any(dots)
+}
+
+fn unknown_statement(input: ParseStream, word: &str) -> syn::Error {
+    if word.is_empty() {
+        return unexpected(input, "a statement such as `coordinate θ: rad;`");
+    }
+    if let Some((_, message)) = UNSUPPORTED.iter().find(|row| row.0 == word) {
+        return Range::from(input.span()).error(message);
+    }
+    let hint = match name::nearest(word, STATEMENTS.into_iter()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => "a statement begins with `coordinate`, `driven`, `let`, `kinetic`, `potential`, `lagrangian`, `dissipation` or `force`".into(),
+    };
+    Range::from(input.span()).error(format!("unknown statement `{word}`; {hint}"))
+}
