@@ -113,7 +113,7 @@ impl Complaints {
         };
         match &error {
             None if solution.t.len() != 3 || solution.end.t != case.interval => {
-                say(format!("is complete with {:?}", solution.t))
+                say(format!("is complete with {:?}", solution.t));
             }
             None => {}
             Some(error) => {

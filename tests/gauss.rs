@@ -350,7 +350,7 @@ fn sweeps_that_go_astray_are_reported() {
         .unwrap_err();
     match &failure.error {
         Error::NoConvergence { t, coordinate, .. } => {
-            assert!(coordinate.name == "r" && 0.0 < *t && *t < 0.1, "{failure}")
+            assert!(coordinate.name == "r" && 0.0 < *t && *t < 0.1, "{failure}");
         }
         other => panic!("{other:?}"),
     }

@@ -183,7 +183,7 @@ fn plan() -> Result<Plan, String> {
         let number = || value.parse::<u64>().map_err(|_| format!("`{value}` is no whole number"));
         match word.as_str() {
             "--seconds" => {
-                plan.seconds = value.parse().map_err(|_| format!("`{value}` is no number"))?
+                plan.seconds = value.parse().map_err(|_| format!("`{value}` is no number"))?;
             }
             "--seed" => plan.seed = number()?,
             "--count" => plan.count = Some(number()?),

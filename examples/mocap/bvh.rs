@@ -89,7 +89,7 @@ impl Bvh {
                 match *channel {
                     Channel::Position(axis) => local.at[axis] = value,
                     Channel::Rotation(axis) => {
-                        local.turn = product(&local.turn, &rotation(axis, value))
+                        local.turn = product(&local.turn, &rotation(axis, value));
                     }
                 }
             }

@@ -131,7 +131,7 @@ fn chosen(mut arguments: impl Iterator<Item = String>) -> Result<Choice, String>
             "--only" => {
                 only = Some(
                     arguments.next().ok_or("`--only` needs names of tests after it, as S7,S9")?,
-                )
+                );
             }
             other => {
                 return Err(format!(

@@ -102,7 +102,7 @@ fn outputs<S, const N: usize, const J: usize>(
     let of = |values: [f64; N]| values.map(S::Scalar::from_f64);
     let (t, q, v) = (S::Scalar::from_f64(case.t), of(case.q), of(case.v));
     let compare = |what: &str, found: &[S::Scalar], expected: &[&str]| {
-        compare(&format!("{name}, {what}"), found, expected, bar)
+        compare(&format!("{name}, {what}"), found, expected, bar);
     };
     let accelerations = system.accelerations(t, &q, &v, inputs);
     compare("accelerations", &accelerations, &case.accelerations);

@@ -207,9 +207,9 @@ fn whole_root(value: i128, degree: u32) -> Option<i128> {
     while low < high {
         let middle = low + (high - low) / 2;
         if middle.checked_pow(degree).is_none_or(|power| value <= power) {
-            high = middle
+            high = middle;
         } else {
-            low = middle + 1
+            low = middle + 1;
         }
     }
     (low.checked_pow(degree) == Some(value)).then_some(low)

@@ -126,7 +126,7 @@ impl Expansions {
                         }
                         _ => {
                             all =
-                                all.times(&Expansion::one(vec![(base, exponent)], Rational::ONE))?
+                                all.times(&Expansion::one(vec![(base, exponent)], Rational::ONE))?;
                         }
                     }
                 }

@@ -38,7 +38,7 @@ impl<'a> Mirror<'a> {
         for statement in &self.block.statements {
             match statement {
                 Statement::Coordinate { name, .. } | Statement::Driven { name, .. } => {
-                    self.declare(name)
+                    self.declare(name);
                 }
                 Statement::Let(definition) => self.declare(&definition.name),
                 Statement::Energy { .. } | Statement::Force { .. } => {}
@@ -92,10 +92,12 @@ impl<'a> Mirror<'a> {
             ExprKind::Number(_) => {}
             ExprKind::Name(name) => self.name(name),
             ExprKind::Sum(items) | ExprKind::Product(items) => {
-                items.iter().for_each(|(_, item)| self.expr(item))
+                for (_, item) in items {
+                    self.expr(item);
+                }
             }
             ExprKind::Negative(a) | ExprKind::Magnitude(a) | ExprKind::Component(a, _) => {
-                self.expr(a)
+                self.expr(a);
             }
             ExprKind::Power(a, b) | ExprKind::Index(a, b) => {
                 self.expr(a);

@@ -101,11 +101,11 @@ impl Search {
     fn visit(&mut self, id: Id) {
         match self.graph.node(id).clone() {
             Node::Call(Function::Sin | Function::Cos | Function::Tan, angle) => {
-                self.oscillation(angle)
+                self.oscillation(angle);
             }
             Node::Call(Function::Ln, argument) => self.bump(argument),
             Node::Call(Function::Abs | Function::Sign | Function::Step, argument) => {
-                self.corner(argument)
+                self.corner(argument);
             }
             Node::Call(_, argument) => self.bell(argument),
             Node::Max(a, b) => {

@@ -182,7 +182,7 @@ fn force<'a>(
     let Name { base, dots } = name::read(&name.to_string());
     match model.names.get(&base) {
         Some(&Meaning::Coordinate(coordinate)) if dots == 0 => {
-            model.forces.push(Force { coordinate, name, index, expr })
+            model.forces.push(Force { coordinate, name, index, expr });
         }
         Some(_) => {
             errors.at(

@@ -63,7 +63,9 @@ impl Walk<'_, '_, '_> {
             ExprKind::Name(name)
                 if name::read(&name.to_string()) == (Name { base: "pi".into(), dots: 0 }) => {}
             ExprKind::Sum(items) | ExprKind::Product(items) => {
-                items.iter().for_each(|(_, item)| self.constant(item))
+                for (_, item) in items {
+                    self.constant(item);
+                }
             }
             ExprKind::Negative(inner) => self.constant(inner),
             ExprKind::Power(base, exponent) => {
@@ -119,7 +121,9 @@ impl Walk<'_, '_, '_> {
             ExprKind::Number(_) => {}
             ExprKind::Name(name) => self.name(name),
             ExprKind::Sum(items) | ExprKind::Product(items) => {
-                items.iter().for_each(|(_, item)| self.expr(item))
+                for (_, item) in items {
+                    self.expr(item);
+                }
             }
             ExprKind::Negative(inner) | ExprKind::Magnitude(inner) => self.expr(inner),
             ExprKind::Power(base, exponent) => {

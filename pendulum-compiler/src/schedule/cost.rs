@@ -34,7 +34,7 @@ impl Program {
                 Op::Add(..) | Op::Sub(..) => count.add += 1,
                 Op::Div(..) => count.div += 1,
                 Op::Sqrt(_) | Op::Powf(..) | Op::Atan2(..) | Op::Max(..) | Op::Call(..) => {
-                    count.functions += 1
+                    count.functions += 1;
                 }
                 Op::Number(_)
                 | Op::Literal(_)

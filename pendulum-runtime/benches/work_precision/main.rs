@@ -99,7 +99,7 @@ impl Options {
                 "--heyoka" => options.heyoka = Some(value()?),
                 "--rounds" => {
                     options.rounds =
-                        value()?.parse().map_err(|error| format!("`--rounds`: {error}"))?
+                        value()?.parse().map_err(|error| format!("`--rounds`: {error}"))?;
                 }
                 _ if SYSTEMS.contains(&word.as_str()) => options.systems.push(word),
                 _ => {

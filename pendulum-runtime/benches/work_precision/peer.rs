@@ -37,7 +37,7 @@ impl Peer {
             let mut words = line.split('\t').map(String::from);
             match [words.next(), words.next(), words.next()] {
                 [Some(system), Some(method), Some(setting)] => {
-                    peer.rows.push([system, method, setting])
+                    peer.rows.push([system, method, setting]);
                 }
                 _ => return Err(format!("not a row: {line}")),
             }

@@ -205,7 +205,7 @@ impl Reader {
             match node {
                 usvg::Node::Group(group) => self.weigh(group, joint, opacity)?,
                 usvg::Node::Path(path) if pivot(path.id()).is_none() => {
-                    self.shape(path, joint, opacity)?
+                    self.shape(path, joint, opacity)?;
                 }
                 _ => {}
             }
@@ -262,7 +262,7 @@ impl Reader {
         }
         match (outline.body(self.units.density * opacity), joint) {
             (Ok(body), Some(joint)) => {
-                self.bodies[joint].push(body.with_pivot(self.drawing.joints[joint].pivot))
+                self.bodies[joint].push(body.with_pivot(self.drawing.joints[joint].pivot));
             }
             (Ok(_), None) => self.drawing.loose += 1,
             (Err(BodyError::NoArea { .. } | BodyError::NoMass), _) => {

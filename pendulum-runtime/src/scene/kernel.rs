@@ -56,10 +56,10 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Work for Run<'_, S, T, N> {
             let kept = (lanes < W).then_some((block.q, block.v, block.before));
             match self.batch.grid.scheme {
                 Scheme::Leapfrog if Known::<S, N>::SPLITS => {
-                    batch::<S, T, N, LEAPFROG, 1>(block, system, self.batch)
+                    batch::<S, T, N, LEAPFROG, 1>(block, system, self.batch);
                 }
                 Scheme::Srkn6b if Known::<S, N>::SPLITS => {
-                    batch::<S, T, N, SRKN6B, 7>(block, system, self.batch)
+                    batch::<S, T, N, SRKN6B, 7>(block, system, self.batch);
                 }
                 _ => batch::<S, T, N, RK4, 3>(block, system, self.batch),
             }

@@ -25,7 +25,7 @@ pub fn state(system: &System, seed: u64) -> State<f64> {
         match body {
             Some(points) => parameters.extend(moments(points)),
             None => {
-                parameters.extend((0..parameter.kind.count()).map(|_| random.uniform(0.4, 1.5)))
+                parameters.extend((0..parameter.kind.count()).map(|_| random.uniform(0.4, 1.5)));
             }
         }
     }

@@ -138,7 +138,7 @@ fn replaced(expr: &mut Expr, count: usize) {
         Expr::Coordinate(index, member) => *expr = definition(*index, *member),
         Expr::Velocity(index, None, 0) => *expr = Expr::LetDot(*index),
         Expr::Velocity(index, member, _) => {
-            *expr = Expr::Dot(Box::new(definition(*index, *member)))
+            *expr = Expr::Dot(Box::new(definition(*index, *member)));
         }
         Expr::Let(index)
         | Expr::LetDot(index)

@@ -197,10 +197,14 @@ impl Expr {
         let boxed = |inner: &mut Box<Expr>| inner.each(change);
         match self {
             Expr::Sum(items) | Expr::Product(items) => {
-                items.iter_mut().for_each(|(_, item)| item.each(change))
+                for (_, item) in items.iter_mut() {
+                    item.each(change);
+                }
             }
             Expr::Vector(items) | Expr::Apply(_, items) => {
-                items.iter_mut().for_each(|item| item.each(change))
+                for item in items.iter_mut() {
+                    item.each(change);
+                }
             }
             Expr::Negative(a)
             | Expr::Power(a, ..)

@@ -65,7 +65,7 @@ impl Emitter<'_, '_> {
                     values.push(quote!(#field: { let [value] = #body; value }));
                 }
                 None if quantity.default.is_some() => {
-                    values.push(quote!(#field: ::core::unimplemented!()))
+                    values.push(quote!(#field: ::core::unimplemented!()));
                 }
                 None => {
                     let kind = self.field_type(quantity, &scalar);

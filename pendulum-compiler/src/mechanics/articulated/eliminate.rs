@@ -137,7 +137,7 @@ impl Tree<'_> {
         }
         let mut added: BTreeMap<(usize, usize), Vec<(Id, Rational)>> = BTreeMap::new();
         let mut add = |a: usize, b: usize, value: Id| {
-            added.entry((a.min(b), a.max(b))).or_default().push((value, Rational::ONE))
+            added.entry((a.min(b), a.max(b))).or_default().push((value, Rational::ONE));
         };
         for &other in &others {
             for &target in &targets {

@@ -57,7 +57,7 @@ impl Parser<'_> {
                     statements.append(&mut self.begun);
                     match word.as_str() {
                         "kinetic" | "potential" | "lagrangian" | "dissipation" | "force" => {
-                            self.recovery.energies = true
+                            self.recovery.energies = true;
                         }
                         _ => self.recovery = Recovery { declarations: true, energies: true },
                     }

@@ -196,15 +196,15 @@ impl Gltf {
             match path {
                 Property::Translation => {
                     translation =
-                        track(source, animation, channel).map_err(|error| error.within(&place))?
+                        track(source, animation, channel).map_err(|error| error.within(&place))?;
                 }
                 Property::Rotation => {
                     rotation =
-                        turn(source, animation, channel).map_err(|error| error.within(&place))?
+                        turn(source, animation, channel).map_err(|error| error.within(&place))?;
                 }
                 Property::Scale => {
                     scale =
-                        track(source, animation, channel).map_err(|error| error.within(&place))?
+                        track(source, animation, channel).map_err(|error| error.within(&place))?;
                 }
                 Property::MorphTargetWeights => continue,
             }
