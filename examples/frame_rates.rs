@@ -1,6 +1,8 @@
-//! The swing of a shaken pendulum at several frame rates: a scene's, and that of the spring bones of VRM, whose formula contains the frame time.
+//! The swing of a shaken pendulum at several frame rates: a scene's, and that of the spring bones
+//! of VRM, whose formula contains the frame time.
 //!
-//! `cargo run --release --example frame_rates` prints the peaks and writes `target/frame-rates.svg`.
+//! `cargo run --release --example frame_rates` prints the peaks and writes
+//! `target/frame-rates.svg`.
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -29,7 +31,8 @@ const SECONDS: u32 = 20;
 /// Angles in degrees at the ends of the frames.
 type Curve = Vec<(f64, f64)>;
 
-/// A pendulum of 10 cm in a scene, with a damping of 4/s: its angles at the ends of the frames, and the largest of all ticks in the second half.
+/// A pendulum of 10 cm in a scene, with a damping of 4/s: its angles at the ends of the frames, and
+/// the largest of all ticks in the second half.
 fn scene(rate: u32) -> Result<(Curve, f64), SceneError> {
     let mut scene = Scene::<f64>::new(240.0)?;
     let hand = scene.joint(Sinusoid::new([AMPLITUDE, 0.0], OMEGA, [0.0, 0.0]));
@@ -78,23 +81,41 @@ fn picture(panels: &[(&str, Vec<(Curve, f64)>)]) -> Result<String, std::fmt::Err
     for (panel, (title, curves)) in panels.iter().enumerate() {
         let left = 60.0 + 400.0 * panel as f64;
         let most = curves.iter().map(|(_, peak)| *peak).fold(0.0, f64::max) * 1.1;
-        let point = |t: f64, angle: f64| (left + 340.0 * (t - from) / (to - from), 170.0 - 120.0 * angle / most);
-        writeln!(svg, "<text x=\"{}\" y=\"28\" text-anchor=\"middle\" font-size=\"15\">{title}</text>", left + 170.0)?;
-        writeln!(svg, "<rect x=\"{left}\" y=\"50\" width=\"340\" height=\"240\" fill=\"none\" stroke=\"#999\"/>")?;
+        let point = |t: f64, angle: f64| {
+            (left + 340.0 * (t - from) / (to - from), 170.0 - 120.0 * angle / most)
+        };
+        writeln!(
+            svg,
+            "<text x=\"{}\" y=\"28\" text-anchor=\"middle\" font-size=\"15\">{title}</text>",
+            left + 170.0
+        )?;
+        writeln!(
+            svg,
+            "<rect x=\"{left}\" y=\"50\" width=\"340\" height=\"240\" fill=\"none\" stroke=\"#999\"/>"
+        )?;
         let step = if 30.0 < most { 20.0 } else { 10.0 };
         for line in -3..=3 {
             let angle = f64::from(line) * step;
             if angle.abs() < most {
                 let (_, y) = point(from, angle);
                 writeln!(svg, "<path d=\"M{left} {y:.1}h340\" stroke=\"#e4e4e4\"/>")?;
-                writeln!(svg, "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{angle}°</text>", left - 6.0, y + 4.0)?;
+                writeln!(
+                    svg,
+                    "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{angle}°</text>",
+                    left - 6.0,
+                    y + 4.0
+                )?;
             }
         }
         for (index, ((curve, peak), colour)) in curves.iter().zip(COLOURS).enumerate() {
             let seen = curve.iter().filter(|(t, _)| from <= *t + 1e-9);
-            let points: Vec<String> = seen.map(|&(t, angle)| point(t, angle)).map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
+            let points: Vec<String> = seen
+                .map(|&(t, angle)| point(t, angle))
+                .map(|(x, y)| format!("{x:.1},{y:.1}"))
+                .collect();
             // Those that lie on each other are seen through each other.
-            let (width, dashes) = if panel == 0 { (2.0, format!("6 {}", 6 * index)) } else { (1.6, "none".into()) };
+            let (width, dashes) =
+                if panel == 0 { (2.0, format!("6 {}", 6 * index)) } else { (1.6, "none".into()) };
             let points = points.join(" ");
             writeln!(
                 svg,
@@ -117,7 +138,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for ((rate, ours), theirs) in RATES.iter().zip(&ours).zip(&theirs) {
         println!("{rate:>6}  {:>19.12}°  {:>11.1}°", ours.1, theirs.1);
     }
-    let svg = picture(&[("a pendulum in a scene", ours), ("the formula of VRM spring bones", theirs)])?;
+    let svg =
+        picture(&[("a pendulum in a scene", ours), ("the formula of VRM spring bones", theirs)])?;
     std::fs::create_dir_all("target")?;
     std::fs::write("target/frame-rates.svg", svg)?;
     println!("written: target/frame-rates.svg");

@@ -5,7 +5,8 @@
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::{AdaptiveStep, FixedStep};
 use pendulum_runtime::motion::{
-    Analytic, CatmullRom, Clip, Function, Interpolation, Motion, Orders, Projected, Sample, Side, Sinusoid,
+    Analytic, CatmullRom, Clip, Function, Interpolation, Motion, Orders, Projected, Sample, Side,
+    Sinusoid,
 };
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::DoubleDouble;
@@ -79,9 +80,18 @@ fn lift() -> impl Motion<f64, 2> {
 
 #[test]
 fn series_where_they_converge_everywhere() {
-    let method = |rtol| solve(&Simple::new(1.0), (0.0, 1.0), [1.3], [0.0]).rtol(rtol).run().unwrap().stats.method;
+    let method = |rtol| {
+        solve(&Simple::new(1.0), (0.0, 1.0), [1.3], [0.0]).rtol(rtol).run().unwrap().stats.method
+    };
     assert_eq!([1e-3, 1e-6, 1e-12, 1e-14, 1e-18].map(method), ["Picard"; 5]);
-    let method = |rtol| solve(&Coupled::new(2.0), (0.0, 1.0), [1.3, 0.0], [0.0; 2]).rtol(rtol).run().unwrap().stats.method;
+    let method = |rtol| {
+        solve(&Coupled::new(2.0), (0.0, 1.0), [1.3, 0.0], [0.0; 2])
+            .rtol(rtol)
+            .run()
+            .unwrap()
+            .stats
+            .method
+    };
     assert_eq!([1e-3, 1e-9, 1e-14].map(method), ["Taylor"; 3]);
 
     let end = solve(&Simple::new(1.0), (0.0, 1000.0), [1.3], [0.0]).rtol(1e-14).run().unwrap().end;
@@ -106,7 +116,9 @@ fn two_words_stand_in_no_lanes() {
 
 #[test]
 fn what_it_chooses_keeps_the_tolerance() {
-    let run = |rtol: f64| solve(&Double::new(1.0), (0.0, 5.0), [2.0, 2.5], [0.0; 2]).rtol(rtol).run().unwrap().end.q;
+    let run = |rtol: f64| {
+        solve(&Double::new(1.0), (0.0, 5.0), [2.0, 2.5], [0.0; 2]).rtol(rtol).run().unwrap().end.q
+    };
     let [loose, tight, tighter] = [1e-6, 1e-12, 1e-15].map(run);
     assert!((loose[0] - tight[0]).abs() < 1e-4 && (tight[0] - tighter[0]).abs() < 1e-10);
 }
@@ -119,29 +131,46 @@ fn what_has_no_series_goes_without() {
     let by_sinusoid = solve(&open, (0.0, 1.0), [0.3], [0.0]).rtol(1e-14).run().unwrap();
     assert_eq!((by_closure.stats.method, by_sinusoid.stats.method), ("Picard", "Picard"));
     // A lift with the acceleration 1 adds it to gravity.
-    let heavier = solve(&Simple { g: 10.8, ..Simple::new(0.5) }, (0.0, 1.0), [0.3], [0.0]).rtol(1e-12).run().unwrap();
+    let heavier = solve(&Simple { g: 10.8, ..Simple::new(0.5) }, (0.0, 1.0), [0.3], [0.0])
+        .rtol(1e-12)
+        .run()
+        .unwrap();
     assert!((by_closure.end.q[0] - heavier.end.q[0]).abs() < 1e-8);
     let rubbed = solve(&Rubbed::new(0.5), (0.0, 10.0), [1.0], [0.0]).rtol(1e-14).run().unwrap();
     assert_eq!(rubbed.stats.method, "Picard");
-    let trusted = solve(&Rubbed::new(0.5), (0.0, 10.0), [1.0], [0.0]).method(Dop853).rtol(1e-13).atol(1e-13).run().unwrap();
+    let trusted = solve(&Rubbed::new(0.5), (0.0, 10.0), [1.0], [0.0])
+        .method(Dop853)
+        .rtol(1e-13)
+        .atol(1e-13)
+        .run()
+        .unwrap();
     let error = (rubbed.end.q[0] - trusted.end.q[0]).abs();
     assert!(error < 1e-11, "{error:e} {} {}", rubbed.stats, trusted.stats);
 }
 
 #[test]
 fn facts_tell_corners_apart() {
-    let smooth = [Simple::<f64>::FACTS, Double::<f64>::FACTS, Rubbed::<f64>::FACTS].map(|facts| facts.smooth);
+    let smooth = [Simple::<f64>::FACTS, Double::<f64>::FACTS, Rubbed::<f64>::FACTS]
+        .map(|facts| facts.smooth);
     assert_eq!(smooth, [true, true, false]);
-    let linear = [Simple::<f64>::FACTS, Coupled::<f64>::FACTS, Relay::<f64>::FACTS].map(|facts| facts.linear);
+    let linear = [Simple::<f64>::FACTS, Coupled::<f64>::FACTS, Relay::<f64>::FACTS]
+        .map(|facts| facts.linear);
     assert_eq!(linear, [false, true, false]);
 }
 
 #[test]
 fn fixed_steps_are_symplectic_where_they_can_be() {
-    let simple = solve(&Simple::new(1.0), (0.0, 100.0), [1.3], [0.0]).step(0.02).every(0.37).run().unwrap();
-    let named = solve(&Simple::new(1.0), (0.0, 100.0), [1.3], [0.0]).method(Srkn14a).step(0.02).every(0.37).run().unwrap();
+    let simple =
+        solve(&Simple::new(1.0), (0.0, 100.0), [1.3], [0.0]).step(0.02).every(0.37).run().unwrap();
+    let named = solve(&Simple::new(1.0), (0.0, 100.0), [1.3], [0.0])
+        .method(Srkn14a)
+        .step(0.02)
+        .every(0.37)
+        .run()
+        .unwrap();
     assert_eq!((simple.stats, simple.q), (named.stats, named.q));
-    let double = solve(&Double::new(1.0), (0.0, 1.0), [2.0, 2.5], [0.0; 2]).step(0.02).run().unwrap();
+    let double =
+        solve(&Double::new(1.0), (0.0, 1.0), [2.0, 2.5], [0.0; 2]).step(0.02).run().unwrap();
     assert_eq!(double.stats.method, "Dop853");
 }
 
@@ -170,9 +199,16 @@ fn back_in_time_if_there_are_series() {
 
 #[test]
 fn fixed_steps_back_in_time_see_kinks_from_their_side() {
-    let keys = CatmullRom::new(&[-0.5, 0.7, 1.3, 2.5], &[[0.0, 0.0], [0.3, 0.0], [-0.2, 0.1], [0.4, 0.0]]).unwrap();
+    let keys =
+        CatmullRom::new(&[-0.5, 0.7, 1.3, 2.5], &[[0.0, 0.0], [0.3, 0.0], [-0.2, 0.1], [0.4, 0.0]])
+            .unwrap();
     let damped = Damped::new(0.5, 0.1).driven_by(keys);
-    let there = solve(&damped, (0.0, 2.0), [0.3], [0.0]).method(Taylor::new()).rtol(1e-15).run().unwrap().end;
+    let there = solve(&damped, (0.0, 2.0), [0.3], [0.0])
+        .method(Taylor::new())
+        .rtol(1e-15)
+        .run()
+        .unwrap()
+        .end;
     let back = solve(&damped, (2.0, 0.0), there.q, there.v).step(0.02).run().unwrap();
     assert_eq!(back.stats.method, "Taylor");
     assert!((back.end.q[0] - 0.3).abs() < 1e-12 && back.end.v[0].abs() < 1e-12, "{:?}", back.end);
@@ -246,15 +282,24 @@ fn motions_of_ones_own_say_whether_they_have_series() {
 
 #[test]
 fn what_is_seen_of_a_motion_knows_as_much_as_the_motion() {
-    let frames: Vec<[f64; 3]> =
-        (0..25).map(|k| [0.1 * f64::sin(0.7 * f64::from(k)), 0.3, 0.05 * f64::cos(f64::from(k))]).collect();
+    let frames: Vec<[f64; 3]> = (0..25)
+        .map(|k| [0.1 * f64::sin(0.7 * f64::from(k)), 0.3, 0.05 * f64::cos(f64::from(k))])
+        .collect();
     let rows = [[0.6, 0.0, 0.8], [0.0, 2.0, 0.0]];
-    let flat: Vec<[f64; 2]> =
-        frames.iter().map(|frame| rows.map(|row| (0..3).map(|axis| row[axis] * frame[axis]).sum())).collect();
+    let flat: Vec<[f64; 2]> = frames
+        .iter()
+        .map(|frame| rows.map(|row| (0..3).map(|axis| row[axis] * frame[axis]).sum()))
+        .collect();
     let seen = Projected::new(Clip::new(24.0, &frames, 1, Interpolation::Spline).unwrap(), rows);
     let system = || Moving { L: 0.5, g: 9.8 };
-    let series = solve(&system().driven_by(seen.clone()), (0.0, 1.0), [0.3], [0.0]).method(Taylor::new()).rtol(1e-14).run();
-    let (seen, flat) = (system().driven_by(seen), system().driven_by(Clip::new(24.0, &flat, 1, Interpolation::Spline).unwrap()));
+    let series = solve(&system().driven_by(seen.clone()), (0.0, 1.0), [0.3], [0.0])
+        .method(Taylor::new())
+        .rtol(1e-14)
+        .run();
+    let (seen, flat) = (
+        system().driven_by(seen),
+        system().driven_by(Clip::new(24.0, &flat, 1, Interpolation::Spline).unwrap()),
+    );
     for rtol in [1e-4, 1e-12] {
         let runs = [
             solve(&seen, (0.0, 1.0), [0.3], [0.0]).rtol(rtol).run().unwrap(),
@@ -265,7 +310,9 @@ fn what_is_seen_of_a_motion_knows_as_much_as_the_motion() {
         assert!((runs[0].end.q[0] - series.as_ref().unwrap().end.q[0]).abs() < 10.0 * rtol);
     }
     // What is seen of a function is a function.
-    let thrown = Function::new(|t| [0.0, t, t * t]).velocity(|t| [0.0, 1.0, 2.0 * t]).acceleration(|_| [0.0, 0.0, 2.0]);
+    let thrown = Function::new(|t| [0.0, t, t * t])
+        .velocity(|t| [0.0, 1.0, 2.0 * t])
+        .acceleration(|_| [0.0, 0.0, 2.0]);
     assert!(Motion::<f64, 2>::analytic(&Projected::new(thrown, rows)).is_none());
 }
 

@@ -42,13 +42,17 @@ where
 {
     let outcomes = batch.rtol(rtol).run(problems).unwrap();
     assert_eq!(outcomes.len(), problems.len());
-    for (index, (outcome, Problem { system, time, q, v })) in outcomes.iter().zip(problems).enumerate() {
+    for (index, (outcome, Problem { system, time, q, v })) in
+        outcomes.iter().zip(problems).enumerate()
+    {
         let alone = solve(system, *time, *q, *v).method(method).rtol(rtol).run();
         match (outcome, alone) {
             (Ok(together), Ok(alone)) => assert_eq!(*together, alone, "motion {index}"),
             (Err(together), Err(alone)) => {
                 // As text, for NaN is not equal to itself.
-                let all = |failure: &pendulum_runtime::integrate::Failure<_, N>| format!("{:?} {failure:?}", failure.error);
+                let all = |failure: &pendulum_runtime::integrate::Failure<_, N>| {
+                    format!("{:?} {failure:?}", failure.error)
+                };
                 assert_eq!(all(together), all(&alone), "motion {index}");
             }
             (together, alone) => panic!("motion {index}: {together:?}, but alone {alone:?}"),
@@ -78,7 +82,12 @@ fn any_number_of_motions_has_the_bits_of_single_ones() {
 fn any_order_and_tolerance_has_the_bits_of_single_motions() {
     let problems = pendulums(11);
     for order in [2, 3, 4, 5, 20, 30] {
-        same(Taylor::new().order(order), Batch::new().order(order), if order < 5 { 1e-4 } else { 1e-16 }, &problems);
+        same(
+            Taylor::new().order(order),
+            Batch::new().order(order),
+            if order < 5 { 1e-4 } else { 1e-16 },
+            &problems,
+        );
     }
     for rtol in [1e-3, 1e-6, 1e-18] {
         same(Taylor::new(), Batch::new(), rtol, &problems);
@@ -105,7 +114,12 @@ fn other_systems_have_the_bits_of_single_motions() {
     same(Taylor::new(), Batch::new(), 1e-15, &(0..10).map(kepler).collect::<Vec<_>>());
     let pushed = |k: usize| {
         let start = 1e6 * k as f64;
-        Problem { system: Pushed::new(-0.01 * k as f64, 0.2), time: (start, start + 7.0), q: [0.5], v: [0.0] }
+        Problem {
+            system: Pushed::new(-0.01 * k as f64, 0.2),
+            time: (start, start + 7.0),
+            q: [0.5],
+            v: [0.0],
+        }
     };
     same(Taylor::new(), Batch::new(), 1e-13, &(0..10).map(pushed).collect::<Vec<_>>());
 }
@@ -120,7 +134,12 @@ fn single_precision_has_the_bits_of_single_motions() {
         q: [6.0 * number() - 3.0],
         v: [number()],
     };
-    same(Taylor::new(), Batch::new(), 1e-6, &(0..37).map(problem).collect::<Vec<Problem<Simple<f32>, 1>>>());
+    same(
+        Taylor::new(),
+        Batch::new(),
+        1e-6,
+        &(0..37).map(problem).collect::<Vec<Problem<Simple<f32>, 1>>>(),
+    );
 }
 
 /// Whatever goes wrong, for numbers, intervals or parameters, concerns one motion.
@@ -138,8 +157,13 @@ fn failures_stay_alone() {
     same(Taylor::new(), Batch::new(), 1e-12, &problems);
     let outcomes = Batch::new().rtol(1e-12).run(&problems).unwrap();
     let failed: Vec<_> = (0..40).filter(|&index| outcomes[index].is_err()).collect();
-    assert!([1, 2, 4, 9, 17].iter().all(|index| failed.contains(index)) && failed.len() <= 6, "{failed:?}");
-    assert!(matches!(&outcomes[1], Err(failure) if matches!(failure.error, Error::InitialState { part: Part::Position, .. })));
+    assert!(
+        [1, 2, 4, 9, 17].iter().all(|index| failed.contains(index)) && failed.len() <= 6,
+        "{failed:?}"
+    );
+    assert!(
+        matches!(&outcomes[1], Err(failure) if matches!(failure.error, Error::InitialState { part: Part::Position, .. }))
+    );
     // The pole is at t = 2/√x for v = x^(3/2).
     let escape = |k: usize| {
         let x = 1.0 + k as f64;
@@ -149,7 +173,10 @@ fn failures_stay_alone() {
     same(Taylor::new(), Batch::new(), 1e-12, &problems);
     let outcomes = Batch::new().rtol(1e-12).run(&problems).unwrap();
     let failed: Vec<_> = outcomes.iter().map(Result::is_err).collect();
-    assert_eq!(failed, (0..12).map(|k| 2.0 / f64::sqrt(1.0 + f64::from(k)) < 0.9).collect::<Vec<_>>());
+    assert_eq!(
+        failed,
+        (0..12).map(|k| 2.0 / f64::sqrt(1.0 + f64::from(k)) < 0.9).collect::<Vec<_>>()
+    );
 }
 
 #[test]
@@ -158,11 +185,21 @@ fn limits_hold_for_each_motion() {
     for most in [0, 1, 5] {
         let outcomes = Batch::new().rtol(1e-12).max_steps(most).run(&problems).unwrap();
         for (outcome, Problem { system, time, q, v }) in outcomes.iter().zip(&problems) {
-            let alone = solve(system, *time, *q, *v).method(Taylor::new()).rtol(1e-12).max_steps(most).run();
+            let alone = solve(system, *time, *q, *v)
+                .method(Taylor::new())
+                .rtol(1e-12)
+                .max_steps(most)
+                .run();
             assert_eq!(format!("{outcome:?}"), format!("{alone:?}"));
         }
     }
-    let limited = Batch::new().rtol(1e-12).first_step(1e-3).max_step(0.05).atol_each([1e-9], [1e-8]).run(&problems).unwrap();
+    let limited = Batch::new()
+        .rtol(1e-12)
+        .first_step(1e-3)
+        .max_step(0.05)
+        .atol_each([1e-9], [1e-8])
+        .run(&problems)
+        .unwrap();
     for (outcome, Problem { system, time, q, v }) in limited.into_iter().zip(&problems) {
         let alone = solve(system, *time, *q, *v).method(Taylor::new()).rtol(1e-12);
         let alone = alone.first_step(1e-3).max_step(0.05).atol_each([1e-9], [1e-8]).run();
@@ -170,7 +207,8 @@ fn limits_hold_for_each_motion() {
     }
     let refused = Batch::new().rtol(1e-12).first_step(1e-250).run(&problems).unwrap();
     for (outcome, Problem { system, time, q, v }) in refused.into_iter().zip(&problems) {
-        let alone = solve(system, *time, *q, *v).method(Taylor::new()).rtol(1e-12).first_step(1e-250).run();
+        let alone =
+            solve(system, *time, *q, *v).method(Taylor::new()).rtol(1e-12).first_step(1e-250).run();
         assert_eq!(outcome.unwrap_err().error, alone.unwrap_err().error);
     }
 }
@@ -179,6 +217,10 @@ fn limits_hold_for_each_motion() {
 fn settings_out_of_range_are_refused() {
     let refused = |batch: Batch<1>| matches!(batch.run(&pendulums(2)), Err(Error::Setting { .. }));
     assert!(refused(Batch::new().rtol(0.0)) && refused(Batch::new().rtol(f64::NAN)));
-    assert!(refused(Batch::new().atol(-1.0)) && refused(Batch::new().max_step(0.0)) && refused(Batch::new().first_step(0.0)));
+    assert!(
+        refused(Batch::new().atol(-1.0))
+            && refused(Batch::new().max_step(0.0))
+            && refused(Batch::new().first_step(0.0))
+    );
     assert!(Batch::new().max_step(f64::NAN).run(&pendulums(1)).is_err());
 }

@@ -1,4 +1,5 @@
-//! Bodies in a Lagrangian: the exact moving compound pendulum, the note's approximation beside it, and the integrals themselves.
+//! Bodies in a Lagrangian: the exact moving compound pendulum, the note's approximation beside it,
+//! and the integrals themselves.
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -59,13 +60,14 @@ fn a_point_mass_needs_no_correction() {
     for θ in [-2.0, 0.1, 1.0, 4.0] {
         let inputs = shaken([3.0, -5.0]);
         let exact = Exact::new(body).accelerations(0.0, &[θ], &[0.4], &inputs)[0];
-        let approximate = Approximate::new(body, length).accelerations(0.0, &[θ], &[0.4], &inputs)[0];
+        let approximate =
+            Approximate::new(body, length).accelerations(0.0, &[θ], &[0.4], &inputs)[0];
         assert!((exact - approximate).abs() < 1e-13 * exact.abs().max(1.0));
     }
 }
 
-/// A rod of length l about its end: I = m l²/3 with its centre at l/2. With L the distance to the centre, the note's forcing is that of
-/// a point mass there, I/(m L²) = 4/3 of the true one.
+/// A rod of length l about its end: I = m l²/3 with its centre at l/2. With L the distance to the
+/// centre, the note's forcing is that of a point mass there, I/(m L²) = 4/3 of the true one.
 #[test]
 fn a_rod_is_shaken_four_thirds_too_hard_by_the_approximation() {
     let rod = Body::rod(0.7, [0.0, 0.0], [0.0, -2.0]).unwrap();
@@ -75,7 +77,10 @@ fn a_rod_is_shaken_four_thirds_too_hard_by_the_approximation() {
         let mut approximate = Approximate::new(rod, 1.0);
         (exact.g, approximate.g) = (g, g);
         let state = ([0.6], [0.4]);
-        (exact.accelerations(0.0, &state.0, &state.1, &inputs)[0], approximate.accelerations(0.0, &state.0, &state.1, &inputs)[0])
+        (
+            exact.accelerations(0.0, &state.0, &state.1, &inputs)[0],
+            approximate.accelerations(0.0, &state.0, &state.1, &inputs)[0],
+        )
     };
     let (exact, approximate) = weightless(0.0, [2.0, -1.0]);
     assert!((approximate / exact - 4.0 / 3.0).abs() < 1e-14);
@@ -94,8 +99,9 @@ fn a_rigid_body_is_three_numbers() {
     assert!(facts.unused.is_empty());
 }
 
-/// The sum of a quadratic function over a polygon of density one, by the midpoint rule on the triangles that its edges span with the
-/// origin: exact for the second degree, and written without the library.
+/// The sum of a quadratic function over a polygon of density one, by the midpoint rule on the
+/// triangles that its edges span with the origin: exact for the second degree, and written without
+/// the library.
 fn over_polygon(points: &[[f64; 2]], f: impl Fn([f64; 2]) -> f64) -> f64 {
     let mut total = 0.0;
     for (index, &a) in points.iter().enumerate() {
@@ -113,7 +119,8 @@ fn polygon(random: &mut Random) -> Vec<[f64; 2]> {
     let center = [random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)];
     (0..count)
         .map(|k| {
-            let angle = core::f64::consts::TAU * (k as f64 + random.uniform(0.0, 0.9)) / count as f64;
+            let angle =
+                core::f64::consts::TAU * (k as f64 + random.uniform(0.0, 0.9)) / count as f64;
             let radius = random.uniform(0.2, 1.0);
             [center[0] + radius * angle.cos(), center[1] + radius * angle.sin()]
         })
@@ -131,21 +138,38 @@ fn integrals_agree_with_quadrature_over_random_polygons() {
         let (x, dx) = (inputs.0.position, inputs.0.velocity);
         let (s, c) = θ.sin_cos();
         let place = |p: [f64; 2]| [x[0] + c * p[0] - s * p[1], x[1] + s * p[0] + c * p[1]];
-        let velocity = |p: [f64; 2]| [dx[0] - ω * (place(p)[1] - x[1]), dx[1] + ω * (place(p)[0] - x[0])];
-        let kinetic = over_polygon(&points, |p| 0.5 * (velocity(p)[0].powi(2) + velocity(p)[1].powi(2)));
+        let velocity =
+            |p: [f64; 2]| [dx[0] - ω * (place(p)[1] - x[1]), dx[1] + ω * (place(p)[0] - x[0])];
+        let kinetic =
+            over_polygon(&points, |p| 0.5 * (velocity(p)[0].powi(2) + velocity(p)[1].powi(2)));
         let potential = over_polygon(&points, |p| 9.81 * place(p)[1]);
         let exact = Exact::new(body);
-        assert!((exact.kinetic_energy(0.0, &[θ], &[ω], &inputs) - kinetic).abs() < 1e-13 * kinetic.abs().max(1.0));
-        assert!((exact.potential_energy(0.0, &[θ], &[ω], &inputs) - potential).abs() < 1e-12 * potential.abs().max(1.0));
+        assert!(
+            (exact.kinetic_energy(0.0, &[θ], &[ω], &inputs) - kinetic).abs()
+                < 1e-13 * kinetic.abs().max(1.0)
+        );
+        assert!(
+            (exact.potential_energy(0.0, &[θ], &[ω], &inputs) - potential).abs()
+                < 1e-12 * potential.abs().max(1.0)
+        );
 
-        let (q, v) =
-            ([random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)], [random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)]);
+        let (q, v) = (
+            [random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)],
+            [random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)],
+        );
         let moved = |p: [f64; 2]| [p[0] * (1.0 + q[0]) + q[0] * p[1], q[1] * p[0] - 0.5 * p[1]];
         let speed = |p: [f64; 2]| [p[0] * v[0] + v[0] * p[1], v[1] * p[0]];
         let kinetic = over_polygon(&points, |p| 0.5 * (speed(p)[0].powi(2) + speed(p)[1].powi(2)));
-        let potential = over_polygon(&points, |p| moved(p)[1].powi(2) + (moved(p)[0] * p[0] + moved(p)[1] * p[1]) / 3.0) / 3.0;
+        let potential = over_polygon(&points, |p| {
+            moved(p)[1].powi(2) + (moved(p)[0] * p[0] + moved(p)[1] * p[1]) / 3.0
+        }) / 3.0;
         let sheared = Sheared::new(body);
-        assert!((sheared.kinetic_energy(0.0, &q, &v, &()) - kinetic).abs() < 1e-13 * kinetic.max(1.0));
-        assert!((sheared.potential_energy(0.0, &q, &v, &()) - potential).abs() < 1e-13 * potential.abs().max(1.0));
+        assert!(
+            (sheared.kinetic_energy(0.0, &q, &v, &()) - kinetic).abs() < 1e-13 * kinetic.max(1.0)
+        );
+        assert!(
+            (sheared.potential_energy(0.0, &q, &v, &()) - potential).abs()
+                < 1e-13 * potential.abs().max(1.0)
+        );
     }
 }

@@ -66,7 +66,8 @@ fn values<S: System<N, Scalar = f64, Inputs = ()>, const N: usize, const C: usiz
     v: [f64; N],
 ) -> [[f64; C]; 2] {
     assert_eq!(S::FACTS.conserved.len(), C);
-    let end = solve(system, (0.0, 5.0), q, v).method(Dop853).rtol(1e-13).atol(1e-13).run().unwrap().end;
+    let end =
+        solve(system, (0.0, 5.0), q, v).method(Dop853).rtol(1e-13).atol(1e-13).run().unwrap().end;
     let mut found = [[0.0; C]; 2];
     system.conserved(0.0, &q, &v, &(), &mut found[0]);
     system.conserved(5.0, &end.q, &end.v, &(), &mut found[1]);
@@ -100,8 +101,15 @@ fn a_planet_keeps_its_angular_momentum() {
 
 #[test]
 fn a_free_chain_keeps_both_momenta_and_its_angular_momentum() {
-    assert_eq!(<FreeChain as System<4>>::FACTS.conserved, ["p_x", "p_y", "p_θ[0] + p_θ[1] − y·p_x + x·p_y"]);
-    constant::<3>(values(&FreeChain::new([1.0, 0.4, 0.7], [0.5, 0.8]), [0.0, 0.0, 0.3, 1.5], [1.0, 2.0, 3.0, -4.0]));
+    assert_eq!(
+        <FreeChain as System<4>>::FACTS.conserved,
+        ["p_x", "p_y", "p_θ[0] + p_θ[1] − y·p_x + x·p_y"]
+    );
+    constant::<3>(values(
+        &FreeChain::new([1.0, 0.4, 0.7], [0.5, 0.8]),
+        [0.0, 0.0, 0.3, 1.5],
+        [1.0, 2.0, 3.0, -4.0],
+    ));
 }
 
 #[test]
@@ -110,7 +118,11 @@ fn three_bodies_keep_both_momenta_and_their_angular_momentum() {
     let sums = ["p_x[0] + p_x[1] + p_x[2]", "p_y[0] + p_y[1] + p_y[2]"];
     assert_eq!(<ThreeBodies as System<6>>::FACTS.conserved, [sums[0], sums[1], turn]);
     let bodies = ThreeBodies::new([3.0, 1.0, 0.5], 1.0);
-    constant::<3>(values(&bodies, [0.0, 2.0, -3.0, 0.1, 0.3, -1.0], [0.1, -0.2, 0.3, -0.2, 1.1, -0.8]));
+    constant::<3>(values(
+        &bodies,
+        [0.0, 2.0, -3.0, 0.1, 0.3, -1.0],
+        [0.1, -0.2, 0.3, -0.2, 1.1, -0.8],
+    ));
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! The same bits in every build: final states of all methods on many systems, checked in as hashes.
 //!
-//! Test and release profile, with and without the machine's own instructions (`RUSTFLAGS="-C target-cpu=native"`), must agree with
-//! `data/determinism.txt`. `UPDATE_GOLDEN=1 cargo test --test determinism` writes it anew, where a change of the digits is meant.
+//! Test and release profile, with and without the machine's own instructions (`RUSTFLAGS="-C
+//! target-cpu=native"`), must agree with `data/determinism.txt`. `UPDATE_GOLDEN=1 cargo test --test
+//! determinism` writes it anew, where a change of the digits is meant.
 
 #![allow(missing_docs)]
 
@@ -20,8 +21,12 @@ fn final_states_have_the_bits_that_are_checked_in() {
     }
     let text = std::fs::read_to_string(path).unwrap();
     let expected: Vec<&str> = text.lines().collect();
-    let differ: Vec<String> =
-        found.iter().zip(&expected).filter(|(found, expected)| found != expected).map(|(a, b)| format!("{a} for {b}")).collect();
+    let differ: Vec<String> = found
+        .iter()
+        .zip(&expected)
+        .filter(|(found, expected)| found != expected)
+        .map(|(a, b)| format!("{a} for {b}"))
+        .collect();
     assert!(
         differ.is_empty() && found.len() == expected.len(),
         "{} lines for {}\n{}",

@@ -35,7 +35,8 @@ struct Case {
 }
 
 /// An ordinary case, which every other one differs from.
-const PLAIN: Case = Case { interval: 1.0, q: 1.0, v: 0.5, parameters: [1.0, 1.0, 0.0], amplitude: 0.0, rtol: 1e-3 };
+const PLAIN: Case =
+    Case { interval: 1.0, q: 1.0, v: 0.5, parameters: [1.0, 1.0, 0.0], amplitude: 0.0, rtol: 1e-3 };
 
 const INTERVALS: [f64; 6] = [1e-300, 1e-40, 1e-20, 1.0, 1e40, 1e300];
 const NUMBERS: [f64; 6] = [1e-300, 1e-40, 1e15, 1e38, 1e150, 1e300];
@@ -46,7 +47,11 @@ fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for interval in INTERVALS {
         let plain = Case { interval, ..PLAIN };
-        let mut states = vec![plain, Case { parameters: [1.0, 0.0, 1.0], ..plain }, Case { amplitude: 0.1, ..plain }];
+        let mut states = vec![
+            plain,
+            Case { parameters: [1.0, 0.0, 1.0], ..plain },
+            Case { amplitude: 0.1, ..plain },
+        ];
         for number in NUMBERS {
             let [l, g, k] = plain.parameters;
             states.extend([
@@ -60,7 +65,9 @@ fn cases() -> Vec<Case> {
                 Case { amplitude: number, ..plain },
             ]);
         }
-        cases.extend(states.into_iter().flat_map(|case| TOLERANCES.map(|rtol| Case { rtol, ..case })));
+        cases.extend(
+            states.into_iter().flat_map(|case| TOLERANCES.map(|rtol| Case { rtol, ..case })),
+        );
     }
     cases
 }
@@ -88,8 +95,15 @@ struct Complaints(Vec<String>);
 
 impl Complaints {
     /// Looks at what has come out of a run.
-    fn look<T: Tried>(&mut self, name: &str, case: &Case, seconds: Duration, run: Result<Solution<T, 1>, Failure<T, 1>>) {
-        let mut say = |what: String| self.0.push(format!("{name} over {}, {case:?}: {what}", T::NAME));
+    fn look<T: Tried>(
+        &mut self,
+        name: &str,
+        case: &Case,
+        seconds: Duration,
+        run: Result<Solution<T, 1>, Failure<T, 1>>,
+    ) {
+        let mut say =
+            |what: String| self.0.push(format!("{name} over {}, {case:?}: {what}", T::NAME));
         if Duration::from_secs(1) < seconds {
             say(format!("took {seconds:?}"));
         }
@@ -98,7 +112,9 @@ impl Complaints {
             Err(Failure { error, partial }) => (*partial, Some(error)),
         };
         match &error {
-            None if solution.t.len() != 3 || solution.end.t != case.interval => say(format!("is complete with {:?}", solution.t)),
+            None if solution.t.len() != 3 || solution.end.t != case.interval => {
+                say(format!("is complete with {:?}", solution.t));
+            }
             None => {}
             Some(error) => {
                 let message = error.to_string();
@@ -146,7 +162,19 @@ macro_rules! over {
         #[test]
         fn $name() {
             let mut complaints = Complaints::default();
-            tried!(complaints, $scalar, adaptive, Auto, Picard, Taylor::new(), Dop853, Tsit5, Dprkn8, Dprkn12, Rodas4);
+            tried!(
+                complaints,
+                $scalar,
+                adaptive,
+                Auto,
+                Picard,
+                Taylor::new(),
+                Dop853,
+                Tsit5,
+                Dprkn8,
+                Dprkn12,
+                Rodas4
+            );
             tried!(
                 complaints,
                 $scalar,
@@ -187,12 +215,18 @@ over!(double_double DoubleDouble);
 fn tolerances_beyond_the_coefficients_come_to_an_end() {
     let number = DoubleDouble::from_f64;
     let [zero, one] = [0.0, 1.0].map(number);
-    let lift = Function::new(|t| [0.0, t * t]).velocity(|t| [0.0, 2.0 * t]).acceleration(|_| [0.0, 2.0]);
+    let lift =
+        Function::new(|t| [0.0, t * t]).velocity(|t| [0.0, 2.0 * t]).acceleration(|_| [0.0, 2.0]);
     let lifted = Swing { l: one, g: one, k: zero }.driven_by(lift);
-    let heavier = Swing { l: one, g: number(3.0), k: zero }.driven_by(Sinusoid::new([0.0; 2], 1.0, [0.0; 2]));
+    let heavier =
+        Swing { l: one, g: number(3.0), k: zero }.driven_by(Sinusoid::new([0.0; 2], 1.0, [0.0; 2]));
     for q in [1.0, 1e15] {
         let exact = solve(&heavier, (0.0, 1.0), [number(q)], [zero]).rtol(1e-30).run().unwrap();
-        let run = solve(&lifted, (0.0, 1.0), [number(q)], [zero]).rtol(1e-30).max_steps(1000).run().unwrap();
+        let run = solve(&lifted, (0.0, 1.0), [number(q)], [zero])
+            .rtol(1e-30)
+            .max_steps(1000)
+            .run()
+            .unwrap();
         assert_eq!((exact.stats.method, run.stats.method), ("Taylor", "Dop853"));
         let error = (run.end.q[0] - exact.end.q[0]).abs().to_f64();
         assert!(error < 1e-13 * q, "{q}: {error:e}, {}", run.stats);
@@ -202,9 +236,16 @@ fn tolerances_beyond_the_coefficients_come_to_an_end() {
 /// Nothing is known of so short a time but that the motion goes on as it was.
 #[test]
 fn short_steps_of_single_precision_go_straight() {
-    let swing = Swing { l: 1.0_f32, g: 1e38, k: 0.0 }.driven_by(Sinusoid::new([0.0; 2], 1.0, [0.0; 2]));
+    let swing =
+        Swing { l: 1.0_f32, g: 1e38, k: 0.0 }.driven_by(Sinusoid::new([0.0; 2], 1.0, [0.0; 2]));
     for steps in [1, 10] {
-        let run = solve(&swing, (0.0, 1e-39), [0.5], [2e38]).method(Rk4).steps(steps).every_step().dense().run().unwrap();
+        let run = solve(&swing, (0.0, 1e-39), [0.5], [2e38])
+            .method(Rk4)
+            .steps(steps)
+            .every_step()
+            .dense()
+            .run()
+            .unwrap();
         let (q, v) = (run.end.q[0], run.end.v[0]);
         assert!((q - 0.7).abs() < 1e-6 && (v - 2e38).abs() < 1e32, "{q} {v}");
         let half = run.at(0.5e-39).unwrap();

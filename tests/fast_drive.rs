@@ -32,7 +32,8 @@ struct Exact {
 impl Exact {
     fn at(self, t: Time) -> [DoubleDouble; 3] {
         let [a, w, phase] = [self.amplitude, FREQUENCY, PHASE].map(DoubleDouble::from);
-        let (sin, cos) = (w * (DoubleDouble::from(t.to_f64()) + DoubleDouble::from(t.low())) + phase).sin_cos();
+        let (sin, cos) =
+            (w * (DoubleDouble::from(t.to_f64()) + DoubleDouble::from(t.low())) + phase).sin_cos();
         [a * sin, a * w * cos, -(a * w * w * sin)]
     }
 }
@@ -42,7 +43,11 @@ impl Motion<DoubleDouble, 2> for Exact {
 
     fn sample(&self, t: Time, _: Side, _: Orders) -> Sample<DoubleDouble, 2> {
         let ([position, velocity, acceleration], zero) = (self.at(t), DoubleDouble::from(0.0));
-        Sample { position: [zero, position], velocity: [zero, velocity], acceleration: [zero, acceleration] }
+        Sample {
+            position: [zero, position],
+            velocity: [zero, velocity],
+            acceleration: [zero, acceleration],
+        }
     }
 
     fn next_kink(&self, _: f64) -> Option<f64> {
@@ -55,9 +60,17 @@ impl Motion<DoubleDouble, 2> for Exact {
 }
 
 impl Analytic<DoubleDouble, 2> for Exact {
-    fn series(&self, t: Time, _: Side, component: usize, count: usize, position: &mut Series<DoubleDouble>) {
+    fn series(
+        &self,
+        t: Time,
+        _: Side,
+        component: usize,
+        count: usize,
+        position: &mut Series<DoubleDouble>,
+    ) {
         let w = DoubleDouble::from(FREQUENCY);
-        let [mut even, mut odd, _] = if component == 0 { [DoubleDouble::from(0.0); 3] } else { self.at(t) };
+        let [mut even, mut odd, _] =
+            if component == 0 { [DoubleDouble::from(0.0); 3] } else { self.at(t) };
         for (k, coefficient) in position.iter_mut().take(count).enumerate() {
             *coefficient = even;
             let next = -(w * w * even) / DoubleDouble::from(((k + 1) * (k + 2)) as f64);
@@ -81,7 +94,12 @@ impl Analytic<DoubleDouble, 2> for Exact {
 /// The error of θ after some seconds, in tolerances.
 macro_rules! missed {
     ($shaken:expr, $method:expr, $seconds:expr, $rtol:expr, $exact:expr) => {{
-        let run = solve(&$shaken, (0.0, $seconds), [2.9], [0.0]).method($method).rtol($rtol).atol($rtol).run().unwrap();
+        let run = solve(&$shaken, (0.0, $seconds), [2.9], [0.0])
+            .method($method)
+            .rtol($rtol)
+            .atol($rtol)
+            .run()
+            .unwrap();
         let missed = (DoubleDouble::from(run.end.q[0]) - $exact).abs().to_f64() / $rtol;
         println!("  {:.0e}: {missed:9.2e} tolerances off; {}", $rtol, run.stats);
         missed
@@ -93,11 +111,23 @@ fn a_kilohertz_costs_no_digits() {
     for (amplitude, seconds) in [(1e-3, 1.0), (1e-3, 3.0), (1e-2, 3.0)] {
         let [start, zero, l, g] = [2.9, 0.0, 1.0, 9.81].map(DoubleDouble::from);
         let trusted = Kapitza::new(l, g).driven_by(Exact { amplitude });
-        let exact = |q| solve(&trusted, (0.0, seconds), [q], [zero]).method(Taylor::new()).rtol(1e-20).run().unwrap().end.q[0];
+        let exact = |q| {
+            solve(&trusted, (0.0, seconds), [q], [zero])
+                .method(Taylor::new())
+                .rtol(1e-20)
+                .run()
+                .unwrap()
+                .end
+                .q[0]
+        };
         let end = exact(start);
         let amplified = (exact(start + DoubleDouble::from(1e-12)) - end).abs().to_f64() / 1e-12;
         println!("{amplitude} m, {seconds} s, the motion amplifies errors {amplified:.1} times");
-        let shaken = Kapitza::new(1.0, 9.81).driven_by(Sinusoid::new([0.0, amplitude], FREQUENCY, [0.0, PHASE]));
+        let shaken = Kapitza::new(1.0, 9.81).driven_by(Sinusoid::new(
+            [0.0, amplitude],
+            FREQUENCY,
+            [0.0, PHASE],
+        ));
         for rtol in [1e-6, 1e-9, 1e-12, 1e-13] {
             // Measured over what is amplified are at most 1.6, 1.7, 9.4 and 85.
             assert!(missed!(shaken, Dop853, seconds, rtol, end) < 5.0 * amplified);

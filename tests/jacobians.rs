@@ -62,7 +62,9 @@ macro_rules! compare {
             let lifted = system.map(Dual::constant);
             let lifted_inputs = lift(&inputs);
             let column = |q: [Dual; $n], v: [Dual; $n]| {
-                lifted.accelerations(Dual::constant(0.3), &q, &v, &lifted_inputs).map(|a| a.derivative)
+                lifted
+                    .accelerations(Dual::constant(0.3), &q, &v, &lifted_inputs)
+                    .map(|a| a.derivative)
             };
             let positions = system.position_jacobian(0.3, &q, &v, &inputs);
             let velocities = system.velocity_jacobian(0.3, &q, &v, &inputs);
@@ -84,7 +86,12 @@ macro_rules! compare {
                     Dual { value, derivative: if index == k + 1 { 1.0 } else { 0.0 } }
                 });
                 let (q, v) = (q.map(Dual::constant), v.map(Dual::constant));
-                near(found, &seeded.accelerations(Dual::constant(0.3), &q, &v, &lifted_inputs).map(|a| a.derivative));
+                near(
+                    found,
+                    &seeded
+                        .accelerations(Dual::constant(0.3), &q, &v, &lifted_inputs)
+                        .map(|a| a.derivative),
+                );
             }
         }
     }};
@@ -146,16 +153,31 @@ fn a_driven_body() {
 
 #[test]
 fn a_double_pendulum() {
-    compare!(2, |random: &mut Random| Chain2::new([random.uniform(0.5, 2.0), 1.0], [1.0, random.uniform(0.5, 2.0)]), ());
+    compare!(
+        2,
+        |random: &mut Random| Chain2::new(
+            [random.uniform(0.5, 2.0), 1.0],
+            [1.0, random.uniform(0.5, 2.0)]
+        ),
+        ()
+    );
 }
 
 #[test]
 fn a_driven_chain_by_dual_numbers() {
     let mut other = Random::new(5);
-    compare!(5, |random: &mut Random| Chain5::new([random.uniform(0.5, 2.0); 5], [1.0; 5]), shaken(&mut other));
+    compare!(
+        5,
+        |random: &mut Random| Chain5::new([random.uniform(0.5, 2.0); 5], [1.0; 5]),
+        shaken(&mut other)
+    );
 }
 
 #[test]
 fn a_spring_in_space() {
-    compare!(3, |random: &mut Random| Sphere::new(random.uniform(0.5, 2.0), 1.1, random.uniform(0.5, 2.0)), ());
+    compare!(
+        3,
+        |random: &mut Random| Sphere::new(random.uniform(0.5, 2.0), 1.1, random.uniform(0.5, 2.0)),
+        ()
+    );
 }

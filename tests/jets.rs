@@ -1,7 +1,9 @@
-//! The jets of generated systems: their series fulfil the equations of motion, whatever those are made of.
+//! The jets of generated systems: their series fulfil the equations of motion, whatever those are
+//! made of.
 //!
-//! At a small time h after the start the accelerations that the equations give for the summed state have to be the sum of the series of
-//! the accelerations. The two come from different programs: one solves for the accelerations by formulas, the other order by order.
+//! At a small time h after the start the accelerations that the equations give for the summed state
+//! have to be the sum of the series of the accelerations. The two come from different programs: one
+//! solves for the accelerations by formulas, the other order by order.
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -20,9 +22,17 @@ fn sum(series: &Series<f64>, h: f64) -> f64 {
     series[..=MAX_ORDER].iter().rev().fold(0.0, |sum, coefficient| sum * h + coefficient)
 }
 
-fn check<D: JetDynamics<N, Scalar = f64>, const N: usize>(name: &str, dynamics: &D, t: f64, q: [f64; N], v: [f64; N], h: f64) {
+fn check<D: JetDynamics<N, Scalar = f64>, const N: usize>(
+    name: &str,
+    dynamics: &D,
+    t: f64,
+    q: [f64; N],
+    v: [f64; N],
+    h: f64,
+) {
     let system = dynamics.system();
-    let (mut path, mut drive, mut work) = (Path::<f64, N>::new(), D::System::drive(), system.work());
+    let (mut path, mut drive, mut work) =
+        (Path::<f64, N>::new(), D::System::drive(), system.work());
     path.t = t;
     for i in 0..N {
         (path.q[i][0], path.v[i][0]) = (q[i], v[i]);
@@ -30,8 +40,11 @@ fn check<D: JetDynamics<N, Scalar = f64>, const N: usize>(name: &str, dynamics: 
     dynamics.drive(Time::new(t), Side::After, MAX_ORDER, &mut drive);
     <D::System as Jets<N>>::Orders::run(system, MAX_ORDER, &mut path, &drive, &mut work);
     for h in [0.0, 0.5 * h, -0.5 * h, h] {
-        let at = |series: &[Series<f64>; N]| -> [f64; N] { core::array::from_fn(|i| sum(&series[i], h)) };
-        let exact = dynamics.accelerations_at(Time::new(t + h), Side::After, &at(&path.q), &at(&path.v));
+        let at = |series: &[Series<f64>; N]| -> [f64; N] {
+            core::array::from_fn(|i| sum(&series[i], h))
+        };
+        let exact =
+            dynamics.accelerations_at(Time::new(t + h), Side::After, &at(&path.q), &at(&path.v));
         let mut accelerations = path.a;
         for series in &mut accelerations {
             // The order after the last is not computed.
@@ -41,7 +54,12 @@ fn check<D: JetDynamics<N, Scalar = f64>, const N: usize>(name: &str, dynamics: 
         let size = exact.iter().fold(1.0f64, |size, a| size.max(a.abs()));
         for i in 0..N {
             let error = (found[i] - exact[i]).abs() / size;
-            assert!(error < 2e-12, "{name}, h = {h}, coordinate {i}: {} for {}", found[i], exact[i]);
+            assert!(
+                error < 2e-12,
+                "{name}, h = {h}, coordinate {i}: {} for {}",
+                found[i],
+                exact[i]
+            );
         }
     }
 }
@@ -134,7 +152,8 @@ mod systems {
     }
 
     lagrangian! {
-        /// A chain on a moving pivot whose first link grows, with friction in the joints and in the air, a motor, and a wheel at its end.
+        /// A chain on a moving pivot whose first link grows, with friction in the joints and in the
+        /// air, a motor, and a wheel at its end.
         pub struct Machine { m: [1; 3], l: [1; 3], g, c, w, d, n }
         coordinate θ[3];
         coordinate φ;
@@ -149,7 +168,8 @@ mod systems {
     }
 
     lagrangian! {
-        /// Two arms on a shoulder, in angles against the link before and with lengths that stretch; a spring between the hands.
+        /// Two arms on a shoulder, in angles against the link before and with lengths that stretch;
+        /// a spring between the hands.
         pub struct Tree { g, k }
         coordinate a;
         coordinate b;
@@ -168,12 +188,30 @@ mod systems {
 fn coupled_coordinates() {
     let mut random = Random::new(9);
     for _ in 0..20 {
-        let mut state = || ([0.0; 4].map(|_| random.uniform(-3.0, 3.0)), [0.0; 4].map(|_| random.uniform(-1.0, 1.0)));
+        let mut state = || {
+            (
+                [0.0; 4].map(|_| random.uniform(-3.0, 3.0)),
+                [0.0; 4].map(|_| random.uniform(-1.0, 1.0)),
+            )
+        };
         let (q, v) = state();
-        check("chain", &systems::Chain::new([1.0, 0.5, 2.0, 1.0], [1.0, 1.5, 0.7, 1.0], 9.81), 0.0, q, v, 0.01);
-        let (q, v) = ([0.0; 7].map(|_| random.uniform(-1.0, 1.0)), [0.0; 7].map(|_| random.uniform(-1.0, 1.0)));
+        check(
+            "chain",
+            &systems::Chain::new([1.0, 0.5, 2.0, 1.0], [1.0, 1.5, 0.7, 1.0], 9.81),
+            0.0,
+            q,
+            v,
+            0.01,
+        );
+        let (q, v) = (
+            [0.0; 7].map(|_| random.uniform(-1.0, 1.0)),
+            [0.0; 7].map(|_| random.uniform(-1.0, 1.0)),
+        );
         check("blocks", &systems::Blocks::new(0.3), 0.0, q, v, 0.03);
-        let (q, v) = ([0.0; 5].map(|_| random.uniform(0.2, 0.9)), [0.0; 5].map(|_| random.uniform(-1.0, 1.0)));
+        let (q, v) = (
+            [0.0; 5].map(|_| random.uniform(0.2, 0.9)),
+            [0.0; 5].map(|_| random.uniform(-1.0, 1.0)),
+        );
         check("tree", &systems::Tree::new(9.81, 3.0), 0.0, q, v, 0.01);
     }
 }
@@ -187,10 +225,24 @@ fn driven_coordinates() {
     let spline = Spline::natural(&keys, &values).unwrap();
     for _ in 0..20 {
         let t = 2.3;
-        let (q, v) = ([0.0; 2].map(|_| random.uniform(-3.0, 3.0)), [0.0; 2].map(|_| random.uniform(-1.0, 1.0)));
-        check("sinusoid and spline", &systems::Moving::new(9.81, 0.3).driven_by(sinusoid, spline.clone()), t, q, v, 0.02);
-        let machine = systems::Machine::new([1.0, 0.5, 2.0], [1.0, 1.5, 0.7], 9.81, 0.3, 0.4, 0.7, 1.3);
-        let (angles, rates) = ([0.0; 4].map(|_| random.uniform(-3.0, 3.0)), [0.0; 4].map(|_| random.uniform(-1.0, 1.0)));
+        let (q, v) = (
+            [0.0; 2].map(|_| random.uniform(-3.0, 3.0)),
+            [0.0; 2].map(|_| random.uniform(-1.0, 1.0)),
+        );
+        check(
+            "sinusoid and spline",
+            &systems::Moving::new(9.81, 0.3).driven_by(sinusoid, spline.clone()),
+            t,
+            q,
+            v,
+            0.02,
+        );
+        let machine =
+            systems::Machine::new([1.0, 0.5, 2.0], [1.0, 1.5, 0.7], 9.81, 0.3, 0.4, 0.7, 1.3);
+        let (angles, rates) = (
+            [0.0; 4].map(|_| random.uniform(-3.0, 3.0)),
+            [0.0; 4].map(|_| random.uniform(-1.0, 1.0)),
+        );
         check("machine", &machine.driven_by(sinusoid, spline.clone()), t, angles, rates, 0.01);
         let clip = pendulum_runtime::motion::Clip::new(
             1.0,
@@ -198,6 +250,13 @@ fn driven_coordinates() {
             1,
             Interpolation::CatmullRom,
         );
-        check("clip and rest", &systems::Moving::new(9.81, 0.3).driven_by(clip.unwrap(), Still::new([0.1])), t, q, v, 0.02);
+        check(
+            "clip and rest",
+            &systems::Moving::new(9.81, 0.3).driven_by(clip.unwrap(), Still::new([0.1])),
+            t,
+            q,
+            v,
+            0.02,
+        );
     }
 }

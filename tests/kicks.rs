@@ -59,7 +59,12 @@ fn reference(w: f64) -> [f64; 2] {
         .run()
         .unwrap()
         .end;
-    let end = solve(&kicked(-1e6, 1.0), (begin.t, 2.0), begin.q, begin.v).method(Dop853).rtol(1e-14).run().unwrap().end;
+    let end = solve(&kicked(-1e6, 1.0), (begin.t, 2.0), begin.q, begin.v)
+        .method(Dop853)
+        .rtol(1e-14)
+        .run()
+        .unwrap()
+        .end;
     [end.q[0], end.v[0]]
 }
 
@@ -135,25 +140,41 @@ fn a_narrow_kick_costs_little() {
 fn back_in_time_and_in_a_batch() {
     let (mut random, expected) = (Random::new(8), reference(WIDTH));
     let problems: Vec<_> = (0..40)
-        .map(|_| Problem { system: kicked(random.uniform(1.0, 98.0), WIDTH), time: (0.0, END), q: [0.0], v: [0.0] })
+        .map(|_| Problem {
+            system: kicked(random.uniform(1.0, 98.0), WIDTH),
+            time: (0.0, END),
+            q: [0.0],
+            v: [0.0],
+        })
         .collect();
     let batch = Batch::new().rtol(TOLERANCE).atol(TOLERANCE).run(&problems).unwrap();
     let mut same = 0;
     for (problem, together) in problems.iter().zip(batch) {
         let (system, t0) = (&problem.system, problem.system.t0);
-        let alone =
-            solve(system, problem.time, [0.0], [0.0]).method(Taylor::new()).rtol(TOLERANCE).atol(TOLERANCE).run().unwrap();
+        let alone = solve(system, problem.time, [0.0], [0.0])
+            .method(Taylor::new())
+            .rtol(TOLERANCE)
+            .atol(TOLERANCE)
+            .run()
+            .unwrap();
         let together = together.unwrap();
         if alone.stats.rejected == 0 {
             assert_eq!((alone.end, alone.stats), (together.end, together.stats), "kick at {t0}");
             same += 1;
         }
         let apart = (alone.end.q[0] - together.end.q[0]).abs();
-        assert!(apart <= 100.0 * TOLERANCE, "kick at {t0}: {apart:e} between a motion alone and in a batch");
+        assert!(
+            apart <= 100.0 * TOLERANCE,
+            "kick at {t0}: {apart:e} between a motion alone and in a batch"
+        );
         // Mirrored in time it is the same kick.
         let times = [t0 - 1.0];
-        let back =
-            solve(system, (END, 0.0), [0.0], [0.0]).t_eval(&times).method(Taylor::new()).rtol(TOLERANCE).atol(TOLERANCE).run();
+        let back = solve(system, (END, 0.0), [0.0], [0.0])
+            .t_eval(&times)
+            .method(Taylor::new())
+            .rtol(TOLERANCE)
+            .atol(TOLERANCE)
+            .run();
         let error = off(&back.unwrap(), [expected[0], -expected[1]]);
         assert!(error <= 100.0, "back over a kick at {t0}: {error} tolerances");
     }
@@ -185,16 +206,25 @@ fn other_shapes() {
     let mut random = Random::new(9);
     for _ in 0..50 {
         let t0 = random.uniform(1.0, 98.0);
-        let pulse = solve(&Pulsed::new(t0, t0 + 0.02), (0.0, END), [0.0], [0.0]).rtol(1e-6).run().unwrap().end;
+        let pulse = solve(&Pulsed::new(t0, t0 + 0.02), (0.0, END), [0.0], [0.0])
+            .rtol(1e-6)
+            .run()
+            .unwrap()
+            .end;
         // Measured are at most 5e-7 and 6e-7.
         assert!((pulse.v[0] - 0.04).abs() < 3e-6, "pulse at {t0}: {}", pulse.v[0]);
-        let tent = solve(&Tent::new(t0, 0.02), (0.0, END), [0.0], [0.0]).rtol(1e-6).run().unwrap().end;
+        let tent =
+            solve(&Tent::new(t0, 0.02), (0.0, END), [0.0], [0.0]).rtol(1e-6).run().unwrap().end;
         assert!((tent.v[0] - 0.02).abs() < 3e-6, "tent at {t0}: {}", tent.v[0]);
     }
     // e^(−k/2) I₀(k/2) is the mean, near 1/√(πk) (1 + 1/(4k)); sixteen kicks from one between two
     // of them to another.
     let (k, tau) = (10_000.0, core::f64::consts::TAU);
-    let end = solve(&Ticking::new(k), (-0.5 * tau, 15.5 * tau), [0.0], [0.0]).rtol(1e-8).run().unwrap().end;
+    let end = solve(&Ticking::new(k), (-0.5 * tau, 15.5 * tau), [0.0], [0.0])
+        .rtol(1e-8)
+        .run()
+        .unwrap()
+        .end;
     let expected = 16.0 * tau * (1.0 + 0.25 / k) / (core::f64::consts::PI * k).sqrt();
     assert!((end.v[0] - expected).abs() < 1e-5, "{} for {expected}", end.v[0]);
 }
@@ -236,7 +266,10 @@ fn dense_keys_of_a_spline() {
 fn keys_close_together() {
     let times = [0.0, 20.0, 20.0 + 1e-9, 40.0, 60.0, 80.0, 100.0];
     let wind = Spline::natural(&times, &[[0.0], [0.1], [0.1], [0.0], [0.1], [0.0], [0.0]]).unwrap();
-    let solution = solve(&Blown::new(LENGTH, G).driven_by(wind), (0.0, END), [0.1], [0.0]).method(Dop853).run().unwrap();
+    let solution = solve(&Blown::new(LENGTH, G).driven_by(wind), (0.0, END), [0.1], [0.0])
+        .method(Dop853)
+        .run()
+        .unwrap();
     assert!(solution.stats.accepted < 1000, "{:?}", solution.stats);
 }
 
@@ -274,7 +307,9 @@ fn functions_of_unknown_resolution() {
 fn a_resolution_is_a_positive_time() {
     for wrong in [0.0, -1.0, f64::INFINITY, f64::NAN] {
         let refused = Function::new(|t| [t]).resolution(wrong).unwrap_err();
-        assert!(matches!(refused, MotionError::Resolution(found) if found.to_bits() == wrong.to_bits()));
+        assert!(
+            matches!(refused, MotionError::Resolution(found) if found.to_bits() == wrong.to_bits())
+        );
     }
     let text = MotionError::Resolution(-1.0).to_string();
     assert!(text.contains("-1 s") && text.contains("positive"), "{text}");
@@ -304,11 +339,16 @@ fn a_bound_that_is_none_is_refused() {
     for wrong in [0.0, -1.0, f64::NAN] {
         let blown = Blown::new(LENGTH, G).driven_by(Confused(wrong));
         let failed = solve(&blown, (0.0, 1.0), [0.1], [0.0]).run().unwrap_err();
-        assert!(matches!(failed.error, Error::Setting { name: "longest_step", .. }), "{wrong}: {:?}", failed.error);
+        assert!(
+            matches!(failed.error, Error::Setting { name: "longest_step", .. }),
+            "{wrong}: {:?}",
+            failed.error
+        );
     }
 }
 
-/// A pulse that is switched off has no width; another that drives the same system is seen all the same.
+/// A pulse that is switched off has no width; another that drives the same system is seen all the
+/// same.
 #[test]
 fn what_is_switched_off_hides_nothing() {
     lagrangian! {
@@ -320,7 +360,9 @@ fn what_is_switched_off_hides_nothing() {
     }
     let expected = 0.01 * core::f64::consts::PI.sqrt() * 4.0;
     for b in [0.0, 1.0] {
-        let gust = Function::new(|t: f64| [4.0 * (-((t - 40.123) / 0.01).powi(2)).exp()]).resolution(0.01).unwrap();
+        let gust = Function::new(|t: f64| [4.0 * (-((t - 40.123) / 0.01).powi(2)).exp()])
+            .resolution(0.01)
+            .unwrap();
         let switched = Switched::new(0.0, 0.0, b).driven_by(gust);
         macro_rules! check {
             ($($method:expr),+) => {$(

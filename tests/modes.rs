@@ -1,4 +1,5 @@
-//! Small oscillations of hanging chains: ω² = (g/l) times the zeros of the Laguerre polynomial L_N, for every N.
+//! Small oscillations of hanging chains: ω² = (g/l) times the zeros of the Laguerre polynomial L_N,
+//! for every N.
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -45,10 +46,19 @@ fn check<S: Jacobians<N, Scalar = f64, Inputs = ()>, const N: usize>(chain: &S, 
 #[test]
 fn chains_vibrate_at_the_zeros_of_laguerre_polynomials() {
     check(&Chain2::new([1.3; 2], [0.7; 2]), [0.585786437626904951, 3.41421356237309505]);
-    check(&Chain3::new([1.3; 3], [0.7; 3]), [0.415774556783479083, 2.29428036027904172, 6.2899450829374792]);
+    check(
+        &Chain3::new([1.3; 3], [0.7; 3]),
+        [0.415774556783479083, 2.29428036027904172, 6.2899450829374792],
+    );
     check(
         &Chain5::new([1.3; 5], [0.7; 5]),
-        [0.26356031971814091, 1.41340305910651679, 3.59642577104072208, 7.08581000585883756, 12.6408008442757827],
+        [
+            0.26356031971814091,
+            1.41340305910651679,
+            3.59642577104072208,
+            7.08581000585883756,
+            12.6408008442757827,
+        ],
     );
     check(
         &Chain10::new([1.3; 10], [0.7; 10]),
@@ -69,7 +79,8 @@ fn chains_vibrate_at_the_zeros_of_laguerre_polynomials() {
 
 #[test]
 fn shapes_are_normal_to_the_mass() {
-    let linear = linearize(&Chain3::new([1.0, 2.0, 0.5], [1.0, 0.4, 0.8]), 0.0, &[0.0; 3], &[0.0; 3]);
+    let linear =
+        linearize(&Chain3::new([1.0, 2.0, 0.5], [1.0, 0.4, 0.8]), 0.0, &[0.0; 3], &[0.0; 3]);
     let modes = linear.normal_modes().unwrap();
     let product = modes.shapes.transpose() * linear.mass * &modes.shapes;
     for row in 0..3 {
@@ -81,7 +92,8 @@ fn shapes_are_normal_to_the_mass() {
 
 #[test]
 fn an_upright_chain_is_unstable_and_damping_is_found() {
-    let upright = linearize(&Chain2::new([1.0; 2], [1.0; 2]), 0.0, &[core::f64::consts::PI; 2], &[0.0; 2]);
+    let upright =
+        linearize(&Chain2::new([1.0; 2], [1.0; 2]), 0.0, &[core::f64::consts::PI; 2], &[0.0; 2]);
     assert!(upright.normal_modes().unwrap().squared_frequencies.iter().all(|&square| square < 0.0));
     let damped = linearize(&Damped::new(2.0, 3.0, 0.5), 0.0, &[0.0], &[0.0]);
     assert_eq!((damped.mass[0], damped.damping[0], damped.stiffness[0]), (2.0, 0.5, 3.0));

@@ -43,13 +43,18 @@ lagrangian! {
 }
 
 /// The velocities that belong to the momenta of `v`.
-fn back<S: System<N, Inputs = ()>, const N: usize>(system: &S, q: [S::Scalar; N], v: [S::Scalar; N]) -> [S::Scalar; N] {
+fn back<S: System<N, Inputs = ()>, const N: usize>(
+    system: &S,
+    q: [S::Scalar; N],
+    v: [S::Scalar; N],
+) -> [S::Scalar; N] {
     let t = S::Scalar::from_f64(0.0);
     system.velocities(t, &q, &system.momenta(t, &q, &v, &()), &())
 }
 
 /// Speeds below that of light by these shares of it.
-const GAPS: [f64; 14] = [1.0, 0.999, 0.5, 0.3, 0.21, 0.19, 0.1, 0.01, 1e-3, 1e-4, 1e-5, 3e-6, 1e-6, 1e-7];
+const GAPS: [f64; 14] =
+    [1.0, 0.999, 0.5, 0.3, 0.21, 0.19, 0.1, 0.01, 1e-3, 1e-4, 1e-5, 3e-6, 1e-6, 1e-7];
 
 #[test]
 fn a_particle_comes_back_from_its_momentum() {
@@ -71,7 +76,8 @@ fn two_words_go_further() {
     for exponent in 0..24 {
         let gap = DoubleDouble::from_f64(10.0_f64.powi(-exponent));
         let v = DoubleDouble::from_f64(1.0) - gap;
-        let [found] = back(&Relativistic::<DoubleDouble>::new(DoubleDouble::from_f64(1.0)), [gap], [v]);
+        let [found] =
+            back(&Relativistic::<DoubleDouble>::new(DoubleDouble::from_f64(1.0)), [gap], [v]);
         let error = (found - v).abs().to_f64();
         assert!(error < 1e-30, "1e-{exponent}: {error:e}");
     }
@@ -85,7 +91,10 @@ fn particles_in_space_come_back_in_any_units() {
             let v = [2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0].map(|part| part * c * (1.0 - gap));
             let found = back(&system, [0.1, 0.2, 0.3], v);
             for i in 0..3 {
-                assert!((found[i] - v[i]).abs() <= 16.0 * f64::EPSILON * c, "{gap:e} of {c}: {found:?} for {v:?}");
+                assert!(
+                    (found[i] - v[i]).abs() <= 16.0 * f64::EPSILON * c,
+                    "{gap:e} of {c}: {found:?} for {v:?}"
+                );
             }
         }
     }
@@ -103,7 +112,8 @@ fn particles_of_different_masses_come_back() {
                 let found = back(&system, [0.0; 4], v);
                 // Where both have a share in a momentum, its rounding is that of the greater one.
                 let p = system.momenta(0.0, &[0.0; 4], &v, &());
-                let share = p.iter().fold(0.0, |most: f64, p| most.max(p.abs())) / masses[0].min(masses[1]);
+                let share =
+                    p.iter().fold(0.0, |most: f64, p| most.max(p.abs())) / masses[0].min(masses[1]);
                 for i in 0..4 {
                     assert!(
                         (found[i] - v[i]).abs() <= 4.0 * f64::EPSILON * (1.0 + share),
@@ -122,13 +132,23 @@ fn lanes_have_the_bits_of_single_particles() {
     let momenta = [0.0, 1e-9, 0.3, -1.7, 12.0, 707.0, f64::INFINITY, -3e5];
     let eight = Octet(momenta);
     let number = Octet::from_f64;
-    let [found] = Relativistic::<Octet<f64>>::new(number(1.0)).velocities(number(0.0), &[number(0.0)], &[eight], &());
+    let [found] = Relativistic::<Octet<f64>>::new(number(1.0)).velocities(
+        number(0.0),
+        &[number(0.0)],
+        &[eight],
+        &(),
+    );
     for (lane, p) in found.0.iter().zip(momenta) {
         assert_eq!(lane.to_bits(), alone(p), "{p}: {lane}");
     }
     let four = Lanes([1.0, 2.0, -500.0, 0.25]);
     let number = Lanes::from_f64;
-    let [found] = Relativistic::<Lanes<f64, 4>>::new(number(1.0)).velocities(number(0.0), &[number(0.0)], &[four], &());
+    let [found] = Relativistic::<Lanes<f64, 4>>::new(number(1.0)).velocities(
+        number(0.0),
+        &[number(0.0)],
+        &[four],
+        &(),
+    );
     for (lane, p) in found.0.iter().zip(four.0) {
         assert_eq!(lane.to_bits(), alone(p), "{p}: {lane}");
     }
@@ -144,9 +164,13 @@ fn derivatives_come_with_the_velocities() {
         let [v] = system.velocities(constant(0.0), &[constant(0.0)], &[momentum], &());
         let whole = 1.0 + p * p;
         let (first, second) = (whole.powf(-1.5), -3.0 * p * whole.powf(-2.5));
-        let near = |found: f64, exact: f64| (found - exact).abs() <= 1e-14 * whole * exact.abs() + 1e-16;
+        let near =
+            |found: f64, exact: f64| (found - exact).abs() <= 1e-14 * whole * exact.abs() + 1e-16;
         assert!((v.value.value - p / whole.sqrt()).abs() < 4e-16, "{p}: {v:?}");
-        assert!(near(v.value.derivative, first) && near(v.derivative.value, first), "{p}: {v:?} and {first}");
+        assert!(
+            near(v.value.derivative, first) && near(v.derivative.value, first),
+            "{p}: {v:?} and {first}"
+        );
         assert!(near(v.derivative.derivative, second), "{p}: {v:?} and {second}");
     }
 }
@@ -154,7 +178,11 @@ fn derivatives_come_with_the_velocities() {
 /// From rest, x = (√(1 + (a t)²) − 1)/a.
 #[test]
 fn a_long_fall_approaches_the_speed_of_light() {
-    let fall = solve(&Relativistic::new(1.0), (0.0, 700.0), [0.0], [0.0]).method(Gauss::<4>::new()).steps(1400).run().unwrap();
+    let fall = solve(&Relativistic::new(1.0), (0.0, 700.0), [0.0], [0.0])
+        .method(Gauss::<4>::new())
+        .steps(1400)
+        .run()
+        .unwrap();
     let whole = (1.0 + 700.0_f64.powi(2)).sqrt();
     let (x, v) = (fall.end.q[0], fall.end.v[0]);
     assert!((x - whole + 1.0).abs() < 1e-8 && (v - 700.0 / whole).abs() < 1e-15, "{x} and {v}");
@@ -169,10 +197,17 @@ fn a_momentum_without_a_velocity_is_named() {
     let failure = solve(&driven, (0.0, 2.0), [0.0], [0.5]).method(Dop853).run().unwrap_err();
     let Error::NoVelocity { t, coordinate } = failure.error else { panic!("{failure}") };
     assert_eq!((t, coordinate.name), (1.0, "x"));
-    assert!(failure.to_string().contains("no velocity was found for the momentum of `x`"), "{failure}");
+    assert!(
+        failure.to_string().contains("no velocity was found for the momentum of `x`"),
+        "{failure}"
+    );
     // A jump that velocities do reach.
     let keys = Linear::new(&[0.0, 1.0, 2.0], &[[0.0, 0.0], [0.0, 0.0], [-0.4, 0.0]]).unwrap();
-    let end = solve(&Bounded::new(1.0).driven_by(keys), (0.0, 1.5), [0.0], [0.5]).method(Dop853).run().unwrap().end;
+    let end = solve(&Bounded::new(1.0).driven_by(keys), (0.0, 1.5), [0.0], [0.5])
+        .method(Dop853)
+        .run()
+        .unwrap()
+        .end;
     let p = 0.5 / 1.25_f64.sqrt() + 0.4;
     assert!((end.v[0] - p / (1.0 - p * p).sqrt()).abs() < 1e-12, "{end:?}");
 }
@@ -191,7 +226,8 @@ fn momenta_end_at_their_limit<T: Float>(shares: &[f64]) {
     for &share in shares {
         for sign in [1.0, -1.0] {
             let velocity = |p: f64| system.velocities(zero, &[zero], &[T::from_f64(p)], &())[0];
-            let (beyond, within) = (velocity(sign * (1.0 + share)), velocity(sign * (1.0 - share)).to_f64());
+            let (beyond, within) =
+                (velocity(sign * (1.0 + share)), velocity(sign * (1.0 - share)).to_f64());
             assert!(!beyond.is_finite(), "1 + {share:e}: {beyond:?}");
             let exact = sign * (1.0 - share) / (share * (2.0 - share)).sqrt();
             assert!((within / exact - 1.0).abs() < 0.01, "1 - {share:e}: {within} for {exact}");
@@ -222,7 +258,10 @@ fn momenta_that_cancel_have_velocities() {
             let found = back(&Ranges::new(1.0, 1.0), [0.0; 2], [v, other]);
             // What the rounding of a momentum by ε does: dv/dp = (1 + v²)^(3/2).
             let error = 1e-14 * (1.0 + v.max((v + other).abs())).powi(3);
-            assert!((found[0] - v).abs() < error && (found[1] - other).abs() < 2.0 * error, "{v}, {other}: {found:?}");
+            assert!(
+                (found[0] - v).abs() < error && (found[1] - other).abs() < 2.0 * error,
+                "{v}, {other}: {found:?}"
+            );
         }
     }
 }
@@ -230,7 +269,11 @@ fn momenta_that_cancel_have_velocities() {
 /// A force that carries the momentum beyond what velocities reach, within an implicit step.
 #[test]
 fn a_momentum_that_leaves_its_range_is_named() {
-    let failure = solve(&Pushed::new(1.0), (0.0, 2.0), [0.0], [0.0]).method(Gauss::<2>::new()).step(0.01).run().unwrap_err();
+    let failure = solve(&Pushed::new(1.0), (0.0, 2.0), [0.0], [0.0])
+        .method(Gauss::<2>::new())
+        .step(0.01)
+        .run()
+        .unwrap_err();
     let Error::NoVelocity { t, coordinate } = failure.error else { panic!("{failure}") };
     assert!((t - 1.0).abs() < 0.02 && coordinate.name == "x", "{failure}");
 }

@@ -1,7 +1,8 @@
 //! The course note's four systems, each in its three notations, against equations derived by hand.
 //!
-//! "Equations of Motion for a Translating Compound Pendulum" (CMU 15-462) writes the kinetic energy with ⊥, in components and in
-//! complex numbers; all three must give the same equations, to the last operation.
+//! "Equations of Motion for a Translating Compound Pendulum" (CMU 15-462) writes the kinetic energy
+//! with ⊥, in components and in complex numbers; all three must give the same equations, to the
+//! last operation.
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -109,7 +110,8 @@ mod compound {
     }
 }
 
-/// The note's approximation: θ̈ = −⟨ẍ, y⊥⟩/L² − m g h(e^{i(θ+π/2)} c)/I, whose Lagrangian couples through I/L² in place of m.
+/// The note's approximation: θ̈ = −⟨ẍ, y⊥⟩/L² − m g h(e^{i(θ+π/2)} c)/I, whose Lagrangian couples
+/// through I/L² in place of m.
 mod approximate {
     use pendulum_runtime::lagrangian;
 
@@ -179,8 +181,8 @@ mod exact {
     }
 }
 
-/// The hand-written accelerations, each with the sum of the magnitudes of its terms: where terms cancel, no formula keeps more
-/// digits of the difference than it has of them.
+/// The hand-written accelerations, each with the sum of the magnitudes of its terms: where terms
+/// cancel, no formula keeps more digits of the difference than it has of them.
 mod hand {
     pub(crate) fn simple(l: f64, g: f64, θ: f64) -> (f64, f64) {
         let a = -g * θ.sin() / l;
@@ -199,7 +201,15 @@ mod hand {
         (terms.iter().sum(), terms.iter().map(|term| term.abs()).sum())
     }
 
-    pub(crate) fn approximate(m: f64, l: f64, c: [f64; 2], i: f64, g: f64, θ: f64, ddx: [f64; 2]) -> (f64, f64) {
+    pub(crate) fn approximate(
+        m: f64,
+        l: f64,
+        c: [f64; 2],
+        i: f64,
+        g: f64,
+        θ: f64,
+        ddx: [f64; 2],
+    ) -> (f64, f64) {
         let forcing = moving(l, 0.0, θ, ddx);
         let weight = compound(m, c, i, g, θ);
         (forcing.0 + weight.0, forcing.1 + weight.1)
@@ -209,7 +219,12 @@ mod hand {
         let (s, k) = θ.sin_cos();
         // (e^{iθ} c)⊥ = (−(c₁ s + c₂ k), c₁ k − c₂ s).
         let up = ddx[1] + g;
-        let terms = [m * ddx[0] * c[0] * s / i, m * ddx[0] * c[1] * k / i, -m * up * c[0] * k / i, m * up * c[1] * s / i];
+        let terms = [
+            m * ddx[0] * c[0] * s / i,
+            m * ddx[0] * c[1] * k / i,
+            -m * up * c[0] * k / i,
+            m * up * c[1] * s / i,
+        ];
         (terms.iter().sum(), terms.iter().map(|term| term.abs()).sum())
     }
 }
@@ -245,20 +260,35 @@ macro_rules! three {
 #[test]
 fn simple_pendulum() {
     compare("simple", |random| {
-        let (m, l, θ, ω) =
-            (random.uniform(0.1, 10.0), random.uniform(0.1, 10.0), random.uniform(-10.0, 10.0), random.uniform(-9.0, 9.0));
-        (three!(simple, (m, l), |system| system.accelerations(0.0, &[θ], &[ω], &())[0]), hand::simple(l, 9.81, θ))
+        let (m, l, θ, ω) = (
+            random.uniform(0.1, 10.0),
+            random.uniform(0.1, 10.0),
+            random.uniform(-10.0, 10.0),
+            random.uniform(-9.0, 9.0),
+        );
+        (
+            three!(simple, (m, l), |system| system.accelerations(0.0, &[θ], &[ω], &())[0]),
+            hand::simple(l, 9.81, θ),
+        )
     });
 }
 
 #[test]
 fn moving_pendulum() {
     compare("moving", |random| {
-        let (m, l, θ, ω) =
-            (random.uniform(0.1, 10.0), random.uniform(0.1, 10.0), random.uniform(-10.0, 10.0), random.uniform(-9.0, 9.0));
-        let [x, dx, ddx] = [1.0, 3.0, 30.0].map(|size| [random.uniform(-size, size), random.uniform(-size, size)]);
+        let (m, l, θ, ω) = (
+            random.uniform(0.1, 10.0),
+            random.uniform(0.1, 10.0),
+            random.uniform(-10.0, 10.0),
+            random.uniform(-9.0, 9.0),
+        );
+        let [x, dx, ddx] =
+            [1.0, 3.0, 30.0].map(|size| [random.uniform(-size, size), random.uniform(-size, size)]);
         let inputs = sample(x, dx, ddx);
-        (three!(moving, (m, l), |system| system.accelerations(0.0, &[θ], &[ω], &inputs)[0]), hand::moving(l, 9.81, θ, ddx))
+        (
+            three!(moving, (m, l), |system| system.accelerations(0.0, &[θ], &[ω], &inputs)[0]),
+            hand::moving(l, 9.81, θ, ddx),
+        )
     });
 }
 
@@ -274,7 +304,10 @@ fn compound_pendulum() {
     compare("compound", |random| {
         let (m, c, i) = body(random);
         let (θ, ω) = (random.uniform(-10.0, 10.0), random.uniform(-9.0, 9.0));
-        (three!(compound, (m, c, i), |system| system.accelerations(0.0, &[θ], &[ω], &())[0]), hand::compound(m, c, i, 9.81, θ))
+        (
+            three!(compound, (m, c, i), |system| system.accelerations(0.0, &[θ], &[ω], &())[0]),
+            hand::compound(m, c, i, 9.81, θ),
+        )
     });
 }
 
@@ -282,10 +315,17 @@ fn compound_pendulum() {
 fn approximate_moving_compound_pendulum() {
     compare("approximate moving compound", |random| {
         let (m, c, i) = body(random);
-        let (l, θ, ω) = (random.uniform(0.1, 2.0), random.uniform(-10.0, 10.0), random.uniform(-9.0, 9.0));
-        let [x, dx, ddx] = [1.0, 3.0, 30.0].map(|size| [random.uniform(-size, size), random.uniform(-size, size)]);
+        let (l, θ, ω) =
+            (random.uniform(0.1, 2.0), random.uniform(-10.0, 10.0), random.uniform(-9.0, 9.0));
+        let [x, dx, ddx] =
+            [1.0, 3.0, 30.0].map(|size| [random.uniform(-size, size), random.uniform(-size, size)]);
         let inputs = sample(x, dx, ddx);
-        let generated = three!(approximate, (m, l, c, i), |system| system.accelerations(0.0, &[θ], &[ω], &inputs)[0]);
+        let generated = three!(approximate, (m, l, c, i), |system| system.accelerations(
+            0.0,
+            &[θ],
+            &[ω],
+            &inputs
+        )[0]);
         (generated, hand::approximate(m, l, c, i, 9.81, θ, ddx))
     });
 }
@@ -295,22 +335,30 @@ fn exact_moving_compound_pendulum() {
     compare("exact moving compound", |random| {
         let (m, c, i) = body(random);
         let (θ, ω) = (random.uniform(-10.0, 10.0), random.uniform(-9.0, 9.0));
-        let [x, dx, ddx] = [1.0, 3.0, 30.0].map(|size| [random.uniform(-size, size), random.uniform(-size, size)]);
+        let [x, dx, ddx] =
+            [1.0, 3.0, 30.0].map(|size| [random.uniform(-size, size), random.uniform(-size, size)]);
         let inputs = sample(x, dx, ddx);
-        let generated = three!(exact, (m, c, i), |system| system.accelerations(0.0, &[θ], &[ω], &inputs)[0]);
+        let generated =
+            three!(exact, (m, c, i), |system| system.accelerations(0.0, &[θ], &[ω], &inputs)[0]);
         (generated, hand::exact(m, c, i, 9.81, θ, ddx))
     });
 }
 
 macro_rules! facts {
     ($module:ident) => {
-        [<$module::Perp as System<1>>::FACTS, <$module::Components as System<1>>::FACTS, <$module::Complex as System<1>>::FACTS]
+        [
+            <$module::Perp as System<1>>::FACTS,
+            <$module::Components as System<1>>::FACTS,
+            <$module::Complex as System<1>>::FACTS,
+        ]
     };
 }
 
 #[test]
 fn the_three_notations_print_one_equation() {
-    for facts in [facts!(simple), facts!(moving), facts!(compound), facts!(approximate), facts!(exact)] {
+    for facts in
+        [facts!(simple), facts!(moving), facts!(compound), facts!(approximate), facts!(exact)]
+    {
         for other in &facts {
             assert_eq!(other.equations, facts[0].equations);
         }
@@ -327,10 +375,20 @@ fn terms_that_cannot_matter_vanish() {
     for facts in facts!(exact) {
         assert_eq!(facts.inputs[0].accelerations, Orders::ACCELERATION);
         assert_eq!(facts.inputs[0].momenta, Orders::VELOCITY);
-        assert!(facts.velocity_free && facts.constant_mass_matrix && !facts.autonomous && !facts.separable);
+        assert!(
+            facts.velocity_free
+                && facts.constant_mass_matrix
+                && !facts.autonomous
+                && !facts.separable
+        );
     }
     for facts in facts!(simple) {
-        assert!(facts.velocity_free && facts.constant_mass_matrix && facts.autonomous && facts.separable);
+        assert!(
+            facts.velocity_free
+                && facts.constant_mass_matrix
+                && facts.autonomous
+                && facts.separable
+        );
     }
 }
 
@@ -403,7 +461,13 @@ mod hand_systems {
             unreachable!("the motion has no kink")
         }
 
-        fn mass_matrix(&self, _: T, _: &[T; 1], _: &[T; 1], _: &Self::Inputs) -> nalgebra::SMatrix<T, 1, 1> {
+        fn mass_matrix(
+            &self,
+            _: T,
+            _: &[T; 1],
+            _: &[T; 1],
+            _: &Self::Inputs,
+        ) -> nalgebra::SMatrix<T, 1, 1> {
             unreachable!("only the accelerations are compared")
         }
 
@@ -433,8 +497,14 @@ fn together<A: Dynamics<1, Scalar = f64>, B: Dynamics<1, Scalar = f64>>(generate
     let a = solve(generated, (0.0, 10.0), q, v).method(Rk4).steps(5000).run().unwrap();
     let b = solve(hand, (0.0, 10.0), q, v).method(Rk4).steps(5000).run().unwrap();
     run(&mut worst, fixed(a.end), fixed(b.end));
-    let a = solve(generated, (0.0, 10.0), q, v).method(Dop853::new()).rtol(1e-12).atol(1e-12).run().unwrap();
-    let b = solve(hand, (0.0, 10.0), q, v).method(Dop853::new()).rtol(1e-12).atol(1e-12).run().unwrap();
+    let a = solve(generated, (0.0, 10.0), q, v)
+        .method(Dop853::new())
+        .rtol(1e-12)
+        .atol(1e-12)
+        .run()
+        .unwrap();
+    let b =
+        solve(hand, (0.0, 10.0), q, v).method(Dop853::new()).rtol(1e-12).atol(1e-12).run().unwrap();
     run(&mut worst, fixed(a.end), fixed(b.end));
     println!("after ten seconds: {worst:.1e}");
     assert!(worst <= 1e-12, "{worst}");
@@ -446,10 +516,19 @@ fn ten_seconds_agree() {
     let shake = || Sinusoid::new([0.2, 0.1], 5.0, [0.3, 1.0]);
     let still = || (Still::new([0.0; 2]),);
     together(&simple::Perp::new(0.8, 1.2), &Driven::new::<1>(hand(Equation::Moving), still()));
-    together(&moving::Complex::new(0.8, 1.2).driven_by(shake()), &Driven::new::<1>(hand(Equation::Moving), (shake(),)));
-    together(&compound::Perp::new(0.8, [0.3, -1.1], 1.5), &Driven::new::<1>(hand(Equation::Exact), still()));
+    together(
+        &moving::Complex::new(0.8, 1.2).driven_by(shake()),
+        &Driven::new::<1>(hand(Equation::Moving), (shake(),)),
+    );
+    together(
+        &compound::Perp::new(0.8, [0.3, -1.1], 1.5),
+        &Driven::new::<1>(hand(Equation::Exact), still()),
+    );
     let approximate = approximate::Components::new(0.8, 1.2, [0.3, -1.1], 1.5);
-    together(&approximate.driven_by(shake()), &Driven::new::<1>(hand(Equation::Approximate), (shake(),)));
+    together(
+        &approximate.driven_by(shake()),
+        &Driven::new::<1>(hand(Equation::Approximate), (shake(),)),
+    );
     together(
         &exact::Complex::new(0.8, [0.3, -1.1], 1.5).driven_by(shake()),
         &Driven::new::<1>(hand(Equation::Exact), (shake(),)),

@@ -1,5 +1,5 @@
-//! The `Picard` method on generated systems: against trusted digits, over kinks, between its steps, in single precision, and where it has
-//! to stop.
+//! The `Picard` method on generated systems: against trusted digits, over kinks, between its steps,
+//! in single precision, and where it has to stop.
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -61,7 +61,8 @@ const AFTER_10_S: f64 = -1.1661603819329576;
 fn a_thousand_seconds() {
     let simple = Simple::new(9.8);
     for (rtol, bound) in [(1e-9, 1e-4), (1e-12, 1e-7), (1e-15, 2e-11), (1e-18, 2e-11)] {
-        let solution = solve(&simple, (0.0, 1000.0), [1.3], [0.0]).method(Picard).rtol(rtol).run().unwrap();
+        let solution =
+            solve(&simple, (0.0, 1000.0), [1.3], [0.0]).method(Picard).rtol(rtol).run().unwrap();
         let error = (solution.end.q[0] - AFTER_1000_S).abs();
         assert!(error < bound, "{rtol}: {error:e}");
         assert_eq!(solution.stats.method, "Picard");
@@ -69,34 +70,53 @@ fn a_thousand_seconds() {
     }
 }
 
-/// Steps of equal length: order 16, and on the way back, with the velocity turned round, the same places.
+/// Steps of equal length: order 16, and on the way back, with the velocity turned round, the same
+/// places.
 #[test]
 fn equal_steps() {
     let simple = Simple::new(1.0);
     let error = |steps| {
-        let end = solve(&simple, (0.0, 10.0), [1.3], [0.0]).method(Picard).steps(steps).run().unwrap().end;
+        let end = solve(&simple, (0.0, 10.0), [1.3], [0.0])
+            .method(Picard)
+            .steps(steps)
+            .run()
+            .unwrap()
+            .end;
         (end.q[0] - AFTER_10_S).abs()
     };
     let observed = (error(8) / error(12)).log(1.5);
     assert!((14.5..18.5).contains(&observed), "{observed}");
     assert!(error(20) < 2e-15 && error(200) < 2e-15, "{:e} {:e}", error(20), error(200));
-    let run = |q, v| solve(&simple, (0.0, 1000.0), [q], [v]).method(Picard).step(0.5).run().unwrap().end;
+    let run =
+        |q, v| solve(&simple, (0.0, 1000.0), [q], [v]).method(Picard).step(0.5).run().unwrap().end;
     let there = run(0.05, 0.025);
     let back = run(there.q[0], -there.v[0]);
     let distance = (back.q[0] - 0.05).hypot(back.v[0] + 0.025);
     assert!(distance < 2e-15, "{distance:e}");
 }
 
-/// Velocities in the accelerations and a mass matrix that varies; the energy is kept, and the motion is that of the Taylor series.
+/// Velocities in the accelerations and a mass matrix that varies; the energy is kept, and the
+/// motion is that of the Taylor series.
 #[test]
 fn coupled_pendulums() {
     let double = Double::new([1.0; 2], [1.0; 2], 1.0);
-    let trusted = solve(&double, (0.0, 10.0), [2.0, 2.5], [0.0; 2]).method(Taylor::new()).rtol(1e-18).run().unwrap().end;
+    let trusted = solve(&double, (0.0, 10.0), [2.0, 2.5], [0.0; 2])
+        .method(Taylor::new())
+        .rtol(1e-18)
+        .run()
+        .unwrap()
+        .end;
     // Errors grow 1300 times.
     for rtol in [1e-6, 1e-9, 1e-12, 1e-15] {
-        let end = solve(&double, (0.0, 10.0), [2.0, 2.5], [0.0; 2]).method(Picard).rtol(rtol).run().unwrap().end;
-        let error =
-            (0..2).fold(0.0, |error: f64, i| error.max((end.q[i] - trusted.q[i]).abs()).max((end.v[i] - trusted.v[i]).abs()));
+        let end = solve(&double, (0.0, 10.0), [2.0, 2.5], [0.0; 2])
+            .method(Picard)
+            .rtol(rtol)
+            .run()
+            .unwrap()
+            .end;
+        let error = (0..2).fold(0.0, |error: f64, i| {
+            error.max((end.q[i] - trusted.q[i]).abs()).max((end.v[i] - trusted.v[i]).abs())
+        });
         println!("{rtol} {error:e}");
         assert!(error < 3000.0 * rtol, "{rtol}: {error:e}");
     }
@@ -104,16 +124,34 @@ fn coupled_pendulums() {
 
 #[test]
 fn motions_of_every_kind() {
-    let closure = Function::new(|t| [0.0, 0.5 * t * t]).velocity(|t| [0.0, t]).acceleration(|_| [0.0, 1.0]);
+    let closure =
+        Function::new(|t| [0.0, 0.5 * t * t]).velocity(|t| [0.0, t]).acceleration(|_| [0.0, 1.0]);
     let lifted = Hanging { m: 1.0, L: 0.5, g: 9.8 }.driven_by(closure);
-    let end = solve(&lifted, (0.0, 5.0), [0.3], [0.0]).method(Picard).rtol(1e-13).run().unwrap().end;
+    let end =
+        solve(&lifted, (0.0, 5.0), [0.3], [0.0]).method(Picard).rtol(1e-13).run().unwrap().end;
     // A lift with the acceleration 1 adds it to gravity.
-    let heavier = solve(&Simple::new(2.0 * 10.8), (0.0, 5.0), [0.3], [0.0]).method(Taylor::new()).rtol(1e-15).run().unwrap().end;
+    let heavier = solve(&Simple::new(2.0 * 10.8), (0.0, 5.0), [0.3], [0.0])
+        .method(Taylor::new())
+        .rtol(1e-15)
+        .run()
+        .unwrap()
+        .end;
     assert!((end.q[0] - heavier.q[0]).abs() < 1e-11, "{} {}", end.q[0], heavier.q[0]);
-    let shaken = Hanging { m: 1.0, L: 1.0, g: 1.0 }.driven_by(Sinusoid::new([0.25, 0.1], 2.0, [0.0, 0.4]));
-    let run = |rtol| solve(&shaken, (0.0, 20.0), [0.5], [0.0]).method(Picard).rtol(rtol).run().unwrap().end;
-    let trusted = solve(&shaken, (0.0, 20.0), [0.5], [0.0]).method(Taylor::new()).rtol(1e-18).run().unwrap().end;
-    assert!((run(1e-8).q[0] - trusted.q[0]).abs() < 1e-5 && (run(1e-16).q[0] - trusted.q[0]).abs() < 1e-13);
+    let shaken =
+        Hanging { m: 1.0, L: 1.0, g: 1.0 }.driven_by(Sinusoid::new([0.25, 0.1], 2.0, [0.0, 0.4]));
+    let run = |rtol| {
+        solve(&shaken, (0.0, 20.0), [0.5], [0.0]).method(Picard).rtol(rtol).run().unwrap().end
+    };
+    let trusted = solve(&shaken, (0.0, 20.0), [0.5], [0.0])
+        .method(Taylor::new())
+        .rtol(1e-18)
+        .run()
+        .unwrap()
+        .end;
+    assert!(
+        (run(1e-8).q[0] - trusted.q[0]).abs() < 1e-5
+            && (run(1e-16).q[0] - trusted.q[0]).abs() < 1e-13
+    );
 }
 
 /// The angles after five seconds that `kinks.rs` knows.
@@ -126,13 +164,27 @@ fn keys_are_met() {
     let end = solve(&linear, (0.0, 5.0), [0.3], [0.0]).method(Picard).rtol(1e-14).run().unwrap();
     assert!((end.end.q[0] + 0.129608683467).abs() < 5e-12, "{}", end.end.q[0]);
     assert_eq!(end.stats.kinks, 120);
-    let end = solve(&catmull_rom, (0.0, 5.0), [0.3], [0.0]).method(Picard).rtol(1e-14).run().unwrap();
+    let end =
+        solve(&catmull_rom, (0.0, 5.0), [0.3], [0.0]).method(Picard).rtol(1e-14).run().unwrap();
     assert!((end.end.q[0] + 0.128838666144).abs() < 5e-12, "{}", end.end.q[0]);
-    // Pieces of a spline meet within steps, where their third derivatives jump: that costs steps, not digits.
+    // Pieces of a spline meet within steps, where their third derivatives jump: that costs steps,
+    // not digits.
     let spline = pendulum.driven_by(Spline::natural(&times, &values).unwrap());
-    let end = |rtol| solve(&spline, (0.0, 5.0), [0.3], [0.0]).method(Picard).rtol(rtol).run().unwrap().end.q[0];
-    let trusted = solve(&spline, (0.0, 5.0), [0.3], [0.0]).method(Taylor::new()).rtol(1e-16).run().unwrap().end.q[0];
-    assert!((end(1e-8) - trusted).abs() < 1e-6 && (end(1e-11) - trusted).abs() < 1e-9, "{} {trusted}", end(1e-8));
+    let end = |rtol| {
+        solve(&spline, (0.0, 5.0), [0.3], [0.0]).method(Picard).rtol(rtol).run().unwrap().end.q[0]
+    };
+    let trusted = solve(&spline, (0.0, 5.0), [0.3], [0.0])
+        .method(Taylor::new())
+        .rtol(1e-16)
+        .run()
+        .unwrap()
+        .end
+        .q[0];
+    assert!(
+        (end(1e-8) - trusted).abs() < 1e-6 && (end(1e-11) - trusted).abs() < 1e-9,
+        "{} {trusted}",
+        end(1e-8)
+    );
 }
 
 /// Between the ends of its steps the motion is as exact as there.
@@ -140,9 +192,19 @@ fn keys_are_met() {
 fn dense_output_is_exact() {
     let double = Double::new([1.0; 2], [1.0; 2], 1.0);
     let start = ([0.5, -0.25], [0.0; 2]);
-    let trusted = solve(&double, (0.0, 20.0), start.0, start.1).method(Taylor::new()).rtol(1e-18).dense().run().unwrap();
+    let trusted = solve(&double, (0.0, 20.0), start.0, start.1)
+        .method(Taylor::new())
+        .rtol(1e-18)
+        .dense()
+        .run()
+        .unwrap();
     for rtol in [1e-5, 1e-8, 1e-11, 1e-14] {
-        let solution = solve(&double, (0.0, 20.0), start.0, start.1).method(Picard).rtol(rtol).dense().run().unwrap();
+        let solution = solve(&double, (0.0, 20.0), start.0, start.1)
+            .method(Picard)
+            .rtol(rtol)
+            .dense()
+            .run()
+            .unwrap();
         for k in 0..=1000 {
             let t = 0.02 * f64::from(k);
             let (state, exact) = (solution.at(t).unwrap(), trusted.at(t).unwrap());
@@ -175,32 +237,55 @@ fn events_are_located() {
 #[test]
 fn motions_without_accelerations() {
     let falling = Falling::new(9.81);
-    let solution = solve(&falling, (0.0, 100.0), [0.0, 3.0], [1.0, 2.0]).method(Picard).rtol(1e-14).run().unwrap();
+    let solution = solve(&falling, (0.0, 100.0), [0.0, 3.0], [1.0, 2.0])
+        .method(Picard)
+        .rtol(1e-14)
+        .run()
+        .unwrap();
     assert!(solution.stats.accepted < 50, "{}", solution.stats);
-    assert!((solution.end.q[0] - 100.0).abs() < 1e-12 && (solution.end.q[1] - (203.0 - 9.81 * 5000.0)).abs() < 1e-9);
+    assert!(
+        (solution.end.q[0] - 100.0).abs() < 1e-12
+            && (solution.end.q[1] - (203.0 - 9.81 * 5000.0)).abs() < 1e-9
+    );
     let rest = solve(&Simple::new(1.0), (0.0, 1e6), [0.0], [0.0]).method(Picard).run().unwrap();
     assert_eq!((rest.end.q, rest.end.v), ([0.0], [0.0]));
     assert!(rest.stats.accepted < 100, "{}", rest.stats);
-    let fixed = solve(&Simple::new(1.0), (0.0, 10.0), [0.0], [0.0]).method(Picard).step(0.5).run().unwrap();
+    let fixed =
+        solve(&Simple::new(1.0), (0.0, 10.0), [0.0], [0.0]).method(Picard).step(0.5).run().unwrap();
     assert_eq!(fixed.end.q, [0.0]);
     // A pivot at rest that begins to move.
     let (times, values) = ([0.0, 1.0, 2.0], [[0.0, 0.0], [0.0, 0.0], [0.5, 0.0]]);
-    let pushed = Hanging { m: 1.0, L: 1.0, g: 9.8 }.driven_by(Linear::new(&times, &values).unwrap());
+    let pushed =
+        Hanging { m: 1.0, L: 1.0, g: 9.8 }.driven_by(Linear::new(&times, &values).unwrap());
     for end in [
         solve(&pushed, (0.0, 2.0), [0.0], [0.0]).method(Picard).step(0.1).run().unwrap().end,
         solve(&pushed, (0.0, 2.0), [0.0], [0.0]).method(Picard).rtol(1e-13).run().unwrap().end,
     ] {
-        let trusted = solve(&pushed, (0.0, 2.0), [0.0], [0.0]).method(Taylor::new()).rtol(1e-15).run().unwrap().end;
+        let trusted = solve(&pushed, (0.0, 2.0), [0.0], [0.0])
+            .method(Taylor::new())
+            .rtol(1e-15)
+            .run()
+            .unwrap()
+            .end;
         assert!((end.q[0] - trusted.q[0]).abs() < 1e-12, "{} {}", end.q[0], trusted.q[0]);
     }
 }
 
-/// A coordinate that hardly moves beside one that does, and one whose accelerations are nothing but rounding.
+/// A coordinate that hardly moves beside one that does, and one whose accelerations are nothing but
+/// rounding.
 #[test]
 fn coordinates_of_other_sizes() {
     let kepler = Kepler::new(1.0);
-    let solution = solve(&kepler, (0.0, 1.0), [1.0, 0.0], [0.1, 1e-12]).method(Picard).rtol(1e-10).run().unwrap();
-    let trusted = solve(&kepler, (0.0, 1.0), [1.0, 0.0], [0.1, 1e-12]).method(Taylor::new()).rtol(1e-16).run().unwrap();
+    let solution = solve(&kepler, (0.0, 1.0), [1.0, 0.0], [0.1, 1e-12])
+        .method(Picard)
+        .rtol(1e-10)
+        .run()
+        .unwrap();
+    let trusted = solve(&kepler, (0.0, 1.0), [1.0, 0.0], [0.1, 1e-12])
+        .method(Taylor::new())
+        .rtol(1e-16)
+        .run()
+        .unwrap();
     assert!((solution.end.q[0] - trusted.end.q[0]).abs() < 1e-9);
     assert!((solution.end.q[1] - trusted.end.q[1]).abs() < 1e-9);
 }
@@ -209,10 +294,12 @@ fn coordinates_of_other_sizes() {
 fn single_precision() {
     let simple = Simple::new(1.0f32);
     for rtol in [1e-5, 1e-7, 1e-12] {
-        let end = solve(&simple, (0.0, 10.0), [1.3], [0.0]).method(Picard).rtol(rtol).run().unwrap().end;
+        let end =
+            solve(&simple, (0.0, 10.0), [1.3], [0.0]).method(Picard).rtol(rtol).run().unwrap().end;
         assert!((end.q[0] + 1.166_160_4).abs() < 3e-6 + 20.0 * rtol as f32, "{rtol}: {}", end.q[0]);
     }
-    let end = solve(&simple, (0.0, 10.0), [1.3], [0.0]).method(Picard).step(0.25).run().unwrap().end;
+    let end =
+        solve(&simple, (0.0, 10.0), [1.3], [0.0]).method(Picard).step(0.25).run().unwrap().end;
     assert!((end.q[0] + 1.166_160_4).abs() < 3e-6, "{}", end.q[0]);
 }
 
@@ -220,10 +307,17 @@ fn single_precision() {
 #[test]
 fn stiff_systems() {
     let sprung = Sprung { k: 100.0, c: 400.0 };
-    let solution = solve(&sprung, (0.0, 1.0), [1.0], [0.0]).method(Picard).rtol(1e-9).run().unwrap();
-    let trusted = solve(&sprung, (0.0, 1.0), [1.0], [0.0]).method(Taylor::new()).rtol(1e-15).run().unwrap();
-    assert!((solution.end.q[0] - trusted.end.q[0]).abs() < 1e-8, "{}", solution.end.q[0] - trusted.end.q[0]);
-    let failure = solve(&sprung, (0.0, 1.0), [1.0], [0.0]).method(Picard).step(0.2).run().unwrap_err();
+    let solution =
+        solve(&sprung, (0.0, 1.0), [1.0], [0.0]).method(Picard).rtol(1e-9).run().unwrap();
+    let trusted =
+        solve(&sprung, (0.0, 1.0), [1.0], [0.0]).method(Taylor::new()).rtol(1e-15).run().unwrap();
+    assert!(
+        (solution.end.q[0] - trusted.end.q[0]).abs() < 1e-8,
+        "{}",
+        solution.end.q[0] - trusted.end.q[0]
+    );
+    let failure =
+        solve(&sprung, (0.0, 1.0), [1.0], [0.0]).method(Picard).step(0.2).run().unwrap_err();
     let Error::NoConvergence { step, coordinate, .. } = failure.error else { panic!("{failure}") };
     assert_eq!((step, coordinate.name), (0.2, "x"));
 }
@@ -232,25 +326,47 @@ fn stiff_systems() {
 fn errors_say_where() {
     // A fall into the centre from rest: the singularity is reached at π/(2√2).
     let kepler = Kepler::new(1.0);
-    let failure = solve(&kepler, (0.0, 2.0), [1.0, 0.0], [0.0, 0.0]).method(Picard).rtol(1e-12).run().unwrap_err();
+    let failure = solve(&kepler, (0.0, 2.0), [1.0, 0.0], [0.0, 0.0])
+        .method(Picard)
+        .rtol(1e-12)
+        .run()
+        .unwrap_err();
     let t = failure.partial.end.t;
     assert!((t - 1.1107207345395915).abs() < 1e-6, "{failure:?}");
-    let failure = solve(&Simple::new(f64::NAN), (0.0, 2.0), [1.0], [0.0]).method(Picard).run().unwrap_err();
-    let Error::NotFinite { t, what: Quantity::Acceleration(coordinate), ref suspects } = failure.error else {
+    let failure =
+        solve(&Simple::new(f64::NAN), (0.0, 2.0), [1.0], [0.0]).method(Picard).run().unwrap_err();
+    let Error::NotFinite { t, what: Quantity::Acceleration(coordinate), ref suspects } =
+        failure.error
+    else {
         panic!("{failure}")
     };
     assert_eq!((t, coordinate.name, suspects[0].parameter), (0.0, "q", "g"));
-    let failure = solve(&Root { k: 1.0 }, (0.0, 10.0), [1.0], [0.0]).method(Picard).run().unwrap_err();
-    assert!(matches!(failure.error, Error::NotFinite { what: Quantity::Acceleration(_), .. }), "{failure}");
-    let failure = solve(&Simple::new(1.0), (2.0, 0.0), [1.0], [0.0]).method(Picard).run().unwrap_err();
+    let failure =
+        solve(&Root { k: 1.0 }, (0.0, 10.0), [1.0], [0.0]).method(Picard).run().unwrap_err();
+    assert!(
+        matches!(failure.error, Error::NotFinite { what: Quantity::Acceleration(_), .. }),
+        "{failure}"
+    );
+    let failure =
+        solve(&Simple::new(1.0), (2.0, 0.0), [1.0], [0.0]).method(Picard).run().unwrap_err();
     assert!(matches!(failure.error, Error::Interval { .. }));
-    let failure = solve(&Simple::new(1.0), (0.0, 10.0), [1.3], [0.0]).method(Picard).rtol(0.0).run().unwrap_err();
+    let failure = solve(&Simple::new(1.0), (0.0, 10.0), [1.3], [0.0])
+        .method(Picard)
+        .rtol(0.0)
+        .run()
+        .unwrap_err();
     assert!(matches!(failure.error, Error::Setting { name: "rtol", .. }));
     // A first step that time does not resolve is no singularity.
     for (start, step) in [(0.0, 1e-250), (1e9, 1e-18)] {
-        let failure =
-            solve(&Simple::new(1.0), (start, start + 2.0), [1.3], [0.0]).method(Picard).first_step(step).run().unwrap_err();
-        assert!(matches!(failure.error, Error::Setting { name: "first_step", value, .. } if value == step), "{failure}");
+        let failure = solve(&Simple::new(1.0), (start, start + 2.0), [1.3], [0.0])
+            .method(Picard)
+            .first_step(step)
+            .run()
+            .unwrap_err();
+        assert!(
+            matches!(failure.error, Error::Setting { name: "first_step", value, .. } if value == step),
+            "{failure}"
+        );
     }
 }
 
@@ -260,24 +376,34 @@ fn loose_tolerances() {
     let double = Double::new([1.0; 2], [1.0; 2], 1.0);
     for exponent in 10..=50 {
         let rtol = 10f64.powf(-0.1 * f64::from(exponent));
-        let solution = solve(&double, (0.0, 50.0), [0.5, -0.25], [0.0; 2]).method(Picard).rtol(rtol).run().unwrap();
-        let [before, after] =
-            [([0.5, -0.25], [0.0; 2]), (solution.end.q, solution.end.v)].map(|(q, v)| double.energy(0.0, &q, &v, &()));
+        let solution = solve(&double, (0.0, 50.0), [0.5, -0.25], [0.0; 2])
+            .method(Picard)
+            .rtol(rtol)
+            .run()
+            .unwrap();
+        let [before, after] = [([0.5, -0.25], [0.0; 2]), (solution.end.q, solution.end.v)]
+            .map(|(q, v)| double.energy(0.0, &q, &v, &()));
         assert!((after - before).abs() < 30.0 * rtol, "{rtol}: {before} became {after}");
     }
 }
 
-/// A step that ends at a kink sees the side before it, and the next one the side after it: no estimate takes the kink for an error.
+/// A step that ends at a kink sees the side before it, and the next one the side after it: no
+/// estimate takes the kink for an error.
 #[test]
 fn kinks_cost_no_attempts() {
     let pendulum = Hanging::new(1.0, 1.0);
     let times: Vec<f64> = (0..40).map(|k| 0.73 * f64::from(k)).collect();
-    let keys: Vec<[f64; 2]> = (0..40).map(|k| [0.2 * f64::sin(f64::from(k)), 0.1 * f64::cos(2.0 * f64::from(k))]).collect();
+    let keys: Vec<[f64; 2]> = (0..40)
+        .map(|k| [0.2 * f64::sin(f64::from(k)), 0.1 * f64::cos(2.0 * f64::from(k))])
+        .collect();
     let curve = CatmullRom::new(&times, &keys).unwrap();
     let end = 0.73 * 39.0;
     for rtol in [1e-6, 1e-12] {
-        let of_keys =
-            solve(&pendulum.clone().driven_by(curve.clone()), (0.0, end), [0.4], [0.0]).method(Picard).rtol(rtol).run().unwrap();
+        let of_keys = solve(&pendulum.clone().driven_by(curve.clone()), (0.0, end), [0.4], [0.0])
+            .method(Picard)
+            .rtol(rtol)
+            .run()
+            .unwrap();
         assert!(of_keys.stats.rejected < 20, "{rtol:e}: {:?}", of_keys.stats);
         // Pushed to and fro.
         let turns = times[1..].to_vec();
@@ -286,7 +412,8 @@ fn kinks_cost_no_attempts() {
             [if before % 2 == 0 { 1.0 } else { -1.0 }]
         });
         let pushed = Pushed::new().driven_by(push.kinks(&turns).resolution(1.0).unwrap());
-        let pushed = solve(&pushed, (0.0, end), [0.4], [0.0]).method(Picard).rtol(rtol).run().unwrap();
+        let pushed =
+            solve(&pushed, (0.0, end), [0.4], [0.0]).method(Picard).rtol(rtol).run().unwrap();
         assert!(pushed.stats.rejected < 20, "{rtol:e}: {:?}", pushed.stats);
     }
 }
@@ -304,7 +431,12 @@ lagrangian! {
 #[test]
 fn adaptive_steps_go_on_after_fixed_ones() {
     let pendulum = Simple::new(9.8);
-    let fixed = || Integrator::new(&pendulum, Picard, 0.0, [0.4], [0.0]).unwrap().control(FixedStep::new(0.05)).unwrap();
+    let fixed = || {
+        Integrator::new(&pendulum, Picard, 0.0, [0.4], [0.0])
+            .unwrap()
+            .control(FixedStep::new(0.05))
+            .unwrap()
+    };
     let mut one = fixed();
     one.advance_to(10.0).unwrap();
     let mut alone = Integrator::new(&pendulum, Picard, 10.0, *one.q(), *one.v()).unwrap();
@@ -326,9 +458,19 @@ fn large_and_small_accelerations_in_single_precision() {
         potential = w^2*x^2/2;
     }
     let fast = Oscillator::<f32>::new(1e16);
-    let end = solve(&fast, (0.0, 2e-15), [1e-10], [0.0]).method(Picard).rtol(1e-5).atol(1e-16).run().unwrap().end;
+    let end = solve(&fast, (0.0, 2e-15), [1e-10], [0.0])
+        .method(Picard)
+        .rtol(1e-5)
+        .atol(1e-16)
+        .run()
+        .unwrap()
+        .end;
     assert!((end.q[0] - 1e-10 * 20.0f32.cos()).abs() < 1e-13, "{:e}", end.q[0]);
-    let faint = solve(&Oscillator::<f32>::new(1.0), (0.0, 100.0), [1e-24], [0.0]).method(Picard).rtol(1e-5).run().unwrap();
+    let faint = solve(&Oscillator::<f32>::new(1.0), (0.0, 100.0), [1e-24], [0.0])
+        .method(Picard)
+        .rtol(1e-5)
+        .run()
+        .unwrap();
     assert!(faint.stats.accepted < 1000, "{:?}", faint.stats);
 }
 
@@ -340,9 +482,21 @@ fn atoms_do_not_escape() {
         ($scalar:ty) => {
             let atoms = Atoms::<$scalar> { ε: 1.0 };
             let (q, v) = ([1.25, 0.0], [0.0, 0.25]);
-            let end = solve(&atoms, (0.0, 20.0), q, v).method(Picard).rtol(1e-3).atol(1e-3).run().unwrap().end;
-            let gained = (atoms.energy(0.0, &end.q, &end.v, &()) - atoms.energy(0.0, &q, &v, &())).abs();
-            let off = [end.q[0] - 1.20391194092, end.q[1] - 5.793864941068, end.v[0] + 0.457679461712, end.v[1] - 0.269507335690];
+            let end = solve(&atoms, (0.0, 20.0), q, v)
+                .method(Picard)
+                .rtol(1e-3)
+                .atol(1e-3)
+                .run()
+                .unwrap()
+                .end;
+            let gained =
+                (atoms.energy(0.0, &end.q, &end.v, &()) - atoms.energy(0.0, &q, &v, &())).abs();
+            let off = [
+                end.q[0] - 1.20391194092,
+                end.q[1] - 5.793864941068,
+                end.v[0] + 0.457679461712,
+                end.v[1] - 0.269507335690,
+            ];
             // Measured are 6e-3 and 5e-4.
             assert!(off.iter().all(|off| off.abs() < 0.03), "{end:?}");
             assert!(gained < 3e-3, "{gained}");

@@ -1,4 +1,5 @@
-//! Scenes: the bits of the scalar methods in every lane, whatever the frames, the neighbours and the kinks.
+//! Scenes: the bits of the scalar methods in every lane, whatever the frames, the neighbours and
+//! the kinks.
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -28,7 +29,8 @@ lagrangian! {
 fn keys() -> Linear<2> {
     let times: Vec<f64> = (0..60).map(|key| f64::from(key) / 24.0).collect();
     let mut random = Random::new(5);
-    let values: Vec<[f64; 2]> = times.iter().map(|_| [random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02)]).collect();
+    let values: Vec<[f64; 2]> =
+        times.iter().map(|_| [random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02)]).collect();
     Linear::new(&times, &values).unwrap()
 }
 
@@ -41,7 +43,13 @@ fn zoo(tolerance: f64) -> Scene<f64> {
         scene.joint(Sinusoid::new([0.05, 0.02], 9.0, [0.0, 1.0])),
         scene.joint(keys()),
         scene.joint(Still::new([1.0, 2.0])),
-        scene.joint(Spline::natural(&[0.2, 0.61, 0.9, 1.7], &[[0.0, 0.0], [0.1, 0.0], [0.0, 0.1], [0.2, 0.0]]).unwrap()),
+        scene.joint(
+            Spline::natural(
+                &[0.2, 0.61, 0.9, 1.7],
+                &[[0.0, 0.0], [0.1, 0.0], [0.0, 0.1], [0.2, 0.0]],
+            )
+            .unwrap(),
+        ),
     ];
     let lift = scene.joint(Sinusoid::new([0.1], 3.0, [0.0]));
     for index in 0..100 {
@@ -50,7 +58,14 @@ fn zoo(tolerance: f64) -> Scene<f64> {
         scene.hang(joints[index % 4], Hanging::new(0.1, length), q, v).unwrap();
         if index % 3 == 0 {
             scene.hang((), Simple::new(0.1, length), q, v).unwrap();
-            scene.hang(joints[index % 4], Double::new(0.1, 0.2 + length, 1e-4), [q[0], 0.1], [v[0], 0.0]).unwrap();
+            scene
+                .hang(
+                    joints[index % 4],
+                    Double::new(0.1, 0.2 + length, 1e-4),
+                    [q[0], 0.1],
+                    [v[0], 0.0],
+                )
+                .unwrap();
             scene.hang((lift, joints[index % 4]), Strung::new(0.1, 5.0), q, v).unwrap();
         }
     }
@@ -64,14 +79,19 @@ where
     let mut scene = Scene::<f64>::new(256.0).unwrap();
     scene.set_tolerance(tolerance).unwrap();
     let mut random = Random::new(9);
-    let all: Vec<_> = (0..50).map(|_| (random.uniform(0.3, 2.0), random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0))).collect();
-    let hang = |&(length, q, v): &(f64, f64, f64)| scene.hang((), Simple::new(0.3, length), [q], [v]).unwrap();
+    let all: Vec<_> = (0..50)
+        .map(|_| (random.uniform(0.3, 2.0), random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0)))
+        .collect();
+    let hang = |&(length, q, v): &(f64, f64, f64)| {
+        scene.hang((), Simple::new(0.3, length), [q], [v]).unwrap()
+    };
     let handles: Vec<Handle<Simple<f64>, 1>> = all.iter().map(hang).collect();
     scene.set_method::<Simple<f64>, 1, M>(method).unwrap();
     scene.advance(4.0).unwrap();
     for (handle, &(length, q, v)) in handles.into_iter().zip(&all) {
         let pendulum = Simple::new(0.3, length);
-        let whole = solve(&pendulum, (0.0, 4.0), [q], [v]).method(method).steps(1024).run().unwrap();
+        let whole =
+            solve(&pendulum, (0.0, 4.0), [q], [v]).method(method).steps(1024).run().unwrap();
         assert_eq!(scene.state(handle), (whole.end.q, whole.end.v));
     }
 }
@@ -136,13 +156,32 @@ fn kinks_are_felt_in_every_lane() {
             let (q1, v1) = scene.state(Handle::<Hanging<f64>, 1>::new(index));
             let alone = Hanging::new(0.1, length).driven_by(keys());
             let exact = solve(&alone, (0.0, 2.0), q, v).rtol(1e-12).atol(1e-13).run().unwrap();
-            assert!((q1[0] - exact.end.q[0]).abs() < 2e-5, "{index}: {} for {}", q1[0], exact.end.q[0]);
-            assert!((v1[0] - exact.end.v[0]).abs() < 5e-3, "{index}: {} for {}", v1[0], exact.end.v[0]);
+            assert!(
+                (q1[0] - exact.end.q[0]).abs() < 2e-5,
+                "{index}: {} for {}",
+                q1[0],
+                exact.end.q[0]
+            );
+            assert!(
+                (v1[0] - exact.end.v[0]).abs() < 5e-3,
+                "{index}: {} for {}",
+                v1[0],
+                exact.end.v[0]
+            );
             if index % 3 == 0 {
                 let (q2, _) = scene.state(Handle::<Double<f64>, 2>::new(index / 3));
                 let alone = Double::new(0.1, 0.2 + length, 1e-4).driven_by(keys());
-                let exact = solve(&alone, (0.0, 2.0), [q[0], 0.1], [v[0], 0.0]).rtol(1e-12).atol(1e-13).run().unwrap();
-                assert!((q2[1] - exact.end.q[1]).abs() < 1e-5, "{index}: {} for {}", q2[1], exact.end.q[1]);
+                let exact = solve(&alone, (0.0, 2.0), [q[0], 0.1], [v[0], 0.0])
+                    .rtol(1e-12)
+                    .atol(1e-13)
+                    .run()
+                    .unwrap();
+                assert!(
+                    (q2[1] - exact.end.q[1]).abs() < 1e-5,
+                    "{index}: {} for {}",
+                    q2[1],
+                    exact.end.q[1]
+                );
             }
         }
     }
@@ -218,7 +257,9 @@ fn failures_stay_where_they_are() {
     }
     let message = bad.failures()[0].to_string();
     assert!(
-        message.starts_with("`Hanging` 7: at t = 0.0 the acceleration of `θ` is not finite; check parameter `L`"),
+        message.starts_with(
+            "`Hanging` 7: at t = 0.0 the acceleration of `θ` is not finite; check parameter `L`"
+        ),
         "{message}"
     );
 }
@@ -227,7 +268,10 @@ fn failures_stay_where_they_are() {
 fn bad_input_is_refused() {
     let mut scene = Scene::<f64>::new(240.0).unwrap();
     let joint = scene.joint(Still::new([0.0, 0.0]));
-    assert!(matches!(scene.hang(joint, Hanging::new(0.1, 1.0), [f64::NAN], [0.0]), Err(SceneError::State { .. })));
+    assert!(matches!(
+        scene.hang(joint, Hanging::new(0.1, 1.0), [f64::NAN], [0.0]),
+        Err(SceneError::State { .. })
+    ));
     for dt in [-1.0, f64::NAN, f64::INFINITY] {
         assert!(matches!(scene.advance(dt), Err(SceneError::FrameTime(_))));
     }
@@ -236,16 +280,26 @@ fn bad_input_is_refused() {
     let advanced = scene.advance(2.0).unwrap();
     assert_eq!((advanced.ticks, advanced.dropped), (120, 1.5));
     let mut other = Scene::<f64>::new(240.0).unwrap();
-    assert!(matches!(other.hang(joint, Hanging::new(0.1, 1.0), [0.0], [0.0]), Err(SceneError::Joint(0))));
+    assert!(matches!(
+        other.hang(joint, Hanging::new(0.1, 1.0), [0.0], [0.0]),
+        Err(SceneError::Joint(0))
+    ));
     // There is a joint of that number, but it moves along a line.
     other.joint(Still::new([0.0]));
-    assert!(matches!(other.hang(joint, Hanging::new(0.1, 1.0), [0.0], [0.0]), Err(SceneError::Joint(0))));
-    let refused = other.set_motion(joint, Still::new([0.0, 0.0]), pendulum_runtime::scene::Carry::Swing);
+    assert!(matches!(
+        other.hang(joint, Hanging::new(0.1, 1.0), [0.0], [0.0]),
+        Err(SceneError::Joint(0))
+    ));
+    let refused =
+        other.set_motion(joint, Still::new([0.0, 0.0]), pendulum_runtime::scene::Carry::Swing);
     assert_eq!(refused, Err(SceneError::Joint(0)));
     let position = pendulum_runtime::motion::Function::new(|t: f64| [t, 0.0]);
     let vague = scene.joint(position);
     let missing = scene.hang(vague, Hanging::new(0.1, 1.0), [0.0], [0.0]).unwrap_err();
-    assert_eq!(missing.to_string(), "the motion that drives `x` has no velocity, which the equations need; give one that has");
+    assert_eq!(
+        missing.to_string(),
+        "the motion that drives `x` has no velocity, which the equations need; give one that has"
+    );
 }
 
 #[test]
@@ -283,7 +337,9 @@ fn damping_is_exact_for_any_step() {
 fn stops_throw_back_and_hold() {
     use pendulum_runtime::scene::Stop;
     let mut scene = Scene::<f64>::new(240.0).unwrap();
-    let free = |scene: &mut Scene<f64>| scene.hang((), Simple { m: 0.1, L: 1.0, g: 0.0 }, [0.0], [1.0]).unwrap();
+    let free = |scene: &mut Scene<f64>| {
+        scene.hang((), Simple { m: 0.1, L: 1.0, g: 0.0 }, [0.0], [1.0]).unwrap()
+    };
     let (hard, soft) = (free(&mut scene), free(&mut scene));
     scene.set_limits(hard, [-1.0], [0.3], Stop::Hard { restitution: 0.5 }).unwrap();
     scene.set_limits(soft, [-9.0], [0.3], Stop::Soft { stiffness: 900.0 }).unwrap();
@@ -305,7 +361,11 @@ fn stops_throw_back_and_hold() {
     assert!((q[0] - 0.5).abs() < 1e-12 && v[0].abs() < 0.3, "{q:?} {v:?}");
     assert!(scene.set_limits(handle, [1.0], [0.0], Stop::Soft { stiffness: 1.0 }).is_err());
     assert!(scene.set_limits(handle, [0.0], [1.0], Stop::Hard { restitution: 2.0 }).is_err());
-    assert!(scene.set_limits(handle, [f64::INFINITY], [f64::INFINITY], Stop::Hard { restitution: 0.0 }).is_err());
+    assert!(
+        scene
+            .set_limits(handle, [f64::INFINITY], [f64::INFINITY], Stop::Hard { restitution: 0.0 })
+            .is_err()
+    );
     // Walls so near that a step would go through both.
     for (gap, restitution) in [(0.02, 1.0), (0.002, 1.0), (0.0, 0.5)] {
         let handle = scene.hang((), Simple::new(0.1, 0.1), [0.0], [12.0]).unwrap();
@@ -349,7 +409,8 @@ fn tolerances_are_those_of_the_time_of_hanging() {
 #[test]
 fn scenes_go_back_to_when_joints_still_moved() {
     let pose = |last: &[f64]| {
-        let (mut times, mut values) = (vec![-1.0, -0.5, -0.2], vec![[0.0, 0.0], [0.3, 0.0], [0.0, 0.0]]);
+        let (mut times, mut values) =
+            (vec![-1.0, -0.5, -0.2], vec![[0.0, 0.0], [0.3, 0.0], [0.0, 0.0]]);
         for &time in last {
             times.push(time);
             values.push([0.0, 0.0]);
@@ -382,7 +443,10 @@ fn failures_stand_in_the_order_of_time() {
         scene.failures().iter().map(|failure| (failure.kind, failure.t)).collect::<Vec<_>>()
     };
     assert_eq!(failures(8), failures(1));
-    assert_eq!(failures(8).iter().map(|(kind, _)| *kind).collect::<Vec<_>>(), ["Double", "Hanging"]);
+    assert_eq!(
+        failures(8).iter().map(|(kind, _)| *kind).collect::<Vec<_>>(),
+        ["Double", "Hanging"]
+    );
 }
 
 #[test]
@@ -525,7 +589,9 @@ fn crowd(seed: u64) -> Scene<f64> {
         };
         for _ in 0..12 {
             let length = random.uniform(0.05, 1.0);
-            scene.hang(joint, Hanging::new(0.1, length), [random.uniform(-1.0, 1.0)], [0.0]).unwrap();
+            scene
+                .hang(joint, Hanging::new(0.1, length), [random.uniform(-1.0, 1.0)], [0.0])
+                .unwrap();
         }
         scene.hang(joint, Double::new(0.1, 0.3, 1e-4), [0.1, 0.2], [0.0, 0.0]).unwrap();
     }
@@ -569,14 +635,20 @@ fn snapshots_can_be_written_and_read() {
     assert_eq!(read, snapshot);
     // What a file was damaged to is refused, and the scene goes on as if nothing had been.
     let clock = serde_json::to_value(&snapshot).unwrap()["clock"].to_string();
-    for (good, bad) in [("\"Leapfrog\",1", "\"Leapfrog\",0"), ("\"Rk4\",1", "\"Srkn6b\",1"), ("\"Rk4\",1", "\"Rk4\",4000000000")]
-    {
+    for (good, bad) in [
+        ("\"Leapfrog\",1", "\"Leapfrog\",0"),
+        ("\"Rk4\",1", "\"Srkn6b\",1"),
+        ("\"Rk4\",1", "\"Rk4\",4000000000"),
+    ] {
         assert!(text.contains(good));
         let damaged: Snapshot<f64> = serde_json::from_str(&text.replacen(good, bad, 1)).unwrap();
         assert!(matches!(scene.restore(&damaged), Err(SceneError::Snapshot(_))), "{bad}");
     }
     let damaged = text.replacen(&clock, "[9223372036854775807,0,[0.0,0.0]]", 1);
-    assert!(matches!(scene.restore(&serde_json::from_str(&damaged).unwrap()), Err(SceneError::Snapshot(_))));
+    assert!(matches!(
+        scene.restore(&serde_json::from_str(&damaged).unwrap()),
+        Err(SceneError::Snapshot(_))
+    ));
     scene.advance(0.9).unwrap();
     let mut other = zoo(1e-3);
     other.restore(&read).unwrap();
@@ -617,16 +689,21 @@ fn joints_are_felt_as_much_as_directors_want() {
     let mut scene = Scene::<f64>::new(240.0).unwrap();
     scene.set_tolerance(1e-9).unwrap();
     let shake = Sinusoid::new([0.1, 0.0], 9.0, [0.0, 0.0]);
-    // A tenth of a shake is what a tenth of the amplitude is, and a speed below the limit is all felt.
+    // A tenth of a shake is what a tenth of the amplitude is, and a speed below the limit is all
+    // felt.
     let tenth = scene.joint(Felt::new(shake, 0.1, f64::INFINITY).unwrap());
     let small = scene.joint(Sinusoid::new([0.01, 0.0], 9.0, [0.0, 0.0]));
     let below = scene.joint(Felt::new(shake, 1.0, 0.91).unwrap());
     let whole = scene.joint(shake);
     let beyond = scene.joint(Felt::new(shake, 1.0, 0.3).unwrap());
-    let all = [tenth, small, below, whole, beyond].map(|joint| scene.hang(joint, Hanging::new(0.1, 0.5), [0.1], [0.0]).unwrap());
+    let all = [tenth, small, below, whole, beyond]
+        .map(|joint| scene.hang(joint, Hanging::new(0.1, 0.5), [0.1], [0.0]).unwrap());
     scene.advance(2.0).unwrap();
     let [tenth, small, below, whole, beyond] = all.map(|handle| scene.state(handle).0[0]);
-    assert!((tenth - small).abs() < 1e-12 && (below - whole).abs() < 1e-12, "{tenth} {small} {below} {whole}");
+    assert!(
+        (tenth - small).abs() < 1e-12 && (below - whole).abs() < 1e-12,
+        "{tenth} {small} {below} {whole}"
+    );
     // Cut speeds through the kinks, by an integrator that lands on them.
     let alone = Hanging::new(0.1, 0.5).driven_by(Felt::new(shake, 1.0, 0.3).unwrap());
     let exact = solve(&alone, (0.0, 2.0), [0.1], [0.0]).rtol(1e-12).atol(1e-13).run().unwrap();
@@ -655,7 +732,11 @@ fn a_shaken_pendulum_swings_alike_at_all_frame_rates() {
     assert!((peak.to_degrees() - 44.34).abs() < 0.02, "{peak}");
     for rate in [24, 30, 60, 120] {
         let (states, other) = swing(rate);
-        assert!(reference.iter().zip(&states).all(|(a, b)| (a - b).abs() <= 1e-12) && (peak - other).abs() <= 1e-12, "{rate}");
+        assert!(
+            reference.iter().zip(&states).all(|(a, b)| (a - b).abs() <= 1e-12)
+                && (peak - other).abs() <= 1e-12,
+            "{rate}"
+        );
         assert_eq!(states.len(), reference.len());
     }
 }

@@ -47,7 +47,8 @@ fn joints_are_asked_once_per_time_for_what_is_needed() {
     asked.store(0, Ordering::Relaxed);
     scene.advance_ticks(50);
     assert_eq!(asked.load(Ordering::Relaxed), 50);
-    // RK4 looks at the middle too, where the sample is there already, and at both ends, of which each is asked for once in a batch.
+    // RK4 looks at the middle too, where the sample is there already, and at both ends, of which
+    // each is asked for once in a batch.
     scene.hang(joint, Double::new(0.1, 1.0, 0.0), [0.1, 0.0], [0.0, 0.0]).unwrap();
     asked.store(0, Ordering::Relaxed);
     scene.advance_ticks(8);
@@ -148,7 +149,14 @@ mod counted {
             -self.k
         }
 
-        fn accelerations_prepared(&self, prepared: &T, _: T, q: &[T; 1], _: &[T; 1], (): &()) -> [T; 1] {
+        fn accelerations_prepared(
+            &self,
+            prepared: &T,
+            _: T,
+            q: &[T; 1],
+            _: &[T; 1],
+            (): &(),
+        ) -> [T; 1] {
             [*prepared * q[0]]
         }
 
@@ -193,7 +201,16 @@ mod counted {
 
         fn at_position(&self, _: &T, (): &(), _: T, _: &[T; 1], (): &()) {}
 
-        fn accelerations_staged(&self, prepared: &T, (): &(), (): &(), t: T, q: &[T; 1], v: &[T; 1], (): &()) -> [T; 1] {
+        fn accelerations_staged(
+            &self,
+            prepared: &T,
+            (): &(),
+            (): &(),
+            t: T,
+            q: &[T; 1],
+            v: &[T; 1],
+            (): &(),
+        ) -> [T; 1] {
             self.accelerations_prepared(prepared, t, q, v, &())
         }
     }
@@ -206,7 +223,9 @@ fn what_parameters_decide_is_computed_once() {
     let mut scene = Scene::<f64>::new(240.0).unwrap();
     // Four blocks, the last of which has 4 lanes.
     let stiffness = |index: usize| 1.0 + 0.03 * index as f64;
-    let handles: Vec<_> = (0..100).map(|index| scene.hang((), Spring { k: stiffness(index) }, [1.0], [0.0]).unwrap()).collect();
+    let handles: Vec<_> = (0..100)
+        .map(|index| scene.hang((), Spring { k: stiffness(index) }, [1.0], [0.0]).unwrap())
+        .collect();
     scene.advance_ticks(8);
     let once = prepared();
     // A preparation for each block when it is made and one when it is filled.
@@ -224,7 +243,8 @@ fn what_parameters_decide_is_computed_once() {
     for (index, &handle) in handles.iter().enumerate() {
         let (ω, before, after) = (stiffness(index).sqrt(), 2.5, 1.0);
         let expected = if index == 40 {
-            (ω * before).cos() * (3.0 * after).cos() - ω / 3.0 * (ω * before).sin() * (3.0 * after).sin()
+            (ω * before).cos() * (3.0 * after).cos()
+                - ω / 3.0 * (ω * before).sin() * (3.0 * after).sin()
         } else {
             (ω * (before + after)).cos()
         };
@@ -233,18 +253,25 @@ fn what_parameters_decide_is_computed_once() {
     }
 }
 
-/// Forty pendulums, of which number k hangs on joint `pattern(k)`, have the bits of each of them alone.
+/// Forty pendulums, of which number k hangs on joint `pattern(k)`, have the bits of each of them
+/// alone.
 macro_rules! neighbours {
     ($name:ident, $float:ident) => {
-        fn $name<M: Fixed + Suits<Hanging<$float>, 1> + Copy>(method: M, pattern: fn(usize) -> usize) {
+        fn $name<M: Fixed + Suits<Hanging<$float>, 1> + Copy>(
+            method: M,
+            pattern: fn(usize) -> usize,
+        ) {
             // Whole ticks in binary: scenes and solvers look at the same times.
             let mut scene = Scene::<$float>::new(256.0).unwrap();
             scene.set_tolerance(1e-2).unwrap();
             let mut random = Random::new(11);
-            let motion = |joint: usize| Sinusoid::new([0.05, 0.02], 5.0 + 0.3 * joint as f64, [0.1 * joint as f64, 1.0]);
+            let motion = |joint: usize| {
+                Sinusoid::new([0.05, 0.02], 5.0 + 0.3 * joint as f64, [0.1 * joint as f64, 1.0])
+            };
             let joints: Vec<_> = (0..40).map(|joint| scene.joint(motion(joint))).collect();
             let mut number = |low, high| random.uniform(low, high) as $float;
-            let all: Vec<_> = (0..40).map(|_| (number(0.3, 2.0), number(-2.0, 2.0), number(-2.0, 2.0))).collect();
+            let all: Vec<_> =
+                (0..40).map(|_| (number(0.3, 2.0), number(-2.0, 2.0), number(-2.0, 2.0))).collect();
             let hang = |(k, &(length, q, v)): (usize, &($float, $float, $float))| {
                 scene.hang(joints[pattern(k)], Hanging::new(0.1, length), [q], [v]).unwrap()
             };
@@ -253,7 +280,8 @@ macro_rules! neighbours {
             scene.advance(0.375).unwrap();
             for (k, &(length, q, v)) in all.iter().enumerate() {
                 let alone = Hanging::<$float>::new(0.1, length).driven_by(motion(pattern(k)));
-                let whole = solve(&alone, (0.0, 0.375), [q], [v]).method(method).steps(96).run().unwrap();
+                let whole =
+                    solve(&alone, (0.0, 0.375), [q], [v]).method(method).steps(96).run().unwrap();
                 assert_eq!(scene.state(handles[k]), (whole.end.q, whole.end.v), "{k}");
             }
         }
@@ -265,8 +293,10 @@ neighbours!(same_as_alone_f32, f32);
 
 #[test]
 fn neighbours_on_joints_do_not_show() {
-    // One joint for all; ten, four (eight joints in a block) and three (eleven) on each; one on each; two joints in turn.
-    let patterns: [fn(usize) -> usize; 6] = [|_| 0, |k| k / 10, |k| k / 4, |k| k / 3, |k| k, |k| k % 2];
+    // One joint for all; ten, four (eight joints in a block) and three (eleven) on each; one on
+    // each; two joints in turn.
+    let patterns: [fn(usize) -> usize; 6] =
+        [|_| 0, |k| k / 10, |k| k / 4, |k| k / 3, |k| k, |k| k % 2];
     for pattern in patterns {
         same_as_alone_f64(Leapfrog, pattern);
         same_as_alone_f64(Srkn6b, pattern);

@@ -39,7 +39,8 @@ lagrangian! {
 fn keys() -> Linear<2> {
     let times: Vec<f64> = (0..60).map(|key| f64::from(key) / 24.0).collect();
     let mut random = Random::new(5);
-    let values: Vec<[f64; 2]> = times.iter().map(|_| [random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02)]).collect();
+    let values: Vec<[f64; 2]> =
+        times.iter().map(|_| [random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02)]).collect();
     Linear::new(&times, &values).unwrap()
 }
 
@@ -69,8 +70,11 @@ fn sleepers_wake_with_the_tick_in_which_their_joint_moves() {
     let keys = Linear::new(&[30.0, 30.2, 30.4], &[[0.0, 0.0], [0.1, 0.05], [0.0, 0.0]]).unwrap();
     let joint = scene.joint(keys.clone());
     let other = scene.joint(Watched(asked.clone()));
-    let handles: Vec<_> =
-        (0..40).map(|k| scene.hang(joint, Hanging::new(0.1, 0.2 + 0.01 * f64::from(k)), [0.5], [0.0]).unwrap()).collect();
+    let handles: Vec<_> = (0..40)
+        .map(|k| {
+            scene.hang(joint, Hanging::new(0.1, 0.2 + 0.01 * f64::from(k)), [0.5], [0.0]).unwrap()
+        })
+        .collect();
     let moving = scene.hang(other, Hanging::new(0.1, 0.5), [0.0], [0.0]).unwrap();
     for &handle in &handles {
         scene.set_damping(handle, 1.0).unwrap();
@@ -103,7 +107,10 @@ fn sleepers_wake_with_the_tick_in_which_their_joint_moves() {
     let exact = solve(&alone, (29.9, 30.1), asleep.0, [0.0]).rtol(1e-11).run().unwrap();
     scene.restore(&snapshot).unwrap();
     scene.advance(2.1).unwrap();
-    assert!((scene.state(handles[7]).0[0] - exact.end.q[0]).abs() < 0.05 * (exact.end.q[0] - asleep.0[0]).abs() + 2e-3);
+    assert!(
+        (scene.state(handles[7]).0[0] - exact.end.q[0]).abs()
+            < 0.05 * (exact.end.q[0] - asleep.0[0]).abs() + 2e-3
+    );
     // What is changed wakes.
     scene.restore(&snapshot).unwrap();
     scene.set_parameter_everywhere("g", 5.0).unwrap();
@@ -116,7 +123,9 @@ fn what_comes_back_to_the_screen_has_not_stood_still() {
         let mut scene = Scene::<f64>::new(240.0).unwrap();
         scene.set_tolerance(1e-8).unwrap();
         let joint = scene.joint(keys());
-        let handles: Vec<_> = (0..3).map(|_| scene.hang(joint, Hanging::new(0.1, 0.4), [0.3], [0.0]).unwrap()).collect();
+        let handles: Vec<_> = (0..3)
+            .map(|_| scene.hang(joint, Hanging::new(0.1, 0.4), [0.3], [0.0]).unwrap())
+            .collect();
         for &handle in &handles {
             scene.set_damping(handle, 0.5).unwrap();
             scene.set_limits(handle, [-0.2], [0.2], Stop::Soft { stiffness: 40.0 }).unwrap();
@@ -191,7 +200,10 @@ fn nobody_sleeps_who_is_about_to_be_moved() {
     let hardly = scene.hang(joint, Hanging::new(0.1, 0.5), [0.09], [0.0]).unwrap();
     for _ in 0..600 {
         scene.advance_ticks(1);
-        assert_eq!([scene.status(blown), scene.status(high), scene.status(swinging)], [Status::Awake; 3]);
+        assert_eq!(
+            [scene.status(blown), scene.status(high), scene.status(swinging)],
+            [Status::Awake; 3]
+        );
     }
     assert_eq!(scene.status(hardly), Status::Asleep(i64::MAX));
     assert!(scene.state(blown).0[0].abs() > 1e-3);
@@ -202,8 +214,9 @@ fn single_numbers_fall_asleep_too() {
     let mut scene = Scene::<f32>::new(240.0).unwrap();
     scene.set_sleep(Some(5e-4)).unwrap();
     let joint = scene.joint(Still::new([0.0, 0.0]));
-    let handles: Vec<Handle<Hanging<f32>, 1>> =
-        (0..40).map(|k| scene.hang(joint, Hanging::new(0.1, 0.2 + 0.02 * k as f32), [0.5], [0.0]).unwrap()).collect();
+    let handles: Vec<Handle<Hanging<f32>, 1>> = (0..40)
+        .map(|k| scene.hang(joint, Hanging::new(0.1, 0.2 + 0.02 * k as f32), [0.5], [0.0]).unwrap())
+        .collect();
     for &handle in &handles {
         scene.set_damping(handle, 2.0).unwrap();
     }
@@ -282,7 +295,8 @@ fn limits_are_felt_at_rest_and_asleep() {
         scene.set_limits(handle, [0.3], [1.0], stop).unwrap();
         handle
     };
-    let (soft, hard) = (hang(Stop::Soft { stiffness: 900.0 }), hang(Stop::Hard { restitution: 0.3 }));
+    let (soft, hard) =
+        (hang(Stop::Soft { stiffness: 900.0 }), hang(Stop::Hard { restitution: 0.3 }));
     // The spring beyond the limit bears the weight: 900 (0.3 − θ) = 98.1 sin θ.
     let mut rest = 0.3;
     for _ in 0..50 {
@@ -292,7 +306,9 @@ fn limits_are_felt_at_rest_and_asleep() {
     assert_eq!(scene.state(hard), ([0.3], [0.0]));
     for _ in 0..20 {
         scene.advance(0.5).unwrap();
-        assert!(scene.status(soft) == Status::Awake || (scene.state(soft).0[0] - rest).abs() < 2e-3);
+        assert!(
+            scene.status(soft) == Status::Awake || (scene.state(soft).0[0] - rest).abs() < 2e-3
+        );
     }
     assert_eq!(scene.awake(), (0, 2));
     assert!((scene.state(hard).0[0] - 0.3).abs() < 2e-3);
@@ -312,7 +328,8 @@ fn catching_up_begins_at_the_rest_of_that_time() {
     let mut scene = Scene::<f64>::new(240.0).unwrap();
     // Where `Strung` rests depends on its joint, which has gone 5 m away in the last second.
     let joint = scene.joint(Linear::new(&[0.0, 9.0, 10.0], &[[0.0], [0.0], [5.0]]).unwrap());
-    let handles = [0, 1].map(|_| scene.hang(joint, Strung::new(1.0, 40.0), [0.0, 0.0], [0.0, 0.0]).unwrap());
+    let handles =
+        [0, 1].map(|_| scene.hang(joint, Strung::new(1.0, 40.0), [0.0, 0.0], [0.0, 0.0]).unwrap());
     for handle in handles {
         scene.set_damping(handle, 1.0).unwrap();
     }
@@ -320,5 +337,8 @@ fn catching_up_begins_at_the_rest_of_that_time() {
     scene.advance(10.0).unwrap();
     scene.show(handles[1], Return::CatchUp { longest: 2.0 }).unwrap();
     let [(live, _), (caught_up, _)] = handles.map(|handle| scene.state(handle));
-    assert!(live[0] > 1.0 && (0..2).all(|i| (live[i] - caught_up[i]).abs() < 5e-3), "{live:?} {caught_up:?}");
+    assert!(
+        live[0] > 1.0 && (0..2).all(|i| (live[i] - caught_up[i]).abs() < 5e-3),
+        "{live:?} {caught_up:?}"
+    );
 }

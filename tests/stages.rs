@@ -1,4 +1,5 @@
-//! The stages of the accelerations and Hamilton's equations give the same numbers as the functions they are made of.
+//! The stages of the accelerations and Hamilton's equations give the same numbers as the functions
+//! they are made of.
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -31,9 +32,13 @@ lagrangian! {
     potential = sum(k in 0..8, m[k]*g*height(y[k]));
 }
 
-fn compare<S: Staged<N, Scalar = f64, Inputs = (Sample<f64, 2>,)>, const N: usize>(system: &S, random: &mut Random) {
+fn compare<S: Staged<N, Scalar = f64, Inputs = (Sample<f64, 2>,)>, const N: usize>(
+    system: &S,
+    random: &mut Random,
+) {
     for _ in 0..100 {
-        let mut draw = |scale: f64| -> [f64; N] { core::array::from_fn(|_| random.uniform(-scale, scale)) };
+        let mut draw =
+            |scale: f64| -> [f64; N] { core::array::from_fn(|_| random.uniform(-scale, scale)) };
         let (q, v) = (draw(3.0), draw(2.0));
         let mut pair = || [random.uniform(-2.0, 2.0), random.uniform(-2.0, 2.0)];
         let inputs = (Sample { position: pair(), velocity: pair(), acceleration: pair() },);
@@ -42,16 +47,29 @@ fn compare<S: Staged<N, Scalar = f64, Inputs = (Sample<f64, 2>,)>, const N: usiz
         let prepared = system.prepare();
         let at_time = S::at_time(t, &inputs);
         let at_position = system.at_position(&prepared, &at_time, t, &q, &inputs);
-        let staged = system.accelerations_staged(&prepared, &at_time, &at_position, t, &q, &v, &inputs);
+        let staged =
+            system.accelerations_staged(&prepared, &at_time, &at_position, t, &q, &v, &inputs);
         assert_eq!(staged, system.accelerations(t, &q, &v, &inputs));
 
         let p = system.momenta(t, &q, &v, &inputs);
         let (velocities, rates) = system.hamilton(t, &q, &p, &inputs);
         let expected = system.momentum_rates(t, &q, &v, &inputs);
-        let largest = |values: &[f64; N]| values.iter().fold(1.0f64, |largest, value| largest.max(value.abs()));
+        let largest = |values: &[f64; N]| {
+            values.iter().fold(1.0f64, |largest, value| largest.max(value.abs()))
+        };
         for k in 0..N {
-            assert!((velocities[k] - v[k]).abs() < 1e-11 * largest(&v), "{} for {}", velocities[k], v[k]);
-            assert!((rates[k] - expected[k]).abs() < 1e-10 * largest(&expected), "{} for {}", rates[k], expected[k]);
+            assert!(
+                (velocities[k] - v[k]).abs() < 1e-11 * largest(&v),
+                "{} for {}",
+                velocities[k],
+                v[k]
+            );
+            assert!(
+                (rates[k] - expected[k]).abs() < 1e-10 * largest(&expected),
+                "{} for {}",
+                rates[k],
+                expected[k]
+            );
         }
     }
 }
@@ -66,5 +84,8 @@ fn stages_and_hamilton_agree_with_the_whole() {
 #[test]
 fn what_moves_late_is_not_kept_early() {
     // cos(w·t) has a parameter in it; 2·x and the like do not.
-    assert!(size_of::<<Shaken<f64> as Staged<2>>::AtTime>() < size_of::<<Shaken<f64> as Staged<2>>::AtPosition>());
+    assert!(
+        size_of::<<Shaken<f64> as Staged<2>>::AtTime>()
+            < size_of::<<Shaken<f64> as Staged<2>>::AtPosition>()
+    );
 }

@@ -1,4 +1,5 @@
-//! The `Taylor` method on generated systems: forwards, backwards, over kinks, in single precision, and where it has to stop.
+//! The `Taylor` method on generated systems: forwards, backwards, over kinks, in single precision,
+//! and where it has to stop.
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -34,17 +35,25 @@ lagrangian! {
     potential = exp(-k*x);
 }
 
-/// How far from its start a pendulum of small swings ends that `there` takes to t = 1000 and `back` to 0.
-fn there_and_back(start: [f64; 2], there: impl Fn([f64; 2]) -> [f64; 2], back: impl Fn([f64; 2]) -> [f64; 2]) -> f64 {
+/// How far from its start a pendulum of small swings ends that `there` takes to t = 1000 and `back`
+/// to 0.
+fn there_and_back(
+    start: [f64; 2],
+    there: impl Fn([f64; 2]) -> [f64; 2],
+    back: impl Fn([f64; 2]) -> [f64; 2],
+) -> f64 {
     let [q, v] = back(there(start));
     (q - start[0]).hypot(v - start[1])
 }
 
-/// In equal steps of a symmetric method the way back, with the velocity turned round, passes the same places.
+/// In equal steps of a symmetric method the way back, with the velocity turned round, passes the
+/// same places.
 #[test]
 fn forth_and_back_over_a_thousand_seconds_in_equal_steps() {
     let simple: Simple = Simple::new(9.8);
-    let run = |q, v| solve(&simple, (0.0, 1000.0), [q], [v]).method(Srkn14a).step(1.0 / 32.0).run().unwrap().end;
+    let run = |q, v| {
+        solve(&simple, (0.0, 1000.0), [q], [v]).method(Srkn14a).step(1.0 / 32.0).run().unwrap().end
+    };
     let there = |[q, v]: [f64; 2]| {
         let end = run(q, v);
         [end.q[0], end.v[0]]
@@ -57,27 +66,38 @@ fn forth_and_back_over_a_thousand_seconds_in_equal_steps() {
     assert!(distance <= 4e-16, "{distance:e}");
 }
 
-/// What rounding leaves of the way back is a random walk, of which one start tells little: the root mean square over 24 of them.
+/// What rounding leaves of the way back is a random walk, of which one start tells little: the root
+/// mean square over 24 of them.
 #[test]
 fn forth_and_back_over_a_thousand_seconds() {
     let simple: Simple = Simple::new(9.8);
-    for (method, tolerance, bound) in
-        [(Taylor::new().order(20), 1e-18, 1.5e-15), (Taylor::new(), 1e-18, 3e-15), (Taylor::new(), 1e-15, 4e-15)]
-    {
+    for (method, tolerance, bound) in [
+        (Taylor::new().order(20), 1e-18, 1.5e-15),
+        (Taylor::new(), 1e-18, 3e-15),
+        (Taylor::new(), 1e-15, 4e-15),
+    ] {
         let run = |time, [q, v]: [f64; 2]| {
-            let end = solve(&simple, time, [q], [v]).method(method).rtol(tolerance).run().unwrap().end;
+            let end =
+                solve(&simple, time, [q], [v]).method(method).rtol(tolerance).run().unwrap().end;
             [end.q[0], end.v[0]]
         };
         let squares = (0..24).map(f64::from).map(|k| {
             let start = [0.05 * (1.0 + 0.013 * k), 0.025 * (1.0 + 0.007 * k)];
-            there_and_back(start, |state| run((0.0, 1000.0), state), |state| run((1000.0, 0.0), state)).powi(2)
+            there_and_back(
+                start,
+                |state| run((0.0, 1000.0), state),
+                |state| run((1000.0, 0.0), state),
+            )
+            .powi(2)
         });
         let mean = (squares.sum::<f64>() / 24.0).sqrt();
         assert!(mean <= bound, "{tolerance}: {mean:e}");
     }
     let control = AdaptiveStep::new().rtol(1e-18);
-    let mut integrator =
-        Integrator::new(&simple, Taylor::new().order(20), 0.0, [0.05], [0.025]).unwrap().control(control).unwrap();
+    let mut integrator = Integrator::new(&simple, Taylor::new().order(20), 0.0, [0.05], [0.025])
+        .unwrap()
+        .control(control)
+        .unwrap();
     integrator.advance_to(1000.0).unwrap();
     integrator.advance_to(0.0).unwrap();
     let distance = (integrator.q()[0] - 0.05).hypot(integrator.v()[0] - 0.025);
@@ -95,25 +115,40 @@ fn keys_are_met_in_both_directions() {
     let end = |solution: Solution<f64, 1>| (solution.end.q, solution.end.v, solution.stats.kinks);
     macro_rules! forth_and_back {
         ($dynamics:expr, $expected:expr, $kinks:expr) => {
-            let (q, v, kinks) = end(solve($dynamics, (0.0, 5.0), [0.3], [0.0]).method(Taylor::new()).rtol(1e-16).run().unwrap());
+            let (q, v, kinks) = end(solve($dynamics, (0.0, 5.0), [0.3], [0.0])
+                .method(Taylor::new())
+                .rtol(1e-16)
+                .run()
+                .unwrap());
             assert!((q[0] - $expected).abs() < 5e-12, "{}", q[0]);
             assert_eq!(kinks, $kinks);
-            // At t = 5 there is a key: the velocity found is the one after it, and the way back begins before it.
+            // At t = 5 there is a key: the velocity found is the one after it, and the way back
+            // begins before it.
             let control = AdaptiveStep::new().rtol(1e-16);
-            let mut integrator = Integrator::new($dynamics, Taylor::new(), 0.0, [0.3], [0.0]).unwrap().control(control).unwrap();
+            let mut integrator = Integrator::new($dynamics, Taylor::new(), 0.0, [0.3], [0.0])
+                .unwrap()
+                .control(control)
+                .unwrap();
             integrator.advance_to(5.0).unwrap();
             assert_eq!((*integrator.q(), *integrator.v()), (q, v));
             integrator.advance_to(1.0).unwrap();
             integrator.advance_to(2.0).unwrap();
             integrator.advance_to(0.01).unwrap();
-            let start = solve($dynamics, (0.0, 0.01), [0.3], [0.0]).method(Taylor::new()).rtol(1e-16).run().unwrap().end;
-            let distance = (integrator.q()[0] - start.q[0]).abs().max((integrator.v()[0] - start.v[0]).abs());
+            let start = solve($dynamics, (0.0, 0.01), [0.3], [0.0])
+                .method(Taylor::new())
+                .rtol(1e-16)
+                .run()
+                .unwrap()
+                .end;
+            let distance =
+                (integrator.q()[0] - start.q[0]).abs().max((integrator.v()[0] - start.v[0]).abs());
             assert!(distance < 1e-13, "{distance:e}");
         };
     }
     forth_and_back!(&linear, -0.129608683467, 120);
     forth_and_back!(&catmull_rom, -0.128838666144, 120);
-    let dop853 = solve(&spline, (0.0, 5.0), [0.3], [0.0]).rtol(1e-13).atol(1e-13).run().unwrap().end.q[0];
+    let dop853 =
+        solve(&spline, (0.0, 5.0), [0.3], [0.0]).rtol(1e-13).atol(1e-13).run().unwrap().end.q[0];
     forth_and_back!(&spline, dop853, 0);
 }
 
@@ -122,7 +157,12 @@ fn keys_are_met_in_both_directions() {
 fn dense_output_has_one_history() {
     let (times, values) = keys();
     let linear = Hanging::new(0.3, 0.5).driven_by(Linear::new(&times, &values).unwrap());
-    let forth = solve(&linear, (0.01, 2.01), [0.3], [0.0]).method(Taylor::new()).rtol(1e-16).dense().run().unwrap();
+    let forth = solve(&linear, (0.01, 2.01), [0.3], [0.0])
+        .method(Taylor::new())
+        .rtol(1e-16)
+        .dense()
+        .run()
+        .unwrap();
     let (q, v) = (forth.end.q, forth.end.v);
     let outputs: Vec<f64> = (0..=200).map(|i| 2.01 - 0.01 * f64::from(i)).collect();
     let problem = solve(&linear, (2.01, 0.01), q, v).method(Taylor::new()).rtol(1e-16).dense();
@@ -135,7 +175,10 @@ fn dense_output_has_one_history() {
     for key in [1.0, 1.5, 12.0 / 24.0] {
         for side in [Side::Before, Side::After] {
             let (a, b) = (forth.at_side(key, side).unwrap(), back.at_side(key, side).unwrap());
-            assert!((a.q[0] - b.q[0]).abs() < 1e-13 && (a.v[0] - b.v[0]).abs() < 1e-13, "{key}, {side:?}");
+            assert!(
+                (a.q[0] - b.q[0]).abs() < 1e-13 && (a.v[0] - b.v[0]).abs() < 1e-13,
+                "{key}, {side:?}"
+            );
         }
     }
     let every = solve(&linear, (2.01, 0.01), q, v).method(Taylor::new()).every(0.5).run().unwrap();
@@ -147,12 +190,25 @@ fn dense_output_has_one_history() {
 #[test]
 fn dense_output_is_exact() {
     let simple = Simple::new(1.0);
-    let solution = solve(&simple, (0.0, 10.0), [1.3], [0.0]).method(Taylor::new()).rtol(1e-16).dense().run().unwrap();
+    let solution = solve(&simple, (0.0, 10.0), [1.3], [0.0])
+        .method(Taylor::new())
+        .rtol(1e-16)
+        .dense()
+        .run()
+        .unwrap();
     for i in 1..40 {
         let t = 0.25 * f64::from(i);
-        let stopped = solve(&simple, (0.0, t), [1.3], [0.0]).method(Taylor::new()).rtol(1e-18).run().unwrap().end;
+        let stopped = solve(&simple, (0.0, t), [1.3], [0.0])
+            .method(Taylor::new())
+            .rtol(1e-18)
+            .run()
+            .unwrap()
+            .end;
         let state = solution.at(t).unwrap();
-        assert!((state.q[0] - stopped.q[0]).abs() < 2e-15 && (state.v[0] - stopped.v[0]).abs() < 2e-15, "{t}");
+        assert!(
+            (state.q[0] - stopped.q[0]).abs() < 2e-15 && (state.v[0] - stopped.v[0]).abs() < 2e-15,
+            "{t}"
+        );
     }
 }
 
@@ -160,10 +216,18 @@ fn dense_output_is_exact() {
 #[test]
 fn series_that_end() {
     let falling = Falling::new(9.81);
-    let solution = solve(&falling, (0.0, 100.0), [0.0, 3.0], [1.0, 2.0]).method(Taylor::new()).rtol(1e-15).run().unwrap();
+    let solution = solve(&falling, (0.0, 100.0), [0.0, 3.0], [1.0, 2.0])
+        .method(Taylor::new())
+        .rtol(1e-15)
+        .run()
+        .unwrap();
     assert!(solution.stats.accepted < 50, "{}", solution.stats);
-    assert!((solution.end.q[0] - 100.0).abs() < 1e-12 && (solution.end.q[1] - (203.0 - 9.81 * 5000.0)).abs() < 1e-10);
-    let rest = solve(&Simple::new(1.0), (0.0, 1e6), [0.0], [0.0]).method(Taylor::new()).run().unwrap();
+    assert!(
+        (solution.end.q[0] - 100.0).abs() < 1e-12
+            && (solution.end.q[1] - (203.0 - 9.81 * 5000.0)).abs() < 1e-10
+    );
+    let rest =
+        solve(&Simple::new(1.0), (0.0, 1e6), [0.0], [0.0]).method(Taylor::new()).run().unwrap();
     assert_eq!((rest.end.q, rest.stats.accepted), ([0.0], 1));
     let simple = Simple::new(1.0);
     let mut integrator = Integrator::new(&simple, Taylor::new(), 0.0, [0.0], [0.0]).unwrap();
@@ -176,15 +240,24 @@ fn series_that_end() {
 fn lacunary_series() {
     let simple = Simple::new(9.81);
     let q = [core::f64::consts::FRAC_PI_2];
-    let loose = solve(&simple, (0.0, 1.0), q, [0.0]).method(Taylor::new()).rtol(1e-6).run().unwrap().end.q[0];
-    let tight = solve(&simple, (0.0, 1.0), q, [0.0]).method(Taylor::new()).rtol(1e-16).run().unwrap().end.q[0];
+    let loose =
+        solve(&simple, (0.0, 1.0), q, [0.0]).method(Taylor::new()).rtol(1e-6).run().unwrap().end.q
+            [0];
+    let tight =
+        solve(&simple, (0.0, 1.0), q, [0.0]).method(Taylor::new()).rtol(1e-16).run().unwrap().end.q
+            [0];
     assert!((loose - tight).abs() < 1e-5, "{loose} {tight}");
 }
 
 #[test]
 fn single_precision() {
     let simple = Simple::new(1.0f32);
-    let end = solve(&simple, (0.0, 10.0), [1.3], [0.0]).method(Taylor::new()).rtol(1e-7).run().unwrap().end;
+    let end = solve(&simple, (0.0, 10.0), [1.3], [0.0])
+        .method(Taylor::new())
+        .rtol(1e-7)
+        .run()
+        .unwrap()
+        .end;
     assert!((end.q[0] + 1.166_160_4).abs() < 2e-6, "{}", end.q[0]);
 }
 
@@ -192,23 +265,36 @@ fn single_precision() {
 fn fixed_steps_and_settings() {
     let simple: Simple = Simple::new(1.0);
     let exact = -1.1661603819329576;
-    let solution = solve(&simple, (0.0, 10.0), [1.3], [0.0]).method(Taylor::new()).step(0.25).run().unwrap();
+    let solution =
+        solve(&simple, (0.0, 10.0), [1.3], [0.0]).method(Taylor::new()).step(0.25).run().unwrap();
     assert_eq!(solution.stats.accepted, 40);
     assert!((solution.end.q[0] - exact).abs() < 5e-15);
     let error = |order, steps| {
-        let end = solve(&simple, (0.0, 10.0), [1.3], [0.0]).method(Taylor::new().order(order)).steps(steps).run().unwrap().end;
+        let end = solve(&simple, (0.0, 10.0), [1.3], [0.0])
+            .method(Taylor::new().order(order))
+            .steps(steps)
+            .run()
+            .unwrap()
+            .end;
         (end.q[0] - exact).abs()
     };
     for order in [2, 3, 4, 5, 6, 7] {
         let observed = (error(order, 160) / error(order, 320)).log2();
-        assert!((order as f64 - 0.4..order as f64 + 1.4).contains(&observed), "order {order}: {observed}");
+        assert!(
+            (order as f64 - 0.4..order as f64 + 1.4).contains(&observed),
+            "order {order}: {observed}"
+        );
     }
     let steps = |max| {
         let problem = solve(&simple, (0.0, 10.0), [1.3], [0.0]).method(Taylor::new()).rtol(1e-15);
         problem.max_step(max).run().unwrap().stats.accepted
     };
     assert_eq!(steps(0.1), 100);
-    let failure = solve(&simple, (0.0, 10.0), [1.3], [0.0]).method(Taylor::new()).rtol(0.0).run().unwrap_err();
+    let failure = solve(&simple, (0.0, 10.0), [1.3], [0.0])
+        .method(Taylor::new())
+        .rtol(0.0)
+        .run()
+        .unwrap_err();
     assert!(matches!(failure.error, Error::Setting { name: "rtol", .. }));
 }
 
@@ -217,7 +303,8 @@ fn fixed_steps_and_settings() {
 fn tolerances_by_coordinate() {
     let kepler = Kepler::new(1.0);
     let steps = |x: f64, y: f64| {
-        let problem = solve(&kepler, (0.0, 6.0), [1.0, 0.0], [0.0, 1.0]).method(Taylor::new()).rtol(1e-14);
+        let problem =
+            solve(&kepler, (0.0, 6.0), [1.0, 0.0], [0.0, 1.0]).method(Taylor::new()).rtol(1e-14);
         problem.atol_each([x, y], [x, y]).run().unwrap().stats.accepted
     };
     assert!(2 * steps(1e-2, 1e-2) < steps(1e-14, 1e-2));
@@ -227,18 +314,32 @@ fn tolerances_by_coordinate() {
 fn errors_say_where() {
     // A fall into the centre from rest: the singularity is reached at π/(2√2).
     let kepler = Kepler::new(1.0);
-    let failure = solve(&kepler, (0.0, 2.0), [1.0, 0.0], [0.0, 0.0]).method(Taylor::new()).rtol(1e-12).run().unwrap_err();
+    let failure = solve(&kepler, (0.0, 2.0), [1.0, 0.0], [0.0, 0.0])
+        .method(Taylor::new())
+        .rtol(1e-12)
+        .run()
+        .unwrap_err();
     let t = failure.partial.end.t;
     assert!((t - 1.1107207345395915).abs() < 1e-6, "{failure:?}");
-    let failure = solve(&Simple::new(f64::NAN), (0.0, 2.0), [1.0], [0.0]).method(Taylor::new()).run().unwrap_err();
-    let Error::NotFinite { t, what: Quantity::Acceleration(coordinate), ref suspects } = failure.error else {
+    let failure = solve(&Simple::new(f64::NAN), (0.0, 2.0), [1.0], [0.0])
+        .method(Taylor::new())
+        .run()
+        .unwrap_err();
+    let Error::NotFinite { t, what: Quantity::Acceleration(coordinate), ref suspects } =
+        failure.error
+    else {
         panic!("{failure}")
     };
     assert_eq!((t, coordinate.name, suspects[0].parameter), (0.0, "q", "g"));
     // Methods that only go forth say so.
-    let failure = solve(&Simple::new(1.0), (2.0, 0.0), [1.0], [0.0]).method(Dop853).run().unwrap_err();
+    let failure =
+        solve(&Simple::new(1.0), (2.0, 0.0), [1.0], [0.0]).method(Dop853).run().unwrap_err();
     assert!(matches!(failure.error, Error::Interval { .. }));
-    let failure = solve(&Simple::new(1.0), (2.0, 0.0), [1.0], [0.0]).method(Taylor::new()).t_eval(&[0.5, 1.0]).run().unwrap_err();
+    let failure = solve(&Simple::new(1.0), (2.0, 0.0), [1.0], [0.0])
+        .method(Taylor::new())
+        .t_eval(&[0.5, 1.0])
+        .run()
+        .unwrap_err();
     assert!(matches!(failure.error, Error::Times { index: 1, .. }));
     // A first step that time does not resolve is no singularity.
     for (start, step) in [(0.0, 1e-250), (1e9, 1e-18)] {
@@ -247,11 +348,15 @@ fn errors_say_where() {
             .first_step(step)
             .run()
             .unwrap_err();
-        assert!(matches!(failure.error, Error::Setting { name: "first_step", value, .. } if value == step), "{failure}");
+        assert!(
+            matches!(failure.error, Error::Setting { name: "first_step", value, .. } if value == step),
+            "{failure}"
+        );
     }
 }
 
-/// A wall that a series cannot know, at the last moment before which the steps are halved: no step goes through it.
+/// A wall that a series cannot know, at the last moment before which the steps are halved: no step
+/// goes through it.
 #[test]
 fn no_step_goes_through_a_wall() {
     lagrangian! {
@@ -261,16 +366,24 @@ fn no_step_goes_through_a_wall() {
         potential = g*y;
         force y = k*(1 - sign(y))/2;
     }
-    // Down with g to 0, up with k − g, which takes a part g/(k − g) of the time and of the height, up with the first speed again.
+    // Down with g to 0, up with k − g, which takes a part g/(k − g) of the time and of the height,
+    // up with the first speed again.
     let expected = |k: f64| {
         let (g, y) = (10.0, 1.0);
         let (fall, speed) = ((2.0 * y / g).sqrt(), (2.0 * g * y).sqrt());
         let t = 1.0 - fall - 2.0 * speed / (k - g);
         speed * t - g * t * t / 2.0
     };
-    for (k, rtol) in [(1e3, 1e-14), (1e4, 1e-13), (1e5, 1e-12), (1e6, 1e-11), (1e3, 1e-6), (1e3, 1e-9)] {
+    for (k, rtol) in
+        [(1e3, 1e-14), (1e4, 1e-13), (1e5, 1e-12), (1e6, 1e-11), (1e3, 1e-6), (1e3, 1e-9)]
+    {
         let floor = Floor::new(10.0, k);
-        let down = solve(&floor, (0.0, 1.0), [1.0], [0.0]).method(Taylor::new()).rtol(rtol).atol(rtol).run().unwrap();
+        let down = solve(&floor, (0.0, 1.0), [1.0], [0.0])
+            .method(Taylor::new())
+            .rtol(rtol)
+            .atol(rtol)
+            .run()
+            .unwrap();
         let error = (down.end.q[0] - expected(k)).abs();
         assert!(error < 100.0 * rtol.max(1e-10), "k = {k:e}, rtol = {rtol:e}: {error:e}");
         assert!(down.stats.rejected < 200, "k = {k:e}, rtol = {rtol:e}: {:?}", down.stats);
@@ -289,7 +402,11 @@ fn walls_are_met() {
         // Far from the wall cosh z is e^z/2.
         let exact = [u * (end - s) + (2.0 / (u * u)).ln() / k - 4.0f64.ln() / k, u];
         for rtol in [1e-6, 1e-9, 1e-12] {
-            let run = solve(&Thrown::new(k), (0.0, end), [x], [v]).method(Taylor::new()).rtol(rtol).run().unwrap();
+            let run = solve(&Thrown::new(k), (0.0, end), [x], [v])
+                .method(Taylor::new())
+                .rtol(rtol)
+                .run()
+                .unwrap();
             let off = (run.end.q[0] - exact[0]).abs().max((run.end.v[0] - exact[1]).abs()) / rtol;
             assert!(off < 100.0, "k = {k}, {rtol}: {off} tolerances");
             assert!(0 < run.stats.rejected, "k = {k}, {rtol}: {}", run.stats);

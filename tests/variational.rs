@@ -66,22 +66,40 @@ mod systems {
 use systems::*;
 
 fn close(found: f64, expected: f64, within: f64) {
-    assert!((found - expected).abs() <= within, "{found} instead of {expected}, off by {:e}", found - expected);
+    assert!(
+        (found - expected).abs() <= within,
+        "{found} instead of {expected}, off by {:e}",
+        found - expected
+    );
 }
 
 #[test]
 fn the_forced_pendulum_has_the_published_sensitivities() {
-    // `tests/data/variational.py`; rounded, they are those of heyoka.py's tutorial on variational equations.
+    // `tests/data/variational.py`; rounded, they are those of heyoka.py's tutorial on variational
+    // equations.
     const M: usize = size(1, 1);
     let system = Variational::<_, 1, M>::new(Forced::new(0.4));
     let (q, v) = system.start([0.2], [0.3]);
-    let end = solve(&system, (0.0, 3.0), q, v).method(Dop853).rtol(1e-14).atol(1e-14).run().unwrap().end;
+    let end =
+        solve(&system, (0.0, 3.0), q, v).method(Dop853).rtol(1e-14).atol(1e-14).run().unwrap().end;
     let own = system.state(&end);
     let expected = [
         (own.q, own.v, [0.11757214931110473655, -1.2494065591871065318]),
-        (system.by_position(&end, 0).0, system.by_position(&end, 0).1, [-0.42547799684275369339, -0.19171818343890700153]),
-        (system.by_velocity(&end, 0).0, system.by_velocity(&end, 0).1, [0.41983648992585684417, -0.51871994406285746946]),
-        (system.by_parameter(&end, 0).0, system.by_parameter(&end, 0).1, [-0.25807427091440042944, 0.86792700365180577626]),
+        (
+            system.by_position(&end, 0).0,
+            system.by_position(&end, 0).1,
+            [-0.42547799684275369339, -0.19171818343890700153],
+        ),
+        (
+            system.by_velocity(&end, 0).0,
+            system.by_velocity(&end, 0).1,
+            [0.41983648992585684417, -0.51871994406285746946],
+        ),
+        (
+            system.by_parameter(&end, 0).0,
+            system.by_parameter(&end, 0).1,
+            [-0.25807427091440042944, 0.86792700365180577626],
+        ),
     ];
     for (q, v, expected) in expected {
         close(q[0], expected[0], 2e-14);
@@ -97,7 +115,8 @@ fn second_derivatives_are_differences_of_first_ones_in_two_words() {
     let system = Variational::<_, 1, M>::new(Forced::new(DoubleDouble::ratio(4.0, 10.0)));
     let h = DoubleDouble::from(1e-9);
     let columns = |x: DoubleDouble, y: DoubleDouble| {
-        let (q, v) = system.start([DoubleDouble::ratio(2.0, 10.0) + x], [DoubleDouble::ratio(3.0, 10.0) + y]);
+        let (q, v) = system
+            .start([DoubleDouble::ratio(2.0, 10.0) + x], [DoubleDouble::ratio(3.0, 10.0) + y]);
         let end = solve(&system, (0.0, 3.0), q, v).method(Dop853).steps(300).run().unwrap().end;
         [end.q[1], end.v[1], end.q[2], end.v[2]]
     };
@@ -107,11 +126,21 @@ fn second_derivatives_are_differences_of_first_ones_in_two_words() {
     };
     let by_x = quotient(columns(h, zero), columns(-h, zero));
     let by_v = quotient(columns(zero, h), columns(zero, -h));
-    let expected = [0.27771856625922825524, -0.112278503989658678, 0.22392432903998723368, -0.12689065229074557077];
+    let expected = [
+        0.27771856625922825524,
+        -0.112278503989658678,
+        0.22392432903998723368,
+        -0.12689065229074557077,
+    ];
     for (found, expected) in by_x.into_iter().zip(expected) {
         close(found, expected, 1e-13);
     }
-    let expected = [0.22392432903998723368, -0.12689065229074557077, 0.60414864695991248881, 0.12443790781972988121];
+    let expected = [
+        0.22392432903998723368,
+        -0.12689065229074557077,
+        0.60414864695991248881,
+        0.12443790781972988121,
+    ];
     for (found, expected) in by_v.into_iter().zip(expected) {
         close(found, expected, 1e-13);
     }
@@ -130,7 +159,13 @@ fn floquet_traces_of_the_mathieu_equation() {
         let period = core::f64::consts::PI;
         let system = Variational::<_, 1, M>::new(Mathieu::new(a, q));
         let (y, v) = system.start([0.1], [0.2]);
-        let end = solve(&system, (0.0, period), y, v).method(Dop853).rtol(1e-14).atol(1e-14).run().unwrap().end;
+        let end = solve(&system, (0.0, period), y, v)
+            .method(Dop853)
+            .rtol(1e-14)
+            .atol(1e-14)
+            .run()
+            .unwrap()
+            .end;
         let monodromy = system.transition(&end);
         close(monodromy.trace(), trace, 1e-13);
         close(monodromy.determinant(), 1.0, 1e-13);
@@ -141,7 +176,8 @@ fn floquet_traces_of_the_mathieu_equation() {
     }
 }
 
-/// The columns at the end of a run of steps, and the same as differences of neighbouring runs in two words, which are exact to 1e-12.
+/// The columns at the end of a run of steps, and the same as differences of neighbouring runs in
+/// two words, which are exact to 1e-12.
 fn compare<S, const N: usize, const M: usize, X>(
     system: &S,
     motions: &X,
@@ -153,7 +189,8 @@ fn compare<S, const N: usize, const M: usize, X>(
 {
     let number = DoubleDouble::from;
     let (end, h) = (2.0, number(1e-10));
-    let (q0, v0): ([_; N], [_; N]) = (core::array::from_fn(|i| number(0.7 - 0.9 * i as f64)), [number(0.4); N]);
+    let (q0, v0): ([_; N], [_; N]) =
+        (core::array::from_fn(|i| number(0.7 - 0.9 * i as f64)), [number(0.4); N]);
     let varied = Variational::<S, N, M>::new(system.clone());
     let (q, v) = varied.start(q0, v0);
     let dynamics = Driven::new::<M>(varied.clone(), motions.clone());
@@ -199,7 +236,9 @@ fn columns_are_the_derivatives_of_the_discrete_motion() {
 fn kinks_are_crossed_by_the_derivatives_of_the_momenta() {
     let number = DoubleDouble::from;
     // The pivot jumps between constant velocities, at times that are ends of steps.
-    let hand = Linear::new(&[0.0, 0.5, 1.25, 2.0], &[[0.0, 0.0], [0.3, 0.1], [0.1, -0.2], [0.5, 0.2]]).unwrap();
+    let hand =
+        Linear::new(&[0.0, 0.5, 1.25, 2.0], &[[0.0, 0.0], [0.3, 0.1], [0.1, -0.2], [0.5, 0.2]])
+            .unwrap();
     let system = Hung::new(number(0.75), number(1.25), number(0.5), number(0.25));
     compare::<_, 2, { size(2, 4) }, _>(&system, &(hand.clone(),), Rk4, 16);
     compare::<_, 2, { size(2, 4) }, _>(&system, &(hand,), Tsit5, 16);
@@ -207,13 +246,15 @@ fn kinks_are_crossed_by_the_derivatives_of_the_momenta() {
 
 #[test]
 fn the_energy_has_no_gradient_along_the_flow() {
-    // E(q(t), v(t)) = E(q₀, v₀): its gradient at the end, drawn back by the transition, is that at the start.
+    // E(q(t), v(t)) = E(q₀, v₀): its gradient at the end, drawn back by the transition, is that at
+    // the start.
     const M: usize = size(2, 0);
     let plain = Double::new(1.0, 1.0);
     let system = Variational::<_, 2, M>::new(plain.clone());
     let (q0, v0) = ([2.0, 2.5], [0.0, 0.25]);
     let (q, v) = system.start(q0, v0);
-    let end = solve(&system, (0.0, 10.0), q, v).method(Dop853).rtol(1e-13).atol(1e-13).run().unwrap().end;
+    let end =
+        solve(&system, (0.0, 10.0), q, v).method(Dop853).rtol(1e-13).atol(1e-13).run().unwrap().end;
     let gradient = |q: [f64; 2], v: [f64; 2]| -> [f64; 4] {
         use pendulum_runtime::real::Dual;
         let lifted = plain.map(Dual::constant);
@@ -232,7 +273,8 @@ fn the_energy_has_no_gradient_along_the_flow() {
     }
 }
 
-/// The growth of a small difference, its length brought back to one every ten seconds (Benettin et al. 1980).
+/// The growth of a small difference, its length brought back to one every ten seconds (Benettin et
+/// al. 1980).
 fn lyapunov_exponent(seconds: u32) -> f64 {
     const M: usize = size(2, 0);
     let system = Variational::<_, 2, M>::new(Double::new(1.0, 1.0));
@@ -241,7 +283,8 @@ fn lyapunov_exponent(seconds: u32) -> f64 {
     q[4..].fill(0.0);
     v[4..].fill(0.0);
     let control = AdaptiveStep::new().rtol(1e-9).atol(1e-9);
-    let mut integrator = Integrator::new(&system, Dop853, 0.0, q, v).unwrap().control(control).unwrap();
+    let mut integrator =
+        Integrator::new(&system, Dop853, 0.0, q, v).unwrap().control(control).unwrap();
     let mut growth = 0.0;
     for stage in 1..=seconds / 10 {
         let t = f64::from(10 * stage);
@@ -268,5 +311,8 @@ fn facts_and_errors_are_those_of_the_system() {
     let (q, v) = system.start([1.0], [0.0]);
     let failure = solve(&system, (0.0, 1.0), q, v).method(Dop853).run().unwrap_err();
     let message = failure.to_string();
-    assert!(message.contains("acceleration of `θ`") && message.contains("`l`, which is 0.0"), "{message}");
+    assert!(
+        message.contains("acceleration of `θ`") && message.contains("`l`, which is 0.0"),
+        "{message}"
+    );
 }

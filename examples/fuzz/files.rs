@@ -44,7 +44,10 @@ pub(crate) fn mutated(file: &[u8], random: &mut Random) -> Vec<u8> {
             }
             3 => bytes.truncate(at),
             4 => {
-                let word = bytes[at..].iter().position(u8::is_ascii_whitespace).map_or(bytes.len(), |length| at + length);
+                let word = bytes[at..]
+                    .iter()
+                    .position(u8::is_ascii_whitespace)
+                    .map_or(bytes.len(), |length| at + length);
                 bytes.splice(at..word, random.of(&SPLINTERS).iter().copied());
             }
             5 => drop(bytes.splice(at..at, random.of(&SPLINTERS).iter().copied())),
@@ -78,7 +81,11 @@ pub(crate) fn renumbered(text: &[u8], random: &mut Random) -> Vec<u8> {
     let mut bytes = text.to_vec();
     for _ in 0..=random.below(4) {
         let from = random.below(bytes.len());
-        let Some(start) = bytes[from..].iter().position(u8::is_ascii_digit).map(|length| from + length) else { continue };
+        let Some(start) =
+            bytes[from..].iter().position(u8::is_ascii_digit).map(|length| from + length)
+        else {
+            continue;
+        };
         let part = |byte: &u8| !(byte.is_ascii_digit() || matches!(byte, b'.' | b'-'));
         let end = bytes[start..].iter().position(part).map_or(bytes.len(), |length| start + length);
         bytes.splice(start..end, random.of(&NUMBERS).iter().copied());

@@ -1,9 +1,10 @@
-//! Random input for everything that reads some: the whole expansion of `lagrangian!`, on tokens, broken blocks and random systems, and the
-//! reader of motion capture.
+//! Random input for everything that reads some: the whole expansion of `lagrangian!`, on tokens,
+//! broken blocks and random systems, and the reader of motion capture.
 //!
-//! `cargo run --release --example fuzz -- --seconds 1200 --seed 1` draws cases of every target in turn until the time is over, prints a
-//! line for each target and fails if a case panicked, took longer than ten seconds, or needed more than a gigabyte.
-//! `--only TARGET --seed N --count 1` repeats one case, `--only equations --count 100000` draws so many of one.
+//! `cargo run --release --example fuzz -- --seconds 1200 --seed 1` draws cases of every target in
+//! turn until the time is over, prints a line for each target and fails if a case panicked, took
+//! longer than ten seconds, or needed more than a gigabyte. `--only TARGET --seed N --count 1`
+//! repeats one case, `--only equations --count 100000` draws so many of one.
 
 // Files are read here, and not played.
 #[allow(dead_code)]
@@ -57,8 +58,10 @@ fn main() -> ExitCode {
             return ExitCode::FAILURE;
         }
     };
-    let targets: Vec<&Target> =
-        TARGETS.iter().filter(|target| plan.only.as_ref().is_none_or(|name| name == target.name)).collect();
+    let targets: Vec<&Target> = TARGETS
+        .iter()
+        .filter(|target| plan.only.as_ref().is_none_or(|name| name == target.name))
+        .collect();
     if targets.is_empty() {
         let names: Vec<&str> = TARGETS.iter().map(|target| target.name).collect();
         eprintln!("no such target; choose one of {}", names.join(", "));
@@ -73,14 +76,19 @@ fn main() -> ExitCode {
 
 fn run(plan: &Plan, targets: &[&Target], watch: &watch::Watch) -> Vec<Tally> {
     let bar = ProgressBar::new(1000);
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} % {elapsed_precise} {msg}") {
+    if let Ok(style) =
+        ProgressStyle::with_template("{bar:40} {percent:>3} % {elapsed_precise} {msg}")
+    {
         bar.set_style(style);
     }
     let mut tallies: Vec<Tally> = targets.iter().map(|_| Tally::default()).collect();
     let start = Instant::now();
     loop {
         let passed = match plan.count {
-            Some(count) => tallies.iter().map(|tally| tally.cases).sum::<u64>() as f64 / (count * tallies.len() as u64) as f64,
+            Some(count) => {
+                tallies.iter().map(|tally| tally.cases).sum::<u64>() as f64
+                    / (count * tallies.len() as u64) as f64
+            }
             None => start.elapsed().as_secs_f64() / plan.seconds,
         };
         bar.set_position((1000.0 * passed) as u64);
@@ -126,7 +134,10 @@ fn case(target: &Target, seed: u64, tally: &mut Tally, watch: &watch::Watch) {
         Ok(Verdict::Refused) => tally.refused += 1,
         Ok(Verdict::Wrong(what)) => tally.failures.push((seed, what)),
         Err(panic) => {
-            let text = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
+            let text = panic
+                .downcast_ref::<String>()
+                .map(String::as_str)
+                .or_else(|| panic.downcast_ref::<&str>().copied());
             tally.failures.push((seed, format!("panicked: {}", text.unwrap_or("without a word"))));
         }
     }
@@ -171,11 +182,17 @@ fn plan() -> Result<Plan, String> {
         let value = words.next().ok_or_else(|| format!("`{word}` needs a value"))?;
         let number = || value.parse::<u64>().map_err(|_| format!("`{value}` is no whole number"));
         match word.as_str() {
-            "--seconds" => plan.seconds = value.parse().map_err(|_| format!("`{value}` is no number"))?,
+            "--seconds" => {
+                plan.seconds = value.parse().map_err(|_| format!("`{value}` is no number"))?;
+            }
             "--seed" => plan.seed = number()?,
             "--count" => plan.count = Some(number()?),
             "--only" => plan.only = Some(value),
-            _ => return Err(format!("`{word}` is unknown; known are --seconds, --seed, --count and --only")),
+            _ => {
+                return Err(format!(
+                    "`{word}` is unknown; known are --seconds, --seed, --count and --only"
+                ));
+            }
         }
     }
     Ok(plan)

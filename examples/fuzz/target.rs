@@ -56,7 +56,11 @@ fn mutated_blocks(seed: u64) -> Verdict {
     } else {
         parsed(&format!("::p; {}", generate::system(seed, Manner::Wild).source("S")))
     };
-    expansion(if random.once_in(2) { mutate(block, &mut random) } else { transplant(block, &mut random) })
+    expansion(if random.once_in(2) {
+        mutate(block, &mut random)
+    } else {
+        transplant(block, &mut random)
+    })
 }
 
 /// Random systems of any kind, expanded.
@@ -68,7 +72,9 @@ fn blocks(seed: u64) -> Verdict {
 fn equations(seed: u64) -> Verdict {
     let source = generate::system(seed, Manner::Tame).source("Random");
     let verdict = match compile(&source) {
-        Ok(compiled) if compiled.equations.is_empty() => Verdict::Wrong(format!("no equations of {source}")),
+        Ok(compiled) if compiled.equations.is_empty() => {
+            Verdict::Wrong(format!("no equations of {source}"))
+        }
         Ok(_) => Verdict::Taken,
         Err(mistakes) => Verdict::Wrong(format!("refused: {mistakes:?}")),
     };
@@ -103,12 +109,17 @@ fn gltf(seed: u64) -> Verdict {
 
     let mut random = Random(seed);
     let whole = include_bytes!("../data/dance.gltf");
-    let bytes = if random.once_in(2) { mutated(whole, &mut random) } else { renumbered(whole, &mut random) };
+    let bytes = if random.once_in(2) {
+        mutated(whole, &mut random)
+    } else {
+        renumbered(whole, &mut random)
+    };
     let Ok(file) = Gltf::read(&bytes) else { return Verdict::Refused };
     for animation in 0..file.animations().count() {
         for node in 0..file.nodes().count() {
             let Ok(motion) = file.motion(animation, node) else { return Verdict::Refused };
-            let sample = Motion::<f64, 3>::sample(&motion, Time::new(0.3), Side::After, Orders::ALL);
+            let sample =
+                Motion::<f64, 3>::sample(&motion, Time::new(0.3), Side::After, Orders::ALL);
             let kink = Motion::<f64, 3>::next_kink(&motion, 0.3);
             if kink.is_some_and(|kink| kink <= 0.3) {
                 return Verdict::Wrong(format!("a kink at {kink:?} after 0.3, {sample:?}"));
@@ -129,7 +140,11 @@ fn svg(seed: u64) -> Verdict {
 <g id="flag" transform="rotate(20 50 10)"><circle id="flag.pendulum" cx="50" cy="70" r="1" fill="none"/><ellipse cx="50" cy="79" rx="4" ry="9"/></g></g></svg>"##;
     let mut random = Random(seed);
     let whole = if random.once_in(20) { OWL } else { SMALL };
-    let bytes = if random.once_in(2) { mutated(whole, &mut random) } else { renumbered(whole, &mut random) };
+    let bytes = if random.once_in(2) {
+        mutated(whole, &mut random)
+    } else {
+        renumbered(whole, &mut random)
+    };
     match Drawing::read(&String::from_utf8_lossy(&bytes), Units { pixel: 0.001, density: 0.3 }) {
         Ok(_) => Verdict::Taken,
         Err(_) => Verdict::Refused,
@@ -138,7 +153,8 @@ fn svg(seed: u64) -> Verdict {
 
 /// The expansion, which is there whatever is wrong.
 fn expansion(tokens: TokenStream) -> Verdict {
-    let refused = expand(tokens).into_iter().any(|token| token.to_string().contains("compile_error"));
+    let refused =
+        expand(tokens).into_iter().any(|token| token.to_string().contains("compile_error"));
     forget_sources();
     if refused { Verdict::Refused } else { Verdict::Taken }
 }

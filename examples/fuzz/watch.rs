@@ -23,7 +23,10 @@ impl Watch {
                 if let Some((target, seed, start)) = case
                     && limit < start.elapsed()
                 {
-                    println!("--only {target} --seed {seed} --count 1: hangs for {:.0} s", start.elapsed().as_secs_f64());
+                    println!(
+                        "--only {target} --seed {seed} --count 1: hangs for {:.0} s",
+                        start.elapsed().as_secs_f64()
+                    );
                     std::process::exit(1);
                 }
             }
@@ -32,7 +35,8 @@ impl Watch {
     }
 
     pub(crate) fn begin(&self, target: &'static str, seed: u64) {
-        *self.running.lock().unwrap_or_else(PoisonError::into_inner) = Some((target, seed, Instant::now()));
+        *self.running.lock().unwrap_or_else(PoisonError::into_inner) =
+            Some((target, seed, Instant::now()));
     }
 
     pub(crate) fn end(&self) {

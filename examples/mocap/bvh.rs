@@ -1,7 +1,9 @@
-//! Reads motion capture in the BVH format: a skeleton with offsets and channels, and a row of numbers for each frame.
+//! Reads motion capture in the BVH format: a skeleton with offsets and channels, and a row of
+//! numbers for each frame.
 //!
-//! Meredith and Maddock, "Motion Capture File Formats Explained" (2001), section 3. A joint's position channels take the place of
-//! its offset. Rotations are applied in the order of the channels: `Zrotation Yrotation Xrotation` is `R_z R_y R_x`, in degrees.
+//! Meredith and Maddock, "Motion Capture File Formats Explained" (2001), section 3. A joint's
+//! position channels take the place of its offset. Rotations are applied in the order of the
+//! channels: `Zrotation Yrotation Xrotation` is `R_z R_y R_x`, in degrees.
 
 use pendulum_runtime::real::Real;
 use std::fmt;
@@ -86,7 +88,9 @@ impl Bvh {
             for (channel, &value) in joint.channels.iter().zip(&mut values) {
                 match *channel {
                     Channel::Position(axis) => local.at[axis] = value,
-                    Channel::Rotation(axis) => local.turn = product(&local.turn, &rotation(axis, value)),
+                    Channel::Rotation(axis) => {
+                        local.turn = product(&local.turn, &rotation(axis, value));
+                    }
                 }
             }
             places.push(match joint.parent {
@@ -167,14 +171,24 @@ impl<'a> Reader<'a> {
     fn line(&mut self, missing: &str) -> Result<(usize, &'a str), BvhError> {
         let found = self.lines.get(self.next).copied();
         self.next += 1;
-        found.ok_or_else(|| error(self.end(), format!("the file ends before {missing}"), "it was cut off: copy it again"))
+        found.ok_or_else(|| {
+            error(
+                self.end(),
+                format!("the file ends before {missing}"),
+                "it was cut off: copy it again",
+            )
+        })
     }
 
     /// Everything up to the line `MOTION`.
     fn hierarchy(&mut self) -> Result<Vec<Joint>, BvhError> {
         let (line, first) = self.line("HIERARCHY")?;
         if !first.eq_ignore_ascii_case("HIERARCHY") {
-            return Err(error(line, format!("`{}` where HIERARCHY must stand", short(first)), "give a BVH file"));
+            return Err(error(
+                line,
+                format!("`{}` where HIERARCHY must stand", short(first)),
+                "give a BVH file",
+            ));
         }
         let mut tree = Tree::default();
         loop {
@@ -193,18 +207,34 @@ impl<'a> Reader<'a> {
     fn motion(&mut self, width: usize) -> Result<(f64, Vec<f64>), BvhError> {
         let (line, text) = self.line("`Frames:`")?;
         let count = after(text, &["Frames"]).ok_or_else(|| {
-            error(line, format!("`{}` where `Frames: …` must stand", short(text)), "write the number of frames there")
+            error(
+                line,
+                format!("`{}` where `Frames: …` must stand", short(text)),
+                "write the number of frames there",
+            )
         })?;
         let frames: usize = count.parse().map_err(|_| {
-            error(line, format!("`{}` is no number of frames", short(count)), "write the number of rows that follow")
+            error(
+                line,
+                format!("`{}` is no number of frames", short(count)),
+                "write the number of rows that follow",
+            )
         })?;
         let (line_of_time, text) = self.line("`Frame Time:`")?;
         let step = after(text, &["Frame", "Time"]).ok_or_else(|| {
-            error(line_of_time, format!("`{}` where `Frame Time: …` must stand", short(text)), "write the seconds between frames")
+            error(
+                line_of_time,
+                format!("`{}` where `Frame Time: …` must stand", short(text)),
+                "write the seconds between frames",
+            )
         })?;
         let frame_time = number((line_of_time, step))?;
         if frame_time <= 0.0 {
-            return Err(error(line_of_time, format!("a frame time of {step} s"), "write a positive number of seconds"));
+            return Err(error(
+                line_of_time,
+                format!("a frame time of {step} s"),
+                "write a positive number of seconds",
+            ));
         }
         let rows = self.lines.get(self.next..).unwrap_or_default();
         if frames == 0 {
@@ -213,11 +243,19 @@ impl<'a> Reader<'a> {
         // Before anything is reserved: the count is compared with the rows that are there.
         if rows.len() < frames {
             let what = format!("{frames} frames are announced, {} rows follow", rows.len());
-            return Err(error(line, what, "correct the number, or copy the file again if it was cut off"));
+            return Err(error(
+                line,
+                what,
+                "correct the number, or copy the file again if it was cut off",
+            ));
         }
         if frames < rows.len() {
             let what = format!("a row after the last of {frames} frames");
-            return Err(error(rows[frames].0, what, "correct the number at `Frames:` or remove the row"));
+            return Err(error(
+                rows[frames].0,
+                what,
+                "correct the number at `Frames:` or remove the row",
+            ));
         }
         let mut values = Vec::new();
         for &(line, row) in rows {
@@ -249,7 +287,11 @@ impl Tree {
     fn line(&mut self, mut words: &[Word<'_>]) -> Result<(), BvhError> {
         while let Some((&(line, word), rest)) = words.split_first() {
             if self.named && word != "{" {
-                return Err(error(line, format!("`{}` where the brace of a joint must open", short(word)), "write `{` there"));
+                return Err(error(
+                    line,
+                    format!("`{}` where the brace of a joint must open", short(word)),
+                    "write `{` there",
+                ));
             }
             let used = match word.to_ascii_uppercase().as_str() {
                 "{" if self.named => {
@@ -267,7 +309,11 @@ impl Tree {
                 "CHANNELS" => self.channels(line, rest)?,
                 _ => {
                     let what = format!("`{}` is not known in a hierarchy", short(word));
-                    return Err(error(line, what, "it takes ROOT, JOINT, End Site, OFFSET, CHANNELS, braces, then MOTION"));
+                    return Err(error(
+                        line,
+                        what,
+                        "it takes ROOT, JOINT, End Site, OFFSET, CHANNELS, braces, then MOTION",
+                    ));
                 }
             };
             words = &rest[used..];
@@ -283,29 +329,58 @@ impl Tree {
         if let Some(parent) = parent
             && self.joints[parent].end
         {
-            return Err(error(line, "a joint inside an end site".into(), "close the end site first, or make it a JOINT"));
+            return Err(error(
+                line,
+                "a joint inside an end site".into(),
+                "close the end site first, or make it a JOINT",
+            ));
         }
         let name = match parent {
             Some(parent) if end => format!("{} end", self.joints[parent].name),
-            None if end => return Err(error(line, "an end site outside of all joints".into(), "put it into a joint")),
+            None if end => {
+                return Err(error(
+                    line,
+                    "an end site outside of all joints".into(),
+                    "put it into a joint",
+                ));
+            }
             _ => words.join(" "),
         };
         if name.is_empty() {
-            return Err(error(line, "a joint without a name".into(), "write its name after ROOT or JOINT"));
+            return Err(error(
+                line,
+                "a joint without a name".into(),
+                "write its name after ROOT or JOINT",
+            ));
         }
         if self.joints.len() == MOST_JOINTS {
-            return Err(error(line, format!("more than {MOST_JOINTS} joints"), "give a file with one skeleton"));
+            return Err(error(
+                line,
+                format!("more than {MOST_JOINTS} joints"),
+                "give a file with one skeleton",
+            ));
         }
         self.open.push((self.joints.len(), line));
         self.named = true;
-        self.joints.push(Joint { name, parent, end, offset: None, channels: Vec::new(), listed: false });
+        self.joints.push(Joint {
+            name,
+            parent,
+            end,
+            offset: None,
+            channels: Vec::new(),
+            listed: false,
+        });
         Ok(count)
     }
 
     fn current(&mut self, line: usize, word: &str) -> Result<&mut Joint, BvhError> {
         match self.open.last() {
             Some(&(joint, _)) => Ok(&mut self.joints[joint]),
-            None => Err(error(line, format!("{word} outside of all joints"), "put it between the braces of a joint")),
+            None => Err(error(
+                line,
+                format!("{word} outside of all joints"),
+                "put it between the braces of a joint",
+            )),
         }
     }
 
@@ -313,7 +388,11 @@ impl Tree {
         let joint = self.current(line, "a closing brace")?;
         if joint.offset.is_none() {
             let what = format!("`{}` has no OFFSET", short(&joint.name));
-            return Err(error(line, what, "write three numbers after OFFSET before the brace closes"));
+            return Err(error(
+                line,
+                what,
+                "write three numbers after OFFSET before the brace closes",
+            ));
         }
         self.open.pop();
         Ok(())
@@ -322,10 +401,18 @@ impl Tree {
     fn offset(&mut self, line: usize, rest: &[Word<'_>]) -> Result<usize, BvhError> {
         let joint = self.current(line, "OFFSET")?;
         if joint.offset.is_some() {
-            return Err(error(line, format!("a second OFFSET in `{}`", short(&joint.name)), "keep one of them"));
+            return Err(error(
+                line,
+                format!("a second OFFSET in `{}`", short(&joint.name)),
+                "keep one of them",
+            ));
         }
         let words = rest.get(..3).ok_or_else(|| {
-            error(line, format!("OFFSET with {} numbers", rest.len()), "write three, along x, y and z, on one line")
+            error(
+                line,
+                format!("OFFSET with {} numbers", rest.len()),
+                "write three, along x, y and z, on one line",
+            )
         })?;
         let mut offset = [0.0; 3];
         for (value, word) in offset.iter_mut().zip(words) {
@@ -338,17 +425,33 @@ impl Tree {
     fn channels(&mut self, line: usize, rest: &[Word<'_>]) -> Result<usize, BvhError> {
         let joint = self.current(line, "CHANNELS")?;
         if joint.end {
-            return Err(error(line, "channels in an end site".into(), "make it a JOINT or remove them"));
+            return Err(error(
+                line,
+                "channels in an end site".into(),
+                "make it a JOINT or remove them",
+            ));
         }
         if joint.listed {
-            return Err(error(line, format!("a second CHANNELS in `{}`", short(&joint.name)), "keep one of them"));
+            return Err(error(
+                line,
+                format!("a second CHANNELS in `{}`", short(&joint.name)),
+                "keep one of them",
+            ));
         }
         joint.listed = true;
-        let (first, names) = rest
-            .split_first()
-            .ok_or_else(|| error(line, "CHANNELS without a number".into(), "write how many channels follow, then their names"))?;
+        let (first, names) = rest.split_first().ok_or_else(|| {
+            error(
+                line,
+                "CHANNELS without a number".into(),
+                "write how many channels follow, then their names",
+            )
+        })?;
         let count: usize = first.1.parse().ok().filter(|&count| count <= 6).ok_or_else(|| {
-            error(line, format!("`{}` is no number of channels", short(first.1)), "write 0 to 6, then as many names")
+            error(
+                line,
+                format!("`{}` is no number of channels", short(first.1)),
+                "write 0 to 6, then as many names",
+            )
         })?;
         let names = names.get(..count).ok_or_else(|| {
             error(
@@ -365,7 +468,11 @@ impl Tree {
             if let Channel::Position(_) = channel
                 && joint.channels.contains(&channel)
             {
-                return Err(error(line, format!("`{name}` twice in one joint"), "keep one of them"));
+                return Err(error(
+                    line,
+                    format!("`{name}` twice in one joint"),
+                    "keep one of them",
+                ));
             }
             joint.channels.push(channel);
         }
@@ -378,7 +485,11 @@ impl Tree {
             return Err(error(opened, what, "write the missing `}`"));
         }
         if self.joints.iter().all(|joint| joint.channels.is_empty()) {
-            return Err(error(line, "no joint has a channel".into(), "list what moves after CHANNELS"));
+            return Err(error(
+                line,
+                "no joint has a channel".into(),
+                "list what moves after CHANNELS",
+            ));
         }
         Ok(self.joints)
     }
@@ -397,7 +508,10 @@ fn channel(name: &str) -> Option<Channel> {
 /// What follows the words and a colon, if the line starts so.
 fn after<'a>(text: &'a str, words: &[&str]) -> Option<&'a str> {
     let (label, value) = text.split_once(':')?;
-    let same = label.split_whitespace().map(str::to_ascii_lowercase).eq(words.iter().map(|word| word.to_ascii_lowercase()));
+    let same = label
+        .split_whitespace()
+        .map(str::to_ascii_lowercase)
+        .eq(words.iter().map(|word| word.to_ascii_lowercase()));
     same.then_some(value.trim())
 }
 

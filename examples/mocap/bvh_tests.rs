@@ -41,8 +41,16 @@ fn close(a: [f64; 3], b: [f64; 3]) {
 #[test]
 fn names_parents_and_times() {
     let arm = read(ARM);
-    let names: Vec<_> = arm.joints.iter().map(|joint| (joint.name.as_str(), joint.parent, joint.end)).collect();
-    assert_eq!(names, [("Shoulder", None, false), ("left hand", Some(0), false), ("left hand end", Some(1), true)]);
+    let names: Vec<_> =
+        arm.joints.iter().map(|joint| (joint.name.as_str(), joint.parent, joint.end)).collect();
+    assert_eq!(
+        names,
+        [
+            ("Shoulder", None, false),
+            ("left hand", Some(0), false),
+            ("left hand end", Some(1), true)
+        ]
+    );
     assert_eq!((arm.frames(), arm.frame_time), (3, 0.025));
 }
 
@@ -54,17 +62,25 @@ fn a_right_angle_turns_all_that_hangs_on_the_joint() {
     close(pose[2], [0.0, 4.0, 3.0]);
 }
 
-/// R_z(90°) R_x(90°) e_y = R_z e_z = e_z; the other order would give R_x(90°) R_z(90°) e_y = R_x(−e_x) = −e_x.
+/// R_z(90°) R_x(90°) e_y = R_z e_z = e_z; the other order would give R_x(90°) R_z(90°) e_y =
+/// R_x(−e_x) = −e_x.
 #[test]
 fn rotations_are_applied_in_the_order_of_the_channels() {
     close(read(ARM).pose(2)[2], [2.0, 0.0, 1.0]);
-    close(read(&ARM.replace("Zrotation Xrotation", "Xrotation Zrotation")).pose(2)[2], [1.0, 0.0, 0.0]);
+    close(
+        read(&ARM.replace("Zrotation Xrotation", "Xrotation Zrotation")).pose(2)[2],
+        [1.0, 0.0, 0.0],
+    );
 }
 
 /// R_y(90°) e_z = e_x.
 #[test]
 fn a_turn_is_right_handed_about_each_axis() {
-    for (axis, from, to) in [("X", "0 1 0", [0.0, 0.0, 1.0]), ("Y", "0 0 1", [1.0, 0.0, 0.0]), ("Z", "1 0 0", [0.0, 1.0, 0.0])] {
+    for (axis, from, to) in [
+        ("X", "0 1 0", [0.0, 0.0, 1.0]),
+        ("Y", "0 0 1", [1.0, 0.0, 0.0]),
+        ("Z", "1 0 0", [0.0, 1.0, 0.0]),
+    ] {
         let text = format!(
             "HIERARCHY\nROOT a {{ OFFSET 0 0 0 CHANNELS 1 {axis}rotation\nEnd Site {{ OFFSET {from} }} }}\nMOTION\nFrames: 1\n\
              Frame Time: 1\n90\n"
@@ -86,7 +102,10 @@ fn line_ends_case_and_blank_lines_do_not_matter() {
     let arm = read(ARM);
     assert_eq!(arm, read(&ARM.replace('\n', "\r\n")));
     assert_eq!(arm, read(&ARM.replace('\n', "\n\n")));
-    assert_eq!(arm, read(&format!("\u{feff}{}", ARM.replace("Frame Time: .025", "frame  time:.025"))));
+    assert_eq!(
+        arm,
+        read(&format!("\u{feff}{}", ARM.replace("Frame Time: .025", "frame  time:.025")))
+    );
     assert_eq!(arm, read(&ARM.replace("Zrotation", "ZROTATION")));
 }
 
@@ -114,9 +133,17 @@ fn refusals_say_where_what_and_what_to_do() {
         ("OFFSET 2 0 0", "OFFSET 2 0 0 OFFSET 0 0 0", "line 7: a second OFFSET in `left hand`"),
         ("OFFSET 2 0 0", "LENGTH 2", "line 7: `LENGTH` is not known in a hierarchy"),
         ("CHANNELS 2", "CHANNELS 3", "line 8: 3 channels are announced, 2 names follow"),
-        ("CHANNELS 2", "CHANNELS 99999999999999999999", "line 8: `99999999999999999999` is no number of channels"),
+        (
+            "CHANNELS 2",
+            "CHANNELS 99999999999999999999",
+            "line 8: `99999999999999999999` is no number of channels",
+        ),
         ("2 Zrotation Xrotation", "1 Wrotation", "line 8: `Wrotation` is no channel"),
-        ("4 Xposition Yposition", "4 Xposition Xposition", "line 5: `Xposition` twice in one joint"),
+        (
+            "4 Xposition Yposition",
+            "4 Xposition Xposition",
+            "line 5: `Xposition` twice in one joint",
+        ),
         ("OFFSET 0 1 0", "OFFSET 0 1 0 CHANNELS 1 Xrotation", "line 11: channels in an end site"),
         ("OFFSET 0 1 0", "JOINT finger", "line 11: a joint inside an end site"),
         ("ROOT Shoulder", "End Site", "line 2: an end site outside of all joints"),
@@ -124,13 +151,21 @@ fn refusals_say_where_what_and_what_to_do() {
         ("}\nMOTION", "}\n}\nMOTION", "line 15: a closing brace outside of all joints"),
         ("Frames: 3", "Frames: three", "line 16: `three` is no number of frames"),
         ("Frames: 3", "Frames: 0", "line 16: the file has no frames"),
-        ("Frames: 3", "Frames: 18446744073709551615", "line 16: 18446744073709551615 frames are announced, 3 rows follow"),
+        (
+            "Frames: 3",
+            "Frames: 18446744073709551615",
+            "line 16: 18446744073709551615 frames are announced, 3 rows follow",
+        ),
         ("Frames: 3", "Frames: 2", "line 20: a row after the last of 2 frames"),
         ("Frames: 3\n", "", "line 16: `Frame Time: .025` where `Frames: …` must stand"),
         (".025", "0", "line 17: a frame time of 0 s"),
         (".025", "-1", "line 17: a frame time of -1 s"),
         ("Time: .025", "Tim .025", "line 17: `Frame Tim .025` where `Frame Time: …` must stand"),
-        ("1 2 3 90 0 0", "1 2 3 90 0", "line 19: 5 numbers in the row, 6 channels in the hierarchy"),
+        (
+            "1 2 3 90 0 0",
+            "1 2 3 90 0",
+            "line 19: 5 numbers in the row, 6 channels in the hierarchy",
+        ),
     ];
     for (from, to, expected) in cases {
         assert!(ARM.contains(from), "{from}");
@@ -156,7 +191,8 @@ fn random(state: &mut u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// Whatever is done to a file, it is either read, with finite poses, or refused in a line of text that names a line of the file.
+/// Whatever is done to a file, it is either read, with finite poses, or refused in a line of text
+/// that names a line of the file.
 #[test]
 fn mutations_are_read_or_refused() {
     let scraps = [
@@ -202,14 +238,20 @@ fn mutations_are_read_or_refused() {
             Ok(bvh) => {
                 accepted += 1;
                 for frame in 0..bvh.frames() {
-                    assert!(bvh.pose(frame).iter().flatten().all(|value| value.abs() < 10.0 * LARGEST), "{text}");
+                    assert!(
+                        bvh.pose(frame).iter().flatten().all(|value| value.abs() < 10.0 * LARGEST),
+                        "{text}"
+                    );
                 }
             }
             Err(error) => {
                 refused += 1;
                 let lines = text.lines().count().max(1);
                 assert!(1 <= error.line && error.line <= lines, "{error} of {lines} lines");
-                assert!(!error.to_string().contains('\n') && error.to_string().len() < 240, "{error}");
+                assert!(
+                    !error.to_string().contains('\n') && error.to_string().len() < 240,
+                    "{error}"
+                );
             }
         }
     }

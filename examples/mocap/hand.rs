@@ -39,7 +39,8 @@ impl<T: Real> System<1> for Hand<T> {
 
     const FACTS: Facts = {
         let mut facts = Facts::new("Hand", &["θ"]);
-        facts.parameters = &["B.mass", "B.center.x", "B.center.y", "B.xx", "B.xy", "B.yy", "c", "g"];
+        facts.parameters =
+            &["B.mass", "B.center.x", "B.center.y", "B.xx", "B.xy", "B.yy", "c", "g"];
         facts.inputs = &[Input {
             name: "x",
             components: 2,
@@ -84,7 +85,13 @@ impl<T: Real> System<1> for Hand<T> {
         [(p[0] - self.moment(x.velocity, q[0])) / self.body.inertia()]
     }
 
-    fn mass_matrix(&self, _: T, _: &[T; 1], _: &[T; 1], _: &Self::Inputs) -> nalgebra::SMatrix<T, 1, 1> {
+    fn mass_matrix(
+        &self,
+        _: T,
+        _: &[T; 1],
+        _: &[T; 1],
+        _: &Self::Inputs,
+    ) -> nalgebra::SMatrix<T, 1, 1> {
         nalgebra::SMatrix::from([[self.body.inertia()]])
     }
 

@@ -12,7 +12,8 @@ use std::error::Error;
 /// Thin leather, in kg/m².
 const DENSITY: f64 = 1.1;
 
-/// The time in which friction takes a swing to 1/e, in seconds: what shakes them is many times gravity.
+/// The time in which friction takes a swing to 1/e, in seconds: what shakes them is many times
+/// gravity.
 const DECAY: f64 = 0.3;
 
 /// The error of a step, relative and in radians.
@@ -56,7 +57,8 @@ pub(crate) struct Hung {
     pub(crate) linear: Swing,
     /// On the spline, by the hand-written equation.
     pub(crate) hand: Swing,
-    /// The largest difference to the hand-written acceleration along the swing on the spline, in rad/s².
+    /// The largest difference to the hand-written acceleration along the swing on the spline, in
+    /// rad/s².
     pub(crate) difference: f64,
     /// The largest acceleration there.
     pub(crate) acceleration: f64,
@@ -70,7 +72,8 @@ pub(crate) struct Swing {
 }
 
 impl Hung {
-    /// A feather on a joint that passes through `keys` at `rate` keys a second, from rest and at the given times.
+    /// A feather on a joint that passes through `keys` at `rate` keys a second, from rest and at
+    /// the given times.
     pub(crate) fn swing(
         place: Place,
         joint: usize,
@@ -98,15 +101,32 @@ impl Hung {
             difference = difference.max((ours - theirs).abs());
             acceleration = acceleration.max(ours.abs());
         }
-        let at = |&t: &f64| Motion::<f64, 2>::sample(&curve, Time::new(t), Side::Before, Orders::POSITION).position;
+        let at = |&t: &f64| {
+            Motion::<f64, 2>::sample(&curve, Time::new(t), Side::Before, Orders::POSITION).position
+        };
         let pivot = times.iter().map(at).collect();
-        Ok(Self { place, joint, outline, mass: body.mass, pivot, spline, linear, hand, difference, acceleration })
+        Ok(Self {
+            place,
+            joint,
+            outline,
+            mass: body.mass,
+            pivot,
+            spline,
+            linear,
+            hand,
+            difference,
+            acceleration,
+        })
     }
 }
 
 impl Swing {
     /// From rest through all `times`.
-    fn run<D: Dynamics<1, Scalar = f64>>(dynamics: &D, times: &[f64], bar: &ProgressBar) -> Result<Self, Box<dyn Error>>
+    fn run<D: Dynamics<1, Scalar = f64>>(
+        dynamics: &D,
+        times: &[f64],
+        bar: &ProgressBar,
+    ) -> Result<Self, Box<dyn Error>>
     where
         Dop853: pendulum_runtime::integrate::method::Suits<D::System, 1>,
     {
@@ -158,7 +178,8 @@ mod tests {
         assert!(body.center[0].abs() < 1e-15 && body.center[1] < -0.05, "{:?}", body.center);
     }
 
-    /// Both sets of equations, function by function, for a body whose centre lies off the line on which it hangs.
+    /// Both sets of equations, function by function, for a body whose centre lies off the line on
+    /// which it hangs.
     #[test]
     fn the_hand_written_equations_are_the_generated_ones() {
         let body = body().rotated(0.7);
@@ -166,7 +187,11 @@ mod tests {
         for k in 0..50 {
             let k = f64::from(k);
             let (t, q, v) = (0.1 * k, [0.37 * k - 9.0], [11.0 - 0.45 * k]);
-            let x = (Sample { position: [0.1 * k, 1.0], velocity: [2.0 - 0.1 * k, 0.2 * k], acceleration: [k - 25.0, 9.0 - k] },);
+            let x = (Sample {
+                position: [0.1 * k, 1.0],
+                velocity: [2.0 - 0.1 * k, 0.2 * k],
+                acceleration: [k - 25.0, 9.0 - k],
+            },);
             let pairs = [
                 (tag.accelerations(t, &q, &v, &x)[0], hand.accelerations(t, &q, &v, &x)[0]),
                 (tag.forces(t, &q, &v, &x)[0], hand.forces(t, &q, &v, &x)[0]),
@@ -178,7 +203,10 @@ mod tests {
                 (tag.mass_matrix(t, &q, &v, &x)[(0, 0)], hand.mass_matrix(t, &q, &v, &x)[(0, 0)]),
             ];
             for (index, (ours, theirs)) in pairs.into_iter().enumerate() {
-                assert!((ours - theirs).abs() < 1e-12 * ours.abs().max(1e-3), "{index}: {ours} and {theirs}");
+                assert!(
+                    (ours - theirs).abs() < 1e-12 * ours.abs().max(1e-3),
+                    "{index}: {ours} and {theirs}"
+                );
             }
         }
     }

@@ -1,8 +1,9 @@
 //! Feathers on somebody who jumps: compound pendulums driven by captured motion.
 //!
-//! `cargo run --release --example mocap [file.bvh [metres per unit]]` reads a clip, hangs a pendulum on both hands, the head and the hips,
-//! integrates its equations, which `lagrangian!` derives, and those derived by hand, and writes `target/mocap.csv` and
-//! `target/mocap.svg`, which plays in a browser.
+//! `cargo run --release --example mocap [file.bvh [metres per unit]]` reads a clip, hangs a
+//! pendulum on both hands, the head and the hips, integrates its equations, which `lagrangian!`
+//! derives, and those derived by hand, and writes `target/mocap.csv` and `target/mocap.svg`, which
+//! plays in a browser.
 
 #![allow(mixed_script_confusables)]
 
@@ -60,7 +61,12 @@ const PLACES: [Place; 4] = [
         color: "#d55e00",
     },
     Place { label: "head", names: &["headend", "head"], length: 0.12, color: "#009e73" },
-    Place { label: "hips", names: &["hips", "hip", "pelvis", "root"], length: 0.2, color: "#b0488f" },
+    Place {
+        label: "hips",
+        names: &["hips", "hip", "pelvis", "root"],
+        length: 0.2,
+        color: "#b0488f",
+    },
 ];
 
 /// The joint around which the head is drawn.
@@ -87,7 +93,9 @@ fn main() -> ExitCode {
 
 fn swing() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
-    let path = arguments.next().unwrap_or_else(|| concat!(env!("CARGO_MANIFEST_DIR"), "/examples/data/jumps.bvh").into());
+    let path = arguments
+        .next()
+        .unwrap_or_else(|| concat!(env!("CARGO_MANIFEST_DIR"), "/examples/data/jumps.bvh").into());
     let scale = match arguments.next() {
         Some(text) => metres(&text)?,
         None => 1.0,
@@ -102,12 +110,19 @@ fn swing() -> Result<(), Box<dyn Error>> {
     let count = (bvh.frames() - 1) / every + 1;
     let seconds = ((count - 1) * every) as f64 / rate;
     if count < 2 {
-        return Err(format!("{path}: {} frames are too short a clip; give one of a second or more", bvh.frames()).into());
+        return Err(format!(
+            "{path}: {} frames are too short a clip; give one of a second or more",
+            bvh.frames()
+        )
+        .into());
     }
     if LONGEST < seconds {
-        return Err(format!("{path}: a clip of {seconds:.0} s; cut it to {LONGEST} s or less").into());
+        return Err(
+            format!("{path}: a clip of {seconds:.0} s; cut it to {LONGEST} s or less").into()
+        );
     }
-    let times: Vec<f64> = (0..=(count - 1) * FINE).map(|k| (k * every) as f64 / (rate * FINE as f64)).collect();
+    let times: Vec<f64> =
+        (0..=(count - 1) * FINE).map(|k| (k * every) as f64 / (rate * FINE as f64)).collect();
     let poses: Vec<Vec<[f64; 3]>> = (0..count).map(|key| bvh.pose(key * every)).collect();
     let height = extent(&poses[0]) * scale;
     if !(0.3 < height && height < 3.5) {
@@ -119,12 +134,21 @@ fn swing() -> Result<(), Box<dyn Error>> {
     let hips = find(&bvh, PLACES[3].names).unwrap_or(0);
     let walk: Vec<[f64; 3]> = poses.iter().map(|pose| pose[hips]).collect();
     let plane = Plane::fit(&walk, scale);
-    let poses: Vec<Vec<[f64; 3]>> = poses.iter().map(|pose| pose.iter().map(|&at| plane.view(at)).collect()).collect();
+    let poses: Vec<Vec<[f64; 3]>> =
+        poses.iter().map(|pose| pose.iter().map(|&at| plane.view(at)).collect()).collect();
 
-    let names: Vec<&str> = bvh.joints.iter().filter(|joint| !joint.end).map(|joint| joint.name.as_str()).collect();
-    let places: Vec<_> = PLACES.iter().filter_map(|place| find(&bvh, place.names).map(|joint| (place, joint))).collect();
+    let names: Vec<&str> =
+        bvh.joints.iter().filter(|joint| !joint.end).map(|joint| joint.name.as_str()).collect();
+    let places: Vec<_> = PLACES
+        .iter()
+        .filter_map(|place| find(&bvh, place.names).map(|joint| (place, joint)))
+        .collect();
     if places.is_empty() {
-        return Err(format!("{path}: no hand, head or hips among the joints {}; rename one", names.join(", ")).into());
+        return Err(format!(
+            "{path}: no hand, head or hips among the joints {}; rename one",
+            names.join(", ")
+        )
+        .into());
     }
 
     // Hidden where stderr is no terminal.
@@ -151,24 +175,40 @@ fn swing() -> Result<(), Box<dyn Error>> {
         spline: &hung.spline.angles,
         linear: &hung.linear.angles,
     });
-    let picture =
-        Picture { limbs: limbs(&bvh.joints), head: find(&bvh, HEAD), poses: &poses, worn: worn.collect(), seconds, fine: FINE };
+    let picture = Picture {
+        limbs: limbs(&bvh.joints),
+        head: find(&bvh, HEAD),
+        poses: &poses,
+        worn: worn.collect(),
+        seconds,
+        fine: FINE,
+    };
     fs::write(target.join("mocap.svg"), picture.draw())?;
 
     println!("{}", sheet::swings(&pendulums));
     println!("joints: {} ({})", names.len(), names.join(", "));
     let labels: Vec<&str> = places.iter().map(|(place, _)| place.label).collect();
-    println!("pendulums: {} ({}), written to target/mocap.csv and target/mocap.svg", labels.len(), labels.join(", "));
-    println!("simulated: {seconds:.2} s, {} swings, in {:.1} ms", 3 * pendulums.len(), 1e3 * elapsed);
+    println!(
+        "pendulums: {} ({}), written to target/mocap.csv and target/mocap.svg",
+        labels.len(),
+        labels.join(", ")
+    );
+    println!(
+        "simulated: {seconds:.2} s, {} swings, in {:.1} ms",
+        3 * pendulums.len(),
+        1e3 * elapsed
+    );
     println!("largest difference to the hand-written equation: {}", sheet::difference(&pendulums));
     Ok(())
 }
 
 fn metres(text: &str) -> Result<f64, String> {
     let value: Option<f64> = text.parse().ok();
-    value
-        .filter(|&value| 0.0 < value && value.is_finite())
-        .ok_or_else(|| format!("`{text}` metres in a unit of the file; give a positive number, as 0.01 for centimetres"))
+    value.filter(|&value| 0.0 < value && value.is_finite()).ok_or_else(|| {
+        format!(
+            "`{text}` metres in a unit of the file; give a positive number, as 0.01 for centimetres"
+        )
+    })
 }
 
 /// The height of a pose.

@@ -1,4 +1,5 @@
-//! An animated picture of a skeleton and what swings on it: SVG whose `animate` elements list the values of all keys.
+//! An animated picture of a skeleton and what swings on it: SVG whose `animate` elements list the
+//! values of all keys.
 
 use std::fmt::{self, Write};
 
@@ -60,8 +61,15 @@ impl Frame {
     /// The ground with a tick at each metre.
     fn ground(self, svg: &mut String) -> fmt::Result {
         let [left, right, ground, _] = STAGE;
-        writeln!(svg, r##"<rect x="{left}" y="{ground}" width="{}" height="9" fill="#f0f0f0"/>"##, right - left)?;
-        writeln!(svg, r##"<path d="M{left} {ground}H{right}" stroke="#888" stroke-width="1.5"/>"##)?;
+        writeln!(
+            svg,
+            r##"<rect x="{left}" y="{ground}" width="{}" height="9" fill="#f0f0f0"/>"##,
+            right - left
+        )?;
+        writeln!(
+            svg,
+            r##"<path d="M{left} {ground}H{right}" stroke="#888" stroke-width="1.5"/>"##
+        )?;
         let end = self.left + (right - left) / self.scale;
         for metre in self.left.ceil() as i64..=end.floor() as i64 {
             let [x, y] = self.at(metre as f64, self.ground);
@@ -122,7 +130,8 @@ impl Picture<'_> {
     /// The limbs from the farthest to the nearest, each after what hangs farther away.
     fn body(&self, svg: &mut String, frame: Frame) -> fmt::Result {
         let count = self.poses.len() as f64;
-        let depth = |joint: usize| self.poses.iter().map(|pose| pose[joint][2]).sum::<f64>() / count;
+        let depth =
+            |joint: usize| self.poses.iter().map(|pose| pose[joint][2]).sum::<f64>() / count;
         let end = |limb: &[usize]| limb[limb.len() - 1];
         let mut limbs: Vec<&Vec<usize>> = self.limbs.iter().collect();
         limbs.sort_by(|a, b| depth(end(a)).total_cmp(&depth(end(b))));
@@ -130,7 +139,8 @@ impl Picture<'_> {
         worn.sort_by(|a, b| depth(a.joint).total_cmp(&depth(b.joint)));
         let mut worn = worn.into_iter().peekable();
         for limb in limbs {
-            while let Some(worn) = worn.next_if(|worn| depth(worn.joint) < depth(end(limb)) - 0.15) {
+            while let Some(worn) = worn.next_if(|worn| depth(worn.joint) < depth(end(limb)) - 0.15)
+            {
                 self.feather(svg, frame, worn)?;
             }
             let near = ((depth(end(limb)) - depth(0)) / 0.2 + 0.5).clamp(0.0, 1.0);
@@ -179,7 +189,12 @@ impl Picture<'_> {
             return Ok(());
         }
         let shade = |from: f64, to: f64| (from + (to - from) * near) as u8;
-        let color = format!("#{:02x}{:02x}{:02x}", shade(186.0, 62.0), shade(194.0, 72.0), shade(206.0, 92.0));
+        let color = format!(
+            "#{:02x}{:02x}{:02x}",
+            shade(186.0, 62.0),
+            shade(194.0, 72.0),
+            shade(206.0, 92.0)
+        );
         let thick = if length < 0.25 { THICK[1] } else { THICK[0] };
         self.line(svg, frame, &joints, &color, thick)?;
         // The trunk reaches from the hips to where the arms begin.
@@ -202,7 +217,14 @@ impl Picture<'_> {
         Ok(())
     }
 
-    fn line(&self, svg: &mut String, frame: Frame, joints: &[usize], color: &str, thick: f64) -> fmt::Result {
+    fn line(
+        &self,
+        svg: &mut String,
+        frame: Frame,
+        joints: &[usize],
+        color: &str,
+        thick: f64,
+    ) -> fmt::Result {
         write!(
             svg,
             r#"<polyline fill="none" stroke="{color}" stroke-width="{:.1}" stroke-linecap="round" stroke-linejoin="round">"#,
@@ -226,8 +248,13 @@ impl Picture<'_> {
             write!(value, "{x:.1} {y:.1}")
         })?;
         write!(svg, "<g>")?;
-        self.transform(svg, "rotate", |key, value| write!(value, "{:.1}", -worn.spline[key * self.fine].to_degrees()))?;
-        write!(svg, r##"<path fill="{color}" fill-opacity=".88" stroke="#fff" stroke-width="1" stroke-linejoin="round" d=""##)?;
+        self.transform(svg, "rotate", |key, value| {
+            write!(value, "{:.1}", -worn.spline[key * self.fine].to_degrees())
+        })?;
+        write!(
+            svg,
+            r##"<path fill="{color}" fill-opacity=".88" stroke="#fff" stroke-width="1" stroke-linejoin="round" d=""##
+        )?;
         for (index, [x, y]) in worn.outline.iter().enumerate() {
             let letter = if index == 0 { 'M' } else { 'L' };
             write!(svg, "{letter}{:.1} {:.1}", x * frame.scale, -y * frame.scale)?;
@@ -347,10 +374,17 @@ impl Picture<'_> {
     /// The angles over time, and where the picture is.
     fn chart(&self, svg: &mut String) -> fmt::Result {
         let [left, right, bottom, top] = CHART;
-        let degrees = || self.worn.iter().flat_map(|worn| worn.spline.iter().chain(worn.linear)).map(|angle| angle.to_degrees());
+        let degrees = || {
+            self.worn
+                .iter()
+                .flat_map(|worn| worn.spline.iter().chain(worn.linear))
+                .map(|angle| angle.to_degrees())
+        };
         let most = degrees().fold(30.0, |peak: f64, angle| peak.max(angle.abs()));
-        let step =
-            [15.0, 30.0, 45.0, 90.0, 180.0].into_iter().find(|step| most <= 2.2 * step).unwrap_or(360.0 * (most / 720.0).ceil());
+        let step = [15.0, 30.0, 45.0, 90.0, 180.0]
+            .into_iter()
+            .find(|step| most <= 2.2 * step)
+            .unwrap_or(360.0 * (most / 720.0).ceil());
         let middle = f64::midpoint(top, bottom);
         let y = |angle: f64| middle - angle / most * (bottom - top) / 2.0;
         let x = |time: f64| left + time / self.seconds * (right - left);
@@ -376,10 +410,15 @@ impl Picture<'_> {
             )?;
         }
         for worn in &self.worn {
-            for (angles, style) in
-                [(worn.spline, r#"stroke-width="1.6""#), (worn.linear, r#"stroke-width="1.3" stroke-dasharray="2 3""#)]
-            {
-                write!(svg, r#"<polyline fill="none" stroke="{}" {style} stroke-linejoin="round" points=""#, worn.color)?;
+            for (angles, style) in [
+                (worn.spline, r#"stroke-width="1.6""#),
+                (worn.linear, r#"stroke-width="1.3" stroke-dasharray="2 3""#),
+            ] {
+                write!(
+                    svg,
+                    r#"<polyline fill="none" stroke="{}" {style} stroke-linejoin="round" points=""#,
+                    worn.color
+                )?;
                 for (index, angle) in angles.iter().enumerate().step_by(self.fine.div_ceil(2)) {
                     let time = self.seconds * index as f64 / (angles.len() - 1) as f64;
                     write!(svg, "{:.1},{:.1} ", x(time), y(angle.to_degrees()))?;
@@ -400,18 +439,36 @@ impl Picture<'_> {
         format!(r#"dur="{:.4}s" repeatCount="indefinite""#, self.seconds)
     }
 
-    fn animate(&self, svg: &mut String, name: &str, value: impl FnMut(usize, &mut String) -> fmt::Result) -> fmt::Result {
+    fn animate(
+        &self,
+        svg: &mut String,
+        name: &str,
+        value: impl FnMut(usize, &mut String) -> fmt::Result,
+    ) -> fmt::Result {
         write!(svg, r#"<animate attributeName="{name}" {} values=""#, self.timing())?;
         self.values(svg, value)
     }
 
-    fn transform(&self, svg: &mut String, kind: &str, value: impl FnMut(usize, &mut String) -> fmt::Result) -> fmt::Result {
-        write!(svg, r#"<animateTransform attributeName="transform" type="{kind}" {} values=""#, self.timing())?;
+    fn transform(
+        &self,
+        svg: &mut String,
+        kind: &str,
+        value: impl FnMut(usize, &mut String) -> fmt::Result,
+    ) -> fmt::Result {
+        write!(
+            svg,
+            r#"<animateTransform attributeName="transform" type="{kind}" {} values=""#,
+            self.timing()
+        )?;
         self.values(svg, value)
     }
 
     /// One value a key.
-    fn values(&self, svg: &mut String, mut value: impl FnMut(usize, &mut String) -> fmt::Result) -> fmt::Result {
+    fn values(
+        &self,
+        svg: &mut String,
+        mut value: impl FnMut(usize, &mut String) -> fmt::Result,
+    ) -> fmt::Result {
         for key in 0..self.poses.len() {
             if 0 < key {
                 svg.push(';');
@@ -432,8 +489,15 @@ mod tests {
     use super::{Picture, Worn};
 
     fn picture() -> String {
-        let poses: Vec<Vec<[f64; 3]>> =
-            (0..7).map(|k| vec![[0.3 * f64::from(k), 1.0, 0.0], [0.3 * f64::from(k), 1.6, 0.1], [0.0, 0.0, -0.1]]).collect();
+        let poses: Vec<Vec<[f64; 3]>> = (0..7)
+            .map(|k| {
+                vec![
+                    [0.3 * f64::from(k), 1.0, 0.0],
+                    [0.3 * f64::from(k), 1.6, 0.1],
+                    [0.0, 0.0, -0.1],
+                ]
+            })
+            .collect();
         let pivot: Vec<[f64; 2]> = (0..13).map(|k| [0.15 * f64::from(k), 1.6]).collect();
         let angles: Vec<f64> = (0..13).map(|k| 0.1 * f64::from(k)).collect();
         let worn = Worn {
@@ -446,17 +510,33 @@ mod tests {
             linear: &angles,
         };
         let limbs = vec![vec![0, 1], vec![0, 2]];
-        Picture { limbs, head: Some(1), poses: &poses, worn: vec![worn], seconds: 1.25, fine: 2 }.draw()
+        Picture { limbs, head: Some(1), poses: &poses, worn: vec![worn], seconds: 1.25, fine: 2 }
+            .draw()
     }
 
     #[test]
     fn every_element_is_closed() {
         let svg = picture();
-        for name in ["svg", "g", "text", "path", "polyline", "circle", "rect", "animate", "animateTransform", "clipPath"] {
-            let opened = svg.matches(&format!("<{name} ")).count() + svg.matches(&format!("<{name}>")).count();
+        for name in [
+            "svg",
+            "g",
+            "text",
+            "path",
+            "polyline",
+            "circle",
+            "rect",
+            "animate",
+            "animateTransform",
+            "clipPath",
+        ] {
+            let opened = svg.matches(&format!("<{name} ")).count()
+                + svg.matches(&format!("<{name}>")).count();
             let closed = svg.matches(&format!("</{name}>")).count();
-            let alone =
-                svg.split(&format!("<{name} ")).skip(1).filter(|rest| rest[..rest.find('>').unwrap()].ends_with('/')).count();
+            let alone = svg
+                .split(&format!("<{name} "))
+                .skip(1)
+                .filter(|rest| rest[..rest.find('>').unwrap()].ends_with('/'))
+                .count();
             assert_eq!(opened, closed + alone, "{name}");
         }
     }
@@ -464,10 +544,11 @@ mod tests {
     #[test]
     fn animations_have_a_finite_value_for_each_key() {
         let svg = picture();
-        let lists: Vec<&str> = svg.split("values=\"").skip(1).map(|rest| &rest[..rest.find('"').unwrap()]).collect();
+        let lists: Vec<&str> =
+            svg.split("values=\"").skip(1).map(|rest| &rest[..rest.find('"').unwrap()]).collect();
         let counts: Vec<usize> = lists.iter().map(|list| list.split(';').count()).collect();
-        // Three strokes of the trail, two limbs, two coordinates of the head, two movements of the feather; 13 tenths on the
-        // clock's two columns; the line in the chart.
+        // Three strokes of the trail, two limbs, two coordinates of the head, two movements of the
+        // feather; 13 tenths on the clock's two columns; the line in the chart.
         assert_eq!(counts.iter().filter(|&&count| count == 7).count(), 9, "{counts:?}");
         assert_eq!(counts.iter().filter(|&&count| count == 13).count(), 2, "{counts:?}");
         assert_eq!(counts.len(), 12, "{counts:?}");

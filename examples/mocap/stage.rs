@@ -3,7 +3,8 @@
 use crate::bvh::{Bvh, Joint};
 use pendulum_runtime::real::Real;
 
-/// The vertical plane along the main horizontal direction of a path; the second axis of the file points up.
+/// The vertical plane along the main horizontal direction of a path; the second axis of the file
+/// points up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Plane {
     /// The unit vector along the plane, in x and z.
@@ -15,12 +16,15 @@ pub(crate) struct Plane {
 }
 
 impl Plane {
-    /// The plane of least squares through a path, so that it leads from left to right, and starts at zero.
+    /// The plane of least squares through a path, so that it leads from left to right, and starts
+    /// at zero.
     pub(crate) fn fit(path: &[[f64; 3]], scale: f64) -> Self {
         let count = path.len() as f64;
         let flat = || path.iter().map(|&[x, _, z]| [x, z]);
         let mean = [0, 1].map(|axis| flat().map(|point| point[axis]).sum::<f64>() / count);
-        let moment = |a: usize, b: usize| flat().map(|point| (point[a] - mean[a]) * (point[b] - mean[b])).sum::<f64>() / count;
+        let moment = |a: usize, b: usize| {
+            flat().map(|point| (point[a] - mean[a]) * (point[b] - mean[b])).sum::<f64>() / count
+        };
         // The principal axis of the second moments: tan 2φ = 2 s_xz/(s_xx − s_zz).
         let angle = Real::atan2(2.0 * moment(0, 1), moment(0, 0) - moment(1, 1)) / 2.0;
         let (sin, cos) = Real::sin_cos(angle);
@@ -48,7 +52,8 @@ pub(crate) fn find(bvh: &Bvh, names: &[&str]) -> Option<usize> {
     names.iter().find_map(same).or_else(|| names.iter().find_map(within))
 }
 
-/// The letters of a name, without the rig's prefix: `mixamorig:LeftHand` and `left_hand` are both `lefthand`.
+/// The letters of a name, without the rig's prefix: `mixamorig:LeftHand` and `left_hand` are both
+/// `lefthand`.
 fn plain(name: &str) -> String {
     let name = name.rsplit(':').next().unwrap_or(name);
     name.chars().filter(|letter| letter.is_alphanumeric()).flat_map(char::to_lowercase).collect()
@@ -96,15 +101,20 @@ mod tests {
     #[test]
     fn a_diagonal_path_leads_from_left_to_right() {
         for (x, z) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-3.0, -4.0)] {
-            let path: Vec<[f64; 3]> = (0..9).map(|k| [x * f64::from(k), 7.0, z * f64::from(k) + 2.0]).collect();
+            let path: Vec<[f64; 3]> =
+                (0..9).map(|k| [x * f64::from(k), 7.0, z * f64::from(k) + 2.0]).collect();
             let plane = Plane::fit(&path, 0.5);
             let [along, up, side] = plane.view(path[8]);
             let length = 8.0 * (x * x + z * z).sqrt() / 2.0;
-            assert!((along - length).abs() < 1e-12 && (up - 3.5).abs() < 1e-12 && side.abs() < 1e-12, "{along} {up} {side}");
+            assert!(
+                (along - length).abs() < 1e-12 && (up - 3.5).abs() < 1e-12 && side.abs() < 1e-12,
+                "{along} {up} {side}"
+            );
         }
     }
 
-    /// Who walks along x and looks at the eye has +z in front: x to the right, y up, z towards the eye.
+    /// Who walks along x and looks at the eye has +z in front: x to the right, y up, z towards the
+    /// eye.
     #[test]
     fn the_view_is_right_handed() {
         let plane = Plane::fit(&[[0.0; 3], [1.0, 0.0, 0.0]], 1.0);

@@ -28,7 +28,8 @@ pub(crate) struct Settings {
     pub(crate) damping: f64,
 }
 
-/// One feather through a period, by frames: its angle on its joint, in radians from how it is drawn.
+/// One feather through a period, by frames: its angle on its joint, in radians from how it is
+/// drawn.
 #[derive(Clone, Debug)]
 pub(crate) struct Course(Vec<f64>);
 
@@ -49,11 +50,18 @@ impl Course {
 }
 
 /// Lets the feathers swing under several settings at once, each on joints of its own frame.
-pub(crate) fn swing(rig: &Rig<'_>, settings: &[Settings], bar: &ProgressBar) -> Result<Baked, Box<dyn Error>> {
+pub(crate) fn swing(
+    rig: &Rig<'_>,
+    settings: &[Settings],
+    bar: &ProgressBar,
+) -> Result<Baked, Box<dyn Error>> {
     let mut scene = Scene::<f64>::new((RATE as u32 * TICKS).into())?;
     scene.set_tolerance(1e-6)?;
-    let joints: Vec<_> =
-        rig.keyed.iter().map(|keyed| (scene.joint(keyed.place.clone()), scene.joint(keyed.angle.clone()))).collect();
+    let joints: Vec<_> = rig
+        .keyed
+        .iter()
+        .map(|keyed| (scene.joint(keyed.place.clone()), scene.joint(keyed.angle.clone())))
+        .collect();
     let mut handles: Vec<Handle<Feather, 1>> = Vec::new();
     for &Settings { gravity, damping } in settings {
         for (number, hung) in rig.feathers.iter().enumerate() {
@@ -81,7 +89,12 @@ pub(crate) fn swing(rig: &Rig<'_>, settings: &[Settings], bar: &ProgressBar) -> 
         }
         let failed = scene.advance_ticks(TICKS).failed;
         if failed != 0 {
-            return Err(format!("{failed} feathers failed at {} s: {}", scene.time(), scene.failures()[0]).into());
+            return Err(format!(
+                "{failed} feathers failed at {} s: {}",
+                scene.time(),
+                scene.failures()[0]
+            )
+            .into());
         }
     }
     bar.inc(1);
@@ -90,14 +103,19 @@ pub(crate) fn swing(rig: &Rig<'_>, settings: &[Settings], bar: &ProgressBar) -> 
     let turns: Vec<Vec<f64>> = rig
         .keyed
         .iter()
-        .map(|keyed| (0..FRAMES).map(|frame| angle(&keyed.angle, frame as f64 / RATE as f64)).collect())
+        .map(|keyed| {
+            (0..FRAMES).map(|frame| angle(&keyed.angle, frame as f64 / RATE as f64)).collect()
+        })
         .collect();
     let mut all = angles.into_iter();
     let courses = settings
         .iter()
         .map(|_| {
             let owl = rig.feathers.iter().zip(&mut all);
-            owl.map(|(hung, angles)| Course(angles.iter().zip(&turns[hung.on]).map(|(a, b)| a - b).collect())).collect()
+            owl.map(|(hung, angles)| {
+                Course(angles.iter().zip(&turns[hung.on]).map(|(a, b)| a - b).collect())
+            })
+            .collect()
         })
         .collect();
     Ok(Baked { courses, loops, gap })

@@ -10,7 +10,20 @@ type Keys = &'static [(f64, f64)];
 /// Turns of joints in degrees, counter-clockwise; those of a left side are mirrored from the right.
 const TURNS: [(&str, Keys); 7] = [
     ("owl", &[(0.0, 0.0), (0.5, 0.0), (1.2, 4.0), (1.9, -4.0), (2.7, 0.0), (3.2, 0.0)]),
-    ("head", &[(0.0, 0.0), (0.25, -9.0), (0.6, -10.0), (0.9, 0.0), (1.6, 3.0), (2.7, 0.0), (3.0, 12.0), (3.5, 13.0), (3.8, 2.0)]),
+    (
+        "head",
+        &[
+            (0.0, 0.0),
+            (0.25, -9.0),
+            (0.6, -10.0),
+            (0.9, 0.0),
+            (1.6, 3.0),
+            (2.7, 0.0),
+            (3.0, 12.0),
+            (3.5, 13.0),
+            (3.8, 2.0),
+        ],
+    ),
     (
         "wing-right",
         &[
@@ -61,13 +74,27 @@ const TURNS: [(&str, Keys); 7] = [
     ),
     (
         "ear-right",
-        &[(0.0, 0.0), (0.15, 8.0), (0.35, -2.0), (0.6, 0.0), (2.7, 0.0), (3.15, -12.0), (3.3, 7.0), (3.45, -9.0), (3.7, 0.0)],
+        &[
+            (0.0, 0.0),
+            (0.15, 8.0),
+            (0.35, -2.0),
+            (0.6, 0.0),
+            (2.7, 0.0),
+            (3.15, -12.0),
+            (3.3, 7.0),
+            (3.45, -9.0),
+            (3.7, 0.0),
+        ],
     ),
-    ("ear-left", &[(0.0, 0.0), (0.3, -9.0), (0.5, 2.0), (0.8, 0.0), (2.7, 0.0), (3.0, 4.0), (3.3, 0.0)]),
+    (
+        "ear-left",
+        &[(0.0, 0.0), (0.3, -9.0), (0.5, 2.0), (0.8, 0.0), (2.7, 0.0), (3.0, 4.0), (3.3, 0.0)],
+    ),
 ];
 
 /// Where the owl is, in pixels to the right and up.
-const ALONG: Keys = &[(0.0, 0.0), (0.55, 0.0), (1.2, -16.0), (1.95, 16.0), (2.65, 1.0), (2.8, 0.0), (3.3, 0.0)];
+const ALONG: Keys =
+    &[(0.0, 0.0), (0.55, 0.0), (1.2, -16.0), (1.95, 16.0), (2.65, 1.0), (2.8, 0.0), (3.3, 0.0)];
 const UP: Keys = &[
     (0.0, 0.0),
     (0.3, 0.0),
@@ -87,13 +114,15 @@ const UP: Keys = &[
 /// How a joint turns on its parent, in radians; a joint that is not in the dance rests.
 pub(crate) fn turn(name: &str) -> Result<Spline<1>, MotionError> {
     let of = |name: &str| TURNS.iter().find(|(joint, _)| *joint == name).map(|&(_, keys)| keys);
-    let mirror = |name: &str| name.strip_suffix("left").and_then(|start| of(&format!("{start}right")));
+    let mirror =
+        |name: &str| name.strip_suffix("left").and_then(|start| of(&format!("{start}right")));
     let (keys, sign) = match (of(name), mirror(name)) {
         (Some(keys), _) => (keys, 1.0),
         (None, Some(keys)) => (keys, -1.0),
         (None, None) => (&[(0.0, 0.0)][..], 1.0),
     };
-    let values: Vec<[f64; 1]> = keys.iter().map(|&(_, degrees)| [sign * degrees.to_radians()]).collect();
+    let values: Vec<[f64; 1]> =
+        keys.iter().map(|&(_, degrees)| [sign * degrees.to_radians()]).collect();
     closed(keys.iter().map(|&(time, _)| time).collect(), values)
 }
 
@@ -104,7 +133,8 @@ pub(crate) fn way(name: &str, pixel: f64) -> Result<Spline<2>, MotionError> {
     }
     // Both coordinates at the times of either, each on a spline of its own.
     let times = |keys: Keys| keys.iter().map(|&(time, _)| time).collect::<Vec<_>>();
-    let [along, up] = [ALONG, UP].map(|keys| closed(times(keys), keys.iter().map(|&(_, value)| [pixel * value]).collect()));
+    let [along, up] = [ALONG, UP]
+        .map(|keys| closed(times(keys), keys.iter().map(|&(_, value)| [pixel * value]).collect()));
     let (along, up) = (along?, up?);
     let count = 80;
     let grid: Vec<f64> = (0..count).map(|key| PERIOD * f64::from(key) / f64::from(count)).collect();
@@ -118,7 +148,10 @@ pub(crate) fn way(name: &str, pixel: f64) -> Result<Spline<2>, MotionError> {
 }
 
 /// The smooth curve through keys that returns to the first of them.
-fn closed<const D: usize>(mut times: Vec<f64>, mut values: Vec<[f64; D]>) -> Result<Spline<D>, MotionError> {
+fn closed<const D: usize>(
+    mut times: Vec<f64>,
+    mut values: Vec<[f64; D]>,
+) -> Result<Spline<D>, MotionError> {
     times.push(PERIOD);
     values.push(values[0]);
     Spline::periodic(&times, &values)

@@ -36,12 +36,22 @@ lagrangian! {
 const DRAWN: f64 = 9.81;
 
 /// How many times a second feathers swing on their skin alone, by the beginnings of their names.
-const FREQUENCIES: [(&str, f64); 7] =
-    [("primary", 3.4), ("secondary", 3.4), ("covert", 4.2), ("breast", 3.6), ("tail", 3.0), ("ruff", 3.8), ("tuft", 4.6)];
+const FREQUENCIES: [(&str, f64); 7] = [
+    ("primary", 3.4),
+    ("secondary", 3.4),
+    ("covert", 4.2),
+    ("breast", 3.6),
+    ("tail", 3.0),
+    ("ruff", 3.8),
+    ("tuft", 4.6),
+];
 
 /// The angular frequency of a feather, in rad/s; neighbours differ a little.
 pub(crate) fn frequency(name: &str, number: usize) -> f64 {
-    let kind = FREQUENCIES.iter().find(|(start, _)| name.starts_with(start)).map_or(3.0, |&(_, hertz)| hertz);
+    let kind = FREQUENCIES
+        .iter()
+        .find(|(start, _)| name.starts_with(start))
+        .map_or(3.0, |&(_, hertz)| hertz);
     // The golden section spreads any run of numbers evenly.
     let spread = (number as f64 * 0.618033988749895).fract() - 0.5;
     2.0 * PI * kind * (1.0 + 0.08 * spread)
@@ -49,7 +59,13 @@ pub(crate) fn frequency(name: &str, number: usize) -> f64 {
 
 impl Feather {
     /// A feather that swings with an angular frequency and a damping ratio on its skin.
-    pub(crate) fn swinging(body: Body, quill: [f64; 2], frequency: f64, damping: f64, gravity: f64) -> Self {
+    pub(crate) fn swinging(
+        body: Body,
+        quill: [f64; 2],
+        frequency: f64,
+        damping: f64,
+        gravity: f64,
+    ) -> Self {
         let stiffness = body.inertia() * frequency * frequency;
         let pull = body.mass * DRAWN * body.center[0] / stiffness;
         Self::new(body, quill, stiffness, 2.0 * damping * frequency * body.inertia(), pull, gravity)
@@ -64,7 +80,8 @@ mod tests {
     use pendulum_runtime::prelude::*;
 
     fn vane() -> Feather {
-        let body = Polygon::new(&[[0.0, 0.0], [0.1, -0.02], [0.12, -0.05]]).unwrap().body(0.2).unwrap();
+        let body =
+            Polygon::new(&[[0.0, 0.0], [0.1, -0.02], [0.12, -0.05]]).unwrap().body(0.2).unwrap();
         Feather::swinging(body, [0.05, 0.2], 20.0, 0.1, 9.81)
     }
 
@@ -76,26 +93,36 @@ mod tests {
         assert!(0.0 < Feather { g: 0.0, ..vane() }.accelerations(0.0, &[0.0], &[0.0], &inputs)[0]);
     }
 
-    /// By hand: I θ̈ = −m ⟨ẍ + (φ̈ i − φ̇²) e^{iφ} d + g e_y, i e^{iθ} c⟩ − k (θ − φ − δ) − c (θ̇ − φ̇).
+    /// By hand: I θ̈ = −m ⟨ẍ + (φ̈ i − φ̇²) e^{iφ} d + g e_y, i e^{iθ} c⟩ − k (θ − φ − δ) − c (θ̇ −
+    /// φ̇).
     #[test]
     fn the_equation_is_that_of_the_translating_compound_pendulum() {
         let feather = vane();
         for n in 0..40 {
             let n = f64::from(n);
-            let (θ, ω, φ, φ1, φ2) = (0.1 * n - 2.0, 3.0 - 0.2 * n, 0.07 * n, 1.0 - 0.1 * n, 5.0 + n);
-            let x = Sample { position: [0.3, 0.4], velocity: [1.0, -n], acceleration: [n - 7.0, 4.0] };
+            let (θ, ω, φ, φ1, φ2) =
+                (0.1 * n - 2.0, 3.0 - 0.2 * n, 0.07 * n, 1.0 - 0.1 * n, 5.0 + n);
+            let x =
+                Sample { position: [0.3, 0.4], velocity: [1.0, -n], acceleration: [n - 7.0, 4.0] };
             let turn = Sample { position: [φ], velocity: [φ1], acceleration: [φ2] };
             let rotated = |[a, b]: [f64; 2], angle: f64| {
                 let (sin, cos) = Real::sin_cos(angle);
                 [cos * a - sin * b, sin * a + cos * b]
             };
             let [a, b] = rotated(feather.d, φ);
-            let quill = [x.acceleration[0] - φ2 * b - φ1 * φ1 * a, x.acceleration[1] + φ2 * a - φ1 * φ1 * b + feather.g];
+            let quill = [
+                x.acceleration[0] - φ2 * b - φ1 * φ1 * a,
+                x.acceleration[1] + φ2 * a - φ1 * φ1 * b + feather.g,
+            ];
             let [u, v] = rotated(feather.B.center, θ);
             let torque = -feather.B.mass * (v * -quill[0] + u * quill[1]);
-            let expected = (torque - feather.k * (θ - φ - feather.δ) - feather.c * (ω - φ1)) / feather.B.inertia();
+            let expected = (torque - feather.k * (θ - φ - feather.δ) - feather.c * (ω - φ1))
+                / feather.B.inertia();
             let found = feather.accelerations(0.0, &[θ], &[ω], &(x, turn))[0];
-            assert!((found - expected).abs() < 1e-10 * expected.abs().max(1.0), "{found} is not {expected}");
+            assert!(
+                (found - expected).abs() < 1e-10 * expected.abs().max(1.0),
+                "{found} is not {expected}"
+            );
         }
     }
 }

@@ -1,9 +1,10 @@
 //! An owl of a hundred feathers, each a pendulum that weighs what is drawn.
 //!
-//! `cargo run --release --features svg --example owl [file.svg]` reads the drawing, whose groups are joints (see
-//! `pendulum_runtime::drawing`), moves the keyed ones through a dance of four seconds that repeats, lets the feathers swing
-//! until their motion repeats too, and writes `target/owl.svg`, which plays in a browser, and `target/owl.html`, a page with
-//! sliders for gravity and damping.
+//! `cargo run --release --features svg --example owl [file.svg]` reads the drawing, whose groups
+//! are joints (see `pendulum_runtime::drawing`), moves the keyed ones through a dance of four
+//! seconds that repeats, lets the feathers swing until their motion repeats too, and writes
+//! `target/owl.svg`, which plays in a browser, and `target/owl.html`, a page with sliders for
+//! gravity and damping.
 
 #![allow(mixed_script_confusables)]
 
@@ -46,7 +47,8 @@ fn main() -> ExitCode {
 
 fn fly() -> Result<(), Box<dyn Error>> {
     let given = std::env::args().nth(1);
-    let path = given.unwrap_or_else(|| concat!(env!("CARGO_MANIFEST_DIR"), "/examples/data/owl.svg").into());
+    let path = given
+        .unwrap_or_else(|| concat!(env!("CARGO_MANIFEST_DIR"), "/examples/data/owl.svg").into());
     let text = fs::read_to_string(&path).map_err(|error| format!("{path}: {error}"))?;
     let drawing = Drawing::read(&text, UNITS).map_err(|error| format!("{path}: {error}"))?;
     let rig = Rig::new(&drawing).map_err(|error| format!("{path}: {error}"))?;
@@ -64,8 +66,10 @@ fn fly() -> Result<(), Box<dyn Error>> {
     let frames = (alone.loops as usize + 1) * bake::FRAMES;
 
     // All settings of the page in one scene.
-    let all: Vec<Settings> =
-        GRAVITIES.iter().flat_map(|&gravity| DAMPINGS.map(|damping| Settings { gravity, damping })).collect();
+    let all: Vec<Settings> = GRAVITIES
+        .iter()
+        .flat_map(|&gravity| DAMPINGS.map(|damping| Settings { gravity, damping }))
+        .collect();
     bar.set_message(format!("loops of the owl under {} settings", all.len()));
     let start = Instant::now();
     let baked = bake::swing(&rig, &all, &bar)?;
@@ -80,20 +84,36 @@ fn fly() -> Result<(), Box<dyn Error>> {
     fs::write(target.join("owl.html"), &page)?;
 
     report(&drawing, &rig, &alone);
-    println!("time per frame: {:.1} µs at {} frames a second", 1e6 * seconds / frames as f64, bake::RATE);
+    println!(
+        "time per frame: {:.1} µs at {} frames a second",
+        1e6 * seconds / frames as f64,
+        bake::RATE
+    );
     let (count, many) = (all.len(), all.len() * rig.feathers.len());
-    println!("baked: {many} pendulums under {count} settings, {} loops in {baking:.2} s, gap {:.1e} rad", baked.loops, baked.gap);
-    println!("written: target/owl.svg ({} kB) and target/owl.html ({} kB)", animated.len() / 1000, page.len() / 1000);
+    println!(
+        "baked: {many} pendulums under {count} settings, {} loops in {baking:.2} s, gap {:.1e} rad",
+        baked.loops, baked.gap
+    );
+    println!(
+        "written: target/owl.svg ({} kB) and target/owl.html ({} kB)",
+        animated.len() / 1000,
+        page.len() / 1000
+    );
     Ok(())
 }
 
 fn report(drawing: &Drawing, rig: &Rig<'_>, alone: &Baked) {
-    let keyed: Vec<&str> =
-        drawing.joints.iter().filter(|joint| joint.role == Role::Keyed).map(|joint| joint.name.as_str()).collect();
+    let keyed: Vec<&str> = drawing
+        .joints
+        .iter()
+        .filter(|joint| joint.role == Role::Keyed)
+        .map(|joint| joint.name.as_str())
+        .collect();
     println!("joints: {} ({})", keyed.len(), keyed.join(", "));
     let bodies = || rig.feathers.iter().map(|feather| feather.body);
     let mass: f64 = bodies().map(|body| body.mass).sum();
-    let grams = |pick: fn(f64, f64) -> f64, first| 1e3 * bodies().map(|body| body.mass).fold(first, pick);
+    let grams =
+        |pick: fn(f64, f64) -> f64, first| 1e3 * bodies().map(|body| body.mass).fold(first, pick);
     println!(
         "pendulums: {} feathers of {:.2} g to {:.2} g, {:.1} g in all; {} shapes without fill weigh nothing",
         rig.feathers.len(),
@@ -102,7 +122,10 @@ fn report(drawing: &Drawing, rig: &Rig<'_>, alone: &Baked) {
         1e3 * mass,
         drawing.skipped.len()
     );
-    let peak = alone.courses[0].iter().flat_map(Course::swings).fold(0.0, |peak: f64, swing| peak.max(swing.abs()));
+    let peak = alone.courses[0]
+        .iter()
+        .flat_map(Course::swings)
+        .fold(0.0, |peak: f64, swing| peak.max(swing.abs()));
     let seconds = f64::from(alone.loops) * dance::PERIOD;
     println!(
         "simulated: {seconds:.2} s, {} loops of {:.0} s until they close with a gap of {:.1e} rad; largest swing {:.1}°",

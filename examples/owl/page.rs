@@ -9,8 +9,15 @@ use std::fmt::Write;
 /// The angle that a number of the page stands for, in radians.
 const UNIT: f64 = 1e-4;
 
-/// The text of the page; `values` are the gravities and the damping ratios that were baked, `shown` the numbers of those it starts with.
-pub(crate) fn write(text: &str, rig: &Rig<'_>, baked: &Baked, values: [&[f64]; 2], shown: [usize; 2]) -> String {
+/// The text of the page; `values` are the gravities and the damping ratios that were baked, `shown`
+/// the numbers of those it starts with.
+pub(crate) fn write(
+    text: &str,
+    rig: &Rig<'_>,
+    baked: &Baked,
+    values: [&[f64]; 2],
+    shown: [usize; 2],
+) -> String {
     // What stands before the root, such as an XML declaration, does not belong into a page.
     let drawing = &text[text.find("<svg").unwrap_or(0)..];
     let data = data(rig, baked, values, shown);
@@ -36,7 +43,12 @@ pub(crate) fn write(text: &str, rig: &Rig<'_>, baked: &Baked, values: [&[f64]; 2
     page
 }
 
-fn data(rig: &Rig<'_>, baked: &Baked, [gravities, dampings]: [&[f64]; 2], shown: [usize; 2]) -> String {
+fn data(
+    rig: &Rig<'_>,
+    baked: &Baked,
+    [gravities, dampings]: [&[f64]; 2],
+    shown: [usize; 2],
+) -> String {
     let mut json = String::new();
     let unit = UNIT.to_degrees();
     // Writing to a string does not fail.
@@ -54,18 +66,22 @@ fn data(rig: &Rig<'_>, baked: &Baked, [gravities, dampings]: [&[f64]; 2], shown:
         let (turns, shifts) = frames(keyed);
         let comma = if index == 0 { "" } else { ",\n" };
         let [_, x, y] = keyed.joint.rotation(0.0);
-        let _ = write!(json, r#"{comma}{{"id":{:?},"x":{x:.2},"y":{y:.2},"turns":["#, keyed.joint.name);
-        let degrees: Vec<String> = turns.iter().map(|&turn| format!("{:.2}", keyed.joint.rotation(turn)[0])).collect();
+        let _ =
+            write!(json, r#"{comma}{{"id":{:?},"x":{x:.2},"y":{y:.2},"turns":["#, keyed.joint.name);
+        let degrees: Vec<String> =
+            turns.iter().map(|&turn| format!("{:.2}", keyed.joint.rotation(turn)[0])).collect();
         json.push_str(&degrees.join(","));
         json.push(']');
         if shifts.iter().any(|&shift| shift != [0.0; 2]) {
-            let pairs: Vec<String> = shifts.iter().map(|[x, y]| format!("[{x:.2},{y:.2}]")).collect();
+            let pairs: Vec<String> =
+                shifts.iter().map(|[x, y]| format!("[{x:.2},{y:.2}]")).collect();
             let _ = write!(json, r#","shifts":[{}]"#, pairs.join(","));
         }
         json.push('}');
     }
     let numbers = baked.courses.iter().flatten().flat_map(Course::swings);
-    let bytes: Vec<u8> = numbers.flat_map(|swing| ((swing / UNIT).round() as i16).to_le_bytes()).collect();
+    let bytes: Vec<u8> =
+        numbers.flat_map(|swing| ((swing / UNIT).round() as i16).to_le_bytes()).collect();
     let _ = write!(json, "],\n\"swings\":\"{}\"}}", base64(&bytes));
     // No name ends the script.
     json.replace('<', "\\u003c")
@@ -76,7 +92,10 @@ fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for group in bytes.chunks(3) {
-        let word = group.iter().enumerate().fold(0u32, |word, (at, &byte)| word | u32::from(byte) << (16 - 8 * at));
+        let word = group
+            .iter()
+            .enumerate()
+            .fold(0u32, |word, (at, &byte)| word | u32::from(byte) << (16 - 8 * at));
         for digit in 0..4 {
             let value = word >> (18 - 6 * digit) & 63;
             text.push(if digit <= group.len() { char::from(DIGITS[value as usize]) } else { '=' });
@@ -92,7 +111,9 @@ mod tests {
     /// RFC 4648, section 10.
     #[test]
     fn base64_has_the_vectors_of_its_standard() {
-        for (bytes, text) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
+        for (bytes, text) in
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
+        {
             assert_eq!(base64(bytes.as_bytes()), text);
         }
     }

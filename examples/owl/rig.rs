@@ -83,15 +83,26 @@ impl<'a> Rig<'a> {
                 }
                 (Role::Pendulum, Some(Some(on)), Some(body)) => {
                     numbers.push(None);
-                    rig.feathers.push(Hung { joint, on, body, quill: between(rig.keyed[on].joint, joint) });
+                    rig.feathers.push(Hung {
+                        joint,
+                        on,
+                        body,
+                        quill: between(rig.keyed[on].joint, joint),
+                    });
                 }
                 _ => {
-                    return Err(format!("`{}` does not hang on a keyed joint; put its group into that of one", joint.name).into());
+                    return Err(format!(
+                        "`{}` does not hang on a keyed joint; put its group into that of one",
+                        joint.name
+                    )
+                    .into());
                 }
             }
         }
         if rig.feathers.is_empty() {
-            return Err("no pendulum; give a group a shape whose id is the group's and `.pendulum`".into());
+            return Err(
+                "no pendulum; give a group a shape whose id is the group's and `.pendulum`".into(),
+            );
         }
         Ok(rig)
     }
@@ -105,7 +116,8 @@ impl Angle {
     fn at(&self, t: Time, side: Side, orders: Orders) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for turn in &self.0 {
-            let Sample { position, velocity, acceleration }: Sample<f64, 1> = turn.sample(t, side, orders);
+            let Sample { position, velocity, acceleration }: Sample<f64, 1> =
+                turn.sample(t, side, orders);
             for (sum, part) in sum.iter_mut().zip([position, velocity, acceleration]) {
                 *sum += part[0];
             }
@@ -118,7 +130,8 @@ impl<T: Real> Motion<T, 1> for Angle {
     const HAS: Orders = Orders::ALL;
 
     fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, 1> {
-        let [position, velocity, acceleration] = self.at(t, side, orders).map(|value| [T::from_f64(value)]);
+        let [position, velocity, acceleration] =
+            self.at(t, side, orders).map(|value| [T::from_f64(value)]);
         Sample { position, velocity, acceleration }
     }
 
@@ -147,7 +160,8 @@ impl<T: Real> Motion<T, 2> for Pivot {
                 sum.acceleration[axis] += change * turned[axis] - speed * speed * arm[axis];
             }
         }
-        let kept = |order: Orders, value: [f64; 2]| if orders.contains(order) { value } else { [0.0; 2] };
+        let kept =
+            |order: Orders, value: [f64; 2]| if orders.contains(order) { value } else { [0.0; 2] };
         Sample {
             position: kept(Orders::POSITION, sum.position),
             velocity: kept(Orders::VELOCITY, sum.velocity),
@@ -179,7 +193,8 @@ mod tests {
         let rig = Rig::new(&drawing).unwrap();
         assert_eq!(rig.keyed.len(), 9);
         assert!(80 <= rig.feathers.len());
-        // Each hangs from its end: the centre is well away from the quill, and less far than the tip.
+        // Each hangs from its end: the centre is well away from the quill, and less far than the
+        // tip.
         for feather in &rig.feathers {
             let [x, y] = feather.body.center;
             let arm = (x * x + y * y).sqrt();
@@ -195,8 +210,8 @@ mod tests {
         for keyed in &rig.keyed {
             for k in 0..40 {
                 let (t, h) = (0.1 * f64::from(k) + 0.013, 1e-4);
-                let [before, now, after]: [Sample<f64, 2>; 3] =
-                    [t - h, t, t + h].map(|t| keyed.place.sample(t.into(), Side::After, Orders::ALL));
+                let [before, now, after]: [Sample<f64, 2>; 3] = [t - h, t, t + h]
+                    .map(|t| keyed.place.sample(t.into(), Side::After, Orders::ALL));
                 for axis in 0..2 {
                     let slope = (after.position[axis] - before.position[axis]) / (2.0 * h);
                     let bend = (after.velocity[axis] - before.velocity[axis]) / (2.0 * h);

@@ -8,11 +8,13 @@ use crate::tally::{self, Counted};
 use pendulum_runtime::linearize::linearize;
 use pendulum_runtime::prelude::*;
 
-pub(crate) const TESTS: &[Test] =
-    &[Test { id: "S20", title: "long chains", run: links }, Test { id: "S21", title: "whip", run: whip }];
+pub(crate) const TESTS: &[Test] = &[
+    Test { id: "S20", title: "long chains", run: links },
+    Test { id: "S21", title: "whip", run: whip },
+];
 
-/// Multiplications, additions and divisions of the accelerations written by hand, with angles from the vertical and an unrolled
-/// elimination.
+/// Multiplications, additions and divisions of the accelerations written by hand, with angles from
+/// the vertical and an unrolled elimination.
 const BY_HAND: [(usize, [f64; 3]); 7] = [
     (1, [2.0, 0.0, 1.0]),
     (2, [17.0, 8.0, 3.0]),
@@ -35,16 +37,23 @@ fn links(scale: Scale, report: &mut Report) {
     }
     let counts = count! { Chain1 1 Chain2 2 Chain3 3 Chain5 5 Chain8 8 Chain10 10 Chain16 16 };
     let all = |operations: [f64; 3]| operations.iter().sum::<f64>();
-    let ratio =
-        BY_HAND.iter().zip(&counts).fold(0.0, |worst, ((_, hand), found)| larger(worst, all(found.operations()) / all(*hand)));
+    let ratio = BY_HAND
+        .iter()
+        .zip(&counts)
+        .fold(0.0, |worst, ((_, hand), found)| larger(worst, all(found.operations()) / all(*hand)));
     report.at_most("operations of 1 to 16 links over those by hand", ratio, 1.3);
-    let slope = |from: usize, to: usize, links: f64| (counts[to].operations()[0] - counts[from].operations()[0]) / links;
+    let slope = |from: usize, to: usize, links: f64| {
+        (counts[to].operations()[0] - counts[from].operations()[0]) / links
+    };
     report.at_most("multiplications for each further link, 10 to 16", slope(5, 6, 6.0), 33.0);
     report.at_most("sines with cosines of 16 links", counts[6].sin_cos, 16.0);
 
     let chain = Chain10::new([1.0; 10], [1.0; 10], 1.0);
-    let modes = linearize(&chain, 0.0, &[0.0; 10], &[0.0; 10]).normal_modes().unwrap().squared_frequencies;
-    let off = largest(modes.iter().zip(reference::TEN_LINKS).map(|(found, exact)| (found / exact - 1.0).abs()));
+    let modes =
+        linearize(&chain, 0.0, &[0.0; 10], &[0.0; 10]).normal_modes().unwrap().squared_frequencies;
+    let off = largest(
+        modes.iter().zip(reference::TEN_LINKS).map(|(found, exact)| (found / exact - 1.0).abs()),
+    );
     report.at_most("P30, squared frequencies of ten links, relative", off, 1e-12);
 
     // h ω < 2√2 for Rk4: just below it the fastest mode fades, just above it explodes.
@@ -73,12 +82,27 @@ fn whip(_: Scale, report: &mut Report) {
     let (q, v) = ([core::f64::consts::FRAC_PI_2; 10], [0.0; 10]);
     let energy = |q: &[f64; 10], v: &[f64; 10]| chain.energy(0.0, q, v, &());
     let start = energy(&q, &v);
-    let solution = solve(&chain, (0.0, 20.0), q, v).method(Dop853::new()).rtol(1e-10).atol(1e-10).every_step().run().unwrap();
-    let gain = solution.q.iter().zip(&solution.v).fold(0.0, |gain, (q, v)| larger(gain, energy(q, v) - start));
+    let solution = solve(&chain, (0.0, 20.0), q, v)
+        .method(Dop853::new())
+        .rtol(1e-10)
+        .atol(1e-10)
+        .every_step()
+        .run()
+        .unwrap();
+    let gain = solution
+        .q
+        .iter()
+        .zip(&solution.v)
+        .fold(0.0, |gain, (q, v)| larger(gain, energy(q, v) - start));
     report
         .at_most("gain of energy in 20 s, Dop853, rtol 1e-10", gain, 1e-9)
         .because("the tolerance bounds the error of a step, a thousand steps add up");
     let lengths: Vec<f64> = solution.t.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let (least, greatest) = lengths.iter().skip(3).rev().skip(2).fold((f64::INFINITY, 0.0f64), |(a, b), &h| (a.min(h), b.max(h)));
+    let (least, greatest) = lengths
+        .iter()
+        .skip(3)
+        .rev()
+        .skip(2)
+        .fold((f64::INFINITY, 0.0f64), |(a, b), &h| (a.min(h), b.max(h)));
     report.between("longest step over shortest", greatest / least, 3.0, f64::INFINITY);
 }

@@ -21,15 +21,27 @@ fn separatrix(_: Scale, report: &mut Report) {
     let system = Simple::new(1.0);
     let mut worst = 0.0;
     for t in [1.0, 5.0, 10.0, 20.0, 30.0] {
-        let end = solve(&system, (0.0, t), [0.0], [2.0]).method(Taylor::new()).rtol(1e-18).run().unwrap().end;
+        let end = solve(&system, (0.0, t), [0.0], [2.0])
+            .method(Taylor::new())
+            .rtol(1e-18)
+            .run()
+            .unwrap()
+            .end;
         let e = DoubleDouble::from(t).exp();
-        let (one, two, four) = (DoubleDouble::from(1.0), DoubleDouble::from(2.0), DoubleDouble::from(4.0));
-        let exact = State { t, q: [four * e.atan() - DoubleDouble::PI], v: [two / ((e + one / e) / two)] };
+        let (one, two, four) =
+            (DoubleDouble::from(1.0), DoubleDouble::from(2.0), DoubleDouble::from(4.0));
+        let exact =
+            State { t, q: [four * e.atan() - DoubleDouble::PI], v: [two / ((e + one / e) / two)] };
         worst = larger(worst, error_from(&end, &exact) / (t.exp() * UNIT));
     }
     report.at_most("error of P05 up to t = 30, in eᵗ u", worst, 4.0);
 
-    let end = solve(&system, (0.0, 100.0), [3.125], [0.0]).method(Taylor::new()).rtol(1e-18).run().unwrap().end;
+    let end = solve(&system, (0.0, 100.0), [3.125], [0.0])
+        .method(Taylor::new())
+        .rtol(1e-18)
+        .run()
+        .unwrap()
+        .end;
     report.at_most(
         "P03, a swing from 3.125 rad, t = 100, against a rounding amplified eight times a period",
         error(&end, &reference::NEARLY_UPRIGHT),
@@ -38,10 +50,16 @@ fn separatrix(_: Scale, report: &mut Report) {
 
     let fall = |q: f64| {
         let over = Event::new(&|_, q: &[f64; 1], _: &[f64; 1]| q[0].abs() - 1.0).terminal();
-        let solution = solve(&system, (0.0, 100.0), [q], [0.0]).method(Taylor::new()).rtol(1e-18).events(&[over]).run().unwrap();
+        let solution = solve(&system, (0.0, 100.0), [q], [0.0])
+            .method(Taylor::new())
+            .rtol(1e-18)
+            .events(&[over])
+            .run()
+            .unwrap();
         (solution.events[0].state.t, solution.end)
     };
-    // π − 1.2e-16 grows as cosh t: it reaches order one after ln(2/1.2e-16) = 37.3 s, give or take what one last digit of π changes.
+    // π − 1.2e-16 grows as cosh t: it reaches order one after ln(2/1.2e-16) = 37.3 s, give or take
+    // what one last digit of π changes.
     let (when, end) = fall(core::f64::consts::PI);
     report.between("fall from the double next to π to 1 rad, s", when, 35.0, 41.0);
     let (mirrored_when, mirrored) = fall(-core::f64::consts::PI);
@@ -54,9 +72,17 @@ fn separatrix(_: Scale, report: &mut Report) {
         solve(&top, (0.0, 1e3), [0.0], [0.0]).method(Taylor::new()).rtol(1e-15).run().unwrap().end,
         solve(&top, (0.0, 1e3), [0.0], [0.0]).method(Srkn14a).step(0.1).run().unwrap().end,
         solve(&top, (0.0, 1e3), [0.0], [0.0]).run().unwrap().end,
-        solve(&top, (0.0, 1e3), [0.0], [0.0]).method(Gauss::<4>::new()).step(0.1).run().unwrap().end,
+        solve(&top, (0.0, 1e3), [0.0], [0.0])
+            .method(Gauss::<4>::new())
+            .step(0.1)
+            .run()
+            .unwrap()
+            .end,
     ];
-    report.failures("exactly upright it stays, four methods for 1000 s", rest.map(|end| end.q[0] == 0.0 && end.v[0] == 0.0));
+    report.failures(
+        "exactly upright it stays, four methods for 1000 s",
+        rest.map(|end| end.q[0] == 0.0 && end.v[0] == 0.0),
+    );
 }
 
 fn double() -> Double<f64> {
@@ -66,12 +92,20 @@ fn double() -> Double<f64> {
 fn chaos(scale: Scale, report: &mut Report) {
     let system = double();
     let start = ([2.0, 2.5], [0.0; 2]);
-    let at = |t: f64| solve(&system, (0.0, t), start.0, start.1).method(Taylor::new()).rtol(1e-18).run().unwrap().end;
+    let at = |t: f64| {
+        solve(&system, (0.0, t), start.0, start.1)
+            .method(Taylor::new())
+            .rtol(1e-18)
+            .run()
+            .unwrap()
+            .end
+    };
     for ((t, exact), bar) in reference::CHAOTIC.iter().zip([1e-12, 1e-9]) {
         report.at_most(format!("P23 by Taylor at t = {t}"), error(&at(*t), exact), bar);
     }
 
-    // Pairs a last digit apart, from many points of one long motion: their distance grows at the Lyapunov exponent, 0.46 ± 0.01.
+    // Pairs a last digit apart, from many points of one long motion: their distance grows at the
+    // Lyapunov exponent, 0.46 ± 0.01.
     let pairs = scale.pick(16, 64, 64);
     let times: Vec<f64> = (1..=pairs).map(|k| 100.0 * f64::from(k)).collect();
     let path = solve(&system, (0.0, 100.0 * f64::from(pairs)), start.0, start.1)
@@ -98,7 +132,12 @@ fn chaos(scale: Scale, report: &mut Report) {
         slopes.push(line(&growing).0);
     }
     let mean = slopes.iter().sum::<f64>() / slopes.len() as f64;
-    report.between(format!("rate at which {pairs} pairs a last digit apart separate, 1/s"), mean, 0.41, 0.51);
+    report.between(
+        format!("rate at which {pairs} pairs a last digit apart separate, 1/s"),
+        mean,
+        0.41,
+        0.51,
+    );
     let near = [f64::from_bits(2.0f64.to_bits() + 1), 2.5];
     report.curve(Figure::Separation, "P23", separation(&system, start, (near, start.1), 100.0));
 
@@ -107,7 +146,10 @@ fn chaos(scale: Scale, report: &mut Report) {
     let energy = |state: &State<f64, 2>| system.energy(0.0, &state.q, &state.v, &());
     let first = energy(&State { t: 0.0, q: start.0, v: start.1 });
     let h = 1.0 / 64.0;
-    let mut run = Integrator::new(&system, Gauss::<4>::new(), 0.0, start.0, start.1).unwrap().control(FixedStep::new(h)).unwrap();
+    let mut run = Integrator::new(&system, Gauss::<4>::new(), 0.0, start.0, start.1)
+        .unwrap()
+        .control(FixedStep::new(h))
+        .unwrap();
     let (mut drift, mut halves) = (0.0, [0.0; 2]);
     let (mut square, mut flips, mut side) = (0.0, 0.0, 0.0);
     let count = (seconds / h) as u64;
@@ -135,7 +177,11 @@ fn chaos(scale: Scale, report: &mut Report) {
     let others = turns.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum::<f64>();
     let mean = other.v.iter().map(|v| v[1] * v[1]).sum::<f64>() / other.v.len() as f64;
     let bar = 0.05 * (10_000.0f64 / seconds).sqrt();
-    report.at_most("mean of θ̇₂² by Gauss<4> and by Dop853, relative difference", (square / mean - 1.0).abs(), bar);
+    report.at_most(
+        "mean of θ̇₂² by Gauss<4> and by Dop853, relative difference",
+        (square / mean - 1.0).abs(),
+        bar,
+    );
     // Turns of the lower link come in bursts.
     report.at_most(
         format!("its turns, {flips:.0} and {others:.0}, relative difference"),
@@ -145,12 +191,19 @@ fn chaos(scale: Scale, report: &mut Report) {
 }
 
 /// The distance of two motions with time.
-fn separation(system: &Double<f64>, a: ([f64; 2], [f64; 2]), b: ([f64; 2], [f64; 2]), end: f64) -> Vec<(f64, f64)> {
+fn separation(
+    system: &Double<f64>,
+    a: ([f64; 2], [f64; 2]),
+    b: ([f64; 2], [f64; 2]),
+    end: f64,
+) -> Vec<(f64, f64)> {
     let [a, b] = [a, b].map(|(q, v)| {
         let problem = solve(system, (0.0, end), q, v).method(Taylor::new()).rtol(1e-18);
         problem.every(0.5).run().unwrap()
     });
-    let distance = |k: usize| largest((0..2).flat_map(|i| [(a.q[k][i] - b.q[k][i]).abs(), (a.v[k][i] - b.v[k][i]).abs()]));
+    let distance = |k: usize| {
+        largest((0..2).flat_map(|i| [(a.q[k][i] - b.q[k][i]).abs(), (a.v[k][i] - b.v[k][i]).abs()]))
+    };
     (1..a.t.len()).map(|k| (a.t[k], distance(k).max(1e-17))).collect()
 }
 
@@ -159,16 +212,31 @@ fn back(scale: Scale, report: &mut Report) {
     let far = scale.pick(200.0, 1000.0, 1000.0);
     let start = State { t: 0.0, q: [0.05], v: [0.025] };
     let run = |from: &State<f64, 1>, to: f64| {
-        solve(&system, (from.t, to), from.q, from.v).method(Taylor::new()).rtol(1e-18).run().unwrap().end
+        solve(&system, (from.t, to), from.q, from.v)
+            .method(Taylor::new())
+            .rtol(1e-18)
+            .run()
+            .unwrap()
+            .end
     };
-    report.at_most(format!("P06 to t = {far} and back by Taylor"), apart(&run(&run(&start, far), 0.0), &start), 1e-14);
+    report.at_most(
+        format!("P06 to t = {far} and back by Taylor"),
+        apart(&run(&run(&start, far), 0.0), &start),
+        1e-14,
+    );
 
     let system = double();
     let run = |from: &State<f64, 2>, to: f64| {
-        solve(&system, (from.t, to), from.q, from.v).method(Taylor::new()).rtol(1e-18).run().unwrap().end
+        solve(&system, (from.t, to), from.q, from.v)
+            .method(Taylor::new())
+            .rtol(1e-18)
+            .run()
+            .unwrap()
+            .end
     };
     let start = State { t: 0.0, q: [2.0, 2.5], v: [0.0; 2] };
-    // A rounding at t = 10 comes back amplified as much as one at the start is on the way, 1.3e3 times.
+    // A rounding at t = 10 comes back amplified as much as one at the start is on the way, 1.3e3
+    // times.
     let limit = 10.0 * 1.3e3 * f64::EPSILON;
     report.at_most(
         "P23 to t = 10 and back by Taylor, ten roundings amplified 1300 times",
@@ -177,6 +245,15 @@ fn back(scale: Scale, report: &mut Report) {
     );
     let wide = system.map(DoubleDouble::from);
     let there = truth(&wide, (0.0, 10.0), start.q, start.v).end;
-    let here = solve(&wide, (10.0, 0.0), there.q, there.v).method(Taylor::new()).rtol(1e-28).run().unwrap().end;
-    report.at_most("the same in two words, which the references here are made of", error_from(&start, &here), 1e-24);
+    let here = solve(&wide, (10.0, 0.0), there.q, there.v)
+        .method(Taylor::new())
+        .rtol(1e-28)
+        .run()
+        .unwrap()
+        .end;
+    report.at_most(
+        "the same in two words, which the references here are made of",
+        error_from(&start, &here),
+        1e-24,
+    );
 }

@@ -1,6 +1,7 @@
 //! The motion of the simple pendulum in closed form, to about 30 digits.
 //!
-//! Jacobi's amplitude by the descending arithmetic–geometric mean (Abramowitz and Stegun 1964, 16.4).
+//! Jacobi's amplitude by the descending arithmetic–geometric mean (Abramowitz and Stegun 1964,
+//! 16.4).
 
 use pendulum_runtime::real::{DoubleDouble, Float, Real};
 
@@ -69,7 +70,8 @@ impl Swing {
     pub(crate) fn phase(&self, t: f64, q: f64, v: f64) -> f64 {
         let [exact, speed] = self.at(t);
         let force = -exact.sin().to_f64();
-        let (dq, dv) = ((DoubleDouble::from(q) - exact).to_f64(), (DoubleDouble::from(v) - speed).to_f64());
+        let (dq, dv) =
+            ((DoubleDouble::from(q) - exact).to_f64(), (DoubleDouble::from(v) - speed).to_f64());
         let speed = speed.to_f64();
         (dq * speed + dv * force) / (speed * speed + force * force)
     }
@@ -83,12 +85,20 @@ impl Turning {
         Self(Elliptic::new(DoubleDouble::ratio(4.0, 5.0), DoubleDouble::ratio(3.0, 5.0)))
     }
 
-    /// q = 2 am(1.25 t): the angle within half a turn, the whole turns, and the velocity 2.5 dn(1.25 t).
+    /// q = 2 am(1.25 t): the angle within half a turn, the whole turns, and the velocity 2.5
+    /// dn(1.25 t).
     pub(crate) fn at(&self, t: f64) -> (DoubleDouble, f64, DoubleDouble) {
         let (two, k) = (DoubleDouble::from(2.0), self.0.modulus);
-        let (u, turns) = Elliptic::reduced(DoubleDouble::from(1.25) * DoubleDouble::from(t), two * self.0.quarter);
+        let (u, turns) = Elliptic::reduced(
+            DoubleDouble::from(1.25) * DoubleDouble::from(t),
+            two * self.0.quarter,
+        );
         let amplitude = self.0.amplitude(u);
         let sn = k * amplitude.sin();
-        (two * amplitude, turns, DoubleDouble::from(2.5) * (DoubleDouble::from(1.0) - sn * sn).sqrt())
+        (
+            two * amplitude,
+            turns,
+            DoubleDouble::from(2.5) * (DoubleDouble::from(1.0) - sn * sn).sqrt(),
+        )
     }
 }

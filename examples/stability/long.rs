@@ -40,12 +40,16 @@ struct Trace {
 fn trace<M>(method: M, h: f64, steps: u64, plain: bool) -> Trace
 where
     M: for<'a> Stepper<Prepared<'a, Simple<f64>, <Simple<f64> as System<1>>::Prepared>, 1>,
-    FixedStep: for<'a> Control<M, Prepared<'a, Simple<f64>, <Simple<f64> as System<1>>::Prepared>, 1>,
+    FixedStep:
+        for<'a> Control<M, Prepared<'a, Simple<f64>, <Simple<f64> as System<1>>::Prepared>, 1>,
 {
     let (system, swing) = (Simple::new(1.0), Swing::from(1.3));
     let energy = |q: f64, v: f64| system.energy(0.0, &[q], &[v], &());
     let start = energy(1.3, 0.0);
-    let mut run = Integrator::new(&system, method, 0.0, [1.3], [0.0]).unwrap().control(FixedStep::new(h)).unwrap();
+    let mut run = Integrator::new(&system, method, 0.0, [1.3], [0.0])
+        .unwrap()
+        .control(FixedStep::new(h))
+        .unwrap();
     let mut trace = Trace::default();
     let (mut worst, mut late) = (0.0f64, 0.0f64);
     let mut means = [[0.0; 2]; 2];
@@ -61,7 +65,11 @@ where
         let relative = (energy(run.q()[0], run.v()[0]) - start) / (start + 1.0);
         worst = largest([worst, relative.abs()]);
         // A smooth window: what oscillates averages out faster than any power of the length.
-        let (index, x) = if step as f64 <= half { (0, step as f64 / half) } else { (1, step as f64 / half - 1.0) };
+        let (index, x) = if step as f64 <= half {
+            (0, step as f64 / half)
+        } else {
+            (1, step as f64 / half - 1.0)
+        };
         if 0.0 < x && x < 1.0 {
             let weight = (-1.0 / (x * (1.0 - x))).exp();
             means[index][0] += weight * relative;
@@ -87,13 +95,19 @@ where
 fn drift(scale: Scale, report: &mut Report) {
     let steps = scale.pick(400_000, 10_000_000, 1_000_000_000);
     let shown = steps.min(10_000_000);
-    let first = |trace: &Trace| trace.energy.iter().filter(|point| point.0 <= 1.0001e5).fold(0.0f64, |_, point| point.1);
+    let first = |trace: &Trace| {
+        trace.energy.iter().filter(|point| point.0 <= 1.0001e5).fold(0.0f64, |_, point| point.1)
+    };
 
     let summed = trace(Srkn14a, STEP, steps, false);
     report.at_most("largest energy error of Srkn14a, 3.2e6 steps of 1/32 s", first(&summed), 5e-15);
     let last = summed.energy[summed.energy.len() - 1].1;
     let bar = 5e-15 * (steps as f64 / 3.2e6).sqrt().max(1.0);
-    report.at_most(format!("the same, {:.0e} steps, bar grown by their root", steps as f64), last, bar);
+    report.at_most(
+        format!("the same, {:.0e} steps, bar grown by their root", steps as f64),
+        last,
+        bar,
+    );
     let walk = (steps as f64).sqrt() * UNIT;
     let slope = |trace: &Trace| 2.0 * (trace.halves[1] - trace.halves[0]).abs();
     report.at_most("drift of its mean energy against √n u", slope(&summed), walk);
@@ -130,29 +144,45 @@ fn drift(scale: Scale, report: &mut Report) {
 fn phase(scale: Scale, report: &mut Report) {
     let system = Simple::new(1.0);
     let rows = scale.pick(4, 5, 5);
-    let mut run = Integrator::new(&system, Srkn14a, 0.0, [1.3], [0.0]).unwrap().control(FixedStep::new(STEP)).unwrap();
+    let mut run = Integrator::new(&system, Srkn14a, 0.0, [1.3], [0.0])
+        .unwrap()
+        .control(FixedStep::new(STEP))
+        .unwrap();
     let mut errors = Vec::new();
     for (t, exact) in &reference::PENDULUM[..rows] {
         run.advance_to(*t).unwrap();
         errors.push(error(&run.state(), exact));
     }
-    report.at_most(format!("Srkn14a at t = {:.0e}", reference::PENDULUM[rows - 1].0), errors[rows - 1], 5e-12);
+    report.at_most(
+        format!("Srkn14a at t = {:.0e}", reference::PENDULUM[rows - 1].0),
+        errors[rows - 1],
+        5e-12,
+    );
 }
 
-/// Copies that start 1e-12 apart see different roundings: their energies must walk at random, without a common direction.
+/// Copies that start 1e-12 apart see different roundings: their energies must walk at random,
+/// without a common direction.
 fn bias(scale: Scale, report: &mut Report) {
     const COPIES: usize = 64;
     let system = Simple::new(1.0);
     let wide = system.map(DoubleDouble::from);
-    let energy =
-        |state: &State<f64, 1>| wide.energy(0.0.into(), &state.q.map(DoubleDouble::from), &state.v.map(DoubleDouble::from), &());
+    let energy = |state: &State<f64, 1>| {
+        wide.energy(
+            0.0.into(),
+            &state.q.map(DoubleDouble::from),
+            &state.v.map(DoubleDouble::from),
+            &(),
+        )
+    };
     let ensemble = |plain: bool, marks: &[u64]| -> Vec<(f64, f64, f64)> {
         let mut found = vec![[0.0; COPIES]; marks.len()];
         for copy in 0..COPIES {
             let start = State { t: 0.0, q: [1.3 + 1e-12 * copy as f64], v: [0.0] };
             let before = energy(&start);
-            let mut run =
-                Integrator::new(&system, Srkn14a, 0.0, start.q, start.v).unwrap().control(FixedStep::new(STEP)).unwrap();
+            let mut run = Integrator::new(&system, Srkn14a, 0.0, start.q, start.v)
+                .unwrap()
+                .control(FixedStep::new(STEP))
+                .unwrap();
             let mut step = 0;
             for (row, &mark) in marks.iter().enumerate() {
                 // The mean over a few states rounds the last words of the states away.
@@ -176,11 +206,18 @@ fn bias(scale: Scale, report: &mut Report) {
         };
         marks.iter().zip(&found).map(statistics).collect()
     };
-    let slope = |rows: &[(f64, f64, f64)]| line(&rows.iter().map(|row| (row.0.ln(), row.1.ln())).collect::<Vec<_>>()).0;
+    let slope = |rows: &[(f64, f64, f64)]| {
+        line(&rows.iter().map(|row| (row.0.ln(), row.1.ln())).collect::<Vec<_>>()).0
+    };
     let marks = |from: u64, count: u32| (0..count).map(|k| from << k).collect::<Vec<u64>>();
 
     let plain = ensemble(true, &marks(1000, scale.pick(5, 7, 9)));
-    report.between("growth of the mean square energy error of 64 copies, plain sums: exponent", slope(&plain), 0.4, 0.6);
+    report.between(
+        "growth of the mean square energy error of 64 copies, plain sums: exponent",
+        slope(&plain),
+        0.4,
+        0.6,
+    );
     let last = plain[plain.len() - 1];
     report.at_most("their mean against their root mean square", last.2.abs() / last.1, 3.0 / 8.0);
     let summed = ensemble(false, &marks(16_000, scale.pick(2, 6, 8)));
@@ -188,7 +225,11 @@ fn bias(scale: Scale, report: &mut Report) {
         report.between("the same with the sums of the runtime: exponent", slope(&summed), 0.4, 0.6);
     }
     let last = summed[summed.len() - 1];
-    report.at_most("their mean against their root mean square, sums of the runtime", last.2.abs() / last.1, 3.0 / 8.0);
+    report.at_most(
+        "their mean against their root mean square, sums of the runtime",
+        last.2.abs() / last.1,
+        3.0 / 8.0,
+    );
 }
 
 fn growth(scale: Scale, report: &mut Report) {
@@ -204,7 +245,11 @@ fn growth(scale: Scale, report: &mut Report) {
     // n^{3/2} u steps.
     let bar = |t: f64| (t / STEP).powf(1.5) * UNIT * STEP;
     let start = || {
-        Integrator::new(&system, Srkn14a, 0.0, [0.0], [2.5]).unwrap().control(FixedStep::new(STEP)).unwrap().max_steps(1 << 40)
+        Integrator::new(&system, Srkn14a, 0.0, [0.0], [2.5])
+            .unwrap()
+            .control(FixedStep::new(STEP))
+            .unwrap()
+            .max_steps(1 << 40)
     };
     let (mut run, mut turns, mut t) = (start(), 0.0, 0.0);
     while t < end {
@@ -216,7 +261,9 @@ fn growth(scale: Scale, report: &mut Report) {
             run.displace([-whole * core::f64::consts::TAU], [-whole * TAU_LOW]).unwrap();
         }
     }
-    let phase = format!("phase of Srkn14a at t = {end:.0e}, whole turns taken off, in s, against n^(3/2) u steps");
+    let phase = format!(
+        "phase of Srkn14a at t = {end:.0e}, whole turns taken off, in s, against n^(3/2) u steps"
+    );
     report.at_most(phase, off(t, turns, run.q()[0]), bar(end));
     let mut run = start();
     run.advance_to(1e4).unwrap();
@@ -286,7 +333,8 @@ where
     M: for<'a> Stepper<Prepared<'a, S, S::Prepared>, N>,
     FixedStep: for<'a> Control<M, Prepared<'a, S, S::Prepared>, N>,
 {
-    let mut run = Integrator::new(system, method, 0.0, q, v).unwrap().control(FixedStep::new(h)).unwrap();
+    let mut run =
+        Integrator::new(system, method, 0.0, q, v).unwrap().control(FixedStep::new(h)).unwrap();
     let mut worst = 0.0;
     for step in 0..steps {
         run.step().unwrap();

@@ -1,11 +1,13 @@
-//! The stress table: twenty-eight ways in which a simulation of a mechanical system goes wrong, each measured against a bar.
+//! The stress table: twenty-eight ways in which a simulation of a mechanical system goes wrong,
+//! each measured against a bar.
 //!
-//! `cargo run --release --example stability` prints a line a measurement, writes `target/stability.csv` and the pictures
-//! `target/stability-*.svg`, and fails if a bar is missed. `--quick` takes less than a minute, `--long` an hour; `--only S7,S9` selects. With
-//! `--known` the misses whose reason is known, which `docs/accuracy.md` explains, do not count as failures.
+//! `cargo run --release --example stability` prints a line a measurement, writes
+//! `target/stability.csv` and the pictures `target/stability-*.svg`, and fails if a bar is missed.
+//! `--quick` takes less than a minute, `--long` an hour; `--only S7,S9` selects. With `--known` the
+//! misses whose reason is known, which `docs/accuracy.md` explains, do not count as failures.
 //!
-//! What is compared with comes from closed forms, from published or arbitrary-precision digits, or from the same equations in numbers
-//! of two words, never from the run itself.
+//! What is compared with comes from closed forms, from published or arbitrary-precision digits, or
+//! from the same equations in numbers of two words, never from the run itself.
 
 #![allow(mixed_script_confusables)]
 
@@ -45,8 +47,16 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-const THEMES: &[&[Test]] =
-    &[long::TESTS, singular::TESTS, chaos::TESTS, driven::TESTS, stiff::TESTS, output::TESTS, chains::TESTS, many::TESTS];
+const THEMES: &[&[Test]] = &[
+    long::TESTS,
+    singular::TESTS,
+    chaos::TESTS,
+    driven::TESTS,
+    stiff::TESTS,
+    output::TESTS,
+    chains::TESTS,
+    many::TESTS,
+];
 
 /// Tests that run at a time.
 const THREADS: usize = 2;
@@ -118,8 +128,16 @@ fn chosen(mut arguments: impl Iterator<Item = String>) -> Result<Choice, String>
             "--quick" => scale = Scale::Quick,
             "--long" => scale = Scale::Long,
             "--known" => known = true,
-            "--only" => only = Some(arguments.next().ok_or("`--only` needs names of tests after it, as S7,S9")?),
-            other => return Err(format!("`{other}` is unknown; give --quick, --long, --known or --only S7,S9")),
+            "--only" => {
+                only = Some(
+                    arguments.next().ok_or("`--only` needs names of tests after it, as S7,S9")?,
+                );
+            }
+            other => {
+                return Err(format!(
+                    "`{other}` is unknown; give --quick, --long, --known or --only S7,S9"
+                ));
+            }
         }
     }
     let Some(only) = only else { return Ok(Choice { scale, tests: all, known }) };
@@ -133,7 +151,8 @@ fn chosen(mut arguments: impl Iterator<Item = String>) -> Result<Choice, String>
 
 /// The reports of all tests in their order, a few at a time.
 fn run(scale: Scale, tests: &[Test], bar: &ProgressBar) -> Vec<Report> {
-    let reports: Vec<Mutex<Report>> = tests.iter().map(|test| Mutex::new(Report::new(test.id))).collect();
+    let reports: Vec<Mutex<Report>> =
+        tests.iter().map(|test| Mutex::new(Report::new(test.id))).collect();
     let (next, running) = (AtomicUsize::new(0), Mutex::new(Vec::<&str>::new()));
     let say = |running: &[&str]| bar.set_message(running.join(", "));
     let work = || {

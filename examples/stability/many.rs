@@ -25,7 +25,10 @@ fn denormals(scale: Scale, report: &mut Report) {
     let system = Simple::new(1.0);
     let steps = scale.pick(100_000, 1_000_000, 1_000_000);
     let time = |start: f64| {
-        let mut run = Integrator::new(&system, Rk4, 0.0, [start], [0.0]).unwrap().control(FixedStep::new(0.05)).unwrap();
+        let mut run = Integrator::new(&system, Rk4, 0.0, [start], [0.0])
+            .unwrap()
+            .control(FixedStep::new(0.05))
+            .unwrap();
         let begun = Instant::now();
         for _ in 0..steps {
             run.step().unwrap();
@@ -43,13 +46,20 @@ fn denormals(scale: Scale, report: &mut Report) {
     report.at_most("time of its steps over that of usual ones", small / usual, 3.0);
     let faint = Simple::new(1e-200);
     let end = solve(&faint, (0.0, 1e3), [1e-200], [0.0]).method(Dop853::new()).run().unwrap().end;
-    report.failures("g θ = 1e-400, which is zero: it stays", [end.q[0] == 1e-200 && end.v[0] == 0.0]);
-    // One over the smallest tolerances is infinite: an error is as good as a number, NaN is neither.
+    report
+        .failures("g θ = 1e-400, which is zero: it stays", [end.q[0] == 1e-200 && end.v[0] == 0.0]);
+    // One over the smallest tolerances is infinite: an error is as good as a number, NaN is
+    // neither.
     let mut kept = Vec::new();
     for atol in [0.0, 1e-322, 1e-310, 1e-305, 1e-300] {
         for start in [0.0, 1e-310] {
-            let problem =
-                || solve(&system, (0.0, 100.0), [start], [0.0]).method(Dop853::new()).atol(atol).rtol(1e-10).max_steps(100_000);
+            let problem = || {
+                solve(&system, (0.0, 100.0), [start], [0.0])
+                    .method(Dop853::new())
+                    .atol(atol)
+                    .rtol(1e-10)
+                    .max_steps(100_000)
+            };
             let ends = [
                 problem().run().map(|solution| solution.end),
                 problem().method(Tsit5::new()).run().map(|solution| solution.end),
@@ -58,16 +68,22 @@ fn denormals(scale: Scale, report: &mut Report) {
                 problem().method(Picard).run().map(|solution| solution.end),
             ];
             let near = 1.1e-310 + 1e3 * atol;
-            kept.extend(ends.map(|end| end.map_or(true, |end| end.q[0].abs() <= near && end.v[0].abs() <= near)));
+            kept.extend(ends.map(|end| {
+                end.map_or(true, |end| end.q[0].abs() <= near && end.v[0].abs() <= near)
+            }));
         }
     }
-    report.failures("tolerances down to nothing: an error or numbers within them, five methods", kept);
+    report.failures(
+        "tolerances down to nothing: an error or numbers within them, five methods",
+        kept,
+    );
 }
 
 fn bits(scale: Scale, report: &mut Report) {
     const W: usize = 8;
     let steps = scale.pick(2_000, 20_000, 200_000);
-    let starts: [[f64; 2]; W] = core::array::from_fn(|k| [2.0 - 0.3 * k as f64, 2.5 + 1e3 * (k / 6) as f64]);
+    let starts: [[f64; 2]; W] =
+        core::array::from_fn(|k| [2.0 - 0.3 * k as f64, 2.5 + 1e3 * (k / 6) as f64]);
     let system = Double::new([1.0, 0.7], [0.9, 1.1], 9.81);
     let wide = system.map(Lanes::<f64, W>::splat);
     let mut q: [Lanes<f64, W>; 2] = core::array::from_fn(|i| Lanes(starts.map(|start| start[i])));
@@ -79,11 +95,17 @@ fn bits(scale: Scale, report: &mut Report) {
         (q, v)
     };
     let same = (0..W).map(|k| alone(k) == (q.map(|q| q.0[k]), v.map(|v| v.0[k])));
-    report.failures(format!("eight double pendulums in lanes and alone, {steps} steps of Rk4: lanes that differ"), same);
+    report.failures(
+        format!(
+            "eight double pendulums in lanes and alone, {steps} steps of Rk4: lanes that differ"
+        ),
+        same,
+    );
 
     let single = system.map(|x| x as f32);
     let wide = single.map(Lanes::<f32, W>::splat);
-    let mut q: [Lanes<f32, W>; 2] = core::array::from_fn(|i| Lanes(starts.map(|start| start[i] as f32)));
+    let mut q: [Lanes<f32, W>; 2] =
+        core::array::from_fn(|i| Lanes(starts.map(|start| start[i] as f32)));
     let mut v = [Lanes::splat(0.0f32); 2];
     (0..steps).for_each(|_| classical_step(&wide, &mut q, &mut v, Lanes::splat(0.01)));
     let same = (0..W).map(|k| {
@@ -100,23 +122,41 @@ fn bits(scale: Scale, report: &mut Report) {
         0.0,
     );
 
-    let run = |k: usize| solve(&system, (0.0, 50.0), starts[k], [0.0; 2]).method(Dop853::new()).rtol(1e-10).run().unwrap().end;
+    let run = |k: usize| {
+        solve(&system, (0.0, 50.0), starts[k], [0.0; 2])
+            .method(Dop853::new())
+            .rtol(1e-10)
+            .run()
+            .unwrap()
+            .end
+    };
     let here: Vec<_> = (0..W).map(run).collect();
     let there: Vec<_> = std::thread::scope(|scope| {
         let threads: Vec<_> = (0..W).rev().map(|k| scope.spawn(move || run(k))).collect();
         threads.into_iter().rev().map(|thread| thread.join().unwrap()).collect()
     });
-    report.failures("the same runs in eight threads, in another order", here.iter().zip(&there).map(|(a, b)| a == b));
+    report.failures(
+        "the same runs in eight threads, in another order",
+        here.iter().zip(&there).map(|(a, b)| a == b),
+    );
     scenes::bits(scale, report);
     let expected = include_str!("../../tests/data/determinism.txt");
     let found = fingerprints::all();
     report.failures(
-        format!("{} final states of all methods against the checked-in ones: this build", found.len()),
-        found.iter().zip(expected.lines()).map(|(found, line)| found == line).chain([found.len() == expected.lines().count()]),
+        format!(
+            "{} final states of all methods against the checked-in ones: this build",
+            found.len()
+        ),
+        found
+            .iter()
+            .zip(expected.lines())
+            .map(|(found, line)| found == line)
+            .chain([found.len() == expected.lines().count()]),
     );
 }
 
-/// Pendulums on the joints of random characters: lanes of sixteen, a joint each, half a step before and after each force.
+/// Pendulums on the joints of random characters: lanes of sixteen, a joint each, half a step before
+/// and after each force.
 fn soak(scale: Scale, report: &mut Report) {
     const W: usize = 16;
     let count = scale.pick(1_000, 10_000, 100_000);
@@ -127,7 +167,8 @@ fn soak(scale: Scale, report: &mut Report) {
     let mut before = None;
     for group in 0..count / W {
         let times: Vec<f64> = (0..=60).map(|k| f64::from(k) * 0.25).collect();
-        let mut keys: Vec<[f64; 2]> = times.iter().map(|_| [uniform(-0.2, 0.2), uniform(-0.05, 0.05)]).collect();
+        let mut keys: Vec<[f64; 2]> =
+            times.iter().map(|_| [uniform(-0.2, 0.2), uniform(-0.05, 0.05)]).collect();
         keys[60] = keys[0];
         let joint = Spline::periodic(&times, &keys).unwrap();
         let lengths: [f64; W] = core::array::from_fn(|_| uniform(0.1, 2.0));

@@ -18,17 +18,33 @@ pub(crate) fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
 /// The largest difference of coordinates and velocities from reference values.
 pub(crate) fn error<T: Float, const N: usize>(state: &State<T, N>, exact: &[f64]) -> f64 {
     assert_eq!(exact.len(), 2 * N, "coordinates and velocities");
-    largest(state.q.iter().chain(&state.v).zip(exact).map(|(found, exact)| (found.to_f64() - exact).abs()))
+    largest(
+        state
+            .q
+            .iter()
+            .chain(&state.v)
+            .zip(exact)
+            .map(|(found, exact)| (found.to_f64() - exact).abs()),
+    )
 }
 
 /// The largest difference of two states.
 pub(crate) fn apart<T: Float, const N: usize>(a: &State<T, N>, b: &State<T, N>) -> f64 {
-    largest((0..N).flat_map(|i| [(a.q[i] - b.q[i]).to_f64().abs(), (a.v[i] - b.v[i]).to_f64().abs()]))
+    largest(
+        (0..N).flat_map(|i| [(a.q[i] - b.q[i]).to_f64().abs(), (a.v[i] - b.v[i]).to_f64().abs()]),
+    )
 }
 
 /// The largest difference from a reference in two words.
-pub(crate) fn error_from<const N: usize>(state: &State<f64, N>, exact: &State<DoubleDouble, N>) -> f64 {
-    let wide = State { t: state.t, q: state.q.map(DoubleDouble::from), v: state.v.map(DoubleDouble::from) };
+pub(crate) fn error_from<const N: usize>(
+    state: &State<f64, N>,
+    exact: &State<DoubleDouble, N>,
+) -> f64 {
+    let wide = State {
+        t: state.t,
+        q: state.q.map(DoubleDouble::from),
+        v: state.v.map(DoubleDouble::from),
+    };
     apart(&wide, exact)
 }
 
@@ -39,7 +55,8 @@ pub(crate) fn truth<const N: usize>(
     q: [f64; N],
     v: [f64; N],
 ) -> Solution<DoubleDouble, N> {
-    let problem = solve(dynamics, (start, end), q.map(DoubleDouble::from), v.map(DoubleDouble::from));
+    let problem =
+        solve(dynamics, (start, end), q.map(DoubleDouble::from), v.map(DoubleDouble::from));
     problem.method(Taylor::new()).rtol(1e-28).dense().run().expect("the reference runs")
 }
 

@@ -18,15 +18,26 @@ pub(crate) const TESTS: &[Test] = &[
 
 fn single(scale: Scale, report: &mut Report) {
     let double = Double::new([1.0f32; 2], [1.0; 2], 1.0);
-    let run = |t: f64, q: [f32; 2], steps: u64| solve(&double, (0.0, t), q, [0.0; 2]).method(Rk4).steps(steps).run().unwrap().end;
+    let run = |t: f64, q: [f32; 2], steps: u64| {
+        solve(&double, (0.0, t), q, [0.0; 2]).method(Rk4).steps(steps).run().unwrap().end
+    };
     report.at_most("P23 by Rk4, T = 10, 800 steps", error(&run(10.0, [2.0, 2.5], 800), &reference::CHAOTIC[0].1), 5e-6).because(
         "with these steps Rk4 is 5.6e-6 off in f64, and rounded forces add 1e-5: the root mean square of neighbouring starts is 1e-5",
     );
     let steps = scale.pick(51_200, 512_000, 512_000);
     let end = run(100.0, [0.5, -0.25], steps);
-    report.at_most(format!("P22 by Rk4, T = 100, {steps} steps"), error(&end, &reference::REGULAR[1].1), 5e-6);
+    report.at_most(
+        format!("P22 by Rk4, T = 100, {steps} steps"),
+        error(&end, &reference::REGULAR[1].1),
+        5e-6,
+    );
     let triple = Triple::new([1.0f32; 3], [1.0; 3], 1.0);
-    let end = solve(&triple, (0.0, 10.0), [1.0, 1.5, 2.0], [0.0; 3]).method(Rk4).steps(4000).run().unwrap().end;
+    let end = solve(&triple, (0.0, 10.0), [1.0, 1.5, 2.0], [0.0; 3])
+        .method(Rk4)
+        .steps(4000)
+        .run()
+        .unwrap()
+        .end;
     // A start error grows 5e2 times until then.
     report.at_most(
         "P28 by Rk4, T = 10, 4000 steps, against a hundred roundings amplified 500 times",
@@ -52,22 +63,39 @@ fn dense(_: Scale, report: &mut Report) {
                 let (found, exact) = (solution.at(t).unwrap(), exact.at(t).unwrap());
                 // In the norm in which a step is accepted.
                 let off = |found: &f64, exact: &DoubleDouble| {
-                    ((DoubleDouble::from(*found) - *exact).to_f64() / (tolerance * (1.0 + exact.to_f64().abs()))).powi(2)
+                    ((DoubleDouble::from(*found) - *exact).to_f64()
+                        / (tolerance * (1.0 + exact.to_f64().abs())))
+                    .powi(2)
                 };
-                let squares = found.q.iter().zip(&exact.q).chain(found.v.iter().zip(&exact.v)).map(|(a, b)| off(a, b));
+                let squares = found
+                    .q
+                    .iter()
+                    .zip(&exact.q)
+                    .chain(found.v.iter().zip(&exact.v))
+                    .map(|(a, b)| off(a, b));
                 within = larger(within, (squares.sum::<f64>() / 4.0).sqrt());
                 points += 1;
             }
             if 0 < k {
                 jump = larger(
                     jump,
-                    apart(&solution.at_side(from, Side::Before).unwrap(), &solution.at_side(from, Side::After).unwrap()),
+                    apart(
+                        &solution.at_side(from, Side::Before).unwrap(),
+                        &solution.at_side(from, Side::After).unwrap(),
+                    ),
                 );
             }
         }
         (within, jump, points)
     };
-    let problem = || solve(&system, (0.0, 10.0), q, v).method(Dop853::new()).rtol(tolerance).atol(tolerance).every_step().dense();
+    let problem = || {
+        solve(&system, (0.0, 10.0), q, v)
+            .method(Dop853::new())
+            .rtol(tolerance)
+            .atol(tolerance)
+            .every_step()
+            .dense()
+    };
     let found = [
         ("Dop853", check(&problem().run().unwrap())),
         ("Tsit5", check(&problem().method(Tsit5::new()).run().unwrap())),
@@ -86,8 +114,12 @@ fn events(_: Scale, report: &mut Report) {
     let double = Double::new([1.0; 2], [1.0; 2], 1.0);
     let up = Event::new(&|_, q: &[f64; 2], _: &[f64; 2]| q[0] - core::f64::consts::PI).terminal();
     let flip = |rtol: f64| {
-        let solution =
-            solve(&double, (0.0, 20.0), [2.0, 2.5], [0.0; 2]).method(Taylor::new()).rtol(rtol).events(&[up]).run().unwrap();
+        let solution = solve(&double, (0.0, 20.0), [2.0, 2.5], [0.0; 2])
+            .method(Taylor::new())
+            .rtol(rtol)
+            .events(&[up])
+            .run()
+            .unwrap();
         (solution.events[0].state.t - reference::FLIP).abs()
     };
     report.at_most("flip of P23 by Taylor", flip(1e-18), 1e-13);
@@ -99,7 +131,11 @@ fn events(_: Scale, report: &mut Report) {
         .run()
         .unwrap();
     // 5e3 is what a start error has grown to by then.
-    report.at_most("by Dop853, rtol 1e-13, against 5e3 tolerances", (solution.events[0].state.t - reference::FLIP).abs(), 5e-10);
+    report.at_most(
+        "by Dop853, rtol 1e-13, against 5e3 tolerances",
+        (solution.events[0].state.t - reference::FLIP).abs(),
+        5e-10,
+    );
 
     let simple = Simple::new(1.0);
     let period = Swing::from(1.3).period().to_f64();
@@ -110,19 +146,36 @@ fn events(_: Scale, report: &mut Report) {
     // Through 1.299 rad twice around each extreme, 0.1 s apart and within one step.
     let twice = Event::new(&|_, q: &[f64; 1], _: &[f64; 1]| q[0] - 1.299);
     let all = [touch, rest, twice];
-    let solution =
-        solve(&simple, (0.0, 10.5 * period), [1.3], [0.0]).method(Taylor::new()).rtol(1e-18).events(&all).run().unwrap();
+    let solution = solve(&simple, (0.0, 10.5 * period), [1.3], [0.0])
+        .method(Taylor::new())
+        .rtol(1e-18)
+        .events(&all)
+        .run()
+        .unwrap();
     let times = |event: usize| -> Vec<f64> {
-        solution.events.iter().filter(|found| found.event == event).map(|found| found.state.t).collect()
+        solution
+            .events
+            .iter()
+            .filter(|found| found.event == event)
+            .map(|found| found.state.t)
+            .collect()
     };
-    let worst =
-        |times: &[f64]| times.iter().enumerate().fold(0.0, |worst, (k, t)| larger(worst, (t - every(k as f64 + 1.0)).abs()));
+    let worst = |times: &[f64]| {
+        times
+            .iter()
+            .enumerate()
+            .fold(0.0, |worst, (k, t)| larger(worst, (t - every(k as f64 + 1.0)).abs()))
+    };
     let (touching, resting, pairs) = (times(0), times(1), times(2));
     report.failures(
         "ten grazings, ten returns, 21 passages in pairs, none at the start",
         [touching.len() == 10, resting.len() == 10, pairs.len() == 21],
     );
-    report.at_most("grazings: error of the time, known to the root of rounding", worst(&touching), 1e-7);
+    report.at_most(
+        "grazings: error of the time, known to the root of rounding",
+        worst(&touching),
+        1e-7,
+    );
     report.at_most("returns: error of the time", worst(&resting), 1e-13);
     let steps = solution.stats.accepted as f64 / 10.5;
     report.at_most("steps in a period, so that a pair falls within one", steps, 40.0);

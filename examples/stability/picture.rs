@@ -1,4 +1,5 @@
-//! The pictures: energy and phase against time, separation of chaotic runs, error against step over kinks.
+//! The pictures: energy and phase against time, separation of chaotic runs, error against step over
+//! kinks.
 
 use crate::colors::COLORS;
 use crate::report::{Curve, Figure};
@@ -20,7 +21,8 @@ struct Page {
     y: &'static str,
     /// Whether time or step runs logarithmically.
     logarithmic: bool,
-    /// Straight lines for comparison: a name, a factor and a power of x; or, on a linear axis, a rate of growth.
+    /// Straight lines for comparison: a name, a factor and a power of x; or, on a linear axis, a
+    /// rate of growth.
     guides: &'static [(&'static str, f64, f64)],
 }
 
@@ -67,7 +69,10 @@ const PAGES: &[Page] = &[
 pub(crate) fn draw(folder: &Path, curves: &[Curve]) -> Result<Vec<&'static str>, Box<dyn Error>> {
     let mut drawn = Vec::new();
     for page in PAGES {
-        let own: Vec<&Curve> = curves.iter().filter(|curve| curve.figure == page.figure && !curve.points.is_empty()).collect();
+        let own: Vec<&Curve> = curves
+            .iter()
+            .filter(|curve| curve.figure == page.figure && !curve.points.is_empty())
+            .collect();
         if !own.is_empty() {
             page.draw(&folder.join(page.file), &own)?;
             drawn.push(page.file);
@@ -82,10 +87,13 @@ impl Page {
         let ends = |values: &mut dyn Iterator<Item = f64>| {
             values
                 .filter(|value| value.is_finite())
-                .fold((f64::INFINITY, 0.0f64), |(low, high), value| (low.min(value), high.max(value)))
+                .fold((f64::INFINITY, 0.0f64), |(low, high), value| {
+                    (low.min(value), high.max(value))
+                })
         };
-        let decades =
-            |(low, high): (f64, f64)| (10f64.powf((low.log10() + 1e-9).floor()), 10f64.powf((high.log10() - 1e-9).ceil()));
+        let decades = |(low, high): (f64, f64)| {
+            (10f64.powf((low.log10() + 1e-9).floor()), 10f64.powf((high.log10() - 1e-9).ceil()))
+        };
         let (bottom, top) = decades(ends(&mut all().map(|point| point.1)));
         let x = ends(&mut all().map(|point| point.0));
         let (left, right) = if self.logarithmic { decades(x) } else { (0.0, x.1) };
@@ -101,16 +109,28 @@ impl Page {
             .x_label_area_size(46)
             .y_label_area_size(70)
             .build_cartesian_2d(to(left)..to(right), bottom.log10()..top.log10())?;
-        let power = |exponent: f64| if exponent == 0.0 { "1".to_owned() } else { format!("1e{exponent:.0}") };
+        let power = |exponent: f64| {
+            if exponent == 0.0 { "1".to_owned() } else { format!("1e{exponent:.0}") }
+        };
         let (x_label, y_label) = (
             |value: &f64| {
                 if !self.logarithmic {
                     return format!("{value}");
                 }
                 // Labels stand at whole powers only.
-                if (value - value.round()).abs() < 1e-6 { power(value.round()) } else { String::new() }
+                if (value - value.round()).abs() < 1e-6 {
+                    power(value.round())
+                } else {
+                    String::new()
+                }
             },
-            |value: &f64| if (value - value.round()).abs() < 1e-6 { power(value.round()) } else { String::new() },
+            |value: &f64| {
+                if (value - value.round()).abs() < 1e-6 {
+                    power(value.round())
+                } else {
+                    String::new()
+                }
+            },
         );
         chart
             .configure_mesh()
@@ -130,14 +150,26 @@ impl Page {
         let grey = RGBColor(150, 150, 150);
         for &(name, factor, rate) in self.guides {
             let height = |x: f64| {
-                if self.logarithmic { factor.log10() + rate * x } else { factor.log10() + rate * x * std::f64::consts::LOG10_E }
+                if self.logarithmic {
+                    factor.log10() + rate * x
+                } else {
+                    factor.log10() + rate * x * std::f64::consts::LOG10_E
+                }
             };
-            let points: Vec<(f64, f64)> =
-                (0..=200).map(|k| to(left) + (to(right) - to(left)) * f64::from(k) / 200.0).map(|x| (x, height(x))).collect();
-            let inside: Vec<_> = points.into_iter().filter(|point| bottom.log10() <= point.1 && point.1 <= top.log10()).collect();
+            let points: Vec<(f64, f64)> = (0..=200)
+                .map(|k| to(left) + (to(right) - to(left)) * f64::from(k) / 200.0)
+                .map(|x| (x, height(x)))
+                .collect();
+            let inside: Vec<_> = points
+                .into_iter()
+                .filter(|point| bottom.log10() <= point.1 && point.1 <= top.log10())
+                .collect();
             let end = inside.get(inside.len() * 19 / 20).copied();
             chart.draw_series(DashedLineSeries::new(inside, 5, 4, grey.stroke_width(1)))?;
-            let style = (FONT, 14).into_font().color(&RGBColor(90, 90, 90)).pos(Pos::new(HPos::Right, VPos::Bottom));
+            let style = (FONT, 14)
+                .into_font()
+                .color(&RGBColor(90, 90, 90))
+                .pos(Pos::new(HPos::Right, VPos::Bottom));
             chart.draw_series(end.map(|end| Text::new(name.to_owned(), end, style.clone())))?;
         }
         for (curve, color) in curves.iter().zip(COLORS) {

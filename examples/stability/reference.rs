@@ -1,5 +1,6 @@
-//! Trusted digits: each was computed with Taylor series in arbitrary precision at two precisions that agree far beyond the digits
-//! given here, and checked against the closed form where there is one.
+//! Trusted digits: each was computed with Taylor series in arbitrary precision at two precisions
+//! that agree far beyond the digits given here, and checked against the closed form where there is
+//! one.
 
 /// P01, q(0) = 1.3: time, q and q̇.
 pub(crate) const PENDULUM: [(f64, [f64; 2]); 5] = [
@@ -11,7 +12,8 @@ pub(crate) const PENDULUM: [(f64, [f64; 2]); 5] = [
 ];
 
 /// P03, q(0) = 3.125, at t = 100.
-pub(crate) const NEARLY_UPRIGHT: [f64; 2] = [3.11284505632888413946936541096, -0.0234746160447722847078432296095];
+pub(crate) const NEARLY_UPRIGHT: [f64; 2] =
+    [3.11284505632888413946936541096, -0.0234746160447722847078432296095];
 
 /// P11, A = 1/8, Ω = 32, q(0) = 3, at t = 1 and t = 10.
 pub(crate) const KAPITZA: [(f64, [f64; 2]); 2] = [
@@ -98,7 +100,8 @@ pub(crate) const TRIPLE: [f64; 6] = [
     -0.104462948696299087488303834396,
 ];
 
-/// P30: the zeros of the Laguerre polynomial of degree 10, the squared frequencies of ten equal links.
+/// P30: the zeros of the Laguerre polynomial of degree 10, the squared frequencies of ten equal
+/// links.
 pub(crate) const TEN_LINKS: [f64; 10] = [
     0.137793470540492431,
     0.729454549503170498,
@@ -121,8 +124,12 @@ pub(crate) const CART: [f64; 4] = [
 ];
 
 /// P38, e = 0.5, at t = 20.
-pub(crate) const PLANET: [f64; 4] =
-    [-0.57804329530353612327514584, 0.86338400091941928013357307, -0.959508373038072735626449, -0.065049151267120901677193546];
+pub(crate) const PLANET: [f64; 4] = [
+    -0.57804329530353612327514584,
+    0.86338400091941928013357307,
+    -0.959508373038072735626449,
+    -0.065049151267120901677193546,
+];
 
 /// The keyed pivot of K1 after 5 s: straight lines and Catmull–Rom curves.
 pub(crate) const KEYED: [f64; 2] = [-0.129608683467, -0.128838666144];

@@ -50,7 +50,9 @@ impl std::fmt::Display for Bar {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match *self {
             Self::AtMost(bar) => write!(f, "{}", digits(bar)),
-            Self::Between(least, greatest) => write!(f, "{} to {}", digits(least), digits(greatest)),
+            Self::Between(least, greatest) => {
+                write!(f, "{} to {}", digits(least), digits(greatest))
+            }
         }
     }
 }
@@ -146,22 +148,42 @@ impl Report {
     }
 
     /// A number that must not exceed its bar; what is not a number does.
-    pub(crate) fn at_most(&mut self, what: impl Into<String>, measured: f64, bar: f64) -> &mut Check {
+    pub(crate) fn at_most(
+        &mut self,
+        what: impl Into<String>,
+        measured: f64,
+        bar: f64,
+    ) -> &mut Check {
         self.check(what, measured, Bar::AtMost(bar))
     }
 
     /// A number between two others.
-    pub(crate) fn between(&mut self, what: impl Into<String>, measured: f64, least: f64, greatest: f64) -> &mut Check {
+    pub(crate) fn between(
+        &mut self,
+        what: impl Into<String>,
+        measured: f64,
+        least: f64,
+        greatest: f64,
+    ) -> &mut Check {
         self.check(what, measured, Bar::Between(least, greatest))
     }
 
     /// How many of the cases fail what each must fulfil; none may.
-    pub(crate) fn failures(&mut self, what: impl Into<String>, cases: impl IntoIterator<Item = bool>) -> &mut Check {
+    pub(crate) fn failures(
+        &mut self,
+        what: impl Into<String>,
+        cases: impl IntoIterator<Item = bool>,
+    ) -> &mut Check {
         let failed = cases.into_iter().filter(|holds| !holds).count();
         self.check(what, failed as f64, Bar::AtMost(0.0))
     }
 
-    pub(crate) fn curve(&mut self, figure: Figure, name: impl Into<String>, points: Vec<(f64, f64)>) {
+    pub(crate) fn curve(
+        &mut self,
+        figure: Figure,
+        name: impl Into<String>,
+        points: Vec<(f64, f64)>,
+    ) {
         self.curves.push(Curve { figure, name: name.into(), points });
     }
 }

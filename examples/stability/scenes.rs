@@ -42,7 +42,10 @@ pub(crate) fn bits(scale: Scale, report: &mut Report) {
         let threads = [scope.spawn(|| run(false)), scope.spawn(|| run(true))];
         threads.map(|thread| thread.join().unwrap()).into()
     });
-    report.failures("a scene of 4000 pendulums, and the same in other threads", beside.iter().map(|other| *other == here));
+    report.failures(
+        "a scene of 4000 pendulums, and the same in other threads",
+        beside.iter().map(|other| *other == here),
+    );
     #[cfg(feature = "rayon")]
     report.failures(
         "the same scene in 1, 2, 3 and 7 threads at once",
@@ -58,32 +61,49 @@ fn alone<M: Fixed + Suits<Simple<f64>, 1> + Copy>(method: M, seconds: u32) -> us
     let mut scene = Scene::<f64>::new(BINARY).unwrap();
     scene.set_tolerance(1e-2).unwrap();
     let mut random = Random::new(9);
-    let starts: Vec<[f64; 3]> =
-        (0..50).map(|_| [(0.3, 9.0), (-3.0, 3.0), (-3.0, 3.0)].map(|(a, b)| random.uniform(a, b))).collect();
-    let handles: Vec<_> = starts.iter().map(|&[g, q, v]| scene.hang((), Simple::new(g), [q], [v]).unwrap()).collect();
+    let starts: Vec<[f64; 3]> = (0..50)
+        .map(|_| [(0.3, 9.0), (-3.0, 3.0), (-3.0, 3.0)].map(|(a, b)| random.uniform(a, b)))
+        .collect();
+    let handles: Vec<_> =
+        starts.iter().map(|&[g, q, v]| scene.hang((), Simple::new(g), [q], [v]).unwrap()).collect();
     scene.set_method::<Simple<f64>, 1, M>(method).unwrap();
     let time = f64::from(seconds);
     scene.advance(time).unwrap();
     let differs = |&(handle, [g, q, v]): &(Handle<Simple<f64>, 1>, [f64; 3])| {
-        let end = solve(&Simple::new(g), (0.0, time), [q], [v]).method(method).steps(256 * u64::from(seconds)).run().unwrap().end;
+        let end = solve(&Simple::new(g), (0.0, time), [q], [v])
+            .method(method)
+            .steps(256 * u64::from(seconds))
+            .run()
+            .unwrap()
+            .end;
         scene.state(handle) != (end.q, end.v)
     };
     handles.into_iter().zip(starts).filter(differs).count()
 }
 
 /// The same for double pendulums, whose accelerations contain velocities, in any scalar.
-fn doubles<T: Lane + pendulum_runtime::real::Float>(seconds: u32, round: impl Fn(f64) -> T) -> usize {
+fn doubles<T: Lane + pendulum_runtime::real::Float>(
+    seconds: u32,
+    round: impl Fn(f64) -> T,
+) -> usize {
     let mut scene = Scene::<T>::new(BINARY).unwrap();
     scene.set_tolerance(1e-2).unwrap();
     let mut random = Random::new(10);
-    let starts: Vec<[T; 2]> = (0..50).map(|_| [0, 1].map(|_| round(random.uniform(-1.0, 1.0)))).collect();
+    let starts: Vec<[T; 2]> =
+        (0..50).map(|_| [0, 1].map(|_| round(random.uniform(-1.0, 1.0)))).collect();
     let system = || Double::new([1.0, 0.7].map(&round), [0.9, 1.1].map(&round), round(3.0));
     let rest = [round(0.0); 2];
-    let handles: Vec<_> = starts.iter().map(|&q| scene.hang((), system(), q, rest).unwrap()).collect();
+    let handles: Vec<_> =
+        starts.iter().map(|&q| scene.hang((), system(), q, rest).unwrap()).collect();
     let time = f64::from(seconds);
     scene.advance(time).unwrap();
     let differs = |&(handle, q): &(Handle<Double<T>, 2>, [T; 2])| {
-        let end = solve(&system(), (0.0, time), q, rest).method(Rk4).steps(256 * u64::from(seconds)).run().unwrap().end;
+        let end = solve(&system(), (0.0, time), q, rest)
+            .method(Rk4)
+            .steps(256 * u64::from(seconds))
+            .run()
+            .unwrap()
+            .end;
         scene.state(handle) != (end.q, end.v)
     };
     handles.into_iter().zip(starts).filter(differs).count()
@@ -106,7 +126,8 @@ struct Single {
     there: Handle<Hung<f64>, 1>,
 }
 
-/// Characters of fifty pendulums that move at random, are teleported and hidden, and stop for a while.
+/// Characters of fifty pendulums that move at random, are teleported and hidden, and stop for a
+/// while.
 struct Crowd {
     scene: Scene<f64>,
     joints: Vec<Joint<2>>,
@@ -168,14 +189,16 @@ impl Crowd {
         let mut scene = Scene::new(240.0).unwrap();
         let mut random = Random::new(seed);
         let characters = count.div_ceil(50);
-        let joints: Vec<_> = (0..characters).map(|character| moving(&mut scene, character as u64)).collect();
+        let joints: Vec<_> =
+            (0..characters).map(|character| moving(&mut scene, character as u64)).collect();
         let (mut pendulums, mut singles) = (Vec::new(), Vec::new());
         for index in 0..count {
             let character = index / 50;
             let (length, q) = (random.uniform(0.1, 2.0), random.uniform(-3.0, 3.0));
             if index % 10 == 9 {
                 let system = Double::new([1.0; 2], [length; 2], 9.81);
-                pendulums.push(Pendulum::Two(scene.hang((), system, [q, 0.5 * q], [0.0; 2]).unwrap()));
+                pendulums
+                    .push(Pendulum::Two(scene.hang((), system, [q, 0.5 * q], [0.0; 2]).unwrap()));
                 continue;
             }
             let hang = |scene: &mut Scene<f64>, joint| {
@@ -200,7 +223,10 @@ impl Crowd {
         let chance = |random: &mut Random, one_in: u64| random.bits().is_multiple_of(one_in);
         if chance(&mut self.random, 10) {
             let character = self.random.bits() as usize % self.joints.len();
-            let (seed, carry) = (self.random.bits(), if chance(&mut self.random, 2) { Carry::Swing } else { Carry::Momentum });
+            let (seed, carry) = (
+                self.random.bits(),
+                if chance(&mut self.random, 2) { Carry::Swing } else { Carry::Momentum },
+            );
             teleport(&mut self.scene, self.joints[character], seed, carry);
             for single in self.singles.iter_mut().filter(|single| single.character == character) {
                 teleport(&mut single.scene, single.joint, seed, carry);
@@ -280,8 +306,14 @@ pub(crate) fn soak(scale: Scale, report: &mut Report) {
     }
     well &= crowd.is_well();
     let grown = before.zip(memory()).map_or(0.0, |(before, after)| after - before);
-    report.failures(format!("a scene of {count} pendulums, {frames} random frames: finite, and nobody has failed"), [well]);
-    let lost = |single: &Single| crowd.scene.state(single.there) == single.scene.state(single.pendulum);
+    report.failures(
+        format!(
+            "a scene of {count} pendulums, {frames} random frames: finite, and nobody has failed"
+        ),
+        [well],
+    );
+    let lost =
+        |single: &Single| crowd.scene.state(single.there) == single.scene.state(single.pendulum);
     report.failures(
         format!("its pendulums against the same alone, {} of them", crowd.singles.len()),
         crowd.singles.iter().map(lost),

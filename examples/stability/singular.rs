@@ -20,8 +20,13 @@ pub(crate) const TESTS: &[Test] = &[
 fn near_singular(_: Scale, report: &mut Report) {
     let light = |exponent: i32| Double::new([0.5f64.powi(exponent), 1.0], [1.0; 2], 1.0);
     for (t, exact) in &reference::LIGHT_LINK {
-        let end =
-            solve(&light(10), (0.0, *t), [0.5, 0.625], [0.0; 2]).method(Dop853::new()).rtol(1e-14).atol(1e-14).run().unwrap().end;
+        let end = solve(&light(10), (0.0, *t), [0.5, 0.625], [0.0; 2])
+            .method(Dop853::new())
+            .rtol(1e-14)
+            .atol(1e-14)
+            .run()
+            .unwrap()
+            .end;
         // The condition of the mass matrix where the links are aligned is 2/m.
         report.at_most(
             format!("P26, upper mass 2^-10, Dop853 at t = {t}, against the condition"),
@@ -48,27 +53,40 @@ fn near_singular(_: Scale, report: &mut Report) {
     report.at_most("upper masses 2^-20, 2^-40, 2^-52: error in condition × rtol 1e-12", worst, 1.0);
     report.at_most("steps for twenty periods of the fast link", steps, 2000.0);
 
-    // Nearly aligned links: Δ is known to ε, so no formula keeps more than ε/Δ of what depends on it. The generated determinant
-    // m₁ + m₂ sin² Δ keeps that; m₁ + m₂ − m₂ cos² Δ would lose ε/Δ².
+    // Nearly aligned links: Δ is known to ε, so no formula keeps more than ε/Δ of what depends on
+    // it. The generated determinant m₁ + m₂ sin² Δ keeps that; m₁ + m₂ − m₂ cos² Δ would lose ε/Δ².
     let (mut sine, mut cosine) = (0.0f64, 0.0f64);
     for exponent in 1..=24 {
         let (system, gap) = (light(52), 0.7 * 0.5f64.powi(exponent));
         let (q, v) = ([0.5, 0.5 + gap], [0.25, 0.25]);
         let found = system.accelerations(0.0, &q, &v, &());
-        let wide =
-            system.map(DoubleDouble::from).accelerations(0.0.into(), &q.map(DoubleDouble::from), &v.map(DoubleDouble::from), &());
+        let wide = system.map(DoubleDouble::from).accelerations(
+            0.0.into(),
+            &q.map(DoubleDouble::from),
+            &v.map(DoubleDouble::from),
+            &(),
+        );
         let size = largest(wide.map(|a| a.to_f64().abs()));
-        let apart = largest((0..2).map(|i| (DoubleDouble::from(found[i]) - wide[i]).to_f64().abs() / size));
+        let apart =
+            largest((0..2).map(|i| (DoubleDouble::from(found[i]) - wide[i]).to_f64().abs() / size));
         sine = larger(sine, apart * gap / f64::EPSILON);
         let (m, difference) = (system.m, q[0] - q[1]);
         let exact = m[0] + m[1] * difference.sin().powi(2);
-        cosine = cosine.max(((m[0] + m[1]) - m[1] * difference.cos().powi(2) - exact).abs() / exact * gap / f64::EPSILON);
+        cosine = cosine.max(
+            ((m[0] + m[1]) - m[1] * difference.cos().powi(2) - exact).abs() / exact * gap
+                / f64::EPSILON,
+        );
     }
-    report.at_most("accelerations of aligned links, Δ down to 4e-8, upper mass 2^-52: error in ε/Δ", sine, 4.0);
+    report.at_most(
+        "accelerations of aligned links, Δ down to 4e-8, upper mass 2^-52: error in ε/Δ",
+        sine,
+        4.0,
+    );
     report.between("the determinant with cos² for comparison, in ε/Δ", cosine, 1e3, f64::INFINITY);
 }
 
-/// Whether an integration ended with an error about an acceleration, a coordinate that has a name, and a state that is finite.
+/// Whether an integration ended with an error about an acceleration, a coordinate that has a name,
+/// and a state that is finite.
 fn refused(result: Result<Solution<f64, 2>, Failure<f64, 2>>) -> bool {
     let Err(failure) = result else { return false };
     let finite = failure.partial.end.q.iter().chain(&failure.partial.end.v).all(|x| x.is_finite());
@@ -89,12 +107,21 @@ fn singular(_: Scale, report: &mut Report) {
         ],
     );
     let still = Double::new([1.0, 0.0], [1.0; 2], 1.0);
-    report.failures("m₂ = 0: the same", [refused(solve(&still, (0.0, 1.0), [0.5, 0.25], [0.0; 2]).method(Dop853::new()).run())]);
-    // The links line up on the way: either the step control stops before, or the run goes on with finite numbers.
-    let crossing = solve(&massless, (0.0, 1.0), [0.5, 0.625], [0.0, -1.0]).method(Dop853::new()).max_steps(1_000_000).run();
+    report.failures(
+        "m₂ = 0: the same",
+        [refused(solve(&still, (0.0, 1.0), [0.5, 0.25], [0.0; 2]).method(Dop853::new()).run())],
+    );
+    // The links line up on the way: either the step control stops before, or the run goes on with
+    // finite numbers.
+    let crossing = solve(&massless, (0.0, 1.0), [0.5, 0.625], [0.0, -1.0])
+        .method(Dop853::new())
+        .max_steps(1_000_000)
+        .run();
     let kept = match &crossing {
         Ok(solution) => solution.end.q.iter().chain(&solution.end.v).all(|x| x.is_finite()),
-        Err(failure) => failure.partial.end.q.iter().chain(&failure.partial.end.v).all(|x| x.is_finite()),
+        Err(failure) => {
+            failure.partial.end.q.iter().chain(&failure.partial.end.v).all(|x| x.is_finite())
+        }
     };
     report.failures("m₁ = 0 and links that line up on the way: no NaN in any state", [kept]);
     let negative = |m| {
@@ -114,7 +141,8 @@ fn singular(_: Scale, report: &mut Report) {
     );
 }
 
-/// Whether an integration ended at once with an error about negative inertia, a coordinate that has a name, and the state at the start.
+/// Whether an integration ended at once with an error about negative inertia, a coordinate that has
+/// a name, and the state at the start.
 fn unbounded(result: Result<Solution<f64, 2>, Failure<f64, 2>>) -> bool {
     let Err(failure) = result else { return false };
     let kept = (failure.partial.end.t, failure.partial.end.q) == (0.0, [0.5, 0.625]);
@@ -125,9 +153,17 @@ fn ratios(_: Scale, report: &mut Report) {
     // The same motion in other units of mass, length and time: m, k and l from 1e-12 to 1e12.
     let reference = elastic(1.0, 1.0, 1.0);
     let mut worst = 0.0;
-    for exponents in
-        [[-12, 0, 0], [12, 0, 0], [0, -12, 0], [0, 12, 0], [0, 0, -6], [0, 0, 6], [-12, 12, 6], [12, -12, -6], [12, 12, 6]]
-    {
+    for exponents in [
+        [-12, 0, 0],
+        [12, 0, 0],
+        [0, -12, 0],
+        [0, 12, 0],
+        [0, 0, -6],
+        [0, 0, 6],
+        [-12, 12, 6],
+        [12, -12, -6],
+        [12, 12, 6],
+    ] {
         let [mass, length, time] = exponents.map(|exponent: i32| 10f64.powi(exponent));
         let found = elastic(mass, length, time);
         worst = larger(worst, largest((0..4).map(|i| (found[i] - reference[i]).abs())));
@@ -149,7 +185,11 @@ fn ratios(_: Scale, report: &mut Report) {
         let found = double(mass, length);
         worst = larger(worst, largest((0..4).map(|i| (found[i] - reference[i]).abs())));
     }
-    report.at_most("P22 with masses and lengths (and gravity) of 1e±12 and 1e±300: difference", worst, 1e-13);
+    report.at_most(
+        "P22 with masses and lengths (and gravity) of 1e±12 and 1e±300: difference",
+        worst,
+        1e-13,
+    );
     // Powers of two change no digit.
     let binary = double(0.5f64.powi(40), 2.0f64.powi(70));
     report.failures("P22 in units of powers of two: the same bits", [binary == reference]);
@@ -162,11 +202,15 @@ fn ratios(_: Scale, report: &mut Report) {
             .atol_each([1e-13; 2], [1e-13 * g.sqrt().max(1.0); 2]);
         problem.run().map(|solution| solution.end)
     };
-    let (free, faint, heavy) = (hung(0.0, 10.0, 0.5), hung(1e-300, 10.0, 0.5), hung(1e300, 1e-149, 0.0));
+    let (free, faint, heavy) =
+        (hung(0.0, 10.0, 0.5), hung(1e-300, 10.0, 0.5), hung(1e300, 1e-149, 0.0));
     let weight = hung(1.0, 10.0, 0.0).unwrap();
-    report
-        .failures("g = 0 and g = 1e-300: the same motion", [matches!((free, faint), (Ok(a), Ok(b)) if a.q == b.q && a.v == b.v)]);
-    let apart = heavy.map_or(f64::NAN, |end| largest((0..2).map(|i| (end.q[i] - weight.q[i]).abs())));
+    report.failures(
+        "g = 0 and g = 1e-300: the same motion",
+        [matches!((free, faint), (Ok(a), Ok(b)) if a.q == b.q && a.v == b.v)],
+    );
+    let apart =
+        heavy.map_or(f64::NAN, |end| largest((0..2).map(|i| (end.q[i] - weight.q[i]).abs())));
     report.at_most("g = 1e300 against g = 1", apart, 1e-11);
 }
 
@@ -175,8 +219,10 @@ fn elastic(mass: f64, length: f64, time: f64) -> [f64; 4] {
     let system = Elastic::new(mass, 8.0 * mass / (time * time), length, length / (time * time));
     let (q, v) = ([1.25 * length, 1.0], [0.0; 2]);
     let speed = [1e-15 * length / time, 1e-15 / time];
-    let problem =
-        solve(&system, (0.0, 2.0 * time), q, v).method(Dop853::new()).rtol(1e-14).atol_each([1e-15 * length, 1e-15], speed);
+    let problem = solve(&system, (0.0, 2.0 * time), q, v)
+        .method(Dop853::new())
+        .rtol(1e-14)
+        .atol_each([1e-15 * length, 1e-15], speed);
     problem.run().map_or([f64::NAN; 4], |solution| {
         let end = solution.end;
         [end.q[0] / length, end.q[1], end.v[0] * time / length, end.v[1] * time]
@@ -186,8 +232,13 @@ fn elastic(mass: f64, length: f64, time: f64) -> [f64; 4] {
 /// P22 with masses and lengths of another size, and gravity with the lengths.
 fn double(mass: f64, length: f64) -> [f64; 4] {
     let system = Double::new([mass; 2], [length; 2], length);
-    let problem = solve(&system, (0.0, 2.0), [0.5, -0.25], [0.0; 2]).method(Dop853::new()).rtol(1e-14).atol(1e-15);
-    problem.run().map_or([f64::NAN; 4], |solution| [solution.end.q[0], solution.end.q[1], solution.end.v[0], solution.end.v[1]])
+    let problem = solve(&system, (0.0, 2.0), [0.5, -0.25], [0.0; 2])
+        .method(Dop853::new())
+        .rtol(1e-14)
+        .atol(1e-15);
+    problem.run().map_or([f64::NAN; 4], |solution| {
+        [solution.end.q[0], solution.end.q[1], solution.end.v[0], solution.end.v[1]]
+    })
 }
 
 fn collapse(_: Scale, report: &mut Report) {
@@ -197,7 +248,8 @@ fn collapse(_: Scale, report: &mut Report) {
         Ok(solution) => (false, solution.stats.accepted + solution.stats.rejected),
         Err(failure) => {
             let stats = &failure.partial.stats;
-            let typed = matches!(failure.error, Error::StepSizeUnderflow { .. } | Error::NotFinite { .. });
+            let typed =
+                matches!(failure.error, Error::StepSizeUnderflow { .. } | Error::NotFinite { .. });
             let near = (failure.partial.end.t - core::f64::consts::PI / 8.0f64.sqrt()).abs() < 1e-3;
             (typed && near, stats.accepted + stats.rejected)
         }
@@ -210,26 +262,54 @@ fn collapse(_: Scale, report: &mut Report) {
         fall(problem().method(Picard).rtol(1e-12).run()),
         fall(problem().method(Rodas4::new()).run()),
     ];
-    report.failures("a fall into the centre ends with an error where it happens, five methods", found.map(|found| found.0));
-    report.at_most("the steps it takes until then", largest(found.map(|found| found.1 as f64)), 10_000.0);
+    report.failures(
+        "a fall into the centre ends with an error where it happens, five methods",
+        found.map(|found| found.0),
+    );
+    report.at_most(
+        "the steps it takes until then",
+        largest(found.map(|found| found.1 as f64)),
+        10_000.0,
+    );
 
     let gap = 1e-12;
-    let around = solve(&kepler, (0.0, core::f64::consts::TAU), [gap, 0.0], [0.0, ((2.0 - gap) / gap).sqrt()])
-        .method(Dop853::new())
-        .rtol(1e-10);
+    let around = solve(
+        &kepler,
+        (0.0, core::f64::consts::TAU),
+        [gap, 0.0],
+        [0.0, ((2.0 - gap) / gap).sqrt()],
+    )
+    .method(Dop853::new())
+    .rtol(1e-10);
     let steps = match around.run() {
         Ok(solution) => solution.stats.accepted + solution.stats.rejected,
         Err(failure) => failure.partial.stats.accepted + failure.partial.stats.rejected,
     };
-    report.at_most("Kepler with e = 1 − 1e-12, one orbit: steps or an error, in steps", steps as f64, 10_000.0);
+    report.at_most(
+        "Kepler with e = 1 − 1e-12, one orbit: steps or an error, in steps",
+        steps as f64,
+        10_000.0,
+    );
 
     let orbit = Arenstorf::new();
-    let (q, v, period) = ([0.994, 0.0], [0.0, -2.00158510637908252240537862224], 17.0652165601579625588917206249);
+    let (q, v, period) =
+        ([0.994, 0.0], [0.0, -2.00158510637908252240537862224], 17.0652165601579625588917206249);
     let close = |solution: Solution<f64, 2>| {
-        (largest([(solution.end.q[0] - 0.994).abs(), solution.end.q[1].abs()]), solution.stats.accepted + solution.stats.rejected)
+        (
+            largest([(solution.end.q[0] - 0.994).abs(), solution.end.q[1].abs()]),
+            solution.stats.accepted + solution.stats.rejected,
+        )
     };
-    let taylor = close(solve(&orbit, (0.0, period), q, v).method(Taylor::new()).rtol(1e-18).run().unwrap());
-    let dop853 = close(solve(&orbit, (0.0, period), q, v).method(Dop853::new()).rtol(1e-13).atol(1e-13).run().unwrap());
+    let taylor =
+        close(solve(&orbit, (0.0, period), q, v).method(Taylor::new()).rtol(1e-18).run().unwrap());
+    let dop853 = close(
+        solve(&orbit, (0.0, period), q, v)
+            .method(Dop853::new())
+            .rtol(1e-13)
+            .atol(1e-13)
+            .run()
+            .unwrap(),
+    );
     // The start is rounded to 1e-16; one period amplifies it.
     let near = truth(&orbit.map(DoubleDouble::from), (0.0, period), q, v).end;
     let rounded = largest([(near.q[0].to_f64() - 0.994).abs(), near.q[1].to_f64().abs()]);

@@ -28,7 +28,12 @@ fn spring(_: Scale, report: &mut Report) {
         // At rest on the spring for this angle, so that the fast vibration is hardly there.
         let (q, v) = ([1.0 + 1.0f64.cos() / stiffness, 1.0], [0.0; 2]);
         let start = system.energy(0.0, &q, &v, &());
-        let end = solve(&system, (0.0, 20.0), q, v).method(Gauss::<2>::new().newton()).step(0.02).run().unwrap().end;
+        let end = solve(&system, (0.0, 20.0), q, v)
+            .method(Gauss::<2>::new().newton())
+            .step(0.02)
+            .run()
+            .unwrap()
+            .end;
         energy = larger(energy, (system.energy(0.0, &end.q, &end.v, &()) - start).abs());
         // Far from every multiple of the fast period, the rigid rod is what remains.
         if 8 <= exponent {
@@ -40,20 +45,34 @@ fn spring(_: Scale, report: &mut Report) {
                 .unwrap()
                 .end
                 .q[0];
-            let damped = solve(&system, (0.0, 20.0), q, v).method(Rodas4::new()).rtol(1e-8).atol(1e-8).run().unwrap().end;
+            let damped = solve(&system, (0.0, 20.0), q, v)
+                .method(Rodas4::new())
+                .rtol(1e-8)
+                .atol(1e-8)
+                .run()
+                .unwrap()
+                .end;
             slow = larger(slow, (damped.q[1] - rigid).abs());
         }
         // 0.1 s is more than 2.8/√k from k = 10³ on.
         if 4 <= exponent {
             refused.push(solve(&system, (0.0, 20.0), q, v).method(Rk4).step(0.1).run().is_err());
-            let sweeps = solve(&system, (0.0, 20.0), q, v).method(Gauss::<2>::new()).step(0.1).run();
+            let sweeps =
+                solve(&system, (0.0, 20.0), q, v).method(Gauss::<2>::new()).step(0.1).run();
             rejected.push(matches!(sweeps, Err(failure) if matches!(failure.error, Error::NoConvergence { .. })));
         }
     }
-    report.at_most("energy by Gauss<2> with Newton's method, k = 1e2 to 1e10, steps of 0.02 s", energy, 1e-4);
+    report.at_most(
+        "energy by Gauss<2> with Newton's method, k = 1e2 to 1e10, steps of 0.02 s",
+        energy,
+        1e-4,
+    );
     report.at_most("Rodas4 against a rigid rod, k = 1e8 and 1e10, rtol 1e-8", slow, 1e-6);
     report.failures("Rk4 beyond its stability limit ends with an error, k = 1e4 to 1e10", refused);
-    report.failures("Gauss<2> by sweeps beyond their limit ends with an error that says so", rejected);
+    report.failures(
+        "Gauss<2> by sweeps beyond their limit ends with an error that says so",
+        rejected,
+    );
 }
 
 fn damping(scale: Scale, report: &mut Report) {
@@ -61,8 +80,13 @@ fn damping(scale: Scale, report: &mut Report) {
     for exponent in 1..=6 {
         let c = 10f64.powi(exponent);
         let system = Damped::new(c);
-        let solution =
-            solve(&system, (0.0, 5.0 * c), [1.0], [0.0]).method(Rodas4::new()).rtol(1e-8).atol(1e-12).every_step().run().unwrap();
+        let solution = solve(&system, (0.0, 5.0 * c), [1.0], [0.0])
+            .method(Rodas4::new())
+            .rtol(1e-8)
+            .atol(1e-12)
+            .every_step()
+            .run()
+            .unwrap();
         ringing += solution.q.windows(2).filter(|pair| pair[0][0] < pair[1][0]).count();
         // tan(q/2) = tan(½) e^(−t/c) up to 1/c².
         if 4 <= exponent {
@@ -70,15 +94,29 @@ fn damping(scale: Scale, report: &mut Report) {
             creep = larger(creep, (solution.end.q[0] - exact).abs() - 2.0 / (c * c));
         }
     }
-    report.at_most("c = 10 to 1e6, Rodas4: steps in which the pendulum rises again", ringing as f64, 0.0);
-    report.at_most("c = 1e4 to 1e6: distance from the creeping motion after 5c, beyond 2/c²", creep, 1e-7);
+    report.at_most(
+        "c = 10 to 1e6, Rodas4: steps in which the pendulum rises again",
+        ringing as f64,
+        0.0,
+    );
+    report.at_most(
+        "c = 1e4 to 1e6: distance from the creeping motion after 5c, beyond 2/c²",
+        creep,
+        1e-7,
+    );
 
-    let explicit =
-        [1e2, 1e4, 1e6].map(|c| solve(&Damped::new(c), (0.0, 1e3), [1.0], [0.0]).method(Rk4).step(10.0 / c).run().is_err());
+    let explicit = [1e2, 1e4, 1e6].map(|c| {
+        solve(&Damped::new(c), (0.0, 1e3), [1.0], [0.0]).method(Rk4).step(10.0 / c).run().is_err()
+    });
     report.failures("Rk4 with h c = 10 ends with an error", explicit);
 
     let faint = Damped::new(1e-12);
-    let end = solve(&faint, (0.0, 100.0), [1.3], [0.0]).method(Taylor::new()).rtol(1e-18).run().unwrap().end;
+    let end = solve(&faint, (0.0, 100.0), [1.3], [0.0])
+        .method(Taylor::new())
+        .rtol(1e-18)
+        .run()
+        .unwrap()
+        .end;
     let exact = truth(&faint.map(DoubleDouble::from), (0.0, 100.0), [1.3], [0.0]).end;
     let change = Swing::from(1.3).at(100.0)[0] - exact.q[0];
     report.at_most(
@@ -125,7 +163,8 @@ where
     AdaptiveStep<N>: for<'a> Control<M, Prepared<'a, S, S::Prepared>, N>,
 {
     let run = |tolerance: f64, first: Option<f64>| {
-        let problem = solve(system, (0.0, end), q, v).method(method).rtol(tolerance).atol(tolerance);
+        let problem =
+            solve(system, (0.0, end), q, v).method(method).rtol(tolerance).atol(tolerance);
         let problem = match first {
             Some(first) => problem.first_step(first),
             None => problem,
@@ -135,7 +174,13 @@ where
             let off = |found: &f64, exact: &DoubleDouble| {
                 (DoubleDouble::from(*found) - *exact).to_f64().abs() / (1.0 + exact.to_f64().abs())
             };
-            largest(end.q.iter().zip(&exact.q).chain(end.v.iter().zip(&exact.v)).map(|(a, b)| off(a, b)))
+            largest(
+                end.q
+                    .iter()
+                    .zip(&exact.q)
+                    .chain(end.v.iter().zip(&exact.v))
+                    .map(|(a, b)| off(a, b)),
+            )
         })
     };
     let mut spread = Spread { worst: [0.0; 2], failed: 0, turned: 0 };
@@ -150,13 +195,13 @@ where
             None => spread.failed += 1,
         }
     }
-    let errors: Vec<f64> = (1..=7).map(|k| run(10f64.powi(-2 * k), None).unwrap_or(f64::NAN)).collect();
+    let errors: Vec<f64> =
+        (1..=7).map(|k| run(10f64.powi(-2 * k), None).unwrap_or(f64::NAN)).collect();
     spread.turned = errors.windows(2).filter(|pair| pair[1].is_nan() || pair[0] < pair[1]).count();
     spread
 }
 
-const LOOSE: &str =
-    "errors of order one: the estimate is no longer small against the motion, least of all in a first step as long as the run";
+const LOOSE: &str = "errors of order one: the estimate is no longer small against the motion, least of all in a first step as long as the run";
 
 fn tolerances(scale: Scale, report: &mut Report) {
     let mut random = Random::new(26);
@@ -174,7 +219,12 @@ fn tolerances(scale: Scale, report: &mut Report) {
             truth(&$system.map(DoubleDouble::from), (0.0, $problem.0), $problem.1, $problem.2).end
         };
     }
-    let exact = (exact!(simple, problems.0), exact!(double, problems.1), exact!(cart, problems.2), exact!(kepler, problems.3));
+    let exact = (
+        exact!(simple, problems.0),
+        exact!(double, problems.1),
+        exact!(cart, problems.2),
+        exact!(kepler, problems.3),
+    );
     let near = |found: f64| found <= 1e-14;
     report.failures(
         "the references in two words against 24 digits",

@@ -1,4 +1,5 @@
-//! The systems of the stress table; P01, P22, … are names of problems whose digits stand in `reference`.
+//! The systems of the stress table; P01, P22, … are names of problems whose digits stand in
+//! `reference`.
 
 #![allow(missing_docs)]
 
@@ -26,7 +27,8 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// The mean motion of Kapitza's pendulum when it is shaken fast, at the speed `s`: the effective potential of Kapitza (1951).
+    /// The mean motion of Kapitza's pendulum when it is shaken fast, at the speed `s`: the
+    /// effective potential of Kapitza (1951).
     pub struct Effective { s }
     coordinate q;
     kinetic = q̇^2/2;
@@ -65,7 +67,8 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// P41: the restricted problem of three bodies in the rotating frame, with the mass ratio of earth and moon.
+    /// P41: the restricted problem of three bodies in the rotating frame, with the mass ratio of
+    /// earth and moon.
     pub struct Arenstorf {}
     coordinate x;
     coordinate y;

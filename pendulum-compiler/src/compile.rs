@@ -59,12 +59,19 @@ pub fn compile(source: &str) -> Result<Compiled, Vec<Message>> {
     let compiled = passes(quote!(::pendulum_runtime; #tokens), &mut errors, Compiled::new);
     match compiled.flatten() {
         Some(compiled) if errors.is_empty() => Ok(compiled),
-        _ => Err(errors.into_iter().map(|error| Message::new(error.to_string(), error.span())).collect()),
+        _ => Err(errors
+            .into_iter()
+            .map(|error| Message::new(error.to_string(), error.span()))
+            .collect()),
     }
 }
 
 /// All passes, before `backend`; `None` if there is no block at all.
-fn passes<R>(input: TokenStream, errors: &mut Errors, backend: impl FnOnce(Analysis<'_, '_>) -> R) -> Option<R> {
+fn passes<R>(
+    input: TokenStream,
+    errors: &mut Errors,
+    backend: impl FnOnce(Analysis<'_, '_>) -> R,
+) -> Option<R> {
     let (krate, mut block) = parse::all(input, errors)?;
     derive::check(&mut block.attributes, errors);
     let model = model::resolve(&block, errors);
@@ -73,14 +80,35 @@ fn passes<R>(input: TokenStream, errors: &mut Errors, backend: impl FnOnce(Analy
     if errors.is_empty() {
         unit::infer::check(&model, errors);
     }
-    let motion = if errors.is_empty() { euler_lagrange::derive(&model, &mut graph, &mut energies, errors) } else { None };
-    let equations = motion.as_ref().map(|motion| printed(&model, &mut graph, &energies, motion)).unwrap_or_default();
-    let accelerations = motion.as_ref().map(|motion| schedule::program(&graph, &motion.accelerations));
-    Some(backend(Analysis { krate, model: &model, graph, energies, motion, equations, accelerations }))
+    let motion = if errors.is_empty() {
+        euler_lagrange::derive(&model, &mut graph, &mut energies, errors)
+    } else {
+        None
+    };
+    let equations = motion
+        .as_ref()
+        .map(|motion| printed(&model, &mut graph, &energies, motion))
+        .unwrap_or_default();
+    let accelerations =
+        motion.as_ref().map(|motion| schedule::program(&graph, &motion.accelerations));
+    Some(backend(Analysis {
+        krate,
+        model: &model,
+        graph,
+        energies,
+        motion,
+        equations,
+        accelerations,
+    }))
 }
 
 /// The equations of motion in Unicode and in LaTeX; what they have in common is simplified once.
-fn printed(model: &Model, graph: &mut Graph, energies: &Energies, motion: &Motion) -> [Vec<String>; 2] {
+fn printed(
+    model: &Model,
+    graph: &mut Graph,
+    energies: &Energies,
+    motion: &Motion,
+) -> [Vec<String>; 2] {
     let names = Names::new(model, &energies.families);
     let sides = unicode::sides(graph, &names, motion);
     let latex = latex::equations(graph, &names, motion, &sides);
@@ -114,7 +142,8 @@ pub struct Compiled {
     pub coordinates: Vec<Declaration>,
     /// The driven inputs.
     pub inputs: Vec<Declaration>,
-    /// The equations of motion with their abbreviations, a line each: in Unicode, or in ASCII if the block is.
+    /// The equations of motion with their abbreviations, a line each: in Unicode, or in ASCII if
+    /// the block is.
     pub equations: Vec<String>,
     /// The same lines in LaTeX.
     pub latex: Vec<String>,
@@ -200,7 +229,15 @@ impl From<Count> for Operations {
 impl Compiled {
     /// `None` without equations.
     fn new(analysis: Analysis<'_, '_>) -> Option<Self> {
-        let Analysis { model, graph, energies, motion, equations: [equations, latex], accelerations, .. } = analysis;
+        let Analysis {
+            model,
+            graph,
+            energies,
+            motion,
+            equations: [equations, latex],
+            accelerations,
+            ..
+        } = analysis;
         let (motion, accelerations) = (motion?, accelerations?);
         let names = Names::new(model, &energies.families);
         let text = |id| unicode::expression(&graph, &names, id);
@@ -220,7 +257,11 @@ impl Compiled {
             energy: text(motion.energy),
             power: text(motion.power),
             momenta: motion.momenta.iter().copied().map(text).collect(),
-            conserved: motion.conserved.iter().map(|conserved| unicode::conserved(&names, conserved)).collect(),
+            conserved: motion
+                .conserved
+                .iter()
+                .map(|conserved| unicode::conserved(&names, conserved))
+                .collect(),
             operations: accelerations.count().into(),
             equations,
             latex,
@@ -234,7 +275,9 @@ mod tests {
 
     #[test]
     fn the_model_is_what_is_declared() {
-        let compiled = compile("struct Cart { M: kg, g: m/s^2 } coordinate x: m; kinetic = M/2*ẋ^2*z; potential = M*g*x;");
+        let compiled = compile(
+            "struct Cart { M: kg, g: m/s^2 } coordinate x: m; kinetic = M/2*ẋ^2*z; potential = M*g*x;",
+        );
         // `z` is not declared: the mistake alone comes back.
         assert_eq!(compiled.unwrap_err().len(), 1);
         let compiled = compile(
@@ -242,18 +285,36 @@ mod tests {
              kinetic = M/2*ẋ^2 + sum(k in 0..2, m[k]/2*(|[ẋ, 0] + u̇|^2 + l^2*θ̇[k]^2)); potential = M*g*x;",
         );
         let compiled = compiled.unwrap_or_else(|messages| panic!("{messages:?}"));
-        let lengths: Vec<_> = compiled.coordinates.iter().map(|declared| (declared.name.as_str(), declared.length)).collect();
+        let lengths: Vec<_> = compiled
+            .coordinates
+            .iter()
+            .map(|declared| (declared.name.as_str(), declared.length))
+            .collect();
         assert_eq!(lengths, [("x", None), ("θ", Some(2))]);
-        assert_eq!((compiled.parameters[1].unit.as_str(), compiled.inputs[0].length), ("kg", Some(2)));
-        assert_eq!((compiled.equations.len(), compiled.latex.len(), compiled.momenta.len()), (3, 3, 3));
+        assert_eq!(
+            (compiled.parameters[1].unit.as_str(), compiled.inputs[0].length),
+            ("kg", Some(2))
+        );
+        assert_eq!(
+            (compiled.equations.len(), compiled.latex.len(), compiled.momenta.len()),
+            (3, 3, 3)
+        );
     }
 
     #[test]
     fn messages_know_their_places() {
-        let places =
-            |source| compile(source).unwrap_err().into_iter().map(|message| (message.start, message.end)).collect::<Vec<_>>();
+        let places = |source| {
+            compile(source)
+                .unwrap_err()
+                .into_iter()
+                .map(|message| (message.start, message.end))
+                .collect::<Vec<_>>()
+        };
         let at = |line, column| Place { line, column };
-        assert_eq!(places("struct S {}\ncoordinate q;\nkinetic = q̇^2/2;\npotential = k*q;"), [(at(4, 12), at(4, 13))]);
+        assert_eq!(
+            places("struct S {}\ncoordinate q;\nkinetic = q̇^2/2;\npotential = k*q;"),
+            [(at(4, 12), at(4, 13))]
+        );
         // Not even tokens.
         assert_eq!(places("struct S {\n").len(), 1);
         assert_eq!(places("").len(), 1);

@@ -1,7 +1,8 @@
-//! The compiler behind `lagrangian!` of the `pendulum` workspace: a Lagrangian as tokens in, Rust out.
+//! The compiler behind `lagrangian!` of the `pendulum` workspace: a Lagrangian as tokens in, Rust
+//! out.
 //!
-//! [`compile()`] takes source text outside of any macro. The folders are layers, each of which uses those
-//! below it alone:
+//! [`compile()`] takes source text outside of any macro. The folders are layers, each of which uses
+//! those below it alone:
 //!
 //! ```text
 //! compile     the order of the passes

@@ -46,7 +46,8 @@ impl Errors {
         self.push(range.into().error(message));
     }
 
-    /// Reports at most one error for each `source`: an expression that is wrong for one index is wrong once.
+    /// Reports at most one error for each `source`: an expression that is wrong for one index is
+    /// wrong once.
     pub(crate) fn once(&mut self, source: usize, range: Range, message: impl std::fmt::Display) {
         if self.sources.insert(source) {
             self.at(range, message);

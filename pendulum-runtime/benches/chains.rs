@@ -1,5 +1,6 @@
-//! The accelerations of chains in both forms: positions written with `let` (eliminated from the leaves to the root where that is cheaper)
-//! and written out in the kinetic energy (elimination of the full mass matrix).
+//! The accelerations of chains in both forms: positions written with `let` (eliminated from the
+//! leaves to the root where that is cheaper) and written out in the kinetic energy (elimination of
+//! the full mass matrix).
 //!
 //! `cargo bench -p pendulum-runtime --bench chains`; medians of 41 pairs A B A B.
 

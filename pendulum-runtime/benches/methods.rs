@@ -1,7 +1,8 @@
-//! Error and time of every method: the simple pendulum, θ(0) = 1.3, g/L = 9.8, 1000 s, five settings each.
+//! Error and time of every method: the simple pendulum, θ(0) = 1.3, g/L = 9.8, 1000 s, five
+//! settings each.
 //!
-//! The error is that of the angle at the end against the elliptic functions; the time is the median of eleven runs.
-//! `cargo bench -p pendulum-runtime --bench methods`
+//! The error is that of the angle at the end against the elliptic functions; the time is the median
+//! of eleven runs. `cargo bench -p pendulum-runtime --bench methods`
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -48,8 +49,12 @@ macro_rules! fixed {
         for steps in $steps {
             let pendulum = pendulum();
             report(&format!("{steps} steps"), || {
-                let solution = solve(black_box(&pendulum), (0.0, 1000.0), [1.3], [0.0]).method($method).steps(steps).run();
-                solution.map_or((f64::NAN, failed()), |solution| (solution.end.q[0], solution.stats))
+                let solution = solve(black_box(&pendulum), (0.0, 1000.0), [1.3], [0.0])
+                    .method($method)
+                    .steps(steps)
+                    .run();
+                solution
+                    .map_or((f64::NAN, failed()), |solution| (solution.end.q[0], solution.stats))
             });
         }
     };
@@ -61,9 +66,11 @@ macro_rules! adaptive {
             let tolerance = 10f64.powi(-exponent);
             let pendulum = pendulum();
             report(&format!("rtol 1e-{exponent}"), || {
-                let problem = solve(black_box(&pendulum), (0.0, 1000.0), [1.3], [0.0]).method($method);
+                let problem =
+                    solve(black_box(&pendulum), (0.0, 1000.0), [1.3], [0.0]).method($method);
                 let solution = problem.rtol(tolerance).atol(tolerance).run();
-                solution.map_or((f64::NAN, failed()), |solution| (solution.end.q[0], solution.stats))
+                solution
+                    .map_or((f64::NAN, failed()), |solution| (solution.end.q[0], solution.stats))
             });
         }
     };

@@ -1,4 +1,5 @@
-//! Generated against hand-written right-hand sides: the same stepper, the same run, pairs A B A B, the median of their ratios.
+//! Generated against hand-written right-hand sides: the same stepper, the same run, pairs A B A B,
+//! the median of their ratios.
 //!
 //! `cargo bench -p pendulum-runtime --bench rhs`
 
@@ -106,7 +107,11 @@ fn median(values: &mut [f64]) -> f64 {
     values[values.len() / 2]
 }
 
-fn compare<A: Dynamics<1, Scalar = f64>, B: Dynamics<1, Scalar = f64>>(name: &str, generated: &A, hand: &B) {
+fn compare<A: Dynamics<1, Scalar = f64>, B: Dynamics<1, Scalar = f64>>(
+    name: &str,
+    generated: &A,
+    hand: &B,
+) {
     let (mut times, mut others, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
     let mut difference = 0.0f64;
     for pair in 0..43 {
@@ -133,8 +138,16 @@ fn main() {
     let (m, l, g, c, i) = (0.8, 1.2, 9.81, [0.3, -1.1], 1.5);
     println!("RK4, 20 000 steps over 20 s; medians of 40 pairs");
     compare("simple", &generated::Simple::new(m, l), &Simple { l, g });
-    compare("moving", &generated::Hanging::new(m, l).driven_by(shake()), &Driven::new::<1>(Moving { l, g }, (shake(),)));
+    compare(
+        "moving",
+        &generated::Hanging::new(m, l).driven_by(shake()),
+        &Driven::new::<1>(Moving { l, g }, (shake(),)),
+    );
     compare("compound", &generated::Compound::new(m, c, i), &Compound { m, c, i, g });
     let exact = generated::MovingCompound::new(m, c, i);
-    compare("moving compound", &exact.driven_by(shake()), &Driven::new::<1>(MovingCompound { m, c, i, g }, (shake(),)));
+    compare(
+        "moving compound",
+        &exact.driven_by(shake()),
+        &Driven::new::<1>(MovingCompound { m, c, i, g }, (shake(),)),
+    );
 }

@@ -1,11 +1,12 @@
-//! What a pendulum costs in a scene: `cargo bench -p pendulum-runtime --bench scene [--features rayon] [-- --quick] [CASE…]`, written to
-//! `target/scene.csv`.
+//! What a pendulum costs in a scene: `cargo bench -p pendulum-runtime --bench scene [--features
+//! rayon] [-- --quick] [CASE…]`, written to `target/scene.csv`.
 //!
 //! With `--threads`, `driven` at 10² to 10⁶ pendulums alternately on one thread and on all:
 //! medians, least times and the ratio.
 //!
-//! Each case is the median of its runs, and beside it in the same run a scalar loop written by hand: leapfrog with `f64::sin` (`f32::sin`), one
-//! pendulum for a long time. A step is one evaluation. Awake or asleep, all pendulums count.
+//! Each case is the median of its runs, and beside it in the same run a scalar loop written by
+//! hand: leapfrog with `f64::sin` (`f32::sin`), one pendulum for a long time. A step is one
+//! evaluation. Awake or asleep, all pendulums count.
 //!
 //! | case | what it shows |
 //! |---|---|
@@ -91,24 +92,30 @@ fn scene<T: Lane + Float>(pendulums: usize, joints: usize, kind: Kind) -> Scene<
         _ => 1,
     };
     // A joint that rests for an hour and then moves.
-    let later = || Linear::new(&[0.0, 3600.0, 3601.0], &[[0.0; 2], [0.0; 2], [0.1, 0.0]]).expect("keys");
+    let later =
+        || Linear::new(&[0.0, 3600.0, 3601.0], &[[0.0; 2], [0.0; 2], [0.1, 0.0]]).expect("keys");
     if 1 < moving {
         scene.set_sleep(Some(1e-3)).expect("a tolerance");
     }
-    let moved = |k: usize| Sinusoid::new([0.05, 0.02], 6.0 + 6.0 * k as f64 / joints as f64, [0.0, 1.0]);
+    let moved =
+        |k: usize| Sinusoid::new([0.05, 0.02], 6.0 + 6.0 * k as f64 / joints as f64, [0.0, 1.0]);
     let times: Vec<f64> = (0..600).map(|key| f64::from(key) / 60.0).collect();
-    let values: Vec<[f64; 2]> = times.iter().map(|t| [0.02 * (t * 40.0).cos(), 0.02 * (t * 33.0).cos()]).collect();
+    let values: Vec<[f64; 2]> =
+        times.iter().map(|t| [0.02 * (t * 40.0).cos(), 0.02 * (t * 33.0).cos()]).collect();
     let mut hung = 0;
     for joint in 0..joints {
         let handle = match kind {
             Kind::Free | Kind::Still | Kind::OneStill => scene.joint(Still::new([0.0, 0.0])),
             Kind::Asleep50 | Kind::Asleep99 if joint % moving != 0 => scene.joint(later()),
-            Kind::Kinked => scene.joint(Linear::new(&times, &values).and_then(Linear::looped).expect("keys")),
+            Kind::Kinked => {
+                scene.joint(Linear::new(&times, &values).and_then(Linear::looped).expect("keys"))
+            }
             _ => scene.joint(moved(joint)),
         };
         while hung < pendulums * (joint + 1) / joints {
             let part = hung as f64 / pendulums as f64;
-            let length = if kind == Kind::Hurried && hung % 100 == 0 { 0.002 } else { 0.3 + 0.5 * part };
+            let length =
+                if kind == Kind::Hurried && hung % 100 == 0 { 0.002 } else { 0.3 + 0.5 * part };
             let (m, length, g, q, v) = (
                 number(0.1),
                 number(length),
@@ -186,7 +193,10 @@ impl Case<'_> {
             for _ in 0..frames {
                 black_box(scene.advance_ticks(TICKS));
             }
-            ours.push(1e9 * start.elapsed().as_secs_f64() / (frames * self.pendulums * TICKS as usize) as f64);
+            ours.push(
+                1e9 * start.elapsed().as_secs_f64()
+                    / (frames * self.pendulums * TICKS as usize) as f64,
+            );
             theirs.push((self.baseline)(20_000));
         }
         let least = ours.iter().copied().fold(f64::INFINITY, f64::min);
@@ -197,7 +207,8 @@ impl Case<'_> {
             ours / theirs,
             1e-6 * ours * (pendulums * TICKS as usize) as f64
         );
-        writeln!(csv, "{name},{pendulums},{joints},{threads},{scalar},{ours:.4},{theirs:.4}").expect("a string");
+        writeln!(csv, "{name},{pendulums},{joints},{threads},{scalar},{ours:.4},{theirs:.4}")
+            .expect("a string");
         ours
     }
 }
@@ -205,7 +216,9 @@ impl Case<'_> {
 /// Takes driven pendulums alternately with one thread and with all, so that both see the same
 /// disturbances.
 fn one_and_all(threads: usize) {
-    println!("driven pendulums, f64, ns a step: median and least, alternately on one thread and on {threads}");
+    println!(
+        "driven pendulums, f64, ns a step: median and least, alternately on one thread and on {threads}"
+    );
     for pendulums in [100, 1_000, 10_000, 100_000, 1_000_000] {
         let mut scenes = [false, true].map(|parallel| {
             let mut scene = scene::<f64>(pendulums, pendulums / 10, Kind::Driven);
@@ -221,10 +234,14 @@ fn one_and_all(threads: usize) {
                 for _ in 0..frames {
                     black_box(scene.advance_ticks(TICKS));
                 }
-                times.push(1e9 * start.elapsed().as_secs_f64() / (frames * pendulums * TICKS as usize) as f64);
+                times.push(
+                    1e9 * start.elapsed().as_secs_f64()
+                        / (frames * pendulums * TICKS as usize) as f64,
+                );
             }
         }
-        let [one, all] = times.map(|times| (times.iter().copied().fold(f64::INFINITY, f64::min), median(times)));
+        let [one, all] =
+            times.map(|times| (times.iter().copied().fold(f64::INFINITY, f64::min), median(times)));
         println!(
             "{pendulums:>8}  one {:7.3} {:7.3}  all {:7.3} {:7.3}  all over one {:.3} {:.3}",
             one.1,
@@ -244,8 +261,13 @@ fn main() {
         return one_and_all(std::thread::available_parallelism().map_or(1, usize::from));
     }
     let names: Vec<&String> = words.iter().filter(|word| !word.starts_with("--")).collect();
-    let mut csv = String::from("case,pendulums,joints,threads,scalar,ns_per_pendulum_step,baseline_ns\n");
-    let many = if cfg!(feature = "rayon") { std::thread::available_parallelism().map_or(1, usize::from) } else { 1 };
+    let mut csv =
+        String::from("case,pendulums,joints,threads,scalar,ns_per_pendulum_step,baseline_ns\n");
+    let many = if cfg!(feature = "rayon") {
+        std::thread::available_parallelism().map_or(1, usize::from)
+    } else {
+        1
+    };
     let sizes = [(86, 9), (10_000, 1_000), (1_000_000, 100_000)];
     for (pendulums, joints) in if quick { &sizes[..2] } else { &sizes[..] }.iter().copied() {
         for (kind, name) in KINDS {
@@ -256,7 +278,15 @@ fn main() {
             }
             for threads in if 1 < many && 86 < pendulums { vec![1, many] } else { vec![1] } {
                 let runs = if quick { 15 } else { 51 };
-                let case = |scalar, baseline| Case { name, pendulums, joints, scalar, threads, baseline, runs };
+                let case = |scalar, baseline| Case {
+                    name,
+                    pendulums,
+                    joints,
+                    scalar,
+                    threads,
+                    baseline,
+                    runs,
+                };
                 case("f64", baseline_f64).measure(&mut csv, scene::<f64>(pendulums, joints, kind));
                 case("f32", baseline_f32).measure(&mut csv, scene::<f32>(pendulums, joints, kind));
             }

@@ -1,9 +1,11 @@
-//! Error and time of `Taylor`: the simple pendulum over 1000 s, the double pendulum and a chain of five links, at several tolerances; and of
-//! `Batch`, 512 pendulums of different amplitudes at order 20.
+//! Error and time of `Taylor`: the simple pendulum over 1000 s, the double pendulum and a chain of
+//! five links, at several tolerances; and of `Batch`, 512 pendulums of different amplitudes at
+//! order 20.
 //!
-//! The error is that of the coordinates at the end, against the elliptic functions, digits of arbitrary precision or, for `Batch`, scalars of two
-//! words; the time is the median of eleven runs. `benches/peers/heyoka_batch.py` measures heyoka on the same batches.
-//! `cargo bench -p pendulum-runtime --bench taylor [-- batch]`
+//! The error is that of the coordinates at the end, against the elliptic functions, digits of
+//! arbitrary precision or, for `Batch`, scalars of two words; the time is the median of eleven
+//! runs. `benches/peers/heyoka_batch.py` measures heyoka on the same batches. `cargo bench -p
+//! pendulum-runtime --bench taylor [-- batch]`
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -27,18 +29,29 @@ fn pendulum() -> Simple {
     Simple { m: 1.0, L: 1.0, g: 9.8 }
 }
 
-fn report<const N: usize>(name: &str, dynamics: &impl JetDynamics<N, Scalar = f64>, end: f64, q: [f64; N], exact: &[f64]) {
+fn report<const N: usize>(
+    name: &str,
+    dynamics: &impl JetDynamics<N, Scalar = f64>,
+    end: f64,
+    q: [f64; N],
+    exact: &[f64],
+) {
     for exponent in [3, 6, 9, 12, 15, 16, 18] {
         let tolerance = 10f64.powi(-exponent);
         let (mut times, mut found) = (Vec::new(), None);
         for _ in 0..11 {
             let start = Instant::now();
-            found = solve(black_box(dynamics), (0.0, end), q, [0.0; N]).method(Taylor::new()).rtol(tolerance).run().ok();
+            found = solve(black_box(dynamics), (0.0, end), q, [0.0; N])
+                .method(Taylor::new())
+                .rtol(tolerance)
+                .run()
+                .ok();
             times.push(start.elapsed().as_secs_f64());
         }
         times.sort_by(f64::total_cmp);
         let Some(solution) = found else { continue };
-        let error = solution.end.q.iter().zip(exact).fold(0.0f64, |worst, (a, b)| worst.max((a - b).abs()));
+        let error =
+            solution.end.q.iter().zip(exact).fold(0.0f64, |worst, (a, b)| worst.max((a - b).abs()));
         let steps = solution.stats.accepted;
         println!(
             "{name:<9} 1e-{exponent:<3} error {error:8.1e}   {:8.3} ms   {steps:>6} steps   {:6.3} µs a step",
@@ -52,9 +65,11 @@ fn report<const N: usize>(name: &str, dynamics: &impl JetDynamics<N, Scalar = f6
 const MOTIONS: usize = 512;
 
 /// The machine epsilon and coarser tolerances of the batches.
-const TOLERANCES: [f64; 4] = [f64::EPSILON, 4.0 * f64::EPSILON, 16.0 * f64::EPSILON, 64.0 * f64::EPSILON];
+const TOLERANCES: [f64; 4] =
+    [f64::EPSILON, 4.0 * f64::EPSILON, 16.0 * f64::EPSILON, 64.0 * f64::EPSILON];
 
-/// Nanoseconds for each lane and step at order 20, beside those of `Taylor` for one motion after the other, and the largest error of every 37th.
+/// Nanoseconds for each lane and step at order 20, beside those of `Taylor` for one motion after
+/// the other, and the largest error of every 37th.
 fn batch<S, const N: usize>(
     name: &str,
     rtol: f64,
@@ -69,7 +84,8 @@ fn batch<S, const N: usize>(
     for (index, (outcome, problem)) in outcomes.iter().zip(problems).enumerate() {
         let Ok(solution) = outcome else { return println!("{name}: {outcome:?}") };
         let Problem { system, time, q, v } = problem;
-        let alone = solve(system, *time, *q, *v).method(Taylor::new().order(20)).rtol(rtol).run().ok();
+        let alone =
+            solve(system, *time, *q, *v).method(Taylor::new().order(20)).rtol(rtol).run().ok();
         assert_eq!(Some(solution), alone.as_ref(), "{name}: motion {index} has other bits alone");
         steps += solution.stats.accepted;
         if index % 37 == 0 {
@@ -85,7 +101,10 @@ fn batch<S, const N: usize>(
         together.push(start.elapsed().as_secs_f64());
         let start = Instant::now();
         for Problem { system, time, q, v } in black_box(problems) {
-            black_box(solve(system, *time, *q, *v).method(Taylor::new().order(20)).rtol(rtol).run()).ok();
+            black_box(
+                solve(system, *time, *q, *v).method(Taylor::new().order(20)).rtol(rtol).run(),
+            )
+            .ok();
         }
         alone.push(start.elapsed().as_secs_f64());
     }
@@ -104,13 +123,17 @@ fn batch<S, const N: usize>(
 
 fn batches() {
     let amplitude = |index: usize| 0.1 + 2.9 * index as f64 / MOTIONS as f64;
-    let problems: Vec<_> =
-        (0..MOTIONS).map(|k| Problem { system: pendulum(), time: (0.0, 100.0), q: [amplitude(k)], v: [0.0] }).collect();
+    let problems: Vec<_> = (0..MOTIONS)
+        .map(|k| Problem { system: pendulum(), time: (0.0, 100.0), q: [amplitude(k)], v: [0.0] })
+        .collect();
     let two = DoubleDouble::from_f64;
     for rtol in TOLERANCES {
         batch("batch pendulum", rtol, &problems, |problem| {
             let start = [two(problem.q[0])];
-            let exact = solve(&problem.system.map(two), problem.time, start, [two(0.0)]).method(Taylor::new()).rtol(1e-28).run();
+            let exact = solve(&problem.system.map(two), problem.time, start, [two(0.0)])
+                .method(Taylor::new())
+                .rtol(1e-28)
+                .run();
             exact.map_or([two(f64::NAN)], |exact| exact.end.q)
         });
     }
@@ -124,10 +147,11 @@ fn batches() {
         .collect();
     for rtol in TOLERANCES {
         batch("batch double", rtol, &problems, |problem| {
-            let exact = solve(&problem.system.map(two), problem.time, problem.q.map(two), [two(0.0); 2])
-                .method(Taylor::new())
-                .rtol(1e-28)
-                .run();
+            let exact =
+                solve(&problem.system.map(two), problem.time, problem.q.map(two), [two(0.0); 2])
+                    .method(Taylor::new())
+                    .rtol(1e-28)
+                    .run();
             exact.map_or([two(f64::NAN); 2], |exact| exact.end.q)
         });
     }
@@ -143,6 +167,12 @@ fn main() {
     let double = Double::new([1.0; 2], [1.0; 2], 1.0);
     report("double", &double, 100.0, [0.5, -0.25], &[0.26851790980526665, -0.4249557728764732]);
     let five = Five::new([1.0; 5], [1.0; 5], 1.0);
-    let exact = [0.05220813867706581, 0.10782852392603176, 0.13529170011065064, 0.37745677737390876, 0.5996624870071492];
+    let exact = [
+        0.05220813867706581,
+        0.10782852392603176,
+        0.13529170011065064,
+        0.37745677737390876,
+        0.5996624870071492,
+    ];
     report("chain5", &five, 10.0, [0.25, 0.5, 0.75, 1.0, 1.25], &exact);
 }

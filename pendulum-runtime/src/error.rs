@@ -46,8 +46,8 @@ pub enum Error {
         t: f64,
         /// What it is.
         what: Quantity,
-        /// The parameters that are zero, infinite or not a number, and so may be the cause of an acceleration, or of a velocity that
-        /// belongs to a finite momentum, that is not finite.
+        /// The parameters that are zero, infinite or not a number, and so may be the cause of an
+        /// acceleration, or of a velocity that belongs to a finite momentum, that is not finite.
         suspects: Vec<Suspect>,
     },
     /// No velocity was found that gives a finite momentum, at a kink or within an implicit step.
@@ -63,7 +63,8 @@ pub enum Error {
         t: f64,
         /// The coordinate at which elimination met the pivot, in the order of declaration.
         coordinate: Coordinate,
-        /// The pivot: the inertia of the coordinate while those declared after it rest and those before it are free.
+        /// The pivot: the inertia of the coordinate while those declared after it rest and those
+        /// before it are free.
         pivot: f64,
         /// The parameters that are negative, and so may be the cause.
         suspects: Vec<Suspect>,
@@ -160,7 +161,9 @@ pub struct Suspect {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::Interval { start, end } if start < end && start.is_finite() && end.is_finite() => {
+            Self::Interval { start, end }
+                if start < end && start.is_finite() && end.is_finite() =>
+            {
                 write!(
                     f,
                     "the length of the interval from {start:?} to {end:?} is beyond the range of f64; give a shorter interval"
@@ -174,7 +177,10 @@ impl fmt::Display for Error {
                 )
             }
             Self::Interval { start, end } => {
-                write!(f, "the interval from {start:?} to {end:?} is not finite; give two finite times")
+                write!(
+                    f,
+                    "the interval from {start:?} to {end:?} is not finite; give two finite times"
+                )
             }
             Self::InitialState { part, coordinate, value } => {
                 let part = match part {
@@ -183,9 +189,14 @@ impl fmt::Display for Error {
                 };
                 write!(f, "the initial {part} of {coordinate} is {value:?}; give a finite number")
             }
-            Self::Setting { name, value, required } => write!(f, "`{name}` is {value:?}, but has to be {required}"),
+            Self::Setting { name, value, required } => {
+                write!(f, "`{name}` is {value:?}, but has to be {required}")
+            }
             Self::Times { name, index, time } => {
-                write!(f, "entry {index} of `{name}` is {time:?}; give finite times within the interval, in its direction")
+                write!(
+                    f,
+                    "entry {index} of `{name}` is {time:?}; give finite times within the interval, in its direction"
+                )
             }
             Self::NotFinite { t, what, ref suspects } => {
                 write!(f, "at t = {t:?} the {what} is not finite; ")?;
@@ -194,14 +205,19 @@ impl fmt::Display for Error {
                         write!(f, "check parameter {first}")?;
                         rest.iter().try_for_each(|suspect| write!(f, ", {suspect}"))
                     }
-                    (Quantity::Input { .. }, None) => write!(f, "check the motion that drives it at this time"),
+                    (Quantity::Input { .. }, None) => {
+                        write!(f, "check the motion that drives it at this time")
+                    }
                     (Quantity::Acceleration(_), None) => {
                         write!(
                             f,
                             "the mass matrix may be singular or a function outside its domain there, check the state before"
                         )
                     }
-                    (_, None) => write!(f, "the motion has left the range of numbers, try a smaller step or tolerance"),
+                    (_, None) => write!(
+                        f,
+                        "the motion has left the range of numbers, try a smaller step or tolerance"
+                    ),
                 }
             }
             Self::NoVelocity { t, coordinate } => write!(
@@ -216,7 +232,10 @@ impl fmt::Display for Error {
                         write!(f, "check parameter {first}")?;
                         rest.iter().try_for_each(|suspect| write!(f, ", {suspect}"))
                     }
-                    None => write!(f, "the kinetic energy has to be positive for every velocity, check the state there"),
+                    None => write!(
+                        f,
+                        "the kinetic energy has to be positive for every velocity, check the state there"
+                    ),
                 }
             }
             Self::StepSizeUnderflow { t, step, coordinate } => write!(
@@ -251,7 +270,11 @@ impl std::error::Error for Error {}
 
 impl fmt::Display for Coordinate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.name.is_empty() { write!(f, "coordinate {}", self.index) } else { write!(f, "`{}`", self.name) }
+        if self.name.is_empty() {
+            write!(f, "coordinate {}", self.index)
+        } else {
+            write!(f, "`{}`", self.name)
+        }
     }
 }
 
@@ -283,7 +306,10 @@ mod tests {
 
     #[test]
     fn messages_name_time_place_and_remedy() {
-        let suspects = vec![Suspect { parameter: "L", value: 0.0 }, Suspect { parameter: "g", value: f64::NAN }];
+        let suspects = vec![
+            Suspect { parameter: "L", value: 0.0 },
+            Suspect { parameter: "g", value: f64::NAN },
+        ];
         let error = Error::NotFinite { t: 1.5, what: Quantity::Acceleration(THETA), suspects };
         let message = "at t = 1.5 the acceleration of `θ` is not finite; check parameter `L`, which is 0.0, `g`, which is NaN";
         assert_eq!(error.to_string(), message);
@@ -295,14 +321,18 @@ mod tests {
             "at t = 0.25 the acceleration of the driven input `x` (component 1) is not finite; check the motion that drives it at this time"
         );
 
-        let error = Error::InitialState { part: Part::Velocity, coordinate: THETA, value: f64::NAN };
+        let error =
+            Error::InitialState { part: Part::Velocity, coordinate: THETA, value: f64::NAN };
         assert_eq!(error.to_string(), "the initial velocity of `θ` is NaN; give a finite number");
     }
 
     #[test]
     fn a_momentum_without_a_velocity_is_not_blamed_on_the_step() {
         let message = Error::NoVelocity { t: 0.5, coordinate: THETA }.to_string();
-        assert!(message.starts_with("at t = 0.5 no velocity was found for the momentum of `θ`; "), "{message}");
+        assert!(
+            message.starts_with("at t = 0.5 no velocity was found for the momentum of `θ`; "),
+            "{message}"
+        );
         assert!(!message.contains("step"), "{message}");
     }
 
@@ -314,8 +344,13 @@ mod tests {
     #[test]
     fn intervals_that_are_reversed_and_infinite_differ() {
         let message = Error::Interval { start: 1.0, end: 0.0 }.to_string();
-        assert!(message.contains("before") && message.contains("`Taylor` and without events"), "{message}");
-        assert!(Error::Interval { start: -1e308, end: 1e308 }.to_string().contains("beyond the range"));
+        assert!(
+            message.contains("before") && message.contains("`Taylor` and without events"),
+            "{message}"
+        );
+        assert!(
+            Error::Interval { start: -1e308, end: 1e308 }.to_string().contains("beyond the range")
+        );
         assert!(Error::Interval { start: 1.0, end: f64::INFINITY }.to_string().contains("finite"));
     }
 }

@@ -25,8 +25,9 @@ pub mod __private;
 /// What a program that writes a `lagrangian!` block and integrates it needs.
 pub mod prelude {
     pub use crate::integrate::{
-        Auto, Direction, Dop853, Dprkn8, Dprkn12, Event, Gauss, Integrator, Leapfrog, Picard, QuinlanTremaine, Rk4, Rodas4,
-        Srkn6b, Srkn11b, Srkn14a, SymplecticEuler, Taylor, Tsit5, solve,
+        Auto, Direction, Dop853, Dprkn8, Dprkn12, Event, Gauss, Integrator, Leapfrog, Picard,
+        QuinlanTremaine, Rk4, Rodas4, Srkn6b, Srkn11b, Srkn14a, SymplecticEuler, Taylor, Tsit5,
+        solve,
     };
     pub use crate::motion::Motion;
     pub use crate::real::Real;

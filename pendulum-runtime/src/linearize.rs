@@ -20,7 +20,8 @@ pub struct Linearization<const N: usize> {
 /// The undamped vibrations about an equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NormalModes {
-    /// The squares ω² of the angular frequencies in (rad/s)², ascending; negative for a direction in which the state is unstable.
+    /// The squares ω² of the angular frequencies in (rad/s)², ascending; negative for a direction
+    /// in which the state is unstable.
     pub squared_frequencies: Vec<f64>,
     /// Their shapes, a column each: coordinates with δᵀ M δ = 1.
     pub shapes: DMatrix<f64>,
@@ -51,11 +52,17 @@ impl core::error::Error for ModeError {}
 
 /// Linearizes the equations of motion about the state `q`, `v` at time `t`.
 ///
-/// M is the mass matrix, C = −M ∂q̈/∂q̇ and K = −M ∂q̈/∂q. At an equilibrium (v = 0 and no acceleration) they describe small motions.
+/// M is the mass matrix, C = −M ∂q̈/∂q̇ and K = −M ∂q̈/∂q. At an equilibrium (v = 0 and no
+/// acceleration) they describe small motions.
 ///
-/// Driven inputs stay as they are. For the influence of one, as a controller needs it, declare it as a parameter:
-/// [`parameter_jacobian`](Jacobians::parameter_jacobian) is ∂q̈ by it.
-pub fn linearize<D, const N: usize>(dynamics: &D, t: f64, q: &[f64; N], v: &[f64; N]) -> Linearization<N>
+/// Driven inputs stay as they are. For the influence of one, as a controller needs it, declare it
+/// as a parameter: [`parameter_jacobian`](Jacobians::parameter_jacobian) is ∂q̈ by it.
+pub fn linearize<D, const N: usize>(
+    dynamics: &D,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+) -> Linearization<N>
 where
     D: Dynamics<N, Scalar = f64>,
     D::System: Jacobians<N>,
@@ -72,14 +79,16 @@ where
 }
 
 impl<const N: usize> Linearization<N> {
-    /// The vibrations that M δ̈ + K δ = 0 has, by Cholesky's factors of M and the eigenvalues of a symmetric matrix.
+    /// The vibrations that M δ̈ + K δ = 0 has, by Cholesky's factors of M and the eigenvalues of a
+    /// symmetric matrix.
     ///
     /// # Errors
     /// A mass matrix that is not positive definite, numbers that are not finite.
     pub fn normal_modes(&self) -> Result<NormalModes, ModeError> {
         let mass = DMatrix::from_fn(N, N, |row, column| self.mass[(row, column)]);
-        let stiffness =
-            DMatrix::from_fn(N, N, |row, column| 0.5 * (self.stiffness[(row, column)] + self.stiffness[(column, row)]));
+        let stiffness = DMatrix::from_fn(N, N, |row, column| {
+            0.5 * (self.stiffness[(row, column)] + self.stiffness[(column, row)])
+        });
         if mass.iter().chain(stiffness.iter()).any(|entry| !entry.is_finite()) {
             return Err(ModeError::NotFinite);
         }
@@ -91,8 +100,12 @@ impl<const N: usize> Linearization<N> {
         let eigen = symmetric.symmetric_eigen();
         let mut order: Vec<usize> = (0..N).collect();
         order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
-        let shapes = factor.transpose().solve_upper_triangular(&eigen.eigenvectors).ok_or(ModeError::Mass)?;
-        let columns: Vec<DVector<f64>> = order.iter().map(|&mode| shapes.column(mode).into_owned()).collect();
+        let shapes = factor
+            .transpose()
+            .solve_upper_triangular(&eigen.eigenvectors)
+            .ok_or(ModeError::Mass)?;
+        let columns: Vec<DVector<f64>> =
+            order.iter().map(|&mode| shapes.column(mode).into_owned()).collect();
         let squared_frequencies = order.iter().map(|&mode| eigen.eigenvalues[mode]).collect();
         Ok(NormalModes { squared_frequencies, shapes: DMatrix::from_columns(&columns) })
     }

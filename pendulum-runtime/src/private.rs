@@ -59,7 +59,8 @@ pub fn columns<T, const N: usize>(entries: &[T]) -> &[[T; N]] {
     entries.as_chunks().0
 }
 
-/// The least of max(w·`widths`, |d|/2) over functions of time, given one over their width w and the time d since their middle.
+/// The least of max(w·`widths`, |d|/2) over functions of time, given one over their width w and the
+/// time d since their middle.
 pub fn longest_step<T: Real>(all: &[T], widths: T) -> T {
     let mut longest = T::from_f64(f64::INFINITY);
     for feature in all.as_chunks::<2>().0 {
@@ -70,12 +71,13 @@ pub fn longest_step<T: Real>(all: &[T], widths: T) -> T {
     longest
 }
 
-/// q̇ from p by Newton's method, for Lagrangians that are not quadratic in the velocities; not a number for a coordinate where none is
-/// found.
+/// q̇ from p by Newton's method, for Lagrangians that are not quadratic in the velocities; not a
+/// number for a coordinate where none is found.
 ///
-/// Starts from rest. A step is halved until it stays where the momenta are numbers and makes what is missing less, in the norm of the
-/// inverse mass matrix, which has no units of its own (Deuflhard 1974). Each lane goes on alone until its steps do not move it any more, and
-/// then stays: how many rounds the others take does not change its bits.
+/// Starts from rest. A step is halved until it stays where the momenta are numbers and makes what
+/// is missing less, in the norm of the inverse mass matrix, which has no units of its own
+/// (Deuflhard 1974). Each lane goes on alone until its steps do not move it any more, and then
+/// stays: how many rounds the others take does not change its bits.
 pub fn newton<const N: usize, S: System<N>>(
     system: &S,
     t: S::Scalar,
@@ -86,7 +88,8 @@ pub fn newton<const N: usize, S: System<N>>(
     let number = S::Scalar::from_f64;
     let (zero, one) = (number(0.0), number(1.0));
     let momenta = |v: &[S::Scalar; N]| system.momenta(t, q, v, inputs);
-    let missing = |found: &[S::Scalar; N]| -> [S::Scalar; N] { core::array::from_fn(|i| p[i] - found[i]) };
+    let missing =
+        |found: &[S::Scalar; N]| -> [S::Scalar; N] { core::array::from_fn(|i| p[i] - found[i]) };
     let factors = |v: &[S::Scalar; N]| Factors::new(system.mass_matrix(t, q, v, inputs));
     let mut v = [zero; N];
     let rest = momenta(&v);
@@ -110,7 +113,8 @@ pub fn newton<const N: usize, S: System<N>>(
             break;
         }
     }
-    // Two steps that only have to stay where there are numbers: derivatives come one step after the values, second ones another.
+    // Two steps that only have to stay where there are numbers: derivatives come one step after the
+    // values, second ones another.
     for _ in 0..2 {
         let step = factors(&v).solve(left).0;
         let trial: [S::Scalar; N] = core::array::from_fn(|i| v[i] + step[i]);
@@ -124,23 +128,29 @@ pub fn newton<const N: usize, S: System<N>>(
     checked(p, &rest, &left, v, &system.mass_matrix(t, q, &v, inputs))
 }
 
-/// The greatest number of trials. Towards a limit of the velocities each step halves the way that is left at least, and two words hold a
-/// hundred halves.
+/// The greatest number of trials. Towards a limit of the velocities each step halves the way that
+/// is left at least, and two words hold a hundred halves.
 const ROUNDS: usize = 256;
 
-/// The velocities `v`, not numbers where the momenta that are `left` are neither the rounding of `p`
-/// nor what a unit in the last place of `v` does to the momenta by the mass matrix there.
+/// The velocities `v`, not numbers where the momenta that are `left` are neither the rounding of
+/// `p` nor what a unit in the last place of `v` does to the momenta by the mass matrix there.
 ///
-/// Towards a limit of the velocities that matrix is huge, and the number nearest to the velocity may
-/// miss a large part of the momentum; towards a limit of the momenta it vanishes, and nothing may be
-/// missed.
-fn checked<T: Real, const N: usize>(p: &[T; N], rest: &[T; N], left: &[T; N], v: [T; N], mass: &SMatrix<T, N, N>) -> [T; N] {
+/// Towards a limit of the velocities that matrix is huge, and the number nearest to the velocity
+/// may miss a large part of the momentum; towards a limit of the momenta it vanishes, and nothing
+/// may be missed.
+fn checked<T: Real, const N: usize>(
+    p: &[T; N],
+    rest: &[T; N],
+    left: &[T; N],
+    v: [T; N],
+    mass: &SMatrix<T, N, N>,
+) -> [T; N] {
     let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
     // Four thirds are rounded, and what is left of them shows by how much.
     let epsilon = (T::from_f64(3.0) * (T::ratio(4.0, 3.0) - one) - one).abs();
     let sizes: [T; N] = core::array::from_fn(|i| p[i].abs() + rest[i].abs());
-    // Products with velocities are energies, which coordinates have in common: a momentum may be what
-    // greater ones leave of each other.
+    // Products with velocities are energies, which coordinates have in common: a momentum may be
+    // what greater ones leave of each other.
     let total = (0..N).fold(zero, |sum, i| sum + v[i].abs() * sizes[i]);
     core::array::from_fn(|i| {
         let weight = v[i].abs().where_positive(v[i].abs(), one);

@@ -1,6 +1,7 @@
 //! The widest vectors of the machine, found out while running.
 
-/// Work that is compiled for several instruction sets: everything that `run` calls must be inlined into it.
+/// Work that is compiled for several instruction sets: everything that `run` calls must be inlined
+/// into it.
 pub(crate) trait Work {
     /// Does it.
     fn run(self);
@@ -30,7 +31,8 @@ pub(crate) fn widest(work: impl Work) {
     pulp::Arch::new().dispatch(Op(work));
 }
 
-/// The same, but with vectors of at most 32 bytes on x86-64: for what is done less often, so that it is compiled once less.
+/// The same, but with vectors of at most 32 bytes on x86-64: for what is done less often, so that
+/// it is compiled once less.
 #[cfg(feature = "simd")]
 #[inline]
 pub(crate) fn wide(work: impl Work) {

@@ -8,10 +8,10 @@ use nalgebra::SMatrix;
 
 /// A mechanical system with `N` generalized coordinates: the equations of motion of one Lagrangian.
 ///
-/// `q` are the coordinates, `v` their velocities q̇, `t` the time in seconds and `inputs` the samples of the driven inputs.
-/// Each function is generated on its own from one shared expression graph, so that what nobody calls costs nothing.
-/// `lagrangian!` implements it; nothing here checks for singular mass matrices or numbers that are not finite, the
-/// integrators do.
+/// `q` are the coordinates, `v` their velocities q̇, `t` the time in seconds and `inputs` the
+/// samples of the driven inputs. Each function is generated on its own from one shared expression
+/// graph, so that what nobody calls costs nothing. `lagrangian!` implements it; nothing here checks
+/// for singular mass matrices or numbers that are not finite, the integrators do.
 pub trait System<const N: usize> {
     /// The scalar of parameters and state.
     type Scalar: Real;
@@ -19,7 +19,8 @@ pub trait System<const N: usize> {
     type Inputs: Samples;
     /// The same system over another scalar.
     type With<U: Real>: System<N, Scalar = U>;
-    /// What the accelerations need and the parameters alone decide, computed once; `()` for systems written by hand.
+    /// What the accelerations need and the parameters alone decide, computed once; `()` for systems
+    /// written by hand.
     type Prepared: Copy + Debug;
 
     /// What is known about the system before it runs.
@@ -55,13 +56,31 @@ pub trait System<const N: usize> {
     ) -> [Self::Scalar; N];
 
     /// The Jacobi integral q̇·∂L/∂q̇ − L.
-    fn energy(&self, t: Self::Scalar, q: &[Self::Scalar; N], v: &[Self::Scalar; N], inputs: &Self::Inputs) -> Self::Scalar;
+    fn energy(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> Self::Scalar;
 
     /// dE/dt along the motion: −∂L/∂t − q̇·∂R/∂q̇ + Q·q̇, where ∂/∂t takes in the driven inputs.
-    fn power(&self, t: Self::Scalar, q: &[Self::Scalar; N], v: &[Self::Scalar; N], inputs: &Self::Inputs) -> Self::Scalar;
+    fn power(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> Self::Scalar;
 
     /// The generalized momenta p = ∂L/∂q̇.
-    fn momenta(&self, t: Self::Scalar, q: &[Self::Scalar; N], v: &[Self::Scalar; N], inputs: &Self::Inputs) -> [Self::Scalar; N];
+    fn momenta(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> [Self::Scalar; N];
 
     /// The velocities q̇ that give the momenta `p`.
     fn velocities(
@@ -82,7 +101,13 @@ pub trait System<const N: usize> {
     ) -> SMatrix<Self::Scalar, N, N>;
 
     /// The right-hand side f of M q̈ = f.
-    fn forces(&self, t: Self::Scalar, q: &[Self::Scalar; N], v: &[Self::Scalar; N], inputs: &Self::Inputs) -> [Self::Scalar; N];
+    fn forces(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> [Self::Scalar; N];
 
     /// The conserved quantities that `FACTS.conserved` names, as far as `values` reaches.
     ///
@@ -98,8 +123,8 @@ pub trait System<const N: usize> {
         let _ = (t, q, v, inputs, values);
     }
 
-    /// dp/dt = ∂L/∂q − ∂R/∂q̇ + Q: the other half of the momentum form, which needs one derivative of the inputs less than
-    /// the accelerations.
+    /// dp/dt = ∂L/∂q − ∂R/∂q̇ + Q: the other half of the momentum form, which needs one derivative
+    /// of the inputs less than the accelerations.
     fn momentum_rates(
         &self,
         t: Self::Scalar,
@@ -108,11 +133,14 @@ pub trait System<const N: usize> {
         inputs: &Self::Inputs,
     ) -> [Self::Scalar; N];
 
-    /// The longest step from `t` that cannot go unseen over what time alone does to the accelerations, in seconds; infinite if it stands nowhere.
+    /// The longest step from `t` that cannot go unseen over what time alone does to the
+    /// accelerations, in seconds; infinite if it stands nowhere.
     ///
-    /// A step may be `widths` times as long as the narrowest function of time is wide, w for exp(−((t − t₀)/w)²), and half as
-    /// long as it is to one that is farther off. Generated code knows the arguments of functions and powers that are polynomials in
-    /// time with coefficients made of parameters, and magnitudes of such; nothing is known of systems written by hand that do not say it.
+    /// A step may be `widths` times as long as the narrowest function of time is wide, w for
+    /// exp(−((t − t₀)/w)²), and half as long as it is to one that is farther off. Generated code
+    /// knows the arguments of functions and powers that are polynomials in time with coefficients
+    /// made of parameters, and magnitudes of such; nothing is known of systems written by hand that
+    /// do not say it.
     fn longest_step(&self, t: Self::Scalar, widths: Self::Scalar) -> Self::Scalar {
         let _ = (t, widths);
         Self::Scalar::from_f64(f64::INFINITY)
@@ -135,11 +163,12 @@ pub trait System<const N: usize> {
     }
 }
 
-/// The accelerations in stages: what parameters decide is [prepared](System::prepare) once, what time and driven inputs decide is
-/// computed once for all systems of a type on a joint, and what the position adds once for all velocities.
+/// The accelerations in stages: what parameters decide is [prepared](System::prepare) once, what
+/// time and driven inputs decide is computed once for all systems of a type on a joint, and what
+/// the position adds once for all velocities.
 ///
-/// The last stage gives the same bits as [`System::accelerations`]. Generated stages are always inlined, so that loops over
-/// [lanes](crate::real::Lanes) use the vectors of the code around them.
+/// The last stage gives the same bits as [`System::accelerations`]. Generated stages are always
+/// inlined, so that loops over [lanes](crate::real::Lanes) use the vectors of the code around them.
 pub trait Staged<const N: usize>: System<N> {
     /// What time and driven inputs alone decide.
     type AtTime: Copy + Debug;
@@ -203,7 +232,10 @@ pub trait Jacobians<const N: usize>: System<N> {
     fn over<U: Real>(&self, map: impl FnMut(Self::Scalar) -> U) -> Self::Over<U>;
 
     /// The samples of the driven inputs with every number mapped.
-    fn inputs_over<U: Real>(inputs: &Self::Inputs, map: impl Fn(Self::Scalar) -> U) -> <Self::Over<U> as System<N>>::Inputs;
+    fn inputs_over<U: Real>(
+        inputs: &Self::Inputs,
+        map: impl Fn(Self::Scalar) -> U,
+    ) -> <Self::Over<U> as System<N>>::Inputs;
 
     /// ∂q̈/∂q, row by acceleration, column by coordinate.
     fn position_jacobian(
@@ -254,7 +286,8 @@ pub struct Facts {
     pub name: &'static str,
     /// The coordinates as written, a family as `θ[0]`, `θ[1]`, ….
     pub coordinates: &'static [&'static str],
-    /// The parameters in the order of [`System::map`], a vector as `c.x`, `c.y`, a family as `m[0]`, ….
+    /// The parameters in the order of [`System::map`], a vector as `c.x`, `c.y`, a family as
+    /// `m[0]`, ….
     pub parameters: &'static [&'static str],
     /// The units of the parameters as written, empty where none was given.
     pub units: &'static [&'static str],
@@ -264,7 +297,8 @@ pub struct Facts {
     pub autonomous: bool,
     /// The time itself stands in the equations, beside driven inputs.
     pub explicit_time: bool,
-    /// The energy is T(p) + V(q, t): the mass matrix is constant and no velocity multiplies a function of the coordinates.
+    /// The energy is T(p) + V(q, t): the mass matrix is constant and no velocity multiplies a
+    /// function of the coordinates.
     pub separable: bool,
     /// The accelerations contain no velocity.
     pub velocity_free: bool,
@@ -274,13 +308,15 @@ pub struct Facts {
     pub nonconservative: bool,
     /// No `abs`, `sign`, `min` or `max` of something that moves stands in the accelerations.
     pub smooth: bool,
-    /// The accelerations are linear in coordinates and velocities, with coefficients that the parameters alone decide.
+    /// The accelerations are linear in coordinates and velocities, with coefficients that the
+    /// parameters alone decide.
     pub linear: bool,
     /// The coordinates that do not stand in the Lagrangian, by index.
     pub cyclic: &'static [usize],
-    /// The conserved quantities that [`System::conserved`] gives, in terms of the momenta: `p_φ`, `x·p_y − y·p_x`. The energy is
-    /// not among them; it is conserved where [`System::power`] is zero, as it is without `dissipation` and `force` if neither time
-    /// nor a driven input stands in the energy.
+    /// The conserved quantities that [`System::conserved`] gives, in terms of the momenta: `p_φ`,
+    /// `x·p_y − y·p_x`. The energy is not among them; it is conserved where [`System::power`] is
+    /// zero, as it is without `dissipation` and `force` if neither time nor a driven input stands
+    /// in the energy.
     pub conserved: &'static [&'static str],
     /// The parameters that the accelerations do not need.
     pub unused: &'static [&'static str],
@@ -342,7 +378,8 @@ pub struct Input {
 
 /// The samples of all driven inputs of a system: `()` or a tuple of [`Sample`]s.
 pub trait Samples: Copy + Debug + PartialEq {
-    /// The first number that is not finite: the input, the derivative (0 for the position) and the component, by index.
+    /// The first number that is not finite: the input, the derivative (0 for the position) and the
+    /// component, by index.
     fn first_not_finite(&self) -> Option<(usize, usize, usize)>;
 }
 
@@ -382,7 +419,10 @@ fn first_in_sample<T: Real, const D: usize>(sample: &Sample<T, D>) -> Option<(us
     let zero = T::from_f64(0.0);
     let infinite = |x: &T| *x * zero != zero;
     let derivatives = [&sample.position, &sample.velocity, &sample.acceleration];
-    derivatives.iter().enumerate().find_map(|(derivative, values)| Some((derivative, values.iter().position(infinite)?)))
+    derivatives
+        .iter()
+        .enumerate()
+        .find_map(|(derivative, values)| Some((derivative, values.iter().position(infinite)?)))
 }
 
 /// The output for which a driven input is sampled.
@@ -390,7 +430,8 @@ fn first_in_sample<T: Real, const D: usize>(sample: &Sample<T, D>) -> Option<(us
 pub enum Purpose {
     /// [`System::accelerations`] and [`System::forces`].
     Accelerations,
-    /// [`System::momenta`], [`System::velocities`], [`System::momentum_rates`] and [`System::mass_matrix`].
+    /// [`System::momenta`], [`System::velocities`], [`System::momentum_rates`] and
+    /// [`System::mass_matrix`].
     Momenta,
     /// [`System::energy`] and the two energies of [`SplitEnergy`].
     Energy,
@@ -412,7 +453,8 @@ impl Input {
 
 /// A system with a motion for each of its driven inputs: what an integrator takes.
 ///
-/// Every system without driven inputs is one; a driven one becomes one by its method `driven_by`, which gives a [`Driven`].
+/// Every system without driven inputs is one; a driven one becomes one by its method `driven_by`,
+/// which gives a [`Driven`].
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be integrated",
     label = "no system whose driven inputs have motions",
@@ -427,13 +469,15 @@ pub trait Dynamics<const N: usize> {
     /// The system.
     fn system(&self) -> &Self::System;
 
-    /// The samples of all driven inputs at `t`, seen from `side`, with the derivatives that `purpose` needs.
+    /// The samples of all driven inputs at `t`, seen from `side`, with the derivatives that
+    /// `purpose` needs.
     fn inputs(&self, t: Time, side: Side, purpose: Purpose) -> <Self::System as System<N>>::Inputs;
 
     /// The first time after `t` at which a derivative of a driven input jumps.
     fn next_kink(&self, t: f64) -> Option<f64>;
 
-    /// The longest step from `t` over the motions, as [`Motion::longest_step`](crate::motion::Motion::longest_step); `unknown` stands for the
+    /// The longest step from `t` over the motions, as
+    /// [`Motion::longest_step`](crate::motion::Motion::longest_step); `unknown` stands for the
     /// answer of those that do not know, and of dynamics with inputs that do not say it.
     #[inline]
     fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
@@ -443,12 +487,18 @@ pub trait Dynamics<const N: usize> {
 
     /// The accelerations at `t`, seen from `side`.
     #[inline]
-    fn accelerations_at(&self, t: Time, side: Side, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> [Self::Scalar; N] {
+    fn accelerations_at(
+        &self,
+        t: Time,
+        side: Side,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+    ) -> [Self::Scalar; N] {
         self.accelerations_with(&self.system().prepare(), t, side, q, v)
     }
 
-    /// The accelerations at `t`, seen from `side`, with what the parameters alone decide computed before: what all methods call, and the place for
-    /// forces beside those of the system.
+    /// The accelerations at `t`, seen from `side`, with what the parameters alone decide computed
+    /// before: what all methods call, and the place for forces beside those of the system.
     #[inline]
     fn accelerations_with(
         &self,
@@ -476,10 +526,17 @@ pub trait Dynamics<const N: usize> {
         self.system().power(scalar_time(t), q, v, &inputs)
     }
 
-    /// The velocities beyond a kink at `t` from those on the side `from`: the momenta are the same on both sides.
+    /// The velocities beyond a kink at `t` from those on the side `from`: the momenta are the same
+    /// on both sides.
     ///
     /// Where nothing that the momenta contain jumps, they are the same numbers.
-    fn across_kink(&self, t: Time, from: Side, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> [Self::Scalar; N] {
+    fn across_kink(
+        &self,
+        t: Time,
+        from: Side,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+    ) -> [Self::Scalar; N] {
         let near = self.inputs(t, from, Purpose::Momenta);
         let far = self.inputs(t, from.opposite(), Purpose::Momenta);
         if near == far {
@@ -561,7 +618,9 @@ impl<'a, D, P> Prepared<'a, D, P> {
     }
 }
 
-impl<const N: usize, D: Dynamics<N>> Dynamics<N> for Prepared<'_, D, <D::System as System<N>>::Prepared> {
+impl<const N: usize, D: Dynamics<N>> Dynamics<N>
+    for Prepared<'_, D, <D::System as System<N>>::Prepared>
+{
     type System = D::System;
     type Scalar = D::Scalar;
 
@@ -584,7 +643,13 @@ impl<const N: usize, D: Dynamics<N>> Dynamics<N> for Prepared<'_, D, <D::System 
     }
 
     #[inline]
-    fn accelerations_at(&self, t: Time, side: Side, q: &[D::Scalar; N], v: &[D::Scalar; N]) -> [D::Scalar; N] {
+    fn accelerations_at(
+        &self,
+        t: Time,
+        side: Side,
+        q: &[D::Scalar; N],
+        v: &[D::Scalar; N],
+    ) -> [D::Scalar; N] {
         self.dynamics.accelerations_with(&self.prepared, t, side, q, v)
     }
 
@@ -611,8 +676,8 @@ pub struct Driven<S, M> {
 }
 
 impl<S, M> Driven<S, M> {
-    /// Binds `motions`, a tuple with one motion for each driven input; does not compile if one of them lacks a derivative that
-    /// the equations need.
+    /// Binds `motions`, a tuple with one motion for each driven input; does not compile if one of
+    /// them lacks a derivative that the equations need.
     pub fn new<const N: usize>(system: S, motions: M) -> Self
     where
         S: System<N>,

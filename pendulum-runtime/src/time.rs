@@ -8,7 +8,8 @@ use core::ops::{Add, AddAssign};
 
 /// A time in seconds, `hi + lo` with |lo| at most half a unit in the last place of `hi`.
 ///
-/// Integrators add their steps to it without losing the low digits; motions take differences to their keys first.
+/// Integrators add their steps to it without losing the low digits; motions take differences to
+/// their keys first.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Time {
     hi: f64,

@@ -5,14 +5,17 @@ use crate::real::{Dual, Real};
 use crate::system::{Facts, Jacobians, System, VelocityFree};
 use nalgebra::{DMatrix, SMatrix};
 
-/// A system together with the variational equations along its motion: a system itself, for every method that takes
-/// equations written by hand (name one: `Dop853`, `Tsit5`, `Gauss`, …).
+/// A system together with the variational equations along its motion: a system itself, for every
+/// method that takes equations written by hand (name one: `Dop853`, `Tsit5`, `Gauss`, …).
 ///
-/// Its `M` coordinates are the `N` of the system and after them columns of `N`: ∂q/∂q₀ for each coordinate at the start, ∂q/∂q̇₀ for each velocity there,
-/// and ∂q/∂p for as many parameters as fit, in the order of `FACTS.parameters`; its velocities are the derivatives of q̇ likewise. Every column δq obeys
-/// δq̈ = A δq + B δq̇ + c with the generated Jacobians A = ∂q̈/∂q, B = ∂q̈/∂q̇ and, for a parameter, c = ∂q̈/∂p. [`size`] gives `M`.
+/// Its `M` coordinates are the `N` of the system and after them columns of `N`: ∂q/∂q₀ for each
+/// coordinate at the start, ∂q/∂q̇₀ for each velocity there, and ∂q/∂p for as many parameters as
+/// fit, in the order of `FACTS.parameters`; its velocities are the derivatives of q̇ likewise.
+/// Every column δq obeys δq̈ = A δq + B δq̇ + c with the generated Jacobians A = ∂q̈/∂q, B =
+/// ∂q̈/∂q̇ and, for a parameter, c = ∂q̈/∂p. [`size`] gives `M`.
 ///
-/// Step control watches the columns as it watches the motion. Over a kink the derivatives of the momenta go on, as the momenta do.
+/// Step control watches the columns as it watches the motion. Over a kink the derivatives of the
+/// momenta go on, as the momenta do.
 ///
 /// ```
 /// use pendulum_runtime::prelude::*;
@@ -42,15 +45,18 @@ use nalgebra::{DMatrix, SMatrix};
 /// # }
 /// ```
 ///
-/// A driven system is varied before its motions are bound: `Driven::new(Variational::<_, 1, M>::new(pendulum), (hand,))`.
+/// A driven system is varied before its motions are bound: `Driven::new(Variational::<_, 1,
+/// M>::new(pendulum), (hand,))`.
 ///
-/// Source: Hairer, Nørsett and Wanner (1993), Solving Ordinary Differential Equations I, I.14, equations 14.6 and 14.8.
+/// Source: Hairer, Nørsett and Wanner (1993), Solving Ordinary Differential Equations I, I.14,
+/// equations 14.6 and 14.8.
 #[derive(Clone, Copy, Debug)]
 pub struct Variational<S, const N: usize, const M: usize> {
     system: S,
 }
 
-/// The number of coordinates of a [`Variational`] system with `coordinates` and the sensitivities to the first `parameters`.
+/// The number of coordinates of a [`Variational`] system with `coordinates` and the sensitivities
+/// to the first `parameters`.
 pub const fn size(coordinates: usize, parameters: usize) -> usize {
     coordinates * (1 + 2 * coordinates + parameters)
 }
@@ -73,9 +79,11 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
         Self { system }
     }
 
-    /// The coordinates and velocities at the start: `q` and `v`, each of which depends on itself alone.
+    /// The coordinates and velocities at the start: `q` and `v`, each of which depends on itself
+    /// alone.
     pub fn start(&self, q: [S::Scalar; N], v: [S::Scalar; N]) -> ([S::Scalar; M], [S::Scalar; M]) {
-        // Column `first + k` has its one in row k: those of the coordinates come first, those of the velocities after them.
+        // Column `first + k` has its one in row k: those of the coordinates come first, those of
+        // the velocities after them.
         let columns = |own: [S::Scalar; N], first: usize| {
             core::array::from_fn(|index| match (index / N, index % N) {
                 (0, row) => own[row],
@@ -94,7 +102,11 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
     ///
     /// # Panics
     /// If there is no such coordinate.
-    pub fn by_position(&self, state: &State<S::Scalar, M>, index: usize) -> ([S::Scalar; N], [S::Scalar; N]) {
+    pub fn by_position(
+        &self,
+        state: &State<S::Scalar, M>,
+        index: usize,
+    ) -> ([S::Scalar; N], [S::Scalar; N]) {
         assert!(index < N, "there is no coordinate {index}");
         (column(&state.q, 1 + index), column(&state.v, 1 + index))
     }
@@ -103,7 +115,11 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
     ///
     /// # Panics
     /// If there is no such coordinate.
-    pub fn by_velocity(&self, state: &State<S::Scalar, M>, index: usize) -> ([S::Scalar; N], [S::Scalar; N]) {
+    pub fn by_velocity(
+        &self,
+        state: &State<S::Scalar, M>,
+        index: usize,
+    ) -> ([S::Scalar; N], [S::Scalar; N]) {
         assert!(index < N, "there is no coordinate {index}");
         (column(&state.q, 1 + N + index), column(&state.v, 1 + N + index))
     }
@@ -112,19 +128,32 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
     ///
     /// # Panics
     /// If its sensitivities are not computed.
-    pub fn by_parameter(&self, state: &State<S::Scalar, M>, index: usize) -> ([S::Scalar; N], [S::Scalar; N]) {
-        assert!(index < Self::PARAMETERS, "the sensitivities to parameter {index} are not computed");
+    pub fn by_parameter(
+        &self,
+        state: &State<S::Scalar, M>,
+        index: usize,
+    ) -> ([S::Scalar; N], [S::Scalar; N]) {
+        assert!(
+            index < Self::PARAMETERS,
+            "the sensitivities to parameter {index} are not computed"
+        );
         (column(&state.q, 1 + 2 * N + index), column(&state.v, 1 + 2 * N + index))
     }
 
-    /// The state transition matrix ∂(q, q̇)/∂(q₀, q̇₀), 2`N` by 2`N`; after a period of a periodic system its monodromy matrix.
+    /// The state transition matrix ∂(q, q̇)/∂(q₀, q̇₀), 2`N` by 2`N`; after a period of a periodic
+    /// system its monodromy matrix.
     pub fn transition(&self, state: &State<S::Scalar, M>) -> DMatrix<S::Scalar> {
         DMatrix::from_fn(2 * N, 2 * N, |row, column| {
-            if row < N { state.q[(1 + column) * N + row] } else { state.v[(1 + column) * N + row - N] }
+            if row < N {
+                state.q[(1 + column) * N + row]
+            } else {
+                state.v[(1 + column) * N + row - N]
+            }
         })
     }
 
-    /// Every column as the derivatives of `output` in its direction; the first `N` entries are those of `own`.
+    /// Every column as the derivatives of `output` in its direction; the first `N` entries are
+    /// those of `own`.
     ///
     /// `output` gets the system, the time, both arrays and the inputs over dual numbers.
     #[allow(clippy::type_complexity)]
@@ -132,7 +161,13 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
         &self,
         own: [S::Scalar; N],
         (t, q, w, inputs): (S::Scalar, &[S::Scalar; M], &[S::Scalar; M], &S::Inputs),
-        output: impl Fn(&Lifted<S, N>, Dual<S::Scalar>, &Duals<S, N>, &Duals<S, N>, &LiftedInputs<S, N>) -> Duals<S, N>,
+        output: impl Fn(
+            &Lifted<S, N>,
+            Dual<S::Scalar>,
+            &Duals<S, N>,
+            &Duals<S, N>,
+            &LiftedInputs<S, N>,
+        ) -> Duals<S, N>,
     ) -> [S::Scalar; M] {
         let inputs = S::inputs_over(inputs, Dual::constant);
         let mut all = [number(0.0); M];
@@ -142,10 +177,15 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
             let system = self.system.over(|value| {
                 parameter += 1;
                 // The parameters follow the 2N columns of the state.
-                if parameter + 2 * N == index { Dual::variable(value) } else { Dual::constant(value) }
+                if parameter + 2 * N == index {
+                    Dual::variable(value)
+                } else {
+                    Dual::constant(value)
+                }
             });
             let lift = |all: &[S::Scalar; M]| {
-                let (value, derivative) = (column::<_, N, M>(all, 0), column::<_, N, M>(all, index));
+                let (value, derivative) =
+                    (column::<_, N, M>(all, 0), column::<_, N, M>(all, index));
                 core::array::from_fn(|i| Dual { value: value[i], derivative: derivative[i] })
             };
             let found = output(&system, Dual::constant(t), &lift(q), &lift(w), &inputs);
@@ -239,52 +279,119 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
         v: &[S::Scalar; M],
         inputs: &S::Inputs,
     ) -> [S::Scalar; M] {
-        self.extended(self.system.accelerations_prepared(prepared, t, &column(q, 0), &column(v, 0), inputs), t, q, v, inputs)
+        self.extended(
+            self.system.accelerations_prepared(prepared, t, &column(q, 0), &column(v, 0), inputs),
+            t,
+            q,
+            v,
+            inputs,
+        )
     }
 
-    fn accelerations(&self, t: S::Scalar, q: &[S::Scalar; M], v: &[S::Scalar; M], inputs: &S::Inputs) -> [S::Scalar; M] {
-        self.extended(self.system.accelerations(t, &column(q, 0), &column(v, 0), inputs), t, q, v, inputs)
+    fn accelerations(
+        &self,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+    ) -> [S::Scalar; M] {
+        self.extended(
+            self.system.accelerations(t, &column(q, 0), &column(v, 0), inputs),
+            t,
+            q,
+            v,
+            inputs,
+        )
     }
 
     /// That of the system.
-    fn energy(&self, t: S::Scalar, q: &[S::Scalar; M], v: &[S::Scalar; M], inputs: &S::Inputs) -> S::Scalar {
+    fn energy(
+        &self,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+    ) -> S::Scalar {
         self.system.energy(t, &column(q, 0), &column(v, 0), inputs)
     }
 
     /// That of the system.
-    fn power(&self, t: S::Scalar, q: &[S::Scalar; M], v: &[S::Scalar; M], inputs: &S::Inputs) -> S::Scalar {
+    fn power(
+        &self,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+    ) -> S::Scalar {
         self.system.power(t, &column(q, 0), &column(v, 0), inputs)
     }
 
     /// Those of the system and their derivatives.
-    fn momenta(&self, t: S::Scalar, q: &[S::Scalar; M], v: &[S::Scalar; M], inputs: &S::Inputs) -> [S::Scalar; M] {
+    fn momenta(
+        &self,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+    ) -> [S::Scalar; M] {
         let own = self.system.momenta(t, &column(q, 0), &column(v, 0), inputs);
         self.derivatives(own, (t, q, v, inputs), System::momenta)
     }
 
-    fn velocities(&self, t: S::Scalar, q: &[S::Scalar; M], p: &[S::Scalar; M], inputs: &S::Inputs) -> [S::Scalar; M] {
+    fn velocities(
+        &self,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        p: &[S::Scalar; M],
+        inputs: &S::Inputs,
+    ) -> [S::Scalar; M] {
         let own = self.system.velocities(t, &column(q, 0), &column(p, 0), inputs);
         self.derivatives(own, (t, q, p, inputs), System::velocities)
     }
 
     /// The mass matrix of the system, once for each column.
-    fn mass_matrix(&self, t: S::Scalar, q: &[S::Scalar; M], v: &[S::Scalar; M], inputs: &S::Inputs) -> SMatrix<S::Scalar, M, M> {
+    fn mass_matrix(
+        &self,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+    ) -> SMatrix<S::Scalar, M, M> {
         let block = self.system.mass_matrix(t, &column(q, 0), &column(v, 0), inputs);
-        SMatrix::from_fn(|row, column| if row / N == column / N { block[(row % N, column % N)] } else { number(0.0) })
+        SMatrix::from_fn(|row, column| {
+            if row / N == column / N { block[(row % N, column % N)] } else { number(0.0) }
+        })
     }
 
-    fn forces(&self, t: S::Scalar, q: &[S::Scalar; M], v: &[S::Scalar; M], inputs: &S::Inputs) -> [S::Scalar; M] {
+    fn forces(
+        &self,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+    ) -> [S::Scalar; M] {
         let block = self.system.mass_matrix(t, &column(q, 0), &column(v, 0), inputs);
         let a = self.accelerations(t, q, v, inputs);
         let own = self.system.forces(t, &column(q, 0), &column(v, 0), inputs);
         core::array::from_fn(|index| {
             let (group, row) = (index / N, index % N);
-            if group == 0 { own[row] } else { (0..N).fold(number(0.0), |sum, j| sum + block[(row, j)] * a[group * N + j]) }
+            if group == 0 {
+                own[row]
+            } else {
+                (0..N).fold(number(0.0), |sum, j| sum + block[(row, j)] * a[group * N + j])
+            }
         })
     }
 
     /// Those of the system.
-    fn conserved(&self, t: S::Scalar, q: &[S::Scalar; M], v: &[S::Scalar; M], inputs: &S::Inputs, values: &mut [S::Scalar]) {
+    fn conserved(
+        &self,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+        values: &mut [S::Scalar],
+    ) {
         self.system.conserved(t, &column(q, 0), &column(v, 0), inputs, values);
     }
 
@@ -293,11 +400,20 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
         self.system.longest_step(t, widths)
     }
 
-    fn momentum_rates(&self, t: S::Scalar, q: &[S::Scalar; M], v: &[S::Scalar; M], inputs: &S::Inputs) -> [S::Scalar; M] {
+    fn momentum_rates(
+        &self,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+    ) -> [S::Scalar; M] {
         let own = self.system.momentum_rates(t, &column(q, 0), &column(v, 0), inputs);
         self.derivatives(own, (t, q, v, inputs), System::momentum_rates)
     }
 }
 
 /// Where the accelerations contain no velocity, their derivatives do not either.
-impl<S: Jacobians<N> + VelocityFree<N>, const N: usize, const M: usize> VelocityFree<M> for Variational<S, N, M> {}
+impl<S: Jacobians<N> + VelocityFree<N>, const N: usize, const M: usize> VelocityFree<M>
+    for Variational<S, N, M>
+{
+}

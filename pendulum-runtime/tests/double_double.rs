@@ -1,4 +1,5 @@
-//! Arithmetic and functions in two words against values of higher precision, `tests/data/double_double.py`.
+//! Arithmetic and functions in two words against values of higher precision,
+//! `tests/data/double_double.py`.
 
 use pendulum_runtime::real::{DoubleDouble, Float, Real};
 
@@ -13,9 +14,12 @@ struct Row {
 fn table() -> impl Iterator<Item = Row> {
     TABLE.lines().map(|line| {
         let (function, rest) = line.split_once(' ').expect("a name");
-        let words: Vec<f64> =
-            rest.split(' ').map(|word| f64::from_bits(u64::from_str_radix(word, 16).expect("hexadecimal bits"))).collect();
-        let mut arguments: Vec<DoubleDouble> = words.chunks(2).map(|pair| DoubleDouble::sum(pair[0], pair[1])).collect();
+        let words: Vec<f64> = rest
+            .split(' ')
+            .map(|word| f64::from_bits(u64::from_str_radix(word, 16).expect("hexadecimal bits")))
+            .collect();
+        let mut arguments: Vec<DoubleDouble> =
+            words.chunks(2).map(|pair| DoubleDouble::sum(pair[0], pair[1])).collect();
         let value = arguments.pop().expect("a value");
         Row { function, arguments, value }
     })
@@ -55,7 +59,10 @@ fn every_function_meets_the_table() {
             _ => panic!("there is no test of {function}"),
         };
         let error = units(found, value);
-        assert!(error <= bound, "{function}{arguments:?}: {found:e} instead of {value:e}, {error:.1} units");
+        assert!(
+            error <= bound,
+            "{function}{arguments:?}: {found:e} instead of {value:e}, {error:.1} units"
+        );
         let largest = worst.entry(function).or_default();
         *largest = largest.max(error);
     }
@@ -88,16 +95,35 @@ fn digits_come_and_go() {
     assert_eq!(format!("{:.3}", number("-0.9996")), "-1.000");
     assert_eq!(format!("{:.0}", number("0.7")), "1");
     assert_eq!(format!("{:.2}", number("0.001")), "0.00");
-    assert_eq!(format!("{:+8.2}|{:<8.1}|{:08.1}", number("1.25"), number("1.75"), number("-2.5")), "   +1.25|1.8     |-00002.5");
-    assert_eq!(format!("{:e} {:.2e} {:e}", number("1500"), number("9.999"), number("0")), "1.5e3 1.00e1 0e0");
-    assert_eq!(format!("{} {}", DoubleDouble::from(f64::NAN), -DoubleDouble::from(f64::INFINITY)), "NaN -inf");
+    assert_eq!(
+        format!("{:+8.2}|{:<8.1}|{:08.1}", number("1.25"), number("1.75"), number("-2.5")),
+        "   +1.25|1.8     |-00002.5"
+    );
+    assert_eq!(
+        format!("{:e} {:.2e} {:e}", number("1500"), number("9.999"), number("0")),
+        "1.5e3 1.00e1 0e0"
+    );
+    assert_eq!(
+        format!("{} {}", DoubleDouble::from(f64::NAN), -DoubleDouble::from(f64::INFINITY)),
+        "NaN -inf"
+    );
     assert_eq!(DoubleDouble::from(0.1).to_string(), "0.10000000000000000555111512312578");
     assert_eq!(DoubleDouble::from(5e-324).to_string(), "4.9406564584124654417656879286822e-324");
     assert_eq!(number("+12.5E-1"), DoubleDouble::from(1.25));
     assert_eq!(number("1e400").to_f64(), f64::INFINITY);
     assert_eq!(number("1e-400").to_f64(), 0.0);
     assert_eq!(number("0.1"), DoubleDouble::ratio(1.0, 10.0));
-    for (text, at) in [("", 0), ("-", 1), (".", 1), ("1.2.3", 3), ("1e", 2), ("1e+", 3), ("1 ", 1), ("inf", 0), ("0x10", 1)] {
+    for (text, at) in [
+        ("", 0),
+        ("-", 1),
+        (".", 1),
+        ("1.2.3", 3),
+        ("1e", 2),
+        ("1e+", 3),
+        ("1 ", 1),
+        ("inf", 0),
+        ("0x10", 1),
+    ] {
         assert_eq!(text.parse::<DoubleDouble>().unwrap_err().at, at, "{text}");
     }
     assert!("1,5".parse::<DoubleDouble>().unwrap_err().to_string().contains("byte 1"));
@@ -135,11 +161,16 @@ fn limits_are_those_of_one_word() {
         ("sqrt", Real::sqrt, Real::sqrt),
     ];
     for (name, wide, narrow) in one {
-        for x in [inf, -inf, nan, zero, -zero, 1.0, -1.0, 1.5, -1.5, 1e300, 5e-324, 800.0, -800.0, 709.75, -740.0] {
+        for x in [
+            inf, -inf, nan, zero, -zero, 1.0, -1.0, 1.5, -1.5, 1e300, 5e-324, 800.0, -800.0,
+            709.75, -740.0,
+        ] {
             let (found, expected) = (wide(x.into()), narrow(x));
             let (high, low) = (found.high(), found.low());
             assert!(
-                high.is_nan() && expected.is_nan() || high == expected || (high - expected).abs() <= 2e-16 * expected.abs(),
+                high.is_nan() && expected.is_nan()
+                    || high == expected
+                    || (high - expected).abs() <= 2e-16 * expected.abs(),
                 "{name} {x}: {high:e} {expected:e}"
             );
             assert!(high.is_finite() || low == 0.0, "{name} {x}");
@@ -155,7 +186,8 @@ fn limits_are_those_of_one_word() {
         ("max", Real::max, Real::max),
         ("min", Real::min, Real::min),
     ];
-    let values = [inf, -inf, nan, zero, -zero, 1.0, -1.0, 0.5, -2.0, 3.0, 1e300, 1e-300, 1.7e308, 5e-324];
+    let values =
+        [inf, -inf, nan, zero, -zero, 1.0, -1.0, 0.5, -2.0, 3.0, 1e300, 1e-300, 1.7e308, 5e-324];
     for (name, wide, narrow) in two {
         for (a, b) in values.iter().flat_map(|a| values.map(|b| (*a, b))) {
             let (found, expected) = (wide(a.into(), b.into()), narrow(a, b));
@@ -174,10 +206,19 @@ fn limits_are_those_of_one_word() {
 
 #[test]
 fn quotients_of_small_numbers_are_as_large_as_they_are() {
-    for (a, b) in [("1e-150", "1e-300"), ("1e-280", "1e-10"), ("1e300", "1e150"), ("1e150", "1e-150"), ("1e-200", "1e60")] {
+    for (a, b) in [
+        ("1e-150", "1e-300"),
+        ("1e-280", "1e-10"),
+        ("1e300", "1e150"),
+        ("1e150", "1e-150"),
+        ("1e-200", "1e60"),
+    ] {
         let (a, b) = (number(a), number(b));
         let quotient = a / b;
-        assert!(quotient.is_finite() && units(quotient * b, a) < 1e5, "{a:?} / {b:?} = {quotient:?}");
+        assert!(
+            quotient.is_finite() && units(quotient * b, a) < 1e5,
+            "{a:?} / {b:?} = {quotient:?}"
+        );
     }
 }
 
@@ -186,7 +227,10 @@ fn order_looks_at_both_words() {
     let (a, b) = (DoubleDouble::sum(1.0, -1e-20), DoubleDouble::sum(1.0, 1e-20));
     assert!(a < DoubleDouble::from(1.0) && DoubleDouble::from(1.0) < b && a != b);
     assert_eq!((a.max(b), a.min(b)), (b, a));
-    assert_eq!(((b - a).sign().to_f64(), (a - b).step().to_f64(), (a - a).step().to_f64()), (1.0, 0.0, 0.5));
+    assert_eq!(
+        ((b - a).sign().to_f64(), (a - b).step().to_f64(), (a - a).step().to_f64()),
+        (1.0, 0.0, 0.5)
+    );
     assert_eq!((-a).abs(), a);
     assert!(DoubleDouble::from(f64::NAN).partial_cmp(&a).is_none());
 }

@@ -1,4 +1,5 @@
-//! Sine and cosine against correctly rounded values, `tests/data/trig.py`, and against their identities.
+//! Sine and cosine against correctly rounded values, `tests/data/trig.py`, and against their
+//! identities.
 
 use pendulum_runtime::real::Real;
 
@@ -11,7 +12,8 @@ struct Words {
 }
 
 impl Words {
-    /// The distance of `value` from here in units in the last place of the correctly rounded result.
+    /// The distance of `value` from here in units in the last place of the correctly rounded
+    /// result.
     fn ulps(&self, value: f64) -> f64 {
         let magnitude = self.hi.abs();
         let ulp = f64::from_bits(magnitude.to_bits() + 1) - magnitude;
@@ -27,9 +29,15 @@ struct Row {
 
 fn table() -> impl Iterator<Item = Row> {
     TABLE.lines().map(|line| {
-        let mut numbers = line.split(' ').map(|word| f64::from_bits(u64::from_str_radix(word, 16).expect("hexadecimal bits")));
+        let mut numbers = line
+            .split(' ')
+            .map(|word| f64::from_bits(u64::from_str_radix(word, 16).expect("hexadecimal bits")));
         let mut next = || numbers.next().expect("five words a line");
-        Row { x: next(), sin: Words { hi: next(), lo: next() }, cos: Words { hi: next(), lo: next() } }
+        Row {
+            x: next(),
+            sin: Words { hi: next(), lo: next() },
+            cos: Words { hi: next(), lo: next() },
+        }
     })
 }
 
@@ -65,7 +73,11 @@ fn the_table_is_met_below_one_unit_in_the_last_place() {
     for row in table() {
         let (sin, cos) = Real::sin_cos(row.x);
         let errors = (row.sin.ulps(sin), row.cos.ulps(cos));
-        assert!(errors.0 < 0.85 && errors.1 < 0.85, "sine and cosine of {:e} are off by {errors:?}", row.x);
+        assert!(
+            errors.0 < 0.85 && errors.1 < 0.85,
+            "sine and cosine of {:e} are off by {errors:?}",
+            row.x
+        );
         worst_sin = worst_sin.max(errors.0);
         worst_cos = worst_cos.max(errors.1);
         rows += 1;
@@ -90,7 +102,11 @@ fn single_precision_is_correctly_rounded_where_doubles_decide() {
 fn each_alone_has_the_bits_of_the_pair() {
     for x in arguments(100_000).chain(table().map(|row| row.x)) {
         let (sin, cos) = Real::sin_cos(x);
-        assert_eq!((Real::sin(x).to_bits(), Real::cos(x).to_bits()), (sin.to_bits(), cos.to_bits()), "{x:e}");
+        assert_eq!(
+            (Real::sin(x).to_bits(), Real::cos(x).to_bits()),
+            (sin.to_bits(), cos.to_bits()),
+            "{x:e}"
+        );
     }
 }
 
@@ -152,7 +168,10 @@ fn single_precision_holds_for_every_exponent() {
             for (ours, exact) in [(sin, exact.0), (cos, exact.1)] {
                 let magnitude = (exact as f32).abs();
                 let ulp = f64::from(f32::from_bits(magnitude.to_bits() + 1)) - f64::from(magnitude);
-                assert!((f64::from(ours) - exact).abs() <= 0.501 * ulp, "{ours:e} is not {exact:e} at {x:e}");
+                assert!(
+                    (f64::from(ours) - exact).abs() <= 0.501 * ulp,
+                    "{ours:e} is not {exact:e} at {x:e}"
+                );
             }
         }
     }
@@ -170,11 +189,20 @@ fn every_function_has_the_same_bits_on_every_machine() {
     for x in arguments(20_000) {
         let (sin, cos) = Real::sin_cos(x);
         let small = x % 1.0;
-        for value in [sin, cos, Real::tan(x), Real::asin(small), Real::acos(small), Real::atan(x), Real::atan2(x, small)] {
+        for value in [
+            sin,
+            cos,
+            Real::tan(x),
+            Real::asin(small),
+            Real::acos(small),
+            Real::atan(x),
+            Real::atan2(x, small),
+        ] {
             take(value);
         }
         let middle = x % 16.0;
-        for value in [Real::sinh(middle), Real::cosh(middle), Real::tanh(middle), Real::exp(middle)] {
+        for value in [Real::sinh(middle), Real::cosh(middle), Real::tanh(middle), Real::exp(middle)]
+        {
             take(value);
         }
         take(Real::ln(Real::abs(x)));

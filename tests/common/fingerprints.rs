@@ -1,4 +1,5 @@
-//! The final states of every method and of ten kinds of systems as hashes: what must be the same in every build on every machine.
+//! The final states of every method and of ten kinds of systems as hashes: what must be the same in
+//! every build on every machine.
 
 #![allow(missing_docs)]
 
@@ -39,7 +40,9 @@ lagrangian! {
 /// The hash of Fowler, Noll and Vo (FNV-1a) of all bits of a state.
 fn hash(numbers: impl IntoIterator<Item = f64>) -> u64 {
     let bytes = numbers.into_iter().flat_map(|number| number.to_bits().to_le_bytes());
-    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
 }
 
 fn hash_of<T: Float, const N: usize>(state: &State<T, N>) -> u64 {
@@ -105,7 +108,8 @@ pub(crate) fn all() -> Vec<String> {
     let mut lines = Vec::new();
     let times = [0.0, 0.7, 1.9, 2.4, 4.0, 5.5];
     let keys = [[0.0, 0.0], [0.3, 0.1], [-0.2, 0.05], [0.1, -0.1], [0.4, 0.0], [0.0, 0.2]];
-    let (spline, line) = (Spline::natural(&times, &keys).expect("keys"), Linear::new(&times, &keys).expect("keys"));
+    let (spline, line) =
+        (Spline::natural(&times, &keys).expect("keys"), Linear::new(&times, &keys).expect("keys"));
     let links: [f64; 9] = core::array::from_fn(|i| 0.3 + 0.1 * i as f64);
 
     let simple = Simple::new(1.0);
@@ -118,7 +122,8 @@ pub(crate) fn all() -> Vec<String> {
         "QuinlanTremaine12" QuinlanTremaine::<12>::new() => step 0.02;
         "Taylor" Taylor::new() => rtol 1e-15;
     }
-    let (smooth, kinked) = (Hung::new(0.5, 9.81).driven_by(spline), Hung::new(0.5, 9.81).driven_by(line));
+    let (smooth, kinked) =
+        (Hung::new(0.5, 9.81).driven_by(spline), Hung::new(0.5, 9.81).driven_by(line));
     kinds!(lines, "hung_spline", &smooth, [0.3], [0.0]);
     run! { lines, "hung_lines", &kinked, [0.3], [0.0],
         "Leapfrog" Leapfrog => step 0.01;
@@ -161,7 +166,8 @@ pub(crate) fn classical_step<T: Real, S: System<N, Scalar = T, Inputs = ()>, con
     h: T,
 ) {
     let (half, two, six) = (T::from_f64(0.5), T::from_f64(2.0), T::from_f64(6.0));
-    let along = |x: &[T; N], k: &[T; N], h: T| -> [T; N] { core::array::from_fn(|i| x[i] + h * k[i]) };
+    let along =
+        |x: &[T; N], k: &[T; N], h: T| -> [T; N] { core::array::from_fn(|i| x[i] + h * k[i]) };
     let t = T::from_f64(0.0);
     let (q1, v1) = (*v, system.accelerations(t, q, v, &()));
     let (q2, middle) = (along(v, &v1, half * h), along(q, &q1, half * h));
@@ -176,43 +182,94 @@ pub(crate) fn classical_step<T: Real, S: System<N, Scalar = T, Inputs = ()>, con
     }
 }
 
-/// The systems without drive in eight lanes: the number of lanes whose bits differ from those of the system alone, after `steps` steps.
+/// The systems without drive in eight lanes: the number of lanes whose bits differ from those of
+/// the system alone, after `steps` steps.
 pub(crate) fn lanes_that_differ(steps: usize) -> Vec<(&'static str, usize)> {
     let links: [f64; 9] = core::array::from_fn(|i| 0.3 + 0.1 * i as f64);
     vec![
-        ("simple", differing(&Simple::new(1.0), [1.3], [0.0], steps, |system| system.map(Lanes::splat))),
-        ("henon_heiles", differing(&HenonHeiles::new(1.0), [0.1, 0.0], [0.0, 0.5], steps, |system| system.map(Lanes::splat))),
-        ("forced", differing(&Forced::new(0.25), [0.0], [0.0], steps, |system| system.map(Lanes::splat))),
         (
-            "double",
-            differing(&Double::new([1.0, 0.7], [0.9, 1.1], 9.81), [0.5, -0.25], [0.0; 2], steps, |system| {
+            "simple",
+            differing(&Simple::new(1.0), [1.3], [0.0], steps, |system| system.map(Lanes::splat)),
+        ),
+        (
+            "henon_heiles",
+            differing(&HenonHeiles::new(1.0), [0.1, 0.0], [0.0, 0.5], steps, |system| {
                 system.map(Lanes::splat)
             }),
         ),
-        ("cart", differing(&Cart::new(2.0, 1.0, 1.0, 1.0), [0.0, 2.0], [0.0; 2], steps, |system| system.map(Lanes::splat))),
-        ("spherical", differing(&Spherical::new(1.0, 1.0), [1.0, 0.0], [0.0, 1.0], steps, |system| system.map(Lanes::splat))),
-        ("kepler", differing(&Kepler::new(1.0), [0.7, 0.0], [0.0, 1.3], steps, |system| system.map(Lanes::splat))),
-        ("chain", differing(&Chain::new(links, [0.2; 9], 9.81), links, [0.0; 9], steps, |system| system.map(Lanes::splat))),
-        ("functions", differing(&Functions::new(0.3), [0.4, -0.7], [0.5, 0.2], steps, |system| system.map(Lanes::splat))),
+        (
+            "forced",
+            differing(&Forced::new(0.25), [0.0], [0.0], steps, |system| system.map(Lanes::splat)),
+        ),
+        (
+            "double",
+            differing(
+                &Double::new([1.0, 0.7], [0.9, 1.1], 9.81),
+                [0.5, -0.25],
+                [0.0; 2],
+                steps,
+                |system| system.map(Lanes::splat),
+            ),
+        ),
+        (
+            "cart",
+            differing(&Cart::new(2.0, 1.0, 1.0, 1.0), [0.0, 2.0], [0.0; 2], steps, |system| {
+                system.map(Lanes::splat)
+            }),
+        ),
+        (
+            "spherical",
+            differing(&Spherical::new(1.0, 1.0), [1.0, 0.0], [0.0, 1.0], steps, |system| {
+                system.map(Lanes::splat)
+            }),
+        ),
+        (
+            "kepler",
+            differing(&Kepler::new(1.0), [0.7, 0.0], [0.0, 1.3], steps, |system| {
+                system.map(Lanes::splat)
+            }),
+        ),
+        (
+            "chain",
+            differing(&Chain::new(links, [0.2; 9], 9.81), links, [0.0; 9], steps, |system| {
+                system.map(Lanes::splat)
+            }),
+        ),
+        (
+            "functions",
+            differing(&Functions::new(0.3), [0.4, -0.7], [0.5, 0.2], steps, |system| {
+                system.map(Lanes::splat)
+            }),
+        ),
     ]
 }
 
 const LANES: usize = 8;
 
-fn differing<S, W, const N: usize>(system: &S, q: [f64; N], v: [f64; N], steps: usize, widen: impl Fn(&S) -> W) -> usize
+fn differing<S, W, const N: usize>(
+    system: &S,
+    q: [f64; N],
+    v: [f64; N],
+    steps: usize,
+    widen: impl Fn(&S) -> W,
+) -> usize
 where
     S: System<N, Scalar = f64, Inputs = ()>,
     W: System<N, Scalar = Lanes<f64, LANES>, Inputs = ()>,
 {
     let start = |lane: usize, i: usize| q[i] * (1.0 - 0.03 * lane as f64);
     let wide = widen(system);
-    let mut qs: [Lanes<f64, LANES>; N] = core::array::from_fn(|i| Lanes(core::array::from_fn(|lane| start(lane, i))));
+    let mut qs: [Lanes<f64, LANES>; N] =
+        core::array::from_fn(|i| Lanes(core::array::from_fn(|lane| start(lane, i))));
     let mut vs = v.map(Lanes::splat);
     (0..steps).for_each(|_| classical_step(&wide, &mut qs, &mut vs, Lanes::splat(0.01)));
     let same = |lane: usize| {
         let (mut one, mut speed) = (core::array::from_fn(|i| start(lane, i)), v);
         (0..steps).for_each(|_| classical_step(system, &mut one, &mut speed, 0.01));
-        (0..N).all(|i| one[i].to_bits() == qs[i].0[lane].to_bits() && speed[i].to_bits() == vs[i].0[lane].to_bits())
+        (0..N).all(|i| {
+            one[i].to_bits() == qs[i].0[lane].to_bits()
+                && speed[i].to_bits() == vs[i].0[lane].to_bits()
+        })
     };
     (0..LANES).filter(|&lane| !same(lane)).count()
 }

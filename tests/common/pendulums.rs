@@ -38,7 +38,8 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A rigid body on a pivot: `c` is its centre of mass at rest and `I` its moment of inertia, both about the pivot.
+    /// A rigid body on a pivot: `c` is its centre of mass at rest and `I` its moment of inertia,
+    /// both about the pivot.
     #[derive(Clone, Debug)]
     pub struct Compound { m: kg, c: [m; 2], I: kg*m^2, g: m/s^2 = 9.81 }
     coordinate θ: rad;

@@ -1,5 +1,6 @@
-//! Random systems, compiled and run: what generated code gives is what the generator's own evaluation of the source says, in `f64` and in
-//! double-double, jets have the derivatives of the motion, and a motion that is run backwards comes back to its start.
+//! Random systems, compiled and run: what generated code gives is what the generator's own
+//! evaluation of the source says, in `f64` and in double-double, jets have the derivatives of the
+//! motion, and a motion that is run backwards comes back to its start.
 
 #![allow(mixed_script_confusables, confusable_idents, missing_docs)]
 
@@ -15,7 +16,8 @@ use polynomial::Driving;
 #[rustfmt::skip]
 mod blocks;
 
-/// A state of a system with `N` coordinates and `J` components of driven inputs, and what the source says there.
+/// A state of a system with `N` coordinates and `J` components of driven inputs, and what the
+/// source says there.
 pub(crate) struct Case<const N: usize, const J: usize> {
     t: f64,
     q: [f64; N],
@@ -39,11 +41,14 @@ pub(crate) fn words<T: Real>(high: f64, low: f64) -> T {
 
 /// Compares with digits, relative to the largest of them and to one.
 fn compare<T: Float>(what: &str, found: &[T], expected: &[&str], bar: f64) {
-    let expected: Vec<DoubleDouble> = expected.iter().map(|digits| digits.parse().unwrap()).collect();
+    let expected: Vec<DoubleDouble> =
+        expected.iter().map(|digits| digits.parse().unwrap()).collect();
     let scale = expected.iter().fold(1.0, |scale: f64, x| scale.max(x.to_f64().abs()));
     for (x, expected) in found.iter().zip(&expected) {
         let high = x.to_f64();
-        let error = (DoubleDouble::sum(high, (*x - T::from_f64(high)).to_f64()) - *expected).to_f64().abs() / scale;
+        let error =
+            (DoubleDouble::sum(high, (*x - T::from_f64(high)).to_f64()) - *expected).to_f64().abs()
+                / scale;
         assert!(error < bar, "{what}: {high} instead of {expected}, which is {error:e} off");
     }
 }
@@ -85,13 +90,20 @@ macro_rules! components {
 components!(A 0);
 components!(A 0, B 1);
 
-fn outputs<S, const N: usize, const J: usize>(name: &str, system: &S, inputs: &S::Inputs, case: &Case<N, J>, bar: f64)
-where
+fn outputs<S, const N: usize, const J: usize>(
+    name: &str,
+    system: &S,
+    inputs: &S::Inputs,
+    case: &Case<N, J>,
+    bar: f64,
+) where
     S: Staged<N, Scalar: Float>,
 {
     let of = |values: [f64; N]| values.map(S::Scalar::from_f64);
     let (t, q, v) = (S::Scalar::from_f64(case.t), of(case.q), of(case.v));
-    let compare = |what: &str, found: &[S::Scalar], expected: &[&str]| compare(&format!("{name}, {what}"), found, expected, bar);
+    let compare = |what: &str, found: &[S::Scalar], expected: &[&str]| {
+        compare(&format!("{name}, {what}"), found, expected, bar);
+    };
     let accelerations = system.accelerations(t, &q, &v, inputs);
     compare("accelerations", &accelerations, &case.accelerations);
     let momenta = system.momenta(t, &q, &v, inputs);
@@ -101,10 +113,18 @@ where
     compare("power", &[system.power(t, &q, &v, inputs)], &[case.power]);
     // The same bits in stages.
     let prepared = system.prepare();
-    assert_eq!(system.accelerations_prepared(&prepared, t, &q, &v, inputs), accelerations, "{name}");
+    assert_eq!(
+        system.accelerations_prepared(&prepared, t, &q, &v, inputs),
+        accelerations,
+        "{name}"
+    );
     let at_time = S::at_time(t, inputs);
     let at_position = system.at_position(&prepared, &at_time, t, &q, inputs);
-    assert_eq!(system.accelerations_staged(&prepared, &at_time, &at_position, t, &q, &v, inputs), accelerations, "{name}");
+    assert_eq!(
+        system.accelerations_staged(&prepared, &at_time, &at_position, t, &q, &v, inputs),
+        accelerations,
+        "{name}"
+    );
     // M q̈ = f, and the velocities that have these momenta.
     let matrix = system.mass_matrix(t, &q, &v, inputs);
     let forces = system.forces(t, &q, &v, inputs);
@@ -118,14 +138,19 @@ where
             scale += size(part);
         }
         assert!(size(sum) < bar * scale, "{name}: row {i} of M q̈ = f is {:e} off", size(sum));
-        assert!(size(back[i] - v[i]) < 100.0 * bar, "{name}: velocity {i} is {:e} off", size(back[i] - v[i]));
+        assert!(
+            size(back[i] - v[i]) < 100.0 * bar,
+            "{name}: velocity {i} is {:e} off",
+            size(back[i] - v[i])
+        );
     }
 }
 
 /// Checks the outputs of one module in one scalar.
 macro_rules! in_scalar {
     ($module:ident, $scalar:ty, $bar:expr) => {{
-        let (system, inputs) = (blocks::$module::system::<$scalar>(), blocks::$module::inputs::<$scalar>());
+        let (system, inputs) =
+            (blocks::$module::system::<$scalar>(), blocks::$module::inputs::<$scalar>());
         outputs(stringify!($module), &system, &inputs, &blocks::$module::CASE, $bar);
     }};
 }
@@ -133,24 +158,43 @@ macro_rules! in_scalar {
 /// Checks the Taylor coefficients of the accelerations of one module.
 macro_rules! jets {
     ($module:ident) => {{
-        let (system, inputs, case) = (blocks::$module::system(), blocks::$module::inputs::<f64>(), &blocks::$module::CASE);
-        let (mut path, mut drive, mut work) = (Path::<f64, _>::new(), DriveOf::drive_of(&system), system.work());
+        let (system, inputs, case) =
+            (blocks::$module::system(), blocks::$module::inputs::<f64>(), &blocks::$module::CASE);
+        let (mut path, mut drive, mut work) =
+            (Path::<f64, _>::new(), DriveOf::drive_of(&system), system.work());
         path.t = case.t;
         for (i, (&q, v)) in case.q.iter().zip(case.v).enumerate() {
             (path.q[i][0], path.v[i][0]) = (q, v);
         }
         let components: Vec<[f64; 3]> = inputs.components();
-        for (series, ([x, v, a], jerk)) in drive.iter_mut().zip(components.into_iter().zip(case.jerks)) {
+        for (series, ([x, v, a], jerk)) in
+            drive.iter_mut().zip(components.into_iter().zip(case.jerks))
+        {
             *series = cubic([x, v, a, jerk]);
         }
         run(&system, &mut path, &drive, &mut work);
         let name = stringify!($module);
-        compare(&format!("{name}, third derivatives"), &path.a.map(|series| series[1]), &case.third, 1e-11);
-        compare(&format!("{name}, fourth derivatives"), &path.a.map(|series| 2.0 * series[2]), &case.fourth, 1e-10);
+        compare(
+            &format!("{name}, third derivatives"),
+            &path.a.map(|series| series[1]),
+            &case.third,
+            1e-11,
+        );
+        compare(
+            &format!("{name}, fourth derivatives"),
+            &path.a.map(|series| 2.0 * series[2]),
+            &case.fourth,
+            1e-10,
+        );
     }};
 }
 
-fn run<S: Jets<N>, const N: usize>(system: &S, path: &mut Path<S::Scalar, N>, drive: &S::Drive, work: &mut S::Work) {
+fn run<S: Jets<N>, const N: usize>(
+    system: &S,
+    path: &mut Path<S::Scalar, N>,
+    drive: &S::Drive,
+    work: &mut S::Work,
+) {
     S::Orders::run(system, 6, path, drive, work);
 }
 
@@ -163,19 +207,29 @@ trait DriveOf<const N: usize>: Jets<N> {
 
 impl<S: Jets<N>, const N: usize> DriveOf<N> for S {}
 
-/// How far a motion of one module ends from its start when it is run for a while and back, as far as it goes and is smooth.
+/// How far a motion of one module ends from its start when it is run for a while and back, as far
+/// as it goes and is smooth.
 macro_rules! there_and_back {
     ($module:ident, $apart:ident) => {{
         let (system, case) = (blocks::$module::system::<f64>(), &blocks::$module::CASE);
         if smooth(&system) {
-            let dynamics = Driven::new(system, blocks::$module::inputs::<f64>().motions(case.t, &case.jerks));
-            let run =
-                |time, q, v| solve(&dynamics, time, q, v).method(Taylor::new()).rtol(1e-17).run().map(|solution| solution.end);
+            let dynamics =
+                Driven::new(system, blocks::$module::inputs::<f64>().motions(case.t, &case.jerks));
+            let run = |time, q, v| {
+                solve(&dynamics, time, q, v)
+                    .method(Taylor::new())
+                    .rtol(1e-17)
+                    .run()
+                    .map(|solution| solution.end)
+            };
             let end = run((case.t, case.t + 0.25), case.q, case.v).unwrap();
             let back = run((case.t + 0.25, case.t), end.q, end.v).unwrap();
-            let size = |x: &[f64], y: &[f64]| x.iter().chain(y).fold(1.0, |size: f64, x| size.max(x.abs()));
+            let size = |x: &[f64], y: &[f64]| {
+                x.iter().chain(y).fold(1.0, |size: f64, x| size.max(x.abs()))
+            };
             let pairs = back.q.iter().zip(&case.q).chain(back.v.iter().zip(&case.v));
-            let own = pairs.fold(0.0, |worst: f64, (x, y)| worst.max((x - y).abs())) / size(&end.q, &end.v);
+            let own = pairs.fold(0.0, |worst: f64, (x, y)| worst.max((x - y).abs()))
+                / size(&end.q, &end.v);
             $apart.push((stringify!($module), own));
         }
     }};

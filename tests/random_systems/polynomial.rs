@@ -14,7 +14,10 @@ pub(crate) struct Cubic<const D: usize> {
 impl<const D: usize> Cubic<D> {
     fn new(at: f64, sample: &Sample<f64, D>, jerks: &[f64]) -> Self {
         let Sample { position, velocity, acceleration } = sample;
-        Self { at, orders: core::array::from_fn(|i| [position[i], velocity[i], acceleration[i], jerks[i]]) }
+        Self {
+            at,
+            orders: core::array::from_fn(|i| [position[i], velocity[i], acceleration[i], jerks[i]]),
+        }
     }
 
     /// The derivatives of a component at `t`.
@@ -63,7 +66,8 @@ impl<const D: usize> Analytic<f64, D> for Cubic<D> {
 pub(crate) trait Driving {
     type Motions;
 
-    /// The motions with these samples at `t`; `jerks` are their third derivatives, component by component.
+    /// The motions with these samples at `t`; `jerks` are their third derivatives, component by
+    /// component.
     fn motions(&self, t: f64, jerks: &[f64]) -> Self::Motions;
 }
 

@@ -27,10 +27,15 @@ fn rule(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
     match graph.node(id).clone() {
         Node::Number(_) | Node::Opaque(_) | Node::Pi => Graph::ZERO,
         Node::Symbol(own) if own == symbol => Graph::ONE,
-        Node::Symbol(Symbol::Moment(first, moment)) => moment_derivative(graph, first, moment, symbol),
+        Node::Symbol(Symbol::Moment(first, moment)) => {
+            moment_derivative(graph, first, moment, symbol)
+        }
         Node::Symbol(_) => Graph::ZERO,
         Node::Sum(terms) => {
-            let terms: Vec<(Id, Rational)> = terms.iter().map(|&(term, coefficient)| (known(graph, term), coefficient)).collect();
+            let terms: Vec<(Id, Rational)> = terms
+                .iter()
+                .map(|&(term, coefficient)| (known(graph, term), coefficient))
+                .collect();
             graph.sum(&terms)
         }
         Node::Product(coefficient, factors) => {
@@ -39,7 +44,8 @@ fn rule(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
                 let inner = known(graph, base);
                 if inner != Graph::ZERO {
                     let power = graph.number(exponent);
-                    // Its own exponent is lowered, not the node divided: a broken power of a product would not cancel, and be NaN at zero.
+                    // Its own exponent is lowered, not the node divided: a broken power of a
+                    // product would not cancel, and be NaN at zero.
                     let mut parts = factors.clone();
                     match exponent.add(Rational::MINUS_ONE) {
                         Some(lowered) => parts[place].1 = lowered,
@@ -104,7 +110,8 @@ fn function_derivative(g: &mut Graph, function: Function, u: Id, value: Id) -> I
     }
 }
 
-/// The derivative of a second moment about the pivot, S = C + m c cᵀ, to mass, centre and central moments.
+/// The derivative of a second moment about the pivot, S = C + m c cᵀ, to mass, centre and central
+/// moments.
 fn moment_derivative(graph: &mut Graph, first: usize, moment: Moment, symbol: Symbol) -> Id {
     let Symbol::Parameter(parameter) = symbol else { return Graph::ZERO };
     let [m, x, y] = [0, 1, 2].map(|offset| graph.symbol(Symbol::Parameter(first + offset)));
@@ -128,7 +135,8 @@ fn moment_derivative(graph: &mut Graph, first: usize, moment: Moment, symbol: Sy
         }
         1 => graph.product(Rational::whole(2), &[(m, Rational::ONE), (x, Rational::ONE)]),
         2 => {
-            let slope = graph.product(Rational::whole(2), &[(m, Rational::ONE), (y, Rational::ONE)]);
+            let slope =
+                graph.product(Rational::whole(2), &[(m, Rational::ONE), (y, Rational::ONE)]);
             graph.scale(signs[1], slope)
         }
         3 => Graph::ONE,

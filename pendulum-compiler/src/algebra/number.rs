@@ -4,7 +4,8 @@ use std::fmt;
 
 /// A fraction in lowest terms with a positive denominator.
 ///
-/// Its order is that of its two words, good for sorting only. Arithmetic that leaves 128 bits answers `None`, and the graph then keeps the operation unevaluated.
+/// Its order is that of its two words, good for sorting only. Arithmetic that leaves 128 bits
+/// answers `None`, and the graph then keeps the operation unevaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct Rational {
     numerator: i128,
@@ -30,7 +31,10 @@ impl Rational {
         }
         let divisor = gcd(numerator.unsigned_abs(), denominator.unsigned_abs()).cast_signed();
         let sign = denominator.signum();
-        Some(Self { numerator: sign * numerator / divisor, denominator: sign * denominator / divisor })
+        Some(Self {
+            numerator: sign * numerator / divisor,
+            denominator: sign * denominator / divisor,
+        })
     }
 
     pub(crate) fn numerator(self) -> i128 {
@@ -104,18 +108,26 @@ impl Rational {
     pub(crate) fn power(self, exponent: i64) -> Option<Self> {
         let base = if exponent < 0 { self.reciprocal()? } else { self };
         let exponent = u32::try_from(exponent.unsigned_abs()).ok()?;
-        Some(Self { numerator: base.numerator.checked_pow(exponent)?, denominator: base.denominator.checked_pow(exponent)? })
+        Some(Self {
+            numerator: base.numerator.checked_pow(exponent)?,
+            denominator: base.denominator.checked_pow(exponent)?,
+        })
     }
 
     /// The exact `degree`-th root, if there is one.
     pub(crate) fn root(self, degree: u32) -> Option<Self> {
-        Some(Self { numerator: whole_root(self.numerator, degree)?, denominator: whole_root(self.denominator, degree)? })
+        Some(Self {
+            numerator: whole_root(self.numerator, degree)?,
+            denominator: whole_root(self.denominator, degree)?,
+        })
     }
 
     /// The content of two coefficients: the largest fraction of which both are whole multiples.
     pub(crate) fn content(self, other: Self) -> Option<Self> {
-        let numerator = gcd(self.numerator.unsigned_abs(), other.numerator.unsigned_abs()).cast_signed();
-        let shared = gcd(self.denominator.unsigned_abs(), other.denominator.unsigned_abs()).cast_signed();
+        let numerator =
+            gcd(self.numerator.unsigned_abs(), other.numerator.unsigned_abs()).cast_signed();
+        let shared =
+            gcd(self.denominator.unsigned_abs(), other.denominator.unsigned_abs()).cast_signed();
         Self::new(numerator, (self.denominator / shared).checked_mul(other.denominator)?)
     }
 
@@ -137,7 +149,11 @@ impl Rational {
         let numerator: i128 = format!("{whole}{fraction}").parse().ok()?;
         let shift = exponent.checked_sub(i32::try_from(fraction.len()).ok()?)?;
         let scale = 10i128.checked_pow(shift.unsigned_abs())?;
-        if shift < 0 { Self::new(numerator, scale) } else { Self::new(numerator.checked_mul(scale)?, 1) }
+        if shift < 0 {
+            Self::new(numerator, scale)
+        } else {
+            Self::new(numerator.checked_mul(scale)?, 1)
+        }
     }
 
     /// Whether numerator and denominator are exact in `f64`.
@@ -149,7 +165,8 @@ impl Rational {
     /// The nearest double to a positive number, and the double nearest to what that leaves off.
     pub(crate) fn words(self) -> (f64, f64) {
         let bottom = self.denominator.unsigned_abs();
-        let (mut quotient, mut rest) = (self.numerator.unsigned_abs() / bottom, self.numerator.unsigned_abs() % bottom);
+        let (mut quotient, mut rest) =
+            (self.numerator.unsigned_abs() / bottom, self.numerator.unsigned_abs() % bottom);
         let mut unit = 1.0;
         // Long division in binary, to 120 digits.
         while quotient < 1 << 119 {
@@ -167,7 +184,11 @@ impl Rational {
 
 impl fmt::Display for Rational {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.is_integer() { write!(f, "{}", self.numerator) } else { write!(f, "{}/{}", self.numerator, self.denominator) }
+        if self.is_integer() {
+            write!(f, "{}", self.numerator)
+        } else {
+            write!(f, "{}/{}", self.numerator, self.denominator)
+        }
     }
 }
 
@@ -185,7 +206,11 @@ fn whole_root(value: i128, degree: u32) -> Option<i128> {
     let (mut low, mut high) = (0i128, 1i128 << (127 / degree).min(126));
     while low < high {
         let middle = low + (high - low) / 2;
-        if middle.checked_pow(degree).is_none_or(|power| value <= power) { high = middle } else { low = middle + 1 }
+        if middle.checked_pow(degree).is_none_or(|power| value <= power) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
     }
     (low.checked_pow(degree) == Some(value)).then_some(low)
 }
@@ -200,7 +225,11 @@ pub(crate) enum Literal {
 /// A whole number as an exponent: ⁻¹, ², ³.
 pub(crate) fn superscript(value: i64) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    value.to_string().chars().map(|digit| digit.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize])).collect()
+    value
+        .to_string()
+        .chars()
+        .map(|digit| digit.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize]))
+        .collect()
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! One order for one system: expressions rebuilt so that nothing remembers how they were written.
 //!
-//! Ids grow with use, and sums and products are sorted by id. Rebuilding a graph from its leaves upwards, each level sorted by
-//! what it is made of, gives equal systems equal graphs, whatever notation they came in: the same operations in the same order.
+//! Ids grow with use, and sums and products are sorted by id. Rebuilding a graph from its leaves
+//! upwards, each level sorted by what it is made of, gives equal systems equal graphs, whatever
+//! notation they came in: the same operations in the same order.
 
 use crate::algebra::expr::{Dependencies, Graph, Id, Node};
 use crate::algebra::number::Rational;
@@ -23,7 +24,8 @@ pub(crate) fn canonicalize(old: &Graph, roots: &mut [&mut Id]) -> Graph {
     let mut graph = Graph::new();
     let mut known: BTreeMap<Id, Id> = BTreeMap::new();
     for level in levels {
-        let mut keyed: Vec<(Key, Id)> = level.into_iter().map(|id| (key(old, id, &mut graph, &known), id)).collect();
+        let mut keyed: Vec<(Key, Id)> =
+            level.into_iter().map(|id| (key(old, id, &mut graph, &known), id)).collect();
         keyed.sort();
         for (_, id) in keyed {
             let new = graph.rebuilt(old.node(id), |child| known[&child]);
@@ -41,11 +43,17 @@ type Key = (u8, Node, Vec<(Id, Rational)>);
 
 fn key(old: &Graph, id: Id, graph: &mut Graph, known: &BTreeMap<Id, Id>) -> Key {
     let dependencies = old.dependencies(id);
-    let rank = [Dependencies::VELOCITY, Dependencies::COORDINATE, Dependencies::INPUT, Dependencies::TIME];
-    let rank = rank.into_iter().position(|kind| dependencies.any(kind)).map_or(0, |place| 4 - u8::try_from(place).unwrap_or(0));
+    let rank =
+        [Dependencies::VELOCITY, Dependencies::COORDINATE, Dependencies::INPUT, Dependencies::TIME];
+    let rank = rank
+        .into_iter()
+        .position(|kind| dependencies.any(kind))
+        .map_or(0, |place| 4 - u8::try_from(place).unwrap_or(0));
     let bare = |id: Id, graph: &mut Graph| graph.split(known[&id]);
     let (shape, mut parts) = match old.node(id) {
-        node @ (Node::Number(_) | Node::Opaque(_) | Node::Pi | Node::Symbol(_)) => (node.clone(), Vec::new()),
+        node @ (Node::Number(_) | Node::Opaque(_) | Node::Pi | Node::Symbol(_)) => {
+            (node.clone(), Vec::new())
+        }
         Node::Sum(terms) => {
             let part = |&(term, coefficient): &(Id, Rational)| {
                 let (own, term) = bare(term, graph);
@@ -54,15 +62,24 @@ fn key(old: &Graph, id: Id, graph: &mut Graph, known: &BTreeMap<Id, Id>) -> Key 
             (Node::Sum(Vec::new()), terms.iter().map(part).collect::<Vec<_>>())
         }
         Node::Product(coefficient, factors) => {
-            let parts = factors.iter().map(|&(base, exponent)| (bare(base, graph).1, exponent)).collect();
+            let parts =
+                factors.iter().map(|&(base, exponent)| (bare(base, graph).1, exponent)).collect();
             (Node::Product(coefficient.abs(), Vec::new()), parts)
         }
-        &Node::Call(function, argument) => (Node::Call(function, Graph::ZERO), vec![(bare(argument, graph).1, Rational::ONE)]),
-        &Node::Atan2(y, x) => {
-            (Node::Atan2(Graph::ZERO, Graph::ZERO), [y, x].map(|id| (bare(id, graph).1, Rational::ONE)).to_vec())
+        &Node::Call(function, argument) => {
+            (Node::Call(function, Graph::ZERO), vec![(bare(argument, graph).1, Rational::ONE)])
         }
-        &Node::Max(a, b) => (Node::Max(Graph::ZERO, Graph::ZERO), [a, b].map(|id| (bare(id, graph).1, Rational::ONE)).to_vec()),
-        &Node::Atom(inner) => (Node::Atom(Graph::ZERO), vec![(bare(inner, graph).1, Rational::ONE)]),
+        &Node::Atan2(y, x) => (
+            Node::Atan2(Graph::ZERO, Graph::ZERO),
+            [y, x].map(|id| (bare(id, graph).1, Rational::ONE)).to_vec(),
+        ),
+        &Node::Max(a, b) => (
+            Node::Max(Graph::ZERO, Graph::ZERO),
+            [a, b].map(|id| (bare(id, graph).1, Rational::ONE)).to_vec(),
+        ),
+        &Node::Atom(inner) => {
+            (Node::Atom(Graph::ZERO), vec![(bare(inner, graph).1, Rational::ONE)])
+        }
     };
     if matches!(shape, Node::Sum(_)) {
         parts.sort_unstable();

@@ -121,7 +121,11 @@ impl Residue {
         };
         let numerator = reduce(value.numerator());
         // Most are whole, and a reciprocal costs a hundred products.
-        if value.denominator() == 1 { Some(numerator) } else { Some(numerator.mul(reduce(value.denominator()).reciprocal()?)) }
+        if value.denominator() == 1 {
+            Some(numerator)
+        } else {
+            Some(numerator.mul(reduce(value.denominator()).reciprocal()?))
+        }
     }
 
     /// The fraction of small numbers that this residue is, if there is one (Wang 1981).
@@ -171,7 +175,9 @@ impl Point {
             if let Node::Call(Function::Sin | Function::Cos, argument) = *graph.node(id) {
                 for (_, coefficient) in linear(graph, argument).unwrap_or_default() {
                     let own = i64::try_from(coefficient.denominator()).unwrap_or(1);
-                    if denominator % own != 0 && denominator.checked_mul(own).is_some_and(|product| product < 1 << 20) {
+                    if denominator % own != 0
+                        && denominator.checked_mul(own).is_some_and(|product| product < 1 << 20)
+                    {
                         denominator *= own;
                     }
                 }
@@ -180,7 +186,8 @@ impl Point {
         Self { seed, denominator, roots: Roots::Prime }
     }
 
-    /// A point at which roots are unknown functions: equal values belong to expressions that are equal wherever both are real.
+    /// A point at which roots are unknown functions: equal values belong to expressions that are
+    /// equal wherever both are real.
     pub(crate) fn formal(graph: &Graph, roots: &[Id], seed: u64) -> Self {
         Self { roots: Roots::Formal, ..Self::new(graph, roots, seed) }
     }
@@ -229,7 +236,9 @@ impl Point {
                     let (cos, sin) = self.circle(graph, *argument, known[argument])?;
                     if *function == Function::Sin { sin } else { cos }
                 }
-                Node::Call(function, argument) => self.random(&[*function as u64, known[argument].key(), 3]),
+                Node::Call(function, argument) => {
+                    self.random(&[*function as u64, known[argument].key(), 3])
+                }
                 Node::Atan2(a, b) => self.random(&[known[a].key(), known[b].key(), 4]),
                 Node::Max(a, b) => self.random(&[known[a].key(), known[b].key(), 5]),
                 Node::Atom(inner) => known[inner],
@@ -250,7 +259,8 @@ impl Point {
         Some(root.power(u64::try_from(exponent.numerator().unsigned_abs()).ok()?))
     }
 
-    /// Cosine and sine of an angle: a product of rotations for a linear one, a random rotation otherwise.
+    /// Cosine and sine of an angle: a product of rotations for a linear one, a random rotation
+    /// otherwise.
     fn circle(&self, graph: &Graph, argument: Id, value: Residue) -> Option<(Residue, Residue)> {
         let Some(terms) = linear(graph, argument) else { return self.rotation(&[value.key(), 7]) };
         let mut total = (Residue::ONE, Residue::ZERO);
@@ -259,7 +269,10 @@ impl Point {
             let (cos, sin) = self.rotation(&[base.index() as u64, 8])?;
             let sin = if steps < 0 { sin.negative() } else { sin };
             for _ in 0..steps.unsigned_abs().min(1 << 12) {
-                total = (total.0.mul(cos).add(total.1.mul(sin).negative()), total.0.mul(sin).add(total.1.mul(cos)));
+                total = (
+                    total.0.mul(cos).add(total.1.mul(sin).negative()),
+                    total.0.mul(sin).add(total.1.mul(cos)),
+                );
             }
         }
         Some(total)
@@ -279,7 +292,9 @@ impl Point {
             Symbol::Time => [1, 0, 0, 0],
             Symbol::Coordinate(index) => [2, index as u64, 0, 0],
             Symbol::Velocity(index) => [3, index as u64, 0, 0],
-            Symbol::Input { input, component, order } => [4, input as u64, component as u64, u64::from(order)],
+            Symbol::Input { input, component, order } => {
+                [4, input as u64, component as u64, u64::from(order)]
+            }
             Symbol::Momentum(index) => [5, index as u64, 0, 0],
             Symbol::Moment(first, moment) => [6, first as u64, moment as u64, 0],
             Symbol::Point(level, component) => [7, level as u64, component as u64, 0],
@@ -325,7 +340,9 @@ pub(crate) fn null_space(mut rows: Vec<Vec<Residue>>, width: usize) -> Vec<Vec<R
     let mut pivots = Vec::new();
     for column in 0..width {
         let done = pivots.len();
-        let Some(found) = (done..rows.len()).find(|&row| rows[row][column] != Residue::ZERO) else { continue };
+        let Some(found) = (done..rows.len()).find(|&row| rows[row][column] != Residue::ZERO) else {
+            continue;
+        };
         rows.swap(done, found);
         let Some(inverse) = rows[done][column].reciprocal() else { continue };
         for entry in &mut rows[done] {
@@ -364,7 +381,8 @@ mod tests {
     fn vanishes(expression: &str) -> bool {
         let mut graph = Graph::new();
         let id = lowered(&mut graph, expression);
-        let values = (0..64).filter_map(|seed| Point::new(&graph, &[id], seed).values(&graph, &[id]));
+        let values =
+            (0..64).filter_map(|seed| Point::new(&graph, &[id], seed).values(&graph, &[id]));
         let mut count = 0;
         let all = values.inspect(|_| count += 1).all(|values| values[&id] == Residue::ZERO);
         assert!(0 < count);
@@ -397,7 +415,8 @@ mod tests {
             let again = mixed.mul(mixed).extended_root().unwrap();
             assert!(again == mixed || again == mixed.negative(), "{mixed:?} and {again:?}");
         }
-        let exist = (0..400).filter(|&value| number(value).add(i).extended_root().is_some()).count();
+        let exist =
+            (0..400).filter(|&value| number(value).add(i).extended_root().is_some()).count();
         assert!((150..250).contains(&exist), "{exist} roots of 400");
     }
 
@@ -411,13 +430,16 @@ mod tests {
 
     #[test]
     fn the_null_space_is_orthogonal_to_every_row() {
-        let row = |values: [i64; 4]| values.map(|value| Residue::of(Rational::whole(value)).unwrap()).to_vec();
+        let row = |values: [i64; 4]| {
+            values.map(|value| Residue::of(Rational::whole(value)).unwrap()).to_vec()
+        };
         let rows = vec![row([1, 2, 3, 4]), row([2, 4, 6, 8]), row([0, 1, -1, 5])];
         let basis = null_space(rows.clone(), 4);
         assert_eq!(basis.len(), 2);
         for vector in basis {
             for row in &rows {
-                let product = row.iter().zip(&vector).fold(Residue::ZERO, |sum, (a, b)| sum.add(a.mul(*b)));
+                let product =
+                    row.iter().zip(&vector).fold(Residue::ZERO, |sum, (a, b)| sum.add(a.mul(*b)));
                 assert_eq!(product, Residue::ZERO);
             }
         }

@@ -1,14 +1,18 @@
 //! The simplifier: one table of named rules, tried whenever a node is made.
 //!
-//! Each row names the rule, the pattern, the result and, last, the function that finds the one and answers the other. The
-//! patterns are text that the tests parse: both sides are evaluated at random points, and the left side must become the right.
+//! Each row names the rule, the pattern, the result and, last, the function that finds the one and
+//! answers the other. The patterns are text that the tests parse: both sides are evaluated at
+//! random points, and the left side must become the right.
 
 use crate::algebra::expr::{Function, Graph, Id, Node, Terms};
 use crate::algebra::number::Rational;
 use std::collections::BTreeMap;
 
 /// A rule on one kind of node.
-#[cfg_attr(not(test), allow(dead_code, reason = "name and patterns are for the reader and the tests"))]
+#[cfg_attr(
+    not(test),
+    allow(dead_code, reason = "name and patterns are for the reader and the tests")
+)]
 pub(crate) struct Rule {
     pub(crate) name: &'static str,
     pub(crate) left: &'static str,
@@ -72,9 +76,10 @@ pub(crate) const RULES: &[Rule] = &[
     sum("sin-sum",                        "sin(a)*cos(b) + cos(a)*sin(b)",         "sin(a + b)",     angle_sum),
 ];
 
-/// Rules that keep digits: where the two sides of the left form are close, their difference has few digits left, the product on the right
-/// has all of them. They cost more than they save, so that they are tried on energies only, which are read as values; equations of
-/// motion are derivatives, which do not cancel there.
+/// Rules that keep digits: where the two sides of the left form are close, their difference has few
+/// digits left, the product on the right has all of them. They cost more than they save, so that
+/// they are tried on energies only, which are read as values; equations of motion are derivatives,
+/// which do not cancel there.
 #[rustfmt::skip]
 pub(crate) const CANCELLATIONS: &[Rule] = &[
     sum("one-minus-cos",                  "b - b*cos(a)",                          "2*b*sin(a/2)^2", one_and_cosines),
@@ -103,7 +108,12 @@ fn rewrite_cancellation(graph: &mut Graph, id: Id) -> Option<Id> {
     CANCELLATIONS.iter().find_map(|rule| {
         let Apply::Sum(apply) = rule.apply else { return None };
         let Edit { removed, mut added } = apply(graph, &terms)?;
-        added.extend(terms.iter().filter(|(term, _)| !removed.contains(term)).map(|(&term, &coefficient)| (term, coefficient)));
+        added.extend(
+            terms
+                .iter()
+                .filter(|(term, _)| !removed.contains(term))
+                .map(|(&term, &coefficient)| (term, coefficient)),
+        );
         Some(graph.sum(&added))
     })
 }
@@ -153,7 +163,12 @@ const fn call(
     Rule { name, left, right, apply: Apply::Call(function, apply) }
 }
 
-const fn sum(name: &'static str, left: &'static str, right: &'static str, apply: fn(&mut Graph, &Terms) -> Option<Edit>) -> Rule {
+const fn sum(
+    name: &'static str,
+    left: &'static str,
+    right: &'static str,
+    apply: fn(&mut Graph, &Terms) -> Option<Edit>,
+) -> Rule {
     Rule { name, left, right, apply: Apply::Sum(apply) }
 }
 
@@ -235,7 +250,9 @@ fn abs_number(graph: &mut Graph, argument: Id) -> Option<Id> {
 
 fn sign_number(graph: &mut Graph, argument: Id) -> Option<Id> {
     match *graph.node(argument) {
-        Node::Number(value) if !value.is_zero() => Some(graph.whole(if value.is_negative() { -1 } else { 1 })),
+        Node::Number(value) if !value.is_zero() => {
+            Some(graph.whole(if value.is_negative() { -1 } else { 1 }))
+        }
         _ => None,
     }
 }
@@ -243,7 +260,9 @@ fn sign_number(graph: &mut Graph, argument: Id) -> Option<Id> {
 /// |u²| = u², and |c u²| = |c| u².
 fn abs_square(graph: &mut Graph, argument: Id) -> Option<Id> {
     match graph.node(argument) {
-        Node::Product(coefficient, factors) if factors.iter().all(|(_, exponent)| exponent.is_even()) => {
+        Node::Product(coefficient, factors)
+            if factors.iter().all(|(_, exponent)| exponent.is_even()) =>
+        {
             let positive = !coefficient.is_negative();
             Some(if positive { argument } else { graph.negative(argument) })
         }
@@ -278,7 +297,8 @@ fn pythagoras(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
     terms.iter().find_map(|(&term, &coefficient)| {
         squares(graph, term, Function::Sin).into_iter().find_map(|(argument, rest)| {
             let cos = graph.call(Function::Cos, argument);
-            let partner = graph.product(Rational::ONE, &[(rest, Rational::ONE), (cos, Rational::whole(2))]);
+            let partner =
+                graph.product(Rational::ONE, &[(rest, Rational::ONE), (cos, Rational::whole(2))]);
             (terms.get(&partner) == Some(&coefficient))
                 .then(|| Edit { removed: vec![term, partner], added: vec![(rest, coefficient)] })
         })
@@ -288,16 +308,24 @@ fn pythagoras(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
 /// c·r - c·r·cos²u = c·r·sin²u, and with the two exchanged.
 fn one_minus_square(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
     terms.iter().find_map(|(&term, &coefficient)| {
-        [(Function::Cos, Function::Sin), (Function::Sin, Function::Cos)].into_iter().find_map(|(from, to)| {
-            squares(graph, term, from).into_iter().find_map(|(argument, rest)| {
-                if terms.get(&rest) != Some(&coefficient.negative()) {
-                    return None;
-                }
-                let other = graph.call(to, argument);
-                let square = graph.product(Rational::ONE, &[(rest, Rational::ONE), (other, Rational::whole(2))]);
-                Some(Edit { removed: vec![term, rest], added: vec![(square, coefficient.negative())] })
-            })
-        })
+        [(Function::Cos, Function::Sin), (Function::Sin, Function::Cos)].into_iter().find_map(
+            |(from, to)| {
+                squares(graph, term, from).into_iter().find_map(|(argument, rest)| {
+                    if terms.get(&rest) != Some(&coefficient.negative()) {
+                        return None;
+                    }
+                    let other = graph.call(to, argument);
+                    let square = graph.product(
+                        Rational::ONE,
+                        &[(rest, Rational::ONE), (other, Rational::whole(2))],
+                    );
+                    Some(Edit {
+                        removed: vec![term, rest],
+                        added: vec![(square, coefficient.negative())],
+                    })
+                })
+            },
+        )
     })
 }
 
@@ -306,14 +334,16 @@ fn hyperbolic_pythagoras(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
     terms.iter().find_map(|(&term, &coefficient)| {
         squares(graph, term, Function::Cosh).into_iter().find_map(|(argument, rest)| {
             let sinh = graph.call(Function::Sinh, argument);
-            let partner = graph.product(Rational::ONE, &[(rest, Rational::ONE), (sinh, Rational::whole(2))]);
+            let partner =
+                graph.product(Rational::ONE, &[(rest, Rational::ONE), (sinh, Rational::whole(2))]);
             (terms.get(&partner) == Some(&coefficient.negative()))
                 .then(|| Edit { removed: vec![term, partner], added: vec![(rest, coefficient)] })
         })
     })
 }
 
-/// The arguments whose `function` stands squared in `term`, each with what is left without that square.
+/// The arguments whose `function` stands squared in `term`, each with what is left without that
+/// square.
 fn squares(graph: &mut Graph, term: Id, function: Function) -> Vec<(Id, Id)> {
     let mut found = Vec::new();
     for (base, exponent) in graph.factors(term) {
@@ -321,7 +351,10 @@ fn squares(graph: &mut Graph, term: Id, function: Function) -> Vec<(Id, Id)> {
             && of == function
             && exponent.integer().is_some_and(|exponent| 2 <= exponent)
         {
-            found.push((argument, graph.product(Rational::ONE, &[(term, Rational::ONE), (base, Rational::whole(-2))])));
+            found.push((
+                argument,
+                graph.product(Rational::ONE, &[(term, Rational::ONE), (base, Rational::whole(-2))]),
+            ));
         }
     }
     found
@@ -335,7 +368,9 @@ fn angle_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
             .into_iter()
             .filter(|(_, exponent)| exponent.is_integer() && !exponent.is_negative())
             .filter_map(|(base, _)| match *graph.node(base) {
-                Node::Call(function @ (Function::Sin | Function::Cos), argument) => Some((base, function, argument)),
+                Node::Call(function @ (Function::Sin | Function::Cos), argument) => {
+                    Some((base, function, argument))
+                }
                 _ => None,
             })
             .collect();
@@ -344,20 +379,31 @@ fn angle_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
                 if a == b {
                     continue;
                 }
-                let over = [(term, Rational::ONE), (left, Rational::MINUS_ONE), (right, Rational::MINUS_ONE)];
+                let over = [
+                    (term, Rational::ONE),
+                    (left, Rational::MINUS_ONE),
+                    (right, Rational::MINUS_ONE),
+                ];
                 let rest = graph.product(Rational::ONE, &over);
-                let exchanged = [graph.call(other(f), a), graph.call(other(g), b)].map(|id| (id, Rational::ONE));
-                let partner = graph.product(Rational::ONE, &[(rest, Rational::ONE), exchanged[0], exchanged[1]]);
+                let exchanged = [graph.call(other(f), a), graph.call(other(g), b)]
+                    .map(|id| (id, Rational::ONE));
+                let partner = graph
+                    .product(Rational::ONE, &[(rest, Rational::ONE), exchanged[0], exchanged[1]]);
                 let Some(&second) = terms.get(&partner) else { continue };
                 let same = second == coefficient;
                 if !same && second != coefficient.negative() {
                     continue;
                 }
-                // sin a cos b ± cos a sin b, cos a cos b ± sin a sin b: the coefficient is that of the first product.
+                // sin a cos b ± cos a sin b, cos a cos b ± sin a sin b: the coefficient is that of
+                // the first product.
                 let (function, angle, sign) = match (f, g) {
-                    (Function::Cos, Function::Cos) if same => (Function::Cos, graph.sub(a, b), coefficient),
+                    (Function::Cos, Function::Cos) if same => {
+                        (Function::Cos, graph.sub(a, b), coefficient)
+                    }
                     (Function::Cos, Function::Cos) => (Function::Cos, graph.add(a, b), coefficient),
-                    (Function::Sin, Function::Sin) if same => (Function::Cos, graph.sub(a, b), coefficient),
+                    (Function::Sin, Function::Sin) if same => {
+                        (Function::Cos, graph.sub(a, b), coefficient)
+                    }
                     (Function::Sin, Function::Sin) => (Function::Cos, graph.add(a, b), second),
                     (_, _) if same => (Function::Sin, graph.add(a, b), coefficient),
                     (Function::Sin, _) => (Function::Sin, graph.sub(a, b), coefficient),
@@ -376,25 +422,33 @@ fn angle_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
 fn cosine_terms(graph: &mut Graph, terms: &Terms) -> Vec<(Id, Id, Rational, Id)> {
     let mut found = Vec::new();
     for (&term, &coefficient) in terms {
-        let cosine = graph.factors(term).into_iter().find_map(|(base, exponent)| match *graph.node(base) {
-            Node::Call(Function::Cos, argument) if exponent == Rational::ONE => Some((base, argument)),
-            _ => None,
-        });
+        let cosine =
+            graph.factors(term).into_iter().find_map(|(base, exponent)| match *graph.node(base) {
+                Node::Call(Function::Cos, argument) if exponent == Rational::ONE => {
+                    Some((base, argument))
+                }
+                _ => None,
+            });
         if let Some((base, argument)) = cosine {
-            let rest = graph.product(Rational::ONE, &[(term, Rational::ONE), (base, Rational::MINUS_ONE)]);
+            let rest =
+                graph.product(Rational::ONE, &[(term, Rational::ONE), (base, Rational::MINUS_ONE)]);
             found.push((rest, term, coefficient, argument));
         }
     }
     found
 }
 
-/// r - r·cos u = 2r·sin²(u/2) and r + r·cos u = 2r·cos²(u/2), where the cosines of r use its coefficient up.
+/// r - r·cos u = 2r·sin²(u/2) and r + r·cos u = 2r·cos²(u/2), where the cosines of r use its
+/// coefficient up.
 fn one_and_cosines(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
     let cosines = cosine_terms(graph, terms);
     let half = Rational::new(1, 2)?;
     terms.iter().find_map(|(&rest, &whole)| {
-        let own: Vec<&(Id, Id, Rational, Id)> = cosines.iter().filter(|(other, ..)| *other == rest).collect();
-        let used = own.iter().try_fold(Rational::ZERO, |sum, (_, _, coefficient, _)| sum.add(coefficient.abs()))?;
+        let own: Vec<&(Id, Id, Rational, Id)> =
+            cosines.iter().filter(|(other, ..)| *other == rest).collect();
+        let used = own
+            .iter()
+            .try_fold(Rational::ZERO, |sum, (_, _, coefficient, _)| sum.add(coefficient.abs()))?;
         if own.is_empty() || used != whole.abs() {
             return None;
         }
@@ -403,8 +457,10 @@ fn one_and_cosines(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
             let same = coefficient.is_negative() == whole.is_negative();
             let angle = graph.scale(half, argument);
             let value = graph.call(if same { Function::Cos } else { Function::Sin }, angle);
-            let square = graph.product(Rational::ONE, &[(rest, Rational::ONE), (value, Rational::whole(2))]);
-            let twice = coefficient.abs().mul(Rational::whole(if whole.is_negative() { -2 } else { 2 }))?;
+            let square =
+                graph.product(Rational::ONE, &[(rest, Rational::ONE), (value, Rational::whole(2))]);
+            let twice =
+                coefficient.abs().mul(Rational::whole(if whole.is_negative() { -2 } else { 2 }))?;
             removed.push(term);
             added.push((square, twice));
         }
@@ -426,8 +482,12 @@ fn cosines(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
                 let angle = graph.scale(half, angle);
                 (graph.call(Function::Sin, angle), Rational::ONE)
             });
-            let value = graph.product(Rational::ONE, &[(rest, Rational::ONE), factors[0], factors[1]]);
-            return Some(Edit { removed: vec![first, second], added: vec![(value, coefficient.mul(Rational::whole(2))?)] });
+            let value =
+                graph.product(Rational::ONE, &[(rest, Rational::ONE), factors[0], factors[1]]);
+            return Some(Edit {
+                removed: vec![first, second],
+                added: vec![(value, coefficient.mul(Rational::whole(2))?)],
+            });
         }
     }
     None

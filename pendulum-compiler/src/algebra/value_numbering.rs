@@ -1,8 +1,9 @@
 //! Value numbering: expressions that are equal without looking equal become one.
 //!
-//! Hashing finds what is built alike. What only has the same value, such as (a + b)(a − b) and a² − b², has the same residue at random
-//! points of a prime field (Gulwani and Necula 2003); the cheapest of its forms stands for all, up to sign. Roots are treated as unknown
-//! functions here, because a root in the field has no sign.
+//! Hashing finds what is built alike. What only has the same value, such as (a + b)(a − b) and a² −
+//! b², has the same residue at random points of a prime field (Gulwani and Necula 2003); the
+//! cheapest of its forms stands for all, up to sign. Roots are treated as unknown functions here,
+//! because a root in the field has no sign.
 
 use crate::algebra::expr::{Graph, Id, Node};
 use crate::algebra::number::Rational;
@@ -30,7 +31,8 @@ pub(crate) fn numbered(graph: &mut Graph, roots: &[Id]) -> Vec<Id> {
     if points.len() < POINTS {
         return roots.to_vec();
     }
-    // The cheapest form of each value; a form never contains itself, because its parts cost no more and are older.
+    // The cheapest form of each value; a form never contains itself, because its parts cost no more
+    // and are older.
     let mut constants: BTreeMap<Id, Rational> = BTreeMap::new();
     let mut forms: BTreeMap<Vec<Residue>, Vec<(Id, bool)>> = BTreeMap::new();
     let mut keys: BTreeMap<Id, (Vec<Residue>, bool)> = BTreeMap::new();
@@ -51,17 +53,20 @@ pub(crate) fn numbered(graph: &mut Graph, roots: &[Id]) -> Vec<Id> {
         keys.insert(id, (key, flipped));
     }
     let unique = forms.len() == keys.len();
-    // The cheapest form of each value; a form never contains itself, because its parts cost no more and are older.
+    // The cheapest form of each value; a form never contains itself, because its parts cost no more
+    // and are older.
     let cheapest = |forms: Vec<(Id, bool)>| {
         let costs = |&(id, _): &(Id, bool)| (velocity_polynomial::cost(graph, id), id);
         if let [only] = forms[..] { Some(only) } else { forms.into_iter().min_by_key(costs) }
     };
-    let best: Best = forms.into_iter().filter_map(|(key, forms)| Some((key, cheapest(forms)?))).collect();
+    let best: Best =
+        forms.into_iter().filter_map(|(key, forms)| Some((key, cheapest(forms)?))).collect();
     let plain = constants.keys().all(|&id| matches!(graph.node(id), Node::Number(_)));
     if unique && plain {
         return roots.to_vec();
     }
-    let mut known: BTreeMap<Id, Id> = constants.into_iter().map(|(id, value)| (id, graph.number(value))).collect();
+    let mut known: BTreeMap<Id, Id> =
+        constants.into_iter().map(|(id, value)| (id, graph.number(value))).collect();
     roots.iter().map(|&root| rebuilt(graph, root, &best, &keys, &mut known)).collect()
 }
 
@@ -86,7 +91,8 @@ fn rebuilt(
     let mut pending = vec![root];
     while let Some(&id) = pending.last() {
         let (chosen, flipped) = form(id);
-        let missing: Vec<Id> = graph.children(chosen).into_iter().filter(|child| !known.contains_key(child)).collect();
+        let missing: Vec<Id> =
+            graph.children(chosen).into_iter().filter(|child| !known.contains_key(child)).collect();
         if !known.contains_key(&id) && missing.is_empty() {
             let node = graph.node(chosen).clone();
             let value = graph.rebuilt(&node, |child| known[&child]);
@@ -112,7 +118,11 @@ mod tests {
         let mut graph = Graph::new();
         let root = lowered(&mut graph, expression);
         let root = numbered(&mut graph, &[root])[0];
-        let count = graph.reachable(&[root]).into_iter().filter(|&id| matches!(graph.node(id), Node::Call(..))).count();
+        let count = graph
+            .reachable(&[root])
+            .into_iter()
+            .filter(|&id| matches!(graph.node(id), Node::Call(..)))
+            .count();
         (graph, root, count)
     }
 

@@ -1,8 +1,8 @@
 //! A Lagrangian as a polynomial in the velocities.
 //!
-//! Written naively, kinetic energy is a sum of squares of Cartesian velocities. Collected by powers of the velocities, each
-//! coefficient simplifies on its own (sin² + cos², cos a cos b + sin a sin b, equal masses), and the equations of motion come out
-//! as a careful person would write them.
+//! Written naively, kinetic energy is a sum of squares of Cartesian velocities. Collected by powers
+//! of the velocities, each coefficient simplifies on its own (sin² + cos², cos a cos b + sin a sin
+//! b, equal masses), and the equations of motion come out as a careful person would write them.
 
 use crate::algebra::expr::{Dependencies, Graph, Id, Node};
 use crate::algebra::number::Rational;
@@ -17,13 +17,15 @@ pub(crate) type Polynomial = BTreeMap<Monomial, Vec<(Id, Rational)>>;
 /// More terms than this are left as they stand.
 const LIMIT: usize = 100_000;
 
-/// `id` collected by powers of its velocities (of coordinates and driven inputs), if it is a polynomial in them.
+/// `id` collected by powers of its velocities (of coordinates and driven inputs), if it is a
+/// polynomial in them.
 pub(crate) fn by_velocities(graph: &mut Graph, id: Id) -> Option<Id> {
     let polynomial = polynomial(graph, id, moving())?;
     let mut terms = Vec::new();
     for (monomial, coefficient) in polynomial {
         let coefficient = simplest(graph, &coefficient);
-        let mut factors: Vec<(Id, Rational)> = monomial.iter().map(|&(base, power)| (base, Rational::whole(power))).collect();
+        let mut factors: Vec<(Id, Rational)> =
+            monomial.iter().map(|&(base, power)| (base, Rational::whole(power))).collect();
         factors.push((coefficient, Rational::ONE));
         terms.push((graph.product(Rational::ONE, &factors), Rational::ONE));
     }
@@ -31,18 +33,27 @@ pub(crate) fn by_velocities(graph: &mut Graph, id: Id) -> Option<Id> {
 }
 
 fn moving() -> Dependencies {
-    Dependencies::VELOCITY.or(Dependencies::AUXILIARY).or(Dependencies::VELOCITY_INPUT).or(Dependencies::ACCELERATION_INPUT)
+    Dependencies::VELOCITY
+        .or(Dependencies::AUXILIARY)
+        .or(Dependencies::VELOCITY_INPUT)
+        .or(Dependencies::ACCELERATION_INPUT)
 }
 
 /// The polynomial that an expression is in all symbols of some kinds, from those of its children.
-pub(crate) fn polynomial(graph: &mut Graph, root: Id, variables: Dependencies) -> Option<Polynomial> {
+pub(crate) fn polynomial(
+    graph: &mut Graph,
+    root: Id,
+    variables: Dependencies,
+) -> Option<Polynomial> {
     let mut known: BTreeMap<Id, Polynomial> = BTreeMap::new();
     for id in graph.reachable(&[root]) {
         if !graph.dependencies(id).any(variables) {
             continue;
         }
         let value = match graph.node(id).clone() {
-            Node::Symbol(_) => Polynomial::from([(vec![(id, 1)], vec![(Graph::ONE, Rational::ONE)])]),
+            Node::Symbol(_) => {
+                Polynomial::from([(vec![(id, 1)], vec![(Graph::ONE, Rational::ONE)])])
+            }
             Node::Sum(terms) => {
                 let mut sum = Polynomial::new();
                 for (term, coefficient) in terms {
@@ -67,7 +78,8 @@ pub(crate) fn polynomial(graph: &mut Graph, root: Id, variables: Dependencies) -
                     match known.get(&base) {
                         None => fixed.push((base, exponent)),
                         Some(part) => {
-                            let count = exponent.integer().filter(|count| (1..=8).contains(count))?;
+                            let count =
+                                exponent.integer().filter(|count| (1..=8).contains(count))?;
                             for _ in 0..count {
                                 product = multiply(graph, &product, part)?;
                             }
@@ -144,17 +156,21 @@ pub(crate) fn expanded(graph: &mut Graph, id: Id) -> Id {
     }
 }
 
-/// A product of sums multiplied out, as often as sums stand in it; `None` if that would be too long.
+/// A product of sums multiplied out, as often as sums stand in it; `None` if that would be too
+/// long.
 fn expand(graph: &mut Graph, term: Id) -> Option<Vec<(Id, Rational)>> {
     let mut open = vec![(term, Rational::ONE)];
     let mut done = Vec::new();
     while let Some((term, outer)) = open.pop() {
         let (own, bare) = graph.split(term);
         let outer = outer.mul(own)?;
-        let sum = graph.factors(bare).into_iter().find_map(|(base, exponent)| match graph.node(base) {
-            Node::Sum(terms) if exponent.is_integer() && !exponent.is_negative() => Some((base, terms.clone())),
-            _ => None,
-        });
+        let sum =
+            graph.factors(bare).into_iter().find_map(|(base, exponent)| match graph.node(base) {
+                Node::Sum(terms) if exponent.is_integer() && !exponent.is_negative() => {
+                    Some((base, terms.clone()))
+                }
+                _ => None,
+            });
         let Some((base, terms)) = sum else {
             done.push((bare, outer));
             continue;
@@ -163,7 +179,8 @@ fn expand(graph: &mut Graph, term: Id) -> Option<Vec<(Id, Rational)>> {
             return None;
         }
         for (part, coefficient) in terms {
-            let factors = [(bare, Rational::ONE), (base, Rational::MINUS_ONE), (part, Rational::ONE)];
+            let factors =
+                [(bare, Rational::ONE), (base, Rational::MINUS_ONE), (part, Rational::ONE)];
             open.push((graph.product(Rational::ONE, &factors), outer.mul(coefficient)?));
         }
     }
@@ -174,7 +191,10 @@ fn expand(graph: &mut Graph, term: Id) -> Option<Vec<(Id, Rational)>> {
 pub(crate) fn cost(graph: &Graph, root: Id) -> usize {
     let price = |id: Id| match graph.node(id) {
         Node::Number(_) | Node::Opaque(_) | Node::Pi | Node::Symbol(_) | Node::Atom(_) => 0,
-        Node::Sum(terms) => terms.len() - 1 + terms.iter().filter(|(_, coefficient)| coefficient.abs() != Rational::ONE).count(),
+        Node::Sum(terms) => {
+            terms.len() - 1
+                + terms.iter().filter(|(_, coefficient)| coefficient.abs() != Rational::ONE).count()
+        }
         Node::Product(coefficient, factors) => {
             let powers: usize = factors
                 .iter()

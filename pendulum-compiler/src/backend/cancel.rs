@@ -21,12 +21,17 @@ type Terms = BTreeMap<Vec<(Id, Rational)>, Rational>;
 /// The same value with fewer terms, in a graph of its own; `None` if nothing gets shorter.
 ///
 /// The graph of the system stays as it is, and with it the order in which sums are computed.
-pub(crate) fn shorter(graph: &Graph, root: Id, length: impl Fn(&Graph, Id) -> usize) -> Option<(Graph, Id)> {
+pub(crate) fn shorter(
+    graph: &Graph,
+    root: Id,
+    length: impl Fn(&Graph, Id) -> usize,
+) -> Option<(Graph, Id)> {
     let whole = length(graph, root);
     let mut root = root;
     let mut own = order::canonicalize(graph, &mut [&mut root]);
     let nodes = own.reachable(&[root]);
-    let mut expansions = [false, true].map(|parameters| Expansions { parameters, known: BTreeMap::new() });
+    let mut expansions =
+        [false, true].map(|parameters| Expansions { parameters, known: BTreeMap::new() });
     let mut promising = |&id: &Id| {
         let possible = id == root || matches!(own.node(id), Node::Sum(_));
         possible && expansions.iter_mut().any(|expansions| expansions.of(&own, id).is_some())
@@ -43,8 +48,12 @@ pub(crate) fn shorter(graph: &Graph, root: Id, length: impl Fn(&Graph, Id) -> us
         if id == root || matches!(own.node(best), Node::Sum(_)) {
             for expansions in &mut expansions {
                 if let Some(terms) = expansions.of(&own, best) {
-                    let products: Vec<(Id, Rational)> =
-                        terms.iter().map(|(factors, &coefficient)| (own.product(Rational::ONE, factors), coefficient)).collect();
+                    let products: Vec<(Id, Rational)> = terms
+                        .iter()
+                        .map(|(factors, &coefficient)| {
+                            (own.product(Rational::ONE, factors), coefficient)
+                        })
+                        .collect();
                     let other = own.sum(&products);
                     if length(&own, other) < length(&own, best) {
                         best = other;
@@ -92,7 +101,9 @@ impl Expansions {
         match graph.node(id) {
             Node::Number(value) => Some(Expansion::one(Vec::new(), *value)),
             Node::Atom(inner) => self.expand(graph, *inner),
-            Node::Sum(terms) if self.parameters || graph.dependencies(id).any(Dependencies::STATE) => {
+            Node::Sum(terms)
+                if self.parameters || graph.dependencies(id).any(Dependencies::STATE) =>
+            {
                 let mut all = Expansion { terms: Terms::new(), met: false };
                 for &(term, coefficient) in terms {
                     let part = self.expand(graph, term)?;
@@ -113,7 +124,10 @@ impl Expansions {
                                 all = all.times(&one)?;
                             }
                         }
-                        _ => all = all.times(&Expansion::one(vec![(base, exponent)], Rational::ONE))?,
+                        _ => {
+                            all =
+                                all.times(&Expansion::one(vec![(base, exponent)], Rational::ONE))?;
+                        }
                     }
                 }
                 Some(all)

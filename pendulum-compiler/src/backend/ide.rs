@@ -1,7 +1,9 @@
-//! What an editor sees: every name of a block in plain Rust, for hover, completion and go to definition.
+//! What an editor sees: every name of a block in plain Rust, for hover, completion and go to
+//! definition.
 //!
-//! The items are there for rust-analyzer alone; rustc never reads them. Names of parameters lead to their fields, all others to
-//! their declarations in the block, and a block with mistakes gives items of the same shape.
+//! The items are there for rust-analyzer alone; rustc never reads them. Names of parameters lead to
+//! their fields, all others to their declarations in the block, and a block with mistakes gives
+//! items of the same shape.
 
 use crate::syntax::ast::{Binder, Block, Expr, ExprKind, ForceIndex, Statement};
 use proc_macro2::{Ident, TokenStream};
@@ -35,7 +37,9 @@ impl<'a> Mirror<'a> {
     fn statements(&mut self) {
         for statement in &self.block.statements {
             match statement {
-                Statement::Coordinate { name, .. } | Statement::Driven { name, .. } => self.declare(name),
+                Statement::Coordinate { name, .. } | Statement::Driven { name, .. } => {
+                    self.declare(name);
+                }
                 Statement::Let(definition) => self.declare(&definition.name),
                 Statement::Energy { .. } | Statement::Force { .. } => {}
             }
@@ -87,8 +91,14 @@ impl<'a> Mirror<'a> {
         match &expr.kind {
             ExprKind::Number(_) => {}
             ExprKind::Name(name) => self.name(name),
-            ExprKind::Sum(items) | ExprKind::Product(items) => items.iter().for_each(|(_, item)| self.expr(item)),
-            ExprKind::Negative(a) | ExprKind::Magnitude(a) | ExprKind::Component(a, _) => self.expr(a),
+            ExprKind::Sum(items) | ExprKind::Product(items) => {
+                for (_, item) in items {
+                    self.expr(item);
+                }
+            }
+            ExprKind::Negative(a) | ExprKind::Magnitude(a) | ExprKind::Component(a, _) => {
+                self.expr(a);
+            }
             ExprKind::Power(a, b) | ExprKind::Index(a, b) => {
                 self.expr(a);
                 self.expr(b);

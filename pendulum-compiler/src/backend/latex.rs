@@ -8,14 +8,26 @@ use crate::mechanics::motion::Motion;
 use crate::syntax::name;
 
 /// The equations of motion, one line a coordinate, as `unicode::equations` gives them in Unicode.
-pub(crate) fn equations(graph: &Graph, names: &Names, motion: &Motion, sides: &Sides) -> Vec<String> {
+pub(crate) fn equations(
+    graph: &Graph,
+    names: &Names,
+    motion: &Motion,
+    sides: &Sides,
+) -> Vec<String> {
     let mut lines = Vec::new();
     for row in 0..motion.accelerations.len() {
-        let coupled: Vec<(usize, Id)> =
-            motion.mass_matrix[row].iter().copied().enumerate().filter(|&(_, entry)| entry != Graph::ZERO).collect();
+        let coupled: Vec<(usize, Id)> = motion.mass_matrix[row]
+            .iter()
+            .copied()
+            .enumerate()
+            .filter(|&(_, entry)| entry != Graph::ZERO)
+            .collect();
         let writer = Writer { graph, names };
         if unicode::too_long(graph, motion, row) {
-            lines.push(format!("{} = \\ldots\\text{{ (too long to write out)}}", writer.coordinate(row, 2)));
+            lines.push(format!(
+                "{} = \\ldots\\text{{ (too long to write out)}}",
+                writer.coordinate(row, 2)
+            ));
             continue;
         }
         let (own, id) = unicode::side(graph, motion, sides, row);
@@ -28,7 +40,11 @@ pub(crate) fn equations(graph: &Graph, names: &Names, motion: &Motion, sides: &S
             .iter()
             .map(|&(column, entry)| {
                 let symbol = writer.coordinate(column, 2);
-                if entry == Graph::ONE { symbol } else { format!("{} {symbol}", writer.coefficient(entry)) }
+                if entry == Graph::ONE {
+                    symbol
+                } else {
+                    format!("{} {symbol}", writer.coefficient(entry))
+                }
             })
             .collect();
         lines.push(format!("{} = {side}", terms.join(" + ")));
@@ -56,7 +72,8 @@ impl Writer<'_> {
                         (_, false) => " + ",
                         (_, true) => " - ",
                     });
-                    let factors = if term == Graph::ONE { Vec::new() } else { self.graph.factors(term) };
+                    let factors =
+                        if term == Graph::ONE { Vec::new() } else { self.graph.factors(term) };
                     text.push_str(&self.product(coefficient.abs(), &factors));
                 }
                 text
@@ -82,7 +99,8 @@ impl Writer<'_> {
         // The argument of a function ends with the product.
         ordered.sort_by_key(|(base, _)| matches!(self.graph.node(*base), Node::Call(..)));
         // A bracket around all that stands above or below a line says nothing.
-        let tops = above.len() + ordered.iter().filter(|(_, exponent)| !exponent.is_negative()).count();
+        let tops =
+            above.len() + ordered.iter().filter(|(_, exponent)| !exponent.is_negative()).count();
         let bottoms = below.len() + ordered.len() + above.len() - tops;
         for &&(base, exponent) in &ordered {
             let side = if exponent.is_negative() { bottoms } else { tops };
@@ -115,7 +133,9 @@ impl Writer<'_> {
     /// An expression to which the exponent behind it belongs as a whole.
     fn closed(&self, id: Id) -> String {
         let open = match self.graph.node(id) {
-            Node::Number(value) | Node::Opaque(Literal::Exact(value)) => value.is_negative() || !value.is_integer(),
+            Node::Number(value) | Node::Opaque(Literal::Exact(value)) => {
+                value.is_negative() || !value.is_integer()
+            }
             Node::Product(..) => true,
             Node::Atom(inner) => return self.closed(*inner),
             _ => false,
@@ -136,9 +156,15 @@ impl Writer<'_> {
                 let text = self.sum(id);
                 if text.starts_with('-') { format!("\\left({text}\\right)") } else { text }
             }
-            Node::Call(Function::Abs, argument) => format!("\\left|{}\\right|", self.sum(*argument)),
-            Node::Call(function, argument) => format!("{}{}", command(*function), self.argument(*argument)),
-            Node::Atan2(y, x) => format!("\\operatorname{{atan2}}\\left({}, {}\\right)", self.sum(*y), self.sum(*x)),
+            Node::Call(Function::Abs, argument) => {
+                format!("\\left|{}\\right|", self.sum(*argument))
+            }
+            Node::Call(function, argument) => {
+                format!("{}{}", command(*function), self.argument(*argument))
+            }
+            Node::Atan2(y, x) => {
+                format!("\\operatorname{{atan2}}\\left({}, {}\\right)", self.sum(*y), self.sum(*x))
+            }
             Node::Max(a, b) => format!("\\max\\left({}, {}\\right)", self.sum(*a), self.sum(*b)),
             Node::Atom(inner) => self.factor(*inner),
         }
@@ -183,7 +209,9 @@ impl Writer<'_> {
                 let body = dotted(body, 0);
                 match moment {
                     Moment::Inertia => format!("I_{{{body}}}"),
-                    Moment::Difference => format!("\\left(S^{{{body}}}_{{xx}} - S^{{{body}}}_{{yy}}\\right)"),
+                    Moment::Difference => {
+                        format!("\\left(S^{{{body}}}_{{xx}} - S^{{{body}}}_{{yy}}\\right)")
+                    }
                     Moment::Product => format!("S^{{{body}}}_{{xy}}"),
                 }
             }
@@ -220,7 +248,8 @@ fn command(function: Function) -> &'static str {
     }
 }
 
-/// A name such as `θ1`, `l[0]`, `B.center.x` or `theta_max` with dots: its first word is the letter, the rest its index.
+/// A name such as `θ1`, `l[0]`, `B.center.x` or `theta_max` with dots: its first word is the
+/// letter, the rest its index.
 fn dotted(name: &str, dots: u8) -> String {
     let spelled = name::read(name).base;
     let split = spelled.find(|letter: char| !letter.is_alphabetic()).unwrap_or(spelled.len());
@@ -237,7 +266,8 @@ fn dotted(name: &str, dots: u8) -> String {
         1 => format!("\\dot{{{letter}}}"),
         _ => format!("\\ddot{{{letter}}}"),
     };
-    let index: Vec<&str> = rest.split(['[', ']', '.', '_']).filter(|part| !part.is_empty()).collect();
+    let index: Vec<&str> =
+        rest.split(['[', ']', '.', '_']).filter(|part| !part.is_empty()).collect();
     if index.is_empty() { letter } else { format!("{letter}_{{{}}}", index.join(",")) }
 }
 

@@ -26,9 +26,19 @@ impl Names {
     pub(crate) fn new(model: &Model, families: &BTreeSet<usize>) -> Self {
         let parameters = model.parameters.iter().enumerate();
         Self {
-            parameters: parameters.flat_map(|(index, quantity)| quantity_names(quantity, families.contains(&index))).collect(),
-            coordinates: model.coordinates.iter().flat_map(|quantity| quantity_names(quantity, true)).collect(),
-            inputs: model.inputs.iter().map(|quantity| (quantity.name.to_string(), quantity.length.is_some())).collect(),
+            parameters: parameters
+                .flat_map(|(index, quantity)| quantity_names(quantity, families.contains(&index)))
+                .collect(),
+            coordinates: model
+                .coordinates
+                .iter()
+                .flat_map(|quantity| quantity_names(quantity, true))
+                .collect(),
+            inputs: model
+                .inputs
+                .iter()
+                .map(|quantity| (quantity.name.to_string(), quantity.length.is_some()))
+                .collect(),
             ascii: model.block.ascii,
         }
     }
@@ -104,7 +114,9 @@ fn quantity_names(quantity: &Quantity, family: bool) -> Vec<String> {
     }
     match quantity.length {
         None => vec![name],
-        Some(length @ (2 | 3)) if !family => (0..length).map(|k| format!("{name}.{}", ["x", "y", "z"][k])).collect(),
+        Some(length @ (2 | 3)) if !family => {
+            (0..length).map(|k| format!("{name}.{}", ["x", "y", "z"][k])).collect()
+        }
         Some(length) => (0..length).map(|k| format!("{name}[{k}]")).collect(),
     }
 }
@@ -122,7 +134,8 @@ fn dotted(name: &str, dots: u8, ascii: bool) -> String {
     let mark = if dots == 1 { '\u{307}' } else { '\u{308}' };
     let mut letters = stem.chars();
     let first: String = letters.next().into_iter().collect();
-    let composed = name::compose(&first, dots).map_or_else(|| format!("{first}{mark}"), String::from);
+    let composed =
+        name::compose(&first, dots).map_or_else(|| format!("{first}{mark}"), String::from);
     format!("{composed}{}{index}", letters.as_str())
 }
 
@@ -148,7 +161,9 @@ pub(crate) fn sides(graph: &Graph, names: &Names, motion: &Motion) -> Sides {
         if too_long(graph, motion, row) {
             return None;
         }
-        cancel::shorter(graph, right(motion, row), |graph, id| expression(graph, names, id).chars().count())
+        cancel::shorter(graph, right(motion, row), |graph, id| {
+            expression(graph, names, id).chars().count()
+        })
     };
     (0..motion.accelerations.len()).map(short).collect()
 }
@@ -165,7 +180,12 @@ fn alone(motion: &Motion, row: usize) -> bool {
 }
 
 /// The right-hand side of the equation in a row, with the graph in which it is written.
-pub(crate) fn side<'g>(graph: &'g Graph, motion: &Motion, sides: &'g Sides, row: usize) -> (&'g Graph, Id) {
+pub(crate) fn side<'g>(
+    graph: &'g Graph,
+    motion: &Motion,
+    sides: &'g Sides,
+    row: usize,
+) -> (&'g Graph, Id) {
     match &sides[row] {
         Some((own, id)) => (own, *id),
         None => (graph, right(motion, row)),
@@ -181,7 +201,9 @@ fn write(graph: &Graph, names: &Names, id: Id, level: Level) -> String {
         Node::Symbol(symbol) => return names.symbol(*symbol),
         Node::Sum(terms) => (sum(graph, names, terms), Level::Sum),
         Node::Product(coefficient, factors) => product(graph, names, *coefficient, factors),
-        Node::Call(Function::Abs, argument) => return format!("|{}|", write(graph, names, *argument, Level::Sum)),
+        Node::Call(Function::Abs, argument) => {
+            return format!("|{}|", write(graph, names, *argument, Level::Sum));
+        }
         // The language has no word for it.
         Node::Call(Function::Step, argument) if names.ascii => {
             return format!("((1 + sign({}))/2)", write(graph, names, *argument, Level::Sum));
@@ -194,10 +216,18 @@ fn write(graph: &Graph, names: &Names, id: Id, level: Level) -> String {
             (text, Level::Product)
         }
         Node::Atan2(y, x) => {
-            return format!("atan2({}, {})", write(graph, names, *y, Level::Sum), write(graph, names, *x, Level::Sum));
+            return format!(
+                "atan2({}, {})",
+                write(graph, names, *y, Level::Sum),
+                write(graph, names, *x, Level::Sum)
+            );
         }
         Node::Max(a, b) => {
-            return format!("max({}, {})", write(graph, names, *a, Level::Sum), write(graph, names, *b, Level::Sum));
+            return format!(
+                "max({}, {})",
+                write(graph, names, *a, Level::Sum),
+                write(graph, names, *b, Level::Sum)
+            );
         }
         Node::Atom(inner) => return write(graph, names, *inner, level),
     };
@@ -236,7 +266,12 @@ fn sign(names: &Names, first: bool, negative: bool) -> String {
     }
 }
 
-fn product(graph: &Graph, names: &Names, coefficient: Rational, factors: &[(Id, Rational)]) -> (String, Level) {
+fn product(
+    graph: &Graph,
+    names: &Names,
+    coefficient: Rational,
+    factors: &[(Id, Rational)],
+) -> (String, Level) {
     let sign = if coefficient.is_negative() { names.minus() } else { "" };
     let coefficient = coefficient.abs();
     let mut ordered: Vec<&(Id, Rational)> = factors.iter().collect();
@@ -254,14 +289,24 @@ fn product(graph: &Graph, names: &Names, coefficient: Rational, factors: &[(Id, 
         let side = if exponent.is_negative() { &mut below } else { &mut above };
         side.push(power(graph, names, base, exponent.abs()));
     }
-    // A function's name would swallow what follows it: functions stand last, in brackets if several do.
+    // A function's name would swallow what follows it: functions stand last, in brackets if several
+    // do.
     let top = if above.is_empty() { "1".to_owned() } else { above.join(names.times()) };
-    let level = if above.len() + below.len() < 2 && sign.is_empty() { Level::Power } else { Level::Product };
+    let level = if above.len() + below.len() < 2 && sign.is_empty() {
+        Level::Power
+    } else {
+        Level::Product
+    };
     if below.is_empty() {
-        let level = if one(&above) && sign.is_empty() && !above[0].contains(' ') { level } else { Level::Product };
+        let level = if one(&above) && sign.is_empty() && !above[0].contains(' ') {
+            level
+        } else {
+            Level::Product
+        };
         return (format!("{sign}{top}"), if sign.is_empty() { level } else { Level::Sum });
     }
-    let bottom = if one(&below) { below[0].clone() } else { format!("({})", below.join(names.times())) };
+    let bottom =
+        if one(&below) { below[0].clone() } else { format!("({})", below.join(names.times())) };
     (format!("{sign}{top}/{bottom}"), if sign.is_empty() { Level::Product } else { Level::Sum })
 }
 
@@ -307,7 +352,11 @@ fn power(graph: &Graph, names: &Names, base: Id, exponent: Rational) -> String {
 
 fn number(names: &Names, value: Rational, level: Level) -> String {
     let text = value.to_string().replace('-', names.minus());
-    if Level::Sum < level && (value.is_negative() || !value.is_integer()) { format!("({text})") } else { text }
+    if Level::Sum < level && (value.is_negative() || !value.is_integer()) {
+        format!("({text})")
+    } else {
+        text
+    }
 }
 
 fn function_name(function: Function) -> &'static str {
@@ -351,10 +400,12 @@ pub(crate) fn conserved(names: &Names, conserved: &Conserved) -> String {
     text
 }
 
-/// A line of more symbols is not written out: what is shared stands once in the graph, but wherever it is used in a text.
+/// A line of more symbols is not written out: what is shared stands once in the graph, but wherever
+/// it is used in a text.
 const LONGEST: usize = 1000;
 
-/// Whether the equation in a row, solved where its coordinate stands alone, is too long to be written out.
+/// Whether the equation in a row, solved where its coordinate stands alone, is too long to be
+/// written out.
 pub(crate) fn too_long(graph: &Graph, motion: &Motion, row: usize) -> bool {
     let mut roots = vec![right(motion, row)];
     if !alone(motion, row) {
@@ -362,14 +413,23 @@ pub(crate) fn too_long(graph: &Graph, motion: &Motion, row: usize) -> bool {
     }
     let mut lengths: BTreeMap<Id, usize> = BTreeMap::new();
     for id in graph.reachable(&roots) {
-        let length = graph.children(id).iter().fold(1, |sum: usize, child| sum.saturating_add(lengths[child]));
+        let length = graph
+            .children(id)
+            .iter()
+            .fold(1, |sum: usize, child| sum.saturating_add(lengths[child]));
         lengths.insert(id, length);
     }
     LONGEST < roots.iter().fold(0, |sum: usize, root| sum.saturating_add(lengths[root]))
 }
 
-/// The equations of motion, one line a coordinate: solved where a coordinate stands alone, a row of M q̈ = f where several are coupled.
-pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion, sides: &Sides) -> Vec<String> {
+/// The equations of motion, one line a coordinate: solved where a coordinate stands alone, a row of
+/// M q̈ = f where several are coupled.
+pub(crate) fn equations(
+    graph: &mut Graph,
+    names: &Names,
+    motion: &Motion,
+    sides: &Sides,
+) -> Vec<String> {
     let mut lines = Vec::new();
     for row in 0..motion.accelerations.len() {
         if too_long(graph, motion, row) {
@@ -397,7 +457,11 @@ pub(crate) fn equations(graph: &mut Graph, names: &Names, motion: &Motion, sides
             } else {
                 let text = write(graph, names, magnitude, Level::Product);
                 let times = names.times();
-                if open(&text) { format!("({text}){times}{symbol}") } else { format!("{text}{times}{symbol}") }
+                if open(&text) {
+                    format!("({text}){times}{symbol}")
+                } else {
+                    format!("{text}{times}{symbol}")
+                }
             };
             left.push_str(&sign(names, left.is_empty(), negative));
             left.push_str(&part);

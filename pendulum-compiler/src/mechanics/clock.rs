@@ -100,9 +100,13 @@ impl Search {
 
     fn visit(&mut self, id: Id) {
         match self.graph.node(id).clone() {
-            Node::Call(Function::Sin | Function::Cos | Function::Tan, angle) => self.oscillation(angle),
+            Node::Call(Function::Sin | Function::Cos | Function::Tan, angle) => {
+                self.oscillation(angle);
+            }
             Node::Call(Function::Ln, argument) => self.bump(argument),
-            Node::Call(Function::Abs | Function::Sign | Function::Step, argument) => self.corner(argument),
+            Node::Call(Function::Abs | Function::Sign | Function::Step, argument) => {
+                self.corner(argument);
+            }
             Node::Call(_, argument) => self.bell(argument),
             Node::Max(a, b) => {
                 let difference = self.graph.sub(a, b);
@@ -128,7 +132,8 @@ impl Search {
     fn oscillation(&mut self, angle: Id) {
         let Some(polynomial) = self.polynomial(angle) else { return };
         let rate = if polynomial.degree == 1 {
-            let half = self.graph.product(Rational::HALF, &[(polynomial.leading, Rational::whole(2))]);
+            let half =
+                self.graph.product(Rational::HALF, &[(polynomial.leading, Rational::whole(2))]);
             self.root(half, 2)
         } else {
             self.root(polynomial.leading, polynomial.degree)
@@ -158,14 +163,25 @@ impl Search {
                 Node::Product(own, _) => *own,
                 _ => Rational::ONE,
             };
-            let Some(place) = factors.iter().position(|&(base, _)| self.moves(base)) else { continue };
+            let Some(place) = factors.iter().position(|&(base, _)| self.moves(base)) else {
+                continue;
+            };
             let (swing, exponent) = factors.remove(place);
-            let Node::Call(Function::Sin | Function::Cos, angle) = *self.graph.node(swing) else { continue };
+            let Node::Call(Function::Sin | Function::Cos, angle) = *self.graph.node(swing) else {
+                continue;
+            };
             if factors.iter().any(|&(base, _)| self.moves(base) || self.has_state(base)) {
                 continue;
             }
-            let Some(power) = exponent.integer().filter(|power| (1..=HIGHEST).contains(power)) else { continue };
-            let Some(polynomial) = self.polynomial(angle).filter(|polynomial| polynomial.degree == 1) else { continue };
+            let Some(power) = exponent.integer().filter(|power| (1..=HIGHEST).contains(power))
+            else {
+                continue;
+            };
+            let Some(polynomial) =
+                self.polynomial(angle).filter(|polynomial| polynomial.degree == 1)
+            else {
+                continue;
+            };
             let numbers = [own, coefficient].map(|number| self.graph.number(number));
             factors.extend(numbers.map(|number| (number, Rational::ONE)));
             let factor = self.graph.product(Rational::ONE, &factors);
@@ -201,7 +217,10 @@ impl Search {
             && polynomial.whole
             && !polynomial.cornered
         {
-            let zeros = polynomial.middles.into_iter().filter(|&zero| !self.graph.dependencies(zero).any(BESIDE_TIME));
+            let zeros = polynomial
+                .middles
+                .into_iter()
+                .filter(|&zero| !self.graph.dependencies(zero).any(BESIDE_TIME));
             self.corners.extend(zeros);
         }
     }
@@ -210,7 +229,9 @@ impl Search {
     fn pairs(&mut self) {
         let mut corners: Vec<Id> = self.corners.iter().copied().collect();
         let pairs: Vec<(Id, Id)> = if corners.len() <= CORNERS {
-            let others = |(index, &first): (usize, &Id)| corners[index + 1..].iter().map(move |&second| (first, second));
+            let others = |(index, &first): (usize, &Id)| {
+                corners[index + 1..].iter().map(move |&second| (first, second))
+            };
             corners.iter().enumerate().flat_map(others).collect()
         } else {
             // Which corners are neighbours is known of numbers alone.
@@ -283,7 +304,14 @@ impl Search {
         if degree == 1 && 1 < magnitudes.len() {
             let leading = self.steepest(sum)?;
             let middles = self.corners_of(&magnitudes);
-            return Some(Polynomial { smooth: sum, degree, leading, middles, cornered: true, whole });
+            return Some(Polynomial {
+                smooth: sum,
+                degree,
+                leading,
+                middles,
+                cornered: true,
+                whole,
+            });
         }
         let smooth = self.branch(sum, &magnitudes, 0);
         let mut derivatives = vec![smooth];
@@ -299,13 +327,21 @@ impl Search {
             return None;
         }
         let factorial: i64 = (1..=degree).product();
-        let leading = self.graph.product(Rational::new(1, factorial.into())?, &[(last, Rational::ONE)]);
+        let leading =
+            self.graph.product(Rational::new(1, factorial.into())?, &[(last, Rational::ONE)]);
         let middles = match magnitudes.as_slice() {
             [_] if degree == 1 => self.corners_of(&magnitudes),
             // The last derivative but one is linear.
             _ => vec![self.zero(derivatives[degree as usize - 1])?],
         };
-        Some(Polynomial { smooth, degree, leading, middles, cornered: !magnitudes.is_empty(), whole })
+        Some(Polynomial {
+            smooth,
+            degree,
+            leading,
+            middles,
+            cornered: !magnitudes.is_empty(),
+            whole,
+        })
     }
 
     /// The time at which a linear function of it is zero; `None` for a constant.
@@ -345,13 +381,16 @@ impl Search {
         }
         match self.graph.node(id) {
             Node::Symbol(Symbol::Time) => Some(1),
-            Node::Sum(terms) => terms.iter().try_fold(0, |most, (term, _)| Some(self.degrees[term]?.max(most))),
+            Node::Sum(terms) => {
+                terms.iter().try_fold(0, |most, (term, _)| Some(self.degrees[term]?.max(most)))
+            }
             Node::Product(_, factors) => factors.iter().try_fold(0i64, |sum, (base, exponent)| {
                 let degree = self.degrees[base]?;
                 if degree == 0 {
                     return Some(sum);
                 }
-                let exponent = exponent.integer().filter(|exponent| (1..=HIGHEST).contains(exponent))?;
+                let exponent =
+                    exponent.integer().filter(|exponent| (1..=HIGHEST).contains(exponent))?;
                 Some(sum + degree * exponent).filter(|degree| *degree <= HIGHEST)
             }),
             Node::Atom(inner) => self.degrees[inner],
@@ -379,7 +418,9 @@ impl Search {
         for node in self.graph.reachable(&[id]) {
             let old = self.graph.node(node).clone();
             let result = match (&old, magnitudes.iter().position(|magnitude| *magnitude == node)) {
-                (Node::Call(_, argument), Some(place)) if signs >> place & 1 == 1 => self.graph.negative(known[argument]),
+                (Node::Call(_, argument), Some(place)) if signs >> place & 1 == 1 => {
+                    self.graph.negative(known[argument])
+                }
                 (Node::Call(_, argument), Some(_)) => known[argument],
                 _ => self.graph.rebuilt(&old, |child| known[&child]),
             };
@@ -418,12 +459,15 @@ impl Search {
             let slope = match self.graph.node(node).clone() {
                 _ if !self.moves(node) => Graph::ZERO,
                 Node::Sum(terms) => {
-                    let slopes: Vec<(Id, Rational)> =
-                        terms.iter().map(|(term, coefficient)| (slopes[term], coefficient.abs())).collect();
+                    let slopes: Vec<(Id, Rational)> = terms
+                        .iter()
+                        .map(|(term, coefficient)| (slopes[term], coefficient.abs()))
+                        .collect();
                     self.graph.sum(&slopes)
                 }
                 Node::Product(coefficient, factors) => {
-                    let (moving, fixed): (Vec<_>, Vec<_>) = factors.into_iter().partition(|&(base, _)| self.moves(base));
+                    let (moving, fixed): (Vec<_>, Vec<_>) =
+                        factors.into_iter().partition(|&(base, _)| self.moves(base));
                     let constant = self.graph.product(coefficient, &fixed);
                     let magnitude = self.graph.call(Function::Abs, constant);
                     self.graph.mul(magnitude, slopes[&moving.first()?.0])
@@ -433,6 +477,7 @@ impl Search {
             };
             slopes.insert(node, slope);
         }
-        Some(slopes[&id]).filter(|&slope| slope != Graph::ZERO && !self.moves(slope) && !self.has_state(slope))
+        Some(slopes[&id])
+            .filter(|&slope| slope != Graph::ZERO && !self.moves(slope) && !self.has_state(slope))
     }
 }

@@ -1,6 +1,8 @@
-//! Euler–Lagrange: momenta, mass matrix, forces, accelerations, energy and power from the Lagrangian.
+//! Euler–Lagrange: momenta, mass matrix, forces, accelerations, energy and power from the
+//! Lagrangian.
 //!
-//! d/dt ∂L/∂q̇ − ∂L/∂q = Q − ∂R/∂q̇, where d/dt runs through the coordinates, the driven inputs and the time.
+//! d/dt ∂L/∂q̇ − ∂L/∂q = Q − ∂R/∂q̇, where d/dt runs through the coordinates, the driven inputs and
+//! the time.
 
 use crate::algebra::diff::derivative;
 use crate::algebra::expr::{Dependencies, Function, Graph, Id, Node, Symbol};
@@ -23,18 +25,26 @@ use crate::schedule;
 /// Jacobians of more operations than this are left to dual numbers: an expansion stays small.
 const LONGEST_JACOBIAN: usize = 4000;
 
-/// Mass matrices of more rows than this are only solved in dense form if there is no cheaper sparse one.
+/// Mass matrices of more rows than this are only solved in dense form if there is no cheaper sparse
+/// one.
 const LARGEST_DENSE: usize = 12;
 
-/// The sparse form must save almost half: its operations wait for each other from the leaves to the root and back. Chains of nine links
-/// and more are faster in it (`cargo bench -p pendulum-runtime --bench chains`).
+/// The sparse form must save almost half: its operations wait for each other from the leaves to the
+/// root and back. Chains of nine links and more are faster in it (`cargo bench -p
+/// pendulum-runtime --bench chains`).
 const CLEARLY: f64 = 0.55;
 
-/// An energy that keeps its digits may cost up to this much more: the half angle is one more sine and cosine.
+/// An energy that keeps its digits may cost up to this much more: the half angle is one more sine
+/// and cosine.
 const DEARER: f64 = 2.5;
 
 /// Derives the equations of motion so that they do not depend on how the energies were written.
-pub(crate) fn derive(model: &Model, graph: &mut Graph, energies: &mut Energies, errors: &mut Errors) -> Option<Motion> {
+pub(crate) fn derive(
+    model: &Model,
+    graph: &mut Graph,
+    energies: &mut Energies,
+    errors: &mut Errors,
+) -> Option<Motion> {
     *graph = order::canonicalize(graph, &mut energies.roots());
     let mut motion = equations(model, graph, energies, errors);
     if !errors.is_empty() {
@@ -60,7 +70,8 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     let dissipation = energies.dissipation.map(|id| collected(graph, id)).unwrap_or_default();
 
     let velocity: Vec<Id> = (0..count).map(|i| graph.symbol(Symbol::Velocity(i))).collect();
-    let momenta: Vec<Id> = (0..count).map(|i| derivative(graph, lagrangian, Symbol::Velocity(i))).collect();
+    let momenta: Vec<Id> =
+        (0..count).map(|i| derivative(graph, lagrangian, Symbol::Velocity(i))).collect();
     let mut mass_matrix = vec![vec![Graph::ZERO; count]; count];
     for i in 0..count {
         for j in 0..=i {
@@ -94,10 +105,12 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
         let force = graph.sub(rate, drift);
         motion.forces.push(collected(graph, force));
     }
-    let sparse = energies.extended.as_ref().and_then(|extended| articulated::sparse(graph, extended, count));
+    let sparse =
+        energies.extended.as_ref().and_then(|extended| articulated::sparse(graph, extended, count));
     solved(graph, &mut motion, &momenta, sparse.as_ref());
 
-    let actions: Vec<(Id, Rational)> = (0..count).map(|i| (graph.mul(velocity[i], momenta[i]), Rational::ONE)).collect();
+    let actions: Vec<(Id, Rational)> =
+        (0..count).map(|i| (graph.mul(velocity[i], momenta[i]), Rational::ONE)).collect();
     let action = graph.sum(&actions);
     let energy = graph.sub(action, lagrangian);
     motion.energy = collected(graph, energy);
@@ -123,7 +136,9 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
         motion.unsolved = Some(sparse.unsolved);
     }
     number(graph, &mut motion);
-    for energy in [&mut motion.energy].into_iter().chain(&mut motion.kinetic).chain(&mut motion.potential) {
+    for energy in
+        [&mut motion.energy].into_iter().chain(&mut motion.kinetic).chain(&mut motion.potential)
+    {
         let kept = rule::without_cancellation(graph, *energy);
         if kept != *energy {
             shorten(graph, std::slice::from_mut(energy), &[kept], DEARER);
@@ -134,9 +149,21 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
 
 /// Makes equal expressions one in each output, where that is cheaper.
 fn number(graph: &mut Graph, motion: &mut Motion) {
-    let lists = [&mut motion.accelerations, &mut motion.momenta, &mut motion.forces, &mut motion.momentum_rates];
-    let single = [&mut motion.energy, &mut motion.power].into_iter().chain(&mut motion.kinetic).chain(&mut motion.potential);
-    let all = lists.into_iter().chain(&mut motion.velocities).map(Vec::as_mut_slice).chain(single.map(std::slice::from_mut));
+    let lists = [
+        &mut motion.accelerations,
+        &mut motion.momenta,
+        &mut motion.forces,
+        &mut motion.momentum_rates,
+    ];
+    let single = [&mut motion.energy, &mut motion.power]
+        .into_iter()
+        .chain(&mut motion.kinetic)
+        .chain(&mut motion.potential);
+    let all = lists
+        .into_iter()
+        .chain(&mut motion.velocities)
+        .map(Vec::as_mut_slice)
+        .chain(single.map(std::slice::from_mut));
     for roots in all {
         let numbered = value_numbering::numbered(graph, roots);
         if numbered != roots {
@@ -217,8 +244,15 @@ fn explicit_rate(graph: &mut Graph, lagrangian: Id) -> Id {
     graph.sum(&terms)
 }
 
-/// Refuses a third derivative of a driven input, which there is not: the rates of the momenta would contain it, or else ∂L/∂t.
-fn has_jerk(model: &Model, graph: &Graph, lagrangian: Id, momenta: &[Id], errors: &mut Errors) -> bool {
+/// Refuses a third derivative of a driven input, which there is not: the rates of the momenta would
+/// contain it, or else ∂L/∂t.
+fn has_jerk(
+    model: &Model,
+    graph: &Graph,
+    lagrangian: Id,
+    momenta: &[Id],
+    errors: &mut Errors,
+) -> bool {
     let accelerated = |roots: &[Id]| {
         graph.symbols(roots).into_iter().find_map(|symbol| match symbol {
             Symbol::Input { input, order: 2, .. } => Some(model.inputs[input].name),
@@ -249,8 +283,16 @@ fn has_jerk(model: &Model, graph: &Graph, lagrangian: Id, momenta: &[Id], errors
 }
 
 /// q̇ = M⁻¹(p − b) for momenta M q̇ + b that are linear in the velocities.
-pub(crate) fn invert(graph: &mut Graph, mass_matrix: &[Vec<Id>], momenta: &[Id]) -> Option<Vec<Id>> {
-    if mass_matrix.iter().flatten().any(|&entry| graph.dependencies(entry).any(Dependencies::VELOCITY)) {
+pub(crate) fn invert(
+    graph: &mut Graph,
+    mass_matrix: &[Vec<Id>],
+    momenta: &[Id],
+) -> Option<Vec<Id>> {
+    if mass_matrix
+        .iter()
+        .flatten()
+        .any(|&entry| graph.dependencies(entry).any(Dependencies::VELOCITY))
+    {
         return None;
     }
     let count = momenta.len();
@@ -267,17 +309,24 @@ pub(crate) fn invert(graph: &mut Graph, mass_matrix: &[Vec<Id>], momenta: &[Id])
             return None;
         }
         // What structure does not cancel vanishes at q̇ = 0.
-        let rest = if graph.dependencies(rest).any(Dependencies::VELOCITY) { at_rest(graph, rest) } else { rest };
+        let rest = if graph.dependencies(rest).any(Dependencies::VELOCITY) {
+            at_rest(graph, rest)
+        } else {
+            rest
+        };
         let momentum = graph.symbol(Symbol::Momentum(i));
         right.push(graph.add(momentum, rest));
     }
     Some(solve::solve(graph, mass_matrix, &right))
 }
 
-/// Whether an expression jumps where a function of the velocities changes sign: its derivative does not show that it contains them.
+/// Whether an expression jumps where a function of the velocities changes sign: its derivative does
+/// not show that it contains them.
 fn jumps(graph: &Graph, id: Id) -> bool {
     let jumps = |id: &Id| match graph.node(*id) {
-        Node::Call(Function::Sign | Function::Step, argument) => graph.dependencies(*argument).any(Dependencies::VELOCITY),
+        Node::Call(Function::Sign | Function::Step, argument) => {
+            graph.dependencies(*argument).any(Dependencies::VELOCITY)
+        }
         _ => false,
     };
     graph.dependencies(id).any(Dependencies::VELOCITY) && graph.reachable(&[id]).iter().any(jumps)
@@ -285,12 +334,20 @@ fn jumps(graph: &Graph, id: Id) -> bool {
 
 /// An expression with all velocities of coordinates set to zero.
 fn at_rest(graph: &mut Graph, id: Id) -> Id {
-    crate::algebra::diff::substitute(graph, id, |symbol| matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO))
+    crate::algebra::diff::substitute(graph, id, |symbol| {
+        matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO)
+    })
 }
 
 fn facts(graph: &mut Graph, motion: &mut Motion) {
-    let all = |roots: &[Id]| roots.iter().fold(Dependencies::default(), |all, &id| all.or(graph.dependencies(id)));
-    let masses = motion.mass_matrix.iter().flatten().fold(Dependencies::default(), |all, &id| all.or(graph.dependencies(id)));
+    let all = |roots: &[Id]| {
+        roots.iter().fold(Dependencies::default(), |all, &id| all.or(graph.dependencies(id)))
+    };
+    let masses = motion
+        .mass_matrix
+        .iter()
+        .flatten()
+        .fold(Dependencies::default(), |all, &id| all.or(graph.dependencies(id)));
     let state = Dependencies::COORDINATE.or(Dependencies::VELOCITY);
     let time = Dependencies::TIME.or(Dependencies::INPUT);
     let forces = all(&motion.forces);
@@ -300,7 +357,11 @@ fn facts(graph: &mut Graph, motion: &mut Motion) {
     let dependencies = forces.or(all(&motion.momenta)).or(masses);
     motion.autonomous = !dependencies.any(time);
     motion.explicit_time = dependencies.any(Dependencies::TIME);
-    let moving = motion.velocities.iter().flatten().fold(Dependencies::default(), |all, &id| all.or(graph.dependencies(id)));
+    let moving = motion
+        .velocities
+        .iter()
+        .flatten()
+        .fold(Dependencies::default(), |all, &id| all.or(graph.dependencies(id)));
     let explicit = motion.velocities.is_some() && !moving.any(Dependencies::COORDINATE);
     motion.separable = motion.constant_mass_matrix && explicit && !motion.nonconservative;
 }

@@ -21,7 +21,8 @@ pub(crate) struct Motion {
     pub(crate) power: Id,
     pub(crate) kinetic: Option<Id>,
     pub(crate) potential: Option<Id>,
-    /// ∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂parameters, column by column; `None` where they would be too long to write out.
+    /// ∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂parameters, column by column; `None` where they would be too long
+    /// to write out.
     pub(crate) jacobians: Option<[Vec<Vec<Id>>; 3]>,
     pub(crate) cyclic: Vec<usize>,
     pub(crate) conserved: Vec<Conserved>,
@@ -37,13 +38,26 @@ pub(crate) struct Motion {
 impl Motion {
     /// Every expression in it.
     pub(crate) fn roots(&mut self) -> Vec<&mut Id> {
-        let lists = [&mut self.accelerations, &mut self.momenta, &mut self.forces, &mut self.momentum_rates];
-        let single = [Some(&mut self.energy), Some(&mut self.power), self.kinetic.as_mut(), self.potential.as_mut()];
+        let lists = [
+            &mut self.accelerations,
+            &mut self.momenta,
+            &mut self.forces,
+            &mut self.momentum_rates,
+        ];
+        let single = [
+            Some(&mut self.energy),
+            Some(&mut self.power),
+            self.kinetic.as_mut(),
+            self.potential.as_mut(),
+        ];
         let masses = self.mass_matrix.iter_mut().flatten();
         let velocities = self.velocities.iter_mut().flatten();
         let conserved = self.conserved.iter_mut().map(|conserved| &mut conserved.value);
         let jacobians = self.jacobians.iter_mut().flatten().flatten().flatten();
-        let unsolved = self.unsolved.iter_mut().flat_map(|unsolved| unsolved.carried.iter_mut().chain(&mut unsolved.equations));
+        let unsolved = self
+            .unsolved
+            .iter_mut()
+            .flat_map(|unsolved| unsolved.carried.iter_mut().chain(&mut unsolved.equations));
         lists
             .into_iter()
             .flatten()

@@ -18,7 +18,13 @@ use std::collections::{BTreeMap, BTreeSet};
 /// state.
 ///
 /// A Lagrangian that is not split may have any sign, and so may a parameter that is no mass.
-pub(crate) fn positive(model: &Model, graph: &Graph, energies: &Energies, matrix: &[Vec<Id>], errors: &mut Errors) -> bool {
+pub(crate) fn positive(
+    model: &Model,
+    graph: &Graph,
+    energies: &Energies,
+    matrix: &[Vec<Id>],
+    errors: &mut Errors,
+) -> bool {
     let potential = energies.potential.unwrap_or_default();
     if energies.lagrangian.is_some() || graph.dependencies(potential).any(Dependencies::VELOCITY) {
         return true;
@@ -48,8 +54,12 @@ pub(crate) fn positive(model: &Model, graph: &Graph, energies: &Energies, matrix
 /// stands before it.
 fn guilty<'a>(model: &Model<'a>, coordinate: &str) -> Option<(bool, &'a Expr)> {
     let mut source = Source { model, negative: BTreeMap::new(), followed: BTreeSet::new() };
-    let kinetic: Vec<&'a Expr> =
-        model.energies.iter().filter(|(role, _)| *role == Role::Kinetic).map(|&(_, expr)| expr).collect();
+    let kinetic: Vec<&'a Expr> = model
+        .energies
+        .iter()
+        .filter(|(role, _)| *role == Role::Kinetic)
+        .map(|&(_, expr)| expr)
+        .collect();
     let mut negative = Vec::new();
     for expr in &kinetic {
         source.negative_terms(false, expr, &mut negative);
@@ -73,7 +83,11 @@ impl<'a> Source<'_, 'a> {
     /// The definition that an expression stands for.
     fn definition(&self, expr: &Expr) -> Option<usize> {
         match &expr.kind {
-            ExprKind::Name(name) | ExprKind::Call(name, _) if name::read(&name.to_string()).dots == 0 => self.named(name),
+            ExprKind::Name(name) | ExprKind::Call(name, _)
+                if name::read(&name.to_string()).dots == 0 =>
+            {
+                self.named(name)
+            }
             ExprKind::Index(base, _) => self.definition(base),
             _ => None,
         }
@@ -116,9 +130,9 @@ impl<'a> Source<'_, 'a> {
     fn begins_negative(&mut self, expr: &Expr) -> bool {
         match &expr.kind {
             ExprKind::Negative(inner) => !self.begins_negative(inner),
-            ExprKind::Product(factors) => {
-                factors.iter().fold(false, |negative, (_, factor)| negative != self.begins_negative(factor))
-            }
+            ExprKind::Product(factors) => factors
+                .iter()
+                .fold(false, |negative, (_, factor)| negative != self.begins_negative(factor)),
             ExprKind::SumOver(_, term) => self.begins_negative(term),
             _ => {
                 let Some(index) = self.definition(expr) else { return false };
@@ -143,11 +157,21 @@ impl<'a> Source<'_, 'a> {
     fn mentions(&mut self, expr: &Expr, base: &str) -> bool {
         match &expr.kind {
             ExprKind::Number(_) => false,
-            ExprKind::Name(ident) => name::read(&ident.to_string()).base == base || self.defined_with(ident, base),
-            ExprKind::Sum(items) | ExprKind::Product(items) => items.iter().any(|(_, item)| self.mentions(item, base)),
-            ExprKind::Negative(a) | ExprKind::Magnitude(a) | ExprKind::Component(a, _) => self.mentions(a, base),
-            ExprKind::Power(a, b) | ExprKind::Index(a, b) => self.mentions(a, base) || self.mentions(b, base),
-            ExprKind::Call(ident, items) => items.iter().any(|item| self.mentions(item, base)) || self.defined_with(ident, base),
+            ExprKind::Name(ident) => {
+                name::read(&ident.to_string()).base == base || self.defined_with(ident, base)
+            }
+            ExprKind::Sum(items) | ExprKind::Product(items) => {
+                items.iter().any(|(_, item)| self.mentions(item, base))
+            }
+            ExprKind::Negative(a) | ExprKind::Magnitude(a) | ExprKind::Component(a, _) => {
+                self.mentions(a, base)
+            }
+            ExprKind::Power(a, b) | ExprKind::Index(a, b) => {
+                self.mentions(a, base) || self.mentions(b, base)
+            }
+            ExprKind::Call(ident, items) => {
+                items.iter().any(|item| self.mentions(item, base)) || self.defined_with(ident, base)
+            }
             ExprKind::Vector(items) => items.iter().any(|item| self.mentions(item, base)),
             ExprKind::SumOver(_, term) => self.mentions(term, base),
             ExprKind::Integral { integrand, .. } => self.mentions(integrand, base),
@@ -188,13 +212,17 @@ fn signs(model: &Model, graph: &Graph, roots: &[Id]) -> BTreeMap<Id, Option<Sign
             Node::Number(value) => Some(Sign::of(*value)),
             Node::Opaque(Literal::Exact(value)) => Some(Sign::of(*value)),
             // A number with too many digits is written without a sign.
-            Node::Opaque(Literal::Decimal(_)) | Node::Pi | Node::Symbol(Symbol::Moment(_, Moment::Inertia)) => {
-                Some(Sign::Positive)
+            Node::Opaque(Literal::Decimal(_))
+            | Node::Pi
+            | Node::Symbol(Symbol::Moment(_, Moment::Inertia)) => Some(Sign::Positive),
+            Node::Symbol(Symbol::Parameter(scalar)) => {
+                is_mass(model, *scalar).then_some(Sign::Positive)
             }
-            Node::Symbol(Symbol::Parameter(scalar)) => is_mass(model, *scalar).then_some(Sign::Positive),
             Node::Symbol(_) | Node::Atan2(..) => None,
             Node::Sum(terms) => {
-                let mut each = terms.iter().map(|(term, coefficient)| Some(signs[term]?.times(Sign::of(*coefficient))));
+                let mut each = terms
+                    .iter()
+                    .map(|(term, coefficient)| Some(signs[term]?.times(Sign::of(*coefficient))));
                 let first = each.next().flatten();
                 first.filter(|_| each.all(|sign| sign == first))
             }
@@ -205,9 +233,13 @@ fn signs(model: &Model, graph: &Graph, roots: &[Id]) -> BTreeMap<Id, Option<Sign
                     Some(if square { sign } else { sign.times(signs[base]?) })
                 })
             }
-            Node::Call(Function::Exp | Function::Cosh | Function::Abs | Function::Step, _) => Some(Sign::Positive),
+            Node::Call(Function::Exp | Function::Cosh | Function::Abs | Function::Step, _) => {
+                Some(Sign::Positive)
+            }
             Node::Call(..) => None,
-            Node::Max(a, b) => [signs[a], signs[b]].contains(&Some(Sign::Positive)).then_some(Sign::Positive),
+            Node::Max(a, b) => {
+                [signs[a], signs[b]].contains(&Some(Sign::Positive)).then_some(Sign::Positive)
+            }
             Node::Atom(inner) => signs[inner],
         };
         signs.insert(id, sign);
@@ -217,7 +249,9 @@ fn signs(model: &Model, graph: &Graph, roots: &[Id]) -> BTreeMap<Id, Option<Sign
 
 /// Whether a scalar is a mass, a moment of inertia or a density; a first moment may have any sign.
 fn is_mass(model: &Model, scalar: usize) -> bool {
-    let own = |quantity: &&Quantity| (quantity.first..quantity.first + quantity.count()).contains(&scalar);
+    let own = |quantity: &&Quantity| {
+        (quantity.first..quantity.first + quantity.count()).contains(&scalar)
+    };
     let one = Rational::ONE;
     let massive = |Dimension([mass, length, time])| mass == one && time.is_zero() && length != one;
     match model.parameters.iter().find(own) {

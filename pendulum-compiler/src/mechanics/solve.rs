@@ -1,4 +1,5 @@
-//! M x = f on the graph: `LDLᵀ` without square roots, structural zeros skipped, independent blocks apart.
+//! M x = f on the graph: `LDLᵀ` without square roots, structural zeros skipped, independent blocks
+//! apart.
 
 use crate::algebra::expr::{Dependencies, Graph, Id};
 use crate::algebra::number::Rational;
@@ -7,12 +8,20 @@ use crate::algebra::velocity_polynomial;
 use crate::messages::Errors;
 use crate::model::{Model, Quantity};
 
-/// Whether every direction has kinetic energy at a random state; reports the coordinates that have none.
-pub(crate) fn regular(model: &Model, graph: &mut Graph, matrix: &[Vec<Id>], errors: &mut Errors) -> bool {
+/// Whether every direction has kinetic energy at a random state; reports the coordinates that have
+/// none.
+pub(crate) fn regular(
+    model: &Model,
+    graph: &mut Graph,
+    matrix: &[Vec<Id>],
+    errors: &mut Errors,
+) -> bool {
     let before = errors.len();
     for coordinate in &model.coordinates {
         let rows = coordinate.first..coordinate.first + coordinate.count();
-        if let Some(row) = rows.clone().find(|&row| matrix[row].iter().all(|&entry| entry == Graph::ZERO)) {
+        if let Some(row) =
+            rows.clone().find(|&row| matrix[row].iter().all(|&entry| entry == Graph::ZERO))
+        {
             let name = named(coordinate, row);
             errors.at(
                 coordinate.name.span(),
@@ -29,8 +38,9 @@ pub(crate) fn regular(model: &Model, graph: &mut Graph, matrix: &[Vec<Id>], erro
     let Some(values) = at_random(graph, matrix) else { return true };
     for block in blocks(matrix) {
         let Some((row, deficient)) = zero_pivot(&values, &block) else { continue };
-        let found =
-            model.coordinates.iter().find(|coordinate| (coordinate.first..coordinate.first + coordinate.count()).contains(&row));
+        let found = model.coordinates.iter().find(|coordinate| {
+            (coordinate.first..coordinate.first + coordinate.count()).contains(&row)
+        });
         let Some(coordinate) = found else { continue };
         let name = named(coordinate, row);
         let message = if deficient {
@@ -57,19 +67,23 @@ fn named(coordinate: &Quantity, row: usize) -> String {
     }
 }
 
-/// The entries of a matrix at a random point of a prime field. Half of all numbers have a root: where there are too many to meet a point
-/// at which all exist, roots are unknown functions, and what vanishes then vanishes too.
+/// The entries of a matrix at a random point of a prime field. Half of all numbers have a root:
+/// where there are too many to meet a point at which all exist, roots are unknown functions, and
+/// what vanishes then vanishes too.
 fn at_random(graph: &Graph, matrix: &[Vec<Id>]) -> Option<Vec<Vec<Residue>>> {
     let roots: Vec<Id> = matrix.iter().flatten().copied().collect();
     let exact = (0..64).find_map(|seed| Point::new(graph, &roots, seed).values(graph, &roots));
-    let formal = || (0..64).find_map(|seed| Point::formal(graph, &roots, seed).values(graph, &roots));
+    let formal =
+        || (0..64).find_map(|seed| Point::formal(graph, &roots, seed).values(graph, &roots));
     let values = exact.or_else(formal)?;
     Some(matrix.iter().map(|row| row.iter().map(|entry| values[entry]).collect()).collect())
 }
 
-/// The row in which elimination meets a pivot that is zero, and whether the rows are dependent then.
+/// The row in which elimination meets a pivot that is zero, and whether the rows are dependent
+/// then.
 fn zero_pivot(values: &[Vec<Residue>], block: &[usize]) -> Option<(usize, bool)> {
-    let mut rows: Vec<Vec<Residue>> = block.iter().map(|&i| block.iter().map(|&j| values[i][j]).collect()).collect();
+    let mut rows: Vec<Vec<Residue>> =
+        block.iter().map(|&i| block.iter().map(|&j| values[i][j]).collect()).collect();
     for pivot in 0..block.len() {
         let Some(inverse) = rows[pivot][pivot].reciprocal() else {
             let deficient = rows[pivot].iter().skip(pivot).all(|&entry| entry == Residue::ZERO);
@@ -95,15 +109,20 @@ pub(crate) fn solve(graph: &mut Graph, matrix: &[Vec<Id>], right: &[Id]) -> Vec<
             continue;
         }
         let scales = scales(graph, matrix, &block);
-        let pivot =
-            graph.product(Rational::ONE, &[(matrix[block[0]][block[0]], Rational::ONE), (scales[0], Rational::whole(-2))]);
+        let pivot = graph.product(
+            Rational::ONE,
+            &[(matrix[block[0]][block[0]], Rational::ONE), (scales[0], Rational::whole(-2))],
+        );
         // The first pivot becomes one where parameters alone decide it.
-        let unit = if graph.dependencies(pivot).any(Dependencies::STATE) { Graph::ONE } else { pivot };
+        let unit =
+            if graph.dependencies(pivot).any(Dependencies::STATE) { Graph::ONE } else { pivot };
         let scaled: Vec<Vec<Id>> = (0..block.len())
             .map(|i| {
                 let entry = |j: usize| {
-                    let entry = over(graph, matrix[block[i]][block[j]], &[scales[i], scales[j], unit]);
-                    // Multiplied out, a constant shows what cancels against squares: 1 − cos² is sin².
+                    let entry =
+                        over(graph, matrix[block[i]][block[j]], &[scales[i], scales[j], unit]);
+                    // Multiplied out, a constant shows what cancels against squares: 1 − cos² is
+                    // sin².
                     if graph.dependencies(entry).any(Dependencies::STATE) {
                         entry
                     } else {
@@ -115,8 +134,14 @@ pub(crate) fn solve(graph: &mut Graph, matrix: &[Vec<Id>], right: &[Id]) -> Vec<
             .collect();
         let order: Vec<usize> = (0..block.len()).collect();
         let Ok(factors) = factor(graph, &scaled, &order) else { continue };
-        let right: Vec<Id> = block.iter().zip(&scales).map(|(&row, &scale)| over(graph, right[row], &[scale, unit])).collect();
-        for ((value, &row), &scale) in substitute(graph, &factors, right).into_iter().zip(&block).zip(&scales) {
+        let right: Vec<Id> = block
+            .iter()
+            .zip(&scales)
+            .map(|(&row, &scale)| over(graph, right[row], &[scale, unit]))
+            .collect();
+        for ((value, &row), &scale) in
+            substitute(graph, &factors, right).into_iter().zip(&block).zip(&scales)
+        {
             solution[row] = over(graph, value, &[scale]);
         }
     }
@@ -125,11 +150,14 @@ pub(crate) fn solve(graph: &mut Graph, matrix: &[Vec<Id>], right: &[Id]) -> Vec<
 
 /// The coordinates that no other is coupled to.
 pub(crate) fn alone(matrix: &[Vec<Id>]) -> Vec<bool> {
-    matrix.iter().map(|row| row.iter().filter(|&&entry| entry != Graph::ZERO).count() == 1).collect()
+    matrix
+        .iter()
+        .map(|row| row.iter().filter(|&&entry| entry != Graph::ZERO).count() == 1)
+        .collect()
 }
 
-/// A product of parameters for each row that stands in all its entries, twice on the diagonal: in chains the lengths. The unknowns are
-/// solved for in these units, so that fewer products move.
+/// A product of parameters for each row that stands in all its entries, twice on the diagonal: in
+/// chains the lengths. The unknowns are solved for in these units, so that fewer products move.
 fn scales(graph: &mut Graph, matrix: &[Vec<Id>], block: &[usize]) -> Vec<Id> {
     let mut scales = Vec::new();
     for &row in block {
@@ -137,11 +165,15 @@ fn scales(graph: &mut Graph, matrix: &[Vec<Id>], block: &[usize]) -> Vec<Id> {
         let common: Vec<(Id, Rational)> = diagonal
             .into_iter()
             .filter(|&(base, exponent)| {
-                let parameters_alone = !graph.dependencies(base).any(Dependencies::STATE) && exponent == Rational::whole(2);
+                let parameters_alone = !graph.dependencies(base).any(Dependencies::STATE)
+                    && exponent == Rational::whole(2);
                 let stands = |&column: &usize| {
                     let entry = matrix[row][column];
                     entry == Graph::ZERO
-                        || graph.factors(entry).iter().any(|&(other, power)| other == base && !power.is_negative())
+                        || graph
+                            .factors(entry)
+                            .iter()
+                            .any(|&(other, power)| other == base && !power.is_negative())
                 };
                 parameters_alone && block.iter().all(stands)
             })
@@ -220,7 +252,11 @@ fn factor(graph: &mut Graph, matrix: &[Vec<Id>], block: &[usize]) -> Result<Fact
             if scaled[i][j] != Graph::ZERO {
                 let entry = graph.mul(scaled[i][j], inverse);
                 // A division is done once; a quotient by parameters stays open and cancels.
-                lower[i][j] = if graph.moving_quotient(entry) { graph.closed(entry) } else { graph.atom(entry) };
+                lower[i][j] = if graph.moving_quotient(entry) {
+                    graph.closed(entry)
+                } else {
+                    graph.atom(entry)
+                };
             }
         }
         reciprocal.push(inverse);

@@ -1,4 +1,5 @@
-//! Conserved quantities: every symmetry q → q + ε(a + Bq) of the Lagrangian, and the energy where nothing depends on time.
+//! Conserved quantities: every symmetry q → q + ε(a + Bq) of the Lagrangian, and the energy where
+//! nothing depends on time.
 //!
 //! The Lagrangian is unchanged if Σ ∂L/∂q_i ξ_i + ∂L/∂q̇_i ξ̇_i vanishes for ξ = a + Bq (Noether
 //! 1918), which is linear in a and B: their values are the null space of that sum at random points
@@ -27,11 +28,17 @@ pub(crate) struct Conserved {
 }
 
 /// The momenta of all symmetries of `lagrangian` along which `external` forces do nothing.
-pub(crate) fn conserved(graph: &mut Graph, lagrangian: Id, momenta: &[Id], external: &[Id]) -> Vec<Conserved> {
+pub(crate) fn conserved(
+    graph: &mut Graph,
+    lagrangian: Id,
+    momenta: &[Id],
+    external: &[Id],
+) -> Vec<Conserved> {
     let count = momenta.len();
     let coordinates: Vec<Id> = (0..count).map(|i| graph.symbol(Symbol::Coordinate(i))).collect();
     let velocities: Vec<Id> = (0..count).map(|i| graph.symbol(Symbol::Velocity(i))).collect();
-    let slopes: Vec<Id> = (0..count).map(|i| derivative(graph, lagrangian, Symbol::Coordinate(i))).collect();
+    let slopes: Vec<Id> =
+        (0..count).map(|i| derivative(graph, lagrangian, Symbol::Coordinate(i))).collect();
     // Displacements of coordinate i, by a constant or by coordinate j.
     let mut unknowns: Vec<(usize, Option<usize>)> = (0..count).map(|i| (i, None)).collect();
     if count <= MOST_LINEAR {
@@ -50,7 +57,9 @@ pub(crate) fn conserved(graph: &mut Graph, lagrangian: Id, momenta: &[Id], exter
         let at = |id: Id| values[&id];
         let change = unknowns.iter().map(|&(i, j)| match j {
             None => at(slopes[i]),
-            Some(j) => at(slopes[i]).mul(at(coordinates[j])).add(at(momenta[i]).mul(at(velocities[j]))),
+            Some(j) => {
+                at(slopes[i]).mul(at(coordinates[j])).add(at(momenta[i]).mul(at(velocities[j])))
+            }
         });
         let work = unknowns.iter().map(|&(i, j)| match j {
             None => at(external[i]),
@@ -60,7 +69,8 @@ pub(crate) fn conserved(graph: &mut Graph, lagrangian: Id, momenta: &[Id], exter
     };
     let prime = Point::new(graph, &roots, 0);
     let mut tried = 0..8 * unknowns.len() as u64 + 64;
-    let mut points: Vec<[Vec<Residue>; 2]> = tried.by_ref().take(SAMPLE).filter_map(|seed| demands(&prime, seed)).collect();
+    let mut points: Vec<[Vec<Residue>; 2]> =
+        tried.by_ref().take(SAMPLE).filter_map(|seed| demands(&prime, seed)).collect();
     if SAMPLE < 8 * points.len() {
         let missing = wanted.saturating_sub(points.len());
         points.extend(tried.by_ref().filter_map(|seed| demands(&prime, seed)).take(missing));
@@ -72,13 +82,17 @@ pub(crate) fn conserved(graph: &mut Graph, lagrangian: Id, momenta: &[Id], exter
     if points.len() < wanted {
         return Vec::new();
     }
-    let part = |row: &[Residue], index: usize| row.iter().map(|value| value.parts()[index]).collect::<Vec<Residue>>();
-    let mut rows: Vec<Vec<Residue>> = points.iter().flatten().flat_map(|row| [part(row, 0), part(row, 1)]).collect();
+    let part = |row: &[Residue], index: usize| {
+        row.iter().map(|value| value.parts()[index]).collect::<Vec<Residue>>()
+    };
+    let mut rows: Vec<Vec<Residue>> =
+        points.iter().flatten().flat_map(|row| [part(row, 0), part(row, 1)]).collect();
     // A row of zeros demands nothing.
     rows.retain(|row| row.iter().any(|&value| value != Residue::ZERO));
     let mut found = Vec::new();
     for vector in null_space(rows, unknowns.len()) {
-        let exact: Option<Vec<Rational>> = vector.iter().map(|residue| residue.rational()).collect();
+        let exact: Option<Vec<Rational>> =
+            vector.iter().map(|residue| residue.rational()).collect();
         let Some(exact) = exact else { continue };
         let terms: Vec<(Rational, Option<usize>, usize)> = exact
             .into_iter()

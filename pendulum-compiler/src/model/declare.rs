@@ -28,7 +28,10 @@ impl<'a> Declared<'a> {
     ) {
         let Name { base, dots } = name::read(&ident.to_string());
         let refusal = match base.as_str() {
-            _ if 0 < dots => Some(format!("`{ident}` is a time derivative; declare the name without dots, `{}`", plain(ident))),
+            _ if 0 < dots => Some(format!(
+                "`{ident}` is a time derivative; declare the name without dots, `{}`",
+                plain(ident)
+            )),
             "t" => Some("`t` is the time; choose another name".to_owned()),
             "pi" => Some(format!("`{ident}` is the number π; choose another name")),
             "i" => Some("`i` is the imaginary unit; choose another name".to_owned()),
@@ -72,17 +75,31 @@ pub(super) fn quantity<'a>(
     let length = length.map(|expr| family_length(expr, errors));
     let body = matches!(shape, Shape::Kind(Kind::Body(_)));
     if let (true, Some(default)) = (body || length.is_some(), default) {
-        errors.at(default.range, "only a scalar has a default; leave it out and pass the value to `new`");
+        errors.at(
+            default.range,
+            "only a scalar has a default; leave it out and pass the value to `new`",
+        );
     }
     let dimension = unit.and_then(|unit| unit::dimension(unit, errors));
-    Quantity { name, length, first, dimension, unit: unit.map(text).unwrap_or_default(), default, body }
+    Quantity {
+        name,
+        length,
+        first,
+        dimension,
+        unit: unit.map(text).unwrap_or_default(),
+        default,
+        body,
+    }
 }
 
 fn family_length(expr: &Expr, errors: &mut Errors) -> usize {
     match integer(expr, &|_| None) {
         Ok(length) if (1..=LONGEST).contains(&length) => usize::try_from(length).unwrap_or(1),
         Ok(_) => {
-            errors.at(expr.range, format!("a length is between 1 and {LONGEST}; write another number"));
+            errors.at(
+                expr.range,
+                format!("a length is between 1 and {LONGEST}; write another number"),
+            );
             1
         }
         Err(range) => {
@@ -97,7 +114,10 @@ pub(super) fn twice(definition: &Let, errors: &mut Errors) {
     let arguments = definition.arguments.as_deref().unwrap_or_default();
     for (index, argument) in arguments.iter().enumerate() {
         if arguments[..index].iter().any(|other| plain(other) == plain(argument)) {
-            errors.at(argument.span(), format!("the argument `{argument}` stands twice; rename one of the two"));
+            errors.at(
+                argument.span(),
+                format!("the argument `{argument}` stands twice; rename one of the two"),
+            );
         }
     }
 }

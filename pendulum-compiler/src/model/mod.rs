@@ -84,29 +84,59 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     for field in &block.fields {
         let meaning = Meaning::Parameter(model.parameters.len());
         declared.declare(&mut model.names, &field.name, meaning, errors);
-        let quantity = quantity(&field.name, Shape::Kind(&field.kind), parameters, field.default.as_ref(), errors);
+        let quantity = quantity(
+            &field.name,
+            Shape::Kind(&field.kind),
+            parameters,
+            field.default.as_ref(),
+            errors,
+        );
         parameters += quantity.count();
         model.parameters.push(quantity);
     }
     for statement in &block.statements {
         match statement {
             Statement::Coordinate { name, length, unit } => {
-                declared.declare(&mut model.names, name, Meaning::Coordinate(model.coordinates.len()), errors);
-                let quantity = quantity(name, Shape::Family(length.as_ref(), unit.as_ref()), coordinates, None, errors);
+                declared.declare(
+                    &mut model.names,
+                    name,
+                    Meaning::Coordinate(model.coordinates.len()),
+                    errors,
+                );
+                let quantity = quantity(
+                    name,
+                    Shape::Family(length.as_ref(), unit.as_ref()),
+                    coordinates,
+                    None,
+                    errors,
+                );
                 coordinates += quantity.count();
                 model.coordinates.push(quantity);
             }
             Statement::Driven { name, kind } => {
-                declared.declare(&mut model.names, name, Meaning::Input(model.inputs.len()), errors);
+                declared.declare(
+                    &mut model.names,
+                    name,
+                    Meaning::Input(model.inputs.len()),
+                    errors,
+                );
                 let quantity = quantity(name, Shape::Kind(kind), inputs, None, errors);
                 if quantity.length.is_some_and(|length| !(2..=3).contains(&length)) {
-                    errors.at(name.span(), "a driven input is a scalar or a vector; write `[m; 2]` or `[m; 3]`");
+                    errors.at(
+                        name.span(),
+                        "a driven input is a scalar or a vector; write `[m; 2]` or `[m; 3]`",
+                    );
                 }
                 inputs += quantity.count();
                 model.inputs.push(quantity);
             }
             Statement::Let(definition) => {
-                declared.declare(&mut model.names, &definition.name, Meaning::Let(model.lets.len()), errors);
+                declared.declare(
+                    &mut model.names,
+                    &definition.name,
+                    Meaning::Let(model.lets.len()),
+                    errors,
+                );
                 twice(definition, errors);
                 model.lets.push(definition);
             }
@@ -115,7 +145,10 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         }
     }
     if model.inputs.len() > 8 {
-        errors.at(model.inputs[8].name.span(), "more than eight driven inputs; join some of them into vectors");
+        errors.at(
+            model.inputs[8].name.span(),
+            "more than eight driven inputs; join some of them into vectors",
+        );
     }
     for statement in &block.statements {
         if let Statement::Force { name, index, expr, .. } = statement {
@@ -129,7 +162,8 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     let mut walk = Walk { model: &model, errors, scope: Vec::new(), mentioned: BTreeSet::new() };
     walk.block();
     let mentioned = walk.mentioned;
-    model.unmentioned = (0..model.parameters.len()).filter(|index| !mentioned.contains(index)).collect();
+    model.unmentioned =
+        (0..model.parameters.len()).filter(|index| !mentioned.contains(index)).collect();
     model
 }
 
@@ -138,16 +172,33 @@ fn plain(ident: &Ident) -> String {
     name::read(&ident.to_string()).base
 }
 
-fn force<'a>(model: &mut Model<'a>, name: &'a Ident, index: Option<&'a ForceIndex>, expr: &'a Expr, errors: &mut Errors) {
+fn force<'a>(
+    model: &mut Model<'a>,
+    name: &'a Ident,
+    index: Option<&'a ForceIndex>,
+    expr: &'a Expr,
+    errors: &mut Errors,
+) {
     let Name { base, dots } = name::read(&name.to_string());
     match model.names.get(&base) {
-        Some(&Meaning::Coordinate(coordinate)) if dots == 0 => model.forces.push(Force { coordinate, name, index, expr }),
+        Some(&Meaning::Coordinate(coordinate)) if dots == 0 => {
+            model.forces.push(Force { coordinate, name, index, expr });
+        }
         Some(_) => {
-            errors.at(name.span(), format!("`{name}` is no coordinate; a force acts on a coordinate, as in `force θ = …;`"));
+            errors.at(
+                name.span(),
+                format!(
+                    "`{name}` is no coordinate; a force acts on a coordinate, as in `force θ = …;`"
+                ),
+            );
         }
         None if model.block.recovery.declarations => {}
         None => {
-            let known = model.coordinates.iter().map(|coordinate| coordinate.name.to_string()).collect::<Vec<_>>();
+            let known = model
+                .coordinates
+                .iter()
+                .map(|coordinate| coordinate.name.to_string())
+                .collect::<Vec<_>>();
             errors.at(name.span(), unknown(&name.to_string(), known.iter().map(String::as_str)));
         }
     }
@@ -170,10 +221,16 @@ fn roles(block: &Block, errors: &mut Errors) {
         }
     }
     if let (Some(_), Some(split)) = (lagrangian, split) {
-        errors.at(split, "`lagrangian` is kinetic minus potential energy already; write either one or the other");
+        errors.at(
+            split,
+            "`lagrangian` is kinetic minus potential energy already; write either one or the other",
+        );
     }
     if lagrangian.is_none() && split.is_none() && !block.recovery.energies {
-        errors.at(block.name.span(), "no energy; write `kinetic = …;` and `potential = …;` below the struct");
+        errors.at(
+            block.name.span(),
+            "no energy; write `kinetic = …;` and `potential = …;` below the struct",
+        );
     }
 }
 
@@ -194,10 +251,12 @@ fn rational(expr: &Expr, bound: &dyn Fn(&str) -> Option<i64>) -> Option<Rational
             let term = rational(term, bound)?;
             sum.add(if *minus { term.negative() } else { term })
         }),
-        ExprKind::Product(factors) => factors.iter().try_fold(Rational::ONE, |product, (over, factor)| {
-            let factor = rational(factor, bound)?;
-            product.mul(if *over { factor.reciprocal()? } else { factor })
-        }),
+        ExprKind::Product(factors) => {
+            factors.iter().try_fold(Rational::ONE, |product, (over, factor)| {
+                let factor = rational(factor, bound)?;
+                product.mul(if *over { factor.reciprocal()? } else { factor })
+            })
+        }
         _ => unit::constant(expr),
     }
 }
@@ -206,6 +265,8 @@ fn rational(expr: &Expr, bound: &dyn Fn(&str) -> Option<i64>) -> Option<Rational
 fn unknown<'b>(name: &str, known: impl Iterator<Item = &'b str>) -> String {
     match name::nearest(name, known) {
         Some(near) => format!("unknown name `{name}`; did you mean `{near}`?"),
-        None => format!("unknown name `{name}`; declare it as a parameter, a coordinate, a driven input or with `let`"),
+        None => format!(
+            "unknown name `{name}`; declare it as a parameter, a coordinate, a driven input or with `let`"
+        ),
     }
 }

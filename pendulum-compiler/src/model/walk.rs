@@ -1,4 +1,5 @@
-//! A walk over all expressions: names that nobody declared, functions with the wrong number of arguments.
+//! A walk over all expressions: names that nobody declared, functions with the wrong number of
+//! arguments.
 
 use super::{Meaning, Model, plain, unknown};
 use crate::algebra::dimension::Dimension;
@@ -23,7 +24,9 @@ impl Walk<'_, '_, '_> {
     pub(super) fn block(&mut self) {
         let model = self.model;
         for quantity in &model.parameters {
-            if let Some(default) = quantity.default.filter(|_| quantity.length.is_none() && !quantity.body) {
+            if let Some(default) =
+                quantity.default.filter(|_| quantity.length.is_none() && !quantity.body)
+            {
                 self.constant(default);
             }
         }
@@ -57,21 +60,29 @@ impl Walk<'_, '_, '_> {
     fn constant(&mut self, expr: &Expr) {
         match &expr.kind {
             ExprKind::Number(_) => {}
-            ExprKind::Name(name) if name::read(&name.to_string()) == (Name { base: "pi".into(), dots: 0 }) => {}
-            ExprKind::Sum(items) | ExprKind::Product(items) => items.iter().for_each(|(_, item)| self.constant(item)),
+            ExprKind::Name(name)
+                if name::read(&name.to_string()) == (Name { base: "pi".into(), dots: 0 }) => {}
+            ExprKind::Sum(items) | ExprKind::Product(items) => {
+                for (_, item) in items {
+                    self.constant(item);
+                }
+            }
             ExprKind::Negative(inner) => self.constant(inner),
             ExprKind::Power(base, exponent) => {
                 self.constant(base);
                 self.constant(exponent);
             }
             ExprKind::Call(name, items)
-                if scalar_functions().any(|(function, count)| name == function && *count == items.len()) =>
+                if scalar_functions()
+                    .any(|(function, count)| name == function && *count == items.len()) =>
             {
                 for item in items {
                     self.constant(item);
                 }
             }
-            _ => self.errors.at(expr.range, "a default is a number; write its value, as in `g: m/s^2 = 9.81`"),
+            _ => self
+                .errors
+                .at(expr.range, "a default is a number; write its value, as in `g: m/s^2 = 9.81`"),
         }
     }
 
@@ -81,7 +92,8 @@ impl Walk<'_, '_, '_> {
         self.local(&binder.name, "an index");
     }
 
-    /// A name that holds in one expression; it may hide a parameter or a definition, but nothing that moves.
+    /// A name that holds in one expression; it may hide a parameter or a definition, but nothing
+    /// that moves.
     fn local(&mut self, ident: &Ident, what: &str) {
         let Name { base, dots } = name::read(&ident.to_string());
         let hidden = match base.as_str() {
@@ -96,7 +108,10 @@ impl Walk<'_, '_, '_> {
             },
         };
         if let Some(hidden) = hidden {
-            self.errors.at(ident.span(), format!("{hidden}, and {what} of this name would hide it; choose another name"));
+            self.errors.at(
+                ident.span(),
+                format!("{hidden}, and {what} of this name would hide it; choose another name"),
+            );
         }
         self.scope.push(base);
     }
@@ -105,7 +120,11 @@ impl Walk<'_, '_, '_> {
         match &expr.kind {
             ExprKind::Number(_) => {}
             ExprKind::Name(name) => self.name(name),
-            ExprKind::Sum(items) | ExprKind::Product(items) => items.iter().for_each(|(_, item)| self.expr(item)),
+            ExprKind::Sum(items) | ExprKind::Product(items) => {
+                for (_, item) in items {
+                    self.expr(item);
+                }
+            }
             ExprKind::Negative(inner) | ExprKind::Magnitude(inner) => self.expr(inner),
             ExprKind::Power(base, exponent) => {
                 self.expr(base);
@@ -123,10 +142,18 @@ impl Walk<'_, '_, '_> {
             }
             ExprKind::Component(base, component) => {
                 self.expr(base);
-                let known: &[&str] = if self.body(base) { &["mass", "center", "inertia"] } else { &["x", "y", "z"] };
+                let known: &[&str] =
+                    if self.body(base) { &["mass", "center", "inertia"] } else { &["x", "y", "z"] };
                 if !known.iter().any(|known| component == known) {
-                    let list = known.iter().map(|name| format!("`.{name}`")).collect::<Vec<_>>().join(", ");
-                    self.errors.at(component.span(), format!("unknown component `{component}`; there are {list}"));
+                    let list = known
+                        .iter()
+                        .map(|name| format!("`.{name}`"))
+                        .collect::<Vec<_>>()
+                        .join(", ");
+                    self.errors.at(
+                        component.span(),
+                        format!("unknown component `{component}`; there are {list}"),
+                    );
                 }
             }
             ExprKind::Vector(items) => {
@@ -143,11 +170,18 @@ impl Walk<'_, '_, '_> {
             ExprKind::Integral { point, body, integrand } => {
                 let Name { base, dots } = name::read(&body.to_string());
                 match self.model.names.get(&base) {
-                    Some(&Meaning::Parameter(index)) if dots == 0 && self.model.parameters[index].body => {
+                    Some(&Meaning::Parameter(index))
+                        if dots == 0 && self.model.parameters[index].body =>
+                    {
                         self.mentioned.insert(index);
                     }
                     Some(_) => {
-                        self.errors.at(body.span(), format!("`{body}` is no body; declare it as `{body}: body` in the struct"));
+                        self.errors.at(
+                            body.span(),
+                            format!(
+                                "`{body}` is no body; declare it as `{body}: body` in the struct"
+                            ),
+                        );
                     }
                     None => self.name(body),
                 }
@@ -162,7 +196,8 @@ impl Walk<'_, '_, '_> {
     fn body(&self, expr: &Expr) -> bool {
         let ExprKind::Name(ident) = &expr.kind else { return false };
         let Name { base, dots } = name::read(&ident.to_string());
-        let meaning = self.model.names.get(&base).filter(|_| dots == 0 && !self.scope.contains(&base));
+        let meaning =
+            self.model.names.get(&base).filter(|_| dots == 0 && !self.scope.contains(&base));
         matches!(meaning, Some(&Meaning::Parameter(index)) if self.model.parameters[index].body)
     }
 
@@ -208,12 +243,18 @@ impl Walk<'_, '_, '_> {
     fn unknown(&self, text: &str) -> String {
         let moving = |stem: &str| {
             let Name { base, dots } = name::read(stem);
-            self.model.names.get(&base).filter(|meaning| dots == 0 && !matches!(meaning, Meaning::Parameter(_)))
+            self.model
+                .names
+                .get(&base)
+                .filter(|meaning| dots == 0 && !matches!(meaning, Meaning::Parameter(_)))
         };
         if let Some(plain) = name::unaccented(text)
             && moving(&plain).is_some()
         {
-            return format!("`{text}` has an accent, and a derivative has a dot; write {}", name::dotted(&plain));
+            return format!(
+                "`{text}` has an accent, and a derivative has a dot; write {}",
+                name::dotted(&plain)
+            );
         }
         for suffix in ["ddot", "dot"] {
             if let Some(stem) = text.strip_suffix(suffix)
@@ -231,7 +272,9 @@ impl Walk<'_, '_, '_> {
                 return format!("unknown name `{text}`; declare it as a parameter; {UNITS}");
             }
             // A letter alone is a quantity more often than a constant.
-            if let Some(constant) = constant(text, self.model.block.ascii).filter(|_| 1 < text.len()) {
+            if let Some(constant) =
+                constant(text, self.model.block.ascii).filter(|_| 1 < text.len())
+            {
                 return format!("unknown name `{text}`; write `{constant}`");
             }
         }
@@ -245,21 +288,29 @@ impl Walk<'_, '_, '_> {
             && let Some(arguments) = &self.model.lets[*index].arguments
         {
             if arguments.len() != count {
-                self.errors.at(range, format!("`{ident}` takes {}; {count} stand here", plural(arguments.len())));
+                self.errors.at(
+                    range,
+                    format!("`{ident}` takes {}; {count} stand here", plural(arguments.len())),
+                );
             }
             return;
         }
         if let Some(&(_, expected)) = FUNCTIONS.iter().find(|(function, _)| ident == function) {
-            if let ("dot", Some(product)) = (ident.to_string().as_str(), function(&ident.to_string(), items)) {
+            if let ("dot", Some(product)) =
+                (ident.to_string().as_str(), function(&ident.to_string(), items))
+            {
                 self.errors.at(range, format!("`dot` is the derivative of one argument; write `{product}` for a scalar product"));
             } else if expected != count {
-                self.errors.at(range, format!("`{ident}` takes {}; {count} stand here", plural(expected)));
+                self.errors
+                    .at(range, format!("`{ident}` takes {}; {count} stand here", plural(expected)));
             }
             return;
         }
         if ident == "sum" {
             self.errors.at(range, "`sum` runs over an index; write `sum(k in 0..5, …)`");
-        } else if self.model.names.contains_key(&base) || self.scope.contains(&base) || matches!(base.as_str(), "t" | "pi" | "i")
+        } else if self.model.names.contains_key(&base)
+            || self.scope.contains(&base)
+            || matches!(base.as_str(), "t" | "pi" | "i")
         {
             self.errors.at(
                 ident.span(),
@@ -272,12 +323,15 @@ impl Walk<'_, '_, '_> {
                 .iter()
                 .filter(|definition| definition.arguments.is_some())
                 .map(|definition| definition.name.to_string());
-            let known: Vec<String> = FUNCTIONS.iter().map(|(function, _)| (*function).to_owned()).chain(lets).collect();
+            let known: Vec<String> =
+                FUNCTIONS.iter().map(|(function, _)| (*function).to_owned()).chain(lets).collect();
             let nearest = || name::nearest(&ident.to_string(), known.iter().map(String::as_str));
             let message = match (function(&ident.to_string(), items), nearest()) {
                 (Some(call), _) => format!("unknown function `{ident}`; write `{call}`"),
                 (None, Some(near)) => format!("unknown function `{ident}`; did you mean `{near}`?"),
-                (None, None) => format!("unknown function `{ident}`; define it with `let {ident}(p) = …;`"),
+                (None, None) => {
+                    format!("unknown function `{ident}`; define it with `let {ident}(p) = …;`")
+                }
             };
             self.errors.at(ident.span(), message);
         }
@@ -285,7 +339,8 @@ impl Walk<'_, '_, '_> {
 
     /// Every declared name as written.
     fn known(&self) -> Vec<String> {
-        let quantities = self.model.parameters.iter().chain(&self.model.coordinates).chain(&self.model.inputs);
+        let quantities =
+            self.model.parameters.iter().chain(&self.model.coordinates).chain(&self.model.inputs);
         quantities
             .map(|quantity| quantity.name)
             .chain(self.model.lets.iter().map(|definition| &definition.name))
@@ -300,7 +355,9 @@ fn scalar_functions() -> impl Iterator<Item = &'static (&'static str, usize)> {
 }
 
 fn acceleration(name: &str) -> String {
-    format!("`{name}` is an acceleration, and a Lagrangian has none; only driven inputs have a second derivative")
+    format!(
+        "`{name}` is an acceleration, and a Lagrangian has none; only driven inputs have a second derivative"
+    )
 }
 
 fn plural(count: usize) -> String {

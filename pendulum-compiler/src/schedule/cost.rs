@@ -25,14 +25,23 @@ impl Program {
     pub(crate) fn count(&self) -> Count {
         let mut count = Count::default();
         let parameter_only = self.parameter_only();
-        for (op, _) in self.ops.iter().zip(parameter_only).filter(|(_, parameter_only)| !parameter_only) {
+        for (op, _) in
+            self.ops.iter().zip(parameter_only).filter(|(_, parameter_only)| !parameter_only)
+        {
             match op {
                 Op::SinCos(_) | Op::Call(Function::Sin | Function::Cos, _) => count.sincos += 1,
                 Op::Mul(..) => count.mul += 1,
                 Op::Add(..) | Op::Sub(..) => count.add += 1,
                 Op::Div(..) => count.div += 1,
-                Op::Sqrt(_) | Op::Powf(..) | Op::Atan2(..) | Op::Max(..) | Op::Call(..) => count.functions += 1,
-                Op::Number(_) | Op::Literal(_) | Op::Pi | Op::Load(_) | Op::Negative(_) | Op::Part(..) => {}
+                Op::Sqrt(_) | Op::Powf(..) | Op::Atan2(..) | Op::Max(..) | Op::Call(..) => {
+                    count.functions += 1;
+                }
+                Op::Number(_)
+                | Op::Literal(_)
+                | Op::Pi
+                | Op::Load(_)
+                | Op::Negative(_)
+                | Op::Part(..) => {}
             }
         }
         count

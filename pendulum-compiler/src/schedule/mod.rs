@@ -1,7 +1,8 @@
 //! From the graph to a straight program: binary operations in order, shared ones once.
 //!
-//! Sums are factored greedily by what most of their terms share, quotients share one division, sine and cosine of one angle come
-//! together, and those of a difference of angles are products where both angles are there anyway.
+//! Sums are factored greedily by what most of their terms share, quotients share one division, sine
+//! and cosine of one angle come together, and those of a difference of angles are products where
+//! both angles are there anyway.
 
 mod cost;
 mod product;
@@ -25,7 +26,8 @@ pub(crate) fn program(graph: &Graph, roots: &[Id]) -> Program {
     scheduled(graph, roots, true)
 }
 
-/// The program whose operations work on series: there sine and cosine cost as much as two products, and a reciprocal is found once.
+/// The program whose operations work on series: there sine and cosine cost as much as two products,
+/// and a reciprocal is found once.
 pub(crate) fn of_series(graph: &Graph, roots: &[Id]) -> Program {
     scheduled(graph, roots, false).with_reciprocals()
 }
@@ -65,7 +67,8 @@ struct Schedule<'g> {
     graph: &'g Graph,
     program: Program,
     done: BTreeMap<Id, Place>,
-    /// Angles that are computed from the sines and cosines of two others, with the sign of the second.
+    /// Angles that are computed from the sines and cosines of two others, with the sign of the
+    /// second.
     differences: BTreeMap<Id, (Id, Id, bool)>,
     /// Angles whose sine and cosine are both needed.
     pairs: BTreeSet<Id>,
@@ -108,16 +111,22 @@ impl Schedule<'_> {
             Node::Pi => self.program.push(Op::Pi),
             Node::Symbol(symbol) => self.program.push(Op::Load(symbol)),
             Node::Sum(terms) => {
-                let terms = terms.iter().map(|&(term, coefficient)| self.term(term, coefficient)).collect();
+                let terms =
+                    terms.iter().map(|&(term, coefficient)| self.term(term, coefficient)).collect();
                 let (place, negative) = self.sum(terms);
                 if negative { self.program.push(Op::Negative(place)) } else { place }
             }
             Node::Product(coefficient, factors) => {
-                let factors = factors.into_iter().map(|(id, exponent)| (Factor::plain(id), exponent)).collect();
+                let factors = factors
+                    .into_iter()
+                    .map(|(id, exponent)| (Factor::plain(id), exponent))
+                    .collect();
                 let (place, negative) = self.product(&Term { coefficient, factors });
                 if negative { self.program.push(Op::Negative(place)) } else { place }
             }
-            Node::Call(function @ (Function::Sin | Function::Cos), argument) => self.trigonometric(function, argument),
+            Node::Call(function @ (Function::Sin | Function::Cos), argument) => {
+                self.trigonometric(function, argument)
+            }
             Node::Call(function, argument) => {
                 let argument = self.value(argument);
                 self.program.push(Op::Call(function, argument))
@@ -146,18 +155,31 @@ impl Schedule<'_> {
 
     fn term(&self, term: Id, coefficient: Rational) -> Term {
         let factors = if term == Graph::ONE { Vec::new() } else { self.graph.factors(term) };
-        Term { coefficient, factors: factors.into_iter().map(|(id, exponent)| (Factor::plain(id), exponent)).collect() }
+        Term {
+            coefficient,
+            factors: factors
+                .into_iter()
+                .map(|(id, exponent)| (Factor::plain(id), exponent))
+                .collect(),
+        }
     }
 
     fn trigonometric(&mut self, function: Function, angle: Id) -> Place {
         if let Some(&(a, b, minus)) = self.differences.get(&angle) {
-            let [sa, ca, sb, cb] = [(Function::Sin, a), (Function::Cos, a), (Function::Sin, b), (Function::Cos, b)]
-                .map(|(function, angle)| self.trigonometric(function, angle));
+            let [sa, ca, sb, cb] =
+                [(Function::Sin, a), (Function::Cos, a), (Function::Sin, b), (Function::Cos, b)]
+                    .map(|(function, angle)| self.trigonometric(function, angle));
             let (left, right, plus) = match function {
-                Function::Sin => (self.program.push(mul(sa, cb)), self.program.push(mul(ca, sb)), !minus),
+                Function::Sin => {
+                    (self.program.push(mul(sa, cb)), self.program.push(mul(ca, sb)), !minus)
+                }
                 _ => (self.program.push(mul(ca, cb)), self.program.push(mul(sa, sb)), minus),
             };
-            return self.program.push(if plus { Op::Add(left, right) } else { Op::Sub(left, right) });
+            return self.program.push(if plus {
+                Op::Add(left, right)
+            } else {
+                Op::Sub(left, right)
+            });
         }
         let argument = self.value(angle);
         if self.pairs.contains(&angle) {

@@ -13,11 +13,13 @@ impl Schedule<'_> {
     pub(super) fn product(&mut self, term: &Term) -> (Place, bool) {
         let (parameter_only, mut moving) = self.split(term);
         let mut negative = term.coefficient.is_negative();
-        let mut parameter_only = Some(parameter_only).filter(|parameter_only| *parameter_only != unit());
+        let mut parameter_only =
+            Some(parameter_only).filter(|parameter_only| *parameter_only != unit());
         if let Some(constant) = &parameter_only
             && constant.coefficient.within(60).is_some()
-            && let Some(index) =
-                moving.iter().position(|&(factor, exponent)| exponent == Rational::ONE && self.takes_in(factor.id, 1))
+            && let Some(index) = moving.iter().position(|&(factor, exponent)| {
+                exponent == Rational::ONE && self.takes_in(factor.id, 1)
+            })
             && moving[index].0.scale.is_none()
         {
             let scale = self.scale(constant.clone());
@@ -52,8 +54,10 @@ impl Schedule<'_> {
 
     /// The magnitude of what does not move in a product, and its other factors.
     pub(super) fn split(&self, term: &Term) -> (Term, Vec<(Factor, Rational)>) {
-        let (factors, moving) =
-            term.factors.iter().partition(|(factor, _)| factor.scale.is_none() && self.parameter_only(factor.id));
+        let (factors, moving) = term
+            .factors
+            .iter()
+            .partition(|(factor, _)| factor.scale.is_none() && self.parameter_only(factor.id));
         (Term { coefficient: term.coefficient.abs(), factors }, moving)
     }
 
@@ -82,7 +86,11 @@ impl Schedule<'_> {
     }
 
     /// The product of some positive powers.
-    fn side(&mut self, mut factors: Vec<(u8, Factor, Rational)>, negative: &mut bool) -> Option<Place> {
+    fn side(
+        &mut self,
+        mut factors: Vec<(u8, Factor, Rational)>,
+        negative: &mut bool,
+    ) -> Option<Place> {
         factors.sort_unstable();
         let mut product: Option<Place> = None;
         for (_, factor, exponent) in factors {
@@ -120,7 +128,9 @@ impl Schedule<'_> {
         let whole = exponent.numerator() / exponent.denominator();
         let fraction = exponent.add(Rational::whole(i64::try_from(whole).unwrap_or(0)).negative());
         match (i64::try_from(whole), fraction) {
-            (Ok(whole), Some(fraction)) if whole <= 64 && fraction.is_zero() => self.whole_power(value, whole),
+            (Ok(whole), Some(fraction)) if whole <= 64 && fraction.is_zero() => {
+                self.whole_power(value, whole)
+            }
             (Ok(whole), Some(fraction)) if whole <= 64 && fraction == Rational::HALF => {
                 let root = self.program.push(Op::Sqrt(value));
                 if whole == 0 {

@@ -76,7 +76,13 @@ pub(crate) fn operands(op: &Op) -> Vec<Place> {
     match *op {
         Op::Number(_) | Op::Literal(_) | Op::Pi | Op::Load(_) => Vec::new(),
         Op::Negative(a) | Op::Sqrt(a) | Op::Call(_, a) | Op::SinCos(a) | Op::Part(_, a) => vec![a],
-        Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) | Op::Div(a, b) | Op::Powf(a, b) | Op::Atan2(a, b) | Op::Max(a, b) => {
+        Op::Add(a, b)
+        | Op::Sub(a, b)
+        | Op::Mul(a, b)
+        | Op::Div(a, b)
+        | Op::Powf(a, b)
+        | Op::Atan2(a, b)
+        | Op::Max(a, b) => {
             vec![a, b]
         }
     }

@@ -16,12 +16,14 @@ impl Schedule<'_> {
         let mut scaled = Vec::new();
         for (id, coefficient) in terms {
             let mut term = self.term(id, coefficient);
-            let inner =
-                term.factors.iter().position(|&(factor, exponent)| exponent == Rational::ONE && self.takes_in(factor.id, 2));
+            let inner = term.factors.iter().position(|&(factor, exponent)| {
+                exponent == Rational::ONE && self.takes_in(factor.id, 2)
+            });
             if let Some(index) = inner {
                 term.factors[index].0.scale = Some(scale);
             } else {
-                term.coefficient = term.coefficient.mul(constant.coefficient).unwrap_or(term.coefficient);
+                term.coefficient =
+                    term.coefficient.mul(constant.coefficient).unwrap_or(term.coefficient);
                 for &(factor, exponent) in &constant.factors {
                     multiply(&mut term.factors, factor, exponent);
                 }
@@ -33,7 +35,8 @@ impl Schedule<'_> {
         done
     }
 
-    /// Whether a sum is the better for taking in a constant: every term has a constant of its own, or a sum that takes it in.
+    /// Whether a sum is the better for taking in a constant: every term has a constant of its own,
+    /// or a sum that takes it in.
     ///
     /// A sum that stands in more than `most` places is left alone: it would be computed twice.
     pub(super) fn takes_in(&self, id: Id, most: usize) -> bool {
@@ -51,9 +54,9 @@ impl Schedule<'_> {
                 || term == Graph::ONE
                 || factors.iter().any(|&(base, _)| self.parameter_only(base));
             constant
-                || factors
-                    .iter()
-                    .any(|&(base, exponent)| exponent == Rational::ONE && self.takes_in(base, self.occurrences(base, terms)))
+                || factors.iter().any(|&(base, exponent)| {
+                    exponent == Rational::ONE && self.takes_in(base, self.occurrences(base, terms))
+                })
         })
     }
 
@@ -69,13 +72,18 @@ impl Schedule<'_> {
     fn terms(&self, id: Id) -> Option<Vec<(Id, Rational)>> {
         match self.graph.node(id) {
             Node::Sum(terms) => Some(terms.clone()),
-            Node::Atom(inner) if self.uses.get(inner).copied().unwrap_or(0) < 2 => self.terms(*inner),
+            Node::Atom(inner) if self.uses.get(inner).copied().unwrap_or(0) < 2 => {
+                self.terms(*inner)
+            }
             _ => None,
         }
     }
 
     /// The number of terms of a sum in which a factor stands.
     fn occurrences(&self, id: Id, terms: &[(Id, Rational)]) -> usize {
-        terms.iter().filter(|&&(term, _)| self.graph.factors(term).iter().any(|&(base, _)| base == id)).count()
+        terms
+            .iter()
+            .filter(|&&(term, _)| self.graph.factors(term).iter().any(|&(base, _)| base == id))
+            .count()
     }
 }

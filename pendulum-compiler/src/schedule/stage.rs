@@ -1,4 +1,5 @@
-//! Stages of a program: what parameters decide, what time and inputs decide, what the position adds, and the rest.
+//! Stages of a program: what parameters decide, what time and inputs decide, what the position
+//! adds, and the rest.
 
 use super::{Op, Place, Program, operands};
 use crate::algebra::expr::Symbol;
@@ -39,9 +40,15 @@ impl Program {
                     Symbol::Parameter(_) | Symbol::Moment(..) => Stage::Parameters,
                     Symbol::Time | Symbol::Input { .. } => Stage::Time,
                     Symbol::Coordinate(_) => Stage::Position,
-                    Symbol::Velocity(_) | Symbol::Momentum(_) | Symbol::Auxiliary(_) | Symbol::Point(..) => Stage::Velocity,
+                    Symbol::Velocity(_)
+                    | Symbol::Momentum(_)
+                    | Symbol::Auxiliary(_)
+                    | Symbol::Point(..) => Stage::Velocity,
                 },
-                _ => operands(op).iter().map(|place| stages[place.0]).fold(Stage::Numbers, Stage::with),
+                _ => operands(op)
+                    .iter()
+                    .map(|place| stages[place.0])
+                    .fold(Stage::Numbers, Stage::with),
             };
             stages.push(own);
         }
@@ -70,7 +77,9 @@ impl Program {
                 _ => false,
             };
             let own = stages[*index];
-            (own == stage || own == Stage::Numbers && stage == Stage::Parameters) && read[*index] && !leaf
+            (own == stage || own == Stage::Numbers && stage == Stage::Parameters)
+                && read[*index]
+                && !leaf
         };
         (0..self.ops.len()).filter(worth).map(Place).collect()
     }

@@ -33,10 +33,14 @@ impl Schedule<'_> {
             }
             let common = common_coefficient(&inner);
             for term in &mut inner {
-                term.coefficient = term.coefficient.mul(common.reciprocal().unwrap_or(Rational::ONE)).unwrap_or(term.coefficient);
+                term.coefficient = term
+                    .coefficient
+                    .mul(common.reciprocal().unwrap_or(Rational::ONE))
+                    .unwrap_or(term.coefficient);
             }
             let (sum, negative) = self.nested_sum(inner, depth + 1);
-            let (outer, flipped) = self.product(&Term { coefficient: common, factors: vec![factor] });
+            let (outer, flipped) =
+                self.product(&Term { coefficient: common, factors: vec![factor] });
             let place = self.program.push(mul(outer, sum));
             parts.push((place, negative != flipped));
             terms = rest;
@@ -53,19 +57,26 @@ impl Schedule<'_> {
         };
         let mut total = start;
         for (part, negative) in parts {
-            total = self.program.push(if negative == flipped { add(total, part) } else { Op::Sub(total, part) });
+            total = self.program.push(if negative == flipped {
+                add(total, part)
+            } else {
+                Op::Sub(total, part)
+            });
         }
         (total, flipped)
     }
 
     /// The factor that is best drawn before a sum, and the terms in which it stands.
     ///
-    /// A factor that moves saves a multiplication in all terms but one; a constant only in those that have no other.
+    /// A factor that moves saves a multiplication in all terms but one; a constant only in those
+    /// that have no other.
     fn most_shared(&self, terms: &[Term]) -> Option<((Factor, Rational), BTreeSet<usize>)> {
         let mut shared: BTreeMap<(Factor, bool), BTreeSet<usize>> = BTreeMap::new();
         for (index, term) in terms.iter().enumerate() {
             // Differences of these exponents are exact.
-            for &(factor, exponent) in term.factors.iter().filter(|(_, exponent)| exponent.within(30).is_some()) {
+            for &(factor, exponent) in
+                term.factors.iter().filter(|(_, exponent)| exponent.within(30).is_some())
+            {
                 shared.entry((factor, exponent.is_negative())).or_default().insert(index);
             }
         }
@@ -87,11 +98,14 @@ impl Schedule<'_> {
         }
         let (_, (factor, negative), places) = best?;
         let exponents = places.iter().filter_map(|&index| {
-            let found =
-                terms[index].factors.iter().find(|(other, exponent)| *other == factor && exponent.is_negative() == negative);
+            let found = terms[index]
+                .factors
+                .iter()
+                .find(|(other, exponent)| *other == factor && exponent.is_negative() == negative);
             found.map(|&(_, exponent)| exponent)
         });
-        let exponent = exponents.reduce(|a, b| if b.abs().less(a.abs()) == Some(true) { b } else { a })?;
+        let exponent =
+            exponents.reduce(|a, b| if b.abs().less(a.abs()) == Some(true) { b } else { a })?;
         Some(((factor, exponent), places))
     }
 }

@@ -10,7 +10,8 @@ pub(super) struct Term {
     pub(super) factors: Vec<(Factor, Rational)>,
 }
 
-/// A factor of a product; a sum may stand for itself times a constant that its own constants take in.
+/// A factor of a product; a sum may stand for itself times a constant that its own constants take
+/// in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Factor {
     pub(super) id: Id,
@@ -48,5 +49,9 @@ pub(super) fn unit() -> Term {
 /// The coefficient that all terms share up to sign; one otherwise.
 pub(super) fn common_coefficient(terms: &[Term]) -> Rational {
     let first = terms[0].coefficient;
-    if terms.iter().all(|term| term.coefficient.abs() == first.abs()) { first } else { Rational::ONE }
+    if terms.iter().all(|term| term.coefficient.abs() == first.abs()) {
+        first
+    } else {
+        Rational::ONE
+    }
 }

@@ -18,7 +18,8 @@ pub(crate) struct Block {
 }
 
 impl Block {
-    /// The `cfg` attributes of the struct: what they leave out is left out with all that belongs to it.
+    /// The `cfg` attributes of the struct: what they leave out is left out with all that belongs to
+    /// it.
     pub(crate) fn conditions(&self) -> impl Iterator<Item = &Attribute> {
         self.attributes.iter().filter(|attribute| attribute.path().is_ident("cfg"))
     }

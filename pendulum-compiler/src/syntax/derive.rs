@@ -59,5 +59,7 @@ fn standard(path: &Path) -> Option<String> {
 fn refusal(path: &Path) -> Option<String> {
     let name = standard(path)?;
     let (_, advice) = EXACT.iter().find(|(exact, _)| *exact == name)?;
-    Some(format!("`{name}` cannot be derived: the parameters are floating-point numbers, which do not have it; {advice}"))
+    Some(format!(
+        "`{name}` cannot be derived: the parameters are floating-point numbers, which do not have it; {advice}"
+    ))
 }

@@ -56,7 +56,8 @@ pub(crate) fn dotted(text: &str) -> String {
     let mut letters = text.chars();
     match letters.next() {
         Some(letter) if letters.clone().all(|letter| letter.is_ascii_digit()) => {
-            let composed = compose(&letter.to_string(), 1).map_or_else(|| format!("{letter}\u{307}"), String::from);
+            let composed = compose(&letter.to_string(), 1)
+                .map_or_else(|| format!("{letter}\u{307}"), String::from);
             format!("`{composed}{}` or {suffixed}", letters.as_str())
         }
         _ => suffixed,
@@ -117,7 +118,8 @@ fn decompose(letter: char) -> (char, u8) {
     }
 }
 
-/// The English name of a Greek letter; variant forms and the micro sign are the letters that they are forms of.
+/// The English name of a Greek letter; variant forms and the micro sign are the letters that they
+/// are forms of.
 fn greek(letter: char) -> Option<&'static str> {
     GREEK.iter().find(|row| row.0.contains(letter)).map(|row| row.1)
 }

@@ -8,7 +8,9 @@ pub(crate) fn text(expr: &Expr) -> String {
     let list = |items: &[Expr]| items.iter().map(text).collect::<Vec<_>>().join(", ");
     match &expr.kind {
         // A literal is a decimal fraction, so that its nearest double prints as it was written.
-        ExprKind::Number(Literal::Exact(value)) => (value.numerator() as f64 / value.denominator() as f64).to_string(),
+        ExprKind::Number(Literal::Exact(value)) => {
+            (value.numerator() as f64 / value.denominator() as f64).to_string()
+        }
         ExprKind::Number(Literal::Decimal(digits)) => digits.clone(),
         ExprKind::Name(name) => name.to_string(),
         ExprKind::Sum(terms) => joined(terms, " + ", " - ", term),
@@ -25,7 +27,12 @@ pub(crate) fn text(expr: &Expr) -> String {
     }
 }
 
-fn joined(items: &[(bool, Expr)], plus: &str, minus: &str, part: impl Fn(&Expr) -> String) -> String {
+fn joined(
+    items: &[(bool, Expr)],
+    plus: &str,
+    minus: &str,
+    part: impl Fn(&Expr) -> String,
+) -> String {
     let mut result = String::new();
     for (index, (negative, item)) in items.iter().enumerate() {
         if 0 < index {
@@ -40,7 +47,9 @@ fn joined(items: &[(bool, Expr)], plus: &str, minus: &str, part: impl Fn(&Expr) 
 /// The text of a term.
 fn term(expr: &Expr) -> String {
     match expr.kind {
-        ExprKind::Product(ref factors) if !matches!(factors[0].1.kind, ExprKind::Negative(_)) => text(expr),
+        ExprKind::Product(ref factors) if !matches!(factors[0].1.kind, ExprKind::Negative(_)) => {
+            text(expr)
+        }
         _ => closed(expr),
     }
 }
@@ -56,7 +65,9 @@ pub(super) fn operand(expr: &Expr) -> String {
 /// The text of a factor, or of an exponent.
 pub(super) fn closed(expr: &Expr) -> String {
     match expr.kind {
-        ExprKind::Sum(_) | ExprKind::Product(_) | ExprKind::Negative(_) => format!("({})", text(expr)),
+        ExprKind::Sum(_) | ExprKind::Product(_) | ExprKind::Negative(_) => {
+            format!("({})", text(expr))
+        }
         _ => text(expr),
     }
 }

@@ -1,6 +1,7 @@
 //! The words of the language.
 
-/// The functions of the language, with their number of arguments; those before `dot` take scalars to a scalar.
+/// The functions of the language, with their number of arguments; those before `dot` take scalars
+/// to a scalar.
 #[rustfmt::skip]
 pub(crate) const FUNCTIONS: &[(&str, usize)] = &[
     ("sqrt", 1), ("exp", 1), ("ln", 1), ("sin", 1), ("cos", 1), ("tan", 1), ("asin", 1), ("acos", 1), ("atan", 1), ("atan2", 2),

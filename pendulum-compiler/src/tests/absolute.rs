@@ -46,7 +46,8 @@ fn relative(tokens: TokenStream, found: &mut Vec<String>) {
 fn generated_paths_are_absolute() {
     let empty = "struct Empty {} coordinate x; kinetic = x_dot^2/2; potential = x^4;";
     let implicit = "struct Implicit { m } coordinate x; lagrangian = m*x_dot^4 + m*x_dot^2;";
-    let broken = "struct Broken { m } coordinate x; driven y; kinetic = m*x_dot^2 + y_dot + nothing;";
+    let broken =
+        "struct Broken { m } coordinate x; driven y; kinetic = m*x_dot^2 + y_dot + nothing;";
     let sources = golden::sources_of_blocks();
     assert!(10 < sources.len());
     for source in sources.iter().map(String::as_str).chain([empty, implicit, broken]) {
@@ -66,7 +67,10 @@ fn generated_code_names_the_number_of_coordinates() {
         let items = expand(format!("::pendulum_runtime; {source}").parse().unwrap()).to_string();
         assert!(items.contains(":: System <"), "{source}");
         for name in ["System", "Jacobians", "Staged", "SplitEnergy", "Jets"] {
-            assert!(!items.contains(&format!(":: {name} ::")), "`{name}` without its number in the expansion of {source}");
+            assert!(
+                !items.contains(&format!(":: {name} ::")),
+                "`{name}` without its number in the expansion of {source}"
+            );
         }
     }
 }

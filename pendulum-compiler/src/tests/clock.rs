@@ -8,7 +8,8 @@ use std::fmt::Write;
 /// One over the width of each function of time in a force at t = 3, and the time since its middle,
 /// with a = 5, b = 0.5 and c = 2.
 fn found(force: &str) -> Vec<(f64, f64)> {
-    let block = format!("struct S {{ a, b, c }} coordinate q; kinetic = q_dot^2/2; force q = {force};");
+    let block =
+        format!("struct S {{ a, b, c }} coordinate q; kinetic = q_dot^2/2; force q = {force};");
     derive(&block, |_, graph, motion| {
         let (own, features) = features(graph, &motion.accelerations);
         let value = |id| {
@@ -18,8 +19,10 @@ fn found(force: &str) -> Vec<(f64, f64)> {
                 other => panic!("{force}: {other:?}"),
             })
         };
-        let mut found: Vec<(f64, f64)> =
-            features.into_iter().map(|feature| (value(feature.rate), value(feature.since))).collect();
+        let mut found: Vec<(f64, f64)> = features
+            .into_iter()
+            .map(|feature| (value(feature.rate), value(feature.since)))
+            .collect();
         found.sort_by(|a, b| a.partial_cmp(b).unwrap());
         found
     })
@@ -29,7 +32,8 @@ fn check(force: &str, expected: &[(f64, f64)]) {
     let found = found(force);
     let close = |a: f64, b: f64| (a - b).abs() <= 1e-12 * (1.0 + b.abs());
     assert!(
-        found.len() == expected.len() && found.iter().zip(expected).all(|(a, b)| close(a.0, b.0) && close(a.1, b.1)),
+        found.len() == expected.len()
+            && found.iter().zip(expected).all(|(a, b)| close(a.0, b.0) && close(a.1, b.1)),
         "{force}: {found:?}, not {expected:?}"
     );
 }
@@ -105,7 +109,8 @@ fn several_corners() {
 #[test]
 fn many_pulses() {
     let pulses: Vec<String> = (0..6).map(|k| format!("sign(t - {k}) - sign(t - {k}.5)")).collect();
-    let expected: Vec<(f64, f64)> = (0..11).rev().map(|k| (4.0, 3.0 - 0.25 - 0.5 * f64::from(k))).collect();
+    let expected: Vec<(f64, f64)> =
+        (0..11).rev().map(|k| (4.0, 3.0 - 0.25 - 0.5 * f64::from(k))).collect();
     check(&pulses.join(" + "), &expected);
 }
 
@@ -128,6 +133,7 @@ fn long_polynomials() {
     for k in 0..40 {
         write!(lets, "let u{} = u{k} + u{k}*(1 + u{k});", k + 1).unwrap();
     }
-    let block = format!("struct S {{ a }} coordinate q; {lets} kinetic = q_dot^2/2; force q = sin(a*u40);");
+    let block =
+        format!("struct S {{ a }} coordinate q; {lets} kinetic = q_dot^2/2; force q = sin(a*u40);");
     derive(&block, |_, graph, motion| assert!(features(graph, &motion.accelerations).1.is_empty()));
 }

@@ -29,7 +29,9 @@ fn derivatives_match_differences() {
                 })
             };
             let (a, h) = (point[0], 1e-3);
-            let difference = (8.0 * (at(a + h, id) - at(a - h, id)) - (at(a + 2.0 * h, id) - at(a - 2.0 * h, id))) / (12.0 * h);
+            let difference = (8.0 * (at(a + h, id) - at(a - h, id))
+                - (at(a + 2.0 * h, id) - at(a - 2.0 * h, id)))
+                / (12.0 * h);
             let exact = at(a, slope);
             assert!(
                 (difference - exact).abs() < 1e-7 * (1.0 + exact.abs()),
@@ -52,13 +54,20 @@ fn the_step_is_the_derivative_of_the_ramp() {
 /// Where a power of a product is zero, so is its slope.
 #[test]
 fn a_power_has_its_slope_at_zero_too() {
-    for (expression, inside) in [("(c*a)^(5/2)", 5.0 * 2f64.powf(2.5) / 2.0), ("(max(0, a)/c)^(5/2)", 5.0 / 2f64.powf(3.5))] {
+    for (expression, inside) in
+        [("(c*a)^(5/2)", 5.0 * 2f64.powf(2.5) / 2.0), ("(max(0, a)/c)^(5/2)", 5.0 / 2f64.powf(3.5))]
+    {
         let mut graph = Graph::new();
         let id = lowered(&mut graph, expression);
         let slope = derivative(&mut graph, id, Symbol::Parameter(0));
         for (a, expected) in [(0.0, 0.0), (1.0, inside)] {
-            let found = evaluate(&graph, slope, &|symbol| if symbol == Symbol::Parameter(0) { a } else { 2.0 });
-            assert!((found - expected).abs() < 1e-14, "d/da {expression} at {a}: {found}, not {expected}");
+            let found = evaluate(&graph, slope, &|symbol| {
+                if symbol == Symbol::Parameter(0) { a } else { 2.0 }
+            });
+            assert!(
+                (found - expected).abs() < 1e-14,
+                "d/da {expression} at {a}: {found}, not {expected}"
+            );
         }
     }
 }

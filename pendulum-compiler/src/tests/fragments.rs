@@ -15,7 +15,10 @@ fn replaced(tokens: TokenStream, delimiter: Delimiter) -> TokenStream {
             }
             TokenTree::Group(group) => {
                 let around = if marked { delimiter } else { group.delimiter() };
-                result.extend([TokenTree::from(Group::new(around, replaced(group.stream(), delimiter)))]);
+                result.extend([TokenTree::from(Group::new(
+                    around,
+                    replaced(group.stream(), delimiter),
+                ))]);
             }
             tree => result.extend([tree]),
         }
@@ -25,7 +28,9 @@ fn replaced(tokens: TokenStream, delimiter: Delimiter) -> TokenStream {
 }
 
 fn expanded(statements: &str, delimiter: Delimiter) -> String {
-    let block = format!("::p; struct W {{ k }} coordinate q; let c = [k, 1]; kinetic = q_dot^2/2; {statements}");
+    let block = format!(
+        "::p; struct W {{ k }} coordinate q; let c = [k, 1]; kinetic = q_dot^2/2; {statements}"
+    );
     expand(replaced(block.parse().unwrap(), delimiter)).to_string()
 }
 
@@ -46,7 +51,8 @@ fn a_fragment_is_an_operand() {
             "[?(), k].x",
             "?(?())^3",
         ] {
-            let statement = format!("potential = {};", around.replace("?()", &format!("?({operand})")));
+            let statement =
+                format!("potential = {};", around.replace("?()", &format!("?({operand})")));
             let found = expanded(&statement, Delimiter::None);
             assert!(!found.contains("compile_error"), "{statement}: {found}");
             assert_eq!(found, expanded(&statement, Delimiter::Parenthesis), "{statement}");
@@ -70,9 +76,17 @@ fn names_numbers_units_and_ranges_may_be_fragments() {
         assert!(!found.contains("compile_error"), "{statement}: {found}");
         assert_eq!(found, expanded(written, Delimiter::None), "{statement}");
     }
-    for statement in
-        ["potential = k ?(-q);", "potential = ?(q) ?(q);", "potential = ?(1 + q)(q);", "potential = ?(q, q);", "potential = ?();"]
-    {
-        assert_eq!(expanded(statement, Delimiter::None).matches("compile_error").count(), 1, "{statement}");
+    for statement in [
+        "potential = k ?(-q);",
+        "potential = ?(q) ?(q);",
+        "potential = ?(1 + q)(q);",
+        "potential = ?(q, q);",
+        "potential = ?();",
+    ] {
+        assert_eq!(
+            expanded(statement, Delimiter::None).matches("compile_error").count(),
+            1,
+            "{statement}"
+        );
     }
 }

@@ -1,6 +1,7 @@
 //! Golden files: a block, its printed equations, its operations and its facts.
 //!
-//! `UPDATE_GOLDEN=1 cargo test -p pendulum-compiler` rewrites them; the difference is read in review.
+//! `UPDATE_GOLDEN=1 cargo test -p pendulum-compiler` rewrites them; the difference is read in
+//! review.
 
 use super::derived;
 use crate::algebra::expr::{Graph, Symbol};
@@ -24,7 +25,11 @@ fn golden_files_hold() {
         let (source, expected) = text.split_once(MARK).unwrap_or((text.trim_end(), ""));
         let start = std::time::Instant::now();
         crate::compile::expand(format!("::pendulum_runtime; {source}").parse().unwrap());
-        println!("{}: expanded in {:.2} ms", file.file_stem().unwrap().to_string_lossy(), 1e3 * start.elapsed().as_secs_f64());
+        println!(
+            "{}: expanded in {:.2} ms",
+            file.file_stem().unwrap().to_string_lossy(),
+            1e3 * start.elapsed().as_secs_f64()
+        );
         let found = report(source);
         if std::env::var_os("UPDATE_GOLDEN").is_some() {
             std::fs::write(&file, format!("{source}{MARK}{found}")).unwrap();
@@ -37,7 +42,8 @@ fn golden_files_hold() {
 /// The golden files.
 fn files() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden");
-    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut files: Vec<_> =
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
     files
 }
@@ -45,7 +51,11 @@ fn files() -> Vec<PathBuf> {
 /// The blocks of the golden files.
 pub(super) fn sources_of_blocks() -> Vec<String> {
     let texts = files().into_iter().map(|file| std::fs::read_to_string(file).unwrap());
-    texts.map(|text| text.split_once(MARK).map_or_else(|| text.clone(), |(source, _)| source.to_owned())).collect()
+    texts
+        .map(|text| {
+            text.split_once(MARK).map_or_else(|| text.clone(), |(source, _)| source.to_owned())
+        })
+        .collect()
 }
 
 /// Every other system in the repository: tests, examples, documentation.
@@ -59,7 +69,14 @@ fn every_system_in_the_repository() {
         let name = file.strip_prefix(&root).unwrap().display().to_string();
         for block in blocks(&text) {
             let mut errors = Errors::default();
-            let title = block.split('{').next().unwrap_or_default().split_whitespace().last().unwrap_or_default().to_owned();
+            let title = block
+                .split('{')
+                .next()
+                .unwrap_or_default()
+                .split_whitespace()
+                .last()
+                .unwrap_or_default()
+                .to_owned();
             writeln!(found, "== {name}: {title}").unwrap();
             match attempt(&block, &mut errors, false) {
                 Some(report) => found.push_str(&report),
@@ -83,9 +100,10 @@ fn every_system_in_the_repository() {
 
 /// The files in which systems may stand.
 fn sources(root: &Path) -> Vec<PathBuf> {
-    let mut pending: Vec<PathBuf> = ["README.md", "tests", "examples", "pendulum-runtime/src", "pendulum-runtime/benches"]
-        .map(|part| root.join(part))
-        .to_vec();
+    let mut pending: Vec<PathBuf> =
+        ["README.md", "tests", "examples", "pendulum-runtime/src", "pendulum-runtime/benches"]
+            .map(|part| root.join(part))
+            .to_vec();
     pending.push(root.join("pendulum-macros/language.md"));
     let mut files = Vec::new();
     while let Some(path) = pending.pop() {
@@ -141,7 +159,8 @@ fn report(source: &str) -> String {
     attempt(source, &mut errors, true).unwrap_or_else(|| panic!("{:?}", errors.messages()))
 }
 
-/// What a golden file holds, without energies, momenta and LaTeX unless it is the whole; `None` if the block is refused.
+/// What a golden file holds, without energies, momenta and LaTeX unless it is the whole; `None` if
+/// the block is refused.
 fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
     derived(source, errors, |model, graph, motion, energies| {
         let names = unicode::Names::new(model, &energies.families);
@@ -153,7 +172,9 @@ fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
         for line in latex::equations(graph, &names, motion, &sides).into_iter().filter(|_| whole) {
             writeln!(text, "latex: {line}").unwrap();
         }
-        let operations = |graph: &Graph, roots: &[_]| rust::documentation::operations(schedule::program(graph, roots).count());
+        let operations = |graph: &Graph, roots: &[_]| {
+            rust::documentation::operations(schedule::program(graph, roots).count())
+        };
         writeln!(text, "accelerations: {}", operations(graph, &motion.accelerations)).unwrap();
         if whole {
             outputs(&mut text, graph, &names, motion);
@@ -171,11 +192,15 @@ fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
         let facts: Vec<&str> = facts.into_iter().filter(|fact| fact.0).map(|fact| fact.1).collect();
         writeln!(text, "facts: {}", facts.join(", ")).unwrap();
         let symbols = |roots: &[_]| {
-            let inputs = graph.symbols(roots).into_iter().filter(|symbol| matches!(symbol, Symbol::Input { .. }));
+            let inputs = graph
+                .symbols(roots)
+                .into_iter()
+                .filter(|symbol| matches!(symbol, Symbol::Input { .. }));
             inputs.map(|symbol| names.symbol(symbol)).collect::<Vec<_>>().join(", ")
         };
         if !model.inputs.is_empty() {
-            writeln!(text, "inputs of the accelerations: {}", symbols(&motion.accelerations)).unwrap();
+            writeln!(text, "inputs of the accelerations: {}", symbols(&motion.accelerations))
+                .unwrap();
             writeln!(text, "inputs of the momenta: {}", symbols(&motion.momenta)).unwrap();
         }
         text
@@ -186,6 +211,12 @@ fn outputs(text: &mut String, graph: &Graph, names: &unicode::Names, motion: &Mo
     writeln!(text, "energy = {}", unicode::expression(graph, names, motion.energy)).unwrap();
     writeln!(text, "power = {}", unicode::expression(graph, names, motion.power)).unwrap();
     for (index, &momentum) in motion.momenta.iter().enumerate() {
-        writeln!(text, "p_{} = {}", names.coordinates[index], unicode::expression(graph, names, momentum)).unwrap();
+        writeln!(
+            text,
+            "p_{} = {}",
+            names.coordinates[index],
+            unicode::expression(graph, names, momentum)
+        )
+        .unwrap();
     }
 }

@@ -10,8 +10,9 @@ fn chain(n: usize) -> String {
     )
 }
 
-/// Dense elimination by hand takes ≈ N³/3 multiplications (2 links 17, 3 links 47, 5 links 160, 10 links 845, 32 links 16 432, with 3, 6,
-/// 15, 55 and 528 divisions); from nine links on the sparse form is taken, in which each further link costs the same.
+/// Dense elimination by hand takes ≈ N³/3 multiplications (2 links 17, 3 links 47, 5 links 160, 10
+/// links 845, 32 links 16 432, with 3, 6, 15, 55 and 528 divisions); from nine links on the sparse
+/// form is taken, in which each further link costs the same.
 #[test]
 fn chains_grow_linearly() {
     let known = [
@@ -25,8 +26,13 @@ fn chains_grow_linearly() {
         (32, 1008, 677, 31),
     ];
     for (n, mul, add, div) in known {
-        let count = derive(&chain(n), |_, graph, motion| schedule::program(graph, &motion.accelerations).count());
-        assert!(count.mul <= mul && count.add <= add && count.div <= div && count.sincos == n, "{n} links: {count:?}");
+        let count = derive(&chain(n), |_, graph, motion| {
+            schedule::program(graph, &motion.accelerations).count()
+        });
+        assert!(
+            count.mul <= mul && count.add <= add && count.div <= div && count.sincos == n,
+            "{n} links: {count:?}"
+        );
     }
 }
 
@@ -47,7 +53,8 @@ fn flat(tokens: proc_macro2::TokenStream) -> usize {
         .sum()
 }
 
-/// Long sums are built at once, and what would not compile in reasonable time is refused before it is derived.
+/// Long sums are built at once, and what would not compile in reasonable time is refused before it
+/// is derived.
 #[test]
 fn long_sums_expand_or_are_refused() {
     let message = "this unfolds to more than 8000 different expressions; write a shorter sum";
@@ -63,7 +70,9 @@ fn long_sums_expand_or_are_refused() {
         ("let y[k in 0..65536] = sum(j in 0..=k, sin(j*θ));", "y[65535]", Some(endless)),
     ];
     for (definitions, sum, refusal) in cases {
-        let block = format!("struct S {{ m }} coordinate θ; kinetic = m*θ̇^2; {definitions} potential = {sum};");
+        let block = format!(
+            "struct S {{ m }} coordinate θ; kinetic = m*θ̇^2; {definitions} potential = {sum};"
+        );
         assert_eq!(super::refusals(&block), refusal.into_iter().collect::<Vec<_>>(), "{sum}");
     }
 }

@@ -38,7 +38,8 @@ fn accelerations_solve_the_mass_matrix() {
         derive(source, |_, graph, motion| {
             for seed in 0..20 {
                 let mut point = Point { random: Random(seed), values: BTreeMap::new() };
-                let solution: Vec<f64> = motion.accelerations.iter().map(|&id| point.value(graph, id)).collect();
+                let solution: Vec<f64> =
+                    motion.accelerations.iter().map(|&id| point.value(graph, id)).collect();
                 for (row, &force) in motion.mass_matrix.iter().zip(&motion.forces) {
                     let (mut sum, mut scale) = (-point.value(graph, force), 1.0);
                     for (&entry, acceleration) in row.iter().zip(&solution) {
@@ -103,7 +104,8 @@ fn velocities_invert_the_momenta() {
                 }
                 for (index, &velocity) in velocities.iter().enumerate() {
                     let symbol = graph.symbol(Symbol::Velocity(index));
-                    let (found, expected) = (point.value(graph, velocity), point.value(graph, symbol));
+                    let (found, expected) =
+                        (point.value(graph, velocity), point.value(graph, symbol));
                     assert!((found - expected).abs() < 1e-11, "{source}: {found} and {expected}");
                 }
             }
@@ -111,7 +113,8 @@ fn velocities_invert_the_momenta() {
     }
 }
 
-/// Adding the total derivative of any function of coordinates and time to L changes no acceleration.
+/// Adding the total derivative of any function of coordinates and time to L changes no
+/// acceleration.
 #[test]
 fn gauge_terms_vanish() {
     let plain = "struct S { m, k } coordinate x; coordinate y; kinetic = m/2*(ẋ^2 + ẏ^2); potential = k*(x^4 + x*y);";
@@ -176,6 +179,13 @@ fn the_inner_name_holds() {
             point.value(graph, motion.energy)
         })
     };
-    let hidden = energy("potential = sum(p in 0..2, p*g*B.mass*height(B.center) + integral(p in B, g*height(cis(θ)*p)));");
-    assert_eq!(hidden, energy("potential = sum(k in 0..2, k*g*B.mass*height(B.center) + integral(p in B, g*height(cis(θ)*p)));"));
+    let hidden = energy(
+        "potential = sum(p in 0..2, p*g*B.mass*height(B.center) + integral(p in B, g*height(cis(θ)*p)));",
+    );
+    assert_eq!(
+        hidden,
+        energy(
+            "potential = sum(k in 0..2, k*g*B.mass*height(B.center) + integral(p in B, g*height(cis(θ)*p)));"
+        )
+    );
 }

@@ -38,7 +38,8 @@ fn refusals(source: &str) -> Vec<String> {
 /// Derives a block without mistakes.
 fn derive<R>(source: &str, inspect: impl FnOnce(&Model, &mut Graph, &Motion) -> R) -> R {
     let mut errors = Errors::default();
-    let result = derived(source, &mut errors, |model, graph, motion, _| inspect(model, graph, motion));
+    let result =
+        derived(source, &mut errors, |model, graph, motion, _| inspect(model, graph, motion));
     assert!(errors.is_empty(), "{source}: {:?}", errors.messages());
     result.unwrap()
 }

@@ -28,7 +28,9 @@ fn powers_in_latex_hold_together() {
         ("sqrt(c*q)", "\\sqrt{c q}"),
         ("sin(q)^2", "\\sin^{2} q"),
     ] {
-        let [_, latex] = printed(&format!("struct S {{ c }} coordinate q; kinetic = q_dot^2/2; force q = {force};"));
+        let [_, latex] = printed(&format!(
+            "struct S {{ c }} coordinate q; kinetic = q_dot^2/2; force q = {force};"
+        ));
         assert_eq!(latex, [format!("\\ddot{{q}} = {expected}")], "{force}");
     }
 }
@@ -36,7 +38,8 @@ fn powers_in_latex_hold_together() {
 /// What is shared stands once in the graph, but wherever it is used in a text.
 #[test]
 fn what_is_too_long_is_not_written_out() {
-    let shared: Vec<String> = (0..40).map(|k| format!("let a{} = sin(a{k})*exp(a{k});", k + 1)).collect();
+    let shared: Vec<String> =
+        (0..40).map(|k| format!("let a{} = sin(a{k})*exp(a{k});", k + 1)).collect();
     let chain: Vec<String> = (0..1000).map(|k| format!("let a{} = sin(a{k});", k + 1)).collect();
     for (lets, last) in [(shared.concat(), "a40"), (chain.concat(), "a1000")] {
         let block = format!(
@@ -45,7 +48,10 @@ fn what_is_too_long_is_not_written_out() {
         let [text, latex] = printed(&format!("{block} potential = {last} + w;"));
         assert_eq!(text[0], "q_ddot = ... (too long to write out)");
         assert_eq!(latex[0], "\\ddot{q} = \\ldots\\text{ (too long to write out)}");
-        assert_eq!((&text[1][..], &latex[1][..]), ("z_ddot + (1/2)*w_ddot = 0", "\\ddot{z} + \\frac{1}{2} \\ddot{w} = 0"));
+        assert_eq!(
+            (&text[1][..], &latex[1][..]),
+            ("z_ddot + (1/2)*w_ddot = 0", "\\ddot{z} + \\frac{1}{2} \\ddot{w} = 0")
+        );
         let [text, latex] = printed(&format!("{block} force z = {last};"));
         assert_eq!((&text[0][..], &latex[0][..]), ("q_ddot = 0", "\\ddot{q} = 0"));
         assert_eq!(text[1], "z_ddot = ... (too long to write out)");
@@ -65,7 +71,9 @@ fn terms_cancel() {
         ("(w + q)*(b + q_dot) + c", "c + b*(w + q) + q_dot*(w + q)"),
         ("(w + q)^2*(b + sin(q)) + c", "c + (w + q)^2*(b + sin(q))"),
     ] {
-        let [text, latex] = printed(&format!("struct S {{ w, b, c }} coordinate q; kinetic = q_dot^2/2; force q = {force};"));
+        let [text, latex] = printed(&format!(
+            "struct S {{ w, b, c }} coordinate q; kinetic = q_dot^2/2; force q = {force};"
+        ));
         assert_eq!(text, [format!("q_ddot = {expected}")], "{force}");
         assert_eq!(latex[0].contains('w'), expected.contains('w'), "{force}: {latex:?}");
     }
@@ -105,8 +113,14 @@ fn a_block_in_ascii_is_printed_in_ascii() {
             "struct P { L, g } coordinate theta; kinetic = L*theta_dot^2/2; potential = -g*cos(theta);",
             "theta_ddot = -g*sin(theta)/L",
         ),
-        ("/** α */ struct P { L, g } coordinate x; kinetic = L*x_dot^2/2; potential = g*x^4;", "x_ddot = -4*g*x^3/L"),
-        ("struct P { L, g } coordinate θ; kinetic = L*theta_dot^2/2; potential = -g*cos(θ);", "θ̈ = −g·sin θ/L"),
+        (
+            "/** α */ struct P { L, g } coordinate x; kinetic = L*x_dot^2/2; potential = g*x^4;",
+            "x_ddot = -4*g*x^3/L",
+        ),
+        (
+            "struct P { L, g } coordinate θ; kinetic = L*theta_dot^2/2; potential = -g*cos(θ);",
+            "θ̈ = −g·sin θ/L",
+        ),
         ("struct P { L, g } coordinate x; kinetic = L*ẋ^2/2; potential = g*x^4;", "ẍ = −4·g·x³/L"),
     ] {
         assert_eq!(printed(block)[0], [expected]);

@@ -37,7 +37,10 @@ fn a_vector_may_have_no_unit() {
         )
     };
     assert!(refusals(&source("_")).is_empty());
-    assert_eq!(refusals(&source("1")), ["`dot(l*cis(θ))` is m/s, but `ẋ` is 1/s; a sum needs one unit"]);
+    assert_eq!(
+        refusals(&source("1")),
+        ["`dot(l*cis(θ))` is m/s, but `ẋ` is 1/s; a sum needs one unit"]
+    );
 }
 
 /// Units, each mistake at the smallest expression that is wrong.

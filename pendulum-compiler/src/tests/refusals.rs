@@ -4,7 +4,9 @@ use super::refusals;
 
 /// A block with one statement to vary.
 pub(super) fn block(statements: &str) -> String {
-    format!("struct P {{ m: kg, L: m, c: [m; 2], f: [kg; 5], g }} coordinate θ: rad; driven x: [m; 2]; {statements}")
+    format!(
+        "struct P {{ m: kg, L: m, c: [m; 2], f: [kg; 5], g }} coordinate θ: rad; driven x: [m; 2]; {statements}"
+    )
 }
 
 const ENERGY: &str = "kinetic = m/2*L^2*θ̇^2; potential = -m*g*L*cos(θ);";
@@ -158,7 +160,11 @@ const NOTATIONS: &[(&str, &str)] = &[
 #[test]
 fn other_notations_are_translated() {
     for (statements, expected) in NOTATIONS {
-        assert_eq!(refusals(&block(&format!("kinetic = m*L^2*θ̇^2; {statements}"))), [*expected], "{statements}");
+        assert_eq!(
+            refusals(&block(&format!("kinetic = m*L^2*θ̇^2; {statements}"))),
+            [*expected],
+            "{statements}"
+        );
     }
 }
 
@@ -168,9 +174,14 @@ fn constants_are_translated_into_the_letters_of_the_block() {
     for (constant, expected) in [
         ("PI", "unknown name `PI`; write `pi`"),
         ("FRAC_PI_2", "unknown name `FRAC_PI_2`; write `pi/2`"),
-        ("f64::consts::PI", "`f64::consts::PI` is Rust, which has no place in a formula; write `pi`"),
+        (
+            "f64::consts::PI",
+            "`f64::consts::PI` is Rust, which has no place in a formula; write `pi`",
+        ),
     ] {
-        let source = format!("struct P {{ m }} coordinate q; kinetic = m*q_dot^2; potential = m*{constant};");
+        let source = format!(
+            "struct P {{ m }} coordinate q; kinetic = m*q_dot^2; potential = m*{constant};"
+        );
         assert_eq!(refusals(&source), [expected]);
     }
 }
@@ -205,7 +216,11 @@ const DECLARATIONS: &[(&str, &str)] = &[
 #[test]
 fn other_declarations_are_translated() {
     for (statements, expected) in DECLARATIONS {
-        assert_eq!(refusals(&block(&format!("kinetic = m*L^2*θ̇^2; {statements}"))), [*expected], "{statements}");
+        assert_eq!(
+            refusals(&block(&format!("kinetic = m*L^2*θ̇^2; {statements}"))),
+            [*expected],
+            "{statements}"
+        );
     }
     assert_eq!(
         refusals("struct P { m[3]: kg } coordinate θ; kinetic = m[0]*θ̇^2;"),
@@ -241,16 +256,18 @@ const NEGATIVE: &[(&str, &str)] = &[
 #[test]
 fn a_negative_kinetic_energy_is_refused() {
     let block = |statements: &str| {
-        format!("struct P {{ m: kg, M: kg, L: m, S: kg*m, J: kg*m^2, c, B: body }} coordinate θ: rad; {statements}")
+        format!(
+            "struct P {{ m: kg, M: kg, L: m, S: kg*m, J: kg*m^2, c, B: body }} coordinate θ: rad; {statements}"
+        )
     };
-    let way_out =
-        "write it with a positive sign, or write `lagrangian = …;`, which may have any, instead of `kinetic` and `potential`";
+    let way_out = "write it with a positive sign, or write `lagrangian = …;`, which may have any, instead of `kinetic` and `potential`";
     for (statements, expected) in NEGATIVE {
         let found = refusals(&block(statements));
         assert_eq!(found, [format!("{expected}; {way_out}")], "{statements}");
     }
     // Definitions that double each time are followed once.
-    let doubled = (0..60).map(|k| format!("let u{} = u{k} + u{k};", k + 1)).collect::<Vec<_>>().concat();
+    let doubled =
+        (0..60).map(|k| format!("let u{} = u{k} + u{k};", k + 1)).collect::<Vec<_>>().concat();
     let expected = format!("the kinetic energy of `θ` is negative in `-J*θ̇^2`; {way_out}");
     assert_eq!(refusals(&block(&format!("let u0 = -J*θ̇^2; {doubled} kinetic = u60;"))), [expected]);
     // Any sign may be meant, or the whole is positive for some values.
@@ -267,7 +284,10 @@ fn a_negative_kinetic_energy_is_refused() {
     }
     // Without units, a number has a sign and a parameter has none.
     let source = "struct P { m } coordinate q; kinetic = -q_dot^2/2; potential = m*q^2;";
-    assert_eq!(refusals(source), [format!("the kinetic energy of `q` is negative in `-q_dot^2/2`; {way_out}")]);
+    assert_eq!(
+        refusals(source),
+        [format!("the kinetic energy of `q` is negative in `-q_dot^2/2`; {way_out}")]
+    );
     assert!(refusals(&source.replace("-q_dot^2/2", "-m*q_dot^2")).is_empty());
 }
 
@@ -276,7 +296,10 @@ fn two_mistakes_give_two_messages() {
     let found = refusals(&block("kinetic = 2m*L^2*θ̇^2; potential = m g;"));
     assert_eq!(found.len(), 2, "{found:?}");
     let found = refusals(&block("kinetic = m*L^2*θ̇^2; potential = M*g + l;"));
-    assert_eq!(found, ["unknown name `M`; did you mean `m`?", "unknown name `l`; did you mean `L`?"]);
+    assert_eq!(
+        found,
+        ["unknown name `M`; did you mean `m`?", "unknown name `l`; did you mean `L`?"]
+    );
     let found = refusals(&block("kinetic = m*L^2*θ̇^2 + 2θ̇; potential = x + M;"));
     assert_eq!(found.len(), 2, "{found:?}");
 }
@@ -284,26 +307,41 @@ fn two_mistakes_give_two_messages() {
 #[test]
 fn a_name_declared_twice_is_shown_in_both_places() {
     let found = refusals(&block(&format!("{ENERGY} coordinate theta;")));
-    assert_eq!(found, ["`theta` is declared twice; rename one of the two", "`θ` is declared here first"]);
+    assert_eq!(
+        found,
+        ["`theta` is declared twice; rename one of the two", "`θ` is declared here first"]
+    );
 }
 
 #[test]
 fn a_lost_declaration_gives_no_second_message() {
-    assert_eq!(refusals("struct P { m g, L } coordinate θ; kinetic = m*L^2*θ̇^2; potential = m*g*θ;").len(), 1);
+    assert_eq!(
+        refusals("struct P { m g, L } coordinate θ; kinetic = m*L^2*θ̇^2; potential = m*g*θ;").len(),
+        1
+    );
     assert_eq!(refusals(&block("let r = ; kinetic = m*L^2*θ̇^2 + r;")).len(), 1);
 }
 
 #[test]
 fn no_coordinate() {
-    assert_eq!(refusals("struct P { m } kinetic = m;"), ["no coordinate; write `coordinate θ: rad;` below the struct"]);
+    assert_eq!(
+        refusals("struct P { m } kinetic = m;"),
+        ["no coordinate; write `coordinate θ: rad;` below the struct"]
+    );
 }
 
 #[test]
 fn a_default_that_is_no_number_is_one_mistake() {
     let source = "struct N { m, c: [m; 2] = [1, 2] } coordinate θ; kinetic = m*θ̇^2;";
-    assert_eq!(refusals(source), ["only a scalar has a default; leave it out and pass the value to `new`"]);
+    assert_eq!(
+        refusals(source),
+        ["only a scalar has a default; leave it out and pass the value to `new`"]
+    );
     let source = "struct N { m = sqrt(-1) } coordinate θ; kinetic = m*θ̇^2;";
-    assert_eq!(refusals(source), ["`sqrt(-1)` is no real number; write an operand for which it is"]);
+    assert_eq!(
+        refusals(source),
+        ["`sqrt(-1)` is no real number; write an operand for which it is"]
+    );
 }
 
 #[test]
@@ -314,7 +352,12 @@ fn a_right_block_is_not_refused() {
             .is_empty()
     );
     // Bars inside bars, and an index that is called as the imaginary unit.
-    assert!(refusals(&block("kinetic = m*L^2*θ̇^2; potential = m*g*|x + |x|*x/L|*sum(i in 0..3, i)*exp(-1)*8^(1/3);")).is_empty());
+    assert!(
+        refusals(&block(
+            "kinetic = m*L^2*θ̇^2; potential = m*g*|x + |x|*x/L|*sum(i in 0..3, i)*exp(-1)*8^(1/3);"
+        ))
+        .is_empty()
+    );
     assert!(refusals(&block(ENERGY)).is_empty());
 }
 
@@ -340,7 +383,9 @@ fn a_parameter_is_in_every_build() {
     let source = "struct P { #[cfg(test)] m: kg, L } coordinate θ: rad; kinetic = m*L^2*θ̇^2;";
     assert_eq!(
         refusals(source),
-        ["`cfg` has no place on a parameter, which the equations need in every build; write it above the struct"]
+        [
+            "`cfg` has no place on a parameter, which the equations need in every build; write it above the struct"
+        ]
     );
 }
 
@@ -349,17 +394,27 @@ fn a_parameter_is_in_every_build() {
 fn unmentioned_parameters_are_found() {
     let unmentioned = |source: &str| {
         super::derive(source, |model, _, _| {
-            model.unmentioned.iter().map(|&index| model.parameters[index].name.to_string()).collect::<Vec<_>>()
+            model
+                .unmentioned
+                .iter()
+                .map(|&index| model.parameters[index].name.to_string())
+                .collect::<Vec<_>>()
         })
     };
     let source = "struct P { m: J*s^2, L: m, c, _d, B: body, C: body, h = 2, n: [kg; 2] } coordinate θ: rad;";
     // A mass that cancels is mentioned, and so is what stands in a definition that nobody uses.
-    let statements = "let unused = L; kinetic = m*θ̇^2/2 + integral(p in B, 0*|p|^2); potential = 0*n[1]*θ;";
+    let statements =
+        "let unused = L; kinetic = m*θ̇^2/2 + integral(p in B, 0*|p|^2); potential = 0*n[1]*θ;";
     assert_eq!(unmentioned(&format!("{source} {statements}")), ["c", "_d", "C", "h"]);
     // An argument of the same name hides it.
-    assert_eq!(unmentioned("struct P { m, c } coordinate q; let r(c) = m*c; kinetic = r(q_dot)^2;"), ["c"]);
     assert_eq!(
-        unmentioned("struct P { m, c, d } coordinate q; kinetic = m*q_dot^2; dissipation = c*q_dot^2; force q = d;"),
+        unmentioned("struct P { m, c } coordinate q; let r(c) = m*c; kinetic = r(q_dot)^2;"),
+        ["c"]
+    );
+    assert_eq!(
+        unmentioned(
+            "struct P { m, c, d } coordinate q; kinetic = m*q_dot^2; dissipation = c*q_dot^2; force q = d;"
+        ),
         [""; 0]
     );
 }

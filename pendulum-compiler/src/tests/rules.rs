@@ -1,4 +1,5 @@
-//! Every rule of the table, at random points: both sides agree, and the left side becomes the right.
+//! Every rule of the table, at random points: both sides agree, and the left side becomes the
+//! right.
 
 use super::{Random, evaluate, lowered};
 use crate::algebra::expr::{Graph, Symbol};
@@ -26,7 +27,14 @@ fn the_left_side_keeps_its_digits() {
         let left = lowered(&mut graph, rule.left);
         let right = lowered(&mut graph, rule.right);
         assert_ne!(left, right, "{}: the graph itself leaves {} as it is", rule.name, rule.left);
-        assert_eq!(without_cancellation(&mut graph, left), right, "{}: {} is not {}", rule.name, rule.left, rule.right);
+        assert_eq!(
+            without_cancellation(&mut graph, left),
+            right,
+            "{}: {} is not {}",
+            rule.name,
+            rule.left,
+            rule.right
+        );
     }
 }
 
@@ -43,7 +51,8 @@ fn differences_are_found_among_other_terms() {
         assert_eq!(without_cancellation(&mut graph, whole), parts);
     }
     // What does not cancel stays.
-    for still in ["2 - cos(a)", "1 - cos(a)^2/2", "b - c*cos(a)", "cos(a) + cos(b)", "1 - cosh(a)"] {
+    for still in ["2 - cos(a)", "1 - cos(a)^2/2", "b - c*cos(a)", "cos(a) + cos(b)", "1 - cosh(a)"]
+    {
         let mut graph = Graph::new();
         let root = lowered(&mut graph, still);
         assert_eq!(without_cancellation(&mut graph, root), root, "{still}");
@@ -77,7 +86,11 @@ fn both_sides_have_one_value() {
                 Symbol::Parameter(index) => point[index],
                 other => panic!("{other:?}"),
             });
-            assert!((left - right).abs() <= 1e-12 * (1.0 + left.abs()), "{} at {point:?}: {left} and {right}", rule.name);
+            assert!(
+                (left - right).abs() <= 1e-12 * (1.0 + left.abs()),
+                "{} at {point:?}: {left} and {right}",
+                rule.name
+            );
         }
     }
 }
@@ -102,7 +115,9 @@ fn value(source: &str, point: [f64; 3]) -> f64 {
 
 fn tree(expr: &Expr, point: [f64; 3]) -> f64 {
     match &expr.kind {
-        ExprKind::Number(Literal::Exact(value)) => value.numerator() as f64 / value.denominator() as f64,
+        ExprKind::Number(Literal::Exact(value)) => {
+            value.numerator() as f64 / value.denominator() as f64
+        }
         ExprKind::Name(name) => match name.to_string().as_str() {
             "a" => point[0],
             "b" => point[1],
@@ -110,12 +125,13 @@ fn tree(expr: &Expr, point: [f64; 3]) -> f64 {
             "π" => std::f64::consts::PI,
             other => panic!("{other}"),
         },
-        ExprKind::Sum(items) => {
-            items.iter().map(|(minus, item)| if *minus { -tree(item, point) } else { tree(item, point) }).sum()
-        }
-        ExprKind::Product(items) => items
+        ExprKind::Sum(items) => items
             .iter()
-            .fold(1.0, |product, (over, item)| if *over { product / tree(item, point) } else { product * tree(item, point) }),
+            .map(|(minus, item)| if *minus { -tree(item, point) } else { tree(item, point) })
+            .sum(),
+        ExprKind::Product(items) => items.iter().fold(1.0, |product, (over, item)| {
+            if *over { product / tree(item, point) } else { product * tree(item, point) }
+        }),
         ExprKind::Negative(inner) => -tree(inner, point),
         ExprKind::Power(base, exponent) => tree(base, point).powf(tree(exponent, point)),
         ExprKind::Call(name, items) => {

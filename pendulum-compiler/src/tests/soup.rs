@@ -29,7 +29,11 @@ fn mutated_blocks_do_not_panic() {
     for seed in 0..rounds() {
         let mut random = Random(seed);
         let block = blocks[random.below(blocks.len())].clone();
-        expand(if seed % 2 == 0 { mutate(block, &mut random) } else { transplant(block, &mut random) });
+        expand(if seed % 2 == 0 {
+            mutate(block, &mut random)
+        } else {
+            transplant(block, &mut random)
+        });
     }
 }
 
@@ -53,11 +57,12 @@ fn the_items_survive_a_mistake() {
     assert!(bad.contains("compile_error"));
 }
 
-/// A block with any one of its tokens gone, doubled or replaced keeps the shape that an editor needs: the struct with its fields, its
-/// constructor, its `System`, and names to hover over.
+/// A block with any one of its tokens gone, doubled or replaced keeps the shape that an editor
+/// needs: the struct with its fields, its constructor, its `System`, and names to hover over.
 #[test]
 fn the_shape_survives_any_broken_token() {
-    let block = "::p; pub struct M { m: kg, L: m = 1, g: m/s^2 } coordinate θ: rad; driven x: [m; 2];
+    let block =
+        "::p; pub struct M { m: kg, L: m = 1, g: m/s^2 } coordinate θ: rad; driven x: [m; 2];
                  let y = x + L*[sin(θ), -cos(θ)]; kinetic = m/2*|ẏ|^2; potential = m*g*height(y);";
     let tokens: TokenStream = block.parse().unwrap();
     let count = leaves(&tokens);
@@ -66,7 +71,9 @@ fn the_shape_survives_any_broken_token() {
         for change in [Change::Remove, Change::Double, Change::Replace] {
             let broken = changed(&tokens, index, change, &mut 0);
             let found = expand(broken.clone()).to_string();
-            for item in ["pub struct M <", "system :: System <", "fn new", "fn __names (parameters : & M"] {
+            for item in
+                ["pub struct M <", "system :: System <", "fn new", "fn __names (parameters : & M"]
+            {
                 assert!(found.contains(item), "{item} is missing for {broken}");
             }
         }
@@ -102,7 +109,8 @@ fn changed(tokens: &TokenStream, index: usize, change: Change, next: &mut usize)
         match change {
             Change::Remove if here => {}
             Change::Double if here => result.extend([tree.clone(), tree]),
-            Change::Replace if here => result.push(TokenTree::Punct(proc_macro2::Punct::new('?', proc_macro2::Spacing::Alone))),
+            Change::Replace if here => result
+                .push(TokenTree::Punct(proc_macro2::Punct::new('?', proc_macro2::Spacing::Alone))),
             _ => result.push(tree),
         }
     }
@@ -112,10 +120,29 @@ fn changed(tokens: &TokenStream, index: usize, change: Change, next: &mut usize)
 /// Powers of powers whose exponents leave exact arithmetic.
 #[test]
 fn huge_exponents_do_not_hang() {
-    let large = ["10000000000000000000000", "1e17", "-1e17", "(1/1e17)", "(3/7)", "(1e17/3e16)", "2e9", "(1/2e9)"];
+    let large = [
+        "10000000000000000000000",
+        "1e17",
+        "-1e17",
+        "(1/1e17)",
+        "(3/7)",
+        "(1e17/3e16)",
+        "2e9",
+        "(1/2e9)",
+    ];
     for a in large {
         for b in large {
-            for base in ["x", "(m*x)", "(2*m*x)", "|x|", "(x + m)", "(x^2 + m*x^1e17)", "3", "(-m*x^2)", "sin(x)"] {
+            for base in [
+                "x",
+                "(m*x)",
+                "(2*m*x)",
+                "|x|",
+                "(x + m)",
+                "(x^2 + m*x^1e17)",
+                "3",
+                "(-m*x^2)",
+                "sin(x)",
+            ] {
                 let block = format!(
                     "::p; struct S {{ m }} coordinate x; kinetic = ẋ^2; potential = m*({base}^{a})^{b} + ({base}*x^{b})^{a}/x^{a};"
                 );
@@ -127,7 +154,11 @@ fn huge_exponents_do_not_hang() {
 
 #[test]
 fn deep_nesting_is_refused() {
-    let deep = format!("::p; struct S {{ m }} coordinate q; kinetic = {}m{};", "(".repeat(1000), ")".repeat(1000));
+    let deep = format!(
+        "::p; struct S {{ m }} coordinate q; kinetic = {}m{};",
+        "(".repeat(1000),
+        ")".repeat(1000)
+    );
     let found = expand(deep.parse().unwrap()).to_string();
     assert!(found.contains("nested too deeply"));
     let signs = format!("::p; struct S {{ m }} coordinate q; kinetic = {}m;", "-".repeat(10_000));
@@ -138,14 +169,18 @@ fn deep_nesting_is_refused() {
 #[test]
 fn deep_definitions_are_refused() {
     let deep = |count: usize, sines: usize, down: bool| {
-        let nested = |k: usize| format!("let a{k} = {}a{}{};", "sin(".repeat(sines), k + 1, ")".repeat(sines));
+        let nested = |k: usize| {
+            format!("let a{k} = {}a{}{};", "sin(".repeat(sines), k + 1, ")".repeat(sines))
+        };
         let mut lets: Vec<String> = (0..count).map(nested).collect();
         if !down {
             lets.reverse();
         }
         let (before, after) = if down { ("", "let a_last = q;") } else { ("let a_last = q;", "") };
         let lets = lets.concat().replace(&format!("a{count}"), "a_last");
-        super::refusals(&format!("struct S {{ m }} coordinate q; kinetic = m*q_dot^2; {before} {lets} {after} potential = a0;"))
+        super::refusals(&format!(
+            "struct S {{ m }} coordinate q; kinetic = m*q_dot^2; {before} {lets} {after} potential = a0;"
+        ))
     };
     let message = "definitions within definitions are nested too deeply here; write each `let` above its uses, and call fewer functions by functions";
     assert_eq!(deep(500, 4, true), [message]);

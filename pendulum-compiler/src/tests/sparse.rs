@@ -1,4 +1,5 @@
-//! The sparse form against the dense one: equal at random points of a prime field, and cheaper where it should be.
+//! The sparse form against the dense one: equal at random points of a prime field, and cheaper
+//! where it should be.
 
 use super::derived;
 use crate::algebra::diff::derivative;
@@ -19,7 +20,9 @@ fn compare(source: &str) -> [schedule::Count; 2] {
         let sparse = articulated::sparse(graph, extended, motion.accelerations.len()).unwrap();
         let lagrangian = match (energies.lagrangian, energies.kinetic, energies.potential) {
             (Some(lagrangian), ..) => lagrangian,
-            (None, kinetic, potential) => graph.sub(kinetic.unwrap_or_default(), potential.unwrap_or_default()),
+            (None, kinetic, potential) => {
+                graph.sub(kinetic.unwrap_or_default(), potential.unwrap_or_default())
+            }
         };
         let count = motion.accelerations.len();
         let slopes = |graph: &mut Graph, id: Id, symbol: fn(usize) -> Symbol| -> Vec<Id> {
@@ -50,7 +53,9 @@ fn compare(source: &str) -> [schedule::Count; 2] {
             ("E", &vec![energy], &vec![sparse.energy]),
         ]
         .into_iter()
-        .flat_map(|(name, dense, sparse)| dense.iter().zip(sparse).map(|(&a, &b)| (name, a, b)).collect::<Vec<_>>())
+        .flat_map(|(name, dense, sparse)| {
+            dense.iter().zip(sparse).map(|(&a, &b)| (name, a, b)).collect::<Vec<_>>()
+        })
         .collect();
         for (name, dense, sparse) in pairs {
             let difference = graph.sub(dense, sparse);

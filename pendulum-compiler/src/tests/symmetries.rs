@@ -26,9 +26,11 @@ fn gravity(count: usize) -> String {
 
 /// The momenta along both axes and the angular momentum of `count` bodies.
 fn momenta(count: usize) -> Vec<String> {
-    let sum = |axis: &str| (0..count).map(|k| format!("p_{axis}[{k}]")).collect::<Vec<_>>().join(" + ");
-    let parts =
-        |sign: &str, a: &str, b: &str| (1..count).map(|k| format!(" {sign} {a}[{k}]·p_{b}[{k}]")).collect::<Vec<_>>().concat();
+    let sum =
+        |axis: &str| (0..count).map(|k| format!("p_{axis}[{k}]")).collect::<Vec<_>>().join(" + ");
+    let parts = |sign: &str, a: &str, b: &str| {
+        (1..count).map(|k| format!(" {sign} {a}[{k}]·p_{b}[{k}]")).collect::<Vec<_>>().concat()
+    };
     let turn = format!("x[0]·p_y[0] − y[0]·p_x[0]{}{}", parts("−", "y", "x"), parts("+", "x", "y"));
     vec![sum("x"), sum("y"), turn]
 }
@@ -48,7 +50,8 @@ fn eight_roots_hide_no_symmetry() {
 
 #[test]
 fn roots_of_roots_hide_no_symmetry() {
-    let nested = "k*sqrt(G + |r[0] - r[1]|) + k*sqrt(G + |r[1] - r[2]|) + k*sqrt(G + |r[2] - r[0]|)";
+    let nested =
+        "k*sqrt(G + |r[0] - r[1]|) + k*sqrt(G + |r[1] - r[2]|) + k*sqrt(G + |r[2] - r[0]|)";
     assert_eq!(conserved(&bodies(3, nested)), momenta(3));
 }
 

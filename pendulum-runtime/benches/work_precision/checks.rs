@@ -1,31 +1,46 @@
-//! Two figures beside the pictures: how well the time can be turned back, and how the energy wanders.
+//! Two figures beside the pictures: how well the time can be turned back, and how the energy
+//! wanders.
 
 use pendulum_runtime::integrate::Solution;
 use pendulum_runtime::prelude::*;
 
 use crate::systems::simple;
 
-/// The pendulum with g/L = 9.8 from (0.05, 0.025) over 1000 s and, with its velocity turned round, back: the distance from the start.
+/// The pendulum with g/L = 9.8 from (0.05, 0.025) over 1000 s and, with its velocity turned round,
+/// back: the distance from the start.
 pub fn forward_and_back() {
     fn line<E>(name: &str, mut run: impl FnMut([f64; 1], [f64; 1]) -> Result<Solution<f64, 1>, E>) {
         let (q, v) = (0.05, 0.025);
         let back = run([q], [v]).and_then(|there| run(there.end.q, [-there.end.v[0]]));
         match back {
-            Ok(back) => println!("forward and back over 1000 s, {name}: {:.1e}", (back.end.q[0] - q).hypot(back.end.v[0] + v)),
+            Ok(back) => println!(
+                "forward and back over 1000 s, {name}: {:.1e}",
+                (back.end.q[0] - q).hypot(back.end.v[0] + v)
+            ),
             Err(_) => println!("forward and back over 1000 s, {name}: failed"),
         }
     }
     let pendulum = simple();
-    line("Dop853 at 1e-14", |q, v| solve(&pendulum, (0.0, 1000.0), q, v).rtol(1e-14).atol(1e-14).run());
-    line("Srkn14a, 50 000 steps", |q, v| solve(&pendulum, (0.0, 1000.0), q, v).method(Srkn14a).steps(50_000).run());
+    line("Dop853 at 1e-14", |q, v| {
+        solve(&pendulum, (0.0, 1000.0), q, v).rtol(1e-14).atol(1e-14).run()
+    });
+    line("Srkn14a, 50 000 steps", |q, v| {
+        solve(&pendulum, (0.0, 1000.0), q, v).method(Srkn14a).steps(50_000).run()
+    });
 }
 
-/// The relative error of the energy of the same pendulum from θ = 1.3 over ten million steps, and at a hundredth of them.
+/// The relative error of the energy of the same pendulum from θ = 1.3 over ten million steps, and
+/// at a hundredth of them.
 pub fn energy() {
     let pendulum = simple();
     let started = Integrator::new(&pendulum, Srkn14a, 0.0, [1.3], [0.0]);
-    let Ok(mut run) = started.and_then(|run| run.control(pendulum_runtime::integrate::FixedStep::new(0.02))) else { return };
-    // Relative to the kinetic energy at the bottom, because the zero of the potential is anybody's choice.
+    let Ok(mut run) =
+        started.and_then(|run| run.control(pendulum_runtime::integrate::FixedStep::new(0.02)))
+    else {
+        return;
+    };
+    // Relative to the kinetic energy at the bottom, because the zero of the potential is anybody's
+    // choice.
     let scale = pendulum.energy_at(0.0, &[1.3], &[0.0]) - pendulum.energy_at(0.0, &[0.0], &[0.0]);
     let start = pendulum.energy_at(0.0, &[1.3], &[0.0]);
     let mut worst = [0.0f64; 2];
@@ -40,5 +55,8 @@ pub fn energy() {
             worst[0] = if step <= 100_000 { worst[1] } else { worst[0] };
         }
     }
-    println!("energy, Srkn14a with h = 0.02 s: off by at most {:.1e} in 10⁵ steps, {:.1e} in 10⁷", worst[0], worst[1]);
+    println!(
+        "energy, Srkn14a with h = 0.02 s: off by at most {:.1e} in 10⁵ steps, {:.1e} in 10⁷",
+        worst[0], worst[1]
+    );
 }

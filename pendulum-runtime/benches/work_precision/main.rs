@@ -1,14 +1,17 @@
 //! Run time against error: every method over its settings, and the peers, in one run.
 //!
-//! `cargo bench -p pendulum-runtime --bench work_precision -- [SYSTEM…] [--quick] [--rounds N] [--heyoka PYTHON] [--no-peers]`
+//! `cargo bench -p pendulum-runtime --bench work_precision -- [SYSTEM…] [--quick] [--rounds N]
+//! [--heyoka PYTHON] [--no-peers]`
 //!
-//! The systems are those of `systems.rs`; the error is the largest distance of any coordinate or velocity at any of the five output
-//! times from `reference.txt`. A round runs all rows, every second round backwards; the time of a row is the median over the rounds, a ratio
-//! of two methods the median of the ratios in each round. Everything runs on one thread, one process at a time.
+//! The systems are those of `systems.rs`; the error is the largest distance of any coordinate or
+//! velocity at any of the five output times from `reference.txt`. A round runs all rows, every
+//! second round backwards; the time of a row is the median over the rounds, a ratio of two methods
+//! the median of the ratios in each round. Everything runs on one thread, one process at a time.
 //!
-//! The crates `ode_solvers` and `differential-equations` are measured by `benches/peers/rust`, a package outside the workspace that is
-//! built and started here and waits while others run; without network the benchmark says so and goes on. `--heyoka` starts
-//! `benches/peers/heyoka.py` with that Python in the same way; without it the table that the script has left in the target folder, if
+//! The crates `ode_solvers` and `differential-equations` are measured by `benches/peers/rust`, a
+//! package outside the workspace that is built and started here and waits while others run; without
+//! network the benchmark says so and goes on. `--heyoka` starts `benches/peers/heyoka.py` with that
+//! Python in the same way; without it the table that the script has left in the target folder, if
 //! there is one, stands in the pictures and the summary.
 //!
 //! Written to the target folder: `work-precision.csv` and `work-precision-SYSTEM.svg`.
@@ -39,8 +42,17 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 use table::{Entry, Party};
 
-const SYSTEMS: [&str; 9] =
-    ["simple", "moving", "moving_compound", "elastic", "double_regular", "double_chaotic", "chain5", "kepler", "henon_heiles"];
+const SYSTEMS: [&str; 9] = [
+    "simple",
+    "moving",
+    "moving_compound",
+    "elastic",
+    "double_regular",
+    "double_chaotic",
+    "chain5",
+    "kepler",
+    "henon_heiles",
+];
 
 /// Our rows. The number is about the fastest angular frequency; fixed steps are measured by it.
 fn ours(every: usize) -> Vec<Row> {
@@ -74,7 +86,8 @@ struct Options {
 
 impl Options {
     fn parse() -> Result<Self, String> {
-        let mut options = Self { quick: false, rounds: 0, systems: Vec::new(), heyoka: None, peers: true };
+        let mut options =
+            Self { quick: false, rounds: 0, systems: Vec::new(), heyoka: None, peers: true };
         let mut words = std::env::args().skip(1);
         while let Some(word) = words.next() {
             let mut value = || words.next().ok_or_else(|| format!("`{word}` wants a value"));
@@ -84,9 +97,17 @@ impl Options {
                 "--quick" => options.quick = true,
                 "--no-peers" => options.peers = false,
                 "--heyoka" => options.heyoka = Some(value()?),
-                "--rounds" => options.rounds = value()?.parse().map_err(|error| format!("`--rounds`: {error}"))?,
+                "--rounds" => {
+                    options.rounds =
+                        value()?.parse().map_err(|error| format!("`--rounds`: {error}"))?;
+                }
                 _ if SYSTEMS.contains(&word.as_str()) => options.systems.push(word),
-                _ => return Err(format!("`{word}` is neither an option nor one of {}", SYSTEMS.join(", "))),
+                _ => {
+                    return Err(format!(
+                        "`{word}` is neither an option nor one of {}",
+                        SYSTEMS.join(", ")
+                    ));
+                }
             }
         }
         if options.rounds == 0 {
@@ -106,7 +127,8 @@ enum Source {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let began = Instant::now();
     let options = Options::parse()?;
-    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().ok_or("no target folder")?.to_path_buf();
+    let target =
+        Path::new(env!("CARGO_TARGET_TMPDIR")).parent().ok_or("no target folder")?.to_path_buf();
     let note = describe();
     println!("{note}");
 
@@ -116,7 +138,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut peers = start_peers(&options, &target);
     let mut sources: Vec<(Source, Entry)> = Vec::new();
     for (index, row) in rows.iter().enumerate() {
-        sources.push((Source::Row(index), Entry::new([&row.system, &row.method, &row.setting].map(Clone::clone))));
+        sources.push((
+            Source::Row(index),
+            Entry::new([&row.system, &row.method, &row.setting].map(Clone::clone)),
+        ));
     }
     for (number, peer) in peers.iter().enumerate() {
         for (index, row) in peer.rows.iter().enumerate() {
@@ -132,12 +157,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let place = |entry: &Entry| SYSTEMS.iter().position(|system| *system == entry.system);
     sources.sort_by_key(|(_, entry)| place(entry));
 
-    // Where the rounds are to end if the machine is slower than thought. heyoka compiles in the first one, which does not count.
+    // Where the rounds are to end if the machine is slower than thought. heyoka compiles in the
+    // first one, which does not count.
     let limit = Duration::from_secs(if options.quick { 75 } else { 600 });
     let mut since = began;
     for round in 0..options.rounds {
         let start = Instant::now();
-        let order: Vec<usize> = if round % 2 == 0 { (0..sources.len()).collect() } else { (0..sources.len()).rev().collect() };
+        let order: Vec<usize> = if round % 2 == 0 {
+            (0..sources.len()).collect()
+        } else {
+            (0..sources.len()).rev().collect()
+        };
         for index in order {
             let (source, entry) = &mut sources[index];
             if round == 0 || entry.result.is_ok() {
@@ -152,7 +182,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             since = Instant::now();
         }
         let left = limit.saturating_sub(since.elapsed());
-        println!("round {} of {}: {} rows in {:.1} s", round + 1, options.rounds, sources.len(), start.elapsed().as_secs_f64());
+        println!(
+            "round {} of {}: {} rows in {:.1} s",
+            round + 1,
+            options.rounds,
+            sources.len(),
+            start.elapsed().as_secs_f64()
+        );
         if left < start.elapsed() && 1 <= round && round + 1 < options.rounds {
             println!("no time for more rounds");
             break;
@@ -166,7 +202,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("written: {}", csv.display());
     for entry in entries.iter().filter(|entry| entry.result.is_err()) {
         let Entry { system, method, setting, result, .. } = entry;
-        println!("failed: {system}, {method}, {setting}: {}", result.as_ref().err().map_or("", String::as_str));
+        println!(
+            "failed: {system}, {method}, {setting}: {}",
+            result.as_ref().err().map_or("", String::as_str)
+        );
     }
 
     if !entries.iter().any(|entry| entry.party() == Party::Heyoka) {
@@ -226,8 +265,12 @@ fn start_peers(options: &Options, target: &Path) -> Vec<Peer> {
         Err(error) => println!("without {what}: {error}"),
     };
     if options.peers {
-        let program = build_peers(&root.join("benches/peers/rust/Cargo.toml"), &target.join("peers"));
-        add("ode_solvers and differential-equations", program.and_then(|program| Peer::start(&mut Command::new(program))));
+        let program =
+            build_peers(&root.join("benches/peers/rust/Cargo.toml"), &target.join("peers"));
+        add(
+            "ode_solvers and differential-equations",
+            program.and_then(|program| Peer::start(&mut Command::new(program))),
+        );
     }
     if let Some(python) = &options.heyoka {
         let script = root.join("benches/peers/heyoka.py");
@@ -240,9 +283,12 @@ fn start_peers(options: &Options, target: &Path) -> Vec<Peer> {
 fn build_peers(manifest: &Path, target: &Path) -> Result<PathBuf, String> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let arguments = ["build", "--release", "--quiet", "--manifest-path"];
-    let status = Command::new(cargo).args(arguments).arg(manifest).arg("--target-dir").arg(target).status();
+    let status =
+        Command::new(cargo).args(arguments).arg(manifest).arg("--target-dir").arg(target).status();
     match status {
-        Ok(status) if status.success() => Ok(target.join("release").join(format!("peers{}", std::env::consts::EXE_SUFFIX))),
+        Ok(status) if status.success() => {
+            Ok(target.join("release").join(format!("peers{}", std::env::consts::EXE_SUFFIX)))
+        }
         Ok(status) => Err(format!("{} was not built: {status}", manifest.display())),
         Err(error) => Err(error.to_string()),
     }
@@ -259,6 +305,10 @@ fn describe() -> String {
         .find_map(|line| line.strip_prefix("model name"))
         .map_or("unknown processor", |rest| rest.trim_start_matches([' ', '\t', ':']));
     let rustc = rustc.split(" (").next().unwrap_or_default();
-    let target = if cfg!(target_feature = "avx2") { "built for this processor" } else { "built without processor flags" };
+    let target = if cfg!(target_feature = "avx2") {
+        "built for this processor"
+    } else {
+        "built without processor flags"
+    };
     format!("pendulum {}, {rustc}, {model}, {target}", env!("CARGO_PKG_VERSION"))
 }

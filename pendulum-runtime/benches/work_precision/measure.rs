@@ -27,7 +27,8 @@ pub struct Row {
 }
 
 impl Row {
-    /// The shortest of at least three runs, as many as fit into a millisecond, because interruptions only add; of a long run the first.
+    /// The shortest of at least three runs, as many as fit into a millisecond, because
+    /// interruptions only add; of a long run the first.
     pub fn sample(&mut self) -> Result<(f64, Run), String> {
         let (mut seconds, run) = self.timed()?;
         if seconds < 0.05 {

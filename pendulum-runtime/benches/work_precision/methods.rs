@@ -1,6 +1,7 @@
 //! The methods under test and their settings: a line each.
 //!
-//! They are macros, so that each system is asked for nothing but what the methods in its own lists want.
+//! They are macros, so that each system is asked for nothing but what the methods in its own lists
+//! want.
 
 use crate::measure::{Row, Run};
 use crate::problem::Problem;
@@ -15,7 +16,13 @@ macro_rules! any {
         adaptive!($subject, "Tsit5", Tsit5::new(), [3, 4, 5, 6, 7, 8, 9, 10]);
         adaptive!($subject, "Dop853", Dop853::new(), [3, 5, 7, 9, 10, 11, 12, 13]);
         adaptive!($subject, "Taylor", Taylor::new(), [3, 5, 7, 9, 11, 13, 15, 18]);
-        adaptive!($subject, "Picard", Picard, [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15], t_stops);
+        adaptive!(
+            $subject,
+            "Picard",
+            Picard,
+            [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15],
+            t_stops
+        );
         adaptive!($subject, "Rodas4", Rodas4::new(), [3, 4, 5, 6, 7, 8]);
         fixed!($subject, "Gauss<2>", Gauss::<2>::new(), [2.0, 4.0, 8.0, 16.0, 32.0, 64.0]);
         fixed!($subject, "Gauss<4>", Gauss::<4>::new(), [1.0, 2.0, 4.0, 8.0, 16.0]);
@@ -31,9 +38,25 @@ macro_rules! velocity_free {
         fixed!($subject, "Srkn11b", Srkn11b, [0.7, 1.0, 1.5, 2.5, 4.0, 8.0, 16.0]);
         fixed!($subject, "Srkn14a", Srkn14a, [0.5, 0.8, 1.2, 2.0, 3.0, 5.0, 8.0]);
         adaptive!($subject, "Dprkn8", Dprkn8::new(), [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], t_stops);
-        adaptive!($subject, "Dprkn12", Dprkn12::new(), [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14], t_stops);
-        fixed!($subject, "QuinlanTremaine<8>", QuinlanTremaine::<8>::new(), [3.0, 4.0, 5.0, 8.0, 12.0, 20.0]);
-        fixed!($subject, "QuinlanTremaine<12>", QuinlanTremaine::<12>::new(), [4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 24.0]);
+        adaptive!(
+            $subject,
+            "Dprkn12",
+            Dprkn12::new(),
+            [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14],
+            t_stops
+        );
+        fixed!(
+            $subject,
+            "QuinlanTremaine<8>",
+            QuinlanTremaine::<8>::new(),
+            [3.0, 4.0, 5.0, 8.0, 12.0, 20.0]
+        );
+        fixed!(
+            $subject,
+            "QuinlanTremaine<12>",
+            QuinlanTremaine::<12>::new(),
+            [4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 24.0]
+        );
     };
 }
 
@@ -44,14 +67,16 @@ macro_rules! fixed {
             let (Problem { q, v, times, .. }, end, dynamics) = $subject.parts();
             let steps = $subject.steps(density);
             $subject.add($name, format!("steps={steps}"), move || {
-                let problem = solve(black_box(&*dynamics), (0.0, end), q, v).method($method).steps(steps);
+                let problem =
+                    solve(black_box(&*dynamics), (0.0, end), q, v).method($method).steps(steps);
                 methods::values(problem.t_stops(&times).t_eval(&times).run())
             });
         }
     };
 }
 
-/// Tolerances 10^(−exponent), relative and absolute; the states at the output times are those of the dense output, or steps end there.
+/// Tolerances 10^(−exponent), relative and absolute; the states at the output times are those of
+/// the dense output, or steps end there.
 macro_rules! adaptive {
     ($subject:ident, $name:literal, $method:expr, $exponents:expr $(, $stops:ident)?) => {
         for exponent in $exponents.into_iter().step_by($subject.every) {
@@ -77,7 +102,13 @@ pub struct Subject<'a, const N: usize, D> {
 
 impl<'a, const N: usize, D> Subject<'a, N, D> {
     /// `rate` in rad/s is about the fastest motion.
-    pub fn new(rows: &'a mut Vec<Row>, name: &'static str, rate: f64, every: usize, dynamics: D) -> Self {
+    pub fn new(
+        rows: &'a mut Vec<Row>,
+        name: &'static str,
+        rate: f64,
+        every: usize,
+        dynamics: D,
+    ) -> Self {
         Self { rows, problem: Problem::new(name), rate, every, dynamics: Rc::new(dynamics) }
     }
 
@@ -93,7 +124,12 @@ impl<'a, const N: usize, D> Subject<'a, N, D> {
     }
 
     /// A row.
-    pub fn add(&mut self, method: &str, setting: String, run: impl FnMut() -> Result<Run, String> + 'static) {
+    pub fn add(
+        &mut self,
+        method: &str,
+        setting: String,
+        run: impl FnMut() -> Result<Run, String> + 'static,
+    ) {
         let (system, method) = (self.problem.name.to_string(), method.to_string());
         self.rows.push(Row { system, method, setting, run: Box::new(run) });
     }
@@ -104,8 +140,11 @@ impl<'a, const N: usize, D> Subject<'a, N, D> {
 }
 
 /// The states at the output times.
-pub fn values<const N: usize>(result: Result<Solution<f64, N>, Failure<f64, N>>) -> Result<Run, String> {
+pub fn values<const N: usize>(
+    result: Result<Solution<f64, N>, Failure<f64, N>>,
+) -> Result<Run, String> {
     let solution = result.map_err(|failure| failure.to_string())?;
-    let values = solution.q.iter().zip(&solution.v).flat_map(|(q, v)| q.iter().chain(v).copied()).collect();
+    let values =
+        solution.q.iter().zip(&solution.v).flat_map(|(q, v)| q.iter().chain(v).copied()).collect();
     Ok(Run { values, evaluations: solution.stats.evaluations })
 }

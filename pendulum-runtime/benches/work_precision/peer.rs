@@ -1,7 +1,8 @@
 //! Rows that another process runs and times, and that this one asks for.
 //!
-//! What the process writes: a line about itself, a line for each row (system, method and setting between tabs), `ready`; then, for each
-//! index that it reads, the seconds, the evaluations and the values between blanks, or `failed` and the reason.
+//! What the process writes: a line about itself, a line for each row (system, method and setting
+//! between tabs), `ready`; then, for each index that it reads, the seconds, the evaluations and the
+//! values between blanks, or `failed` and the reason.
 
 use crate::measure::Run;
 use std::io::{BufRead, BufReader, Write};
@@ -22,7 +23,8 @@ impl Peer {
     /// Starts it and reads what it offers.
     pub fn start(command: &mut Command) -> Result<Self, String> {
         let child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
-        let mut child = child.map_err(|error| format!("{}: {error}", command.get_program().display()))?;
+        let mut child =
+            child.map_err(|error| format!("{}: {error}", command.get_program().display()))?;
         let (input, output) = (child.stdin.take(), child.stdout.take().expect("a pipe"));
         let (versions, rows, output) = (String::new(), Vec::new(), BufReader::new(output));
         let mut peer = Self { versions, rows, child, input, output };
@@ -34,7 +36,9 @@ impl Peer {
             }
             let mut words = line.split('\t').map(String::from);
             match [words.next(), words.next(), words.next()] {
-                [Some(system), Some(method), Some(setting)] => peer.rows.push([system, method, setting]),
+                [Some(system), Some(method), Some(setting)] => {
+                    peer.rows.push([system, method, setting]);
+                }
                 _ => return Err(format!("not a row: {line}")),
             }
         }
@@ -43,15 +47,26 @@ impl Peer {
     /// Has it sample one of its rows.
     pub fn sample(&mut self, index: usize) -> Result<(f64, Run), String> {
         let input = self.input.as_mut().ok_or("it has ended")?;
-        writeln!(input, "{index}").and_then(|()| input.flush()).map_err(|error| error.to_string())?;
+        writeln!(input, "{index}")
+            .and_then(|()| input.flush())
+            .map_err(|error| error.to_string())?;
         let line = self.line()?;
         if let Some(reason) = line.strip_prefix("failed") {
             return Err(reason.trim().to_string());
         }
         let mut words = line.split(' ');
-        let seconds = words.next().and_then(|word| word.parse().ok()).ok_or_else(|| format!("no time: {line}"))?;
-        let evaluations = words.next().and_then(|word| word.parse().ok()).ok_or_else(|| format!("no count: {line}"))?;
-        let values = words.map(str::parse).collect::<Result<_, _>>().map_err(|error| format!("{error}: {line}"))?;
+        let seconds = words
+            .next()
+            .and_then(|word| word.parse().ok())
+            .ok_or_else(|| format!("no time: {line}"))?;
+        let evaluations = words
+            .next()
+            .and_then(|word| word.parse().ok())
+            .ok_or_else(|| format!("no count: {line}"))?;
+        let values = words
+            .map(str::parse)
+            .collect::<Result<_, _>>()
+            .map_err(|error| format!("{error}: {line}"))?;
         Ok((seconds, Run { values, evaluations }))
     }
 

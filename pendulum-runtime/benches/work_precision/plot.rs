@@ -41,11 +41,19 @@ struct Curve {
 fn curves(system: &str, entries: &[Entry]) -> Vec<Curve> {
     let mut curves: Vec<Curve> = Vec::new();
     for entry in entries.iter().filter(|entry| entry.system == system) {
-        let index = curves.iter().position(|curve| curve.name == entry.method).unwrap_or_else(|| {
-            let (name, party) = (entry.method.clone(), entry.party());
-            curves.push(Curve { name, party, color: BLACK, mark: 0, failed: 0, points: Vec::new() });
-            curves.len() - 1
-        });
+        let index =
+            curves.iter().position(|curve| curve.name == entry.method).unwrap_or_else(|| {
+                let (name, party) = (entry.method.clone(), entry.party());
+                curves.push(Curve {
+                    name,
+                    party,
+                    color: BLACK,
+                    mark: 0,
+                    failed: 0,
+                    points: Vec::new(),
+                });
+                curves.len() - 1
+            });
         match entry.error() {
             // An error of zero would lie at infinity.
             Some(error) => curves[index].points.push((error.max(1e-17), entry.seconds())),
@@ -58,8 +66,16 @@ fn curves(system: &str, entries: &[Entry]) -> Vec<Curve> {
             (curve.color, curve.mark) = (COLORS[ours % COLORS.len()], ours);
             ours += 1;
         } else {
-            let grey = if curve.name.ends_with("by hand") || curve.name.ends_with("simplified") { 150 } else { 90 };
-            let color = if curve.party == Party::Heyoka { RGBColor(0, 0, 0) } else { RGBColor(grey, grey, grey) };
+            let grey = if curve.name.ends_with("by hand") || curve.name.ends_with("simplified") {
+                150
+            } else {
+                90
+            };
+            let color = if curve.party == Party::Heyoka {
+                RGBColor(0, 0, 0)
+            } else {
+                RGBColor(grey, grey, grey)
+            };
             (curve.color, curve.mark) = (color, peers);
             peers += 1;
         }
@@ -70,9 +86,13 @@ fn curves(system: &str, entries: &[Entry]) -> Vec<Curve> {
 fn chart_of(area: &Area<'_>, system: &str, note: &str, curves: &[Curve]) -> Result<(), Failure> {
     let all = || curves.iter().flat_map(|curve| &curve.points);
     let ends = |values: &mut dyn Iterator<Item = f64>, least: f64, greatest: f64| {
-        let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(low, high), value| (low.min(value), high.max(value)));
+        let (low, high) = values
+            .fold((f64::INFINITY, 0.0f64), |(low, high), value| (low.min(value), high.max(value)));
         let (low, high) = if low < high { (low, high) } else { (least, greatest) };
-        (10f64.powf((low.log10() - 0.1).floor()).max(least), 10f64.powf((high.log10() + 0.1).ceil()).min(greatest))
+        (
+            10f64.powf((low.log10() - 0.1).floor()).max(least),
+            10f64.powf((high.log10() + 0.1).ceil()).min(greatest),
+        )
     };
     let (left, right) = ends(&mut all().map(|point| point.0), 1e-18, 1e2);
     let (bottom, top) = ends(&mut all().map(|point| point.1), 1e-8, 1e3);
@@ -104,7 +124,12 @@ fn chart_of(area: &Area<'_>, system: &str, note: &str, curves: &[Curve]) -> Resu
         .y_desc("seconds")
         .draw()?;
     for curve in curves {
-        let inside: Vec<_> = curve.points.iter().copied().filter(|point| left <= point.0 && point.0 <= right).collect();
+        let inside: Vec<_> = curve
+            .points
+            .iter()
+            .copied()
+            .filter(|point| left <= point.0 && point.0 <= right)
+            .collect();
         let line = curve.color.stroke_width(2);
         if curve.party == Party::Ours {
             chart.draw_series(LineSeries::new(inside.iter().copied(), line))?;
@@ -138,7 +163,8 @@ fn legend_of(area: &Area<'_>, curves: &[Curve]) -> Result<(), Failure> {
         }
         let (x0, y0) = area.get_base_pixel();
         mark(area, (x0 + 28, y0 + y), curve)?;
-        let failed = if curve.failed == 0 { String::new() } else { format!(" ({} failed)", curve.failed) };
+        let failed =
+            if curve.failed == 0 { String::new() } else { format!(" ({} failed)", curve.failed) };
         area.draw(&Text::new(format!("{}{failed}", curve.name), (58, y), style.clone()))?;
     }
     Ok(())
@@ -149,7 +175,9 @@ fn mark(area: &Area<'_>, at: (i32, i32), curve: &Curve) -> Result<(), Failure> {
     let (x0, y0) = area.get_base_pixel();
     let (x, y) = (at.0 - x0, at.1 - y0);
     let (filled, r) = (curve.color.filled(), 5);
-    let corners = |corners: &[(i32, i32)]| corners.iter().map(|(dx, dy)| (x + dx, y + dy)).collect::<Vec<_>>();
+    let corners = |corners: &[(i32, i32)]| {
+        corners.iter().map(|(dx, dy)| (x + dx, y + dy)).collect::<Vec<_>>()
+    };
     match curve.mark % 5 {
         0 => area.draw(&Circle::new((x, y), r - 1, filled))?,
         1 => area.draw(&Rectangle::new([(x - 4, y - 4), (x + 4, y + 4)], filled))?,

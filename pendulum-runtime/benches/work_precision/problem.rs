@@ -22,7 +22,12 @@ impl<const N: usize> Problem<N> {
         let start = rows.next().expect("reference.txt knows the system");
         let value = |i: usize| start.2[i].parse().expect("a number");
         let times = rows.map(|line| line.1).collect();
-        Self { name, q: core::array::from_fn(value), v: core::array::from_fn(|i| value(N + i)), times }
+        Self {
+            name,
+            q: core::array::from_fn(value),
+            v: core::array::from_fn(|i| value(N + i)),
+            times,
+        }
     }
 }
 

@@ -2,9 +2,13 @@
 
 use crate::problem::lines;
 
-/// The reference values of a system at all output times, coordinates before velocities, each as a sum of two doubles.
+/// The reference values of a system at all output times, coordinates before velocities, each as a
+/// sum of two doubles.
 pub fn reference(name: &str) -> Vec<(f64, f64)> {
-    lines(name).filter(|line| line.1 != 0.0).flat_map(|line| line.2.iter().map(|text| split(text))).collect()
+    lines(name)
+        .filter(|line| line.1 != 0.0)
+        .flat_map(|line| line.2.iter().map(|text| split(text)))
+        .collect()
 }
 
 /// A decimal number as the double next to it and the double next to the rest.
@@ -17,6 +21,8 @@ fn split(text: &str) -> (f64, f64) {
 fn scaled(text: &str) -> i128 {
     let (negative, digits) = text.strip_prefix('-').map_or((false, text), |digits| (true, digits));
     let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
-    let value = format!("{whole}{fraction:0<32.32}").parse::<i128>().expect("fewer than six digits before the point");
+    let value = format!("{whole}{fraction:0<32.32}")
+        .parse::<i128>()
+        .expect("fewer than six digits before the point");
     if negative { -value } else { value }
 }

@@ -4,12 +4,18 @@ use crate::table::{Entry, Party, median};
 
 /// Prints for each system and decade the best of ours, the peers' times and the ratios.
 ///
-/// A ratio is the median over the rounds of the ratio in each of them; where one side comes from a file, the ratio of the medians.
+/// A ratio is the median over the rounds of the ratio in each of them; where one side comes from a
+/// file, the ratio of the medians.
 pub fn print(systems: &[&str], entries: &[Entry]) {
-    println!("\ntimes in ms at equal error, interpolated in both logarithms; in brackets ours over theirs\n");
+    println!(
+        "\ntimes in ms at equal error, interpolated in both logarithms; in brackets ours over theirs\n"
+    );
     println!("{:<16} {:>6}  {:<28}{PEERS}", "system", "error", "best of ours");
     for system in systems {
-        let of_system: Vec<&Entry> = entries.iter().filter(|entry| entry.system == *system && entry.error().is_some()).collect();
+        let of_system: Vec<&Entry> = entries
+            .iter()
+            .filter(|entry| entry.system == *system && entry.error().is_some())
+            .collect();
         let select = |choose: &dyn Fn(&Entry) -> bool| -> Vec<&Entry> {
             of_system.iter().copied().filter(|entry| choose(entry)).collect()
         };
@@ -26,32 +32,42 @@ pub fn print(systems: &[&str], entries: &[Entry]) {
             if best.is_none() && peers.iter().all(|peer| self::best(peer, error, None).is_none()) {
                 continue;
             }
-            let name = best.map_or(String::new(), |(seconds, method)| format!("{:9.3} {method}", 1e3 * seconds));
+            let name = best.map_or(String::new(), |(seconds, method)| {
+                format!("{:9.3} {method}", 1e3 * seconds)
+            });
             let columns: String = peers.iter().map(|peer| column(&ours, peer, error)).collect();
             println!("{system:<16} {:>6}  {name:<28}{columns}", format!("1e-{decade}"));
         }
     }
 }
 
-const PEERS: &str = "   heyoka Cartesian   heyoka simplified  ode_solvers Dop853   differential-eq.";
+const PEERS: &str =
+    "   heyoka Cartesian   heyoka simplified  ode_solvers Dop853   differential-eq.";
 
 fn column(ours: &[&Entry], peer: &[&Entry], error: f64) -> String {
     let Some((theirs, _)) = best(peer, error, None) else { return format!("{:>19}", "—") };
-    format!("{:>10.3} {:>8}", 1e3 * theirs, ratio(ours, peer, error).map_or(String::new(), |ratio| format!("({ratio:.2})")))
+    format!(
+        "{:>10.3} {:>8}",
+        1e3 * theirs,
+        ratio(ours, peer, error).map_or(String::new(), |ratio| format!("({ratio:.2})"))
+    )
 }
 
 fn ratio(ours: &[&Entry], peer: &[&Entry], error: f64) -> Option<f64> {
-    let rounds = |entries: &[&Entry]| entries.iter().map(|entry| entry.samples.len()).min().unwrap_or(0);
+    let rounds =
+        |entries: &[&Entry]| entries.iter().map(|entry| entry.samples.len()).min().unwrap_or(0);
     let rounds = rounds(ours).min(rounds(peer));
     if rounds < 2 {
         return Some(best(ours, error, None)?.0 / best(peer, error, None)?.0);
     }
-    let in_round = |round| Some(best(ours, error, Some(round))?.0 / best(peer, error, Some(round))?.0);
+    let in_round =
+        |round| Some(best(ours, error, Some(round))?.0 / best(peer, error, Some(round))?.0);
     let mut ratios = (0..rounds).map(in_round).collect::<Option<Vec<f64>>>()?;
     Some(median(&mut ratios))
 }
 
-/// The shortest time in which one of the methods reaches `error`, in one round or as the median, and the name of the method.
+/// The shortest time in which one of the methods reaches `error`, in one round or as the median,
+/// and the name of the method.
 fn best<'a>(entries: &[&'a Entry], error: f64, round: Option<usize>) -> Option<(f64, &'a str)> {
     let mut methods: Vec<&str> = entries.iter().map(|entry| entry.method.as_str()).collect();
     methods.sort_unstable();
@@ -66,8 +82,8 @@ fn best<'a>(entries: &[&'a Entry], error: f64, round: Option<usize>) -> Option<(
     times.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// The time for `error` on the front of `points` (error, seconds), interpolated in both logarithms; that of the cheapest point if it is
-/// already better, nothing if none is good enough.
+/// The time for `error` on the front of `points` (error, seconds), interpolated in both logarithms;
+/// that of the cheapest point if it is already better, nothing if none is good enough.
 fn time_at(mut points: Vec<(f64, f64)>, error: f64) -> Option<f64> {
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut front: Vec<(f64, f64)> = Vec::new();

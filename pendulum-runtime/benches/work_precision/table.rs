@@ -36,7 +36,10 @@ impl Entry {
     /// Whose method it is.
     pub fn party(&self) -> Party {
         let parties = [Party::Heyoka, Party::OdeSolvers, Party::DifferentialEquations];
-        parties.into_iter().find(|party| self.method.starts_with(party.prefix())).unwrap_or(Party::Ours)
+        parties
+            .into_iter()
+            .find(|party| self.method.starts_with(party.prefix()))
+            .unwrap_or(Party::Ours)
     }
 }
 
@@ -64,9 +67,11 @@ impl Party {
     }
 }
 
-/// The largest distance of `values` from the `reference`, which has a second word; not a number if one of them is not.
+/// The largest distance of `values` from the `reference`, which has a second word; not a number if
+/// one of them is not.
 pub fn largest_error(values: &[f64], reference: &[(f64, f64)]) -> f64 {
-    let distances = values.iter().zip(reference).map(|(value, (high, low))| ((value - high) - low).abs());
+    let distances =
+        values.iter().zip(reference).map(|(value, (high, low))| ((value - high) - low).abs());
     distances.fold(0.0, |largest, distance| if distance <= largest { largest } else { distance })
 }
 
@@ -77,29 +82,40 @@ pub fn write(path: &Path, entries: &[Entry]) -> std::io::Result<()> {
     let line = |entry: &Entry| {
         let Entry { system, method, setting, .. } = entry;
         let result = match entry.result {
-            Ok((error, evaluations)) => format!("{error:.3e},{:.6e},{evaluations}", entry.seconds()),
+            Ok((error, evaluations)) => {
+                format!("{error:.3e},{:.6e},{evaluations}", entry.seconds())
+            }
             Err(_) => "failed,,".to_string(),
         };
         format!("{system},{method},{setting},{result}\n")
     };
-    let text: String = std::iter::once(format!("{HEADER}\n")).chain(entries.iter().map(line)).collect();
+    let text: String =
+        std::iter::once(format!("{HEADER}\n")).chain(entries.iter().map(line)).collect();
     std::fs::write(path, text)
 }
 
-/// Reads a table of another program, whose columns may stand in any order and among others; lines that make no sense are left out.
+/// Reads a table of another program, whose columns may stand in any order and among others; lines
+/// that make no sense are left out.
 pub fn read(path: &Path) -> Result<Vec<Entry>, String> {
     let text = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
     let mut lines = text.lines();
     let header: Vec<&str> = lines.next().unwrap_or_default().split(',').map(str::trim).collect();
-    let column = |name: &str| header.iter().position(|word| *word == name).ok_or_else(|| format!("no column `{name}`"));
+    let column = |name: &str| {
+        header.iter().position(|word| *word == name).ok_or_else(|| format!("no column `{name}`"))
+    };
     let columns = ["system", "method", "setting", "error", "seconds", "evaluations"].map(column);
     let [system, method, setting, error, seconds, evaluations] = columns;
-    let [system, method, setting, error, seconds, evaluations] = [system?, method?, setting?, error?, seconds?, evaluations?];
+    let [system, method, setting, error, seconds, evaluations] =
+        [system?, method?, setting?, error?, seconds?, evaluations?];
     let entries = lines.filter_map(|line| {
         let words: Vec<&str> = line.split(',').map(str::trim).collect();
         let word = |index: usize| words.get(index).copied();
-        let mut entry = Entry::new([system, method, setting].map(|index| word(index).unwrap_or_default().to_string()));
-        let number = |index: usize| word(index)?.parse::<f64>().ok().filter(|value| 0.0 <= *value && value.is_finite());
+        let mut entry = Entry::new(
+            [system, method, setting].map(|index| word(index).unwrap_or_default().to_string()),
+        );
+        let number = |index: usize| {
+            word(index)?.parse::<f64>().ok().filter(|value| 0.0 <= *value && value.is_finite())
+        };
         if word(error)? == "failed" {
             entry.result = Err("failed".to_string());
         } else {

@@ -17,8 +17,8 @@ pub struct Ellipse {
 }
 
 impl Ellipse {
-    /// The ellipse about `center`, seen from the pivot, with the semi-axes `a` and `b` in metres, of which `a` points in the
-    /// direction `angle` in radians.
+    /// The ellipse about `center`, seen from the pivot, with the semi-axes `a` and `b` in metres,
+    /// of which `a` points in the direction `angle` in radians.
     pub fn new(center: [f64; 2], a: f64, b: f64, angle: f64) -> Result<Self, BodyError> {
         let (sin, cos) = Real::sin_cos(angle);
         if [center[0], center[1], sin].iter().any(|number| !number.is_finite()) {
@@ -46,9 +46,13 @@ impl Ellipse {
         Body { mass, center: self.center, central }.checked()
     }
 
-    /// The body whose density in kg/m² at a point is `density`; as [`Polygon::quadrature`](super::Polygon::quadrature), in polar
-    /// coordinates.
-    pub fn quadrature(&self, density: impl FnMut([f64; 2]) -> f64, rtol: f64) -> Result<Estimate, BodyError> {
+    /// The body whose density in kg/m² at a point is `density`; as
+    /// [`Polygon::quadrature`](super::Polygon::quadrature), in polar coordinates.
+    pub fn quadrature(
+        &self,
+        density: impl FnMut([f64; 2]) -> f64,
+        rtol: f64,
+    ) -> Result<Estimate, BodyError> {
         let map = |[s, angle]: [f64; 2]| {
             let (sin, cos) = Real::sin_cos(angle);
             (self.point(s * self.a * cos, s * self.b * sin), self.a * self.b * s)
@@ -59,20 +63,27 @@ impl Ellipse {
 
     /// The point at (`u`, `v`) along the axes.
     fn point(&self, u: f64, v: f64) -> [f64; 2] {
-        [self.center[0] + (self.cos * u - self.sin * v), self.center[1] + (self.sin * u + self.cos * v)]
+        [
+            self.center[0] + (self.cos * u - self.sin * v),
+            self.center[1] + (self.sin * u + self.cos * v),
+        ]
     }
 }
 
 impl Region for Ellipse {
     fn bounds(&self) -> ([f64; 2], [f64; 2]) {
         let square = |a: f64, b: f64| (a * a + b * b).sqrt();
-        let [x, y] = [square(self.a * self.cos, self.b * self.sin), square(self.a * self.sin, self.b * self.cos)];
+        let [x, y] = [
+            square(self.a * self.cos, self.b * self.sin),
+            square(self.a * self.sin, self.b * self.cos),
+        ];
         ([self.center[0] - x, self.center[1] - y], [self.center[0] + x, self.center[1] + y])
     }
 
     fn contains(&self, point: [f64; 2]) -> bool {
         let [x, y] = [point[0] - self.center[0], point[1] - self.center[1]];
-        let [u, v] = [(self.cos * x + self.sin * y) / self.a, (self.cos * y - self.sin * x) / self.b];
+        let [u, v] =
+            [(self.cos * x + self.sin * y) / self.a, (self.cos * y - self.sin * x) / self.b];
         u * u + v * v <= 1.0
     }
 }
@@ -99,7 +110,14 @@ mod tests {
     #[test]
     fn uniform_ellipse_has_its_formula() {
         let body = slanted().body(2.0).unwrap();
-        same(body, Body::ellipse(2.0 * slanted().area(), 1.5, 0.25).unwrap().rotated(0.6).translated([0.5, -2.0]), 1e-15);
+        same(
+            body,
+            Body::ellipse(2.0 * slanted().area(), 1.5, 0.25)
+                .unwrap()
+                .rotated(0.6)
+                .translated([0.5, -2.0]),
+            1e-15,
+        );
         same(
             Ellipse::disc([0.0; 2], 2.0).unwrap().body(1.0).unwrap(),
             Body::disc(4.0 * core::f64::consts::PI, 2.0).unwrap(),
@@ -109,7 +127,8 @@ mod tests {
 
     #[test]
     fn quadrature_finds_the_formula() {
-        let (exact, found) = (slanted().body(2.0).unwrap(), slanted().quadrature(|_| 2.0, 1e-9).unwrap());
+        let (exact, found) =
+            (slanted().body(2.0).unwrap(), slanted().quadrature(|_| 2.0, 1e-9).unwrap());
         same(found.body, exact, 1e-9);
         assert!((found.body.mass - exact.mass).abs() <= found.mass_error + 1e-14);
     }
@@ -119,7 +138,8 @@ mod tests {
         // ρ = 1 − r² on the unit disc: m = π/2, I = π/6.
         let dome = |[x, y]: [f64; 2]| 1.0 - (x * x + y * y);
         let disc = Ellipse::disc([0.0; 2], 1.0).unwrap();
-        let body = disc.quadrature(|p| if dome(p) < 0.0 { 0.0 } else { dome(p) }, 1e-8).unwrap().body;
+        let body =
+            disc.quadrature(|p| if dome(p) < 0.0 { 0.0 } else { dome(p) }, 1e-8).unwrap().body;
         close(body.mass, core::f64::consts::FRAC_PI_2, 1e-8);
         close(body.inertia(), core::f64::consts::FRAC_PI_6, 1e-8);
     }
@@ -131,7 +151,12 @@ mod tests {
         for k in 0..1000 {
             let (sin, cos) = crate::real::Real::sin_cos(f64::from(k) * 0.006283185307179587_f64);
             let point = slanted().point(1.5 * cos, 0.25 * sin);
-            assert!(low[0] <= point[0] && point[0] <= high[0] && low[1] <= point[1] && point[1] <= high[1]);
+            assert!(
+                low[0] <= point[0]
+                    && point[0] <= high[0]
+                    && low[1] <= point[1]
+                    && point[1] <= high[1]
+            );
             assert!(slanted().contains(slanted().point(1.499 * cos, 0.249 * sin)));
             assert!(!slanted().contains(slanted().point(1.501 * cos, 0.251 * sin)));
             reach = [reach[0].max(point[0] - 0.5), reach[1].max(point[1] + 2.0)];
@@ -142,10 +167,19 @@ mod tests {
 
     #[test]
     fn impossible_ellipses_are_refused() {
-        assert!(matches!(Ellipse::new([0.0; 2], 0.0, 1.0, 0.0), Err(BodyError::NotPositive { what: "semi-axis", .. })));
-        assert!(matches!(Ellipse::disc([0.0; 2], -1.0), Err(BodyError::NotPositive { what: "radius", .. })));
+        assert!(matches!(
+            Ellipse::new([0.0; 2], 0.0, 1.0, 0.0),
+            Err(BodyError::NotPositive { what: "semi-axis", .. })
+        ));
+        assert!(matches!(
+            Ellipse::disc([0.0; 2], -1.0),
+            Err(BodyError::NotPositive { what: "radius", .. })
+        ));
         assert_eq!(Ellipse::new([0.0; 2], 1.0, 1.0, f64::INFINITY), Err(BodyError::OutOfRange));
         assert_eq!(Ellipse::disc([f64::NAN, 0.0], 1.0), Err(BodyError::OutOfRange));
-        assert!(matches!(slanted().body(-1.0), Err(BodyError::NotPositive { what: "density", .. })));
+        assert!(matches!(
+            slanted().body(-1.0),
+            Err(BodyError::NotPositive { what: "density", .. })
+        ));
     }
 }

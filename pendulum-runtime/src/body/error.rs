@@ -40,7 +40,8 @@ pub enum BodyError {
         /// The same of the other edge.
         second: (usize, usize),
     },
-    /// A ring that runs around some place twice, or once in the wrong direction: a figure of eight that touches itself.
+    /// A ring that runs around some place twice, or once in the wrong direction: a figure of eight
+    /// that touches itself.
     Winding {
         /// The ring.
         ring: usize,
@@ -104,39 +105,86 @@ pub enum BodyError {
 impl Display for BodyError {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match *self {
-            Self::NotPositive { what, value } => write!(f, "the {what} is {value}; it must be positive and finite"),
-            Self::TooFewPoints { ring, points } => write!(f, "{} has {points} points; it needs three or more", Ring(ring)),
-            Self::NotFinite { ring, index } => write!(f, "point {index} of {} is infinite or not a number", Ring(ring)),
-            Self::NoArea { ring } => write!(f, "the points of {} lie on a line; use `Body::rod` for a thin body", Ring(ring)),
+            Self::NotPositive { what, value } => {
+                write!(f, "the {what} is {value}; it must be positive and finite")
+            }
+            Self::TooFewPoints { ring, points } => {
+                write!(f, "{} has {points} points; it needs three or more", Ring(ring))
+            }
+            Self::NotFinite { ring, index } => {
+                write!(f, "point {index} of {} is infinite or not a number", Ring(ring))
+            }
+            Self::NoArea { ring } => write!(
+                f,
+                "the points of {} lie on a line; use `Body::rod` for a thin body",
+                Ring(ring)
+            ),
             Self::Crossing { first, second } => {
                 let (one, other) = (Ring(first.0), Ring(second.0));
-                write!(f, "the edge from point {} of {one} crosses the edge from point {} of {other}", first.1, second.1)?;
+                write!(
+                    f,
+                    "the edge from point {} of {one} crosses the edge from point {} of {other}",
+                    first.1, second.1
+                )?;
                 write!(f, "; list the points in order around the boundary")
             }
             Self::Winding { ring, index } => {
-                write!(f, "{} overlaps itself at the edge from point {index}; give each part as a polygon of its own", Ring(ring))
+                write!(
+                    f,
+                    "{} overlaps itself at the edge from point {index}; give each part as a polygon of its own",
+                    Ring(ring)
+                )
             }
             Self::Tangled { pairs } => {
-                write!(f, "the curves may cross in more than {pairs} places; simplify them or cut them in parts")
+                write!(
+                    f,
+                    "the curves may cross in more than {pairs} places; simplify them or cut them in parts"
+                )
             }
-            Self::HoleOutside { ring } => write!(f, "{} is not inside the outer ring, or overlaps another hole", Ring(ring)),
-            Self::NoMass => write!(f, "there is no mass: nothing was given, everything is cut out or the density is zero"),
+            Self::HoleOutside { ring } => {
+                write!(f, "{} is not inside the outer ring, or overlaps another hole", Ring(ring))
+            }
+            Self::NoMass => write!(
+                f,
+                "there is no mass: nothing was given, everything is cut out or the density is zero"
+            ),
             Self::LittleInertia { inertia, least } => {
-                write!(f, "the moment of inertia about the pivot is {inertia}; it cannot be below m|c|² = {least}")
+                write!(
+                    f,
+                    "the moment of inertia about the pivot is {inertia}; it cannot be below m|c|² = {least}"
+                )
             }
             Self::Moments { central: [xx, xy, yy] } => {
-                write!(f, "no body has the second moments [{xx}, {xy}, {yy}]; a hole must lie inside of what it is cut from")
+                write!(
+                    f,
+                    "no body has the second moments [{xx}, {xy}, {yy}]; a hole must lie inside of what it is cut from"
+                )
             }
             Self::Density { at: [x, y], value } => {
-                write!(f, "the density at ({x}, {y}) is {value}; it must be finite and not negative")
+                write!(
+                    f,
+                    "the density at ({x}, {y}) is {value}; it must be finite and not negative"
+                )
             }
-            Self::Tolerance { rtol } => write!(f, "the relative tolerance is {rtol}; it must be at least 1e-13 and below 1"),
+            Self::Tolerance { rtol } => {
+                write!(f, "the relative tolerance is {rtol}; it must be at least 1e-13 and below 1")
+            }
             Self::Unresolved { rtol, reached, evaluations } => {
-                write!(f, "the density needs more than {evaluations} evaluations for a relative error of {rtol}")?;
-                write!(f, " (reached {reached}); ask for less, cut the shape along the jumps or use Monte Carlo")
+                write!(
+                    f,
+                    "the density needs more than {evaluations} evaluations for a relative error of {rtol}"
+                )?;
+                write!(
+                    f,
+                    " (reached {reached}); ask for less, cut the shape along the jumps or use Monte Carlo"
+                )
             }
-            Self::TooFewSamples { samples } => write!(f, "{samples} samples have no standard error; take two or more"),
-            Self::OutOfRange => write!(f, "a moment is beyond the range of f64; use metres and kilograms"),
+            Self::TooFewSamples { samples } => {
+                write!(f, "{samples} samples have no standard error; take two or more")
+            }
+            Self::OutOfRange => {
+                write!(f, "a moment is beyond the range of f64; use metres and kilograms")
+            }
         }
     }
 }
@@ -165,6 +213,9 @@ mod tests {
              list the points in order around the boundary"
         );
         let density = BodyError::Density { at: [0.5, -1.0], value: -2.0 };
-        assert_eq!(density.to_string(), "the density at (0.5, -1) is -2; it must be finite and not negative");
+        assert_eq!(
+            density.to_string(),
+            "the density at (0.5, -1) is -2; it must be finite and not negative"
+        );
     }
 }

@@ -8,7 +8,8 @@ use super::{Body, BodyError};
 pub struct Estimate {
     /// The body.
     pub body: Body,
-    /// The error of the mass in kg: a bound estimated by refinement, or one standard error of sampling.
+    /// The error of the mass in kg: a bound estimated by refinement, or one standard error of
+    /// sampling.
     pub mass_error: f64,
     /// The error of each coordinate of the centre, in m.
     pub center_error: [f64; 2],
@@ -33,7 +34,14 @@ pub(super) fn body(moments: &Moments, origin: [f64; 2]) -> Result<Body, BodyErro
 }
 
 /// What `density` says at `at`, if it can be a density.
-pub(super) fn checked(density: &mut impl FnMut([f64; 2]) -> f64, at: [f64; 2]) -> Result<f64, BodyError> {
+pub(super) fn checked(
+    density: &mut impl FnMut([f64; 2]) -> f64,
+    at: [f64; 2],
+) -> Result<f64, BodyError> {
     let value = density(at);
-    if (0.0..f64::INFINITY).contains(&value) { Ok(value) } else { Err(BodyError::Density { at, value }) }
+    if (0.0..f64::INFINITY).contains(&value) {
+        Ok(value)
+    } else {
+        Err(BodyError::Density { at, value })
+    }
 }

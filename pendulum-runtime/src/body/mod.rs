@@ -1,8 +1,8 @@
-//! Rigid planar bodies: mass, centre of mass and second moments, of simple shapes, polygons with holes, outlines of Bézier
-//! curves and any density.
+//! Rigid planar bodies: mass, centre of mass and second moments, of simple shapes, polygons with
+//! holes, outlines of Bézier curves and any density.
 //!
-//! All lengths are in metres from the pivot while the joint is at angle zero, all masses in kilograms. No shape asks for a
-//! factor without a unit: what a body weighs decides how it swings.
+//! All lengths are in metres from the pivot while the joint is at angle zero, all masses in
+//! kilograms. No shape asks for a factor without a unit: what a body weighs decides how it swings.
 //!
 //! ```
 //! use pendulum_runtime::body::{Body, Polygon};
@@ -39,7 +39,8 @@ use core::ops::Add;
 
 /// What a rigid planar body contributes to the equations of motion: ∫ρ dp, ∫ρ p dp and ∫ρ p pᵀ dp.
 ///
-/// The second moments are kept about the centre of mass, where they do not depend on the pivot and cancel nothing.
+/// The second moments are kept about the centre of mass, where they do not depend on the pivot and
+/// cancel nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body<T = f64> {
     /// The mass m, in kg.
@@ -99,19 +100,28 @@ impl<T: Real> Body<T> {
 
     /// The body with its density multiplied by `factor`.
     pub fn scaled(self, factor: T) -> Self {
-        Self { mass: self.mass * factor, central: self.central.map(|moment| moment * factor), ..self }
+        Self {
+            mass: self.mass * factor,
+            central: self.central.map(|moment| moment * factor),
+            ..self
+        }
     }
 
     /// Every number mapped: mass, centre and moments in the order of the fields.
     pub fn map<U>(self, mut map: impl FnMut(T) -> U) -> Body<U> {
-        Body { mass: map(self.mass), center: self.center.map(&mut map), central: self.central.map(&mut map) }
+        Body {
+            mass: map(self.mass),
+            center: self.center.map(&mut map),
+            central: self.central.map(&mut map),
+        }
     }
 }
 
 impl<T: Real> Add for Body<T> {
     type Output = Self;
 
-    /// Both bodies on one pivot, by the parallel-axis theorem; their masses must not add up to zero.
+    /// Both bodies on one pivot, by the parallel-axis theorem; their masses must not add up to
+    /// zero.
     fn add(self, other: Self) -> Self {
         let mass = self.mass + other.mass;
         let part = other.mass / mass;
@@ -132,8 +142,9 @@ impl<T: Real> Add for Body<T> {
 impl Body {
     /// A body of which only mass, centre and moment of inertia about the pivot are known.
     ///
-    /// Refuses less inertia than the mass has at its centre. The second moments are those of a body that looks the same from all
-    /// sides; equations of motion in which only the moment of inertia stands do not see that.
+    /// Refuses less inertia than the mass has at its centre. The second moments are those of a body
+    /// that looks the same from all sides; equations of motion in which only the moment of inertia
+    /// stands do not see that.
     pub fn from_inertia(mass: f64, center: [f64; 2], inertia: f64) -> Result<Self, BodyError> {
         let least = mass * (center[0] * center[0] + center[1] * center[1]);
         if inertia < least {
@@ -168,8 +179,8 @@ impl Body {
         Ok(Self { mass, ..body.scaled(mass / body.mass) }).and_then(Self::checked)
     }
 
-    /// The body itself if some distribution of mass has these moments: all numbers finite, the mass positive, the tensor of
-    /// second moments positive semidefinite up to rounding.
+    /// The body itself if some distribution of mass has these moments: all numbers finite, the mass
+    /// positive, the tensor of second moments positive semidefinite up to rounding.
     pub fn checked(self) -> Result<Self, BodyError> {
         positive("mass", self.mass)?;
         let [xx, xy, yy] = self.central;
@@ -188,7 +199,11 @@ impl Body {
 
 /// `value` if it is positive and finite.
 fn positive(what: &'static str, value: f64) -> Result<f64, BodyError> {
-    if 0.0 < value && value < f64::INFINITY { Ok(value) } else { Err(BodyError::NotPositive { what, value }) }
+    if 0.0 < value && value < f64::INFINITY {
+        Ok(value)
+    } else {
+        Err(BodyError::NotPositive { what, value })
+    }
 }
 
 #[cfg(test)]
@@ -225,7 +240,10 @@ mod tests {
         assert_eq!((moved.central, moved.mass), (body.central, body.mass));
         assert_eq!(moved.with_pivot([1e6, -2e6]).central, body.central);
         let at_center = body.with_pivot(body.center);
-        assert_eq!((at_center.center, at_center.inertia()), ([0.0, 0.0], body.inertia_about_center()));
+        assert_eq!(
+            (at_center.center, at_center.inertia()),
+            ([0.0, 0.0], body.inertia_about_center())
+        );
     }
 
     #[test]
@@ -269,7 +287,11 @@ mod tests {
 
     #[test]
     fn the_order_of_a_compound_does_not_matter() {
-        let parts = [plank(), Body::disc(0.3, 0.2).unwrap().translated([2.0, 1.0]), Body::point(1.5, [-1.0, 0.5]).unwrap()];
+        let parts = [
+            plank(),
+            Body::disc(0.3, 0.2).unwrap().translated([2.0, 1.0]),
+            Body::point(1.5, [-1.0, 0.5]).unwrap(),
+        ];
         let [a, b, c] = parts;
         same((a + b) + c, c + (b + a), 1e-15);
     }
@@ -292,14 +314,20 @@ mod tests {
         assert_eq!((heavy.mass, heavy.center), (6.0, plank().center));
         close(heavy.inertia(), 3.0 * plank().inertia(), 1e-15);
         same(heavy.with_mass(2.0).unwrap(), plank(), 1e-15);
-        assert_eq!(plank().with_mass(0.0), Err(BodyError::NotPositive { what: "mass", value: 0.0 }));
+        assert_eq!(
+            plank().with_mass(0.0),
+            Err(BodyError::NotPositive { what: "mass", value: 0.0 })
+        );
     }
 
     #[test]
     fn inertia_alone_makes_a_body() {
         let body = Body::from_inertia(2.0, [3.0, 4.0], 60.0).unwrap();
         assert_eq!((body.inertia(), body.inertia_about_center()), (60.0, 10.0));
-        assert_eq!(Body::from_inertia(2.0, [3.0, 4.0], 49.0), Err(BodyError::LittleInertia { inertia: 49.0, least: 50.0 }));
+        assert_eq!(
+            Body::from_inertia(2.0, [3.0, 4.0], 49.0),
+            Err(BodyError::LittleInertia { inertia: 49.0, least: 50.0 })
+        );
         assert_eq!(Body::from_inertia(1.0, [f64::NAN, 0.0], 1.0), Err(BodyError::OutOfRange));
     }
 
@@ -307,11 +335,20 @@ mod tests {
     fn impossible_bodies_are_refused() {
         assert_eq!(Body::compound([]), Err(BodyError::NoMass));
         let body = plank();
-        assert_eq!(Body { mass: -1.0, ..body }.checked(), Err(BodyError::NotPositive { what: "mass", value: -1.0 }));
-        assert!(matches!(Body { mass: f64::NAN, ..body }.checked(), Err(BodyError::NotPositive { what: "mass", .. })));
+        assert_eq!(
+            Body { mass: -1.0, ..body }.checked(),
+            Err(BodyError::NotPositive { what: "mass", value: -1.0 })
+        );
+        assert!(matches!(
+            Body { mass: f64::NAN, ..body }.checked(),
+            Err(BodyError::NotPositive { what: "mass", .. })
+        ));
         for central in [[1.0, 2.0, 1.0], [-1.0, 0.0, 2.0], [2.0, 0.0, -1.0]] {
             assert_eq!(Body { central, ..body }.checked(), Err(BodyError::Moments { central }));
-            assert_eq!(Body::compound([body, Body { central, ..body }]), Err(BodyError::Moments { central }));
+            assert_eq!(
+                Body::compound([body, Body { central, ..body }]),
+                Err(BodyError::Moments { central })
+            );
         }
         let far = body.translated([1e200, 0.0]);
         assert_eq!(Body::compound([far, body]), Err(BodyError::OutOfRange));
@@ -320,7 +357,8 @@ mod tests {
     #[test]
     fn properties_differentiate() {
         // dI/dy of a body that moves down: 2 m y.
-        let body = plank().map(Dual::from_f64).translated([Dual::constant(0.0), Dual::variable(0.0)]);
+        let body =
+            plank().map(Dual::from_f64).translated([Dual::constant(0.0), Dual::variable(0.0)]);
         close(body.inertia().derivative, -2.0 * 2.0 * 1.1, 1e-15);
         assert_eq!(body.map(|number| number.value), plank());
     }

@@ -12,11 +12,18 @@ pub trait Region {
     /// Whether a point lies inside.
     fn contains(&self, point: [f64; 2]) -> bool;
 
-    /// The body whose density in kg/m² is `density` inside and zero elsewhere, from `samples` points in the box.
+    /// The body whose density in kg/m² is `density` inside and zero elsewhere, from `samples`
+    /// points in the box.
     ///
-    /// The errors are one standard error each, that of the centre to first order (a ratio of two means); they fall with the square
-    /// root of the number of samples. The same seed gives the same bits on every machine.
-    fn monte_carlo(&self, mut density: impl FnMut([f64; 2]) -> f64, samples: usize, seed: u64) -> Result<Estimate, BodyError>
+    /// The errors are one standard error each, that of the centre to first order (a ratio of two
+    /// means); they fall with the square root of the number of samples. The same seed gives the
+    /// same bits on every machine.
+    fn monte_carlo(
+        &self,
+        mut density: impl FnMut([f64; 2]) -> f64,
+        samples: usize,
+        seed: u64,
+    ) -> Result<Estimate, BodyError>
     where
         Self: Sized,
     {
@@ -62,7 +69,13 @@ impl Sums {
         self.inertia_square += inertia * inertia;
     }
 
-    fn estimate(self, area: f64, origin: [f64; 2], samples: usize, evaluations: usize) -> Result<Estimate, BodyError> {
+    fn estimate(
+        self,
+        area: f64,
+        origin: [f64; 2],
+        samples: usize,
+        evaluations: usize,
+    ) -> Result<Estimate, BodyError> {
         if samples < 2 {
             return Err(BodyError::TooFewSamples { samples });
         }
@@ -70,7 +83,8 @@ impl Sums {
         let share = area / count;
         let body = body(&self.moments.map(|sum| share * sum), origin)?;
         // The variance of a sum of n independent terms with the sums s and q: n/(n − 1) (q − s²/n).
-        let sum_error = |sum: f64, square: f64| root(count / (count - 1.0) * (square - sum * sum / count));
+        let sum_error =
+            |sum: f64, square: f64| root(count / (count - 1.0) * (square - sum * sum / count));
         let [w, x, y, xx, yy] = self.squares;
         let center = |axis: usize, first: f64, second: f64| {
             let c = body.center[axis] - origin[axis];
@@ -97,7 +111,9 @@ mod tests {
     use super::Region;
 
     fn corner() -> Polygon {
-        let corner = Polygon::new(&[[0.0, 0.0], [3.0, 0.5], [3.0, 1.0], [1.0, 1.0], [1.5, 2.0], [0.5, 2.5]]).unwrap();
+        let corner =
+            Polygon::new(&[[0.0, 0.0], [3.0, 0.5], [3.0, 1.0], [1.0, 1.0], [1.5, 2.0], [0.5, 2.5]])
+                .unwrap();
         corner.hole(&[[0.5, 0.5], [1.0, 0.75], [0.75, 1.5]]).unwrap()
     }
 
@@ -147,12 +163,14 @@ mod tests {
         let root_mean_square = |samples| {
             let mut sum = 0.0;
             for seed in 0..100 {
-                let apart = corner().monte_carlo(|_| 1.0, samples, seed).unwrap().body.mass - exact.mass;
+                let apart =
+                    corner().monte_carlo(|_| 1.0, samples, seed).unwrap().body.mass - exact.mass;
                 sum += apart * apart;
             }
             f64::sqrt(sum / 100.0)
         };
-        // Sixteen times the samples, a quarter of the error; the ratio of two such means scatters by a tenth.
+        // Sixteen times the samples, a quarter of the error; the ratio of two such means scatters
+        // by a tenth.
         let ratio = root_mean_square(500) / root_mean_square(8000);
         assert!((ratio / 4.0 - 1.0).abs() < 0.4, "{ratio}");
     }
@@ -194,7 +212,13 @@ mod tests {
     #[test]
     fn samples_without_mass_are_refused() {
         assert_eq!(corner().monte_carlo(|_| 0.0, 100, 1), Err(BodyError::NoMass));
-        assert_eq!(corner().monte_carlo(|_| 1.0, 1, 1), Err(BodyError::TooFewSamples { samples: 1 }));
-        assert!(matches!(corner().monte_carlo(|_| -1.0, 100, 1), Err(BodyError::Density { value: -1.0, .. })));
+        assert_eq!(
+            corner().monte_carlo(|_| 1.0, 1, 1),
+            Err(BodyError::TooFewSamples { samples: 1 })
+        );
+        assert!(matches!(
+            corner().monte_carlo(|_| -1.0, 100, 1),
+            Err(BodyError::Density { value: -1.0, .. })
+        ));
     }
 }

@@ -9,8 +9,8 @@ use crate::real::Real;
 
 /// A simple polygon, convex or not, with any number of holes.
 ///
-/// The points of a ring run along its boundary in either direction; the last one is joined to the first. Rings may touch, but
-/// neither cross nor overlap.
+/// The points of a ring run along its boundary in either direction; the last one is joined to the
+/// first. Rings may touch, but neither cross nor overlap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
     /// Near the polygon, so that one far from its pivot loses no digits.
@@ -45,8 +45,8 @@ impl Polygon {
 
     /// The body of uniform `density` in kg/m².
     ///
-    /// Sums over the edges, Hally (1987), first for the centre about a point of the polygon, then for the second moments about
-    /// the centre.
+    /// Sums over the edges, Hally (1987), first for the centre about a point of the polygon, then
+    /// for the second moments about the centre.
     pub fn body(&self, density: f64) -> Result<Body, BodyError> {
         let density = positive("density", density)?;
         let mut sums = [Sum::default(); 3];
@@ -73,24 +73,42 @@ impl Polygon {
             }
         }
         let central = sums.map(|sum| density * sum.value());
-        Body { mass: density * area, center: [self.origin[0] + cx, self.origin[1] + cy], central }.checked()
+        Body { mass: density * area, center: [self.origin[0] + cx, self.origin[1] + cy], central }
+            .checked()
     }
 
-    /// The body whose density in kg/m² at a point is `density`, by adaptive quadrature to the relative tolerance `rtol`.
+    /// The body whose density in kg/m² at a point is `density`, by adaptive quadrature to the
+    /// relative tolerance `rtol`.
     ///
-    /// Radon's rule (1948) of seven points on triangles that are cut in four until the estimated errors of the mass and, in
-    /// units of the polygon's size, of the other moments add up to less than `rtol` of the mass. Nine digits of a smooth density
-    /// cost some ten thousand evaluations; along a jump each digit costs ten times as many as the one before. A feature much
-    /// smaller than an eighth of the polygon, or a jump much smaller than the density itself, can be missed.
-    pub fn quadrature(&self, density: impl FnMut([f64; 2]) -> f64, rtol: f64) -> Result<Estimate, BodyError> {
+    /// Radon's rule (1948) of seven points on triangles that are cut in four until the estimated
+    /// errors of the mass and, in units of the polygon's size, of the other moments add up to less
+    /// than `rtol` of the mass. Nine digits of a smooth density cost some ten thousand evaluations;
+    /// along a jump each digit costs ten times as many as the one before. A feature much smaller
+    /// than an eighth of the polygon, or a jump much smaller than the density itself, can be
+    /// missed.
+    pub fn quadrature(
+        &self,
+        density: impl FnMut([f64; 2]) -> f64,
+        rtol: f64,
+    ) -> Result<Estimate, BodyError> {
         let [x, y] = self.origin;
         let triangles = self.triangles()?;
-        quadrature::integrate(triangles, |[u, v]| ([x + u, y + v], 1.0), self.origin, self.radius, density, rtol)
+        quadrature::integrate(
+            triangles,
+            |[u, v]| ([x + u, y + v], 1.0),
+            self.origin,
+            self.radius,
+            density,
+            rtol,
+        )
     }
 
     fn with_ring(mut self, points: &[Point], side: f64) -> Result<Self, BodyError> {
         let index = self.rings.len();
-        let local = points.iter().map(|point| [point[0] - self.origin[0], point[1] - self.origin[1]]).collect();
+        let local = points
+            .iter()
+            .map(|point| [point[0] - self.origin[0], point[1] - self.origin[1]])
+            .collect();
         let mut ring = Ring { points: local, sign: 1.0 };
         let area = signed_area(&ring);
         if !area.is_finite() {
@@ -102,7 +120,9 @@ impl Polygon {
         // Coordinates come rounded; an area that this alone can make is none.
         let least = 4.0 * points.len() as f64 * f64::EPSILON * self.extent() * self.radius;
         match self.triangles() {
-            Err(BodyError::Crossing { first, second }) => Err(BodyError::Crossing { first, second }),
+            Err(BodyError::Crossing { first, second }) => {
+                Err(BodyError::Crossing { first, second })
+            }
             _ if area.abs() <= least => Err(BodyError::NoArea { ring: index }),
             Err(error) => Err(error),
             Ok(_) if self.spike(index).is_some() => {
@@ -114,22 +134,26 @@ impl Polygon {
         }
     }
 
-    /// Two neighbouring edges of a ring, the second of which doubles back on the first, up to rounding.
+    /// Two neighbouring edges of a ring, the second of which doubles back on the first, up to
+    /// rounding.
     fn spike(&self, ring: usize) -> Option<(usize, usize)> {
         let points = &self.rings[ring].points;
         let count = points.len();
         // Edges without length are none.
-        let corners: Vec<usize> = (0..count).filter(|&index| points[index] != points[(index + 1) % count]).collect();
+        let corners: Vec<usize> =
+            (0..count).filter(|&index| points[index] != points[(index + 1) % count]).collect();
         let slack = 4.0 * f64::EPSILON * self.extent();
-        (0..corners.len()).map(|place| (corners[place], corners[(place + 1) % corners.len()])).find(|&(first, second)| {
-            let edge = |index: usize| {
-                let ([x0, y0], [x1, y1]) = (points[index], points[(index + 1) % count]);
-                [x1 - x0, y1 - y0]
-            };
-            let ([a, b], [c, d]) = (edge(first), edge(second));
-            let longer = Real::max(Real::max(a.abs(), b.abs()), Real::max(c.abs(), d.abs()));
-            a * c + b * d < 0.0 && (a * d - b * c).abs() <= slack * longer
-        })
+        (0..corners.len()).map(|place| (corners[place], corners[(place + 1) % corners.len()])).find(
+            |&(first, second)| {
+                let edge = |index: usize| {
+                    let ([x0, y0], [x1, y1]) = (points[index], points[(index + 1) % count]);
+                    [x1 - x0, y1 - y0]
+                };
+                let ([a, b], [c, d]) = (edge(first), edge(second));
+                let longer = Real::max(Real::max(a.abs(), b.abs()), Real::max(c.abs(), d.abs()));
+                a * c + b * d < 0.0 && (a * d - b * c).abs() <= slack * longer
+            },
+        )
     }
 
     fn triangles(&self) -> Result<Vec<Triangle>, BodyError> {
@@ -185,7 +209,8 @@ fn bounds(points: &[Point]) -> (Point, Point) {
     (low, high)
 }
 
-/// Half the sum of the cross products of neighbouring points: positive if the ring runs counter-clockwise.
+/// Half the sum of the cross products of neighbouring points: positive if the ring runs
+/// counter-clockwise.
 fn signed_area(ring: &Ring) -> f64 {
     let mut sum = Sum::default();
     for ([x0, y0], [x1, y1]) in ring.edges() {
@@ -203,7 +228,8 @@ mod tests {
     use crate::real::Real;
 
     const SQUARE: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-    const PENTAGON: [[f64; 2]; 5] = [[2.0, 0.0], [0.0, 2.0], [-2.0, 0.0], [-1.0, -1.0], [1.0, -1.0]];
+    const PENTAGON: [[f64; 2]; 5] =
+        [[2.0, 0.0], [0.0, 2.0], [-2.0, 0.0], [-1.0, -1.0], [1.0, -1.0]];
 
     fn uniform(points: &[[f64; 2]]) -> Body {
         Polygon::new(points).unwrap().body(1.0).unwrap()
@@ -262,8 +288,13 @@ mod tests {
 
     #[test]
     fn slanted_polygon_has_positive_inertia() {
-        let corners =
-            [[-2.625452, 4.425248], [-3.101252, 8.107347], [-4.639852, 5.767548], [-4.937052, 4.040548], [-3.365452, 3.517048]];
+        let corners = [
+            [-2.625452, 4.425248],
+            [-3.101252, 8.107347],
+            [-4.639852, 5.767548],
+            [-4.937052, 4.040548],
+            [-3.365452, 3.517048],
+        ];
         let body = uniform(&corners);
         // Rational arithmetic, `tests/data/polygon.py`.
         close(body.inertia_about_center(), 8.351756549639132, 1e-14);
@@ -276,11 +307,15 @@ mod tests {
         let quantum = 1.0 / 1073741824.0;
         let mut random = Random::new(5);
         for _ in 0..20 {
-            let star: Vec<_> = star(&mut random, 9).iter().map(|point| point.map(|x| (x / quantum).round() * quantum)).collect();
+            let star: Vec<_> = star(&mut random, 9)
+                .iter()
+                .map(|point| point.map(|x| (x / quantum).round() * quantum))
+                .collect();
             let (near, far) = (uniform(&star), uniform(&moved(&star, 1e6, -1e6)));
             close(far.mass, near.mass, 1e-14);
             close(far.inertia_about_center(), near.inertia_about_center(), 1e-14);
-            let apart = [far.center[0] - 1e6 - near.center[0], far.center[1] + 1e6 - near.center[1]];
+            let apart =
+                [far.center[0] - 1e6 - near.center[0], far.center[1] + 1e6 - near.center[1]];
             assert!(apart[0].abs() <= 1.2e-10 && apart[1].abs() <= 1.2e-10);
         }
     }
@@ -303,12 +338,17 @@ mod tests {
         let spike = |points: &[[f64; 2]]| Polygon::new(points).unwrap_err();
         let outward = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 2.0], [1.0, 1.0], [0.0, 1.0]];
         assert_eq!(spike(&outward), BodyError::Crossing { first: (0, 2), second: (0, 3) });
-        // Longer than the edge from which it starts, into the inside, along an edge, turned, and at a point that stands twice.
+        // Longer than the edge from which it starts, into the inside, along an edge, turned, and at
+        // a point that stands twice.
         let along = [[0.0, 0.0], [3.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         assert_eq!(spike(&along), BodyError::Crossing { first: (0, 0), second: (0, 1) });
-        let inward = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.7, 0.7], [0.7, 0.7], [1.0, 1.0], [0.0, 1.0]];
+        let inward =
+            [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.7, 0.7], [0.7, 0.7], [1.0, 1.0], [0.0, 1.0]];
         assert!(matches!(spike(&inward), BodyError::Crossing { .. }));
-        let turned: Vec<_> = outward.iter().map(|[x, y]| [0.6 * x - 0.8 * y + 0.1, 0.8 * x + 0.6 * y - 0.3]).collect();
+        let turned: Vec<_> = outward
+            .iter()
+            .map(|[x, y]| [0.6 * x - 0.8 * y + 0.1, 0.8 * x + 0.6 * y - 0.3])
+            .collect();
         assert!(matches!(spike(&turned), BodyError::Crossing { .. }));
         let frame = Polygon::new(&SQUARE).unwrap();
         let hole: Vec<_> = outward.iter().map(|[x, y]| [0.2 * x, 0.2 * y]).collect();
@@ -322,7 +362,8 @@ mod tests {
         // A feather: m/6 (a·a + a·b + b·b).
         let (a, b) = ([0.03, -0.2], [-0.01, -0.25]);
         let feather = uniform(&[[0.0, 0.0], a, b]);
-        let [aa, ab, bb] = [a[0] * a[0] + a[1] * a[1], a[0] * b[0] + a[1] * b[1], b[0] * b[0] + b[1] * b[1]];
+        let [aa, ab, bb] =
+            [a[0] * a[0] + a[1] * a[1], a[0] * b[0] + a[1] * b[1], b[0] * b[0] + b[1] * b[1]];
         close(feather.mass, 0.00475, 1e-14);
         close(feather.inertia(), feather.mass / 6.0 * (aa + ab + bb), 1e-14);
         close(feather.center[1], -0.15, 1e-15);
@@ -351,7 +392,8 @@ mod tests {
 
     #[test]
     fn concave_polygon_is_the_sum_of_its_parts() {
-        let corner = uniform(&[[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]]);
+        let corner =
+            uniform(&[[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]]);
         let lower = Body::rectangle(3.0, 3.0, 1.0).unwrap().translated([1.5, 0.5]);
         let upper = Body::rectangle(1.0, 1.0, 1.0).unwrap().translated([0.5, 1.5]);
         same(corner, lower + upper, 1e-15);
@@ -376,10 +418,20 @@ mod tests {
         let comb = Polygon::new(&SQUARE).unwrap();
         let comb = comb.hole(&[[0.0, 0.0], [0.5, 0.0], [0.5, 1.0], [0.0, 1.0]]).unwrap();
         let comb = comb.hole(&[[0.5, 0.0], [1.0, 0.0], [1.0, 1.0], [0.5, 1.0]]).unwrap();
-        let rest = uniform(&[[-1.0, -1.0], [1.0, -1.0], [1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [-1.0, 1.0]]);
+        let rest =
+            uniform(&[[-1.0, -1.0], [1.0, -1.0], [1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [-1.0, 1.0]]);
         same(comb.body(1.0).unwrap(), rest, 1e-15);
         // A ring that touches itself in a point, a hole of its own.
-        let loop_ = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [0.0, 0.0], [0.25, -0.5], [-0.25, -0.5], [0.0, 0.0], [-1.0, 1.0]];
+        let loop_ = [
+            [-1.0, -1.0],
+            [1.0, -1.0],
+            [1.0, 1.0],
+            [0.0, 0.0],
+            [0.25, -0.5],
+            [-0.25, -0.5],
+            [0.0, 0.0],
+            [-1.0, 1.0],
+        ];
         assert!(Polygon::new(&loop_).is_ok());
     }
 
@@ -387,19 +439,29 @@ mod tests {
     fn turned_holes_may_touch_up_to_rounding() {
         let (sin, cos) = Real::sin_cos(0.7_f64);
         let turn = |points: &[[f64; 2]]| -> Vec<_> {
-            points.iter().map(|[x, y]| [cos * x - sin * y + 100.0, sin * x + cos * y - 100.0]).collect()
+            points
+                .iter()
+                .map(|[x, y]| [cos * x - sin * y + 100.0, sin * x + cos * y - 100.0])
+                .collect()
         };
         let frame = Polygon::new(&turn(&SQUARE)).unwrap();
-        let notched = frame.hole(&turn(&[[-0.3, 0.2], [0.4, 0.2], [0.4, 1.0], [-0.3, 1.0]])).unwrap();
+        let notched =
+            frame.hole(&turn(&[[-0.3, 0.2], [0.4, 0.2], [0.4, 1.0], [-0.3, 1.0]])).unwrap();
         close(notched.area(), 4.0 - 0.56, 1e-13);
     }
 
     #[test]
     fn crossing_edges_are_named() {
         let tie = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
-        assert!(matches!(Polygon::new(&tie), Err(BodyError::Crossing { first: (0, 0 | 2), second: (0, 0 | 2) })));
+        assert!(matches!(
+            Polygon::new(&tie),
+            Err(BodyError::Crossing { first: (0, 0 | 2), second: (0, 0 | 2) })
+        ));
         let uneven = [[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 1.0]];
-        assert!(matches!(Polygon::new(&uneven), Err(BodyError::Crossing { first: (0, 0 | 2), second: (0, 0 | 2) })));
+        assert!(matches!(
+            Polygon::new(&uneven),
+            Err(BodyError::Crossing { first: (0, 0 | 2), second: (0, 0 | 2) })
+        ));
         let square = Polygon::new(&SQUARE).unwrap();
         let across = square.hole(&[[0.5, 0.0], [2.0, 0.5], [0.5, 0.75]]);
         assert!(across.is_err(), "{across:?}");
@@ -418,7 +480,10 @@ mod tests {
         let square = Polygon::new(&SQUARE).unwrap();
         let outside = moved(&SQUARE, 5.0, 0.0);
         assert_eq!(square.clone().hole(&outside), Err(BodyError::HoleOutside { ring: 1 }));
-        assert_eq!(square.clone().hole(&moved(&SQUARE, 0.0, 5.0)), Err(BodyError::HoleOutside { ring: 1 }));
+        assert_eq!(
+            square.clone().hole(&moved(&SQUARE, 0.0, 5.0)),
+            Err(BodyError::HoleOutside { ring: 1 })
+        );
         let around: Vec<_> = SQUARE.iter().map(|point| point.map(|x| 2.0 * x)).collect();
         assert_eq!(square.clone().hole(&around), Err(BodyError::HoleOutside { ring: 1 }));
         let [large, small] = [0.75, 0.25].map(|scale| SQUARE.map(|point| point.map(|x| scale * x)));
@@ -449,7 +514,8 @@ mod tests {
             for (index, polygon) in [Some(polygon), pierced].into_iter().flatten().enumerate() {
                 accepted[index] += 1;
                 let body = polygon.body(1.0).unwrap();
-                // Twice the area of a polygon through the grid is an integer; the sweep and the edges agree on it.
+                // Twice the area of a polygon through the grid is an integer; the sweep and the
+                // edges agree on it.
                 assert_eq!(2.0 * body.mass, (2.0 * body.mass).round());
                 close(covered(&polygon), body.mass, 1e-14);
                 let found = polygon.quadrature(|_| 1.0, 1e-12).unwrap().body;
@@ -468,26 +534,42 @@ mod tests {
         assert_eq!(Polygon::new(&points), Err(BodyError::NotFinite { ring: 0, index: 2 }));
         let square = Polygon::new(&SQUARE).unwrap();
         assert_eq!(square.clone().hole(&points), Err(BodyError::NotFinite { ring: 1, index: 2 }));
-        assert_eq!(square.clone().hole(&SQUARE[1..3]), Err(BodyError::TooFewPoints { ring: 1, points: 2 }));
+        assert_eq!(
+            square.clone().hole(&SQUARE[1..3]),
+            Err(BodyError::TooFewPoints { ring: 1, points: 2 })
+        );
         for slope in [0.0, 1.0, 0.3] {
             let line = [0.0, 0.1, 0.7, 0.4].map(|x| [1e3 + x, slope * x]);
             assert_eq!(Polygon::new(&line), Err(BodyError::NoArea { ring: 0 }));
         }
         assert_eq!(Polygon::new(&[[1.0, 1.0]; 5]), Err(BodyError::NoArea { ring: 0 }));
         for scale in [1e160, 1e308] {
-            assert_eq!(Polygon::new(&SQUARE.map(|point| point.map(|x| scale * x))), Err(BodyError::OutOfRange));
+            assert_eq!(
+                Polygon::new(&SQUARE.map(|point| point.map(|x| scale * x))),
+                Err(BodyError::OutOfRange)
+            );
         }
         for density in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(matches!(square.body(density), Err(BodyError::NotPositive { what: "density", .. })));
+            assert!(matches!(
+                square.body(density),
+                Err(BodyError::NotPositive { what: "density", .. })
+            ));
         }
     }
 
     #[test]
     fn inside_is_inside() {
-        let frame = Polygon::new(&moved(&SQUARE, 3.0, 0.0)).unwrap().hole(&[[2.5, -0.5], [3.5, -0.5], [3.5, 0.5]]).unwrap();
-        for (point, inside) in
-            [([2.1, 0.0], true), ([3.2, 0.0], false), ([2.8, 0.3], true), ([0.0, 0.0], false), ([3.0, 1.5], false)]
-        {
+        let frame = Polygon::new(&moved(&SQUARE, 3.0, 0.0))
+            .unwrap()
+            .hole(&[[2.5, -0.5], [3.5, -0.5], [3.5, 0.5]])
+            .unwrap();
+        for (point, inside) in [
+            ([2.1, 0.0], true),
+            ([3.2, 0.0], false),
+            ([2.8, 0.3], true),
+            ([0.0, 0.0], false),
+            ([3.0, 1.5], false),
+        ] {
             assert_eq!(frame.contains(point), inside, "{point:?}");
         }
         assert_eq!(frame.bounds(), ([2.0, -1.0], [4.0, 1.0]));

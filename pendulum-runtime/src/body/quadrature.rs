@@ -6,10 +6,18 @@ use super::slabs::{Point, Triangle};
 use super::sum::Sum;
 use crate::real::Real;
 
-/// The rule of Radon (1948), exact to degree five: weights, and two barycentric coordinates of the points.
+/// The rule of Radon (1948), exact to degree five: weights, and two barycentric coordinates of the
+/// points.
 const WEIGHTS: [f64; 7] = [0.225, WEIGHT_A, WEIGHT_A, WEIGHT_A, WEIGHT_B, WEIGHT_B, WEIGHT_B];
-const POINTS: [Point; 7] =
-    [[1.0 / 3.0, 1.0 / 3.0], [A, A], [A, 1.0 - 2.0 * A], [1.0 - 2.0 * A, A], [B, B], [B, 1.0 - 2.0 * B], [1.0 - 2.0 * B, B]];
+const POINTS: [Point; 7] = [
+    [1.0 / 3.0, 1.0 / 3.0],
+    [A, A],
+    [A, 1.0 - 2.0 * A],
+    [1.0 - 2.0 * A, A],
+    [B, B],
+    [B, 1.0 - 2.0 * B],
+    [1.0 - 2.0 * B, B],
+];
 /// (6 ∓ √15)/21 and (155 ∓ √15)/1200.
 const A: f64 = 0.10128650732345633;
 const B: f64 = 0.47014206410511505;
@@ -19,7 +27,8 @@ const WEIGHT_B: f64 = 0.13239415278850616;
 /// The quarters of a triangle as [u₀, v₀, h]: their coordinates u′ lie at u = u₀ + h u′.
 const PLACES: [[f64; 3]; 4] = [[0.0, 0.0, 0.5], [0.5, 0.0, 0.5], [0.0, 0.5, 0.5], [0.5, 0.5, -0.5]];
 
-/// Corners and midpoints of the sides, a little within, where the density is looked at without entering the sum.
+/// Corners and midpoints of the sides, a little within, where the density is looked at without
+/// entering the sum.
 const PROBES: [Point; 6] = [
     [EDGE, EDGE],
     [1.0 - 2.0 * EDGE, EDGE],
@@ -35,14 +44,16 @@ const FIRST: usize = 64;
 /// The number of evaluations after which the density counts as unresolvable.
 const LIMIT: usize = 2_000_000;
 
-/// The weight of [`roughness`]; with it, the errors of all jumps in the tests stay below their estimates.
+/// The weight of [`roughness`]; with it, the errors of all jumps in the tests stay below their
+/// estimates.
 const CAUTION: f64 = 6.0;
 
 /// What the rule finds on a triangle.
 #[derive(Clone, Copy, Default)]
 struct Sample {
     moments: Moments,
-    /// The means of f, f u, f v and f², where f is the density times growth, u and v the second and third barycentric coordinate.
+    /// The means of f, f u, f v and f², where f is the density times growth, u and v the second and
+    /// third barycentric coordinate.
     fit: [f64; 4],
 }
 
@@ -55,10 +66,12 @@ struct Cell {
     error: Moments,
 }
 
-/// The body over `triangles`, which `map` takes to the plane together with the factor by which areas grow there.
+/// The body over `triangles`, which `map` takes to the plane together with the factor by which
+/// areas grow there.
 ///
-/// Each triangle is compared with its quarters, and looked at for roughness. Those whose errors, in units of the mass, exceed
-/// their share of `rtol` are replaced by the quarters until all errors add up to less.
+/// Each triangle is compared with its quarters, and looked at for roughness. Those whose errors, in
+/// units of the mass, exceed their share of `rtol` are replaced by the quarters until all errors
+/// add up to less.
 pub(super) fn integrate(
     triangles: Vec<Triangle>,
     map: impl Fn(Point) -> (Point, f64),
@@ -98,7 +111,11 @@ pub(super) fn integrate(
             return estimate(&sum, &errors, origin, evaluations);
         }
         if LIMIT <= evaluations {
-            return Err(BodyError::Unresolved { rtol, reached: worst(&errors, radius) / sum[0], evaluations });
+            return Err(BodyError::Unresolved {
+                rtol,
+                reached: worst(&errors, radius) / sum[0],
+                evaluations,
+            });
         }
         let share = allowed / cells.len() as f64;
         let mut kept = Vec::with_capacity(cells.len());
@@ -129,7 +146,8 @@ impl Cell {
             let [f, fu, fv, ff] = found.fit.map(|mean| 0.25 * mean);
             add(&mut fit, &[f, u * f + half * fu, v * f + half * fv, ff]);
         }
-        // Where the density jumps the difference may vanish by chance, and in all cells along the jump at once.
+        // Where the density jumps the difference may vanish by chance, and in all cells along the
+        // jump at once.
         let rough = roughness(triangle, &fit, integrand)?;
         let chance = CAUTION * rough * rough.sqrt() * fine[0];
         let square = radius * radius;
@@ -139,14 +157,16 @@ impl Cell {
     }
 }
 
-/// How far f is from a linear function, squared, in units of its mean square: of order h⁴ in the size h of the triangle where f
-/// is smooth, so that its power 3/2 falls like the error of the rule, and independent of h at a jump.
+/// How far f is from a linear function, squared, in units of its mean square: of order h⁴ in the
+/// size h of the triangle where f is smooth, so that its power 3/2 falls like the error of the
+/// rule, and independent of h at a jump.
 fn roughness(
     triangle: &Triangle,
     [f, fu, fv, ff]: &[f64; 4],
     integrand: &mut impl FnMut(Point) -> Result<(Point, f64), BodyError>,
 ) -> Result<f64, BodyError> {
-    // The covariances of u and v on a triangle are 1/18 and −1/36; their inverse makes the slopes of the best linear function.
+    // The covariances of u and v on a triangle are 1/18 and −1/36; their inverse makes the slopes
+    // of the best linear function.
     let (u, v) = (fu - f / 3.0, fv - f / 3.0);
     let slopes = [24.0 * u + 12.0 * v, 12.0 * u + 24.0 * v];
     let mut rest = ff - f * f - (slopes[0] * u + slopes[1] * v);
@@ -160,15 +180,26 @@ fn roughness(
 }
 
 /// The result, with the errors of its moments carried over to centre and inertia.
-fn estimate(sum: &Moments, errors: &Moments, origin: Point, evaluations: usize) -> Result<Estimate, BodyError> {
+fn estimate(
+    sum: &Moments,
+    errors: &Moments,
+    origin: Point,
+    evaluations: usize,
+) -> Result<Estimate, BodyError> {
     let body = body(sum, origin)?;
     let [x, y] = [origin[0].abs(), origin[1].abs()];
     let reach = [(body.center[0] - origin[0]).abs(), (body.center[1] - origin[1]).abs()];
     Ok(Estimate {
         body,
         mass_error: errors[0],
-        center_error: [(errors[1] + reach[0] * errors[0]) / body.mass, (errors[2] + reach[1] * errors[0]) / body.mass],
-        inertia_error: errors[3] + errors[5] + 2.0 * (x * errors[1] + y * errors[2]) + (x * x + y * y) * errors[0],
+        center_error: [
+            (errors[1] + reach[0] * errors[0]) / body.mass,
+            (errors[2] + reach[1] * errors[0]) / body.mass,
+        ],
+        inertia_error: errors[3]
+            + errors[5]
+            + 2.0 * (x * errors[1] + y * errors[2])
+            + (x * x + y * y) * errors[0],
         evaluations,
     })
 }
@@ -177,7 +208,9 @@ fn estimate(sum: &Moments, errors: &Moments, origin: Point, evaluations: usize) 
 fn worst(errors: &Moments, radius: f64) -> f64 {
     let square = radius * radius;
     let [mass, x, y, xx, xy, yy] = *errors;
-    [x / radius, y / radius, xx / square, xy / square, yy / square].into_iter().fold(mass, Real::max)
+    [x / radius, y / radius, xx / square, xy / square, yy / square]
+        .into_iter()
+        .fold(mass, Real::max)
 }
 
 /// The rule on one triangle.
@@ -193,7 +226,10 @@ fn sample(
         let (place, f) = integrand(at(triangle, u, v))?;
         let [x, y] = [place[0] - origin[0], place[1] - origin[1]];
         let (mass, mean) = (weight * area * f, weight * f);
-        add(&mut sample.moments, &[mass, mass * x, mass * y, mass * x * x, mass * x * y, mass * y * y]);
+        add(
+            &mut sample.moments,
+            &[mass, mass * x, mass * y, mass * x * x, mass * x * y, mass * y * y],
+        );
         add(&mut sample.fit, &[mean, mean * u, mean * v, mean * f]);
     }
     Ok(sample)
@@ -254,7 +290,9 @@ mod tests {
 
     #[test]
     fn uniform_density_agrees_with_the_edges() {
-        let corner = Polygon::new(&[[5.0, 0.0], [8.0, 0.5], [8.0, 1.0], [6.0, 1.0], [6.5, 2.0], [5.5, 2.5]]).unwrap();
+        let corner =
+            Polygon::new(&[[5.0, 0.0], [8.0, 0.5], [8.0, 1.0], [6.0, 1.0], [6.5, 2.0], [5.5, 2.5]])
+                .unwrap();
         let corner = corner.hole(&[[5.5, 0.5], [6.0, 0.75], [5.75, 1.5]]).unwrap();
         let found = corner.quadrature(|_| 3.0, 1e-12).unwrap();
         same(found.body, corner.body(3.0).unwrap(), 1e-13);
@@ -265,7 +303,8 @@ mod tests {
     fn gradient_on_a_square() {
         // ρ = x: m = 1/2, c = (2/3, 1/2), ∫ρx² = 1/4, ∫ρxy = 1/6, ∫ρy² = 1/6.
         let body = square().quadrature(|[x, _]| x, 1e-13).unwrap().body;
-        let exact = Body { mass: 0.5, center: [2.0 / 3.0, 0.5], central: [1.0 / 36.0, 0.0, 1.0 / 24.0] };
+        let exact =
+            Body { mass: 0.5, center: [2.0 / 3.0, 0.5], central: [1.0 / 36.0, 0.0, 1.0 / 24.0] };
         same(body, exact, 1e-14);
     }
 
@@ -286,26 +325,38 @@ mod tests {
 
     #[test]
     fn estimates_bound_the_errors_of_jumps() {
-        // Twice as dense to the right of x = c + a (y − ½), which meets the upper and lower side only: m = 2 − c.
+        // Twice as dense to the right of x = c + a (y − ½), which meets the upper and lower side
+        // only: m = 2 − c.
         let mut random = Random::new(1);
         for index in 0..300 {
             let c = random.unit();
             let a = [0.0, 1.0, random.unit()][index % 3] * 2.0 * Real::min(c, 1.0 - c);
-            let found = square().quadrature(|[x, y]| if x < c + a * (y - 0.5) { 1.0 } else { 2.0 }, 1e-3).unwrap();
+            let found = square()
+                .quadrature(|[x, y]| if x < c + a * (y - 0.5) { 1.0 } else { 2.0 }, 1e-3)
+                .unwrap();
             let mass = 2.0 - c;
             assert!((found.body.mass - mass).abs() <= found.mass_error, "{found:?} {mass}");
             assert!(found.mass_error <= 1e-3 * found.body.mass);
             // ∫ρx = ½ + ½ − ½∫(c + a(y − ½))² dy.
             let center = (1.0 - 0.5 * c * c - a * a / 24.0) / mass;
-            assert!((found.body.center[0] - center).abs() <= found.center_error[0], "{found:?} {center}");
+            assert!(
+                (found.body.center[0] - center).abs() <= found.center_error[0],
+                "{found:?} {center}"
+            );
         }
     }
 
     #[test]
     fn densities_beyond_the_tolerance_are_refused_with_what_was_reached() {
-        let found = square().quadrature(|[x, y]| if x * x + y * y < 0.3 { 1.0 } else { 2.0 }, 1e-12);
-        let Err(BodyError::Unresolved { rtol, reached, evaluations }) = found else { panic!("{found:?}") };
-        assert!(rtol == 1e-12 && rtol < reached && reached < 1e-2 && LIMIT <= evaluations, "{found:?}");
+        let found =
+            square().quadrature(|[x, y]| if x * x + y * y < 0.3 { 1.0 } else { 2.0 }, 1e-12);
+        let Err(BodyError::Unresolved { rtol, reached, evaluations }) = found else {
+            panic!("{found:?}")
+        };
+        assert!(
+            rtol == 1e-12 && rtol < reached && reached < 1e-2 && LIMIT <= evaluations,
+            "{found:?}"
+        );
     }
 
     #[test]
@@ -319,8 +370,12 @@ mod tests {
     #[test]
     fn densities_that_are_none_are_refused_where_they_are() {
         for bad in [-1.0, f64::NAN, f64::INFINITY] {
-            let found = square().quadrature(|[x, y]| if 0.5 < x && y < 0.25 { bad } else { 1.0 }, 1e-6);
-            assert!(matches!(found, Err(BodyError::Density { at: [x, y], .. }) if 0.5 < x && y < 0.25), "{found:?}");
+            let found =
+                square().quadrature(|[x, y]| if 0.5 < x && y < 0.25 { bad } else { 1.0 }, 1e-6);
+            assert!(
+                matches!(found, Err(BodyError::Density { at: [x, y], .. }) if 0.5 < x && y < 0.25),
+                "{found:?}"
+            );
         }
         assert_eq!(square().quadrature(|_| 0.0, 1e-6), Err(BodyError::NoMass));
         for rtol in [0.0, 1e-14, 1.0, f64::NAN] {

@@ -33,7 +33,13 @@ mod tests {
         // Published with the Java original for the seed 1234567.
         let mut random = Random::new(1234567);
         let first = [0; 5].map(|_| random.bits());
-        let expected = [6457827717110365317, 3203168211198807973, 9817491932198370423, 4593380528125082431, 16408922859458223821];
+        let expected = [
+            6457827717110365317,
+            3203168211198807973,
+            9817491932198370423,
+            4593380528125082431,
+            16408922859458223821,
+        ];
         assert_eq!(first, expected);
     }
 

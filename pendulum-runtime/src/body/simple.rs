@@ -12,20 +12,27 @@ impl Body {
     pub fn rod(mass: f64, from: [f64; 2], to: [f64; 2]) -> Result<Self, BodyError> {
         let half = [0.5 * (to[0] - from[0]), 0.5 * (to[1] - from[1])];
         let third = mass / 3.0;
-        let central = [third * half[0] * half[0], third * half[0] * half[1], third * half[1] * half[1]];
+        let central =
+            [third * half[0] * half[0], third * half[0] * half[1], third * half[1] * half[1]];
         Self { mass, center: [from[0] + half[0], from[1] + half[1]], central }.checked()
     }
 
     /// A rectangle about the pivot: m(w² + h²)/12.
     pub fn rectangle(mass: f64, width: f64, height: f64) -> Result<Self, BodyError> {
         let (width, height) = (positive("width", width)?, positive("height", height)?);
-        Self { mass, center: [0.0; 2], central: [mass * width * width / 12.0, 0.0, mass * height * height / 12.0] }.checked()
+        Self {
+            mass,
+            center: [0.0; 2],
+            central: [mass * width * width / 12.0, 0.0, mass * height * height / 12.0],
+        }
+        .checked()
     }
 
     /// An ellipse about the pivot with the semi-axes `a` along x and `b` along y: m(a² + b²)/4.
     pub fn ellipse(mass: f64, a: f64, b: f64) -> Result<Self, BodyError> {
         let (a, b) = (positive("semi-axis", a)?, positive("semi-axis", b)?);
-        Self { mass, center: [0.0; 2], central: [0.25 * mass * a * a, 0.0, 0.25 * mass * b * b] }.checked()
+        Self { mass, center: [0.0; 2], central: [0.25 * mass * a * a, 0.0, 0.25 * mass * b * b] }
+            .checked()
     }
 
     /// A disc about the pivot: mr²/2.
@@ -95,7 +102,10 @@ mod tests {
                 (Body::rectangle(bad, 1.0, 2.0), "mass"),
                 (Body::disc(bad, 1.0), "mass"),
             ] {
-                assert!(matches!(body, Err(BodyError::NotPositive { what, .. }) if what == name), "{body:?}");
+                assert!(
+                    matches!(body, Err(BodyError::NotPositive { what, .. }) if what == name),
+                    "{body:?}"
+                );
             }
         }
         assert_eq!(Body::rod(1.0, [0.0; 2], [f64::NAN, 0.0]), Err(BodyError::OutOfRange));

@@ -55,15 +55,18 @@ struct Crosser<'a> {
     right: f64,
 }
 
-/// Triangles that cover the inside of `rings` once: a sweep from left to right over vertical slabs between neighbouring points.
+/// Triangles that cover the inside of `rings` once: a sweep from left to right over vertical slabs
+/// between neighbouring points.
 ///
-/// The first ring is the outer one. Refuses rings whose edges cross and rings that cover some place other than once or not at all;
-/// edges that touch up to rounding of `size`, the largest coordinate, are no offence.
+/// The first ring is the outer one. Refuses rings whose edges cross and rings that cover some place
+/// other than once or not at all; edges that touch up to rounding of `size`, the largest
+/// coordinate, are no offence.
 pub(super) fn triangles(rings: &[Ring], size: f64) -> Result<Vec<Triangle>, BodyError> {
     let slack = 64.0 * f64::EPSILON * size;
     let mut edges = edges(rings);
     edges.sort_by(|a, b| a.left[0].total_cmp(&b.left[0]));
-    let mut stops: Vec<f64> = rings.iter().flat_map(|ring| ring.points.iter().map(|point| point[0])).collect();
+    let mut stops: Vec<f64> =
+        rings.iter().flat_map(|ring| ring.points.iter().map(|point| point[0])).collect();
     stops.sort_by(f64::total_cmp);
     stops.dedup();
 
@@ -76,7 +79,10 @@ pub(super) fn triangles(rings: &[Ring], size: f64) -> Result<Vec<Triangle>, Body
         while let Some(edge) = waiting.next_if(|edge| edge.left[0] <= x0) {
             active.push(edge);
         }
-        let mut slab: Vec<_> = active.iter().map(|edge| Crosser { edge, left: edge.at(x0), right: edge.at(x1) }).collect();
+        let mut slab: Vec<_> = active
+            .iter()
+            .map(|edge| Crosser { edge, left: edge.at(x0), right: edge.at(x1) })
+            .collect();
         slab.sort_by(|a, b| (a.left + a.right).total_cmp(&(b.left + b.right)));
 
         let mut winding = 0;
@@ -85,7 +91,8 @@ pub(super) fn triangles(rings: &[Ring], size: f64) -> Result<Vec<Triangle>, Body
             winding += below.edge.turn;
             let (left, right) = (above.left - below.left, above.right - below.right);
             if left < -slack || right < -slack {
-                let [first, second] = [below, above].map(|crosser| (crosser.edge.ring, crosser.edge.index));
+                let [first, second] =
+                    [below, above].map(|crosser| (crosser.edge.ring, crosser.edge.index));
                 return Err(BodyError::Crossing { first, second });
             }
             if left <= slack && right <= slack {
@@ -98,7 +105,9 @@ pub(super) fn triangles(rings: &[Ring], size: f64) -> Result<Vec<Triangle>, Body
                     let (c, d) = ([x1, above.right], [x0, above.left]);
                     triangles.extend([[a, b, c], [a, c, d]]);
                 }
-                _ if 0 < below.edge.ring => return Err(BodyError::HoleOutside { ring: below.edge.ring }),
+                _ if 0 < below.edge.ring => {
+                    return Err(BodyError::HoleOutside { ring: below.edge.ring });
+                }
                 _ => return Err(BodyError::Winding { ring: 0, index: below.edge.index }),
             }
         }

@@ -10,7 +10,11 @@ pub(super) struct Sum {
 impl Sum {
     pub(super) fn add(&mut self, value: f64) {
         let sum = self.sum + value;
-        self.error += if self.sum.abs() < value.abs() { (value - sum) + self.sum } else { (self.sum - sum) + value };
+        self.error += if self.sum.abs() < value.abs() {
+            (value - sum) + self.sum
+        } else {
+            (self.sum - sum) + value
+        };
         self.sum = sum;
     }
 

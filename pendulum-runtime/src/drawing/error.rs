@@ -41,7 +41,8 @@ pub enum DrawingError {
         /// The joint.
         name: String,
     },
-    /// A shape of more than 16384 curves, or one with arcs, circles or corners beyond 10¹² pixels, which have no end of them.
+    /// A shape of more than 16384 curves, or one with arcs, circles or corners beyond 10¹² pixels,
+    /// which have no end of them.
     Large {
         /// The shape.
         id: String,
@@ -60,15 +61,30 @@ impl fmt::Display for DrawingError {
         match self {
             Self::Syntax(message) => write!(f, "{message}; give the text of an SVG file"),
             Self::Unit { what, value } => write!(f, "{value} {what}; give a positive number"),
-            Self::NoGroup { id } => write!(f, "the pivot `{id}` stands in no group of its name; put it into that group"),
-            Self::NoPlace { id } => {
-                write!(f, "the pivot `{id}` is not drawn; give it a size, a transform that keeps it, and no `display=\"none\"`")
+            Self::NoGroup { id } => {
+                write!(f, "the pivot `{id}` stands in no group of its name; put it into that group")
             }
-            Self::Twice { name } => write!(f, "`{name}` is there twice; give each joint a name and a pivot of its own"),
-            Self::Sheared { name } => write!(f, "the joint `{name}` is sheared or stretched; apply the transform to its shapes"),
-            Self::NoBody { name } => write!(f, "the pendulum `{name}` weighs nothing; fill one of its shapes"),
+            Self::NoPlace { id } => {
+                write!(
+                    f,
+                    "the pivot `{id}` is not drawn; give it a size, a transform that keeps it, and no `display=\"none\"`"
+                )
+            }
+            Self::Twice { name } => {
+                write!(f, "`{name}` is there twice; give each joint a name and a pivot of its own")
+            }
+            Self::Sheared { name } => write!(
+                f,
+                "the joint `{name}` is sheared or stretched; apply the transform to its shapes"
+            ),
+            Self::NoBody { name } => {
+                write!(f, "the pendulum `{name}` weighs nothing; fill one of its shapes")
+            }
             Self::Large { id } => {
-                write!(f, "`{id}` has more than 16384 curves or is larger than 1e12 pixels; simplify it or cut it in parts")
+                write!(
+                    f,
+                    "`{id}` has more than 16384 curves or is larger than 1e12 pixels; simplify it or cut it in parts"
+                )
             }
             Self::Body { id, error } => write!(f, "`{id}`: {error}"),
         }

@@ -1,9 +1,11 @@
-//! Joints and bodies from drawings: an SVG file whose groups are joints and whose filled shapes are what hangs on them.
+//! Joints and bodies from drawings: an SVG file whose groups are joints and whose filled shapes are
+//! what hangs on them.
 //!
-//! A group is a joint if a small shape in it, such as a circle, names it and says what moves it: in the group `wing` the shape
-//! `wing.keyed` is the pivot of a joint moved by keys, in `feather-7` the shape `feather-7.pendulum` that of one that swings.
-//! Its middle is the pivot. It weighs nothing, may be transparent or have `visibility="hidden"` (not `display="none"`), and any editor can draw it. Groups within groups are joints on
-//! joints; other groups only collect shapes.
+//! A group is a joint if a small shape in it, such as a circle, names it and says what moves it: in
+//! the group `wing` the shape `wing.keyed` is the pivot of a joint moved by keys, in `feather-7`
+//! the shape `feather-7.pendulum` that of one that swings. Its middle is the pivot. It weighs
+//! nothing, may be transparent or have `visibility="hidden"` (not `display="none"`), and any editor
+//! can draw it. Groups within groups are joints on joints; other groups only collect shapes.
 //!
 //! ```
 //! use pendulum_runtime::drawing::{Drawing, Role, Units};
@@ -24,13 +26,16 @@
 //! # Ok::<(), pendulum_runtime::drawing::DrawingError>(())
 //! ```
 //!
-//! What a shape weighs: its area under its fill rule, Bézier curves and holes exactly ([`Outline`](crate::body::Outline)), times
-//! the density, times its opacity: that of its fill and those of the shape and of all groups around it. Of a gradient or a pattern
-//! only this opacity counts, not its colours'; that of a colour, as in `rgba`, has eight bits. Shapes that overlap weigh twice.
-//! Strokes weigh nothing; clip paths, masks and filters take nothing away unless they are empty; animations and scripts are passed over. A circle is
-//! weighed as drawn, of cubics, with an area within 3·10⁻⁴ of a true one. Coordinates are those of `usvg`, in single precision.
+//! What a shape weighs: its area under its fill rule, Bézier curves and holes exactly
+//! ([`Outline`](crate::body::Outline)), times the density, times its opacity: that of its fill and
+//! those of the shape and of all groups around it. Of a gradient or a pattern only this opacity
+//! counts, not its colours'; that of a colour, as in `rgba`, has eight bits. Shapes that overlap
+//! weigh twice. Strokes weigh nothing; clip paths, masks and filters take nothing away unless they
+//! are empty; animations and scripts are passed over. A circle is weighed as drawn, of cubics, with
+//! an area within 3·10⁻⁴ of a true one. Coordinates are those of `usvg`, in single precision.
 //!
-//! What weighs nothing is listed in [`Drawing::skipped`] with its id. Texts are not read: turn them into paths.
+//! What weighs nothing is listed in [`Drawing::skipped`] with its id. Texts are not read: turn them
+//! into paths.
 
 mod error;
 mod read;
@@ -74,9 +79,11 @@ pub struct Joint {
     pub role: Role,
     /// The joint on which it stands.
     pub parent: Option<usize>,
-    /// The pivot in metres, from the upper left corner of the drawing, y up: what is drawn has a negative y.
+    /// The pivot in metres, from the upper left corner of the drawing, y up: what is drawn has a
+    /// negative y.
     pub pivot: [f64; 2],
-    /// What is filled in the group but not on further joints in it, as seen from the pivot, as drawn; nothing if nothing is.
+    /// What is filled in the group but not on further joints in it, as seen from the pivot, as
+    /// drawn; nothing if nothing is.
     pub body: Option<Body>,
     /// The number of shapes in the body.
     pub shapes: usize,
@@ -86,12 +93,14 @@ pub struct Joint {
     pub mirrored: bool,
     /// Pixels of the drawing in a unit of the group's own coordinates.
     pub scale: f64,
-    /// The byte of the text after the opening tag of the group, where an `animateTransform` may stand.
+    /// The byte of the text after the opening tag of the group, where an `animateTransform` may
+    /// stand.
     pub inside: usize,
 }
 
 impl Joint {
-    /// The arguments of SVG's `rotate` that turn the group about its pivot by an angle in radians, counter-clockwise.
+    /// The arguments of SVG's `rotate` that turn the group about its pivot by an angle in radians,
+    /// counter-clockwise.
     pub fn rotation(&self, angle: f64) -> [f64; 3] {
         let degrees = angle.to_degrees();
         [if self.mirrored { degrees } else { -degrees }, self.anchor[0], self.anchor[1]]
@@ -131,7 +140,8 @@ pub enum Why {
     Image,
     /// It is a text.
     Text,
-    /// It is not drawn: it has no size, a transform that leaves none, `display="none"`, or a clip path or filter that is empty or missing.
+    /// It is not drawn: it has no size, a transform that leaves none, `display="none"`, or a clip
+    /// path or filter that is empty or missing.
     NotDrawn,
 }
 

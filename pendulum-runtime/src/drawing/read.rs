@@ -9,7 +9,8 @@ use usvg::tiny_skia_path::PathSegment;
 use usvg::{Group, ImageHrefResolver, Options, Path, Transform, Tree};
 
 /// Elements that are shapes.
-const SHAPES: [&str; 9] = ["path", "rect", "circle", "ellipse", "line", "polyline", "polygon", "image", "text"];
+const SHAPES: [&str; 9] =
+    ["path", "rect", "circle", "ellipse", "line", "polyline", "polygon", "image", "text"];
 /// Elements whose contents are drawn elsewhere, if at all.
 const STORED: [&str; 7] = ["defs", "symbol", "clipPath", "mask", "pattern", "marker", "filter"];
 
@@ -38,24 +39,42 @@ impl Drawing {
     /// Reads the text of an SVG file.
     ///
     /// # Errors
-    /// A text that is no SVG; units that are not positive; pivots without a place or a group of their name, or two of one name;
-    /// joints whose transform does not keep shapes; pendulums without a body.
+    /// A text that is no SVG; units that are not positive; pivots without a place or a group of
+    /// their name, or two of one name; joints whose transform does not keep shapes; pendulums
+    /// without a body.
     pub fn read(text: &str, units: Units) -> Result<Self, DrawingError> {
-        for (what, value) in [("metres a pixel", units.pixel), ("kilograms a square metre", units.density)] {
+        for (what, value) in
+            [("metres a pixel", units.pixel), ("kilograms a square metre", units.density)]
+        {
             if !(0.0 < value && value < f64::INFINITY) {
                 return Err(DrawingError::Unit { what, value });
             }
         }
         let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
-        let document = Document::parse_with_options(text, options).map_err(|error| DrawingError::Syntax(error.to_string()))?;
-        if let Some(vast) = document.descendants().find(|node| node.is_element() && size::is_vast(*node)) {
-            let line = || format!("{} on line {}", vast.tag_name().name(), document.text_pos_at(vast.range().start).row);
-            return Err(DrawingError::Large { id: vast.attribute("id").map_or_else(line, str::to_owned) });
+        let document = Document::parse_with_options(text, options)
+            .map_err(|error| DrawingError::Syntax(error.to_string()))?;
+        if let Some(vast) =
+            document.descendants().find(|node| node.is_element() && size::is_vast(*node))
+        {
+            let line = || {
+                format!(
+                    "{} on line {}",
+                    vast.tag_name().name(),
+                    document.text_pos_at(vast.range().start).row
+                )
+            };
+            return Err(DrawingError::Large {
+                id: vast.attribute("id").map_or_else(line, str::to_owned),
+            });
         }
         // Nothing outside the text is read.
-        let none = ImageHrefResolver { resolve_data: Box::new(|_, _, _| None), resolve_string: Box::new(|_, _| None) };
+        let none = ImageHrefResolver {
+            resolve_data: Box::new(|_, _, _| None),
+            resolve_string: Box::new(|_, _| None),
+        };
         let options = Options { image_href_resolver: none, ..Options::default() };
-        let tree = Tree::from_xmltree(&document, &options).map_err(|error| DrawingError::Syntax(error.to_string()))?;
+        let tree = Tree::from_xmltree(&document, &options)
+            .map_err(|error| DrawingError::Syntax(error.to_string()))?;
         let size = [tree.size().width(), tree.size().height()].map(f64::from);
 
         let mut reader = Reader {
@@ -75,7 +94,12 @@ impl Drawing {
 
 impl Reader {
     /// Gathers the pivots, and the ids of all that is drawn.
-    fn find<'a>(&mut self, group: &'a Group, around: &mut Vec<&'a str>, ids: &mut BTreeSet<String>) -> Result<(), DrawingError> {
+    fn find<'a>(
+        &mut self,
+        group: &'a Group,
+        around: &mut Vec<&'a str>,
+        ids: &mut BTreeSet<String>,
+    ) -> Result<(), DrawingError> {
         around.push(group.id());
         for node in group.children() {
             ids.insert(node.id().to_string());
@@ -104,17 +128,24 @@ impl Reader {
     }
 
     /// What only the text shows: where groups begin, and the shapes that the tree leaves out.
-    fn elements(&mut self, document: &Document<'_>, ids: &BTreeSet<String>) -> Result<(), DrawingError> {
+    fn elements(
+        &mut self,
+        document: &Document<'_>,
+        ids: &BTreeSet<String>,
+    ) -> Result<(), DrawingError> {
         for node in document.descendants().filter(Node::is_element) {
             let tag = node.tag_name().name();
             let id = node.attribute("id").unwrap_or("");
             if tag == "g" && self.pivots.contains_key(id) {
-                let inside = node.first_child().map_or(node.range().end, |child| child.range().start);
+                let inside =
+                    node.first_child().map_or(node.range().end, |child| child.range().start);
                 if self.inside.insert(id.into(), Some(inside)).is_some() {
                     return Err(DrawingError::Twice { name: id.into() });
                 }
             }
-            if !SHAPES.contains(&tag) || node.ancestors().any(|outer| STORED.contains(&outer.tag_name().name())) {
+            if !SHAPES.contains(&tag)
+                || node.ancestors().any(|outer| STORED.contains(&outer.tag_name().name()))
+            {
                 continue;
             }
             let drawn = ids.contains(id);
@@ -126,22 +157,33 @@ impl Reader {
                 _ => Why::NotDrawn,
             };
             let line = || format!("{tag} on line {}", document.text_pos_at(node.range().start).row);
-            self.drawing.skipped.push(Skipped { id: if id.is_empty() { line() } else { id.into() }, why });
+            self.drawing
+                .skipped
+                .push(Skipped { id: if id.is_empty() { line() } else { id.into() }, why });
         }
         Ok(())
     }
 
     /// Walks a group that stands on `joint` and is as opaque as `opacity`.
-    fn weigh(&mut self, group: &Group, joint: Option<usize>, opacity: f64) -> Result<(), DrawingError> {
+    fn weigh(
+        &mut self,
+        group: &Group,
+        joint: Option<usize>,
+        opacity: f64,
+    ) -> Result<(), DrawingError> {
         let opacity = opacity * f64::from(group.opacity().get());
         let joint = match self.pivots.get(group.id()) {
             None => joint,
             Some(pivot) => {
                 let name = group.id().to_string();
-                let element = self.inside.get_mut(&name).ok_or_else(|| DrawingError::NoGroup { id: name.clone() })?;
+                let element = self
+                    .inside
+                    .get_mut(&name)
+                    .ok_or_else(|| DrawingError::NoGroup { id: name.clone() })?;
                 let Some(inside) = element.take() else { return Err(DrawingError::Twice { name }) };
                 let transform = group.abs_transform();
-                let (scale, mirrored) = similarity(transform).ok_or_else(|| DrawingError::Sheared { name: name.clone() })?;
+                let (scale, mirrored) = similarity(transform)
+                    .ok_or_else(|| DrawingError::Sheared { name: name.clone() })?;
                 let pixel = self.units.pixel;
                 self.drawing.joints.push(Joint {
                     role: pivot.role,
@@ -162,14 +204,21 @@ impl Reader {
         for node in group.children() {
             match node {
                 usvg::Node::Group(group) => self.weigh(group, joint, opacity)?,
-                usvg::Node::Path(path) if pivot(path.id()).is_none() => self.shape(path, joint, opacity)?,
+                usvg::Node::Path(path) if pivot(path.id()).is_none() => {
+                    self.shape(path, joint, opacity)?;
+                }
                 _ => {}
             }
         }
         Ok(())
     }
 
-    fn shape(&mut self, path: &Path, joint: Option<usize>, opacity: f64) -> Result<(), DrawingError> {
+    fn shape(
+        &mut self,
+        path: &Path,
+        joint: Option<usize>,
+        opacity: f64,
+    ) -> Result<(), DrawingError> {
         let joints = &self.drawing.joints;
         let id = match (path.id(), joint) {
             ("", Some(joint)) => format!("a shape of {}", joints[joint].name),
@@ -205,12 +254,16 @@ impl Reader {
                 PathSegment::MoveTo(to) => outline.move_to(metres(to.x, to.y)),
                 PathSegment::LineTo(to) => outline.line_to(metres(to.x, to.y)),
                 PathSegment::QuadTo(a, to) => outline.quad_to(metres(a.x, a.y), metres(to.x, to.y)),
-                PathSegment::CubicTo(a, b, to) => outline.cubic_to(metres(a.x, a.y), metres(b.x, b.y), metres(to.x, to.y)),
+                PathSegment::CubicTo(a, b, to) => {
+                    outline.cubic_to(metres(a.x, a.y), metres(b.x, b.y), metres(to.x, to.y))
+                }
                 PathSegment::Close => outline,
             };
         }
         match (outline.body(self.units.density * opacity), joint) {
-            (Ok(body), Some(joint)) => self.bodies[joint].push(body.with_pivot(self.drawing.joints[joint].pivot)),
+            (Ok(body), Some(joint)) => {
+                self.bodies[joint].push(body.with_pivot(self.drawing.joints[joint].pivot));
+            }
             (Ok(_), None) => self.drawing.loose += 1,
             (Err(BodyError::NoArea { .. } | BodyError::NoMass), _) => {
                 self.drawing.skipped.push(Skipped { id, why: Why::NoArea });
@@ -226,7 +279,9 @@ impl Reader {
             joint.body = match Body::compound(bodies) {
                 Ok(body) => Some(body),
                 Err(BodyError::NoMass) if joint.role == Role::Keyed => None,
-                Err(BodyError::NoMass) => return Err(DrawingError::NoBody { name: joint.name.clone() }),
+                Err(BodyError::NoMass) => {
+                    return Err(DrawingError::NoBody { name: joint.name.clone() });
+                }
                 Err(error) => return Err(DrawingError::Body { id: joint.name.clone(), error }),
             };
         }
@@ -237,16 +292,23 @@ impl Reader {
 /// The name and the role in the id of a pivot.
 fn pivot(id: &str) -> Option<(&str, Role)> {
     let roles = [(".keyed", Role::Keyed), (".pendulum", Role::Pendulum)];
-    roles.into_iter().find_map(|(end, role)| Some((id.strip_suffix(end)?, role))).filter(|(name, _)| !name.is_empty())
+    roles
+        .into_iter()
+        .find_map(|(end, role)| Some((id.strip_suffix(end)?, role)))
+        .filter(|(name, _)| !name.is_empty())
 }
 
 fn map(transform: Transform, [x, y]: [f64; 2]) -> [f64; 2] {
-    let [a, b, c, d, e, f] = [transform.sx, transform.ky, transform.kx, transform.sy, transform.tx, transform.ty].map(f64::from);
+    let [a, b, c, d, e, f] =
+        [transform.sx, transform.ky, transform.kx, transform.sy, transform.tx, transform.ty]
+            .map(f64::from);
     [a * x + c * y + e, b * x + d * y + f]
 }
 
 fn unmap(transform: Transform, [x, y]: [f64; 2]) -> [f64; 2] {
-    let [a, b, c, d, e, f] = [transform.sx, transform.ky, transform.kx, transform.sy, transform.tx, transform.ty].map(f64::from);
+    let [a, b, c, d, e, f] =
+        [transform.sx, transform.ky, transform.kx, transform.sy, transform.tx, transform.ty]
+            .map(f64::from);
     let (x, y, area) = (x - e, y - f, a * d - b * c);
     [(d * x - c * y) / area, (a * y - b * x) / area]
 }

@@ -1,7 +1,8 @@
 //! Shapes so large that their curves would never end.
 //!
-//! `usvg` makes curves of arcs to within a tenth of a pixel, the more of them the larger the ellipse: n = (1.1163·10·r)^(1/6), which has no bound, before
-//! anybody can look. The sizes are looked at first.
+//! `usvg` makes curves of arcs to within a tenth of a pixel, the more of them the larger the
+//! ellipse: n = (1.1163·10·r)^(1/6), which has no bound, before anybody can look. The sizes are
+//! looked at first.
 
 use svgtypes::{PathParser, PathSegment};
 use usvg::roxmltree::Node;
@@ -15,7 +16,9 @@ const LENGTHS: [&str; 10] = ["cx", "cy", "height", "r", "rx", "ry", "viewBox", "
 /// Whether an element is so large that it should not be converted.
 pub(super) fn is_vast(element: Node<'_, '_>) -> bool {
     match element.tag_name().name() {
-        "circle" | "ellipse" | "rect" | "svg" => LENGTHS.iter().filter_map(|name| element.attribute(*name)).any(has_vast_number),
+        "circle" | "ellipse" | "rect" | "svg" => {
+            LENGTHS.iter().filter_map(|name| element.attribute(*name)).any(has_vast_number)
+        }
         "path" => element.attribute("d").is_some_and(has_vast_arc),
         _ => false,
     }
@@ -24,9 +27,12 @@ pub(super) fn is_vast(element: Node<'_, '_>) -> bool {
 /// Whether one of the numbers at the beginnings of the words of a text is too large.
 fn has_vast_number(text: &str) -> bool {
     text.split(|c: char| c.is_whitespace() || c == ',').any(|word| {
-        let end = word.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c))).unwrap_or(word.len());
+        let end =
+            word.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c))).unwrap_or(word.len());
         // An `e` may belong to a unit.
-        let number = word[..end].parse().or_else(|_| word[..end].trim_end_matches(['e', 'E']).parse::<f64>());
+        let number = word[..end]
+            .parse()
+            .or_else(|_| word[..end].trim_end_matches(['e', 'E']).parse::<f64>());
         number.is_ok_and(|number| GREATEST < number.abs())
     })
 }
@@ -38,7 +44,8 @@ fn has_vast_arc(path: &str) -> bool {
     // What stands behind an error is not drawn.
     for segment in PathParser::from(path).map_while(Result::ok) {
         if let PathSegment::EllipticalArc { rx, ry, x, y, .. } = segment {
-            let (short, long) = if rx.abs() < ry.abs() { (rx.abs(), ry.abs()) } else { (ry.abs(), rx.abs()) };
+            let (short, long) =
+                if rx.abs() < ry.abs() { (rx.abs(), ry.abs()) } else { (ry.abs(), rx.abs()) };
             let span = reach + x.abs() + y.abs();
             // Where the ends are too far apart for the ellipse, it grows.
             let growth = if short < span { span / short } else { 1.0 };
@@ -90,7 +97,12 @@ mod tests {
         ] {
             assert!(!has_vast_arc(path), "{path}");
         }
-        for path in ["M0 0A1e38 5 0 0 1 9 9", "M0 0a1e-100 1 0 0 1 1 0", "M1e30 0a1 1 0 0 1 1 0z", "M0 0h-1e30A1 1 0 001 1"] {
+        for path in [
+            "M0 0A1e38 5 0 0 1 9 9",
+            "M0 0a1e-100 1 0 0 1 1 0",
+            "M1e30 0a1 1 0 0 1 1 0z",
+            "M0 0h-1e30A1 1 0 001 1",
+        ] {
             assert!(has_vast_arc(path), "{path}");
         }
     }

@@ -7,12 +7,19 @@ use crate::body::random::Random;
 const UNITS: Units = Units { pixel: 0.01, density: 3.0 };
 
 fn read(inner: &str) -> Result<Drawing, DrawingError> {
-    Drawing::read(&format!(r#"<svg xmlns="http://www.w3.org/2000/svg" width="200" height="100">{inner}</svg>"#), UNITS)
+    Drawing::read(
+        &format!(
+            r#"<svg xmlns="http://www.w3.org/2000/svg" width="200" height="100">{inner}</svg>"#
+        ),
+        UNITS,
+    )
 }
 
 /// The body of one pendulum that hangs at (100, 20).
 fn body(shapes: &str) -> Body {
-    let drawing = read(&format!(r#"<g id="p"><circle id="p.pendulum" cx="100" cy="20" r="2"/>{shapes}</g>"#)).unwrap();
+    let drawing =
+        read(&format!(r#"<g id="p"><circle id="p.pendulum" cx="100" cy="20" r="2"/>{shapes}</g>"#))
+            .unwrap();
     assert_eq!(drawing.joints.len(), 1);
     drawing.joints[0].body.unwrap()
 }
@@ -22,7 +29,10 @@ fn same(a: Body, b: Body) {
     let size = (b.inertia() / b.mass).sqrt();
     assert!((a.mass - b.mass).abs() <= 1e-6 * b.mass, "{a:?} is not {b:?}");
     assert!((0..2).all(|k| (a.center[k] - b.center[k]).abs() <= 1e-6 * size), "{a:?} is not {b:?}");
-    assert!((0..3).all(|k| (a.central[k] - b.central[k]).abs() <= 1e-6 * b.inertia()), "{a:?} is not {b:?}");
+    assert!(
+        (0..3).all(|k| (a.central[k] - b.central[k]).abs() <= 1e-6 * b.inertia()),
+        "{a:?} is not {b:?}"
+    );
 }
 
 /// 40 × 20 pixels, from the pivot down.
@@ -41,15 +51,22 @@ fn a_rectangle_weighs_what_its_area_does() {
 fn opacities_multiply_to_the_density() {
     let half = r#"<g opacity="0.5"><g><rect x="80" y="20" width="40" height="20" fill-opacity="0.5" opacity="0.8"/></g></g>"#;
     same(body(half), plank().scaled(0.2));
-    same(body(r#"<rect x="80" y="20" width="40" height="20" fill="rgba(9,9,9,0.2)"/>"#), plank().scaled(0.2));
-    same(body(r#"<rect x="80" y="20" width="40" height="20" style="fill:red;fill-opacity:.5"/>"#), plank().scaled(0.5));
+    same(
+        body(r#"<rect x="80" y="20" width="40" height="20" fill="rgba(9,9,9,0.2)"/>"#),
+        plank().scaled(0.2),
+    );
+    same(
+        body(r#"<rect x="80" y="20" width="40" height="20" style="fill:red;fill-opacity:.5"/>"#),
+        plank().scaled(0.5),
+    );
 }
 
 #[test]
 fn transforms_move_turn_and_mirror() {
     let turned = r#"<g transform="translate(100 20) rotate(90) scale(2)"><rect x="0" y="-10" width="10" height="20"/></g>"#;
     same(body(turned), plank());
-    let mirrored = r#"<g transform="matrix(-1 0 0 1 200 0)"><rect x="85" y="20" width="40" height="20"/></g>"#;
+    let mirrored =
+        r#"<g transform="matrix(-1 0 0 1 200 0)"><rect x="85" y="20" width="40" height="20"/></g>"#;
     same(body(mirrored), plank().translated([-0.05, 0.0]));
     let drawing = read(
         r#"<g transform="translate(10 0)"><g id="a" transform="scale(-2 2)"><circle id="a.keyed" transform="translate(-3 0)" cx="-2" cy="7" r="1"/>
@@ -57,7 +74,10 @@ fn transforms_move_turn_and_mirror() {
     )
     .unwrap();
     let joint = &drawing.joints[0];
-    assert_eq!((joint.pivot, joint.anchor, joint.mirrored, joint.scale), ([0.2, -0.14], [-5.0, 7.0], true, 2.0));
+    assert_eq!(
+        (joint.pivot, joint.anchor, joint.mirrored, joint.scale),
+        ([0.2, -0.14], [-5.0, 7.0], true, 2.0)
+    );
     assert_eq!(joint.rotation(core::f64::consts::PI), [180.0, -5.0, 7.0]);
 }
 
@@ -65,13 +85,16 @@ fn transforms_move_turn_and_mirror() {
 fn units_and_the_view_box_are_scaled() {
     let text = r#"<svg xmlns="http://www.w3.org/2000/svg" width="400" height="200" viewBox="0 0 200 100"><g id="p">
         <circle id="p.pendulum" cx="100" cy="20" r="2"/><rect x="80" y="20" width="40" height="20"/></g></svg>"#;
-    let body = Drawing::read(text, Units { pixel: 0.005, density: 3.0 }).unwrap().joints[0].body.unwrap();
+    let body =
+        Drawing::read(text, Units { pixel: 0.005, density: 3.0 }).unwrap().joints[0].body.unwrap();
     same(body, plank());
 }
 
 #[test]
 fn curves_and_holes_follow_the_fill_rule() {
-    let ring = |rule: &str| format!(r#"<path fill-rule="{rule}" d="M70 20h60v60h-60z M90 40h20v20h-20z"/>"#);
+    let ring = |rule: &str| {
+        format!(r#"<path fill-rule="{rule}" d="M70 20h60v60h-60z M90 40h20v20h-20z"/>"#)
+    };
     let whole = Body::rectangle(3.0 * 0.36, 0.6, 0.6).unwrap().translated([0.0, -0.3]);
     let hole = Body::rectangle(3.0 * 0.04, 0.2, 0.2).unwrap().translated([0.0, -0.3]);
     same(body(&ring("nonzero")), whole);
@@ -93,9 +116,16 @@ fn joints_stand_on_joints() {
           <g id="bell"><rect x="60" y="50" width="2" height="9"/><circle id="bell.pendulum" cx="61" cy="50" r="1" visibility="hidden"/></g></g>
         <g id="bare"><circle id="bare.keyed" cx="1" cy="2" r="1"/></g></g>"#;
     let drawing = read(text).unwrap();
-    let found: Vec<_> =
-        drawing.joints.iter().map(|joint| (joint.name.as_str(), joint.role, joint.parent, joint.shapes)).collect();
-    let expected = [("root", Role::Keyed, None, 2), ("bell", Role::Pendulum, Some(0), 1), ("bare", Role::Keyed, Some(0), 0)];
+    let found: Vec<_> = drawing
+        .joints
+        .iter()
+        .map(|joint| (joint.name.as_str(), joint.role, joint.parent, joint.shapes))
+        .collect();
+    let expected = [
+        ("root", Role::Keyed, None, 2),
+        ("bell", Role::Pendulum, Some(0), 1),
+        ("bare", Role::Keyed, Some(0), 0),
+    ];
     assert_eq!(found, expected);
     assert_eq!((drawing.loose, drawing.size), (1, [200.0, 100.0]));
     assert!(drawing.skipped.is_empty(), "{:?}", drawing.skipped);
@@ -113,7 +143,8 @@ fn what_weighs_nothing_is_listed() {
         <image id="photo" width="9" height="9" href="/etc/passwd"/><text id="word">owl</text>
         <image width="9" height="9" href="data:image/png;base64,AAAA"/></g>"##;
     let drawing = read(text).unwrap();
-    let mut found: Vec<_> = drawing.skipped.iter().map(|skipped| (skipped.id.as_str(), skipped.why)).collect();
+    let mut found: Vec<_> =
+        drawing.skipped.iter().map(|skipped| (skipped.id.as_str(), skipped.why)).collect();
     found.sort_by_key(|found| found.0);
     let expected = [
         ("dark", Why::Hidden),
@@ -131,7 +162,10 @@ fn what_weighs_nothing_is_listed() {
         drawing.skipped[0].to_string(),
         "`flat` is not drawn: it has no size, a transform that leaves none, `display=\"none\"`, or an empty clip path or filter"
     );
-    same(drawing.joints[0].body.unwrap(), Body::rectangle(3.0 * 0.0016, 0.04, 0.04).unwrap().translated([-0.98, 0.18]));
+    same(
+        drawing.joints[0].body.unwrap(),
+        Body::rectangle(3.0 * 0.0016, 0.04, 0.04).unwrap().translated([-0.98, 0.18]),
+    );
 }
 
 #[test]
@@ -140,15 +174,42 @@ fn errors_name_the_element() {
     let pivot = r#"<circle id="p.pendulum" cx="1" cy="1" r="1"/>"#;
     let cases = [
         (format!(r#"<g id="p">{pivot}</g>"#), DrawingError::NoBody { name: "p".into() }),
-        (format!(r#"<g id="q">{pivot}{rect}</g>"#), DrawingError::NoGroup { id: "p.pendulum".into() }),
-        (format!(r#"<g id="p">{pivot}{pivot}{rect}</g>"#), DrawingError::Twice { name: "p".into() }),
-        (format!(r#"<g id="p">{pivot}{rect}</g><g id="p">{rect}</g>"#), DrawingError::Twice { name: "p".into() }),
-        (format!(r#"<g id="p" transform="scale(1 2)">{pivot}{rect}</g>"#), DrawingError::Sheared { name: "p".into() }),
-        (format!(r#"<g id="p" transform="skewX(9)">{pivot}{rect}</g>"#), DrawingError::Sheared { name: "p".into() }),
-        (format!(r#"<g id="p"><circle id="p.keyed" r="0"/>{rect}</g>"#), DrawingError::NoPlace { id: "p.keyed".into() }),
-        (format!(r#"<g id="p">{pivot}<circle id="vast" r="1e38"/></g>"#), DrawingError::Large { id: "vast".into() }),
-        (r#"<path d="M0 0A1e38 1e38 0 0 1 9 9"/>"#.into(), DrawingError::Large { id: "path on line 1".into() }),
-        (r#"<path id="arc" d="M0 0a1e-300 1 0 0 1 1 0"/>"#.into(), DrawingError::Large { id: "arc".into() }),
+        (
+            format!(r#"<g id="q">{pivot}{rect}</g>"#),
+            DrawingError::NoGroup { id: "p.pendulum".into() },
+        ),
+        (
+            format!(r#"<g id="p">{pivot}{pivot}{rect}</g>"#),
+            DrawingError::Twice { name: "p".into() },
+        ),
+        (
+            format!(r#"<g id="p">{pivot}{rect}</g><g id="p">{rect}</g>"#),
+            DrawingError::Twice { name: "p".into() },
+        ),
+        (
+            format!(r#"<g id="p" transform="scale(1 2)">{pivot}{rect}</g>"#),
+            DrawingError::Sheared { name: "p".into() },
+        ),
+        (
+            format!(r#"<g id="p" transform="skewX(9)">{pivot}{rect}</g>"#),
+            DrawingError::Sheared { name: "p".into() },
+        ),
+        (
+            format!(r#"<g id="p"><circle id="p.keyed" r="0"/>{rect}</g>"#),
+            DrawingError::NoPlace { id: "p.keyed".into() },
+        ),
+        (
+            format!(r#"<g id="p">{pivot}<circle id="vast" r="1e38"/></g>"#),
+            DrawingError::Large { id: "vast".into() },
+        ),
+        (
+            r#"<path d="M0 0A1e38 1e38 0 0 1 9 9"/>"#.into(),
+            DrawingError::Large { id: "path on line 1".into() },
+        ),
+        (
+            r#"<path id="arc" d="M0 0a1e-300 1 0 0 1 1 0"/>"#.into(),
+            DrawingError::Large { id: "arc".into() },
+        ),
     ];
     for (text, expected) in cases {
         assert_eq!(read(&text), Err(expected));
@@ -156,8 +217,14 @@ fn errors_name_the_element() {
     let message = |text: &str, units| Drawing::read(text, units).unwrap_err().to_string();
     assert!(message("<svg", UNITS).ends_with("give the text of an SVG file"));
     assert!(message("no", UNITS).contains("1:1"));
-    assert_eq!(message("", Units { pixel: 0.0, ..UNITS }), "0 metres a pixel; give a positive number");
-    assert_eq!(message("", Units { density: f64::NAN, ..UNITS }), "NaN kilograms a square metre; give a positive number");
+    assert_eq!(
+        message("", Units { pixel: 0.0, ..UNITS }),
+        "0 metres a pixel; give a positive number"
+    );
+    assert_eq!(
+        message("", Units { density: f64::NAN, ..UNITS }),
+        "NaN kilograms a square metre; give a positive number"
+    );
 }
 
 /// Numbers that are none, in every place where a number may stand.
@@ -172,9 +239,12 @@ fn strange_numbers_never_become_strange_bodies() {
             format!(r#"<rect width="4" height="4" fill-opacity="{number}"/>"#),
             format!(r#"<circle r="{number}" fill="red"/>"#),
         ] {
-            for inner in
-                [text.clone(), format!(r#"<g id="p" transform="rotate({number})"><circle id="p.keyed" r="1"/>{text}</g>"#)]
-            {
+            for inner in [
+                text.clone(),
+                format!(
+                    r#"<g id="p" transform="rotate({number})"><circle id="p.keyed" r="1"/>{text}</g>"#
+                ),
+            ] {
                 let Ok(drawing) = read(&inner) else { continue };
                 for body in drawing.joints.iter().filter_map(|joint| joint.body) {
                     assert!(body.checked().is_ok(), "{inner}: {body:?}");
@@ -184,18 +254,30 @@ fn strange_numbers_never_become_strange_bodies() {
     }
 }
 
-/// Depths, copies of copies and entities of entities are refused or read in moments, many elements too.
+/// Depths, copies of copies and entities of entities are refused or read in moments, many elements
+/// too.
 #[test]
 fn vast_drawings_neither_hang_nor_overflow() {
-    let nested =
-        |depth: usize| format!("{}<rect width='1' height='1'/>{}", "<g opacity='.9'>".repeat(depth), "</g>".repeat(depth));
+    let nested = |depth: usize| {
+        format!(
+            "{}<rect width='1' height='1'/>{}",
+            "<g opacity='.9'>".repeat(depth),
+            "</g>".repeat(depth)
+        )
+    };
     assert_eq!(read(&nested(900)).unwrap().loose, 1);
     assert!(matches!(read(&nested(100_000)), Err(DrawingError::Syntax(_))));
-    let copies: Vec<String> =
-        (1..25).map(|k| format!("<g id='a{k}'><use href='#a{0}'/><use href='#a{0}'/></g>", k - 1)).collect();
-    let copied = format!("<defs><g id='a0'><rect width='1' height='1'/></g>{}</defs><use href='#a24'/>", copies.concat());
+    let copies: Vec<String> = (1..25)
+        .map(|k| format!("<g id='a{k}'><use href='#a{0}'/><use href='#a{0}'/></g>", k - 1))
+        .collect();
+    let copied = format!(
+        "<defs><g id='a0'><rect width='1' height='1'/></g>{}</defs><use href='#a24'/>",
+        copies.concat()
+    );
     assert!(matches!(read(&copied), Err(DrawingError::Syntax(_))));
-    let entities: Vec<String> = (1..10).map(|k| format!("<!ENTITY e{k} '{}'>", format!("&e{};", k - 1).repeat(10))).collect();
+    let entities: Vec<String> = (1..10)
+        .map(|k| format!("<!ENTITY e{k} '{}'>", format!("&e{};", k - 1).repeat(10)))
+        .collect();
     let bomb = format!(
         "<!DOCTYPE svg [<!ENTITY e0 'ha'>{}]><svg xmlns='http://www.w3.org/2000/svg'><text>&e9;</text></svg>",
         entities.concat()
@@ -221,7 +303,11 @@ fn wrong_bytes_never_panic() {
         for _ in 0..=random.bits() % 3 {
             let place = (random.unit() * bytes.len() as f64) as usize;
             let digit = bytes[place].is_ascii_digit();
-            bytes[place] = if digit { b'0' + (random.bits() % 10) as u8 } else { 32 + (random.bits() % 95) as u8 };
+            bytes[place] = if digit {
+                b'0' + (random.bits() % 10) as u8
+            } else {
+                32 + (random.bits() % 95) as u8
+            };
         }
         match Drawing::read(&String::from_utf8(bytes).unwrap(), UNITS) {
             Ok(drawing) => {

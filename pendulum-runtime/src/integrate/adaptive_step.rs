@@ -23,27 +23,34 @@ const ONE_WORD: f64 = 10.0 * f64::EPSILON;
 
 /// Steps as long as the error allows.
 ///
-/// A step is accepted if √(mean (eᵢ/(atolᵢ + rtol·max(|yᵢ|, |yᵢ′|)))²) ≤ 1 over all coordinates and velocities, where e is the
-/// method's estimate and y, y′ are the values before and after. Tolerances bound the error of one step; the error at the end also depends
-/// on how the motion amplifies it, and on how many steps there are: the errors of N steps that do
-/// not cancel add up to N tolerances. A drive of a kilohertz takes thousands of steps a second; ask
-/// for a tolerance that is smaller by as many digits.
+/// A step is accepted if √(mean (eᵢ/(atolᵢ + rtol·max(|yᵢ|, |yᵢ′|)))²) ≤ 1 over all coordinates and
+/// velocities, where e is the method's estimate and y, y′ are the values before and after.
+/// Tolerances bound the error of one step; the error at the end also depends on how the motion
+/// amplifies it, and on how many steps there are: the errors of N steps that do not cancel add up
+/// to N tolerances. A drive of a kilohertz takes thousands of steps a second; ask for a tolerance
+/// that is smaller by as many digits.
 ///
-/// Without `atol` it is `rtol`, in the units of each coordinate and velocity, whatever the method. The sum atol + rtol·|y| decides, and where
-/// y passes through zero or comes to rest atol alone: one that follows `rtol` makes the error there follow it too. A fixed number
-/// does not: beside `rtol` 1e-3, 1e-9 asks for six digits more near zero than elsewhere, in steps that nobody wanted, and beside 1e-12 it allows
-/// a thousand times the error that was asked for. Where coordinates are much smaller or greater than one, only you know what is
-/// small: say it by [`atol`](Self::atol) or [`atol_each`](Self::atol_each).
+/// Without `atol` it is `rtol`, in the units of each coordinate and velocity, whatever the method.
+/// The sum atol + rtol·|y| decides, and where y passes through zero or comes to rest atol alone:
+/// one that follows `rtol` makes the error there follow it too. A fixed number does not: beside
+/// `rtol` 1e-3, 1e-9 asks for six digits more near zero than elsewhere, in steps that nobody
+/// wanted, and beside 1e-12 it allows a thousand times the error that was asked for. Where
+/// coordinates are much smaller or greater than one, only you know what is small: say it by
+/// [`atol`](Self::atol) or [`atol_each`](Self::atol_each).
 ///
-/// A step that would end beyond a time to be met (kink, stop, end) is cut there; one that would end less than 1 % before it is
-/// stretched to it; and if less than two steps are left they are made equal, so that no sliver is left. The size before a cut is
-/// remembered. The first step follows Hairer, Nørsett and Wanner (1993), II.4.
+/// A step that would end beyond a time to be met (kink, stop, end) is cut there; one that would end
+/// less than 1 % before it is stretched to it; and if less than two steps are left they are made
+/// equal, so that no sliver is left. The size before a cut is remembered. The first step follows
+/// Hairer, Nørsett and Wanner (1993), II.4.
 ///
-/// The estimate knows the accelerations at a few times only; what is over between two of them it does not see. So no two of them lie
-/// farther apart than 1.5 times the width of what time alone does: of functions of time in the equations, as far as `lagrangian!` finds it
-/// ([`System::longest_step`]), and of motions, as far as they say it ([`Motion::longest_step`](crate::motion::Motion::longest_step)).
-/// A [`Function`](crate::motion::Function) says it by its `resolution`; without that a step over it is at most a fiftieth of the interval, or one
-/// second where an [`Integrator`](super::Integrator) knows no end.
+/// The estimate knows the accelerations at a few times only; what is over between two of them it
+/// does not see. So no two of them lie farther apart than 1.5 times the width of what time alone
+/// does: of functions of time in the equations, as far as `lagrangian!` finds it
+/// ([`System::longest_step`]), and of motions, as far as they say it
+/// ([`Motion::longest_step`](crate::motion::Motion::longest_step)). A
+/// [`Function`](crate::motion::Function) says it by its `resolution`; without that a step over it
+/// is at most a fiftieth of the interval, or one second where an [`Integrator`](super::Integrator)
+/// knows no end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdaptiveStep<const N: usize> {
     rtol: Option<f64>,
@@ -108,8 +115,12 @@ impl<const N: usize> AdaptiveStep<N> {
             if a < b { b } else { a }
         };
         Weights {
-            q: core::array::from_fn(|i| 1.0 / (atol.0[i] + rtol * larger(from.q.high[i], to.q.high[i]))),
-            v: core::array::from_fn(|i| 1.0 / (atol.1[i] + rtol * larger(from.v.high[i], to.v.high[i]))),
+            q: core::array::from_fn(|i| {
+                1.0 / (atol.0[i] + rtol * larger(from.q.high[i], to.q.high[i]))
+            }),
+            v: core::array::from_fn(|i| {
+                1.0 / (atol.1[i] + rtol * larger(from.v.high[i], to.v.high[i]))
+            }),
         }
     }
 }
@@ -147,7 +158,8 @@ where
                 return Err(blame(method, field.dynamics, &at_once, from, stages));
             }
             let left = -from.t.since(target);
-            memory.h = self.first_step.unwrap_or_else(|| this.automatic_step(M::ORDER, field, from, left));
+            memory.h =
+                self.first_step.unwrap_or_else(|| this.automatic_step(M::ORDER, field, from, left));
             memory.error = log2(1e-4);
         }
         let wanted = if memory.h < self.max_step { memory.h } else { self.max_step };
@@ -163,17 +175,24 @@ where
                 }
                 let index = this.worst(method, stages, memory, from);
                 let coordinate = coordinate(&<D::System as System<N>>::FACTS, index);
-                return Err(Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate });
+                return Err(Error::StepSizeUnderflow {
+                    t: from.t.to_f64(),
+                    step: wanted,
+                    coordinate,
+                });
             }
             let span = fit(from.t, wanted, target);
             *to = method.step(field, &span, from, stages);
             let weights = this.weights(from, to);
-            let error = if to.is_finite() { method.error(stages, span.h, &weights) } else { f64::NAN };
+            let error =
+                if to.is_finite() { method.error(stages, span.h, &weights) } else { f64::NAN };
             if error <= 1.0 {
                 let error = log2(error);
-                let factor = response.safety * exp2(response.beta * memory.error - response.alpha * error);
+                let factor =
+                    response.safety * exp2(response.beta * memory.error - response.alpha * error);
                 memory.h = span.h * if factor < response.least { response.least } else { factor };
-                // A step that was cut says little about longer ones, nothing if its error is rounding: what was wanted before stays possible.
+                // A step that was cut says little about longer ones, nothing if its error is
+                // rounding: what was wanted before stays possible.
                 let longest = if retried { span.h } else { span.h * response.greatest };
                 let longest = if longest < wanted && !retried { wanted } else { longest };
                 if longest < memory.h {
@@ -191,9 +210,11 @@ where
             retried = true;
             if error.is_nan() {
                 last_fault = method.fault(field.dynamics, &span, from, stages);
-                // A function may have left its domain, and a shorter step may stay inside; but no step is short enough for an
-                // input that is not finite.
-                if let Some(input @ Error::NotFinite { what: Quantity::Input { .. }, .. }) = last_fault {
+                // A function may have left its domain, and a shorter step may stay inside; but no
+                // step is short enough for an input that is not finite.
+                if let Some(input @ Error::NotFinite { what: Quantity::Input { .. }, .. }) =
+                    last_fault
+                {
                     return Err(input);
                 }
                 wanted = 0.1 * span.h;
@@ -234,7 +255,8 @@ impl<const N: usize> AdaptiveStep<N> {
         }
     }
 
-    /// The error for a step of the length `wanted`, which time does not resolve, if that was asked for.
+    /// The error for a step of the length `wanted`, which time does not resolve, if that was asked
+    /// for.
     pub(crate) fn unresolved(&self, first: bool, wanted: f64) -> Option<Error> {
         let value = self.first_step.filter(|step| first && *step <= wanted)?;
         let required = "long enough to be told from zero at the start: above 1e-200 s, and above 1e-26 of the time there";
@@ -245,7 +267,11 @@ impl<const N: usize> AdaptiveStep<N> {
     pub(crate) fn positive<T: Float>(&self) -> Result<(), Error> {
         let positive = |name, value: f64| {
             let fine = (f64::MIN_POSITIVE..f64::INFINITY).contains(&value);
-            if fine { Ok(()) } else { Err(Error::Setting { name, value, required: "positive and finite" }) }
+            if fine {
+                Ok(())
+            } else {
+                Err(Error::Setting { name, value, required: "positive and finite" })
+            }
         };
         positive("rtol", self.relative::<T>())?;
         if let Some((q, v)) = self.atol {
@@ -259,7 +285,8 @@ impl<const N: usize> AdaptiveStep<N> {
         }
     }
 
-    /// A first step with which the second derivative changes the state by about a hundredth of the tolerance's root.
+    /// A first step with which the second derivative changes the state by about a hundredth of the
+    /// tolerance's root.
     pub(crate) fn automatic_step<T: Float>(
         &self,
         order: u32,
@@ -279,7 +306,10 @@ impl<const N: usize> AdaptiveStep<N> {
         let q1 = core::array::from_fn(|i| q0[i] + step * v0[i]);
         let v1 = core::array::from_fn(|i| v0[i] + step * a0[i]);
         let a1 = field.at(from.t + h, Side::Before, &q1, &v1);
-        let change = norm(&core::array::from_fn(|i| v1[i] - v0[i]), &core::array::from_fn(|i| a1[i] - a0[i])) / h;
+        let change = norm(
+            &core::array::from_fn(|i| v1[i] - v0[i]),
+            &core::array::from_fn(|i| a1[i] - a0[i]),
+        ) / h;
         let curvature = if change < slope { slope } else { change };
         let longer = if curvature <= 1e-15 {
             if 1e-3 * h < 1e-6 { 1e-6 } else { 1e-3 * h }
@@ -295,7 +325,13 @@ impl<const N: usize> AdaptiveStep<N> {
     }
 
     /// The coordinate with the largest error in the last step tried.
-    fn worst<T: Float, M: Embedded>(&self, method: &M, stages: &M::Stages<T, N>, memory: &Memory, from: &Node<T, N>) -> usize {
+    fn worst<T: Float, M: Embedded>(
+        &self,
+        method: &M,
+        stages: &M::Stages<T, N>,
+        memory: &Memory,
+        from: &Node<T, N>,
+    ) -> usize {
         let all = self.weights(from, from);
         let mut worst = (0, 0.0);
         for index in 0..N {
@@ -310,7 +346,8 @@ impl<const N: usize> AdaptiveStep<N> {
     }
 }
 
-/// The length of a step that time does not resolve: its second word has to hold the step to about ten digits.
+/// The length of a step that time does not resolve: its second word has to hold the step to about
+/// ten digits.
 #[inline(always)]
 pub(crate) fn resolution(t: Time) -> f64 {
     let resolution = 1e-26 * t.to_f64().abs();
@@ -327,12 +364,15 @@ pub(crate) fn resolution_of<T: Float>(t: Time) -> f64 {
 /// A fault that shorter steps ran after, at the time from which none gets away.
 pub(crate) fn at(fault: Error, t: Time) -> Error {
     match fault {
-        Error::NotFinite { what, suspects, .. } => Error::NotFinite { t: t.to_f64(), what, suspects },
+        Error::NotFinite { what, suspects, .. } => {
+            Error::NotFinite { t: t.to_f64(), what, suspects }
+        }
         other => other,
     }
 }
 
-/// The step of length `wanted` from `t`, or what avoids going beyond `target` and leaving a sliver before it.
+/// The step of length `wanted` from `t`, or what avoids going beyond `target` and leaving a sliver
+/// before it.
 pub(crate) fn fit(t: Time, wanted: f64, target: f64) -> Span {
     let left = -t.since(target);
     if left.abs() <= 1.01 * wanted {

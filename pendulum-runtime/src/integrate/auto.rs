@@ -19,7 +19,8 @@ use crate::jet::{Jets, Known, Orders, PerhapsJets};
 use crate::real::Float;
 use crate::system::{Dynamics, System};
 
-/// The method that what is known about the system and the tolerance decide; [`Stats`](super::Stats) say which it was.
+/// The method that what is known about the system and the tolerance decide; [`Stats`](super::Stats)
+/// say which it was.
 ///
 /// | steps | choice |
 /// |---|---|
@@ -29,12 +30,14 @@ use crate::system::{Dynamics, System};
 /// | fixed | [`Srkn14a`], which is symplectic, for velocity-free systems, [`Dop853`] for others |
 /// | | [`Taylor`] back in time |
 ///
-/// Scalars of two words stand in no lanes. `Taylor` takes the place of `Picard` there, for every tolerance if the equations are short, as for one
-/// pendulum, below 2e-7 if they are longer, as for two or three links, and below 2e-14 if they are long; else `Dop853`.
+/// Scalars of two words stand in no lanes. `Taylor` takes the place of `Picard` there, for every
+/// tolerance if the equations are short, as for one pendulum, below 2e-7 if they are longer, as for
+/// two or three links, and below 2e-14 if they are long; else `Dop853`.
 ///
-/// Nothing shows beforehand that a system is stiff: for stiff springs and dampers name [`Rodas4`](super::Rodas4) or
-/// [`Gauss`](super::Gauss), for long runs of a conservative system with fixed steps `Gauss`. Systems written by hand have no
-/// recurrences to choose by, and name a method too:
+/// Nothing shows beforehand that a system is stiff: for stiff springs and dampers name
+/// [`Rodas4`](super::Rodas4) or [`Gauss`](super::Gauss), for long runs of a conservative system
+/// with fixed steps `Gauss`. Systems written by hand have no recurrences to choose by, and name a
+/// method too:
 ///
 /// ```compile_fail,E0277
 /// # use pendulum_runtime::{integrate::*, system::*};
@@ -66,15 +69,26 @@ pub struct Room<R, P, X> {
 }
 
 /// The room for the dynamics `D`.
-type AnyRoom<D, const N: usize> =
-    Room<<Dop853 as Method>::Stages<<D as Dynamics<N>>::Scalar, N>, <Picard as Stepper<D, N>>::Stages, RoomOf<D, N>>;
+type AnyRoom<D, const N: usize> = Room<
+    <Dop853 as Method>::Stages<<D as Dynamics<N>>::Scalar, N>,
+    <Picard as Stepper<D, N>>::Stages,
+    RoomOf<D, N>,
+>;
 
 impl Auto {
     /// The choice for adaptive steps.
-    fn adaptive<D: PerhapsJets<N, Scalar: Float>, const N: usize>(dynamics: &D, rtol: f64, backwards: bool) -> Choice {
+    fn adaptive<D: PerhapsJets<N, Scalar: Float>, const N: usize>(
+        dynamics: &D,
+        rtol: f64,
+        backwards: bool,
+    ) -> Choice {
         let facts = &<D::System as System<N>>::FACTS;
         let two_words = D::Scalar::EPSILON.to_f64() < 1e-17;
-        let pays = if two_words { rtol < <D::System as Jets<N>>::Orders::PAYS_BELOW } else { facts.linear && facts.autonomous };
+        let pays = if two_words {
+            rtol < <D::System as Jets<N>>::Orders::PAYS_BELOW
+        } else {
+            facts.linear && facts.autonomous
+        };
         if (pays || backwards) && goes_by_series(dynamics) {
             Choice::Taylor
         } else if two_words {
@@ -148,16 +162,26 @@ impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Stepper<D, N> for Auto {
         room: &mut AnyRoom<D, N>,
     ) -> Piece<D::Scalar, N> {
         match room.choice {
-            Some(Choice::Taylor) => {
-                Taylor::new().within(&mut Counted::new(&Known(field.dynamics)), span, from, to, &mut room.taylor)
-            }
+            Some(Choice::Taylor) => Taylor::new().within(
+                &mut Counted::new(&Known(field.dynamics)),
+                span,
+                from,
+                to,
+                &mut room.taylor,
+            ),
             Some(Choice::Picard) => Picard.within(field, span, from, to, &mut room.picard),
             Some(Choice::Srkn14a) => Symplectic.dense(field, span, from, to, &mut ()),
             _ => Dop853.dense(field, span, from, to, &mut room.dop853),
         }
     }
 
-    fn fault(&self, dynamics: &D, span: &Span, from: &Node<D::Scalar, N>, room: &AnyRoom<D, N>) -> Option<Error> {
+    fn fault(
+        &self,
+        dynamics: &D,
+        span: &Span,
+        from: &Node<D::Scalar, N>,
+        room: &AnyRoom<D, N>,
+    ) -> Option<Error> {
         match room.choice {
             Some(Choice::Taylor) => Taylor::new().fault(&Known(dynamics), span, from, &room.taylor),
             Some(Choice::Picard) => Picard.fault(dynamics, span, from, &room.picard),
@@ -195,7 +219,15 @@ impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Control<Auto, D, N> for 
             let taken = Control::step(
                 self,
                 memory,
-                Course { method: &Taylor::new(), field: &mut series, from, to, stages, target, stats },
+                Course {
+                    method: &Taylor::new(),
+                    field: &mut series,
+                    from,
+                    to,
+                    stages,
+                    target,
+                    stats,
+                },
             );
             field.evaluations += series.evaluations;
             return taken;
@@ -204,11 +236,23 @@ impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Control<Auto, D, N> for 
             return Control::step(
                 self,
                 memory,
-                Course { method: &Picard, field, from, to, stages: &mut room.picard, target, stats },
+                Course {
+                    method: &Picard,
+                    field,
+                    from,
+                    to,
+                    stages: &mut room.picard,
+                    target,
+                    stats,
+                },
             );
         }
         Control::<Dop853, D, N>::check(self)?;
-        Control::step(self, memory, Course { method: &Dop853, field, from, to, stages: &mut room.dop853, target, stats })
+        Control::step(
+            self,
+            memory,
+            Course { method: &Dop853, field, from, to, stages: &mut room.dop853, target, stats },
+        )
     }
 }
 
@@ -227,7 +271,13 @@ impl Method for Symplectic {
 
 impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Symplectic {
     #[inline]
-    fn step(&self, field: &mut impl Field<S, N>, span: &Span, from: &mut Node<S::Scalar, N>, (): &mut ()) -> Node<S::Scalar, N> {
+    fn step(
+        &self,
+        field: &mut impl Field<S, N>,
+        span: &Span,
+        from: &mut Node<S::Scalar, N>,
+        (): &mut (),
+    ) -> Node<S::Scalar, N> {
         drift_kick_drift_in_two_words(&srkn14a::SPLITTING, field, span, from)
     }
 }

@@ -12,7 +12,8 @@ use crate::real::{Float, Real};
 use crate::system::{Dynamics, Purpose, System, scalar_time};
 use crate::time::Time;
 
-/// The error for a step, with what it has left in `stages`, that led to a number that is not finite.
+/// The error for a step, with what it has left in `stages`, that led to a number that is not
+/// finite.
 pub(crate) fn blame<D: Dynamics<N, Scalar: Float>, M: Stepper<D, N>, const N: usize>(
     method: &M,
     dynamics: &D,
@@ -21,11 +22,16 @@ pub(crate) fn blame<D: Dynamics<N, Scalar: Float>, M: Stepper<D, N>, const N: us
     stages: &M::Stages,
 ) -> Error {
     let coordinate = super::field::coordinate(&<D::System as System<N>>::FACTS, 0);
-    let unknown = Error::NotFinite { t: span.end.to_f64(), what: Quantity::Velocity(coordinate), suspects: Vec::new() };
+    let unknown = Error::NotFinite {
+        t: span.end.to_f64(),
+        what: Quantity::Velocity(coordinate),
+        suspects: Vec::new(),
+    };
     method.fault(dynamics, span, from, stages).unwrap_or(unknown)
 }
 
-/// The first number in the stages of a step that is not finite, or where its equations were not solved, if there is one.
+/// The first number in the stages of a step that is not finite, or where its equations were not
+/// solved, if there is one.
 pub(crate) fn fault<D: Dynamics<N, Scalar: Float>, M: Suits<D::System, N>, const N: usize>(
     method: &M,
     dynamics: &D,
@@ -50,24 +56,37 @@ pub(crate) fn fault<D: Dynamics<N, Scalar: Float>, M: Suits<D::System, N>, const
     let at_end = || first_in_state(facts, &to.q.high, &to.v.high).map(|what| (span.end, what));
     let (t, what) = watched.first.or_else(at_end)?;
     if watched.singular {
-        return Some(Error::NotFinite { t: t.to_f64(), what, suspects: suspects(dynamics.system()) });
+        return Some(Error::NotFinite {
+            t: t.to_f64(),
+            what,
+            suspects: suspects(dynamics.system()),
+        });
     }
     Some(not_finite(dynamics.system(), t, what))
 }
 
 /// Whether the mass matrix at the start of a step leads from velocities to momenta and back.
-fn regular<D: Dynamics<N, Scalar: Float>, const N: usize>(dynamics: &D, from: &Node<D::Scalar, N>) -> bool {
+fn regular<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    from: &Node<D::Scalar, N>,
+) -> bool {
     let (t, q, v) = (scalar_time(from.t), &from.q.high, &from.v.high);
     let inputs = dynamics.inputs(from.t, Side::After, Purpose::Momenta);
     let mass = dynamics.system().mass_matrix(t, q, v, &inputs);
-    let momenta = Factors::<_, N, 1>::new(|_, _| core::array::from_fn(|i| core::array::from_fn(|j| mass[(i, j)])));
+    let momenta = Factors::<_, N, 1>::new(|_, _| {
+        core::array::from_fn(|i| core::array::from_fn(|j| mass[(i, j)]))
+    });
     let mut unit = [[D::Scalar::from_f64(1.0); N]];
     momenta.solve(&mut unit);
     unit[0].iter().all(|x| x.is_finite())
 }
 
 /// The error for a number that is not finite, with the parameters that may be the cause.
-pub(crate) fn not_finite<S: System<N, Scalar: Float>, const N: usize>(system: &S, t: Time, what: Quantity) -> Error {
+pub(crate) fn not_finite<S: System<N, Scalar: Float>, const N: usize>(
+    system: &S,
+    t: Time,
+    what: Quantity,
+) -> Error {
     let suspects = if let Quantity::Acceleration(_) = what { suspects(system) } else { Vec::new() };
     Error::NotFinite { t: t.to_f64(), what, suspects }
 }
@@ -83,7 +102,10 @@ pub(crate) fn negative<S: System<N, Scalar: Float>, const N: usize>(system: &S) 
 }
 
 /// The parameters with values that are `suspicious`.
-fn parameters<S: System<N, Scalar: Float>, const N: usize>(system: &S, suspicious: impl Fn(f64) -> bool) -> Vec<Suspect> {
+fn parameters<S: System<N, Scalar: Float>, const N: usize>(
+    system: &S,
+    suspicious: impl Fn(f64) -> bool,
+) -> Vec<Suspect> {
     let (mut index, mut suspects) = (0, Vec::new());
     system.map(|parameter| {
         let value = parameter.to_f64();

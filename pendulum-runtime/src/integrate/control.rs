@@ -22,15 +22,16 @@ where
     /// A lower bound of the number of steps over an interval.
     fn least_steps(&self, length: f64) -> f64;
 
-    /// Takes one step from `course.from` towards `course.target`, not beyond it, and puts its end into `course.to`; if it fails, nothing but
-    /// that and caches has changed.
+    /// Takes one step from `course.from` towards `course.target`, not beyond it, and puts its end
+    /// into `course.to`; if it fails, nothing but that and caches has changed.
     fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, M, N>) -> Result<Span, Error>;
 }
 
 /// What a control remembers from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Memory {
-    /// The length of the steps towards `target`, or the next one that the error suggests; 0 before the first.
+    /// The length of the steps towards `target`, or the next one that the error suggests; 0 before
+    /// the first.
     pub(crate) h: f64,
     /// The number of equal steps left, and where it is not `h`, their length.
     pub(crate) left: u64,

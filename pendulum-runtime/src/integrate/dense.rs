@@ -47,7 +47,8 @@ impl<T: Float, const N: usize> DenseOutput<T, N> {
         if side == Side::After && t == self.end.t {
             return Some(self.end);
         }
-        // Steps that start before `t`; one that starts at `t` counts if the state beyond a kink is asked for.
+        // Steps that start before `t`; one that starts at `t` counts if the state beyond a kink is
+        // asked for.
         let started = self.spans.partition_point(|span| match side {
             Side::Before => 0.0 < -onwards * span.start.since(t),
             Side::After => 0.0 <= -onwards * span.start.since(t),

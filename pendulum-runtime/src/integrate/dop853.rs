@@ -10,24 +10,26 @@ use super::span::Span;
 use crate::real::Float;
 use crate::system::System;
 
-/// The explicit Runge–Kutta method of order 8 of Dormand and Prince with error estimates of orders 5 and 3: twelve evaluations a
-/// step, adaptive.
+/// The explicit Runge–Kutta method of order 8 of Dormand and Prince with error estimates of orders
+/// 5 and 3: twelve evaluations a step, adaptive.
 ///
 /// It suits every system and is the best general choice for errors from 1e-6 to 1e-12. It is not
 /// symplectic: over very many periods the energy drifts, at tight tolerances by rounding alone; the
-/// errors of a thousand periods of a shaken pivot add up to a few tolerances. It is explicit: a stiff
-/// spring or damper forces h·ω below about 6 whatever the tolerance.
+/// errors of a thousand periods of a shaken pivot add up to a few tolerances. It is explicit: a
+/// stiff spring or damper forces h·ω below about 6 whatever the tolerance.
 ///
 /// A step never goes unseen over a short pulse of a motion whose time scale is known: a
-/// [`Function`](crate::motion::Function) says it by [`resolution`](crate::motion::Function::resolution),
-/// a motion of your own by [`longest_step`](crate::motion::Motion::longest_step). Where it is not known,
-/// a step is at most a fiftieth of the interval, which at loose tolerances may be too long.
+/// [`Function`](crate::motion::Function) says it by
+/// [`resolution`](crate::motion::Function::resolution), a motion of your own by
+/// [`longest_step`](crate::motion::Motion::longest_step). Where it is not known, a step is at most
+/// a fiftieth of the interval, which at loose tolerances may be too long.
 ///
-/// A rejected step costs eleven evaluations. Dense output is of order 7 and takes three more evaluations, only in those steps where
-/// it is asked for.
+/// A rejected step costs eleven evaluations. Dense output is of order 7 and takes three more
+/// evaluations, only in those steps where it is asked for.
 ///
-/// Source: Dormand and Prince (1981) for the method; Hairer, Nørsett and Wanner (1993), Solving Ordinary Differential Equations I,
-/// II.5 and II.6, and their code DOP853 for the estimates, the dense output and the digits.
+/// Source: Dormand and Prince (1981) for the method; Hairer, Nørsett and Wanner (1993), Solving
+/// Ordinary Differential Equations I, II.5 and II.6, and their code DOP853 for the estimates, the
+/// dense output and the digits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dop853;
 
@@ -92,7 +94,9 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Dop853 {
         k.stage(field, span, from, 15, C[15], A15);
         let mut piece = Piece::hermite(span, from, to, &k.a[0], &k.a[12]);
         let h = span.length::<S::Scalar>();
-        for (term, (q, v)) in [k.weighted(D3), k.weighted(D4), k.weighted(D5), k.weighted(D6)].into_iter().enumerate() {
+        for (term, (q, v)) in
+            [k.weighted(D3), k.weighted(D4), k.weighted(D5), k.weighted(D6)].into_iter().enumerate()
+        {
             piece.q[3 + term] = q.map(|sum| h * sum);
             piece.v[3 + term] = v.map(|sum| h * sum);
         }
@@ -102,18 +106,28 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Dop853 {
 }
 
 impl Embedded for Dop853 {
-    // A little memory of the last error and a safety factor below the usual 0.9 reject one step in twenty instead of one in five, and
-    // take a tenth fewer evaluations for the same error of pendulums and orbits.
-    const RESPONSE: Response = Response { alpha: 0.11, beta: 0.02, safety: 0.8, least: 1.0 / 3.0, greatest: 6.0 };
+    // A little memory of the last error and a safety factor below the usual 0.9 reject one step in
+    // twenty instead of one in five, and take a tenth fewer evaluations for the same error of
+    // pendulums and orbits.
+    const RESPONSE: Response =
+        Response { alpha: 0.11, beta: 0.02, safety: 0.8, least: 1.0 / 3.0, greatest: 6.0 };
     const GAP: f64 = widest(&C, &E5);
 
     #[inline]
-    fn error<T: Float, const N: usize>(&self, stages: &Stages<T, N>, h: f64, weights: &Weights<N>) -> f64 {
+    fn error<T: Float, const N: usize>(
+        &self,
+        stages: &Stages<T, N>,
+        h: f64,
+        weights: &Weights<N>,
+    ) -> f64 {
         let (dq, dv) = &stages.increment;
         let (q5, v5) = stages.k.weighted(E5);
         let (q3, v3) = stages.k.weighted(B3);
         let fifth = weights.square_sum(&q5, &v5);
-        let third = weights.square_sum::<T>(&core::array::from_fn(|i| dq[i] - q3[i]), &core::array::from_fn(|i| dv[i] - v3[i]));
+        let third = weights.square_sum::<T>(
+            &core::array::from_fn(|i| dq[i] - q3[i]),
+            &core::array::from_fn(|i| dv[i] - v3[i]),
+        );
         if fifth == 0.0 && third == 0.0 {
             return 0.0;
         }
@@ -122,7 +136,8 @@ impl Embedded for Dop853 {
     }
 }
 
-/// By how much steps are held more exact than in Hairer's program, with which three orbits of eccentricity 0.3 end 240 tolerances off.
+/// By how much steps are held more exact than in Hairer's program, with which three orbits of
+/// eccentricity 0.3 end 240 tolerances off.
 const STRICTNESS: f64 = 2.0;
 
 /// What a step leaves behind: the slopes and the increments divided by h.
@@ -159,14 +174,24 @@ const A2: Row<2> = [(0, 0.0197250569845378994544595329183), (1, 0.05917517095361
 
 const A3: Row<2> = [(0, 0.0295875854768068491816892993775), (2, 0.0887627564304205475450678981324)];
 
-const A4: Row<3> =
-    [(0, 0.241365134159266685502369798665), (2, -0.884549479328286085344864962717), (3, 0.924834003261792003115737966543)];
+const A4: Row<3> = [
+    (0, 0.241365134159266685502369798665),
+    (2, -0.884549479328286085344864962717),
+    (3, 0.924834003261792003115737966543),
+];
 
-const A5: Row<3> =
-    [(0, 0.037037037037037037037037037037), (3, 0.170828608729473871279604482173), (4, 0.125467687566822425016691814123)];
+const A5: Row<3> = [
+    (0, 0.037037037037037037037037037037),
+    (3, 0.170828608729473871279604482173),
+    (4, 0.125467687566822425016691814123),
+];
 
-const A6: Row<4> =
-    [(0, 0.037109375), (3, 0.170252211019544039314978060272), (4, 0.0602165389804559606850219397283), (5, -0.017578125)];
+const A6: Row<4> = [
+    (0, 0.037109375),
+    (3, 0.170252211019544039314978060272),
+    (4, 0.0602165389804559606850219397283),
+    (5, -0.017578125),
+];
 
 const A7: Row<5> = [
     (0, 0.0370920001185047927108779319836),
@@ -231,8 +256,11 @@ const B: Row<8> = [
     (11, 0.0447106157277725905176885569043),
 ];
 
-const B3: Row<3> =
-    [(0, 0.244094488188976377952755905512), (8, 0.733846688281611857341361741547), (11, 0.0220588235294117647058823529412)];
+const B3: Row<3> = [
+    (0, 0.244094488188976377952755905512),
+    (8, 0.733846688281611857341361741547),
+    (11, 0.0220588235294117647058823529412),
+];
 
 const E5: Row<8> = [
     (0, 0.01312004499419488073250102996),
@@ -347,7 +375,20 @@ mod tests {
 
     #[test]
     fn rows_add_up_to_their_nodes() {
-        let sums = [sum(A1), sum(A2), sum(A3), sum(A4), sum(A5), sum(A6), sum(A7), sum(A8), sum(A9), sum(A10), sum(A11), sum(B)];
+        let sums = [
+            sum(A1),
+            sum(A2),
+            sum(A3),
+            sum(A4),
+            sum(A5),
+            sum(A6),
+            sum(A7),
+            sum(A8),
+            sum(A9),
+            sum(A10),
+            sum(A11),
+            sum(B),
+        ];
         for (i, sum) in sums.into_iter().enumerate() {
             assert!((sum - C[i + 1]).abs() < 1e-13, "row {} adds up to {sum}", i + 1);
         }
@@ -359,11 +400,18 @@ mod tests {
     #[test]
     fn weights_integrate_powers() {
         for power in 0..8 {
-            assert!((moment(&C, B, power) - 1.0 / f64::from(power + 1)).abs() < 1e-14, "power {power}");
+            assert!(
+                (moment(&C, B, power) - 1.0 / f64::from(power + 1)).abs() < 1e-14,
+                "power {power}"
+            );
         }
-        // The estimate of order 3 integrates squares and no more; the differences of order 5 integrate to zero.
+        // The estimate of order 3 integrates squares and no more; the differences of order 5
+        // integrate to zero.
         for power in 0..3 {
-            assert!((moment(&C, B3, power) - 1.0 / f64::from(power + 1)).abs() < 1e-14, "power {power}");
+            assert!(
+                (moment(&C, B3, power) - 1.0 / f64::from(power + 1)).abs() < 1e-14,
+                "power {power}"
+            );
         }
         for power in 0..5 {
             assert!(moment(&C, E5, power).abs() < 1e-14, "power {power}");

@@ -11,21 +11,26 @@ use super::span::Span;
 use crate::real::Float;
 use crate::system::VelocityFree;
 
-/// The Runge–Kutta–Nyström pair of orders 12 and 10 of Dormand, El-Mikkawy and Prince: seventeen evaluations a step, adaptive.
+/// The Runge–Kutta–Nyström pair of orders 12 and 10 of Dormand, El-Mikkawy and Prince: seventeen
+/// evaluations a step, adaptive.
 ///
-/// For errors below 1e-5 it takes a third to a half of the time of [`Dop853`](super::Dop853), and less than all other methods that suit
-/// motions without series. On a Kepler orbit of eccentricity 0.5 it is faster than [`Taylor`](super::Taylor) too, with three quarters of
-/// its time at 1e-10; for pendulums on a driven pivot Taylor takes two thirds to four fifths of the time of this, undriven about half.
-/// Over hundreds of periods of a pendulum [`QuinlanTremaine`](super::QuinlanTremaine) takes two thirds of its time, with a step to be
-/// chosen.
-/// It is not symplectic: over very many periods the energy drifts, at tight tolerances by rounding alone.
+/// For errors below 1e-5 it takes a third to a half of the time of [`Dop853`](super::Dop853), and
+/// less than all other methods that suit motions without series. On a Kepler orbit of eccentricity
+/// 0.5 it is faster than [`Taylor`](super::Taylor) too, with three quarters of its time at 1e-10;
+/// for pendulums on a driven pivot Taylor takes two thirds to four fifths of the time of this,
+/// undriven about half. Over hundreds of periods of a pendulum
+/// [`QuinlanTremaine`](super::QuinlanTremaine) takes two thirds of its time, with a step to be
+/// chosen. It is not symplectic: over very many periods the energy drifts, at tight tolerances by
+/// rounding alone.
 ///
-/// It is for systems with a constant mass matrix and accelerations without velocities, and compiles for no others.
-/// Dense output is made of the same accelerations and costs nothing; its error falls with the tenth power of the step in the
-/// coordinates and the ninth in the velocities, slower than that of the steps: where few times have to be as exact as the steps, end
-/// steps there by `t_stops`.
+/// It is for systems with a constant mass matrix and accelerations without velocities, and compiles
+/// for no others. Dense output is made of the same accelerations and costs nothing; its error falls
+/// with the tenth power of the step in the coordinates and the ninth in the velocities, slower than
+/// that of the steps: where few times have to be as exact as the steps, end steps there by
+/// `t_stops`.
 ///
-/// Source: Dormand, El-Mikkawy and Prince (1987), High-order embedded Runge–Kutta–Nyström formulae, IMA J. Numer. Anal. 7, 423.
+/// Source: Dormand, El-Mikkawy and Prince (1987), High-order embedded Runge–Kutta–Nyström formulae,
+/// IMA J. Numer. Anal. 7, 423.
 ///
 /// ```compile_fail,E0277
 /// # use pendulum_runtime::{integrate::*, system::*};
@@ -97,11 +102,17 @@ impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Dprkn12 
 }
 
 impl Embedded for Dprkn12 {
-    const RESPONSE: Response = Response { alpha: 0.08, beta: 0.015, safety: 0.8, least: 0.2, greatest: 6.0 };
+    const RESPONSE: Response =
+        Response { alpha: 0.08, beta: 0.015, safety: 0.8, least: 0.2, greatest: 6.0 };
     const GAP: f64 = widest(&C, &EV);
 
     #[inline]
-    fn error<T: Float, const N: usize>(&self, k: &Kicks<T, N, 18>, h: f64, weights: &Weights<N>) -> f64 {
+    fn error<T: Float, const N: usize>(
+        &self,
+        k: &Kicks<T, N, 18>,
+        h: f64,
+        weights: &Weights<N>,
+    ) -> f64 {
         k.error(h, weights, EQ, EV)
     }
 }
@@ -135,9 +146,15 @@ const A2: Row<2> = [(0, 0.0002666666666666667), (1, 0.0005333333333333334)];
 
 const A3: Row<3> = [(0, 0.002916666666666667), (1, -0.004166666666666667), (2, 0.00625)];
 
-const A4: Row<3> = [(0, 0.0016460905349794238), (2, 0.0054869684499314125), (3, 0.0017558299039780521)];
+const A4: Row<3> =
+    [(0, 0.0016460905349794238), (2, 0.0054869684499314125), (3, 0.0017558299039780521)];
 
-const A5: Row<4> = [(0, 0.0019456), (2, 0.007151746031746032), (3, 0.0029127111111111113), (4, 0.0007899428571428571)];
+const A5: Row<4> = [
+    (0, 0.0019456),
+    (2, 0.007151746031746032),
+    (3, 0.0029127111111111113),
+    (4, 0.0007899428571428571),
+];
 
 const A6: Row<5> = [
     (0, 0.00056640625),
@@ -147,8 +164,13 @@ const A6: Row<5> = [
     (5, -9.946469907407407e-05),
 ];
 
-const A7: Row<5> =
-    [(0, 0.0030833333333333333), (3, 0.0017777777777777779), (4, 0.0027), (5, 0.0015782828282828283), (6, 0.01086060606060606)];
+const A7: Row<5> = [
+    (0, 0.0030833333333333333),
+    (3, 0.0017777777777777779),
+    (4, 0.0027),
+    (5, 0.0015782828282828283),
+    (6, 0.01086060606060606),
+];
 
 const A8: Row<7> = [
     (0, 0.00365183937480113),
@@ -515,7 +537,11 @@ mod tests {
         .into_iter()
         .enumerate()
         {
-            assert!((sum - C[i + 1] * C[i + 1] / 2.0).abs() < 1e-13, "row {} adds up to {sum}", i + 1);
+            assert!(
+                (sum - C[i + 1] * C[i + 1] / 2.0).abs() < 1e-13,
+                "row {} adds up to {sum}",
+                i + 1
+            );
         }
     }
 
@@ -524,7 +550,10 @@ mod tests {
         for power in 0..12 {
             let n = f64::from(power);
             // Twice for the coordinates: ∫∫ cⁿ = 1/((n + 1)(n + 2)).
-            assert!(power == 11 || (moment(&C, Q, power) - 1.0 / ((n + 1.0) * (n + 2.0))).abs() < 1e-15, "power {power}");
+            assert!(
+                power == 11 || (moment(&C, Q, power) - 1.0 / ((n + 1.0) * (n + 2.0))).abs() < 1e-15,
+                "power {power}"
+            );
             assert!((moment(&C, V, power) - 1.0 / (n + 1.0)).abs() < 1e-15, "power {power}");
         }
         for power in 0..10 {

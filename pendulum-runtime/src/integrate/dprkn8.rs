@@ -11,19 +11,24 @@ use super::span::Span;
 use crate::real::Float;
 use crate::system::VelocityFree;
 
-/// The Runge–Kutta–Nyström pair of orders 8 and 6 of Dormand, El-Mikkawy and Prince: eight evaluations a step, adaptive.
+/// The Runge–Kutta–Nyström pair of orders 8 and 6 of Dormand, El-Mikkawy and Prince: eight
+/// evaluations a step, adaptive.
 ///
-/// The fastest method here for errors from 1e-2 to 1e-5 over tens of periods: 0.7 of the time of [`Dop853`](super::Dop853) for the same error
-/// of a Kepler orbit of eccentricity 0.5, half of it for pendulums on a driven pivot. Below 1e-5 [`Dprkn12`](super::Dprkn12) is faster;
-/// over hundreds of periods of a pendulum [`QuinlanTremaine`](super::QuinlanTremaine) takes half its time, with a step to be chosen.
-/// It is not symplectic: over very many periods the energy drifts with the tolerance.
+/// The fastest method here for errors from 1e-2 to 1e-5 over tens of periods: 0.7 of the time of
+/// [`Dop853`](super::Dop853) for the same error of a Kepler orbit of eccentricity 0.5, half of it
+/// for pendulums on a driven pivot. Below 1e-5 [`Dprkn12`](super::Dprkn12) is faster; over hundreds
+/// of periods of a pendulum [`QuinlanTremaine`](super::QuinlanTremaine) takes half its time, with a
+/// step to be chosen. It is not symplectic: over very many periods the energy drifts with the
+/// tolerance.
 ///
-/// It is for systems with a constant mass matrix and accelerations without velocities, and compiles for no others.
-/// The last stage is the first of the next step. Dense output is made of the same accelerations and costs nothing; its error falls with
-/// the seventh power of the step in the coordinates and the sixth in the velocities, slower than that of the steps: where few times
-/// have to be as exact as the steps, end steps there by `t_stops`.
+/// It is for systems with a constant mass matrix and accelerations without velocities, and compiles
+/// for no others. The last stage is the first of the next step. Dense output is made of the same
+/// accelerations and costs nothing; its error falls with the seventh power of the step in the
+/// coordinates and the sixth in the velocities, slower than that of the steps: where few times have
+/// to be as exact as the steps, end steps there by `t_stops`.
 ///
-/// Source: Dormand, El-Mikkawy and Prince (1987), High-order embedded Runge–Kutta–Nyström formulae, IMA J. Numer. Anal. 7, 423.
+/// Source: Dormand, El-Mikkawy and Prince (1987), High-order embedded Runge–Kutta–Nyström formulae,
+/// IMA J. Numer. Anal. 7, 423.
 ///
 /// ```compile_fail,E0277
 /// # use pendulum_runtime::{integrate::*, system::*};
@@ -87,11 +92,17 @@ impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Dprkn8 {
 }
 
 impl Embedded for Dprkn8 {
-    const RESPONSE: Response = Response { alpha: 0.125, beta: 0.025, safety: 0.8, least: 0.2, greatest: 6.0 };
+    const RESPONSE: Response =
+        Response { alpha: 0.125, beta: 0.025, safety: 0.8, least: 0.2, greatest: 6.0 };
     const GAP: f64 = widest(&C, &EV);
 
     #[inline]
-    fn error<T: Float, const N: usize>(&self, k: &Kicks<T, N, 9>, h: f64, weights: &Weights<N>) -> f64 {
+    fn error<T: Float, const N: usize>(
+        &self,
+        k: &Kicks<T, N, 9>,
+        h: f64,
+        weights: &Weights<N>,
+    ) -> f64 {
         k.error(h, weights, EQ, EV)
     }
 }
@@ -106,7 +117,12 @@ const A2: Row<2> = [(0, 0.0016666666666666668), (1, 0.0033333333333333335)];
 
 const A3: Row<3> = [(0, 0.045), (1, -0.09), (2, 0.09)];
 
-const A4: Row<4> = [(0, -0.3379798532571243), (1, 0.8611516478170984), (2, -0.48613644655235316), (3, 0.0879646519923791)];
+const A4: Row<4> = [
+    (0, -0.3379798532571243),
+    (1, 0.8611516478170984),
+    (2, -0.48613644655235316),
+    (3, 0.0879646519923791),
+];
 
 const A5: Row<5> = [
     (0, 0.7461462641043086),
@@ -243,8 +259,14 @@ mod tests {
 
     #[test]
     fn rows_add_up_to_half_the_squares_of_their_nodes() {
-        for (i, sum) in [sum(A1), sum(A2), sum(A3), sum(A4), sum(A5), sum(A6), sum(A7)].into_iter().enumerate() {
-            assert!((sum - C[i + 1] * C[i + 1] / 2.0).abs() < 1e-13, "row {} adds up to {sum}", i + 1);
+        for (i, sum) in
+            [sum(A1), sum(A2), sum(A3), sum(A4), sum(A5), sum(A6), sum(A7)].into_iter().enumerate()
+        {
+            assert!(
+                (sum - C[i + 1] * C[i + 1] / 2.0).abs() < 1e-13,
+                "row {} adds up to {sum}",
+                i + 1
+            );
         }
     }
 
@@ -253,7 +275,10 @@ mod tests {
         for power in 0..8 {
             let n = f64::from(power);
             // Twice for the coordinates: ∫∫ cⁿ = 1/((n + 1)(n + 2)).
-            assert!(power == 7 || (moment(&C, Q, power) - 1.0 / ((n + 1.0) * (n + 2.0))).abs() < 1e-15, "power {power}");
+            assert!(
+                power == 7 || (moment(&C, Q, power) - 1.0 / ((n + 1.0) * (n + 2.0))).abs() < 1e-15,
+                "power {power}"
+            );
             assert!((moment(&C, V, power) - 1.0 / (n + 1.0)).abs() < 1e-15, "power {power}");
         }
         for power in 0..6 {

@@ -25,7 +25,8 @@ pub(crate) struct Driver<T, const N: usize, M, C, R> {
     /// The state reached; at a kink the one beyond it.
     pub(crate) node: Node<T, N>,
     pub(crate) stats: Stats,
-    /// The last step and the node at its start; nothing before the first step and after one that failed.
+    /// The last step and the node at its start; nothing before the first step and after one that
+    /// failed.
     last: Option<Span>,
     from: Node<T, N>,
     /// The motion within it, once somebody has asked.
@@ -42,7 +43,14 @@ pub(crate) struct Driver<T, const N: usize, M, C, R> {
 
 impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
     /// At `q`, `v` and `t`, if they are finite and the mass matrix is positive there.
-    pub(crate) fn new<D>(dynamics: &D, method: M, control: C, t: f64, q: [T; N], v: [T; N]) -> Result<Self, Error>
+    pub(crate) fn new<D>(
+        dynamics: &D,
+        method: M,
+        control: C,
+        t: f64,
+        q: [T; N],
+        v: [T; N],
+    ) -> Result<Self, Error>
     where
         D: Dynamics<N, Scalar = T>,
         M: Stepper<D, N, Stages = R>,
@@ -69,7 +77,13 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
     }
 
     /// Puts the state elsewhere; counters stay, steps are chosen as at a start.
-    pub(crate) fn reset<D>(&mut self, dynamics: &D, t: f64, q: [T; N], v: [T; N]) -> Result<(), Error>
+    pub(crate) fn reset<D>(
+        &mut self,
+        dynamics: &D,
+        t: f64,
+        q: [T; N],
+        v: [T; N],
+    ) -> Result<(), Error>
     where
         D: Dynamics<N, Scalar = T>,
         M: Stepper<D, N, Stages = R>,
@@ -85,7 +99,12 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
     }
 
     /// Moves the coordinates by `high + low`; what rounding has left off stays.
-    pub(crate) fn displace<D>(&mut self, dynamics: &D, high: &[T; N], low: &[T; N]) -> Result<(), Error>
+    pub(crate) fn displace<D>(
+        &mut self,
+        dynamics: &D,
+        high: &[T; N],
+        low: &[T; N],
+    ) -> Result<(), Error>
     where
         D: Dynamics<N, Scalar = T>,
     {
@@ -99,14 +118,41 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
 
     /// The same integration under another control.
     pub(crate) fn controlled<B>(self, control: B) -> Driver<T, N, M, B, R> {
-        let Self { method, node, stats, last, from, within, before_kink, stages, memory, backwards, kink, .. } = self;
+        let Self {
+            method,
+            node,
+            stats,
+            last,
+            from,
+            within,
+            before_kink,
+            stages,
+            memory,
+            backwards,
+            kink,
+            ..
+        } = self;
         let memory = Memory { unknown: memory.unknown, ..Memory::default() };
-        Driver { method, control, node, stats, last, from, within, before_kink, stages, memory, backwards, kink }
+        Driver {
+            method,
+            control,
+            node,
+            stats,
+            last,
+            from,
+            within,
+            before_kink,
+            stages,
+            memory,
+            backwards,
+            kink,
+        }
     }
 
     /// The same integration, which is known to go over an interval of this length.
     pub(crate) fn over(mut self, length: f64) -> Self {
-        // Part of a length of few units in the last place may be none, which is no length of a step.
+        // Part of a length of few units in the last place may be none, which is no length of a
+        // step.
         self.memory.unknown = f64::max(PART * length, f64::MIN_POSITIVE);
         self
     }
@@ -139,7 +185,11 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
             stats: &mut self.stats,
         };
         let left = -course.from.t.since(target);
-        let taken = if is_short::<T>(left) { short(course) } else { self.control.step(&mut self.memory, course) };
+        let taken = if is_short::<T>(left) {
+            short(course)
+        } else {
+            self.control.step(&mut self.memory, course)
+        };
         self.stats.evaluations += field.evaluations;
         match taken.and_then(|span| self.arrive(dynamics, &span).map(|()| span)) {
             Ok(span) => (self.last, self.within, self.from) = (Some(span), None, from),
@@ -150,7 +200,11 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
                 return Err(error);
             }
         }
-        if is_due::<D::System, N>(self.stats.accepted, self.before_kink.is_some()) { self.look(dynamics) } else { Ok(()) }
+        if is_due::<D::System, N>(self.stats.accepted, self.before_kink.is_some()) {
+            self.look(dynamics)
+        } else {
+            Ok(())
+        }
     }
 
     /// Carries the state over the kink if a step over `span` has ended on it.
@@ -172,7 +226,8 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
         Ok(())
     }
 
-    /// Takes the last step back if the mass matrix is not positive at its end; it does not count then.
+    /// Takes the last step back if the mass matrix is not positive at its end; it does not count
+    /// then.
     // Out of the way of the steps.
     #[cold]
     #[inline(never)]
@@ -325,7 +380,12 @@ pub(super) fn check_start<D: Dynamics<N, Scalar = T>, T: Float, const N: usize>(
 }
 
 /// The first kink after `t`, or the last one before it; infinite if there is none.
-fn next_kink<D, M, const N: usize>(method: &M, dynamics: &D, t: f64, backwards: bool) -> Result<f64, Error>
+fn next_kink<D, M, const N: usize>(
+    method: &M,
+    dynamics: &D,
+    t: f64,
+    backwards: bool,
+) -> Result<f64, Error>
 where
     D: Dynamics<N, Scalar: Float>,
     M: Stepper<D, N>,
@@ -338,7 +398,11 @@ where
 }
 
 /// Carries the velocities over the kink at `node.t`.
-fn cross<D, T, const N: usize>(dynamics: &D, node: &mut Node<T, N>, backwards: bool) -> Result<(), Error>
+fn cross<D, T, const N: usize>(
+    dynamics: &D,
+    node: &mut Node<T, N>,
+    backwards: bool,
+) -> Result<(), Error>
 where
     D: Dynamics<N, Scalar = T>,
     T: Float,

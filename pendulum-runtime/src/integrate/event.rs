@@ -8,12 +8,14 @@ use core::fmt;
 /// A function of time, coordinates and velocities whose roots are events.
 type Function<'a, T, const N: usize> = dyn Fn(T, &[T; N], &[T; N]) -> T + Sync + 'a;
 
-/// Something that happens on the way: a function of time and state passes through zero, or a known time comes.
+/// Something that happens on the way: a function of time and state passes through zero, or a known
+/// time comes.
 ///
-/// Roots are looked for in every step, on the dense output of the method: between ten points a change of sign or a dip towards zero
-/// gives away where they are, also several in one step, and a bracketing method finds them to the last digits. Wiggles shorter than an
-/// eighth of a step stay unseen; a `max_step` helps. The start itself is no event: an integration that goes on from an event does not find
-/// it again.
+/// Roots are looked for in every step, on the dense output of the method: between ten points a
+/// change of sign or a dip towards zero gives away where they are, also several in one step, and a
+/// bracketing method finds them to the last digits. Wiggles shorter than an eighth of a step stay
+/// unseen; a `max_step` helps. The start itself is no event: an integration that goes on from an
+/// event does not find it again.
 ///
 /// ```
 /// # use pendulum_runtime::{integrate::*, system::*};
@@ -81,12 +83,23 @@ impl<'a, T: Float, const N: usize> Event<'a, T, N> {
     ///
     /// If it gives something that is not a number, the integration ends with an error.
     pub const fn new(function: &'a Function<'a, T, N>) -> Self {
-        Self { condition: Condition::Root(function), direction: Direction::Both, terminal: None, tolerance: None }
+        Self {
+            condition: Condition::Root(function),
+            direction: Direction::Both,
+            terminal: None,
+            tolerance: None,
+        }
     }
 
-    /// Known times in ascending order: a step ends exactly at each of them, and nothing is searched.
+    /// Known times in ascending order: a step ends exactly at each of them, and nothing is
+    /// searched.
     pub const fn at(times: &'a [f64]) -> Self {
-        Self { condition: Condition::Times(times), direction: Direction::Both, terminal: None, tolerance: None }
+        Self {
+            condition: Condition::Times(times),
+            direction: Direction::Both,
+            terminal: None,
+            tolerance: None,
+        }
     }
 
     /// Counts sign changes in one direction only.
@@ -108,9 +121,10 @@ impl<'a, T: Float, const N: usize> Event<'a, T, N> {
 
     /// How near to zero an extremum of the function counts as a root at which it touches zero.
     ///
-    /// Without this call it is what the function changes if each coordinate and velocity y changes by 1e-9·(1 + |y|) (for `f64`; √ε/16 in general), because
-    /// the solution itself is no more exact as a rule. A dip through zero by less than this is one root too, not two. Zero finds only what
-    /// crosses, and so does an event with a direction.
+    /// Without this call it is what the function changes if each coordinate and velocity y changes
+    /// by 1e-9·(1 + |y|) (for `f64`; √ε/16 in general), because the solution itself is no more
+    /// exact as a rule. A dip through zero by less than this is one root too, not two. Zero finds
+    /// only what crosses, and so does an event with a direction.
     pub const fn touching(mut self, tolerance: f64) -> Self {
         self.tolerance = Some(tolerance);
         self

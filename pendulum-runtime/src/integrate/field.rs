@@ -19,19 +19,49 @@ pub trait Field<S: System<N>, const N: usize>: Accelerations<S::Scalar, N> {
     fn inputs(&mut self, t: Time, side: Side) -> S::Inputs;
 
     /// The momenta p = ∂L/∂q̇.
-    fn momenta(&mut self, t: Time, q: &[S::Scalar; N], v: &[S::Scalar; N], inputs: &S::Inputs) -> [S::Scalar; N];
+    fn momenta(
+        &mut self,
+        t: Time,
+        q: &[S::Scalar; N],
+        v: &[S::Scalar; N],
+        inputs: &S::Inputs,
+    ) -> [S::Scalar; N];
 
     /// The velocities that give the momenta `p`.
-    fn velocities(&mut self, t: Time, q: &[S::Scalar; N], p: &[S::Scalar; N], inputs: &S::Inputs) -> [S::Scalar; N];
+    fn velocities(
+        &mut self,
+        t: Time,
+        q: &[S::Scalar; N],
+        p: &[S::Scalar; N],
+        inputs: &S::Inputs,
+    ) -> [S::Scalar; N];
 
     /// dp/dt; counts as an evaluation, together with the velocities.
-    fn momentum_rates(&mut self, t: Time, q: &[S::Scalar; N], v: &[S::Scalar; N], inputs: &S::Inputs) -> [S::Scalar; N];
+    fn momentum_rates(
+        &mut self,
+        t: Time,
+        q: &[S::Scalar; N],
+        v: &[S::Scalar; N],
+        inputs: &S::Inputs,
+    ) -> [S::Scalar; N];
 
     /// The mass matrix M = ∂²L/∂q̇².
-    fn mass_matrix(&mut self, t: Time, q: &[S::Scalar; N], v: &[S::Scalar; N], inputs: &S::Inputs) -> SMatrix<S::Scalar, N, N>;
+    fn mass_matrix(
+        &mut self,
+        t: Time,
+        q: &[S::Scalar; N],
+        v: &[S::Scalar; N],
+        inputs: &S::Inputs,
+    ) -> SMatrix<S::Scalar, N, N>;
 
     /// ∂q̈/∂q and ∂q̈/∂q̇ at `t`, seen from `side`.
-    fn jacobians(&mut self, t: Time, side: Side, q: &[S::Scalar; N], v: &[S::Scalar; N]) -> [SMatrix<S::Scalar, N, N>; 2]
+    fn jacobians(
+        &mut self,
+        t: Time,
+        side: Side,
+        q: &[S::Scalar; N],
+        v: &[S::Scalar; N],
+    ) -> [SMatrix<S::Scalar, N, N>; 2]
     where
         S: Jacobians<N>;
 }
@@ -52,7 +82,13 @@ impl<'a, D> Counted<'a, D> {
 
 impl<const N: usize, D: Dynamics<N>> Accelerations<D::Scalar, N> for Counted<'_, D> {
     #[inline]
-    fn at(&mut self, t: Time, side: Side, q: &[D::Scalar; N], v: &[D::Scalar; N]) -> [D::Scalar; N] {
+    fn at(
+        &mut self,
+        t: Time,
+        side: Side,
+        q: &[D::Scalar; N],
+        v: &[D::Scalar; N],
+    ) -> [D::Scalar; N] {
         self.evaluations += 1;
         self.dynamics.accelerations_at(t, side, q, v)
     }
@@ -108,7 +144,13 @@ impl<const N: usize, D: Dynamics<N>> Field<D::System, N> for Counted<'_, D> {
         self.dynamics.system().mass_matrix(scalar_time(t), q, v, inputs)
     }
 
-    fn jacobians(&mut self, t: Time, side: Side, q: &[D::Scalar; N], v: &[D::Scalar; N]) -> [SMatrix<D::Scalar, N, N>; 2]
+    fn jacobians(
+        &mut self,
+        t: Time,
+        side: Side,
+        q: &[D::Scalar; N],
+        v: &[D::Scalar; N],
+    ) -> [SMatrix<D::Scalar, N, N>; 2]
     where
         D::System: Jacobians<N>,
     {
@@ -123,31 +165,43 @@ fn jacobians<const N: usize, D: Dynamics<N, System: Jacobians<N>>>(
     q: &[D::Scalar; N],
     v: &[D::Scalar; N],
 ) -> [SMatrix<D::Scalar, N, N>; 2] {
-    let (system, inputs, t) = (dynamics.system(), dynamics.inputs(t, side, Purpose::Accelerations), scalar_time(t));
+    let (system, inputs, t) =
+        (dynamics.system(), dynamics.inputs(t, side, Purpose::Accelerations), scalar_time(t));
     [system.position_jacobian(t, q, v, &inputs), system.velocity_jacobian(t, q, v, &inputs)]
 }
 
-/// The accelerations of some dynamics and the first number in them, or on the way to them, that is not finite.
+/// The accelerations of some dynamics and the first number in them, or on the way to them, that is
+/// not finite.
 ///
-/// A failed step is taken once more through this to find out where it failed, so that successful ones need not look.
+/// A failed step is taken once more through this to find out where it failed, so that successful
+/// ones need not look.
 #[derive(Debug)]
 pub(crate) struct Watched<'a, D> {
     pub(crate) dynamics: &'a D,
     pub(crate) first: Option<(Time, Quantity)>,
-    /// It is a velocity that belongs to a finite momentum: the mass matrix has no inverse there, or no velocity gives that momentum.
+    /// It is a velocity that belongs to a finite momentum: the mass matrix has no inverse there, or
+    /// no velocity gives that momentum.
     pub(crate) singular: bool,
     /// The time and the coordinate if it is one that was not found, and not one beyond all numbers.
     pub(crate) lost: Option<(Time, Coordinate)>,
 }
 
 impl<const N: usize, D: Dynamics<N, Scalar: Float>> Accelerations<D::Scalar, N> for Watched<'_, D> {
-    fn at(&mut self, t: Time, side: Side, q: &[D::Scalar; N], v: &[D::Scalar; N]) -> [D::Scalar; N] {
+    fn at(
+        &mut self,
+        t: Time,
+        side: Side,
+        q: &[D::Scalar; N],
+        v: &[D::Scalar; N],
+    ) -> [D::Scalar; N] {
         let facts = &<D::System as System<N>>::FACTS;
         let inputs = self.dynamics.inputs(t, side, Purpose::Accelerations);
         let a = self.dynamics.system().accelerations(scalar_time(t), q, v, &inputs);
         self.look(t, || {
             let state = first_in_state(facts, q, v).or_else(|| first_in_inputs(facts, &inputs));
-            state.or_else(|| first_in(&a).map(|index| Quantity::Acceleration(coordinate(facts, index))))
+            state.or_else(|| {
+                first_in(&a).map(|index| Quantity::Acceleration(coordinate(facts, index)))
+            })
         });
         a
     }
@@ -191,12 +245,17 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>> Field<D::System, N> for Watc
         inputs: &<D::System as System<N>>::Inputs,
     ) -> [D::Scalar; N] {
         let v = self.dynamics.system().velocities(scalar_time(t), q, p, inputs);
-        self.singular |= self.first.is_none() && first_in(p).is_none() && first_in(q).is_none() && first_in(&v).is_some();
+        self.singular |= self.first.is_none()
+            && first_in(p).is_none()
+            && first_in(q).is_none()
+            && first_in(&v).is_some();
         if self.singular && self.lost.is_none() && self.first.is_none() {
             let facts = &<D::System as System<N>>::FACTS;
             // Only what is no number has no order.
-            self.lost =
-                v.iter().position(|velocity| velocity.partial_cmp(velocity).is_none()).map(|index| (t, coordinate(facts, index)));
+            self.lost = v
+                .iter()
+                .position(|velocity| velocity.partial_cmp(velocity).is_none())
+                .map(|index| (t, coordinate(facts, index)));
         }
         self.look(t, || first_in_state(&<D::System as System<N>>::FACTS, q, &v));
         v
@@ -211,7 +270,9 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>> Field<D::System, N> for Watc
     ) -> [D::Scalar; N] {
         let facts = &<D::System as System<N>>::FACTS;
         let rates = self.dynamics.system().momentum_rates(scalar_time(t), q, v, inputs);
-        self.look(t, || first_in(&rates).map(|index| Quantity::Acceleration(coordinate(facts, index))));
+        self.look(t, || {
+            first_in(&rates).map(|index| Quantity::Acceleration(coordinate(facts, index)))
+        });
         rates
     }
 
@@ -225,15 +286,25 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>> Field<D::System, N> for Watc
         self.dynamics.system().mass_matrix(scalar_time(t), q, v, inputs)
     }
 
-    fn jacobians(&mut self, t: Time, side: Side, q: &[D::Scalar; N], v: &[D::Scalar; N]) -> [SMatrix<D::Scalar, N, N>; 2]
+    fn jacobians(
+        &mut self,
+        t: Time,
+        side: Side,
+        q: &[D::Scalar; N],
+        v: &[D::Scalar; N],
+    ) -> [SMatrix<D::Scalar, N, N>; 2]
     where
         D::System: Jacobians<N>,
     {
         let jacobians = jacobians(self.dynamics, t, side, q, v);
         self.look(t, || {
-            let entries = |matrix: &SMatrix<D::Scalar, N, N>| (0..N).find(|&i| !matrix.row(i).iter().all(|x| x.is_finite()));
+            let entries = |matrix: &SMatrix<D::Scalar, N, N>| {
+                (0..N).find(|&i| !matrix.row(i).iter().all(|x| x.is_finite()))
+            };
             let row = jacobians.iter().find_map(entries);
-            row.map(|index| Quantity::Acceleration(coordinate(&<D::System as System<N>>::FACTS, index)))
+            row.map(|index| {
+                Quantity::Acceleration(coordinate(&<D::System as System<N>>::FACTS, index))
+            })
         });
         jacobians
     }
@@ -245,7 +316,11 @@ pub(crate) fn coordinate(facts: &Facts, index: usize) -> Coordinate {
 }
 
 /// The first component of the state that is not finite.
-pub(crate) fn first_in_state<T: Float, const N: usize>(facts: &Facts, q: &[T; N], v: &[T; N]) -> Option<Quantity> {
+pub(crate) fn first_in_state<T: Float, const N: usize>(
+    facts: &Facts,
+    q: &[T; N],
+    v: &[T; N],
+) -> Option<Quantity> {
     let position = first_in(q).map(|index| Quantity::Position(coordinate(facts, index)));
     position.or_else(|| first_in(v).map(|index| Quantity::Velocity(coordinate(facts, index))))
 }

@@ -1,4 +1,5 @@
-//! Polynomials in the form of a [`Piece`](super::piece::Piece) through given values, slopes and curvatures.
+//! Polynomials in the form of a [`Piece`](super::piece::Piece) through given values, slopes and
+//! curvatures.
 
 use super::linear::Factors;
 use super::piece::TERMS;
@@ -15,8 +16,12 @@ pub(crate) enum Condition {
     Curvature(f64),
 }
 
-/// Computes as many terms after the first, which is known, as there are conditions; they must be independent.
-pub(crate) fn fit<T: Float, const N: usize>(terms: &mut [[T; N]; TERMS], conditions: &[(Condition, [T; N])]) {
+/// Computes as many terms after the first, which is known, as there are conditions; they must be
+/// independent.
+pub(crate) fn fit<T: Float, const N: usize>(
+    terms: &mut [[T; N]; TERMS],
+    conditions: &[(Condition, [T; N])],
+) {
     let row = |condition: &Condition| match *condition {
         Condition::Value(theta) => basis(theta).map(|[value, ..]| value),
         Condition::Slope(theta) => basis(theta).map(|[_, slope, _]| slope),
@@ -48,7 +53,11 @@ fn basis(theta: f64) -> [[f64; 3]; TERMS] {
     let [mut value, mut slope, mut curvature] = [1.0, 0.0, 0.0];
     core::array::from_fn(|term| {
         let (factor, rise) = if term % 2 == 0 { (theta, 1.0) } else { (1.0 - theta, -1.0) };
-        [value, slope, curvature] = [value * factor, slope * factor + value * rise, curvature * factor + 2.0 * slope * rise];
+        [value, slope, curvature] = [
+            value * factor,
+            slope * factor + value * rise,
+            curvature * factor + 2.0 * slope * rise,
+        ];
         [value, slope, curvature]
     })
 }

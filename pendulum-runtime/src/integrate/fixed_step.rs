@@ -12,9 +12,10 @@ use crate::time::Time;
 
 /// Steps of equal length.
 ///
-/// Every stretch between two times that a step must meet (start, kinks, stops, end) is divided into the least number of equal steps
-/// that are not longer than asked, so that each ends exactly there and no sliver is left; up to a relative 1e-9 longer counts as
-/// equal. Symplectic methods need it: a step size that varies with the state spoils them.
+/// Every stretch between two times that a step must meet (start, kinks, stops, end) is divided into
+/// the least number of equal steps that are not longer than asked, so that each ends exactly there
+/// and no sliver is left; up to a relative 1e-9 longer counts as equal. Symplectic methods need it:
+/// a step size that varies with the state spoils them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedStep {
     step: f64,
@@ -33,13 +34,17 @@ impl FixedStep {
     }
 }
 
-impl<M: Stepper<D, N>, D: Dynamics<N, Scalar: Float>, const N: usize> Control<M, D, N> for FixedStep {
+impl<M: Stepper<D, N>, D: Dynamics<N, Scalar: Float>, const N: usize> Control<M, D, N>
+    for FixedStep
+{
     fn check(&self) -> Result<(), Error> {
         match self.count {
             Some(0) => Err(Error::Setting { name: "steps", value: 0.0, required: "at least 1" }),
-            None if !(0.0 < self.step && self.step < f64::INFINITY) => {
-                Err(Error::Setting { name: "step", value: self.step, required: "positive and finite" })
-            }
+            None if !(0.0 < self.step && self.step < f64::INFINITY) => Err(Error::Setting {
+                name: "step",
+                value: self.step,
+                required: "positive and finite",
+            }),
             _ => Ok(()),
         }
     }
@@ -53,8 +58,11 @@ impl<M: Stepper<D, N>, D: Dynamics<N, Scalar: Float>, const N: usize> Control<M,
         let Course { method, field, from, to, stages, target, stats } = course;
         let mut plan = *memory;
         let span = self.next(&mut plan, from.t, target);
-        *to =
-            if is_short::<D::Scalar>(span.h) { straight(field, &span, from) } else { method.advance(field, &span, from, stages) };
+        *to = if is_short::<D::Scalar>(span.h) {
+            straight(field, &span, from)
+        } else {
+            method.advance(field, &span, from, stages)
+        };
         if !to.is_finite() {
             return Err(blame(method, field.dynamics, &span, from, stages));
         }
@@ -94,7 +102,8 @@ mod tests {
     use crate::time::Time;
 
     fn ends(step: f64, targets: &[f64]) -> Vec<f64> {
-        let (control, mut plan, mut t, mut ends) = (FixedStep::new(step), Memory::default(), Time::new(0.0), Vec::new());
+        let (control, mut plan, mut t, mut ends) =
+            (FixedStep::new(step), Memory::default(), Time::new(0.0), Vec::new());
         for &target in targets {
             while 0.0 < -t.since(target) {
                 t = control.next(&mut plan, t, target).end;

@@ -1,7 +1,9 @@
-//! The gaps between the times at which a step samples accelerations, and the bound of steps that follows from them.
+//! The gaps between the times at which a step samples accelerations, and the bound of steps that
+//! follows from them.
 //!
-//! What fits between two samples is not in the error estimate. A step is therefore bounded by what is known about time scales: no two of
-//! its samples lie farther apart than [`APART`] times the width of the narrowest function of time that it goes over.
+//! What fits between two samples is not in the error estimate. A step is therefore bounded by what
+//! is known about time scales: no two of its samples lie farther apart than [`APART`] times the
+//! width of the narrowest function of time that it goes over.
 
 // What lanes use too has to be compiled for their vectors.
 #![allow(clippy::inline_always)]
@@ -13,10 +15,11 @@ use crate::real::{Float, Real};
 use crate::system::{Dynamics, System, scalar_time};
 use crate::time::Time;
 
-/// The greatest distance of two samples, in widths: exp(−((t − t₀)/w)²) is sampled within ¾ w of its middle, where it is 0.57 or more.
+/// The greatest distance of two samples, in widths: exp(−((t − t₀)/w)²) is sampled within ¾ w of
+/// its middle, where it is 0.57 or more.
 ///
-/// With 2.2, the middle of a kick is sampled where it is 0.3, and once in four hundred kicks the estimate of `Dop853` accepts a step that is
-/// 440 tolerances off.
+/// With 2.2, the middle of a kick is sampled where it is 0.3, and once in four hundred kicks the
+/// estimate of `Dop853` accepts a step that is 440 tolerances off.
 pub(crate) const APART: f64 = 1.5;
 
 /// The part of the interval that a step over a motion of unknown resolution may take.
@@ -25,7 +28,8 @@ pub(crate) const PART: f64 = 0.02;
 /// The longest such step in seconds where there is no interval.
 pub(crate) const WITHOUT_INTERVAL: f64 = 1.0;
 
-/// The widest gap between the nodes to which an estimate gives weights, and between the last of them and the first of the next step.
+/// The widest gap between the nodes to which an estimate gives weights, and between the last of
+/// them and the first of the next step.
 pub(crate) const fn widest<const K: usize>(nodes: &[f64], estimate: &Row<K>) -> f64 {
     let mut widest = 0.0;
     let mut i = 0;
@@ -57,9 +61,14 @@ pub(crate) const fn all<const K: usize>() -> Row<K> {
     row
 }
 
-/// The longest step from `t` of a method whose samples lie `gap` of a step apart, as far as `system` contains the time.
+/// The longest step from `t` of a method whose samples lie `gap` of a step apart, as far as
+/// `system` contains the time.
 #[inline(always)]
-pub(crate) fn longest<S: System<N, Scalar: Float>, const N: usize>(system: &S, t: Time, gap: f64) -> f64 {
+pub(crate) fn longest<S: System<N, Scalar: Float>, const N: usize>(
+    system: &S,
+    t: Time,
+    gap: f64,
+) -> f64 {
     if !S::FACTS.explicit_time {
         return f64::INFINITY;
     }
@@ -83,9 +92,16 @@ fn least(t: Time) -> f64 {
 }
 
 impl Memory {
-    /// `wanted`, or less if a step from `t` of a method whose samples lie `gap` of a step apart might miss what time alone does.
+    /// `wanted`, or less if a step from `t` of a method whose samples lie `gap` of a step apart
+    /// might miss what time alone does.
     #[inline]
-    pub(crate) fn within_sight<D, const N: usize>(&mut self, wanted: f64, dynamics: &D, t: Time, gap: f64) -> Result<f64, Error>
+    pub(crate) fn within_sight<D, const N: usize>(
+        &mut self,
+        wanted: f64,
+        dynamics: &D,
+        t: Time,
+        gap: f64,
+    ) -> Result<f64, Error>
     where
         D: Dynamics<N, Scalar: Float>,
     {

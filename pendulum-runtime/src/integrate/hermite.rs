@@ -1,4 +1,5 @@
-//! Dense output for methods that have none of their own: polynomials through what is known at both ends of a step.
+//! Dense output for methods that have none of their own: polynomials through what is known at both
+//! ends of a step.
 
 use super::node::Node;
 use super::piece::Piece;
@@ -7,8 +8,13 @@ use crate::real::Float;
 
 /// The cubic through coordinates and velocities at both ends, and its derivative.
 ///
-/// It needs no accelerations. The error of the coordinates is h⁴/384·|q⁗|, that of the velocities about h³/40·|q⁗|.
-pub(crate) fn cubic<T: Float, const N: usize>(span: &Span, from: &Node<T, N>, to: &Node<T, N>) -> Piece<T, N> {
+/// It needs no accelerations. The error of the coordinates is h⁴/384·|q⁗|, that of the velocities
+/// about h³/40·|q⁗|.
+pub(crate) fn cubic<T: Float, const N: usize>(
+    span: &Span,
+    from: &Node<T, N>,
+    to: &Node<T, N>,
+) -> Piece<T, N> {
     let h = span.length::<T>();
     let mut piece = Piece::linear(span, from, to);
     piece.clamp_coordinates(h, &from.v.high, &to.v.high);
@@ -38,9 +44,11 @@ pub(crate) fn quintic<T: Float, const N: usize>(
         let [increment, q1, q2, ..] = piece.q.map(|term| term[i]);
         piece.q[3][i] = h * h * a0[i] * half + q1 - q2;
         piece.q[4][i] = h * h * a1[i] * half + q1 + q2 + q2 - piece.q[3][i];
-        // The quartic that shares velocities and accelerations with the cubic and whose integral is the increment of the coordinate.
+        // The quartic that shares velocities and accelerations with the cubic and whose integral is
+        // the increment of the coordinate.
         let [v0, v1, v2, ..] = piece.v.map(|term| term[i]);
-        let gap = (increment / h - from.v.high[i]) - v0 * half - v1 / number(6.0) - v2 / number(12.0);
+        let gap =
+            (increment / h - from.v.high[i]) - v0 * half - v1 / number(6.0) - v2 / number(12.0);
         piece.v[3][i] = gap * number(30.0);
     }
     piece.terms = 5;

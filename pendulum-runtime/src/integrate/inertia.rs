@@ -1,4 +1,5 @@
-//! Whether the mass matrix is positive definite, as the kinetic energy of everything that has mass is.
+//! Whether the mass matrix is positive definite, as the kinetic energy of everything that has mass
+//! is.
 
 use super::blame::negative;
 use super::field::coordinate;
@@ -9,10 +10,11 @@ use crate::system::{Dynamics, Facts, Purpose, System, scalar_time};
 use crate::time::Time;
 use nalgebra::SMatrix;
 
-/// Whether a step is due for [`inertia`] that is the `accepted`-th: one that ends on a kink, and every 64th, of more than sixteen coordinates every N²/4-th, so
-/// that it costs next to nothing.
+/// Whether a step is due for [`inertia`] that is the `accepted`-th: one that ends on a kink, and
+/// every 64th, of more than sixteen coordinates every N²/4-th, so that it costs next to nothing.
 ///
-/// Pivots change their sign only where the mass matrix is singular, which methods with step control do not pass.
+/// Pivots change their sign only where the mass matrix is singular, which methods with step control
+/// do not pass.
 #[inline]
 pub(crate) fn is_due<S: System<N>, const N: usize>(accepted: u64, on_kink: bool) -> bool {
     let every = if N <= 16 { 64 } else { (N * N / 4).next_power_of_two() as u64 };
@@ -43,13 +45,19 @@ pub(crate) fn inertia<D: Dynamics<N, Scalar: Float>, const N: usize>(
     let matrix = dynamics.system().mass_matrix(scalar_time(t), q, v, &inputs);
     let Some((index, pivot)) = negative_pivot(matrix) else { return Ok(()) };
     let suspects = negative(dynamics.system());
-    Err(Error::NegativeInertia { t: t.to_f64(), coordinate: coordinate(facts, index), pivot, suspects })
+    Err(Error::NegativeInertia {
+        t: t.to_f64(),
+        coordinate: coordinate(facts, index),
+        pivot,
+        suspects,
+    })
 }
 
 /// The first pivot of M = L D Lᵀ that rounding does not explain, if it is negative.
 ///
-/// Pivots are compared with the diagonal that they have come from, whatever the units of the coordinates. What is zero to rounding, or no number, ends the
-/// search: there the accelerations say what is wrong.
+/// Pivots are compared with the diagonal that they have come from, whatever the units of the
+/// coordinates. What is zero to rounding, or no number, ends the search: there the accelerations
+/// say what is wrong.
 fn negative_pivot<T: Float, const N: usize>(mut matrix: SMatrix<T, N, N>) -> Option<(usize, f64)> {
     let rounding = T::from_f64(8.0 * N as f64) * T::EPSILON;
     let diagonal: [T; N] = core::array::from_fn(|i| matrix[(i, i)].abs());
@@ -83,7 +91,8 @@ mod tests {
     #[test]
     fn the_first_negative_pivot_is_found_in_any_units() {
         for unit in [1e-150, 1.0, 1e150] {
-            let matrix = |entries: [f64; 4]| Matrix2::new(entries[0], entries[1], entries[1], entries[3]);
+            let matrix =
+                |entries: [f64; 4]| Matrix2::new(entries[0], entries[1], entries[1], entries[3]);
             let scaled = |[a, b, _, d]: [f64; 4]| matrix([a, b * unit, b * unit, d * unit * unit]);
             assert_eq!(negative_pivot(scaled([2.0, 1.0, 1.0, 1.0])), None);
             assert_eq!(negative_pivot(scaled([-1.0, 1.0, 1.0, 1.0])), Some((0, -1.0)));
@@ -92,7 +101,8 @@ mod tests {
         }
     }
 
-    /// What has rank one is singular, however it is rounded; a matrix that is not a number says nothing.
+    /// What has rank one is singular, however it is rounded; a matrix that is not a number says
+    /// nothing.
     #[test]
     fn rounding_and_numbers_that_are_none_are_no_negative_pivots() {
         for k in 1..2000 {

@@ -13,11 +13,13 @@ use crate::real::Float;
 use crate::system::{Dynamics, Prepared, System};
 
 /// Dynamics that are prepared.
-type Ready<'a, D, const N: usize> = Prepared<'a, D, <<D as Dynamics<N>>::System as System<N>>::Prepared>;
+type Ready<'a, D, const N: usize> =
+    Prepared<'a, D, <<D as Dynamics<N>>::System as System<N>>::Prepared>;
 
 /// An integration that goes on for as long as somebody asks for the next step; no step allocates.
 ///
-/// It knows no interval: an adaptive step over a [`Function`](crate::motion::Function) without a resolution is at most one second long.
+/// It knows no interval: an adaptive step over a [`Function`](crate::motion::Function) without a
+/// resolution is at most one second long.
 ///
 /// After an error the state is the one before the failed step.
 #[derive(Clone, Debug)]
@@ -42,11 +44,25 @@ where
 {
     /// At the coordinates `q` and velocities `v` at time `t`, with the default tolerances.
     ///
-    /// A method without error estimate needs a [`FixedStep`](super::FixedStep) from [`control`](Self::control) before its first step.
-    pub fn new(dynamics: &'a D, method: M, t: f64, q: [D::Scalar; N], v: [D::Scalar; N]) -> Result<Self, Error> {
+    /// A method without error estimate needs a [`FixedStep`](super::FixedStep) from
+    /// [`control`](Self::control) before its first step.
+    pub fn new(
+        dynamics: &'a D,
+        method: M,
+        t: f64,
+        q: [D::Scalar; N],
+        v: [D::Scalar; N],
+    ) -> Result<Self, Error> {
         let dynamics = Prepared::new(dynamics);
         let driver = Driver::new(&dynamics, method, AdaptiveStep::new(), t, q, v)?;
-        Ok(Self { dynamics, driver, watch: Watch::new(&[]), found: Vec::new(), terminal: None, max_steps: 10_000_000 })
+        Ok(Self {
+            dynamics,
+            driver,
+            watch: Watch::new(&[]),
+            found: Vec::new(),
+            terminal: None,
+            max_steps: 10_000_000,
+        })
     }
 }
 
@@ -56,23 +72,34 @@ where
     M: Stepper<Ready<'a, D, N>, N>,
 {
     /// Chooses the steps otherwise: with a [`FixedStep`](super::FixedStep) or an [`AdaptiveStep`].
-    pub fn control<B: Control<M, Ready<'a, D, N>, N>>(self, control: B) -> Result<Integrator<'a, N, D, M, B>, Error> {
+    pub fn control<B: Control<M, Ready<'a, D, N>, N>>(
+        self,
+        control: B,
+    ) -> Result<Integrator<'a, N, D, M, B>, Error> {
         control.check()?;
         let Self { dynamics, driver, watch, found, terminal, max_steps } = self;
-        Ok(Integrator { dynamics, driver: driver.controlled(control), watch, found, terminal, max_steps })
+        Ok(Integrator {
+            dynamics,
+            driver: driver.controlled(control),
+            watch,
+            found,
+            terminal,
+            max_steps,
+        })
     }
 
     /// Looks for events from here on, forwards in time.
     ///
-    /// A terminal one ends the step and the call that leads to it, with the state at the event; the next call goes on from there, or from
-    /// where [`reset`](Self::reset) has put the state.
+    /// A terminal one ends the step and the call that leads to it, with the state at the event; the
+    /// next call goes on from there, or from where [`reset`](Self::reset) has put the state.
     pub fn events(mut self, events: &'a [Event<'a, D::Scalar, N>]) -> Result<Self, Error> {
         self.watch = Watch::new(events);
         self.watch.begin(&mut self.driver, &self.dynamics)?;
         Ok(self)
     }
 
-    /// The number of steps that one call of [`advance_to`](Self::advance_to) may take; ten million without this call.
+    /// The number of steps that one call of [`advance_to`](Self::advance_to) may take; ten million
+    /// without this call.
     pub fn max_steps(mut self, count: u64) -> Self {
         self.max_steps = count;
         self
@@ -101,15 +128,18 @@ where
         Ok(())
     }
 
-    /// Takes steps until the time is exactly `t`, or a terminal event has happened; methods that can go back in time do so for an earlier
-    /// time, if there are no events to look for.
+    /// Takes steps until the time is exactly `t`, or a terminal event has happened; methods that
+    /// can go back in time do so for an earlier time, if there are no events to look for.
     pub fn advance_to(&mut self, t: f64) -> Result<(), Error>
     where
         C: Control<M, Ready<'a, D, N>, N>,
     {
         self.found.clear();
         self.terminal = None;
-        if !((self.t() <= t || self.driver.method.goes_back(&self.dynamics) && self.watch.is_idle()) && t.is_finite()) {
+        if !((self.t() <= t
+            || self.driver.method.goes_back(&self.dynamics) && self.watch.is_idle())
+            && t.is_finite())
+        {
             return Err(Error::Interval { start: self.t(), end: t });
         }
         let steps = |stats: &Stats| stats.accepted + stats.rejected;
@@ -123,15 +153,18 @@ where
         Ok(())
     }
 
-    /// Puts the state elsewhere, or the same state to another time; what follows is as if the integration began there.
+    /// Puts the state elsewhere, or the same state to another time; what follows is as if the
+    /// integration began there.
     pub fn reset(&mut self, t: f64, q: [D::Scalar; N], v: [D::Scalar; N]) -> Result<(), Error> {
         self.driver.reset(&self.dynamics, t, q, v)?;
         self.watch.begin(&mut self.driver, &self.dynamics)
     }
 
-    /// Moves the coordinates by `high + low` and keeps what rounding has left off, which [`reset`](Self::reset) does not.
+    /// Moves the coordinates by `high + low` and keeps what rounding has left off, which
+    /// [`reset`](Self::reset) does not.
     ///
-    /// This takes whole turns off an angle that grows for ever, whose forces would lose a digit with every ten turns:
+    /// This takes whole turns off an angle that grows for ever, whose forces would lose a digit
+    /// with every ten turns:
     ///
     /// ```
     /// # use core::f64::consts::TAU;
@@ -149,7 +182,8 @@ where
         self.watch.begin(&mut self.driver, &self.dynamics)
     }
 
-    /// The events that happened in the last call of [`step`](Self::step) or [`advance_to`](Self::advance_to), in order.
+    /// The events that happened in the last call of [`step`](Self::step) or
+    /// [`advance_to`](Self::advance_to), in order.
     pub fn occurrences(&self) -> &[Occurrence<D::Scalar, N>] {
         &self.found
     }

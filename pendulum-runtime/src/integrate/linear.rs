@@ -15,7 +15,8 @@ pub(crate) struct Factors<T, const N: usize, const S: usize> {
 }
 
 impl<T: Float, const N: usize, const S: usize> Factors<T, N, S> {
-    /// Factors the matrix of the blocks `block(i, j)`; a singular one gives solutions that are not finite.
+    /// Factors the matrix of the blocks `block(i, j)`; a singular one gives solutions that are not
+    /// finite.
     pub(crate) fn new(mut block: impl FnMut(usize, usize) -> Square<T, N>) -> Self {
         let zero = T::from_f64(0.0);
         let mut factors = Self { rows: [[[[zero; N]; S]; N]; S], pivots: [[0; N]; S] };
@@ -91,7 +92,9 @@ mod tests {
     #[test]
     fn a_matrix_of_blocks_with_zeros_on_its_diagonal() {
         let block = |i: usize, j: usize| {
-            let entry = |a: usize, b: usize| ((7 * (2 * i + a) + 5 * (2 * j + b)) * (2 * i + a + 1) % 11) as f64;
+            let entry = |a: usize, b: usize| {
+                ((7 * (2 * i + a) + 5 * (2 * j + b)) * (2 * i + a + 1) % 11) as f64
+            };
             [[if i == j { 0.0 } else { entry(0, 0) }, entry(0, 1)], [entry(1, 0), entry(1, 1)]]
         };
         let exact = [[1.0, -2.0], [3.0, 0.5], [-0.25, 4.0]];

@@ -20,7 +20,8 @@ pub trait Method: Copy + core::fmt::Debug {
     const NAME: &'static str;
     /// The order p: the error at a fixed time falls with the p-th power of the step.
     const ORDER: u32;
-    /// The order of the dense output: the power of the step with which the error of the coordinates between two steps falls.
+    /// The order of the dense output: the power of the step with which the error of the coordinates
+    /// between two steps falls.
     const DENSE_ORDER: u32;
     /// What one step leaves behind for its error estimate and dense output.
     type Stages<T: Float, const N: usize>: Clone + core::fmt::Debug;
@@ -28,8 +29,8 @@ pub trait Method: Copy + core::fmt::Debug {
     /// Room for the stages.
     fn stages<T: Float, const N: usize>() -> Self::Stages<T, N>;
 
-    /// Where the equations of the step just taken could not be solved: the time and the index of the coordinate; explicit methods have
-    /// none to solve.
+    /// Where the equations of the step just taken could not be solved: the time and the index of
+    /// the coordinate; explicit methods have none to solve.
     ///
     /// Asked for after a step that has ended in numbers that are not finite.
     fn unsolved<T: Float, const N: usize>(stages: &Self::Stages<T, N>) -> Option<(Time, usize)> {
@@ -38,7 +39,8 @@ pub trait Method: Copy + core::fmt::Debug {
     }
 }
 
-/// A method with an error estimate, which can choose its own steps; others do not compile without a step size:
+/// A method with an error estimate, which can choose its own steps; others do not compile without a
+/// step size:
 ///
 /// ```
 /// # use pendulum_runtime::{integrate::*, system::*};
@@ -64,14 +66,21 @@ pub trait Embedded: Method {
     /// How the step size answers to the error.
     const RESPONSE: Response;
 
-    /// The widest gap between two times whose accelerations the estimate contains, in steps: what is narrower may stay unseen.
+    /// The widest gap between two times whose accelerations the estimate contains, in steps: what
+    /// is narrower may stay unseen.
     const GAP: f64 = 1.0;
 
     /// The error of the step just taken, times `weights`, as a root mean square.
-    fn error<T: Float, const N: usize>(&self, stages: &Self::Stages<T, N>, h: f64, weights: &Weights<N>) -> f64;
+    fn error<T: Float, const N: usize>(
+        &self,
+        stages: &Self::Stages<T, N>,
+        h: f64,
+        weights: &Weights<N>,
+    ) -> f64;
 }
 
-/// How the step size answers to the error: h ← h · safety · err^(−α) · e^β with the error e of the step before, within limits (Gustafsson 1991).
+/// How the step size answers to the error: h ← h · safety · err^(−α) · e^β with the error e of the
+/// step before, within limits (Gustafsson 1991).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response {
     /// α.
@@ -111,8 +120,9 @@ impl<const N: usize> Weights<N> {
 
 /// Methods that are right for the system `S`, and how they step it.
 ///
-/// Splitting, Nyström and multistep methods want [`VelocityFree`](crate::system::VelocityFree) systems, those that solve equations
-/// by Newton's method [`Jacobians`](crate::system::Jacobians), which all generated systems have; the others suit every system:
+/// Splitting, Nyström and multistep methods want [`VelocityFree`](crate::system::VelocityFree)
+/// systems, those that solve equations by Newton's method [`Jacobians`](crate::system::Jacobians),
+/// which all generated systems have; the others suit every system:
 ///
 /// ```
 /// # use pendulum_runtime::{integrate::*, system::*};
@@ -133,7 +143,8 @@ where
 {
     /// Goes from `from` to the end of `span`.
     ///
-    /// The accelerations at the start may be kept in `from`, those at the end in the node that is returned.
+    /// The accelerations at the start may be kept in `from`, those at the end in the node that is
+    /// returned.
     fn step(
         &self,
         field: &mut impl Field<S, N>,
@@ -144,7 +155,8 @@ where
 
     /// The motion within the step just taken; evaluates what it needs beyond the step itself.
     ///
-    /// A method without dense output of its own has the quintic through coordinates, velocities and accelerations at both ends of the step.
+    /// A method without dense output of its own has the quintic through coordinates, velocities and
+    /// accelerations at both ends of the step.
     fn dense(
         &self,
         field: &mut impl Field<S, N>,

@@ -1,6 +1,7 @@
 //! Integrators: one method a file, and around them what knows no method's name.
 //!
-//! [`solve`] integrates from start to end, [`Integrator`] step by step. A method that is wrong for a system does not compile for it.
+//! [`solve`] integrates from start to end, [`Integrator`] step by step. A method that is wrong for
+//! a system does not compile for it.
 //!
 //! | method | order | evaluations a step | steps | for |
 //! |---|---|---|---|---|
@@ -24,8 +25,9 @@
 //!
 //! [`Auto`], which `solve` uses unless told otherwise, chooses among them.
 //!
-//! Velocity-free are systems with a constant mass matrix whose accelerations contain no velocity; `lagrangian!` knows them.
-//! Adaptive methods take fixed steps too. All of them sum the state with compensation and keep the time in two words.
+//! Velocity-free are systems with a constant mass matrix whose accelerations contain no velocity;
+//! `lagrangian!` knows them. Adaptive methods take fixed steps too. All of them sum the state with
+//! compensation and keep the time in two words.
 
 pub mod method;
 

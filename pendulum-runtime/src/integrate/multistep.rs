@@ -1,7 +1,8 @@
 //! Explicit multistep methods in summed form: what they share.
 //!
-//! d_n + Σ a_j d_{n−j} = Σ b_j f_{n−j} gives the second difference h² d_n = q_{n+1} − 2q_n + q_{n−1} from accelerations f; its first
-//! sum w_n = (q_{n+1} − q_n)/h = w_{n−1} + h d_n and its second q_{n+1} = q_n + h w_n are kept with compensation (Henrici 1962, 6.4).
+//! d_n + Σ a_j d_{n−j} = Σ b_j f_{n−j} gives the second difference h² d_n = q_{n+1} − 2q_n +
+//! q_{n−1} from accelerations f; its first sum w_n = (q_{n+1} − q_n)/h = w_{n−1} + h d_n and its
+//! second q_{n+1} = q_n + h w_n are kept with compensation (Henrici 1962, 6.4).
 
 use super::dop853::{self, Dop853};
 use super::field::Field;
@@ -17,13 +18,15 @@ use crate::real::Float;
 use crate::system::VelocityFree;
 use crate::time::Time;
 
-/// The coefficients of a method of order `P`, for the newest value first; as constants of a type the zeros among them cost nothing.
+/// The coefficients of a method of order `P`, for the newest value first; as constants of a type
+/// the zeros among them cost nothing.
 pub(crate) trait Scheme<const P: usize> {
     /// The weights b of the accelerations.
     const KICKS: [f64; P];
     /// The weights a of earlier second differences.
     const ECHOES: [f64; P];
-    /// The weights g with which accelerations give the velocity at the end of a step, v_n = w_{n−1} + h Σ g_j f_{n−j}.
+    /// The weights g with which accelerations give the velocity at the end of a step, v_n =
+    /// w_{n−1} + h Σ g_j f_{n−j}.
     const VELOCITIES: [f64; P] = velocities();
 }
 
@@ -66,8 +69,9 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
 
     /// Takes the step `span`.
     ///
-    /// A state that comes from elsewhere, a kink (after which the accelerations in `from` are unknown) and another length of the step
-    /// begin a new grid. Its first `P` − 1 steps are taken by `Dop853` in [`SUBSTEPS`] parts each.
+    /// A state that comes from elsewhere, a kink (after which the accelerations in `from` are
+    /// unknown) and another length of the step begin a new grid. Its first `P` − 1 steps are taken
+    /// by `Dop853` in [`SUBSTEPS`] parts each.
     #[inline]
     pub(crate) fn step<C: Scheme<P>, S: VelocityFree<N, Scalar = T>>(
         &mut self,
@@ -98,10 +102,12 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
     ) -> Node<T, N> {
         let (h, last) = (T::from_f64(self.h), T::from_f64(span.h));
         let (f, d, newest) = (self.f.values(), self.d.values(), self.newest);
-        // All that does not need the newest acceleration is computed first, while the processor still waits for it; so the
-        // coordinates take h w_{n−1} and h² d_n apart, and the long sums stand outside the chain from one acceleration to the next.
-        let older: [T; N] =
-            core::array::from_fn(|i| sum(1, &C::KICKS, |j| f[P - j][i]) - sum(0, &C::ECHOES, |j| d[P - 1 - j][i]));
+        // All that does not need the newest acceleration is computed first, while the processor
+        // still waits for it; so the coordinates take h w_{n−1} and h² d_n apart, and the long sums
+        // stand outside the chain from one acceleration to the next.
+        let older: [T; N] = core::array::from_fn(|i| {
+            sum(1, &C::KICKS, |j| f[P - j][i]) - sum(0, &C::ECHOES, |j| d[P - 1 - j][i])
+        });
         let glide: [T; N] = core::array::from_fn(|i| sum(2, &C::VELOCITIES, |j| f[P + 1 - j][i]));
         let mut q = self.end.1;
         q.add(last, &self.w.high);
@@ -113,7 +119,9 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
         self.w.add(h, &d);
         // v = w + h ∫ u f(t + u h) du over [0, 1].
         let [first, second] = [C::VELOCITIES[0], C::VELOCITIES[1]].map(T::from_f64);
-        let v = core::array::from_fn(|i| self.w.high[i] + h * (first * a[i] + (second * newest[i] + glide[i])));
+        let v = core::array::from_fn(|i| {
+            self.w.high[i] + h * (first * a[i] + (second * newest[i] + glide[i]))
+        });
         self.d.push(d);
         self.f.push(newest);
         (self.newest, self.end) = (a, (span.end, q, v));
@@ -129,7 +137,11 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
     ) -> Node<T, N> {
         let mut to = *from;
         for part in 1..=SUBSTEPS {
-            let end = if part == SUBSTEPS { span.end } else { span.start + span.h * part as f64 / SUBSTEPS as f64 };
+            let end = if part == SUBSTEPS {
+                span.end
+            } else {
+                span.start + span.h * part as f64 / SUBSTEPS as f64
+            };
             let substep = Span { start: to.t, end, h: span.h / SUBSTEPS as f64, low: 0.0 };
             to = Dop853.step(field, &substep, &mut to, &mut self.starter);
         }
@@ -166,7 +178,8 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
         let zero = (Condition::Slope(0.0), [T::from_f64(0.0); N]);
         let (mut q, mut v) = ([zero; BEHIND + 2], [zero; BEHIND]);
         for j in 0..BEHIND {
-            let (theta, f) = (1.0 - j as f64, if j == 0 { &self.newest } else { &self.f.values()[P - j] });
+            let (theta, f) =
+                (1.0 - j as f64, if j == 0 { &self.newest } else { &self.f.values()[P - j] });
             q[j] = (Condition::Curvature(theta), scaled(f, h * h));
             v[j] = (Condition::Slope(theta), scaled(f, h));
         }
@@ -179,17 +192,24 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
     }
 }
 
-/// The number of parts into which a first step is divided: enough for an error at the level of rounding wherever the method is stable.
+/// The number of parts into which a first step is divided: enough for an error at the level of
+/// rounding wherever the method is stable.
 const SUBSTEPS: usize = 4;
 
 /// The number of accelerations in the dense output.
 const BEHIND: usize = 7;
 
-/// Σ weight_j · value(j) from `first` on, in two sums of alternating terms, which halve the wait for the last addition.
-// Written out, because the compiler leaves some of these loops standing, with their comparisons in them.
+/// Σ weight_j · value(j) from `first` on, in two sums of alternating terms, which halve the wait
+/// for the last addition.
+// Written out, because the compiler leaves some of these loops standing, with their comparisons in
+// them.
 #[allow(clippy::inline_always)]
 #[inline(always)]
-fn sum<T: Float, const P: usize>(first: usize, weights: &[f64; P], value: impl Fn(usize) -> T) -> T {
+fn sum<T: Float, const P: usize>(
+    first: usize,
+    weights: &[f64; P],
+    value: impl Fn(usize) -> T,
+) -> T {
     const { assert!(P <= 12) };
     let mut sums = [T::from_f64(0.0); 2];
     macro_rules! add {
@@ -203,8 +223,8 @@ fn sum<T: Float, const P: usize>(first: usize, weights: &[f64; P], value: impl F
     sums[0] + sums[1]
 }
 
-/// The last `P` values of a sequence, in a buffer that moves them only once in every 3 `P` steps: what was written recently and moved
-/// cannot be read before the processor has finished both.
+/// The last `P` values of a sequence, in a buffer that moves them only once in every 3 `P` steps:
+/// what was written recently and moved cannot be read before the processor has finished both.
 #[derive(Clone, Copy, Debug)]
 struct Window<T, const N: usize, const P: usize> {
     buffer: [[[T; N]; P]; 4],

@@ -19,7 +19,8 @@ pub struct Node<T, const N: usize> {
     pub q: Sum<T, N>,
     /// The velocities.
     pub v: Sum<T, N>,
-    /// The accelerations, where somebody has computed them: from before if this is the end of a step, from after if its start.
+    /// The accelerations, where somebody has computed them: from before if this is the end of a
+    /// step, from after if its start.
     ///
     /// The two differ at kinks only, and there the driver forgets them.
     pub a: Option<[T; N]>,
@@ -49,7 +50,8 @@ impl<T: Float, const N: usize> Node<T, N> {
         *self.a.get_or_insert_with(|| field.at(t, side, q, v))
     }
 
-    /// The node at the end of `span` whose coordinates and velocities have grown by `h·dq` and `h·dv`.
+    /// The node at the end of `span` whose coordinates and velocities have grown by `h·dq` and
+    /// `h·dv`.
     #[inline]
     pub fn advanced(&self, span: &Span, dq: &[T; N], dv: &[T; N]) -> Self {
         let h = span.length::<T>();

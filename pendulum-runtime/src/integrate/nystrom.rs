@@ -30,7 +30,8 @@ impl<T: Float, const N: usize, const S: usize> Kicks<T, N, S> {
         self.a[0] = from.start_acceleration(field);
     }
 
-    /// Computes stage `index` at `start + c h`, where the coordinates are q + c h q̇ + h² Σ weight · acceleration.
+    /// Computes stage `index` at `start + c h`, where the coordinates are q + c h q̇ + h² Σ weight
+    /// · acceleration.
     #[inline(always)]
     pub(crate) fn stage<const K: usize>(
         &mut self,
@@ -58,7 +59,13 @@ impl<T: Float, const N: usize, const S: usize> Kicks<T, N, S> {
 
     /// The end of the step, from the weights for the coordinates and those for the velocities.
     #[inline(always)]
-    pub(crate) fn end<const K: usize, const L: usize>(&self, span: &Span, from: &Node<T, N>, q: Row<K>, v: Row<L>) -> Node<T, N> {
+    pub(crate) fn end<const K: usize, const L: usize>(
+        &self,
+        span: &Span,
+        from: &Node<T, N>,
+        q: Row<K>,
+        v: Row<L>,
+    ) -> Node<T, N> {
         let h = span.length::<T>();
         let sum = self.weighted(q);
         let mut to = Node { t: span.end, a: None, ..*from };
@@ -72,13 +79,20 @@ impl<T: Float, const N: usize, const S: usize> Kicks<T, N, S> {
 
     /// The error from the differences of the weights of both orders, as a root mean square.
     #[inline(always)]
-    pub(crate) fn error<const K: usize, const L: usize>(&self, h: f64, weights: &Weights<N>, q: Row<K>, v: Row<L>) -> f64 {
+    pub(crate) fn error<const K: usize, const L: usize>(
+        &self,
+        h: f64,
+        weights: &Weights<N>,
+        q: Row<K>,
+        v: Row<L>,
+    ) -> f64 {
         let q = self.weighted(q).map(|difference| T::from_f64(h) * difference);
         h * (weights.square_sum(&q, &self.weighted(v)) / (2 * N) as f64).sqrt()
     }
 
-    /// The motion within the step, whose end has the accelerations `a1`: what the quintic leaves off is h² Σ weight · acceleration
-    /// for the coordinates from the sixth term on, and h Σ weight · acceleration for the velocities from the fourth on.
+    /// The motion within the step, whose end has the accelerations `a1`: what the quintic leaves
+    /// off is h² Σ weight · acceleration for the coordinates from the sixth term on, and h Σ weight
+    /// · acceleration for the velocities from the fourth on.
     #[inline(always)]
     pub(crate) fn dense<const K: usize, const Q: usize, const V: usize>(
         &self,

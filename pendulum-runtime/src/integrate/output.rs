@@ -31,10 +31,17 @@ impl Output<'_> {
         match *self {
             Output::Times(times) => in_order("t_eval", times, start, end),
             Output::Every(interval) => {
-                // More than this is a slip of the pen, and fills the memory before anybody looks at it.
-                let fine = 0.0 < interval && interval < f64::INFINITY && (end - start).abs() / interval <= MOST;
+                // More than this is a slip of the pen, and fills the memory before anybody looks at
+                // it.
+                let fine = 0.0 < interval
+                    && interval < f64::INFINITY
+                    && (end - start).abs() / interval <= MOST;
                 let required = "positive, finite and give ten million states at most; lengthen it, or take the steps with an `Integrator` and keep what you need";
-                if fine { Ok(()) } else { Err(Error::Setting { name: "every", value: interval, required }) }
+                if fine {
+                    Ok(())
+                } else {
+                    Err(Error::Setting { name: "every", value: interval, required })
+                }
             }
             Output::End | Output::Steps => Ok(()),
         }
@@ -47,7 +54,8 @@ impl Output<'_> {
             Output::Every(_) if index == 0 => Some(start),
             Output::Every(interval) => {
                 let t = start + direction(start, end) * (index as f64 * interval);
-                // A multiple that misses the end by rounding means the end; times far from zero are rounded more.
+                // A multiple that misses the end by rounding means the end; times far from zero are
+                // rounded more.
                 let rounding = 1e-9 * interval + 4.0 * f64::EPSILON * (start.abs() + end.abs());
                 let rounding = if rounding < 0.5 * interval { rounding } else { 0.5 * interval };
                 let close = (t - end).abs() < rounding;
@@ -59,7 +67,12 @@ impl Output<'_> {
 }
 
 /// Whether `times` are finite, within the interval and in its direction.
-pub(crate) fn in_order(name: &'static str, times: &[f64], start: f64, end: f64) -> Result<(), Error> {
+pub(crate) fn in_order(
+    name: &'static str,
+    times: &[f64],
+    start: f64,
+    end: f64,
+) -> Result<(), Error> {
     let onwards = direction(start, end);
     let mut least = onwards * start;
     for (index, &time) in times.iter().enumerate() {
@@ -133,7 +146,11 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
 
     /// Takes in the step that `driver` has just taken.
     #[inline]
-    pub(crate) fn step<D, M, C>(&mut self, driver: &mut Driver<T, N, M, C, M::Stages>, dynamics: &D) -> Result<(), Error>
+    pub(crate) fn step<D, M, C>(
+        &mut self,
+        driver: &mut Driver<T, N, M, C, M::Stages>,
+        dynamics: &D,
+    ) -> Result<(), Error>
     where
         D: Dynamics<N, Scalar = T>,
         M: Stepper<D, N>,
@@ -159,7 +176,11 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
     ///
     /// Between two ends that are finite a polynomial need not be: over a long step h² is beyond the
     /// range before h is.
-    fn within<D, M, C>(&mut self, driver: &mut Driver<T, N, M, C, M::Stages>, dynamics: &D) -> Result<(), Error>
+    fn within<D, M, C>(
+        &mut self,
+        driver: &mut Driver<T, N, M, C, M::Stages>,
+        dynamics: &D,
+    ) -> Result<(), Error>
     where
         D: Dynamics<N, Scalar = T>,
         M: Stepper<D, N>,
@@ -208,7 +229,12 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
     }
 
     /// The solution that ends with `end`.
-    pub(crate) fn finish(mut self, end: State<T, N>, status: Status, stats: Stats) -> Solution<T, N> {
+    pub(crate) fn finish(
+        mut self,
+        end: State<T, N>,
+        status: Status,
+        stats: Stats,
+    ) -> Solution<T, N> {
         if let Output::End = self.output {
             self.push(end);
         }

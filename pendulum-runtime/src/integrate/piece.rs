@@ -30,8 +30,9 @@ pub struct Piece<T, const N: usize> {
 /// What the terms of a [`Piece`] are multiplied by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Basis {
-    /// y(θ) = y₀ + θ(F₀ + (1−θ)(F₁ + θ(F₂ + (1−θ)(F₃ + …)))), the form of Hairer, Nørsett and Wanner (1993), II.6: F₀ is the increment,
-    /// so that both ends are met exactly, and F₁ and F₂ come from the slopes at the ends.
+    /// y(θ) = y₀ + θ(F₀ + (1−θ)(F₁ + θ(F₂ + (1−θ)(F₃ + …)))), the form of Hairer, Nørsett and
+    /// Wanner (1993), II.6: F₀ is the increment, so that both ends are met exactly, and F₁ and F₂
+    /// come from the slopes at the ends.
     Nested,
     /// y(θ) = y₀ + θ(F₀ + θ(F₁ + θ(F₂ + …))): a Taylor polynomial.
     Powers,
@@ -41,7 +42,12 @@ pub enum Basis {
 
 impl Basis {
     /// The polynomial with these terms at θ.
-    pub(crate) fn at<T: Float, const N: usize>(self, y0: &[T; N], terms: &[[T; N]], theta: T) -> [T; N] {
+    pub(crate) fn at<T: Float, const N: usize>(
+        self,
+        y0: &[T; N],
+        terms: &[[T; N]],
+        theta: T,
+    ) -> [T; N] {
         if self == Self::Legendre {
             return legendre(y0, terms, theta);
         }
@@ -49,13 +55,18 @@ impl Basis {
         let factors = [theta, other];
         core::array::from_fn(|i| {
             let zero = T::from_f64(0.0);
-            let sum = terms.iter().enumerate().rev().fold(zero, |sum, (k, term)| (sum + term[i]) * factors[k % 2]);
+            let sum = terms
+                .iter()
+                .enumerate()
+                .rev()
+                .fold(zero, |sum, (k, term)| (sum + term[i]) * factors[k % 2]);
             y0[i] + sum
         })
     }
 }
 
-/// y₀ + Σ terms_k (P_{k+1}(2θ − 1) − P_{k+1}(−1)), where (k + 1) P_{k+1}(x) = (2k + 1) x P_k(x) − k P_{k−1}(x).
+/// y₀ + Σ terms_k (P_{k+1}(2θ − 1) − P_{k+1}(−1)), where (k + 1) P_{k+1}(x) = (2k + 1) x P_k(x) − k
+/// P_{k−1}(x).
 fn legendre<T: Float, const N: usize>(y0: &[T; N], terms: &[[T; N]], theta: T) -> [T; N] {
     let one = T::from_f64(1.0);
     let x = theta - (one - theta);
@@ -73,9 +84,15 @@ fn legendre<T: Float, const N: usize>(y0: &[T; N], terms: &[[T; N]], theta: T) -
 }
 
 impl<T: Float, const N: usize> Piece<T, N> {
-    /// The cubics through the states at both ends of `span` with the given slopes there: velocities for the coordinates,
-    /// accelerations for the velocities.
-    pub fn hermite(span: &Span, from: &Node<T, N>, to: &Node<T, N>, a0: &[T; N], a1: &[T; N]) -> Self {
+    /// The cubics through the states at both ends of `span` with the given slopes there: velocities
+    /// for the coordinates, accelerations for the velocities.
+    pub fn hermite(
+        span: &Span,
+        from: &Node<T, N>,
+        to: &Node<T, N>,
+        a0: &[T; N],
+        a1: &[T; N],
+    ) -> Self {
         let mut piece = Self::linear(span, from, to);
         let h = span.length::<T>();
         clamp(&mut piece.q, h, &from.v.high, &to.v.high);
@@ -87,7 +104,15 @@ impl<T: Float, const N: usize> Piece<T, N> {
     /// The straight line between the states at both ends.
     pub fn linear(span: &Span, from: &Node<T, N>, to: &Node<T, N>) -> Self {
         let zero = [[T::from_f64(0.0); N]; TERMS];
-        let mut piece = Self { span: *span, q0: from.q.high, v0: from.v.high, q: zero, v: zero, terms: 1, basis: Basis::Nested };
+        let mut piece = Self {
+            span: *span,
+            q0: from.q.high,
+            v0: from.v.high,
+            q: zero,
+            v: zero,
+            terms: 1,
+            basis: Basis::Nested,
+        };
         piece.q[0] = to.q.since(&from.q);
         piece.v[0] = to.v.since(&from.v);
         piece
@@ -100,12 +125,20 @@ impl<T: Float, const N: usize> Piece<T, N> {
 
     /// Coordinates and velocities at θ.
     pub fn at(&self, theta: T) -> ([T; N], [T; N]) {
-        (self.basis.at(&self.q0, &self.q[..self.terms], theta), self.basis.at(&self.v0, &self.v[..self.terms], theta))
+        (
+            self.basis.at(&self.q0, &self.q[..self.terms], theta),
+            self.basis.at(&self.v0, &self.v[..self.terms], theta),
+        )
     }
 }
 
 /// F₁ and F₂ from the slopes at both ends.
-fn clamp<T: Float, const N: usize>(terms: &mut [[T; N]; TERMS], h: T, slope0: &[T; N], slope1: &[T; N]) {
+fn clamp<T: Float, const N: usize>(
+    terms: &mut [[T; N]; TERMS],
+    h: T,
+    slope0: &[T; N],
+    slope1: &[T; N],
+) {
     for i in 0..N {
         let increment = terms[0][i];
         terms[1][i] = h * slope0[i] - increment;

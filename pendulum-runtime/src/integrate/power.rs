@@ -37,18 +37,21 @@ pub(crate) fn exp2(y: f64) -> f64 {
 /// 2⁵², from which on numbers are whole: their last bits count.
 const WHOLE: f64 = 4503599627370496.0;
 
-/// 2³² (log₂ x + 1023) of a positive number, too small by up to 0.09 · 2³²; zero for zero, 2047 · 2³² for infinity.
+/// 2³² (log₂ x + 1023) of a positive number, too small by up to 0.09 · 2³²; zero for zero, 2047 ·
+/// 2³² for infinity.
 #[inline(always)]
 pub(crate) fn digits(x: f64) -> f64 {
     // Exponent and mantissa as one number: the mantissa stands for its logarithm.
     f64::from_bits((x.to_bits() >> 20) | WHOLE.to_bits()) - WHOLE
 }
 
-/// 2^(y − 1023) with a relative error of up to 0.4 %; for y below 23 or beyond 2023 that of the nearest of them.
+/// 2^(y − 1023) with a relative error of up to 0.4 %; for y below 23 or beyond 2023 that of the
+/// nearest of them.
 #[inline(always)]
 pub(crate) fn power(y: f64) -> f64 {
     let y = y.clamp(23.0, 2023.0);
-    // The whole part, or one less where y is whole: without a conversion, which few machines have for vectors.
+    // The whole part, or one less where y is whole: without a conversion, which few machines have
+    // for vectors.
     let shifted = y + (WHOLE - 0.5);
     let z = y - (shifted - WHOLE);
     // Exact at both ends.
@@ -80,7 +83,10 @@ mod tests {
             let x = f64::from(k * k + 1) * f64::from_bits(((1023 + k / 2) as u64) << 52);
             let expected = 1.0 / x.sqrt().sqrt().sqrt();
             let measured = exp2(-0.125 * log2(x));
-            assert!((measured / expected - 1.0).abs() < 1e-6, "x = {x}: {measured}, not {expected}");
+            assert!(
+                (measured / expected - 1.0).abs() < 1e-6,
+                "x = {x}: {measured}, not {expected}"
+            );
         }
         assert!((exp2(0.5 * log2(5e-324)) / 2.2227587494850775e-162 - 1.0).abs() < 1e-6);
     }

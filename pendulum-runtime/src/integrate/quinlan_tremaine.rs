@@ -9,24 +9,31 @@ use super::span::Span;
 use crate::real::Float;
 use crate::system::VelocityFree;
 
-/// The explicit symmetric multistep method of Quinlan and Tremaine of order `P` = 8, 10 or 12: one evaluation a step, fixed step.
+/// The explicit symmetric multistep method of Quinlan and Tremaine of order `P` = 8, 10 or 12: one
+/// evaluation a step, fixed step.
 ///
-/// Σ α_j q_{n+j} = h² Σ β_j a(q_{n+j}) with palindromic α and β, kept in sums of differences. Being symmetric in time it neither damps nor
-/// excites: energy errors stay bounded and phase errors grow with time only, as with symplectic methods, for a single evaluation a
-/// step. Over long times no other method here takes so few evaluations for errors from 1e-4 down to 1e-12: over 1000 s of a pendulum 15
-/// evaluations a second leave 3e-5 and 50 leave 4e-12. Take order 8 for errors above 1e-5 and 12 below 1e-8.
+/// Σ α_j q_{n+j} = h² Σ β_j a(q_{n+j}) with palindromic α and β, kept in sums of differences. Being
+/// symmetric in time it neither damps nor excites: energy errors stay bounded and phase errors grow
+/// with time only, as with symplectic methods, for a single evaluation a step. Over long times no
+/// other method here takes so few evaluations for errors from 1e-4 down to 1e-12: over 1000 s of a
+/// pendulum 15 evaluations a second leave 3e-5 and 50 leave 4e-12. Take order 8 for errors above
+/// 1e-5 and 12 below 1e-8.
 ///
-/// Its limits are those of its kind. A step must be short for the fastest part of the motion: h·ω below about 0.2 for order 12,
-/// 0.3 for order 10 and 0.5 for order 8; beyond, and near a few resonances below (orbits and many coupled frequencies have more of
-/// them), errors grow without warning, so compare with half the step. The first `P` − 1 steps after the start, after a kink and
-/// after a change of the step are taken by [`Dop853`](super::Dop853) in four parts each: a motion with many kinks gains nothing.
+/// Its limits are those of its kind. A step must be short for the fastest part of the motion: h·ω
+/// below about 0.2 for order 12, 0.3 for order 10 and 0.5 for order 8; beyond, and near a few
+/// resonances below (orbits and many coupled frequencies have more of them), errors grow without
+/// warning, so compare with half the step. The first `P` − 1 steps after the start, after a kink
+/// and after a change of the step are taken by [`Dop853`](super::Dop853) in four parts each: a
+/// motion with many kinks gains nothing.
 ///
-/// It is for systems with a constant mass matrix and accelerations without velocities, and compiles for no others. Dense output is
-/// the polynomial through both ends and the last seven accelerations, of order 9, and costs nothing; in the first seven steps it is the
-/// quintic through coordinates, velocities and accelerations at both ends.
+/// It is for systems with a constant mass matrix and accelerations without velocities, and compiles
+/// for no others. Dense output is the polynomial through both ends and the last seven
+/// accelerations, of order 9, and costs nothing; in the first seven steps it is the quintic through
+/// coordinates, velocities and accelerations at both ends.
 ///
-/// Source: Quinlan and Tremaine (1990), Symmetric multistep methods for the numerical integration of planetary orbits, Astron. J. 100,
-/// 1694, table 2; for the resonances Quinlan (1999), arXiv astro-ph/9901136.
+/// Source: Quinlan and Tremaine (1990), Symmetric multistep methods for the numerical integration
+/// of planetary orbits, Astron. J. 100, 1694, table 2; for the resonances Quinlan (1999), arXiv
+/// astro-ph/9901136.
 ///
 /// ```compile_fail,E0277
 /// # use pendulum_runtime::{integrate::*, system::*};
@@ -74,7 +81,9 @@ impl<const P: usize> Method for QuinlanTremaine<P> {
     }
 }
 
-impl<S: VelocityFree<N, Scalar: Float>, const N: usize, const P: usize> Suits<S, N> for QuinlanTremaine<P> {
+impl<S: VelocityFree<N, Scalar: Float>, const N: usize, const P: usize> Suits<S, N>
+    for QuinlanTremaine<P>
+{
     #[inline]
     fn step(
         &self,

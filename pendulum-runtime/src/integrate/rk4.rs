@@ -10,11 +10,13 @@ use crate::system::System;
 
 /// The classical Runge–Kutta method: order 4, four evaluations a step, fixed step.
 ///
-/// It suits every system and is the workhorse of animation: with a step of a fortieth of a period it keeps four digits over ten
-/// periods. It is not symplectic, so energy drifts with the fifth power of the step, downwards as a rule; beyond h·ω ≈ 2.8 it is
-/// unstable. Without error estimate it cannot say when the step is too long.
+/// It suits every system and is the workhorse of animation: with a step of a fortieth of a period
+/// it keeps four digits over ten periods. It is not symplectic, so energy drifts with the fifth
+/// power of the step, downwards as a rule; beyond h·ω ≈ 2.8 it is unstable. Without error estimate
+/// it cannot say when the step is too long.
 ///
-/// Dense output is the quintic through positions, velocities and accelerations at both ends of a step.
+/// Dense output is the quintic through positions, velocities and accelerations at both ends of a
+/// step.
 ///
 /// Source: Kutta (1901), Z. Math. Phys. 46, 435.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -51,7 +53,8 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Rk4 {
         k.stage(field, span, from, 1, 0.5, [(0, 0.5)]);
         k.stage(field, span, from, 2, 0.5, [(1, 0.5)]);
         k.stage(field, span, from, 3, 1.0, [(2, 1.0)]);
-        // The weights are integers and the sixth is divided off: rounded sixths do not add up to one.
+        // The weights are integers and the sixth is divided off: rounded sixths do not add up to
+        // one.
         let (dq, dv) = k.weighted([(0, 1.0), (1, 2.0), (2, 2.0), (3, 1.0)]);
         let six = S::Scalar::from_f64(6.0);
         from.advanced(span, &dq.map(|sum| sum / six), &dv.map(|sum| sum / six))

@@ -12,20 +12,23 @@ use crate::motion::Side;
 use crate::real::{Float, Real};
 use crate::system::{Jacobians, System};
 
-/// The linearly implicit (Rosenbrock) method of order 4 with an error estimate of order 3 of Hairer and Wanner: six evaluations, the
-/// Jacobians and one factorization a step, adaptive.
+/// The linearly implicit (Rosenbrock) method of order 4 with an error estimate of order 3 of Hairer
+/// and Wanner: six evaluations, the Jacobians and one factorization a step, adaptive.
 ///
-/// For stiff springs and dampers: it is L-stable, so that a damper of any strength brings its coordinate to rest without ringing and a
-/// spring too fast for the step is damped out, and no iteration can fail. Each stage (x, z) solves
-/// (I − hγ ∂q̈/∂q̇ − h²γ² ∂q̈/∂q) z = hγ r + h²γ² ∂q̈/∂q s, x = hγ (z + s), where s and r are what coordinates and velocities ask for:
-/// a system of the size of the coordinates. For smooth motions explicit methods are cheaper; where the fast oscillation itself matters or
-/// energy has to be kept over a long time, take [`Gauss`](super::Gauss) with Newton's method.
+/// For stiff springs and dampers: it is L-stable, so that a damper of any strength brings its
+/// coordinate to rest without ringing and a spring too fast for the step is damped out, and no
+/// iteration can fail. Each stage (x, z) solves (I − hγ ∂q̈/∂q̇ − h²γ² ∂q̈/∂q) z = hγ r + h²γ²
+/// ∂q̈/∂q s, x = hγ (z + s), where s and r are what coordinates and velocities ask for: a system of
+/// the size of the coordinates. For smooth motions explicit methods are cheaper; where the fast
+/// oscillation itself matters or energy has to be kept over a long time, take
+/// [`Gauss`](super::Gauss) with Newton's method.
 ///
-/// Where time or a driven motion stands in the equations, ∂q̈/∂t is a difference of three accelerations close to the start of the step:
-/// two evaluations more. Dense output is of order 3 and costs nothing.
+/// Where time or a driven motion stands in the equations, ∂q̈/∂t is a difference of three
+/// accelerations close to the start of the step: two evaluations more. Dense output is of order 3
+/// and costs nothing.
 ///
-/// It needs the generated Jacobians. Source: Hairer and Wanner (1996), Solving Ordinary Differential Equations II, IV.7, and their code
-/// RODAS for the digits.
+/// It needs the generated Jacobians. Source: Hairer and Wanner (1996), Solving Ordinary
+/// Differential Equations II, IV.7, and their code RODAS for the digits.
 ///
 /// ```compile_fail,E0277
 /// # use pendulum_runtime::{integrate::*, system::*};
@@ -95,11 +98,17 @@ impl<S: Jacobians<N, Scalar: Float>, const N: usize> Suits<S, N> for Rodas4 {
 }
 
 impl Embedded for Rodas4 {
-    const RESPONSE: Response = Response { alpha: 0.25, beta: 0.0, safety: 0.9, least: 0.2, greatest: 6.0 };
+    const RESPONSE: Response =
+        Response { alpha: 0.25, beta: 0.0, safety: 0.9, least: 0.2, greatest: 6.0 };
     const GAP: f64 = widest(&C, &all::<6>());
 
     #[inline]
-    fn error<T: Float, const N: usize>(&self, k: &Slopes<T, N, 6>, _: f64, weights: &Weights<N>) -> f64 {
+    fn error<T: Float, const N: usize>(
+        &self,
+        k: &Slopes<T, N, 6>,
+        _: f64,
+        weights: &Weights<N>,
+    ) -> f64 {
         // The last stage is the difference to the embedded method.
         (weights.square_sum(&k.v[5], &k.a[5]) / (2 * N) as f64).sqrt()
     }
@@ -118,11 +127,17 @@ struct Linear<T, const N: usize> {
 }
 
 impl<T: Float, const N: usize> Linear<T, N> {
-    fn new<S: Jacobians<N, Scalar = T>>(field: &mut impl Field<S, N>, span: &Span, from: &Node<T, N>, a: &[T; N]) -> Self {
+    fn new<S: Jacobians<N, Scalar = T>>(
+        field: &mut impl Field<S, N>,
+        span: &Span,
+        from: &Node<T, N>,
+        a: &[T; N],
+    ) -> Self {
         let (q, v) = (&from.q.high, &from.v.high);
         let [by_q, by_v] = field.jacobians(from.t, Side::After, q, v);
         let scale = T::from_f64(GAMMA * span.h);
-        let stiffness: Square<T, N> = core::array::from_fn(|i| core::array::from_fn(|j| by_q[(i, j)]));
+        let stiffness: Square<T, N> =
+            core::array::from_fn(|i| core::array::from_fn(|j| by_q[(i, j)]));
         let factors = Factors::new(|_, _| {
             core::array::from_fn(|i| {
                 core::array::from_fn(|j| {
@@ -134,10 +149,11 @@ impl<T: Float, const N: usize> Linear<T, N> {
         let drive = if S::FACTS.autonomous {
             [T::from_f64(0.0); N]
         } else {
-            // The parabola through three accelerations so close that its error is far below that of the method, and not so close that
-            // rounding is seen.
+            // The parabola through three accelerations so close that its error is far below that of
+            // the method, and not so close that rounding is seen.
             let part = T::EPSILON.sqrt().sqrt().to_f64();
-            let [once, twice] = [part, 2.0 * part].map(|part| field.at(from.t + part * span.h, Side::After, q, v));
+            let [once, twice] =
+                [part, 2.0 * part].map(|part| field.at(from.t + part * span.h, Side::After, q, v));
             let (four, three, two) = (T::from_f64(4.0), T::from_f64(3.0), T::from_f64(2.0 * part));
             core::array::from_fn(|i| (four * once[i] - twice[i] - three * a[i]) / two)
         };
@@ -167,13 +183,23 @@ impl<T: Float, const N: usize> Linear<T, N> {
         self.solve(k, index, &v, &a, memory, D[index]);
     }
 
-    /// Solves for stage `index`, with the slopes `v` and `a` and what is left of earlier stages, times h.
-    fn solve(&self, k: &mut Slopes<T, N, 6>, index: usize, v: &[T; N], a: &[T; N], memory: ([T; N], [T; N]), drive: f64) {
+    /// Solves for stage `index`, with the slopes `v` and `a` and what is left of earlier stages,
+    /// times h.
+    fn solve(
+        &self,
+        k: &mut Slopes<T, N, 6>,
+        index: usize,
+        v: &[T; N],
+        a: &[T; N],
+        memory: ([T; N], [T; N]),
+        drive: f64,
+    ) {
         let drive = T::from_f64(drive);
         let s: [T; N] = core::array::from_fn(|i| v[i] + memory.0[i] / self.h);
         let pull = times(&self.stiffness, &s);
         let mut z = [core::array::from_fn(|i| {
-            self.scale * ((a[i] + memory.1[i] / self.h + drive * self.drive[i]) + self.scale * pull[i])
+            self.scale
+                * ((a[i] + memory.1[i] / self.h + drive * self.drive[i]) + self.scale * pull[i])
         })];
         self.factors.solve(&mut z);
         k.a[index] = z[0];
@@ -193,7 +219,12 @@ const A2: Row<2> = [(0, 0.9466785280815826), (1, 0.2557011698983284)];
 
 const A3: Row<3> = [(0, 3.314825187068521), (1, 2.896124015972201), (2, 0.9986419139977817)];
 
-const A4: Row<4> = [(0, 1.221224509226641), (1, 6.019134481288629), (2, 12.53708332932087), (3, -0.6878860361058950)];
+const A4: Row<4> = [
+    (0, 1.221224509226641),
+    (1, 6.019134481288629),
+    (2, 12.53708332932087),
+    (3, -0.6878860361058950),
+];
 
 // The last stages start from the embedded method and differ from it by one stage each.
 
@@ -207,15 +238,35 @@ const C2: Row<2> = [(0, -2.430093356833875), (1, -0.2063599157091915)];
 
 const C3: Row<3> = [(0, -0.1073529058151375), (1, -9.594562251023355), (2, -20.47028614809616)];
 
-const C4: Row<4> = [(0, 7.496443313967647), (1, -10.24680431464352), (2, -33.99990352819905), (3, 11.70890893206160)];
+const C4: Row<4> = [
+    (0, 7.496443313967647),
+    (1, -10.24680431464352),
+    (2, -33.99990352819905),
+    (3, 11.70890893206160),
+];
 
-const C5: Row<5> =
-    [(0, 8.083246795921522), (1, -7.981132988064893), (2, -31.52159432874371), (3, 16.31930543123136), (4, -6.058818238834054)];
+const C5: Row<5> = [
+    (0, 8.083246795921522),
+    (1, -7.981132988064893),
+    (2, -31.52159432874371),
+    (3, 16.31930543123136),
+    (4, -6.058818238834054),
+];
 
 // The dense output.
 
-const H2: Row<5> =
-    [(0, 10.12623508344586), (1, -7.487995877610167), (2, -34.80091861555747), (3, -7.992771707568823), (4, 1.025137723295662)];
+const H2: Row<5> = [
+    (0, 10.12623508344586),
+    (1, -7.487995877610167),
+    (2, -34.80091861555747),
+    (3, -7.992771707568823),
+    (4, 1.025137723295662),
+];
 
-const H3: Row<5> =
-    [(0, -0.6762803392801253), (1, 6.087714651680015), (2, 16.43084320892478), (3, 24.76722511418386), (4, -6.594389125716872)];
+const H3: Row<5> = [
+    (0, -0.6762803392801253),
+    (1, 6.087714651680015),
+    (2, 16.43084320892478),
+    (3, 24.76722511418386),
+    (4, -6.594389125716872),
+];

@@ -7,9 +7,14 @@ pub(crate) type Point<T> = (T, T);
 
 /// The root between two points whose values differ in sign, to the last digits.
 ///
-/// Chandrupatla (1997), A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function without using derivatives,
-/// Adv. Eng. Softw. 28, 145: inverse quadratic interpolation where it converges, else halving.
-pub(crate) fn root<T: Float, E>(f: &mut impl FnMut(T) -> Result<T, E>, a: Point<T>, b: Point<T>) -> Result<T, E> {
+/// Chandrupatla (1997), A new hybrid quadratic/bisection algorithm for finding the zero of a
+/// nonlinear function without using derivatives, Adv. Eng. Softw. 28, 145: inverse quadratic
+/// interpolation where it converges, else halving.
+pub(crate) fn root<T: Float, E>(
+    f: &mut impl FnMut(T) -> Result<T, E>,
+    a: Point<T>,
+    b: Point<T>,
+) -> Result<T, E> {
     let number = T::from_f64;
     let (zero, half, one) = (number(0.0), number(0.5), number(1.0));
     let (mut near, mut far) = (b, a);
@@ -37,7 +42,9 @@ pub(crate) fn root<T: Float, E>(f: &mut impl FnMut(T) -> Result<T, E>, a: Point<
         let smooth = phi * phi < xi && (one - phi) * (one - phi) < one - xi;
         t = if smooth {
             near.1 / (far.1 - near.1) * (third.1 / (far.1 - third.1))
-                + (third.0 - near.0) / (far.0 - near.0) * (near.1 / (third.1 - near.1)) * (far.1 / (third.1 - far.1))
+                + (third.0 - near.0) / (far.0 - near.0)
+                    * (near.1 / (third.1 - near.1))
+                    * (far.1 / (third.1 - far.1))
         } else {
             half
         };
@@ -64,10 +71,12 @@ pub(crate) enum Dip<T> {
     Crosses(T),
 }
 
-/// Looks whether a positive function with a lower point `b` between `a` and `c` comes down to zero there.
+/// Looks whether a positive function with a lower point `b` between `a` and `c` comes down to zero
+/// there.
 ///
-/// The golden section (Kiefer 1953) closes in on the minimum, and gives up as soon as it is clear that it is too high; where the slope is
-/// zero, from differences over four points, is good to twice the digits.
+/// The golden section (Kiefer 1953) closes in on the minimum, and gives up as soon as it is clear
+/// that it is too high; where the slope is zero, from differences over four points, is good to
+/// twice the digits.
 pub(crate) fn dip<T: Float, E>(
     f: &mut impl FnMut(T) -> Result<T, E>,
     [mut a, mut b, mut c]: [Point<T>; 3],
@@ -140,7 +149,10 @@ mod tests {
     #[test]
     fn roots_to_the_last_digit() {
         let (x, count) = root_of(|x| x * x - 0.5, 0.0, 1.0);
-        assert!((x - core::f64::consts::FRAC_1_SQRT_2).abs() <= 2.3e-16 && count < 12, "{x} {count}");
+        assert!(
+            (x - core::f64::consts::FRAC_1_SQRT_2).abs() <= 2.3e-16 && count < 12,
+            "{x} {count}"
+        );
         let (x, count) = root_of(|x| (x - 0.3).powi(3), 0.0, 1.0);
         assert!((x - 0.3).abs() < 1e-5 && count < 100, "{x} {count}");
         let (x, count) = root_of(|x| if x < 0.7 { -1.0 } else { 1.0 }, 0.0, 1.0);
@@ -166,13 +178,21 @@ mod tests {
 
     #[test]
     fn dips() {
-        let Dip::Touches(x) = dip_of(|x| (x - 0.4) * (x - 0.4) * (1.0 + x), 1e-12) else { panic!("it touches") };
+        let Dip::Touches(x) = dip_of(|x| (x - 0.4) * (x - 0.4) * (1.0 + x), 1e-12) else {
+            panic!("it touches")
+        };
         assert!((x - 0.4).abs() < 1e-11, "{x}");
         assert_eq!(dip_of(|x| (x - 0.4) * (x - 0.4) + 1e-6, 1e-12), Dip::Away);
         assert_eq!(dip_of(|x| (x - 0.4) * (x - 0.4) + 1.0, 1e-12), Dip::Away);
-        assert!(matches!(dip_of(|x| (x - 0.4) * (x - 0.4) - 1e-10, 0.0), Dip::Crosses(x) if (x - 0.4).abs() <= 1e-5));
-        assert!(matches!(dip_of(|x| (x - 0.4) * (x - 0.4) - 1e-13, 1e-12), Dip::Touches(x) if (x - 0.4).abs() <= 1e-6));
-        assert!(matches!(dip_of(|x| (x - 0.4).abs(), 1e-12), Dip::Touches(x) if (x - 0.4).abs() < 1e-12));
+        assert!(
+            matches!(dip_of(|x| (x - 0.4) * (x - 0.4) - 1e-10, 0.0), Dip::Crosses(x) if (x - 0.4).abs() <= 1e-5)
+        );
+        assert!(
+            matches!(dip_of(|x| (x - 0.4) * (x - 0.4) - 1e-13, 1e-12), Dip::Touches(x) if (x - 0.4).abs() <= 1e-6)
+        );
+        assert!(
+            matches!(dip_of(|x| (x - 0.4).abs(), 1e-12), Dip::Touches(x) if (x - 0.4).abs() < 1e-12)
+        );
         // The points at the end of a step are not in the middle.
         let f = |x: f64| Ok::<f64, ()>((x - 0.9994) * (x - 0.9994));
         for points in [[0.875, 0.9999, 1.0], [0.9988, 0.9989, 1.125]] {

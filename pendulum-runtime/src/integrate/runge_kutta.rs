@@ -5,7 +5,8 @@ use super::node::Node;
 use super::span::Span;
 use crate::real::Float;
 
-/// One row of a tableau without its zeros: the indices of earlier stages, from 0, and their weights.
+/// One row of a tableau without its zeros: the indices of earlier stages, from 0, and their
+/// weights.
 pub(crate) type Row<const K: usize> = [(usize, f64); K];
 
 /// The slopes at `S` stages: velocities and accelerations.
@@ -63,7 +64,10 @@ impl<T: Float, const N: usize, const S: usize> Slopes<T, N, S> {
 
 #[allow(clippy::inline_always)]
 #[inline(always)]
-pub(crate) fn weighted<T: Float, const N: usize, const S: usize, const K: usize>(slopes: &[[T; N]; S], row: Row<K>) -> [T; N] {
+pub(crate) fn weighted<T: Float, const N: usize, const S: usize, const K: usize>(
+    slopes: &[[T; N]; S],
+    row: Row<K>,
+) -> [T; N] {
     let mut sum = [T::from_f64(0.0); N];
     for (k, (stage, weight)) in row.into_iter().enumerate() {
         for i in 0..N {
@@ -86,6 +90,8 @@ pub(crate) mod conditions {
 
     /// Σ weight · nodeᵖ.
     pub(crate) fn moment<const K: usize>(nodes: &[f64], row: Row<K>, power: i32) -> f64 {
-        row.iter().map(|&(stage, weight)| weight * (0..power).map(|_| nodes[stage]).product::<f64>()).sum()
+        row.iter()
+            .map(|&(stage, weight)| weight * (0..power).map(|_| nodes[stage]).product::<f64>())
+            .sum()
     }
 }

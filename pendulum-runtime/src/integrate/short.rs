@@ -29,7 +29,8 @@ pub(crate) fn straight<T: Float, const N: usize>(
     span: &Span,
     from: &mut Node<T, N>,
 ) -> Node<T, N> {
-    let a = if span.h < 0.0 { from.end_acceleration(field) } else { from.start_acceleration(field) };
+    let a =
+        if span.h < 0.0 { from.end_acceleration(field) } else { from.start_acceleration(field) };
     let mut to = Node { t: span.end, a: None, ..*from };
     for i in 0..N {
         let gain = times(span.h, a[i]);

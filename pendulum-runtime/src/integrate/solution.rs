@@ -37,7 +37,8 @@ pub struct Solution<T, const N: usize> {
     pub q: Vec<[T; N]>,
     /// The velocities at each of them.
     pub v: Vec<[T; N]>,
-    /// The last state reached: where the interval ends, at a terminal event, or before the step that failed.
+    /// The last state reached: where the interval ends, at a terminal event, or before the step
+    /// that failed.
     pub end: State<T, N>,
     /// Why it ended there.
     pub status: Status,
@@ -49,7 +50,8 @@ pub struct Solution<T, const N: usize> {
 }
 
 impl<T: Float, const N: usize> Solution<T, N> {
-    /// The state at any time between start and end, from the dense output; at a kink the state after it.
+    /// The state at any time between start and end, from the dense output; at a kink the state
+    /// after it.
     ///
     /// `None` outside the interval and if `dense` was not asked for.
     pub fn at(&self, t: f64) -> Option<State<T, N>> {
@@ -89,7 +91,10 @@ impl Stats {
 impl fmt::Display for Stats {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { method, evaluations, accepted, rejected, kinks } = self;
-        write!(f, "{method}: {accepted} steps, {rejected} rejected, {kinks} kinks, {evaluations} evaluations")
+        write!(
+            f,
+            "{method}: {accepted} steps, {rejected} rejected, {kinks} kinks, {evaluations} evaluations"
+        )
     }
 }
 

@@ -14,14 +14,16 @@ use crate::error::Error;
 use crate::real::Float;
 use crate::system::{Dynamics, Prepared, System};
 
-/// Integrates `dynamics` over the interval `time = (start, end)` in seconds from the coordinates `q` and the velocities `v`.
+/// Integrates `dynamics` over the interval `time = (start, end)` in seconds from the coordinates
+/// `q` and the velocities `v`.
 ///
-/// Without further calls it uses the method that [`Auto`] chooses, with `rtol` and `atol` 1e-6, and gives the end state; [`Stats`] say which
-/// method it was. If motions have a kink at the start, `v` is the velocity after it. An interval that ends before it starts leads back
-/// in time; of the methods here only [`Taylor`](super::Taylor) does that.
+/// Without further calls it uses the method that [`Auto`] chooses, with `rtol` and `atol` 1e-6, and
+/// gives the end state; [`Stats`] say which method it was. If motions have a kink at the start, `v`
+/// is the velocity after it. An interval that ends before it starts leads back in time; of the
+/// methods here only [`Taylor`](super::Taylor) does that.
 ///
-/// Steps over a [`Function`](crate::motion::Function) without a resolution are at most a fiftieth of the interval long, as
-/// [`AdaptiveStep`] describes.
+/// Steps over a [`Function`](crate::motion::Function) without a resolution are at most a fiftieth
+/// of the interval long, as [`AdaptiveStep`] describes.
 pub fn solve<const N: usize, D: Dynamics<N>>(
     dynamics: &D,
     time: (f64, f64),
@@ -82,13 +84,15 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
         self.control(FixedStep::dividing(length, count))
     }
 
-    /// Gives the states at these times in the order of the motion, from dense output: they do not change the steps.
+    /// Gives the states at these times in the order of the motion, from dense output: they do not
+    /// change the steps.
     pub fn t_eval(mut self, times: &'a [f64]) -> Self {
         self.output = Output::Times(times);
         self
     }
 
-    /// Gives the states at `start`, `start + interval`, `start + 2 interval`, … up to the end, from dense output.
+    /// Gives the states at `start`, `start + interval`, `start + 2 interval`, … up to the end, from
+    /// dense output.
     pub fn every(mut self, interval: f64) -> Self {
         self.output = Output::Every(interval);
         self
@@ -112,27 +116,30 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
         self
     }
 
-    /// Looks for events; a terminal one ends the integration. They are found in [`Solution::events`], and change no step except for known
-    /// times, at which steps end.
+    /// Looks for events; a terminal one ends the integration. They are found in
+    /// [`Solution::events`], and change no step except for known times, at which steps end.
     pub fn events(mut self, events: &'a [Event<'a, D::Scalar, N>]) -> Self {
         self.events = events;
         self
     }
 
-    /// The number of steps, rejected ones included, after which the integration fails; ten million without this call.
+    /// The number of steps, rejected ones included, after which the integration fails; ten million
+    /// without this call.
     pub fn max_steps(mut self, count: u64) -> Self {
         self.max_steps = count;
         self
     }
 
     fn control<B>(self, control: B) -> Solve<'a, N, D, M, B> {
-        let Self { dynamics, time, q, v, method, output, dense, stops, events, max_steps, .. } = self;
+        let Self { dynamics, time, q, v, method, output, dense, stops, events, max_steps, .. } =
+            self;
         Solve { dynamics, time, q, v, method, control, output, dense, stops, events, max_steps }
     }
 }
 
 impl<const N: usize, D: Dynamics<N>, M> Solve<'_, N, D, M, AdaptiveStep<N>> {
-    /// The relative tolerance, 1e-6 without this call (1.2e-5 for `f32`); at least ten machine epsilons of the scalar.
+    /// The relative tolerance, 1e-6 without this call (1.2e-5 for `f32`); at least ten machine
+    /// epsilons of the scalar.
     ///
     /// Over two words methods whose coefficients have the digits of `f64` hold none below 2.3e-15:
     /// what lies below counts as that. Only [`Taylor`](super::Taylor) goes on to 5e-31.
@@ -141,8 +148,8 @@ impl<const N: usize, D: Dynamics<N>, M> Solve<'_, N, D, M, AdaptiveStep<N>> {
         self
     }
 
-    /// The absolute tolerance of all coordinates and velocities; without this call `rtol`, in the units of each, as
-    /// [`AdaptiveStep`] explains.
+    /// The absolute tolerance of all coordinates and velocities; without this call `rtol`, in the
+    /// units of each, as [`AdaptiveStep`] explains.
     pub fn atol(mut self, atol: f64) -> Self {
         self.control = self.control.atol(atol);
         self
@@ -170,8 +177,8 @@ impl<const N: usize, D: Dynamics<N>, M> Solve<'_, N, D, M, AdaptiveStep<N>> {
 impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N, D, M, C> {
     /// Integrates.
     ///
-    /// On failure the error comes with everything reached until then. A method that is wrong for the system or lacks a step size does
-    /// not compile.
+    /// On failure the error comes with everything reached until then. A method that is wrong for
+    /// the system or lacks a step size does not compile.
     pub fn run(self) -> Result<Solution<D::Scalar, N>, Failure<D::Scalar, N>>
     where
         M: Stepper<Prepared<'a, D, <D::System as System<N>>::Prepared>, N>,
@@ -180,14 +187,23 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         let mut recorder = Recorder::new(self.output, self.time);
         let given = State { t: self.time.0, q: self.q, v: self.v };
         let dynamics = Prepared::new(self.dynamics);
-        match self.check(&dynamics).and_then(|()| Driver::new(&dynamics, self.method, self.control, self.time.0, self.q, self.v))
-        {
+        match self.check(&dynamics).and_then(|()| {
+            Driver::new(&dynamics, self.method, self.control, self.time.0, self.q, self.v)
+        }) {
             Err(error) => Err(recorder.fail(error, given, Stats::new(M::NAME))),
             Ok(driver) => {
                 let mut driver = driver.over((self.time.1 - self.time.0).abs());
                 match self.integrate(&dynamics, &mut driver, &mut recorder) {
-                    Err(error) => Err(recorder.fail(error, State::from(&driver.node), driver.stats::<Prepared<'a, D, _>>())),
-                    Ok(status) => Ok(recorder.finish(State::from(&driver.node), status, driver.stats::<Prepared<'a, D, _>>())),
+                    Err(error) => Err(recorder.fail(
+                        error,
+                        State::from(&driver.node),
+                        driver.stats::<Prepared<'a, D, _>>(),
+                    )),
+                    Ok(status) => Ok(recorder.finish(
+                        State::from(&driver.node),
+                        status,
+                        driver.stats::<Prepared<'a, D, _>>(),
+                    )),
                 }
             }
         }
@@ -238,7 +254,9 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         C: Control<M, P, N>,
     {
         let (start, end) = self.time;
-        if !((end - start).is_finite() && (start <= end || self.method.goes_back(dynamics) && self.events.is_empty())) {
+        if !((end - start).is_finite()
+            && (start <= end || self.method.goes_back(dynamics) && self.events.is_empty()))
+        {
             return Err(Error::Interval { start, end });
         }
         self.control.check()?;

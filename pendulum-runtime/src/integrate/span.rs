@@ -45,14 +45,21 @@ impl Span {
         // Near the ends of the range, which is shorter for some scalars, both lengths are brought
         // to its middle.
         let exponent = (self.h.to_bits() >> 52) & 0x7ff;
-        let scale = if exponent.abs_diff(1023) < 64 { 1.0 } else { f64::from_bits((2046 - exponent.min(2045)) << 52) };
+        let scale = if exponent.abs_diff(1023) < 64 {
+            1.0
+        } else {
+            f64::from_bits((2046 - exponent.min(2045)) << 52)
+        };
         let number = |x: f64| T::from_f64(scale * x);
-        // The difference of the high words and its rounding error: a short scalar does not hold the times themselves.
+        // The difference of the high words and its rounding error: a short scalar does not hold the
+        // times themselves.
         let passed = Time::new(t) + -self.start.to_f64();
-        (number(passed.to_f64()) + (number(passed.low()) - number(self.start.low()))) / (number(self.h) + number(self.low))
+        (number(passed.to_f64()) + (number(passed.low()) - number(self.start.low())))
+            / (number(self.h) + number(self.low))
     }
 
-    /// The time `start + c h` and the side from which a kink there is seen: a stage looks into the step.
+    /// The time `start + c h` and the side from which a kink there is seen: a stage looks into the
+    /// step.
     #[inline]
     pub fn at(&self, c: f64) -> (Time, Side) {
         if c < 0.5 {
@@ -85,17 +92,25 @@ mod tests {
     fn the_part_that_has_passed_is_as_good_as_the_scalar() {
         let span = Span::by(Time::new(1e9) + 1e-9, 0.25);
         assert!((span.fraction::<f32>(1e9 + 0.125) - 0.5).abs() < 1e-7);
-        let exact = (DoubleDouble::from(0.125) - DoubleDouble::from(1e-9)) / DoubleDouble::from(0.25);
+        let exact =
+            (DoubleDouble::from(0.125) - DoubleDouble::from(1e-9)) / DoubleDouble::from(0.25);
         assert!((span.fraction::<DoubleDouble>(1e9 + 0.125) - exact).abs().to_f64() < 1e-31);
         // Lengths that the scalar does not hold.
         for h in [5e-324, 1e-310, 1e-300, 1e-40, 1e40, 1e300, -1e-300] {
             let half = Span::by(Time::new(0.0), h).fraction::<f32>(h / 2.0);
             assert!(half == if h == 5e-324 { 0.0 } else { 0.5 }, "{h:e}: {half}");
-            assert_eq!(Span::by(Time::new(0.0), h).fraction::<DoubleDouble>(h).to_f64(), 1.0, "{h:e}");
+            assert_eq!(
+                Span::by(Time::new(0.0), h).fraction::<DoubleDouble>(h).to_f64(),
+                1.0,
+                "{h:e}"
+            );
         }
         // A difference that one word does not hold.
         let exact = DoubleDouble::from(1.0) - DoubleDouble::from(1e-17);
-        assert!((Span::by(Time::new(1e-17), 1.0).fraction::<DoubleDouble>(1.0) - exact).abs().to_f64() < 1e-31);
+        assert!(
+            (Span::by(Time::new(1e-17), 1.0).fraction::<DoubleDouble>(1.0) - exact).abs().to_f64()
+                < 1e-31
+        );
     }
 
     #[test]

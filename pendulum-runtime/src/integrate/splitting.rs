@@ -1,6 +1,7 @@
 //! Drifts and kicks: the steps of splitting methods for q̈ = a(t, q).
 //!
-//! A drift moves the coordinates with fixed velocities and advances the time, a kick changes the velocities with fixed coordinates.
+//! A drift moves the coordinates with fixed velocities and advances the time, a kick changes the
+//! velocities with fixed coordinates.
 
 use super::field::Accelerations;
 use super::node::Node;
@@ -60,9 +61,15 @@ pub(crate) fn drift_kick_drift<T: Float, const N: usize, const OUTER: usize, con
     to
 }
 
-/// The same with both words of every product and of the velocities that drift: what remains is the rounding of the accelerations.
+/// The same with both words of every product and of the velocities that drift: what remains is the
+/// rounding of the accelerations.
 #[inline]
-pub(crate) fn drift_kick_drift_in_two_words<T: Float, const N: usize, const OUTER: usize, const S: usize>(
+pub(crate) fn drift_kick_drift_in_two_words<
+    T: Float,
+    const N: usize,
+    const OUTER: usize,
+    const S: usize,
+>(
     splitting: &Splitting<OUTER, S>,
     field: &mut impl Accelerations<T, N>,
     span: &Span,
@@ -126,8 +133,14 @@ mod tests {
     #[test]
     fn halves_are_mirrored() {
         let splitting = Splitting::<3, 2>::kicks_outside(&[0.25, 0.5], &[0.5]);
-        assert_eq!((splitting.outer, splitting.inner, splitting.times), ([0.25, 0.5, 0.25], [0.5, 0.5], [0.5, 1.0]));
+        assert_eq!(
+            (splitting.outer, splitting.inner, splitting.times),
+            ([0.25, 0.5, 0.25], [0.5, 0.5], [0.5, 1.0])
+        );
         let splitting = Splitting::<3, 2>::drifts_outside(&[0.25, 0.5], &[0.5]);
-        assert_eq!((splitting.outer, splitting.inner, splitting.times), ([0.25, 0.5, 0.25], [0.5, 0.5], [0.25, 0.75]));
+        assert_eq!(
+            (splitting.outer, splitting.inner, splitting.times),
+            ([0.25, 0.5, 0.25], [0.5, 0.5], [0.25, 0.75])
+        );
     }
 }

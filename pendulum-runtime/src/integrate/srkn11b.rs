@@ -8,17 +8,18 @@ use super::splitting::{Splitting, kick_drift_kick};
 use crate::real::Float;
 use crate::system::VelocityFree;
 
-/// The symplectic Runge–Kutta–Nyström splitting with eleven evaluations of Blanes and Moan: order 6, fixed step.
+/// The symplectic Runge–Kutta–Nyström splitting with eleven evaluations of Blanes and Moan: order
+/// 6, fixed step.
 ///
-/// The method for long motions to errors of 1e-6 … 1e-12. Symplectic and reversible: energy errors stay bounded, phase errors grow with
-/// time. Some of its drifts and kicks go backwards.
+/// The method for long motions to errors of 1e-6 … 1e-12. Symplectic and reversible: energy errors
+/// stay bounded, phase errors grow with time. Some of its drifts and kicks go backwards.
 ///
-/// It is for systems with a constant mass matrix and accelerations without velocities, and compiles for no others.
-/// Dense output is the quintic through coordinates, velocities and accelerations at both ends and costs nothing; its order is 6 in
-/// the coordinates and 5 in the velocities.
+/// It is for systems with a constant mass matrix and accelerations without velocities, and compiles
+/// for no others. Dense output is the quintic through coordinates, velocities and accelerations at
+/// both ends and costs nothing; its order is 6 in the coordinates and 5 in the velocities.
 ///
-/// Source: Blanes and Moan (2002), Practical symplectic partitioned Runge–Kutta and Runge–Kutta–Nyström methods, J. Comput. Appl.
-/// Math. 142, 313, table 3.
+/// Source: Blanes and Moan (2002), Practical symplectic partitioned Runge–Kutta and
+/// Runge–Kutta–Nyström methods, J. Comput. Appl. Math. 142, 313, table 3.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Srkn11b;
 
@@ -40,7 +41,13 @@ impl Method for Srkn11b {
 
 impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Srkn11b {
     #[inline]
-    fn step(&self, field: &mut impl Field<S, N>, span: &Span, from: &mut Node<S::Scalar, N>, (): &mut ()) -> Node<S::Scalar, N> {
+    fn step(
+        &self,
+        field: &mut impl Field<S, N>,
+        span: &Span,
+        from: &mut Node<S::Scalar, N>,
+        (): &mut (),
+    ) -> Node<S::Scalar, N> {
         kick_drift_kick(&SPLITTING, field, span, from)
     }
 }

@@ -8,18 +8,22 @@ use super::splitting::{Splitting, drift_kick_drift_in_two_words};
 use crate::real::Float;
 use crate::system::VelocityFree;
 
-/// The symplectic Runge–Kutta–Nyström splitting with fourteen evaluations of Blanes and Moan: order 6, fixed step.
+/// The symplectic Runge–Kutta–Nyström splitting with fourteen evaluations of Blanes and Moan: order
+/// 6, fixed step.
 ///
-/// The most accurate splitting method here, down to rounding: products are summed with both of their words, so that only accelerations are
-/// rounded, and the energy of a pendulum stays within 3e-15 over 3·10⁶ steps, its phase within 1e-11 s after 10⁵ s. Symplectic and reversible: energy errors stay bounded, phase errors grow with time. Some of its drifts and kicks go
-/// backwards, and with steps that are too long it fails more abruptly than [`Srkn11b`](super::Srkn11b).
+/// The most accurate splitting method here, down to rounding: products are summed with both of
+/// their words, so that only accelerations are rounded, and the energy of a pendulum stays within
+/// 3e-15 over 3·10⁶ steps, its phase within 1e-11 s after 10⁵ s. Symplectic and reversible: energy
+/// errors stay bounded, phase errors grow with time. Some of its drifts and kicks go backwards, and
+/// with steps that are too long it fails more abruptly than [`Srkn11b`](super::Srkn11b).
 ///
-/// It is for systems with a constant mass matrix and accelerations without velocities, and compiles for no others.
-/// Dense output is the quintic through coordinates, velocities and accelerations at both ends and takes one more evaluation a step;
-/// its order is 6 in the coordinates and 5 in the velocities.
+/// It is for systems with a constant mass matrix and accelerations without velocities, and compiles
+/// for no others. Dense output is the quintic through coordinates, velocities and accelerations at
+/// both ends and takes one more evaluation a step; its order is 6 in the coordinates and 5 in the
+/// velocities.
 ///
-/// Source: Blanes and Moan (2002), Practical symplectic partitioned Runge–Kutta and Runge–Kutta–Nyström methods, J. Comput. Appl.
-/// Math. 142, 313, table 3.
+/// Source: Blanes and Moan (2002), Practical symplectic partitioned Runge–Kutta and
+/// Runge–Kutta–Nyström methods, J. Comput. Appl. Math. 142, 313, table 3.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Srkn14a;
 
@@ -41,7 +45,13 @@ impl Method for Srkn14a {
 
 impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Srkn14a {
     #[inline]
-    fn step(&self, field: &mut impl Field<S, N>, span: &Span, from: &mut Node<S::Scalar, N>, (): &mut ()) -> Node<S::Scalar, N> {
+    fn step(
+        &self,
+        field: &mut impl Field<S, N>,
+        span: &Span,
+        from: &mut Node<S::Scalar, N>,
+        (): &mut (),
+    ) -> Node<S::Scalar, N> {
         drift_kick_drift_in_two_words(&SPLITTING, field, span, from)
     }
 }

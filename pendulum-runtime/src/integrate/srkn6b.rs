@@ -8,16 +8,19 @@ use super::splitting::{Splitting, kick_drift_kick};
 use crate::real::Float;
 use crate::system::VelocityFree;
 
-/// The symplectic Runge–Kutta–Nyström splitting with six evaluations of Blanes and Moan: order 4, fixed step.
+/// The symplectic Runge–Kutta–Nyström splitting with six evaluations of Blanes and Moan: order 4,
+/// fixed step.
 ///
-/// Per evaluation it is ten to a hundred times more accurate than [`Leapfrog`](super::Leapfrog) and five times than Yoshida's methods of
-/// order 4. Symplectic and reversible: energy errors stay bounded, phase errors grow with time. One of its drifts goes backwards.
+/// Per evaluation it is ten to a hundred times more accurate than [`Leapfrog`](super::Leapfrog) and
+/// five times than Yoshida's methods of order 4. Symplectic and reversible: energy errors stay
+/// bounded, phase errors grow with time. One of its drifts goes backwards.
 ///
-/// It is for systems with a constant mass matrix and accelerations without velocities, and compiles for no others.
-/// Dense output is the quintic through coordinates, velocities and accelerations at both ends and costs nothing.
+/// It is for systems with a constant mass matrix and accelerations without velocities, and compiles
+/// for no others. Dense output is the quintic through coordinates, velocities and accelerations at
+/// both ends and costs nothing.
 ///
-/// Source: Blanes and Moan (2002), Practical symplectic partitioned Runge–Kutta and Runge–Kutta–Nyström methods, J. Comput. Appl.
-/// Math. 142, 313, table 3.
+/// Source: Blanes and Moan (2002), Practical symplectic partitioned Runge–Kutta and
+/// Runge–Kutta–Nyström methods, J. Comput. Appl. Math. 142, 313, table 3.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Srkn6b;
 
@@ -39,7 +42,13 @@ impl Method for Srkn6b {
 
 impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Srkn6b {
     #[inline]
-    fn step(&self, field: &mut impl Field<S, N>, span: &Span, from: &mut Node<S::Scalar, N>, (): &mut ()) -> Node<S::Scalar, N> {
+    fn step(
+        &self,
+        field: &mut impl Field<S, N>,
+        span: &Span,
+        from: &mut Node<S::Scalar, N>,
+        (): &mut (),
+    ) -> Node<S::Scalar, N> {
         kick_drift_kick(&SPLITTING, field, span, from)
     }
 }

@@ -12,7 +12,8 @@ use crate::system::Dynamics;
 
 /// A method that can integrate the dynamics `D`.
 ///
-/// Each [`Method`] that [`Suits`] the system can; a method that needs more than accelerations implements this trait itself.
+/// Each [`Method`] that [`Suits`] the system can; a method that needs more than accelerations
+/// implements this trait itself.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot integrate `{D}`",
     note = "without `.method(…)`, `solve` chooses for systems that `lagrangian!` has made; for others name a method, as `.method(Dop853)`"
@@ -57,8 +58,15 @@ pub trait Stepper<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::f
         stages: &mut Self::Stages,
     ) -> Piece<D::Scalar, N>;
 
-    /// The first number in a step that is not finite, or what `stages` say of equations that were not solved, if there is one.
-    fn fault(&self, dynamics: &D, span: &Span, from: &Node<D::Scalar, N>, stages: &Self::Stages) -> Option<Error>;
+    /// The first number in a step that is not finite, or what `stages` say of equations that were
+    /// not solved, if there is one.
+    fn fault(
+        &self,
+        dynamics: &D,
+        span: &Span,
+        from: &Node<D::Scalar, N>,
+        stages: &Self::Stages,
+    ) -> Option<Error>;
 
     /// The next kink after `t`, or the last one before it.
     fn kink(&self, dynamics: &D, t: f64, backwards: bool) -> Option<f64>;
@@ -99,7 +107,13 @@ where
         self.dense(field, span, from, to, stages)
     }
 
-    fn fault(&self, dynamics: &D, span: &Span, from: &Node<D::Scalar, N>, stages: &Self::Stages) -> Option<Error> {
+    fn fault(
+        &self,
+        dynamics: &D,
+        span: &Span,
+        from: &Node<D::Scalar, N>,
+        stages: &Self::Stages,
+    ) -> Option<Error> {
         blame::fault(self, dynamics, span, from, stages)
     }
 

@@ -7,8 +7,9 @@ use crate::real::{Float, Real};
 
 /// `N` numbers to which small increments are added without losing their low digits.
 ///
-/// Each is kept as `high + low`, where |low| is at most about half a unit in the last place of `high`: the sum of Kahan (1965), with the
-/// two-sum of Knuth (1969) in it, which is exact whatever the magnitudes.
+/// Each is kept as `high + low`, where |low| is at most about half a unit in the last place of
+/// `high`: the sum of Kahan (1965), with the two-sum of Knuth (1969) in it, which is exact whatever
+/// the magnitudes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sum<T, const N: usize> {
     /// The numbers as everybody else sees them.
@@ -28,18 +29,20 @@ impl<T: Real, const N: usize> Sum<T, N> {
     #[inline(always)]
     pub fn add(&mut self, factor: T, increment: &[T; N]) {
         for i in 0..N {
-            (self.high[i], self.low[i]) = two_sum(self.high[i], factor * increment[i] + self.low[i]);
+            (self.high[i], self.low[i]) =
+                two_sum(self.high[i], factor * increment[i] + self.low[i]);
         }
     }
 
     /// Adds `increment` to one of the numbers.
     #[inline(always)]
     pub(crate) fn add_one(&mut self, index: usize, increment: T) {
-        (self.high[index], self.low[index]) = two_sum(self.high[index], increment + self.low[index]);
+        (self.high[index], self.low[index]) =
+            two_sum(self.high[index], increment + self.low[index]);
     }
 
-    /// Adds `a · b + rest` to one of the numbers; the product comes with both words (Veltkamp 1968, Dekker 1971). The scalar's
-    /// [`splitter`] divides the factors.
+    /// Adds `a · b + rest` to one of the numbers; the product comes with both words (Veltkamp 1968,
+    /// Dekker 1971). The scalar's [`splitter`] divides the factors.
     #[inline(always)]
     pub(crate) fn add_split_product(&mut self, index: usize, a: T, b: T, rest: T, splitter: T) {
         let (product, error) = two_product((a, halves(a, splitter)), (b, halves(b, splitter)));
@@ -120,11 +123,17 @@ mod tests {
         let a = 1.0 + f64::EPSILON;
         let mut sum = Sum::new([2.0]);
         sum.add_product(0, a, a, 0.0);
-        assert_eq!((sum.high, sum.low), ([3.0 + 2.0 * f64::EPSILON], [f64::EPSILON * f64::EPSILON]));
+        assert_eq!(
+            (sum.high, sum.low),
+            ([3.0 + 2.0 * f64::EPSILON], [f64::EPSILON * f64::EPSILON])
+        );
         let a = 1.0 + f32::EPSILON;
         let mut sum = Sum::new([2.0_f32]);
         sum.add_product(0, a, a, 0.0);
-        assert_eq!((sum.high, sum.low), ([3.0 + 2.0 * f32::EPSILON], [f32::EPSILON * f32::EPSILON]));
+        assert_eq!(
+            (sum.high, sum.low),
+            ([3.0 + 2.0 * f32::EPSILON], [f32::EPSILON * f32::EPSILON])
+        );
     }
 
     #[test]

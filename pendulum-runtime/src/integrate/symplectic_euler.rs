@@ -9,14 +9,17 @@ use super::span::Span;
 use crate::real::Float;
 use crate::system::System;
 
-/// The symplectic (semi-implicit) Euler method: order 1, one evaluation a step, fixed step. A baseline, not a recommendation.
+/// The symplectic (semi-implicit) Euler method: order 1, one evaluation a step, fixed step. A
+/// baseline, not a recommendation.
 ///
 /// q̇₁ = q̇₀ + h a(t₀, q₀, q̇₀), then q₁ = q₀ + h q̇₁.
 ///
-/// It deserves its name only if the mass matrix is constant and the accelerations contain no velocity. Where the mass matrix depends
-/// on the coordinates, as for a double pendulum, or a force on the velocities, (q, q̇) ↦ (q₁, q̇₁) is not symplectic, the energy
-/// drifts, and the method is poor: a double pendulum over 10 s is off by 0.06 rad after 10⁵ evaluations, where
-/// [`Tsit5`](super::Tsit5) reaches 0.01 with 250. It compiles for such systems nevertheless, so that the two can be compared.
+/// It deserves its name only if the mass matrix is constant and the accelerations contain no
+/// velocity. Where the mass matrix depends on the coordinates, as for a double pendulum, or a force
+/// on the velocities, (q, q̇) ↦ (q₁, q̇₁) is not symplectic, the energy drifts, and the method is
+/// poor: a double pendulum over 10 s is off by 0.06 rad after 10⁵ evaluations, where
+/// [`Tsit5`](super::Tsit5) reaches 0.01 with 250. It compiles for such systems nevertheless, so
+/// that the two can be compared.
 ///
 /// Dense output is the cubic through coordinates and velocities at both ends.
 ///
@@ -42,7 +45,13 @@ impl Method for SymplecticEuler {
 
 impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for SymplecticEuler {
     #[inline]
-    fn step(&self, field: &mut impl Field<S, N>, span: &Span, from: &mut Node<S::Scalar, N>, (): &mut ()) -> Node<S::Scalar, N> {
+    fn step(
+        &self,
+        field: &mut impl Field<S, N>,
+        span: &Span,
+        from: &mut Node<S::Scalar, N>,
+        (): &mut (),
+    ) -> Node<S::Scalar, N> {
         let h = span.length::<S::Scalar>();
         let a = from.start_acceleration(field);
         let mut to = Node { t: span.end, a: None, ..*from };

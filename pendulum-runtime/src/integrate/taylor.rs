@@ -20,25 +20,29 @@ use crate::system::{Dynamics, System, scalar_time};
 
 /// The Taylor series of the motion: any order up to 30, adaptive, forwards and backwards in time.
 ///
-/// It suits every system that `lagrangian!` has made and every motion that is [`Analytic`](crate::motion::Analytic), and is the choice
-/// for the last digits and for the way back in time. Its steps are long and it rejects few: the coefficients tell the radius of convergence.
-/// A series knows nothing of a wall or a contact far from its centre, so that the accelerations at the end of each step are compared
-/// with its own, and a step at whose end they differ by more than the tolerance is halved. That is one evaluation a step, which
-/// [`Stats`](super::Stats) do not count: there each order of the series is one. Nobody looks between the ends: a wall or a needle
-/// that a step leads over goes unseen. It is explicit, so that a stiff spring or damper shortens its steps, and it is wrong where
-/// the equations themselves are not smooth: at the zeros of `abs`, and where the larger of two numbers changes.
+/// It suits every system that `lagrangian!` has made and every motion that is
+/// [`Analytic`](crate::motion::Analytic), and is the choice for the last digits and for the way
+/// back in time. Its steps are long and it rejects few: the coefficients tell the radius of
+/// convergence. A series knows nothing of a wall or a contact far from its centre, so that the
+/// accelerations at the end of each step are compared with its own, and a step at whose end they
+/// differ by more than the tolerance is halved. That is one evaluation a step, which
+/// [`Stats`](super::Stats) do not count: there each order of the series is one. Nobody looks
+/// between the ends: a wall or a needle that a step leads over goes unseen. It is explicit, so that
+/// a stiff spring or damper shortens its steps, and it is wrong where the equations themselves are
+/// not smooth: at the zeros of `abs`, and where the larger of two numbers changes.
 ///
-/// The order is p = ⌈1 − c ln rtol⌉ with c = 0.8 for a coordinate that swings by itself and 0.7 else, and the step is
-/// h = ρ rtol^(1/p) e^(−0.7/(p−1)), where ρ is the least of the radii of convergence (rtol · max |xᵢ\[k\]|/εᵢ)^(−1/k) that the last four
-/// orders k tell, with εᵢ = atolᵢ + rtol·|xᵢ| over all coordinates and velocities; where they vanish, the orders before tell it.
-/// (With c = ½ the work would be least if it grew with p²; measured, it grows with p^1.4 and less.) `rtol` may be as small as you like: 1e-18
-/// takes the truncation well below rounding. Fixed steps have the order
-/// for the machine epsilon and c = 0.7, without [`order`](Self::order).
+/// The order is p = ⌈1 − c ln rtol⌉ with c = 0.8 for a coordinate that swings by itself and 0.7
+/// else, and the step is h = ρ rtol^(1/p) e^(−0.7/(p−1)), where ρ is the least of the radii of
+/// convergence (rtol · max |xᵢ\[k\]|/εᵢ)^(−1/k) that the last four orders k tell, with εᵢ = atolᵢ +
+/// rtol·|xᵢ| over all coordinates and velocities; where they vanish, the orders before tell it.
+/// (With c = ½ the work would be least if it grew with p²; measured, it grows with p^1.4 and less.)
+/// `rtol` may be as small as you like: 1e-18 takes the truncation well below rounding. Fixed steps
+/// have the order for the machine epsilon and c = 0.7, without [`order`](Self::order).
 ///
 /// The sum of the series is compensated. Dense output is the series itself and costs nothing.
 ///
-/// Source: Jorba and Zou (2005), A software package for the numerical integration of ODEs by means of high-order Taylor methods,
-/// Exp. Math. 14, 99.
+/// Source: Jorba and Zou (2005), A software package for the numerical integration of ODEs by means
+/// of high-order Taylor methods, Exp. Math. 14, 99.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Taylor {
     order: Option<usize>,
@@ -86,7 +90,8 @@ pub struct Room<T, W, X, const N: usize> {
     doubts: u32,
 }
 
-/// A jump is found within so many steps; if the series go on not to hold, the accelerations are not exact.
+/// A jump is found within so many steps; if the series go on not to hold, the accelerations are not
+/// exact.
 const MOST_DOUBTS: u32 = 64;
 
 /// What the tolerance decides about the length of a step.
@@ -94,7 +99,8 @@ const MOST_DOUBTS: u32 = 64;
 pub(super) struct Rule {
     tolerance: f64,
     pub(super) order: usize,
-    /// For each order what its coefficient tells where it is 2^−1023, and how much less for one that is twice as large, over 2³².
+    /// For each order what its coefficient tells where it is 2^−1023, and how much less for one
+    /// that is twice as large, over 2³².
     told: [(f64, f64); LENGTH],
 }
 
@@ -109,8 +115,8 @@ impl Rule {
         Self { tolerance, order, told }
     }
 
-    /// 1023 and the binary logarithm of the step that a coefficient of the order k over the error allowed tells, (coefficient · rtol)^(−1/k) times the
-    /// margin; infinite where it is zero.
+    /// 1023 and the binary logarithm of the step that a coefficient of the order k over the error
+    /// allowed tells, (coefficient · rtol)^(−1/k) times the margin; infinite where it is zero.
     #[inline(always)]
     pub(super) fn told(&self, coefficient: f64, k: usize) -> f64 {
         let (most, slope) = self.told[k];
@@ -170,7 +176,15 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Stepper<D, N> for Taylor 
     ) -> Piece<D::Scalar, N> {
         let (h, zero) = (span.length::<D::Scalar>(), [[D::Scalar::from_f64(0.0); N]; TERMS]);
         let (q0, v0) = (from.q.high, from.v.high);
-        let mut piece = Piece { span: *span, q0, v0, q: zero, v: zero, terms: room.order, basis: Basis::Powers };
+        let mut piece = Piece {
+            span: *span,
+            q0,
+            v0,
+            q: zero,
+            v: zero,
+            terms: room.order,
+            basis: Basis::Powers,
+        };
         let mut power = h;
         for k in 1..=room.order {
             for i in 0..N {
@@ -182,17 +196,31 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Stepper<D, N> for Taylor 
         piece
     }
 
-    fn fault(&self, dynamics: &D, span: &Span, from: &Node<D::Scalar, N>, _: &RoomOf<D, N>) -> Option<Error> {
+    fn fault(
+        &self,
+        dynamics: &D,
+        span: &Span,
+        from: &Node<D::Scalar, N>,
+        _: &RoomOf<D, N>,
+    ) -> Option<Error> {
         let mut watched = Watched::new(dynamics);
         watched.at(from.t, side(span.h), &from.q.high, &from.v.high);
         let mut room = self.room(dynamics);
-        expand(&mut Counted::new(dynamics), from, side(span.h), self.fixed::<D::Scalar>(), &mut room);
+        expand(
+            &mut Counted::new(dynamics),
+            from,
+            side(span.h),
+            self.fixed::<D::Scalar>(),
+            &mut room,
+        );
         let facts = &<D::System as System<N>>::FACTS;
         let finite = |series: &Series<D::Scalar>| series.iter().all(|x| x.is_finite());
         let infinite = (0..N).find(|&i| !finite(&room.path.v[i]) || !finite(&room.path.q[i]));
         let (t, what) = watched
             .first
-            .or_else(|| infinite.map(|index| (from.t, Quantity::Acceleration(coordinate(facts, index)))))
+            .or_else(|| {
+                infinite.map(|index| (from.t, Quantity::Acceleration(coordinate(facts, index))))
+            })
             .or_else(|| {
                 let to = sum(&room, from, span);
                 first_in_state(facts, &to.q.high, &to.v.high).map(|what| (span.end, what))
@@ -214,7 +242,11 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         self.least_steps_over(length)
     }
 
-    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, Taylor, N>) -> Result<Span, Error> {
+    fn step(
+        &self,
+        memory: &mut Memory,
+        course: Course<'_, '_, D, Taylor, N>,
+    ) -> Result<Span, Error> {
         let Course { method, field, from, to, stages: room, target, stats } = course;
         let t = from.t.to_f64();
         let backwards = target < t;
@@ -236,7 +268,12 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         let wanted = length(&room.path, &room.rule, &weights);
         // A uniform motion may go on for ever, but it has to come to an end.
         let wanted = if wanted == f64::INFINITY && target == wanted { 1.0 } else { wanted };
-        let mut wanted = memory.within_sight(self.limited(memory.h == 0.0, wanted), field.dynamics, from.t, GAP)?;
+        let mut wanted = memory.within_sight(
+            self.limited(memory.h == 0.0, wanted),
+            field.dynamics,
+            from.t,
+            GAP,
+        )?;
         // Towards a time at which the last series did not hold.
         room.refuted = room.refuted.filter(|&refuted| {
             let left = -from.t.since(refuted);
@@ -250,7 +287,8 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         *to = sum(room, from, &span);
         let whole = span;
         let finite = |series: &Series<D::Scalar>| series[..=order].iter().all(|x| x.is_finite());
-        let known = to.is_finite() || (0..N).all(|i| finite(&room.path.q[i]) && finite(&room.path.v[i]));
+        let known =
+            to.is_finite() || (0..N).all(|i| finite(&room.path.q[i]) && finite(&room.path.v[i]));
         let (mut halved, mut crosses) = (0, false);
         // At the resolution of times no step can be shorter.
         while known && resolution_of::<D::Scalar>(from.t) < wanted {
@@ -263,8 +301,8 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
             halved += 1;
             room.refuted = Some(span.end.to_f64());
             if halved == MOST_HALVED {
-                // Something jumps within so short a step, which goes over that; or its series is right, and what does not fit is
-                // rounding. Behind a jump there is no other.
+                // Something jumps within so short a step, which goes over that; or its series is
+                // right, and what does not fit is rounding. Behind a jump there is no other.
                 crosses = !misfit.rounding && !room.crossed;
                 if !crosses {
                     (wanted, span) = (whole.h.abs(), whole);
@@ -298,7 +336,8 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
     }
 }
 
-/// A series knows the start of its step alone. It tells a bell from two widths away, and the bound is to leave a sine its steps of 3/ω.
+/// A series knows the start of its step alone. It tells a bell from two widths away, and the bound
+/// is to leave a sine its steps of 3/ω.
 pub(super) const GAP: f64 = 0.7;
 
 /// The side from which the start of a step is seen.
@@ -331,9 +370,14 @@ fn expand<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     field.evaluations += order as u64;
 }
 
-/// The state at the end of a step: the sum of the series, to which the products of the first order come with both words.
+/// The state at the end of a step: the sum of the series, to which the products of the first order
+/// come with both words.
 #[inline]
-fn sum<T: Float, W, X, const N: usize>(room: &Room<T, W, X, N>, from: &Node<T, N>, span: &Span) -> Node<T, N> {
+fn sum<T: Float, W, X, const N: usize>(
+    room: &Room<T, W, X, N>,
+    from: &Node<T, N>,
+    span: &Span,
+) -> Node<T, N> {
     let h = span.length::<T>();
     let mut to = Node { t: span.end, a: None, ..*from };
     for i in 0..N {
@@ -357,10 +401,12 @@ struct Misfit {
     rounding: bool,
 }
 
-/// How far the accelerations at the end of a step are from those of the series: h |a − Σ k v\[k\] hᵏ⁻¹|/p in units of the error allowed.
+/// How far the accelerations at the end of a step are from those of the series: h |a − Σ k v\[k\]
+/// hᵏ⁻¹|/p in units of the error allowed.
 ///
-/// A series knows no more than its centre does: of a wall, a contact or a switch far away its coefficients tell nothing. Rounding is
-/// taken for a thousand ε of velocities, accelerations, coordinates and time.
+/// A series knows no more than its centre does: of a wall, a contact or a switch far away its
+/// coefficients tell nothing. Rounding is taken for a thousand ε of velocities, accelerations,
+/// coordinates and time.
 fn misfit<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     room: &RoomOf<D, N>,
@@ -375,19 +421,26 @@ fn misfit<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     // Motions have the digits of `f64`.
     let facts = &<D::System as System<N>>::FACTS;
     let epsilon = D::Scalar::EPSILON.to_f64();
-    let rounding = 1e3 * if facts.inputs.is_empty() || f64::EPSILON < epsilon { epsilon } else { f64::EPSILON };
-    let largest = |values: &dyn Fn(usize) -> D::Scalar| (0..N).fold(0.0, |largest: f64, i| largest.max(values(i).to_f64().abs()));
+    let rounding = 1e3
+        * if facts.inputs.is_empty() || f64::EPSILON < epsilon { epsilon } else { f64::EPSILON };
+    let largest = |values: &dyn Fn(usize) -> D::Scalar| {
+        (0..N).fold(0.0, |largest: f64, i| largest.max(values(i).to_f64().abs()))
+    };
     let (q, v) = (&room.path.q, &room.path.v);
     let (way, turn) = (largest(&|i| to.q.high[i] - q[i][0]), largest(&|i| a[i] - v[i][1]));
-    // Coordinates and time are rounded too, and the accelerations change with them as they do on the way.
+    // Coordinates and time are rounded too, and the accelerations change with them as they do on
+    // the way.
     let by_place = if 0.0 < way { largest(&|i| to.q.high[i]) * (turn / way) } else { 0.0 };
     let by_time = span.end.to_f64().abs() * (turn / span.h.abs());
     let size = largest(&|i| a[i]) + by_place + if facts.autonomous { 0.0 } else { by_time };
     let (mut allowed, mut is_rounding) = (to.is_finite() && size.is_finite(), true);
     for i in 0..N {
-        let series = (1..=room.order).rev().fold(zero, |sum, k| sum * h + D::Scalar::from_f64(k as f64) * v[i][k]);
+        let series = (1..=room.order)
+            .rev()
+            .fold(zero, |sum, k| sum * h + D::Scalar::from_f64(k as f64) * v[i][k]);
         let difference = (a[i] - series).to_f64().abs();
-        // That of a smooth series is gone after a halving; that of a jump is not, and the velocity is off by all of it.
+        // That of a smooth series is gone after a halving; that of a jump is not, and the velocity
+        // is off by all of it.
         let (share, most) = if strict { (1.0, 1.0) } else { (room.order as f64, MISFIT) };
         let misfit = span.h.abs() * difference / share;
         let noise = rounding * (to.v.high[i].to_f64().abs() + span.h.abs() * size);
@@ -397,7 +450,8 @@ fn misfit<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     Misfit { allowed, rounding: is_rounding }
 }
 
-/// Σ x\[k\] hᵏ over 2 ≤ k ≤ `order`, beyond which all are zero: every fourth term after Horner (1819), the four sums side by side.
+/// Σ x\[k\] hᵏ over 2 ≤ k ≤ `order`, beyond which all are zero: every fourth term after Horner
+/// (1819), the four sums side by side.
 #[inline(always)]
 pub(super) fn rest<T: Real>(series: &Series<T>, order: usize, h: T) -> T {
     let (fours, _) = series.as_chunks::<4>();
@@ -414,12 +468,18 @@ pub(super) fn rest<T: Real>(series: &Series<T>, order: usize, h: T) -> T {
     ((second + third * h) + ((a + b * h) + (c + d * h) * h2) * h2) * h2
 }
 
-/// How many of the last coefficients tell the length of a step. A motion from rest in a symmetric place has one order in four only.
+/// How many of the last coefficients tell the length of a step. A motion from rest in a symmetric
+/// place has one order in four only.
 pub(super) const TELLING: usize = 4;
 
-/// The length of a step at whose end the last term of the series is as large as allowed; infinite for a uniform motion.
+/// The length of a step at whose end the last term of the series is as large as allowed; infinite
+/// for a uniform motion.
 #[inline]
-fn length<T: Float, const N: usize>(path: &Path<T, N>, rule: &Rule, weights: &[[f64; N]; 2]) -> f64 {
+fn length<T: Float, const N: usize>(
+    path: &Path<T, N>,
+    rule: &Rule,
+    weights: &[[f64; N]; 2],
+) -> f64 {
     let (mut least, mut told) = (f64::INFINITY, 0);
     for k in (1..=rule.order).rev() {
         let (coefficient, _) = largest(path, k, weights);
@@ -438,7 +498,11 @@ fn length<T: Float, const N: usize>(path: &Path<T, N>, rule: &Rule, weights: &[[
 
 /// The largest coefficient of an order over the error allowed, and its coordinate.
 #[inline]
-pub(super) fn largest<T: Float, const N: usize>(path: &Path<T, N>, k: usize, weights: &[[f64; N]; 2]) -> (f64, usize) {
+pub(super) fn largest<T: Float, const N: usize>(
+    path: &Path<T, N>,
+    k: usize,
+    weights: &[[f64; N]; 2],
+) -> (f64, usize) {
     let mut largest = (0.0, 0);
     for i in 0..N {
         for (series, weights) in [(&path.q[i], &weights[0]), (&path.v[i], &weights[1])] {

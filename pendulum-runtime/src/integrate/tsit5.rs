@@ -12,16 +12,17 @@ use crate::system::System;
 
 /// The explicit Runge–Kutta pair of orders 5 and 4 of Tsitouras: six evaluations a step, adaptive.
 ///
-/// It suits every system and is the choice for errors from 1e-2 to 1e-6; below that [`Dop853`](super::Dop853) takes fewer evaluations.
-/// It is not symplectic, and its energy drifts with the tolerance: errors of its steps have the
-/// same sign in every period and add up, on a pivot shaken a thousand times to about a hundred
-/// tolerances whatever the tolerance is. It is explicit: a stiff spring or damper forces h·ω below
-/// about 3.5.
+/// It suits every system and is the choice for errors from 1e-2 to 1e-6; below that
+/// [`Dop853`](super::Dop853) takes fewer evaluations. It is not symplectic, and its energy drifts
+/// with the tolerance: errors of its steps have the same sign in every period and add up, on a
+/// pivot shaken a thousand times to about a hundred tolerances whatever the tolerance is. It is
+/// explicit: a stiff spring or damper forces h·ω below about 3.5.
 ///
-/// The last stage is the first of the next step. Dense output is the quartic of the same paper and costs nothing.
+/// The last stage is the first of the next step. Dense output is the quartic of the same paper and
+/// costs nothing.
 ///
-/// Source: Tsitouras (2011), Runge–Kutta pairs of order 5(4) satisfying only the first column simplifying assumption, Comput. Math.
-/// Appl. 62, 770.
+/// Source: Tsitouras (2011), Runge–Kutta pairs of order 5(4) satisfying only the first column
+/// simplifying assumption, Comput. Math. Appl. 62, 770.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tsit5;
 
@@ -84,11 +85,17 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Tsit5 {
 }
 
 impl Embedded for Tsit5 {
-    const RESPONSE: Response = Response { alpha: 0.17, beta: 0.04, safety: 0.8, least: 0.2, greatest: 10.0 };
+    const RESPONSE: Response =
+        Response { alpha: 0.17, beta: 0.04, safety: 0.8, least: 0.2, greatest: 10.0 };
     const GAP: f64 = widest(&C, &E);
 
     #[inline]
-    fn error<T: Float, const N: usize>(&self, k: &Slopes<T, N, 7>, h: f64, weights: &Weights<N>) -> f64 {
+    fn error<T: Float, const N: usize>(
+        &self,
+        k: &Slopes<T, N, 7>,
+        h: f64,
+        weights: &Weights<N>,
+    ) -> f64 {
         let (q, v) = k.weighted(E);
         h * (weights.square_sum(&q, &v) / (2 * N) as f64).sqrt()
     }
@@ -99,9 +106,19 @@ const C: [f64; 7] = [0.0, 0.161, 0.327, 0.9, 0.9800255409045097, 1.0, 1.0];
 const A1: Row<1> = [(0, 0.161)];
 const A2: Row<2> = [(0, -0.008480655492356989), (1, 0.335480655492357)];
 const A3: Row<3> = [(0, 2.8971530571054935), (1, -6.359448489975075), (2, 4.3622954328695815)];
-const A4: Row<4> = [(0, 5.325864828439257), (1, -11.748883564062828), (2, 7.4955393428898365), (3, -0.09249506636175525)];
-const A5: Row<5> =
-    [(0, 5.86145544294642), (1, -12.92096931784711), (2, 8.159367898576159), (3, -0.071584973281401), (4, -0.028269050394068383)];
+const A4: Row<4> = [
+    (0, 5.325864828439257),
+    (1, -11.748883564062828),
+    (2, 7.4955393428898365),
+    (3, -0.09249506636175525),
+];
+const A5: Row<5> = [
+    (0, 5.86145544294642),
+    (1, -12.92096931784711),
+    (2, 8.159367898576159),
+    (3, -0.071584973281401),
+    (4, -0.028269050394068383),
+];
 const B: Row<6> = [
     (0, 0.09646076681806523),
     (1, 0.01),
@@ -122,7 +139,8 @@ const E: Row<7> = [
     (6, 0.015151515151515152),
 ];
 
-/// The coefficients of θ⁴ in the weights of the quartic; the lower ones follow from the states and slopes at both ends.
+/// The coefficients of θ⁴ in the weights of the quartic; the lower ones follow from the states and
+/// slopes at both ends.
 const D: Row<7> = [
     (0, -1.0530884977290216),
     (1, 0.1017),
@@ -140,7 +158,9 @@ mod tests {
 
     #[test]
     fn rows_add_up_to_their_nodes() {
-        for (i, sum) in [sum(A1), sum(A2), sum(A3), sum(A4), sum(A5), sum(B)].into_iter().enumerate() {
+        for (i, sum) in
+            [sum(A1), sum(A2), sum(A3), sum(A4), sum(A5), sum(B)].into_iter().enumerate()
+        {
             assert!((sum - C[i + 1]).abs() < 1e-14, "row {} adds up to {sum}", i + 1);
         }
     }
@@ -148,7 +168,10 @@ mod tests {
     #[test]
     fn weights_integrate_powers() {
         for power in 0..5 {
-            assert!((moment(&C, B, power) - 1.0 / f64::from(power + 1)).abs() < 1e-14, "power {power}");
+            assert!(
+                (moment(&C, B, power) - 1.0 / f64::from(power + 1)).abs() < 1e-14,
+                "power {power}"
+            );
         }
         for power in 0..4 {
             assert!(moment(&C, E, power).abs() < 1e-14, "power {power}");
@@ -158,7 +181,8 @@ mod tests {
 
     #[test]
     fn the_quartic_integrates_powers() {
-        // ∫₀^θ cᵖ = θᵖ⁺¹/(p+1): the coefficient of θ⁴ is a quarter for p = 3 and zero for the powers below.
+        // ∫₀^θ cᵖ = θᵖ⁺¹/(p+1): the coefficient of θ⁴ is a quarter for p = 3 and zero for the
+        // powers below.
         for power in 0..3 {
             assert!(moment(&C, D, power).abs() < 1e-12, "power {power}");
         }

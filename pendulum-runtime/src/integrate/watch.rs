@@ -39,17 +39,24 @@ struct Track<T> {
     next: usize,
 }
 
-/// How near to its ends, in parts of a step, the function is looked at to see whether it falls or rises there.
+/// How near to its ends, in parts of a step, the function is looked at to see whether it falls or
+/// rises there.
 const NEAR: f64 = 1e-4;
 /// How soon after a root a function shows its sign, in parts of a step.
 const SHORTLY: f64 = 1e-7;
 /// The points at which it is looked at.
-const POINTS: [f64; 11] = [-NEAR, 0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0 - NEAR, 1.0];
+const POINTS: [f64; 11] =
+    [-NEAR, 0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0 - NEAR, 1.0];
 
 impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
     pub(crate) fn new(events: &'a [Event<'a, T, N>]) -> Self {
         let track = Track { value: T::from_f64(0.0), side: 0, count: 0, last: None, next: 0 };
-        Self { events, tracks: vec![track; events.len()], fresh: true, found: Vec::with_capacity(events.len()) }
+        Self {
+            events,
+            tracks: vec![track; events.len()],
+            fresh: true,
+            found: Vec::with_capacity(events.len()),
+        }
     }
 
     /// Whether there is nothing to look for.
@@ -64,7 +71,11 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
     }
 
     /// Begins at the state of `driver`.
-    pub(crate) fn begin<D, M, C>(&mut self, driver: &mut Driver<T, N, M, C, M::Stages>, dynamics: &D) -> Result<(), Error>
+    pub(crate) fn begin<D, M, C>(
+        &mut self,
+        driver: &mut Driver<T, N, M, C, M::Stages>,
+        dynamics: &D,
+    ) -> Result<(), Error>
     where
         D: Dynamics<N, Scalar = T>,
         M: Stepper<D, N>,
@@ -77,7 +88,8 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
         self.look(&driver.node, &a)
     }
 
-    /// Finds what happened in the step that `driver` has just taken; if a terminal event did, puts it back there and gives the index.
+    /// Finds what happened in the step that `driver` has just taken; if a terminal event did, puts
+    /// it back there and gives the index.
     ///
     /// On failure it is put back to the start of the step.
     pub(crate) fn observe<D, M, C>(
@@ -110,7 +122,9 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
                     driver.cut(last.time, &last.state);
                     let a = driver.accelerations(dynamics);
                     self.look(&driver.node, &a)?;
-                    for occurrence in self.found.iter().filter(|occurrence| occurrence.time == last.time) {
+                    for occurrence in
+                        self.found.iter().filter(|occurrence| occurrence.time == last.time)
+                    {
                         self.tracks[occurrence.event].side = 0;
                     }
                 }
@@ -126,7 +140,8 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
             match self.events[index].condition {
                 Condition::Times(times) => {
                     in_order("events", times, f64::NEG_INFINITY, f64::INFINITY)?;
-                    self.tracks[index].next = times.partition_point(|time| *time <= node.t.to_f64());
+                    self.tracks[index].next =
+                        times.partition_point(|time| *time <= node.t.to_f64());
                 }
                 Condition::Root(_) => {
                     let place = Place { t: scalar_time(node.t), q: node.q.high, v: node.v.high };
@@ -144,14 +159,17 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
 
     /// The next known time, infinite if there is none.
     pub(crate) fn next_time(&self) -> f64 {
-        let times = self.events.iter().zip(&self.tracks).filter_map(|(event, track)| match event.condition {
-            Condition::Times(times) => times.get(track.next).copied(),
-            Condition::Root(_) => None,
+        let times = self.events.iter().zip(&self.tracks).filter_map(|(event, track)| {
+            match event.condition {
+                Condition::Times(times) => times.get(track.next).copied(),
+                Condition::Root(_) => None,
+            }
         });
         times.fold(f64::INFINITY, |first, time| if time < first { time } else { first })
     }
 
-    /// Finds what happened in the step of `piece` that ended in `end`, and then, over a kink, in `beyond`.
+    /// Finds what happened in the step of `piece` that ended in `end`, and then, over a kink, in
+    /// `beyond`.
     ///
     /// Gives the terminal event, if there was one.
     fn step(
@@ -165,9 +183,16 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
         for index in 0..self.events.len() {
             match self.events[index].condition {
                 Condition::Times(times) => {
-                    while times.get(self.tracks[index].next).is_some_and(|time| *time <= end.t.to_f64()) {
+                    while times
+                        .get(self.tracks[index].next)
+                        .is_some_and(|time| *time <= end.t.to_f64())
+                    {
                         self.tracks[index].next += 1;
-                        self.found.push(Occurrence { event: index, time: end.t, state: State::from(end) });
+                        self.found.push(Occurrence {
+                            event: index,
+                            time: end.t,
+                            state: State::from(end),
+                        });
                     }
                 }
                 Condition::Root(_) => {
@@ -182,13 +207,16 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
         }
         self.fresh = beyond.is_some();
         if let Some(beyond) = beyond {
-            for occurrence in self.found.iter_mut().filter(|occurrence| occurrence.time == beyond.t) {
+            for occurrence in self.found.iter_mut().filter(|occurrence| occurrence.time == beyond.t)
+            {
                 occurrence.state = State::from(beyond);
             }
         }
         let start = end.t.to_f64();
         let before = |a: &Occurrence<T, N>| (a.time.since(start), a.event);
-        self.found.sort_unstable_by(|a, b| before(a).partial_cmp(&before(b)).unwrap_or(core::cmp::Ordering::Equal));
+        self.found.sort_unstable_by(|a, b| {
+            before(a).partial_cmp(&before(b)).unwrap_or(core::cmp::Ordering::Equal)
+        });
         Ok(self.count())
     }
 
@@ -214,7 +242,13 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
     }
 
     /// Searches one step for the roots of one function.
-    fn search(&mut self, index: usize, piece: &Piece<T, N>, end: &Node<T, N>, fresh: bool) -> Result<(), Error> {
+    fn search(
+        &mut self,
+        index: usize,
+        piece: &Piece<T, N>,
+        end: &Node<T, N>,
+        fresh: bool,
+    ) -> Result<(), Error> {
         let zero = T::from_f64(0.0);
         let mut before: [Option<Point<T>>; 2] = [None; 2];
         let mut side_before = self.tracks[index].side;
@@ -227,7 +261,8 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
                     _ => continue,
                 },
                 1 => self.tracks[index].value,
-                10 => self.value(index, &Place { t: scalar_time(end.t), q: end.q.high, v: end.v.high })?,
+                10 => self
+                    .value(index, &Place { t: scalar_time(end.t), q: end.q.high, v: end.v.high })?,
                 _ => self.at(index, piece, theta)?,
             };
             let mut point = (theta, value);
@@ -235,7 +270,8 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
                 // A long step from a root may lead over the next: it must show its side soon.
                 let soon = T::from_f64(NEAR);
                 let place = Place::on(piece, soon);
-                if let (Ok(value), Ok(least)) = (self.value(index, &place), self.allowance(index, &place))
+                if let (Ok(value), Ok(least)) =
+                    (self.value(index, &place), self.allowance(index, &place))
                     && least < value.abs()
                 {
                     (point, side_before) = ((soon, value), side(value));
@@ -252,14 +288,17 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
                     }
                     (_, [_, Some(_)]) if side_here == 0 => {
                         // A root just here: what comes next shows whether it is crossed.
-                        let next =
-                            self.at(index, piece, theta + T::from_f64(SHORTLY)).unwrap_or(T::from_f64(f64::from(-side_before)));
+                        let next = self
+                            .at(index, piece, theta + T::from_f64(SHORTLY))
+                            .unwrap_or(T::from_f64(f64::from(-side_before)));
                         point.1 = next;
                         let crossed = side(next) != side_before;
                         self.push(index, piece, end, theta, if crossed { -side_before } else { 0 });
                         side_before = side(next);
                     }
-                    (_, [Some(first), Some(middle)]) if side(first.1) == side_here && side(middle.1) == side_here => {
+                    (_, [Some(first), Some(middle)])
+                        if side(first.1) == side_here && side(middle.1) == side_here =>
+                    {
                         let lower = middle.1.abs() <= value.abs() && middle.1.abs() < first.1.abs();
                         if lower && !(i == 2 && self.recent(index, piece)) {
                             self.dip(index, piece, end, [first, middle, point])?;
@@ -278,16 +317,24 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
 
     /// Looks whether a function jumped over zero at a kink.
     fn jump(&mut self, index: usize, beyond: &Node<T, N>) -> Result<(), Error> {
-        let value = self.value(index, &Place { t: scalar_time(beyond.t), q: beyond.q.high, v: beyond.v.high })?;
+        let value = self.value(
+            index,
+            &Place { t: scalar_time(beyond.t), q: beyond.q.high, v: beyond.v.high },
+        )?;
         let (before, here) = (self.tracks[index].side, side(value));
         if before != 0 && here == -before && self.counts(index, here) {
-            self.found.push(Occurrence { event: index, time: beyond.t, state: State::from(beyond) });
+            self.found.push(Occurrence {
+                event: index,
+                time: beyond.t,
+                state: State::from(beyond),
+            });
         }
         (self.tracks[index].value, self.tracks[index].side) = (value, here);
         Ok(())
     }
 
-    /// Whether the event has happened so shortly before the step that a dip around its start is the same one.
+    /// Whether the event has happened so shortly before the step that a dip around its start is the
+    /// same one.
     fn recent(&self, index: usize, piece: &Piece<T, N>) -> bool {
         let start = piece.span.start;
         let since = |last: Time| (last.since(start.to_f64()) - start.low()).abs();
@@ -295,7 +342,13 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
     }
 
     /// Looks for a root, or a pair of them, in a dip of |g|.
-    fn dip(&mut self, index: usize, piece: &Piece<T, N>, end: &Node<T, N>, points: [Point<T>; 3]) -> Result<(), Error> {
+    fn dip(
+        &mut self,
+        index: usize,
+        piece: &Piece<T, N>,
+        end: &Node<T, N>,
+        points: [Point<T>; 3],
+    ) -> Result<(), Error> {
         let sign = T::from_f64(f64::from(side(points[0].1)));
         let tolerance = match self.events[index] {
             Event { direction: Direction::Rising | Direction::Falling, .. } => T::from_f64(0.0),
@@ -308,7 +361,9 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
             Dip::Touches(theta) => self.push(index, piece, end, theta, 0),
             Dip::Crosses(theta) => {
                 let below = (theta, self.at(index, piece, theta)?);
-                for (from, to, here) in [(points[0], below, side(below.1)), (below, points[2], side(points[2].1))] {
+                for (from, to, here) in
+                    [(points[0], below, side(below.1)), (below, points[2], side(points[2].1))]
+                {
                     let theta = self.root(index, piece, from, to)?;
                     self.push(index, piece, end, theta, here);
                 }
@@ -317,18 +372,27 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
         Ok(())
     }
 
-    fn root(&self, index: usize, piece: &Piece<T, N>, from: Point<T>, to: Point<T>) -> Result<T, Error> {
+    fn root(
+        &self,
+        index: usize,
+        piece: &Piece<T, N>,
+        from: Point<T>,
+        to: Point<T>,
+    ) -> Result<T, Error> {
         root(&mut |theta| self.at(index, piece, theta), from, to)
     }
 
-    /// Keeps an occurrence, if its direction counts; `here` is the side that it leads to, 0 if it only touches.
+    /// Keeps an occurrence, if its direction counts; `here` is the side that it leads to, 0 if it
+    /// only touches.
     fn push(&mut self, index: usize, piece: &Piece<T, N>, end: &Node<T, N>, theta: T, here: i8) {
         if !self.counts(index, here) {
             return;
         }
-        // A dip around the start of a step may have its root before it, where the integration can no longer end.
+        // A dip around the start of a step may have its root before it, where the integration can
+        // no longer end.
         let zero = T::from_f64(0.0);
-        let theta = if theta < zero && self.events[index].terminal.is_some() { zero } else { theta };
+        let theta =
+            if theta < zero && self.events[index].terminal.is_some() { zero } else { theta };
         let occurrence = if theta == T::from_f64(1.0) {
             Occurrence { event: index, time: end.t, state: State::from(end) }
         } else {
@@ -356,9 +420,15 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
 
     /// The function at a state.
     fn value(&self, index: usize, place: &Place<T, N>) -> Result<T, Error> {
-        let Condition::Root(function) = self.events[index].condition else { return Ok(T::from_f64(0.0)) };
+        let Condition::Root(function) = self.events[index].condition else {
+            return Ok(T::from_f64(0.0));
+        };
         let value = function(place.t, &place.q, &place.v);
-        if value.to_f64().is_nan() { Err(Error::Event { t: place.t.to_f64(), event: index }) } else { Ok(value) }
+        if value.to_f64().is_nan() {
+            Err(Error::Event { t: place.t.to_f64(), event: index })
+        } else {
+            Ok(value)
+        }
     }
 
     /// What rounding the state and the time by a few units changes in the function.
@@ -370,9 +440,11 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
             q: core::array::from_fn(|i| place.q[i] + dt * place.v[i]),
             v: core::array::from_fn(|i| place.v[i] + dt * a[i]),
         };
-        // Accelerations that are not finite are for the step to report, and a function may end right here.
+        // Accelerations that are not finite are for the step to report, and a function may end
+        // right here.
         let zero = T::from_f64(0.0);
-        let later = if a.iter().all(|a| a.is_finite()) { self.value(index, &later) } else { Ok(value) };
+        let later =
+            if a.iter().all(|a| a.is_finite()) { self.value(index, &later) } else { Ok(value) };
         let drift = later.map_or(zero, |later| (later - value).abs());
         drift + self.changes(index, place, value, |y| unit * y.abs())
     }
@@ -391,7 +463,9 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
             let mut other = *place;
             let y = if i < N { &mut other.q[i] } else { &mut other.v[i - N] };
             *y += change(*y);
-            sum += self.value(index, &other).map_or(T::from_f64(0.0), |changed| (changed - value).abs());
+            sum += self
+                .value(index, &other)
+                .map_or(T::from_f64(0.0), |changed| (changed - value).abs());
         }
         sum
     }

@@ -1,4 +1,5 @@
-//! Dynamics whose jets are known: a system with recurrences, and motions with series for its driven inputs.
+//! Dynamics whose jets are known: a system with recurrences, and motions with series for its driven
+//! inputs.
 
 use super::{InputSeries, Jets};
 use crate::motion::{AnalyticMotions, PerhapsAnalytic, Side};
@@ -7,8 +8,15 @@ use crate::time::Time;
 
 /// Dynamics of which [`Taylor`](crate::integrate::Taylor) can compute the jets.
 pub trait JetDynamics<const N: usize>: Dynamics<N, System: Jets<N>> {
-    /// The series of all driven inputs at `t`, seen from `side`: `count` coefficients of their accelerations.
-    fn drive(&self, t: Time, side: Side, count: usize, drive: &mut <Self::System as Jets<N>>::Drive);
+    /// The series of all driven inputs at `t`, seen from `side`: `count` coefficients of their
+    /// accelerations.
+    fn drive(
+        &self,
+        t: Time,
+        side: Side,
+        count: usize,
+        drive: &mut <Self::System as Jets<N>>::Drive,
+    );
 
     /// The first time after `t` at which a motion stops being analytic; every kink is such a time.
     fn next_break(&self, t: f64) -> Option<f64>;
@@ -20,7 +28,8 @@ pub trait JetDynamics<const N: usize>: Dynamics<N, System: Jets<N>> {
     fn last_kink(&self, t: f64) -> Option<f64>;
 }
 
-/// Dynamics of a generated system, whatever drives it: whether their jets are known shows at run time.
+/// Dynamics of a generated system, whatever drives it: whether their jets are known shows at run
+/// time.
 ///
 /// Where a motion is not analytic, its part of all other answers is missing.
 #[diagnostic::on_unimplemented(
@@ -33,7 +42,13 @@ pub trait PerhapsJets<const N: usize>: Dynamics<N, System: Jets<N>> {
     fn is_analytic(&self) -> bool;
 
     /// As [`JetDynamics::drive`].
-    fn drive(&self, t: Time, side: Side, count: usize, drive: &mut <Self::System as Jets<N>>::Drive);
+    fn drive(
+        &self,
+        t: Time,
+        side: Side,
+        count: usize,
+        drive: &mut <Self::System as Jets<N>>::Drive,
+    );
 
     /// As [`JetDynamics::next_break`].
     fn next_break(&self, t: f64) -> Option<f64>;
@@ -100,11 +115,15 @@ impl<const N: usize, S: Jets<N, Inputs: NoInputs<S>>> PerhapsJets<N> for S {
     none!(next_break last_break last_kink);
 }
 
-impl<const N: usize, S: Jets<N>, M: AnalyticMotions<S::Inputs, S::Scalar>> JetDynamics<N> for Driven<S, M> {
+impl<const N: usize, S: Jets<N>, M: AnalyticMotions<S::Inputs, S::Scalar>> JetDynamics<N>
+    for Driven<S, M>
+{
     of_motions!(next_break last_break last_kink);
 }
 
-impl<const N: usize, S: Jets<N>, M: PerhapsAnalytic<S::Inputs, S::Scalar>> PerhapsJets<N> for Driven<S, M> {
+impl<const N: usize, S: Jets<N>, M: PerhapsAnalytic<S::Inputs, S::Scalar>> PerhapsJets<N>
+    for Driven<S, M>
+{
     fn is_analytic(&self) -> bool {
         self.motions.is_analytic()
     }
@@ -112,11 +131,15 @@ impl<const N: usize, S: Jets<N>, M: PerhapsAnalytic<S::Inputs, S::Scalar>> Perha
     of_motions!(next_break last_break last_kink);
 }
 
-impl<const N: usize, D: JetDynamics<N>> JetDynamics<N> for Prepared<'_, D, <D::System as System<N>>::Prepared> {
+impl<const N: usize, D: JetDynamics<N>> JetDynamics<N>
+    for Prepared<'_, D, <D::System as System<N>>::Prepared>
+{
     of_inner!(self, self.dynamics(); next_break last_break last_kink);
 }
 
-impl<const N: usize, D: PerhapsJets<N>> PerhapsJets<N> for Prepared<'_, D, <D::System as System<N>>::Prepared> {
+impl<const N: usize, D: PerhapsJets<N>> PerhapsJets<N>
+    for Prepared<'_, D, <D::System as System<N>>::Prepared>
+{
     fn is_analytic(&self) -> bool {
         self.dynamics().is_analytic()
     }
@@ -155,7 +178,13 @@ impl<const N: usize, D: Dynamics<N>> Dynamics<N> for Known<'_, D> {
     }
 
     #[inline]
-    fn accelerations_at(&self, t: Time, side: Side, q: &[D::Scalar; N], v: &[D::Scalar; N]) -> [D::Scalar; N] {
+    fn accelerations_at(
+        &self,
+        t: Time,
+        side: Side,
+        q: &[D::Scalar; N],
+        v: &[D::Scalar; N],
+    ) -> [D::Scalar; N] {
         self.0.accelerations_at(t, side, q, v)
     }
 }

@@ -21,7 +21,8 @@ impl<T: Real, const B: usize> Factors<T, B> {
         Self { lower: [[zero; B]; B], reciprocal: [zero; B], inverse: [[zero; B]; B] }
     }
 
-    /// Those of the matrix with this lower triangle; what stands above its diagonal does not matter.
+    /// Those of the matrix with this lower triangle; what stands above its diagonal does not
+    /// matter.
     #[inline]
     pub fn new(mut matrix: [[T; B]; B]) -> Self {
         let mut reciprocal = [T::from_f64(0.0); B];
@@ -99,7 +100,11 @@ mod tests {
         // L = [1; 2 1; −1 3 1], D = (1, 2, 4).
         let matrix = [[1.0, 0.0, 0.0], [2.0, 6.0, 0.0], [-1.0, 4.0, 23.0]];
         let x = [3.0, -5.0, 7.0];
-        let right = [1.0 * 3.0 - 2.0 * 5.0 - 7.0, 2.0 * 3.0 - 6.0 * 5.0 + 4.0 * 7.0, -3.0 - 4.0 * 5.0 + 23.0 * 7.0];
+        let right = [
+            1.0 * 3.0 - 2.0 * 5.0 - 7.0,
+            2.0 * 3.0 - 6.0 * 5.0 + 4.0 * 7.0,
+            -3.0 - 4.0 * 5.0 + 23.0 * 7.0,
+        ];
         assert_eq!(Factors::new(matrix).solve(right), x);
     }
 }

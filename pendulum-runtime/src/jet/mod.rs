@@ -1,7 +1,8 @@
 //! Jets: the Taylor coefficients of a motion, one order after the other.
 //!
-//! `lagrangian!` emits one recurrence for each operation of its equations (Jorba and Zou 2005); the mass matrix is factored once for all
-//! orders. All series are in powers of the time since their start: x(t₀ + h) = Σ x\[k\] hᵏ.
+//! `lagrangian!` emits one recurrence for each operation of its equations (Jorba and Zou 2005); the
+//! mass matrix is factored once for all orders. All series are in powers of the time since their
+//! start: x(t₀ + h) = Σ x\[k\] hᵏ.
 
 // An order that the compiler knows has to reach every sum.
 #![allow(clippy::inline_always)]
@@ -17,7 +18,9 @@ mod tests;
 pub(crate) use dynamics::Known;
 pub use dynamics::{JetDynamics, PerhapsJets};
 pub use factors::Factors;
-pub use order::{Called, Calling, Constant, First, Looped, Order, Orders, Running, Second, Unrolled};
+pub use order::{
+    Called, Calling, Constant, First, Looped, Order, Orders, Running, Second, Unrolled,
+};
 
 use crate::real::Real;
 use crate::system::System;
@@ -46,11 +49,13 @@ pub trait Jets<const N: usize>: System<N> {
     type Work: Clone + Debug;
     /// The series of the driven inputs, component by component.
     type Drive: Clone + Debug + AsMut<[InputSeries<Self::Scalar>]>;
-    /// How the orders are gone through: [`Unrolled`] for short equations, [`Looped`] for others, [`Called`] for long ones.
+    /// How the orders are gone through: [`Unrolled`] for short equations, [`Looped`] for others,
+    /// [`Called`] for long ones.
     type Orders: Orders;
 
-    /// c in the order p = ⌈1 − c ln rtol⌉ with which [`Taylor`](crate::integrate::Taylor) takes least time, measured: the less an order costs
-    /// beside the rest of a step, the more orders pay.
+    /// c in the order p = ⌈1 − c ln rtol⌉ with which [`Taylor`](crate::integrate::Taylor) takes
+    /// least time, measured: the less an order costs beside the rest of a step, the more orders
+    /// pay.
     const PER_DIGIT: f64;
 
     /// Room for the work, with what parameters alone decide.
@@ -59,10 +64,17 @@ pub trait Jets<const N: usize>: System<N> {
     /// Room for the series of the driven inputs.
     fn drive() -> Self::Drive;
 
-    /// The coefficients q̈\[k\] of the accelerations into `path.a`, from those of q and q̇ up to the same order k.
+    /// The coefficients q̈\[k\] of the accelerations into `path.a`, from those of q and q̇ up to
+    /// the same order k.
     ///
     /// The orders before have to be done.
-    fn coefficient<O: Order>(&self, order: O, path: &mut Path<Self::Scalar, N>, drive: &Self::Drive, work: &mut Self::Work);
+    fn coefficient<O: Order>(
+        &self,
+        order: O,
+        path: &mut Path<Self::Scalar, N>,
+        drive: &Self::Drive,
+        work: &mut Self::Work,
+    );
 }
 
 /// The series of a motion.
@@ -96,7 +108,8 @@ impl<T: Real> Reciprocals<T> {
         self.0[k]
     }
 
-    /// x/k for 0 < k < [`LENGTH`]. The first orders are divided: the same rounding error of ⅓ in every step would add up.
+    /// x/k for 0 < k < [`LENGTH`]. The first orders are divided: the same rounding error of ⅓ in
+    /// every step would add up.
     #[inline(always)]
     pub fn over(&self, x: T, k: usize) -> T {
         if matches!(k, 3 | 5 | 6) { x / T::from_f64(k as f64) } else { x * self.0[k] }
@@ -116,7 +129,8 @@ impl<T: Real, const N: usize> Path<T, N> {
         Self { t: T::from_f64(0.0), q: zero, v: zero, a: zero, reciprocals: Reciprocals::new() }
     }
 
-    /// The coefficients of q and q̇ after the order k from the accelerations of that order: ẋ = y is (k+1) x\[k+1\] = y\[k\].
+    /// The coefficients of q and q̇ after the order k from the accelerations of that order: ẋ = y
+    /// is (k+1) x\[k+1\] = y\[k\].
     #[inline(always)]
     pub fn integrate<O: Order>(&mut self, order: O) {
         let k = order.index();
@@ -150,7 +164,8 @@ impl<T: Real> InputSeries<T> {
         Self { position: zero(), velocity: zero(), acceleration: zero() }
     }
 
-    /// Velocity and acceleration from the position, for the coefficients below `count`, and the next one of the velocity.
+    /// Velocity and acceleration from the position, for the coefficients below `count`, and the
+    /// next one of the velocity.
     pub fn differentiate(&mut self, count: usize) {
         let count = count.min(MAX_ORDER);
         self.velocity[count] = self.position[count + 1] * T::from_f64((count + 1) as f64);
@@ -166,8 +181,8 @@ pub fn zero<T: Real>() -> Series<T> {
     [T::from_f64(0.0); LENGTH]
 }
 
-/// What generated code works in: `W` series, `Q` pairs of series, `P` numbers that parameters alone decide, `L` numbers that each step finds once, and the
-/// factors of the blocks of the mass matrix.
+/// What generated code works in: `W` series, `Q` pairs of series, `P` numbers that parameters alone
+/// decide, `L` numbers that each step finds once, and the factors of the blocks of the mass matrix.
 #[derive(Clone, Debug)]
 pub struct Work<T, F, const W: usize, const Q: usize, const P: usize, const L: usize> {
     /// The series of values that products and functions read.
@@ -182,10 +197,18 @@ pub struct Work<T, F, const W: usize, const Q: usize, const P: usize, const L: u
     pub factors: F,
 }
 
-impl<T: Real, F, const W: usize, const Q: usize, const P: usize, const L: usize> Work<T, F, W, Q, P, L> {
+impl<T: Real, F, const W: usize, const Q: usize, const P: usize, const L: usize>
+    Work<T, F, W, Q, P, L>
+{
     /// Nothing computed but `still`.
     pub fn new(still: [T; P], factors: F) -> Self {
         let zero_number = T::from_f64(0.0);
-        Self { series: [zero(); W], pairs: [[[zero_number; 2]; LENGTH]; Q], still, leading: [zero_number; L], factors }
+        Self {
+            series: [zero(); W],
+            pairs: [[[zero_number; 2]; LENGTH]; Q],
+            still,
+            leading: [zero_number; L],
+            factors,
+        }
     }
 }

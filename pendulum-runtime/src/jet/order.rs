@@ -23,14 +23,15 @@ pub trait Order: Copy {
     /// Σ a\[j\]·b\[k−j\] over 0 ≤ j ≤ k, where b\[k\] is `newest`.
     fn dot<T: Real>(self, a: &Pairs<T>, b: &Pairs<T>, newest: [T; 2]) -> T;
 
-    /// Σ v\[j\] p\[k−j\] over 0 ≤ j < k, or v\[0\] p\[0\] for k = 0, for both series of the pair p, where p\[k\] is `newest`.
+    /// Σ v\[j\] p\[k−j\] over 0 ≤ j < k, or v\[0\] p\[0\] for k = 0, for both series of the pair p,
+    /// where p\[k\] is `newest`.
     fn turning<T: Real>(self, v: &Series<T>, p: &Pairs<T>, newest: [T; 2]) -> [T; 2];
 
     /// Σ a\[j\] a\[k−j\] over 0 < j < k/2, for k > 2.
     fn half<T: Real>(self, a: &Series<T>) -> T;
 
-    /// Σ b\[j\] v\[k−1−j\] over 0 ≤ j < k and ½ Σ v\[j\] v\[k−j\] over 0 ≤ j ≤ k, for k > 0. From them come a\[k\] and b\[k\], whose places
-    /// may hold partial sums before.
+    /// Σ b\[j\] v\[k−1−j\] over 0 ≤ j < k and ½ Σ v\[j\] v\[k−j\] over 0 ≤ j ≤ k, for k > 0. From
+    /// them come a\[k\] and b\[k\], whose places may hold partial sums before.
     fn swing<T: Real>(self, v: &Series<T>, a: &mut Series<T>, b: &mut Series<T>) -> [T; 2];
 }
 
@@ -38,8 +39,8 @@ pub trait Order: Copy {
 #[derive(Clone, Copy, Debug)]
 pub struct Constant<const K: usize>;
 
-/// An even order above 2 that the compiler knows, in lanes: products of this order and the next one are summed together, because there it is
-/// loading that takes time.
+/// An even order above 2 that the compiler knows, in lanes: products of this order and the next one
+/// are summed together, because there it is loading that takes time.
 #[derive(Clone, Copy, Debug)]
 pub struct First<const K: usize>;
 
@@ -152,8 +153,8 @@ fn second_swing<T: Real>(k: usize, v: &Series<T>, a: &mut Series<T>, b: &mut Ser
 
 /// A way to go through the orders of a jet.
 pub trait Orders {
-    /// The tolerance below which [`Taylor`](crate::integrate::Taylor) is faster than [`Dop853`](crate::integrate::Dop853), as the
-    /// benchmark `work_precision` measures it.
+    /// The tolerance below which [`Taylor`](crate::integrate::Taylor) is faster than
+    /// [`Dop853`](crate::integrate::Dop853), as the benchmark `work_precision` measures it.
     const PAYS_BELOW: f64;
 
     /// The coefficients of q and q̇ up to `order`, at most [`MAX_ORDER`], from the leading ones.
@@ -165,7 +166,8 @@ pub trait Orders {
         work: &mut S::Work,
     );
 
-    /// The same for a system over lanes, compiled into the code around it for the vectors that this may use.
+    /// The same for a system over lanes, compiled into the code around it for the vectors that this
+    /// may use.
     #[inline(always)]
     fn run_in_lanes<S: Jets<N>, const N: usize>(
         system: &S,
@@ -275,8 +277,8 @@ fn looped<S: Jets<N>, const LANES: bool, const N: usize>(
     }
 }
 
-/// The orders in lanes, each in code of its own: four by four, so that what one order leaves to the next stays in registers; the last ones of an
-/// order that is no multiple of four in a loop.
+/// The orders in lanes, each in code of its own: four by four, so that what one order leaves to the
+/// next stays in registers; the last ones of an order that is no multiple of four in a loop.
 #[inline(always)]
 fn paired<S: Jets<N>, const N: usize>(
     system: &S,
@@ -334,7 +336,8 @@ fn unrolled<S: Jets<N>, const N: usize>(
     each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29);
 }
 
-/// Keeps the orders apart: the compiler then forms vectors of lanes within one order, where they come out whole.
+/// Keeps the orders apart: the compiler then forms vectors of lanes within one order, where they
+/// come out whole.
 #[inline(always)]
 fn part<P, W>(path: &mut P, work: &mut W) {
     core::hint::black_box((path, work));

@@ -1,8 +1,9 @@
 //! The recurrences: the next coefficient of a function of series.
 //!
-//! Here k is the order, x\[j\] a coefficient and `rate` a series of j x\[j\]. Products sum their newest terms last, so that the older ones are
-//! ready before the newest coefficients arrive. Sources: Moore (1966), Interval Analysis; Jorba and Zou (2005), Exp. Math. 14, 99;
-//! Griewank and Walther (2008), Evaluating Derivatives, table 13.2.
+//! Here k is the order, x\[j\] a coefficient and `rate` a series of j x\[j\]. Products sum their
+//! newest terms last, so that the older ones are ready before the newest coefficients arrive.
+//! Sources: Moore (1966), Interval Analysis; Jorba and Zou (2005), Exp. Math. 14, 99; Griewank and
+//! Walther (2008), Evaluating Derivatives, table 13.2.
 
 use super::{Order, Pairs, Path, Reciprocals, Series};
 use crate::real::Real;
@@ -54,7 +55,8 @@ pub fn square<T: Real, O: Order>(a: &Series<T>, order: O) -> T {
     doubled(a, order) + (newest + newest)
 }
 
-/// Σ a\[j\] b\[k−j\] from j = 1 on: a product without what is not known yet of b, or an integrand; zero at order 0.
+/// Σ a\[j\] b\[k−j\] from j = 1 on: a product without what is not known yet of b, or an integrand;
+/// zero at order 0.
 #[inline(always)]
 pub fn behind<T: Real, O: Order>(a: &Series<T>, b: &Series<T>, order: O) -> T {
     match order.index() {
@@ -64,9 +66,16 @@ pub fn behind<T: Real, O: Order>(a: &Series<T>, b: &Series<T>, order: O) -> T {
     }
 }
 
-/// The quotient of a number and a series: `a` is the coefficient of the numerator, `own` the quotient so far.
+/// The quotient of a number and a series: `a` is the coefficient of the numerator, `own` the
+/// quotient so far.
 #[inline(always)]
-pub fn quotient<T: Real, O: Order>(a: T, b: &Series<T>, own: &Series<T>, leading: &mut T, order: O) -> T {
+pub fn quotient<T: Real, O: Order>(
+    a: T,
+    b: &Series<T>,
+    own: &Series<T>,
+    leading: &mut T,
+    order: O,
+) -> T {
     if order.index() == 0 {
         *leading = T::from_f64(1.0) / b[0];
         return a / b[0];
@@ -125,7 +134,13 @@ pub fn integral<T: Real, O: Order>(
 
 /// sin x and cos x together.
 #[inline(always)]
-pub fn sin_cos<T: Real, O: Order>(x: T, rate: &Series<T>, own: &Pairs<T>, reciprocals: &Reciprocals<T>, order: O) -> [T; 2] {
+pub fn sin_cos<T: Real, O: Order>(
+    x: T,
+    rate: &Series<T>,
+    own: &Pairs<T>,
+    reciprocals: &Reciprocals<T>,
+    order: O,
+) -> [T; 2] {
     let k = order.index();
     if k == 0 {
         let (sin, cos) = x.sin_cos();
@@ -165,7 +180,8 @@ pub fn dot<T: Real, O: Order>(a: &Pairs<T>, b: &Pairs<T>, newest: [T; 2], order:
     order.dot(a, b, newest)
 }
 
-/// sin q q̇ and cos q q̇ of a coordinate from its sine and cosine, whose newest coefficients are `newest`; without that of q̇ after order 0.
+/// sin q q̇ and cos q q̇ of a coordinate from its sine and cosine, whose newest coefficients are
+/// `newest`; without that of q̇ after order 0.
 #[inline(always)]
 pub fn turning<T: Real, O: Order, const N: usize>(
     path: &Path<T, N>,
@@ -179,7 +195,12 @@ pub fn turning<T: Real, O: Order, const N: usize>(
 
 /// sin q and cos q of a coordinate from [`turning`]: they are the rates of −cos q and sin q.
 #[inline(always)]
-pub fn turned<T: Real, O: Order, const N: usize>(path: &Path<T, N>, coordinate: usize, turning: &Pairs<T>, order: O) -> [T; 2] {
+pub fn turned<T: Real, O: Order, const N: usize>(
+    path: &Path<T, N>,
+    coordinate: usize,
+    turning: &Pairs<T>,
+    order: O,
+) -> [T; 2] {
     let k = order.index();
     if k == 0 {
         let (sin, cos) = path.q[coordinate][0].sin_cos();
@@ -189,9 +210,15 @@ pub fn turned<T: Real, O: Order, const N: usize>(path: &Path<T, N>, coordinate: 
     [path.reciprocals.over(with_cos, k), -path.reciprocals.over(with_sin, k)]
 }
 
-/// a = q̈ = κ sin q + λ cos q and b = κ cos q − λ sin q after the first order: ȧ = b q̇ and ḃ = −a q̇ = −(q̇²/2)˙ need no function.
+/// a = q̈ = κ sin q + λ cos q and b = κ cos q − λ sin q after the first order: ȧ = b q̇ and ḃ = −a
+/// q̇ = −(q̇²/2)˙ need no function.
 #[inline(always)]
-pub fn swing<T: Real, O: Order, const N: usize>(path: &mut Path<T, N>, coordinate: usize, b: &mut Series<T>, order: O) {
+pub fn swing<T: Real, O: Order, const N: usize>(
+    path: &mut Path<T, N>,
+    coordinate: usize,
+    b: &mut Series<T>,
+    order: O,
+) {
     let k = order.index();
     let (v, a) = (&path.v[coordinate], &mut path.a[coordinate]);
     let [product, square] = order.swing(v, a, b);
@@ -200,7 +227,13 @@ pub fn swing<T: Real, O: Order, const N: usize>(path: &mut Path<T, N>, coordinat
 
 /// sinh x and cosh x together.
 #[inline(always)]
-pub fn sinh_cosh<T: Real, O: Order>(x: T, rate: &Series<T>, own: &Pairs<T>, reciprocals: &Reciprocals<T>, order: O) -> [T; 2] {
+pub fn sinh_cosh<T: Real, O: Order>(
+    x: T,
+    rate: &Series<T>,
+    own: &Pairs<T>,
+    reciprocals: &Reciprocals<T>,
+    order: O,
+) -> [T; 2] {
     let k = order.index();
     if k == 0 {
         return [x.sinh(), x.cosh()];
@@ -209,9 +242,16 @@ pub fn sinh_cosh<T: Real, O: Order>(x: T, rate: &Series<T>, own: &Pairs<T>, reci
     [reciprocals.over(with_cosh, k), reciprocals.over(with_sinh, k)]
 }
 
-/// The rate z of y with r ẏ = ẋ, where `x` is k x\[k\]: r\[0\] z\[k\] = k x\[k\] − Σ r\[j\] z\[k−j\] over 0 < j < k.
+/// The rate z of y with r ẏ = ẋ, where `x` is k x\[k\]: r\[0\] z\[k\] = k x\[k\] − Σ r\[j\]
+/// z\[k−j\] over 0 < j < k.
 #[inline(always)]
-pub fn slope<T: Real, O: Order>(x: T, r: &Series<T>, own: &Series<T>, leading: &mut T, order: O) -> T {
+pub fn slope<T: Real, O: Order>(
+    x: T,
+    r: &Series<T>,
+    own: &Series<T>,
+    leading: &mut T,
+    order: O,
+) -> T {
     match order.index() {
         0 => {
             *leading = T::from_f64(1.0) / r[0];
@@ -224,7 +264,12 @@ pub fn slope<T: Real, O: Order>(x: T, r: &Series<T>, own: &Series<T>, leading: &
 
 /// y from its rate: `start` at order 0.
 #[inline(always)]
-pub fn from_rate<T: Real, O: Order>(start: impl FnOnce() -> T, rate: T, reciprocals: &Reciprocals<T>, order: O) -> T {
+pub fn from_rate<T: Real, O: Order>(
+    start: impl FnOnce() -> T,
+    rate: T,
+    reciprocals: &Reciprocals<T>,
+    order: O,
+) -> T {
     let k = order.index();
     if k == 0 { start() } else { reciprocals.over(rate, k) }
 }

@@ -1,4 +1,5 @@
-//! The sums of products that all recurrences are made of, each in two parts of every second term; the newest terms come last.
+//! The sums of products that all recurrences are made of, each in two parts of every second term;
+//! the newest terms come last.
 
 use super::{Pairs, Series};
 use crate::real::Real;
@@ -43,7 +44,8 @@ pub(super) fn inner_of_two<T: Real>(a: &Series<T>, b: &Series<T>, k: usize) -> [
     plus(odd, even)
 }
 
-/// Σ a\[j\] b\[k−1−j\] over 0 ≤ j < k, for k > 0; `inner` is [`inner`] for k − 1, where there is one.
+/// Σ a\[j\] b\[k−1−j\] over 0 ≤ j < k, for k > 0; `inner` is [`inner`] for k − 1, where there is
+/// one.
 #[inline(always)]
 pub(super) fn before<T: Real>(a: &Series<T>, b: &Series<T>, k: usize, inner: Option<T>) -> T {
     let oldest = a[0] * b[k - 1];
@@ -100,7 +102,8 @@ pub(super) fn half_of_two<T: Real>(a: &Series<T>, k: usize) -> [T; 2] {
     plus(odd, even)
 }
 
-/// ½ Σ a\[j\] a\[k−j\] over 0 ≤ j ≤ k, each product once, for k > 0; `half` is [`half`], where there is one.
+/// ½ Σ a\[j\] a\[k−j\] over 0 ≤ j ≤ k, each product once, for k > 0; `half` is [`half`], where
+/// there is one.
 #[inline(always)]
 pub(super) fn half_square<T: Real>(a: &Series<T>, k: usize, half: Option<T>) -> T {
     let newest = a[0] * a[k];
@@ -143,7 +146,8 @@ pub(super) fn both<T: Real, const S: usize>(a: &Series<T>, p: &Pairs<T>, k: usiz
     plus(plus(odd, even), newest)
 }
 
-/// Σ a\[j\]·b\[k−j\] over 0 ≤ j ≤ k, where b\[k\] is `newest`: a vector that has just been stored in parts is slow to load.
+/// Σ a\[j\]·b\[k−j\] over 0 ≤ j ≤ k, where b\[k\] is `newest`: a vector that has just been stored
+/// in parts is slow to load.
 #[inline(always)]
 pub(super) fn dot<T: Real>(a: &Pairs<T>, b: &Pairs<T>, newest: [T; 2], k: usize) -> T {
     let newest = each(a[0], newest);
@@ -157,7 +161,8 @@ pub(super) fn dot<T: Real>(a: &Pairs<T>, b: &Pairs<T>, newest: [T; 2], k: usize)
     (older[0] + older[1]) + (newest[0] + newest[1])
 }
 
-/// Σ v\[j\] p\[k−j\] over 0 ≤ j < k, and over 0 ≤ j ≤ k for k = 0, for both series of the pair, where p\[k\] is `newest`.
+/// Σ v\[j\] p\[k−j\] over 0 ≤ j < k, and over 0 ≤ j ≤ k for k = 0, for both series of the pair,
+/// where p\[k\] is `newest`.
 #[inline(always)]
 pub(super) fn turning<T: Real>(v: &Series<T>, p: &Pairs<T>, newest: [T; 2], k: usize) -> [T; 2] {
     let newest = times(v[0], newest);
@@ -168,8 +173,8 @@ pub(super) fn turning<T: Real>(v: &Series<T>, p: &Pairs<T>, newest: [T; 2], k: u
     plus(older, newest)
 }
 
-/// The sum of the products of the first number of `a` and the last of `b`, the second and the last but one, and so on, in two parts. Slices
-/// without places keep a loop free of checks.
+/// The sum of the products of the first number of `a` and the last of `b`, the second and the last
+/// but one, and so on, in two parts. Slices without places keep a loop free of checks.
 #[inline(always)]
 fn inside<T: Real, A: Copy>(a: &[A], b: &[[T; 2]], term: impl Fn(A, [T; 2]) -> [T; 2]) -> [T; 2] {
     let k = a.len();

@@ -144,7 +144,9 @@ fn whole(value: i128) -> Fraction {
 /// x0 + t/2 − t²/3 + t³ + t⁴/4 + …
 fn argument(x0: i128) -> Coefficients {
     let rest = [(1, 2), (-1, 3), (1, 1), (1, 4), (-2, 1), (0, 1), (1, 2), (3, 1)];
-    core::array::from_fn(|k| if k == 0 { whole(x0) } else { fraction(rest[k - 1].0, rest[k - 1].1) })
+    core::array::from_fn(
+        |k| if k == 0 { whole(x0) } else { fraction(rest[k - 1].0, rest[k - 1].1) },
+    )
 }
 
 fn multiplied(a: &Coefficients, b: &Coefficients) -> Coefficients {
@@ -194,7 +196,11 @@ fn divided(a: &Coefficients, b: &Coefficients) -> Coefficients {
 }
 
 /// Runs a recurrence through all orders and compares what it gives.
-fn check(name: &str, expected: &Coefficients, mut next: impl FnMut(Running, usize, &Series<Fraction>) -> Fraction) {
+fn check(
+    name: &str,
+    expected: &Coefficients,
+    mut next: impl FnMut(Running, usize, &Series<Fraction>) -> Fraction,
+) {
     let mut own = zero();
     for k in 0..COUNT {
         own[k] = next(Running::new(k), k, &own);
@@ -221,12 +227,16 @@ fn products_quotients_and_powers() {
     let mut lead = whole(0);
     check("product", &multiplied(&a, &b), |order, _, _| series::product(&x, &y, order));
     check("square", &multiplied(&a, &a), |order, _, _| series::square(&x, order));
-    check("quotient", &divided(&a, &b), |order, k, own| series::quotient(x[k], &y, own, &mut lead, order));
+    check("quotient", &divided(&a, &b), |order, k, own| {
+        series::quotient(x[k], &y, own, &mut lead, order)
+    });
     let root = composed(|n| binomial(fraction(1, 2), n), &a);
     check("square root", &root, |order, k, own| series::sqrt(x[k], own, &mut lead, order));
     for exponent in [fraction(-3, 2), fraction(5, 2), fraction(1, 4), whole(7), whole(-2)] {
         let expected = composed(|n| binomial(exponent, n), &a);
-        check("power", &expected, |order, _, own| series::power(&x, exponent, own, &mut lead, &reciprocals(), order));
+        check("power", &expected, |order, _, own| {
+            series::power(&x, exponent, own, &mut lead, &reciprocals(), order)
+        });
     }
 }
 
@@ -255,7 +265,8 @@ fn circular_and_hyperbolic_functions() {
             pairs[k][part]
         });
     }
-    let parts = |alternating| [true, false].map(|odd| composed(|n| circular(n, odd, alternating), &a));
+    let parts =
+        |alternating| [true, false].map(|odd| composed(|n| circular(n, odd, alternating), &a));
     for (alternating, sign) in [(true, whole(1)), (false, whole(-1))] {
         let [sine, cosine] = parts(alternating);
         // tan′ = 1 + tan², tanh′ = 1 − tanh².
@@ -269,7 +280,9 @@ fn circular_and_hyperbolic_functions() {
         });
     }
     let exponential = composed(|n| fraction(1, factorial(n)), &a);
-    check("exponential", &exponential, |order, _, own| series::integral(|| x[0].exp(), &rate, own, &reciprocals(), order));
+    check("exponential", &exponential, |order, _, own| {
+        series::integral(|| x[0].exp(), &rate, own, &reciprocals(), order)
+    });
 }
 
 #[test]
@@ -326,17 +339,21 @@ fn two_orders_of_a_swing_at_once_have_the_same_bits() {
 
 #[test]
 fn inverse_functions() {
-    let inverse =
-        |name: &str, start: fn(Fraction) -> Fraction, a: &Coefficients, divisor: &Coefficients, expected: &Coefficients| {
-            let (x, rate, divisor) = (padded(a), rates(a), padded(divisor));
-            let (mut slopes, mut lead) = (zero(), whole(0));
-            check(name, expected, |order, k, _| {
-                slopes[k] = series::slope(rate[k], &divisor, &slopes, &mut lead, order);
-                series::from_rate(|| start(x[0]), slopes[k], &reciprocals(), order)
-            });
-        };
+    let inverse = |name: &str,
+                   start: fn(Fraction) -> Fraction,
+                   a: &Coefficients,
+                   divisor: &Coefficients,
+                   expected: &Coefficients| {
+        let (x, rate, divisor) = (padded(a), rates(a), padded(divisor));
+        let (mut slopes, mut lead) = (zero(), whole(0));
+        check(name, expected, |order, k, _| {
+            slopes[k] = series::slope(rate[k], &divisor, &slopes, &mut lead, order);
+            series::from_rate(|| start(x[0]), slopes[k], &reciprocals(), order)
+        });
+    };
     let a = argument(1);
-    let logarithm = |n| if n == 0 { whole(0) } else { fraction(if n % 2 == 1 { 1 } else { -1 }, n) };
+    let logarithm =
+        |n| if n == 0 { whole(0) } else { fraction(if n % 2 == 1 { 1 } else { -1 }, n) };
     inverse("logarithm", Real::ln, &a, &a, &composed(logarithm, &a));
     let a = argument(0);
     let plus = |sign: Fraction| {
@@ -349,15 +366,22 @@ fn inverse_functions() {
     let mut below = plus(whole(-1));
     below[0] = whole(1);
     let root = composed(|n| binomial(fraction(1, 2), n), &below);
-    let arc_sine = composed(|n| odd(n, |m| binomial(fraction(-1, 2), m) * whole(if m % 2 == 0 { 1 } else { -1 })), &a);
+    let arc_sine = composed(
+        |n| odd(n, |m| binomial(fraction(-1, 2), m) * whole(if m % 2 == 0 { 1 } else { -1 })),
+        &a,
+    );
     inverse("arc sine", Real::asin, &a, &root, &arc_sine);
 }
 
 #[test]
 fn orders_are_all_the_same() {
-    let (x, y): (Series<f64>, Series<f64>) =
-        (core::array::from_fn(|k| 1.0 / (k + 1) as f64), core::array::from_fn(|k| 0.7 - 0.1 * k as f64));
-    let all = |order| (series::product(&x, &y, order), series::square(&x, order), series::behind(&x, &y, order));
+    let (x, y): (Series<f64>, Series<f64>) = (
+        core::array::from_fn(|k| 1.0 / (k + 1) as f64),
+        core::array::from_fn(|k| 0.7 - 0.1 * k as f64),
+    );
+    let all = |order| {
+        (series::product(&x, &y, order), series::square(&x, order), series::behind(&x, &y, order))
+    };
     assert_eq!(all(Running::new(0)), {
         let order = super::Constant::<0>;
         (series::product(&x, &y, order), series::square(&x, order), series::behind(&x, &y, order))

@@ -1,11 +1,14 @@
 //! Motions that know all their derivatives.
 
-use super::{CatmullRom, Clip, Linear, Motion, Motions, Sample, Side, Sinusoid, Spline, Still, earlier};
+use super::{
+    CatmullRom, Clip, Linear, Motion, Motions, Sample, Side, Sinusoid, Spline, Still, earlier,
+};
 use crate::jet::{InputSeries, Series};
 use crate::real::Real;
 use crate::time::Time;
 
-/// A motion that is analytic but at certain times, and there from both sides: what [`Taylor`](crate::integrate::Taylor) needs.
+/// A motion that is analytic but at certain times, and there from both sides: what
+/// [`Taylor`](crate::integrate::Taylor) needs.
 ///
 /// A [`Function`](super::Function) is none: a closure tells at most two of its derivatives.
 ///
@@ -57,7 +60,8 @@ use crate::time::Time;
     note = "drive by `Still`, `Sinusoid`, `Linear`, `CatmullRom`, `Spline`, `Clip` or a `Projected` one of these, implement `Analytic`, or use `Dop853`"
 )]
 pub trait Analytic<T: Real, const D: usize> {
-    /// The first `count` Taylor coefficients at `t` of one component of the position; the others stay as they are.
+    /// The first `count` Taylor coefficients at `t` of one component of the position; the others
+    /// stay as they are.
     ///
     /// Where the motion is not analytic they are those of the motion on `side`.
     fn series(&self, t: Time, side: Side, component: usize, count: usize, position: &mut Series<T>);
@@ -118,7 +122,11 @@ impl<T: Real, const D: usize> Analytic<T, D> for Sinusoid<D> {
 }
 
 /// The coefficients of a polynomial, and zeros.
-pub(super) fn polynomial<T: Real, const K: usize>(coefficients: [f64; K], count: usize, series: &mut Series<T>) {
+pub(super) fn polynomial<T: Real, const K: usize>(
+    coefficients: [f64; K],
+    count: usize,
+    series: &mut Series<T>,
+) {
     for (k, coefficient) in series.iter_mut().take(count).enumerate() {
         *coefficient = T::from_f64(coefficients.get(k).copied().unwrap_or(0.0));
     }
@@ -163,7 +171,8 @@ pub trait AnalyticMotions<Inputs, T: Real>: Motions<Inputs> {
     fn last_kink(&self, t: f64) -> Option<f64>;
 }
 
-/// The motions of all driven inputs of a system, of which it shows at run time whether every one is analytic.
+/// The motions of all driven inputs of a system, of which it shows at run time whether every one is
+/// analytic.
 ///
 /// The part of one that is not is missing in all other answers.
 pub trait PerhapsAnalytic<Inputs, T: Real>: Motions<Inputs> {

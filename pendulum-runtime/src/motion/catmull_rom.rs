@@ -5,10 +5,12 @@ use super::{Analytic, Motion, MotionError, Orders, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
-/// A Catmull–Rom curve through keys: the velocity is continuous, the acceleration jumps at every key.
+/// A Catmull–Rom curve through keys: the velocity is continuous, the acceleration jumps at every
+/// key.
 ///
-/// The velocity at a key is that of the parabola through it and its neighbours, at the ends that of the nearest parabola (Catmull
-/// and Rom 1974, for keys at unequal times). Before the first key and after the last the point rests.
+/// The velocity at a key is that of the parabola through it and its neighbours, at the ends that of
+/// the nearest parabola (Catmull and Rom 1974, for keys at unequal times). Before the first key and
+/// after the last the point rests.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CatmullRom<const D: usize>(Piecewise<D>);
 
@@ -20,7 +22,9 @@ impl<const D: usize> CatmullRom<D> {
     pub fn new(times: &[f64], values: &[[f64; D]]) -> Result<Self, MotionError> {
         checked(times, values)?;
         let count = times.len();
-        let chord = |key: usize, d: usize| (values[key + 1][d] - values[key][d]) / (times[key + 1] - times[key]);
+        let chord = |key: usize, d: usize| {
+            (values[key + 1][d] - values[key][d]) / (times[key + 1] - times[key])
+        };
         let mut velocities = vec![[0.0; D]; count];
         for (key, velocity) in velocities.iter_mut().enumerate() {
             for d in 0..D {
@@ -29,10 +33,12 @@ impl<const D: usize> CatmullRom<D> {
                     2 => chord(0, d),
                     _ => {
                         let middle = key.clamp(1, count - 2);
-                        let (before, after) = (times[middle] - times[middle - 1], times[middle + 1] - times[middle]);
+                        let (before, after) =
+                            (times[middle] - times[middle - 1], times[middle + 1] - times[middle]);
                         let (left, right) = (chord(middle - 1, d), chord(middle, d));
                         let curvature = (right - left) / (before + after);
-                        left + curvature * (times[key] - times[middle - 1] + (times[key] - times[middle]))
+                        left + curvature
+                            * (times[key] - times[middle - 1] + (times[key] - times[middle]))
                     }
                 };
             }
@@ -41,7 +47,8 @@ impl<const D: usize> CatmullRom<D> {
         Ok(Self(Piecewise::hermite(times, values, &slopes).with_kinks(true)))
     }
 
-    /// The same motion again and again; the last key closes the loop, at which the velocity may jump.
+    /// The same motion again and again; the last key closes the loop, at which the velocity may
+    /// jump.
     ///
     /// # Errors
     /// Fewer than two keys.

@@ -7,8 +7,8 @@ use crate::time::Time;
 
 /// A motion sampled at a frame rate, such as a captured one.
 ///
-/// Second differences of captured motion are noise: decimate the frames before a spline goes through them, or drive through the
-/// linear keys, whose jumps in velocity are small.
+/// Second differences of captured motion are noise: decimate the frames before a spline goes
+/// through them, or drive through the linear keys, whose jumps in velocity are small.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip<const D: usize> {
     frames: Vec<[f64; D]>,
@@ -36,11 +36,17 @@ pub enum Interpolation {
 }
 
 impl<const D: usize> Clip<D> {
-    /// `frames` at `rate` frames a second, the first at t = 0, of which every `every`-th is kept (and the last).
+    /// `frames` at `rate` frames a second, the first at t = 0, of which every `every`-th is kept
+    /// (and the last).
     ///
     /// # Errors
     /// No frames, a rate that is not positive, a decimation of zero, numbers that are not finite.
-    pub fn new(rate: f64, frames: &[[f64; D]], every: usize, interpolation: Interpolation) -> Result<Self, MotionError> {
+    pub fn new(
+        rate: f64,
+        frames: &[[f64; D]],
+        every: usize,
+        interpolation: Interpolation,
+    ) -> Result<Self, MotionError> {
         if !(0.0 < rate && rate.is_finite()) {
             return Err(MotionError::Rate(rate));
         }

@@ -44,23 +44,42 @@ pub enum MotionError {
 impl fmt::Display for MotionError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoKeys => write!(f, "a motion needs at least one key; use `Still` for a point at rest"),
-            Self::OneKey => write!(f, "a motion that repeats needs at least two keys; the last closes the loop"),
-            Self::Lengths { times, values } => write!(f, "{times} times but {values} values; give each key one of both"),
-            Self::NotFinite { key } => write!(f, "key {key} is infinite or no number; leave it out or mend it"),
-            Self::NotIncreasing { key, time } => {
-                write!(f, "key {key} at {time} s is not later than the key before it; sort the keys and drop doubles")
+            Self::NoKeys => {
+                write!(f, "a motion needs at least one key; use `Still` for a point at rest")
             }
-            Self::Rate(rate) => write!(f, "a frame rate of {rate} Hz; give a positive number of frames a second"),
-            Self::Gain(gain) => write!(f, "a gain of {gain}; give a finite number, 1 for the motion as it is"),
-            Self::SpeedLimit(limit) => write!(f, "a speed limit of {limit} m/s; give a positive number, infinity for none"),
+            Self::OneKey => {
+                write!(f, "a motion that repeats needs at least two keys; the last closes the loop")
+            }
+            Self::Lengths { times, values } => {
+                write!(f, "{times} times but {values} values; give each key one of both")
+            }
+            Self::NotFinite { key } => {
+                write!(f, "key {key} is infinite or no number; leave it out or mend it")
+            }
+            Self::NotIncreasing { key, time } => {
+                write!(
+                    f,
+                    "key {key} at {time} s is not later than the key before it; sort the keys and drop doubles"
+                )
+            }
+            Self::Rate(rate) => {
+                write!(f, "a frame rate of {rate} Hz; give a positive number of frames a second")
+            }
+            Self::Gain(gain) => {
+                write!(f, "a gain of {gain}; give a finite number, 1 for the motion as it is")
+            }
+            Self::SpeedLimit(limit) => {
+                write!(f, "a speed limit of {limit} m/s; give a positive number, infinity for none")
+            }
             Self::Resolution(seconds) => {
                 write!(
                     f,
                     "a resolution of {seconds} s; give a positive number of seconds, the shortest time in which the motion changes"
                 )
             }
-            Self::Every => write!(f, "`every` is 0, and no frame is kept; give 1 to keep all of them"),
+            Self::Every => {
+                write!(f, "`every` is 0, and no frame is kept; give 1 to keep all of them")
+            }
         }
     }
 }

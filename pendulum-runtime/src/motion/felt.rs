@@ -4,11 +4,13 @@ use super::{Motion, MotionError, Orders, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
-/// A motion as pendulums on it shall feel it: its velocity cut to a limit and multiplied by a gain, its acceleration accordingly.
+/// A motion as pendulums on it shall feel it: its velocity cut to a limit and multiplied by a gain,
+/// its acceleration accordingly.
 ///
-/// ẋ becomes γ ẋ min(1, s/|ẋ|) with the gain γ and the limit s in m/s; ẍ is the derivative of that. The position stays: the joint is drawn where
-/// it is, and equations that contain it see it there. Running feels like walking with a limit, and a root motion of which a tenth is
-/// felt has a gain of 0.1. Where the speed reaches the limit the acceleration jumps: a kink.
+/// ẋ becomes γ ẋ min(1, s/|ẋ|) with the gain γ and the limit s in m/s; ẍ is the derivative of that.
+/// The position stays: the joint is drawn where it is, and equations that contain it see it there.
+/// Running feels like walking with a limit, and a root motion of which a tenth is felt has a gain
+/// of 0.1. Where the speed reaches the limit the acceleration jumps: a kink.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Felt<M> {
     motion: M,
@@ -16,7 +18,8 @@ pub struct Felt<M> {
     limit: f64,
 }
 
-/// The speed is compared with the limit at multiples of this time, in seconds; an excess that is shorter is met without a kink.
+/// The speed is compared with the limit at multiples of this time, in seconds; an excess that is
+/// shorter is met without a kink.
 const CELL: f64 = 1.0 / 128.0;
 
 /// As many are searched at once; their ends are kinks, so that nobody searches farther.
@@ -59,7 +62,8 @@ impl<M> Felt<M> {
             if let Some(kink) = self.motion.next_kink(low)
                 && kink < high
             {
-                // Between kinks of the motion itself the speed may jump: the later part is another cell.
+                // Between kinks of the motion itself the speed may jump: the later part is another
+                // cell.
                 if t < kink {
                     high = kink;
                 } else {
@@ -104,16 +108,25 @@ impl<T: Real, const D: usize, M: Motion<T, D> + Motion<f64, D>> Motion<T, D> for
 
     fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
         let limited = self.limit < f64::INFINITY;
-        let asked = if limited && orders.contains(Orders::ACCELERATION) { orders.and(Orders::VELOCITY) } else { orders };
+        let asked = if limited && orders.contains(Orders::ACCELERATION) {
+            orders.and(Orders::VELOCITY)
+        } else {
+            orders
+        };
         let mut sample: Sample<T, D> = self.motion.sample(t, side, asked);
         let gain = T::from_f64(self.gain);
-        let fast = limited && self.is_fast(if side == Side::Before { t.to_f64().next_down() } else { t.to_f64() });
+        let fast = limited
+            && self.is_fast(if side == Side::Before { t.to_f64().next_down() } else { t.to_f64() });
         if fast {
             let v = sample.velocity;
-            let (speed, along) = (square(&v).sqrt(), (0..D).fold(T::from_f64(0.0), |sum, d| sum + v[d] * sample.acceleration[d]));
+            let (speed, along) = (
+                square(&v).sqrt(),
+                (0..D).fold(T::from_f64(0.0), |sum, d| sum + v[d] * sample.acceleration[d]),
+            );
             let part = T::from_f64(self.limit) / speed;
             for d in 0..D {
-                sample.acceleration[d] = part * (sample.acceleration[d] - along / (speed * speed) * v[d]);
+                sample.acceleration[d] =
+                    part * (sample.acceleration[d] - along / (speed * speed) * v[d]);
                 sample.velocity[d] = part * v[d];
             }
         }

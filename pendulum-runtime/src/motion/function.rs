@@ -5,18 +5,22 @@ use crate::real::Real;
 use crate::time::Time;
 use core::fmt;
 
-/// A motion given by functions of the time in seconds: its position, and its derivatives as far as they are given.
+/// A motion given by functions of the time in seconds: its position, and its derivatives as far as
+/// they are given.
 ///
-/// A motion without an acceleration cannot drive a system whose equations contain one: that does not compile.
+/// A motion without an acceleration cannot drive a system whose equations contain one: that does
+/// not compile.
 ///
 /// ```
 /// use pendulum_runtime::motion::Function;
 /// let lift = Function::new(|t| [0.0, 0.5 * t * t]).velocity(|t| [0.0, t]).acceleration(|_| [0.0, 1.0]);
 /// ```
 ///
-/// A method asks a function a few times in each step and knows nothing of what it does in between: a kick of ten milliseconds while the pendulum rests and
-/// the steps are long would stay unseen. Without [`resolution`](Self::resolution) a step is at most a fiftieth of the interval of
-/// [`solve`](crate::integrate::solve), or one second in an [`Integrator`](crate::integrate::Integrator), which knows no end.
+/// A method asks a function a few times in each step and knows nothing of what it does in between:
+/// a kick of ten milliseconds while the pendulum rests and the steps are long would stay unseen.
+/// Without [`resolution`](Self::resolution) a step is at most a fiftieth of the interval of
+/// [`solve`](crate::integrate::solve), or one second in an
+/// [`Integrator`](crate::integrate::Integrator), which knows no end.
 ///
 /// ```
 /// use pendulum_runtime::motion::{Function, MotionError};
@@ -71,24 +75,37 @@ impl<X> Function<X> {
     where
         X: Fn(f64) -> [f64; D],
     {
-        Self { position, velocity: Missing, acceleration: Missing, kinks: Vec::new(), resolution: None }
+        Self {
+            position,
+            velocity: Missing,
+            acceleration: Missing,
+            kinks: Vec::new(),
+            resolution: None,
+        }
     }
 }
 
 impl<X, V, A> Function<X, V, A> {
     /// The same motion with its velocity.
-    pub fn velocity<const D: usize, F: Fn(f64) -> [f64; D]>(self, velocity: F) -> Function<X, F, A> {
+    pub fn velocity<const D: usize, F: Fn(f64) -> [f64; D]>(
+        self,
+        velocity: F,
+    ) -> Function<X, F, A> {
         let Self { position, acceleration, kinks, resolution, .. } = self;
         Function { position, velocity, acceleration, kinks, resolution }
     }
 
     /// The same motion with its acceleration.
-    pub fn acceleration<const D: usize, F: Fn(f64) -> [f64; D]>(self, acceleration: F) -> Function<X, V, F> {
+    pub fn acceleration<const D: usize, F: Fn(f64) -> [f64; D]>(
+        self,
+        acceleration: F,
+    ) -> Function<X, V, F> {
         let Self { position, velocity, kinks, resolution, .. } = self;
         Function { position, velocity, acceleration, kinks, resolution }
     }
 
-    /// The same motion with the times at which a derivative jumps; the functions give the values after each jump.
+    /// The same motion with the times at which a derivative jumps; the functions give the values
+    /// after each jump.
     ///
     /// The value before a jump is taken one unit in the last place earlier.
     #[must_use]
@@ -100,11 +117,13 @@ impl<X, V, A> Function<X, V, A> {
 }
 
 impl<X, V, A> Function<X, V, A> {
-    /// The same motion with the shortest time in seconds within which it does something: w for exp(−((t − t₀)/w)²).
+    /// The same motion with the shortest time in seconds within which it does something: w for
+    /// exp(−((t − t₀)/w)²).
     ///
-    /// Adaptive steps are then short enough to see it: no two samples of a step lie farther apart than 1.5 w, so that the steps of
-    /// [`Picard`](crate::integrate::Picard) are at most 16.4 w long, those of [`Dop853`](crate::integrate::Dop853) 5.6 w. Fixed steps are taken as they
-    /// are asked for.
+    /// Adaptive steps are then short enough to see it: no two samples of a step lie farther apart
+    /// than 1.5 w, so that the steps of [`Picard`](crate::integrate::Picard) are at most 16.4 w
+    /// long, those of [`Dop853`](crate::integrate::Dop853) 5.6 w. Fixed steps are taken as they are
+    /// asked for.
     ///
     /// # Errors
     /// A time that is not positive or not finite.
@@ -119,11 +138,16 @@ impl<X, V, A> Function<X, V, A> {
 
 impl<X, V, A> fmt::Debug for Function<X, V, A> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Function").field("kinks", &self.kinks).field("resolution", &self.resolution).finish_non_exhaustive()
+        f.debug_struct("Function")
+            .field("kinks", &self.kinks)
+            .field("resolution", &self.resolution)
+            .finish_non_exhaustive()
     }
 }
 
-impl<T: Real, const D: usize, X: Part<D>, V: Part<D>, A: Part<D>> Motion<T, D> for Function<X, V, A> {
+impl<T: Real, const D: usize, X: Part<D>, V: Part<D>, A: Part<D>> Motion<T, D>
+    for Function<X, V, A>
+{
     const HAS: Orders = {
         let velocity = if V::EXISTS { Orders::VELOCITY } else { Orders::NONE };
         let acceleration = if A::EXISTS { Orders::ACCELERATION } else { Orders::NONE };
@@ -133,7 +157,8 @@ impl<T: Real, const D: usize, X: Part<D>, V: Part<D>, A: Part<D>> Motion<T, D> f
     #[inline]
     fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
         let exact = t.to_f64();
-        let at_kink = side == Side::Before && self.kinks.binary_search_by(|kink| kink.total_cmp(&exact)).is_ok();
+        let at_kink = side == Side::Before
+            && self.kinks.binary_search_by(|kink| kink.total_cmp(&exact)).is_ok();
         let t = if at_kink { exact.next_down() } else { exact };
         let mut sample = Sample::zero();
         if orders.contains(Orders::POSITION) {

@@ -5,10 +5,11 @@ use super::{Analytic, Motion, MotionError, Orders, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
-/// Straight lines between keys: the velocity jumps at every key, the acceleration is zero between them.
+/// Straight lines between keys: the velocity jumps at every key, the acceleration is zero between
+/// them.
 ///
-/// An acceleration form alone never feels such a motion; the integrators land on the keys and carry the momenta over each jump.
-/// Before the first key and after the last the point rests.
+/// An acceleration form alone never feels such a motion; the integrators land on the keys and carry
+/// the momenta over each jump. Before the first key and after the last the point rests.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linear<const D: usize>(Piecewise<D>);
 

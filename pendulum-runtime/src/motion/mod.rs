@@ -1,7 +1,8 @@
 //! Prescribed motions: what drives the joints of a scene.
 //!
-//! A motion is asked for exactly the derivatives that the equations contain, and says where its kinks are: the times at which
-//! its position, velocity or acceleration jumps. There it has two values, one from each side.
+//! A motion is asked for exactly the derivatives that the equations contain, and says where its
+//! kinks are: the times at which its position, velocity or acceleration jumps. There it has two
+//! values, one from each side.
 
 mod analytic;
 mod catmull_rom;
@@ -45,14 +46,16 @@ pub trait Motion<T: Real, const D: usize> {
     /// At a kink the value is the limit from `side`; elsewhere `side` does not matter.
     fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D>;
 
-    /// The same at as many times as there are samples, after a kink: for motions that can do several at once, with the same bits.
+    /// The same at as many times as there are samples, after a kink: for motions that can do
+    /// several at once, with the same bits.
     fn sample_all(&self, times: &[Time], orders: Orders, samples: &mut [Sample<T, D>]) {
         for (sample, &t) in samples.iter_mut().zip(times) {
             *sample = self.sample(t, Side::After, orders);
         }
     }
 
-    /// The same at eight times, a lane each, with the bits of single samples: what [`Picard`](crate::integrate::Picard) asks for.
+    /// The same at eight times, a lane each, with the bits of single samples: what
+    /// [`Picard`](crate::integrate::Picard) asks for.
     fn sample_lanes(&self, times: &[Time; 8], orders: Orders) -> Sample<Octet<T>, D>
     where
         T: Lane,
@@ -70,16 +73,19 @@ pub trait Motion<T: Real, const D: usize> {
         lanes
     }
 
-    /// The first time after `t` (never `t` itself) at which the position, the velocity or the acceleration jumps.
+    /// The first time after `t` (never `t` itself) at which the position, the velocity or the
+    /// acceleration jumps.
     fn next_kink(&self, t: f64) -> Option<f64>;
 
-    /// The longest step from `t` that cannot go unseen over anything that the motion does, in seconds, where a step may be `widths` times as
-    /// long as the narrowest of it; infinite if nothing is too narrow for any step, and `None` if that is not known.
+    /// The longest step from `t` that cannot go unseen over anything that the motion does, in
+    /// seconds, where a step may be `widths` times as long as the narrowest of it; infinite if
+    /// nothing is too narrow for any step, and `None` if that is not known.
     ///
-    /// Steps end at kinks, so that only what lies between two of them counts. Where nothing is known, a step is at most a fiftieth of
-    /// the interval of [`solve`](crate::integrate::solve), or one second in an [`Integrator`](crate::integrate::Integrator). What lies farther
-    /// off may be approached: for something as wide as w the answer is the longer of `widths`·w and
-    /// half the distance to its middle, which is always positive; an answer of 0 is an error.
+    /// Steps end at kinks, so that only what lies between two of them counts. Where nothing is
+    /// known, a step is at most a fiftieth of the interval of [`solve`](crate::integrate::solve),
+    /// or one second in an [`Integrator`](crate::integrate::Integrator). What lies farther off may
+    /// be approached: for something as wide as w the answer is the longer of `widths`·w and half
+    /// the distance to its middle, which is always positive; an answer of 0 is an error.
     fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
         let _ = (t, widths);
         None
@@ -92,9 +98,11 @@ pub trait Motion<T: Real, const D: usize> {
         None
     }
 
-    /// A time up to which the point rests from `t` on: `t` itself if that is not known, infinity if it rests for ever.
+    /// A time up to which the point rests from `t` on: `t` itself if that is not known, infinity if
+    /// it rests for ever.
     ///
-    /// Scenes let pendulums sleep until then, so a time that is too late is wrong and one that is too early only costs time.
+    /// Scenes let pendulums sleep until then, so a time that is too late is wrong and one that is
+    /// too early only costs time.
     fn rest_until(&self, t: f64) -> f64 {
         t
     }
@@ -194,7 +202,8 @@ pub trait Motions<Inputs> {
     /// The first kink of any of them after `t`.
     fn next_kink(&self, t: f64) -> Option<f64>;
 
-    /// The least of the answers of [`Motion::longest_step`], with `unknown` for those that do not know.
+    /// The least of the answers of [`Motion::longest_step`], with `unknown` for those that do not
+    /// know.
     fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
         let _ = (t, widths);
         unknown

@@ -24,7 +24,10 @@ const MOST_AHEAD: u32 = 64;
 
 /// The shortest time between two keys.
 fn finest(times: &[f64]) -> f64 {
-    times.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, |a, b| if b < a { b } else { a })
+    times
+        .windows(2)
+        .map(|pair| pair[1] - pair[0])
+        .fold(f64::INFINITY, |a, b| if b < a { b } else { a })
 }
 
 /// Where a time lies among the keys.
@@ -36,7 +39,10 @@ enum Place {
 }
 
 /// Times that increase and values that are finite, as many of both.
-pub(super) fn checked<const D: usize>(times: &[f64], values: &[[f64; D]]) -> Result<(), MotionError> {
+pub(super) fn checked<const D: usize>(
+    times: &[f64],
+    values: &[[f64; D]],
+) -> Result<(), MotionError> {
     if times.len() != values.len() {
         return Err(MotionError::Lengths { times: times.len(), values: values.len() });
     }
@@ -55,7 +61,8 @@ pub(super) fn checked<const D: usize>(times: &[f64], values: &[[f64; D]]) -> Res
 }
 
 impl<const D: usize> Piecewise<D> {
-    /// Pieces that meet at `times`; `values` are those at the keys, `slopes` the velocities at both ends of each piece.
+    /// Pieces that meet at `times`; `values` are those at the keys, `slopes` the velocities at both
+    /// ends of each piece.
     pub(super) fn hermite(times: &[f64], values: &[[f64; D]], slopes: &[[[f64; D]; 2]]) -> Self {
         let mut pieces = Vec::with_capacity(slopes.len());
         for (index, [from, to]) in slopes.iter().enumerate() {
@@ -71,7 +78,14 @@ impl<const D: usize> Piecewise<D> {
             pieces.push(piece);
         }
         let last = values[values.len() - 1];
-        Self { times: times.to_vec(), pieces, last, looped: false, kinks: Vec::new(), finest: finest(times) }
+        Self {
+            times: times.to_vec(),
+            pieces,
+            last,
+            looped: false,
+            kinks: Vec::new(),
+            finest: finest(times),
+        }
     }
 
     /// Straight lines; the velocity jumps at the keys.
@@ -94,8 +108,18 @@ impl<const D: usize> Piecewise<D> {
         let last = values.len() - 1;
         let rest = [0.0; D];
         let pieces = values[..last].iter().map(|&value| [value, rest, rest, rest]).collect();
-        let kinks = (0..last).filter(|&key| values[key] != values[key + 1]).map(|key| times[key + 1]).collect();
-        Self { times: times.to_vec(), pieces, last: values[last], looped: false, kinks, finest: finest(times) }
+        let kinks = (0..last)
+            .filter(|&key| values[key] != values[key + 1])
+            .map(|key| times[key + 1])
+            .collect();
+        Self {
+            times: times.to_vec(),
+            pieces,
+            last: values[last],
+            looped: false,
+            kinks,
+            finest: finest(times),
+        }
     }
 
     /// Where position, velocity or acceleration jumps, within the keys.
@@ -104,7 +128,8 @@ impl<const D: usize> Piecewise<D> {
         &self.kinks
     }
 
-    /// The pieces as coefficients of 1, u, u², u³ in the time u since the key, and how long each lasts.
+    /// The pieces as coefficients of 1, u, u², u³ in the time u since the key, and how long each
+    /// lasts.
     #[cfg(feature = "gltf")]
     pub(super) fn pieces(&self) -> impl Iterator<Item = (&[[f64; D]; 4], f64)> {
         self.pieces.iter().zip(self.times.windows(2).map(|pair| pair[1] - pair[0]))
@@ -125,7 +150,8 @@ impl<const D: usize> Piecewise<D> {
         self
     }
 
-    /// Says at which keys there is a jump: where `jumps` and at the ends, unless the curve comes to rest there smoothly.
+    /// Says at which keys there is a jump: where `jumps` and at the ends, unless the curve comes to
+    /// rest there smoothly.
     pub(super) fn with_kinks(mut self, interior: bool) -> Self {
         let count = self.times.len();
         if self.pieces.is_empty() {
@@ -135,8 +161,11 @@ impl<const D: usize> Piecewise<D> {
         for key in 0..count {
             let before = if key == 0 { rest } else { self.end_of(key - 1) };
             let after = if key + 1 == count { rest } else { self.start_of(key) };
-            let jump =
-                if key == 0 || key + 1 == count { before[1..] != after[1..] } else { interior && before[1..] != after[1..] };
+            let jump = if key == 0 || key + 1 == count {
+                before[1..] != after[1..]
+            } else {
+                interior && before[1..] != after[1..]
+            };
             if jump {
                 self.kinks.push(self.times[key]);
             }
@@ -170,7 +199,8 @@ impl<const D: usize> Piecewise<D> {
     fn end_of(&self, piece: usize) -> [[f64; D]; 3] {
         let h = self.times[piece + 1] - self.times[piece];
         let sample: Sample<f64, D> = evaluate(&self.pieces[piece], h, Orders::ALL);
-        let next = if piece + 1 < self.pieces.len() { self.pieces[piece + 1][0] } else { self.last };
+        let next =
+            if piece + 1 < self.pieces.len() { self.pieces[piece + 1][0] } else { self.last };
         [next, sample.velocity, sample.acceleration]
     }
 
@@ -201,8 +231,9 @@ impl<const D: usize> Piecewise<D> {
         // A kink of a later period is known to the rounding of its time; there the side decides.
         let slack = 4.0 * f64::EPSILON * (t.to_f64().abs() + self.period());
         let key = passed(&self.times, local.to_f64(), |key| key <= local.to_f64());
-        let near =
-            [key.saturating_sub(1), key.min(count - 1)].into_iter().find(|&key| local.since(self.times[key]).abs() <= slack);
+        let near = [key.saturating_sub(1), key.min(count - 1)]
+            .into_iter()
+            .find(|&key| local.since(self.times[key]).abs() <= slack);
         if let Some(key) = near {
             return match side {
                 Side::After if key + 1 == count => Place::Piece(0, 0.0),
@@ -223,7 +254,8 @@ impl<const D: usize> Piecewise<D> {
             Place::Rest { after } => {
                 let mut sample = Sample::zero();
                 if orders.contains(Orders::POSITION) {
-                    let value = if after || self.pieces.is_empty() { self.last } else { self.pieces[0][0] };
+                    let value =
+                        if after || self.pieces.is_empty() { self.last } else { self.pieces[0][0] };
                     sample.position = value.map(T::from_f64);
                 }
                 sample
@@ -236,17 +268,24 @@ impl<const D: usize> Piecewise<D> {
     pub(super) fn cubic(&self, t: Time, side: Side, component: usize) -> [f64; 4] {
         match self.place(t, side) {
             Place::Rest { after } => {
-                let value = if after || self.pieces.is_empty() { self.last } else { self.pieces[0][0] };
+                let value =
+                    if after || self.pieces.is_empty() { self.last } else { self.pieces[0][0] };
                 [value[component], 0.0, 0.0, 0.0]
             }
             Place::Piece(piece, u) => {
                 let [a, b, c, d] = self.pieces[piece].map(|coefficient| coefficient[component]);
-                [a + u * (b + u * (c + u * d)), b + u * (2.0 * c + u * (3.0 * d)), c + u * (3.0 * d), d]
+                [
+                    a + u * (b + u * (c + u * d)),
+                    b + u * (2.0 * c + u * (3.0 * d)),
+                    c + u * (3.0 * d),
+                    d,
+                ]
             }
         }
     }
 
-    /// The longest step from `t` that does not go unseen over a piece: `widths` times as long as any that it may reach.
+    /// The longest step from `t` that does not go unseen over a piece: `widths` times as long as
+    /// any that it may reach.
     pub(super) fn longest_step(&self, t: f64, widths: f64) -> f64 {
         let length = |key: Option<f64>, other: Option<f64>| Some(widths * (key? - other?).abs());
         // The piece under way, or nothing beyond the keys.
@@ -263,8 +302,15 @@ impl<const D: usize> Piecewise<D> {
         Self::longest_past(t, widths, longest, last, |key| self.last_key(key))
     }
 
-    /// `longest`, or less where a piece beyond the key `from` asks for it; `beyond` gives the key that follows.
-    fn longest_past(t: f64, widths: f64, mut longest: f64, from: Option<f64>, beyond: impl Fn(f64) -> Option<f64>) -> f64 {
+    /// `longest`, or less where a piece beyond the key `from` asks for it; `beyond` gives the key
+    /// that follows.
+    fn longest_past(
+        t: f64,
+        widths: f64,
+        mut longest: f64,
+        from: Option<f64>,
+        beyond: impl Fn(f64) -> Option<f64>,
+    ) -> f64 {
         let Some(mut from) = from else { return longest };
         for _ in 0..MOST_AHEAD {
             let distance = 0.5 * (from - t).abs();
@@ -346,13 +392,18 @@ impl<const D: usize> Piecewise<D> {
 impl<const D: usize> Piecewise<D> {
     /// The time up to which the curve is constant from `t` on.
     pub(super) fn rest_until(&self, t: f64) -> f64 {
-        let rests = |piece: usize| self.pieces[piece][1..].iter().flatten().all(|&coefficient| coefficient == 0.0);
+        let rests = |piece: usize| {
+            self.pieces[piece][1..].iter().flatten().all(|&coefficient| coefficient == 0.0)
+        };
         // Steps rest on both sides of a jump.
         let value = |piece: usize| self.pieces.get(piece).map_or(self.last, |piece| piece[0]);
         let count = self.pieces.len();
         // The first key from a piece on at which the curve does not rest.
-        let moves =
-            |from: usize| (from..=count).find(|&key| key < count && !rests(key) || from < key && value(key) != value(key - 1));
+        let moves = |from: usize| {
+            (from..=count).find(|&key| {
+                key < count && !rests(key) || from < key && value(key) != value(key - 1)
+            })
+        };
         if count == 0 || moves(0).is_none() {
             return f64::INFINITY;
         }
@@ -360,9 +411,14 @@ impl<const D: usize> Piecewise<D> {
             // Within the turn only: its end is soon enough to look again.
             let turn = self.turns(Time::new(t)) * self.period();
             let local = t - turn;
-            let piece = self.times.partition_point(|&key| key <= local).saturating_sub(1).min(count - 1);
+            let piece =
+                self.times.partition_point(|&key| key <= local).saturating_sub(1).min(count - 1);
             let until = self.times[moves(piece).unwrap_or(count)] + turn;
-            return if t < until && rests(piece) { until - 4.0 * f64::EPSILON * (until.abs() + self.period()) } else { t };
+            return if t < until && rests(piece) {
+                until - 4.0 * f64::EPSILON * (until.abs() + self.period())
+            } else {
+                t
+            };
         }
         let passed = self.times.partition_point(|&key| key <= t);
         if passed == self.times.len() {
@@ -378,10 +434,13 @@ impl<const D: usize> Piecewise<D> {
 
 /// How many of `times`, which increase, lie before one near `t`.
 ///
-/// Most keys stand at equal distances: they are looked for where they ought to be, and only then by bisection, which touches memory in ten more places.
+/// Most keys stand at equal distances: they are looked for where they ought to be, and only then by
+/// bisection, which touches memory in ten more places.
 #[inline]
 fn passed(times: &[f64], t: f64, before: impl Fn(f64) -> bool) -> usize {
-    let (&[first, .., last], count) = (times, times.len()) else { return times.partition_point(|&time| before(time)) };
+    let (&[first, .., last], count) = (times, times.len()) else {
+        return times.partition_point(|&time| before(time));
+    };
     if before(last) {
         return count;
     }
@@ -392,7 +451,11 @@ fn passed(times: &[f64], t: f64, before: impl Fn(f64) -> bool) -> usize {
     low + times[low..high].partition_point(|&time| before(time))
 }
 
-fn evaluate<T: Real, const D: usize>(piece: &[[f64; D]; 4], u: f64, orders: Orders) -> Sample<T, D> {
+fn evaluate<T: Real, const D: usize>(
+    piece: &[[f64; D]; 4],
+    u: f64,
+    orders: Orders,
+) -> Sample<T, D> {
     let [a, b, c, d] = piece;
     let mut sample = Sample::zero();
     for k in 0..D {
@@ -412,7 +475,8 @@ fn evaluate<T: Real, const D: usize>(piece: &[[f64; D]; 4], u: f64, orders: Orde
 /// Whether two ends meet up to rounding.
 fn close<const D: usize>(a: &[[f64; D]; 3], b: &[[f64; D]; 3]) -> bool {
     (0..3).all(|order| {
-        let size = a[order].iter().chain(&b[order]).fold(0.0f64, |size, value| size.max(value.abs()));
+        let size =
+            a[order].iter().chain(&b[order]).fold(0.0f64, |size, value| size.max(value.abs()));
         (0..D).all(|k| (a[order][k] - b[order][k]).abs() <= 1e-9 * size)
     })
 }
@@ -428,7 +492,9 @@ mod tests {
         let crowded: Vec<f64> = (0..100).map(|key| -3.0 + f64::from(key * key) / 9.0).collect();
         let late: Vec<f64> = (0..100).map(|key| Real::sqrt(f64::from(key))).collect();
         for times in [&even[..], &crowded, &late, &even[..3], &even[..2], &even[..1], &[]] {
-            let near = times.iter().flat_map(|&time| [time.next_down(), time, time.next_up(), time + 1e-3]);
+            let near = times
+                .iter()
+                .flat_map(|&time| [time.next_down(), time, time.next_up(), time + 1e-3]);
             for t in near.chain([f64::NEG_INFINITY, -1e300, -1.0, 0.0, 1e300, f64::INFINITY]) {
                 let before = times.iter().filter(|&&time| time <= t).count();
                 assert_eq!(passed(times, t, |time| time <= t), before, "{t}");
@@ -444,15 +510,26 @@ mod tests {
         let times: Vec<f64> = (0..50).map(|key| 0.3 + f64::from(key * key) / 70.0).collect();
         let values: Vec<[f64; 1]> = (0..50).map(|key| [f64::from(key * 7 % 5)]).collect();
         let curve = Piecewise::lines(&times, &values).looped().unwrap();
-        let all: Vec<f64> =
-            (-3..6).flat_map(|turn| curve.kinks.iter().map(move |kink| kink + f64::from(turn) * (49.0 * 49.0 / 70.0))).collect();
+        let all: Vec<f64> = (-3..6)
+            .flat_map(|turn| {
+                curve.kinks.iter().map(move |kink| kink + f64::from(turn) * (49.0 * 49.0 / 70.0))
+            })
+            .collect();
         assert!(45 < curve.kinks.len() && all.is_sorted());
         for index in 60..all.len() - 60 {
             let near = |a: Option<f64>, b: f64| (a.unwrap() - b).abs() < 1e-12;
             let between = 0.5 * (all[index] + all[index + 1]);
-            assert!(near(curve.next_kink(between), all[index + 1]) && near(curve.last_kink(between), all[index]), "{between}");
+            assert!(
+                near(curve.next_kink(between), all[index + 1])
+                    && near(curve.last_kink(between), all[index]),
+                "{between}"
+            );
             let kink = curve.next_kink(between).unwrap();
-            assert!(near(curve.next_kink(kink), all[index + 2]) && near(curve.last_kink(kink), all[index]), "{kink}");
+            assert!(
+                near(curve.next_kink(kink), all[index + 2])
+                    && near(curve.last_kink(kink), all[index]),
+                "{kink}"
+            );
         }
     }
 }

@@ -5,7 +5,8 @@ use crate::jet::Series;
 use crate::real::Real;
 use crate::time::Time;
 
-/// A motion in space as it is seen in a plane: P x(t), with velocities and accelerations to match, and all derivatives if the motion knows them.
+/// A motion in space as it is seen in a plane: P x(t), with velocities and accelerations to match,
+/// and all derivatives if the motion knows them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Projected<M>(Seen<M>);
 
@@ -17,10 +18,11 @@ struct Seen<M> {
 }
 
 impl<M> Projected<M> {
-    /// `rows` are the directions that become x and y of the plane; a length other than one scales the motion.
+    /// `rows` are the directions that become x and y of the plane; a length other than one scales
+    /// the motion.
     ///
-    /// `[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]` looks along the third axis, `[[0.01, 0.0, 0.0], [0.0, 0.01, 0.0]]` does so from
-    /// centimetres.
+    /// `[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]` looks along the third axis, `[[0.01, 0.0, 0.0], [0.0,
+    /// 0.01, 0.0]]` does so from centimetres.
     pub const fn new(motion: M, rows: [[f64; 3]; 2]) -> Self {
         Self(Seen { motion, rows })
     }
@@ -39,7 +41,11 @@ impl<T: Real, M: Motion<T, 3>> Motion<T, 2> for Projected<M> {
                 a * vector[0] + b * vector[1] + c * vector[2]
             })
         };
-        Sample { position: seen(sample.position), velocity: seen(sample.velocity), acceleration: seen(sample.acceleration) }
+        Sample {
+            position: seen(sample.position),
+            velocity: seen(sample.velocity),
+            acceleration: seen(sample.acceleration),
+        }
     }
 
     fn next_kink(&self, t: f64) -> Option<f64> {
@@ -78,7 +84,14 @@ fn series<T: Real>(
 }
 
 impl<T: Real, M: Analytic<T, 3>> Analytic<T, 2> for Projected<M> {
-    fn series(&self, t: Time, side: Side, component: usize, count: usize, position: &mut Series<T>) {
+    fn series(
+        &self,
+        t: Time,
+        side: Side,
+        component: usize,
+        count: usize,
+        position: &mut Series<T>,
+    ) {
         series(&self.0.motion, &self.0.rows[component], (t, side), count, position);
     }
 
@@ -96,7 +109,14 @@ impl<T: Real, M: Analytic<T, 3>> Analytic<T, 2> for Projected<M> {
 }
 
 impl<T: Real, M: Motion<T, 3>> Analytic<T, 2> for Seen<M> {
-    fn series(&self, t: Time, side: Side, component: usize, count: usize, position: &mut Series<T>) {
+    fn series(
+        &self,
+        t: Time,
+        side: Side,
+        component: usize,
+        count: usize,
+        position: &mut Series<T>,
+    ) {
         if let Some(motion) = self.motion.analytic() {
             series(motion, &self.rows[component], (t, side), count, position);
         }

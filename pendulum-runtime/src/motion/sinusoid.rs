@@ -53,8 +53,8 @@ impl<const D: usize> Sinusoid<D> {
         turned(sin, cos, left + low)
     }
 
-    /// Position, velocity and acceleration of component `d` where its angle has this sine and cosine;
-    /// those that `orders` leaves out are zero.
+    /// Position, velocity and acceleration of component `d` where its angle has this sine and
+    /// cosine; those that `orders` leaves out are zero.
     #[inline(always)]
     fn of_component<L: Real>(&self, orders: Orders, d: usize, (sin, cos): (L, L)) -> [L; 3] {
         let (a, w, number) = (self.amplitude[d], self.frequency, L::from_f64);
@@ -114,7 +114,8 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
             if d == 0 || self.phase[d].to_bits() != self.phase[d - 1].to_bits() {
                 sin_cos = self.sin_cos_at(d, angle);
             }
-            let component = self.of_component(orders, d, sin_cos).map(|octet| Octet(octet.0.map(T::from_f64)));
+            let component =
+                self.of_component(orders, d, sin_cos).map(|octet| Octet(octet.0.map(T::from_f64)));
             [lanes.position[d], lanes.velocity[d], lanes.acceleration[d]] = component;
         }
         lanes
@@ -201,7 +202,10 @@ fn turned_far<L: Real>(sin: L, cos: L, low: L) -> (L, L) {
     let little = turned_little(sin, cos, low);
     let (low_sin, low_cos) = low.sin_cos();
     let large = low.abs() - L::from_f64(SMALL);
-    (large.where_positive(sin * low_cos + cos * low_sin, little.0), large.where_positive(cos * low_cos - sin * low_sin, little.1))
+    (
+        large.where_positive(sin * low_cos + cos * low_sin, little.0),
+        large.where_positive(cos * low_cos - sin * low_sin, little.1),
+    )
 }
 
 /// Up to this magnitude a low word is small.
@@ -229,7 +233,9 @@ impl<T: Real, const D: usize> Work for Several<'_, T, D> {
         while first < D {
             let (mut angles, mut lows) = ([0.0; AT_ONCE], [0.0; AT_ONCE]);
             let components = first..D.min(first + together);
-            for (d, (angles, lows)) in components.clone().zip(angles.chunks_mut(count).zip(lows.chunks_mut(count))) {
+            for (d, (angles, lows)) in
+                components.clone().zip(angles.chunks_mut(count).zip(lows.chunks_mut(count)))
+            {
                 for ((angle, low), &t) in angles.iter_mut().zip(lows).zip(self.times) {
                     let (turns, rest) = self.sinusoid.angle(t.to_f64(), t.low());
                     let (whole, left) = two_sum(turns, self.sinusoid.phase[d]);
@@ -238,7 +244,9 @@ impl<T: Real, const D: usize> Work for Several<'_, T, D> {
             }
             let (sines, cosines) = f64::sin_cos_lanes(&angles);
             let (Octet(sines), Octet(cosines)) = turned(Octet(sines), Octet(cosines), Octet(lows));
-            for (d, (sines, cosines)) in components.zip(sines.chunks(count).zip(cosines.chunks(count))) {
+            for (d, (sines, cosines)) in
+                components.zip(sines.chunks(count).zip(cosines.chunks(count)))
+            {
                 sin[d][..sines.len()].copy_from_slice(sines);
                 cos[d][..cosines.len()].copy_from_slice(cosines);
             }

@@ -5,10 +5,12 @@ use super::{Analytic, Motion, MotionError, Orders, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
-/// A cubic spline through keys: position, velocity and acceleration are continuous between the first key and the last.
+/// A cubic spline through keys: position, velocity and acceleration are continuous between the
+/// first key and the last.
 ///
-/// The velocities at the keys solve the tridiagonal system of de Boor (1978), chapter IV. Before the first key and after the
-/// last the point rests, so that the ends are kinks unless the curve starts and ends at rest.
+/// The velocities at the keys solve the tridiagonal system of de Boor (1978), chapter IV. Before
+/// the first key and after the last the point rests, so that the ends are kinks unless the curve
+/// starts and ends at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline<const D: usize>(Piecewise<D>);
 
@@ -33,7 +35,12 @@ impl<const D: usize> Spline<D> {
     ///
     /// # Errors
     /// As for [`natural`](Self::natural).
-    pub fn clamped(times: &[f64], values: &[[f64; D]], first: [f64; D], last: [f64; D]) -> Result<Self, MotionError> {
+    pub fn clamped(
+        times: &[f64],
+        values: &[[f64; D]],
+        first: [f64; D],
+        last: [f64; D],
+    ) -> Result<Self, MotionError> {
         checked(times, values)?;
         if first.iter().chain(&last).any(|velocity| !velocity.is_finite()) {
             return Err(MotionError::NotFinite { key: 0 });
@@ -41,7 +48,8 @@ impl<const D: usize> Spline<D> {
         Ok(Self::through(times, values, &Ends::Clamped(first, last)))
     }
 
-    /// The spline that repeats for ever without a kink; the last value is taken for that of the first key.
+    /// The spline that repeats for ever without a kink; the last value is taken for that of the
+    /// first key.
     ///
     /// # Errors
     /// As for [`natural`](Self::natural), and fewer than two keys.
@@ -76,15 +84,17 @@ fn velocities<const D: usize>(times: &[f64], values: &[[f64; D]], ends: &Ends<D>
     }
     let step = |key: usize| times[key + 1] - times[key];
     let chord = |key: usize, d: usize| (values[key + 1][d] - values[key][d]) / step(key);
-    // Row by row: below, on and above the diagonal, right-hand side; the inner rows say that the acceleration is continuous.
+    // Row by row: below, on and above the diagonal, right-hand side; the inner rows say that the
+    // acceleration is continuous.
     let mut rows = vec![([0.0, 1.0, 0.0], [0.0; D]); count];
-    let inner = |before: f64, after: f64, left: &dyn Fn(usize) -> f64, right: &dyn Fn(usize) -> f64| {
-        let mut side = [0.0; D];
-        for (d, value) in side.iter_mut().enumerate() {
-            *value = 3.0 * (after * left(d) + before * right(d));
-        }
-        ([after, 2.0 * (before + after), before], side)
-    };
+    let inner =
+        |before: f64, after: f64, left: &dyn Fn(usize) -> f64, right: &dyn Fn(usize) -> f64| {
+            let mut side = [0.0; D];
+            for (d, value) in side.iter_mut().enumerate() {
+                *value = 3.0 * (after * left(d) + before * right(d));
+            }
+            ([after, 2.0 * (before + after), before], side)
+        };
     for key in 1..count - 1 {
         rows[key] = inner(step(key - 1), step(key), &|d| chord(key - 1, d), &|d| chord(key, d));
     }
@@ -102,7 +112,12 @@ fn velocities<const D: usize>(times: &[f64], values: &[[f64; D]], ends: &Ends<D>
             rows[0].1 = *first;
             rows[last].1 = *end;
         }
-        Ends::Periodic => return periodic(&rows, inner(step(last - 1), step(0), &|d| chord(last - 1, d), &|d| chord(0, d))),
+        Ends::Periodic => {
+            return periodic(
+                &rows,
+                inner(step(last - 1), step(0), &|d| chord(last - 1, d), &|d| chord(0, d)),
+            );
+        }
     }
     tridiagonal(&rows)
 }
@@ -123,7 +138,8 @@ fn tridiagonal<const D: usize>(rows: &[Row<D>]) -> Vec<[f64; D]> {
     let mut solution = vec![[0.0; D]; rows.len()];
     for key in (0..rows.len()).rev() {
         for d in 0..D {
-            let above = if key + 1 < rows.len() { rows[key].0[2] * solution[key + 1][d] } else { 0.0 };
+            let above =
+                if key + 1 < rows.len() { rows[key].0[2] * solution[key + 1][d] } else { 0.0 };
             solution[key][d] = (rows[key].1[d] - above) / rows[key].0[1];
         }
     }
@@ -132,7 +148,8 @@ fn tridiagonal<const D: usize>(rows: &[Row<D>]) -> Vec<[f64; D]> {
 
 /// The cyclic system: the first velocity is that of the last key; `seam` is its row.
 ///
-/// The corner entries are bordered: one solution for the right-hand side and one for the seam's unit velocity.
+/// The corner entries are bordered: one solution for the right-hand side and one for the seam's
+/// unit velocity.
 fn periodic<const D: usize>(rows: &[Row<D>], seam: Row<D>) -> Vec<[f64; D]> {
     let count = rows.len();
     let inner = &rows[1..count - 1];

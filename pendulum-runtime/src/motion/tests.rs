@@ -35,7 +35,11 @@ fn consistent<const D: usize, M: Motion<f64, D>>(motion: &M, times: impl Iterato
         for d in 0..D {
             let velocity = (high.position[d] - low.position[d]) / (2.0 * h);
             let acceleration = (high.velocity[d] - low.velocity[d]) / (2.0 * h);
-            assert!((velocity - here.velocity[d]).abs() < 1e-7, "velocity at {t}: {velocity} and {}", here.velocity[d]);
+            assert!(
+                (velocity - here.velocity[d]).abs() < 1e-7,
+                "velocity at {t}: {velocity} and {}",
+                here.velocity[d]
+            );
             assert!((acceleration - here.acceleration[d]).abs() < 1e-6, "acceleration at {t}");
         }
     }
@@ -52,11 +56,13 @@ fn cubic_velocity(t: f64) -> [f64; 2] {
 #[test]
 fn a_clamped_spline_reproduces_cubics() {
     let values: Vec<[f64; 2]> = TIMES.iter().map(|&t| cubic(t)).collect();
-    let spline = Spline::clamped(&TIMES, &values, cubic_velocity(0.0), cubic_velocity(3.0)).unwrap();
+    let spline =
+        Spline::clamped(&TIMES, &values, cubic_velocity(0.0), cubic_velocity(3.0)).unwrap();
     for k in 0..=300 {
         let t = 3.0 * f64::from(k) / 300.0;
         let sample = if k == 300 { before(&spline, t) } else { at(&spline, t) };
-        let (position, velocity, acceleration) = (cubic(t), cubic_velocity(t), [6.0 * t, 1.0 - 1.5 * t]);
+        let (position, velocity, acceleration) =
+            (cubic(t), cubic_velocity(t), [6.0 * t, 1.0 - 1.5 * t]);
         for d in 0..2 {
             assert!((sample.position[d] - position[d]).abs() < 2e-14);
             assert!((sample.velocity[d] - velocity[d]).abs() < 1e-13);
@@ -116,7 +122,8 @@ fn catmull_rom_reproduces_parabolas() {
 
 #[test]
 fn linear_keys_jump_in_velocity_where_they_bend() {
-    let linear = Linear::new(&[0.0, 1.0, 2.0, 3.0, 4.0], &[[0.0], [1.0], [2.0], [2.0], [1.0]]).unwrap();
+    let linear =
+        Linear::new(&[0.0, 1.0, 2.0, 3.0, 4.0], &[[0.0], [1.0], [2.0], [2.0], [1.0]]).unwrap();
     // No jump at 1: the slope is the same on both sides.
     assert_eq!(kinks(&linear, -1.0, 9.0), [0.0, 2.0, 3.0, 4.0]);
     assert_eq!(before(&linear, 2.0).velocity, [1.0]);
@@ -140,12 +147,16 @@ fn looped_keys_have_kinks_in_every_turn() {
     }
     let far = kinks(&linear, 1e6 + 0.05, 1e6 + 11.05);
     assert_eq!(far.len(), 20);
-    assert!(far.iter().all(|&kink| before(&linear, kink).velocity[0] * at(&linear, kink).velocity[0] < 0.0));
+    assert!(
+        far.iter()
+            .all(|&kink| before(&linear, kink).velocity[0] * at(&linear, kink).velocity[0] < 0.0)
+    );
 }
 
 #[test]
 fn sinusoids_have_exact_derivatives() {
-    let circle = Sinusoid::new([2.0, 2.0], 3.0, [core::f64::consts::FRAC_PI_2, 0.0]).about([1.0, -1.0]);
+    let circle =
+        Sinusoid::new([2.0, 2.0], 3.0, [core::f64::consts::FRAC_PI_2, 0.0]).about([1.0, -1.0]);
     let sample = at(&circle, 0.4);
     let (sin, cos) = 1.2f64.sin_cos();
     assert!((sample.position[0] - (1.0 + 2.0 * cos)).abs() < 1e-15);
@@ -154,7 +165,8 @@ fn sinusoids_have_exact_derivatives() {
     consistent(&circle, (0..20).map(f64::from));
 }
 
-/// However far the phase is, an amplitude is an amplitude; all ways to sample agree to the last bit.
+/// However far the phase is, an amplitude is an amplitude; all ways to sample agree to the last
+/// bit.
 #[test]
 fn sinusoids_stay_within_their_amplitude() {
     use crate::real::{DoubleDouble, Float};
@@ -164,7 +176,11 @@ fn sinusoids_stay_within_their_amplitude() {
         for scale in [1.0, 1.7e5, 1e8 / 3.0, 1.1e8, 7e30] {
             // Small and large low words side by side.
             let times: [Time; 8] = core::array::from_fn(|lane| {
-                Time::new(if lane < 3 { scale * (lane as f64 - 1.3) } else { f64::from(lane as i32) / w }) + 1e-9 / w
+                Time::new(if lane < 3 {
+                    scale * (lane as f64 - 1.3)
+                } else {
+                    f64::from(lane as i32) / w
+                }) + 1e-9 / w
             });
             let lanes = Motion::<f64, 2>::sample_lanes(&motion, &times, Orders::POSITION);
             let mut all = [Sample::<f64, 2>::zero(); 8];
@@ -180,7 +196,10 @@ fn sinusoids_stay_within_their_amplitude() {
                 let angle = word(w) * (word(t.to_f64()) + word(t.low())) + word(0.3);
                 if angle.abs().to_f64() < 1e18 {
                     let error = (word(sample.position[0]) - angle.sin()).abs().to_f64();
-                    assert!(error < 4e-16 + 1e-31 * angle.abs().to_f64(), "{w:e} · {t:?}: {error:e}");
+                    assert!(
+                        error < 4e-16 + 1e-31 * angle.abs().to_f64(),
+                        "{w:e} · {t:?}: {error:e}"
+                    );
                 }
             }
         }
@@ -196,20 +215,26 @@ fn fast_sinusoids_keep_their_phase() {
     let motion = Sinusoid::new([1.0], w, [phase]);
     let word = DoubleDouble::from;
     for k in 0..500 {
-        let times: [Time; 8] = core::array::from_fn(|lane| Time::new(f64::from(8 * k + lane as i32) * 1.37) + 1e-17);
+        let times: [Time; 8] =
+            core::array::from_fn(|lane| Time::new(f64::from(8 * k + lane as i32) * 1.37) + 1e-17);
         let lanes = Motion::<f64, 1>::sample_lanes(&motion, &times, Orders::ALL);
         let mut all = [Sample::<f64, 1>::zero(); 8];
         motion.sample_all(&times, Orders::ALL, &mut all);
         for (lane, &t) in times.iter().enumerate() {
             let sample: Sample<f64, 1> = motion.sample(t, Side::After, Orders::ALL);
             let (sin, cos) = (word(w) * (word(t.to_f64()) + word(t.low())) + word(phase)).sin_cos();
-            let scaled = [sample.position[0], sample.velocity[0] / w, -sample.acceleration[0] / (w * w)];
+            let scaled =
+                [sample.position[0], sample.velocity[0] / w, -sample.acceleration[0] / (w * w)];
             for (value, exact) in scaled.into_iter().zip([sin, cos, sin]) {
                 let error = (word(value) - exact).abs().to_f64();
                 assert!(error < 5e-16, "t = {t:?}: {value} is {error:e} off");
             }
             assert_eq!(sample, all[lane]);
-            let wide = [lanes.position[0].0[lane], lanes.velocity[0].0[lane], lanes.acceleration[0].0[lane]];
+            let wide = [
+                lanes.position[0].0[lane],
+                lanes.velocity[0].0[lane],
+                lanes.acceleration[0].0[lane],
+            ];
             assert_eq!([sample.position[0], sample.velocity[0], sample.acceleration[0]], wide);
             let mut series = [0.0; crate::jet::LENGTH];
             Analytic::<f64, 1>::series(&motion, t, Side::After, 0, 2, &mut series);
@@ -257,7 +282,8 @@ fn times_far_from_zero_keep_their_resolution() {
     let times: Vec<f64> = (0..10).map(|k| 1e9 + f64::from(k)).collect();
     let values: Vec<[f64; 1]> = (0..10).map(|k| [f64::from(k) * 10.0]).collect();
     let linear = Linear::new(&times, &values).unwrap();
-    let sample: Sample<f64, 1> = linear.sample(Time::new(1e9) + 1.0 / 3.0, Side::After, Orders::ALL);
+    let sample: Sample<f64, 1> =
+        linear.sample(Time::new(1e9) + 1.0 / 3.0, Side::After, Orders::ALL);
     assert!((sample.position[0] - 10.0 / 3.0).abs() < 1e-15);
 }
 
@@ -276,15 +302,34 @@ fn bad_keys_are_refused() {
     let none: &[[f64; 1]] = &[];
     assert_eq!(Linear::new(&[], none), Err(MotionError::NoKeys));
     assert_eq!(Linear::new(&[0.0], none), Err(MotionError::Lengths { times: 1, values: 0 }));
-    assert_eq!(Spline::natural(&[0.0, 0.0], &[[1.0], [2.0]]), Err(MotionError::NotIncreasing { key: 1, time: 0.0 }));
-    assert_eq!(CatmullRom::new(&[0.0, f64::NAN], &[[1.0], [2.0]]), Err(MotionError::NotFinite { key: 1 }));
-    assert_eq!(Linear::new(&[0.0, 1.0], &[[1.0], [f64::INFINITY]]), Err(MotionError::NotFinite { key: 1 }));
+    assert_eq!(
+        Spline::natural(&[0.0, 0.0], &[[1.0], [2.0]]),
+        Err(MotionError::NotIncreasing { key: 1, time: 0.0 })
+    );
+    assert_eq!(
+        CatmullRom::new(&[0.0, f64::NAN], &[[1.0], [2.0]]),
+        Err(MotionError::NotFinite { key: 1 })
+    );
+    assert_eq!(
+        Linear::new(&[0.0, 1.0], &[[1.0], [f64::INFINITY]]),
+        Err(MotionError::NotFinite { key: 1 })
+    );
     assert_eq!(Linear::new(&[0.0], &[[1.0]]).unwrap().looped(), Err(MotionError::OneKey));
-    assert!(matches!(Clip::new(0.0, &[[1.0]], 1, Interpolation::Linear), Err(MotionError::Rate(_))));
+    assert!(matches!(
+        Clip::new(0.0, &[[1.0]], 1, Interpolation::Linear),
+        Err(MotionError::Rate(_))
+    ));
     assert_eq!(Clip::new(120.0, &[[1.0]], 0, Interpolation::Linear), Err(MotionError::Every));
     assert!(Spline::clamped(&[0.0, 1.0], &[[1.0], [2.0]], [f64::NAN], [0.0]).is_err());
     let (gain, limit) = (MotionError::Gain(f64::NAN), MotionError::SpeedLimit(0.0));
-    for error in [MotionError::NoKeys, MotionError::OneKey, MotionError::Rate(-1.0), MotionError::Every, gain, limit] {
+    for error in [
+        MotionError::NoKeys,
+        MotionError::OneKey,
+        MotionError::Rate(-1.0),
+        MotionError::Every,
+        gain,
+        limit,
+    ] {
         assert!(error.to_string().contains(';') || error.to_string().contains("rests"), "{error}");
     }
 }
@@ -297,7 +342,10 @@ fn what_is_felt_is_cut_and_scaled() {
     let crossing = 0.6f64.acos();
     let found = kinks(&felt, 0.0, 3.0);
     assert!(found.iter().any(|kink| (kink - crossing).abs() < 1e-14), "{found:?}");
-    assert!(found.iter().any(|kink| (kink - (std::f64::consts::PI - crossing)).abs() < 1e-14), "{found:?}");
+    assert!(
+        found.iter().any(|kink| (kink - (std::f64::consts::PI - crossing)).abs() < 1e-14),
+        "{found:?}"
+    );
     let (fast, slow) = (at(&felt, 0.3), at(&felt, 1.2));
     assert_eq!(fast.position, at(&whole, 0.3).position);
     assert!((fast.velocity[0] - 0.3).abs() < 1e-15 && fast.acceleration[0].abs() < 1e-15);
@@ -345,7 +393,11 @@ fn bound<const D: usize, M: Motion<f64, D>>(motion: &M, t: f64) -> Option<f64> {
 fn functions_bound_steps_by_their_resolution() {
     let unknown = || Function::new(|t: f64| [t, 0.0, 0.0]);
     assert_eq!(bound(&unknown(), 1.0), None);
-    let known = unknown().resolution(0.25).unwrap().velocity(|_| [1.0, 0.0, 0.0]).acceleration(|_| [0.0; 3]);
+    let known = unknown()
+        .resolution(0.25)
+        .unwrap()
+        .velocity(|_| [1.0, 0.0, 0.0])
+        .acceleration(|_| [0.0; 3]);
     assert_eq!(bound(&known, 1.0), Some(2.5));
     let plane = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     assert_eq!(bound(&Projected::new(known.clone(), plane), 1.0), Some(2.5));
@@ -362,7 +414,10 @@ fn splines_bound_steps_by_their_keys() {
     assert_eq!(bound(&through(&[0.0]), 3.0), Some(f64::INFINITY));
     // Two keys in a hundredth of a second: half the way to them, or ten times their distance.
     let dense = through(&[0.0, 50.0, 50.01, 100.0]);
-    assert_eq!([-1.0, 10.0, 49.9].map(|t| bound(&dense, t).unwrap()), [25.5, 20.0, 10.0 * (50.01 - 50.0)]);
+    assert_eq!(
+        [-1.0, 10.0, 49.9].map(|t| bound(&dense, t).unwrap()),
+        [25.5, 20.0, 10.0 * (50.01 - 50.0)]
+    );
     // On the way back too, from wherever it begins.
     assert_eq!(
         [50.05, 60.0, 100.0, 101.0].map(|t| bound(&dense, t).unwrap()),

@@ -3,9 +3,11 @@
 use super::Real;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// A number a + a′ε with ε² = 0: functions of it carry their derivative with respect to one variable.
+/// A number a + a′ε with ε² = 0: functions of it carry their derivative with respect to one
+/// variable.
 ///
-/// Clifford (1873). Derivatives of a constant stay zero even where the function has an infinite slope.
+/// Clifford (1873). Derivatives of a constant stay zero even where the function has an infinite
+/// slope.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Dual<T = f64> {
     /// The value a.
@@ -76,7 +78,8 @@ impl<T: Real> Div for Dual<T> {
     #[inline]
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
-        let derivative = times(number::<T>(1.0) / other.value, self.derivative) - times(value / other.value, other.derivative);
+        let derivative = times(number::<T>(1.0) / other.value, self.derivative)
+            - times(value / other.value, other.derivative);
         Self { value, derivative }
     }
 }
@@ -150,12 +153,16 @@ impl<T: Real> Real for Dual<T> {
     }
 
     fn atan(self) -> Self {
-        self.chain(Real::atan(self.value), number::<T>(1.0) / (number::<T>(1.0) + self.value * self.value))
+        self.chain(
+            Real::atan(self.value),
+            number::<T>(1.0) / (number::<T>(1.0) + self.value * self.value),
+        )
     }
 
     fn atan2(self, x: Self) -> Self {
         let square = self.value * self.value + x.value * x.value;
-        let derivative = times(x.value / square, self.derivative) - times(self.value / square, x.derivative);
+        let derivative =
+            times(x.value / square, self.derivative) - times(self.value / square, x.derivative);
         Self { value: Real::atan2(self.value, x.value), derivative }
     }
 
@@ -189,7 +196,8 @@ impl<T: Real> Real for Dual<T> {
     fn powf(self, exponent: Self) -> Self {
         let value = Real::powf(self.value, exponent.value);
         let slope = exponent.value * Real::powf(self.value, exponent.value - number(1.0));
-        let derivative = times(slope, self.derivative) + times(value * Real::ln(self.value), exponent.derivative);
+        let derivative = times(slope, self.derivative)
+            + times(value * Real::ln(self.value), exponent.derivative);
         Self { value, derivative }
     }
 
@@ -207,7 +215,8 @@ impl<T: Real> Real for Dual<T> {
 
     fn max(self, other: Self) -> Self {
         let step = Real::step(self.value - other.value);
-        let derivative = times(step, self.derivative) + times(number::<T>(1.0) - step, other.derivative);
+        let derivative =
+            times(step, self.derivative) + times(number::<T>(1.0) - step, other.derivative);
         Self { value: Real::max(self.value, other.value), derivative }
     }
 
@@ -292,7 +301,10 @@ mod tests {
         close(Dual::constant(4.0).powf(Dual::variable(1.5)).derivative, 8.0 * 1.3862943611198906);
         // xˣ (1 + ln x).
         close(x.powf(x).derivative, 256.0 * 2.386294361119891);
-        assert_eq!(Dual::variable(0.0).powf(Dual::constant(2.0)), Dual { value: 0.0, derivative: 0.0 });
+        assert_eq!(
+            Dual::variable(0.0).powf(Dual::constant(2.0)),
+            Dual { value: 0.0, derivative: 0.0 }
+        );
     }
 
     #[test]

@@ -24,7 +24,10 @@ pub(crate) fn ordered_sum<T: Real>(high: T, low: T) -> (T, T) {
 ///
 /// How they are cut depends on the scalar and on what may overflow.
 #[inline(always)]
-pub(crate) fn two_product<T: Real>((a, [a_high, a_low]): (T, [T; 2]), (b, [b_high, b_low]): (T, [T; 2])) -> (T, T) {
+pub(crate) fn two_product<T: Real>(
+    (a, [a_high, a_low]): (T, [T; 2]),
+    (b, [b_high, b_low]): (T, [T; 2]),
+) -> (T, T) {
     let product = a * b;
     (product, ((a_high * b_high - product) + (a_high * b_low + a_low * b_high)) + a_low * b_low)
 }
@@ -42,7 +45,10 @@ mod tests {
         }
         assert_eq!(two_sum(1.0_f32, 1e-10), (1.0, 1e-10));
         assert_eq!(two_sum(Octet([1e20; 8]), Octet([3.0; 8])), (Octet([1e20; 8]), Octet([3.0; 8])));
-        assert_eq!(ordered_sum(1.0, 0.75 * f64::EPSILON), (1.0 + f64::EPSILON, -0.25 * f64::EPSILON));
+        assert_eq!(
+            ordered_sum(1.0, 0.75 * f64::EPSILON),
+            (1.0 + f64::EPSILON, -0.25 * f64::EPSILON)
+        );
         // (1 + ε)² = 1 + 2ε + ε².
         let a = (1.0 + f64::EPSILON, [1.0, f64::EPSILON]);
         assert_eq!(two_product(a, a), (1.0 + 2.0 * f64::EPSILON, tiny));

@@ -2,8 +2,8 @@
 
 use super::{Float, Real, trig};
 
-/// Both types go through the functions of `f64`; `f32` rounds their results once more, which leaves it next to correctly
-/// rounded. Only its sine and cosine have a shorter kernel.
+/// Both types go through the functions of `f64`; `f32` rounds their results once more, which leaves
+/// it next to correctly rounded. Only its sine and cosine have a shorter kernel.
 macro_rules! float {
     ($float:ident $sin_cos:ident) => {
         impl Real for $float {
@@ -164,9 +164,13 @@ mod tests {
 
     /// Each function at `x` over both types, against the digits of `tests/data/functions.py`.
     fn near(f64_value: f64, f32_value: f32, expected: f64) {
-        assert!((f64_value - expected).abs() <= 2.0 * f64::EPSILON * expected.abs(), "{f64_value} is not {expected}");
         assert!(
-            (f64::from(f32_value) - expected).abs() <= 0.5001 * f64::from(f32::EPSILON) * expected.abs(),
+            (f64_value - expected).abs() <= 2.0 * f64::EPSILON * expected.abs(),
+            "{f64_value} is not {expected}"
+        );
+        assert!(
+            (f64::from(f32_value) - expected).abs()
+                <= 0.5001 * f64::from(f32::EPSILON) * expected.abs(),
             "{f32_value} is not {expected}"
         );
     }
@@ -239,10 +243,19 @@ mod tests {
 
     #[test]
     fn floats_know_their_kind() {
-        assert_eq!((<f32 as Real>::from_f64(0.1), Float::to_f64(0.1_f32)), (0.1, 0.10000000149011612));
+        assert_eq!(
+            (<f32 as Real>::from_f64(0.1), Float::to_f64(0.1_f32)),
+            (0.1, 0.10000000149011612)
+        );
         assert!(Float::is_finite(f32::MAX) && !Float::is_finite(<f32 as Real>::from_f64(1e39)));
         assert!(!Float::is_finite(f64::NAN));
-        assert_eq!((<f32 as Float>::EPSILON, <f64 as Float>::EPSILON), (f32::EPSILON, f64::EPSILON));
-        assert_eq!((<f32 as Real>::pi(), <f64 as Real>::pi()), (core::f32::consts::PI, core::f64::consts::PI));
+        assert_eq!(
+            (<f32 as Float>::EPSILON, <f64 as Float>::EPSILON),
+            (f32::EPSILON, f64::EPSILON)
+        );
+        assert_eq!(
+            (<f32 as Real>::pi(), <f64 as Real>::pi()),
+            (core::f32::consts::PI, core::f64::consts::PI)
+        );
     }
 }

@@ -7,8 +7,9 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 
 /// `W` numbers that go through the same operations: the scalar of many systems of one type.
 ///
-/// Every lane has the bits that the single number would have. Loops over lanes are straight, so that the compiler makes vector code of them for
-/// whatever instructions the surrounding code may use.
+/// Every lane has the bits that the single number would have. Loops over lanes are straight, so
+/// that the compiler makes vector code of them for whatever instructions the surrounding code may
+/// use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
 pub struct Lanes<T, const W: usize>(pub [T; W]);
@@ -90,10 +91,12 @@ impl<T: Lane, const W: usize> Lanes<T, W> {
     }
 }
 
-/// Eight numbers that go through the same operations: as [`Lanes`], but every operation is written out.
+/// Eight numbers that go through the same operations: as [`Lanes`], but every operation is written
+/// out.
 ///
-/// A loop for each of thousands of operations in one function takes the compiler half a minute to unroll; where there are few, as in
-/// recurrences that loop themselves, the loops become the better code.
+/// A loop for each of thousands of operations in one function takes the compiler half a minute to
+/// unroll; where there are few, as in recurrences that loop themselves, the loops become the better
+/// code.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
 pub struct Octet<T>(pub [T; 8]);
@@ -254,11 +257,22 @@ mod tests {
     use crate::real::Real;
 
     /// What `numbers` gives for lanes from two arrays has the bits of single numbers.
-    fn same<const W: usize, L: Real>(x: [f64; W], y: [f64; W], lanes: fn([f64; W]) -> L, numbers: fn(L) -> [f64; W]) {
+    fn same<const W: usize, L: Real>(
+        x: [f64; W],
+        y: [f64; W],
+        lanes: fn([f64; W]) -> L,
+        numbers: fn(L) -> [f64; W],
+    ) {
         let (a, b) = (lanes(x), lanes(y));
         let check = |lanes: L, single: fn(f64, f64) -> f64, name: &str| {
             for (k, number) in numbers(lanes).into_iter().enumerate() {
-                assert_eq!(number.to_bits(), single(x[k], y[k]).to_bits(), "{name} of {} and {}", x[k], y[k]);
+                assert_eq!(
+                    number.to_bits(),
+                    single(x[k], y[k]).to_bits(),
+                    "{name} of {} and {}",
+                    x[k],
+                    y[k]
+                );
             }
         };
         check(a + b, |x, y| x + y, "sum");
@@ -275,7 +289,11 @@ mod tests {
         check(a.abs().sqrt(), |x, _| Real::abs(x).sqrt(), "root");
         check(a.sign(), |x, _| Real::sign(x), "sign");
         check(a.where_positive(b, -a), |x, y| x.where_positive(y, -x), "choice");
-        check((a / b).sqrt().where_positive(b, a), |x, y| (x / y).sqrt().where_positive(y, x), "choice beside no number");
+        check(
+            (a / b).sqrt().where_positive(b, a),
+            |x, y| (x / y).sqrt().where_positive(y, x),
+            "choice beside no number",
+        );
     }
 
     #[test]

@@ -16,8 +16,9 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 
 /// A real number as generated code sees it: arithmetic and elementary functions, no comparison.
 ///
-/// Implementations are `f32`, `f64` and whatever computes with several of them at once (lanes, dual numbers, two-word numbers),
-/// which is why there is no ordering here. Every function gives the same bits on every machine.
+/// Implementations are `f32`, `f64` and whatever computes with several of them at once (lanes, dual
+/// numbers, two-word numbers), which is why there is no ordering here. Every function gives the
+/// same bits on every machine.
 pub trait Real:
     Copy
     + Debug

@@ -1,9 +1,10 @@
-//! Sine and cosine from nothing but additions and products, so that they have the same bits on every machine, alone
-//! and in a lane of a vector.
+//! Sine and cosine from nothing but additions and products, so that they have the same bits on
+//! every machine, alone and in a lane of a vector.
 //!
-//! Argument reduction after Cody and Waite (1980), here with an exact low word; kernels after FDLIBM (Sun Microsystems, 1993),
-//! whose coefficients these are, evaluated after Estrin (1960). The error is below one unit
-//! in the last place (at most 0.82 among six million arguments), for `f32`, whose kernel has fewer terms, at most 0.501.
+//! Argument reduction after Cody and Waite (1980), here with an exact low word; kernels after
+//! FDLIBM (Sun Microsystems, 1993), whose coefficients these are, evaluated after Estrin (1960).
+//! The error is below one unit in the last place (at most 0.82 among six million arguments), for
+//! `f32`, whose kernel has fewer terms, at most 0.501.
 
 /// Up to this magnitude, 2²⁰ π/2 rounded down, [`kernel`] is right.
 pub(crate) const LIMIT: f64 = 1647099.3291652855;
@@ -38,8 +39,10 @@ const C5: f64 = f64::from_bits(0x3E21EE9EBDB4B1C4);
 const C6: f64 = f64::from_bits(0xBDA8FAE9BE8838D4);
 
 /// The same within 2⁻³⁷ and 2⁻³⁴ (FreeBSD's msun, Evans 2004), for single precision.
-const SINGLE_S: [f64; 4] = [-0.16666666641626524, 0.008333329385889463, -0.00019839334836096632, 2.718311493989822e-06];
-const SINGLE_C: [f64; 4] = [-0.499999997251031, 0.04166662332373906, -0.001388676377460993, 2.439044879627741e-05];
+const SINGLE_S: [f64; 4] =
+    [-0.16666666641626524, 0.008333329385889463, -0.00019839334836096632, 2.718311493989822e-06];
+const SINGLE_C: [f64; 4] =
+    [-0.499999997251031, 0.04166662332373906, -0.001388676377460993, 2.439044879627741e-05];
 
 /// Sine and cosine; NaN unless `x` is finite.
 #[inline]
@@ -86,8 +89,10 @@ pub(crate) fn kernel_single(x: f64) -> (f64, f64) {
     let r = (magnitude - k * PI_2_A) - (k * PI_2_B + k * PI_2_C);
     let z = r * r;
     let (zz, rz) = (z * z, r * z);
-    let sin = (r + rz * (SINGLE_S[0] + z * SINGLE_S[1])) + (rz * zz) * (SINGLE_S[2] + z * SINGLE_S[3]);
-    let cos = ((1.0 + z * SINGLE_C[0]) + zz * SINGLE_C[1]) + (zz * z) * (SINGLE_C[2] + z * SINGLE_C[3]);
+    let sin =
+        (r + rz * (SINGLE_S[0] + z * SINGLE_S[1])) + (rz * zz) * (SINGLE_S[2] + z * SINGLE_S[3]);
+    let cos =
+        ((1.0 + z * SINGLE_C[0]) + zz * SINGLE_C[1]) + (zz * z) * (SINGLE_C[2] + z * SINGLE_C[3]);
     turned(x, rounded.to_bits(), sin, cos)
 }
 
@@ -95,15 +100,20 @@ pub(crate) fn kernel_single(x: f64) -> (f64, f64) {
 #[inline(always)]
 #[allow(clippy::inline_always)]
 fn turned(x: f64, quadrant: u64, sin: f64, cos: f64) -> (f64, f64) {
-    // In odd quadrants sine and cosine change places; the sine is negative in the upper two, the cosine in the middle two.
+    // In odd quadrants sine and cosine change places; the sine is negative in the upper two, the
+    // cosine in the middle two.
     let swap = (quadrant & 1).wrapping_neg();
     let change = (sin.to_bits() ^ cos.to_bits()) & swap;
     let sin_sign = ((quadrant & 2) << 62) ^ (x.to_bits() & SIGN);
     let cos_sign = ((quadrant + 1) & 2) << 62;
-    (f64::from_bits((sin.to_bits() ^ change) ^ sin_sign), f64::from_bits((cos.to_bits() ^ change) ^ cos_sign))
+    (
+        f64::from_bits((sin.to_bits() ^ change) ^ sin_sign),
+        f64::from_bits((cos.to_bits() ^ change) ^ cos_sign),
+    )
 }
 
-/// The integer k nearest to x/(π/2) in the low bits, and x − k π/2 in two words; `x` is not negative.
+/// The integer k nearest to x/(π/2) in the low bits, and x − k π/2 in two words; `x` is not
+/// negative.
 #[inline(always)]
 #[allow(clippy::inline_always)]
 fn reduce(x: f64) -> (u64, f64, f64) {
@@ -114,7 +124,8 @@ fn reduce(x: f64) -> (u64, f64, f64) {
     let bc = b + c;
     let near = x - k * PI_2_A;
     let r = near - bc;
-    // Two-sums: every difference is exact, so that the low word is good to its last digit even where r nearly vanishes.
+    // Two-sums: every difference is exact, so that the low word is good to its last digit even
+    // where r nearly vanishes.
     let part = r - near;
     let low = (near - (r - part)) - ((bc + part) + ((c - (bc - b)) + k * PI_2_D));
     (rounded.to_bits(), r, low)
@@ -154,7 +165,11 @@ mod tests {
     fn short_cut_has_the_bits_of_the_kernel() {
         for index in 0..100_000_u64 {
             // The last hundred thousand floats before FIRST, and a sweep of its whole range.
-            for x in [f64::from_bits(FIRST.to_bits() - index), FIRST * index as f64 * 1e-5, 1e-300 * index as f64] {
+            for x in [
+                f64::from_bits(FIRST.to_bits() - index),
+                FIRST * index as f64 * 1e-5,
+                1e-300 * index as f64,
+            ] {
                 assert_eq!(bits(sin_cos(x)), bits(kernel(x)), "{x:e}");
                 assert_eq!(bits(sin_cos(-x)), bits(kernel(-x)), "{x:e}");
             }
@@ -166,7 +181,10 @@ mod tests {
         for limit in [FIRST, LIMIT] {
             for x in [limit.next_down(), limit, limit.next_up()] {
                 let (ours, theirs) = (sin_cos(x), far(x));
-                assert!((ours.0 - theirs.0).abs() <= 1.2e-16 && (ours.1 - theirs.1).abs() <= 1.2e-16, "{x:e}");
+                assert!(
+                    (ours.0 - theirs.0).abs() <= 1.2e-16 && (ours.1 - theirs.1).abs() <= 1.2e-16,
+                    "{x:e}"
+                );
             }
         }
         assert_eq!(bits(sin_cos(LIMIT)), bits(kernel(LIMIT)));

@@ -7,7 +7,8 @@ use crate::motion::Sample;
 use crate::real::Real;
 use crate::system::Samples;
 
-/// The numbers of samples. A closure would do, but that need not be inlined, and then is compiled for other instructions.
+/// The numbers of samples. A closure would do, but that need not be inlined, and then is compiled
+/// for other instructions.
 pub trait Numbers<T> {
     /// The number in input i, derivative d (0 for the position) and component c.
     fn number(&mut self, input: usize, derivative: usize, component: usize) -> T;
@@ -38,7 +39,8 @@ impl<T: Real> Assemble<T> for () {
     fn assemble(_: &mut impl Numbers<T>) -> Self {}
 }
 
-/// What a system hangs on: `()`, a [`Joint`] or a tuple of joints, one for each driven input in the order of declaration.
+/// What a system hangs on: `()`, a [`Joint`] or a tuple of joints, one for each driven input in the
+/// order of declaration.
 pub trait Anchor<Inputs> {
     /// The joints by number.
     #[doc(hidden)]

@@ -6,7 +6,8 @@ use super::state::hermite;
 use super::{Handle, Scene};
 use crate::real::{Float, Lane};
 
-/// The motion of a pendulum as keys, joined by the cubics through coordinates and velocities at both ends (Hermite).
+/// The motion of a pendulum as keys, joined by the cubics through coordinates and velocities at
+/// both ends (Hermite).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Baked<T, const N: usize> {
     /// The length of a tick in seconds.
@@ -19,7 +20,10 @@ pub struct Baked<T, const N: usize> {
 impl<T: Lane + Float, const N: usize> Baked<T, N> {
     /// The keys: time in seconds since the beginning, coordinates, velocities.
     pub fn keys(&self) -> impl Iterator<Item = (f64, [T; N], [T; N])> {
-        self.ticks.iter().zip(&self.states).map(|(&tick, &(q, v))| (f64::from(tick) * self.step, q, v))
+        self.ticks
+            .iter()
+            .zip(&self.states)
+            .map(|(&tick, &(q, v))| (f64::from(tick) * self.step, q, v))
     }
 
     /// The coordinates `ticks` after the beginning; beyond the ends those at the ends.
@@ -38,19 +42,29 @@ impl<T: Lane + Float, const N: usize> Baked<T, N> {
     }
 
     fn between(&self, from: usize, to: usize, ticks: f64) -> [T; N] {
-        between(self.step, [self.ticks[from], self.ticks[to]], [self.states[from], self.states[to]], ticks)
+        between(
+            self.step,
+            [self.ticks[from], self.ticks[to]],
+            [self.states[from], self.states[to]],
+            ticks,
+        )
     }
 }
 
 /// The cubic between the states at two ticks.
-fn between<T: Lane + Float, const N: usize>(step: f64, ends: [u32; 2], states: [([T; N], [T; N]); 2], ticks: f64) -> [T; N] {
+fn between<T: Lane + Float, const N: usize>(
+    step: f64,
+    ends: [u32; 2],
+    states: [([T; N], [T; N]); 2],
+    ticks: f64,
+) -> [T; N] {
     let length = f64::from(ends[1] - ends[0]);
     hermite(step * length, (ticks - f64::from(ends[0])) / length, &states)
 }
 
 impl<T: Lane + Float> Scene<T> {
-    /// The motion of `pendulums` over the next `ticks` ticks as keys, no coordinate of which is ever off the [pose](Self::pose) by more than
-    /// `bound`; the scene is as before.
+    /// The motion of `pendulums` over the next `ticks` ticks as keys, no coordinate of which is
+    /// ever off the [pose](Self::pose) by more than `bound`; the scene is as before.
     ///
     /// With a bound of zero every tick is a key, and the curve has the bits of the live motion.
     ///
@@ -63,13 +77,18 @@ impl<T: Lane + Float> Scene<T> {
         bound: f64,
     ) -> Result<Vec<Baked<T, N>>, SceneError> {
         if !(0.0..f64::INFINITY).contains(&bound) {
-            return Err(SceneError::Setting { name: "bound", value: bound, required: "zero or positive" });
+            return Err(SceneError::Setting {
+                name: "bound",
+                value: bound,
+                required: "zero or positive",
+            });
         }
         for &pendulum in pendulums {
             self.checked(pendulum)?;
         }
         let snapshot = self.snapshot();
-        let mut live: Vec<Vec<([T; N], [T; N])>> = pendulums.iter().map(|&pendulum| vec![self.state(pendulum)]).collect();
+        let mut live: Vec<Vec<([T; N], [T; N])>> =
+            pendulums.iter().map(|&pendulum| vec![self.state(pendulum)]).collect();
         for _ in 0..ticks {
             self.advance_ticks(1);
             for (&pendulum, live) in pendulums.iter().zip(&mut live) {
@@ -96,7 +115,11 @@ fn farthest([a, b, c, d]: [f64; 4]) -> f64 {
 }
 
 /// As few keys as a greedy search leaves: from each key as far as the bound allows.
-fn thinned<T: Lane + Float, const N: usize>(step: f64, live: &[([T; N], [T; N])], bound: f64) -> Baked<T, N> {
+fn thinned<T: Lane + Float, const N: usize>(
+    step: f64,
+    live: &[([T; N], [T; N])],
+    bound: f64,
+) -> Baked<T, N> {
     let last = live.len() - 1;
     let fits = |from: usize, to: usize| {
         let ends = [from as u32, to as u32];

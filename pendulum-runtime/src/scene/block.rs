@@ -14,19 +14,22 @@ pub(super) struct Block<S: Hung<T, N>, T: Lane + Float, const N: usize> {
     pub(super) before: [[Wide<T>; N]; 2],
     /// By lane, the track that it follows.
     pub(super) track: [u32; W],
-    /// The lanes whose state has ceased to be finite, by bit, and the ticks since the beginning of the batch when it did.
+    /// The lanes whose state has ceased to be finite, by bit, and the ticks since the beginning of
+    /// the batch when it did.
     pub(super) failed: u64,
     pub(super) failed_at: [u8; W],
     /// Damping and stops, if any lane has them.
     pub(super) extras: Option<Box<Extras<T, N>>>,
 }
 
-/// What most steps do not read of [`W`] pendulums: between the states it would only use up the caches.
+/// What most steps do not read of [`W`] pendulums: between the states it would only use up the
+/// caches.
 pub(super) struct Rare<S: Hung<T, N>, T: Lane + Float, const N: usize> {
     pub(super) system: S::Lanes,
     /// By lane, its number in the group.
     pub(super) id: [u32; W],
-    /// Whether parameters have changed, so that `system` and what it has prepared must be made anew.
+    /// Whether parameters have changed, so that `system` and what it has prepared must be made
+    /// anew.
     pub(super) stale: bool,
 }
 

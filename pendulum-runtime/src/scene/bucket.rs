@@ -1,4 +1,5 @@
-//! Pendulums of one type that take the same steps: those that are awake first, all in blocks of lanes.
+//! Pendulums of one type that take the same steps: those that are awake first, all in blocks of
+//! lanes.
 
 use super::block::{Block, Extras, Rare, half_decay};
 use super::hung::{Hung, Known, W, Wide};
@@ -99,7 +100,8 @@ impl<T: Real, const N: usize> Extra<T, N> {
         core::array::from_fn(|i| self.stiffness * (inside[i] - q[i]))
     }
 
-    /// Holds a state within hard limits: what lies beyond them lies at them, and goes no further out.
+    /// Holds a state within hard limits: what lies beyond them lies at them, and goes no further
+    /// out.
     pub(super) fn hold(&self, q: &mut [T; N], v: &mut [T; N]) {
         if !self.is_hard() {
             return;
@@ -107,7 +109,11 @@ impl<T: Real, const N: usize> Extra<T, N> {
         let (inside, zero) = (self.inside(q), T::from_f64(0.0));
         for i in 0..N {
             if inside[i] != q[i] {
-                v[i] = if inside[i] == self.low[i] { Real::max(v[i], zero) } else { Real::min(v[i], zero) };
+                v[i] = if inside[i] == self.low[i] {
+                    Real::max(v[i], zero)
+                } else {
+                    Real::min(v[i], zero)
+                };
                 q[i] = inside[i];
             }
         }
@@ -177,7 +183,10 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
             hard: extras.hard.0[lane],
         });
         let [before_q, before_v] = &block.before;
-        (extra, [&block.q.high, &block.q.low, &block.v.high, &block.v.low, before_q, before_v].map(of))
+        (
+            extra,
+            [&block.q.high, &block.q.low, &block.v.high, &block.v.low, before_q, before_v].map(of),
+        )
     }
 
     /// The pendulum in a slot.
@@ -213,7 +222,9 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         (block.track[lane], rare.id[lane]) = (track, loose.id);
         let Block { q, v, before: [before_q, before_v], .. } = block;
         for (lanes, numbers) in
-            [&mut q.high, &mut q.low, &mut v.high, &mut v.low, before_q, before_v].into_iter().zip(&loose.state)
+            [&mut q.high, &mut q.low, &mut v.high, &mut v.low, before_q, before_v]
+                .into_iter()
+                .zip(&loose.state)
         {
             for i in 0..N {
                 lanes[i].0[lane] = numbers[i];
@@ -256,7 +267,9 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         let blocks = self.blocks.iter_mut().zip(&mut self.rare).enumerate();
         for (index, (block, rare)) in blocks.filter(|(_, (_, rare))| rare.stale) {
             let mut parameters = self.parameters[index * count..][..count].iter();
-            rare.system = prototype.widen(|parameter| parameters.next().map_or(Wide::splat(parameter), |lanes| *lanes));
+            rare.system = prototype.widen(|parameter| {
+                parameters.next().map_or(Wide::splat(parameter), |lanes| *lanes)
+            });
             block.prepared = rare.system.prepare();
             rare.stale = false;
             if let Some(extras) = &mut block.extras {
@@ -264,7 +277,9 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
                 extras.stops = false;
                 for lane in 0..W {
                     extras.factor.0[lane] = half_decay(extras.damping.0[lane], h);
-                    extras.stops |= (0..N).any(|i| extras.low[i].0[lane] != -infinity || extras.high[i].0[lane] != infinity);
+                    extras.stops |= (0..N).any(|i| {
+                        extras.low[i].0[lane] != -infinity || extras.high[i].0[lane] != infinity
+                    });
                 }
             }
         }
@@ -275,16 +290,25 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         if self.awake == 0 {
             return;
         }
-        let (layout, momenta) = (const { &Known::<S, N>::FORCES }, const { &Known::<S, N>::MOMENTA });
+        let (layout, momenta) =
+            (const { &Known::<S, N>::FORCES }, const { &Known::<S, N>::MOMENTA });
         let Kind { grid, still } = self.kind;
         if still {
-            self.tracks.load_still(layout, S::FACTS.inputs, sampled.clock.time(sampled.tick), sampled.places);
+            self.tracks.load_still(
+                layout,
+                S::FACTS.inputs,
+                sampled.clock.time(sampled.tick),
+                sampled.places,
+            );
         } else {
             self.tracks.load(grid, layout, momenta, S::FACTS.inputs, sampled, fork);
         }
         self.times.clear();
         for tick in 0..sampled.ticks {
-            self.times.extend(grid.fractions().map(|fraction| sampled.clock.within(sampled.tick + tick as i64, fraction)));
+            self.times.extend(
+                grid.fractions()
+                    .map(|fraction| sampled.clock.within(sampled.tick + tick as i64, fraction)),
+            );
         }
         let h = sampled.clock.step() / f64::from(grid.substeps);
         let batch = Batch {
@@ -302,7 +326,9 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         if !batch.failed.into_inner() {
             return;
         }
-        for (block, rare) in blocks.iter_mut().zip(&self.rare).filter(|(block, _)| block.failed != 0) {
+        for (block, rare) in
+            blocks.iter_mut().zip(&self.rare).filter(|(block, _)| block.failed != 0)
+        {
             for lane in (0..W).filter(|lane| block.failed & (1 << lane) != 0) {
                 failed.push((rare.id[lane], block.failed_at[lane]));
             }
@@ -329,7 +355,12 @@ fn through<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     let last = blocks.len().div_ceil(part) - 1;
     let parts = blocks.chunks_mut(part).zip(rare.chunks(part)).enumerate();
     share(parts, |(index, (blocks, rare))| {
-        widest(Run { blocks, rare, lanes_of_last: if index == last { lanes_of_last } else { W }, batch });
+        widest(Run {
+            blocks,
+            rare,
+            lanes_of_last: if index == last { lanes_of_last } else { W },
+            batch,
+        });
     });
 }
 

@@ -18,8 +18,8 @@ pub(super) struct Clock {
     origin: i64,
 }
 
-/// A sum of frame times that lacks less than this part of a tick has reached it: thirds and twenty-fourths of a second are not binary
-/// fractions, and 24 of them must make a second.
+/// A sum of frame times that lacks less than this part of a tick has reached it: thirds and
+/// twenty-fourths of a second are not binary fractions, and 24 of them must make a second.
 const SLACK: f64 = 1e-6;
 
 impl Clock {
@@ -27,7 +27,11 @@ impl Clock {
         if (1e-3..=1e6).contains(&rate) {
             Ok(Self { rate, tick: 0, asked: Time::new(0.0), origin: 0 })
         } else {
-            Err(SceneError::Setting { name: "rate", value: rate, required: "between 0.001 and a million ticks a second" })
+            Err(SceneError::Setting {
+                name: "rate",
+                value: rate,
+                required: "between 0.001 and a million ticks a second",
+            })
         }
     }
 
@@ -69,7 +73,8 @@ impl Clock {
         }
     }
 
-    /// Takes `dt` seconds more, of which at most `limit`; gives the ticks that are due and the seconds dropped.
+    /// Takes `dt` seconds more, of which at most `limit`; gives the ticks that are due and the
+    /// seconds dropped.
     pub(super) fn ask(&mut self, dt: f64, limit: f64) -> Result<(u64, f64), SceneError> {
         if !(0.0..f64::INFINITY).contains(&dt) {
             return Err(SceneError::FrameTime(dt));
@@ -97,7 +102,8 @@ impl Clock {
 
     /// The part of the next tick that frames have asked for, in [0, 1).
     pub(super) fn fraction(&self) -> f64 {
-        let ticks = self.asked.to_f64() * self.rate - (self.tick - self.origin) as f64 + self.asked.low() * self.rate;
+        let ticks = self.asked.to_f64() * self.rate - (self.tick - self.origin) as f64
+            + self.asked.low() * self.rate;
         if ticks <= 0.0 {
             0.0
         } else if ticks < 1.0 {

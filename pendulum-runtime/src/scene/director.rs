@@ -1,4 +1,5 @@
-//! What directors ask for: resets, teleports, mirrors, damping, stops, parameters that change while the scene runs.
+//! What directors ask for: resets, teleports, mirrors, damping, stops, parameters that change while
+//! the scene runs.
 
 use super::bucket::Extra;
 use super::error::SceneError;
@@ -35,12 +36,15 @@ pub enum Stop {
 }
 
 impl<T: Lane + Float> Scene<T> {
-    /// Lets a pendulum hang at rest where an overdamped one would creep to, within its limits, with its joints at rest where they are now. One that
-    /// has failed swings again.
+    /// Lets a pendulum hang at rest where an overdamped one would creep to, within its limits, with
+    /// its joints at rest where they are now. One that has failed swings again.
     ///
     /// # Errors
     /// A pendulum of another scene, or one that comes to rest nowhere.
-    pub fn reset_to_rest<S: Hung<T, N>, const N: usize>(&mut self, pendulum: Handle<S, N>) -> Result<(), SceneError> {
+    pub fn reset_to_rest<S: Hung<T, N>, const N: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+    ) -> Result<(), SceneError> {
         self.checked(pendulum)?;
         self.dirty = true;
         let (group, clock, places) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
@@ -59,11 +63,16 @@ impl<T: Lane + Float> Scene<T> {
         reset.or_else(|error| self.restore(&snapshot).and(Err(error)))
     }
 
-    /// Mirrors a pendulum: coordinate i and its velocity are multiplied by `signs[i]`, as the angles are when a drawing is flipped.
+    /// Mirrors a pendulum: coordinate i and its velocity are multiplied by `signs[i]`, as the
+    /// angles are when a drawing is flipped.
     ///
     /// # Errors
     /// A pendulum of another scene, a sign that is neither 1 nor −1.
-    pub fn mirror<S: Hung<T, N>, const N: usize>(&mut self, pendulum: Handle<S, N>, signs: [f64; N]) -> Result<(), SceneError> {
+    pub fn mirror<S: Hung<T, N>, const N: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+        signs: [f64; N],
+    ) -> Result<(), SceneError> {
         if let Some(&value) = signs.iter().find(|sign| sign.abs() != 1.0) {
             return Err(SceneError::Setting { name: "signs", value, required: "1 or -1" });
         }
@@ -73,7 +82,8 @@ impl<T: Lane + Float> Scene<T> {
                     numbers[i] *= T::from_f64(sign);
                 }
                 if sign < 0.0 {
-                    (loose.extra.low[i], loose.extra.high[i]) = (-loose.extra.high[i], -loose.extra.low[i]);
+                    (loose.extra.low[i], loose.extra.high[i]) =
+                        (-loose.extra.high[i], -loose.extra.low[i]);
                 }
             }
         })
@@ -82,9 +92,14 @@ impl<T: Lane + Float> Scene<T> {
     /// Gives a joint another motion from the last tick on.
     ///
     /// # Errors
-    /// A joint of another scene, a motion that lacks what the equations of a pendulum on it need; with [`Carry::Rest`] a pendulum that comes
-    /// to rest nowhere.
-    pub fn set_motion<M, const D: usize>(&mut self, joint: Joint<D>, motion: M, carry: Carry) -> Result<(), SceneError>
+    /// A joint of another scene, a motion that lacks what the equations of a pendulum on it need;
+    /// with [`Carry::Rest`] a pendulum that comes to rest nowhere.
+    pub fn set_motion<M, const D: usize>(
+        &mut self,
+        joint: Joint<D>,
+        motion: M,
+        carry: Carry,
+    ) -> Result<(), SceneError>
     where
         M: Motion<T, D> + Send + Sync + 'static,
     {
@@ -98,7 +113,9 @@ impl<T: Lane + Float> Scene<T> {
         self.places[joint.0 as usize] = Place::new(forget::<T, M, D>(motion));
         self.dirty = true;
         let Self { clock, places, groups, .. } = self;
-        let moved = groups.iter_mut().try_for_each(|(_, group)| group.moved(clock, &before, places, joint.0, carry));
+        let moved = groups
+            .iter_mut()
+            .try_for_each(|(_, group)| group.moved(clock, &before, places, joint.0, carry));
         if let (Err(_), Some(snapshot)) = (&moved, snapshot) {
             self.places = before;
             self.restore(&snapshot)?;
@@ -106,30 +123,43 @@ impl<T: Lane + Float> Scene<T> {
         moved
     }
 
-    /// Stops the time of the scene or lets it go on: frames pass, ticks do not, so that nothing jumps afterwards.
+    /// Stops the time of the scene or lets it go on: frames pass, ticks do not, so that nothing
+    /// jumps afterwards.
     pub fn set_paused(&mut self, paused: bool) {
         self.paused = paused;
     }
 
-    /// Sets the damping of a pendulum: γ in 1/s, so that free velocities decay as e^(−γt) exactly, whatever the step.
+    /// Sets the damping of a pendulum: γ in 1/s, so that free velocities decay as e^(−γt) exactly,
+    /// whatever the step.
     ///
     /// # Errors
     /// A pendulum of another scene, a damping that is negative or not finite.
-    pub fn set_damping<S: Hung<T, N>, const N: usize>(&mut self, pendulum: Handle<S, N>, damping: f64) -> Result<(), SceneError> {
+    pub fn set_damping<S: Hung<T, N>, const N: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+        damping: f64,
+    ) -> Result<(), SceneError> {
         if !(0.0..f64::INFINITY).contains(&damping) {
-            return Err(SceneError::Setting { name: "damping", value: damping, required: "zero or positive" });
+            return Err(SceneError::Setting {
+                name: "damping",
+                value: damping,
+                required: "zero or positive",
+            });
         }
         self.change(pendulum, |loose| loose.extra.damping = T::from_f64(damping))
     }
 
-    /// Keeps coordinates within `low` and `high`, in place of the limits set before; infinite limits are none.
+    /// Keeps coordinates within `low` and `high`, in place of the limits set before; infinite
+    /// limits are none.
     ///
-    /// What lies beyond a hard limit is put on it. Hard stops act within the drifts of leapfrog and SRKN6b, where the path is straight, and at
-    /// the ends of the steps of RK4; they turn the velocity of the coordinate alone, which for coupled coordinates is not what a wall at the tip
-    /// would do.
+    /// What lies beyond a hard limit is put on it. Hard stops act within the drifts of leapfrog and
+    /// SRKN6b, where the path is straight, and at the ends of the steps of RK4; they turn the
+    /// velocity of the coordinate alone, which for coupled coordinates is not what a wall at the
+    /// tip would do.
     ///
     /// # Errors
-    /// A pendulum of another scene, limits in the wrong order or that leave no finite place, a restitution outside of [0, 1], a negative stiffness.
+    /// A pendulum of another scene, limits in the wrong order or that leave no finite place, a
+    /// restitution outside of [0, 1], a negative stiffness.
     pub fn set_limits<S: Hung<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -140,7 +170,11 @@ impl<T: Lane + Float> Scene<T> {
         for i in 0..N {
             let ordered = low[i] <= high[i];
             if !ordered || low[i].to_f64() == f64::INFINITY {
-                return Err(SceneError::Setting { name: "low", value: low[i].to_f64(), required: "at most the upper limit" });
+                return Err(SceneError::Setting {
+                    name: "low",
+                    value: low[i].to_f64(),
+                    required: "at most the upper limit",
+                });
             }
             if high[i].to_f64() == f64::NEG_INFINITY {
                 return Err(SceneError::Setting {
@@ -153,11 +187,19 @@ impl<T: Lane + Float> Scene<T> {
         let [restitution, stiffness, hard] = match stop {
             Stop::Hard { restitution: e } if (0.0..=1.0).contains(&e) => [e, 0.0, 1.0],
             Stop::Hard { restitution: value } => {
-                return Err(SceneError::Setting { name: "restitution", value, required: "between 0 and 1" });
+                return Err(SceneError::Setting {
+                    name: "restitution",
+                    value,
+                    required: "between 0 and 1",
+                });
             }
             Stop::Soft { stiffness: k } if (0.0..f64::INFINITY).contains(&k) => [1.0, k, 0.0],
             Stop::Soft { stiffness: value } => {
-                return Err(SceneError::Setting { name: "stiffness", value, required: "zero or positive" });
+                return Err(SceneError::Setting {
+                    name: "stiffness",
+                    value,
+                    required: "zero or positive",
+                });
             }
         }
         .map(T::from_f64);
@@ -173,7 +215,8 @@ impl<T: Lane + Float> Scene<T> {
         Ok(())
     }
 
-    /// Sets a parameter of a pendulum by its name, as in `FACTS.parameters`; the state stays, its steps are chosen anew and it wakes.
+    /// Sets a parameter of a pendulum by its name, as in `FACTS.parameters`; the state stays, its
+    /// steps are chosen anew and it wakes.
     ///
     /// # Errors
     /// A pendulum of another scene, a name that it does not have, a value that is not finite.
@@ -197,8 +240,9 @@ impl<T: Lane + Float> Scene<T> {
         Ok(())
     }
 
-    /// Sets a parameter of all pendulums that have one of that name, such as gravity or wind; states stay, steps are chosen anew (a fraction of a
-    /// microsecond each) and sleepers wake. Gives the number of pendulums.
+    /// Sets a parameter of all pendulums that have one of that name, such as gravity or wind;
+    /// states stay, steps are chosen anew (a fraction of a microsecond each) and sleepers wake.
+    /// Gives the number of pendulums.
     ///
     /// # Errors
     /// A name that no type here has, a value that is not finite.
@@ -206,9 +250,15 @@ impl<T: Lane + Float> Scene<T> {
         finite(value)?;
         self.dirty = true;
         let Self { clock, places, groups, .. } = self;
-        let changed: Vec<usize> =
-            groups.iter_mut().filter_map(|(_, group)| group.set_parameter(clock, places, name, value)).collect();
-        if changed.is_empty() { Err(SceneError::Parameter(name.to_owned())) } else { Ok(changed.iter().sum()) }
+        let changed: Vec<usize> = groups
+            .iter_mut()
+            .filter_map(|(_, group)| group.set_parameter(clock, places, name, value))
+            .collect();
+        if changed.is_empty() {
+            Err(SceneError::Parameter(name.to_owned()))
+        } else {
+            Ok(changed.iter().sum())
+        }
     }
 }
 

@@ -59,24 +59,51 @@ pub enum SceneError {
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::FrameTime(dt) => write!(f, "a frame of {dt:?} s cannot be advanced by; give zero or a positive, finite time"),
-            Self::Setting { name, value, required } => write!(f, "`{name}` is {value:?}; it has to be {required}"),
-            Self::State { coordinate, value } => write!(f, "the state of {coordinate} is {value:?}; give a finite number"),
-            Self::Joint(index) => write!(f, "joint {index} is not in this scene; use the handle that `joint` of this scene gave"),
+            Self::FrameTime(dt) => write!(
+                f,
+                "a frame of {dt:?} s cannot be advanced by; give zero or a positive, finite time"
+            ),
+            Self::Setting { name, value, required } => {
+                write!(f, "`{name}` is {value:?}; it has to be {required}")
+            }
+            Self::State { coordinate, value } => {
+                write!(f, "the state of {coordinate} is {value:?}; give a finite number")
+            }
+            Self::Joint(index) => write!(
+                f,
+                "joint {index} is not in this scene; use the handle that `joint` of this scene gave"
+            ),
             Self::Pendulum { kind, index } => {
-                write!(f, "`{kind}` {index} is not in this scene; use the handle that `hang` of this scene gave")
+                write!(
+                    f,
+                    "`{kind}` {index} is not in this scene; use the handle that `hang` of this scene gave"
+                )
             }
             Self::Derivative { input, derivative } => {
-                let name = ["position", "velocity", "acceleration"].get(*derivative).unwrap_or(&"derivative");
-                write!(f, "the motion that drives `{input}` has no {name}, which the equations need; give one that has")
+                let name = ["position", "velocity", "acceleration"]
+                    .get(*derivative)
+                    .unwrap_or(&"derivative");
+                write!(
+                    f,
+                    "the motion that drives `{input}` has no {name}, which the equations need; give one that has"
+                )
             }
             Self::Restless { kind, index } => {
-                write!(f, "`{kind}` {index} comes to rest nowhere; set its state, or change what drives it on")
+                write!(
+                    f,
+                    "`{kind}` {index} comes to rest nowhere; set its state, or change what drives it on"
+                )
             }
             Self::Parameter(name) => {
-                write!(f, "there is no parameter `{name}`; a component of a vector is written `c.x`, of a family `m[0]`")
+                write!(
+                    f,
+                    "there is no parameter `{name}`; a component of a vector is written `c.x`, of a family `m[0]`"
+                )
             }
-            Self::Snapshot(what) => write!(f, "the snapshot is not one of this scene: {what}; restore it where it was taken"),
+            Self::Snapshot(what) => write!(
+                f,
+                "the snapshot is not one of this scene: {what}; restore it where it was taken"
+            ),
             Self::Integration(error) => write!(f, "{error}"),
         }
     }

@@ -3,10 +3,11 @@
 use crate::real::{Float, Real};
 use crate::system::System;
 
-/// An angular frequency in rad/s that small motions about the neighbourhood of `q` do not exceed by much, with the inputs at rest.
+/// An angular frequency in rad/s that small motions about the neighbourhood of `q` do not exceed by
+/// much, with the inputs at rest.
 ///
-/// It is the largest root of |λ| over the eigenvalues λ of ∂q̈/∂q, by power iteration with central differences, at `q` and at three states beside it,
-/// or the size of ∂q̈/∂q̇, whichever is larger.
+/// It is the largest root of |λ| over the eigenvalues λ of ∂q̈/∂q, by power iteration with central
+/// differences, at `q` and at three states beside it, or the size of ∂q̈/∂q̇, whichever is larger.
 pub(super) fn fastest<S: System<N, Scalar = T>, T: Float, const N: usize>(
     system: &S,
     t: T,
@@ -43,8 +44,12 @@ fn moved<T: Real, const N: usize>(q: &[T; N], direction: &[f64; N], size: f64) -
     core::array::from_fn(|i| q[i] + T::from_f64(size * direction[i]))
 }
 
-/// The largest |λ| of a Jacobian that is known by its central differences, from below; zero if it is not finite.
-fn largest<T: Float, const N: usize>(step: f64, mut pair: impl FnMut(&[f64; N], f64) -> ([T; N], [T; N])) -> f64 {
+/// The largest |λ| of a Jacobian that is known by its central differences, from below; zero if it
+/// is not finite.
+fn largest<T: Float, const N: usize>(
+    step: f64,
+    mut pair: impl FnMut(&[f64; N], f64) -> ([T; N], [T; N]),
+) -> f64 {
     // Weights that no symmetry shares.
     let mut direction: [f64; N] = core::array::from_fn(|i| 1.0 + 0.37 * i as f64);
     if N.is_multiple_of(2) {
@@ -57,7 +62,8 @@ fn largest<T: Float, const N: usize>(step: f64, mut pair: impl FnMut(&[f64; N], 
     direction = direction.map(|x| x / scale);
     for _ in 0..rounds {
         let (ahead, behind) = pair(&direction, step);
-        let image: [f64; N] = core::array::from_fn(|i| (ahead[i].to_f64() - behind[i].to_f64()) / (2.0 * step));
+        let image: [f64; N] =
+            core::array::from_fn(|i| (ahead[i].to_f64() - behind[i].to_f64()) / (2.0 * step));
         size = norm(&image);
         if !size.is_finite() || size == 0.0 {
             return 0.0;

@@ -33,7 +33,8 @@ pub(super) trait AnyGroup<T>: Send + Sync {
     fn settle(&mut self, clock: &Clock);
     /// Goes through a batch.
     fn run(&mut self, sampled: &Sampled<'_, T>, fork: bool, failed: &mut Vec<Failed>);
-    /// Takes a pendulum that has failed in a tick away from those that are computed, and says why it failed.
+    /// Takes a pendulum that has failed in a tick away from those that are computed, and says why
+    /// it failed.
     fn fail(&mut self, clock: &Clock, places: &[Place<T>], id: u32, tick: i64) -> Failure;
     /// All that changes while running.
     fn save(&self) -> GroupState<T>;
@@ -55,7 +56,13 @@ pub(super) trait AnyGroup<T>: Send + Sync {
         carry: Carry,
     ) -> Result<(), SceneError>;
     /// Sets a parameter of all, if they have it.
-    fn set_parameter(&mut self, clock: &Clock, places: &[Place<T>], name: &str, value: T) -> Option<usize>;
+    fn set_parameter(
+        &mut self,
+        clock: &Clock,
+        places: &[Place<T>],
+        name: &str,
+        value: T,
+    ) -> Option<usize>;
     /// Wakes those whose time has come; whether there were any.
     fn ring(&mut self, tick: i64) -> bool;
     /// The tick at which somebody is to wake, far away if nobody is.
@@ -137,7 +144,8 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             parameter
         });
         let zero = [T::from_f64(0.0); N];
-        let loose = Loose { id, joints, parameters, state: [q, zero, v, zero, q, v], extra: Extra::none() };
+        let loose =
+            Loose { id, joints, parameters, state: [q, zero, v, zero, q, v], extra: Extra::none() };
         self.table.push(Location { bucket: 0, slot: 0 });
         self.status.push(Status::Awake);
         self.tolerances.push(tolerance);
@@ -148,9 +156,22 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// What the pendulum has in common with others.
-    pub(super) fn kind(&self, clock: &Clock, places: &[Place<T>], system: &S, loose: &Loose<T, N>) -> Kind {
+    pub(super) fn kind(
+        &self,
+        clock: &Clock,
+        places: &[Place<T>],
+        system: &S,
+        loose: &Loose<T, N>,
+    ) -> Kind {
         let t = clock.time(clock.tick());
-        let inputs = inputs_at::<S, T, N>(places, &loose.joints, Time::new(t), Side::After, Purpose::Accelerations, true);
+        let inputs = inputs_at::<S, T, N>(
+            places,
+            &loose.joints,
+            Time::new(t),
+            Side::After,
+            Purpose::Accelerations,
+            true,
+        );
         let omega = frequency::fastest(system, T::from_f64(t), &loose.state[0], &inputs);
         // A soft stop swings too.
         let phase = omega.max(loose.extra.stiffness.to_f64().sqrt()) * clock.step();
@@ -165,10 +186,11 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
 
     /// Puts a pendulum into its bucket, asleep.
     pub(super) fn insert(&mut self, kind: Kind, loose: &Loose<T, N>) {
-        let bucket = self.buckets.iter().position(|bucket| bucket.kind == kind).unwrap_or_else(|| {
-            self.buckets.push(Bucket::new(kind));
-            self.buckets.len() - 1
-        });
+        let bucket =
+            self.buckets.iter().position(|bucket| bucket.kind == kind).unwrap_or_else(|| {
+                self.buckets.push(Bucket::new(kind));
+                self.buckets.len() - 1
+            });
         let slot = self.buckets[bucket].push(&self.prototype, loose);
         self.table[loose.id as usize] = Location { bucket: bucket as u32, slot: slot as u32 };
     }
@@ -256,16 +278,34 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Where a pendulum comes to rest with its joints at rest where they are at `t`.
-    pub(super) fn rest_of(&self, places: &[Place<T>], loose: &Loose<T, N>, t: f64) -> Option<[T; N]> {
+    pub(super) fn rest_of(
+        &self,
+        places: &[Place<T>],
+        loose: &Loose<T, N>,
+        t: f64,
+    ) -> Option<[T; N]> {
         let system = self.system_of(&loose.parameters);
-        let inputs = inputs_at::<S, T, N>(places, &loose.joints, Time::new(t), Side::After, Purpose::Accelerations, true);
+        let inputs = inputs_at::<S, T, N>(
+            places,
+            &loose.joints,
+            Time::new(t),
+            Side::After,
+            Purpose::Accelerations,
+            true,
+        );
         let t = T::from_f64(t);
-        let omega = frequency::fastest(&system, t, &loose.state[0], &inputs).max(loose.extra.stiffness.to_f64().sqrt());
+        let omega = frequency::fastest(&system, t, &loose.state[0], &inputs)
+            .max(loose.extra.stiffness.to_f64().sqrt());
         rest::rest(&system, t, &loose.state[0], &inputs, omega, &loose.extra)
     }
 
     /// Lets a pendulum hang at rest; one that has failed swings again.
-    pub(super) fn rest(&mut self, clock: &Clock, places: &[Place<T>], id: u32) -> Result<(), SceneError> {
+    pub(super) fn rest(
+        &mut self,
+        clock: &Clock,
+        places: &[Place<T>],
+        id: u32,
+    ) -> Result<(), SceneError> {
         let mut loose = self.read(id);
         let missing = SceneError::Restless { kind: S::FACTS.name, index: id };
         let q = self.rest_of(places, &loose, clock.time(clock.tick())).ok_or(missing)?;
@@ -288,9 +328,12 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// The state of a pendulum now and one tick before.
     pub(super) fn states(&self, id: u32) -> [([T; N], [T; N]); 2] {
         let Location { bucket, slot } = self.table[id as usize];
-        let (block, lane) =
-            (&self.buckets[bucket as usize].blocks[slot as usize / super::hung::W], slot as usize % super::hung::W);
-        let before = [&block.before[0], &block.before[1]].map(|lanes| lanes.map(|lanes| lanes.0[lane]));
+        let (block, lane) = (
+            &self.buckets[bucket as usize].blocks[slot as usize / super::hung::W],
+            slot as usize % super::hung::W,
+        );
+        let before =
+            [&block.before[0], &block.before[1]].map(|lanes| lanes.map(|lanes| lanes.0[lane]));
         [(before[0], before[1]), block.state(lane)]
     }
 }
@@ -306,7 +349,9 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T,
 
     fn needs(&self, visit: &mut dyn FnMut(u32, Orders, Grid)) {
         for bucket in self.buckets.iter().filter(|bucket| !bucket.kind.still && bucket.awake != 0) {
-            bucket.tracks.needs(S::FACTS.inputs, |joint, orders| visit(joint, orders, bucket.kind.grid));
+            bucket
+                .tracks
+                .needs(S::FACTS.inputs, |joint, orders| visit(joint, orders, bucket.kind.grid));
         }
     }
 
@@ -395,13 +440,16 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T,
             }
             let mut loose = self.read(id);
             if carry == Carry::Momentum {
-                let inputs = |places, side| inputs_at::<S, T, N>(places, &loose.joints, time, side, Purpose::Momenta, false);
+                let inputs = |places, side| {
+                    inputs_at::<S, T, N>(places, &loose.joints, time, side, Purpose::Momenta, false)
+                };
                 let (old, new) = (inputs(before, Side::Before), inputs(places, Side::After));
                 let (system, t) = (self.system_of(&loose.parameters), scalar_time(time));
                 let [q, _, v, ..] = loose.state;
                 if old != new {
                     let after = system.velocities(t, &q, &system.momenta(t, &q, &v, &old), &new);
-                    // One whose equations have no solution keeps its velocity, and fails in the next tick, which says why.
+                    // One whose equations have no solution keeps its velocity, and fails in the
+                    // next tick, which says why.
                     if after.iter().all(|v| v.is_finite()) {
                         (loose.state[2], loose.state[3]) = (after, [T::from_f64(0.0); N]);
                     }
@@ -417,7 +465,13 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T,
         Ok(())
     }
 
-    fn set_parameter(&mut self, clock: &Clock, places: &[Place<T>], name: &str, value: T) -> Option<usize> {
+    fn set_parameter(
+        &mut self,
+        clock: &Clock,
+        places: &[Place<T>],
+        name: &str,
+        value: T,
+    ) -> Option<usize> {
         let index = S::FACTS.parameters.iter().position(|parameter| *parameter == name)?;
         for id in 0..self.table.len() as u32 {
             let mut loose = self.read(id);
@@ -435,23 +489,41 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T,
 }
 
 /// What is not finite in the tick that begins at `t` with the state of `loose`.
-fn blame<S: Hung<T, N>, T: Lane + Float, const N: usize>(system: &S, places: &[Place<T>], loose: &Loose<T, N>, t: f64) -> Error {
+fn blame<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+    system: &S,
+    places: &[Place<T>],
+    loose: &Loose<T, N>,
+    t: f64,
+) -> Error {
     let time = Time::new(t);
-    let inputs = inputs_at::<S, T, N>(places, &loose.joints, time, Side::After, Purpose::Accelerations, false);
+    let inputs = inputs_at::<S, T, N>(
+        places,
+        &loose.joints,
+        time,
+        Side::After,
+        Purpose::Accelerations,
+        false,
+    );
     let [q, _, v, ..] = &loose.state;
     let mut what = first_in_inputs(&S::FACTS, &inputs);
     if what.is_none() {
         let a = system.accelerations(scalar_time(time), q, v, &inputs);
-        what = a.iter().position(|a| !a.is_finite()).map(|index| Quantity::Acceleration(coordinate(&S::FACTS, index)));
+        what = a
+            .iter()
+            .position(|a| !a.is_finite())
+            .map(|index| Quantity::Acceleration(coordinate(&S::FACTS, index)));
     }
     // Where the tick begins well, it is the velocity that grows beyond all bounds.
     let fastest = |i: &usize, j: &usize| v[*i].to_f64().abs().total_cmp(&v[*j].to_f64().abs());
-    let what = what.unwrap_or_else(|| Quantity::Velocity(coordinate(&S::FACTS, (0..N).max_by(fastest).unwrap_or(0))));
+    let what = what.unwrap_or_else(|| {
+        Quantity::Velocity(coordinate(&S::FACTS, (0..N).max_by(fastest).unwrap_or(0)))
+    });
     let suspects = if let Quantity::Acceleration(_) = what { suspects(system) } else { Vec::new() };
     Error::NotFinite { t, what, suspects }
 }
 
-/// The inputs of a system on joints, with what `purpose` needs; at rest if asked so: only the positions then.
+/// The inputs of a system on joints, with what `purpose` needs; at rest if asked so: only the
+/// positions then.
 pub(super) fn inputs_at<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     places: &[Place<T>],
     joints: &[u32],
@@ -481,24 +553,33 @@ pub(super) fn inputs_at<S: Hung<T, N>, T: Lane + Float, const N: usize>(
 }
 
 /// Whether a state is finite.
-pub(super) fn check_state<T: Float, const N: usize>(facts: &crate::system::Facts, values: &[T; N]) -> Result<(), SceneError> {
+pub(super) fn check_state<T: Float, const N: usize>(
+    facts: &crate::system::Facts,
+    values: &[T; N],
+) -> Result<(), SceneError> {
     match values.iter().position(|value| !value.is_finite()) {
         None => Ok(()),
         Some(index) => {
             let name = facts.coordinates.get(index).copied().unwrap_or("");
-            Err(SceneError::State { coordinate: Coordinate { index, name }, value: values[index].to_f64() })
+            Err(SceneError::State {
+                coordinate: Coordinate { index, name },
+                value: values[index].to_f64(),
+            })
         }
     }
 }
 
-/// Whether joints exist, move in as many dimensions as their inputs and have what the equations need.
+/// Whether joints exist, move in as many dimensions as their inputs and have what the equations
+/// need.
 pub(super) fn check_joints<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     places: &[Place<T>],
     joints: &[u32],
 ) -> Result<(), SceneError> {
     for (input, &joint) in joints.iter().enumerate() {
         let components = <S::Inputs as Assemble<T>>::COMPONENTS.get(input);
-        let place = places.get(joint as usize).filter(|place| components == Some(&place.drive.components()));
+        let place = places
+            .get(joint as usize)
+            .filter(|place| components == Some(&place.drive.components()));
         let place = place.ok_or(SceneError::Joint(joint))?;
         check_motion(&S::FACTS, input, place.drive.has())?;
     }
@@ -506,8 +587,13 @@ pub(super) fn check_joints<S: Hung<T, N>, T: Lane + Float, const N: usize>(
 }
 
 /// Whether a motion has what the equations need of an input.
-pub(super) fn check_motion(facts: &crate::system::Facts, input: usize, has: Orders) -> Result<(), SceneError> {
-    let needed = [Purpose::Accelerations, Purpose::Momenta].map(|purpose| crate::motion::orders(facts.inputs, input, purpose));
+pub(super) fn check_motion(
+    facts: &crate::system::Facts,
+    input: usize,
+    has: Orders,
+) -> Result<(), SceneError> {
+    let needed = [Purpose::Accelerations, Purpose::Momenta]
+        .map(|purpose| crate::motion::orders(facts.inputs, input, purpose));
     for derivative in 0..3 {
         let order = Orders::of(derivative);
         if needed.iter().any(|needed| needed.contains(order)) && !has.contains(order) {

@@ -10,13 +10,16 @@ pub(super) const W: usize = 32;
 /// Several numbers, one for each pendulum of a block.
 pub(super) type Wide<T> = Lanes<T, W>;
 
-/// A system that can hang in a scene over the scalar `T`: every type that `lagrangian!` generates, over `f32` and `f64`.
+/// A system that can hang in a scene over the scalar `T`: every type that `lagrangian!` generates,
+/// over `f32` and `f64`.
 pub trait Hung<T: Lane + Float, const N: usize>:
     System<N, Scalar = T, Inputs: Assemble<T>> + Sized + Send + Sync + 'static
 {
     /// The same system over lanes.
     #[doc(hidden)]
-    type Lanes: Staged<N, Scalar = Lanes<T, 32>, Inputs: Assemble<Lanes<T, 32>>, Prepared: Send + Sync> + Send + Sync;
+    type Lanes: Staged<N, Scalar = Lanes<T, 32>, Inputs: Assemble<Lanes<T, 32>>, Prepared: Send + Sync>
+        + Send
+        + Sync;
 
     /// The same system over lanes, with every parameter mapped.
     #[doc(hidden)]
@@ -43,7 +46,8 @@ where
     }
 }
 
-/// Where the derivatives of each input begin in a record that holds those that a purpose needs, one after the other.
+/// Where the derivatives of each input begin in a record that holds those that a purpose needs, one
+/// after the other.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Layout {
     /// By input and derivative; [`NONE`] if it is not needed.
@@ -86,9 +90,15 @@ impl Layout {
 pub(super) struct Known<S, const N: usize>(core::marker::PhantomData<S>);
 
 impl<S: System<N, Inputs: Assemble<S::Scalar>>, const N: usize> Known<S, N> {
-    pub(super) const FORCES: Layout =
-        Layout::new(S::FACTS.inputs, <S::Inputs as Assemble<S::Scalar>>::COMPONENTS, Purpose::Accelerations);
-    pub(super) const MOMENTA: Layout =
-        Layout::new(S::FACTS.inputs, <S::Inputs as Assemble<S::Scalar>>::COMPONENTS, Purpose::Momenta);
+    pub(super) const FORCES: Layout = Layout::new(
+        S::FACTS.inputs,
+        <S::Inputs as Assemble<S::Scalar>>::COMPONENTS,
+        Purpose::Accelerations,
+    );
+    pub(super) const MOMENTA: Layout = Layout::new(
+        S::FACTS.inputs,
+        <S::Inputs as Assemble<S::Scalar>>::COMPONENTS,
+        Purpose::Momenta,
+    );
     pub(super) const SPLITS: bool = S::FACTS.velocity_free && S::FACTS.constant_mass_matrix;
 }

@@ -69,7 +69,10 @@ impl<'a, T: Lane + Float> Followed<'a, T> {
 
     /// The inputs at an evaluation of the batch.
     #[inline(always)]
-    pub(super) fn inputs<S: Hung<T, N>, const N: usize>(&self, evaluation: usize) -> Inputs<S, T, N> {
+    pub(super) fn inputs<S: Hung<T, N>, const N: usize>(
+        &self,
+        evaluation: usize,
+    ) -> Inputs<S, T, N> {
         let Self { tracks, layout, track, runs } = self;
         if let Some(Runs { count, track, begin }) = runs {
             let mut records: [&[T]; MOST_RUNS] = [&[]; MOST_RUNS];
@@ -96,12 +99,15 @@ struct Spread<'a, T> {
 impl<T: Lane> Numbers<Wide<T>> for Spread<'_, T> {
     #[inline(always)]
     fn number(&mut self, input: usize, derivative: usize, component: usize) -> Wide<T> {
-        let Some(place) = self.layout.place(input, derivative, component) else { return Wide::from_f64(0.0) };
+        let Some(place) = self.layout.place(input, derivative, component) else {
+            return Wide::from_f64(0.0);
+        };
         let mut lanes = Wide::splat(self.records[0][place]);
         for (record, &begin) in self.records.iter().zip(self.begin).skip(1) {
             let number = record[place];
             for lane in 0..W {
-                lanes.0[lane] = if begin <= T::from_f64(lane as f64) { number } else { lanes.0[lane] };
+                lanes.0[lane] =
+                    if begin <= T::from_f64(lane as f64) { number } else { lanes.0[lane] };
             }
         }
         lanes

@@ -15,9 +15,11 @@ pub struct Joint<const D: usize>(pub(super) u32);
 pub(super) trait Drive<T>: Send + Sync {
     fn has(&self) -> Orders;
     fn components(&self) -> usize;
-    /// Writes those of position, velocity and acceleration that are in `orders`, one after the other.
+    /// Writes those of position, velocity and acceleration that are in `orders`, one after the
+    /// other.
     fn sample(&self, t: Time, side: Side, orders: Orders, numbers: &mut [T]);
-    /// The same at several times, one record after the other; a time that stands twice in succession is sampled once.
+    /// The same at several times, one record after the other; a time that stands twice in
+    /// succession is sampled once.
     fn sample_all(&self, times: &[Time], orders: Orders, numbers: &mut [T]);
     fn next_kink(&self, t: f64) -> Option<f64>;
     fn rest_until(&self, t: f64) -> f64;
@@ -78,7 +80,8 @@ impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Forgot
                 }
                 end += 1;
             }
-            // Without a kink the side is all one, but only one side gives the same bits however ticks are cut into batches.
+            // Without a kink the side is all one, but only one side gives the same bits however
+            // ticks are cut into batches.
             self.0.sample_all(&wanted[..count], orders, &mut samples[..count]);
             let mut next = 0;
             for index in begin..end {
@@ -108,7 +111,9 @@ impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Forgot
 }
 
 /// `motion` as a drive.
-pub(super) fn forget<T: Real, M: Motion<T, D> + Send + Sync + 'static, const D: usize>(motion: M) -> Arc<dyn Drive<T>> {
+pub(super) fn forget<T: Real, M: Motion<T, D> + Send + Sync + 'static, const D: usize>(
+    motion: M,
+) -> Arc<dyn Drive<T>> {
     Arc::new(Forgotten(motion))
 }
 
@@ -145,7 +150,10 @@ pub(super) struct Active {
 
 impl<T> fmt::Debug for Place<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Place").field("still", &self.still).field("orders", &self.orders).finish_non_exhaustive()
+        f.debug_struct("Place")
+            .field("still", &self.still)
+            .field("orders", &self.orders)
+            .finish_non_exhaustive()
     }
 }
 
@@ -160,7 +168,15 @@ impl<T: Real> Place<T> {
 impl Active {
     pub(super) fn new<T: Real>(joint: u32, place: &Place<T>, class: u32) -> Self {
         let components = place.drive.components();
-        Self { joint, class, orders: place.orders, components, kink: f64::NAN, offset: 0, kinked: 0 }
+        Self {
+            joint,
+            class,
+            orders: place.orders,
+            components,
+            kink: f64::NAN,
+            offset: 0,
+            kinked: 0,
+        }
     }
 
     /// The numbers in a sample.
@@ -168,7 +184,8 @@ impl Active {
         self.components * self.orders.count()
     }
 
-    /// Samples the ticks from `tick` at `times`; ticks with a kink in them or at their ends are left out.
+    /// Samples the ticks from `tick` at `times`; ticks with a kink in them or at their ends are
+    /// left out.
     pub(super) fn sample<T: Real>(
         &mut self,
         drive: &dyn Drive<T>,

@@ -1,7 +1,8 @@
 //! The steps of a block of lanes through a batch of ticks.
 //!
-//! Everything here is inlined into the code that [`simd`](crate::simd) compiles for several instruction sets, and has in every lane the
-//! bits of the scalar methods in [`integrate`](crate::integrate).
+//! Everything here is inlined into the code that [`simd`](crate::simd) compiles for several
+//! instruction sets, and has in every lane the bits of the scalar methods in
+//! [`integrate`](crate::integrate).
 
 #![allow(clippy::inline_always)]
 
@@ -48,12 +49,18 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Work for Run<'_, S, T, N> {
     #[inline(always)]
     fn run(self) {
         let last = self.blocks.len().wrapping_sub(1);
-        for (index, (block, Rare { system, .. })) in self.blocks.iter_mut().zip(self.rare).enumerate() {
+        for (index, (block, Rare { system, .. })) in
+            self.blocks.iter_mut().zip(self.rare).enumerate()
+        {
             let lanes = if index == last { self.lanes_of_last } else { W };
             let kept = (lanes < W).then_some((block.q, block.v, block.before));
             match self.batch.grid.scheme {
-                Scheme::Leapfrog if Known::<S, N>::SPLITS => batch::<S, T, N, LEAPFROG, 1>(block, system, self.batch),
-                Scheme::Srkn6b if Known::<S, N>::SPLITS => batch::<S, T, N, SRKN6B, 7>(block, system, self.batch),
+                Scheme::Leapfrog if Known::<S, N>::SPLITS => {
+                    batch::<S, T, N, LEAPFROG, 1>(block, system, self.batch);
+                }
+                Scheme::Srkn6b if Known::<S, N>::SPLITS => {
+                    batch::<S, T, N, SRKN6B, 7>(block, system, self.batch);
+                }
                 _ => batch::<S, T, N, RK4, 3>(block, system, self.batch),
             }
             if let Some((q, v, [before_q, before_v])) = kept {
@@ -133,7 +140,9 @@ fn batch<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, const
     let mut times = [Wide::from_f64(0.0); K];
     for tick in 0..batch.ticks {
         block.before = [block.q.high, block.v.high];
-        if batch.tracks.any_cut() && block.track.iter().any(|&track| !batch.tracks.pieces(tick, track).is_empty()) {
+        if batch.tracks.any_cut()
+            && block.track.iter().any(|&track| !batch.tracks.pieces(tick, track).is_empty())
+        {
             cut_tick::<S, T, N, SCHEME, K>(block, system, batch, tick);
         } else {
             for step in 0..batch.grid.substeps as usize {
@@ -147,7 +156,16 @@ fn batch<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, const
                     }
                 }
                 let Block { prepared, q, v, extras, .. } = &mut *block;
-                step_of::<S, T, N, SCHEME, K>(system, prepared, &weights, &times, &inputs, q, v, extras.as_deref());
+                step_of::<S, T, N, SCHEME, K>(
+                    system,
+                    prepared,
+                    &weights,
+                    &times,
+                    &inputs,
+                    q,
+                    v,
+                    extras.as_deref(),
+                );
             }
         }
         // Times zero, infinity and what is not a number are not zero.
@@ -169,7 +187,11 @@ fn batch<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, const
 /// Puts the lanes that are not finite back to where the tick began, for good.
 #[cold]
 #[inline(never)]
-fn freeze<S: Hung<T, N>, T: Lane + Float, const N: usize>(block: &mut Block<S, T, N>, finite: &Wide<T>, tick: usize) {
+fn freeze<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+    block: &mut Block<S, T, N>,
+    finite: &Wide<T>,
+    tick: usize,
+) {
     for lane in 0..W {
         let bit = 1 << lane;
         if block.failed & bit == 0 {
@@ -180,8 +202,10 @@ fn freeze<S: Hung<T, N>, T: Lane + Float, const N: usize>(block: &mut Block<S, T
             block.failed_at[lane] = tick as u8;
         }
         for i in 0..N {
-            (block.q.high[i].0[lane], block.q.low[i].0[lane]) = (block.before[0][i].0[lane], T::from_f64(0.0));
-            (block.v.high[i].0[lane], block.v.low[i].0[lane]) = (block.before[1][i].0[lane], T::from_f64(0.0));
+            (block.q.high[i].0[lane], block.q.low[i].0[lane]) =
+                (block.before[0][i].0[lane], T::from_f64(0.0));
+            (block.v.high[i].0[lane], block.v.low[i].0[lane]) =
+                (block.before[1][i].0[lane], T::from_f64(0.0));
         }
     }
 }
@@ -239,7 +263,9 @@ fn step_of<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, con
     match SCHEME {
         LEAPFROG => {
             drift::<T, N>(weights.outer[0], q, v, extras);
-            let a = accelerations::<S, T, N>(system, prepared, times[0], &inputs[0], &q.high, &v.high, extras);
+            let a = accelerations::<S, T, N>(
+                system, prepared, times[0], &inputs[0], &q.high, &v.high, extras,
+            );
             v.add(weights.inner[0], &a);
             drift::<T, N>(weights.outer[1], q, v, extras);
         }
@@ -304,10 +330,14 @@ fn drift<T: Lane + Float, const N: usize>(
     stop::<T, N>(q, v, extras);
 }
 
-/// Throws what has gone beyond a hard stop back: within a drift the path is straight, so what lies beyond is its mirror image, shortened by the
-/// restitution.
+/// Throws what has gone beyond a hard stop back: within a drift the path is straight, so what lies
+/// beyond is its mirror image, shortened by the restitution.
 #[inline(always)]
-fn stop<T: Lane + Float, const N: usize>(q: &mut Sum<Wide<T>, N>, v: &mut Sum<Wide<T>, N>, extras: Option<&Extras<T, N>>) {
+fn stop<T: Lane + Float, const N: usize>(
+    q: &mut Sum<Wide<T>, N>,
+    v: &mut Sum<Wide<T>, N>,
+    extras: Option<&Extras<T, N>>,
+) {
     let Some(extras) = extras else { return };
     if !extras.stops {
         return;
@@ -349,7 +379,11 @@ fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, co
     let substeps = batch.grid.substeps as usize;
     let layout = const { &Known::<S, N>::FORCES };
     let pieces = block.track.map(|track| batch.tracks.pieces(tick, track));
-    let steps = pieces.iter().map(|pieces| if pieces.is_empty() { substeps } else { pieces.len() }).max().unwrap_or(0);
+    let steps = pieces
+        .iter()
+        .map(|pieces| if pieces.is_empty() { substeps } else { pieces.len() })
+        .max()
+        .unwrap_or(0);
     for step in 0..steps {
         let mut active = [true; W];
         let mut lengths = [batch.h; W];
@@ -365,7 +399,8 @@ fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, co
             }
             for stage in 0..stages {
                 let evaluation = (tick * substeps + step) * stages + stage;
-                let t = if whole { batch.times[evaluation] } else { pieces[lane][step].times[stage] };
+                let t =
+                    if whole { batch.times[evaluation] } else { pieces[lane][step].times[stage] };
                 times[stage].0[lane] = scalar_time(t);
             }
         }
@@ -400,7 +435,16 @@ fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, co
             extras
         });
         let (mut q, mut v) = (block.q, block.v);
-        step_of::<S, T, N, SCHEME, K>(system, &block.prepared, &weights, &times, &inputs, &mut q, &mut v, extras.as_ref());
+        step_of::<S, T, N, SCHEME, K>(
+            system,
+            &block.prepared,
+            &weights,
+            &times,
+            &inputs,
+            &mut q,
+            &mut v,
+            extras.as_ref(),
+        );
         for lane in (0..W).filter(|&lane| active[lane]) {
             copy_lane(&mut block.q.high, &q.high, lane);
             copy_lane(&mut block.q.low, &q.low, lane);
@@ -454,7 +498,8 @@ fn cross<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     for lane in (0..W).filter(|&lane| jumps[lane].is_some()) {
         for i in 0..N {
             if velocities[i].0[lane] != v[i].0[lane] {
-                (block.v.high[i].0[lane], block.v.low[i].0[lane]) = (velocities[i].0[lane], T::from_f64(0.0));
+                (block.v.high[i].0[lane], block.v.low[i].0[lane]) =
+                    (velocities[i].0[lane], T::from_f64(0.0));
             }
         }
     }

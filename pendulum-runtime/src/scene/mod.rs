@@ -1,7 +1,8 @@
 //! Scenes: many systems on many joints, and nothing computed that the scene does not need.
 //!
-//! A [`Scene`] holds joints, each with a [`Motion`], and pendulums of any type that `lagrangian!` generates hung on them. [`Scene::advance`] takes
-//! frame times and does whole ticks of a fixed length, so that the motion does not depend on how time is cut into frames; [`Scene::pose`]
+//! A [`Scene`] holds joints, each with a [`Motion`], and pendulums of any type that `lagrangian!`
+//! generates hung on them. [`Scene::advance`] takes frame times and does whole ticks of a fixed
+//! length, so that the motion does not depend on how time is cut into frames; [`Scene::pose`]
 //! interpolates between the last two ticks.
 //!
 //! ```
@@ -33,12 +34,15 @@
 //!
 //! # How it is computed
 //!
-//! Pendulums of one type that take the same steps stand in blocks of 32 lanes, structures of arrays, and go through eight ticks at a time; the code is
-//! compiled for several instruction sets and the widest is chosen while running (feature `simd`). Every lane has the bits that the pendulum
-//! would have alone, so neither its neighbours, nor the number of threads (feature `rayon`), nor the machine can be seen in the result.
+//! Pendulums of one type that take the same steps stand in blocks of 32 lanes, structures of
+//! arrays, and go through eight ticks at a time; the code is compiled for several instruction sets
+//! and the widest is chosen while running (feature `simd`). Every lane has the bits that the
+//! pendulum would have alone, so neither its neighbours, nor the number of threads (feature
+//! `rayon`), nor the machine can be seen in the result.
 //!
-//! Velocity-free systems take leapfrog or SRKN6b, all others RK4, in as many equal steps a tick as the [tolerance](Scene::set_tolerance) asks for:
-//! the method that needs fewer evaluations. Steps are cut at the kinks of the motions, and there the momenta carry the state over.
+//! Velocity-free systems take leapfrog or SRKN6b, all others RK4, in as many equal steps a tick as
+//! the [tolerance](Scene::set_tolerance) asks for: the method that needs fewer evaluations. Steps
+//! are cut at the kinks of the motions, and there the momenta carry the state over.
 
 mod assemble;
 mod bake;
@@ -159,12 +163,16 @@ impl<S, const N: usize> fmt::Debug for Handle<S, N> {
 
 impl<T> fmt::Debug for Scene<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Scene").field("clock", &self.clock).field("joints", &self.places.len()).finish_non_exhaustive()
+        f.debug_struct("Scene")
+            .field("clock", &self.clock)
+            .field("joints", &self.places.len())
+            .finish_non_exhaustive()
     }
 }
 
 impl<T: Lane + Float> Scene<T> {
-    /// An empty scene that does `rate` ticks a second, beginning at time 0. With 240 or more every usual frame rate is a whole number of ticks.
+    /// An empty scene that does `rate` ticks a second, beginning at time 0. With 240 or more every
+    /// usual frame rate is a whole number of ticks.
     pub fn new(rate: f64) -> Result<Self, SceneError> {
         Ok(Self {
             clock: Clock::new(rate)?,
@@ -185,15 +193,20 @@ impl<T: Lane + Float> Scene<T> {
     }
 
     /// Adds a joint that moves so.
-    pub fn joint<M: Motion<T, D> + Send + Sync + 'static, const D: usize>(&mut self, motion: M) -> Joint<D> {
+    pub fn joint<M: Motion<T, D> + Send + Sync + 'static, const D: usize>(
+        &mut self,
+        motion: M,
+    ) -> Joint<D> {
         self.places.push(Place::new(joint::forget(motion)));
         Joint(self.places.len() as u32 - 1)
     }
 
-    /// Hangs a system on a joint, on a tuple of joints or, without driven inputs, on `()`, with coordinates `q` and velocities `v`.
+    /// Hangs a system on a joint, on a tuple of joints or, without driven inputs, on `()`, with
+    /// coordinates `q` and velocities `v`.
     ///
     /// # Errors
-    /// A state that is not finite, a joint of another scene, a motion without a derivative that the equations need.
+    /// A state that is not finite, a joint of another scene, a motion without a derivative that the
+    /// equations need.
     // Taken by value, so that both can be made in the call.
     #[allow(clippy::needless_pass_by_value)]
     pub fn hang<S: Hung<T, N>, const N: usize>(
@@ -220,20 +233,29 @@ impl<T: Lane + Float> Scene<T> {
         Ok(Handle::new(group.hang(clock, places, joints, &system, *tolerance, [q, v])))
     }
 
-    /// The relative error of the phase by which methods and steps are chosen for what is hung from now on; 0.001 at first.
+    /// The relative error of the phase by which methods and steps are chosen for what is hung from
+    /// now on; 0.001 at first.
     pub fn set_tolerance(&mut self, tolerance: f64) -> Result<(), SceneError> {
         if !(1e-14..=0.1).contains(&tolerance) {
-            return Err(SceneError::Setting { name: "tolerance", value: tolerance, required: "between 1e-14 and 0.1" });
+            return Err(SceneError::Setting {
+                name: "tolerance",
+                value: tolerance,
+                required: "between 1e-14 and 0.1",
+            });
         }
         self.tolerance = tolerance;
         Ok(())
     }
 
-    /// Lets all pendulums of a type take `method`, in as many steps as the tolerance asks for; one that is wrong for them does not compile.
+    /// Lets all pendulums of a type take `method`, in as many steps as the tolerance asks for; one
+    /// that is wrong for them does not compile.
     ///
     /// # Errors
     /// Nothing of that type hangs here yet.
-    pub fn set_method<S: Hung<T, N>, const N: usize, M: Fixed + Suits<S, N>>(&mut self, _: M) -> Result<(), SceneError> {
+    pub fn set_method<S: Hung<T, N>, const N: usize, M: Fixed + Suits<S, N>>(
+        &mut self,
+        _: M,
+    ) -> Result<(), SceneError> {
         let missing = SceneError::Pendulum { kind: S::FACTS.name, index: 0 };
         let (group, clock, places) = self.group_mut::<S, N>().ok_or(missing)?;
         group.scheme = Some(M::SCHEME);
@@ -248,7 +270,11 @@ impl<T: Lane + Float> Scene<T> {
     /// The longest time that one frame may take; what is longer is cut and reported. 60 s at first.
     pub fn set_longest_frame(&mut self, seconds: f64) -> Result<(), SceneError> {
         if !(0.0 < seconds && seconds < f64::INFINITY) {
-            return Err(SceneError::Setting { name: "longest frame", value: seconds, required: "positive and finite" });
+            return Err(SceneError::Setting {
+                name: "longest frame",
+                value: seconds,
+                required: "positive and finite",
+            });
         }
         self.longest_frame = seconds;
         Ok(())
@@ -259,8 +285,8 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// They are used where that is quicker: batches that take less than 0.2 ms never fork, the
     /// others as long as it pays, which is measured while running: from time to time two batches go
-    /// the other way, after every 1024 at most, and are then the slower ones. As long as all threads
-    /// take less than half as long as one, none does.
+    /// the other way, after every 1024 at most, and are then the slower ones. As long as all
+    /// threads take less than half as long as one, none does.
     pub fn set_parallel(&mut self, parallel: bool) {
         self.parallel = parallel;
     }
@@ -287,7 +313,8 @@ impl<T: Lane + Float> Scene<T> {
         self.clock.step()
     }
 
-    /// The part of the next tick that frames have asked for, in [0, 1): what [`pose`](Self::pose) takes.
+    /// The part of the next tick that frames have asked for, in [0, 1): what [`pose`](Self::pose)
+    /// takes.
     pub fn alpha(&self) -> f64 {
         self.clock.fraction()
     }

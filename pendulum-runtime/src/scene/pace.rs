@@ -86,7 +86,8 @@ impl Choice {
         let (pace, now) = (&mut self.pace[way as usize], nanoseconds / pendulum_ticks);
         // An interruption may take a thousand times as long and says nothing; what lasts is
         // believed after a few batches.
-        *pace = if *pace == 0.0 || now < *pace { now } else { *pace + 0.25 * (now - *pace).min(*pace) };
+        *pace =
+            if *pace == 0.0 || now < *pace { now } else { *pace + 0.25 * (now - *pace).min(*pace) };
     }
 }
 
@@ -96,12 +97,22 @@ mod tests {
 
     /// The parts of `batches` that went together where the two ways take so many nanoseconds a
     /// pendulum and tick.
-    fn share_together(choice: &mut Choice, batches: u32, pendulum_ticks: f64, alone: f64, together: f64) -> f64 {
+    fn share_together(
+        choice: &mut Choice,
+        batches: u32,
+        pendulum_ticks: f64,
+        alone: f64,
+        together: f64,
+    ) -> f64 {
         let mut count = 0;
         for _ in 0..batches {
             let way = choice.way(pendulum_ticks);
             count += u32::from(way == Way::Together);
-            choice.took(way, pendulum_ticks, pendulum_ticks * if way == Way::Together { together } else { alone });
+            choice.took(
+                way,
+                pendulum_ticks,
+                pendulum_ticks * if way == Way::Together { together } else { alone },
+            );
         }
         f64::from(count) / f64::from(batches)
     }

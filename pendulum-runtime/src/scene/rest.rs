@@ -6,10 +6,11 @@ use crate::real::Float;
 use crate::system::System;
 use nalgebra::{DMatrix, DVector};
 
-/// The state without acceleration that an overdamped pendulum creeps to from `q`, with the inputs at rest, against soft stops and no further than
-/// hard ones; `None` if it finds none.
+/// The state without acceleration that an overdamped pendulum creeps to from `q`, with the inputs
+/// at rest, against soft stops and no further than hard ones; `None` if it finds none.
 ///
-/// Newton's method where the pendulum is stable and it halves the acceleration, otherwise steps q̈/(2ω²) with the fastest frequency ω.
+/// Newton's method where the pendulum is stable and it halves the acceleration, otherwise steps
+/// q̈/(2ω²) with the fastest frequency ω.
 pub(super) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
     system: &S,
     t: T,
@@ -21,12 +22,15 @@ pub(super) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
     let prepared = system.prepare();
     let zero = [T::from_f64(0.0); N];
     let a = |q: &[T; N]| -> [f64; N] {
-        let (a, push) = (system.accelerations_prepared(&prepared, t, q, &zero, inputs), extra.push(q));
+        let (a, push) =
+            (system.accelerations_prepared(&prepared, t, q, &zero, inputs), extra.push(q));
         core::array::from_fn(|i| (a[i] + push[i]).to_f64())
     };
     let size = |a: &[f64; N]| a.iter().fold(0.0f64, |size, a| size.max(a.abs()));
     let held = |q: [T; N]| if extra.is_hard() { extra.inside(&q) } else { q };
-    let moved = |q: &[T; N], by: &[f64]| -> [T; N] { held(core::array::from_fn(|i| q[i] + T::from_f64(by[i]))) };
+    let moved = |q: &[T; N], by: &[f64]| -> [T; N] {
+        held(core::array::from_fn(|i| q[i] + T::from_f64(by[i])))
+    };
     let (mut q, step) = (held(*q), cube_root_of_rounding::<T>());
     let enough = 4.0 * T::EPSILON.to_f64() * (omega * omega).max(1e-12);
     for _ in 0..10_000 {
@@ -47,7 +51,8 @@ pub(super) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
         let jacobian = jacobian(step, &q, a);
         // Near a saddle Newton's method would end there.
         let stable = !presses && jacobian.complex_eigenvalues().iter().all(|value| value.re < 0.0);
-        let newton = if stable { jacobian.lu().solve(&DVector::from_fn(N, |i, _| -here[i])) } else { None };
+        let newton =
+            if stable { jacobian.lu().solve(&DVector::from_fn(N, |i, _| -here[i])) } else { None };
         let newton = newton.filter(|by| by.amax() < 0.5);
         if let Some(by) = newton {
             let next = moved(&q, by.as_slice());
@@ -71,7 +76,11 @@ pub(super) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
 }
 
 /// ∂q̈/∂q by central differences.
-fn jacobian<T: Float, const N: usize>(step: f64, q: &[T; N], a: impl Fn(&[T; N]) -> [f64; N]) -> DMatrix<f64> {
+fn jacobian<T: Float, const N: usize>(
+    step: f64,
+    q: &[T; N],
+    a: impl Fn(&[T; N]) -> [f64; N],
+) -> DMatrix<f64> {
     let mut matrix = DMatrix::zeros(N, N);
     for column in 0..N {
         let (mut ahead, mut behind) = (*q, *q);

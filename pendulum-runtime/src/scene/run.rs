@@ -24,10 +24,11 @@ pub struct Advanced {
 }
 
 impl<T: Lane + Float> Scene<T> {
-    /// Takes a frame of `dt` seconds: does all ticks that are due and keeps the rest for the next frame.
+    /// Takes a frame of `dt` seconds: does all ticks that are due and keeps the rest for the next
+    /// frame.
     ///
-    /// States at common times have the same bits however time is cut into frames. A frame of zero does nothing; one longer than
-    /// the [longest frame](Self::set_longest_frame) is cut.
+    /// States at common times have the same bits however time is cut into frames. A frame of zero
+    /// does nothing; one longer than the [longest frame](Self::set_longest_frame) is cut.
     ///
     /// # Errors
     /// A time that is negative, infinite or no number.
@@ -82,7 +83,8 @@ impl<T: Lane + Float> Scene<T> {
         let mut failed: Vec<Failed> = Vec::new();
         for (index, (_, group)) in groups.iter_mut().enumerate() {
             group.settle(clock);
-            let sampled = Sampled { clock, tick, ticks, places, actives, numbers, timetable, kinks };
+            let sampled =
+                Sampled { clock, tick, ticks, places, actives, numbers, timetable, kinks };
             group.run(&sampled, fork, &mut failed);
             all.extend(failed.drain(..).map(|(id, at)| (at, index, id)));
         }
@@ -117,7 +119,9 @@ impl<T: Lane + Float> Scene<T> {
         }
         actives.clear();
         let mut last = None;
-        for (joint, place) in (0..).zip(places.iter_mut()).filter(|(_, place)| place.grids != 0 && !place.still) {
+        for (joint, place) in
+            (0..).zip(places.iter_mut()).filter(|(_, place)| place.grids != 0 && !place.still)
+        {
             let class = match last {
                 Some((grids, class)) if grids == place.grids => class,
                 _ => timetable.class(place.grids),
@@ -163,12 +167,24 @@ impl Times<'_> {
     }
 
     /// Samples joints into `numbers`, which begin at the offset of the first.
-    fn sample<T: Lane + Float>(&self, places: &[Place<T>], actives: &mut [Active], numbers: &mut [T]) {
+    fn sample<T: Lane + Float>(
+        &self,
+        places: &[Place<T>],
+        actives: &mut [Active],
+        numbers: &mut [T],
+    ) {
         let (mut begin, mut kinked) = (0, 0);
         for active in actives {
             let (length, times) = (self.length(active), self.timetable.times(active.class));
             let drive = &*places[active.joint as usize].drive;
-            active.sample(drive, self.clock, self.tick, self.count, times, &mut numbers[begin..begin + length]);
+            active.sample(
+                drive,
+                self.clock,
+                self.tick,
+                self.count,
+                times,
+                &mut numbers[begin..begin + length],
+            );
             begin += length;
             kinked |= active.kinked;
         }
@@ -179,7 +195,13 @@ impl Times<'_> {
 
     /// Samples joints, on all threads if there are many.
     #[cfg(feature = "rayon")]
-    fn sample_all<T: Lane + Float>(&self, places: &[Place<T>], actives: &mut [Active], numbers: &mut [T], fork: bool) {
+    fn sample_all<T: Lane + Float>(
+        &self,
+        places: &[Place<T>],
+        actives: &mut [Active],
+        numbers: &mut [T],
+        fork: bool,
+    ) {
         const LEAST: usize = 256;
         if !fork || actives.len() < 2 * LEAST {
             return self.sample(places, actives, numbers);
@@ -194,7 +216,13 @@ impl Times<'_> {
 
     /// Samples joints.
     #[cfg(not(feature = "rayon"))]
-    fn sample_all<T: Lane + Float>(&self, places: &[Place<T>], actives: &mut [Active], numbers: &mut [T], _: bool) {
+    fn sample_all<T: Lane + Float>(
+        &self,
+        places: &[Place<T>],
+        actives: &mut [Active],
+        numbers: &mut [T],
+        _: bool,
+    ) {
         self.sample(places, actives, numbers);
     }
 }

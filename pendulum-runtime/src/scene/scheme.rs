@@ -8,9 +8,11 @@ use crate::system::Facts;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Scheme {
-    /// [`Leapfrog`](crate::integrate::Leapfrog): order 2, one evaluation a step, for velocity-free systems.
+    /// [`Leapfrog`](crate::integrate::Leapfrog): order 2, one evaluation a step, for velocity-free
+    /// systems.
     Leapfrog,
-    /// [`Srkn6b`](crate::integrate::Srkn6b): order 4, six evaluations a step, for velocity-free systems.
+    /// [`Srkn6b`](crate::integrate::Srkn6b): order 4, six evaluations a step, for velocity-free
+    /// systems.
     Srkn6b,
     /// [`Rk4`](crate::integrate::Rk4): order 4, four evaluations a step, for all systems.
     Rk4,
@@ -70,7 +72,8 @@ impl Scheme {
         }
     }
 
-    /// The longest step in radians whose relative error of the phase is `tolerance`, within what is stable.
+    /// The longest step in radians whose relative error of the phase is `tolerance`, within what is
+    /// stable.
     ///
     /// The error is (hω)²/24 for leapfrog, 1.5·10⁻⁵ (hω)⁴ for SRKN6b and (hω)⁴/120 for RK4.
     fn longest(self, tolerance: f64) -> f64 {
@@ -108,7 +111,9 @@ impl Grid {
     /// The times of all evaluations in a tick, in ticks, step by step.
     pub(super) fn fractions(self) -> impl Iterator<Item = f64> {
         let steps = f64::from(self.substeps);
-        (0..self.substeps).flat_map(move |step| self.scheme.stages().iter().map(move |stage| (f64::from(step) + stage) / steps))
+        (0..self.substeps).flat_map(move |step| {
+            self.scheme.stages().iter().map(move |stage| (f64::from(step) + stage) / steps)
+        })
     }
 
     pub(super) fn count(self) -> usize {
@@ -123,12 +128,19 @@ mod tests {
 
     #[test]
     fn faster_systems_take_more_steps_and_better_methods() {
-        let facts = Facts { velocity_free: true, constant_mass_matrix: true, ..Facts::new("Pendulum", &["θ"]) };
+        let facts = Facts {
+            velocity_free: true,
+            constant_mass_matrix: true,
+            ..Facts::new("Pendulum", &["θ"])
+        };
         let cheapest = |phase, tolerance| Scheme::cheapest(&facts, phase, tolerance);
         assert_eq!(cheapest(0.02, 1e-3), Grid { scheme: Scheme::Leapfrog, substeps: 1 });
         assert_eq!(cheapest(0.3, 1e-3), Grid { scheme: Scheme::Leapfrog, substeps: 2 });
         assert_eq!(cheapest(0.3, 1e-8), Grid { scheme: Scheme::Srkn6b, substeps: 2 });
-        assert_eq!(Scheme::cheapest(&Facts::new("Chain", &["θ"]), 0.02, 1e-3), Grid { scheme: Scheme::Rk4, substeps: 1 });
+        assert_eq!(
+            Scheme::cheapest(&Facts::new("Chain", &["θ"]), 0.02, 1e-3),
+            Grid { scheme: Scheme::Rk4, substeps: 1 }
+        );
     }
 
     #[test]

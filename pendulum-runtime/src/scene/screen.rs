@@ -18,7 +18,8 @@ pub enum Return {
     Pause,
     /// It hangs at rest.
     Rest,
-    /// It makes up for the time in a few large accurate steps; if that was longer than so many seconds, it begins at rest so long ago.
+    /// It makes up for the time in a few large accurate steps; if that was longer than so many
+    /// seconds, it begins at rest so long ago.
     CatchUp {
         /// The longest time that is made up for, in seconds.
         longest: f64,
@@ -46,16 +47,26 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Dynamics<N> for Hanging<'_,
     }
 
     fn next_kink(&self, t: f64) -> Option<f64> {
-        let next = |&joint: &u32| self.places[joint as usize].drive.next_kink(t).filter(|&kink| t < kink);
+        let next =
+            |&joint: &u32| self.places[joint as usize].drive.next_kink(t).filter(|&kink| t < kink);
         self.joints.iter().filter_map(next).min_by(f64::total_cmp)
     }
 
     fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
-        let longest = |&joint: &u32| self.places[joint as usize].drive.longest_step(t, widths).unwrap_or(unknown);
+        let longest = |&joint: &u32| {
+            self.places[joint as usize].drive.longest_step(t, widths).unwrap_or(unknown)
+        };
         self.joints.iter().map(longest).fold(f64::INFINITY, shorter)
     }
 
-    fn accelerations_with(&self, prepared: &S::Prepared, t: Time, side: Side, q: &[T; N], v: &[T; N]) -> [T; N] {
+    fn accelerations_with(
+        &self,
+        prepared: &S::Prepared,
+        t: Time,
+        side: Side,
+        q: &[T; N],
+        v: &[T; N],
+    ) -> [T; N] {
         let inputs = self.inputs(t, side, Purpose::Accelerations);
         let mut a = self.system.accelerations_prepared(prepared, scalar_time(t), q, v, &inputs);
         let push = self.extra.push(q);
@@ -67,11 +78,15 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Dynamics<N> for Hanging<'_,
 }
 
 impl<T: Lane + Float> Scene<T> {
-    /// Takes a pendulum off the screen: it is not computed until [`show`](Self::show) brings it back.
+    /// Takes a pendulum off the screen: it is not computed until [`show`](Self::show) brings it
+    /// back.
     ///
     /// # Errors
     /// A pendulum of another scene.
-    pub fn hide<S: Hung<T, N>, const N: usize>(&mut self, pendulum: Handle<S, N>) -> Result<(), SceneError> {
+    pub fn hide<S: Hung<T, N>, const N: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+    ) -> Result<(), SceneError> {
         let tick = self.tick();
         let group = self.checked(pendulum)?;
         let status = &mut group.status[pendulum.index() as usize];
@@ -85,15 +100,21 @@ impl<T: Lane + Float> Scene<T> {
 
     /// Brings a pendulum back to the screen; one that is not hidden stays as it is.
     ///
-    /// Catching up takes [`Dop853`] with a relative tolerance of 10⁻⁶ over the whole time, kinks, damping and soft stops included; hard stops only hold
-    /// at its end.
+    /// Catching up takes [`Dop853`] with a relative tolerance of 10⁻⁶ over the whole time, kinks,
+    /// damping and soft stops included; hard stops only hold at its end.
     ///
     /// # Errors
-    /// A pendulum of another scene, a time that is not positive, a pendulum that comes to rest nowhere, an integration that fails; it stays
-    /// hidden then.
-    pub fn show<S: Hung<T, N>, const N: usize>(&mut self, pendulum: Handle<S, N>, how: Return) -> Result<(), SceneError> {
+    /// A pendulum of another scene, a time that is not positive, a pendulum that comes to rest
+    /// nowhere, an integration that fails; it stays hidden then.
+    pub fn show<S: Hung<T, N>, const N: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+        how: Return,
+    ) -> Result<(), SceneError> {
         let id = pendulum.index();
-        let Status::Hidden(since) = self.checked(pendulum)?.status[id as usize] else { return Ok(()) };
+        let Status::Hidden(since) = self.checked(pendulum)?.status[id as usize] else {
+            return Ok(());
+        };
         let (group, clock, places) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
         let mut loose = group.read(id);
         let zero = [T::from_f64(0.0); N];
@@ -101,10 +122,17 @@ impl<T: Lane + Float> Scene<T> {
         let restless = SceneError::Restless { kind: S::FACTS.name, index: id };
         match how {
             Return::Pause => {}
-            Return::Rest => put(group.rest_of(places, &group.read(id), clock.time(clock.tick())).ok_or(restless)?, zero),
+            Return::Rest => put(
+                group.rest_of(places, &group.read(id), clock.time(clock.tick())).ok_or(restless)?,
+                zero,
+            ),
             Return::CatchUp { longest } => {
                 if longest <= 0.0 || longest.is_nan() {
-                    return Err(SceneError::Setting { name: "longest", value: longest, required: "positive" });
+                    return Err(SceneError::Setting {
+                        name: "longest",
+                        value: longest,
+                        required: "positive",
+                    });
                 }
                 let now = clock.time(clock.tick());
                 let (mut start, mut from) = (clock.time(since), group.read(id));
@@ -117,8 +145,13 @@ impl<T: Lane + Float> Scene<T> {
                 let [q, _, v, ..] = from.state;
                 let hanging = Hanging { system, places, joints: from.joints, extra: from.extra };
                 if start < now {
-                    let solution = solve(&hanging, (start, now), q, v).method(Dop853).rtol(1e-6).atol(1e-6).run();
-                    let end = solution.map_err(|failure| SceneError::Integration(failure.error))?.end;
+                    let solution = solve(&hanging, (start, now), q, v)
+                        .method(Dop853)
+                        .rtol(1e-6)
+                        .atol(1e-6)
+                        .run();
+                    let end =
+                        solution.map_err(|failure| SceneError::Integration(failure.error))?.end;
                     let (mut q, mut v) = (end.q, end.v);
                     from.extra.hold(&mut q, &mut v);
                     put(q, v);

@@ -1,4 +1,5 @@
-//! Sleep: pendulums that hardly move, on joints that rest, are not computed until their joints move.
+//! Sleep: pendulums that hardly move, on joints that rest, are not computed until their joints
+//! move.
 
 use super::bucket::{Extra, Loose};
 use super::clock::Clock;
@@ -39,7 +40,8 @@ pub(super) struct Bed<T, const N: usize> {
 }
 
 impl<T: Lane + Float, const N: usize> Bed<T, N> {
-    /// Whether another look would find no more: what moves fast does not fall asleep, and what is not too far from its rest has no other.
+    /// Whether another look would find no more: what moves fast does not fall asleep, and what is
+    /// not too far from its rest has no other.
     fn lasts(&self, q: &[T; N], v: &[T; N]) -> bool {
         let fast = (0..N).any(|i| T::from_f64(4.0) * self.speed[i] < Real::abs(v[i]));
         fast || T::from_f64(0.0) < self.energy && self.distance(q) <= self.reach
@@ -47,17 +49,22 @@ impl<T: Lane + Float, const N: usize> Bed<T, N> {
 
     /// How far the coordinates are from rest.
     fn distance(&self, q: &[T; N]) -> T {
-        (0..N).fold(T::from_f64(0.0), |distance, i| Real::max(distance, Real::abs(q[i] - self.rest[i])))
+        (0..N).fold(T::from_f64(0.0), |distance, i| {
+            Real::max(distance, Real::abs(q[i] - self.rest[i]))
+        })
     }
 }
 
 impl<T: Lane + Float> Scene<T> {
-    /// Lets pendulums sleep that hardly move: those whose energy would not lift any coordinate by more than `tolerance` from where they come to
-    /// rest, while their joints rest too. Choose what moves the tip by half a pixel. `None`, as at first: nobody sleeps.
+    /// Lets pendulums sleep that hardly move: those whose energy would not lift any coordinate by
+    /// more than `tolerance` from where they come to rest, while their joints rest too. Choose what
+    /// moves the tip by half a pixel. `None`, as at first: nobody sleeps.
     ///
-    /// A sleeper keeps its coordinates and costs nothing. It wakes with the tick in which its joint moves again, which the motion says
-    /// [beforehand](crate::motion::Motion::rest_until), when something about it is changed, and when it is told to. A pendulum that comes to rest
-    /// nowhere, or not at a minimum of its energy, or in whose equations the time itself stands, never sleeps.
+    /// A sleeper keeps its coordinates and costs nothing. It wakes with the tick in which its joint
+    /// moves again, which the motion says [beforehand](crate::motion::Motion::rest_until), when
+    /// something about it is changed, and when it is told to. A pendulum that comes to rest
+    /// nowhere, or not at a minimum of its energy, or in whose equations the time itself stands,
+    /// never sleeps.
     ///
     /// # Errors
     /// A tolerance that is not positive.
@@ -92,7 +99,8 @@ impl<T: Lane + Float> Scene<T> {
         }
     }
 
-    /// Wakes those whose joints are about to move, and lets others fall asleep; gives the ticks until that is to be done again.
+    /// Wakes those whose joints are about to move, and lets others fall asleep; gives the ticks
+    /// until that is to be done again.
     pub(super) fn watch(&mut self) -> u64 {
         let tick = self.clock.tick();
         let Self { clock, places, groups, sleep, dirty, .. } = self;
@@ -136,7 +144,12 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Lets those fall asleep that may.
-    pub(super) fn fall_asleep(&mut self, clock: &Clock, places: &[Place<T>], tolerance: f64) -> bool {
+    pub(super) fn fall_asleep(
+        &mut self,
+        clock: &Clock,
+        places: &[Place<T>],
+        tolerance: f64,
+    ) -> bool {
         if S::FACTS.explicit_time {
             return false;
         }
@@ -152,7 +165,9 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                         return tick;
                     }
                     let rest = |&joint: &u32| places[joint as usize].drive.rest_until(now);
-                    clock.last_before(bucket.tracks.joints(track).iter().map(rest).fold(f64::INFINITY, f64::min))
+                    clock.last_before(
+                        bucket.tracks.joints(track).iter().map(rest).fold(f64::INFINITY, f64::min),
+                    )
                 })
                 .collect();
             for slot in 0..self.buckets[index].awake {
@@ -163,11 +178,16 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                     continue;
                 }
                 let (q, v) = block.state(lane);
-                let known = self.beds[id as usize].filter(|bed| bed.until == wake && bed.lasts(&q, &v));
+                let known =
+                    self.beds[id as usize].filter(|bed| bed.until == wake && bed.lasts(&q, &v));
                 let bed = known.unwrap_or_else(|| self.bed(clock, places, id, tolerance, wake));
                 self.beds[id as usize] = Some(bed);
-                let slow = T::from_f64(0.0) < bed.energy && (0..N).all(|i| Real::abs(v[i]) <= bed.speed[i]);
-                if slow && bed.distance(&q) <= bed.near && self.calm(clock, places, id, &q, &v, &bed) {
+                let slow = T::from_f64(0.0) < bed.energy
+                    && (0..N).all(|i| Real::abs(v[i]) <= bed.speed[i]);
+                if slow
+                    && bed.distance(&q) <= bed.near
+                    && self.calm(clock, places, id, &q, &v, &bed)
+                {
                     sleepers.push((id, wake));
                 }
             }
@@ -191,7 +211,8 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
 
     /// Sets the alarms of all that sleep.
     pub(super) fn reset_alarms(&mut self) {
-        self.alarms = (0..).zip(&self.status).filter_map(|(id, status)| alarm(id, *status)).collect();
+        self.alarms =
+            (0..).zip(&self.status).filter_map(|(id, status)| alarm(id, *status)).collect();
     }
 
     /// Forgets whether a pendulum may sleep.
@@ -202,7 +223,15 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Whether the energy is small enough.
-    fn calm(&self, clock: &Clock, places: &[Place<T>], id: u32, q: &[T; N], v: &[T; N], bed: &Bed<T, N>) -> bool {
+    fn calm(
+        &self,
+        clock: &Clock,
+        places: &[Place<T>],
+        id: u32,
+        q: &[T; N],
+        v: &[T; N],
+        bed: &Bed<T, N>,
+    ) -> bool {
         let loose = self.read(id);
         let system = self.system_of(&loose.parameters);
         let rest = AtRest::new(&system, clock, places, &loose);
@@ -211,21 +240,39 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// What decides whether a pendulum may sleep.
-    fn bed(&self, clock: &Clock, places: &[Place<T>], id: u32, tolerance: f64, until: i64) -> Bed<T, N> {
+    fn bed(
+        &self,
+        clock: &Clock,
+        places: &[Place<T>],
+        id: u32,
+        tolerance: f64,
+        until: i64,
+    ) -> Bed<T, N> {
         let (loose, near) = (self.read(id), T::from_f64(4.0 * tolerance));
         let system = self.system_of(&loose.parameters);
         let still = AtRest::new(&system, clock, places, &loose);
         let [q, ..] = loose.state;
         // Where it may not sleep it is looked at again when it is slow.
         let omega = frequency::fastest(&system, still.t, &q, &still.forces);
-        let never =
-            Bed { until, rest: q, energy: T::from_f64(-1.0), speed: [T::from_f64(omega * tolerance); N], near, reach: near };
-        let Some(rest) = self.rest_of(places, &loose, clock.time(clock.tick())) else { return never };
+        let never = Bed {
+            until,
+            rest: q,
+            energy: T::from_f64(-1.0),
+            speed: [T::from_f64(omega * tolerance); N],
+            near,
+            reach: near,
+        };
+        let Some(rest) = self.rest_of(places, &loose, clock.time(clock.tick())) else {
+            return never;
+        };
         let lifted = |by: &[f64; N]| still.lifted(&rest, &by.map(T::from_f64)).to_f64();
         let Some(energy) = barrier(tolerance, lifted) else { return never };
         let energy = T::from_f64(energy);
-        // T = pᵀM⁻¹p/2 bounds q̇ᵢ by √(2T (M⁻¹)ᵢᵢ), with a tenth more because M is not the same everywhere.
-        let speed = core::array::from_fn(|i| (T::from_f64(2.42) * energy * still.mobility(&rest, i)).sqrt());
+        // T = pᵀM⁻¹p/2 bounds q̇ᵢ by √(2T (M⁻¹)ᵢᵢ), with a tenth more because M is not the same
+        // everywhere.
+        let speed = core::array::from_fn(|i| {
+            (T::from_f64(2.42) * energy * still.mobility(&rest, i)).sqrt()
+        });
         let bed = Bed { until, rest, energy, speed, near, reach: near };
         // A tenth more, so that a swing that grows is not looked at in every turn.
         Bed { reach: Real::max(near, T::from_f64(1.1) * bed.distance(&q)), ..bed }
@@ -252,7 +299,9 @@ struct AtRest<'a, S: Hung<T, N>, T: Lane + Float, const N: usize> {
 impl<'a, S: Hung<T, N>, T: Lane + Float, const N: usize> AtRest<'a, S, T, N> {
     fn new(system: &'a S, clock: &Clock, places: &[Place<T>], loose: &'a Loose<T, N>) -> Self {
         let t = clock.time(clock.tick());
-        let inputs = |purpose| inputs_at::<S, T, N>(places, &loose.joints, Time::new(t), Side::After, purpose, true);
+        let inputs = |purpose| {
+            inputs_at::<S, T, N>(places, &loose.joints, Time::new(t), Side::After, purpose, true)
+        };
         let (forces, momenta) = (inputs(Purpose::Accelerations), inputs(Purpose::Momenta));
         Self { system, t: T::from_f64(t), forces, momenta, extra: &loose.extra }
     }
@@ -269,18 +318,26 @@ impl<'a, S: Hung<T, N>, T: Lane + Float, const N: usize> AtRest<'a, S, T, N> {
         (0..N).fold(T::from_f64(0.0), |sum, i| sum + a[i] * (moving[i] - still[i]))
     }
 
-    /// The work that it takes to move from `rest` by `by`, by Simpson's rule over the forces: energies would have lost all their digits in
-    /// single precision. Nothing gets through a wall.
+    /// The work that it takes to move from `rest` by `by`, by Simpson's rule over the forces:
+    /// energies would have lost all their digits in single precision. Nothing gets through a wall.
     fn lifted(&self, rest: &[T; N], by: &[T; N]) -> T {
         let zero = [T::from_f64(0.0); N];
-        if self.extra.is_hard() && (0..N).any(|i| rest[i] + by[i] < self.extra.low[i] || self.extra.high[i] < rest[i] + by[i]) {
+        if self.extra.is_hard()
+            && (0..N).any(|i| {
+                rest[i] + by[i] < self.extra.low[i] || self.extra.high[i] < rest[i] + by[i]
+            })
+        {
             return T::from_f64(f64::INFINITY);
         }
         let work = |part: f64| {
             let q = core::array::from_fn(|i| rest[i] + T::from_f64(part) * by[i]);
             let forces = self.system.forces(self.t, &q, &zero, &self.forces);
             let work = (0..N).fold(T::from_f64(0.0), |sum, i| sum - by[i] * forces[i]);
-            if self.extra.stiffness == zero[0] { work } else { work - self.product(&q, by, &self.extra.push(&q)) }
+            if self.extra.stiffness == zero[0] {
+                work
+            } else {
+                work - self.product(&q, by, &self.extra.push(&q))
+            }
         };
         (work(0.0) + T::from_f64(4.0) * work(0.5) + work(1.0)) / T::from_f64(6.0)
     }
@@ -293,9 +350,11 @@ impl<'a, S: Hung<T, N>, T: Lane + Float, const N: usize> AtRest<'a, S, T, N> {
     }
 }
 
-/// The energy without which no coordinate gets farther than `tolerance` from a minimum; `None` if it is no minimum.
+/// The energy without which no coordinate gets farther than `tolerance` from a minimum; `None` if
+/// it is no minimum.
 ///
-/// With the energy qᵀHq/2 that is tolerance²/(2 (H⁻¹)ᵢᵢ), the least over all i: the others go where that costs least.
+/// With the energy qᵀHq/2 that is tolerance²/(2 (H⁻¹)ᵢᵢ), the least over all i: the others go where
+/// that costs least.
 fn barrier<const N: usize>(tolerance: f64, above: impl Fn(&[f64; N]) -> f64) -> Option<f64> {
     let at = |moves: &[(usize, f64)]| {
         let mut by = [0.0; N];
@@ -316,7 +375,8 @@ fn barrier<const N: usize>(tolerance: f64, above: impl Fn(&[f64; N]) -> f64) -> 
                 ahead + behind
             } else {
                 let corner = |a, b| at(&[(i, a), (j, b)]);
-                (corner(1.0, 1.0) - corner(1.0, -1.0) - corner(-1.0, 1.0) + corner(-1.0, -1.0)) / 4.0
+                (corner(1.0, 1.0) - corner(1.0, -1.0) - corner(-1.0, 1.0) + corner(-1.0, -1.0))
+                    / 4.0
             }
         });
         let inverse = hessian.cholesky()?.inverse();
@@ -332,7 +392,9 @@ mod tests {
     #[test]
     fn coupled_coordinates_help_each_other_over_the_barrier() {
         // Two coordinates tied by a stiff spring: both go together.
-        let tied = |by: &[f64; 2]| 0.5 * (by[0] * by[0] + by[1] * by[1]) + 50.0 * (by[0] - by[1]) * (by[0] - by[1]);
+        let tied = |by: &[f64; 2]| {
+            0.5 * (by[0] * by[0] + by[1] * by[1]) + 50.0 * (by[0] - by[1]) * (by[0] - by[1])
+        };
         let energy = barrier(0.01, tied).unwrap();
         let exact = 0.5e-4 / (101.0 / (101.0 * 101.0 - 1e4));
         assert!((energy / exact - 1.0).abs() < 1e-9, "{energy} for {exact}");

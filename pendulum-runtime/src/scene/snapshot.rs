@@ -11,9 +11,10 @@ use crate::real::{Float, Lane, Real};
 
 /// The state of a scene: time, states, parameters, damping, stops, who sleeps and who has failed.
 ///
-/// Motions and the list of joints and pendulums are not in it: it is restored to the scene that it was taken of, or to one that was built
-/// in the same way. Written to a file, it keeps who has failed and not why: [`Scene::failures`] is empty after it was read.
-/// With `serde_json` the bits stay what they are if its feature `float_roundtrip` is on.
+/// Motions and the list of joints and pendulums are not in it: it is restored to the scene that it
+/// was taken of, or to one that was built in the same way. Written to a file, it keeps who has
+/// failed and not why: [`Scene::failures`] is empty after it was read. With `serde_json` the bits
+/// stay what they are if its feature `float_roundtrip` is on.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Snapshot<T> {
@@ -47,7 +48,9 @@ const fn numbers(coordinates: usize) -> usize {
     6 * coordinates + 2 * coordinates + 4
 }
 
-pub(super) fn save<S: Hung<T, N>, T: Lane + Float, const N: usize>(group: &Group<S, T, N>) -> GroupState<T> {
+pub(super) fn save<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+    group: &Group<S, T, N>,
+) -> GroupState<T> {
     let count = group.table.len();
     let mut state = GroupState {
         kind: S::FACTS.name.to_owned(),
@@ -61,7 +64,13 @@ pub(super) fn save<S: Hung<T, N>, T: Lane + Float, const N: usize>(group: &Group
         let (extra, values) = bucket.numbers(location.slot as usize);
         state.numbers.extend(bucket.parameters_of(location.slot as usize));
         state.numbers.extend(values.iter().flatten());
-        state.numbers.extend(extra.low.iter().chain(&extra.high).map(|&limit| Real::max(Real::min(limit, most()), -most::<T>())));
+        state.numbers.extend(
+            extra
+                .low
+                .iter()
+                .chain(&extra.high)
+                .map(|&limit| Real::max(Real::min(limit, most()), -most::<T>())),
+        );
         state.numbers.extend([extra.damping, extra.restitution, extra.stiffness, extra.hard]);
     }
     state
@@ -80,13 +89,19 @@ pub(super) fn accepts<S: Hung<T, N>, T: Lane + Float, const N: usize>(
         return Err(SceneError::Snapshot("the numbers of its pendulums differ"));
     }
     let suits = |scheme, substeps: u32| {
-        (scheme == Scheme::Rk4 || Known::<S, N>::SPLITS) && substeps <= MOST_SUBSTEPS && substeps.is_power_of_two()
+        (scheme == Scheme::Rk4 || Known::<S, N>::SPLITS)
+            && substeps <= MOST_SUBSTEPS
+            && substeps.is_power_of_two()
     };
     if !state.pendulums.iter().all(|&(scheme, substeps, _)| suits(scheme, substeps)) {
         return Err(SceneError::Snapshot("it holds steps that its pendulums cannot take"));
     }
     // Parameters may be what they like: a pendulum that fails for them can be saved, too.
-    if state.numbers.chunks_exact(width).any(|numbers| numbers[parameters..].iter().any(|number| !number.is_finite())) {
+    if state
+        .numbers
+        .chunks_exact(width)
+        .any(|numbers| numbers[parameters..].iter().any(|number| !number.is_finite()))
+    {
         return Err(SceneError::Snapshot("it holds a state that is not finite"));
     }
     Ok(())
@@ -112,10 +127,21 @@ pub(super) fn restore<S: Hung<T, N>, T: Lane + Float, const N: usize>(
             values
         };
         let numbers = core::array::from_fn(|_| array());
-        let mut limits = || array().map(|limit| if limit.abs() < most() { limit } else { limit * T::from_f64(f64::INFINITY) });
+        let mut limits = || {
+            array().map(|limit| {
+                if limit.abs() < most() { limit } else { limit * T::from_f64(f64::INFINITY) }
+            })
+        };
         let (low, high) = (limits(), limits());
         let last = take(4);
-        let extra = Extra { damping: last[0], low, high, restitution: last[1], stiffness: last[2], hard: last[3] };
+        let extra = Extra {
+            damping: last[0],
+            low,
+            high,
+            restitution: last[1],
+            stiffness: last[2],
+            hard: last[3],
+        };
         let joints = group.joints(id).to_vec();
         let kind = Kind { grid: Grid { scheme, substeps }, still: still(places, &joints) };
         let loose = Loose { id, joints, parameters, state: numbers, extra };
@@ -134,10 +160,15 @@ pub(super) fn restore<S: Hung<T, N>, T: Lane + Float, const N: usize>(
 }
 
 /// The largest differences of coordinates and of velocities.
-pub(super) fn gap<S: Hung<T, N>, T: Lane + Float, const N: usize>(group: &Group<S, T, N>, state: &GroupState<T>) -> [f64; 2] {
+pub(super) fn gap<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+    group: &Group<S, T, N>,
+    state: &GroupState<T>,
+) -> [f64; 2] {
     let count = S::FACTS.parameters.len();
     let mut gap = [0.0f64; 2];
-    for (id, numbers) in (0..group.table.len() as u32).zip(state.numbers.chunks_exact(count + numbers(N))) {
+    for (id, numbers) in
+        (0..group.table.len() as u32).zip(state.numbers.chunks_exact(count + numbers(N)))
+    {
         let [_, (q, v)] = group.states(id);
         // Coordinates and velocities stand before their low words.
         for i in 0..N {
@@ -161,7 +192,8 @@ impl<T: Lane + Float> Scene<T> {
         Snapshot { clock: self.clock.state(), groups, failures: self.failures.clone() }
     }
 
-    /// Puts the scene back to where a snapshot was taken; what follows has the same bits as it had then.
+    /// Puts the scene back to where a snapshot was taken; what follows has the same bits as it had
+    /// then.
     ///
     /// # Errors
     /// A snapshot of another scene, or one that was damaged.
@@ -173,7 +205,9 @@ impl<T: Lane + Float> Scene<T> {
             group.accepts(state)?;
         }
         let (tick, origin, asked) = snapshot.clock;
-        if MOST_TICKS < tick.unsigned_abs().max(origin.unsigned_abs()) || asked.iter().any(|asked| !asked.is_finite()) {
+        if MOST_TICKS < tick.unsigned_abs().max(origin.unsigned_abs())
+            || asked.iter().any(|asked| !asked.is_finite())
+        {
             return Err(SceneError::Snapshot("it holds a time that is out of range"));
         }
         self.clock.restore(snapshot.clock);
@@ -185,15 +219,16 @@ impl<T: Lane + Float> Scene<T> {
         Ok(())
     }
 
-    /// A number that two scenes share that are in the same state at the same tick, to the last bit, whatever the frames were.
+    /// A number that two scenes share that are in the same state at the same tick, to the last bit,
+    /// whatever the frames were.
     pub fn checksum(&self) -> u64 {
         self.snapshot().checksum()
     }
 }
 
 impl<T: Real + Float> Snapshot<T> {
-    /// A number that two snapshots share whose tick and states are the same to the last bit; the part of a tick that frames have asked for beyond
-    /// does not count.
+    /// A number that two snapshots share whose tick and states are the same to the last bit; the
+    /// part of a tick that frames have asked for beyond does not count.
     pub fn checksum(&self) -> u64 {
         let mut hash = hash::Hash::new();
         hash.add(self.clock.0 as u64);

@@ -18,14 +18,19 @@ impl<T: Lane + Float> Scene<T> {
         self.known(pendulum).states(pendulum.index)[1]
     }
 
-    /// The coordinates that are `alpha` of the way from the tick before the last to the last: the cubic through coordinates and velocities at both
-    /// (Hermite).
+    /// The coordinates that are `alpha` of the way from the tick before the last to the last: the
+    /// cubic through coordinates and velocities at both (Hermite).
     ///
-    /// With [`alpha`](Self::alpha) it is where the frame is to be drawn, always one tick late; the error is h⁴/384·|q⁗|.
+    /// With [`alpha`](Self::alpha) it is where the frame is to be drawn, always one tick late; the
+    /// error is h⁴/384·|q⁗|.
     ///
     /// # Panics
     /// If the pendulum is not in this scene, as indexing does.
-    pub fn pose<S: Hung<T, N>, const N: usize>(&self, pendulum: Handle<S, N>, alpha: f64) -> [T; N] {
+    pub fn pose<S: Hung<T, N>, const N: usize>(
+        &self,
+        pendulum: Handle<S, N>,
+        alpha: f64,
+    ) -> [T; N] {
         let states = self.known(pendulum).states(pendulum.index);
         hermite(self.clock.step(), alpha, &states)
     }
@@ -35,7 +40,9 @@ impl<T: Lane + Float> Scene<T> {
         poses.clear();
         if let Some(group) = self.group::<S, N>() {
             let h = self.clock.step();
-            poses.extend((0..group.table.len() as u32).map(|id| hermite(h, alpha, &group.states(id))));
+            poses.extend(
+                (0..group.table.len() as u32).map(|id| hermite(h, alpha, &group.states(id))),
+            );
         }
     }
 
@@ -75,7 +82,14 @@ impl<T: Lane + Float> Scene<T> {
     pub fn energy<S: Hung<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> T {
         let loose = self.known(pendulum).read(pendulum.index);
         let t = Time::new(self.time());
-        let inputs = inputs_at::<S, T, N>(&self.places, &loose.joints, t, Side::After, Purpose::Energy, false);
+        let inputs = inputs_at::<S, T, N>(
+            &self.places,
+            &loose.joints,
+            t,
+            Side::After,
+            Purpose::Energy,
+            false,
+        );
         let [q, _, v, ..] = &loose.state;
         self.system(pendulum).energy(scalar_time(t), q, v, &inputs)
     }
@@ -101,7 +115,10 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// A pendulum of another scene.
-    pub fn wake<S: Hung<T, N>, const N: usize>(&mut self, pendulum: Handle<S, N>) -> Result<(), SceneError> {
+    pub fn wake<S: Hung<T, N>, const N: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+    ) -> Result<(), SceneError> {
         let group = self.checked(pendulum)?;
         group.status[pendulum.index as usize] = Status::Awake;
         group.set_awake(pendulum.index, true);
@@ -110,8 +127,12 @@ impl<T: Lane + Float> Scene<T> {
     }
 
     /// The group of a pendulum that is there.
-    pub(super) fn known<S: Hung<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> &Group<S, T, N> {
-        let group = self.group::<S, N>().filter(|group| (pendulum.index as usize) < group.table.len());
+    pub(super) fn known<S: Hung<T, N>, const N: usize>(
+        &self,
+        pendulum: Handle<S, N>,
+    ) -> &Group<S, T, N> {
+        let group =
+            self.group::<S, N>().filter(|group| (pendulum.index as usize) < group.table.len());
         group.unwrap_or_else(|| panic!("{}", unknown(pendulum)))
     }
 
@@ -121,7 +142,9 @@ impl<T: Lane + Float> Scene<T> {
         pendulum: Handle<S, N>,
     ) -> Result<&mut Group<S, T, N>, SceneError> {
         let group = self.group_mut::<S, N>().map(|(group, ..)| group);
-        group.filter(|group| (pendulum.index as usize) < group.table.len()).ok_or_else(|| unknown(pendulum))
+        group
+            .filter(|group| (pendulum.index as usize) < group.table.len())
+            .ok_or_else(|| unknown(pendulum))
     }
 
     /// Changes what belongs to a pendulum and does not change its steps; one that sleeps wakes.
@@ -146,7 +169,11 @@ fn unknown<S: Hung<T, N>, T: Lane + Float, const N: usize>(pendulum: Handle<S, N
 }
 
 /// The cubic through coordinates and velocities at both ends of a step `h`.
-pub(super) fn hermite<T: Real, const N: usize>(h: f64, alpha: f64, [(q0, v0), (q1, v1)]: &[([T; N], [T; N]); 2]) -> [T; N] {
+pub(super) fn hermite<T: Real, const N: usize>(
+    h: f64,
+    alpha: f64,
+    [(q0, v0), (q1, v1)]: &[([T; N], [T; N]); 2],
+) -> [T; N] {
     if alpha == 1.0 {
         return *q1;
     }

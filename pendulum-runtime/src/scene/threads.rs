@@ -34,7 +34,11 @@ impl Threads {
     /// Does `batch`, which takes so many pendulums through so many ticks; it is told whether to
     /// fork.
     #[cfg(feature = "rayon")]
-    pub(super) fn measured<R>(&mut self, pendulum_ticks: usize, batch: impl FnOnce(bool) -> R) -> R {
+    pub(super) fn measured<R>(
+        &mut self,
+        pendulum_ticks: usize,
+        batch: impl FnOnce(bool) -> R,
+    ) -> R {
         if self.always {
             return batch(0 < pendulum_ticks);
         }
@@ -101,7 +105,9 @@ mod tests {
     fn who_asks_for_it_forks_always() {
         let mut threads = Threads::new();
         threads.set_always(true);
-        let forks = |threads: &mut Threads, work| (0..100).filter(|_| threads.measured(work, |fork| fork)).count();
+        let forks = |threads: &mut Threads, work| {
+            (0..100).filter(|_| threads.measured(work, |fork| fork)).count()
+        };
         assert_eq!((forks(&mut threads, 1), forks(&mut threads, 1_000_000)), (100, 100));
         // Where threads are forbidden there is no work for them.
         assert_eq!(forks(&mut threads, 0), 0);

@@ -39,15 +39,26 @@ impl Timetable {
         if let Some(index) = self.classes.iter().position(|class| class.grids == grids) {
             return index as u32;
         }
-        let members = || self.grids.iter().enumerate().filter(|(index, _)| grids & (1 << index) != 0).map(|(_, grid)| *grid);
+        let members = || {
+            self.grids
+                .iter()
+                .enumerate()
+                .filter(|(index, _)| grids & (1 << index) != 0)
+                .map(|(_, grid)| *grid)
+        };
         let mut fractions: Vec<f64> = members().flat_map(Grid::fractions).collect();
         fractions.sort_by(f64::total_cmp);
         fractions.dedup();
         let node = |fraction: f64| fractions.partition_point(|&other| other < fraction) as u16;
         let member = |index: usize| grids & (1 << index) != 0;
         let nodes = self.grids.iter().enumerate();
-        let nodes =
-            nodes.map(|(index, grid)| if member(index) { grid.fractions().map(node).collect() } else { Vec::new() }).collect();
+        let nodes = nodes
+            .map(
+                |(index, grid)| {
+                    if member(index) { grid.fractions().map(node).collect() } else { Vec::new() }
+                },
+            )
+            .collect();
         self.classes.push(Class { grids, fractions, nodes, times: Vec::new() });
         self.classes.len() as u32 - 1
     }
@@ -88,7 +99,10 @@ mod tests {
     #[test]
     fn grids_share_their_times() {
         let mut timetable = Timetable::default();
-        let (one, two) = (Grid { scheme: Scheme::Leapfrog, substeps: 1 }, Grid { scheme: Scheme::Rk4, substeps: 1 });
+        let (one, two) = (
+            Grid { scheme: Scheme::Leapfrog, substeps: 1 },
+            Grid { scheme: Scheme::Rk4, substeps: 1 },
+        );
         let both = timetable.bit(one) | timetable.bit(two);
         let class = timetable.class(both);
         assert_eq!(timetable.fractions(class), [0.0, 0.5, 1.0]);

@@ -29,7 +29,8 @@ pub(super) struct Tracks<T> {
     records: Vec<T>,
     /// The records of a track.
     stride: usize,
-    /// By tick and track: where the pieces of a tick with a kink begin and how many there are; empty in batches without kinks.
+    /// By tick and track: where the pieces of a tick with a kink begin and how many there are;
+    /// empty in batches without kinks.
     cuts: Vec<(u32, u32)>,
     pieces: Vec<Piece>,
     /// The records of pieces.
@@ -44,7 +45,8 @@ pub(super) struct Piece {
     pub(super) times: [Time; MOST_STAGES],
     /// Where the records of the evaluations begin.
     pub(super) begin: usize,
-    /// If there is a kink at its end: its time and where the records for the momenta before and after begin.
+    /// If there is a kink at its end: its time and where the records for the momenta before and
+    /// after begin.
     pub(super) jump: Option<(f64, usize)>,
 }
 
@@ -147,7 +149,8 @@ impl<T: Real + Float> Tracks<T> {
                 for tick in (0..sampled.ticks).filter(|tick| kinked & (1 << tick) != 0) {
                     let begin = self.pieces.len();
                     self.cut(track, tick, grid, momenta, inputs, sampled);
-                    self.cuts[tick * tracks + track] = (begin as u32, (self.pieces.len() - begin) as u32);
+                    self.cuts[tick * tracks + track] =
+                        (begin as u32, (self.pieces.len() - begin) as u32);
                 }
             }
         }
@@ -162,7 +165,15 @@ impl<T: Real + Float> Tracks<T> {
 
     /// Reads the records of all tracks, on all threads if there are many.
     #[cfg(feature = "rayon")]
-    fn read_all(&self, grid: Grid, layout: &Layout, inputs: &[Input], sampled: &Sampled<'_, T>, records: &mut [T], fork: bool) {
+    fn read_all(
+        &self,
+        grid: Grid,
+        layout: &Layout,
+        inputs: &[Input],
+        sampled: &Sampled<'_, T>,
+        records: &mut [T],
+        fork: bool,
+    ) {
         use super::threads::{part, share};
         const LEAST: usize = 512;
         let length = self.stride * layout.width;
@@ -177,12 +188,28 @@ impl<T: Real + Float> Tracks<T> {
 
     /// Reads the records of all tracks.
     #[cfg(not(feature = "rayon"))]
-    fn read_all(&self, grid: Grid, layout: &Layout, inputs: &[Input], sampled: &Sampled<'_, T>, records: &mut [T], _: bool) {
+    fn read_all(
+        &self,
+        grid: Grid,
+        layout: &Layout,
+        inputs: &[Input],
+        sampled: &Sampled<'_, T>,
+        records: &mut [T],
+        _: bool,
+    ) {
         self.read(0, grid, layout, inputs, sampled, records);
     }
 
     /// Reads the records of the tracks from `first` on.
-    fn read(&self, first: usize, grid: Grid, layout: &Layout, inputs: &[Input], sampled: &Sampled<'_, T>, records: &mut [T]) {
+    fn read(
+        &self,
+        first: usize,
+        grid: Grid,
+        layout: &Layout,
+        inputs: &[Input],
+        sampled: &Sampled<'_, T>,
+        records: &mut [T],
+    ) {
         let (evaluations, width) = (grid.count(), layout.width);
         if width == 0 {
             return;
@@ -211,7 +238,8 @@ impl<T: Real + Float> Tracks<T> {
                 let active = &sampled.actives[place.active as usize];
                 let own = active.components * orders.count();
                 let (nodes, mine) = sampled.timetable.nodes(active.class, grid);
-                let alike = nodes == evaluations && mine.iter().enumerate().all(|(index, &node)| index == usize::from(node));
+                let alike = nodes == evaluations
+                    && mine.iter().enumerate().all(|(index, &node)| index == usize::from(node));
                 if own == width && orders == active.orders && alike {
                     // Nobody else wants anything else of it.
                     let length = records.len();
@@ -220,9 +248,16 @@ impl<T: Real + Float> Tracks<T> {
                     let mut records = records.chunks_exact_mut(width);
                     for tick in 0..sampled.ticks {
                         for (record, &node) in (&mut records).take(evaluations).zip(mine) {
-                            let from = active.offset + (tick * nodes + usize::from(node)) * active.width();
+                            let from =
+                                active.offset + (tick * nodes + usize::from(node)) * active.width();
                             let numbers = &sampled.numbers[from..];
-                            narrow(active.components, active.orders, numbers, orders, &mut record[at..at + own]);
+                            narrow(
+                                active.components,
+                                active.orders,
+                                numbers,
+                                orders,
+                                &mut record[at..at + own],
+                            );
                         }
                     }
                 }
@@ -232,7 +267,15 @@ impl<T: Real + Float> Tracks<T> {
     }
 
     /// Cuts a tick at the kinks of the joints of a track.
-    fn cut(&mut self, track: usize, tick: usize, grid: Grid, momenta: &Layout, inputs: &[Input], sampled: &Sampled<'_, T>) {
+    fn cut(
+        &mut self,
+        track: usize,
+        tick: usize,
+        grid: Grid,
+        momenta: &Layout,
+        inputs: &[Input],
+        sampled: &Sampled<'_, T>,
+    ) {
         let mut joints = [0; 8];
         let joints = &mut joints[..self.inputs];
         joints.copy_from_slice(self.joints(track as u32));
@@ -240,13 +283,20 @@ impl<T: Real + Float> Tracks<T> {
         let (mut start, end) = (sampled.clock.time(now), sampled.clock.time(now + 1));
         let step = sampled.clock.step();
         while start < end {
-            let kink = joints.iter().filter_map(|&joint| sampled.places[joint as usize].drive.next_kink(start));
-            let kink = kink.filter(|&kink| start < kink && kink <= end).fold(f64::INFINITY, f64::min);
+            let kink = joints
+                .iter()
+                .filter_map(|&joint| sampled.places[joint as usize].drive.next_kink(start));
+            let kink =
+                kink.filter(|&kink| start < kink && kink <= end).fold(f64::INFINITY, f64::min);
             let stop = if kink < end { kink } else { end };
             let length = stop - start;
             let steps = (length / step * f64::from(grid.substeps) - 1e-9).ceil().max(1.0);
             for index in 0..steps as u32 {
-                let from = if index == 0 { Time::new(start) } else { Time::new(start) + f64::from(index) / steps * length };
+                let from = if index == 0 {
+                    Time::new(start)
+                } else {
+                    Time::new(start) + f64::from(index) / steps * length
+                };
                 let last = f64::from(index) + 1.0 == steps;
                 let span = if last { Span::to(from, stop) } else { Span::by(from, length / steps) };
                 let begin = self.extra.len();
@@ -260,7 +310,14 @@ impl<T: Real + Float> Tracks<T> {
                 if last && kink == stop && 0 < momenta.width {
                     jump = Some((kink, self.extra.len()));
                     for side in [Side::Before, Side::After] {
-                        self.append(joints, Time::new(kink), side, inputs, Purpose::Momenta, sampled);
+                        self.append(
+                            joints,
+                            Time::new(kink),
+                            side,
+                            inputs,
+                            Purpose::Momenta,
+                            sampled,
+                        );
                     }
                 }
                 self.pieces.push(Piece { h: span.h, times, begin, jump });
@@ -270,7 +327,15 @@ impl<T: Real + Float> Tracks<T> {
     }
 
     /// Appends a record of `joints` at `t`.
-    fn append(&mut self, joints: &[u32], t: Time, side: Side, inputs: &[Input], purpose: Purpose, sampled: &Sampled<'_, T>) {
+    fn append(
+        &mut self,
+        joints: &[u32],
+        t: Time,
+        side: Side,
+        inputs: &[Input],
+        purpose: Purpose,
+        sampled: &Sampled<'_, T>,
+    ) {
         for (input, &joint) in joints.iter().enumerate() {
             let drive = &sampled.places[joint as usize].drive;
             let orders = crate::motion::orders(inputs, input, purpose);
@@ -281,12 +346,20 @@ impl<T: Real + Float> Tracks<T> {
     }
 
     /// Reads the constant records of joints that rest for ever.
-    pub(super) fn load_still(&mut self, layout: &Layout, inputs: &[Input], now: f64, places: &[Place<T>]) {
+    pub(super) fn load_still(
+        &mut self,
+        layout: &Layout,
+        inputs: &[Input],
+        now: f64,
+        places: &[Place<T>],
+    ) {
         self.records.resize(self.count() * layout.width, T::from_f64(0.0));
         self.stride = 1;
         let mut to = 0;
         for track in 0..self.count() {
-            for (input, &joint) in self.joints[track * self.inputs..][..self.inputs].iter().enumerate() {
+            for (input, &joint) in
+                self.joints[track * self.inputs..][..self.inputs].iter().enumerate()
+            {
                 let drive = &places[joint as usize].drive;
                 let orders = crate::motion::orders(inputs, input, Purpose::Accelerations);
                 let own = drive.components() * orders.count();

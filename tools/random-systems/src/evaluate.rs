@@ -1,4 +1,5 @@
-//! The value of an expression of the generator, without the macro: what is written is what is computed.
+//! The value of an expression of the generator, without the macro: what is written is what is
+//! computed.
 
 use super::nilpotent::{Function, Nilpotent};
 use super::tree::{Expr, Index, Kind, Property, Shape, System};
@@ -46,17 +47,30 @@ impl<T: Float> Leaves<T> {
         let zero = Nilpotent::constant(T::from_f64(0.0), self.infinitesimals());
         let one = Nilpotent::constant(T::from_f64(1.0), self.infinitesimals());
         let step = |values: &[Nilpotent<T>], rates: &[Nilpotent<T>]| {
-            values.iter().zip(rates).map(|(value, rate)| value.clone().join(rate.clone())).collect::<Vec<_>>()
+            values
+                .iter()
+                .zip(rates)
+                .map(|(value, rate)| value.clone().join(rate.clone()))
+                .collect::<Vec<_>>()
         };
         let input = |[x, v, a, j]: &[Nilpotent<T>; 4]| {
-            [x.clone().join(v.clone()), v.clone().join(a.clone()), a.clone().join(j.clone()), j.clone().join(zero.clone())]
+            [
+                x.clone().join(v.clone()),
+                v.clone().join(a.clone()),
+                a.clone().join(j.clone()),
+                j.clone().join(zero.clone()),
+            ]
         };
         Self {
             time: self.time.clone().join(one),
             q: step(&self.q, &self.v),
             v: step(&self.v, &self.a),
             a: self.a.iter().map(|a| a.clone().join(zero.clone())).collect(),
-            inputs: self.inputs.iter().map(|components| components.iter().map(input).collect()).collect(),
+            inputs: self
+                .inputs
+                .iter()
+                .map(|components| components.iter().map(input).collect())
+                .collect(),
         }
     }
 
@@ -71,7 +85,11 @@ impl<T: Float> Leaves<T> {
             q: all(&self.q),
             v: all(&self.v),
             a: all(&self.a),
-            inputs: self.inputs.iter().map(|components| components.iter().map(input).collect()).collect(),
+            inputs: self
+                .inputs
+                .iter()
+                .map(|components| components.iter().map(input).collect())
+                .collect(),
         }
     }
 }
@@ -85,7 +103,12 @@ struct Scope<'s, T> {
 }
 
 /// Evaluates a scalar.
-pub fn scalar<T: Float>(system: &System, constants: &Constants<T>, leaves: &Leaves<T>, expr: &Expr) -> Nilpotent<T> {
+pub fn scalar<T: Float>(
+    system: &System,
+    constants: &Constants<T>,
+    leaves: &Leaves<T>,
+    expr: &Expr,
+) -> Nilpotent<T> {
     indexed(system, constants, leaves, expr, None)
 }
 
@@ -97,7 +120,11 @@ pub fn indexed<T: Float>(
     expr: &Expr,
     index: Option<usize>,
 ) -> Nilpotent<T> {
-    let scope = Scope { indices: index.map(|k| (0, k)).into_iter().collect(), arguments: None, point: None };
+    let scope = Scope {
+        indices: index.map(|k| (0, k)).into_iter().collect(),
+        arguments: None,
+        point: None,
+    };
     Evaluator { system, constants }.scalar(expr, leaves, &scope)
 }
 
@@ -129,7 +156,9 @@ impl<T: Float> Evaluator<'_, T> {
         let whole = |value: f64| constant(T::from_f64(value));
         let scalar = |expr: &Expr| self.scalar(expr, leaves, scope);
         Value::Scalar(match expr {
-            Expr::Number(top, bottom) => constant(T::from_f64(*top as f64) / T::from_f64(*bottom as f64)),
+            Expr::Number(top, bottom) => {
+                constant(T::from_f64(*top as f64) / T::from_f64(*bottom as f64))
+            }
             Expr::Pi => constant(T::pi()),
             Expr::Imaginary => return Value::Plane([whole(0.0), whole(1.0)]),
             Expr::Time => leaves.time.clone(),
@@ -138,18 +167,30 @@ impl<T: Float> Evaluator<'_, T> {
                 let own = &self.constants.parameters[first..];
                 match self.system.parameters[*index].kind {
                     Kind::Vector(2) => return Value::Plane([constant(own[0]), constant(own[1])]),
-                    Kind::Vector(_) => return Value::Space([constant(own[0]), constant(own[1]), constant(own[2])]),
+                    Kind::Vector(_) => {
+                        return Value::Space([
+                            constant(own[0]),
+                            constant(own[1]),
+                            constant(own[2]),
+                        ]);
+                    }
                     _ => constant(own[0]),
                 }
             }
-            Expr::Member(index, member) => {
-                constant(self.constants.parameters[self.system.first_parameter(*index) + place(*member, scope)])
-            }
+            Expr::Member(index, member) => constant(
+                self.constants.parameters
+                    [self.system.first_parameter(*index) + place(*member, scope)],
+            ),
             Expr::Property(index, property) => return self.property(*index, *property, depth),
-            Expr::Coordinate(index, member) => leaves.q[self.coordinate(*index, *member, scope)].clone(),
-            Expr::Velocity(index, member, _) => leaves.v[self.coordinate(*index, *member, scope)].clone(),
+            Expr::Coordinate(index, member) => {
+                leaves.q[self.coordinate(*index, *member, scope)].clone()
+            }
+            Expr::Velocity(index, member, _) => {
+                leaves.v[self.coordinate(*index, *member, scope)].clone()
+            }
             Expr::Input(index, order) => {
-                let parts: Vec<_> = leaves.inputs[*index].iter().map(|orders| orders[*order].clone()).collect();
+                let parts: Vec<_> =
+                    leaves.inputs[*index].iter().map(|orders| orders[*order].clone()).collect();
                 return vector(parts);
             }
             Expr::Sum(items) => {
@@ -184,7 +225,9 @@ impl<T: Float> Evaluator<'_, T> {
             Expr::Max(a, b) => scalar(a).max(&scalar(b)),
             Expr::Min(a, b) => scalar(a).min(&scalar(b)),
             Expr::Vector(items) => return vector(items.iter().map(scalar).collect()),
-            Expr::Inner(a, b) => dot_product(&self.parts(a, leaves, scope), &self.parts(b, leaves, scope)),
+            Expr::Inner(a, b) => {
+                dot_product(&self.parts(a, leaves, scope), &self.parts(b, leaves, scope))
+            }
             Expr::Cross(a, b) => {
                 let (a, b) = (self.parts(a, leaves, scope), self.parts(b, leaves, scope));
                 let minor = |i: usize, j: usize| a[i].mul(&b[j]).sub(&a[j].mul(&b[i]));
@@ -214,9 +257,12 @@ impl<T: Float> Evaluator<'_, T> {
                 let later = self.definition(*index, None, &leaves.later());
                 return map(later, |value| value.split().1);
             }
-            Expr::LetMember(index, member) => return self.definition(*index, Some(place(*member, scope)), leaves),
+            Expr::LetMember(index, member) => {
+                return self.definition(*index, Some(place(*member, scope)), leaves);
+            }
             Expr::Apply(index, arguments) => {
-                let inner = Scope { indices: Vec::new(), arguments: Some((arguments, scope)), point: None };
+                let inner =
+                    Scope { indices: Vec::new(), arguments: Some((arguments, scope)), point: None };
                 return self.value(&self.system.lets[*index].expr, leaves, &inner);
             }
             Expr::Argument(index) => {
@@ -230,7 +276,10 @@ impl<T: Float> Evaluator<'_, T> {
                     inner.indices.push((*index, k));
                     self.value(term, leaves, &inner)
                 };
-                return (0..*count).map(term).reduce(|a, b| add(&a, &b)).expect("a sum over something");
+                return (0..*count)
+                    .map(term)
+                    .reduce(|a, b| add(&a, &b))
+                    .expect("a sum over something");
             }
             Expr::Integral(body, integrand) => {
                 let points = self.constants.bodies[*body].as_ref().expect("a body has points");
@@ -239,7 +288,12 @@ impl<T: Float> Evaluator<'_, T> {
                     inner.point = Some(point);
                     map(self.value(integrand, leaves, &inner), |value| value.mul(&constant(weight)))
                 };
-                return points.0.iter().map(part).reduce(|a, b| add(&a, &b)).expect("a body has points");
+                return points
+                    .0
+                    .iter()
+                    .map(part)
+                    .reduce(|a, b| add(&a, &b))
+                    .expect("a body has points");
             }
             Expr::Point => {
                 let point = scope.point.expect("a point stands in an integral");
@@ -256,7 +310,11 @@ impl<T: Float> Evaluator<'_, T> {
     fn definition(&self, index: usize, member: Option<usize>, leaves: &Leaves<T>) -> Value<T> {
         let definition = &self.system.lets[index];
         assert_eq!(matches!(definition.shape, Shape::Indexed(_)), member.is_some());
-        let scope = Scope { indices: member.map(|k| (0, k)).into_iter().collect(), arguments: None, point: None };
+        let scope = Scope {
+            indices: member.map(|k| (0, k)).into_iter().collect(),
+            arguments: None,
+            point: None,
+        };
         self.value(&definition.expr, leaves, &scope)
     }
 
@@ -317,9 +375,8 @@ fn add<T: Float>(a: &Value<T>, b: &Value<T>) -> Value<T> {
         (Value::Scalar(a), Value::Scalar(b)) => Value::Scalar(a.add(b)),
         (Value::Plane(a), Value::Plane(b)) => Value::Plane([0, 1].map(|k| a[k].add(&b[k]))),
         (Value::Space(a), Value::Space(b)) => Value::Space([0, 1, 2].map(|k| a[k].add(&b[k]))),
-        (Value::Plane([x, y]), Value::Scalar(real)) | (Value::Scalar(real), Value::Plane([x, y])) => {
-            Value::Plane([x.add(real), y.clone()])
-        }
+        (Value::Plane([x, y]), Value::Scalar(real))
+        | (Value::Scalar(real), Value::Plane([x, y])) => Value::Plane([x.add(real), y.clone()]),
         _ => panic!("a sum of {a:?} and {b:?}"),
     }
 }
@@ -329,7 +386,9 @@ fn multiply<T: Float>(a: &Value<T>, b: &Value<T>) -> Value<T> {
     match (a, b) {
         (Value::Scalar(a), b) => map(b.clone(), |b| a.mul(b)),
         (a, Value::Scalar(b)) => map(a.clone(), |a| a.mul(b)),
-        (Value::Plane([a, b]), Value::Plane([c, d])) => Value::Plane([a.mul(c).sub(&b.mul(d)), a.mul(d).add(&b.mul(c))]),
+        (Value::Plane([a, b]), Value::Plane([c, d])) => {
+            Value::Plane([a.mul(c).sub(&b.mul(d)), a.mul(d).add(&b.mul(c))])
+        }
         _ => panic!("a product of {a:?} and {b:?}"),
     }
 }
@@ -346,5 +405,9 @@ fn reciprocal<T: Float>(value: &Value<T>) -> Value<T> {
 }
 
 fn dot_product<T: Float>(a: &[Nilpotent<T>], b: &[Nilpotent<T>]) -> Nilpotent<T> {
-    a.iter().zip(b).map(|(a, b)| a.mul(b)).reduce(|a, b| a.add(&b)).expect("a vector has components")
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| a.mul(b))
+        .reduce(|a, b| a.add(&b))
+        .expect("a vector has components")
 }

@@ -1,7 +1,8 @@
 //! Numbers with infinitesimals: derivatives of any order without a formula for them.
 //!
-//! A number with k infinitesimals ε₁, …, ε_k, each of square zero, has 2ᵏ coefficients; that of ε₁ε₂ in f(x + ε₁ + ε₂) is f″(x). A
-//! function of a + bε is f(a) + f′(a) b ε, where a and b have the other infinitesimals, so that one slope for each function is enough.
+//! A number with k infinitesimals ε₁, …, ε_k, each of square zero, has 2ᵏ coefficients; that of
+//! ε₁ε₂ in f(x + ε₁ + ε₂) is f″(x). A function of a + bε is f(a) + f′(a) b ε, where a and b have
+//! the other infinitesimals, so that one slope for each function is enough.
 
 use pendulum_runtime::real::Float;
 
@@ -118,10 +119,16 @@ impl<T: Float> Nilpotent<T> {
         }
         let exponent = T::from_f64(top as f64) / T::from_f64(bottom as f64);
         if let [value] = self.0[..] {
-            return Self(vec![if bottom == 2 { Self(vec![value.sqrt()]).whole_power(top).0[0] } else { value.powf(exponent) }]);
+            return Self(vec![if bottom == 2 {
+                Self(vec![value.sqrt()]).whole_power(top).0[0]
+            } else {
+                value.powf(exponent)
+            }]);
         }
         let (a, b) = self.split();
-        let slope = a.rational_power(top - bottom, bottom).mul(&Self::constant(exponent, a.infinitesimals()));
+        let slope = a
+            .rational_power(top - bottom, bottom)
+            .mul(&Self::constant(exponent, a.infinitesimals()));
         a.rational_power(top, bottom).join(slope.mul(&b))
     }
 

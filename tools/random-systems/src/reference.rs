@@ -1,4 +1,5 @@
-//! The equations of motion straight from the source: Euler–Lagrange by infinitesimals, one direction at a time.
+//! The equations of motion straight from the source: Euler–Lagrange by infinitesimals, one
+//! direction at a time.
 
 use super::evaluate::{Constants, Leaves, indexed, scalar};
 use super::nilpotent::Nilpotent;
@@ -46,7 +47,11 @@ impl<T: Float> State<T> {
             q: all(&self.q),
             v: all(&self.v),
             a: all(accelerations),
-            inputs: self.inputs.iter().map(|components| components.iter().map(input).collect()).collect(),
+            inputs: self
+                .inputs
+                .iter()
+                .map(|components| components.iter().map(input).collect())
+                .collect(),
         }
     }
 
@@ -54,22 +59,37 @@ impl<T: Float> State<T> {
     pub fn map<U>(&self, map: impl Fn(T) -> U + Copy) -> State<U> {
         use super::evaluate::Points;
         let all = |values: &[T]| values.iter().map(|&value| map(value)).collect::<Vec<_>>();
-        let points = |points: &Points<T>| Points(points.0.iter().map(|&(w, p)| (map(w), p.map(map))).collect());
+        let points = |points: &Points<T>| {
+            Points(points.0.iter().map(|&(w, p)| (map(w), p.map(map))).collect())
+        };
         State {
             constants: Constants {
                 parameters: all(&self.constants.parameters),
-                bodies: self.constants.bodies.iter().map(|body| body.as_ref().map(points)).collect(),
+                bodies: self
+                    .constants
+                    .bodies
+                    .iter()
+                    .map(|body| body.as_ref().map(points))
+                    .collect(),
             },
             t: map(self.t),
             q: all(&self.q),
             v: all(&self.v),
-            inputs: self.inputs.iter().map(|input| input.iter().map(|orders| orders.map(map)).collect()).collect(),
+            inputs: self
+                .inputs
+                .iter()
+                .map(|input| input.iter().map(|orders| orders.map(map)).collect())
+                .collect(),
         }
     }
 }
 
 /// Σ kinetic − Σ potential.
-pub fn lagrangian<T: Float>(system: &System, constants: &Constants<T>, leaves: &Leaves<T>) -> Nilpotent<T> {
+pub fn lagrangian<T: Float>(
+    system: &System,
+    constants: &Constants<T>,
+    leaves: &Leaves<T>,
+) -> Nilpotent<T> {
     let mut total = Nilpotent::constant(T::from_f64(0.0), leaves.infinitesimals());
     for expr in &system.kinetic {
         total = total.add(&scalar(system, constants, leaves, expr));
@@ -80,7 +100,11 @@ pub fn lagrangian<T: Float>(system: &System, constants: &Constants<T>, leaves: &
     total
 }
 
-fn dissipation<T: Float>(system: &System, constants: &Constants<T>, leaves: &Leaves<T>) -> Nilpotent<T> {
+fn dissipation<T: Float>(
+    system: &System,
+    constants: &Constants<T>,
+    leaves: &Leaves<T>,
+) -> Nilpotent<T> {
     let mut total = Nilpotent::constant(T::from_f64(0.0), leaves.infinitesimals());
     for expr in &system.dissipation {
         total = total.add(&scalar(system, constants, leaves, expr));
@@ -152,7 +176,8 @@ pub fn reference<T: Float>(system: &System, state: &State<T>) -> Reference<T> {
             (_, member) => member.unwrap_or(0)..member.unwrap_or(0) + 1,
         };
         for k in members {
-            reference.externals[first + k] += indexed(system, constants, &still, &force.expr, Some(k)).0[0];
+            reference.externals[first + k] +=
+                indexed(system, constants, &still, &force.expr, Some(k)).0[0];
         }
     }
     reference

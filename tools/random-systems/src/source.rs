@@ -1,4 +1,5 @@
-//! A system as the text of a block, with no more brackets than the precedence of the language asks for.
+//! A system as the text of a block, with no more brackets than the precedence of the language asks
+//! for.
 
 use super::tree::{Expr, INDICES, Index, Kind, Property, Shape, System};
 use std::fmt::Write;
@@ -22,7 +23,9 @@ impl System {
                 (Kind::Mass, _) => write!(text, " {own}: kg,"),
                 (Kind::Length, _) => write!(text, " {own}: m,"),
                 (Kind::Scalar | Kind::Rate, false) => write!(text, " {own},"),
-                (Kind::Vector(count) | Kind::Family(count), _) => write!(text, " {own}: [1; {count}],"),
+                (Kind::Vector(count) | Kind::Family(count), _) => {
+                    write!(text, " {own}: [1; {count}],")
+                }
                 (Kind::Body, _) => write!(text, " {own}: body,"),
             };
         }
@@ -49,12 +52,19 @@ impl System {
                     format!("({})", names.join(", "))
                 }
             };
-            let _ = writeln!(text, "let {}{head} = {};", definition.name, self.text(&definition.expr, 0));
+            let _ = writeln!(
+                text,
+                "let {}{head} = {};",
+                definition.name,
+                self.text(&definition.expr, 0)
+            );
         }
         if self.joined {
             let minus = |expr: &Expr| self.text(expr, PRODUCT);
-            let kinetic: Vec<String> = self.kinetic.iter().map(|expr| self.text(expr, SUM)).collect();
-            let potential: Vec<String> = self.potential.iter().map(|expr| format!(" - {}", minus(expr))).collect();
+            let kinetic: Vec<String> =
+                self.kinetic.iter().map(|expr| self.text(expr, SUM)).collect();
+            let potential: Vec<String> =
+                self.potential.iter().map(|expr| format!(" - {}", minus(expr))).collect();
             let _ = writeln!(text, "lagrangian = {}{};", kinetic.join(" + "), potential.concat());
         } else {
             for expr in &self.kinetic {
@@ -74,7 +84,8 @@ impl System {
                 (Some(_), Some(member)) => format!("[{member}]"),
                 (Some(length), None) => format!("[{} in 0..{length}]", INDICES[0]),
             };
-            let _ = writeln!(text, "force {}{index} = {};", coordinate.name, self.text(&force.expr, 0));
+            let _ =
+                writeln!(text, "force {}{index} = {};", coordinate.name, self.text(&force.expr, 0));
         }
         text
     }
@@ -94,13 +105,17 @@ impl System {
         match expr {
             Expr::Number(top, 1) if 0 <= *top => (top.to_string(), ATOM),
             Expr::Number(top, 1) => (top.to_string(), UNARY),
-            Expr::Number(top, 4) if top % 2 == 1 && 0 < *top => (format!("{}", *top as f64 / 4.0), ATOM),
+            Expr::Number(top, 4) if top % 2 == 1 && 0 < *top => {
+                (format!("{}", *top as f64 / 4.0), ATOM)
+            }
             Expr::Number(top, bottom) => (format!("{top}/{bottom}"), PRODUCT),
             Expr::Pi => ("π".to_owned(), ATOM),
             Expr::Imaginary => ("i".to_owned(), ATOM),
             Expr::Time => ("t".to_owned(), ATOM),
             Expr::Parameter(index) => (self.parameters[*index].name.clone(), ATOM),
-            Expr::Member(index, member) => (format!("{}{}", self.parameters[*index].name, bracket(*member)), ATOM),
+            Expr::Member(index, member) => {
+                (format!("{}{}", self.parameters[*index].name, bracket(*member)), ATOM)
+            }
             Expr::Property(index, property) => {
                 let property = match property {
                     Property::Mass => "mass",
@@ -109,11 +124,17 @@ impl System {
                 };
                 (format!("{}.{property}", self.parameters[*index].name), ATOM)
             }
-            Expr::Coordinate(index, member) => {
-                (format!("{}{}", self.coordinates[*index].name, member.map(bracket).unwrap_or_default()), ATOM)
-            }
+            Expr::Coordinate(index, member) => (
+                format!(
+                    "{}{}",
+                    self.coordinates[*index].name,
+                    member.map(bracket).unwrap_or_default()
+                ),
+                ATOM,
+            ),
             Expr::Velocity(index, member, spelling) => {
-                let (name, member) = (&self.coordinates[*index].name, member.map(bracket).unwrap_or_default());
+                let (name, member) =
+                    (&self.coordinates[*index].name, member.map(bracket).unwrap_or_default());
                 let text = match spelling {
                     0 => format!("{name}\u{307}{member}"),
                     1 => format!("{name}_dot{member}"),
@@ -134,7 +155,8 @@ impl System {
                         (_, false) => " + ",
                         (_, true) => " - ",
                     });
-                    // A sign binds tighter than a product: -a*b is (-a)*b, which is the same number.
+                    // A sign binds tighter than a product: -a*b is (-a)*b, which is the same
+                    // number.
                     text.push_str(&self.text(item, PRODUCT));
                 }
                 (text, SUM)
@@ -155,11 +177,17 @@ impl System {
                 (text, PRODUCT)
             }
             Expr::Negative(inner) => (format!("-{}", self.text(inner, UNARY)), UNARY),
-            Expr::Power(base, top, 1) if 0 <= *top => (format!("{}^{top}", self.text(base, ATOM)), POWER),
+            Expr::Power(base, top, 1) if 0 <= *top => {
+                (format!("{}^{top}", self.text(base, ATOM)), POWER)
+            }
             Expr::Power(base, top, 1) => (format!("{}^{top}", self.text(base, ATOM)), POWER),
             Expr::Power(base, 1, 2) => call("sqrt", &[base]),
-            Expr::Power(base, top, bottom) => (format!("{}^({top}/{bottom})", self.text(base, ATOM)), POWER),
-            Expr::GeneralPower(base, exponent) => (format!("{}^{}", self.text(base, ATOM), self.text(exponent, UNARY)), POWER),
+            Expr::Power(base, top, bottom) => {
+                (format!("{}^({top}/{bottom})", self.text(base, ATOM)), POWER)
+            }
+            Expr::GeneralPower(base, exponent) => {
+                (format!("{}^{}", self.text(base, ATOM), self.text(exponent, UNARY)), POWER)
+            }
             Expr::Call(function, inner) => call(&function.name(), &[inner]),
             Expr::Atan2(y, x) => call("atan2", &[y, x]),
             Expr::Max(a, b) => call("max", &[a, b]),
@@ -177,23 +205,35 @@ impl System {
                 let text = self.text(a, 0);
                 (if text.contains('|') { format!("|({text})|") } else { format!("|{text}|") }, ATOM)
             }
-            Expr::Component(a, component) => (format!("{}.{}", self.text(a, ATOM), ["x", "y", "z"][*component]), ATOM),
+            Expr::Component(a, component) => {
+                (format!("{}.{}", self.text(a, ATOM), ["x", "y", "z"][*component]), ATOM)
+            }
             Expr::Cis(angle, false) => call("cis", &[angle]),
             Expr::Cis(angle, true) => (format!("exp(i*{})", self.text(angle, UNARY)), ATOM),
             Expr::Dot(inner) => call("dot", &[inner]),
             Expr::Let(index) => (self.lets[*index].name.clone(), ATOM),
             Expr::LetDot(index) => (format!("{}\u{307}", self.lets[*index].name), ATOM),
-            Expr::LetMember(index, member) => (format!("{}{}", self.lets[*index].name, bracket(*member)), ATOM),
-            Expr::Apply(index, arguments) => call(&self.lets[*index].name, &arguments.iter().collect::<Vec<_>>()),
+            Expr::LetMember(index, member) => {
+                (format!("{}{}", self.lets[*index].name, bracket(*member)), ATOM)
+            }
+            Expr::Apply(index, arguments) => {
+                call(&self.lets[*index].name, &arguments.iter().collect::<Vec<_>>())
+            }
             Expr::Argument(index) => (argument(*index), ATOM),
             Expr::Bound(index) => (INDICES[*index].to_owned(), ATOM),
             Expr::Over(index, count, inclusive, term) => {
-                let range = if *inclusive { format!("0..={}", count - 1) } else { format!("0..{count}") };
+                let range =
+                    if *inclusive { format!("0..={}", count - 1) } else { format!("0..{count}") };
                 (format!("sum({} in {range}, {})", INDICES[*index], self.text(term, 0)), ATOM)
             }
-            Expr::Integral(body, integrand) => {
-                (format!("integral(ξ in {}, {})", self.parameters[*body].name, self.text(integrand, 0)), ATOM)
-            }
+            Expr::Integral(body, integrand) => (
+                format!(
+                    "integral(ξ in {}, {})",
+                    self.parameters[*body].name,
+                    self.text(integrand, 0)
+                ),
+                ATOM,
+            ),
             Expr::Point => ("ξ".to_owned(), ATOM),
         }
     }

@@ -5,14 +5,17 @@ use super::reference::State;
 use super::split_mix::Random;
 use super::tree::{Kind, System};
 
-/// The state of a seed. Every number is one of `f64` but the moments of bodies, which are those of `f64` points.
+/// The state of a seed. Every number is one of `f64` but the moments of bodies, which are those of
+/// `f64` points.
 pub fn state(system: &System, seed: u64) -> State<f64> {
     let mut random = Random(seed);
     let count = system.count();
     let mut bodies = Vec::new();
     for parameter in &system.parameters {
         let body = (parameter.kind == Kind::Body).then(|| {
-            let mut point = || (random.uniform(0.2, 0.5), [random.uniform(-0.8, 1.2), random.uniform(-0.8, 1.2)]);
+            let mut point = || {
+                (random.uniform(0.2, 0.5), [random.uniform(-0.8, 1.2), random.uniform(-0.8, 1.2)])
+            };
             Points((0..4).map(|_| point()).collect())
         });
         bodies.push(body);
@@ -21,20 +24,28 @@ pub fn state(system: &System, seed: u64) -> State<f64> {
     for (parameter, body) in system.parameters.iter().zip(&bodies) {
         match body {
             Some(points) => parameters.extend(moments(points)),
-            None => parameters.extend((0..parameter.kind.count()).map(|_| random.uniform(0.4, 1.5))),
+            None => {
+                parameters.extend((0..parameter.kind.count()).map(|_| random.uniform(0.4, 1.5)));
+            }
         }
     }
-    let mut some = |count: usize| (0..count).map(|_| random.uniform(-1.3, 1.4)).collect::<Vec<f64>>();
+    let mut some =
+        |count: usize| (0..count).map(|_| random.uniform(-1.3, 1.4)).collect::<Vec<f64>>();
     let (q, v) = (some(count), some(count));
     let t = some(1)[0] + 1.5;
-    let inputs = system.inputs.iter().map(|input| (0..input.components).map(|_| [0; 4].map(|_| some(1)[0])).collect()).collect();
+    let inputs = system
+        .inputs
+        .iter()
+        .map(|input| (0..input.components).map(|_| [0; 4].map(|_| some(1)[0])).collect())
+        .collect();
     State { constants: Constants { parameters, bodies }, t, q, v, inputs }
 }
 
 /// Mass, centre and central moments.
 pub fn moments<T: pendulum_runtime::real::Real>(points: &Points<T>) -> [T; 6] {
     let zero = T::from_f64(0.0);
-    let sum = |part: &dyn Fn(T, [T; 2]) -> T| points.0.iter().fold(zero, |sum, &(w, p)| sum + part(w, p));
+    let sum =
+        |part: &dyn Fn(T, [T; 2]) -> T| points.0.iter().fold(zero, |sum, &(w, p)| sum + part(w, p));
     let mass = sum(&|w, _| w);
     let (x, y) = (sum(&|w, p| w * p[0]) / mass, sum(&|w, p| w * p[1]) / mass);
     let xx = sum(&|w, p| w * (p[0] - x) * (p[0] - x));

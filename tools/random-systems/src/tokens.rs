@@ -94,7 +94,9 @@ pub fn soup(random: &mut Random, depth: usize) -> TokenStream {
     let mut tokens = TokenStream::new();
     for _ in 0..random.below(12) {
         if depth < 5 && random.below(6) == 0 {
-            let delimiter = [Delimiter::Parenthesis, Delimiter::Brace, Delimiter::Bracket, Delimiter::None][random.below(4)];
+            let delimiter =
+                [Delimiter::Parenthesis, Delimiter::Brace, Delimiter::Bracket, Delimiter::None]
+                    [random.below(4)];
             tokens.extend([TokenTree::Group(Group::new(delimiter, soup(random, depth + 1)))]);
         } else if let Ok(word) = WORDS[random.below(WORDS.len())].parse::<TokenStream>() {
             tokens.extend(word);
@@ -132,7 +134,8 @@ pub fn mutate(tokens: TokenStream, random: &mut Random) -> TokenStream {
     list.into_iter().collect()
 }
 
-/// Puts other names and numbers of the block, or of another, where some stand: what comes out often parses and seldom makes sense.
+/// Puts other names and numbers of the block, or of another, where some stand: what comes out often
+/// parses and seldom makes sense.
 pub fn transplant(tokens: TokenStream, random: &mut Random) -> TokenStream {
     let mut donors = Vec::new();
     leaves(tokens.clone(), &mut donors);
@@ -153,12 +156,20 @@ fn leaves(tokens: TokenStream, found: &mut Vec<TokenTree>) {
     }
 }
 
-fn transplanted(tokens: TokenStream, donors: &[TokenTree], rarity: usize, random: &mut Random) -> TokenStream {
+fn transplanted(
+    tokens: TokenStream,
+    donors: &[TokenTree],
+    rarity: usize,
+    random: &mut Random,
+) -> TokenStream {
     let other = |tree: TokenTree| match tree {
-        TokenTree::Group(group) => {
-            TokenTree::Group(Group::new(group.delimiter(), transplanted(group.stream(), donors, rarity, random)))
+        TokenTree::Group(group) => TokenTree::Group(Group::new(
+            group.delimiter(),
+            transplanted(group.stream(), donors, rarity, random),
+        )),
+        TokenTree::Ident(_) | TokenTree::Literal(_) if random.once_in(rarity) => {
+            donors[random.below(donors.len())].clone()
         }
-        TokenTree::Ident(_) | TokenTree::Literal(_) if random.once_in(rarity) => donors[random.below(donors.len())].clone(),
         other => other,
     };
     tokens.into_iter().map(other).collect()

@@ -1,17 +1,21 @@
-//! Other ways to write the same system: a gauge term, another scale of energy, other coordinates, time that runs backwards.
+//! Other ways to write the same system: a gauge term, another scale of energy, other coordinates,
+//! time that runs backwards.
 
 use super::generate;
 use super::nilpotent::Function;
 use super::reference::State;
 use super::split_mix::Random;
-use super::tree::{Coordinate, Expr, Index, Kind, Let, Shape, System, Type, number, product, quotient, sum};
+use super::tree::{
+    Coordinate, Expr, Index, Kind, Let, Shape, System, Type, number, product, quotient, sum,
+};
 
 /// L + dF/dt for a random F(q, t).
 pub fn gauged(system: &System) -> System {
     let mut gauged = system.clone();
     let term = generate::gauge(system, &mut Random(system.seed ^ 0xf0));
     let rate = Expr::Dot(Box::new(term));
-    let rate = if system.units { quotient(rate, generate::measure(system, Kind::Rate)) } else { rate };
+    let rate =
+        if system.units { quotient(rate, generate::measure(system, Kind::Rate)) } else { rate };
     gauged.kinetic.push(rate);
     gauged
 }
@@ -23,19 +27,26 @@ pub const SCALE: f64 = 0.75;
 pub fn scaled(system: &System) -> System {
     let mut scaled = system.clone();
     let lists = [&mut scaled.kinetic, &mut scaled.potential, &mut scaled.dissipation];
-    let exprs = lists.into_iter().flatten().chain(scaled.forces.iter_mut().map(|force| &mut force.expr));
+    let exprs =
+        lists.into_iter().flatten().chain(scaled.forces.iter_mut().map(|force| &mut force.expr));
     for expr in exprs {
         *expr = product(Expr::Number(3, 4), expr.clone());
     }
     scaled
 }
 
-/// The system whose motions are those of `system` run backwards: L(−t, q, −q̇), −R(−q̇), forces of −t and −q̇, and driven inputs that run backwards.
+/// The system whose motions are those of `system` run backwards: L(−t, q, −q̇), −R(−q̇), forces of
+/// −t and −q̇, and driven inputs that run backwards.
 pub fn reversed(system: &System) -> System {
     let mut reversed = system.clone();
     let turn = |expr: &mut Expr| {
         // What has been differentiated an odd number of times changes its sign.
-        if let Expr::Time | Expr::Velocity(..) | Expr::Input(_, 1) | Expr::Dot(_) | Expr::LetDot(_) = expr {
+        if let Expr::Time
+        | Expr::Velocity(..)
+        | Expr::Input(_, 1)
+        | Expr::Dot(_)
+        | Expr::LetDot(_) = expr
+        {
             *expr = Expr::Negative(Box::new(expr.clone()));
         }
     };
@@ -43,7 +54,9 @@ pub fn reversed(system: &System) -> System {
         definition.expr.each(&turn);
     }
     let lists = [&mut reversed.kinetic, &mut reversed.potential, &mut reversed.dissipation];
-    for expr in lists.into_iter().flatten().chain(reversed.forces.iter_mut().map(|force| &mut force.expr)) {
+    for expr in
+        lists.into_iter().flatten().chain(reversed.forces.iter_mut().map(|force| &mut force.expr))
+    {
         expr.each(&turn);
     }
     for expr in &mut reversed.dissipation {
@@ -65,7 +78,8 @@ pub fn turned(state: &State<f64>) -> State<f64> {
     turned
 }
 
-/// The system without its forces in coordinates Q with q = Q + sin(Q₁)/3, where Q₁ is the first of the coordinates declared next.
+/// The system without its forces in coordinates Q with q = Q + sin(Q₁)/3, where Q₁ is the first of
+/// the coordinates declared next.
 pub fn moved(system: &System) -> System {
     let mut moved = system.clone();
     moved.forces.clear();
@@ -123,8 +137,13 @@ fn replaced(expr: &mut Expr, count: usize) {
     match expr {
         Expr::Coordinate(index, member) => *expr = definition(*index, *member),
         Expr::Velocity(index, None, 0) => *expr = Expr::LetDot(*index),
-        Expr::Velocity(index, member, _) => *expr = Expr::Dot(Box::new(definition(*index, *member))),
-        Expr::Let(index) | Expr::LetDot(index) | Expr::LetMember(index, _) | Expr::Apply(index, _) => *index += count,
+        Expr::Velocity(index, member, _) => {
+            *expr = Expr::Dot(Box::new(definition(*index, *member)));
+        }
+        Expr::Let(index)
+        | Expr::LetDot(index)
+        | Expr::LetMember(index, _)
+        | Expr::Apply(index, _) => *index += count,
         _ => {}
     }
 }

@@ -1,4 +1,5 @@
-//! Blocks as the generator makes them: a language of its own that is printed for the macro and evaluated without it.
+//! Blocks as the generator makes them: a language of its own that is printed for the macro and
+//! evaluated without it.
 
 use super::nilpotent::Function;
 
@@ -7,7 +8,8 @@ use super::nilpotent::Function;
 pub struct System {
     /// The seed it was made from.
     pub seed: u64,
-    /// Whether everything is a pure number, velocities are divided by a rate, and units are written.
+    /// Whether everything is a pure number, velocities are divided by a rate, and units are
+    /// written.
     pub units: bool,
     pub parameters: Vec<Parameter>,
     pub coordinates: Vec<Coordinate>,
@@ -194,8 +196,16 @@ impl Expr {
     pub fn each(&mut self, change: &impl Fn(&mut Expr)) {
         let boxed = |inner: &mut Box<Expr>| inner.each(change);
         match self {
-            Expr::Sum(items) | Expr::Product(items) => items.iter_mut().for_each(|(_, item)| item.each(change)),
-            Expr::Vector(items) | Expr::Apply(_, items) => items.iter_mut().for_each(|item| item.each(change)),
+            Expr::Sum(items) | Expr::Product(items) => {
+                for (_, item) in items.iter_mut() {
+                    item.each(change);
+                }
+            }
+            Expr::Vector(items) | Expr::Apply(_, items) => {
+                for item in items.iter_mut() {
+                    item.each(change);
+                }
+            }
             Expr::Negative(a)
             | Expr::Power(a, ..)
             | Expr::Call(_, a)

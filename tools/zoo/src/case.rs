@@ -27,8 +27,16 @@ pub enum Method {
 
 impl Method {
     /// All, in the order of the tables.
-    pub(crate) const ALL: [Self; 8] =
-        [Self::Default, Self::Picard, Self::Taylor, Self::Dop853, Self::Tsit5, Self::Rodas4, Self::Dprkn8, Self::Dprkn12];
+    pub(crate) const ALL: [Self; 8] = [
+        Self::Default,
+        Self::Picard,
+        Self::Taylor,
+        Self::Dop853,
+        Self::Tsit5,
+        Self::Rodas4,
+        Self::Dprkn8,
+        Self::Dprkn12,
+    ];
 
     /// The least tolerance at which it is measured: below, methods of low order take millions of
     /// steps.
@@ -173,7 +181,13 @@ pub(crate) trait Case {
 
     /// What is measured, with `rtol` and `atol` at this tolerance: at the end, and at other times
     /// if there are any.
-    fn run(&self, method: Method, scalar: Scalar, tolerance: f64, times: &[f64]) -> Result<Run, String>;
+    fn run(
+        &self,
+        method: Method,
+        scalar: Scalar,
+        tolerance: f64,
+        times: &[f64],
+    ) -> Result<Run, String>;
 
     /// The states at `times` in two words.
     fn exact(&self, tolerance: f64, max_step: f64, times: &[f64]) -> Result<Vec<State>, String>;
@@ -183,7 +197,13 @@ pub(crate) trait Case {
 
     /// The flow in `f64` with nearly all its digits: the state at the end from one at `t`; every
     /// step if asked for.
-    fn flow(&self, t: f64, state: &[f64], steps: bool, tolerance: f64) -> Option<Vec<(f64, Vec<f64>)>>;
+    fn flow(
+        &self,
+        t: f64,
+        state: &[f64],
+        steps: bool,
+        tolerance: f64,
+    ) -> Option<Vec<(f64, Vec<f64>)>>;
 
     /// What bounds the reference.
     fn guide(&self) -> &Guide;
@@ -192,7 +212,10 @@ pub(crate) trait Case {
 /// The greatest difference of any coordinate or velocity in units of 1 + its magnitude; infinite
 /// where there is no number.
 pub(crate) fn distance(state: &State, exact: &State) -> f64 {
-    let parts = state.iter().zip(exact).map(|(x, exact)| (*x - *exact).to_f64().abs() / (1.0 + exact.to_f64().abs()));
+    let parts = state
+        .iter()
+        .zip(exact)
+        .map(|(x, exact)| (*x - *exact).to_f64().abs() / (1.0 + exact.to_f64().abs()));
     parts.fold(0.0, |largest: f64, x| if x.is_nan() { f64::INFINITY } else { largest.max(x) })
 }
 
@@ -215,9 +238,14 @@ pub(crate) fn amplification(case: &dyn Case, random: &mut Random) -> Option<f64>
         for _ in 0..DIRECTIONS {
             let direction: Vec<f64> = state.iter().map(|_| random.within(-1.0, 1.0)).collect();
             let norm = direction.iter().fold(0.0, |norm: f64, x| norm.max(x.abs()));
-            let other: Vec<f64> = state.iter().zip(&direction).map(|(x, d)| x + SIZE * (1.0 + x.abs()) * d / norm).collect();
+            let other: Vec<f64> = state
+                .iter()
+                .zip(&direction)
+                .map(|(x, d)| x + SIZE * (1.0 + x.abs()) * d / norm)
+                .collect();
             let disturbed = case.flow(*t, &other, false, EXACT)?.pop()?.1;
-            let parts = disturbed.iter().zip(&undisturbed).map(|(x, y)| (x - y).abs() / (1.0 + y.abs()));
+            let parts =
+                disturbed.iter().zip(&undisturbed).map(|(x, y)| (x - y).abs() / (1.0 + y.abs()));
             largest = parts.fold(largest, |largest: f64, x| largest.max(x / SIZE));
         }
     }

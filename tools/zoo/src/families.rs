@@ -33,7 +33,9 @@ pub(crate) const fn double(name: &'static str, make: fn(&mut Random, Scalar) -> 
 /// What the short test knows too.
 const SHORT: &[Family] = &[
     double("moving", moving),
-    double("closure gentle", |r, s| closure(r, s, |r| Shape::Sine { a: r.within(0.05, 0.2), ω: r.within(1.0, 5.0), φ: 0.0 })),
+    double("closure gentle", |r, s| {
+        closure(r, s, |r| Shape::Sine { a: r.within(0.05, 0.2), ω: r.within(1.0, 5.0), φ: 0.0 })
+    }),
     double("contact 1e-2", |r, s| contact(r, s, 1e-2)),
     double("contact 1e-3", |r, s| contact(r, s, 1e-3)),
     double("friction", |r, s| friction(r, s, 0.03, 0.0)),
@@ -46,16 +48,32 @@ const SHORT: &[Family] = &[
     double("kick at rest, limited", |r, s| Box::new(kick_at_rest(r, s).limited(0.05))),
     double("kick at rest", |r, s| Box::new(kick_at_rest(r, s))),
     double("burst", burst),
-    double("closure step", |r, s| closure(r, s, |r| Shape::Jump { a: r.within(1.0, 5.0), at: r.within(1.0, 6.0) })),
-    double("closure ramp", |r, s| {
-        closure(r, s, |r| Shape::Ramp { a: r.within(0.1, 0.5), from: r.within(1.0, 5.0), long: r.within(0.2, 1.0) })
+    double("closure step", |r, s| {
+        closure(r, s, |r| Shape::Jump { a: r.within(1.0, 5.0), at: r.within(1.0, 6.0) })
     }),
-    double("closure cubics", |r, s| closure(r, s, |r| Shape::Cubics { j: r.within(10.0, 100.0), every: r.within(0.1, 0.3) })),
+    double("closure ramp", |r, s| {
+        closure(r, s, |r| Shape::Ramp {
+            a: r.within(0.1, 0.5),
+            from: r.within(1.0, 5.0),
+            long: r.within(0.2, 1.0),
+        })
+    }),
+    double("closure cubics", |r, s| {
+        closure(r, s, |r| Shape::Cubics { j: r.within(10.0, 100.0), every: r.within(0.1, 0.3) })
+    }),
     double("closure rise", |r, s| {
-        closure(r, s, |r| Shape::Rise { a: r.within(0.1, 0.5), c: r.within(2.0, 6.0), s: r.within(0.02, 0.2) })
+        closure(r, s, |r| Shape::Rise {
+            a: r.within(0.1, 0.5),
+            c: r.within(2.0, 6.0),
+            s: r.within(0.02, 0.2),
+        })
     }),
     double("closure pulse", |r, s| {
-        closure(r, s, |r| Shape::Pulse { a: r.within(0.01, 0.05), c: r.within(2.0, 6.0), s: r.within(0.02, 0.05) })
+        closure(r, s, |r| Shape::Pulse {
+            a: r.within(0.01, 0.05),
+            c: r.within(2.0, 6.0),
+            s: r.within(0.02, 0.05),
+        })
     }),
     double("spline keys", |r, s| keyed(r, s, &Keys::Spline)),
     double("linear keys", |r, s| keyed(r, s, &Keys::Linear)),
@@ -101,12 +119,15 @@ pub(crate) fn friction(r: &mut Random, scalar: Scalar, w: f64, s: f64) -> Proble
     Box::new(Trial::new(scalar, &block, q, v, 10.0, Guide::max_step((2.0 * w).min(0.05))))
 }
 
-const UNFORCED: Forced = Forced { g: 9.81, a: 0.0, ω: 1.0, w: 1.0, k: 0.0, c: 0.0, s: 1.0, b: 0.0 };
+const UNFORCED: Forced =
+    Forced { g: 9.81, a: 0.0, ω: 1.0, w: 1.0, k: 0.0, c: 0.0, s: 1.0, b: 0.0 };
 
 pub(crate) fn square_wave(r: &mut Random, scalar: Scalar, w: f64) -> Problem {
     let forced = Forced { a: r.within(0.5, 3.0), ω: 10.0, w, ..UNFORCED };
     let end = shorter(scalar, 5.0);
-    pendulum(r, |q, v| Trial::new(scalar, &forced, [q], v, end, Guide::max_step((2.0 * w).min(0.02))))
+    pendulum(r, |q, v| {
+        Trial::new(scalar, &forced, [q], v, end, Guide::max_step((2.0 * w).min(0.02)))
+    })
 }
 
 pub(crate) fn relay(r: &mut Random, scalar: Scalar) -> Problem {
@@ -125,8 +146,13 @@ pub(crate) fn kick_at_rest(r: &mut Random, scalar: Scalar) -> Trial<Forced<f64>,
 }
 
 pub(crate) fn burst(r: &mut Random, scalar: Scalar) -> Problem {
-    let forced =
-        Forced { k: r.within(5.0, 30.0), c: r.within(2.0, 6.0), s: r.within(0.1, 0.4), b: r.within(50.0, 150.0), ..UNFORCED };
+    let forced = Forced {
+        k: r.within(5.0, 30.0),
+        c: r.within(2.0, 6.0),
+        s: r.within(0.1, 0.4),
+        b: r.within(50.0, 150.0),
+        ..UNFORCED
+    };
     pendulum(r, |q, v| Trial::new(scalar, &forced, [q], v, 8.0, Guide::max_step(0.1)))
 }
 
@@ -134,15 +160,22 @@ pub(crate) fn burst(r: &mut Random, scalar: Scalar) -> Problem {
 pub(crate) fn closure(r: &mut Random, scalar: Scalar, shape: fn(&mut Random) -> Shape) -> Problem {
     let hung = Hung { l: r.within(0.3, 1.0), g: 9.81 };
     let shape = shape(r);
-    let longest = if let Shape::Pulse { s, .. } | Shape::Rise { s, .. } = shape { s } else { 1e300 };
+    let longest =
+        if let Shape::Pulse { s, .. } | Shape::Rise { s, .. } = shape { s } else { 1e300 };
     let drive = Drive::Closure(shape, [1.0, 0.3]);
-    pendulum(r, |q, v| Trial::new(scalar, &hung, [q], v, 8.0, Guide::max_step(longest)).driven(drive))
+    pendulum(r, |q, v| {
+        Trial::new(scalar, &hung, [q], v, 8.0, Guide::max_step(longest)).driven(drive)
+    })
 }
 
 pub(crate) fn moving(r: &mut Random, scalar: Scalar) -> Problem {
     let hung = Hung { l: r.within(0.3, 1.0), g: 9.81 };
-    let shape = Shape::Sine { a: r.within(0.05, 0.2), ω: r.within(1.0, 5.0), φ: r.within(0.0, 6.0) };
-    pendulum(r, |q, v| Trial::new(scalar, &hung, [q], v, 8.0, Guide::FREE).driven(Drive::Sinusoid(shape, [1.0, 0.2])))
+    let shape =
+        Shape::Sine { a: r.within(0.05, 0.2), ω: r.within(1.0, 5.0), φ: r.within(0.0, 6.0) };
+    pendulum(r, |q, v| {
+        Trial::new(scalar, &hung, [q], v, 8.0, Guide::FREE)
+            .driven(Drive::Sinusoid(shape, [1.0, 0.2]))
+    })
 }
 
 /// What runs through keys.
@@ -175,7 +208,10 @@ pub(crate) fn keyed(r: &mut Random, scalar: Scalar, keys: &Keys) -> Problem {
 pub(crate) fn kapitza(r: &mut Random, scalar: Scalar, frequency: f64, end: f64) -> Problem {
     let ω = core::f64::consts::TAU * frequency;
     let hung = Hung { l: r.within(0.2, 0.4), g: 9.81 };
-    let drive = Drive::Sinusoid(Shape::Sine { a: r.within(3.0, 6.0) / ω, ω, φ: r.within(0.0, 6.0) }, [0.0, 1.0]);
+    let drive = Drive::Sinusoid(
+        Shape::Sine { a: r.within(3.0, 6.0) / ω, ω, φ: r.within(0.0, 6.0) },
+        [0.0, 1.0],
+    );
     let (q, v) = ([r.within(2.0, 4.2)], [r.within(-2.0, 2.0)]);
     Box::new(Trial::new(scalar, &hung, q, v, end, Guide::max_step(0.1 / frequency)).driven(drive))
 }

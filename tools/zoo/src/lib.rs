@@ -82,12 +82,16 @@ impl Options {
     fn check(&self) -> Result<(), String> {
         for name in &self.families {
             if !families::all().any(|family| family.name.contains(name.as_str())) {
-                return Err(format!("no family is called `{name}`; without `--features all` only some are there"));
+                return Err(format!(
+                    "no family is called `{name}`; without `--features all` only some are there"
+                ));
             }
         }
         for name in &self.scalars {
             if !families::all().any(|family| family.scalar.name() == name) {
-                return Err(format!("no family has the scalar `{name}`; there are `f32`, `f64` and `dd`"));
+                return Err(format!(
+                    "no family has the scalar `{name}`; there are `f32`, `f64` and `dd`"
+                ));
             }
         }
         for name in &self.methods {
@@ -102,7 +106,9 @@ impl Options {
     fn chosen(&self) -> Vec<&'static Family> {
         let named = |family: &&Family| {
             let exact = |part: &String| families::all().any(|family| family.name == part);
-            let name = |part: &String| if exact(part) { family.name == part } else { family.name.contains(part.as_str()) };
+            let name = |part: &String| {
+                if exact(part) { family.name == part } else { family.name.contains(part.as_str()) }
+            };
             let scalar = |name: &String| name == family.scalar.name();
             (self.families.is_empty() || self.families.iter().any(name))
                 && (self.scalars.is_empty() || self.scalars.iter().any(scalar))
@@ -119,17 +125,30 @@ pub fn run(options: &Options) -> std::io::Result<bool> {
     options.check().map_err(std::io::Error::other)?;
     let rows = measured(options);
     if !cfg!(feature = "all") {
-        println!("The families of the short test; `--features all` has the others, and more methods.");
+        println!(
+            "The families of the short test; `--features all` has the others, and more methods."
+        );
     }
     if options.verbose {
         for row in &rows {
             for run in &row.runs {
                 println!(
                     "{} run {}: tolerance {:.3e}, amplification {:.2e}, doubt {:.1e}\n    {}",
-                    row.family.name, run.run, run.tolerance, run.amplification, run.doubt, run.start
+                    row.family.name,
+                    run.run,
+                    run.tolerance,
+                    run.amplification,
+                    run.doubt,
+                    run.start
                 );
                 for m in &run.measurements {
-                    println!("    {:8} error {:.2e} merit {:?} {}", m.method.name(), m.error, m.merit, m.stats);
+                    println!(
+                        "    {:8} error {:.2e} merit {:?} {}",
+                        m.method.name(),
+                        m.error,
+                        m.merit,
+                        m.stats
+                    );
                 }
             }
         }
@@ -179,10 +198,19 @@ pub fn findings(options: &Options) -> Vec<Finding> {
     let rows = measured(options);
     let finding = |family, run: &Measured, m: &Measurement| {
         let (run, tolerance) = (run.run, run.tolerance);
-        Finding { family, run, method: m.method, tolerance, merit: m.merit.clone().map(|merit| merit.0) }
+        Finding {
+            family,
+            run,
+            method: m.method,
+            tolerance,
+            merit: m.merit.clone().map(|merit| merit.0),
+        }
     };
     let of = |row: &Row<'static>| -> Vec<Finding> {
-        row.runs.iter().flat_map(|run| run.measurements.iter().map(move |m| finding(row.family.name, run, m))).collect()
+        row.runs
+            .iter()
+            .flat_map(|run| run.measurements.iter().map(move |m| finding(row.family.name, run, m)))
+            .collect()
     };
     rows.iter().flat_map(of).collect()
 }
@@ -210,7 +238,10 @@ fn bars(options: &Options, rows: &[Row<'_>]) -> bool {
             ("median at most 1", report::quantile(&merits, 0.5) <= 1.0),
             ("at most 1 % above 100", !merits.is_empty() && above * 100 <= merits.len()),
             ("none above 1000", wrong.is_empty()),
-            ("90 % in no family above 3 × that of Dop853, which counts as 0.3 at least", worse.is_empty()),
+            (
+                "90 % in no family above 3 × that of Dop853, which counts as 0.3 at least",
+                worse.is_empty(),
+            ),
         ];
         for (bar, fine) in bars {
             println!("{:8} {} {bar}", method.name(), if fine { "meets " } else { "MISSES" });
@@ -225,8 +256,10 @@ fn bars(options: &Options, rows: &[Row<'_>]) -> bool {
 /// All runs of all families asked for.
 fn measured(options: &Options) -> Vec<Row<'static>> {
     let chosen = options.chosen();
-    let runs: Vec<usize> = options.run.map_or_else(|| (0..options.count).collect(), |run| vec![run]);
-    let jobs: Vec<(usize, usize)> = (0..chosen.len()).flat_map(|f| runs.iter().map(move |run| (f, *run))).collect();
+    let runs: Vec<usize> =
+        options.run.map_or_else(|| (0..options.count).collect(), |run| vec![run]);
+    let jobs: Vec<(usize, usize)> =
+        (0..chosen.len()).flat_map(|f| runs.iter().map(move |run| (f, *run))).collect();
     let bar = ProgressBar::new(jobs.len() as u64);
     if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} {eta} {msg}") {
         bar.set_style(style);
@@ -247,9 +280,11 @@ fn measured(options: &Options) -> Vec<Row<'static>> {
         }
     });
     bar.finish_and_clear();
-    let mut results: Vec<(usize, usize, Result<Measured, String>)> = results.into_inner().unwrap_or_default();
+    let mut results: Vec<(usize, usize, Result<Measured, String>)> =
+        results.into_inner().unwrap_or_default();
     results.sort_by_key(|(f, run, _)| (*f, *run));
-    let mut rows: Vec<Row<'static>> = chosen.iter().map(|family| Row { family, runs: Vec::new(), lost: Vec::new() }).collect();
+    let mut rows: Vec<Row<'static>> =
+        chosen.iter().map(|family| Row { family, runs: Vec::new(), lost: Vec::new() }).collect();
     for (f, run, result) in results {
         match result {
             Ok(mut measured) => {

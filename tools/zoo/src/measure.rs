@@ -43,7 +43,11 @@ fn problem(family: &Family, run: usize) -> (Box<dyn Case>, f64, Random) {
 }
 
 /// Measures the methods that `wanted` accepts.
-pub(crate) fn measure(family: &Family, run: usize, wanted: &dyn Fn(Method) -> bool) -> Result<Measured, String> {
+pub(crate) fn measure(
+    family: &Family,
+    run: usize,
+    wanted: &dyn Fn(Method) -> bool,
+) -> Result<Measured, String> {
     let (case, tolerance, mut random) = problem(family, run);
     let case = &*case;
     let times = WITHIN.map(|part| part * case.end());
@@ -52,15 +56,26 @@ pub(crate) fn measure(family: &Family, run: usize, wanted: &dyn Fn(Method) -> bo
     let least = 100.0 * family.scalar.epsilon();
     let unit = tolerance.max(least) * amplification;
     if 0.01 * unit < doubt {
-        return Err(format!("two references differ by {doubt:.1e}, the tolerance is {tolerance:.1e}, {}", case.describe()));
+        return Err(format!(
+            "two references differ by {doubt:.1e}, the tolerance is {tolerance:.1e}, {}",
+            case.describe()
+        ));
     }
     let measured = |method: &Method| wanted(*method) && method.least(family.scalar) <= tolerance;
     let measurements = case.methods(family.scalar).iter().copied().filter(measured).map(|method| {
         let mut error = f64::NAN;
         let mut stats = String::new();
         let merit = case.run(method, family.scalar, tolerance, &times).map(|run| {
-            let errors: Vec<f64> = run.states.iter().zip(&exact).map(|(state, exact)| distance(state, exact)).collect();
-            let (end, within) = (errors[times.len()], errors[..times.len()].iter().fold(0.0, |a: f64, b| a.max(*b)));
+            let errors: Vec<f64> = run
+                .states
+                .iter()
+                .zip(&exact)
+                .map(|(state, exact)| distance(state, exact))
+                .collect();
+            let (end, within) = (
+                errors[times.len()],
+                errors[..times.len()].iter().fold(0.0, |a: f64, b| a.max(*b)),
+            );
             (error, stats) = (end, run.stats);
             (end / unit, within / unit)
         });
@@ -73,7 +88,12 @@ pub(crate) fn measure(family: &Family, run: usize, wanted: &dyn Fn(Method) -> bo
 
 /// The states at the output times and at the end in two words, and how far a second reference with
 /// other steps is from them.
-fn reference(case: &dyn Case, scalar: Scalar, tolerance: f64, times: &[f64]) -> Result<(Vec<crate::case::State>, f64), String> {
+fn reference(
+    case: &dyn Case,
+    scalar: Scalar,
+    tolerance: f64,
+    times: &[f64],
+) -> Result<(Vec<crate::case::State>, f64), String> {
     let guide = case.guide();
     let fine = if case.by_series() {
         if scalar == Scalar::Wide { 1e-31 } else { 1e-24 }
@@ -91,7 +111,8 @@ fn reference(case: &dyn Case, scalar: Scalar, tolerance: f64, times: &[f64]) -> 
 pub(crate) fn clock(family: &Family, measured: &mut Measured) {
     let (case, tolerance, _) = problem(family, measured.run);
     let time = |method| {
-        let once = || Some(case.run(method, family.scalar, tolerance, &[]).ok()?.time.as_secs_f64());
+        let once =
+            || Some(case.run(method, family.scalar, tolerance, &[]).ok()?.time.as_secs_f64());
         let first: f64 = once()?;
         // What takes long is not disturbed much.
         let repeats = if first < 0.02 { 4 } else { 0 };

@@ -1,10 +1,13 @@
 //! The families that are measured with `--features all` only.
 
 use crate::case::{Guide, Scalar};
-use crate::families::{Family, Problem, closure, contact, double, friction, kick, moving, pendulum, shorter, square_wave};
+use crate::families::{
+    Family, Problem, closure, contact, double, friction, kick, moving, pendulum, shorter,
+    square_wave,
+};
 use crate::more_blocks::{
-    Atoms, Charged, Eight, Elastic, Five, Hoop, Kinked, Lifted, Oscillator, Restricted, SoftStop, Stars, Steep, Toda, Valley,
-    Wilberforce,
+    Atoms, Charged, Eight, Elastic, Five, Hoop, Kinked, Lifted, Oscillator, Restricted, SoftStop,
+    Stars, Steep, Toda, Valley, Wilberforce,
 };
 use crate::motions::{Drive, Shape};
 use crate::random::Random;
@@ -38,7 +41,9 @@ pub(crate) const MORE: &[Family] = &[
         let kinked = Kinked { g: 9.81, a: 0.0, k: 1e3, m: r.within(-0.3, 0.5), c: 0.0 };
         pendulum(r, |q, v| Trial::new(s, &kinked, [q - 1.5], v, 5.0, Guide::FREE))
     }),
-    double("two walls", |r, s| steep(r, s, &Steep { e: (-200.0f64).exp(), k: 200.0, ..FLAT }, 0.05)),
+    double("two walls", |r, s| {
+        steep(r, s, &Steep { e: (-200.0f64).exp(), k: 200.0, ..FLAT }, 0.05)
+    }),
     double("x^12", |r, s| steep(r, s, &Steep { a: 1.0, ..FLAT }, 1e300)),
     double("exp(20 x)", |r, s| steep(r, s, &Steep { e: 1e-6, k: 20.0, ..FLAT }, 0.1)),
     double("needle", |r, s| steep(r, s, &Steep { a: 1.0, h: 0.1, p: 0.02, ..FLAT }, 0.02)),
@@ -56,11 +61,20 @@ pub(crate) const MORE: &[Family] = &[
     }),
     // Forces.
     double("chirp", |r, s| {
-        let chirp = Oscillator { k: 20.0, f: r.within(5.0, 20.0), ω: 1.0, χ: r.within(1.0, 5.0), ..PLAIN };
+        let chirp =
+            Oscillator {
+                k: 20.0, f: r.within(5.0, 20.0), ω: 1.0, χ: r.within(1.0, 5.0), ..PLAIN
+            };
         oscillator(r, s, &chirp, 8.0)
     }),
     double("fast force", |r, s| {
-        let fast = Oscillator { k: 1.0, c: 1.0, f: r.within(100.0, 500.0), ω: r.within(150.0, 300.0), ..PLAIN };
+        let fast = Oscillator {
+            k: 1.0,
+            c: 1.0,
+            f: r.within(100.0, 500.0),
+            ω: r.within(150.0, 300.0),
+            ..PLAIN
+        };
         oscillator(r, s, &fast, 3.0)
     }),
     double("duffing", |r, s| {
@@ -96,11 +110,16 @@ pub(crate) const MORE: &[Family] = &[
     double("stiff spring", elastic),
     // Rest and what follows.
     double("rest, ramp", |r, s| {
-        let shape = Shape::Ramp { a: r.within(0.2, 0.6), from: r.within(3.0, 8.0), long: r.within(0.2, 0.5) };
+        let shape = Shape::Ramp {
+            a: r.within(0.2, 0.6),
+            from: r.within(3.0, 8.0),
+            long: r.within(0.2, 0.5),
+        };
         lifted(r, s, shape)
     }),
     double("rest, rise", |r, s| {
-        let shape = Shape::Rise { a: r.within(0.2, 0.6), c: r.within(4.0, 8.0), s: r.within(0.1, 0.2) };
+        let shape =
+            Shape::Rise { a: r.within(0.2, 0.6), c: r.within(4.0, 8.0), s: r.within(0.1, 0.2) };
         lifted(r, s, shape)
     }),
     // Single precision.
@@ -111,7 +130,9 @@ pub(crate) const MORE: &[Family] = &[
     single("friction f32", |r, s| friction(r, s, 0.03, 0.0)),
     single("square wave f32", |r, s| square_wave(r, s, 1e-2)),
     single("kick f32", kick),
-    single("closure step f32", |r, s| closure(r, s, |r| Shape::Jump { a: r.within(1.0, 5.0), at: r.within(1.0, 6.0) })),
+    single("closure step f32", |r, s| {
+        closure(r, s, |r| Shape::Jump { a: r.within(1.0, 5.0), at: r.within(1.0, 6.0) })
+    }),
     single("lennard-jones f32", lennard_jones),
     // Two words.
     wide("simple dd", simple),
@@ -149,7 +170,8 @@ fn smoothed_abs(r: &mut Random, scalar: Scalar) -> Problem {
     Box::new(Trial::new(scalar, &valley, q, v, 10.0, Guide::max_step(0.02)))
 }
 
-const PLAIN: Oscillator = Oscillator { D: 0.0, s: 1.0, k: 0.0, c: 0.0, μ: 0.0, f: 0.0, ω: 0.0, χ: 0.0 };
+const PLAIN: Oscillator =
+    Oscillator { D: 0.0, s: 1.0, k: 0.0, c: 0.0, μ: 0.0, f: 0.0, ω: 0.0, χ: 0.0 };
 
 fn oscillator(r: &mut Random, scalar: Scalar, system: &Oscillator, end: f64) -> Problem {
     let (q, v) = ([r.within(-1.5, 1.5)], [r.within(-1.0, 1.0)]);
@@ -195,7 +217,10 @@ fn eight(r: &mut Random, scalar: Scalar) -> Problem {
 
 fn elastic(r: &mut Random, scalar: Scalar) -> Problem {
     let elastic = Elastic { k: r.log_within(1e3, 1e5), g: 9.81 };
-    let (q, v) = ([1.0 + r.within(-0.02, 0.02), r.within(-1.5, 1.5)], [r.within(-0.5, 0.5), r.within(-1.0, 1.0)]);
+    let (q, v) = (
+        [1.0 + r.within(-0.02, 0.02), r.within(-1.5, 1.5)],
+        [r.within(-0.5, 0.5), r.within(-1.0, 1.0)],
+    );
     Box::new(Trial::new(scalar, &elastic, q, v, 3.0, Guide::FREE))
 }
 
@@ -211,7 +236,8 @@ fn magnetic(r: &mut Random, scalar: Scalar) -> Problem {
 }
 
 fn wilberforce(r: &mut Random, scalar: Scalar) -> Problem {
-    let spring = Wilberforce { k: r.within(5.0, 20.0), δ: r.within(5.0, 20.0), ε: r.within(0.2, 1.0) };
+    let spring =
+        Wilberforce { k: r.within(5.0, 20.0), δ: r.within(5.0, 20.0), ε: r.within(0.2, 1.0) };
     let q = [r.within(-1.0, 1.0), r.within(-1.0, 1.0)];
     Box::new(Trial::new(scalar, &spring, q, [0.0; 2], 10.0, Guide::FREE))
 }
@@ -238,7 +264,8 @@ fn stars(r: &mut Random, scalar: Scalar) -> Problem {
 }
 
 fn henon_heiles(r: &mut Random, scalar: Scalar) -> Problem {
-    let (q, v) = ([r.within(-0.3, 0.3), r.within(-0.3, 0.3)], [r.within(-0.2, 0.2), r.within(-0.2, 0.2)]);
+    let (q, v) =
+        ([r.within(-0.3, 0.3), r.within(-0.3, 0.3)], [r.within(-0.2, 0.2), r.within(-0.2, 0.2)]);
     Box::new(Trial::new(scalar, &HenonHeiles { λ: 1.0 }, q, v, 20.0, Guide::FREE))
 }
 
@@ -250,5 +277,12 @@ fn toda(r: &mut Random, scalar: Scalar) -> Problem {
 
 fn simple(r: &mut Random, scalar: Scalar) -> Problem {
     let (q, v) = ([r.within(-2.5, 2.5)], [r.within(-2.0, 2.0)]);
-    Box::new(Trial::new(scalar, &Simple { g: r.within(1.0, 10.0) }, q, v, shorter(scalar, 10.0), Guide::FREE))
+    Box::new(Trial::new(
+        scalar,
+        &Simple { g: r.within(1.0, 10.0) },
+        q,
+        v,
+        shorter(scalar, 10.0),
+        Guide::FREE,
+    ))
 }

@@ -1,6 +1,8 @@
 //! Prescribed motions: as a user gives them, and in two words with every break declared.
 
-use pendulum_runtime::motion::{Analytic, CatmullRom, Function, Linear, Motion, Orders, Sample, Side, Sinusoid, Spline};
+use pendulum_runtime::motion::{
+    Analytic, CatmullRom, Function, Linear, Motion, Orders, Sample, Side, Sinusoid, Spline,
+};
 use pendulum_runtime::real::{Lane, Octet, Real};
 use pendulum_runtime::system::scalar_time;
 use pendulum_runtime::time::Time;
@@ -59,7 +61,11 @@ impl Shape {
                 let (p, u) = (n(every), t - n(piece) * n(every));
                 let x = n(j) * (u * u * u / n(6.0) - p * u * u / n(4.0));
                 let (v, a) = (n(j) * (u * u - p * u) / n(2.0), n(j) * (u - p / n(2.0)));
-                if piece % 2.0 == 0.0 { [x, v, a] } else { [-(n(j) * p * p * p / n(12.0)) - x, -v, -a] }
+                if piece % 2.0 == 0.0 {
+                    [x, v, a]
+                } else {
+                    [-(n(j) * p * p * p / n(12.0)) - x, -v, -a]
+                }
             }
             Self::Pulse { a, c, s } => {
                 let u = (t - n(c)) / n(s);
@@ -69,7 +75,11 @@ impl Shape {
             Self::Rise { a, c, s } => {
                 let tanh = ((t - n(c)) / n(s)).tanh();
                 let (half, slope) = (n(0.5) * n(a), n(1.0) - tanh * tanh);
-                [half * (n(1.0) + tanh), half * slope / n(s), -(n(a) * slope * tanh) / (n(s) * n(s))]
+                [
+                    half * (n(1.0) + tanh),
+                    half * slope / n(s),
+                    -(n(a) * slope * tanh) / (n(s) * n(s)),
+                ]
             }
         }
     }
@@ -120,7 +130,9 @@ impl Drive {
                 };
                 Given::Function(Function::new(part(0)).velocity(part(1)).acceleration(part(2)))
             }
-            Self::Sinusoid(Shape::Sine { a, ω, φ }, along) => Given::Sinusoid(Sinusoid::new(along.map(|d| d * a), *ω, [*φ; 2])),
+            Self::Sinusoid(Shape::Sine { a, ω, φ }, along) => {
+                Given::Sinusoid(Sinusoid::new(along.map(|d| d * a), *ω, [*φ; 2]))
+            }
             Self::Sinusoid(..) => unreachable!("a sinusoid is a sine"),
             Self::Linear(keys) => Given::Linear(keys.clone()),
             Self::CatmullRom(keys) => Given::CatmullRom(keys.clone()),

@@ -6,7 +6,9 @@ pub(crate) struct Random(u64);
 impl Random {
     /// The generator of one run of one family.
     pub(crate) fn of(family: &str, run: usize) -> Self {
-        let seed = family.bytes().fold(SEED, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+        let seed = family
+            .bytes()
+            .fold(SEED, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
         let mut random = Self(seed ^ (run as u64).wrapping_mul(0xd134_2543_de82_ef95));
         random.next();
         random

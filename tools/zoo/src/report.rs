@@ -30,7 +30,10 @@ fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
 
 impl Row<'_> {
     fn of(&self, method: Method) -> impl Iterator<Item = (&Measured, &Measurement)> {
-        self.runs.iter().flat_map(|run| run.measurements.iter().map(move |m| (run, m))).filter(move |(_, m)| m.method == method)
+        self.runs
+            .iter()
+            .flat_map(|run| run.measurements.iter().map(move |m| (run, m)))
+            .filter(move |(_, m)| m.method == method)
     }
 
     fn merits(&self, method: Method) -> Vec<f64> {
@@ -56,23 +59,49 @@ fn short(x: f64) -> String {
 /// The table of families and methods.
 pub(crate) fn table(rows: &[Row<'_>]) -> String {
     let mut text = String::new();
-    let heads = ["family", "method", "median", "90 %", "max", "> 100", "> 1000", "failed", "dense 90 %", "time"];
+    let heads = [
+        "family",
+        "method",
+        "median",
+        "90 %",
+        "max",
+        "> 100",
+        "> 1000",
+        "failed",
+        "dense 90 %",
+        "time",
+    ];
     let _ = writeln!(
         text,
         "{:22} {:8} {:>8} {:>8} {:>8} {:>6} {:>6} {:>6} {:>10} {:>6}",
-        heads[0], heads[1], heads[2], heads[3], heads[4], heads[5], heads[6], heads[7], heads[8], heads[9]
+        heads[0],
+        heads[1],
+        heads[2],
+        heads[3],
+        heads[4],
+        heads[5],
+        heads[6],
+        heads[7],
+        heads[8],
+        heads[9]
     );
     for row in rows {
         for method in row.methods() {
             let merits = row.merits(method);
-            let dense = sorted(row.of(method).filter_map(|(_, m)| m.merit.as_ref().ok()).map(|merit| merit.1));
+            let dense = sorted(
+                row.of(method).filter_map(|(_, m)| m.merit.as_ref().ok()).map(|merit| merit.1),
+            );
             let times = sorted(row.of(method).filter_map(|(_, m)| m.time));
             let above = |bound: f64| merits.iter().filter(|merit| bound < **merit).count();
             let failed = row.of(method).filter(|(_, m)| m.merit.is_err()).count();
             let [a, b, c] = [0.5, 0.9, 1.0].map(|part| short(quantile(&merits, part)));
             let [i, j] = [short(quantile(&dense, 0.9)), short(quantile(&times, 0.5))];
-            let (name, method, d, e) = (row.family.name, method.name(), above(100.0), above(1000.0));
-            let _ = writeln!(text, "{name:22} {method:8} {a:>8} {b:>8} {c:>8} {d:>6} {e:>6} {failed:>6} {i:>10} {j:>6}");
+            let (name, method, d, e) =
+                (row.family.name, method.name(), above(100.0), above(1000.0));
+            let _ = writeln!(
+                text,
+                "{name:22} {method:8} {a:>8} {b:>8} {c:>8} {d:>6} {e:>6} {failed:>6} {i:>10} {j:>6}"
+            );
         }
     }
     text
@@ -82,8 +111,9 @@ pub(crate) fn table(rows: &[Row<'_>]) -> String {
 /// amplification, the runs without a reference, and for each method the median, the 90 % quantile
 /// and the largest merit, and its time over that of `Dop853`.
 pub(crate) fn markdown(rows: &[Row<'_>]) -> String {
-    let mut text =
-        String::from("| all | runs | median | 90 % | above 100 | above 1000 | errors |\n|---|---|---|---|---|---|---|\n");
+    let mut text = String::from(
+        "| all | runs | median | 90 % | above 100 | above 1000 | errors |\n|---|---|---|---|---|---|---|\n",
+    );
     for method in Method::ALL {
         let merits = merits(rows, method);
         if merits.is_empty() {
@@ -92,10 +122,19 @@ pub(crate) fn markdown(rows: &[Row<'_>]) -> String {
         let above = |bound: f64| merits.iter().filter(|merit| bound < **merit).count();
         let [median, most] = [0.5, 0.9].map(|part| short(quantile(&merits, part)));
         let (name, runs, failed) = (method.name(), merits.len(), failed(rows, method));
-        let _ = writeln!(text, "| {name} | {runs} | {median} | {most} | {} | {} | {failed} |", above(100.0), above(1000.0));
+        let _ = writeln!(
+            text,
+            "| {name} | {runs} | {median} | {most} | {} | {} | {failed} |",
+            above(100.0),
+            above(1000.0)
+        );
     }
     let names = Method::ALL.map(Method::name).join(" | ");
-    let _ = writeln!(text, "\n| family | amplified | lost | {names} |\n|{}", "---|".repeat(3 + Method::ALL.len()));
+    let _ = writeln!(
+        text,
+        "\n| family | amplified | lost | {names} |\n|{}",
+        "---|".repeat(3 + Method::ALL.len())
+    );
     for row in rows {
         let amplifications = sorted(row.runs.iter().map(|run| run.amplification));
         let (amplified, lost) = (short(quantile(&amplifications, 0.5)), row.lost.len());
@@ -131,7 +170,11 @@ pub(crate) fn references(rows: &[Row<'_>]) -> String {
     let mut text = String::new();
     for row in rows {
         let worst = row.runs.iter().map(|run| run.doubt).fold(0.0, f64::max);
-        let part = row.runs.iter().map(|run| run.doubt / (run.tolerance * run.amplification)).fold(0.0, f64::max);
+        let part = row
+            .runs
+            .iter()
+            .map(|run| run.doubt / (run.tolerance * run.amplification))
+            .fold(0.0, f64::max);
         let amplifications = sorted(row.runs.iter().map(|run| run.amplification));
         let _ = writeln!(
             text,
@@ -159,7 +202,9 @@ pub(crate) fn summary(rows: &[Row<'_>]) -> String {
         }
         let above = |bound: f64| merits.iter().filter(|merit| bound < **merit).count();
         let mut failures = BTreeMap::<&str, usize>::new();
-        for why in rows.iter().flat_map(|row| row.of(method)).filter_map(|(_, m)| m.merit.as_ref().err()) {
+        for why in
+            rows.iter().flat_map(|row| row.of(method)).filter_map(|(_, m)| m.merit.as_ref().err())
+        {
             *failures.entry(why).or_default() += 1;
         }
         let _ = writeln!(
@@ -186,7 +231,8 @@ pub(crate) fn summary(rows: &[Row<'_>]) -> String {
 pub(crate) fn worse(rows: &[Row<'_>], method: Method, floor: f64) -> Vec<String> {
     let mut names = Vec::new();
     for row in rows {
-        let (own, other) = (quantile(&row.merits(method), 0.9), quantile(&row.merits(Method::Dop853), 0.9));
+        let (own, other) =
+            (quantile(&row.merits(method), 0.9), quantile(&row.merits(Method::Dop853), 0.9));
         if own > 3.0 * other.max(floor) {
             names.push(format!("{} ({} : {})", row.family.name, short(own), short(other)));
         }
@@ -223,7 +269,9 @@ pub(crate) fn merits(rows: &[Row<'_>], method: Method) -> Vec<f64> {
 
 /// A line for each measurement, with a head.
 pub(crate) fn lines(rows: &[Row<'_>]) -> String {
-    let mut text = String::from("family,scalar,run,method,tolerance,amplification,error,merit,dense,time,failure\n");
+    let mut text = String::from(
+        "family,scalar,run,method,tolerance,amplification,error,merit,dense,time,failure\n",
+    );
     for row in rows {
         for run in &row.runs {
             for m in &run.measurements {
@@ -232,7 +280,8 @@ pub(crate) fn lines(rows: &[Row<'_>]) -> String {
                     Err(why) => (String::new(), String::new(), why.as_str()),
                 };
                 let time = m.time.map_or(String::new(), |time| time.to_string());
-                let (name, scalar, method) = (row.family.name, row.family.scalar.name(), m.method.name());
+                let (name, scalar, method) =
+                    (row.family.name, row.family.scalar.name(), m.method.name());
                 let Measured { run, tolerance, amplification, .. } = run;
                 let _ = writeln!(
                     text,

@@ -22,9 +22,24 @@ pub(crate) struct Trial<S, const N: usize> {
 
 impl<S: System<N, Scalar = f64, With<f64> = S>, const N: usize> Trial<S, N> {
     /// A problem whose numbers the scalar holds exactly.
-    pub(crate) fn new(scalar: Scalar, system: &S, q: [f64; N], v: [f64; N], end: f64, guide: Guide) -> Self {
+    pub(crate) fn new(
+        scalar: Scalar,
+        system: &S,
+        q: [f64; N],
+        v: [f64; N],
+        end: f64,
+        guide: Guide,
+    ) -> Self {
         let round = |x| scalar.round(x);
-        Self { system: system.map(round), q: q.map(round), v: v.map(round), end, guide, limit: 1e300, drive: None }
+        Self {
+            system: system.map(round),
+            q: q.map(round),
+            v: v.map(round),
+            end,
+            guide,
+            limit: 1e300,
+            drive: None,
+        }
     }
 
     /// The same with steps that are not longer.
@@ -49,7 +64,8 @@ pub(crate) fn finished<T: Widened, const N: usize>(
     times: &[f64],
 ) -> Result<Run, String> {
     let solution = result.map_err(|failure| kind(&failure.error))?;
-    let mut states: Vec<State> = solution.q.iter().zip(&solution.v).take(times.len()).map(|(q, v)| joined(q, v)).collect();
+    let mut states: Vec<State> =
+        solution.q.iter().zip(&solution.v).take(times.len()).map(|(q, v)| joined(q, v)).collect();
     states.push(joined(&solution.end.q, &solution.end.v));
     Ok(Run { states, time, stats: solution.stats.to_string() })
 }

@@ -1,4 +1,5 @@
-//! Accelerations written by hand, as one takes them from a textbook: the parameters are folded in, sine and cosine are those of `std`.
+//! Accelerations written by hand, as one takes them from a textbook: the parameters are folded in,
+//! sine and cosine are those of `std`.
 
 /// The pendulum with g/L = 9.8.
 pub fn simple(_: f64, q: &[f64; 1], _: &[f64; 1]) -> [f64; 1] {
@@ -11,7 +12,8 @@ pub fn moving(t: f64, q: &[f64; 1], _: &[f64; 1]) -> [f64; 1] {
     [(2.0 * t).sin() * cos - sin]
 }
 
-/// A body with m = 1.5, centre (¼, −¾), I = 1.25 and g = 9.8, its pivot at (¼ sin 2t, ⅛ sin(2t + 1)).
+/// A body with m = 1.5, centre (¼, −¾), I = 1.25 and g = 9.8, its pivot at (¼ sin 2t, ⅛ sin(2t +
+/// 1)).
 pub fn moving_compound(t: f64, q: &[f64; 1], _: &[f64; 1]) -> [f64; 1] {
     let (sin, cos) = q[0].sin_cos();
     let (x, y) = (-(2.0 * t).sin(), -0.5 * (2.0 * t + 1.0).sin());
@@ -34,7 +36,8 @@ pub fn double(_: f64, q: &[f64; 2], v: &[f64; 2]) -> [f64; 2] {
     [(f0 - cos * f1) / divisor, (2.0 * f1 - cos * f0) / divisor]
 }
 
-/// Five unit links and masses, g = 1: M q̈ = f with M[i][j] = (5 − max(i, j)) cos(θᵢ − θⱼ), solved by Gauss's elimination.
+/// Five unit links and masses, g = 1: M q̈ = f with M[i][j] = (5 − max(i, j)) cos(θᵢ − θⱼ), solved
+/// by Gauss's elimination.
 pub fn chain5(_: f64, q: &[f64; 5], v: &[f64; 5]) -> [f64; 5] {
     let (sin, cos) = (q.map(f64::sin), q.map(f64::cos));
     let (mut m, mut f) = ([[0.0; 5]; 5], [0.0; 5]);

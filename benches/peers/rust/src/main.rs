@@ -1,14 +1,18 @@
-//! The crates `ode_solvers` and `differential-equations` on the systems of the benchmark `work_precision`, which starts this program.
+//! The crates `ode_solvers` and `differential-equations` on the systems of the benchmark
+//! `work_precision`, which starts this program.
 //!
-//! Both integrate with their own DOP853, once with the right-hand side that `lagrangian!` generated and once with one written by hand
-//! (`hand.rs`). Tolerances are relative and absolute, limits on the number of steps are lifted, the rest is their defaults.
+//! Both integrate with their own DOP853, once with the right-hand side that `lagrangian!` generated
+//! and once with one written by hand (`hand.rs`). Tolerances are relative and absolute, limits on
+//! the number of steps are lifted, the rest is their defaults.
 //!
-//! Both are asked for the end of each stretch between two output times, one integration after the other, because of their dense outputs:
-//! that of `ode_solvers` would cost three evaluations at every step and extrapolates the last state from the step after the last but one
-//! output, that of `differential-equations` is off by 1e-8 where its steps are good to 1e-12.
+//! Both are asked for the end of each stretch between two output times, one integration after the
+//! other, because of their dense outputs: that of `ode_solvers` would cost three evaluations at
+//! every step and extrapolates the last state from the step after the last but one output, that of
+//! `differential-equations` is off by 1e-8 where its steps are good to 1e-12.
 //!
-//! The table of `ode_solvers` 0.6.2 holds 0 instead of 1 for the time of its last stages, which spoils its order and error estimate for
-//! driven systems; there it is given the time as a further component of the state, so that it does not use the table.
+//! The table of `ode_solvers` 0.6.2 holds 0 instead of 1 for the time of its last stages, which
+//! spoils its order and error estimate for driven systems; there it is given the time as a further
+//! component of the state, so that it does not use the table.
 
 #![allow(missing_docs)]
 
@@ -42,14 +46,16 @@ fn main() -> std::io::Result<()> {
     serve::serve(&versions(), &mut rows)
 }
 
-/// The rows of one system with N coordinates: M = 2N, and L = M for `ode_solvers` or L = M + 1 where it is given the time.
+/// The rows of one system with N coordinates: M = 2N, and L = M for `ode_solvers` or L = M + 1
+/// where it is given the time.
 fn add<const N: usize, const M: usize, const L: usize>(
     rows: &mut Vec<Row>,
     name: &'static str,
     dynamics: impl Dynamics<N, Scalar = f64> + 'static,
     hand: impl Fn(f64, &[f64; N], &[f64; N]) -> [f64; N] + Copy + 'static,
 ) {
-    // The parameters' part is computed once, as in our own integrators; the program lives as long as its rows.
+    // The parameters' part is computed once, as in our own integrators; the program lives as long
+    // as its rows.
     let dynamics: &'static _ = Box::leak(Box::new(dynamics));
     let prepared = Prepared::new(dynamics);
     let generated = move |t, q: &[f64; N], v: &[f64; N]| prepared.accelerations_at(Time::new(t), Side::After, q, v);

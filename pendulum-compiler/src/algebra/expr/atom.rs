@@ -4,8 +4,8 @@ use super::{Dependencies, Graph, Id, Node};
 use crate::algebra::number::Rational;
 
 impl Graph {
-    /// Closes the sums of an expression to rewriting: no other sum takes their terms in. Products stay open, so that their factors
-    /// cancel, and so do sums of parameters, which cost nothing.
+    /// Closes the sums of an expression to rewriting: no other sum takes their terms in. Products
+    /// stay open, so that their factors cancel, and so do sums of parameters, which cost nothing.
     pub(crate) fn atom(&mut self, id: Id) -> Id {
         let (coefficient, bare) = self.split(id);
         match self.node(bare).clone() {
@@ -16,10 +16,16 @@ impl Graph {
             Node::Product(_, factors) => {
                 let close = |graph: &mut Self, id: Id| {
                     let moving = graph.dependencies(id).any(Dependencies::STATE);
-                    if moving && matches!(graph.node(id), Node::Sum(_)) { graph.intern(Node::Atom(id)) } else { id }
+                    if moving && matches!(graph.node(id), Node::Sum(_)) {
+                        graph.intern(Node::Atom(id))
+                    } else {
+                        id
+                    }
                 };
-                let closed: Vec<(Id, Rational)> =
-                    factors.into_iter().map(|(base, exponent)| (close(self, base), exponent)).collect();
+                let closed: Vec<(Id, Rational)> = factors
+                    .into_iter()
+                    .map(|(base, exponent)| (close(self, base), exponent))
+                    .collect();
                 self.product(coefficient, &closed)
             }
             _ => id,

@@ -1,8 +1,8 @@
 //! The hash-consed expression graph: equal expressions are one node, numbers are exact.
 //!
-//! Sums and products are flat and sorted. A sum is primitive: its numeric content and the factors common to all its terms stand
-//! before it, so that `a*b + a*c` and `a*(b + c)` are one node. Children are always older than their parents: ascending ids are a
-//! topological order.
+//! Sums and products are flat and sorted. A sum is primitive: its numeric content and the factors
+//! common to all its terms stand before it, so that `a*b + a*c` and `a*(b + c)` are one node.
+//! Children are always older than their parents: ascending ids are a topological order.
 
 mod atom;
 mod dependencies;
@@ -22,7 +22,8 @@ use std::hash::{BuildHasherDefault, DefaultHasher};
 /// The terms of a sum under construction.
 pub(crate) type Terms = BTreeMap<Id, Rational>;
 
-/// The same in every run; the maps that use it are asked, never listed, so that no order of theirs can be seen.
+/// The same in every run; the maps that use it are asked, never listed, so that no order of theirs
+/// can be seen.
 type Hasher = BuildHasherDefault<DefaultHasher>;
 
 /// All expressions of a block.
@@ -42,8 +43,13 @@ impl Graph {
     pub(crate) const ONE: Id = Id(1);
 
     pub(crate) fn new() -> Self {
-        let mut graph =
-            Self { nodes: Vec::new(), size: 0, dependencies: Vec::new(), ids: HashMap::default(), slopes: HashMap::default() };
+        let mut graph = Self {
+            nodes: Vec::new(),
+            size: 0,
+            dependencies: Vec::new(),
+            ids: HashMap::default(),
+            slopes: HashMap::default(),
+        };
         graph.intern(Node::Number(Rational::ZERO));
         graph.intern(Node::Number(Rational::ONE));
         graph
@@ -184,9 +190,9 @@ impl Graph {
         let id = Id(u32::try_from(self.nodes.len()).unwrap_or(u32::MAX));
         let dependencies = match &node {
             Node::Symbol(symbol) => Dependencies::of(*symbol),
-            Node::Sum(list) | Node::Product(_, list) => {
-                list.iter().fold(Dependencies::default(), |all, &(id, _)| all.or(self.dependencies(id)))
-            }
+            Node::Sum(list) | Node::Product(_, list) => list
+                .iter()
+                .fold(Dependencies::default(), |all, &(id, _)| all.or(self.dependencies(id))),
             Node::Call(_, a) | Node::Atom(a) => self.dependencies(*a),
             Node::Atan2(a, b) | Node::Max(a, b) => self.dependencies(*a).or(self.dependencies(*b)),
             Node::Number(_) | Node::Opaque(_) | Node::Pi => Dependencies::default(),

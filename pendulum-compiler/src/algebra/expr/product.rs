@@ -18,7 +18,8 @@ impl Graph {
             if coefficient.is_zero() {
                 return Self::ZERO;
             }
-            // A base whose exponents have added up to a whole number may open again; rules may fire on the rest.
+            // A base whose exponents have added up to a whole number may open again; rules may fire
+            // on the rest.
             if let Some(edit) = rule::rewrite_product(self, &bases) {
                 for id in edit.removed {
                     bases.remove(&id);
@@ -28,7 +29,10 @@ impl Graph {
             }
             let opened: Vec<Id> = bases
                 .iter()
-                .filter(|(id, exponent)| exponent.is_integer() && matches!(self.node(**id), Node::Number(_) | Node::Product(..)))
+                .filter(|(id, exponent)| {
+                    exponent.is_integer()
+                        && matches!(self.node(**id), Node::Number(_) | Node::Product(..))
+                })
                 .map(|(&id, _)| id)
                 .collect();
             if opened.is_empty() {
@@ -43,7 +47,9 @@ impl Graph {
         let factors: Vec<(Id, Rational)> = bases.into_iter().collect();
         match factors.as_slice() {
             [] => self.number(coefficient),
-            [(base, exponent)] if *exponent == Rational::ONE && coefficient == Rational::ONE => *base,
+            [(base, exponent)] if *exponent == Rational::ONE && coefficient == Rational::ONE => {
+                *base
+            }
             _ => self.intern(Node::Product(coefficient, factors)),
         }
     }
@@ -60,7 +66,9 @@ impl Graph {
     pub(crate) fn split(&mut self, id: Id) -> (Rational, Id) {
         match self.node(id).clone() {
             Node::Number(value) => (value, Self::ONE),
-            Node::Product(coefficient, factors) if coefficient != Rational::ONE => (coefficient, self.bare_product(factors)),
+            Node::Product(coefficient, factors) if coefficient != Rational::ONE => {
+                (coefficient, self.bare_product(factors))
+            }
             _ => (Rational::ONE, id),
         }
     }
@@ -68,16 +76,26 @@ impl Graph {
     /// Whether an expression is a quotient by something that moves.
     pub(crate) fn moving_quotient(&self, id: Id) -> bool {
         let factors = self.factors(id);
-        factors.iter().any(|&(base, exponent)| exponent.is_negative() && self.dependencies(base).any(Dependencies::STATE))
+        factors.iter().any(|&(base, exponent)| {
+            exponent.is_negative() && self.dependencies(base).any(Dependencies::STATE)
+        })
     }
 
-    fn add_factor(&mut self, coefficient: &mut Rational, bases: &mut Terms, base: Id, exponent: Rational) {
+    fn add_factor(
+        &mut self,
+        coefficient: &mut Rational,
+        bases: &mut Terms,
+        base: Id,
+        exponent: Rational,
+    ) {
         if exponent.is_zero() {
             return;
         }
         match self.node(base).clone() {
             Node::Number(value) => {
-                if let Some(power) = number_power(value, exponent).and_then(|power| power.mul(*coefficient)) {
+                if let Some(power) =
+                    number_power(value, exponent).and_then(|power| power.mul(*coefficient))
+                {
                     *coefficient = power;
                     return;
                 }
@@ -89,10 +107,12 @@ impl Graph {
             }
             Node::Product(own, inner) => {
                 if exponent.is_integer() {
-                    let powers = inner.iter().map(|&(id, power)| Some((id, exact(power.mul(exponent))?)));
+                    let powers =
+                        inner.iter().map(|&(id, power)| Some((id, exact(power.mul(exponent))?)));
                     let powers = powers.collect::<Option<Vec<_>>>();
                     let Some(powers) = powers else {
-                        // Exponents beyond exact arithmetic: the power stays closed, or it would be opened for ever.
+                        // Exponents beyond exact arithmetic: the power stays closed, or it would be
+                        // opened for ever.
                         let closed = self.intern(Node::Atom(base));
                         return self.add_exponent(bases, closed, exponent);
                     };
@@ -109,7 +129,8 @@ impl Graph {
         }
     }
 
-    /// A broken power of a product: even powers come out as magnitudes, positive numbers come out, the rest stays together.
+    /// A broken power of a product: even powers come out as magnitudes, positive numbers come out,
+    /// the rest stays together.
     fn add_root(
         &mut self,
         coefficient: &mut Rational,
@@ -235,7 +256,9 @@ mod tests {
         let power = g.power(product, large);
         let tower = g.power(power, large);
         let factors = g.factors(tower);
-        assert!(matches!(factors.as_slice(), [(base, exponent)] if matches!(g.node(*base), Node::Atom(_)) && *exponent == large));
+        assert!(
+            matches!(factors.as_slice(), [(base, exponent)] if matches!(g.node(*base), Node::Atom(_)) && *exponent == large)
+        );
         assert_eq!(g.div(tower, tower), Graph::ONE);
     }
 }

@@ -46,7 +46,8 @@ impl Graph {
         }
     }
 
-    /// Adds `a · b · term` for a term without a coefficient of its own; what overflows is left unevaluated.
+    /// Adds `a · b · term` for a term without a coefficient of its own; what overflows is left
+    /// unevaluated.
     fn add_monomial(&mut self, terms: &mut Terms, term: Id, a: Rational, b: Rational) {
         let old = terms.get(&term).copied().unwrap_or(Rational::ZERO);
         if let Some(total) = a.mul(b).and_then(|product| product.add(old)) {
@@ -59,7 +60,10 @@ impl Graph {
         }
         let a = self.intern(Node::Opaque(Literal::Exact(a)));
         let b = self.intern(Node::Opaque(Literal::Exact(b)));
-        let product = self.product(Rational::ONE, &[(a, Rational::ONE), (b, Rational::ONE), (term, Rational::ONE)]);
+        let product = self.product(
+            Rational::ONE,
+            &[(a, Rational::ONE), (b, Rational::ONE), (term, Rational::ONE)],
+        );
         let count = terms.get(&product).copied().unwrap_or(Rational::ZERO);
         terms.insert(product, count.add(Rational::ONE).unwrap_or(Rational::ONE));
     }
@@ -81,7 +85,8 @@ impl Graph {
         }
         let common = self.common_factors(&terms);
         if !common.is_empty() {
-            let inverse: Vec<(Id, Rational)> = common.iter().map(|&(base, exponent)| (base, exponent.negative())).collect();
+            let inverse: Vec<(Id, Rational)> =
+                common.iter().map(|&(base, exponent)| (base, exponent.negative())).collect();
             let mut rest = Terms::new();
             for (id, coefficient) in terms {
                 let mut factors = vec![(id, Rational::ONE)];
@@ -94,14 +99,21 @@ impl Graph {
             factors.push((rest, Rational::ONE));
             return self.product(Rational::ONE, &factors);
         }
-        let mut content =
-            terms.values().copied().reduce(|a, b| a.content(b).unwrap_or(Rational::ONE)).unwrap_or(Rational::ONE).abs();
+        let mut content = terms
+            .values()
+            .copied()
+            .reduce(|a, b| a.content(b).unwrap_or(Rational::ONE))
+            .unwrap_or(Rational::ONE)
+            .abs();
         if terms.values().next().is_some_and(|first| first.is_negative()) {
             content = content.negative();
         }
-        let divided: Option<Vec<(Id, Rational)>> = content
-            .reciprocal()
-            .and_then(|inverse| terms.iter().map(|(&id, &coefficient)| coefficient.mul(inverse).map(|own| (id, own))).collect());
+        let divided: Option<Vec<(Id, Rational)>> = content.reciprocal().and_then(|inverse| {
+            terms
+                .iter()
+                .map(|(&id, &coefficient)| coefficient.mul(inverse).map(|own| (id, own)))
+                .collect()
+        });
         match divided {
             Some(divided) if content != Rational::ONE => {
                 let primitive = self.intern(Node::Sum(divided));
@@ -123,21 +135,27 @@ impl Graph {
                 return Vec::new();
             }
             let factors = self.factors(id);
-            common.retain_mut(|(base, exponent)| match factors.iter().find(|(other, _)| other == base) {
-                Some(&(_, other)) if other.is_negative() == exponent.is_negative() => {
-                    if other.abs().less(exponent.abs()) == Some(true) {
-                        *exponent = other;
+            common.retain_mut(|(base, exponent)| {
+                match factors.iter().find(|(other, _)| other == base) {
+                    Some(&(_, other)) if other.is_negative() == exponent.is_negative() => {
+                        if other.abs().less(exponent.abs()) == Some(true) {
+                            *exponent = other;
+                        }
+                        true
                     }
-                    true
+                    _ => false,
                 }
-                _ => false,
             });
         }
-        // What a division by the factor cannot take out of every term would be found again for ever.
+        // What a division by the factor cannot take out of every term would be found again for
+        // ever.
         common.retain(|&(base, least)| {
             let divides = |&(other, exponent): &(Id, Rational)| {
                 let rest = exact(exponent.add(least.negative()));
-                other != base || rest.is_some_and(|rest| rest.is_zero() || rest.is_negative() == least.is_negative())
+                other != base
+                    || rest.is_some_and(|rest| {
+                        rest.is_zero() || rest.is_negative() == least.is_negative()
+                    })
             };
             terms.keys().all(|&id| self.factors(id).iter().all(divides))
         });

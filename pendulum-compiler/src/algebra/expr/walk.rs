@@ -1,4 +1,5 @@
-//! Walks through the graph: from an expression to all that it is made of, and to the same with other children.
+//! Walks through the graph: from an expression to all that it is made of, and to the same with
+//! other children.
 
 use super::{Dependencies, Function, Graph, Id, Node, Symbol};
 use crate::algebra::number::Rational;
@@ -7,9 +8,13 @@ use std::collections::BTreeSet;
 impl Graph {
     /// A node with other children.
     pub(crate) fn rebuilt(&mut self, node: &Node, child: impl Fn(Id) -> Id) -> Id {
-        let list = |items: &[(Id, Rational)]| items.iter().map(|&(id, number)| (child(id), number)).collect::<Vec<_>>();
+        let list = |items: &[(Id, Rational)]| {
+            items.iter().map(|&(id, number)| (child(id), number)).collect::<Vec<_>>()
+        };
         match node {
-            Node::Number(_) | Node::Opaque(_) | Node::Pi | Node::Symbol(_) => self.intern(node.clone()),
+            Node::Number(_) | Node::Opaque(_) | Node::Pi | Node::Symbol(_) => {
+                self.intern(node.clone())
+            }
             Node::Sum(terms) => self.sum(&list(terms)),
             Node::Product(coefficient, factors) => self.product(*coefficient, &list(factors)),
             Node::Call(function, argument) => self.call(*function, child(*argument)),
@@ -18,7 +23,11 @@ impl Graph {
             Node::Atom(inner) => {
                 let inner = child(*inner);
                 let (_, bare) = self.split(inner);
-                if matches!(self.node(bare), Node::Sum(_)) { self.atom(inner) } else { self.closed(inner) }
+                if matches!(self.node(bare), Node::Sum(_)) {
+                    self.atom(inner)
+                } else {
+                    self.closed(inner)
+                }
             }
         }
     }
@@ -47,15 +56,26 @@ impl Graph {
 
     /// Whether nothing that moves goes through a function that has a corner or jumps.
     pub(crate) fn smooth(&self, roots: &[Id]) -> bool {
-        let cornered =
-            |&id: &Id| matches!(self.node(id), Node::Max(..) | Node::Call(Function::Abs | Function::Sign | Function::Step, _));
-        !self.reachable(roots).iter().filter(|id| cornered(id)).any(|&id| self.dependencies(id).any(Dependencies::STATE))
+        let cornered = |&id: &Id| {
+            matches!(
+                self.node(id),
+                Node::Max(..) | Node::Call(Function::Abs | Function::Sign | Function::Step, _)
+            )
+        };
+        !self
+            .reachable(roots)
+            .iter()
+            .filter(|id| cornered(id))
+            .any(|&id| self.dependencies(id).any(Dependencies::STATE))
     }
 
     /// Whether `roots` are written as sums of coordinates and velocities with coefficients that
     /// parameters alone decide, and of what contains neither.
     pub(crate) fn linear(&self, roots: &[Id]) -> bool {
-        let moving = Dependencies::COORDINATE.or(Dependencies::VELOCITY).or(Dependencies::MOMENTUM).or(Dependencies::AUXILIARY);
+        let moving = Dependencies::COORDINATE
+            .or(Dependencies::VELOCITY)
+            .or(Dependencies::MOMENTUM)
+            .or(Dependencies::AUXILIARY);
         let mut linear = vec![false; roots.iter().map(|id| id.index() + 1).max().unwrap_or(0)];
         for id in self.reachable(roots) {
             linear[id.index()] = !self.dependencies(id).any(moving)
@@ -63,10 +83,12 @@ impl Graph {
                     Node::Symbol(_) => true,
                     Node::Sum(terms) => terms.iter().all(|(term, _)| linear[term.index()]),
                     Node::Product(_, factors) => {
-                        let mut changing =
-                            factors.iter().filter(|(factor, _)| self.dependencies(*factor).any(Dependencies::STATE));
-                        let only =
-                            changing.next().is_some_and(|(factor, power)| *power == Rational::ONE && linear[factor.index()]);
+                        let mut changing = factors.iter().filter(|(factor, _)| {
+                            self.dependencies(*factor).any(Dependencies::STATE)
+                        });
+                        let only = changing.next().is_some_and(|(factor, power)| {
+                            *power == Rational::ONE && linear[factor.index()]
+                        });
                         only && changing.next().is_none()
                     }
                     Node::Atom(inner) => linear[inner.index()],

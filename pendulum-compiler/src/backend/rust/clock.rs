@@ -16,7 +16,8 @@ impl Emitter<'_, '_> {
             return None;
         }
         let (krate, scalar, count) = (&self.krate, self.scalar(), features.len());
-        let roots: Vec<Id> = features.iter().flat_map(|feature| [feature.rate, feature.since]).collect();
+        let roots: Vec<Id> =
+            features.iter().flat_map(|feature| [feature.rate, feature.since]).collect();
         let values = self.body(&schedule::program(&graph, &roots));
         let numbers = 2 * count;
         Some(quote! {

@@ -12,15 +12,21 @@ impl Emitter<'_, '_> {
     /// The equations, their cost and what they leave out, for hover and rustdoc.
     pub(super) fn documentation(&self) -> TokenStream {
         let names = Names::new(self.model, &self.energies.families);
-        let (Some(motion), Some(accelerations)) = (&self.motion, &self.accelerations) else { return TokenStream::new() };
-        let mut conserved: Vec<String> =
-            motion.conserved.iter().map(|conserved| format!("`{}`", unicode::conserved(&names, conserved))).collect();
+        let (Some(motion), Some(accelerations)) = (&self.motion, &self.accelerations) else {
+            return TokenStream::new();
+        };
+        let mut conserved: Vec<String> = motion
+            .conserved
+            .iter()
+            .map(|conserved| format!("`{}`", unicode::conserved(&names, conserved)))
+            .collect();
         // An energy may contain a time that no equation does.
         if motion.power == Graph::ZERO {
             conserved.push("the energy".into());
         }
         let count = accelerations.count();
-        let documented = self.model.block.attributes.iter().any(|attribute| attribute.path().is_ident("doc"));
+        let documented =
+            self.model.block.attributes.iter().any(|attribute| attribute.path().is_ident("doc"));
         let mut text = String::new();
         if documented {
             text.push_str("\n\n");
@@ -75,7 +81,9 @@ mod tests {
             (true, "potential = m*g*q;"),
             (true, "potential = m*g*q; force q = 0;"),
         ] {
-            let block = format!("::p; struct S {{ m: kg, g: m/s^2 }} coordinate q: m; kinetic = m/2*q_dot^2; {statements}");
+            let block = format!(
+                "::p; struct S {{ m: kg, g: m/s^2 }} coordinate q: m; kinetic = m/2*q_dot^2; {statements}"
+            );
             let found = expand(block.parse().unwrap()).to_string();
             assert!(!found.contains("compile_error"), "{found}");
             assert_eq!(found.contains("the energy"), conserved, "{statements}");

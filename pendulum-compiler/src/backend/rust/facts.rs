@@ -27,7 +27,14 @@ impl Emitter<'_, '_> {
                 smooth: false, linear: false, cyclic: &[], conserved: &[], unused: &[], equations: "", latex: "",
             }));
         };
-        let (autonomous, explicit_time, separable, velocity_free, constant_mass_matrix, nonconservative) = (
+        let (
+            autonomous,
+            explicit_time,
+            separable,
+            velocity_free,
+            constant_mass_matrix,
+            nonconservative,
+        ) = (
             motion.autonomous,
             motion.explicit_time,
             motion.separable,
@@ -38,7 +45,11 @@ impl Emitter<'_, '_> {
         let smooth = self.graph.smooth(&motion.accelerations);
         let linear = motion.linear;
         let cyclic = motion.cyclic.clone();
-        let conserved: Vec<String> = motion.conserved.iter().map(|conserved| unicode::conserved(&names, conserved)).collect();
+        let conserved: Vec<String> = motion
+            .conserved
+            .iter()
+            .map(|conserved| unicode::conserved(&names, conserved))
+            .collect();
         let unused = self.unused(&names);
         let [equations, latex] = self.equations.each_ref().map(|lines| lines.join("\n"));
         quote!(#krate::__private::facts(#krate::__private::Known {
@@ -53,12 +64,18 @@ impl Emitter<'_, '_> {
         let mut needed = self.graph.symbols(&motion.accelerations);
         for quantity in &self.model.parameters {
             // A moment about the pivot is made of all that a body has.
-            if needed.iter().any(|symbol| matches!(symbol, Symbol::Moment(first, _) if *first == quantity.first)) {
-                needed.extend((quantity.first..quantity.first + quantity.count()).map(Symbol::Parameter));
+            if needed.iter().any(
+                |symbol| matches!(symbol, Symbol::Moment(first, _) if *first == quantity.first),
+            ) {
+                needed.extend(
+                    (quantity.first..quantity.first + quantity.count()).map(Symbol::Parameter),
+                );
             }
         }
         let all = names.parameters.iter().enumerate();
-        all.filter(|(index, _)| !needed.contains(&Symbol::Parameter(*index))).map(|(_, name)| name.clone()).collect()
+        all.filter(|(index, _)| !needed.contains(&Symbol::Parameter(*index)))
+            .map(|(_, name)| name.clone())
+            .collect()
     }
 
     /// For each purpose, whether it needs the position, the velocity and the acceleration of each
@@ -67,12 +84,21 @@ impl Emitter<'_, '_> {
         let purposes: Vec<Vec<Symbol>> = match &self.motion {
             None => vec![Vec::new(); 4],
             Some(motion) => {
-                let of = |lists: &[&[Id]]| self.graph.symbols(&lists.concat()).into_iter().collect();
+                let of =
+                    |lists: &[&[Id]]| self.graph.symbols(&lists.concat()).into_iter().collect();
                 let masses = motion.mass_matrix.concat();
-                let energies: Vec<Id> = [Some(motion.energy), motion.kinetic, motion.potential].into_iter().flatten().collect();
+                let energies: Vec<Id> = [Some(motion.energy), motion.kinetic, motion.potential]
+                    .into_iter()
+                    .flatten()
+                    .collect();
                 vec![
                     of(&[&motion.accelerations, &motion.forces]),
-                    of(&[&motion.momenta, &motion.momentum_rates, motion.velocities.as_deref().unwrap_or_default(), &masses]),
+                    of(&[
+                        &motion.momenta,
+                        &motion.momentum_rates,
+                        motion.velocities.as_deref().unwrap_or_default(),
+                        &masses,
+                    ]),
                     of(&[&energies]),
                     of(&[&[motion.power]]),
                 ]
@@ -103,7 +129,8 @@ impl Emitter<'_, '_> {
                     .map(|(part, _)| format_ident!("{part}"));
                 quote!(#krate::motion::Orders::NONE #(.and(#krate::motion::Orders::#parts))*)
             });
-            let purposes = ["accelerations", "momenta", "energy", "power"].map(|purpose| format_ident!("{purpose}"));
+            let purposes = ["accelerations", "momenta", "energy", "power"]
+                .map(|purpose| format_ident!("{purpose}"));
             quote!(#krate::system::Input { name: #name, components: #components, #(#purposes: #orders),* })
         };
         self.model.inputs.iter().enumerate().map(describe).collect()

@@ -7,10 +7,12 @@ use quote::quote;
 
 impl Emitter<'_, '_> {
     pub(super) fn jacobians(&mut self) -> TokenStream {
-        let (krate, scalar, other, count) = (self.krate.clone(), self.scalar(), self.other_scalar(), self.count());
+        let (krate, scalar, other, count) =
+            (self.krate.clone(), self.scalar(), self.other_scalar(), self.count());
         let name = &self.model.block.name;
         let written = self.motion.as_ref().is_none_or(|motion| motion.jacobians.is_some());
-        let [positions, velocities, parameters] = if written { self.written_jacobians() } else { self.dual_jacobians() };
+        let [positions, velocities, parameters] =
+            if written { self.written_jacobians() } else { self.dual_jacobians() };
         let state = quote!(q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs);
         let inputs = (0..self.model.inputs.len()).map(Literal::usize_unsuffixed);
         quote! {
@@ -43,7 +45,8 @@ impl Emitter<'_, '_> {
     fn written_jacobians(&mut self) -> [TokenStream; 3] {
         let (krate, scalar, count) = (self.krate.clone(), self.scalar(), self.count());
         let size = count * count;
-        let flat = [0, 1, 2].map(|which| self.output(|motion| Some(motion.jacobians.as_ref()?[which].concat())));
+        let flat = [0, 1, 2]
+            .map(|which| self.output(|motion| Some(motion.jacobians.as_ref()?[which].concat())));
         let [positions, velocities, parameters] = flat;
         if self.motion.is_none() {
             return [quote!(#positions), quote!(#velocities), quote!(#parameters)];

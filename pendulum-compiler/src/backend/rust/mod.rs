@@ -1,4 +1,5 @@
-//! Rust for a derived block: the struct, its constructor and the implementation of the runtime's traits.
+//! Rust for a derived block: the struct, its constructor and the implementation of the runtime's
+//! traits.
 
 mod clock;
 pub(crate) mod documentation;
@@ -23,7 +24,8 @@ use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 use std::collections::BTreeMap;
 
-/// The names of ours that the generated code binds, besides those of the block and those that begin with `__`.
+/// The names of ours that the generated code binds, besides those of the block and those that begin
+/// with `__`.
 #[rustfmt::skip]
 const OWN: &[&str] = &[
     "acceleration", "all", "at_position", "at_time", "both", "column", "columns", "drive", "entries", "index", "inputs", "k", "lifted",
@@ -80,8 +82,9 @@ impl Emitter<'_, '_> {
 
     /// Functions of the names that the generated code binds.
     ///
-    /// A constant or a unit struct of such a name in the user's scope would turn the binding into a pattern; behind a function of
-    /// the name it is out of sight, and a binding may shadow a function.
+    /// A constant or a unit struct of such a name in the user's scope would turn the binding into a
+    /// pattern; behind a function of the name it is out of sight, and a binding may shadow a
+    /// function.
     fn open_names(&self) -> TokenStream {
         let own = OWN.iter().map(|name| Ident::new(name, Span::call_site()));
         let declared = self.model.parameters.iter().chain(&self.model.inputs).map(|quantity| {
@@ -89,7 +92,8 @@ impl Emitter<'_, '_> {
             name.set_span(name.span().located_at(Span::call_site()));
             name
         });
-        let names: BTreeMap<String, Ident> = own.chain(declared).map(|name| (name.to_string(), name)).collect();
+        let names: BTreeMap<String, Ident> =
+            own.chain(declared).map(|name| (name.to_string(), name)).collect();
         let names = names.values();
         quote!(#(#[allow(dead_code, non_snake_case)] fn #names() {})*)
     }

@@ -1,4 +1,5 @@
-//! One operation of a program: arithmetic, functions, numbers, and where the values of symbols are read.
+//! One operation of a program: arithmetic, functions, numbers, and where the values of symbols are
+//! read.
 
 use super::{Emitter, local};
 use crate::algebra::expr::{Function, Moment, Symbol};
@@ -60,7 +61,8 @@ impl Emitter<'_, '_> {
     fn load(&self, symbol: Symbol) -> TokenStream {
         match symbol {
             Symbol::Parameter(scalar) => {
-                let quantity = self.model.parameters.iter().rfind(|quantity| quantity.first <= scalar);
+                let quantity =
+                    self.model.parameters.iter().rfind(|quantity| quantity.first <= scalar);
                 let Some(quantity) = quantity else { return TokenStream::new() };
                 let (name, offset) = (quantity.name, scalar - quantity.first);
                 match quantity.length {
@@ -84,11 +86,14 @@ impl Emitter<'_, '_> {
                 let Some(name) = body.map(|body| body.name) else { return TokenStream::new() };
                 match moment {
                     Moment::Inertia => quote!(self.#name.inertia()),
-                    Moment::Difference => quote!((self.#name.moments()[0] - self.#name.moments()[2])),
+                    Moment::Difference => {
+                        quote!((self.#name.moments()[0] - self.#name.moments()[2]))
+                    }
                     Moment::Product => quote!(self.#name.moments()[1]),
                 }
             }
-            // Points of integration are gone when the integral is done, velocities of positions when the equations are solved.
+            // Points of integration are gone when the integral is done, velocities of positions
+            // when the equations are solved.
             Symbol::Point(..) | Symbol::Auxiliary(_) => quote!(::core::unreachable!()),
             Symbol::Time => quote!(t),
             Symbol::Coordinate(index) => quote!(q[#index]),
@@ -96,7 +101,10 @@ impl Emitter<'_, '_> {
             Symbol::Momentum(index) => quote!(p[#index]),
             Symbol::Input { input, component, order } => {
                 let input = Literal::usize_unsuffixed(input);
-                let order = format_ident!("{}", ["position", "velocity", "acceleration"][usize::from(order)]);
+                let order = format_ident!(
+                    "{}",
+                    ["position", "velocity", "acceleration"][usize::from(order)]
+                );
                 quote!(inputs.#input.#order[#component])
             }
         }
@@ -114,7 +122,11 @@ fn number(value: Rational, scalar: &Ident) -> TokenStream {
     }
     let (top, bottom) = (value.numerator() as f64, value.denominator() as f64);
     let (top, bottom) = (Literal::f64_unsuffixed(top.abs()), Literal::f64_unsuffixed(bottom));
-    if value.is_integer() { quote!(#scalar::from_f64(#sign #top)) } else { quote!(#scalar::ratio(#sign #top, #bottom)) }
+    if value.is_integer() {
+        quote!(#scalar::from_f64(#sign #top))
+    } else {
+        quote!(#scalar::ratio(#sign #top, #bottom))
+    }
 }
 
 fn decimal(literal: &number::Literal, scalar: &Ident) -> TokenStream {

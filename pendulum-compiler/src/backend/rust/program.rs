@@ -9,7 +9,10 @@ use quote::quote;
 
 impl Emitter<'_, '_> {
     /// A block that computes an array of roots; `None` if there are no such roots.
-    pub(super) fn output(&mut self, pick: impl Fn(&Motion) -> Option<Vec<Id>>) -> Option<TokenStream> {
+    pub(super) fn output(
+        &mut self,
+        pick: impl Fn(&Motion) -> Option<Vec<Id>>,
+    ) -> Option<TokenStream> {
         match &self.motion {
             None => Some(quote!(::core::unimplemented!())),
             Some(motion) => {
@@ -26,7 +29,12 @@ impl Emitter<'_, '_> {
     }
 
     /// The statements that lead to `results`, given arrays of values that are known already.
-    pub(crate) fn body_after(&self, program: &Program, results: &[Place], arrays: &[(&str, &[Place])]) -> TokenStream {
+    pub(crate) fn body_after(
+        &self,
+        program: &Program,
+        results: &[Place],
+        arrays: &[(&str, &[Place])],
+    ) -> TokenStream {
         let given = |index: usize| {
             arrays.iter().find_map(|(name, places)| {
                 let place = places.iter().position(|place| place.0 == index)?;
@@ -60,7 +68,8 @@ impl Emitter<'_, '_> {
                 continue;
             }
             let at = |place: Place| values[place.0].clone();
-            let depth = 1 + schedule::operands(op).iter().map(|place| depths[place.0]).max().unwrap_or(0);
+            let depth =
+                1 + schedule::operands(op).iter().map(|place| depths[place.0]).max().unwrap_or(0);
             if let Op::SinCos(angle) = op {
                 let (sin, cos) = (local("s", index), local("c", index));
                 let angle = at(*angle);

@@ -1,4 +1,5 @@
-//! The accelerations in stages, for callers that keep what stays the same from one evaluation to the next.
+//! The accelerations in stages, for callers that keep what stays the same from one evaluation to
+//! the next.
 
 use super::Emitter;
 use crate::schedule::{Place, Stage};
@@ -6,14 +7,18 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 impl Emitter<'_, '_> {
-    /// The accelerations in four parts: what parameters decide, what time and inputs decide, what the position adds, and the rest.
+    /// The accelerations in four parts: what parameters decide, what time and inputs decide, what
+    /// the position adds, and the rest.
     pub(super) fn staged(&self) -> TokenStream {
-        let (krate, scalar, count, name) = (&self.krate, self.scalar(), self.count(), &self.model.block.name);
+        let (krate, scalar, count, name) =
+            (&self.krate, self.scalar(), self.count(), &self.model.block.name);
         let missing = || (quote!(::core::unimplemented!()), 0);
         let (mut at_time, mut at_position, mut rest) = (missing(), missing(), missing().0);
         if let Some(program) = &self.accelerations {
-            let [prepared, time, position] = [Stage::Parameters, Stage::Time, Stage::Position].map(|stage| program.kept(stage));
-            let known: [(&str, &[Place]); 3] = [("prepared", &prepared), ("at_time", &time), ("at_position", &position)];
+            let [prepared, time, position] =
+                [Stage::Parameters, Stage::Time, Stage::Position].map(|stage| program.kept(stage));
+            let known: [(&str, &[Place]); 3] =
+                [("prepared", &prepared), ("at_time", &time), ("at_position", &position)];
             at_time = (self.body_after(program, &time, &[]), time.len());
             at_position = (self.body_after(program, &position, &known[..2]), position.len());
             rest = self.body_after(program, &program.results, &known);

@@ -10,28 +10,40 @@ impl Emitter<'_, '_> {
     pub(super) fn structure(&self) -> TokenStream {
         let block = self.model.block;
         let (visibility, name, scalar) = (&block.visibility, &block.name, self.scalar());
-        let attributes = block.attributes.iter().filter(|attribute| !self.is_moved(attribute, None));
+        let attributes =
+            block.attributes.iter().filter(|attribute| !self.is_moved(attribute, None));
         let documentation = self.documentation();
-        let fields = block.fields.iter().zip(&self.model.parameters).enumerate().map(|(index, (field, quantity))| {
-            let attributes = field.attributes.iter().filter(|attribute| !self.is_moved(attribute, Some(index)));
-            let name = &field.name;
-            let kind = self.field_type(quantity, &scalar);
-            let documented = field.attributes.iter().any(|attribute| attribute.path().is_ident("doc"));
-            let text = match (documented, quantity.unit.as_str()) {
-                (true, "") => String::new(),
-                (true, unit) => format!("\n\nUnit: {unit}."),
-                (false, "") => format!("The parameter `{name}`."),
-                (false, unit) => format!("The parameter `{name}` in {unit}."),
-            };
-            let text = (!text.is_empty()).then(|| quote!(#[doc = #text]));
-            quote! { #(#attributes)* #text pub #name: #kind, }
-        });
-        let empty =
-            block.fields.is_empty().then(|| quote! { #[doc(hidden)] pub __scalar: ::core::marker::PhantomData<#scalar>, });
+        let fields = block.fields.iter().zip(&self.model.parameters).enumerate().map(
+            |(index, (field, quantity))| {
+                let attributes = field
+                    .attributes
+                    .iter()
+                    .filter(|attribute| !self.is_moved(attribute, Some(index)));
+                let name = &field.name;
+                let kind = self.field_type(quantity, &scalar);
+                let documented =
+                    field.attributes.iter().any(|attribute| attribute.path().is_ident("doc"));
+                let text = match (documented, quantity.unit.as_str()) {
+                    (true, "") => String::new(),
+                    (true, unit) => format!("\n\nUnit: {unit}."),
+                    (false, "") => format!("The parameter `{name}`."),
+                    (false, unit) => format!("The parameter `{name}` in {unit}."),
+                };
+                let text = (!text.is_empty()).then(|| quote!(#[doc = #text]));
+                quote! { #(#attributes)* #text pub #name: #kind, }
+            },
+        );
+        let empty = block
+            .fields
+            .is_empty()
+            .then(|| quote! { #[doc(hidden)] pub __scalar: ::core::marker::PhantomData<#scalar>, });
         // Where another item has the name too, rustc shows the tokens from the visibility to the
         // name, and not the whole block.
         let visibility = located(visibility.to_token_stream(), None);
-        let head = located(quote!(struct #name<#scalar = ::core::primitive::f64> { #(#fields)* #empty }), Some(name.span()));
+        let head = located(
+            quote!(struct #name<#scalar = ::core::primitive::f64> { #(#fields)* #empty }),
+            Some(name.span()),
+        );
         quote! {
             #(#attributes)*
             #documentation
@@ -52,7 +64,9 @@ impl Emitter<'_, '_> {
                     let body = self.body(&program);
                     values.push(quote!(#field: { let [value] = #body; value }));
                 }
-                None if quantity.default.is_some() => values.push(quote!(#field: ::core::unimplemented!())),
+                None if quantity.default.is_some() => {
+                    values.push(quote!(#field: ::core::unimplemented!()));
+                }
                 None => {
                     let kind = self.field_type(quantity, &scalar);
                     arguments.push(quote!(#field: #kind));
@@ -69,7 +83,8 @@ impl Emitter<'_, '_> {
             #[automatically_derived]
             #[allow(non_snake_case, unreachable_code, clippy::all, clippy::pedantic)]
             impl<#scalar: #krate::real::Real> #name<#scalar> {
-                /// The system with the given parameters, in the order of declaration; those with a default take it.
+                /// The system with the given parameters, in the order of declaration; those with a
+                /// default take it.
                 #[must_use]
                 #visibility fn new(#(#arguments),*) -> Self {
                     Self { #(#values),* }
@@ -85,7 +100,8 @@ impl Emitter<'_, '_> {
         if self.model.inputs.is_empty() {
             return None;
         }
-        let (krate, scalar, visibility) = (&self.krate, self.scalar(), &self.model.block.visibility);
+        let (krate, scalar, visibility) =
+            (&self.krate, self.scalar(), &self.model.block.visibility);
         let names: Vec<&Ident> = self.model.inputs.iter().map(|input| input.name).collect();
         let types: Vec<Ident> = (0..names.len()).map(|index| format_ident!("M{index}")).collect();
         let bounds = self.model.inputs.iter().zip(&types).map(|(input, motion)| {
@@ -94,7 +110,8 @@ impl Emitter<'_, '_> {
         });
         let sufficient = self.sufficient();
         Some(quote! {
-            /// The system driven by a motion for each of its driven inputs, in the order of declaration.
+            /// The system driven by a motion for each of its driven inputs, in the order of
+            /// declaration.
             ///
             /// Does not compile if a motion lacks a derivative that the equations need.
             #visibility fn driven_by<#(#bounds),*>(self, #(#names: #types),*) -> #krate::system::Driven<Self, (#(#types,)*)> {

@@ -1,5 +1,5 @@
-//! The accelerations, energies, momenta and forces: `System`, and the traits of those systems whose energy splits or whose forces are
-//! free of velocities.
+//! The accelerations, energies, momenta and forces: `System`, and the traits of those systems whose
+//! energy splits or whose forces are free of velocities.
 
 use super::Emitter;
 use crate::algebra::diff;
@@ -12,7 +12,8 @@ use quote::quote;
 
 impl Emitter<'_, '_> {
     pub(super) fn system(&mut self) -> TokenStream {
-        let (krate, scalar, other, count) = (self.krate.clone(), self.scalar(), self.other_scalar(), self.count());
+        let (krate, scalar, other, count) =
+            (self.krate.clone(), self.scalar(), self.other_scalar(), self.count());
         let name = &self.model.block.name;
         let dimensions = self.model.inputs.iter().map(Quantity::count);
         let facts = self.facts();
@@ -24,8 +25,11 @@ impl Emitter<'_, '_> {
                 quote!(#field: map(self.#field))
             }
         });
-        let empty = self.model.parameters.is_empty().then(|| quote!(__scalar: ::core::marker::PhantomData));
-        let vector = |emitter: &mut Self, pick: fn(&Motion) -> Vec<Id>| emitter.output(|motion| Some(pick(motion)));
+        let empty =
+            self.model.parameters.is_empty().then(|| quote!(__scalar: ::core::marker::PhantomData));
+        let vector = |emitter: &mut Self, pick: fn(&Motion) -> Vec<Id>| {
+            emitter.output(|motion| Some(pick(motion)))
+        };
         let (prepare, accelerations, prepared) = self.accelerations();
         let momenta = vector(self, |motion| motion.momenta.clone());
         let forces = vector(self, |motion| motion.forces.clone());
@@ -34,9 +38,13 @@ impl Emitter<'_, '_> {
         let power = vector(self, |motion| vec![motion.power]);
         let (hamilton, longest_step) = (self.hamilton(), self.longest_step());
         let velocities = self.output(|motion| motion.velocities.clone());
-        let velocities = velocities.unwrap_or_else(|| quote!(#krate::__private::newton::<#count, Self>(self, t, q, p, inputs)));
+        let velocities = velocities.unwrap_or_else(
+            || quote!(#krate::__private::newton::<#count, Self>(self, t, q, p, inputs)),
+        );
         let matrix = self.mass_matrix();
-        let conserved = self.output(|motion| Some(motion.conserved.iter().map(|conserved| conserved.value).collect()));
+        let conserved = self.output(|motion| {
+            Some(motion.conserved.iter().map(|conserved| conserved.value).collect())
+        });
         let length = self.motion.as_ref().map_or(0, |motion| motion.conserved.len());
         let conserved = quote! {
             let all: [#scalar; #length] = #conserved;
@@ -134,7 +142,8 @@ impl Emitter<'_, '_> {
         if self.motion.as_ref().is_some_and(|motion| !motion.velocity_free) {
             return None;
         }
-        let (krate, scalar, count, name) = (&self.krate, self.scalar(), self.count(), &self.model.block.name);
+        let (krate, scalar, count, name) =
+            (&self.krate, self.scalar(), self.count(), &self.model.block.name);
         Some(quote! {
             #[automatically_derived]
             impl<#scalar: #krate::real::Real> #krate::system::VelocityFree<#count> for #name<#scalar> {}
@@ -154,23 +163,30 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// The accelerations in two parts: what parameters alone decide, and the rest; with the number of values between them.
+    /// The accelerations in two parts: what parameters alone decide, and the rest; with the number
+    /// of values between them.
     fn accelerations(&self) -> (TokenStream, TokenStream, usize) {
         let Some(program) = &self.accelerations else {
             return (quote!(::core::unimplemented!()), quote!(::core::unimplemented!()), 0);
         };
         let prepared = program.kept(Stage::Parameters);
         let prepare = self.body_after(program, &prepared, &[]);
-        (prepare, self.body_after(program, &program.results, &[("prepared", &prepared)]), prepared.len())
+        (
+            prepare,
+            self.body_after(program, &program.results, &[("prepared", &prepared)]),
+            prepared.len(),
+        )
     }
 
-    /// Velocities and momentum rates from momenta, with what they share computed once; `None` where velocities are found by iteration.
+    /// Velocities and momentum rates from momenta, with what they share computed once; `None` where
+    /// velocities are found by iteration.
     fn hamilton(&mut self) -> Option<TokenStream> {
         let (mut roots, rates) = {
             let motion = self.motion.as_ref()?;
             (motion.velocities.clone()?, motion.momentum_rates.clone())
         };
-        let velocities: Vec<Id> = roots.iter().map(|&velocity| self.graph.closed(velocity)).collect();
+        let velocities: Vec<Id> =
+            roots.iter().map(|&velocity| self.graph.closed(velocity)).collect();
         for rate in rates {
             let value = |symbol| match symbol {
                 Symbol::Velocity(index) => velocities.get(index).copied(),

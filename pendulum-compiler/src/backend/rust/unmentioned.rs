@@ -47,6 +47,7 @@ impl Emitter<'_, '_> {
 /// Whether an attribute is `#[expect(unused_variables)]` or `#[expect(unused)]`.
 fn expects_unused(attribute: &Attribute) -> bool {
     let syn::Meta::List(list) = &attribute.meta else { return false };
-    let unused = |token: TokenTree| token.to_string() == "unused" || token.to_string() == "unused_variables";
+    let unused =
+        |token: TokenTree| token.to_string() == "unused" || token.to_string() == "unused_variables";
     list.path.is_ident("expect") && list.tokens.clone().into_iter().any(unused)
 }

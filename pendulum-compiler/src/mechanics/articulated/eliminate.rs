@@ -16,7 +16,8 @@ struct Step {
 }
 
 impl Tree<'_> {
-    /// The unknowns of the coordinates, from masses, right sides and what each joint adds by itself.
+    /// The unknowns of the coordinates, from masses, right sides and what each joint adds by
+    /// itself.
     pub(super) fn solve(
         &mut self,
         masses: &BTreeMap<(usize, usize), Id>,
@@ -29,12 +30,15 @@ impl Tree<'_> {
         let joints = std::mem::take(&mut self.joints);
         for index in (0..joints.len()).rev() {
             self.fold(&mut system, &joints[index], &drift[index], &mut steps);
-            let (ready, rest) = open.iter().partition(|j| !joints[..index].iter().any(|joint| joint.coordinates.contains(j)));
+            let (ready, rest) = open
+                .iter()
+                .partition(|j| !joints[..index].iter().any(|joint| joint.coordinates.contains(j)));
             open = rest;
             let ready: Vec<usize> = ready;
             // What no position needs waits until the others are done.
-            let (now, later): (Vec<usize>, Vec<usize>) =
-                ready.into_iter().partition(|j| index == 0 || joints.iter().any(|joint| joint.coordinates.contains(j)));
+            let (now, later): (Vec<usize>, Vec<usize>) = ready.into_iter().partition(|j| {
+                index == 0 || joints.iter().any(|joint| joint.coordinates.contains(j))
+            });
             open.extend(later);
             for j in now {
                 self.eliminate(&mut system, j, &mut steps)?;
@@ -61,7 +65,11 @@ impl Tree<'_> {
         let parts: Vec<Vec<(usize, Id)>> = (0..places.len())
             .map(|row| {
                 let parent = joint.parents[row].map(|parent| (count + parent, Graph::ONE));
-                let own = joint.coordinates.iter().zip(&joint.jacobian[row]).map(|(&j, &factor)| (j, factor));
+                let own = joint
+                    .coordinates
+                    .iter()
+                    .zip(&joint.jacobian[row])
+                    .map(|(&j, &factor)| (j, factor));
                 parent.into_iter().chain(own).filter(|&(_, factor)| factor != Graph::ZERO).collect()
             })
             .collect();
@@ -69,10 +77,15 @@ impl Tree<'_> {
             steps.push(Step { unknown: place, constant: drift[row], terms: parts[row].clone() });
         }
         // Right sides of what stays, and of the scalars themselves.
-        let touched: BTreeSet<usize> =
-            system.entries.keys().filter(|(a, b)| places.contains(a) || places.contains(b)).flat_map(|&(a, b)| [a, b]).collect();
+        let touched: BTreeSet<usize> = system
+            .entries
+            .keys()
+            .filter(|(a, b)| places.contains(a) || places.contains(b))
+            .flat_map(|&(a, b)| [a, b])
+            .collect();
         for &other in &touched {
-            let mut terms = vec![(system.right.get(&other).copied().unwrap_or_default(), Rational::ONE)];
+            let mut terms =
+                vec![(system.right.get(&other).copied().unwrap_or_default(), Rational::ONE)];
             for (row, &place) in places.iter().enumerate() {
                 let entry = system.entry(place, other);
                 terms.push((self.graph.mul(entry, drift[row]), Rational::MINUS_ONE));
@@ -96,9 +109,17 @@ impl Tree<'_> {
     }
 
     /// H ← KᵀHK for the scalars at `places`, each of which is made of its `parts`.
-    fn congruence(&mut self, system: &mut Quadratic, places: &[usize], parts: &[Vec<(usize, Id)>], touched: &BTreeSet<usize>) {
-        // H K: one row for each scalar and each other unknown that is coupled to it, one column for each part.
-        let others: Vec<usize> = touched.iter().copied().filter(|other| !places.contains(other)).collect();
+    fn congruence(
+        &mut self,
+        system: &mut Quadratic,
+        places: &[usize],
+        parts: &[Vec<(usize, Id)>],
+        touched: &BTreeSet<usize>,
+    ) {
+        // H K: one row for each scalar and each other unknown that is coupled to it, one column for
+        // each part.
+        let others: Vec<usize> =
+            touched.iter().copied().filter(|other| !places.contains(other)).collect();
         let targets: BTreeSet<usize> = parts.iter().flatten().map(|&(target, _)| target).collect();
         let mut half: BTreeMap<(usize, usize), Id> = BTreeMap::new();
         for &row in places.iter().chain(&others) {
@@ -115,7 +136,9 @@ impl Tree<'_> {
             }
         }
         let mut added: BTreeMap<(usize, usize), Vec<(Id, Rational)>> = BTreeMap::new();
-        let mut add = |a: usize, b: usize, value: Id| added.entry((a.min(b), a.max(b))).or_default().push((value, Rational::ONE));
+        let mut add = |a: usize, b: usize, value: Id| {
+            added.entry((a.min(b), a.max(b))).or_default().push((value, Rational::ONE));
+        };
         for &other in &others {
             for &target in &targets {
                 let value = half[&(other, target)];
@@ -147,19 +170,32 @@ impl Tree<'_> {
     }
 
     /// Solves the row of `unknown` for it and puts it into the others.
-    fn eliminate(&mut self, system: &mut Quadratic, unknown: usize, steps: &mut Vec<Step>) -> Option<()> {
+    fn eliminate(
+        &mut self,
+        system: &mut Quadratic,
+        unknown: usize,
+        steps: &mut Vec<Step>,
+    ) -> Option<()> {
         let pivot = system.entry(unknown, unknown);
         if pivot == Graph::ZERO {
             return None;
         }
         let inverse = self.graph.power(pivot, Rational::MINUS_ONE);
         // A moving reciprocal is taken once; one of parameters stays open and cancels.
-        let inverse = if self.graph.dependencies(pivot).any(Dependencies::STATE) { self.graph.closed(inverse) } else { inverse };
+        let inverse = if self.graph.dependencies(pivot).any(Dependencies::STATE) {
+            self.graph.closed(inverse)
+        } else {
+            inverse
+        };
         let row: Vec<(usize, Id)> = system.row(unknown);
         let right = system.right.remove(&unknown).unwrap_or_default();
         let times = |graph: &mut Graph, value: Id| {
             let value = graph.mul(value, inverse);
-            if graph.dependencies(value).any(Dependencies::STATE) { graph.closed(value) } else { value }
+            if graph.dependencies(value).any(Dependencies::STATE) {
+                graph.closed(value)
+            } else {
+                value
+            }
         };
         let constant = times(self.graph, right);
         let mut terms = Vec::new();

@@ -27,7 +27,8 @@ impl Tree<'_> {
     pub(super) fn build_tree(&mut self, extended: &Extended, used: &BTreeSet<Symbol>) {
         let mut open: Vec<(BTreeSet<usize>, usize)> = Vec::new();
         for (index, position) in extended.positions.iter().enumerate() {
-            let scalars: Vec<Id> = position.iter().map(|&scalar| extended.scalars[scalar]).collect();
+            let scalars: Vec<Id> =
+                position.iter().map(|&scalar| extended.scalars[scalar]).collect();
             open.push((self.coordinates(&scalars), index));
         }
         open.sort_by_key(|(coordinates, index)| (coordinates.len(), *index));
@@ -40,8 +41,11 @@ impl Tree<'_> {
                 if theirs.len() != own.len() {
                     continue;
                 }
-                let slip: Vec<Id> =
-                    own.iter().zip(theirs).map(|(&a, &b)| self.graph.sub(extended.scalars[a], extended.scalars[b])).collect();
+                let slip: Vec<Id> = own
+                    .iter()
+                    .zip(theirs)
+                    .map(|(&a, &b)| self.graph.sub(extended.scalars[a], extended.scalars[b]))
+                    .collect();
                 let length = self.coordinates(&slip).len();
                 if length < best.0 {
                     best = (length, Some(other));
@@ -50,8 +54,13 @@ impl Tree<'_> {
             found.push((*index, best.1));
         }
         // What no energy and no descendant needs is left out.
-        let direct = |index: usize| extended.positions[index].iter().any(|&scalar| used.contains(&Symbol::Auxiliary(scalar)));
-        let mut needed: BTreeSet<usize> = (0..extended.positions.len()).filter(|&index| direct(index)).collect();
+        let direct = |index: usize| {
+            extended.positions[index]
+                .iter()
+                .any(|&scalar| used.contains(&Symbol::Auxiliary(scalar)))
+        };
+        let mut needed: BTreeSet<usize> =
+            (0..extended.positions.len()).filter(|&index| direct(index)).collect();
         for &(index, parent) in found.iter().rev() {
             if let (true, Some(parent)) = (needed.contains(&index), parent) {
                 needed.insert(parent);
@@ -85,7 +94,8 @@ impl Tree<'_> {
             coordinates.iter().map(|&j| derivative(graph, place, Symbol::Coordinate(j))).collect()
         };
         let jacobian = places.iter().map(|&place| slope(self.graph, place)).collect();
-        let slip: Vec<Id> = places.iter().map(|&place| total_derivative(self.graph, place)).collect();
+        let slip: Vec<Id> =
+            places.iter().map(|&place| total_derivative(self.graph, place)).collect();
         let resting = |symbol: Symbol| matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO);
         let drive = slip.iter().map(|&slip| substitute(self.graph, slip, resting)).collect();
         let drift = slip.iter().map(|&slip| total_derivative(self.graph, slip)).collect();
@@ -97,16 +107,22 @@ impl Tree<'_> {
         for coordinate in 0..self.count {
             let mut common: Option<Vec<(Id, Rational)>> = None;
             for joint in &self.joints {
-                let Some(column) = joint.coordinates.iter().position(|&j| j == coordinate) else { continue };
+                let Some(column) = joint.coordinates.iter().position(|&j| j == coordinate) else {
+                    continue;
+                };
                 for row in &joint.jacobian {
                     if row[column] == Graph::ZERO {
                         continue;
                     }
                     let mut factors = self.graph.factors(row[column]);
-                    factors.retain(|&(base, _)| !self.graph.dependencies(base).any(Dependencies::STATE));
+                    factors.retain(|&(base, _)| {
+                        !self.graph.dependencies(base).any(Dependencies::STATE)
+                    });
                     common = Some(match common {
                         None => factors,
-                        Some(common) => common.into_iter().filter(|factor| factors.contains(factor)).collect(),
+                        Some(common) => {
+                            common.into_iter().filter(|factor| factors.contains(factor)).collect()
+                        }
                     });
                 }
             }

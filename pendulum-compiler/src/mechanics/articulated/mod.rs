@@ -1,10 +1,13 @@
-//! The equations of motion in sparse form: the velocities of `let` positions as further unknowns, eliminated from the leaves to the root.
+//! The equations of motion in sparse form: the velocities of `let` positions as further unknowns,
+//! eliminated from the leaves to the root.
 //!
-//! A chain written with positions yₖ has a full mass matrix, but one that comes from few numbers: yₖ is yₖ₋₁ and a link. With the
-//! velocities uₛ of such positions z beside the coordinates' the Lagrangian Λ(q, q̇, u) has a sparse Hessian H, and the motion is the
-//! stationary point of ½wᵀHw − Gᵀw over the accelerations w = (q̈, u̇) with u̇ᵢ = u̇ₚ + J q̈ + γ for each position zᵢ and its parent zₚ (Gauss
-//! 1829). Putting the leaves into their parents and eliminating each joint behind them is the articulated-body recursion (Featherstone
-//! 1983): the cost grows with the number of joints, and trees branch without fill-in.
+//! A chain written with positions yₖ has a full mass matrix, but one that comes from few numbers:
+//! yₖ is yₖ₋₁ and a link. With the velocities uₛ of such positions z beside the coordinates' the
+//! Lagrangian Λ(q, q̇, u) has a sparse Hessian H, and the motion is the stationary point of ½wᵀHw −
+//! Gᵀw over the accelerations w = (q̈, u̇) with u̇ᵢ = u̇ₚ + J q̈ + γ for each position zᵢ and its
+//! parent zₚ (Gauss 1829). Putting the leaves into their parents and eliminating each joint behind
+//! them is the articulated-body recursion (Featherstone 1983): the cost grows with the number of
+//! joints, and trees branch without fill-in.
 
 mod eliminate;
 mod joint;
@@ -36,11 +39,13 @@ pub(crate) struct Sparse {
 pub(crate) struct Unsolved {
     /// The momenta of the coordinates and of the positions, in q and q̇.
     pub(crate) carried: Vec<Id>,
-    /// What vanishes along the motion, one for each coordinate; the symbol `Auxiliary(k)` is the rate of `carried[k]`.
+    /// What vanishes along the motion, one for each coordinate; the symbol `Auxiliary(k)` is the
+    /// rate of `carried[k]`.
     pub(crate) equations: Vec<Id>,
 }
 
-/// The sparse form of a Lagrangian whose positions are written with `let`; `None` if there are none, or if it has none.
+/// The sparse form of a Lagrangian whose positions are written with `let`; `None` if there are
+/// none, or if it has none.
 pub(crate) fn sparse(graph: &mut Graph, extended: &Extended, count: usize) -> Option<Sparse> {
     let lagrangian = velocity_polynomial::by_velocities(graph, extended.lagrangian)?;
     let used = graph.symbols(&[lagrangian, extended.dissipation]);
@@ -64,14 +69,17 @@ struct Tree<'g> {
 impl Tree<'_> {
     fn forms(&mut self, extended: &Extended, lagrangian: Id) -> Option<Sparse> {
         let count = self.count;
-        let scalars: Vec<usize> = self.joints.iter().flat_map(|joint| joint.scalars.clone()).collect();
+        let scalars: Vec<usize> =
+            self.joints.iter().flat_map(|joint| joint.scalars.clone()).collect();
         // The place of a scalar among the unknowns comes after those of the coordinates.
         let symbols: BTreeMap<usize, Symbol> = (0..count)
             .map(|j| (j, Symbol::Velocity(j)))
             .chain(scalars.iter().map(|&scalar| (count + scalar, Symbol::Auxiliary(scalar))))
             .collect();
-        let momenta: BTreeMap<usize, Id> =
-            symbols.iter().map(|(&place, &symbol)| (place, derivative(self.graph, lagrangian, symbol))).collect();
+        let momenta: BTreeMap<usize, Id> = symbols
+            .iter()
+            .map(|(&place, &symbol)| (place, derivative(self.graph, lagrangian, symbol)))
+            .collect();
         let mut masses = BTreeMap::new();
         let moving = Dependencies::VELOCITY.or(Dependencies::AUXILIARY);
         for (&row, &momentum) in &momenta {
@@ -96,7 +104,10 @@ impl Tree<'_> {
             let mut terms = vec![(friction, Rational::MINUS_ONE)];
             if place < count {
                 terms.push((extended.forces[place], Rational::ONE));
-                terms.push((derivative(self.graph, lagrangian, Symbol::Coordinate(place)), Rational::ONE));
+                terms.push((
+                    derivative(self.graph, lagrangian, Symbol::Coordinate(place)),
+                    Rational::ONE,
+                ));
             }
             let rate = self.graph.sum(&terms);
             let drift = total_derivative(self.graph, momenta[&place]);
@@ -112,11 +123,17 @@ impl Tree<'_> {
         let accelerations = self.solve(&masses, forces, &drifts)?;
 
         // Velocities from momenta: the same unknowns, with the drive in place of the drift.
-        let rest = |symbol: Symbol| matches!(symbol, Symbol::Velocity(_) | Symbol::Auxiliary(_)).then_some(Graph::ZERO);
+        let rest = |symbol: Symbol| {
+            matches!(symbol, Symbol::Velocity(_) | Symbol::Auxiliary(_)).then_some(Graph::ZERO)
+        };
         let mut right = BTreeMap::new();
         for (&place, &momentum) in &momenta {
             let offset = substitute(self.graph, momentum, rest);
-            let own = if place < count { self.graph.symbol(Symbol::Momentum(place)) } else { Graph::ZERO };
+            let own = if place < count {
+                self.graph.symbol(Symbol::Momentum(place))
+            } else {
+                Graph::ZERO
+            };
             let value = self.graph.sub(own, offset);
             let value = self.scaled(value, &[place]);
             right.insert(place, value);
@@ -137,17 +154,31 @@ impl Tree<'_> {
         let energy = velocity_polynomial::by_velocities(self.graph, energy).unwrap_or(energy);
         let energy = self.at(energy, &velocities);
         let kinetic = extended.kinetic.map(|kinetic| {
-            let kinetic = velocity_polynomial::by_velocities(self.graph, kinetic).unwrap_or(kinetic);
+            let kinetic =
+                velocity_polynomial::by_velocities(self.graph, kinetic).unwrap_or(kinetic);
             self.at(kinetic, &velocities)
         });
         let (momenta, momentum_rates) = (all_momenta, all_rates);
-        Some(Sparse { accelerations, velocities: from_momenta, momenta, momentum_rates, energy, kinetic, unsolved })
+        Some(Sparse {
+            accelerations,
+            velocities: from_momenta,
+            momenta,
+            momentum_rates,
+            energy,
+            kinetic,
+            unsolved,
+        })
     }
 
     /// An entry in the units of its unknowns.
     fn scaled(&mut self, entry: Id, places: &[usize]) -> Id {
         let mut factors = vec![(entry, Rational::ONE)];
-        factors.extend(places.iter().filter(|&&place| place < self.count).map(|&place| (self.units[place], Rational::MINUS_ONE)));
+        factors.extend(
+            places
+                .iter()
+                .filter(|&&place| place < self.count)
+                .map(|&place| (self.units[place], Rational::MINUS_ONE)),
+        );
         self.graph.product(Rational::ONE, &factors)
     }
 }

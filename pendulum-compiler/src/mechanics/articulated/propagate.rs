@@ -1,4 +1,5 @@
-//! What goes along the tree: velocities from the root to the leaves, momenta and their rates from the leaves to the root.
+//! What goes along the tree: velocities from the root to the leaves, momenta and their rates from
+//! the leaves to the root.
 
 use super::{Tree, Unsolved};
 use crate::algebra::diff::{derivative, substitute};
@@ -7,13 +8,17 @@ use crate::algebra::number::Rational;
 use std::collections::BTreeMap;
 
 impl Tree<'_> {
-    /// The velocity of each scalar and the part of it that the drive alone makes, from the root to the leaves.
+    /// The velocity of each scalar and the part of it that the drive alone makes, from the root to
+    /// the leaves.
     pub(super) fn rates(&mut self) -> (BTreeMap<usize, Id>, BTreeMap<usize, Id>) {
         let (mut velocities, mut drives) = (BTreeMap::new(), BTreeMap::new());
         for joint in &self.joints {
             for (row, (&scalar, parent)) in joint.scalars.iter().zip(&joint.parents).enumerate() {
-                for (known, own) in [(&mut velocities, joint.slip[row]), (&mut drives, joint.drive[row])] {
-                    let before = parent.and_then(|parent| known.get(&parent).copied()).unwrap_or_default();
+                for (known, own) in
+                    [(&mut velocities, joint.slip[row]), (&mut drives, joint.drive[row])]
+                {
+                    let before =
+                        parent.and_then(|parent| known.get(&parent).copied()).unwrap_or_default();
                     let value = self.graph.add(before, own);
                     known.insert(scalar, self.graph.atom(value));
                 }
@@ -64,9 +69,15 @@ impl Tree<'_> {
                 for (column, &j) in joint.coordinates.iter().enumerate() {
                     let arm = self.graph.mul(joint.jacobian[row][column], self.units[j]);
                     let turn = derivative(self.graph, joint.slip[row], Symbol::Coordinate(j));
-                    carried.entry(j).or_default().push((self.graph.mul(arm, momentum), Rational::ONE));
+                    carried
+                        .entry(j)
+                        .or_default()
+                        .push((self.graph.mul(arm, momentum), Rational::ONE));
                     pushed.entry(j).or_default().push((self.graph.mul(arm, force), Rational::ONE));
-                    pushed.entry(j).or_default().push((self.graph.mul(turn, momentum), Rational::ONE));
+                    pushed
+                        .entry(j)
+                        .or_default()
+                        .push((self.graph.mul(turn, momentum), Rational::ONE));
                 }
             }
         }
@@ -77,8 +88,9 @@ impl Tree<'_> {
         (sums(self.graph, &carried), sums(self.graph, &pushed))
     }
 
-    /// d'Alembert's principle: ṗ less its cause, for the coordinates and for the positions, which hand it on from the leaves to the root. The
-    /// rates of the lever arms ∂z/∂q are those of the velocities, ∂u/∂q, and go out.
+    /// d'Alembert's principle: ṗ less its cause, for the coordinates and for the positions, which
+    /// hand it on from the leaves to the root. The rates of the lever arms ∂z/∂q are those of the
+    /// velocities, ∂u/∂q, and go out.
     pub(super) fn unsolved(
         &mut self,
         momenta: &BTreeMap<usize, Id>,

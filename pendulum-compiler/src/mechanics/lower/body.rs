@@ -1,4 +1,5 @@
-//! Integrals over bodies: a polynomial of degree two in the point becomes mass, centre and second moments.
+//! Integrals over bodies: a polynomial of degree two in the point becomes mass, centre and second
+//! moments.
 
 use super::value::Value;
 use super::{Local, Lower};
@@ -48,13 +49,16 @@ impl Lower<'_, '_, '_, '_> {
 
     /// ∫ ρ expr dp over a body.
     pub(super) fn integral(&mut self, point: &str, body: &str, integrand: &Expr) -> Value {
-        let Some(&Meaning::Parameter(index)) = self.model.names.get(&name::read(body).base) else { return Value::Bad };
+        let Some(&Meaning::Parameter(index)) = self.model.names.get(&name::read(body).base) else {
+            return Value::Bad;
+        };
         if !self.model.parameters[index].body {
             return Value::Bad;
         }
         let level = self.integrals;
         let parts = [0, 1].map(|component| self.graph.symbol(Symbol::Point(level, component)));
-        self.scope.push((name::read(point).base, Local::Value(Value::Plane { parts, complex: false })));
+        self.scope
+            .push((name::read(point).base, Local::Value(Value::Plane { parts, complex: false })));
         self.integrals += 1;
         let value = self.expr(integrand);
         self.integrals -= 1;
@@ -63,10 +67,13 @@ impl Lower<'_, '_, '_, '_> {
         let result = match value {
             Value::Bad | Value::Family(_) => Value::Bad,
             Value::Scalar(id) => Value::Scalar(self.moment(index, parts, id, &mut wrong)),
-            Value::Plane { parts: components, complex } => {
-                Value::Plane { parts: components.map(|id| self.moment(index, parts, id, &mut wrong)), complex }
+            Value::Plane { parts: components, complex } => Value::Plane {
+                parts: components.map(|id| self.moment(index, parts, id, &mut wrong)),
+                complex,
+            },
+            Value::Space(components) => {
+                Value::Space(components.map(|id| self.moment(index, parts, id, &mut wrong)))
             }
-            Value::Space(components) => Value::Space(components.map(|id| self.moment(index, parts, id, &mut wrong))),
         };
         match wrong {
             None => result,
@@ -81,21 +88,32 @@ impl Lower<'_, '_, '_, '_> {
     }
 
     /// The integral of one scalar.
-    fn moment(&mut self, body: usize, point: [Id; 2], id: Id, wrong: &mut Option<&'static str>) -> Id {
-        let Some(polynomial) = velocity_polynomial::polynomial(self.graph, id, Dependencies::POINT) else {
+    fn moment(
+        &mut self,
+        body: usize,
+        point: [Id; 2],
+        id: Id,
+        wrong: &mut Option<&'static str>,
+    ) -> Id {
+        let Some(polynomial) = velocity_polynomial::polynomial(self.graph, id, Dependencies::POINT)
+        else {
             *wrong = Some("no polynomial");
             return Graph::ZERO;
         };
         let mass = self.mass(body);
         let center = self.center(body);
         let first = self.model.parameters[body].first;
-        let [inertia, difference, product] =
-            [Moment::Inertia, Moment::Difference, Moment::Product].map(|moment| self.graph.symbol(Symbol::Moment(first, moment)));
+        let [inertia, difference, product] = [Moment::Inertia, Moment::Difference, Moment::Product]
+            .map(|moment| self.graph.symbol(Symbol::Moment(first, moment)));
         let mut terms = Vec::new();
         for (monomial, coefficients) in polynomial {
             // Points of an integral outside are constants here.
-            let power =
-                |component: usize| monomial.iter().find(|(base, _)| *base == point[component]).map_or(0, |&(_, power)| power);
+            let power = |component: usize| {
+                monomial
+                    .iter()
+                    .find(|(base, _)| *base == point[component])
+                    .map_or(0, |&(_, power)| power)
+            };
             let outside: Vec<(Id, Rational)> = monomial
                 .iter()
                 .filter(|(base, _)| !point.contains(base))
@@ -105,8 +123,12 @@ impl Lower<'_, '_, '_, '_> {
                 (0, 0) => mass,
                 (1, 0) => self.graph.mul(mass, center[0]),
                 (0, 1) => self.graph.mul(mass, center[1]),
-                (2, 0) => self.graph.sum(&[(inertia, Rational::HALF), (difference, Rational::HALF)]),
-                (0, 2) => self.graph.sum(&[(inertia, Rational::HALF), (difference, Rational::HALF.negative())]),
+                (2, 0) => {
+                    self.graph.sum(&[(inertia, Rational::HALF), (difference, Rational::HALF)])
+                }
+                (0, 2) => self
+                    .graph
+                    .sum(&[(inertia, Rational::HALF), (difference, Rational::HALF.negative())]),
                 (1, 1) => product,
                 _ => {
                     *wrong = Some("of higher degree than two");

@@ -1,4 +1,5 @@
-//! What is known while compiling: constants that are no real number are refused where they are written.
+//! What is known while compiling: constants that are no real number are refused where they are
+//! written.
 
 use super::Lower;
 use super::value::Value;
@@ -12,7 +13,9 @@ impl Lower<'_, '_, '_, '_> {
     /// A value, unless it is a constant that is not finite.
     pub(super) fn real(&mut self, value: Value, expr: &Expr) -> Value {
         let Value::Scalar(id) = value else { return value };
-        if self.graph.dependencies(id) != Dependencies::default() || matches!(self.graph.node(id), Node::Number(_)) {
+        if self.graph.dependencies(id) != Dependencies::default()
+            || matches!(self.graph.node(id), Node::Number(_))
+        {
             return value;
         }
         let number = self.constant(id);
@@ -21,9 +24,15 @@ impl Lower<'_, '_, '_, '_> {
         }
         let text = text(expr);
         if number.is_nan() {
-            return self.wrong(expr, &format!("`{text}` is no real number; write an operand for which it is"));
+            return self.wrong(
+                expr,
+                &format!("`{text}` is no real number; write an operand for which it is"),
+            );
         }
-        self.wrong(expr, &format!("`{text}` is infinite or beyond the range of `f64`; write another operand"))
+        self.wrong(
+            expr,
+            &format!("`{text}` is infinite or beyond the range of `f64`; write another operand"),
+        )
     }
 
     fn constant(&mut self, id: Id) -> f64 {
@@ -40,15 +49,24 @@ impl Lower<'_, '_, '_, '_> {
 }
 
 /// The value of a node in floating point, from those of its children and of the symbols.
-pub(crate) fn evaluate(graph: &Graph, id: Id, known: impl Fn(Id) -> f64, symbol: &dyn Fn(Symbol) -> f64) -> f64 {
+pub(crate) fn evaluate(
+    graph: &Graph,
+    id: Id,
+    known: impl Fn(Id) -> f64,
+    symbol: &dyn Fn(Symbol) -> f64,
+) -> f64 {
     match graph.node(id) {
         Node::Number(number) | Node::Opaque(Literal::Exact(number)) => ratio(*number),
         Node::Opaque(Literal::Decimal(digits)) => digits.parse().unwrap_or(f64::NAN),
         Node::Pi => std::f64::consts::PI,
         Node::Symbol(own) => symbol(*own),
-        Node::Sum(terms) => terms.iter().map(|&(term, coefficient)| ratio(coefficient) * known(term)).sum(),
+        Node::Sum(terms) => {
+            terms.iter().map(|&(term, coefficient)| ratio(coefficient) * known(term)).sum()
+        }
         Node::Product(coefficient, factors) => {
-            factors.iter().fold(ratio(*coefficient), |product, &(base, exponent)| product * known(base).powf(ratio(exponent)))
+            factors.iter().fold(ratio(*coefficient), |product, &(base, exponent)| {
+                product * known(base).powf(ratio(exponent))
+            })
         }
         Node::Call(function, argument) => function_value(*function, known(*argument)),
         Node::Atan2(y, x) => known(*y).atan2(known(*x)),

@@ -1,6 +1,8 @@
-//! Vectors, complex numbers and families to scalars: every expression of a block becomes nodes of one graph.
+//! Vectors, complex numbers and families to scalars: every expression of a block becomes nodes of
+//! one graph.
 //!
-//! A plane vector is a complex number; `Value::Bad` stands for what has been reported, so that one mistake gives one message.
+//! A plane vector is a complex number; `Value::Bad` stands for what has been reported, so that one
+//! mistake gives one message.
 
 mod body;
 pub(crate) mod constant;
@@ -18,16 +20,20 @@ use crate::syntax::text::text;
 use std::collections::{BTreeMap, BTreeSet};
 use value::Value;
 
-/// More evaluations, or operands in all expressions together, are refused: sums within sums would never end.
+/// More evaluations, or operands in all expressions together, are refused: sums within sums would
+/// never end.
 const LIMIT: usize = 2_000_000;
 
-/// Expressions and definitions within one another beyond this are refused: they would overflow the compiler's stack.
+/// Expressions and definitions within one another beyond this are refused: they would overflow the
+/// compiler's stack.
 const DEEPEST: usize = 1000;
 
-/// The same for the nodes of an energy or a force, which definitions above one another nest as well.
+/// The same for the nodes of an energy or a force, which definitions above one another nest as
+/// well.
 const DEEPEST_NODE: usize = 1200;
 
-/// An energy or a force of more nodes is refused: its equations would take minutes to derive and to compile.
+/// An energy or a force of more nodes is refused: its equations would take minutes to derive and to
+/// compile.
 const LARGEST: usize = 8000;
 
 /// The scalars of a block.
@@ -41,13 +47,16 @@ pub(crate) struct Energies {
     pub(crate) forces: Vec<Id>,
     /// The default of each parameter that has one.
     pub(crate) defaults: Vec<Option<Id>>,
-    /// The parameters of two or three components that are used by their indices alone: families, not vectors.
+    /// The parameters of two or three components that are used by their indices alone: families,
+    /// not vectors.
     pub(crate) families: BTreeSet<usize>,
-    /// The same with the velocities of positions as symbols of their own; `None` where no position is written with `let`.
+    /// The same with the velocities of positions as symbols of their own; `None` where no position
+    /// is written with `let`.
     pub(crate) extended: Option<Extended>,
 }
 
-/// The energies of a block in which the velocities of `let` positions stand as symbols of their own.
+/// The energies of a block in which the velocities of `let` positions stand as symbols of their
+/// own.
 #[derive(Debug, Default)]
 pub(crate) struct Extended {
     pub(crate) lagrangian: Id,
@@ -63,13 +72,20 @@ pub(crate) struct Extended {
 impl Energies {
     /// Every expression in it.
     pub(crate) fn roots(&mut self) -> Vec<&mut Id> {
-        let single = [&mut self.kinetic, &mut self.potential, &mut self.lagrangian, &mut self.dissipation];
+        let single =
+            [&mut self.kinetic, &mut self.potential, &mut self.lagrangian, &mut self.dissipation];
         let single = single.into_iter().flatten();
         let extended = self.extended.iter_mut().flat_map(|extended| {
-            let single = [&mut extended.lagrangian, &mut extended.dissipation].into_iter().chain(extended.kinetic.as_mut());
+            let single = [&mut extended.lagrangian, &mut extended.dissipation]
+                .into_iter()
+                .chain(extended.kinetic.as_mut());
             single.chain(&mut extended.forces).chain(&mut extended.scalars)
         });
-        single.chain(&mut self.forces).chain(self.defaults.iter_mut().flatten()).chain(extended).collect()
+        single
+            .chain(&mut self.forces)
+            .chain(self.defaults.iter_mut().flatten())
+            .chain(extended)
+            .collect()
     }
 }
 
@@ -88,10 +104,19 @@ fn extended(model: &Model, graph: &mut Graph, errors: &mut Errors) -> Option<Ext
     let PositionTracker { scalars, positions, .. } = positions?;
     let lagrangian = match energies.lagrangian {
         Some(lagrangian) => lagrangian,
-        None => graph.sub(energies.kinetic.unwrap_or_default(), energies.potential.unwrap_or_default()),
+        None => {
+            graph.sub(energies.kinetic.unwrap_or_default(), energies.potential.unwrap_or_default())
+        }
     };
     let dissipation = energies.dissipation.unwrap_or_default();
-    Some(Extended { lagrangian, kinetic: energies.kinetic, dissipation, forces: energies.forces, positions, scalars })
+    Some(Extended {
+        lagrangian,
+        kinetic: energies.kinetic,
+        dissipation,
+        forces: energies.forces,
+        positions,
+        scalars,
+    })
 }
 
 /// The positions written with `let` that have been met.
@@ -110,12 +135,19 @@ impl PositionTracker {
             Value::Scalar(id) => vec![*id],
             Value::Plane { parts, .. } => parts.to_vec(),
             Value::Space(parts) => parts.to_vec(),
-            Value::Family(members) => return members.iter().for_each(|member| self.note(graph, member)),
+            Value::Family(members) => {
+                return members.iter().for_each(|member| self.note(graph, member));
+            }
         };
-        let other =
-            Dependencies::VELOCITY.or(Dependencies::AUXILIARY).or(Dependencies::POINT).or(Dependencies::ACCELERATION_INPUT);
+        let other = Dependencies::VELOCITY
+            .or(Dependencies::AUXILIARY)
+            .or(Dependencies::POINT)
+            .or(Dependencies::ACCELERATION_INPUT);
         let other = other.or(Dependencies::VELOCITY_INPUT);
-        let position = |id: &Id| graph.dependencies(*id).any(Dependencies::COORDINATE) && !graph.dependencies(*id).any(other);
+        let position = |id: &Id| {
+            graph.dependencies(*id).any(Dependencies::COORDINATE)
+                && !graph.dependencies(*id).any(other)
+        };
         if !parts.iter().all(position) || parts.iter().any(|id| self.places.contains_key(id)) {
             return;
         }
@@ -208,7 +240,10 @@ impl Lower<'_, '_, '_, '_> {
     fn block(&mut self) -> Energies {
         let mut energies = Energies::default();
         for quantity in &self.model.parameters {
-            let default = quantity.default.filter(|_| quantity.length.is_none()).and_then(|default| self.scalar(default));
+            let default = quantity
+                .default
+                .filter(|_| quantity.length.is_none())
+                .and_then(|default| self.scalar(default));
             energies.defaults.push(default);
         }
         for (index, definition) in self.model.lets.iter().enumerate() {
@@ -260,18 +295,24 @@ impl Lower<'_, '_, '_, '_> {
                     continue;
                 }
                 (Some(_), None) => {
-                    self.errors.at(force.name.span(), format!("`{}` is no family; write it without an index", force.name));
+                    self.errors.at(
+                        force.name.span(),
+                        format!("`{}` is no family; write it without an index", force.name),
+                    );
                     continue;
                 }
-                (Some(ForceIndex::One(index)), Some(length)) => match self.index(index, length, &force.name.to_string()) {
-                    Some(k) => vec![(None, k)],
-                    None => continue,
-                },
+                (Some(ForceIndex::One(index)), Some(length)) => {
+                    match self.index(index, length, &force.name.to_string()) {
+                        Some(k) => vec![(None, k)],
+                        None => continue,
+                    }
+                }
                 (Some(ForceIndex::Each(binder)), Some(length)) => {
                     let range = self.range(binder);
                     match range.clone().find(|k| !usize::try_from(*k).is_ok_and(|k| k < length)) {
                         Some(k) => {
-                            self.errors.at(binder.high.range, outside(&force.name.to_string(), k, length));
+                            self.errors
+                                .at(binder.high.range, outside(&force.name.to_string(), k, length));
                             continue;
                         }
                         None => range.map(|k| (Some(binder), k)).collect(),
@@ -299,13 +340,16 @@ impl Lower<'_, '_, '_, '_> {
         let value = self.scalar(expr)?;
         let nodes = self.graph.reachable(&[value]);
         if LARGEST < nodes.len() {
-            let message = format!("this unfolds to more than {LARGEST} different expressions; write a shorter sum");
+            let message = format!(
+                "this unfolds to more than {LARGEST} different expressions; write a shorter sum"
+            );
             self.errors.once(expr.source, expr.range, message);
             return None;
         }
         let mut depths: BTreeMap<Id, usize> = BTreeMap::new();
         for id in nodes {
-            let depth = self.graph.children(id).iter().map(|child| depths[child] + 1).max().unwrap_or(0);
+            let depth =
+                self.graph.children(id).iter().map(|child| depths[child] + 1).max().unwrap_or(0);
             depths.insert(id, depth);
         }
         if DEEPEST_NODE < depths[&value] {
@@ -385,7 +429,9 @@ impl Lower<'_, '_, '_, '_> {
                 None
             }
         };
-        let (Some(low), Some(high)) = (end(self, &binder.low), end(self, &binder.high)) else { return 0..0 };
+        let (Some(low), Some(high)) = (end(self, &binder.low), end(self, &binder.high)) else {
+            return 0..0;
+        };
         let high = if binder.inclusive { high.saturating_add(1) } else { high };
         if 65536 < high.saturating_sub(low) {
             self.errors.once(
@@ -450,5 +496,8 @@ fn plain(binder: &Binder) -> String {
 }
 
 fn outside(name: &str, k: i64, length: usize) -> String {
-    format!("index {k} is out of range; `{name}` has {length} members, `{name}[0]` to `{name}[{}]`", length - 1)
+    format!(
+        "index {k} is out of range; `{name}` has {length} members, `{name}[0]` to `{name}[{}]`",
+        length - 1
+    )
 }

@@ -36,8 +36,10 @@ impl Lower<'_, '_, '_, '_> {
             ExprKind::Negative(inner) => self.vector_product(inner),
             ExprKind::Product(items) => {
                 let factors = items.iter().map(|(_, item)| item);
-                let vectors: Vec<String> =
-                    factors.filter(|item| matches!(self.expr(item), Value::Plane { complex: false, .. })).map(text).collect();
+                let vectors: Vec<String> = factors
+                    .filter(|item| matches!(self.expr(item), Value::Plane { complex: false, .. }))
+                    .map(text)
+                    .collect();
                 let [a, b] = vectors.as_slice() else { return None };
                 let message = format!(
                     "`{}` is the complex product of two plane vectors, but a scalar is needed here; write `inner({a}, {b})`",
@@ -57,7 +59,11 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn expr(&mut self, expr: &Expr) -> Value {
         self.work += 1;
         if LIMIT < self.work || LIMIT < self.graph.size() {
-            self.errors.once(0, expr.range, "this block unfolds to more than two million expressions; write shorter sums");
+            self.errors.once(
+                0,
+                expr.range,
+                "this block unfolds to more than two million expressions; write shorter sums",
+            );
             return Value::Bad;
         }
         if DEEPEST <= self.depth {
@@ -84,11 +90,15 @@ impl Lower<'_, '_, '_, '_> {
             ExprKind::Power(base, exponent) => self.power(base, exponent),
             ExprKind::Call(name, items) => self.call(&name.to_string(), items, expr),
             ExprKind::Index(base, index) => self.member(base, index),
-            ExprKind::Component(base, component) => self.component(base, &component.to_string(), expr),
+            ExprKind::Component(base, component) => {
+                self.component(base, &component.to_string(), expr)
+            }
             ExprKind::Vector(items) => self.vector(items, expr),
             ExprKind::Magnitude(inner) => self.magnitude(inner),
             ExprKind::SumOver(binder, term) => self.sum_over(binder, term),
-            ExprKind::Integral { point, body, integrand } => self.integral(&point.to_string(), &body.to_string(), integrand),
+            ExprKind::Integral { point, body, integrand } => {
+                self.integral(&point.to_string(), &body.to_string(), integrand)
+            }
         }
     }
 
@@ -145,12 +155,19 @@ impl Lower<'_, '_, '_, '_> {
         }
     }
 
-    pub(super) fn quantity(&mut self, quantity: &model::Quantity, symbol: impl Fn(usize) -> Symbol) -> Value {
+    pub(super) fn quantity(
+        &mut self,
+        quantity: &model::Quantity,
+        symbol: impl Fn(usize) -> Symbol,
+    ) -> Value {
         let mut scalar = |offset: usize| self.graph.symbol(symbol(quantity.first + offset));
-        let coordinate = matches!(symbol(quantity.first), Symbol::Coordinate(_) | Symbol::Velocity(_));
+        let coordinate =
+            matches!(symbol(quantity.first), Symbol::Coordinate(_) | Symbol::Velocity(_));
         match quantity.length {
             None => Value::Scalar(scalar(0)),
-            Some(2) if !coordinate => Value::Plane { parts: [scalar(0), scalar(1)], complex: false },
+            Some(2) if !coordinate => {
+                Value::Plane { parts: [scalar(0), scalar(1)], complex: false }
+            }
             Some(3) if !coordinate => Value::Space([scalar(0), scalar(1), scalar(2)]),
             Some(length) => Value::Family((0..length).map(|k| Value::Scalar(scalar(k))).collect()),
         }
@@ -194,8 +211,9 @@ impl Lower<'_, '_, '_, '_> {
             if let Value::Space(_) = value {
                 if let (Value::Space(_), Some(left), false) = (&total, vector, *over) {
                     let (a, b) = (text(left), text(item));
-                    let message =
-                        format!("the product of two space vectors is ambiguous; write `inner({a}, {b})` or `cross({a}, {b})`");
+                    let message = format!(
+                        "the product of two space vectors is ambiguous; write `inner({a}, {b})` or `cross({a}, {b})`"
+                    );
                     return self.wrong(item, &message);
                 }
                 vector = Some(item);
@@ -230,7 +248,9 @@ impl Lower<'_, '_, '_, '_> {
             ("cross", [a, b]) => self.cross(a, b),
             ("perp", [item]) => match self.expr(item) {
                 Value::Bad => Value::Bad,
-                Value::Plane { parts: [x, y], complex } => Value::Plane { parts: [self.graph.negative(y), x], complex },
+                Value::Plane { parts: [x, y], complex } => {
+                    Value::Plane { parts: [self.graph.negative(y), x], complex }
+                }
                 other => self.wrong(
                     item,
                     &format!(
@@ -246,7 +266,11 @@ impl Lower<'_, '_, '_, '_> {
                 Value::Space(parts) => Value::Scalar(parts[2]),
                 other => self.wrong(
                     item,
-                    &format!("`{}` is {}, and a height is that of a vector; write the scalar itself", text(item), other.kind()),
+                    &format!(
+                        "`{}` is {}, and a height is that of a vector; write the scalar itself",
+                        text(item),
+                        other.kind()
+                    ),
                 ),
             },
             ("cis", [item]) => match self.scalar(item) {
@@ -263,7 +287,11 @@ impl Lower<'_, '_, '_, '_> {
                 Value::Bad => Value::Bad,
                 other => self.wrong(
                     item,
-                    &format!("`{}` is {}, but the exponent is a number; write `exp(i*φ)` for a turn", text(item), other.kind()),
+                    &format!(
+                        "`{}` is {}, but the exponent is a number; write `exp(i*φ)` for a turn",
+                        text(item),
+                        other.kind()
+                    ),
                 ),
             },
             _ => self.scalar_call(name, items),
@@ -298,7 +326,10 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn vector(&mut self, items: &[Expr], expr: &Expr) -> Value {
         let parts: Vec<Option<Id>> = items.iter().map(|item| self.scalar(item)).collect();
         if !(2..=3).contains(&parts.len()) {
-            return self.wrong(expr, &format!("a vector has two or three components; {} stand here", items.len()));
+            return self.wrong(
+                expr,
+                &format!("a vector has two or three components; {} stand here", items.len()),
+            );
         }
         match *parts.as_slice() {
             [Some(x), Some(y)] => Value::Plane { parts: [x, y], complex: false },
@@ -329,8 +360,11 @@ impl Lower<'_, '_, '_, '_> {
                 let k = match self.integer(index) {
                     Ok(k) if range.contains(&k) => k,
                     Ok(k) => {
-                        let message =
-                            format!("`{text}[{k}]` does not exist; `{text}` is defined for {} to {}", range.start, range.end - 1);
+                        let message = format!(
+                            "`{text}[{k}]` does not exist; `{text}` is defined for {} to {}",
+                            range.start,
+                            range.end - 1
+                        );
                         return self.wrong(index, &message);
                     }
                     Err(_) => {
@@ -352,7 +386,13 @@ impl Lower<'_, '_, '_, '_> {
             Value::Plane { parts, .. } => parts.map(Value::Scalar).to_vec(),
             Value::Space(parts) => parts.map(Value::Scalar).to_vec(),
             Value::Scalar(_) => {
-                return self.wrong(base, &format!("`{}` is a scalar, it has no members; leave out the index", text(base)));
+                return self.wrong(
+                    base,
+                    &format!(
+                        "`{}` is a scalar, it has no members; leave out the index",
+                        text(base)
+                    ),
+                );
             }
         };
         match self.index(index, members.len(), &text(base)) {
@@ -364,7 +404,9 @@ impl Lower<'_, '_, '_, '_> {
     /// What an index is put to.
     pub(super) fn indexed(&mut self, base: &Expr) -> Value {
         if let ExprKind::Name(ident) = &base.kind {
-            let Name { base: text, dots: 0 } = name::read(&ident.to_string()) else { return self.expr(base) };
+            let Name { base: text, dots: 0 } = name::read(&ident.to_string()) else {
+                return self.expr(base);
+            };
             let local = self.local(&text).is_some();
             if let Some(&Meaning::Parameter(index)) = self.model.names.get(&text)
                 && !local
@@ -391,7 +433,14 @@ impl Lower<'_, '_, '_, '_> {
             Value::Bad => Value::Bad,
             Value::Plane { parts, .. } if which < 2 => Value::Scalar(parts[which]),
             Value::Space(parts) => Value::Scalar(parts[which]),
-            other => self.wrong(expr, &format!("`{}` is {}, it has no `.{component}`; write a vector", text(base), other.kind())),
+            other => self.wrong(
+                expr,
+                &format!(
+                    "`{}` is {}, it has no `.{component}`; write a vector",
+                    text(base),
+                    other.kind()
+                ),
+            ),
         }
     }
 }
@@ -410,7 +459,9 @@ fn has_index(expr: &Expr) -> bool {
     match &expr.kind {
         ExprKind::Number(_) | ExprKind::Name(_) | ExprKind::Integral { .. } => false,
         ExprKind::Index(..) => true,
-        ExprKind::Sum(items) | ExprKind::Product(items) => items.iter().any(|(_, item)| has_index(item)),
+        ExprKind::Sum(items) | ExprKind::Product(items) => {
+            items.iter().any(|(_, item)| has_index(item))
+        }
         ExprKind::Negative(a) | ExprKind::Magnitude(a) | ExprKind::Component(a, _) => has_index(a),
         ExprKind::Power(a, b) => has_index(a) || has_index(b),
         ExprKind::Call(_, items) | ExprKind::Vector(items) => items.iter().any(has_index),

@@ -11,7 +11,8 @@ use crate::syntax::text::text;
 pub(super) enum Value {
     Bad,
     Scalar(Id),
-    /// A plane vector; `complex` if it was written as a complex number, so that a real number may be added to it.
+    /// A plane vector; `complex` if it was written as a complex number, so that a real number may
+    /// be added to it.
     Plane {
         parts: [Id; 2],
         complex: bool,
@@ -48,7 +49,10 @@ impl Lower<'_, '_, '_, '_> {
     /// The total time derivative; `may_rest` if the operand may be at rest.
     pub(super) fn dot(&mut self, value: Value, expr: &Expr, may_rest: bool) -> Value {
         let dependencies = self.dependencies(&value);
-        let moving = Dependencies::TIME.or(Dependencies::COORDINATE).or(Dependencies::VELOCITY).or(Dependencies::INPUT);
+        let moving = Dependencies::TIME
+            .or(Dependencies::COORDINATE)
+            .or(Dependencies::VELOCITY)
+            .or(Dependencies::INPUT);
         let what = text(expr);
         if value == Value::Bad {
             return value;
@@ -57,13 +61,22 @@ impl Lower<'_, '_, '_, '_> {
             return self.wrong(expr, &format!("the derivative of a velocity in `{what}` is an acceleration, and a Lagrangian has none; only driven inputs have a second derivative"));
         }
         if dependencies.any(Dependencies::ACCELERATION_INPUT) {
-            return self.wrong(expr, &format!("`{what}` contains a third derivative of a driven input; they have two"));
+            return self.wrong(
+                expr,
+                &format!("`{what}` contains a third derivative of a driven input; they have two"),
+            );
         }
         if !dependencies.any(moving) && !may_rest {
-            return self.wrong(expr, &format!("nothing in `{what}` moves, so its time derivative is zero; leave it out"));
+            return self.wrong(
+                expr,
+                &format!("nothing in `{what}` moves, so its time derivative is zero; leave it out"),
+            );
         }
         let positions = self.positions.take();
-        let rate = |graph: &mut Graph, id: Id| match positions.as_ref().and_then(|positions| positions.places.get(&id)) {
+        let rate = |graph: &mut Graph, id: Id| match positions
+            .as_ref()
+            .and_then(|positions| positions.places.get(&id))
+        {
             Some(&scalar) => graph.symbol(Symbol::Auxiliary(scalar)),
             None => total_derivative(graph, id),
         };
@@ -76,13 +89,15 @@ impl Lower<'_, '_, '_, '_> {
         match value {
             Value::Bad => Dependencies::default(),
             Value::Scalar(id) => self.graph.dependencies(*id),
-            Value::Plane { parts, .. } => {
-                parts.iter().fold(Dependencies::default(), |all, &id| all.or(self.graph.dependencies(id)))
-            }
-            Value::Space(parts) => parts.iter().fold(Dependencies::default(), |all, &id| all.or(self.graph.dependencies(id))),
-            Value::Family(members) => {
-                members.iter().fold(Dependencies::default(), |all, member| all.or(self.dependencies(member)))
-            }
+            Value::Plane { parts, .. } => parts
+                .iter()
+                .fold(Dependencies::default(), |all, &id| all.or(self.graph.dependencies(id))),
+            Value::Space(parts) => parts
+                .iter()
+                .fold(Dependencies::default(), |all, &id| all.or(self.graph.dependencies(id))),
+            Value::Family(members) => members
+                .iter()
+                .fold(Dependencies::default(), |all, member| all.or(self.dependencies(member))),
         }
     }
 
@@ -90,13 +105,21 @@ impl Lower<'_, '_, '_, '_> {
         self.map_with(value, &mut map)
     }
 
-    pub(super) fn map_with(&mut self, value: Value, map: &mut impl FnMut(&mut Graph, Id) -> Id) -> Value {
+    pub(super) fn map_with(
+        &mut self,
+        value: Value,
+        map: &mut impl FnMut(&mut Graph, Id) -> Id,
+    ) -> Value {
         match value {
             Value::Bad => Value::Bad,
             Value::Scalar(id) => Value::Scalar(map(self.graph, id)),
-            Value::Plane { parts, complex } => Value::Plane { parts: parts.map(|id| map(self.graph, id)), complex },
+            Value::Plane { parts, complex } => {
+                Value::Plane { parts: parts.map(|id| map(self.graph, id)), complex }
+            }
             Value::Space(parts) => Value::Space(parts.map(|id| map(self.graph, id))),
-            Value::Family(members) => Value::Family(members.into_iter().map(|member| self.map_with(member, map)).collect()),
+            Value::Family(members) => Value::Family(
+                members.into_iter().map(|member| self.map_with(member, map)).collect(),
+            ),
         }
     }
 
@@ -106,7 +129,10 @@ impl Lower<'_, '_, '_, '_> {
             // An empty sum is zero, whatever its terms would have been.
             (Value::Scalar(Graph::ZERO), other) | (other, Value::Scalar(Graph::ZERO)) => other,
             (Value::Scalar(a), Value::Scalar(b)) => Value::Scalar(self.graph.add(a, b)),
-            (Value::Plane { parts: a, complex: left }, Value::Plane { parts: b, complex: right }) => {
+            (
+                Value::Plane { parts: a, complex: left },
+                Value::Plane { parts: b, complex: right },
+            ) => {
                 let parts = [self.graph.add(a[0], b[0]), self.graph.add(a[1], b[1])];
                 Value::Plane { parts, complex: left && right }
             }
@@ -114,7 +140,9 @@ impl Lower<'_, '_, '_, '_> {
             | (Value::Scalar(real), Value::Plane { parts, complex: true }) => {
                 Value::Plane { parts: [self.graph.add(parts[0], real), parts[1]], complex: true }
             }
-            (Value::Space(a), Value::Space(b)) => Value::Space([0, 1, 2].map(|k| self.graph.add(a[k], b[k]))),
+            (Value::Space(a), Value::Space(b)) => {
+                Value::Space([0, 1, 2].map(|k| self.graph.add(a[k], b[k])))
+            }
             (a, b) => {
                 let message = format!(
                     "`{}` is {}, but the terms before it are {}; a sum needs terms of one kind",
@@ -129,7 +157,8 @@ impl Lower<'_, '_, '_, '_> {
 
     /// The sum of many values, each of which `expr` gave.
     ///
-    /// Scalars and vectors are summed at once: a sum that grows term by term would be rebuilt for each of them.
+    /// Scalars and vectors are summed at once: a sum that grows term by term would be rebuilt for
+    /// each of them.
     pub(super) fn total(&mut self, values: Vec<Value>, expr: &Expr) -> Value {
         let mut columns = [const { Vec::new() }; 3];
         let alike = values.windows(2).all(|pair| pair[0].kind() == pair[1].kind());
@@ -150,8 +179,13 @@ impl Lower<'_, '_, '_, '_> {
             Some(&Value::Plane { complex, .. }) if alike => {
                 Value::Plane { parts: [0, 1].map(|k| self.graph.sum(&columns[k])), complex }
             }
-            Some(Value::Space(_)) if alike => Value::Space([0, 1, 2].map(|k| self.graph.sum(&columns[k]))),
-            Some(_) => values.into_iter().reduce(|sum, value| self.add(sum, value, expr)).unwrap_or(Value::Bad),
+            Some(Value::Space(_)) if alike => {
+                Value::Space([0, 1, 2].map(|k| self.graph.sum(&columns[k])))
+            }
+            Some(_) => values
+                .into_iter()
+                .reduce(|sum, value| self.add(sum, value, expr))
+                .unwrap_or(Value::Bad),
         }
     }
 
@@ -161,12 +195,19 @@ impl Lower<'_, '_, '_, '_> {
             (Value::Scalar(a), b @ (Value::Scalar(_) | Value::Plane { .. } | Value::Space(_))) => {
                 self.map(b, |graph, id| graph.mul(a, id))
             }
-            (a @ (Value::Plane { .. } | Value::Space(_)), Value::Scalar(b)) => self.map(a, |graph, id| graph.mul(id, b)),
-            (Value::Plane { parts: a, complex: left }, Value::Plane { parts: b, complex: right }) => {
-                Value::Plane { parts: self.complex_product(a, b), complex: left && right }
+            (a @ (Value::Plane { .. } | Value::Space(_)), Value::Scalar(b)) => {
+                self.map(a, |graph, id| graph.mul(id, b))
             }
+            (
+                Value::Plane { parts: a, complex: left },
+                Value::Plane { parts: b, complex: right },
+            ) => Value::Plane { parts: self.complex_product(a, b), complex: left && right },
             (a, b) => {
-                let message = format!("{} cannot be multiplied by {}; write a component or an index", a.kind(), b.kind());
+                let message = format!(
+                    "{} cannot be multiplied by {}; write a component or an index",
+                    a.kind(),
+                    b.kind()
+                );
                 self.wrong(expr, &message)
             }
         }
@@ -182,14 +223,17 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn divide(&mut self, a: Value, b: Value, expr: &Expr) -> Value {
         match b {
             Value::Bad => Value::Bad,
-            Value::Scalar(Graph::ZERO) => self.wrong(expr, "division by zero; write another divisor"),
+            Value::Scalar(Graph::ZERO) => {
+                self.wrong(expr, "division by zero; write another divisor")
+            }
             Value::Scalar(b) => match a {
                 Value::Family(_) => self.multiply(a, Value::Scalar(b), expr),
                 a => self.map(a, |graph, id| graph.div(id, b)),
             },
             Value::Plane { parts: [re, im], complex: true } => {
                 let square = self.square(&[re, im]);
-                let conjugate = [re, self.graph.negative(im)].map(|part| self.graph.div(part, square));
+                let conjugate =
+                    [re, self.graph.negative(im)].map(|part| self.graph.div(part, square));
                 self.multiply(a, Value::Plane { parts: conjugate, complex: true }, expr)
             }
             other => {
@@ -241,14 +285,23 @@ impl Lower<'_, '_, '_, '_> {
         let (left, right) = (self.expr(a), self.expr(b));
         let pairs: Vec<(Id, Id)> = match (&left, &right) {
             (Value::Bad, _) | (_, Value::Bad) => return Value::Bad,
-            (Value::Plane { parts: a, .. }, Value::Plane { parts: b, .. }) => a.iter().copied().zip(b.iter().copied()).collect(),
-            (Value::Space(a), Value::Space(b)) => a.iter().copied().zip(b.iter().copied()).collect(),
+            (Value::Plane { parts: a, .. }, Value::Plane { parts: b, .. }) => {
+                a.iter().copied().zip(b.iter().copied()).collect()
+            }
+            (Value::Space(a), Value::Space(b)) => {
+                a.iter().copied().zip(b.iter().copied()).collect()
+            }
             _ => {
-                let message = format!("`inner` takes two vectors of one length; these are {} and {}", left.kind(), right.kind());
+                let message = format!(
+                    "`inner` takes two vectors of one length; these are {} and {}",
+                    left.kind(),
+                    right.kind()
+                );
                 return self.wrong(b, &message);
             }
         };
-        let products: Vec<(Id, Rational)> = pairs.into_iter().map(|(a, b)| (self.graph.mul(a, b), Rational::ONE)).collect();
+        let products: Vec<(Id, Rational)> =
+            pairs.into_iter().map(|(a, b)| (self.graph.mul(a, b), Rational::ONE)).collect();
         Value::Scalar(self.graph.sum(&products))
     }
 
@@ -261,12 +314,20 @@ impl Lower<'_, '_, '_, '_> {
         };
         match (&left, &right) {
             (Value::Bad, _) | (_, Value::Bad) => Value::Bad,
-            (Value::Plane { parts: a, .. }, Value::Plane { parts: b, .. }) => Value::Scalar(minor(a[0], b[1], a[1], b[0])),
-            (Value::Space(a), Value::Space(b)) => {
-                Value::Space([minor(a[1], b[2], a[2], b[1]), minor(a[2], b[0], a[0], b[2]), minor(a[0], b[1], a[1], b[0])])
+            (Value::Plane { parts: a, .. }, Value::Plane { parts: b, .. }) => {
+                Value::Scalar(minor(a[0], b[1], a[1], b[0]))
             }
+            (Value::Space(a), Value::Space(b)) => Value::Space([
+                minor(a[1], b[2], a[2], b[1]),
+                minor(a[2], b[0], a[0], b[2]),
+                minor(a[0], b[1], a[1], b[0]),
+            ]),
             _ => {
-                let message = format!("`cross` takes two vectors of one length; these are {} and {}", left.kind(), right.kind());
+                let message = format!(
+                    "`cross` takes two vectors of one length; these are {} and {}",
+                    left.kind(),
+                    right.kind()
+                );
                 self.wrong(b, &message)
             }
         }
@@ -285,15 +346,18 @@ impl Lower<'_, '_, '_, '_> {
                 Value::Scalar(self.graph.sqrt(square))
             }
             other @ Value::Family(_) => {
-                let message = format!("`{}` is {}; write one of its members", text(inner), other.kind());
+                let message =
+                    format!("`{}` is {}; write one of its members", text(inner), other.kind());
                 self.wrong(inner, &message)
             }
         }
     }
 
     pub(super) fn square(&mut self, parts: &[Id]) -> Id {
-        let squares: Vec<(Id, Rational)> =
-            parts.iter().map(|&part| (self.graph.power(part, Rational::whole(2)), Rational::ONE)).collect();
+        let squares: Vec<(Id, Rational)> = parts
+            .iter()
+            .map(|&part| (self.graph.power(part, Rational::whole(2)), Rational::ONE))
+            .collect();
         self.graph.sum(&squares)
     }
 }

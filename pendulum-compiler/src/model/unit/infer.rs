@@ -1,8 +1,8 @@
 //! The units of a block: checked where they are written, inferred where the sums decide them.
 //!
-//! Every quantity without a unit is an unknown. A dimension is a known one times powers of unknowns; each sum, function
-//! argument and energy gives an equation that is linear in the exponents, and the first equation that has no unknown left and does
-//! not hold is the mistake.
+//! Every quantity without a unit is an unknown. A dimension is a known one times powers of
+//! unknowns; each sum, function argument and energy gives an equation that is linear in the
+//! exponents, and the first equation that has no unknown left and does not hold is the mistake.
 
 use super::{Dimension, constant};
 use crate::algebra::number::Literal;
@@ -14,7 +14,8 @@ use crate::syntax::name::{self, Name};
 use crate::syntax::text::text;
 use std::collections::BTreeMap;
 
-/// What is nested deeper is left alone: it would overflow the compiler's stack. Every definition is checked for itself as well.
+/// What is nested deeper is left alone: it would overflow the compiler's stack. Every definition is
+/// checked for itself as well.
 const DEEPEST: usize = 200;
 
 /// Checks a block, if any of its quantities has a unit.
@@ -56,7 +57,8 @@ impl Unit {
     fn times(&self, other: &Self, power: Rational) -> Option<Self> {
         let mut unknown = self.unknown.clone();
         for (&name, &exponent) in &other.unknown {
-            let total = unknown.get(&name).copied().unwrap_or(Rational::ZERO).add(exponent.mul(power)?)?;
+            let total =
+                unknown.get(&name).copied().unwrap_or(Rational::ZERO).add(exponent.mul(power)?)?;
             if total.is_zero() {
                 unknown.remove(&name);
             } else {
@@ -97,7 +99,9 @@ impl Units<'_, '_, '_> {
         for &(role, expr) in &model.energies {
             let Some(found) = self.expr(expr) else { continue };
             let found = match role {
-                Role::Dissipation => found.times(&Unit::of(second()), Rational::ONE).unwrap_or(found),
+                Role::Dissipation => {
+                    found.times(&Unit::of(second()), Rational::ONE).unwrap_or(found)
+                }
                 _ => found,
             };
             match &energy {
@@ -124,7 +128,10 @@ impl Units<'_, '_, '_> {
             }
             let found = self.expr(force.expr);
             self.scope.truncate(depth);
-            let coordinate = Self::quantity(model.parameters.len() + force.coordinate, &model.coordinates[force.coordinate]);
+            let coordinate = Self::quantity(
+                model.parameters.len() + force.coordinate,
+                &model.coordinates[force.coordinate],
+            );
             let expected = energy.times(&coordinate, Rational::MINUS_ONE);
             if let (Some(found), Some(expected)) = (found, expected)
                 && !self.unify(&found, &expected)
@@ -167,7 +174,8 @@ impl Units<'_, '_, '_> {
         }
         self.open.push(index);
         let definition = self.model.lets[index];
-        let names = definition.arguments.iter().flatten().map(|name| name::read(&name.to_string()).base);
+        let names =
+            definition.arguments.iter().flatten().map(|name| name::read(&name.to_string()).base);
         let scope = std::mem::replace(&mut self.scope, names.zip(arguments).collect());
         let found = self.expr(&definition.expr);
         self.scope = scope;
@@ -178,7 +186,9 @@ impl Units<'_, '_, '_> {
     fn quantity(unknown: usize, quantity: &model::Quantity) -> Unit {
         match quantity.dimension {
             Some(known) => Unit::of(known),
-            None => Unit { known: Dimension::PURE, unknown: BTreeMap::from([(unknown, Rational::ONE)]) },
+            None => {
+                Unit { known: Dimension::PURE, unknown: BTreeMap::from([(unknown, Rational::ONE)]) }
+            }
         }
     }
 
@@ -188,7 +198,10 @@ impl Units<'_, '_, '_> {
         for (&name, &exponent) in &unit.unknown {
             let part = match self.solved.get(&name) {
                 Some(solution) => self.resolved(solution),
-                None => Unit { known: Dimension::PURE, unknown: BTreeMap::from([(name, Rational::ONE)]) },
+                None => Unit {
+                    known: Dimension::PURE,
+                    unknown: BTreeMap::from([(name, Rational::ONE)]),
+                },
             };
             result = result.times(&part, exponent).unwrap_or(result);
         }
@@ -199,9 +212,13 @@ impl Units<'_, '_, '_> {
     fn unify(&mut self, a: &Unit, b: &Unit) -> bool {
         let Some(quotient) = a.times(b, Rational::MINUS_ONE) else { return true };
         let mut rest = self.resolved(&quotient);
-        let Some((name, exponent)) = rest.unknown.pop_last() else { return rest.known == Dimension::PURE };
+        let Some((name, exponent)) = rest.unknown.pop_last() else {
+            return rest.known == Dimension::PURE;
+        };
         // name^exponent · rest = 1.
-        if let Some(solution) = exponent.reciprocal().and_then(|power| Unit::pure().times(&rest, power.negative())) {
+        if let Some(solution) =
+            exponent.reciprocal().and_then(|power| Unit::pure().times(&rest, power.negative()))
+        {
             self.solved.insert(name, solution);
         }
         true
@@ -212,9 +229,14 @@ impl Units<'_, '_, '_> {
         if resolved.unknown.is_empty() {
             return resolved.known.to_string();
         }
-        let quantities = self.model.parameters.iter().chain(&self.model.coordinates).chain(&self.model.inputs);
+        let quantities =
+            self.model.parameters.iter().chain(&self.model.coordinates).chain(&self.model.inputs);
         let names: Vec<String> = quantities.map(|quantity| quantity.name.to_string()).collect();
-        let unknown: Vec<String> = resolved.unknown.keys().map(|&index| format!("the unit of `{}`", names[index])).collect();
+        let unknown: Vec<String> = resolved
+            .unknown
+            .keys()
+            .map(|&index| format!("the unit of `{}`", names[index]))
+            .collect();
         format!("{} times {}", resolved.known, unknown.join(" and "))
     }
 
@@ -227,7 +249,10 @@ impl Units<'_, '_, '_> {
             self.errors.once(
                 expr.source,
                 expr.range,
-                format!("`{}` is {unit}, but {what} is a pure number; divide by a unit of its kind", text(expr)),
+                format!(
+                    "`{}` is {unit}, but {what} is a pure number; divide by a unit of its kind",
+                    text(expr)
+                ),
             );
         }
     }
@@ -278,7 +303,9 @@ impl Units<'_, '_, '_> {
                 for (over, item) in items {
                     let factor = self.expr(item);
                     let power = if *over { Rational::MINUS_ONE } else { Rational::ONE };
-                    product = product.zip(factor).and_then(|(product, factor)| product.times(&factor, power));
+                    product = product
+                        .zip(factor)
+                        .and_then(|(product, factor)| product.times(&factor, power));
                 }
                 product
             }
@@ -331,19 +358,26 @@ impl Units<'_, '_, '_> {
     fn name(&mut self, text: &str) -> Found {
         let Name { base, dots } = name::read(text);
         let model = self.model;
-        let found = if let Some((_, found)) = self.scope.iter().rev().find(|(name, _)| *name == base) {
-            found.clone()
-        } else {
-            let (parameters, coordinates) = (model.parameters.len(), model.coordinates.len());
-            match (base.as_str(), model.names.get(&base)) {
-                (_, Some(&Meaning::Parameter(index))) => Some(Self::quantity(index, &model.parameters[index])),
-                (_, Some(&Meaning::Coordinate(index))) => Some(Self::quantity(parameters + index, &model.coordinates[index])),
-                (_, Some(&Meaning::Input(index))) => Some(Self::quantity(parameters + coordinates + index, &model.inputs[index])),
-                (_, Some(&Meaning::Let(index))) => self.definition(index),
-                ("t", None) => Some(Unit::of(second())),
-                _ => Some(Unit::pure()),
-            }
-        };
+        let found =
+            if let Some((_, found)) = self.scope.iter().rev().find(|(name, _)| *name == base) {
+                found.clone()
+            } else {
+                let (parameters, coordinates) = (model.parameters.len(), model.coordinates.len());
+                match (base.as_str(), model.names.get(&base)) {
+                    (_, Some(&Meaning::Parameter(index))) => {
+                        Some(Self::quantity(index, &model.parameters[index]))
+                    }
+                    (_, Some(&Meaning::Coordinate(index))) => {
+                        Some(Self::quantity(parameters + index, &model.coordinates[index]))
+                    }
+                    (_, Some(&Meaning::Input(index))) => {
+                        Some(Self::quantity(parameters + coordinates + index, &model.inputs[index]))
+                    }
+                    (_, Some(&Meaning::Let(index))) => self.definition(index),
+                    ("t", None) => Some(Unit::of(second())),
+                    _ => Some(Unit::pure()),
+                }
+            };
         found.and_then(|unit| unit.times(&Unit::of(second()), Rational::whole(-i64::from(dots))))
     }
 
@@ -354,11 +388,17 @@ impl Units<'_, '_, '_> {
         {
             let arguments = items.iter().map(|item| self.expr(item)).collect();
             let found = self.apply(index, arguments);
-            return found.and_then(|unit| unit.times(&Unit::of(second()), Rational::whole(-i64::from(dots))));
+            return found.and_then(|unit| {
+                unit.times(&Unit::of(second()), Rational::whole(-i64::from(dots)))
+            });
         }
         match (name, items) {
-            ("dot", [item]) => self.expr(item).and_then(|unit| unit.times(&Unit::of(second()), Rational::MINUS_ONE)),
-            ("sqrt", [item]) => self.expr(item).and_then(|unit| Unit::pure().times(&unit, Rational::HALF)),
+            ("dot", [item]) => self
+                .expr(item)
+                .and_then(|unit| unit.times(&Unit::of(second()), Rational::MINUS_ONE)),
+            ("sqrt", [item]) => {
+                self.expr(item).and_then(|unit| Unit::pure().times(&unit, Rational::HALF))
+            }
             ("inner" | "cross", [a, b]) => {
                 let (a, b) = (self.expr(a), self.expr(b));
                 a.zip(b).and_then(|(a, b)| a.times(&b, Rational::ONE))

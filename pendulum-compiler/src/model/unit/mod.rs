@@ -46,10 +46,12 @@ pub(crate) fn constant(expr: &Expr) -> Option<Rational> {
     match &expr.kind {
         ExprKind::Number(Literal::Exact(value)) => Some(*value),
         ExprKind::Negative(inner) => Some(constant(inner)?.negative()),
-        ExprKind::Product(factors) => factors.iter().try_fold(Rational::ONE, |product, (over, factor)| {
-            let factor = constant(factor)?;
-            product.mul(if *over { factor.reciprocal()? } else { factor })
-        }),
+        ExprKind::Product(factors) => {
+            factors.iter().try_fold(Rational::ONE, |product, (over, factor)| {
+                let factor = constant(factor)?;
+                product.mul(if *over { factor.reciprocal()? } else { factor })
+            })
+        }
         ExprKind::Sum(terms) => terms.iter().try_fold(Rational::ZERO, |sum, (minus, term)| {
             let term = constant(term)?;
             sum.add(if *minus { term.negative() } else { term })

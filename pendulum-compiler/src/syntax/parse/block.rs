@@ -17,14 +17,16 @@ impl Parser<'_> {
         let attributes = input.call(Attribute::parse_outer)?;
         let visibility: Visibility = input.parse()?;
         if !input.peek(Token![struct]) {
-            return Err(Range::from(input.span())
-                .error("a block begins with its struct; write `pub struct Name { … }` with the parameters"));
+            return Err(Range::from(input.span()).error(
+                "a block begins with its struct; write `pub struct Name { … }` with the parameters",
+            ));
         }
         input.parse::<Token![struct]>()?;
         let name = identifier(input, "the name of the struct")?;
         if !input.peek(syn::token::Brace) {
-            return Err(Range::from(input.span())
-                .error("the parameters are missing; write `{ m: kg, L: m }` after the name of the struct"));
+            return Err(Range::from(input.span()).error(
+                "the parameters are missing; write `{ m: kg, L: m }` after the name of the struct",
+            ));
         }
         let content;
         braced!(content in input);
@@ -41,22 +43,37 @@ impl Parser<'_> {
         }
         let mut statements = Vec::new();
         while !input.is_empty() {
-            let word = input.fork().call(Ident::parse_any).map(|word| word.to_string()).unwrap_or_default();
+            let word = input
+                .fork()
+                .call(Ident::parse_any)
+                .map(|word| word.to_string())
+                .unwrap_or_default();
             match self.statement(input) {
                 Ok(statement) => statements.push(statement),
                 Err(error) => {
                     self.errors.push(error);
-                    // The number of coordinates is part of the type: without one, every use of the system would be a mistake.
+                    // The number of coordinates is part of the type: without one, every use of the
+                    // system would be a mistake.
                     statements.append(&mut self.begun);
                     match word.as_str() {
-                        "kinetic" | "potential" | "lagrangian" | "dissipation" | "force" => self.recovery.energies = true,
+                        "kinetic" | "potential" | "lagrangian" | "dissipation" | "force" => {
+                            self.recovery.energies = true;
+                        }
                         _ => self.recovery = Recovery { declarations: true, energies: true },
                     }
                     skip(input, ';');
                 }
             }
         }
-        Ok(Block { attributes, visibility, name, fields, statements, recovery: self.recovery, ascii: self.ascii })
+        Ok(Block {
+            attributes,
+            visibility,
+            name,
+            fields,
+            statements,
+            recovery: self.recovery,
+            ascii: self.ascii,
+        })
     }
 
     fn field(&mut self, input: ParseStream) -> Result<Field> {
@@ -100,7 +117,8 @@ impl Parser<'_> {
             } else {
                 "_".to_owned()
             };
-            let message = format!("the length stands with the unit; write `{name}: [{unit}; {length}]`");
+            let message =
+                format!("the length stands with the unit; write `{name}: [{unit}; {length}]`");
             return Err(brackets.error(message));
         }
         if !input.peek(Token![:]) {
@@ -128,7 +146,9 @@ impl Parser<'_> {
             return Ok(Kind::Array { unit, length });
         }
         match self.unit(input)? {
-            Some(Expr { kind: ExprKind::Name(name), range, .. }) if name == "body" => Ok(Kind::Body(range)),
+            Some(Expr { kind: ExprKind::Name(name), range, .. }) if name == "body" => {
+                Ok(Kind::Body(range))
+            }
             unit => Ok(Kind::Scalar(unit)),
         }
     }
@@ -146,22 +166,34 @@ impl Parser<'_> {
 /// What is wrong between brackets that hold a unit without a length, or a length without a unit.
 fn no_length(content: ParseStream, unit: Option<&Expr>) -> syn::Error {
     match unit {
-        Some(Expr { kind: ExprKind::Number(Literal::Exact(length)), range, .. }) if content.is_empty() => {
+        Some(Expr { kind: ExprKind::Number(Literal::Exact(length)), range, .. })
+            if content.is_empty() =>
+        {
             range.error(unit_missing(&length.to_string()))
         }
         Some(unit) if content.peek(Token![,]) => {
             let place = Range::from(content.span());
             let rest = content.parse::<TokenStream>().unwrap_or_default().into_iter();
             // A comma at the end is none between components.
-            let commas = rest.map(|tree| matches!(tree, TokenTree::Punct(sign) if sign.as_char() == ',')).collect::<Vec<_>>();
-            let length = commas.iter().filter(|comma| **comma).count() + usize::from(commas.last() == Some(&false));
-            place.error(format!("all components have one unit; write `[{}; {}]` for a vector", text(unit), length.max(2)))
+            let commas = rest
+                .map(|tree| matches!(tree, TokenTree::Punct(sign) if sign.as_char() == ','))
+                .collect::<Vec<_>>();
+            let length = commas.iter().filter(|comma| **comma).count()
+                + usize::from(commas.last() == Some(&false));
+            place.error(format!(
+                "all components have one unit; write `[{}; {}]` for a vector",
+                text(unit),
+                length.max(2)
+            ))
         }
-        _ => Range::from(content.span()).error("a length is missing; write `[m; 2]` for a vector, `[kg; 5]` for a family"),
+        _ => Range::from(content.span())
+            .error("a length is missing; write `[m; 2]` for a vector, `[kg; 5]` for a family"),
     }
 }
 
 fn unit_missing(length: &str) -> String {
     let length = if length.is_empty() { "2" } else { length };
-    format!("a unit is missing; write `[m; {length}]`, or `[_; {length}]` for a vector without a unit")
+    format!(
+        "a unit is missing; write `[m; {length}]`, or `[_; {length}]` for a vector without a unit"
+    )
 }

@@ -33,7 +33,8 @@ impl Parser<'_> {
         let outside = std::mem::replace(&mut self.barred, barred);
         self.depth += 1;
         let result = if DEPTH < self.depth {
-            Err(Range::from(input.span()).error("this expression is nested too deeply; name a part of it with `let`"))
+            Err(Range::from(input.span())
+                .error("this expression is nested too deeply; name a part of it with `let`"))
         } else {
             self.sum(input)
         };
@@ -181,7 +182,10 @@ impl Parser<'_> {
             let dot = Range::from(input.parse::<Token![.]>()?.span());
             let digits: Lit = input.parse()?;
             let range = dot.to(digits.span().into());
-            return Err(range.error(format!("a number begins with a digit; write `0.{}`", digits.to_token_stream())));
+            return Err(range.error(format!(
+                "a number begins with a digit; write `0.{}`",
+                digits.to_token_stream()
+            )));
         }
         if input.is_empty() {
             return Err(Range::from(input.span()).error("an expression is missing here"));
@@ -207,7 +211,8 @@ impl Parser<'_> {
         let name = input.call(Ident::parse_any)?;
         checked(&name)?;
         if let Some(row) = FOREIGN.iter().find(|row| name == row.0) {
-            return Err(Range::from(name.span()).error(format!("`{name}` is Rust, which has no place in a formula; {}", row.1)));
+            return Err(Range::from(name.span())
+                .error(format!("`{name}` is Rust, which has no place in a formula; {}", row.1)));
         }
         if input.peek(Token![::]) {
             return Err(path(input, Some(&name), self.ascii));
@@ -226,7 +231,8 @@ impl Parser<'_> {
             end(&content)?;
             ExprKind::SumOver(Box::new(binder), Box::new(term))
         } else if name == "integral" {
-            let point = identifier(&content, "the point of integration; write `integral(p in B, …)`")?;
+            let point =
+                identifier(&content, "the point of integration; write `integral(p in B, …)`")?;
             if !content.peek(Token![in]) {
                 return Err(unexpected(&content, "`in` and the name of a body"));
             }
@@ -258,11 +264,13 @@ impl Parser<'_> {
         let span = literal.span();
         let (digits, suffix) = match &literal {
             Lit::Int(literal) => (literal.base10_digits().to_owned(), literal.suffix().to_owned()),
-            Lit::Float(literal) => (literal.base10_digits().to_owned(), literal.suffix().to_owned()),
+            Lit::Float(literal) => {
+                (literal.base10_digits().to_owned(), literal.suffix().to_owned())
+            }
             _ => {
-                return Err(
-                    Range::from(span).error("only numbers and names can stand in a formula; write a number such as `9.81`")
-                );
+                return Err(Range::from(span).error(
+                    "only numbers and names can stand in a formula; write a number such as `9.81`",
+                ));
             }
         };
         if !suffix.is_empty() {
@@ -278,7 +286,10 @@ impl Parser<'_> {
         let literal = match Rational::decimal(&digits) {
             Some(value) => Literal::Exact(value),
             None if digits.parse::<f64>().is_ok_and(f64::is_finite) => Literal::Decimal(digits),
-            None => return Err(Range::from(span).error("this number is beyond the range of `f64`; write a smaller one")),
+            None => {
+                return Err(Range::from(span)
+                    .error("this number is beyond the range of `f64`; write a smaller one"));
+            }
         };
         Ok(self.node(ExprKind::Number(literal), span.into()))
     }

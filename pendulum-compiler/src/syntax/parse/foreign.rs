@@ -37,10 +37,12 @@ impl Parser<'_> {
     /// Two operands side by side: there is no implicit multiplication.
     pub(super) fn no_operand(&self, input: ParseStream, left: &Expr) -> Result<()> {
         if input.peek(Token![as]) {
-            return Err(Range::from(input.span()).error("`as` is Rust, which has no place in a formula; leave the type out"));
+            return Err(Range::from(input.span())
+                .error("`as` is Rust, which has no place in a formula; leave the type out"));
         }
         if let (ExprKind::Name(name), true) = (&left.kind, input.peek(Lifetime)) {
-            let message = format!("`'` is no derivative; write {}", name::dotted(&name.to_string()));
+            let message =
+                format!("`'` is no derivative; write {}", name::dotted(&name.to_string()));
             return Err(Range::from(input.span()).error(message));
         }
         if fragment(input).is_some()
@@ -52,27 +54,37 @@ impl Parser<'_> {
             let token = input.fork().parse::<TokenTree>()?;
             let right = Range::from(token.span());
             if STATEMENTS.iter().any(|word| token.to_string() == *word) {
-                return Err(right.error(format!("`;` is missing before `{token}`; end the statement above with `;`")));
+                return Err(right.error(format!(
+                    "`;` is missing before `{token}`; end the statement above with `;`"
+                )));
             }
             return Err(match (&left.kind, &token) {
-                (_, TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis => match &left.kind {
-                    ExprKind::Name(_) | ExprKind::Number(_) => {
-                        Range::from(group.span_open()).error("there is no implicit multiplication; write `*` before `(`")
+                (_, TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis => {
+                    match &left.kind {
+                        ExprKind::Name(_) | ExprKind::Number(_) => Range::from(group.span_open())
+                            .error("there is no implicit multiplication; write `*` before `(`"),
+                        _ => Range::from(group.span_open())
+                            .error("an operator is missing before `(`; write `*` to multiply"),
                     }
-                    _ => Range::from(group.span_open()).error("an operator is missing before `(`; write `*` to multiply"),
-                },
+                }
                 (ExprKind::Name(name), _) if self.is_function(name) => {
                     let count = FUNCTIONS.iter().find(|row| name == row.0).map_or(1, |row| row.1);
                     let arguments = match token {
-                        TokenTree::Ident(_) | TokenTree::Literal(_) if count == 1 => token.to_string(),
+                        TokenTree::Ident(_) | TokenTree::Literal(_) if count == 1 => {
+                            token.to_string()
+                        }
                         _ => vec!["…"; count].join(", "),
                     };
                     let (plural, verb) = if count == 1 { ("", "stands") } else { ("s", "stand") };
-                    let message = format!("the argument{plural} of `{name}` {verb} in parentheses; write `{name}({arguments})`");
+                    let message = format!(
+                        "the argument{plural} of `{name}` {verb} in parentheses; write `{name}({arguments})`"
+                    );
                     right.error(message)
                 }
                 (ExprKind::Number(_), _) if self.is_unit(None, input) => right.error(no_unit()),
-                _ => right.error(format!("there is no implicit multiplication; write `*` before `{token}`")),
+                _ => right.error(format!(
+                    "there is no implicit multiplication; write `*` before `{token}`"
+                )),
             });
         }
         Ok(())
@@ -86,12 +98,21 @@ impl Parser<'_> {
         }
         let ahead = input.fork();
         ahead.parse::<Token![^]>()?;
-        let minus = if ahead.peek(Token![-]) { ahead.parse::<TokenTree>()?.to_string() } else { String::new() };
-        let Ok(power) = ahead.parse::<TokenTree>().map(|power| minus + &power.to_string()) else { return Ok(()) };
+        let minus = if ahead.peek(Token![-]) {
+            ahead.parse::<TokenTree>()?.to_string()
+        } else {
+            String::new()
+        };
+        let Ok(power) = ahead.parse::<TokenTree>().map(|power| minus + &power.to_string()) else {
+            return Ok(());
+        };
         let (argument, last) = if ahead.peek(syn::token::Paren) {
             let content;
             let parens = parenthesized!(content in ahead);
-            (self.expr(&content).map_or_else(|_| "…".to_owned(), |argument| text(&argument)), parens.span.close())
+            (
+                self.expr(&content).map_or_else(|_| "…".to_owned(), |argument| text(&argument)),
+                parens.span.close(),
+            )
         } else if ahead.peek(syn::Ident) {
             let argument: Ident = ahead.parse()?;
             (argument.to_string(), argument.span())
@@ -104,7 +125,8 @@ impl Parser<'_> {
         } else {
             format!("`{name}({argument})^{power}`")
         };
-        let message = format!("a function is raised to a power after its argument; write {instead}");
+        let message =
+            format!("a function is raised to a power after its argument; write {instead}");
         Err(base.range.to(last.into()).error(message))
     }
 
@@ -118,7 +140,9 @@ impl Parser<'_> {
                 Some(name) => name,
                 None => match ahead.parse::<TokenTree>() {
                     Ok(TokenTree::Ident(ident)) => ident.to_string(),
-                    Ok(TokenTree::Punct(sign)) if matches!(sign.as_char(), '*' | '/' | '^') => continue,
+                    Ok(TokenTree::Punct(sign)) if matches!(sign.as_char(), '*' | '/' | '^') => {
+                        continue;
+                    }
                     Ok(TokenTree::Literal(_)) => continue,
                     _ => return false,
                 },
@@ -139,13 +163,20 @@ impl Parser<'_> {
             Ok(arguments) => {
                 operands.extend(arguments);
                 let list = || operands.iter().map(text).collect::<Vec<_>>().join(", ");
-                let own = FUNCTIONS.contains(&(&method, operands.len())).then(|| format!("{method}({})", list()));
+                let own = FUNCTIONS
+                    .contains(&(&method, operands.len()))
+                    .then(|| format!("{method}({})", list()));
                 own.or_else(|| function(&method, &operands))
             }
             Err(_) => None,
         };
-        let instead = instead.map_or_else(|| "a function of the language, as in `sin(θ)`".to_owned(), |call| format!("`{call}`"));
-        Range::from(name.span()).error(format!("`.{method}()` is Rust, which has no place in a formula; write {instead}"))
+        let instead = instead.map_or_else(
+            || "a function of the language, as in `sin(θ)`".to_owned(),
+            |call| format!("`{call}`"),
+        );
+        Range::from(name.span()).error(format!(
+            "`.{method}()` is Rust, which has no place in a formula; write {instead}"
+        ))
     }
 
     /// The expressions between a pair of parentheses.
@@ -163,7 +194,12 @@ impl Parser<'_> {
 /// A comparison, which Rust has and formulas have not.
 pub(super) fn no_condition(input: ParseStream) -> Result<()> {
     let equal = input.peek(Token![==]) || input.peek(Token![!=]);
-    if equal || input.peek(Token![<]) || input.peek(Token![>]) || input.peek(Token![&&]) || input.peek(Token![?]) {
+    if equal
+        || input.peek(Token![<])
+        || input.peek(Token![>])
+        || input.peek(Token![&&])
+        || input.peek(Token![?])
+    {
         let sign = input.fork().parse::<TokenTree>()?;
         return Err(Range::from(sign.span())
             .error("a formula has no conditions; write `max`, `min`, `abs` or `sign` to tell cases apart, as in `max(0, θ)`"));
@@ -174,7 +210,8 @@ pub(super) fn no_condition(input: ParseStream) -> Result<()> {
 /// A path, and what to write instead.
 pub(super) fn path(input: ParseStream, first: Option<&Ident>, ascii: bool) -> syn::Error {
     let start = first.map_or_else(|| input.span(), Ident::span);
-    let (mut text, mut last) = (first.map(Ident::to_string).unwrap_or_default(), (String::new(), start));
+    let (mut text, mut last) =
+        (first.map(Ident::to_string).unwrap_or_default(), (String::new(), start));
     while input.parse::<Token![::]>().is_ok()
         && let Ok(name) = input.call(Ident::parse_any)
     {
@@ -186,5 +223,6 @@ pub(super) fn path(input: ParseStream, first: Option<&Ident>, ascii: bool) -> sy
         None if FUNCTIONS.iter().any(|row| row.0 == last.0) => format!("`{}(…)`", last.0),
         None => "a number, or declare a parameter".to_owned(),
     };
-    Range { first: start, last: last.1 }.error(format!("`{text}` is Rust, which has no place in a formula; write {instead}"))
+    Range { first: start, last: last.1 }
+        .error(format!("`{text}` is Rust, which has no place in a formula; write {instead}"))
 }

@@ -1,7 +1,8 @@
 //! Tokens to syntax: a recovering parser whose operators bind as in mathematics, not as in Rust.
 //!
-//! Precedence, low to high: `+ -`, `* /`, unary `-`, `^` (to the right), call, index, `|…|`. A statement that does not parse is
-//! reported and skipped to its `;`, so that two mistakes give two messages.
+//! Precedence, low to high: `+ -`, `* /`, unary `-`, `^` (to the right), call, index, `|…|`. A
+//! statement that does not parse is reported and skipped to its `;`, so that two mistakes give two
+//! messages.
 
 mod block;
 mod expr;

@@ -29,7 +29,9 @@ const UNSUPPORTED: &[(&str, &str)] = &[
 impl Parser<'_> {
     pub(super) fn statement(&mut self, input: ParseStream) -> Result<Statement> {
         let attributes = input.call(Attribute::parse_outer)?;
-        if let Some(attribute) = attributes.iter().find(|attribute| !attribute.path().is_ident("doc")) {
+        if let Some(attribute) =
+            attributes.iter().find(|attribute| !attribute.path().is_ident("doc"))
+        {
             return Err(Range { first: attribute.pound_token.spans[0], last: attribute.span() }
                 .error("an attribute has no effect here; attributes belong on the struct and its fields"));
         }
@@ -50,12 +52,20 @@ impl Parser<'_> {
         };
         if input.is_empty() {
             // All of the statement has been read.
-            self.errors.at(input.span(), "`;` is missing after this; end the last statement with `;`");
+            self.errors
+                .at(input.span(), "`;` is missing after this; end the last statement with `;`");
             return Ok(statement);
         }
         if !input.peek(Token![;]) {
-            self.begun.extend(Some(statement).filter(|statement| matches!(statement, Statement::Coordinate { .. })));
-            return Err(if input.peek(Token![,]) { self.several(input, &word) } else { unexpected(input, "`;`") });
+            self.begun.extend(
+                Some(statement)
+                    .filter(|statement| matches!(statement, Statement::Coordinate { .. })),
+            );
+            return Err(if input.peek(Token![,]) {
+                self.several(input, &word)
+            } else {
+                unexpected(input, "`;`")
+            });
         }
         input.parse::<Token![;]>()?;
         Ok(statement)
@@ -77,14 +87,18 @@ impl Parser<'_> {
                 }
                 _ => break,
             };
-            example.get_or_insert_with(|| statement.as_ref().map_or_else(|_| format!("{word} {name};"), written));
+            example.get_or_insert_with(|| {
+                statement.as_ref().map_or_else(|_| format!("{word} {name};"), written)
+            });
             match statement {
                 Ok(coordinate @ Statement::Coordinate { .. }) => self.begun.push(coordinate),
                 _ => break,
             }
         }
         comma.error(match example {
-            Some(example) => format!("a statement declares one name; write `{example}` as a statement of its own"),
+            Some(example) => format!(
+                "a statement declares one name; write `{example}` as a statement of its own"
+            ),
             None => "`,` is not expected here; expected `;`".to_owned(),
         })
     }
@@ -122,8 +136,13 @@ impl Parser<'_> {
             Kind::Scalar(unit) => Ok(unit),
             Kind::Array { unit, length } => {
                 let range = unit.as_ref().map_or(length.range, |unit| unit.range);
-                let family = written(&Statement::Coordinate { name: name.clone(), length: Some(length), unit });
-                Err(range.error(format!("a coordinate is one number; write `{family}` for several")))
+                let family = written(&Statement::Coordinate {
+                    name: name.clone(),
+                    length: Some(length),
+                    unit,
+                });
+                Err(range
+                    .error(format!("a coordinate is one number; write `{family}` for several")))
             }
             Kind::Body(range) => Err(range.error("a coordinate has a unit; write `rad` or `m`")),
         }
@@ -138,7 +157,9 @@ impl Parser<'_> {
         let name = self.declared(input, "the name of a driven input")?;
         let kind = self.declared_kind(input, &name)?;
         if let Kind::Body(range) = kind {
-            return Err(range.error("a driven input has a unit; write `[m; 2]` for a motion in the plane"));
+            return Err(
+                range.error("a driven input has a unit; write `[m; 2]` for a motion in the plane")
+            );
         }
         Ok(Statement::Driven { name, kind })
     }
@@ -183,7 +204,11 @@ impl Parser<'_> {
             let content;
             bracketed!(content in input);
             let each = content.peek2(Token![in]);
-            let index = if each { ForceIndex::Each(self.binder(&content)?) } else { ForceIndex::One(self.expr(&content)?) };
+            let index = if each {
+                ForceIndex::Each(self.binder(&content)?)
+            } else {
+                ForceIndex::One(self.expr(&content)?)
+            };
             end(&content)?;
             Some(index)
         } else {
@@ -228,13 +253,19 @@ impl Parser<'_> {
 
 /// A declaration as one would write it.
 fn written(statement: &Statement) -> String {
-    let unit = |unit: &Option<Expr>| unit.as_ref().map_or_else(String::new, |unit| format!(": {}", text(unit)));
+    let unit = |unit: &Option<Expr>| {
+        unit.as_ref().map_or_else(String::new, |unit| format!(": {}", text(unit)))
+    };
     match statement {
-        Statement::Coordinate { name, length: None, unit: own } => format!("coordinate {name}{};", unit(own)),
+        Statement::Coordinate { name, length: None, unit: own } => {
+            format!("coordinate {name}{};", unit(own))
+        }
         Statement::Coordinate { name, length: Some(length), unit: own } => {
             format!("coordinate {name}[{}]{};", text(length), unit(own))
         }
-        Statement::Driven { name, kind: Kind::Scalar(own) } => format!("driven {name}{};", unit(own)),
+        Statement::Driven { name, kind: Kind::Scalar(own) } => {
+            format!("driven {name}{};", unit(own))
+        }
         Statement::Driven { name, kind: Kind::Array { unit, length } } => {
             let unit = unit.as_ref().map_or_else(|| "_".to_owned(), text);
             format!("driven {name}: [{unit}; {}];", text(length))

@@ -15,7 +15,8 @@ pub(super) fn identifier(input: ParseStream, what: &str) -> Result<Ident> {
     checked(&name)?;
     // `gen` is a word of the language from the edition of 2024 on, wherever the block stands.
     if name == "gen" || syn::parse_str::<Ident>(&name.to_string()).is_err() {
-        return Err(Range::from(name.span()).error(format!("`{name}` is a word of the Rust language; choose another name")));
+        return Err(Range::from(name.span())
+            .error(format!("`{name}` is a word of the Rust language; choose another name")));
     }
     Ok(name)
 }
@@ -29,10 +30,12 @@ pub(super) fn checked(name: &Ident) -> Result<()> {
             [_, _, ..] => format!("`*`, as in `{}`, or `inner(u, v)` for vectors", parts.join("*")),
             _ => "`*`, or `inner(u, v)` for vectors".to_owned(),
         };
-        return Err(Range::from(name.span()).error(format!("`·` is part of a name in Rust; write {instead}")));
+        return Err(Range::from(name.span())
+            .error(format!("`·` is part of a name in Rust; write {instead}")));
     }
     if text.starts_with("__") {
-        return Err(Range::from(name.span()).error("names that begin with `__` are reserved; choose another name"));
+        return Err(Range::from(name.span())
+            .error("names that begin with `__` are reserved; choose another name"));
     }
     Ok(())
 }
@@ -55,7 +58,8 @@ pub(super) fn comma(input: ParseStream) -> Result<()> {
 
 /// The tokens that a macro of the user's has handed over as one, as `$e:expr`, if they come next.
 ///
-/// They stand between brackets that nobody sees and that syn looks through. A single name or number needs none: it may be called.
+/// They stand between brackets that nobody sees and that syn looks through. A single name or number
+/// needs none: it may be called.
 pub(super) fn fragment(input: ParseStream) -> Option<TokenStream> {
     let mut cursor = input.cursor();
     loop {
@@ -83,10 +87,13 @@ pub(super) fn unexpected(input: ParseStream, expected: &str) -> syn::Error {
                 Delimiter::Bracket => "`[`",
                 Delimiter::None => "this",
             };
-            Range::from(group.span_open()).error(format!("{open} is not expected here; expected {expected}"))
+            Range::from(group.span_open())
+                .error(format!("{open} is not expected here; expected {expected}"))
         }
-        Ok(token) => Range::from(token.span()).error(format!("`{token}` is not expected here; expected {expected}")),
-        Err(_) => Range::from(input.span()).error(format!("the input ends too early; expected {expected}")),
+        Ok(token) => Range::from(token.span())
+            .error(format!("`{token}` is not expected here; expected {expected}")),
+        Err(_) => Range::from(input.span())
+            .error(format!("the input ends too early; expected {expected}")),
     }
 }
 

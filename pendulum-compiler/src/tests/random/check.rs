@@ -77,7 +77,10 @@ pub(crate) fn compare(system: &System, derived: &Derived<'_, '_>, seed: u64) -> 
     let mut findings = Findings { pivot: pivot(&truth.masses), ..Findings::default() };
     let own = reference(system, &plain);
     findings.own = own_error(&own, &truth);
-    let pairs = [errors(derived, &Values::new(&plain), &truth), errors(derived, &Values::new(&precise), &truth)];
+    let pairs = [
+        errors(derived, &Values::new(&plain), &truth),
+        errors(derived, &Values::new(&precise), &truth),
+    ];
     for (&(what, a), &(_, b)) in pairs[0].iter().zip(&pairs[1]) {
         findings.note(what, a, b);
     }
@@ -86,7 +89,11 @@ pub(crate) fn compare(system: &System, derived: &Derived<'_, '_>, seed: u64) -> 
 
 type Errors = Vec<(&'static str, f64)>;
 
-fn errors<T: Float>(derived: &Derived<'_, '_>, values: &Values<T>, truth: &Reference<DoubleDouble>) -> Errors {
+fn errors<T: Float>(
+    derived: &Derived<'_, '_>,
+    values: &Values<T>,
+    truth: &Reference<DoubleDouble>,
+) -> Errors {
     let motion = derived.motion;
     let mut errors = Errors::new();
     let count = truth.momenta.len();
@@ -94,28 +101,32 @@ fn errors<T: Float>(derived: &Derived<'_, '_>, values: &Values<T>, truth: &Refer
     let accelerations = derived.values(values, &motion.accelerations);
     for i in 0..count {
         // Euler–Lagrange: M q̈ + drift = ∂L/∂q + Q.
-        let mut terms: Vec<DoubleDouble> = (0..count).map(|j| truth.masses[i][j] * accelerations[j]).collect();
+        let mut terms: Vec<DoubleDouble> =
+            (0..count).map(|j| truth.masses[i][j] * accelerations[j]).collect();
         terms.extend([truth.drifts[i], -truth.slopes[i], -truth.externals[i]]);
         errors.push(("Euler–Lagrange", residual(&terms)));
     }
-    let same = |what: &'static str, roots: &[Id], expected: &[DoubleDouble], errors: &mut Errors| {
-        let scale = expected.iter().fold(1.0, |scale: f64, x| scale.max(x.to_f64().abs()));
-        for (found, expected) in derived.values(values, roots).into_iter().zip(expected) {
-            errors.push((what, ((found - *expected).to_f64() / scale).abs()));
-        }
-    };
+    let same =
+        |what: &'static str, roots: &[Id], expected: &[DoubleDouble], errors: &mut Errors| {
+            let scale = expected.iter().fold(1.0, |scale: f64, x| scale.max(x.to_f64().abs()));
+            for (found, expected) in derived.values(values, roots).into_iter().zip(expected) {
+                errors.push((what, ((found - *expected).to_f64() / scale).abs()));
+            }
+        };
     for (row, expected) in motion.mass_matrix.iter().zip(&truth.masses) {
         same("mass matrix", row, expected, &mut errors);
     }
     same("momenta", &motion.momenta, &truth.momenta, &mut errors);
-    let rates: Vec<DoubleDouble> = truth.slopes.iter().zip(&truth.externals).map(|(&a, &b)| a + b).collect();
+    let rates: Vec<DoubleDouble> =
+        truth.slopes.iter().zip(&truth.externals).map(|(&a, &b)| a + b).collect();
     same("momentum rates", &motion.momentum_rates, &rates, &mut errors);
     let forces: Vec<DoubleDouble> = rates.iter().zip(&truth.drifts).map(|(&a, &b)| a - b).collect();
     same("forces", &motion.forces, &forces, &mut errors);
     let mut terms: Vec<DoubleDouble> = v.iter().zip(&truth.momenta).map(|(&v, &p)| v * p).collect();
     terms.extend([-truth.lagrangian, -derived.values(values, &[motion.energy])[0]]);
     errors.push(("energy", residual(&terms)));
-    let mut terms: Vec<DoubleDouble> = v.iter().zip(&truth.externals).map(|(&v, &f)| v * f).collect();
+    let mut terms: Vec<DoubleDouble> =
+        v.iter().zip(&truth.externals).map(|(&v, &f)| v * f).collect();
     terms.extend([-truth.explicit, -derived.values(values, &[motion.power])[0]]);
     errors.push(("power", residual(&terms)));
     for (root, expected) in [(motion.kinetic, truth.kinetic), (motion.potential, truth.potential)] {
@@ -125,26 +136,32 @@ fn errors<T: Float>(derived: &Derived<'_, '_>, values: &Values<T>, truth: &Refer
     }
     if let Some(velocities) = &motion.velocities {
         let mut values = values.clone();
-        values.p = truth.momenta.iter().map(|&p| T::from_f64(p.high()) + T::from_f64(p.low())).collect();
+        values.p =
+            truth.momenta.iter().map(|&p| T::from_f64(p.high()) + T::from_f64(p.low())).collect();
         let found = derived.values(&values, velocities);
         for i in 0..count {
             // M q̇ is p less what it is at q̇ = 0.
             let terms = (0..count).map(|j| truth.masses[i][j] * (found[j] - v[j]));
-            let scale = (0..count)
-                .fold(truth.momenta[i].to_f64().abs().max(1.0), |scale, j| scale.max((truth.masses[i][j] * v[j]).to_f64().abs()));
+            let scale = (0..count).fold(truth.momenta[i].to_f64().abs().max(1.0), |scale, j| {
+                scale.max((truth.masses[i][j] * v[j]).to_f64().abs())
+            });
             let sum = terms.reduce(|a, b| a + b).map_or(0.0, Float::to_f64);
             errors.push(("velocities", (sum / scale).abs()));
         }
     }
     for &i in &motion.cyclic {
-        errors.push(("cyclic", truth.slopes[i].to_f64().abs() / truth.drifts[i].to_f64().abs().max(1.0)));
+        errors.push((
+            "cyclic",
+            truth.slopes[i].to_f64().abs() / truth.drifts[i].to_f64().abs().max(1.0),
+        ));
     }
     along(derived, values, &mut errors);
     jacobians(derived, values, &mut errors);
     errors
 }
 
-/// What changes along the motion, by dual numbers: energy by the power, momenta by their rates, conserved quantities not at all.
+/// What changes along the motion, by dual numbers: energy by the power, momenta by their rates,
+/// conserved quantities not at all.
 fn along<T: Float>(derived: &Derived<'_, '_>, values: &Values<T>, errors: &mut Errors) {
     let (motion, count) = (derived.motion, values.q.len());
     let accelerations = values.of(derived.model, derived.graph, &motion.accelerations);
@@ -158,11 +175,20 @@ fn along<T: Float>(derived: &Derived<'_, '_>, values: &Values<T>, errors: &mut E
         q: pairs(&values.q, &values.v),
         v: pairs(&values.v, &accelerations),
         p: Vec::new(),
-        inputs: values.inputs.iter().map(|components| components.iter().map(input).collect()).collect(),
+        inputs: values
+            .inputs
+            .iter()
+            .map(|components| components.iter().map(input).collect())
+            .collect(),
     };
     let conserved = motion.conserved.iter().map(|conserved| conserved.value);
-    let quantities: Vec<Id> = [motion.energy].into_iter().chain(motion.momenta.iter().copied()).chain(conserved).collect();
-    let rates: Vec<Id> = [motion.power].into_iter().chain(motion.momentum_rates.iter().copied()).collect();
+    let quantities: Vec<Id> = [motion.energy]
+        .into_iter()
+        .chain(motion.momenta.iter().copied())
+        .chain(conserved)
+        .collect();
+    let rates: Vec<Id> =
+        [motion.power].into_iter().chain(motion.momentum_rates.iter().copied()).collect();
     let found = moving.of(derived.model, derived.graph, &quantities);
     let mut expected = values.of(derived.model, derived.graph, &rates);
     expected.resize(found.len(), zero);
@@ -185,7 +211,8 @@ fn along<T: Float>(derived: &Derived<'_, '_>, values: &Values<T>, errors: &mut E
 fn jacobians<T: Float>(derived: &Derived<'_, '_>, values: &Values<T>, errors: &mut Errors) {
     let motion = derived.motion;
     let Some(jacobians) = &motion.jacobians else { return };
-    let constants = |values: &[T]| values.iter().map(|&value| Dual::constant(value)).collect::<Vec<_>>();
+    let constants =
+        |values: &[T]| values.iter().map(|&value| Dual::constant(value)).collect::<Vec<_>>();
     let input = |orders: &[T; 4]| orders.map(Dual::constant);
     let resting = Values {
         parameters: constants(&values.parameters),
@@ -193,7 +220,11 @@ fn jacobians<T: Float>(derived: &Derived<'_, '_>, values: &Values<T>, errors: &m
         q: constants(&values.q),
         v: constants(&values.v),
         p: Vec::new(),
-        inputs: values.inputs.iter().map(|components| components.iter().map(input).collect()).collect(),
+        inputs: values
+            .inputs
+            .iter()
+            .map(|components| components.iter().map(input).collect())
+            .collect(),
     };
     for (kind, columns) in jacobians.iter().enumerate() {
         for (index, column) in columns.iter().enumerate() {
@@ -203,7 +234,9 @@ fn jacobians<T: Float>(derived: &Derived<'_, '_>, values: &Values<T>, errors: &m
             [q, v, parameters][kind][index].derivative = T::from_f64(1.0);
             let expected = pushed.of(derived.model, derived.graph, &motion.accelerations);
             let found = values.of(derived.model, derived.graph, column);
-            let size = |scale: f64, x: &Dual<T>| scale.max(x.value.to_f64().abs()).max(x.derivative.to_f64().abs());
+            let size = |scale: f64, x: &Dual<T>| {
+                scale.max(x.value.to_f64().abs()).max(x.derivative.to_f64().abs())
+            };
             let scale = expected.iter().fold(1.0, size);
             for (found, expected) in found.into_iter().zip(expected) {
                 errors.push(("Jacobians", ((found - expected.derivative).to_f64() / scale).abs()));
@@ -223,19 +256,26 @@ fn residual(terms: &[DoubleDouble]) -> f64 {
 fn own_error(own: &Reference<f64>, truth: &Reference<DoubleDouble>) -> f64 {
     let pairs = |own: &[f64], truth: &[DoubleDouble]| {
         let scale = truth.iter().fold(1.0, |scale: f64, x| scale.max(x.to_f64().abs()));
-        own.iter().zip(truth).fold(0.0, |worst, (a, b)| worse(worst, (a - b.to_f64()).abs() / scale))
+        own.iter()
+            .zip(truth)
+            .fold(0.0, |worst, (a, b)| worse(worst, (a - b.to_f64()).abs() / scale))
     };
     let mut worst = pairs(&own.drifts, &truth.drifts);
     worst = worse(worst, pairs(&[own.kinetic, own.potential], &[truth.kinetic, truth.potential]));
     worst = worse(worst, pairs(&own.slopes, &truth.slopes));
     worst = worse(worst, pairs(&own.externals, &truth.externals));
     worst = worse(worst, pairs(&own.momenta, &truth.momenta));
-    own.masses.iter().zip(&truth.masses).fold(worst, |worst, (own, truth)| worse(worst, pairs(own, truth)))
+    own.masses
+        .iter()
+        .zip(&truth.masses)
+        .fold(worst, |worst, (own, truth)| worse(worst, pairs(own, truth)))
 }
 
-/// The smallest pivot of a symmetric matrix relative to its largest entry; negative if it is not positive definite.
+/// The smallest pivot of a symmetric matrix relative to its largest entry; negative if it is not
+/// positive definite.
 fn pivot(matrix: &[Vec<DoubleDouble>]) -> f64 {
-    let mut rows: Vec<Vec<f64>> = matrix.iter().map(|row| row.iter().map(|entry| entry.to_f64()).collect()).collect();
+    let mut rows: Vec<Vec<f64>> =
+        matrix.iter().map(|row| row.iter().map(|entry| entry.to_f64()).collect()).collect();
     let scale = rows.iter().flatten().fold(0.0f64, |scale, entry| scale.max(entry.abs()));
     let mut least = f64::INFINITY;
     for pivot in 0..rows.len() {

@@ -39,10 +39,18 @@ impl<T: Real> Values<T> {
             Symbol::Coordinate(index) => self.q[index],
             Symbol::Velocity(index) => self.v[index],
             Symbol::Momentum(index) => self.p[index],
-            Symbol::Input { input, component, order } => self.inputs[input][component][usize::from(order)],
+            Symbol::Input { input, component, order } => {
+                self.inputs[input][component][usize::from(order)]
+            }
             Symbol::Moment(first, moment) => {
-                debug_assert!(model.parameters.iter().any(|quantity: &Quantity| quantity.body && quantity.first == first));
-                let [m, x, y, xx, xy, yy] = [0, 1, 2, 3, 4, 5].map(|offset| self.parameters[first + offset]);
+                debug_assert!(
+                    model
+                        .parameters
+                        .iter()
+                        .any(|quantity: &Quantity| quantity.body && quantity.first == first)
+                );
+                let [m, x, y, xx, xy, yy] =
+                    [0, 1, 2, 3, 4, 5].map(|offset| self.parameters[first + offset]);
                 let (xx, xy, yy) = (xx + m * x * x, xy + m * x * y, yy + m * y * y);
                 match moment {
                     Moment::Inertia => xx + yy,
@@ -63,7 +71,9 @@ impl<T: Real> Values<T> {
             let at = |place: schedule::Place| known[place.0].0;
             let value = match *op {
                 Op::Number(value) | Op::Literal(Literal::Exact(value)) => ratio(value),
-                Op::Literal(Literal::Decimal(ref digits)) => T::from_f64(digits.parse().expect("a number")),
+                Op::Literal(Literal::Decimal(ref digits)) => {
+                    T::from_f64(digits.parse().expect("a number"))
+                }
                 Op::Pi => T::pi(),
                 Op::Load(symbol) => self.symbol(symbol, model),
                 Op::Negative(a) => -at(a),
@@ -117,6 +127,8 @@ fn whole<T: Real>(value: i128) -> T {
     let (magnitude, mask) = (value.unsigned_abs(), (1u128 << 43) - 1);
     let parts = [magnitude >> 86, (magnitude >> 43) & mask, magnitude & mask];
     let scale = T::from_f64((1u64 << 43) as f64);
-    let sum = parts.into_iter().fold(T::from_f64(0.0), |sum, part| sum * scale + T::from_f64(part as f64));
+    let sum = parts
+        .into_iter()
+        .fold(T::from_f64(0.0), |sum, part| sum * scale + T::from_f64(part as f64));
     if value < 0 { -sum } else { sum }
 }

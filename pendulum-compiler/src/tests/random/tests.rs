@@ -1,4 +1,5 @@
-//! What must hold for every random system. `RANDOM_SEED=17 RANDOM_COUNT=1` looks at one, `RANDOM_COUNT=100000` at more.
+//! What must hold for every random system. `RANDOM_SEED=17 RANDOM_COUNT=1` looks at one,
+//! `RANDOM_COUNT=100000` at more.
 
 use super::check::{Derived, PLAIN, PRECISE};
 use super::interpret::Values;
@@ -28,7 +29,8 @@ fn systems(count: u64, share: u64, manner: Manner) -> impl Iterator<Item = Syste
     })
 }
 
-/// Accelerations, mass matrix, momenta, forces, energies, powers, velocities from momenta, Jacobians and conserved quantities.
+/// Accelerations, mass matrix, momenta, forces, energies, powers, velocities from momenta,
+/// Jacobians and conserved quantities.
 #[test]
 fn what_is_derived_is_what_is_written() {
     let (mut compared, mut unsound) = (0, 0);
@@ -37,12 +39,19 @@ fn what_is_derived_is_what_is_written() {
             Outcome::Compared(findings) => {
                 compared += 1;
                 let wrong = findings.wrong();
-                assert!(wrong.is_empty(), "seed {}: {wrong:?} in\n{}", system.seed, system.source("Random"));
+                assert!(
+                    wrong.is_empty(),
+                    "seed {}: {wrong:?} in\n{}",
+                    system.seed,
+                    system.source("Random")
+                );
                 // The generator makes kinetic energies that are positive.
                 assert!(0.0 < findings.pivot, "seed {}: pivot {}", system.seed, findings.pivot);
             }
             Outcome::Unsound => unsound += 1,
-            Outcome::Refused(messages) => panic!("seed {}: {messages} for\n{}", system.seed, system.source("Random")),
+            Outcome::Refused(messages) => {
+                panic!("seed {}: {messages} for\n{}", system.seed, system.source("Random"))
+            }
         }
     }
     assert!(unsound * 20 <= compared, "{unsound} of {compared} have no value");
@@ -54,8 +63,14 @@ fn wild_systems_are_derived_or_refused() {
     for system in systems(600, 1, Manner::Wild) {
         if let Outcome::Compared(findings) = outcome(&system) {
             // Where a function has an infinite slope, a simplified derivative may have no value.
-            let wrong: Vec<_> = findings.wrong().into_iter().filter(|row| 1e-6 < row.1 && 1e-6 < row.2).collect();
-            assert!(wrong.is_empty(), "wild seed {}: {wrong:?} in\n{}", system.seed, system.source("Random"));
+            let wrong: Vec<_> =
+                findings.wrong().into_iter().filter(|row| 1e-6 < row.1 && 1e-6 < row.2).collect();
+            assert!(
+                wrong.is_empty(),
+                "wild seed {}: {wrong:?} in\n{}",
+                system.seed,
+                system.source("Random")
+            );
         }
     }
 }
@@ -67,7 +82,8 @@ fn outputs<T: Float>(system: &System, state: &State<T>) -> [Vec<T>; 2] {
     let found = derived(&source, &mut errors, |model, graph, motion, _| {
         let derived = Derived { model, graph, motion };
         let values = Values::new(state);
-        [&motion.accelerations, &motion.momenta].map(|roots| values.of(derived.model, derived.graph, roots))
+        [&motion.accelerations, &motion.momenta]
+            .map(|roots| values.of(derived.model, derived.graph, roots))
     });
     found.unwrap_or_else(|| panic!("seed {}: {:?} for\n{source}", system.seed, errors.messages()))
 }
@@ -125,7 +141,10 @@ fn motions_run_backwards() {
         let own = difference(&found, &accelerations);
         assert!(own < PLAIN, "seed {seed}: {own} for\n{}", reversed.source("Random"));
         let expected: Vec<f64> = momenta.iter().map(|p| -p).collect();
-        assert!(difference(&opposite, &expected) < PLAIN, "seed {seed}: {opposite:?} and {expected:?}");
+        assert!(
+            difference(&opposite, &expected) < PLAIN,
+            "seed {seed}: {opposite:?} and {expected:?}"
+        );
     }
 }
 
@@ -142,7 +161,12 @@ fn other_coordinates_give_the_same_motion() {
         let [expected, _] = outputs(&system, &State { q, v, ..new });
         let own = difference(&a, &expected);
         // Of the condition of two mass matrices nothing is known but that they are positive.
-        assert!(own < 1e-9, "seed {seed}: {own} for\n{}and\n{}", system.source("Random"), moved.source("Random"));
+        assert!(
+            own < 1e-9,
+            "seed {seed}: {own} for\n{}and\n{}",
+            system.source("Random"),
+            moved.source("Random")
+        );
     }
 }
 
@@ -155,5 +179,8 @@ fn written_systems_are_up_to_date() {
         std::fs::write(path, &text).unwrap();
     }
     let found = std::fs::read_to_string(path).unwrap_or_default();
-    assert!(found == text, "`UPDATE_GOLDEN=1 cargo test -p pendulum-compiler written` writes {path} anew");
+    assert!(
+        found == text,
+        "`UPDATE_GOLDEN=1 cargo test -p pendulum-compiler written` writes {path} anew"
+    );
 }

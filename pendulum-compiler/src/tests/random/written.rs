@@ -1,4 +1,5 @@
-//! Some random systems as a source file that is compiled and run, with what the reference says about each.
+//! Some random systems as a source file that is compiled and run, with what the reference says
+//! about each.
 
 use super::check::{Derived, compare};
 use super::interpret::Values;
@@ -55,8 +56,11 @@ fn module(system: &System) -> Option<String> {
     }
     let truth = reference(system, &precise);
     let accelerations = solved(&truth);
-    let rates: Vec<DoubleDouble> = truth.slopes.iter().zip(&truth.externals).map(|(&a, &b)| a + b).collect();
-    let dot = |a: &[DoubleDouble], b: &[DoubleDouble]| a.iter().zip(b).fold(DoubleDouble::from(0.0), |sum, (&a, &b)| sum + a * b);
+    let rates: Vec<DoubleDouble> =
+        truth.slopes.iter().zip(&truth.externals).map(|(&a, &b)| a + b).collect();
+    let dot = |a: &[DoubleDouble], b: &[DoubleDouble]| {
+        a.iter().zip(b).fold(DoubleDouble::from(0.0), |sum, (&a, &b)| sum + a * b)
+    };
     let energy = dot(&precise.v, &truth.momenta) - truth.lagrangian;
     let power = dot(&precise.v, &truth.externals) - truth.explicit;
     let mut text = String::new();
@@ -72,8 +76,12 @@ fn module(system: &System) -> Option<String> {
         arguments(system, &precise)
     );
     let (kind, value) = inputs(&precise);
-    let _ = writeln!(text, "    #[rustfmt::skip]\n    pub(crate) fn inputs<T: Real>() -> {kind} {{\n        {value}\n    }}\n");
-    let jerks: Vec<String> = precise.inputs.iter().flatten().map(|orders| plain_number(orders[3])).collect();
+    let _ = writeln!(
+        text,
+        "    #[rustfmt::skip]\n    pub(crate) fn inputs<T: Real>() -> {kind} {{\n        {value}\n    }}\n"
+    );
+    let jerks: Vec<String> =
+        precise.inputs.iter().flatten().map(|orders| plain_number(orders[3])).collect();
     let _ = writeln!(text, "    pub(crate) const CASE: Case<{count}, {}> = Case {{", jerks.len());
     let _ = writeln!(
         text,
@@ -94,7 +102,12 @@ fn module(system: &System) -> Option<String> {
         let values: Vec<String> = values.iter().map(|value| digits(*value)).collect();
         let _ = writeln!(text, "        {name}: [{}],", values.join(", "));
     }
-    let _ = writeln!(text, "        energy: {},\n        power: {},\n    }};\n}}", digits(energy), digits(power));
+    let _ = writeln!(
+        text,
+        "        energy: {},\n        power: {},\n    }};\n}}",
+        digits(energy),
+        digits(power)
+    );
     Some(text)
 }
 
@@ -120,11 +133,16 @@ fn solved(truth: &Reference<DoubleDouble>) -> Vec<DoubleDouble> {
 
 /// The third and fourth derivatives of the coordinates along the motion.
 fn higher(derived: &Derived<'_, '_>, values: &Values<DoubleDouble>) -> [Vec<DoubleDouble>; 2] {
-    let of = |values: &Values<DoubleDouble>| values.of(derived.model, derived.graph, &derived.motion.accelerations);
+    let of = |values: &Values<DoubleDouble>| {
+        values.of(derived.model, derived.graph, &derived.motion.accelerations)
+    };
     let second = of(values);
     let first = later(values, &second);
-    let third: Vec<DoubleDouble> =
-        first.of(derived.model, derived.graph, &derived.motion.accelerations).iter().map(|a| a.derivative).collect();
+    let third: Vec<DoubleDouble> = first
+        .of(derived.model, derived.graph, &derived.motion.accelerations)
+        .iter()
+        .map(|a| a.derivative)
+        .collect();
     // The accelerations of a moment later are known with their rates now.
     let pairs: Vec<Dual<DoubleDouble>> =
         second.iter().zip(&third).map(|(&value, &derivative)| Dual { value, derivative }).collect();
@@ -145,7 +163,11 @@ fn later<T: Real>(values: &Values<T>, accelerations: &[T]) -> Values<Dual<T>> {
         q: pairs(&values.q, &values.v),
         v: pairs(&values.v, accelerations),
         p: Vec::new(),
-        inputs: values.inputs.iter().map(|components| components.iter().map(input).collect()).collect(),
+        inputs: values
+            .inputs
+            .iter()
+            .map(|components| components.iter().map(input).collect())
+            .collect(),
     }
 }
 
@@ -154,10 +176,17 @@ fn arguments(system: &System, state: &State<DoubleDouble>) -> String {
     let mut arguments = Vec::new();
     for (index, parameter) in system.parameters.iter().enumerate() {
         let first = system.first_parameter(index);
-        let own: Vec<String> = (first..first + parameter.kind.count()).map(|k| number(state.constants.parameters[k])).collect();
+        let own: Vec<String> = (first..first + parameter.kind.count())
+            .map(|k| number(state.constants.parameters[k]))
+            .collect();
         arguments.push(match parameter.kind {
             Kind::Body => {
-                format!("Body {{ mass: {}, center: [{}], central: [{}] }}", own[0], own[1..3].join(", "), own[3..].join(", "))
+                format!(
+                    "Body {{ mass: {}, center: [{}], central: [{}] }}",
+                    own[0],
+                    own[1..3].join(", "),
+                    own[3..].join(", ")
+                )
             }
             Kind::Vector(_) | Kind::Family(_) => format!("[{}]", own.join(", ")),
             _ => own[0].clone(),
@@ -171,11 +200,18 @@ fn inputs(state: &State<DoubleDouble>) -> (String, String) {
     let (mut kinds, mut values) = (String::new(), String::new());
     for components in &state.inputs {
         let order = |order: usize| {
-            let parts: Vec<String> = components.iter().map(|orders| number(orders[order])).collect();
+            let parts: Vec<String> =
+                components.iter().map(|orders| number(orders[order])).collect();
             parts.join(", ")
         };
         let _ = write!(kinds, "Sample<T, {}>, ", components.len());
-        let _ = write!(values, "Sample {{ position: [{}], velocity: [{}], acceleration: [{}] }}, ", order(0), order(1), order(2));
+        let _ = write!(
+            values,
+            "Sample {{ position: [{}], velocity: [{}], acceleration: [{}] }}, ",
+            order(0),
+            order(1),
+            order(2)
+        );
     }
     (format!("({kinds})"), format!("({values})"))
 }

@@ -12,11 +12,17 @@ const PAIRS: usize = 1 << 28;
 impl Outline {
     /// The parameters at which each curve of each ring is crossed, in order.
     pub(super) fn cuts(&self) -> Result<Vec<Vec<Vec<f64>>>, BodyError> {
-        let mut cuts: Vec<Vec<Vec<f64>>> = self.rings.iter().map(|ring| vec![Vec::new(); ring.len()]).collect();
+        let mut cuts: Vec<Vec<Vec<f64>>> =
+            self.rings.iter().map(|ring| vec![Vec::new(); ring.len()]).collect();
         let mut chords = Vec::new();
         for (ring, curves) in self.rings.iter().enumerate() {
             for (curve, shape) in curves.iter().enumerate() {
-                chords.extend(shape.chords().enumerate().map(|(index, ends)| Chord { ends, ring, curve, index }));
+                chords.extend(shape.chords().enumerate().map(|(index, ends)| Chord {
+                    ends,
+                    ring,
+                    curve,
+                    index,
+                }));
             }
         }
         let left = |chord: &Chord| Real::min(chord.ends[0][0], chord.ends[1][0]);
@@ -39,8 +45,9 @@ impl Outline {
                     return Err(BodyError::Tangled { pairs: CROSSINGS });
                 }
                 let curves = [one, other].map(|chord| &self.rings[chord.ring][chord.curve]);
-                let guess = [(one, at[0]), (other, at[1])]
-                    .map(|(chord, at)| (chord.index as f64 + at) / self.rings[chord.ring][chord.curve].count() as f64);
+                let guess = [(one, at[0]), (other, at[1])].map(|(chord, at)| {
+                    (chord.index as f64 + at) / self.rings[chord.ring][chord.curve].count() as f64
+                });
                 let found = refined(curves, guess);
                 let ends = found.map(|parameter| {
                     if parameter <= 1e-9 {
@@ -51,10 +58,13 @@ impl Outline {
                         parameter
                     }
                 });
-                // Where a curve goes on in the next nothing is crossed; where another passes through its end something is.
+                // Where a curve goes on in the next nothing is crossed; where another passes
+                // through its end something is.
                 let count = self.rings[one.ring].len();
                 let goes_on = |from: usize, to: usize| ends[from] == 1.0 && ends[to] == 0.0;
-                let next = |from: &Chord, to: &Chord| from.ring == to.ring && (from.curve + 1) % count == to.curve;
+                let next = |from: &Chord, to: &Chord| {
+                    from.ring == to.ring && (from.curve + 1) % count == to.curve
+                };
                 if next(one, other) && goes_on(0, 1) || next(other, one) && goes_on(1, 0) {
                     continue;
                 }
@@ -82,8 +92,8 @@ struct Chord {
 
 /// Where two chords cross, as shares of both; ends count.
 fn crossing(one: &[Point; 2], other: &[Point; 2]) -> Option<[f64; 2]> {
-    let [low, high] =
-        [Real::min, Real::max].map(|pick: fn(f64, f64) -> f64| [one, other].map(|ends| pick(ends[0][1], ends[1][1])));
+    let [low, high] = [Real::min, Real::max]
+        .map(|pick: fn(f64, f64) -> f64| [one, other].map(|ends| pick(ends[0][1], ends[1][1])));
     if high[0] < low[1] || high[1] < low[0] {
         return None;
     }
@@ -108,7 +118,10 @@ fn refined(curves: [&Curve; 2], guess: [f64; 2]) -> [f64; 2] {
         let (u, v) = (curves[0].slope(at[0]), curves[1].slope(at[1]));
         let apart = [q[0] - p[0], q[1] - p[1]];
         let area = u[0] * v[1] - u[1] * v[0];
-        let step = [(apart[0] * v[1] - apart[1] * v[0]) / area, (apart[0] * u[1] - apart[1] * u[0]) / area];
+        let step = [
+            (apart[0] * v[1] - apart[1] * v[0]) / area,
+            (apart[0] * u[1] - apart[1] * u[0]) / area,
+        ];
         let next = [at[0] + step[0], at[1] + step[1]];
         // Curves that touch have no single crossing; the chords' stands then.
         if !(0..2).all(|k| (next[k] - guess[k]).abs() < 2.0 / CHORDS as f64) {

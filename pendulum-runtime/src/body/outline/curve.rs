@@ -26,7 +26,9 @@ impl Curve {
     pub(super) fn slope(&self, t: f64) -> Point {
         let [a, b, c, d] = self.points;
         let s = 1.0 - t;
-        [0, 1].map(|k| 3.0 * (s * s * (b[k] - a[k]) + 2.0 * s * t * (c[k] - b[k]) + t * t * (d[k] - c[k])))
+        [0, 1].map(|k| {
+            3.0 * (s * s * (b[k] - a[k]) + 2.0 * s * t * (c[k] - b[k]) + t * t * (d[k] - c[k]))
+        })
     }
 
     pub(super) fn chords(&self) -> impl Iterator<Item = [Point; 2]> {
@@ -48,12 +50,14 @@ impl Curve {
             let mut points = self.points;
             for (level, t) in parameters.into_iter().enumerate() {
                 for k in 0..3 - level {
-                    points[k] = [0, 1].map(|axis| points[k][axis] + t * (points[k + 1][axis] - points[k][axis]));
+                    points[k] = [0, 1]
+                        .map(|axis| points[k][axis] + t * (points[k + 1][axis] - points[k][axis]));
                 }
             }
             points[0]
         };
-        let points = [[from, from, from], [from, from, to], [from, to, to], [to, to, to]].map(blossom);
+        let points =
+            [[from, from, from], [from, from, to], [from, to, to], [to, to, to]].map(blossom);
         Self { points, ..*self }
     }
 }

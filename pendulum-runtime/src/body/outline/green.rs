@@ -4,7 +4,8 @@ use super::Point;
 use super::curve::Curve;
 use crate::body::sum::Sum;
 
-/// Nodes and weights of the Gauss–Legendre rule of six points on [−1, 1], exact for degree 11; Abramowitz and Stegun (1964), table 25.4.
+/// Nodes and weights of the Gauss–Legendre rule of six points on [−1, 1], exact for degree 11;
+/// Abramowitz and Stegun (1964), table 25.4.
 const GAUSS: [(f64, f64); 3] = [
     (0.238619186083196909, 0.467913934572691047),
     (0.661209386466264514, 0.360761573048138608),
@@ -15,7 +16,8 @@ const GAUSS: [(f64, f64); 3] = [
 pub(super) fn integrals(boundary: &[(Curve, f64)], [cx, cy]: Point) -> [f64; 6] {
     let mut sums = [Sum::default(); 6];
     for (curve, weight) in boundary {
-        for (node, share) in GAUSS.iter().flat_map(|&(node, share)| [(-node, share), (node, share)]) {
+        for (node, share) in GAUSS.iter().flat_map(|&(node, share)| [(-node, share), (node, share)])
+        {
             let t = 0.5 + 0.5 * node;
             let ([x, y], [dx, dy]) = (curve.at(t), curve.slope(t));
             let [x, y] = [x - cx, y - cy];

@@ -17,7 +17,8 @@ type Point = [f64; 2];
 /// Curves coincide that are no farther apart than this part of the whole.
 const COINCIDE: f64 = 1e-9;
 
-/// A region bounded by closed curves of lines and Bézier curves up to the third degree, which may cross and overlap.
+/// A region bounded by closed curves of lines and Bézier curves up to the third degree, which may
+/// cross and overlap.
 ///
 /// ```
 /// use pendulum_runtime::body::{FillRule, Outline};
@@ -64,7 +65,8 @@ impl Outline {
         Self { rule, rings: Vec::new(), start: [0.0; 2], at: [0.0; 2] }
     }
 
-    /// Begins another closed run at a point, in metres from the pivot; the one before is closed by a line.
+    /// Begins another closed run at a point, in metres from the pivot; the one before is closed by
+    /// a line.
     #[must_use]
     pub fn move_to(mut self, to: Point) -> Self {
         self = self.closed();
@@ -85,7 +87,8 @@ impl Outline {
     #[must_use]
     pub fn quad_to(self, control: Point, to: Point) -> Self {
         let from = self.at;
-        let toward = |end: Point| [0, 1].map(|axis| end[axis] + 2.0 / 3.0 * (control[axis] - end[axis]));
+        let toward =
+            |end: Point| [0, 1].map(|axis| end[axis] + 2.0 / 3.0 * (control[axis] - end[axis]));
         self.with([from, toward(from), toward(to), to], false)
     }
 
@@ -98,10 +101,11 @@ impl Outline {
 
     /// The body of uniform `density` in kg/m².
     ///
-    /// Green's theorem turns the moments into integrals along the curves, ∫x dA = ½∮x² dy and so on, which Gauss's rule of six
-    /// points gives exactly up to rounding. Where curves cross they are cut, and each piece counts as the fill rule says for both
-    /// of its sides. Two crossings of the same curves less than a sixteenth of a curve apart may be overlooked; what is wrong
-    /// then is less than the sliver between them.
+    /// Green's theorem turns the moments into integrals along the curves, ∫x dA = ½∮x² dy and so
+    /// on, which Gauss's rule of six points gives exactly up to rounding. Where curves cross they
+    /// are cut, and each piece counts as the fill rule says for both of its sides. Two crossings of
+    /// the same curves less than a sixteenth of a curve apart may be overlooked; what is wrong then
+    /// is less than the sliver between them.
     pub fn body(&self, density: f64) -> Result<Body, BodyError> {
         let density = positive("density", density)?;
         let whole = self.clone().closed();
@@ -135,7 +139,12 @@ impl Outline {
         let center = [first[1] / area, first[2] / area];
         let [area, _, _, xx, xy, yy] = integrals(&pieces, center);
         let central = [xx, xy, yy].map(|moment| density * moment);
-        Body { mass: density * area, center: [origin[0] + center[0], origin[1] + center[1]], central }.checked()
+        Body {
+            mass: density * area,
+            center: [origin[0] + center[0], origin[1] + center[1]],
+            central,
+        }
+        .checked()
     }
 
     fn with(mut self, points: [Point; 4], straight: bool) -> Self {

@@ -10,7 +10,8 @@ fn ring(outline: Outline, points: &[Point]) -> Outline {
 }
 
 fn square(outline: Outline, [x, y]: Point, half: f64, turn: bool) -> Outline {
-    let mut corners = [[-half, -half], [half, -half], [half, half], [-half, half]].map(|[a, b]| [x + a, y + b]);
+    let mut corners =
+        [[-half, -half], [half, -half], [half, half], [-half, half]].map(|[a, b]| [x + a, y + b]);
     if turn {
         corners.reverse();
     }
@@ -18,7 +19,8 @@ fn square(outline: Outline, [x, y]: Point, half: f64, turn: bool) -> Outline {
 }
 
 fn both(draw: impl Fn(Outline) -> Outline) -> [f64; 2] {
-    [FillRule::NonZero, FillRule::EvenOdd].map(|rule| draw(Outline::new(rule)).body(1.0).unwrap().mass)
+    [FillRule::NonZero, FillRule::EvenOdd]
+        .map(|rule| draw(Outline::new(rule)).body(1.0).unwrap().mass)
 }
 
 #[test]
@@ -28,7 +30,8 @@ fn lines_are_polygons() {
         let count = 3 + (random.bits() % 9) as usize;
         let mut points: Vec<Point> = (0..count)
             .map(|k| {
-                let (sin, cos) = Real::sin_cos(2.0 * PI * (k as f64 + 0.9 * random.unit()) / count as f64);
+                let (sin, cos) =
+                    Real::sin_cos(2.0 * PI * (k as f64 + 0.9 * random.unit()) / count as f64);
                 let radius = 0.3 + random.unit();
                 [3.0 + radius * cos, -7.0 + radius * sin]
             })
@@ -45,7 +48,8 @@ fn lines_are_polygons() {
 /// A segment of a parabola, y from x² to 1: 4/3, its centre at 3/5, ∫x² = 4/15, ∫y² = 4/7.
 #[test]
 fn a_parabola_is_exact() {
-    let outline = Outline::new(FillRule::NonZero).move_to([-1.0, 1.0]).quad_to([0.0, -1.0], [1.0, 1.0]);
+    let outline =
+        Outline::new(FillRule::NonZero).move_to([-1.0, 1.0]).quad_to([0.0, -1.0], [1.0, 1.0]);
     let body = outline.body(3.0).unwrap();
     close(body.mass, 4.0, 1e-15);
     close(body.center[1], 0.6, 1e-15);
@@ -55,7 +59,8 @@ fn a_parabola_is_exact() {
     assert!(xy.abs() < 1e-15);
 }
 
-/// The usual circle of four cubics is a circle within 2.7e-4; a fine polygon through its points agrees better.
+/// The usual circle of four cubics is a circle within 2.7e-4; a fine polygon through its points
+/// agrees better.
 #[test]
 fn cubics_agree_with_fine_polygons() {
     let k = 0.5522847498307936;
@@ -69,11 +74,14 @@ fn cubics_agree_with_fine_polygons() {
     close(body.mass, PI, 3e-4);
     close(body.inertia(), PI / 2.0, 6e-4);
     let polygon = |count: usize| {
-        let points: Vec<Point> =
-            circle.rings[0].iter().flat_map(|curve| (0..count).map(move |index| curve.at(index as f64 / count as f64))).collect();
+        let points: Vec<Point> = circle.rings[0]
+            .iter()
+            .flat_map(|curve| (0..count).map(move |index| curve.at(index as f64 / count as f64)))
+            .collect();
         Polygon::new(&points).unwrap().body(1.0).unwrap()
     };
-    // Chords lose area in proportion to the square of their length; extrapolated, the loss of two lengths is gone.
+    // Chords lose area in proportion to the square of their length; extrapolated, the loss of two
+    // lengths is gone.
     let (coarse, fine) = (polygon(200), polygon(400));
     close(body.mass, (4.0 * fine.mass - coarse.mass) / 3.0, 1e-10);
     close(body.inertia(), (4.0 * fine.inertia() - coarse.inertia()) / 3.0, 1e-10);
@@ -81,19 +89,26 @@ fn cubics_agree_with_fine_polygons() {
 
 #[test]
 fn holes_follow_the_fill_rule() {
-    let hole = |turn: bool| move |outline| square(square(outline, [0.0; 2], 1.0, false), [0.2, 0.1], 0.5, turn);
+    let hole = |turn: bool| {
+        move |outline| square(square(outline, [0.0; 2], 1.0, false), [0.2, 0.1], 0.5, turn)
+    };
     assert_eq!(both(hole(true)).map(|mass| (mass * 1e9).round()), [3e9; 2]);
     assert_eq!(both(hole(false)).map(|mass| (mass * 1e9).round()), [4e9, 3e9]);
     let frame = hole(true)(Outline::new(FillRule::NonZero)).body(1.0).unwrap();
     let expected = Body::rectangle(4.0, 2.0, 2.0).unwrap();
-    same(frame, expected.without(Body::rectangle(1.0, 1.0, 1.0).unwrap().translated([0.2, 0.1])).unwrap(), 1e-14);
+    same(
+        frame,
+        expected.without(Body::rectangle(1.0, 1.0, 1.0).unwrap().translated([0.2, 0.1])).unwrap(),
+        1e-14,
+    );
 }
 
 #[test]
 fn overlaps_count_once_or_not_at_all() {
     // Two squares of four that share one, run either way.
     for turn in [false, true] {
-        let masses = both(|outline| square(square(outline, [0.0; 2], 1.0, false), [1.0, 1.0], 1.0, turn));
+        let masses =
+            both(|outline| square(square(outline, [0.0; 2], 1.0, false), [1.0, 1.0], 1.0, turn));
         // In opposite directions, what both go around is gone around zero times.
         close(masses[0], if turn { 6.0 } else { 7.0 }, 1e-14);
         close(masses[1], 6.0, 1e-14);
@@ -115,7 +130,8 @@ fn overlaps_count_once_or_not_at_all() {
     close(masses[0], pentagon + points, 1e-14);
     close(masses[1], points, 1e-14);
     // A figure of eight, whose halves run in opposite directions.
-    let eight = both(|outline| ring(outline, &[[-1.0, -1.0], [1.0, 1.0], [1.0, -1.0], [-1.0, 1.0]]));
+    let eight =
+        both(|outline| ring(outline, &[[-1.0, -1.0], [1.0, 1.0], [1.0, -1.0], [-1.0, 1.0]]));
     close(eight[0], 2.0, 1e-14);
     close(eight[1], 2.0, 1e-14);
 }
@@ -139,12 +155,15 @@ fn curves_that_cross_are_cut() {
     close(masses[0], 2.0 * PI - lens, 1e-7);
     close(masses[1], 2.0 * PI - 2.0 * lens, 1e-7);
     // A loop of a single cubic: in and out once.
-    let looped = |outline: Outline| outline.move_to([0.0, 0.0]).cubic_to([3.0, 2.0], [-2.0, 2.0], [1.0, 0.0]);
+    let looped = |outline: Outline| {
+        outline.move_to([0.0, 0.0]).cubic_to([3.0, 2.0], [-2.0, 2.0], [1.0, 0.0])
+    };
     let [union, parity] = both(looped);
     close(union, parity, 1e-13);
 }
 
-/// Rectangles on a grid share edges, parts of edges and corners; what they cover is counted by cells.
+/// Rectangles on a grid share edges, parts of edges and corners; what they cover is counted by
+/// cells.
 #[test]
 fn edges_may_coincide() {
     let mut random = Random::new(5);
@@ -155,8 +174,10 @@ fn edges_may_coincide() {
         let mut corners = Vec::new();
         for _ in 0..count {
             let [left, low] = [pick(7), pick(7)];
-            let [right, high] =
-                [left + 1 + pick(7 - left as u64 + 1).min(7 - left), low + 1 + pick(7 - low as u64 + 1).min(7 - low)];
+            let [right, high] = [
+                left + 1 + pick(7 - left as u64 + 1).min(7 - left),
+                low + 1 + pick(7 - low as u64 + 1).min(7 - low),
+            ];
             let back = pick(2) == 1;
             for row in &mut windings[low..high] {
                 row[left..right].iter_mut().for_each(|cell| *cell += if back { -1 } else { 1 });
@@ -170,13 +191,22 @@ fn edges_may_coincide() {
         }
         // As it is, by an eighth of a turn and by an odd angle.
         for [cos, sin] in [[1.0, 0.0], [0.7, 0.7], [0.3, -0.9]] {
-            let at = |[x, y]: [usize; 2]| [cos * x as f64 - sin * y as f64, sin * x as f64 + cos * y as f64];
+            let at = |[x, y]: [usize; 2]| {
+                [cos * x as f64 - sin * y as f64, sin * x as f64 + cos * y as f64]
+            };
             for rule in [FillRule::NonZero, FillRule::EvenOdd] {
-                let cells = windings.iter().flatten().filter(|&&winding| rule.inside(winding)).count();
-                let outline = corners.iter().fold(Outline::new(rule), |outline, corners| ring(outline, &corners.map(at)));
+                let cells =
+                    windings.iter().flatten().filter(|&&winding| rule.inside(winding)).count();
+                let outline = corners
+                    .iter()
+                    .fold(Outline::new(rule), |outline, corners| ring(outline, &corners.map(at)));
                 match outline.body(1.0) {
                     Ok(body) => close(body.mass, cells as f64 * (cos * cos + sin * sin), 1e-12),
-                    Err(error) => assert_eq!((cells, error), (0, BodyError::NoArea { ring: 0 }), "{corners:?}"),
+                    Err(error) => assert_eq!(
+                        (cells, error),
+                        (0, BodyError::NoArea { ring: 0 }),
+                        "{corners:?}"
+                    ),
                 }
             }
         }
@@ -187,19 +217,35 @@ fn edges_may_coincide() {
 #[test]
 fn curves_may_coincide() {
     let leaf = |outline: Outline| {
-        outline.move_to([0.0, 0.0]).cubic_to([2.0, 1.0], [-1.0, 3.0], [0.0, 4.0]).quad_to([-3.0, 2.0], [0.0, 0.0])
+        outline
+            .move_to([0.0, 0.0])
+            .cubic_to([2.0, 1.0], [-1.0, 3.0], [0.0, 4.0])
+            .quad_to([-3.0, 2.0], [0.0, 0.0])
     };
     let back = |outline: Outline| {
-        outline.move_to([0.0, 0.0]).quad_to([-3.0, 2.0], [0.0, 4.0]).cubic_to([-1.0, 3.0], [2.0, 1.0], [0.0, 0.0])
+        outline.move_to([0.0, 0.0]).quad_to([-3.0, 2.0], [0.0, 4.0]).cubic_to(
+            [-1.0, 3.0],
+            [2.0, 1.0],
+            [0.0, 0.0],
+        )
     };
     let beside = |outline: Outline| {
-        outline.move_to([0.0, 4.0]).cubic_to([-1.0, 3.0], [2.0, 1.0], [0.0, 0.0]).quad_to([5.0, 2.0], [0.0, 4.0])
+        outline
+            .move_to([0.0, 4.0])
+            .cubic_to([-1.0, 3.0], [2.0, 1.0], [0.0, 0.0])
+            .quad_to([5.0, 2.0], [0.0, 4.0])
     };
     let one = leaf(Outline::new(FillRule::NonZero)).body(1.0).unwrap().mass;
     let other = beside(Outline::new(FillRule::NonZero)).body(1.0).unwrap().mass;
     close(leaf(leaf(Outline::new(FillRule::NonZero))).body(1.0).unwrap().mass, one, 1e-13);
-    assert_eq!(leaf(back(Outline::new(FillRule::NonZero))).body(1.0), Err(BodyError::NoArea { ring: 0 }));
-    assert_eq!(leaf(leaf(Outline::new(FillRule::EvenOdd))).body(1.0), Err(BodyError::NoArea { ring: 0 }));
+    assert_eq!(
+        leaf(back(Outline::new(FillRule::NonZero))).body(1.0),
+        Err(BodyError::NoArea { ring: 0 })
+    );
+    assert_eq!(
+        leaf(leaf(Outline::new(FillRule::EvenOdd))).body(1.0),
+        Err(BodyError::NoArea { ring: 0 })
+    );
     for mass in both(|outline| beside(leaf(outline))) {
         close(mass, one + other, 1e-13);
     }
@@ -254,7 +300,8 @@ fn outlines_without_area_are_refused() {
     assert_eq!(none.clone().move_to([1.0, 2.0]).body(1.0), Err(BodyError::NoMass));
     let line = none.clone().move_to([1.0, 2.0]).line_to([3.0, 5.0]);
     assert_eq!(line.body(1.0), Err(BodyError::NoArea { ring: 0 }));
-    let there_and_back = none.clone().move_to([1.0, 2.0]).cubic_to([3.0, 5.0], [3.0, 5.0], [1.0, 2.0]);
+    let there_and_back =
+        none.clone().move_to([1.0, 2.0]).cubic_to([3.0, 5.0], [3.0, 5.0], [1.0, 2.0]);
     assert_eq!(there_and_back.body(1.0), Err(BodyError::NoArea { ring: 0 }));
     let lost = none.move_to([0.0, 0.0]).line_to([f64::NAN, 1.0]).line_to([1.0, 0.0]);
     assert_eq!(lost.body(1.0), Err(BodyError::NotFinite { ring: 0, index: 1 }));

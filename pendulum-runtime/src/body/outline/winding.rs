@@ -6,7 +6,8 @@ use crate::body::BodyError;
 use crate::real::Real;
 
 impl Outline {
-    /// The curves between all crossings with what lies to their left more than to their right: −1, 0 or 1.
+    /// The curves between all crossings with what lies to their left more than to their right: −1,
+    /// 0 or 1.
     pub(super) fn boundary(&self, slack: f64) -> Result<Vec<(Curve, f64)>, BodyError> {
         let cuts = self.cuts()?;
         // Runs of curves without a cut within, each with one answer.
@@ -29,7 +30,8 @@ impl Outline {
                 }
             }
         }
-        let chords: Vec<Vec<[Point; 2]>> = runs.iter().map(|run| run.iter().flat_map(Curve::chords).collect()).collect();
+        let chords: Vec<Vec<[Point; 2]>> =
+            runs.iter().map(|run| run.iter().flat_map(Curve::chords).collect()).collect();
         let all: Vec<[Point; 2]> = chords.iter().flatten().copied().collect();
         let strips = [Strips::new(&all, 1), Strips::new(&all, 0)];
         let mut boundary = Vec::new();
@@ -39,12 +41,13 @@ impl Outline {
                 let [x, y] = [chord[1][0] - chord[0][0], chord[1][1] - chord[0][1]];
                 x * x + y * y
             };
-            let Some(longest) =
-                (0..chords[index].len()).max_by(|&a, &b| length(&chords[index][a]).total_cmp(&length(&chords[index][b])))
+            let Some(longest) = (0..chords[index].len())
+                .max_by(|&a, &b| length(&chords[index][a]).total_cmp(&length(&chords[index][b])))
             else {
                 continue;
             };
-            let right = winding_to_the_right(before + longest, chords[index][longest], &strips, slack);
+            let right =
+                winding_to_the_right(before + longest, chords[index][longest], &strips, slack);
             before += chords[index].len();
             let sides = [right + 1, right].map(|winding| i32::from(self.rule.inside(winding)));
             let weight = f64::from(sides[0] - sides[1]);
@@ -54,17 +57,20 @@ impl Outline {
     }
 }
 
-/// How often curves wind around what lies to the right of the middle of chord `number`: their crossings with a ray, for
-/// which the strips across y and across x are asked; what is nearer than `slack` coincides.
+/// How often curves wind around what lies to the right of the middle of chord `number`: their
+/// crossings with a ray, for which the strips across y and across x are asked; what is nearer than
+/// `slack` coincides.
 fn winding_to_the_right(number: usize, own: [Point; 2], strips: &[Strips; 2], slack: f64) -> i32 {
     let [x, y] = [0, 1].map(|axis| 0.5 * (own[0][axis] + own[1][axis]));
-    // Chords that coincide are asked along one axis, whatever their rounding: no drawing has lines of just this slope.
+    // Chords that coincide are asked along one axis, whatever their rounding: no drawing has lines
+    // of just this slope.
     let steep = (own[1][0] - own[0][0]).abs() <= 0.7310585786 * (own[1][1] - own[0][1]).abs();
     let mut winding = 0;
     let met = if steep { strips[0].at(y) } else { strips[1].at(x) };
     for &(other, [from, to]) in met.iter().filter(|(other, _)| *other != number) {
         // The ray leads along x, or along y with the axes turned by a quarter.
-        let (from, to, x, y) = if steep { (from, to, x, y) } else { ([from[1], -from[0]], [to[1], -to[0]], y, -x) };
+        let (from, to, x, y) =
+            if steep { (from, to, x, y) } else { ([from[1], -from[0]], [to[1], -to[0]], y, -x) };
         if (from[1] <= y) == (to[1] <= y) {
             continue;
         }
@@ -91,7 +97,8 @@ struct Strips {
 impl Strips {
     fn new(chords: &[[Point; 2]], axis: usize) -> Self {
         let values = || chords.iter().flatten().map(|point| point[axis]);
-        let (low, high) = (values().fold(f64::INFINITY, Real::min), values().fold(f64::NEG_INFINITY, Real::max));
+        let (low, high) =
+            (values().fold(f64::INFINITY, Real::min), values().fold(f64::NEG_INFINITY, Real::max));
         // A chord as long as everything stands in all of them.
         let count = 1 + 2 * Real::sqrt(chords.len() as f64) as usize;
         let scale = count as f64 / (high - low);

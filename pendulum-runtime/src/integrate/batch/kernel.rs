@@ -1,7 +1,7 @@
 //! The steps of the lanes.
 //!
-//! What every step does is inlined into the code that [`simd`](crate::simd) compiles for several instruction sets; what begins and ends
-//! motions is not.
+//! What every step does is inlined into the code that [`simd`](crate::simd) compiles for several
+//! instruction sets; what begins and ends motions is not.
 
 #![allow(clippy::inline_always)]
 // A branch in a loop over lanes would take the lanes apart.
@@ -111,9 +111,20 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             atol: [atol.0, atol.1],
             rtol,
             parameters,
-            room: Box::new(Room { path: Path::new(), drive: S::Wide::drive(), work: system.work() }),
+            room: Box::new(Room {
+                path: Path::new(),
+                drive: S::Wide::drive(),
+                work: system.work(),
+            }),
             system,
-            lanes: Flight { q: still, v: still, high: number, low: number, end: number, live: number },
+            lanes: Flight {
+                q: still,
+                v: still,
+                high: number,
+                low: number,
+                end: number,
+                live: number,
+            },
             problem: [None; W],
             begun: [0; W],
             round: 0,
@@ -141,7 +152,13 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             path.q[i][0] = self.lanes.q.high[i];
             path.v[i][0] = self.lanes.v.high[i];
         }
-        <S::Wide as Jets<N>>::Orders::run_in_lanes(&self.system, self.rule.order, path, drive, work);
+        <S::Wide as Jets<N>>::Orders::run_in_lanes(
+            &self.system,
+            self.rule.order,
+            path,
+            drive,
+            work,
+        );
         let weights = weights(&from, self.rtol, &self.atol);
         let told = told(path, &self.rule, &weights);
         let mut wanted = lengths(told);
@@ -158,7 +175,8 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         }
     }
 
-    /// A length of step of a lane within the limits set, and short enough to see what time alone does.
+    /// A length of step of a lane within the limits set, and short enough to see what time alone
+    /// does.
     #[inline(always)]
     fn limited(&self, from: &Flight<S::Scalar, N>, l: usize, first: bool, wanted: f64) -> f64 {
         let wanted = self.batch.control.limited(first, wanted);
@@ -166,11 +184,16 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             return wanted;
         }
         let Some(index) = self.problem[l] else { return wanted };
-        let longest = gap::longest(&self.problems[index].system, Time::from_words(from.high.0[l], from.low.0[l]), GAP);
+        let longest = gap::longest(
+            &self.problems[index].system,
+            Time::from_words(from.high.0[l], from.low.0[l]),
+            GAP,
+        );
         if longest < wanted { longest } else { wanted }
     }
 
-    /// Goes to the ends of steps of the lengths `h`, which come in two words; not zero where the state there is not finite.
+    /// Goes to the ends of steps of the lengths `h`, which come in two words; not zero where the
+    /// state there is not finite.
     #[inline(always)]
     fn advance(&mut self, from: &Flight<S::Scalar, N>, h: [Wide<f64>; 2]) -> Wide<f64> {
         let mut length = Wide::from_f64(0.0);
@@ -180,8 +203,15 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         let (path, splitter) = (&self.room.path, Wide::splat(splitter::<S::Scalar>()));
         let mut finite = Wide::from_f64(0.0);
         for i in 0..N {
-            for (sum, series) in [(&mut self.lanes.q, &path.q[i]), (&mut self.lanes.v, &path.v[i])] {
-                sum.add_split_product(i, length, series[1], rest(series, self.rule.order, length), splitter);
+            for (sum, series) in [(&mut self.lanes.q, &path.q[i]), (&mut self.lanes.v, &path.v[i])]
+            {
+                sum.add_split_product(
+                    i,
+                    length,
+                    series[1],
+                    rest(series, self.rule.order, length),
+                    splitter,
+                );
                 // Times zero, infinity and what is not a number are not zero.
                 finite += sum.high[i] * Wide::from_f64(0.0);
             }
@@ -196,10 +226,16 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         not_finite
     }
 
-    /// Takes steps of which some are the first or the last ones, too short, or as long as no term tells.
+    /// Takes steps of which some are the first or the last ones, too short, or as long as no term
+    /// tells.
     #[cold]
     #[inline(never)]
-    fn unusual_steps(&mut self, from: &Flight<S::Scalar, N>, told: Wide<f64>, weights: &[[Wide<f64>; N]; 2]) {
+    fn unusual_steps(
+        &mut self,
+        from: &Flight<S::Scalar, N>,
+        told: Wide<f64>,
+        weights: &[[Wide<f64>; N]; 2],
+    ) {
         let mut wanted = longer(&self.room.path, &self.rule, weights, told);
         for l in 0..W {
             wanted.0[l] = self.limited(from, l, self.begun[l] == self.round, wanted.0[l]);
@@ -267,7 +303,13 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
     }
 
     /// The error for a step of a lane that is too short.
-    fn underflow(&self, before: &Flight<S::Scalar, N>, from: &Node<S::Scalar, N>, wanted: f64, l: usize) -> Error {
+    fn underflow(
+        &self,
+        before: &Flight<S::Scalar, N>,
+        from: &Node<S::Scalar, N>,
+        wanted: f64,
+        l: usize,
+    ) -> Error {
         let all = weights(before, self.rtol, &self.atol);
         let one = all.map(|weights| weights.map(|weights| weights.0[l]));
         let mut path = Path::new();
@@ -336,7 +378,8 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         self.outcomes[self.next] = Some(outcome(problem.time, given, stats, error));
     }
 
-    /// Gives the lanes that stay free what one stands for that is under way, so that no odd number slows the others down.
+    /// Gives the lanes that stay free what one stands for that is under way, so that no odd number
+    /// slows the others down.
     fn idle(&mut self) {
         let Some(model) = self.problem.iter().position(Option::is_some) else { return };
         for l in 0..W {
@@ -362,14 +405,21 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
 
 /// The state in a lane.
 fn node<T: Lane + Float, const N: usize>(lanes: &Flight<T, N>, l: usize) -> Node<T, N> {
-    let sum = |sum: &Sum<Wide<T>, N>| Sum { high: sum.high.map(|x| x.0[l]), low: sum.low.map(|x| x.0[l]) };
+    let sum = |sum: &Sum<Wide<T>, N>| Sum {
+        high: sum.high.map(|x| x.0[l]),
+        low: sum.low.map(|x| x.0[l]),
+    };
     let t = Time::from_words(lanes.high.0[l], lanes.low.0[l]);
     Node { t, q: sum(&lanes.q), v: sum(&lanes.v), a: None }
 }
 
 /// One over the error allowed.
 #[inline(always)]
-fn weights<T: Lane + Float, const N: usize>(from: &Flight<T, N>, rtol: f64, atol: &[[f64; N]; 2]) -> [[Wide<f64>; N]; 2] {
+fn weights<T: Lane + Float, const N: usize>(
+    from: &Flight<T, N>,
+    rtol: f64,
+    atol: &[[f64; N]; 2],
+) -> [[Wide<f64>; N]; 2] {
     let mut weights = [[Wide::from_f64(0.0); N]; 2];
     for (part, state) in [&from.q.high, &from.v.high].into_iter().enumerate() {
         for i in 0..N {
@@ -384,17 +434,24 @@ fn weights<T: Lane + Float, const N: usize>(from: &Flight<T, N>, rtol: f64, atol
 /// A length that stands for one that the last terms do not tell.
 const UNTOLD: f64 = 1e300;
 
-/// What the last terms of the series tell about the lengths of steps: 1023 and their binary logarithms.
+/// What the last terms of the series tell about the lengths of steps: 1023 and their binary
+/// logarithms.
 #[inline(always)]
-fn told<T: Lane + Float, const N: usize>(path: &Path<Wide<T>, N>, rule: &Rule, weights: &[[Wide<f64>; N]; 2]) -> Wide<f64> {
+fn told<T: Lane + Float, const N: usize>(
+    path: &Path<Wide<T>, N>,
+    rule: &Rule,
+    weights: &[[Wide<f64>; N]; 2],
+) -> Wide<f64> {
     let mut least = Wide::from_f64(f64::INFINITY);
     for back in 0..TELLING {
-        least = nearest(least, told_by(path, rule, weights, rule.order.saturating_sub(back).max(1)));
+        least =
+            nearest(least, told_by(path, rule, weights, rule.order.saturating_sub(back).max(1)));
     }
     least
 }
 
-/// The lengths of steps at whose ends the last terms of the series are as large as allowed, as [`Taylor`] finds them.
+/// The lengths of steps at whose ends the last terms of the series are as large as allowed, as
+/// [`Taylor`] finds them.
 #[inline(always)]
 fn lengths(told: Wide<f64>) -> Wide<f64> {
     let mut wanted = told;
@@ -463,18 +520,24 @@ fn nearest(a: Wide<f64>, b: Wide<f64>) -> Wide<f64> {
     least
 }
 
-/// The steps of these lengths, or what avoids leaving a sliver before the end, as for a single motion; none in idle lanes. Steps that would
-/// reach the end or are too short are marked.
+/// The steps of these lengths, or what avoids leaving a sliver before the end, as for a single
+/// motion; none in idle lanes. Steps that would reach the end or are too short are marked.
 #[inline(always)]
-fn fit<T, const N: usize>(from: &Flight<T, N>, wanted: Wide<f64>, unusual: &mut Wide<f64>) -> Wide<f64> {
+fn fit<T, const N: usize>(
+    from: &Flight<T, N>,
+    wanted: Wide<f64>,
+    unusual: &mut Wide<f64>,
+) -> Wide<f64> {
     let mut h = wanted;
     for l in 0..W {
         let (t, wanted) = (Time::from_words(from.high.0[l], from.low.0[l]), wanted.0[l]);
         let left = -t.since(from.end.0[l]);
         let step = if left.abs() < 2.0 * wanted { 0.5 * left } else { wanted.copysign(left) };
         h.0[l] = if 0.0 < from.live.0[l] { step } else { 0.0 };
-        unusual.0[l] = if reaches(t, from.end.0[l], wanted) { from.live.0[l] } else { unusual.0[l] };
-        unusual.0[l] = if is_short(t, from.end.0[l], wanted) { from.live.0[l] } else { unusual.0[l] };
+        unusual.0[l] =
+            if reaches(t, from.end.0[l], wanted) { from.live.0[l] } else { unusual.0[l] };
+        unusual.0[l] =
+            if is_short(t, from.end.0[l], wanted) { from.live.0[l] } else { unusual.0[l] };
     }
     h
 }

@@ -18,15 +18,18 @@ use crate::time::Time;
 /// The motions that are under way at the same time: a vector of 64 bytes for `f64`.
 const W: usize = 8;
 
-/// Many motions of one type of system by their [`Taylor`] series, side by side in the lanes of the widest vectors that the machine has.
+/// Many motions of one type of system by their [`Taylor`] series, side by side in the lanes of the
+/// widest vectors that the machine has.
 ///
-/// Parameters, intervals and start states may differ from motion to motion, and each takes its own steps: its solution has the same
-/// bits whatever its neighbours do. Where one ends, the next one takes its lane. The steps are those that `Taylor` chooses before it
-/// looks at their ends: `Taylor` alone compares the accelerations there with its series and halves a step that leads through a wall,
-/// a batch does not. Where it halves none, which `rejected` in its [`Stats`] says, the solution has, in state and counters, the bits of
-/// [`solve`](super::solve)`(&system, time, q, v).method(Taylor::new())`; where it does, as at walls, contacts and narrow kicks, take
-/// `solve`.
-/// Worth it from about four motions on; it suits every system that `lagrangian!` has made without driven inputs.
+/// Parameters, intervals and start states may differ from motion to motion, and each takes its own
+/// steps: its solution has the same bits whatever its neighbours do. Where one ends, the next one
+/// takes its lane. The steps are those that `Taylor` chooses before it looks at their ends:
+/// `Taylor` alone compares the accelerations there with its series and halves a step that leads
+/// through a wall, a batch does not. Where it halves none, which `rejected` in its [`Stats`] says,
+/// the solution has, in state and counters, the bits of [`solve`](super::solve)`(&system, time, q,
+/// v).method(Taylor::new())`; where it does, as at walls, contacts and narrow kicks, take `solve`.
+/// Worth it from about four motions on; it suits every system that `lagrangian!` has made without
+/// driven inputs.
 ///
 /// A failure ends one motion only. A step allocates nothing; the end of a motion does.
 ///
@@ -67,7 +70,8 @@ pub struct Problem<S: System<N>, const N: usize> {
     pub v: [S::Scalar; N],
 }
 
-/// A system that can stand in lanes: every one that `lagrangian!` generates without driven inputs, over `f32` and `f64`.
+/// A system that can stand in lanes: every one that `lagrangian!` generates without driven inputs,
+/// over `f32` and `f64`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be integrated in a batch",
     note = "a batch takes systems that `lagrangian!` has made, over `f64` or `f32` and without driven inputs"
@@ -101,7 +105,8 @@ impl<const N: usize> Default for Batch<N> {
 }
 
 impl<const N: usize> Batch<N> {
-    /// The order that the tolerance asks for, `rtol` 1e-6 (1.2e-5 for `f32`), at most ten million steps for each motion.
+    /// The order that the tolerance asks for, `rtol` 1e-6 (1.2e-5 for `f32`), at most ten million
+    /// steps for each motion.
     pub fn new() -> Self {
         Self::default()
     }
@@ -150,9 +155,12 @@ impl<const N: usize> Batch<N> {
 
     /// Integrates each problem from its start to its end: as many solutions, in the same order.
     ///
-    /// The whole fails only if a setting is out of its range. A motion that cannot begin or go on gives its own [`Failure`], with the error and
-    /// the last good state.
-    pub fn run<S: Batched<N>>(&self, problems: &[Problem<S, N>]) -> Result<Vec<Outcome<S::Scalar, N>>, Error> {
+    /// The whole fails only if a setting is out of its range. A motion that cannot begin or go on
+    /// gives its own [`Failure`], with the error and the last good state.
+    pub fn run<S: Batched<N>>(
+        &self,
+        problems: &[Problem<S, N>],
+    ) -> Result<Vec<Outcome<S::Scalar, N>>, Error> {
         <AdaptiveStep<N> as Control<Taylor, S, N>>::check(&self.control)?;
         let Some(mut run) = kernel::Run::new(self, problems) else { return Ok(Vec::new()) };
         simd::widest(kernel::Steps(&mut run));
@@ -171,7 +179,9 @@ impl<const N: usize> Batch<N> {
             return Err(Error::Interval { start, end });
         }
         let length = (end - start).abs();
-        if (self.max_steps as f64) < self.control.least_steps_over(length) || self.max_steps == 0 && start != end {
+        if (self.max_steps as f64) < self.control.least_steps_over(length)
+            || self.max_steps == 0 && start != end
+        {
             return Err(Error::MaxSteps { t: start, max_steps: self.max_steps });
         }
         check_start(&problem.system, Time::new(start), &problem.q, &problem.v)?;
@@ -183,7 +193,12 @@ impl<const N: usize> Batch<N> {
 pub type Outcome<T, const N: usize> = Result<Solution<T, N>, Failure<T, N>>;
 
 /// The end of a motion over an interval.
-fn outcome<T: Float, const N: usize>(time: (f64, f64), end: State<T, N>, stats: Stats, error: Option<Error>) -> Outcome<T, N> {
+fn outcome<T: Float, const N: usize>(
+    time: (f64, f64),
+    end: State<T, N>,
+    stats: Stats,
+    error: Option<Error>,
+) -> Outcome<T, N> {
     let recorder = Recorder::new(Output::End, time);
     match error {
         None => Ok(recorder.finish(end, super::event::Status::Completed, stats)),

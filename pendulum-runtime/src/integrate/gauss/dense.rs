@@ -7,7 +7,8 @@ use crate::integrate::piece::{Piece, TERMS};
 use crate::integrate::span::Span;
 use crate::real::Float;
 
-/// The polynomial of degree S + 1 through the velocities at both ends and at the stages, and its integral (a cubic if S = 1).
+/// The polynomial of degree S + 1 through the velocities at both ends and at the stages, and its
+/// integral (a cubic if S = 1).
 pub(super) fn piece<T: Float, const N: usize, const S: usize>(
     span: &Span,
     from: &Node<T, N>,
@@ -23,7 +24,8 @@ pub(super) fn piece<T: Float, const N: usize, const S: usize>(
         q[j] = (Condition::Slope(node), stage.map(|v| h * v));
         v[j] = (Condition::Value(node), core::array::from_fn(|i| stage[i] - from.v.high[i]));
     }
-    // The increment of the coordinates is a quadrature of the slopes at the stages, so one of them is not needed.
+    // The increment of the coordinates is a quadrature of the slopes at the stages, so one of them
+    // is not needed.
     q[S - 1] = (Condition::Slope(0.0), from.v.high.map(|v| h * v));
     q[S] = (Condition::Slope(1.0), to.v.high.map(|v| h * v));
     fit(&mut piece.q, &q[..=S]);

@@ -28,8 +28,9 @@ impl<T: Float, const N: usize, const S: usize> Slopes<T, N, S> {
 
     /// The polynomials through the slopes, one step later.
     pub(super) fn ahead(&self, weights: &[[f64; S]; S]) -> Self {
-        let extrapolated =
-            |slopes: &[[T; N]; S]| weights.map(|row| combined([T::from_f64(0.0); N], slopes, &row.map(T::from_f64)));
+        let extrapolated = |slopes: &[[T; N]; S]| {
+            weights.map(|row| combined([T::from_f64(0.0); N], slopes, &row.map(T::from_f64)))
+        };
         Self { v: extrapolated(&self.v), f: extrapolated(&self.f) }
     }
 }
@@ -60,7 +61,12 @@ pub(super) struct Equations<Y: System<N>, const N: usize, const S: usize> {
 
 impl<Y: System<N, Scalar: Float>, const N: usize, const S: usize> Equations<Y, N, S> {
     /// The equations of `span` from the coordinates `q` and the momenta `p`.
-    pub(super) fn new(field: &mut impl Field<Y, N>, span: &Span, q: Sum<Y::Scalar, N>, p: Sum<Y::Scalar, N>) -> Self {
+    pub(super) fn new(
+        field: &mut impl Field<Y, N>,
+        span: &Span,
+        q: Sum<Y::Scalar, N>,
+        p: Sum<Y::Scalar, N>,
+    ) -> Self {
         let tableau = const { &Tableau::<S>::GAUSS };
         let stages = tableau.nodes.map(|c| span.at(c));
         Self {
@@ -80,16 +86,23 @@ impl<Y: System<N, Scalar: Float>, const N: usize, const S: usize> Equations<Y, N
     }
 
     /// h Σ b V and h Σ b F.
-    pub(super) fn increments(&self, slopes: &Slopes<Y::Scalar, N, S>) -> ([Y::Scalar; N], [Y::Scalar; N]) {
+    pub(super) fn increments(
+        &self,
+        slopes: &Slopes<Y::Scalar, N, S>,
+    ) -> ([Y::Scalar; N], [Y::Scalar; N]) {
         let zero = [Y::Scalar::from_f64(0.0); N];
         (combined(zero, &slopes.v, &self.weights), combined(zero, &slopes.f, &self.weights))
     }
 
     /// Momenta from forces, velocities from momenta, coordinates from velocities, forces from both.
     ///
-    /// With a constant mass matrix two halves of it contract like (h·ω)², where evaluating everything at the old slopes contracts
-    /// like h·ω.
-    pub(super) fn sweep(&self, field: &mut impl Field<Y, N>, slopes: &mut Slopes<Y::Scalar, N, S>) -> Change {
+    /// With a constant mass matrix two halves of it contract like (h·ω)², where evaluating
+    /// everything at the old slopes contracts like h·ω.
+    pub(super) fn sweep(
+        &self,
+        field: &mut impl Field<Y, N>,
+        slopes: &mut Slopes<Y::Scalar, N, S>,
+    ) -> Change {
         let old = *slopes;
         let (dq, dp) = (self.scaled(&old.v), self.scaled(&old.f));
         for i in 0..S {
@@ -104,10 +117,11 @@ impl<Y: System<N, Scalar: Float>, const N: usize, const S: usize> Equations<Y, N
         self.change(&old, slopes)
     }
 
-    /// One step of Newton's method, with M, ∂q̈/∂q and ∂q̈/∂q̇ at the start of the step in place of the Jacobian.
+    /// One step of Newton's method, with M, ∂q̈/∂q and ∂q̈/∂q̇ at the start of the step in place of
+    /// the Jacobian.
     ///
-    /// What the velocities at given momenta owe to the coordinates, and the mass matrix to time, is left out of it: neither is ever
-    /// stiff, and the residuals contain them.
+    /// What the velocities at given momenta owe to the coordinates, and the mass matrix to time, is
+    /// left out of it: neither is ever stiff, and the residuals contain them.
     pub(super) fn newton(
         &self,
         field: &mut impl Field<Y, N>,
@@ -150,19 +164,26 @@ impl<Y: System<N, Scalar: Float>, const N: usize, const S: usize> Equations<Y, N
 
     /// h b_j slope_j for each j.
     ///
-    /// Rounded here, where the slopes differ from step to step, the products have errors that average out; h b_j m_ij would have the same
-    /// in every step, and the method were symplectic no more.
+    /// Rounded here, where the slopes differ from step to step, the products have errors that
+    /// average out; h b_j m_ij would have the same in every step, and the method were symplectic no
+    /// more.
     fn scaled(&self, slopes: &[[Y::Scalar; N]; S]) -> [[Y::Scalar; N]; S] {
         core::array::from_fn(|j| slopes[j].map(|slope| self.weights[j] * slope))
     }
 
     /// start + Σ m_ij increment_j.
-    fn stage(&self, start: &Sum<Y::Scalar, N>, increments: &[[Y::Scalar; N]; S], i: usize) -> [Y::Scalar; N] {
+    fn stage(
+        &self,
+        start: &Sum<Y::Scalar, N>,
+        increments: &[[Y::Scalar; N]; S],
+        i: usize,
+    ) -> [Y::Scalar; N] {
         let increment = combined(start.low, increments, &self.ratios[i]);
         core::array::from_fn(|k| start.high[k] + increment[k])
     }
 
-    /// The largest difference between two sets of slopes; its size is not a number if a slope is not.
+    /// The largest difference between two sets of slopes; its size is not a number if a slope is
+    /// not.
     fn change(&self, old: &Slopes<Y::Scalar, N, S>, new: &Slopes<Y::Scalar, N, S>) -> Change {
         let mut largest = Change { size: 0.0, shift: 0.0, place: (0, 0) };
         for (start, old, new) in [(&self.p, &old.f, &new.f), (&self.q, &old.v, &new.v)] {
@@ -174,7 +195,8 @@ impl<Y: System<N, Scalar: Float>, const N: usize, const S: usize> Equations<Y, N
                 }
                 for i in 0..S {
                     let change = (self.h * (new[i][k] - old[i][k])).abs();
-                    let size = if change == Real::from_f64(0.0) { 0.0 } else { (change / scale).to_f64() };
+                    let size =
+                        if change == Real::from_f64(0.0) { 0.0 } else { (change / scale).to_f64() };
                     if largest.shift < size {
                         largest.shift = size;
                     }
@@ -201,7 +223,11 @@ pub(super) struct Linearized<T, const N: usize, const S: usize> {
 
 impl<T: Float, const N: usize, const S: usize> Linearized<T, N, S> {
     /// At the start of `span`.
-    pub(super) fn new<Y: Jacobians<N, Scalar = T>>(field: &mut impl Field<Y, N>, span: &Span, from: &Node<T, N>) -> Self {
+    pub(super) fn new<Y: Jacobians<N, Scalar = T>>(
+        field: &mut impl Field<Y, N>,
+        span: &Span,
+        from: &Node<T, N>,
+    ) -> Self {
         let tableau = const { &Tableau::<S>::GAUSS };
         let square = |matrix: &dyn Fn(usize, usize) -> T| -> Square<T, N> {
             core::array::from_fn(|i| core::array::from_fn(|j| matrix(i, j)))
@@ -213,7 +239,8 @@ impl<T: Float, const N: usize, const S: usize> Linearized<T, N, S> {
         let a = |i: usize, j: usize| tableau.ratios[i][j] * tableau.weights[j];
         let factors = Factors::new(|i, j| {
             let first = T::from_f64(span.h * a(i, j));
-            let second = T::from_f64(span.h * span.h * (0..S).map(|k| a(i, k) * a(k, j)).sum::<f64>());
+            let second =
+                T::from_f64(span.h * span.h * (0..S).map(|k| a(i, k) * a(k, j)).sum::<f64>());
             square(&|row, column| {
                 let unit = T::from_f64(if i == j && row == column { 1.0 } else { 0.0 });
                 unit - first * damping[(row, column)] - second * stiffness[(row, column)]
@@ -225,7 +252,11 @@ impl<T: Float, const N: usize, const S: usize> Linearized<T, N, S> {
 }
 
 /// start + Σ weight · slope, the terms added first.
-fn combined<T: Float, const N: usize, const S: usize>(start: [T; N], slopes: &[[T; N]; S], weights: &[T; S]) -> [T; N] {
+fn combined<T: Float, const N: usize, const S: usize>(
+    start: [T; N],
+    slopes: &[[T; N]; S],
+    weights: &[T; S],
+) -> [T; N] {
     core::array::from_fn(|k| {
         let sum = (1..S).fold(weights[0] * slopes[0][k], |sum, j| sum + weights[j] * slopes[j][k]);
         start[k] + sum

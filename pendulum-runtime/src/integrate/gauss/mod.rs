@@ -17,26 +17,32 @@ use crate::time::Time;
 use equations::{Change, Equations, Linearized, Slopes};
 pub(super) use tableau::Tableau;
 
-/// The Gauss method with `S` = 1, 2, 3, 4 or 8 stages: implicit, order 2S, symplectic for every conservative system, fixed step.
+/// The Gauss method with `S` = 1, 2, 3, 4 or 8 stages: implicit, order 2S, symplectic for every
+/// conservative system, fixed step.
 ///
-/// Q_i = q₀ + h Σ a_ij V_j, P_i = p₀ + h Σ a_ij F_j, where V = q̇ and F = ∂L/∂q − ∂R/∂q̇ + Q are taken at the stages (t + c_i h, Q_i,
-/// P_i), and q₁ = q₀ + h Σ b_j V_j, p₁ = p₀ + h Σ b_j F_j. In coordinates and momenta it is symplectic and reversible whatever the
-/// mass matrix contains: energy errors stay bounded, phase errors grow with time, and what is quadratic in q and p is kept, as are the
-/// momenta of cyclic coordinates. `Gauss<1>` is the implicit midpoint rule. Of a driven motion it needs the velocity, not the
-/// acceleration.
+/// Q_i = q₀ + h Σ a_ij V_j, P_i = p₀ + h Σ a_ij F_j, where V = q̇ and F = ∂L/∂q − ∂R/∂q̇ + Q are
+/// taken at the stages (t + c_i h, Q_i, P_i), and q₁ = q₀ + h Σ b_j V_j, p₁ = p₀ + h Σ b_j F_j. In
+/// coordinates and momenta it is symplectic and reversible whatever the mass matrix contains:
+/// energy errors stay bounded, phase errors grow with time, and what is quadratic in q and p is
+/// kept, as are the momenta of cyclic coordinates. `Gauss<1>` is the implicit midpoint rule. Of a
+/// driven motion it needs the velocity, not the acceleration.
 ///
-/// The equations are solved by sweeps that start from the polynomial of the step before, until rounding stops them: two to six
-/// sweeps of S evaluations, as long as h·ω stays below about 1. For stiff springs and dampers [`newton`](Self::newton) takes
-/// Newton's method with the generated Jacobians. An iteration that goes astray is an
-/// [error](crate::error::Error::NoConvergence) that names time and coordinate. `Gauss<4>` with nine hundred steps a period keeps the energy
-/// of a pendulum to rounding: 4e-15 after ten million steps, growing with their square root.
+/// The equations are solved by sweeps that start from the polynomial of the step before, until
+/// rounding stops them: two to six sweeps of S evaluations, as long as h·ω stays below about 1. For
+/// stiff springs and dampers [`newton`](Self::newton) takes Newton's method with the generated
+/// Jacobians. An iteration that goes astray is an [error](crate::error::Error::NoConvergence) that
+/// names time and coordinate. `Gauss<4>` with nine hundred steps a period keeps the energy of a
+/// pendulum to rounding: 4e-15 after ten million steps, growing with their square root.
 ///
-/// Rounding is kept without bias: the coefficients are m_ij = a_ij/b_j, for which m_ij + m_ji = 1 holds exactly, and both coordinates
-/// and momenta are summed with compensation. Dense output is the polynomial through the velocities at the stages and at both ends.
+/// Rounding is kept without bias: the coefficients are m_ij = a_ij/b_j, for which m_ij + m_ji = 1
+/// holds exactly, and both coordinates and momenta are summed with compensation. Dense output is
+/// the polynomial through the velocities at the stages and at both ends.
 ///
-/// Source: Hairer, Lubich and Wanner (2006), Geometric Numerical Integration, II.1.3 and VIII.6; Hairer, McLachlan and Razakarivony
-/// (2008), Achieving Brouwer's law with implicit Runge–Kutta methods, BIT 48, 231; for the ratios m Antoñana, Makazaga and Murua
-/// (2017), Reducing and monitoring round-off error propagation for symplectic implicit Runge–Kutta schemes, Numer. Algorithms 76, 861.
+/// Source: Hairer, Lubich and Wanner (2006), Geometric Numerical Integration, II.1.3 and VIII.6;
+/// Hairer, McLachlan and Razakarivony (2008), Achieving Brouwer's law with implicit Runge–Kutta
+/// methods, BIT 48, 231; for the ratios m Antoñana, Makazaga and Murua (2017), Reducing and
+/// monitoring round-off error propagation for symplectic implicit Runge–Kutta schemes, Numer.
+/// Algorithms 76, 861.
 ///
 /// ```
 /// # use pendulum_runtime::{integrate::*, system::*};
@@ -60,7 +66,8 @@ pub struct Gauss<const S: usize, I = Sweeps> {
     iteration: I,
 }
 
-/// The iteration of [`Gauss`] that evaluates velocities and forces in turn; it converges while h·ω is below about 1.
+/// The iteration of [`Gauss`] that evaluates velocities and forces in turn; it converges while h·ω
+/// is below about 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sweeps;
 
@@ -93,7 +100,13 @@ impl<const S: usize, I: Copy + core::fmt::Debug> Method for Gauss<S, I> {
     type Stages<T: Float, const N: usize> = Stages<T, N, S>;
 
     fn stages<T: Float, const N: usize>() -> Stages<T, N, S> {
-        Stages { slopes: Slopes::zero(), p: Sum::new([T::from_f64(0.0); N]), end: None, h: 0.0, unsolved: None }
+        Stages {
+            slopes: Slopes::zero(),
+            p: Sum::new([T::from_f64(0.0); N]),
+            end: None,
+            h: 0.0,
+            unsolved: None,
+        }
     }
 
     fn unsolved<T: Float, const N: usize>(stages: &Stages<T, N, S>) -> Option<(Time, usize)> {
@@ -125,7 +138,9 @@ impl<Y: System<N, Scalar: Float>, const N: usize, const S: usize> Suits<Y, N> fo
     }
 }
 
-impl<Y: Jacobians<N, Scalar: Float>, const N: usize, const S: usize> Suits<Y, N> for Gauss<S, Newton> {
+impl<Y: Jacobians<N, Scalar: Float>, const N: usize, const S: usize> Suits<Y, N>
+    for Gauss<S, Newton>
+{
     fn step(
         &self,
         field: &mut impl Field<Y, N>,
@@ -135,7 +150,9 @@ impl<Y: Jacobians<N, Scalar: Float>, const N: usize, const S: usize> Suits<Y, N>
     ) -> Node<Y::Scalar, N> {
         let equations = stages.begin(field, span, from);
         let linearized = Linearized::new(field, span, from);
-        stages.finish(field, span, from, &equations, |field, slopes| equations.newton(field, &linearized, slopes))
+        stages.finish(field, span, from, &equations, |field, slopes| {
+            equations.newton(field, &linearized, slopes)
+        })
     }
 
     fn dense(
@@ -169,7 +186,8 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
         span: &Span,
         from: &Node<T, N>,
     ) -> Equations<Y, N, S> {
-        let goes_on = self.end.is_some_and(|end| end.t == from.t && end.q == from.q && end.v == from.v);
+        let goes_on =
+            self.end.is_some_and(|end| end.t == from.t && end.q == from.q && end.v == from.v);
         if !goes_on {
             // The state comes from outside or from beyond a kink.
             let inputs = field.inputs(from.t, Side::After);
@@ -216,24 +234,28 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
 
     /// Repeats `improve` until its changes are below rounding or have twice failed to become less.
     ///
-    /// If that happens far above rounding, gives the stage and the coordinate of the last change; nothing if not even the first change
-    /// is a number.
+    /// If that happens far above rounding, gives the stage and the coordinate of the last change;
+    /// nothing if not even the first change is a number.
     fn iterate<X>(
         &mut self,
         field: &mut X,
         mut improve: impl FnMut(&mut X, &mut Slopes<T, N, S>) -> Change,
     ) -> Result<(), Option<(usize, usize)>> {
         let epsilon = T::EPSILON.to_f64();
-        // What is left after the last sweep has the same sign in every step: it must be small against the sum of many roundings.
+        // What is left after the last sweep has the same sign in every step: it must be small
+        // against the sum of many roundings.
         let negligible = epsilon / 65536.0;
         let rounding = 0.01 * epsilon.sqrt();
-        let (mut least, mut last, mut stalls, mut shift) = (f64::INFINITY, None::<Change>, 0, f64::INFINITY);
+        let (mut least, mut last, mut stalls, mut shift) =
+            (f64::INFINITY, None::<Change>, 0, f64::INFINITY);
         for _ in 0..SWEEPS {
             let change = improve(field, &mut self.slopes);
             if change.size.is_nan() {
                 return Err(last.map(|last| last.place));
             }
-            let shrinks = last.map_or(1.0, |last| if change.size < last.size { change.size / last.size } else { 1.0 });
+            let shrinks = last.map_or(1.0, |last| {
+                if change.size < last.size { change.size / last.size } else { 1.0 }
+            });
             if change.size * shrinks <= negligible {
                 return Ok(());
             }
@@ -243,7 +265,8 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
                 least = change.size;
             } else {
                 stalls += 1;
-                // Where stiff forces cancel, momenta are no better than their rounding, and only the coordinates come to rest.
+                // Where stiff forces cancel, momenta are no better than their rounding, and only
+                // the coordinates come to rest.
                 let patience = if least <= epsilon {
                     1
                 } else if shift <= rounding {
@@ -260,5 +283,6 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
     }
 }
 
-/// The largest number of sweeps; at the slowest convergence that is of use, hundreds would not suffice.
+/// The largest number of sweeps; at the slowest convergence that is of use, hundreds would not
+/// suffice.
 const SWEEPS: usize = 100;

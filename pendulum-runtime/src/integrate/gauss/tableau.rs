@@ -7,7 +7,8 @@ pub(in crate::integrate) struct Tableau<const S: usize> {
     pub(in crate::integrate) nodes: [f64; S],
     /// The weights b of the quadrature on [0, 1].
     pub(in crate::integrate) weights: [f64; S],
-    /// m_ij = a_ij/b_j, for which m_ij + m_ji = 1 holds exactly: this, and not the digits of b, makes the rounded method symplectic.
+    /// m_ij = a_ij/b_j, for which m_ij + m_ji = 1 holds exactly: this, and not the digits of b,
+    /// makes the rounded method symplectic.
     pub(in crate::integrate) ratios: [[f64; S]; S],
     /// The value at 1 + c_i of the polynomial that is 1 at c_j and 0 at the other nodes.
     pub(in crate::integrate) ahead: [[f64; S]; S],
@@ -24,7 +25,12 @@ impl<const S: usize> Tableau<S> {
             8 => GAUSS8,
             _ => panic!("`Gauss<S>` has 1, 2, 3, 4 or 8 stages"),
         };
-        let mut tableau = Self { nodes: [0.0; S], weights: [0.0; S], ratios: [[0.5; S]; S], ahead: [[1.0; S]; S] };
+        let mut tableau = Self {
+            nodes: [0.0; S],
+            weights: [0.0; S],
+            ratios: [[0.5; S]; S],
+            ahead: [[1.0; S]; S],
+        };
         let mut i = 0;
         while i < S {
             tableau.nodes[i] = nodes[i];
@@ -60,7 +66,8 @@ type Digits = (&'static [f64], &'static [f64], &'static [&'static [f64]]);
 
 const GAUSS1: Digits = (&[0.5], &[1.0], &[]);
 
-const GAUSS2: Digits = (&[0.2113248654051871, 0.7886751345948129], &[0.5, 0.5], &[&[1.0773502691896257]]);
+const GAUSS2: Digits =
+    (&[0.2113248654051871, 0.7886751345948129], &[0.5, 0.5], &[&[1.0773502691896257]]);
 
 const GAUSS3: Digits = (
     &[0.11270166537925831, 0.5, 0.8872983346207417],
@@ -104,8 +111,21 @@ const GAUSS8: Digits = (
         &[0.959957296222055, 1.0869589243008326],
         &[1.0247213458032003, 0.9550588736973743, 1.0880938387323082],
         &[0.9830238267636289, 1.0287597754747493, 0.9538345351852, 1.0883471611098279],
-        &[1.012225914113298, 0.9799828723635913, 1.029603873064978, 0.9538345351852, 1.0880938387323082],
-        &[0.9912514332308027, 1.014074355889167, 0.9799828723635913, 1.0287597754747493, 0.9550588736973743, 1.0869589243008326],
+        &[
+            1.012225914113298,
+            0.9799828723635913,
+            1.029603873064978,
+            0.9538345351852,
+            1.0880938387323082,
+        ],
+        &[
+            0.9912514332308027,
+            1.014074355889167,
+            0.9799828723635913,
+            1.0287597754747493,
+            0.9550588736973743,
+            1.0869589243008326,
+        ],
         &[
             1.005482808253216,
             0.9912514332308027,
@@ -125,20 +145,30 @@ mod tests {
     fn check<const S: usize>() {
         let Tableau { nodes, weights, ratios, ahead } = Tableau::<S>::GAUSS;
         for i in 0..S {
-            // Collocation: Σ a_ij c_j^(k−1) = c_i^k/k for k ≤ S, and Σ b_j c_j^(k−1) = 1/k for k ≤ 2S.
+            // Collocation: Σ a_ij c_j^(k−1) = c_i^k/k for k ≤ S, and Σ b_j c_j^(k−1) = 1/k for k ≤
+            // 2S.
             for k in 1..=2 * S as i32 {
-                let sum = |row: &[f64; S]| (0..S).map(|j| row[j] * weights[j] * nodes[j].powi(k - 1)).sum::<f64>();
+                let sum = |row: &[f64; S]| {
+                    (0..S).map(|j| row[j] * weights[j] * nodes[j].powi(k - 1)).sum::<f64>()
+                };
                 assert!((sum(&[1.0; S]) - 1.0 / f64::from(k)).abs() < 2e-16, "S = {S}, k = {k}");
                 if k <= S as i32 {
-                    assert!((sum(&ratios[i]) - nodes[i].powi(k) / f64::from(k)).abs() < 2e-16, "S = {S}, i = {i}, k = {k}");
+                    assert!(
+                        (sum(&ratios[i]) - nodes[i].powi(k) / f64::from(k)).abs() < 2e-16,
+                        "S = {S}, i = {i}, k = {k}"
+                    );
                 }
             }
             for j in 0..S {
                 // Symplectic, exactly; symmetric in time.
                 assert_eq!(ratios[i][j] + ratios[j][i], 1.0);
-                assert!((ratios[i][j] - ratios[S - 1 - j][S - 1 - i]).abs() < 3e-16 && weights[i] == weights[S - 1 - i]);
+                assert!(
+                    (ratios[i][j] - ratios[S - 1 - j][S - 1 - i]).abs() < 3e-16
+                        && weights[i] == weights[S - 1 - i]
+                );
             }
-            let polynomial = |c: f64| (1..S as i32).fold(1.0, |sum, k| sum + f64::from(k) * c.powi(k));
+            let polynomial =
+                |c: f64| (1..S as i32).fold(1.0, |sum, k| sum + f64::from(k) * c.powi(k));
             let extrapolated = (0..S).map(|j| ahead[i][j] * polynomial(nodes[j])).sum::<f64>();
             assert!((extrapolated / polynomial(1.0 + nodes[i]) - 1.0).abs() < 1e-10);
         }

@@ -14,7 +14,8 @@ use crate::simd;
 /// The coefficients of the accelerations.
 const COUNT: usize = 2 * S;
 
-/// The collocation polynomial at sixteen nodes: the one at eight meets the ends with order 16, but what is between them with order 9 only.
+/// The collocation polynomial at sixteen nodes: the one at eight meets the ends with order 16, but
+/// what is between them with order 9 only.
 pub(super) fn piece<D: SideBySide<N>, const N: usize>(
     field: &mut Counted<'_, D>,
     span: &Span,
@@ -50,9 +51,11 @@ pub(super) fn piece<D: SideBySide<N>, const N: usize>(
         v: [[zero; N]; TERMS],
         ..Piece::linear(span, from, to)
     };
-    // ∫ P_k = (P_{k+1} − P_{k−1})/(4k + 2), so that a series α_k becomes h (α_{k−1}/(4k − 2) − α_{k+1}/(4k + 6)).
+    // ∫ P_k = (P_{k+1} − P_{k−1})/(4k + 2), so that a series α_k becomes h (α_{k−1}/(4k − 2) −
+    // α_{k+1}/(4k + 6)).
     let integrated = |series: &[D::Scalar; COUNT + 3], k: usize| {
-        h * (series[k - 1] / number((4 * k - 2) as f64) - series[k + 1] / number((4 * k + 6) as f64))
+        h * (series[k - 1] / number((4 * k - 2) as f64)
+            - series[k + 1] / number((4 * k + 6) as f64))
     };
     for i in 0..N {
         let (mut a, mut v) = ([zero; COUNT + 3], [zero; COUNT + 3]);
@@ -75,10 +78,12 @@ pub(super) fn piece<D: SideBySide<N>, const N: usize>(
         for k in 1..=COUNT + 1 {
             piece.q[k - 1][i] = integrated(&v, k);
         }
-        // The ends are met exactly: what is left, less than the error of the step, goes straight from one to the other.
-        for (terms, [start, end]) in
-            [(&mut piece.q, [from.q.high[i], to.q.high[i]]), (&mut piece.v, [from.v.high[i], to.v.high[i]])]
-        {
+        // The ends are met exactly: what is left, less than the error of the step, goes straight
+        // from one to the other.
+        for (terms, [start, end]) in [
+            (&mut piece.q, [from.q.high[i], to.q.high[i]]),
+            (&mut piece.v, [from.v.high[i], to.v.high[i]]),
+        ] {
             let half = (0..=COUNT).step_by(2).fold(zero, |sum, k| sum + terms[k][i]);
             terms[0][i] += (end - start) / number(2.0) - half;
         }

@@ -1,6 +1,7 @@
 //! The sweeps of a step.
 //!
-//! Everything here is inlined into the code that [`simd`](crate::simd) compiles for several instruction sets, and has the same bits in each.
+//! Everything here is inlined into the code that [`simd`](crate::simd) compiles for several
+//! instruction sets, and has the same bits in each.
 
 #![allow(clippy::inline_always)]
 
@@ -21,19 +22,20 @@ pub(super) type Wide<T> = Octet<T>;
 /// The accelerations at the nodes of a step, by vector and coordinate.
 pub(super) type Stages<T, const N: usize, const G: usize> = [[Wide<T>; N]; G];
 
-/// The square of the error that may be left in the equations, over the one allowed: the change that one more sweep would make.
+/// The square of the error that may be left in the equations, over the one allowed: the change that
+/// one more sweep would make.
 const NEGLIGIBLE: f64 = 0.04;
 
-/// The square of the change that the last sweep of an adaptive step may make, over the error allowed, and of the one expected of it
-/// before it begins.
+/// The square of the change that the last sweep of an adaptive step may make, over the error
+/// allowed, and of the one expected of it before it begins.
 const LAST_CHANGE: f64 = 1.0;
 const EXPECTED_CHANGE: f64 = 0.25;
 
 /// The system over lanes.
 type Of<D, const N: usize> = <D as SideBySide<N>>::Wide;
 
-/// The columns of h A and h² A² that lead from the values in `G` vectors to the points of one, for steps of one length: multiplied once, and
-/// not in every sweep.
+/// The columns of h A and h² A² that lead from the values in `G` vectors to the points of one, for
+/// steps of one length: multiplied once, and not in every sweep.
 #[derive(Clone, Debug)]
 pub(super) struct Scaled<T, const G: usize> {
     h: T,
@@ -47,9 +49,15 @@ impl<T: Lane + Float, const G: usize> Scaled<T, G> {
         Self { h: T::from_f64(0.0), once: zero, twice: zero }
     }
 
-    /// Makes them of the columns of A and A² for the vector `to`, if the length is another by more than rounding.
+    /// Makes them of the columns of A and A² for the vector `to`, if the length is another by more
+    /// than rounding.
     #[inline(always)]
-    fn scale<const H: usize>(&mut self, h: T, [once, twice]: [&'static Columns<G, H>; 2], to: usize) {
+    fn scale<const H: usize>(
+        &mut self,
+        h: T,
+        [once, twice]: [&'static Columns<G, H>; 2],
+        to: usize,
+    ) {
         if f64::abs(self.h.to_f64() - h.to_f64()) <= 1e-15 * self.h.to_f64() {
             return;
         }
@@ -95,12 +103,14 @@ pub(super) struct Equations<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, c
     pub(super) from: &'a Node<T, N>,
     /// The part of the error allowed that a unit of each acceleration makes in the step.
     pub(super) weights: &'a [T; N],
-    /// The least number of sweeps and the most. The processor foresees the end of the loop where the least number is right.
+    /// The least number of sweeps and the most. The processor foresees the end of the loop where
+    /// the least number is right.
     pub(super) least: u32,
     pub(super) most: u32,
     /// Whether the change made by the first sweep means anything.
     pub(super) guessed: bool,
-    /// Whether the last sweeps look between the nodes too, and the very last one has to change little.
+    /// Whether the last sweeps look between the nodes too, and the very last one has to change
+    /// little.
     pub(super) closing: bool,
 }
 
@@ -130,7 +140,8 @@ pub(super) struct Ends<T, const N: usize> {
     pub(super) tail: [[T; TAIL]; N],
     /// The accelerations just before its end.
     pub(super) last: [T; N],
-    /// The mean square of the accelerations: a short scalar does not hold the squares of all its numbers.
+    /// The mean square of the accelerations: a short scalar does not hold the squares of all its
+    /// numbers.
     pub(super) square: [f64; N],
     pub(super) progress: Progress<T>,
     /// Whether the equations are solved.
@@ -142,8 +153,22 @@ pub(super) struct Ends<T, const N: usize> {
 impl<T: Float, const N: usize> Ends<T, N> {
     pub(super) fn new() -> Self {
         let zero = [T::from_f64(0.0); N];
-        let progress = Progress { sweeps: 0, vectors: 0, change: zero[0], done: false, spare: false, complete: false };
-        Self { tail: [[zero[0]; TAIL]; N], last: zero, square: [0.0; N], progress, solved: false, error: 0.0 }
+        let progress = Progress {
+            sweeps: 0,
+            vectors: 0,
+            change: zero[0],
+            done: false,
+            spare: false,
+            complete: false,
+        };
+        Self {
+            tail: [[zero[0]; TAIL]; N],
+            last: zero,
+            square: [0.0; N],
+            progress,
+            solved: false,
+            error: 0.0,
+        }
     }
 }
 
@@ -180,7 +205,8 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Onw
         let [first, second] = &mut room.a;
         let (before, a) = if room.last == 0 { (&*first, second) } else { (&*second, first) };
         let goes_on = ratio == 1.0;
-        // The first sweep of an equal step needs no guess, and what it changes is of interest only where a second may be the last.
+        // The first sweep of an equal step needs no guess, and what it changes is of interest only
+        // where a second may be the last.
         let guessed = !goes_on || room.sweeps < 3;
         if goes_on {
             ahead.scale(h, [&EIGHT.once_ahead, &EIGHT.twice_ahead], 0);
@@ -192,7 +218,8 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Onw
         } else {
             *a = extrapolated(black_box(before), number(ratio), half);
         }
-        // By way of memory: the compiler would take the vectors of the three cases apart to join them.
+        // By way of memory: the compiler would take the vectors of the three cases apart to join
+        // them.
         let a = black_box(a);
         // At the nodes and between them.
         let mut new = [a[0], [Wide::splat(number(0.0)); N]];
@@ -209,7 +236,8 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Onw
         };
         let first = if goes_on { (before, &*ahead) } else { (&*a, &*scaled) };
         let points = [&EIGHT.nodes[0], &BETWEEN.points[0]];
-        room.ends.progress = sweeps(&equations, points, first, [&*scaled, &*between], &mut new, half);
+        room.ends.progress =
+            sweeps(&equations, points, first, [&*scaled, &*between], &mut new, half);
         *a = [new[0]];
         let [sums] = sums(black_box(&new), [&BETWEEN.ends], half);
         let [sums] = black_box(&sums);
@@ -252,7 +280,8 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Wit
         }
         let (guess, [first, second]) = (a, &*self.scaled);
         let points = [&SIXTEEN.nodes[0], &SIXTEEN.nodes[1]];
-        *self.count = sweeps(&self.equations, points, (&guess, first), [first, second], &mut a, half).vectors;
+        *self.count =
+            sweeps(&self.equations, points, (&guess, first), [first, second], &mut a, half).vectors;
         [*self.series] = sums(black_box(&a), [&SIXTEEN.legendre], half);
     }
 }
@@ -276,11 +305,19 @@ fn at_nodes<D: SideBySide<N>, const N: usize>(
     (lanes, dynamics.inputs_at(&times, last))
 }
 
-/// Evaluates the accelerations where the last ones lead, again and again, until that changes nothing.
+/// Evaluates the accelerations where the last ones lead, again and again, until that changes
+/// nothing.
 ///
-/// The values in the first `G` of the `H` vectors lead to the points of all of them. The others are evaluated only in the closing sweeps.
+/// The values in the first `G` of the `H` vectors lead to the points of all of them. The others are
+/// evaluated only in the closing sweeps.
 #[inline(always)]
-fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G: usize, const H: usize>(
+fn sweeps<
+    D: SideBySide<N, Scalar = T>,
+    T: Lane + Float,
+    const N: usize,
+    const G: usize,
+    const H: usize,
+>(
     equations: &Equations<'_, D, T, N>,
     points: [&'static Nodes; H],
     (first, first_by): (&Stages<T, N, G>, &Scaled<T, G>),
@@ -298,10 +335,12 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
     for g in 0..all {
         let elapsed = Wide::<T>::known(points[g]) * h;
         for i in 0..N {
-            straight[g][i] = Wide::splat(equations.from.q.high[i]) + elapsed * Wide::splat(equations.from.v.high[i]);
+            straight[g][i] = Wide::splat(equations.from.q.high[i])
+                + elapsed * Wide::splat(equations.from.v.high[i]);
         }
         if 0 < g {
-            // The last of the points between the nodes is just before the end, at which a motion may have a kink.
+            // The last of the points between the nodes is just before the end, at which a motion
+            // may have a kink.
             let end = equations.span.end;
             let last = if G < H && g + 1 == H && end.low() == 0.0 { Some(end) } else { None };
             let (t, inputs) = at_nodes(equations.dynamics, equations.span, points[g], last);
@@ -309,11 +348,19 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
         }
     }
     // In memory as vectors: the compiler would mix the lanes of different coordinates.
-    let lanes = (straight, equations.from.v.high.map(Wide::splat), equations.weights.map(Wide::splat));
+    let lanes =
+        (straight, equations.from.v.high.map(Wide::splat), equations.weights.map(Wide::splat));
     let (straight, v0, weights) = black_box(&lanes);
     let blind = if equations.guessed { 1 } else { 2 };
     let number = T::from_f64;
-    let mut progress = Progress { sweeps: 0, vectors: 0, change: number(0.0), done: false, spare: false, complete: false };
+    let mut progress = Progress {
+        sweeps: 0,
+        vectors: 0,
+        change: number(0.0),
+        done: false,
+        spare: false,
+        complete: false,
+    };
     let (mut values, mut by) = (first, first_by);
     let groups_of = |closing| if closing || G == H { H } else { G };
     let (mut groups, mut near, mut was_near) = (groups_of(false), false, false);
@@ -329,7 +376,8 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
             }
             let (t, inputs, at_time) = &known[g];
             let at_position = system.at_position(prepared, at_time, *t, &q, inputs);
-            let new = system.accelerations_staged(prepared, at_time, &at_position, *t, &q, &v, inputs);
+            let new =
+                system.accelerations_staged(prepared, at_time, &at_position, *t, &q, &v, inputs);
             if g < G {
                 for i in 0..N {
                     let change = (new[i] - a[g][i]) * weights[i];
@@ -343,19 +391,27 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
         progress.sweeps += 1;
         progress.vectors += groups as u32;
         progress.change = change;
-        // Convergence is taken to be linear: the next change is to this one as this one to the one before. NaN fails the comparisons.
+        // Convergence is taken to be linear: the next change is to this one as this one to the one
+        // before. NaN fails the comparisons.
         let (is_known, next) = (blind < progress.sweeps, change * change);
         let shrinks = !is_known || change < earlier;
         let is_last = !equations.closing || groups == H;
         progress.complete = is_last;
-        let enough = is_known && next <= number(NEGLIGIBLE) * earlier && (!equations.closing || change <= number(LAST_CHANGE));
-        if equations.least <= progress.sweeps && is_last && (enough || !shrinks || equations.most <= progress.sweeps) {
+        let enough = is_known
+            && next <= number(NEGLIGIBLE) * earlier
+            && (!equations.closing || change <= number(LAST_CHANGE));
+        if equations.least <= progress.sweeps
+            && is_last
+            && (enough || !shrinks || equations.most <= progress.sweeps)
+        {
             progress.done = enough;
             progress.spare = was_near;
             return progress;
         }
         // A change of nothing may be followed by one of rounding.
-        let stays = shrinks || change <= number(16.0) * earlier || equations.closing && change <= number(LAST_CHANGE);
+        let stays = shrinks
+            || change <= number(16.0) * earlier
+            || equations.closing && change <= number(LAST_CHANGE);
         if progress.sweeps < equations.least && !stays {
             return progress;
         }
@@ -364,7 +420,9 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
         if equations.closing {
             // Whether the closing sweep could have come before this one.
             (near, was_near) = (near || is_near, near);
-            if equations.least <= progress.sweeps + 1 && (near || !shrinks || equations.most <= progress.sweeps + 1) {
+            if equations.least <= progress.sweeps + 1
+                && (near || !shrinks || equations.most <= progress.sweeps + 1)
+            {
                 groups = groups_of(true);
             }
         } else {
@@ -377,8 +435,9 @@ fn sweeps<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize, const G
 
 /// Σ value_j column_j for each coordinate and each set of columns.
 ///
-/// The values have to be in memory, from where each goes to all lanes at once, and `half`, which is `S / 2`, must not be known to the compiler: it
-/// would write out the loop, and then gather what stands side by side.
+/// The values have to be in memory, from where each goes to all lanes at once, and `half`, which is
+/// `S / 2`, must not be known to the compiler: it would write out the loop, and then gather what
+/// stands side by side.
 #[inline(always)]
 fn sums<T: Lane, K: Column<T>, const N: usize, const G: usize, const H: usize, const C: usize>(
     values: &Stages<T, N, G>,
@@ -393,7 +452,8 @@ fn sums<T: Lane, K: Column<T>, const N: usize, const G: usize, const H: usize, c
                 let j = j % (S / 2);
                 for g in 0..G {
                     for to in 0..H {
-                        let (x, y) = (columns[c][g][j][to].lanes(), columns[c][g][j + S / 2][to].lanes());
+                        let (x, y) =
+                            (columns[c][g][j][to].lanes(), columns[c][g][j + S / 2][to].lanes());
                         for i in 0..N {
                             even[c][to][i] += x * Wide::splat(values[g][i].0[j]);
                             odd[c][to][i] += y * Wide::splat(values[g][i].0[j + S / 2]);
@@ -403,12 +463,14 @@ fn sums<T: Lane, K: Column<T>, const N: usize, const G: usize, const H: usize, c
             }
         }
     } else {
-        // Of a loop over more coordinates the compiler would make vectors with a coordinate in each lane.
+        // Of a loop over more coordinates the compiler would make vectors with a coordinate in each
+        // lane.
         for i in 0..N {
             for j in 0..half {
                 let j = j % (S / 2);
                 for g in 0..G {
-                    let (x, y) = (Wide::splat(values[g][i].0[j]), Wide::splat(values[g][i].0[j + S / 2]));
+                    let (x, y) =
+                        (Wide::splat(values[g][i].0[j]), Wide::splat(values[g][i].0[j + S / 2]));
                     for c in 0..C {
                         for to in 0..H {
                             even[c][to][i] += columns[c][g][j][to].lanes() * x;
@@ -436,9 +498,14 @@ fn total<T: Lane>(values: &Wide<T>) -> T {
     ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]))
 }
 
-/// The accelerations at the nodes of a step from those of the step before: the values of the polynomial through them.
+/// The accelerations at the nodes of a step from those of the step before: the values of the
+/// polynomial through them.
 #[inline(always)]
-fn extrapolated<T: Lane, const N: usize>(before: &Stages<T, N, 1>, ratio: T, half: usize) -> Stages<T, N, 1> {
+fn extrapolated<T: Lane, const N: usize>(
+    before: &Stages<T, N, 1>,
+    ratio: T,
+    half: usize,
+) -> Stages<T, N, 1> {
     let one = Wide::splat(T::from_f64(1.0));
     let at = one + Wide::<T>::known(&EIGHT.nodes[0]) * Wide::splat(ratio);
     // Lagrange's polynomials: ∏ (x − c_k) over k < j and over k > j.

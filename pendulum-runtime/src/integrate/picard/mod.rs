@@ -1,4 +1,5 @@
-//! Collocation at Gauss's nodes, solved by Picard's iteration with all nodes of a step side by side in the lanes of a vector.
+//! Collocation at Gauss's nodes, solved by Picard's iteration with all nodes of a step side by side
+//! in the lanes of a vector.
 
 // What a step needs is inlined into what is compiled for several instruction sets.
 #![allow(clippy::inline_always)]
@@ -27,33 +28,40 @@ use kernel::{Ends, Onwards, Progress, Scaled, Stages};
 pub use side_by_side::SideBySide;
 use tableau::{EIGHT, S};
 
-/// Collocation with the accelerations at eight Gauss nodes, which are evaluated side by side in the lanes of a vector: order 16, adaptive.
+/// Collocation with the accelerations at eight Gauss nodes, which are evaluated side by side in the
+/// lanes of a vector: order 16, adaptive.
 ///
-/// A_i = a(t + c_i h, Q_i, V_i) with V_i = v₀ + h Σ a_ij A_j and Q_i = q₀ + c_i h v₀ + h² Σ (A²)_ij A_j is solved by Picard's iteration from the
-/// polynomial of the step before, in four to seven sweeps. A sweep evaluates the accelerations at all nodes at once, in the time of one or two
-/// evaluations on a machine with vectors of 64 or 32 bytes, and up to three times that with 16: this is the fastest method here for most
-/// systems and errors. It suits every system that `lagrangian!` has made and any motion, analytic or not.
+/// A_i = a(t + c_i h, Q_i, V_i) with V_i = v₀ + h Σ a_ij A_j and Q_i = q₀ + c_i h v₀ + h² Σ (A²)_ij
+/// A_j is solved by Picard's iteration from the polynomial of the step before, in four to seven
+/// sweeps. A sweep evaluates the accelerations at all nodes at once, in the time of one or two
+/// evaluations on a machine with vectors of 64 or 32 bytes, and up to three times that with 16:
+/// this is the fastest method here for most systems and errors. It suits every system that
+/// `lagrangian!` has made and any motion, analytic or not.
 ///
-/// The last sweep evaluates the accelerations at eight further points as well, which halve the gaps between the nodes. The error of a
-/// step in the velocities is estimated as h max(|α₁₆|, ε₇ min(1, ε₇/ε₆), ε₇/16), where α_k are the coefficients after Legendre of the
-/// accelerations at all these points and at the start, and ε_k is the larger of |α_2k| and |α_2k+1|. It falls with the power 17 of the
-/// step where the accelerations are smooth, and does not where they are not: at corners, jumps, stops and narrow kicks. Steps end where a
-/// motion is known to break.
+/// The last sweep evaluates the accelerations at eight further points as well, which halve the gaps
+/// between the nodes. The error of a step in the velocities is estimated as h max(|α₁₆|, ε₇ min(1,
+/// ε₇/ε₆), ε₇/16), where α_k are the coefficients after Legendre of the accelerations at all these
+/// points and at the start, and ε_k is the larger of |α_2k| and |α_2k+1|. It falls with the power
+/// 17 of the step where the accelerations are smooth, and does not where they are not: at corners,
+/// jumps, stops and narrow kicks. Steps end where a motion is known to break.
 ///
-/// An iteration has converged when its last change is below the tolerance, and the next one, if changes shrink as they did, below a fifth
-/// of it. The length of the steps stays the same as long as the error is within bounds; `rtol` may be as small as you like, and below about
-/// 1e-15 the error is that of rounding. The way to the next stop, break or end is
-/// divided into equal steps. Fixed steps are iterated down to rounding; while h·ω stays below about 1.5 that converges, and an iteration
-/// that does not is an [error](crate::error::Error::NoConvergence). A stiff spring or damper shortens the steps: take
-/// [`Rodas4`](super::Rodas4) or [`Gauss`](super::Gauss) there.
+/// An iteration has converged when its last change is below the tolerance, and the next one, if
+/// changes shrink as they did, below a fifth of it. The length of the steps stays the same as long
+/// as the error is within bounds; `rtol` may be as small as you like, and below about 1e-15 the
+/// error is that of rounding. The way to the next stop, break or end is divided into equal steps.
+/// Fixed steps are iterated down to rounding; while h·ω stays below about 1.5 that converges, and
+/// an iteration that does not is an [error](crate::error::Error::NoConvergence). A stiff spring or
+/// damper shortens the steps: take [`Rodas4`](super::Rodas4) or [`Gauss`](super::Gauss) there.
 ///
-/// The sum of the state is compensated; the coefficients have the digits of `f64`, so that over scalars of two words it is no better than over one.
-/// Dense output is the collocation polynomial at sixteen nodes, as exact as the ends; it costs about as much as the step.
+/// The sum of the state is compensated; the coefficients have the digits of `f64`, so that over
+/// scalars of two words it is no better than over one. Dense output is the collocation polynomial
+/// at sixteen nodes, as exact as the ends; it costs about as much as the step.
 ///
-/// Source: van der Houwen and Sommeijer (1990), Parallel iteration of high-order Runge–Kutta methods with stepsize control, J. Comput. Appl.
-/// Math. 29, 111, here for second-order equations; for the iteration over the whole step Clenshaw and Norton (1963), The solution of
-/// nonlinear ordinary differential equations in Chebyshev series, Comput. J. 6, 88; for the points between the nodes Kronrod (1965), Nodes
-/// and weights of quadrature formulas.
+/// Source: van der Houwen and Sommeijer (1990), Parallel iteration of high-order Runge–Kutta
+/// methods with stepsize control, J. Comput. Appl. Math. 29, 111, here for second-order equations;
+/// for the iteration over the whole step Clenshaw and Norton (1963), The solution of nonlinear
+/// ordinary differential equations in Chebyshev series, Comput. J. 6, 88; for the points between
+/// the nodes Kronrod (1965), Nodes and weights of quadrature formulas.
 ///
 /// ```
 /// # use pendulum_runtime::{integrate::*, prelude::*};
@@ -91,25 +99,28 @@ pub struct Room<T: Lane, P, const N: usize> {
     end: Option<(Time, [T; N], [T; N])>,
     h: f64,
     ends: Ends<T, N>,
-    /// The mean square of the accelerations of the last step accepted, and the accelerations at its end.
+    /// The mean square of the accelerations of the last step accepted, and the accelerations at its
+    /// end.
     square: [f64; N],
     start: [T; N],
     /// Whether the latter are known: fixed steps do not look there.
     seen: bool,
-    /// Sums for steps of the last length: of a sweep, of the first one after an equal step, of the points between the nodes, and of a sweep at
-    /// sixteen nodes.
+    /// Sums for steps of the last length: of a sweep, of the first one after an equal step, of the
+    /// points between the nodes, and of a sweep at sixteen nodes.
     scaled: [Scaled<T, 1>; 3],
     within: [Scaled<T, 2>; 2],
     /// The number of sweeps that is likely to suffice.
     sweeps: u32,
     /// How exactly the equations were solved.
     weights: [T; N],
-    /// Where the equations of the step were not solved: its end and the coordinate that is accelerated most.
+    /// Where the equations of the step were not solved: its end and the coordinate that is
+    /// accelerated most.
     unsolved: Option<(Time, usize)>,
 }
 
 /// The room for the dynamics `D`.
-type RoomOf<D, const N: usize> = Room<<D as Dynamics<N>>::Scalar, <<D as SideBySide<N>>::Wide as System<N>>::Prepared, N>;
+type RoomOf<D, const N: usize> =
+    Room<<D as Dynamics<N>>::Scalar, <<D as SideBySide<N>>::Wide as System<N>>::Prepared, N>;
 
 /// The errors allowed in a step: relative, and absolute of coordinates and velocities.
 type Tolerances<const N: usize> = (f64, ([f64; N], [f64; N]));
@@ -126,18 +137,25 @@ fn epsilon<T: Float>() -> f64 {
 }
 
 impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
-    /// The part of the error allowed that a unit of each acceleration makes in a step of length `h`: by way of the velocity or of the coordinate.
+    /// The part of the error allowed that a unit of each acceleration makes in a step of length
+    /// `h`: by way of the velocity or of the coordinate.
     ///
-    /// Nothing is asked for below the rounding of a step, and of a tolerance that is larger than what the accelerations do in it a twentieth
-    /// of that, or a thousandth of the tolerance: so that the motion stays one.
+    /// Nothing is asked for below the rounding of a step, and of a tolerance that is larger than
+    /// what the accelerations do in it a twentieth of that, or a thousandth of the tolerance: so
+    /// that the motion stays one.
     #[inline(always)]
     fn weigh(&mut self, h: f64, from: &Node<T, N>, (rtol, atol): &Tolerances<N>) {
         let rounding = 0.125 * epsilon::<T>();
-        let square = self.square.iter().fold(0.0, |largest, square| if largest < *square { *square } else { largest });
+        let square = self
+            .square
+            .iter()
+            .fold(0.0, |largest, square| if largest < *square { *square } else { largest });
         let gain = h * square.sqrt();
         let allowed = |tolerance: f64, change: f64, value: f64| {
-            let least = if 0.05 * change < 0.001 * tolerance { 0.001 * tolerance } else { 0.05 * change };
-            (if least < tolerance { least } else { tolerance }) + rounding * (value + epsilon::<T>())
+            let least =
+                if 0.05 * change < 0.001 * tolerance { 0.001 * tolerance } else { 0.05 * change };
+            (if least < tolerance { least } else { tolerance })
+                + rounding * (value + epsilon::<T>())
         };
         for i in 0..N {
             let (q, v) = (f64::abs(from.q.high[i].to_f64()), f64::abs(from.v.high[i].to_f64()));
@@ -168,12 +186,14 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
         rounding.is_finite() && progress.change.to_f64() <= rounding
     }
 
-    /// The error of the step over the one allowed: in each coordinate w max(|α₁₆|, ε₇ min(1, ε₇/ε₆), ε₇/16), where ε_k is the larger of |α_2k| and
+    /// The error of the step over the one allowed: in each coordinate w max(|α₁₆|, ε₇ min(1,
+    /// ε₇/ε₆), ε₇/16), where ε_k is the larger of |α_2k| and
     /// |α_2k+1|.
     ///
-    /// Gauss's nodes leave out what is beyond α₁₅. Where the coefficients fall, both of the first terms are as large as that; at a corner, a jump or
-    /// a narrow kick ε₇ is as large as ε₆, and a jump between the start and the first node stands in α₁₆ alone.
-    /// Rounding is no coefficient: 32 ε of the accelerations, or 512 ε where all are alike.
+    /// Gauss's nodes leave out what is beyond α₁₅. Where the coefficients fall, both of the first
+    /// terms are as large as that; at a corner, a jump or a narrow kick ε₇ is as large as ε₆, and a
+    /// jump between the start and the first node stands in α₁₆ alone. Rounding is no coefficient:
+    /// 32 ε of the accelerations, or 512 ε where all are alike.
     #[inline(always)]
     fn error(&self) -> f64 {
         let (mut error, epsilon) = (0.0, epsilon::<T>());
@@ -192,7 +212,10 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
                     error = part;
                 }
             }
-            if square <= 0.0 && error < AIM && self.a[self.last ^ 1][0][i].0.iter().any(|&a| a != T::from_f64(0.0)) {
+            if square <= 0.0
+                && error < AIM
+                && self.a[self.last ^ 1][0][i].0.iter().any(|&a| a != T::from_f64(0.0))
+            {
                 // Too small for squares, which is not zero: steps become no longer.
                 error = AIM;
             }
@@ -202,7 +225,8 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
 
     /// The coordinate with the largest accelerations, over those allowed.
     fn worst(&self) -> usize {
-        let part = |i: usize| self.weights[i].to_f64() * self.weights[i].to_f64() * self.ends.square[i];
+        let part =
+            |i: usize| self.weights[i].to_f64() * self.weights[i].to_f64() * self.ends.square[i];
         (1..N).fold(0, |worst, i| if part(worst) < part(i) { i } else { worst })
     }
 
@@ -217,7 +241,8 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
     }
 }
 
-/// A step over `span` that leads `to` its end; the room holds what it leaves behind until it is accepted.
+/// A step over `span` that leads `to` its end; the room holds what it leaves behind until it is
+/// accepted.
 #[inline]
 fn attempt<D: SideBySide<N>, const N: usize>(
     field: &mut Counted<'_, D>,
@@ -227,7 +252,10 @@ fn attempt<D: SideBySide<N>, const N: usize>(
     room: &mut RoomOf<D, N>,
     tolerances: Option<&Tolerances<N>>,
 ) {
-    let goes_on = room.end.as_ref().is_some_and(|(t, q, v)| *t == from.t && *q == from.q.high && *v == from.v.high);
+    let goes_on = room
+        .end
+        .as_ref()
+        .is_some_and(|(t, q, v)| *t == from.t && *q == from.q.high && *v == from.v.high);
     let ratio = if goes_on && span.h <= 2.0 * room.h { span.h / room.h } else { 0.0 };
     // Equal but for rounding: it leads only to the first sweep.
     let ratio = if f64::abs(ratio - 1.0) <= 1e-12 { 1.0 } else { ratio };
@@ -236,14 +264,25 @@ fn attempt<D: SideBySide<N>, const N: usize>(
         (room.a[room.last], room.sweeps) = ([a.map(Octet::splat)], 2);
         room.square = a.map(|a| a.to_f64() * a.to_f64());
     }
-    // Behind a kink the accelerations are not those before it. Kinks and stops have times of one word.
+    // Behind a kink the accelerations are not those before it. Kinks and stops have times of one
+    // word.
     let may_break = !<D::System as System<N>>::FACTS.autonomous && from.t.low() == 0.0;
     if tolerances.is_some() && (ratio == 0.0 || !room.seen || may_break) {
         (room.start, room.seen) = (from.start_acceleration(field), true);
     }
     let (most, adaptive) = if tolerances.is_some() { (ADAPTIVE, true) } else { (FIXED, false) };
     let tolerances = tolerances.unwrap_or(&(0.0, ([0.0; N], [0.0; N])));
-    simd::widest(Onwards { dynamics: field.dynamics, span, from, to, room, ratio, tolerances, most, adaptive });
+    simd::widest(Onwards {
+        dynamics: field.dynamics,
+        span,
+        from,
+        to,
+        room,
+        ratio,
+        tolerances,
+        most,
+        adaptive,
+    });
     field.evaluations += u64::from(room.ends.progress.vectors) * S as u64;
 }
 
@@ -305,10 +344,20 @@ impl<D: SideBySide<N>, const N: usize> Stepper<D, N> for Picard {
         dense::piece(field, span, from, to, room)
     }
 
-    fn fault(&self, dynamics: &D, span: &Span, from: &Node<D::Scalar, N>, room: &RoomOf<D, N>) -> Option<Error> {
+    fn fault(
+        &self,
+        dynamics: &D,
+        span: &Span,
+        from: &Node<D::Scalar, N>,
+        room: &RoomOf<D, N>,
+    ) -> Option<Error> {
         let facts = &<D::System as System<N>>::FACTS;
         if let Some((t, index)) = room.unsolved {
-            return Some(Error::NoConvergence { t: t.to_f64(), step: span.h, coordinate: coordinate(facts, index) });
+            return Some(Error::NoConvergence {
+                t: t.to_f64(),
+                step: span.h,
+                coordinate: coordinate(facts, index),
+            });
         }
         let mut watched = Watched::new(dynamics);
         let to = one_by_one(&mut watched, span, from);
@@ -322,9 +371,15 @@ impl<D: SideBySide<N>, const N: usize> Stepper<D, N> for Picard {
     }
 }
 
-/// The same step without lanes and with as many sweeps as an adaptive step may take: to see what a number that is not finite comes from.
-fn one_by_one<T: Float, const N: usize>(field: &mut impl Accelerations<T, N>, span: &Span, from: &Node<T, N>) -> Node<T, N> {
-    let (h, start) = (span.length::<T>(), field.at(span.start, Side::After, &from.q.high, &from.v.high));
+/// The same step without lanes and with as many sweeps as an adaptive step may take: to see what a
+/// number that is not finite comes from.
+fn one_by_one<T: Float, const N: usize>(
+    field: &mut impl Accelerations<T, N>,
+    span: &Span,
+    from: &Node<T, N>,
+) -> Node<T, N> {
+    let (h, start) =
+        (span.length::<T>(), field.at(span.start, Side::After, &from.q.high, &from.v.high));
     let sum = |columns: &dyn Fn(usize) -> f64, a: &[[T; N]; S], i: usize| {
         (0..S).fold(T::from_f64(0.0), |sum, j| sum + T::from_f64(columns(j)) * a[j][i])
     };
@@ -334,9 +389,13 @@ fn one_by_one<T: Float, const N: usize>(field: &mut impl Accelerations<T, N>, sp
         for (k, a) in a.iter_mut().enumerate() {
             let elapsed = h * T::from_f64(EIGHT.nodes[0][k]);
             let q = core::array::from_fn(|i| {
-                from.q.high[i] + elapsed * from.v.high[i] + h * h * sum(&|j| EIGHT.twice[0][j][0][k], &last, i)
+                from.q.high[i]
+                    + elapsed * from.v.high[i]
+                    + h * h * sum(&|j| EIGHT.twice[0][j][0][k], &last, i)
             });
-            let v = core::array::from_fn(|i| from.v.high[i] + h * sum(&|j| EIGHT.once[0][j][0][k], &last, i));
+            let v = core::array::from_fn(|i| {
+                from.v.high[i] + h * sum(&|j| EIGHT.once[0][j][0][k], &last, i)
+            });
             let (t, side) = span.at(EIGHT.nodes[0][k]);
             *a = field.at(t, side, &q, &v);
         }
@@ -369,9 +428,17 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
     }
 
     #[inline]
-    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, Picard, N>) -> Result<Span, Error> {
+    fn step(
+        &self,
+        memory: &mut Memory,
+        course: Course<'_, '_, D, Picard, N>,
+    ) -> Result<Span, Error> {
         let Course { method, field, from, to, stages: room, target, stats } = course;
-        let target = field.dynamics.next_break(from.t.to_f64()).filter(|time| *time < target).unwrap_or(target);
+        let target = field
+            .dynamics
+            .next_break(from.t.to_f64())
+            .filter(|time| *time < target)
+            .unwrap_or(target);
         let tolerances = self.tolerances::<D::Scalar>();
         if memory.h == 0.0 {
             if !from.start_acceleration(field).iter().all(|a| a.is_finite()) {
@@ -380,14 +447,22 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
             let left = -from.t.since(target);
             memory.h = self.limited(true, self.automatic_step(2 * S as u32, field, from, left));
         }
-        let mut wanted = memory.within_sight(self.limited(false, memory.h), field.dynamics, from.t, tableau::GAP)?;
+        let mut wanted = memory.within_sight(
+            self.limited(false, memory.h),
+            field.dynamics,
+            from.t,
+            tableau::GAP,
+        )?;
         let (mut retried, mut last_fault) = (false, None);
         loop {
             if wanted <= resolution_of::<D::Scalar>(from.t) && wanted < -from.t.since(target) {
                 let coordinate = coordinate(&<D::System as System<N>>::FACTS, room.worst());
-                let short = Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate };
+                let short =
+                    Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate };
                 let unresolved = self.unresolved(stats.accepted + stats.rejected == 0, wanted);
-                return Err(unresolved.or(last_fault.map(|fault| at(fault, from.t))).unwrap_or(short));
+                return Err(unresolved
+                    .or(last_fault.map(|fault| at(fault, from.t)))
+                    .unwrap_or(short));
             }
             let span = planned(memory, from.t, wanted, target);
             attempt(field, &span, from, to, room, Some(&tolerances));
@@ -422,10 +497,12 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
                     last_fault = None;
                     0.5
                 } else {
-                    // A function may have left its domain, and a shorter step may stay inside; but no step is short enough for an
-                    // input that is not finite.
+                    // A function may have left its domain, and a shorter step may stay inside; but
+                    // no step is short enough for an input that is not finite.
                     last_fault = method.fault(field.dynamics, &span, from, room);
-                    if let Some(input @ Error::NotFinite { what: Quantity::Input { .. }, .. }) = last_fault {
+                    if let Some(input @ Error::NotFinite { what: Quantity::Input { .. }, .. }) =
+                        last_fault
+                    {
                         return Err(input);
                     }
                     0.1
@@ -434,14 +511,20 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
     }
 }
 
-/// The next of equal steps to `target`, which are about as long as `wanted`: a step goes on best as long as the one before.
+/// The next of equal steps to `target`, which are about as long as `wanted`: a step goes on best as
+/// long as the one before.
 #[inline]
 fn planned(plan: &mut Memory, t: Time, wanted: f64, target: f64) -> Span {
     let left = -t.since(target);
-    let goes_on = |plan: &Memory| f64::abs(left - plan.left as f64 * plan.equal) <= 1e-9 * plan.equal;
+    let goes_on =
+        |plan: &Memory| f64::abs(left - plan.left as f64 * plan.equal) <= 1e-9 * plan.equal;
     if plan.left == 0 || plan.target != target || !goes_on(plan) {
         let count = f64::ceil(left / wanted - 0.01);
-        let (count, equal) = if count < 1e9 { (f64::max(count, 1.0), left / f64::max(count, 1.0)) } else { (1e9, wanted) };
+        let (count, equal) = if count < 1e9 {
+            (f64::max(count, 1.0), left / f64::max(count, 1.0))
+        } else {
+            (1e9, wanted)
+        };
         (plan.left, plan.equal, plan.target) = (count as u64, equal, target);
     }
     if plan.left == 1 { Span::to(t, target) } else { Span::by(t, plan.equal) }
@@ -449,13 +532,16 @@ fn planned(plan: &mut Memory, t: Time, wanted: f64, target: f64) -> Span {
 
 /// The factor by which a step would be longer whose error is the one aimed at.
 fn scaled(error: f64) -> f64 {
-    // Where accelerations do not have all derivatives the power is another, but then no power is right.
+    // Where accelerations do not have all derivatives the power is another, but then no power is
+    // right.
     power(1023.0 + (log2(AIM) - log2(error)) / (2 * S - 1) as f64)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{AdaptiveStep, Control, Counted, Course, Memory, Node, Picard, Room, Stepper, planned};
+    use super::{
+        AdaptiveStep, Control, Counted, Course, Memory, Node, Picard, Room, Stepper, planned,
+    };
     use crate::integrate::solution::Stats;
     use crate::integrate::tests::systems::Kepler;
     use crate::real::Real;
@@ -471,7 +557,16 @@ mod tests {
 
         fn at_position(&self, (): &(), (): &(), _: T, _: &[T; 2], (): &()) {}
 
-        fn accelerations_staged(&self, (): &(), (): &(), (): &(), t: T, q: &[T; 2], v: &[T; 2], (): &()) -> [T; 2] {
+        fn accelerations_staged(
+            &self,
+            (): &(),
+            (): &(),
+            (): &(),
+            t: T,
+            q: &[T; 2],
+            v: &[T; 2],
+            (): &(),
+        ) -> [T; 2] {
             self.accelerations(t, q, v, &())
         }
     }
@@ -495,7 +590,8 @@ mod tests {
 
         /// Takes a step, the first attempt of the length `h`; the length of the one accepted.
         fn step(&mut self, h: f64) -> f64 {
-            let (mut field, mut stats, mut to) = (Counted::new(&PLANET), Stats::new("Picard"), self.node);
+            let (mut field, mut stats, mut to) =
+                (Counted::new(&PLANET), Stats::new("Picard"), self.node);
             (self.memory.h, self.memory.left) = (h, 0);
             let course = Course {
                 method: &Picard,
@@ -514,7 +610,10 @@ mod tests {
         /// The state and what the next step will see, with every bit.
         fn bits(&self) -> String {
             let Room { a, last, end, h, square, start, weights, ends, .. } = &self.room;
-            format!("{:?} {:?} {end:?} {h} {square:?} {start:?} {weights:?} {}", self.node, a[*last], ends.error)
+            format!(
+                "{:?} {:?} {end:?} {h} {square:?} {start:?} {weights:?} {}",
+                self.node, a[*last], ends.error
+            )
         }
     }
 
@@ -559,7 +658,10 @@ mod tests {
         assert_eq!(lengths(1.0, 0.0, 0.3), [0.3]);
         let many = lengths(0.013, 0.1, 10.1);
         assert_eq!(many.len(), 770);
-        assert!(many.iter().all(|h| (h * 77.0 - 1.0).abs() < 1e-12) && many[..769].iter().all(|h| *h == many[0]));
+        assert!(
+            many.iter().all(|h| (h * 77.0 - 1.0).abs() < 1e-12)
+                && many[..769].iter().all(|h| *h == many[0])
+        );
     }
 
     #[test]

@@ -4,12 +4,15 @@
 
 use crate::motion::{Motion, Orders, PerhapsAnalytic, Sample, Side, orders};
 use crate::real::{Float, Lane, Octet, Real};
-use crate::system::{Driven, Dynamics, Input, NoInputs, Prepared, Purpose, Samples, Staged, System};
+use crate::system::{
+    Driven, Dynamics, Input, NoInputs, Prepared, Purpose, Samples, Staged, System,
+};
 use crate::time::Time;
 
 use super::tableau::S;
 
-/// Dynamics of a system that `lagrangian!` has made: the accelerations at eight times can be computed side by side.
+/// Dynamics of a system that `lagrangian!` has made: the accelerations at eight times can be
+/// computed side by side.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be evaluated at several times at once",
     note = "`Picard` takes systems that `lagrangian!` has made; for others use `Dop853`"
@@ -23,10 +26,11 @@ pub trait SideBySide<const N: usize>: Dynamics<N, Scalar: Lane + Float> {
     #[doc(hidden)]
     fn widened(&self) -> Self::Wide;
 
-    /// The samples of all driven inputs at eight times without a kink among them; in the last lane those before a kink at
-    /// `last`, if it is given.
+    /// The samples of all driven inputs at eight times without a kink among them; in the last lane
+    /// those before a kink at `last`, if it is given.
     #[doc(hidden)]
-    fn inputs_at(&self, times: &[Time; 8], last: Option<Time>) -> <Self::Wide as System<N>>::Inputs;
+    fn inputs_at(&self, times: &[Time; 8], last: Option<Time>)
+    -> <Self::Wide as System<N>>::Inputs;
 
     /// The first time after `t` at which a motion is known to stop having all derivatives.
     #[doc(hidden)]
@@ -80,7 +84,9 @@ where
     }
 }
 
-impl<D: SideBySide<N>, const N: usize> SideBySide<N> for Prepared<'_, D, <D::System as System<N>>::Prepared> {
+impl<D: SideBySide<N>, const N: usize> SideBySide<N>
+    for Prepared<'_, D, <D::System as System<N>>::Prepared>
+{
     type Wide = D::Wide;
 
     #[inline(always)]
@@ -105,8 +111,8 @@ pub trait MotionsSideBySide<Inputs, T>: crate::motion::Motions<Inputs> {
     /// One sample for each motion, with a time in each lane.
     type Wide: Samples;
 
-    /// The samples at `times`, with the derivatives that each motion is asked for; in the last lane those before a kink at
-    /// `last`, if it is given.
+    /// The samples at `times`, with the derivatives that each motion is asked for; in the last lane
+    /// those before a kink at `last`, if it is given.
     fn sample_all(&self, times: &[Time; 8], last: Option<Time>, inputs: &[Input]) -> Self::Wide;
 }
 

@@ -40,8 +40,9 @@ pub(super) static SIXTEEN: Collocation<2> = collocation(SIXTEEN_NODES);
 
 /// Points between the nodes of a step, where the closing sweeps look at the accelerations too.
 ///
-/// They halve the gaps between neighbours: the points that Kronrod adds to the eight nodes, but for the first one, whose place the
-/// start of the step takes, and the last one, which is moved to the end.
+/// They halve the gaps between neighbours: the points that Kronrod adds to the eight nodes, but for
+/// the first one, whose place the start of the step takes, and the last one, which is moved to the
+/// end.
 pub(super) static BETWEEN: Between = between();
 
 /// The coefficients of the points between the nodes.
@@ -50,12 +51,14 @@ pub(super) static BETWEEN: Between = between();
 pub(super) struct Between {
     /// The points on [0, 1].
     pub(super) points: [Nodes; 1],
-    /// The integrals from 0 to the points, and the integrals of the polynomials through those to the nodes.
+    /// The integrals from 0 to the points, and the integrals of the polynomials through those to
+    /// the nodes.
     pub(super) once: Columns<1, 1>,
     pub(super) twice: Columns<1, 1>,
-    /// From the values at the nodes, the integral over the step and the integral of the integral; from those at nodes and points, the
-    /// coefficients α₁₅, α₁₄, α₁₃, α₁₂ of the polynomial through all sixteen, after Legendre, and α₁₆ of the one through these and zero at
-    /// the start; the last lane is zero.
+    /// From the values at the nodes, the integral over the step and the integral of the integral;
+    /// from those at nodes and points, the coefficients α₁₅, α₁₄, α₁₃, α₁₂ of the polynomial
+    /// through all sixteen, after Legendre, and α₁₆ of the one through these and zero at the start;
+    /// the last lane is zero.
     pub(super) ends: Columns<2, 1>,
     /// The part of the value at the start in α₁₆.
     pub(super) start: f64,
@@ -63,7 +66,13 @@ pub(super) struct Between {
 
 const fn between() -> Between {
     let zero = [[[[0.0; S]; 1]; S]; 1];
-    let mut between = Between { points: [POINTS], once: zero, twice: zero, ends: [[[[0.0; S]; 1]; S]; 2], start: 0.0 };
+    let mut between = Between {
+        points: [POINTS],
+        once: zero,
+        twice: zero,
+        ends: [[[[0.0; S]; 1]; S]; 2],
+        start: 0.0,
+    };
     let eight = collocation(EIGHT_NODES);
     let mut j = 0;
     while j < S {
@@ -94,8 +103,8 @@ const fn between() -> Between {
     between
 }
 
-/// The part of value j, at node, point or start, in the coefficient of P₁₆ of the polynomial through all seventeen: its leading coefficient,
-/// 1/∏ (x_j − x_i), over that of P₁₆, ∏ (4k − 2)/k.
+/// The part of value j, at node, point or start, in the coefficient of P₁₆ of the polynomial
+/// through all seventeen: its leading coefficient, 1/∏ (x_j − x_i), over that of P₁₆, ∏ (4k − 2)/k.
 const fn last_coefficient(j: usize) -> f64 {
     let (mut part, mut i) = (1.0, 0);
     while i <= 2 * S {
@@ -112,8 +121,8 @@ const fn last_coefficient(j: usize) -> f64 {
     part
 }
 
-/// The part of the value at node or point j in the coefficient of P_k of the polynomial through all sixteen, by Gauss's rule with as
-/// many nodes.
+/// The part of the value at node or point j in the coefficient of P_k of the polynomial through all
+/// sixteen, by Gauss's rule with as many nodes.
 const fn coefficient_of_all(k: usize, j: usize) -> f64 {
     let (nodes, weights) = SIXTEEN_NODES;
     let (mut sum, mut m) = (0.0, 0);
@@ -143,8 +152,8 @@ const fn node_or_point(j: usize) -> f64 {
     }
 }
 
-/// The zeros of Stieltjes's polynomial of degree 9 but for the first and the last (Kronrod 1965), and 1 − 2⁻⁵²: so near the end that nothing lies
-/// between, and before a kink at the end.
+/// The zeros of Stieltjes's polynomial of degree 9 but for the first and the last (Kronrod 1965),
+/// and 1 − 2⁻⁵²: so near the end that nothing lies between, and before a kink at the end.
 const POINTS: Nodes = [
     0.052939546576271789,
     0.163822964527420661,
@@ -201,7 +210,8 @@ const fn collocation<const G: usize>((nodes, weights): ([Nodes; G], [Nodes; G]))
         }
         // The nodes are symmetric: 1 − c_j is one of them.
         let mirrored = nodes[G - 1 - g][S - 1 - lane];
-        tableau.ends[g][lane][0] = [weights[g][lane], weights[g][lane] * mirrored, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        tableau.ends[g][lane][0] =
+            [weights[g][lane], weights[g][lane] * mirrored, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         j += 1;
     }
     tableau.twice = product(&tableau.once, &tableau.once);
@@ -220,7 +230,8 @@ const fn product<const G: usize>(second: &Columns<G, G>, first: &Columns<G, G>) 
         while i < all {
             let mut k = 0;
             while k < all {
-                product[j / S][j % S][i / S][i % S] += second[k / S][k % S][i / S][i % S] * first[j / S][j % S][k / S][k % S];
+                product[j / S][j % S][i / S][i % S] +=
+                    second[k / S][k % S][i / S][i % S] * first[j / S][j % S][k / S][k % S];
                 k += 1;
             }
             i += 1;
@@ -243,7 +254,11 @@ const fn legendre(k: usize, theta: f64) -> f64 {
 }
 
 /// What the value at node j adds to the coefficient of P_k: (2k + 1) b_j P_k(2 c_j − 1).
-const fn coefficient<const G: usize>((nodes, weights): &([Nodes; G], [Nodes; G]), k: usize, j: usize) -> f64 {
+const fn coefficient<const G: usize>(
+    (nodes, weights): &([Nodes; G], [Nodes; G]),
+    k: usize,
+    j: usize,
+) -> f64 {
     (2 * k + 1) as f64 * weights[j / S][j % S] * legendre(k, nodes[j / S][j % S])
 }
 
@@ -262,7 +277,8 @@ const fn integral<const G: usize>(rule: &([Nodes; G], [Nodes; G]), j: usize, the
     let (mut sum, mut k) = (0.0, S * G);
     while 1 < k {
         k -= 1;
-        sum += coefficient(rule, k, j) * (legendre(k + 1, theta) - legendre(k - 1, theta)) / (4 * k + 2) as f64;
+        sum += coefficient(rule, k, j) * (legendre(k + 1, theta) - legendre(k - 1, theta))
+            / (4 * k + 2) as f64;
     }
     sum + coefficient(rule, 0, j) * theta
 }
@@ -334,7 +350,10 @@ const SIXTEEN_NODES: ([Nodes; 2], [Nodes; 2]) = (
 
 #[cfg(test)]
 mod tests {
-    use super::{BETWEEN, Collocation, EIGHT, EIGHT_NODES, GAP, Nodes, REFINED, S, SIXTEEN, SIXTEEN_NODES, legendre};
+    use super::{
+        BETWEEN, Collocation, EIGHT, EIGHT_NODES, GAP, Nodes, REFINED, S, SIXTEEN, SIXTEEN_NODES,
+        legendre,
+    };
 
     /// What the columns make of the values of θᵖ at the nodes.
     fn sums<const G: usize, const W: usize, const H: usize>(
@@ -359,7 +378,11 @@ mod tests {
         for p in 0..8 * G as i32 {
             let degree = f64::from(p);
             for (i, c) in nodes.iter().enumerate() {
-                close(sums(&tableau.nodes, &tableau.once, p)[i], c.powi(p + 1) / (degree + 1.0), 4e-16);
+                close(
+                    sums(&tableau.nodes, &tableau.once, p)[i],
+                    c.powi(p + 1) / (degree + 1.0),
+                    4e-16,
+                );
                 // The integral is a polynomial through the nodes, unless its degree is too high.
                 if p + 1 < 8 * G as i32 {
                     let twice = c.powi(p + 2) / ((degree + 1.0) * (degree + 2.0));
@@ -370,11 +393,14 @@ mod tests {
                     let once = ((1.0 + c).powi(p + 1) - 1.0) / (degree + 1.0);
                     close(sums(&tableau.nodes, &tableau.once_ahead, p)[i], once, 1e-10);
                     if p < 7 {
-                        let twice = ((1.0 + c).powi(p + 2) - 1.0 - (degree + 2.0) * c) / ((degree + 1.0) * (degree + 2.0));
+                        let twice = ((1.0 + c).powi(p + 2) - 1.0 - (degree + 2.0) * c)
+                            / ((degree + 1.0) * (degree + 2.0));
                         close(sums(&tableau.nodes, &tableau.twice_ahead, p)[i], twice, 1e-10);
                     }
                 }
-                let series: f64 = (0..8 * G).map(|k| sums(&tableau.nodes, &tableau.legendre, p)[k] * legendre(k, *c)).sum();
+                let series: f64 = (0..8 * G)
+                    .map(|k| sums(&tableau.nodes, &tableau.legendre, p)[k] * legendre(k, *c))
+                    .sum();
                 close(series, c.powi(p), 1e-14);
             }
             let ends = sums(&tableau.nodes, &tableau.ends, p);
@@ -383,7 +409,8 @@ mod tests {
         }
         // Exact up to twice the degree (Gauss 1814).
         for p in 0..16 * G as i32 {
-            let sum: f64 = nodes.iter().zip(weights.as_flattened()).map(|(c, b)| b * c.powi(p)).sum();
+            let sum: f64 =
+                nodes.iter().zip(weights.as_flattened()).map(|(c, b)| b * c.powi(p)).sum();
             close(sum, 1.0 / (f64::from(p) + 1.0), 4e-16);
         }
     }
@@ -407,15 +434,21 @@ mod tests {
         }
         for p in 0..8 {
             let degree = f64::from(p);
-            let (once, twice) = (sums(&EIGHT.nodes, &BETWEEN.once, p), sums(&EIGHT.nodes, &BETWEEN.twice, p));
+            let (once, twice) =
+                (sums(&EIGHT.nodes, &BETWEEN.once, p), sums(&EIGHT.nodes, &BETWEEN.twice, p));
             for (k, c) in points.iter().enumerate() {
                 assert!((once[k] - c.powi(p + 1) / (degree + 1.0)).abs() < 4e-16);
-                assert!(p == 7 || (twice[k] - c.powi(p + 2) / ((degree + 1.0) * (degree + 2.0))).abs() < 4e-16);
+                assert!(
+                    p == 7
+                        || (twice[k] - c.powi(p + 2) / ((degree + 1.0) * (degree + 2.0))).abs()
+                            < 4e-16
+                );
             }
         }
     }
 
-    /// P_k has the coefficient 1 of itself and 0 of the others; the ends take nothing from the points between.
+    /// P_k has the coefficient 1 of itself and 0 of the others; the ends take nothing from the
+    /// points between.
     #[test]
     fn sixteen_values_give_the_last_coefficients() {
         for k in 0..17 {
@@ -440,7 +473,9 @@ mod tests {
     #[test]
     fn eight_nodes_become_sixteen() {
         for p in 0..8 {
-            for (value, c) in sums(&EIGHT.nodes, &REFINED, p).iter().zip(SIXTEEN.nodes.as_flattened()) {
+            for (value, c) in
+                sums(&EIGHT.nodes, &REFINED, p).iter().zip(SIXTEEN.nodes.as_flattened())
+            {
                 assert!((value - c.powi(p)).abs() < 1e-14);
             }
         }

@@ -1,13 +1,14 @@
 //! Errors at the end against published and high-precision digits.
 
 use super::systems::{
-    DoublePendulum, HenonHeiles, Kepler, MovingPendulum, Pendulum, SHAKEN, double_pendulum, henon_heiles, oscillator, pendulum,
-    shaken,
+    DoublePendulum, HenonHeiles, Kepler, MovingPendulum, Pendulum, SHAKEN, double_pendulum,
+    henon_heiles, oscillator, pendulum, shaken,
 };
 use super::{distance, fixed};
 use crate::integrate::method::Suits;
 use crate::integrate::{
-    Dop853, Dprkn8, Dprkn12, Leapfrog, Rk4, Solution, Srkn6b, Srkn11b, Srkn14a, Stats, SymplecticEuler, Tsit5, solve,
+    Dop853, Dprkn8, Dprkn12, Leapfrog, Rk4, Solution, Srkn6b, Srkn11b, Srkn14a, Stats,
+    SymplecticEuler, Tsit5, solve,
 };
 use crate::system::Driven;
 
@@ -40,17 +41,23 @@ fn chaotic_error(method: impl Suits<DoublePendulum<f64>, 2>, steps: u64) -> f64 
     distance(&end.q, &end.v, &CHAOTIC)
 }
 
-/// Asserts that an error is at most twice the published one; much smaller is suspicious, except by luck of a sign change.
+/// Asserts that an error is at most twice the published one; much smaller is suspicious, except by
+/// luck of a sign change.
 fn assert_near(error: f64, published: f64) {
-    assert!(0.4 * published < error && error < 2.0 * published, "{error:e} instead of {published:e}");
+    assert!(
+        0.4 * published < error && error < 2.0 * published,
+        "{error:e} instead of {published:e}"
+    );
 }
 
 #[test]
 fn splitting_methods_on_the_pendulum() {
     // Steps for 2400, 4800 and 19200 evaluations.
-    for (evaluations, b6, b11, a14) in
-        [(2400, 9.5e-7, 2.0e-7, 3.5e-9), (4800, 6.8e-8, 3.1e-9, 3.2e-10), (19200, 2.8e-10, 7.5e-13, 7.8e-14)]
-    {
+    for (evaluations, b6, b11, a14) in [
+        (2400, 9.5e-7, 2.0e-7, 3.5e-9),
+        (4800, 6.8e-8, 3.1e-9, 3.2e-10),
+        (19200, 2.8e-10, 7.5e-13, 7.8e-14),
+    ] {
         assert_near(pendulum_error(Srkn6b, evaluations / 6), b6);
         assert_near(pendulum_error(Srkn11b, evaluations / 11), b11);
         assert_near(pendulum_error(Srkn14a, evaluations / 14), a14);
@@ -66,7 +73,14 @@ fn leapfrog_on_the_pendulum() {
 
 #[test]
 fn rk4_on_the_chaotic_double_pendulum() {
-    for (steps, published) in [(100, 8.2e-2), (200, 3.8e-3), (400, 1.4e-4), (800, 5.6e-6), (1600, 2.5e-7), (6400, 6.8e-10)] {
+    for (steps, published) in [
+        (100, 8.2e-2),
+        (200, 3.8e-3),
+        (400, 1.4e-4),
+        (800, 5.6e-6),
+        (1600, 2.5e-7),
+        (6400, 6.8e-10),
+    ] {
         assert_near(chaotic_error(Rk4, steps), published);
     }
 }
@@ -77,25 +91,38 @@ fn symplectic_euler_on_the_double_pendulum_is_as_poor_as_said() {
     assert_near(chaotic_error(SymplecticEuler, 102_400), 0.057);
 }
 
-/// Asserts that no run takes more than twice the evaluations that were published for its error, between them interpolated.
+/// Asserts that no run takes more than twice the evaluations that were published for its error,
+/// between them interpolated.
 fn assert_economical(runs: impl Iterator<Item = (Stats, f64)>, published: &[(f64, f64)]) {
     let &(_, least) = published.last().unwrap();
     for (stats, error) in runs {
         // An error below all that were published may take what the least of them took.
         let error = if error < least { least } else { error };
         let within = published.windows(2).find(|pair| pair[1].1 <= error && error < pair[0].1);
-        let Some(&[(few, large), (many, small)]) = within else { panic!("{error:e} is beyond what was published, {stats}") };
+        let Some(&[(few, large), (many, small)]) = within else {
+            panic!("{error:e} is beyond what was published, {stats}")
+        };
         let fraction = (large / error).ln() / (large / small).ln();
         let expected = few * (many / few).powf(fraction);
-        assert!((stats.evaluations as f64) < 2.0 * expected, "{error:e} in {expected:.0} evaluations was published, {stats}");
+        assert!(
+            (stats.evaluations as f64) < 2.0 * expected,
+            "{error:e} in {expected:.0} evaluations was published, {stats}"
+        );
     }
 }
 
 #[test]
 fn adaptive_methods_on_the_chaotic_double_pendulum() {
     let system = double_pendulum();
-    let run = |tolerance| solve(&system, (0.0, 10.0), [2.0, 2.5], [0.0; 2]).method(Dop853).rtol(tolerance).atol(tolerance);
-    let measured = |solution: Solution<f64, 2>| (solution.stats, distance(&solution.end.q, &solution.end.v, &CHAOTIC));
+    let run = |tolerance| {
+        solve(&system, (0.0, 10.0), [2.0, 2.5], [0.0; 2])
+            .method(Dop853)
+            .rtol(tolerance)
+            .atol(tolerance)
+    };
+    let measured = |solution: Solution<f64, 2>| {
+        (solution.stats, distance(&solution.end.q, &solution.end.v, &CHAOTIC))
+    };
     let dop853 = [
         (373.0, 1.2e-2),
         (541.0, 1.5e-4),
@@ -107,16 +134,33 @@ fn adaptive_methods_on_the_chaotic_double_pendulum() {
         (5353.0, 3.2e-14),
     ];
     let tolerances = [1e-5, 1e-6, 1e-8, 1e-9, 1e-10, 1e-12, 1e-13, 3e-15];
-    assert_economical(tolerances.iter().map(|tolerance| measured(run(*tolerance).run().unwrap())), &dop853);
-    let tsit5 = [(235.0, 2e-2), (541.0, 2.2e-4), (1081.0, 2.1e-6), (2407.0, 2.0e-8), (5917.0, 1.8e-10), (14857.0, 2.5e-12)];
+    assert_economical(
+        tolerances.iter().map(|tolerance| measured(run(*tolerance).run().unwrap())),
+        &dop853,
+    );
+    let tsit5 = [
+        (235.0, 2e-2),
+        (541.0, 2.2e-4),
+        (1081.0, 2.1e-6),
+        (2407.0, 2.0e-8),
+        (5917.0, 1.8e-10),
+        (14857.0, 2.5e-12),
+    ];
     let tolerances = [1e-5, 1e-6, 1e-8, 1e-10, 1e-12];
-    assert_economical(tolerances.iter().map(|tolerance| measured(run(*tolerance).method(Tsit5).run().unwrap())), &tsit5);
+    assert_economical(
+        tolerances.iter().map(|tolerance| measured(run(*tolerance).method(Tsit5).run().unwrap())),
+        &tsit5,
+    );
 }
 
 #[test]
 fn the_regular_double_pendulum_to_rounding() {
-    let solution =
-        solve(&double_pendulum(), (0.0, 100.0), [0.5, -0.25], [0.0; 2]).method(Dop853).rtol(2.3e-15).atol(2.3e-15).run().unwrap();
+    let solution = solve(&double_pendulum(), (0.0, 100.0), [0.5, -0.25], [0.0; 2])
+        .method(Dop853)
+        .rtol(2.3e-15)
+        .atol(2.3e-15)
+        .run()
+        .unwrap();
     let error = distance(&solution.end.q, &solution.end.v, &REGULAR);
     assert!(error < 2e-13, "{error:e}, {}", solution.stats);
 }
@@ -124,7 +168,15 @@ fn the_regular_double_pendulum_to_rounding() {
 #[test]
 fn kepler_orbits_keep_the_tolerance() {
     let orbits = [
-        (0.1, [0.21988353520083966128, 0.94270768463430812852, -0.97876598410581765145766665, 0.32879779909620360826252537]),
+        (
+            0.1,
+            [
+                0.21988353520083966128,
+                0.94270768463430812852,
+                -0.97876598410581765145766665,
+                0.32879779909620360826252537,
+            ],
+        ),
         (
             0.5,
             [
@@ -145,8 +197,13 @@ fn kepler_orbits_keep_the_tolerance() {
         ),
     ];
     for (e, exact) in orbits {
-        let solution =
-            solve(&Kepler { mu: 1.0 }, (0.0, 20.0), [1.0 - e, 0.0], [0.0, ((1.0 + e) / (1.0_f64 - e)).sqrt()]).method(Dop853);
+        let solution = solve(
+            &Kepler { mu: 1.0 },
+            (0.0, 20.0),
+            [1.0 - e, 0.0],
+            [0.0, ((1.0 + e) / (1.0_f64 - e)).sqrt()],
+        )
+        .method(Dop853);
         let solution = solution.rtol(1e-12).atol(1e-12).run().unwrap();
         let error = distance(&solution.end.q, &solution.end.v, &exact);
         assert!(error < 1e-10, "e = {e}: {error:e}, {}", solution.stats);
@@ -195,7 +252,11 @@ fn a_shaken_pendulum_by_every_method() {
 #[test]
 fn single_precision_reaches_its_last_digits() {
     // 800 steps of Rk4; without compensated sums the error is 2.5e-4.
-    let solution = solve(&DoublePendulum { g: 1.0_f32 }, (0.0, 10.0), [2.0, 2.5], [0.0; 2]).method(Rk4).steps(800).run().unwrap();
+    let solution = solve(&DoublePendulum { g: 1.0_f32 }, (0.0, 10.0), [2.0, 2.5], [0.0; 2])
+        .method(Rk4)
+        .steps(800)
+        .run()
+        .unwrap();
     let error = distance(&solution.end.q.map(f64::from), &solution.end.v.map(f64::from), &CHAOTIC);
     assert!(error < 5e-6, "{error:e}");
 }
@@ -205,9 +266,22 @@ fn single_precision_with_step_control() {
     let pendulum = Pendulum { length: 1.0_f32, g: 1.0 };
     let exact = [-1.166160381932957676242545, -0.50236501011242526821132624];
     let solution = solve(&pendulum, (0.0, 10.0), [1.3], [0.0]).method(Dop853).run().unwrap();
-    assert!(distance(&solution.end.q.map(f64::from), &solution.end.v.map(f64::from), &exact) < 2e-4, "{}", solution.stats);
-    let solution = solve(&pendulum, (0.0, 10.0), [1.3], [0.0]).method(Tsit5).rtol(2e-6).atol(1e-6).run().unwrap();
-    assert!(distance(&solution.end.q.map(f64::from), &solution.end.v.map(f64::from), &exact) < 2e-4, "{}", solution.stats);
+    assert!(
+        distance(&solution.end.q.map(f64::from), &solution.end.v.map(f64::from), &exact) < 2e-4,
+        "{}",
+        solution.stats
+    );
+    let solution = solve(&pendulum, (0.0, 10.0), [1.3], [0.0])
+        .method(Tsit5)
+        .rtol(2e-6)
+        .atol(1e-6)
+        .run()
+        .unwrap();
+    assert!(
+        distance(&solution.end.q.map(f64::from), &solution.end.v.map(f64::from), &exact) < 2e-4,
+        "{}",
+        solution.stats
+    );
 }
 
 #[test]
@@ -222,7 +296,10 @@ fn each_tolerance_may_differ() {
     // Two unlike magnitudes: the small one keeps its own tolerance.
     let system = henon_heiles();
     let run = |small| {
-        solve(&system, (0.0, 3.0), [0.1, 1e-6], [0.0; 2]).method(Dop853).rtol(1e-4).atol_each([1e-4, small], [1e-4, small])
+        solve(&system, (0.0, 3.0), [0.1, 1e-6], [0.0; 2])
+            .method(Dop853)
+            .rtol(1e-4)
+            .atol_each([1e-4, small], [1e-4, small])
     };
     let coarse = run(1e-4).run().unwrap().stats.accepted;
     let fine = run(1e-13).run().unwrap().stats.accepted;
@@ -234,5 +311,10 @@ fn types_of_drives_and_systems_meet() {
     // The bound of `solve` is `Dynamics`: both an undriven system and a driven one are.
     let driven: Driven<MovingPendulum<f64>, _> = shaken();
     assert!(solve(&driven, (0.0, 1.0), [0.5], [0.0]).method(Dop853).run().is_ok());
-    assert!(solve(&HenonHeiles { lambda: 1.0 }, (0.0, 1.0), [0.1, 0.0], [0.0; 2]).method(Dop853).run().is_ok());
+    assert!(
+        solve(&HenonHeiles { lambda: 1.0 }, (0.0, 1.0), [0.1, 0.0], [0.0; 2])
+            .method(Dop853)
+            .run()
+            .is_ok()
+    );
 }

@@ -5,13 +5,22 @@ use crate::integrate::method::Suits;
 use crate::integrate::{FixedStep, Integrator, Leapfrog, Rk4, Srkn6b, Srkn14a};
 use crate::system::{System, VelocityFree};
 
-/// The largest relative change of energy over `steps` steps of length `h`, looked at every tenth step.
-fn drift<S, const N: usize>(system: &S, q: [f64; N], v: [f64; N], method: impl Suits<S, N>, h: f64, steps: u64) -> f64
+/// The largest relative change of energy over `steps` steps of length `h`, looked at every tenth
+/// step.
+fn drift<S, const N: usize>(
+    system: &S,
+    q: [f64; N],
+    v: [f64; N],
+    method: impl Suits<S, N>,
+    h: f64,
+    steps: u64,
+) -> f64
 where
     S: VelocityFree<N> + System<N, Scalar = f64, Inputs = ()>,
 {
     let start = system.energy(0.0, &q, &v, &());
-    let mut integrator = Integrator::new(system, method, 0.0, q, v).unwrap().control(FixedStep::new(h)).unwrap();
+    let mut integrator =
+        Integrator::new(system, method, 0.0, q, v).unwrap().control(FixedStep::new(h)).unwrap();
     let mut largest = 0.0_f64;
     for step in 0..steps {
         integrator.step().unwrap();
@@ -41,7 +50,10 @@ fn of_symplectic_methods_does_not_drift() {
 
 #[test]
 fn of_rk4_does() {
-    let (short, long) = (drift(&pendulum(), [1.3], [0.0], Rk4, 0.1, 2_000), drift(&pendulum(), [1.3], [0.0], Rk4, 0.1, 20_000));
+    let (short, long) = (
+        drift(&pendulum(), [1.3], [0.0], Rk4, 0.1, 2_000),
+        drift(&pendulum(), [1.3], [0.0], Rk4, 0.1, 20_000),
+    );
     assert!(5.0 * short < long, "{short:e} {long:e}");
 }
 

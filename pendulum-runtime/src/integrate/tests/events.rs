@@ -3,7 +3,8 @@
 use super::systems::{DoublePendulum, MovingPendulum, Pendulum, double_pendulum, pendulum};
 use crate::error::Error;
 use crate::integrate::{
-    Direction, Dop853, Event, FixedStep, Integrator, Leapfrog, Occurrence, Rk4, Srkn14a, Status, SymplecticEuler, Tsit5, solve,
+    Direction, Dop853, Event, FixedStep, Integrator, Leapfrog, Occurrence, Rk4, Srkn14a, Status,
+    SymplecticEuler, Tsit5, solve,
 };
 use crate::motion::Linear;
 use crate::real::{DoubleDouble, Float, Real};
@@ -20,7 +21,11 @@ fn times<T: Copy, const N: usize>(events: &[Occurrence<T, N>], event: usize) -> 
 fn assert_times(found: &[f64], expected: &[f64], within: f64) {
     assert_eq!(found.len(), expected.len(), "{found:?}");
     for (found, expected) in found.iter().zip(expected) {
-        assert!((found - expected).abs() <= within, "{found} instead of {expected}, off by {:e}", found - expected);
+        assert!(
+            (found - expected).abs() <= within,
+            "{found} instead of {expected}, off by {:e}",
+            found - expected
+        );
     }
 }
 
@@ -59,8 +64,13 @@ fn zeros_and_turns_of_the_pendulum_follow_its_period() {
     let quarters = |first: usize, step: usize| -> Vec<f64> {
         (first..).step_by(step).map(|k| k as f64 * PERIOD / 4.0).take_while(|t| *t < 50.0).collect()
     };
-    let solution =
-        solve(&pendulum(), (0.0, 50.0), [1.3], [0.0]).method(Dop853).rtol(1e-14).atol(1e-14).events(&events).run().unwrap();
+    let solution = solve(&pendulum(), (0.0, 50.0), [1.3], [0.0])
+        .method(Dop853)
+        .rtol(1e-14)
+        .atol(1e-14)
+        .events(&events)
+        .run()
+        .unwrap();
     assert_eq!(solution.status, Status::Completed);
     assert_times(&times(&solution.events, 0), &quarters(1, 2), 4e-14);
     assert_times(&times(&solution.events, 1), &quarters(3, 4), 4e-14);
@@ -94,15 +104,22 @@ fn every_method_finds_them() {
 fn several_in_one_step_come_in_order() {
     // One step over 3 seconds of free fall on a line of time: q = t.
     let [first, second, third] = [2.25, 0.75, 0.7501];
-    let f = move |_: f64, q: &[f64; 1], _: &[f64; 1]| (q[0] - first) * (q[0] - second) * (q[0] - third);
+    let f =
+        move |_: f64, q: &[f64; 1], _: &[f64; 1]| (q[0] - first) * (q[0] - second) * (q[0] - third);
     let g = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0] - 1.5;
     let h = |t: f64, _: &[f64; 1], _: &[f64; 1]| t - 0.75005;
     let events = [Event::new(&f), Event::new(&g), Event::new(&h).direction(Direction::Rising)];
     let free = Pendulum { length: 1.0, g: 0.0 };
-    let solution = solve(&free, (0.0, 3.0), [0.0], [1.0]).method(Rk4).steps(1).events(&events).run().unwrap();
-    let found: Vec<(usize, f64)> = solution.events.iter().map(|found| (found.event, found.state.t)).collect();
+    let solution =
+        solve(&free, (0.0, 3.0), [0.0], [1.0]).method(Rk4).steps(1).events(&events).run().unwrap();
+    let found: Vec<(usize, f64)> =
+        solution.events.iter().map(|found| (found.event, found.state.t)).collect();
     assert_eq!(found.iter().map(|found| found.0).collect::<Vec<_>>(), [0, 2, 0, 1, 0]);
-    assert_times(&found.iter().map(|found| found.1).collect::<Vec<_>>(), &[second, 0.75005, third, 1.5, first], 1e-12);
+    assert_times(
+        &found.iter().map(|found| found.1).collect::<Vec<_>>(),
+        &[second, 0.75005, third, 1.5, first],
+        1e-12,
+    );
     assert_eq!(solution.stats.accepted, 1);
 }
 
@@ -119,12 +136,16 @@ fn roots_that_only_touch_are_found() {
         Event::new(&cross).touching(0.0),
         Event::new(&miss).touching(1e-5),
     ];
-    let expected: Vec<f64> = (0..14).map(|k| f64::from(2 * k + 1) * PERIOD / 2.0).take_while(|t| *t < 50.0).collect();
+    let expected: Vec<f64> =
+        (0..14).map(|k| f64::from(2 * k + 1) * PERIOD / 2.0).take_while(|t| *t < 50.0).collect();
     let system = pendulum();
     // Steps of all lengths put the extremum at every place in a step, its ends included.
-    for step in
-        (1..60).map(|k| 0.02 * f64::from(k)).chain([PERIOD / 8.0, PERIOD / 32.0, PERIOD / 2.0 - 1e-5, PERIOD / 2.0 + 1e-5])
-    {
+    for step in (1..60).map(|k| 0.02 * f64::from(k)).chain([
+        PERIOD / 8.0,
+        PERIOD / 32.0,
+        PERIOD / 2.0 - 1e-5,
+        PERIOD / 2.0 + 1e-5,
+    ]) {
         let run = solve(&system, (0.0, 50.0), [1.3], [0.0])
             .method(Dop853)
             .max_step(step)
@@ -155,7 +176,13 @@ fn what_ends_at_an_event_goes_on_without_finding_it_again() {
     let system = pendulum();
     let (mut t, mut q, mut v) = (0.0, [1.3], [0.0]);
     for k in 1..=40 {
-        let solution = solve(&system, (t, 100.0), q, v).method(Dop853).rtol(1e-13).atol(1e-13).events(&events).run().unwrap();
+        let solution = solve(&system, (t, 100.0), q, v)
+            .method(Dop853)
+            .rtol(1e-13)
+            .atol(1e-13)
+            .events(&events)
+            .run()
+            .unwrap();
         assert_eq!(solution.status, Status::Event((k + 1) % 2));
         (t, q, v) = (solution.end.t, solution.end.q, solution.end.v);
         assert_times(&[t], &[k as f64 * PERIOD / 4.0], 1e-11);
@@ -176,8 +203,11 @@ fn a_pendulum_bounces_off_a_wall() {
     let events = [Event::new(&wall).terminal()];
     let system = pendulum();
     let mut integrator = Integrator::new(&system, Dop853, 0.0, [1.3], [0.0]).unwrap();
-    integrator =
-        integrator.control(crate::integrate::AdaptiveStep::new().rtol(1e-13).atol(1e-13)).unwrap().events(&events).unwrap();
+    integrator = integrator
+        .control(crate::integrate::AdaptiveStep::new().rtol(1e-13).atol(1e-13))
+        .unwrap()
+        .events(&events)
+        .unwrap();
     for k in 0..20 {
         let t = bounce(&mut integrator);
         assert_times(&[t], &[PERIOD * (0.25 + 0.5 * f64::from(k))], 1e-11);
@@ -204,7 +234,10 @@ fn an_integrator_stops_and_goes_on() {
     assert!(integrator.advance_to(0.0).is_err());
     assert_eq!((integrator.terminal_event(), integrator.occurrences().len()), (None, 0));
     integrator.advance_to(9.0).unwrap();
-    assert_eq!((integrator.t(), integrator.terminal_event(), integrator.occurrences().len()), (9.0, None, 0));
+    assert_eq!(
+        (integrator.t(), integrator.terminal_event(), integrator.occurrences().len()),
+        (9.0, None, 0)
+    );
 }
 
 #[test]
@@ -213,7 +246,10 @@ fn known_times_are_met_exactly() {
     let system = pendulum();
     let problem = || solve(&system, (0.1, 1.0), [1.3], [0.0]).method(Dop853).every_step();
     for events in [[Event::at(&when)], [Event::at(&when).terminal_after(2)]] {
-        for solution in [problem().events(&events).run(), problem().events(&events).method(Leapfrog).step(0.09).run()] {
+        for solution in [
+            problem().events(&events).run(),
+            problem().events(&events).method(Leapfrog).step(0.09).run(),
+        ] {
             let solution = solution.unwrap();
             assert_eq!(times(&solution.events, 0), when[1..]);
             assert!(when[1..].iter().all(|time| solution.t.contains(time)));
@@ -221,7 +257,11 @@ fn known_times_are_met_exactly() {
             assert_eq!((solution.end.t, *solution.t.last().unwrap()), (end, end));
         }
     }
-    let failure = solve(&system, (0.0, 1.0), [1.3], [0.0]).method(Dop853).events(&[Event::at(&[0.5, 0.4])]).run().unwrap_err();
+    let failure = solve(&system, (0.0, 1.0), [1.3], [0.0])
+        .method(Dop853)
+        .events(&[Event::at(&[0.5, 0.4])])
+        .run()
+        .unwrap_err();
     assert!(matches!(failure.error, Error::Times { name: "events", index: 1, .. }), "{failure}");
 }
 
@@ -230,9 +270,21 @@ fn output_ends_at_a_terminal_event() {
     let zero = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0];
     let events = [Event::new(&zero).terminal()];
     let system = pendulum();
-    let problem = || solve(&system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).rtol(1e-12).atol(1e-12).events(&events);
-    let plain =
-        solve(&system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).rtol(1e-12).atol(1e-12).every(0.125).dense().run().unwrap();
+    let problem = || {
+        solve(&system, (0.0, 10.0), [1.3], [0.0])
+            .method(Dop853)
+            .rtol(1e-12)
+            .atol(1e-12)
+            .events(&events)
+    };
+    let plain = solve(&system, (0.0, 10.0), [1.3], [0.0])
+        .method(Dop853)
+        .rtol(1e-12)
+        .atol(1e-12)
+        .every(0.125)
+        .dense()
+        .run()
+        .unwrap();
     let regular = problem().every(0.125).dense().run().unwrap();
     assert_eq!(regular.t.len(), 15);
     assert!(regular.t.iter().zip(&regular.q).all(|(t, q)| plain.at(*t).unwrap().q == *q));
@@ -250,8 +302,14 @@ fn events_change_no_step() {
     let zero = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0];
     let events = [Event::new(&zero)];
     let system = pendulum();
-    let plain = solve(&system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).every_step().run().unwrap();
-    let watched = solve(&system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).every_step().events(&events).run().unwrap();
+    let plain =
+        solve(&system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).every_step().run().unwrap();
+    let watched = solve(&system, (0.0, 10.0), [1.3], [0.0])
+        .method(Dop853)
+        .every_step()
+        .events(&events)
+        .run()
+        .unwrap();
     assert_eq!((plain.t, plain.q, plain.end), (watched.t, watched.q, watched.end));
     assert_eq!(plain.stats.evaluations + 3 * plain.stats.accepted + 1, watched.stats.evaluations);
 }
@@ -266,7 +324,12 @@ fn a_velocity_that_jumps_over_zero_is_an_event_at_the_kink() {
     let before = |t: f64, _: &[f64; 1], _: &[f64; 1]| t - 0.96875;
     for (step, count) in [(0.25, 1), (0.125, 1)] {
         let events = [Event::new(&turn), Event::new(&before)];
-        let solution = solve(&system, (0.0, 1.5), [0.0], [0.2]).method(Rk4).step(step).events(&events).run().unwrap();
+        let solution = solve(&system, (0.0, 1.5), [0.0], [0.2])
+            .method(Rk4)
+            .step(step)
+            .events(&events)
+            .run()
+            .unwrap();
         assert_eq!(times(&solution.events, 0), vec![1.0; count]);
         assert!(solution.events[1].state.v[0] < -0.5);
         // An event within the step before the kink ends before it, and the kink is still to come.
@@ -292,7 +355,8 @@ fn a_function_that_gives_no_number_is_an_error() {
     let fine = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0];
     let events = [Event::new(&fine), Event::new(&root)];
     let system = pendulum();
-    let failure = solve(&system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).events(&events).run().unwrap_err();
+    let failure =
+        solve(&system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).events(&events).run().unwrap_err();
     let Error::Event { t, event: 1 } = failure.error else { panic!("{failure}") };
     assert!(failure.to_string().contains("event 1"));
     assert_eq!(failure.partial.status, Status::Failed);
@@ -308,7 +372,11 @@ fn a_function_that_gives_no_number_is_an_error() {
     // The last state is the one before the step.
     assert!(failure.partial.end.t < t && 0.5 <= failure.partial.end.q[0]);
     let start = |_: f64, _: &[f64; 1], _: &[f64; 1]| f64::NAN;
-    let failure = solve(&system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).events(&[Event::new(&start)]).run().unwrap_err();
+    let failure = solve(&system, (0.0, 10.0), [1.3], [0.0])
+        .method(Dop853)
+        .events(&[Event::new(&start)])
+        .run()
+        .unwrap_err();
     assert_eq!(failure.error, Error::Event { t: 0.0, event: 0 });
     let poles = |_: f64, q: &[f64; 1], _: &[f64; 1]| 1.0 / q[0];
     let solution = solve(&system, (0.0, 5.0), [1.3], [0.0])
@@ -327,11 +395,17 @@ fn events_in_two_words() {
     let free = Pendulum { length: DoubleDouble::from(1.0), g: 0.0.into() };
     let third = DoubleDouble::ratio(1.0, 3.0);
     let f = move |_: DoubleDouble, q: &[DoubleDouble; 1], _: &[DoubleDouble; 1]| q[0] - third;
-    let solution =
-        solve(&free, (0.0, 1.0), [0.0.into()], [1.0.into()]).method(Rk4).steps(3).events(&[Event::new(&f)]).run().unwrap();
+    let solution = solve(&free, (0.0, 1.0), [0.0.into()], [1.0.into()])
+        .method(Rk4)
+        .steps(3)
+        .events(&[Event::new(&f)])
+        .run()
+        .unwrap();
     let found = solution.events[0];
     let time = DoubleDouble::sum(found.time.to_f64(), found.time.low());
-    assert!((time - third).abs().to_f64() < 1e-31 && (found.state.q[0] - third).abs().to_f64() < 1e-31);
+    assert!(
+        (time - third).abs().to_f64() < 1e-31 && (found.state.q[0] - third).abs().to_f64() < 1e-31
+    );
 }
 
 #[test]
@@ -348,7 +422,8 @@ fn a_loose_tolerance_finds_what_its_own_motion_does() {
         .unwrap();
     let g = |t: f64| solution.at(t).map(|state| f(t, &state.q, &state.v)).unwrap();
     let count = 300_000;
-    let signs: Vec<f64> = (0..=count).map(|k| g(30.0 * f64::from(k) / f64::from(count)).signum()).collect();
+    let signs: Vec<f64> =
+        (0..=count).map(|k| g(30.0 * f64::from(k) / f64::from(count)).signum()).collect();
     let changes = signs.windows(2).filter(|pair| pair[0] != pair[1]).count();
     assert_eq!(solution.events.len(), changes);
     for found in &solution.events {

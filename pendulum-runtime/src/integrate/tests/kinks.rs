@@ -28,7 +28,8 @@ const EXACT: f64 = -0.129608683467;
 
 fn error(method: impl Suits<MovingPendulum<f64>, 1>, steps_per_key: u32) -> f64 {
     let step = 1.0 / (24.0 * f64::from(steps_per_key));
-    let solution = solve(&keyed(), (0.0, 5.0), [0.3], [0.0]).method(method).step(step).run().unwrap();
+    let solution =
+        solve(&keyed(), (0.0, 5.0), [0.3], [0.0]).method(method).step(step).run().unwrap();
     assert_eq!(solution.stats.accepted, u64::from(120 * steps_per_key));
     assert_eq!(solution.stats.kinks, 120);
     (solution.end.q[0] - EXACT).abs()
@@ -50,13 +51,19 @@ fn aligned_steps_with_impulses() {
 
 #[test]
 fn leapfrog_looks_at_each_segment_once() {
-    let solution = solve(&keyed(), (0.0, 5.0), [0.3], [0.0]).method(Leapfrog).step(1.0 / 24.0).run().unwrap();
+    let solution =
+        solve(&keyed(), (0.0, 5.0), [0.3], [0.0]).method(Leapfrog).step(1.0 / 24.0).run().unwrap();
     assert_eq!(solution.stats.evaluations, 120);
 }
 
 #[test]
 fn adaptive_steps_land_on_kinks() {
-    let solution = solve(&keyed(), (0.0, 5.0), [0.3], [0.0]).method(Dop853).rtol(1e-10).atol(1e-10).run().unwrap();
+    let solution = solve(&keyed(), (0.0, 5.0), [0.3], [0.0])
+        .method(Dop853)
+        .rtol(1e-10)
+        .atol(1e-10)
+        .run()
+        .unwrap();
     assert!((solution.end.q[0] - EXACT).abs() < 1e-9, "{}", solution.stats);
     assert_eq!(solution.stats.kinks, 120);
     // One step a key is enough, and nothing is rejected once the step size is found.
@@ -67,9 +74,15 @@ fn adaptive_steps_land_on_kinks() {
 fn an_undriven_interval_is_not_divided() {
     let formula = |_| [[0.0; 2]; 3];
     let driven = |period| moving(formula, period);
-    let smooth = solve(&driven(f64::INFINITY), (0.0, 10.0), [1.3], [0.0]).method(Rk4).step(0.1).run().unwrap();
-    let kinked = solve(&driven(0.5), (0.0, 10.0), [1.3], [0.0]).method(Rk4).step(0.1).run().unwrap();
-    // A kink at which nothing jumps leaves the state, its low digits included; steps of a fifth of ½ are steps of 0.1.
+    let smooth = solve(&driven(f64::INFINITY), (0.0, 10.0), [1.3], [0.0])
+        .method(Rk4)
+        .step(0.1)
+        .run()
+        .unwrap();
+    let kinked =
+        solve(&driven(0.5), (0.0, 10.0), [1.3], [0.0]).method(Rk4).step(0.1).run().unwrap();
+    // A kink at which nothing jumps leaves the state, its low digits included; steps of a fifth of
+    // ½ are steps of 0.1.
     assert_eq!((kinked.stats.kinks, smooth.stats.kinks), (20, 0));
     assert!((smooth.end.q[0] - kinked.end.q[0]).abs() < 1e-15);
     assert_eq!(kinked.stats.evaluations, smooth.stats.evaluations);
@@ -90,7 +103,8 @@ fn cutting_at_kinks_does_not_shorten_later_steps() {
 fn the_shortest_cut_does_not_shorten_later_steps() {
     let system = pendulum();
     let run = |stops: &[f64]| {
-        let problem = solve(&system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).rtol(1e-9).atol(1e-9);
+        let problem =
+            solve(&system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).rtol(1e-9).atol(1e-9);
         let stats = problem.t_stops(stops).run().unwrap().stats;
         stats.accepted + stats.rejected
     };
@@ -110,10 +124,12 @@ fn momenta_are_equal_on_both_sides() {
     let kink = 3.0 / 24.0;
     integrator.advance_to(kink).unwrap();
     let solution = solve(&driven, (0.0, 1.0), [0.3], [0.0]).method(Dop853).dense().run().unwrap();
-    let (before, after) = (solution.at_side(kink, Side::Before).unwrap(), solution.at(kink).unwrap());
+    let (before, after) =
+        (solution.at_side(kink, Side::Before).unwrap(), solution.at(kink).unwrap());
     assert!((before.q[0] - after.q[0]).abs() < 1e-15);
     // Δθ̇ = −Δẋ cos θ / l.
-    let velocity = |side| driven.inputs(kink.into(), side, crate::system::Purpose::Momenta).0.velocity[0];
+    let velocity =
+        |side| driven.inputs(kink.into(), side, crate::system::Purpose::Momenta).0.velocity[0];
     let jump = velocity(Side::After) - velocity(Side::Before);
     assert!(1e-3 < jump.abs());
     assert!((after.v[0] - before.v[0] + jump * before.q[0].cos() / 0.5).abs() < 1e-14);
@@ -122,7 +138,12 @@ fn momenta_are_equal_on_both_sides() {
 
 #[test]
 fn every_step_records_both_sides() {
-    let solution = solve(&keyed(), (0.0, 0.25), [0.3], [0.0]).method(Srkn6b).step(1.0).every_step().run().unwrap();
+    let solution = solve(&keyed(), (0.0, 0.25), [0.3], [0.0])
+        .method(Srkn6b)
+        .step(1.0)
+        .every_step()
+        .run()
+        .unwrap();
     // Six segments of one step each: the start, and two states at each of six kinks.
     assert_eq!(solution.t.len(), 13);
     for pair in solution.t[1..].chunks(2) {
@@ -134,8 +155,15 @@ fn every_step_records_both_sides() {
 #[test]
 fn an_integration_continued_at_a_kink_is_the_same_integration() {
     let driven = keyed();
-    let whole = solve(&driven, (0.0, 2.0), [0.3], [0.0]).method(Srkn6b).step(1.0 / 24.0).run().unwrap().end;
-    let first = solve(&driven, (0.0, 1.0), [0.3], [0.0]).method(Srkn6b).step(1.0 / 24.0).run().unwrap().end;
-    let second = solve(&driven, (1.0, 2.0), first.q, first.v).method(Srkn6b).step(1.0 / 24.0).run().unwrap().end;
+    let whole =
+        solve(&driven, (0.0, 2.0), [0.3], [0.0]).method(Srkn6b).step(1.0 / 24.0).run().unwrap().end;
+    let first =
+        solve(&driven, (0.0, 1.0), [0.3], [0.0]).method(Srkn6b).step(1.0 / 24.0).run().unwrap().end;
+    let second = solve(&driven, (1.0, 2.0), first.q, first.v)
+        .method(Srkn6b)
+        .step(1.0 / 24.0)
+        .run()
+        .unwrap()
+        .end;
     assert!((whole.q[0] - second.q[0]).abs() < 1e-15 && (whole.v[0] - second.v[0]).abs() < 1e-14);
 }

@@ -20,7 +20,8 @@ use crate::system::Dynamics;
 fn distance<const N: usize>(q: &[f64; N], v: &[f64; N], exact: &[f64]) -> f64 {
     assert_eq!(exact.len(), 2 * N);
     let differences = q.iter().chain(v).zip(exact).map(|(value, exact)| (value - exact).abs());
-    differences.fold(0.0, |largest, difference| if difference <= largest { largest } else { difference })
+    differences
+        .fold(0.0, |largest, difference| if difference <= largest { largest } else { difference })
 }
 
 /// The state at `end` after equal steps from time 0.

@@ -1,18 +1,27 @@
 //! The order of convergence of each method, measured.
 
-use super::systems::{DoublePendulum, MovingPendulum, Pendulum, SHAKEN, double_pendulum, pendulum, shaken};
+use super::systems::{
+    DoublePendulum, MovingPendulum, Pendulum, SHAKEN, double_pendulum, pendulum, shaken,
+};
 use super::{distance, fixed};
 use crate::integrate::method::{Method, Suits};
-use crate::integrate::{Dop853, Dprkn8, Dprkn12, Leapfrog, Rk4, Srkn6b, Srkn11b, Srkn14a, SymplecticEuler, Tsit5, solve};
+use crate::integrate::{
+    Dop853, Dprkn8, Dprkn12, Leapfrog, Rk4, Srkn6b, Srkn11b, Srkn14a, SymplecticEuler, Tsit5, solve,
+};
 use crate::motion::Motion;
 use crate::system::Driven;
 
-/// Asserts that the error falls with the order of `M` over a threefold number of steps, within a sixth.
+/// Asserts that the error falls with the order of `M` over a threefold number of steps, within a
+/// sixth.
 fn assert_order<M: Method>(error: impl Fn(u64) -> f64, steps: u64) {
     let (coarse, fine) = (error(steps), error(3 * steps));
     let order = (coarse / fine).ln() / 3.0_f64.ln();
     let expected = f64::from(M::ORDER);
-    assert!((order - expected).abs() < expected / 6.0 + 0.1, "{}: order {order:.2} from {coarse:e} to {fine:e}", M::NAME);
+    assert!(
+        (order - expected).abs() < expected / 6.0 + 0.1,
+        "{}: order {order:.2} from {coarse:e} to {fine:e}",
+        M::NAME
+    );
 }
 
 /// The pendulum from 1.3 at t = 10.
@@ -93,14 +102,26 @@ fn with_velocities_in_the_accelerations() {
 #[test]
 fn of_dense_output() {
     fn measured<M: Suits<Pendulum<f64>, 1>>(method: M, steps: u64) -> (f64, f64) {
-        // The error beyond that of the method itself: a fine and a coarse run differ by both, so the states at the ends of the
-        // coarse steps are exact by construction.
-        let exact = solve(&pendulum(), (0.0, 10.0), [1.3], [0.0]).method(Dop853).rtol(1e-14).atol(1e-14).dense().run().unwrap();
+        // The error beyond that of the method itself: a fine and a coarse run differ by both, so
+        // the states at the ends of the coarse steps are exact by construction.
+        let exact = solve(&pendulum(), (0.0, 10.0), [1.3], [0.0])
+            .method(Dop853)
+            .rtol(1e-14)
+            .atol(1e-14)
+            .dense()
+            .run()
+            .unwrap();
         let (mut q, mut v) = (0.0_f64, 0.0_f64);
         for k in 0..steps {
-            let (start, end) = (10.0 * k as f64 / steps as f64, 10.0 * (k + 1) as f64 / steps as f64);
+            let (start, end) =
+                (10.0 * k as f64 / steps as f64, 10.0 * (k + 1) as f64 / steps as f64);
             let from = exact.at(start).unwrap();
-            let step = solve(&pendulum(), (start, end), from.q, from.v).method(method).steps(1).dense().run().unwrap();
+            let step = solve(&pendulum(), (start, end), from.q, from.v)
+                .method(method)
+                .steps(1)
+                .dense()
+                .run()
+                .unwrap();
             for part in 1..8 {
                 let t = start + (end - start) * f64::from(part) / 8.0;
                 let (state, truth) = (step.at(t).unwrap(), exact.at(t).unwrap());
@@ -117,7 +138,8 @@ fn of_dense_output() {
         assert!(expected - 0.3 < q, "{}: order {q:.2} of the coordinates", M::NAME);
         assert!(velocity_order - 0.3 < v, "{}: order {v:.2} of the velocities", M::NAME);
     }
-    // In one step a method of order p makes an error of order p + 1, which the dense output may share.
+    // In one step a method of order p makes an error of order p + 1, which the dense output may
+    // share.
     assert_dense(SymplecticEuler, 100, 1.0);
     assert_dense(Leapfrog, 100, 2.0);
     // The velocities are the derivative of a quintic that shares the error of the step.

@@ -2,7 +2,9 @@
 
 use super::systems::{MovingPendulum, moving, pendulum, shaken};
 use crate::error::Error;
-use crate::integrate::{AdaptiveStep, Dop853, FixedStep, Integrator, Leapfrog, Rk4, Srkn14a, solve};
+use crate::integrate::{
+    AdaptiveStep, Dop853, FixedStep, Integrator, Leapfrog, Rk4, Srkn14a, solve,
+};
 use crate::motion::{Function, Sample, Side};
 use crate::system::{Driven, Dynamics, Purpose};
 use crate::time::Time;
@@ -10,7 +12,10 @@ use crate::time::Time;
 #[test]
 fn steps_have_the_length_asked_for() {
     let pendulum = pendulum();
-    let mut integrator = Integrator::new(&pendulum, Leapfrog, 0.0, [1.3], [0.0]).unwrap().control(FixedStep::new(0.25)).unwrap();
+    let mut integrator = Integrator::new(&pendulum, Leapfrog, 0.0, [1.3], [0.0])
+        .unwrap()
+        .control(FixedStep::new(0.25))
+        .unwrap();
     for step in 1..=8 {
         integrator.step().unwrap();
         assert_eq!(integrator.t(), 0.25 * f64::from(step));
@@ -22,12 +27,16 @@ fn steps_have_the_length_asked_for() {
 #[test]
 fn advancing_ends_exactly_and_equals_solving() {
     let pendulum = pendulum();
-    let mut integrator = Integrator::new(&pendulum, Rk4, 0.0, [1.3], [0.0]).unwrap().control(FixedStep::new(0.01)).unwrap();
+    let mut integrator = Integrator::new(&pendulum, Rk4, 0.0, [1.3], [0.0])
+        .unwrap()
+        .control(FixedStep::new(0.01))
+        .unwrap();
     for frame in 1..=60 {
         integrator.advance_to(f64::from(frame) / 60.0).unwrap();
         assert_eq!(integrator.t(), f64::from(frame) / 60.0);
     }
-    let whole = solve(&pendulum, (0.0, 1.0), [1.3], [0.0]).method(Rk4).step(1.0 / 120.0).run().unwrap();
+    let whole =
+        solve(&pendulum, (0.0, 1.0), [1.3], [0.0]).method(Rk4).step(1.0 / 120.0).run().unwrap();
     assert!((integrator.q()[0] - whole.end.q[0]).abs() < 1e-14);
     integrator.advance_to(1.0).unwrap();
     assert_eq!(integrator.stats().accepted, 120);
@@ -50,13 +59,18 @@ fn advancing_to_where_it_is_takes_no_step() {
 fn adaptive_steps_survive_being_cut_into_frames() {
     let shaken = shaken();
     let control = AdaptiveStep::new().rtol(1e-10).atol(1e-10);
-    let mut integrator = Integrator::new(&shaken, Dop853, 0.0, [0.5], [0.0]).unwrap().control(control).unwrap();
+    let mut integrator =
+        Integrator::new(&shaken, Dop853, 0.0, [0.5], [0.0]).unwrap().control(control).unwrap();
     for frame in 1..=600 {
         integrator.advance_to(f64::from(frame) / 60.0).unwrap();
     }
     assert!((integrator.q()[0] - super::systems::SHAKEN[0]).abs() < 1e-9);
     // The length of a frame is shorter than what the error allows, and stays so.
-    assert!(integrator.stats().accepted < 610 && integrator.stats().rejected < 5, "{}", integrator.stats());
+    assert!(
+        integrator.stats().accepted < 610 && integrator.stats().rejected < 5,
+        "{}",
+        integrator.stats()
+    );
 }
 
 #[test]
@@ -74,7 +88,10 @@ fn the_last_step_is_known_within() {
 #[test]
 fn a_reset_state_goes_on_from_there() {
     let pendulum = pendulum();
-    let mut integrator = Integrator::new(&pendulum, Rk4, 0.0, [1.3], [0.0]).unwrap().control(FixedStep::new(0.1)).unwrap();
+    let mut integrator = Integrator::new(&pendulum, Rk4, 0.0, [1.3], [0.0])
+        .unwrap()
+        .control(FixedStep::new(0.1))
+        .unwrap();
     integrator.advance_to(5.0).unwrap();
     integrator.reset(0.0, [1.3], [0.0]).unwrap();
     integrator.advance_to(1.0).unwrap();
@@ -87,7 +104,10 @@ fn a_reset_state_goes_on_from_there() {
 #[test]
 fn a_reset_ends_the_plan_of_equal_steps() {
     let driven = moving(|_| [[0.0; 2]; 3], 1.0);
-    let mut integrator = Integrator::new(&driven, Rk4, 0.0, [1.3], [0.0]).unwrap().control(FixedStep::new(0.1)).unwrap();
+    let mut integrator = Integrator::new(&driven, Rk4, 0.0, [1.3], [0.0])
+        .unwrap()
+        .control(FixedStep::new(0.1))
+        .unwrap();
     for _ in 0..3 {
         integrator.step().unwrap();
     }
@@ -113,7 +133,10 @@ fn going_back_is_refused_and_changes_nothing() {
 fn a_failed_step_leaves_the_state_before_it() {
     let formula = |t: f64| [[0.0; 2], [0.0; 2], [if t < 1.0 { 0.0 } else { f64::NAN }, 0.0]];
     let driven = moving(formula, f64::INFINITY);
-    let mut integrator = Integrator::new(&driven, Leapfrog, 0.0, [1.3], [0.0]).unwrap().control(FixedStep::new(0.25)).unwrap();
+    let mut integrator = Integrator::new(&driven, Leapfrog, 0.0, [1.3], [0.0])
+        .unwrap()
+        .control(FixedStep::new(0.25))
+        .unwrap();
     assert!(matches!(integrator.advance_to(2.0), Err(Error::NotFinite { t: 1.125, .. })));
     let state = integrator.state();
     assert!(state.t == 1.0 && state.q[0].is_finite());
@@ -128,8 +151,10 @@ fn a_long_time_at_a_small_step_keeps_its_digits() {
     // Sixtieths of a second after thirty years: the drive is seen at the right time.
     let pendulum = pendulum();
     let run = |start: f64| {
-        let mut integrator =
-            Integrator::new(&pendulum, Rk4, start, [1.3], [0.0]).unwrap().control(FixedStep::new(1.0 / 60.0)).unwrap();
+        let mut integrator = Integrator::new(&pendulum, Rk4, start, [1.3], [0.0])
+            .unwrap()
+            .control(FixedStep::new(1.0 / 60.0))
+            .unwrap();
         for _ in 0..600 {
             integrator.step().unwrap();
         }
@@ -140,10 +165,14 @@ fn a_long_time_at_a_small_step_keeps_its_digits() {
 
 #[test]
 fn displaced_coordinates_keep_what_rounding_has_left_off() {
-    // A free rotation in steps that no double holds: whole turns come off, the digits behind the last one stay.
+    // A free rotation in steps that no double holds: whole turns come off, the digits behind the
+    // last one stay.
     let turn = (core::f64::consts::TAU, 2.4492935982947064e-16);
     let system = pendulum();
-    let mut here = Integrator::new(&system, Srkn14a, 0.0, [0.0], [2.5]).unwrap().control(FixedStep::new(1.0 / 32.0)).unwrap();
+    let mut here = Integrator::new(&system, Srkn14a, 0.0, [0.0], [2.5])
+        .unwrap()
+        .control(FixedStep::new(1.0 / 32.0))
+        .unwrap();
     let mut there = here.clone();
     for _ in 0..1000 {
         there.displace([turn.0], [turn.1]).unwrap();
@@ -151,9 +180,14 @@ fn displaced_coordinates_keep_what_rounding_has_left_off() {
         here.step().unwrap();
         there.step().unwrap();
     }
-    assert!((here.q()[0] - there.q()[0]).abs() < 1e-13 && (here.v()[0] - there.v()[0]).abs() < 1e-13);
+    assert!(
+        (here.q()[0] - there.q()[0]).abs() < 1e-13 && (here.v()[0] - there.v()[0]).abs() < 1e-13
+    );
     let error = there.displace([f64::INFINITY], [0.0]).unwrap_err();
-    assert!(matches!(error, Error::InitialState { part: crate::error::Part::Position, .. }), "{error}");
+    assert!(
+        matches!(error, Error::InitialState { part: crate::error::Part::Position, .. }),
+        "{error}"
+    );
     assert!(there.q()[0].is_finite());
 }
 

@@ -6,7 +6,8 @@ use crate::system::{Driven, Facts, Input, System, VelocityFree};
 use crate::time::Time;
 use nalgebra::SMatrix;
 
-/// Implements `System` from accelerations, energy, momenta and velocities, which are all that integrators and tests call.
+/// Implements `System` from accelerations, energy, momenta and velocities, which are all that
+/// integrators and tests call.
 macro_rules! system {
     ($(#[$doc:meta])* $name:ident<$t:ident, $n:literal> { $($parameter:ident),* } $inputs:ty; $facts:expr;
      |$self:ident, $q:ident, $v:ident, $x:ident|
@@ -218,7 +219,8 @@ system! {
     velocities |p| *p;
 }
 
-/// A motion given by a function of time for each derivative, with kinks at multiples of `period` if there is one.
+/// A motion given by a function of time for each derivative, with kinks at multiples of `period` if
+/// there is one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Formula<F> {
     pub(crate) formula: F,
@@ -229,7 +231,8 @@ impl<T: Real, const D: usize, F: Fn(f64) -> [[f64; D]; 3]> Motion<T, D> for Form
     const HAS: Orders = Orders::ALL;
 
     fn sample(&self, t: Time, _: Side, _: Orders) -> Sample<T, D> {
-        let [position, velocity, acceleration] = (self.formula)(t.to_f64()).map(|values| values.map(T::from_f64));
+        let [position, velocity, acceleration] =
+            (self.formula)(t.to_f64()).map(|values| values.map(T::from_f64));
         Sample { position, velocity, acceleration }
     }
 

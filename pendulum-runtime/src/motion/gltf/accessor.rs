@@ -6,7 +6,8 @@ use gltf::json::accessor::{Accessor, ComponentType, Type};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Root, buffer};
 
-/// Elements that an accessor without a bufferView may have: nothing but their number is in the file.
+/// Elements that an accessor without a bufferView may have: nothing but their number is in the
+/// file.
 const MOST: usize = 1 << 16;
 
 /// Elements that one motion may take, however often its channels name the same ones.
@@ -39,8 +40,12 @@ impl Run<'_> {
             ComponentType::U8 => (f64::from(at[0]), 255.0),
             ComponentType::I16 => (f64::from(i16::from_le_bytes([at[0], at[1]])), 32767.0),
             ComponentType::U16 => (f64::from(u16::from_le_bytes([at[0], at[1]])), 65535.0),
-            ComponentType::U32 => (f64::from(u32::from_le_bytes([at[0], at[1], at[2], at[3]])), 4294967295.0),
-            ComponentType::F32 => return f64::from(f32::from_le_bytes([at[0], at[1], at[2], at[3]])),
+            ComponentType::U32 => {
+                (f64::from(u32::from_le_bytes([at[0], at[1], at[2], at[3]])), 4294967295.0)
+            }
+            ComponentType::F32 => {
+                return f64::from(f32::from_le_bytes([at[0], at[1], at[2], at[3]]));
+            }
         };
         if !self.normalized {
             return value;
@@ -59,27 +64,46 @@ impl<'a> Source<'a> {
     pub(super) fn read<const D: usize>(&self, index: usize) -> Result<Vec<[f64; D]>, GltfError> {
         let place = format!("accessors[{index}]");
         let fail = |what: String| GltfError::new(&*place, what, "mend the file or export it again");
-        let accessor = self.root.accessors.get(index).ok_or_else(|| fail("does not exist".into()))?;
+        let accessor =
+            self.root.accessors.get(index).ok_or_else(|| fail("does not exist".into()))?;
         let count = usize::try_from(accessor.count.0).unwrap_or(usize::MAX);
         let components = width(accessor).ok_or_else(|| fail("an unknown type".into()))?;
         if components != D {
             return Err(fail(format!("elements of {components} numbers where {D} are needed")));
         }
-        let Checked::Valid(kind) = accessor.component_type else { return Err(fail("an unknown component type".into())) };
-        let run = |view: Index<buffer::View>, offset: u64, count: usize, kind: ComponentType, components: usize| {
+        let Checked::Valid(kind) = accessor.component_type else {
+            return Err(fail("an unknown component type".into()));
+        };
+        let run = |view: Index<buffer::View>,
+                   offset: u64,
+                   count: usize,
+                   kind: ComponentType,
+                   components: usize| {
             let normalized = accessor.normalized;
-            self.run(view, offset, count, kind, components).map(|run| Run { normalized, ..run }).map_err(fail)
+            self.run(view, offset, count, kind, components)
+                .map(|run| Run { normalized, ..run })
+                .map_err(fail)
         };
         let whole = match accessor.buffer_view {
-            Some(view) => Some(run(view, accessor.byte_offset.map_or(0, |offset| offset.0), count, kind.0, D)?),
+            Some(view) => Some(run(
+                view,
+                accessor.byte_offset.map_or(0, |offset| offset.0),
+                count,
+                kind.0,
+                D,
+            )?),
             None if accessor.sparse.is_none() => return Err(fail("no bufferView".into())),
-            None if MOST < count => return Err(fail(format!("{count} elements without a bufferView"))),
+            None if MOST < count => {
+                return Err(fail(format!("{count} elements without a bufferView")));
+            }
             None => None,
         };
         let left = self.left.get().checked_sub(count);
         self.left.set(left.ok_or_else(|| fail(format!("more than {BUDGET} keys in one motion")))?);
         let mut values = match whole {
-            Some(run) => (0..count).map(|element| core::array::from_fn(|component| run.number(element, component))).collect(),
+            Some(run) => (0..count)
+                .map(|element| core::array::from_fn(|component| run.number(element, component)))
+                .collect(),
             None => vec![[0.0; D]; count],
         };
         if let Some(sparse) = &accessor.sparse {
@@ -92,13 +116,15 @@ impl<'a> Source<'a> {
             let Checked::Valid(index_kind) = indices.component_type else {
                 return Err(fail("an unknown type of sparse indices".into()));
             };
-            let places = self.run(indices.buffer_view, indices.byte_offset.0, changed, index_kind.0, 1).map_err(fail)?;
+            let places = self
+                .run(indices.buffer_view, indices.byte_offset.0, changed, index_kind.0, 1)
+                .map_err(fail)?;
             let numbers = run(replaced.buffer_view, replaced.byte_offset.0, changed, kind.0, D)?;
             for element in 0..changed {
                 let at = places.number(element, 0) as usize;
-                let value = values
-                    .get_mut(at)
-                    .ok_or_else(|| fail(format!("sparse element {element} replaces number {at} of {count}")))?;
+                let value = values.get_mut(at).ok_or_else(|| {
+                    fail(format!("sparse element {element} replaces number {at} of {count}"))
+                })?;
                 *value = core::array::from_fn(|component| numbers.number(element, component));
             }
         }
@@ -115,13 +141,22 @@ impl<'a> Source<'a> {
         components: usize,
     ) -> Result<Run<'a>, String> {
         let index = view.value();
-        let view = self.root.buffer_views.get(index).ok_or_else(|| format!("bufferViews[{index}] does not exist"))?;
+        let view = self
+            .root
+            .buffer_views
+            .get(index)
+            .ok_or_else(|| format!("bufferViews[{index}] does not exist"))?;
         let number = view.buffer.value();
-        let buffer = self.buffers.get(number).ok_or_else(|| format!("buffers[{number}] does not exist"))?;
+        let buffer =
+            self.buffers.get(number).ok_or_else(|| format!("buffers[{number}] does not exist"))?;
         let start = view.byte_offset.map_or(0, |offset| offset.0);
-        let within = start.checked_add(view.byte_length.0).filter(|&end| end <= buffer.len() as u64);
+        let within =
+            start.checked_add(view.byte_length.0).filter(|&end| end <= buffer.len() as u64);
         let Some(end) = within else {
-            return Err(format!("bufferViews[{index}] goes beyond the {} bytes of buffers[{number}]", buffer.len()));
+            return Err(format!(
+                "bufferViews[{index}] goes beyond the {} bytes of buffers[{number}]",
+                buffer.len()
+            ));
         };
         let size = components * kind.size();
         let stride = view.byte_stride.map_or(size, |stride| stride.0);

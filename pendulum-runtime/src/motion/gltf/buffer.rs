@@ -12,26 +12,54 @@ fn beside(uri: &str) -> bool {
 }
 
 /// All buffers of a file; those in other files are looked for in `folder`.
-pub(super) fn buffers(root: &Root, blob: Option<Vec<u8>>, folder: Option<&Path>) -> Result<Vec<Vec<u8>>, GltfError> {
+pub(super) fn buffers(
+    root: &Root,
+    blob: Option<Vec<u8>>,
+    folder: Option<&Path>,
+) -> Result<Vec<Vec<u8>>, GltfError> {
     let mut blob = blob;
     let mut buffers = Vec::with_capacity(root.buffers.len());
     for (index, buffer) in root.buffers.iter().enumerate() {
         let place = format!("buffers[{index}]");
         let bytes = match &buffer.uri {
-            None if index == 0 => {
-                blob.take().ok_or_else(|| GltfError::new(&*place, "no uri and no BIN chunk", "give one of them"))?
+            None if index == 0 => blob.take().ok_or_else(|| {
+                GltfError::new(&*place, "no uri and no BIN chunk", "give one of them")
+            })?,
+            None => {
+                return Err(GltfError::new(
+                    place,
+                    "no uri",
+                    "only the first buffer may be the BIN chunk",
+                ));
             }
-            None => return Err(GltfError::new(place, "no uri", "only the first buffer may be the BIN chunk")),
             Some(uri) => match (uri.strip_prefix("data:"), folder) {
-                (Some(data), _) => inline(data).map_err(|what| GltfError::new(&*place, what, "mend the data URI"))?,
+                (Some(data), _) => inline(data)
+                    .map_err(|what| GltfError::new(&*place, what, "mend the data URI"))?,
                 (None, None) => {
                     let advice = "read the file with `Gltf::open`, or pack it as .glb";
-                    return Err(GltfError::new(place, format!("its bytes are in the file `{uri}`"), advice));
+                    return Err(GltfError::new(
+                        place,
+                        format!("its bytes are in the file `{uri}`"),
+                        advice,
+                    ));
                 }
-                (None, Some(folder)) if beside(uri) => outside(&folder.join(unescaped(uri)), buffer.byte_length.0)
-                    .map_err(|error| GltfError::new(&*place, format!("`{uri}`: {error}"), "put it beside the glTF file"))?,
+                (None, Some(folder)) if beside(uri) => {
+                    outside(&folder.join(unescaped(uri)), buffer.byte_length.0).map_err(
+                        |error| {
+                            GltfError::new(
+                                &*place,
+                                format!("`{uri}`: {error}"),
+                                "put it beside the glTF file",
+                            )
+                        },
+                    )?
+                }
                 (None, Some(_)) => {
-                    return Err(GltfError::new(place, format!("`{uri}` is no relative path"), "put it beside the glTF file"));
+                    return Err(GltfError::new(
+                        place,
+                        format!("`{uri}` is no relative path"),
+                        "put it beside the glTF file",
+                    ));
                 }
             },
         };
@@ -54,7 +82,11 @@ fn outside(path: &Path, length: u64) -> std::io::Result<Vec<u8>> {
 /// The bytes of a data URI, given without its scheme.
 fn inline(data: &str) -> Result<Vec<u8>, String> {
     let (head, body) = data.split_once(',').ok_or("a data URI without a comma")?;
-    if head.ends_with(";base64") { base64(body) } else { Err("a data URI that is not base64".into()) }
+    if head.ends_with(";base64") {
+        base64(body)
+    } else {
+        Err("a data URI that is not base64".into())
+    }
 }
 
 /// RFC 4648, section 4; the padding may be left out.
@@ -87,7 +119,9 @@ fn unescaped(uri: &str) -> String {
     let mut rest = uri.as_bytes();
     while let [first, tail @ ..] = rest {
         let code = match (first, tail) {
-            (b'%', [high, low, ..]) => char::from(*high).to_digit(16).zip(char::from(*low).to_digit(16)),
+            (b'%', [high, low, ..]) => {
+                char::from(*high).to_digit(16).zip(char::from(*low).to_digit(16))
+            }
             _ => None,
         };
         if let Some((high, low)) = code {
@@ -108,9 +142,14 @@ mod tests {
     /// RFC 4648, section 10.
     #[test]
     fn base64_has_the_vectors_of_its_standard() {
-        for (text, bytes) in
-            [("", ""), ("Zg==", "f"), ("Zm8=", "fo"), ("Zm9v", "foo"), ("Zm9vYg==", "foob"), ("Zm9vYmFy", "foobar")]
-        {
+        for (text, bytes) in [
+            ("", ""),
+            ("Zg==", "f"),
+            ("Zm8=", "fo"),
+            ("Zm9v", "foo"),
+            ("Zm9vYg==", "foob"),
+            ("Zm9vYmFy", "foobar"),
+        ] {
             assert_eq!(base64(text).unwrap(), bytes.as_bytes());
             assert_eq!(base64(text.trim_end_matches('=')).unwrap(), bytes.as_bytes());
         }

@@ -14,7 +14,11 @@ pub struct GltfError {
 }
 
 impl GltfError {
-    pub(super) fn new(place: impl Into<String>, what: impl Into<String>, advice: &'static str) -> Self {
+    pub(super) fn new(
+        place: impl Into<String>,
+        what: impl Into<String>,
+        advice: &'static str,
+    ) -> Self {
         Self { place: place.into(), what: what.into(), advice }
     }
 

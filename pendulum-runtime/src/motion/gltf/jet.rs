@@ -3,7 +3,8 @@
 use crate::real::Real;
 use core::ops::{Add, Mul, Sub};
 
-/// The first `N` Taylor coefficients of a function of time: value, first derivative, half the second.
+/// The first `N` Taylor coefficients of a function of time: value, first derivative, half the
+/// second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Jet<const N: usize>(pub(super) [f64; N]);
 
@@ -15,7 +16,8 @@ impl<const N: usize> Jet<N> {
         Self(jet)
     }
 
-    /// The power a of a positive series: k s₀ r_k = Σ_{j=1}^k (a j − (k − j)) s_j r_{k−j} (Knuth, TAOCP 2, section 4.7).
+    /// The power a of a positive series: k s₀ r_k = Σ_{j=1}^k (a j − (k − j)) s_j r_{k−j} (Knuth,
+    /// TAOCP 2, section 4.7).
     fn power(self, first: f64, exponent: f64) -> Self {
         let mut jet = Self::constant(first);
         for k in 1..N {

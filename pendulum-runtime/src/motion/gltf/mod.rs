@@ -11,9 +11,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Channels of translations, rotations and scales are read, by steps, linear (rotations along the shorter great circle) or by
-//! cubics with tangents, from `.gltf` with buffers inside or beside it and from `.glb`. Weights of morph targets move no node and
-//! are passed over. Khronos Group, "glTF 2.0 Specification", sections 3.5, 3.6, 3.11 and appendix C.
+//! Channels of translations, rotations and scales are read, by steps, linear (rotations along the
+//! shorter great circle) or by cubics with tangents, from `.gltf` with buffers inside or beside it
+//! and from `.glb`. Weights of morph targets move no node and are passed over. Khronos Group, "glTF
+//! 2.0 Specification", sections 3.5, 3.6, 3.11 and appendix C.
 
 mod accessor;
 mod buffer;
@@ -60,9 +61,11 @@ impl Gltf {
     pub fn open(path: impl AsRef<Path>) -> Result<Self, GltfError> {
         let path = path.as_ref();
         let name = path.display().to_string();
-        let bytes =
-            std::fs::read(path).map_err(|error| GltfError::new(&*name, error.to_string(), "give the path of a glTF file"))?;
-        Self::parse(&bytes, Some(path.parent().unwrap_or(Path::new("")))).map_err(|error| error.within(&name))
+        let bytes = std::fs::read(path).map_err(|error| {
+            GltfError::new(&*name, error.to_string(), "give the path of a glTF file")
+        })?;
+        Self::parse(&bytes, Some(path.parent().unwrap_or(Path::new(""))))
+            .map_err(|error| error.within(&name))
     }
 
     /// Reads the bytes of a file that needs no other.
@@ -75,12 +78,18 @@ impl Gltf {
 
     fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Self, GltfError> {
         if bytes.starts_with(b"glTF") {
-            let header = bytes.get(8..12).and_then(|length| length.try_into().ok()).map(u32::from_le_bytes);
+            let header =
+                bytes.get(8..12).and_then(|length| length.try_into().ok()).map(u32::from_le_bytes);
             match header {
                 Some(length) if 12 <= length && length as usize <= bytes.len() => {}
                 _ => {
-                    let what = format!("the header does not fit the {} bytes of the file", bytes.len());
-                    return Err(GltfError::new("header", what, "the file is cut off; fetch it again"));
+                    let what =
+                        format!("the header does not fit the {} bytes of the file", bytes.len());
+                    return Err(GltfError::new(
+                        "header",
+                        what,
+                        "the file is cut off; fetch it again",
+                    ));
                 }
             }
         }
@@ -91,7 +100,11 @@ impl Gltf {
         let root = file.document.into_json();
         if !root.asset.version.starts_with("2.") {
             let what = format!("version `{}`", root.asset.version);
-            return Err(GltfError::new("asset.version", what, "give a file in the format glTF 2.0"));
+            return Err(GltfError::new(
+                "asset.version",
+                what,
+                "give a file in the format glTF 2.0",
+            ));
         }
         let buffers = buffer::buffers(&root, file.blob, folder)?;
         let parents = parents(&root)?;
@@ -124,7 +137,8 @@ impl Gltf {
     /// Numbers that name nothing, and channels that contradict themselves.
     pub fn motion(&self, animation: usize, node: usize) -> Result<NodeMotion, GltfError> {
         let outer = format!("animations[{animation}]");
-        let missing = |place: String| GltfError::new(place, "does not exist", "ask for the number of a name");
+        let missing =
+            |place: String| GltfError::new(place, "does not exist", "ask for the number of a name");
         let played = self.root.animations.get(animation).ok_or_else(|| missing(outer.clone()))?;
         if self.root.nodes.len() <= node {
             return Err(missing(format!("nodes[{node}]")));
@@ -144,20 +158,29 @@ impl Gltf {
         let mut next = Some(node);
         while let Some(link) = next {
             let own = channels.get(&link).map_or(&[][..], Vec::as_slice);
-            chain.push(self.local(&source, played, own, link).map_err(|error| error.within(&outer))?);
+            chain.push(
+                self.local(&source, played, own, link).map_err(|error| error.within(&outer))?,
+            );
             next = self.parents[link];
         }
         Ok(NodeMotion::new(chain, duration(&source, played).map_err(|error| error.within(&outer))?))
     }
 
     /// How a node stands on its parent while some channels of an animation play.
-    fn local(&self, source: &Source<'_>, animation: &Animation, channels: &[usize], index: usize) -> Result<Local, GltfError> {
+    fn local(
+        &self,
+        source: &Source<'_>,
+        animation: &Animation,
+        channels: &[usize],
+        index: usize,
+    ) -> Result<Local, GltfError> {
         let node = &self.root.nodes[index];
         let fail = |what: &str| GltfError::new(format!("nodes[{index}]"), what, MEND);
         let wide = |values: [f32; 3]| values.map(f64::from);
         let rest = node.rotation.map_or([0.0, 0.0, 0.0, 1.0], |rotation| rotation.0.map(f64::from));
         let mut translation = Track::Still(wide(node.translation.unwrap_or([0.0; 3])));
-        let mut rotation = Turn::Still(unit(rest).ok_or_else(|| fail("its rotation is no unit quaternion"))?);
+        let mut rotation =
+            Turn::Still(unit(rest).ok_or_else(|| fail("its rotation is no unit quaternion"))?);
         let mut scale = Track::Still(wide(node.scale.unwrap_or([1.0; 3])));
         let numbers = [node.translation, node.scale];
         if numbers.iter().flatten().flatten().any(|value| !value.is_finite()) {
@@ -171,19 +194,33 @@ impl Gltf {
                 return Err(GltfError::new(place, "an unknown target path", MEND));
             };
             match path {
-                Property::Translation => translation = track(source, animation, channel).map_err(|error| error.within(&place))?,
-                Property::Rotation => rotation = turn(source, animation, channel).map_err(|error| error.within(&place))?,
-                Property::Scale => scale = track(source, animation, channel).map_err(|error| error.within(&place))?,
+                Property::Translation => {
+                    translation =
+                        track(source, animation, channel).map_err(|error| error.within(&place))?;
+                }
+                Property::Rotation => {
+                    rotation =
+                        turn(source, animation, channel).map_err(|error| error.within(&place))?;
+                }
+                Property::Scale => {
+                    scale =
+                        track(source, animation, channel).map_err(|error| error.within(&place))?;
+                }
                 Property::MorphTargetWeights => continue,
             }
             animated = true;
         }
         match node.matrix {
-            Some(_) if animated => Err(fail("it is animated, but stands on its parent by a matrix")),
+            Some(_) if animated => {
+                Err(fail("it is animated, but stands on its parent by a matrix"))
+            }
             Some(matrix) => {
-                let rows = [0, 1, 2].map(|row| [0, 1, 2, 3].map(|column| f64::from(matrix[4 * column + row])));
+                let rows = [0, 1, 2]
+                    .map(|row| [0, 1, 2, 3].map(|column| f64::from(matrix[4 * column + row])));
                 let last = [3, 7, 11, 15].map(|at| matrix[at]);
-                if rows.iter().flatten().any(|value| !value.is_finite()) || last != [0.0, 0.0, 0.0, 1.0] {
+                if rows.iter().flatten().any(|value| !value.is_finite())
+                    || last != [0.0, 0.0, 0.0, 1.0]
+                {
                     return Err(fail("its matrix is no affine map"));
                 }
                 Ok(Local::Matrix(rows))
@@ -206,10 +243,18 @@ fn duration(source: &Source<'_>, animation: &Animation) -> Result<f64, GltfError
         let times = times.map_err(|error| error.within(&format!("samplers[{index}].input")))?;
         last = times.iter().fold(last, |last, &[time]| if last < time { time } else { last });
     }
-    if last.is_finite() { Ok(last) } else { Err(GltfError::new("samplers", "a key at an infinite time", MEND)) }
+    if last.is_finite() {
+        Ok(last)
+    } else {
+        Err(GltfError::new("samplers", "a key at an infinite time", MEND))
+    }
 }
 
-fn track(source: &Source<'_>, animation: &Animation, channel: &Channel) -> Result<Track, GltfError> {
+fn track(
+    source: &Source<'_>,
+    animation: &Animation,
+    channel: &Channel,
+) -> Result<Track, GltfError> {
     let (times, values, interpolation) = keys::<3>(source, animation, channel)?;
     Ok(Track::Keyed(match interpolation {
         Interpolation::Step => Piecewise::steps(&times, &values),
@@ -237,7 +282,11 @@ fn turn(source: &Source<'_>, animation: &Animation, channel: &Channel) -> Result
             let curve = cubic(&times, &values);
             if let Some(key) = vanishing(&curve) {
                 let what = format!("the quaternion vanishes between key {key} and key {}", key + 1);
-                return Err(GltfError::new("output", what, "turn by less than half a turn from key to key"));
+                return Err(GltfError::new(
+                    "output",
+                    what,
+                    "turn by less than half a turn from key to key",
+                ));
             }
             Turn::Cubic(curve)
         }
@@ -245,19 +294,30 @@ fn turn(source: &Source<'_>, animation: &Animation, channel: &Channel) -> Result
 }
 
 /// The times and values of a channel; three values a key if it has tangents.
-fn keys<const D: usize>(source: &Source<'_>, animation: &Animation, channel: &Channel) -> Result<Keys<D>, GltfError> {
+fn keys<const D: usize>(
+    source: &Source<'_>,
+    animation: &Animation,
+    channel: &Channel,
+) -> Result<Keys<D>, GltfError> {
     let number = channel.sampler.value();
     let place = format!("samplers[{number}]");
     let fail = |what: String| GltfError::new(&*place, what, MEND);
     let sampler = animation.samplers.get(number).ok_or_else(|| fail("does not exist".into()))?;
-    let Checked::Valid(interpolation) = sampler.interpolation else { return Err(fail("an unknown interpolation".into())) };
+    let Checked::Valid(interpolation) = sampler.interpolation else {
+        return Err(fail("an unknown interpolation".into()));
+    };
     let within = |part: &str, error: GltfError| error.within(&format!("{place}.{part}"));
     let times = source.read::<1>(sampler.input.value()).map_err(|error| within("input", error))?;
-    let values = source.read::<D>(sampler.output.value()).map_err(|error| within("output", error))?;
+    let values =
+        source.read::<D>(sampler.output.value()).map_err(|error| within("output", error))?;
     let times: Vec<f64> = times.into_iter().map(|[time]| time).collect();
     let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
     if values.len() != each * times.len() {
-        return Err(fail(format!("{} times but {} values; {each} a time are needed", times.len(), values.len())));
+        return Err(fail(format!(
+            "{} times but {} values; {each} a time are needed",
+            times.len(),
+            values.len()
+        )));
     }
     checked(&times, &values[..times.len()]).map_err(|error| fail(error.to_string()))?;
     if times[0] < 0.0 {
@@ -276,19 +336,26 @@ fn parents(root: &Root) -> Result<Vec<Option<usize>>, GltfError> {
     for (index, node) in root.nodes.iter().enumerate() {
         let fail = |what: String| GltfError::new(format!("nodes[{index}].children"), what, MEND);
         for child in node.children.iter().flatten().map(gltf::json::Index::value) {
-            let parent = parents.get_mut(child).ok_or_else(|| fail(format!("nodes[{child}] does not exist")))?;
+            let parent = parents
+                .get_mut(child)
+                .ok_or_else(|| fail(format!("nodes[{child}] does not exist")))?;
             if let Some(other) = parent.replace(index) {
                 return Err(fail(format!("nodes[{child}] is a child of nodes[{other}] too")));
             }
         }
     }
-    // A node from which no root is reached stands on itself. Those that reach one are known from then on.
+    // A node from which no root is reached stands on itself. Those that reach one are known from
+    // then on.
     let mut grounded = vec![false; count];
     for start in 0..count {
         let mut path = vec![start];
         while let Some(parent) = parents[path[path.len() - 1]].filter(|&parent| !grounded[parent]) {
             if count <= path.len() {
-                return Err(GltfError::new(format!("nodes[{start}]"), "it is a parent of itself", MEND));
+                return Err(GltfError::new(
+                    format!("nodes[{start}]"),
+                    "it is a parent of itself",
+                    MEND,
+                ));
             }
             path.push(parent);
         }
@@ -299,10 +366,12 @@ fn parents(root: &Root) -> Result<Vec<Option<usize>>, GltfError> {
     Ok(parents)
 }
 
-/// Cubics from an arriving tangent, a value and a leaving tangent at each key; tangents are velocities.
+/// Cubics from an arriving tangent, a value and a leaving tangent at each key; tangents are
+/// velocities.
 fn cubic<const D: usize>(times: &[f64], values: &[[f64; D]]) -> Piecewise<D> {
     let points: Vec<[f64; D]> = values.iter().skip(1).step_by(3).copied().collect();
-    let slopes: Vec<_> = (0..times.len() - 1).map(|key| [values[3 * key + 2], values[3 * key + 3]]).collect();
+    let slopes: Vec<_> =
+        (0..times.len() - 1).map(|key| [values[3 * key + 2], values[3 * key + 3]]).collect();
     Piecewise::hermite(times, &points, &slopes).with_kinks(true)
 }
 

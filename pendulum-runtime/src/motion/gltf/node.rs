@@ -46,7 +46,10 @@ impl Local {
         match self {
             Self::Parts(parts) => {
                 let Parts { translation, rotation, scale } = &**parts;
-                Real::min(Real::min(translation.rest_until(t), rotation.rest_until(t)), scale.rest_until(t))
+                Real::min(
+                    Real::min(translation.rest_until(t), rotation.rest_until(t)),
+                    scale.rest_until(t),
+                )
             }
             Self::Matrix(_) => f64::INFINITY,
         }
@@ -54,19 +57,22 @@ impl Local {
 
     fn kinks(&self) -> impl Iterator<Item = f64> {
         let tracks: [&[f64]; 3] = match self {
-            Self::Parts(parts) => [parts.translation.kinks(), parts.rotation.kinks(), parts.scale.kinks()],
+            Self::Parts(parts) => {
+                [parts.translation.kinks(), parts.rotation.kinks(), parts.scale.kinks()]
+            }
             Self::Matrix(_) => [&[]; 3],
         };
         tracks.into_iter().flatten().copied()
     }
 }
 
-/// The position of a node in the world while an animation plays, in the file's unit, which is the metre unless it says
-/// otherwise.
+/// The position of a node in the world while an animation plays, in the file's unit, which is the
+/// metre unless it says otherwise.
 ///
-/// Velocity and acceleration are exact: each channel is a Taylor series about the time asked for (a polynomial, or a rotation
-/// of constant axis and speed), and the series go through the hierarchy, x = x₀ + R₀ S₀ (x₁ + R₁ S₁ (…)), by the product rule.
-/// The kinks are those of all channels of the node and its parents. Before the first key and after the last the node rests.
+/// Velocity and acceleration are exact: each channel is a Taylor series about the time asked for (a
+/// polynomial, or a rotation of constant axis and speed), and the series go through the hierarchy,
+/// x = x₀ + R₀ S₀ (x₁ + R₁ S₁ (…)), by the product rule. The kinks are those of all channels of the
+/// node and its parents. Before the first key and after the last the node rests.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodeMotion {
     /// The node first, then its parents outwards.
@@ -89,7 +95,8 @@ impl NodeMotion {
         self.duration
     }
 
-    /// The same motion again and again with the period [`duration`](Self::duration); the seam is a kink unless it is smooth.
+    /// The same motion again and again with the period [`duration`](Self::duration); the seam is a
+    /// kink unless it is smooth.
     ///
     /// # Errors
     /// An animation that lasts no time.
@@ -100,7 +107,11 @@ impl NodeMotion {
         let end: Sample<f64, 3> = self.sample(Time::new(self.duration), Side::Before, Orders::ALL);
         let start: Sample<f64, 3> = self.sample(Time::new(0.0), Side::After, Orders::ALL);
         self.kinks.retain(|&kink| 0.0 < kink && kink < self.duration);
-        let pairs = [(end.position, start.position), (end.velocity, start.velocity), (end.acceleration, start.acceleration)];
+        let pairs = [
+            (end.position, start.position),
+            (end.velocity, start.velocity),
+            (end.acceleration, start.acceleration),
+        ];
         let smooth = pairs.iter().all(|(a, b)| {
             let size = a.iter().chain(b).fold(0.0f64, |size, value| Real::max(size, value.abs()));
             (0..3).all(|axis| (a[axis] - b[axis]).abs() <= 1e-9 * size)
@@ -125,7 +136,10 @@ impl NodeMotion {
             return Time::new(if side == Side::After { 0.0 } else { period });
         }
         let next = self.kinks.partition_point(|&kink| kink < local.to_f64());
-        let near = [next.checked_sub(1), Some(next)].into_iter().flatten().filter_map(|index| self.kinks.get(index));
+        let near = [next.checked_sub(1), Some(next)]
+            .into_iter()
+            .flatten()
+            .filter_map(|index| self.kinks.get(index));
         match near.copied().find(|&kink| local.since(kink).abs() <= slack) {
             Some(kink) => Time::new(kink),
             None => local,
@@ -179,9 +193,9 @@ impl<T: Real> Motion<T, 3> for NodeMotion {
         let turns = (t / period).floor();
         // A kink that rounds to the time asked for has been passed.
         let slack = 4.0 * f64::EPSILON * (t.abs() + period);
-        [turns - 1.0, turns, turns + 1.0, turns + 2.0]
-            .into_iter()
-            .find_map(|turn| self.kinks.iter().map(|&kink| kink + turn * period).find(|&kink| t + slack < kink))
+        [turns - 1.0, turns, turns + 1.0, turns + 2.0].into_iter().find_map(|turn| {
+            self.kinks.iter().map(|&kink| kink + turn * period).find(|&kink| t + slack < kink)
+        })
     }
 
     // No bound: between the kinks of all channels nothing is narrower than the way from key to key.
@@ -190,7 +204,9 @@ impl<T: Real> Motion<T, 3> for NodeMotion {
     }
 
     fn rest_until(&self, t: f64) -> f64 {
-        let rest = |t: f64| self.chain.iter().map(|local| local.rest_until(t)).fold(f64::INFINITY, Real::min);
+        let rest = |t: f64| {
+            self.chain.iter().map(|local| local.rest_until(t)).fold(f64::INFINITY, Real::min)
+        };
         if !self.looped || !t.is_finite() {
             return rest(t);
         }

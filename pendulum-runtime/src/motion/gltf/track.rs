@@ -27,10 +27,11 @@ pub(super) enum Turn {
     Arcs(Arcs),
 }
 
-/// Arcs of great circles between unit quaternions: the axis and the speed of the rotation are constant between two keys.
+/// Arcs of great circles between unit quaternions: the axis and the speed of the rotation are
+/// constant between two keys.
 ///
-/// Shoemake, "Animating Rotation with Quaternion Curves" (1985): q(u) = (q₀ sin((1 − u) φ) + q₁ sin(u φ))/sin φ, so that
-/// q̈ = −(φ/h)² q.
+/// Shoemake, "Animating Rotation with Quaternion Curves" (1985): q(u) = (q₀ sin((1 − u) φ) + q₁
+/// sin(u φ))/sin φ, so that q̈ = −(φ/h)² q.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Arcs {
     times: Vec<f64>,
@@ -133,9 +134,13 @@ impl Arcs {
         }
         let mut arcs = Self { times: times.to_vec(), keys, angles, kinks: Vec::new() };
         for &time in times {
-            let [before, after] = [Side::Before, Side::After].map(|side| arcs.at::<3>(Time::new(time), side));
+            let [before, after] =
+                [Side::Before, Side::After].map(|side| arcs.at::<3>(Time::new(time), side));
             let differ = |order: usize| {
-                let size = before.iter().chain(&after).fold(0.0f64, |size, jet| Real::max(size, jet.0[order].abs()));
+                let size = before
+                    .iter()
+                    .chain(&after)
+                    .fold(0.0f64, |size, jet| Real::max(size, jet.0[order].abs()));
                 (0..4).any(|d| 1e-9 * size < (before[d].0[order] - after[d].0[order]).abs())
             };
             if differ(1) || differ(2) {
@@ -166,7 +171,8 @@ impl Arcs {
             let rest = if passed == 0 { 0 } else { passed - 1 };
             return self.keys[rest].map(Jet::constant);
         }
-        let (from, to, angle) = (&self.keys[passed - 1], &self.keys[passed], self.angles[passed - 1]);
+        let (from, to, angle) =
+            (&self.keys[passed - 1], &self.keys[passed], self.angles[passed - 1]);
         if angle == 0.0 {
             return from.map(Jet::constant);
         }
@@ -185,17 +191,22 @@ impl Arcs {
     }
 }
 
-/// Whether a curve of quaternions comes near zero, where it is no rotation: the first piece that does.
+/// Whether a curve of quaternions comes near zero, where it is no rotation: the first piece that
+/// does.
 pub(super) fn vanishing(curve: &Piecewise<4>) -> Option<usize> {
     curve.pieces().position(|(piece, h)| {
-        // Far below what a rotation of less than half a turn leaves, and high enough to be decided soon.
+        // Far below what a rotation of less than half a turn leaves, and high enough to be decided
+        // soon.
         let size = |coefficient: &[f64; 4]| Real::sqrt(dot(coefficient, coefficient));
-        let least = 1e-4 * (size(&piece[0]) + h * (size(&piece[1]) + h * (size(&piece[2]) + h * size(&piece[3]))));
+        let least = 1e-4
+            * (size(&piece[0])
+                + h * (size(&piece[1]) + h * (size(&piece[2]) + h * size(&piece[3]))));
         !away(piece, h, least)
     })
 }
 
-/// Whether |c(u)| stays above `least` for u from 0 to h: by the value in the middle of spans and a bound on |ċ|, halving.
+/// Whether |c(u)| stays above `least` for u from 0 to h: by the value in the middle of spans and a
+/// bound on |ċ|, halving.
 fn away(piece: &[[f64; 4]; 4], h: f64, least: f64) -> bool {
     let [a, b, c, d] = piece;
     let mut spans = vec![[0.0, h]];
@@ -203,10 +214,13 @@ fn away(piece: &[[f64; 4]; 4], h: f64, least: f64) -> bool {
     for _ in 0..4096 {
         let Some([low, high]) = spans.pop() else { return true };
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-        let value: [f64; 4] = core::array::from_fn(|k| a[k] + middle * (b[k] + middle * (c[k] + middle * d[k])));
+        let value: [f64; 4] =
+            core::array::from_fn(|k| a[k] + middle * (b[k] + middle * (c[k] + middle * d[k])));
         let size = Real::sqrt(dot(&value, &value));
         // The farther end bounds each term of ċ.
-        let slope: [f64; 4] = core::array::from_fn(|k| b[k].abs() + high * (2.0 * c[k].abs() + high * 3.0 * d[k].abs()));
+        let slope: [f64; 4] = core::array::from_fn(|k| {
+            b[k].abs() + high * (2.0 * c[k].abs() + high * 3.0 * d[k].abs())
+        });
         let change = half * Real::sqrt(dot(&slope, &slope));
         if size <= least {
             return false;

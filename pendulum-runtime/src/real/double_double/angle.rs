@@ -96,7 +96,12 @@ const SINE: [DoubleDouble; 3] = [
     DoubleDouble::words(0.008333333333333333, 1.1564823173178714e-19),
     DoubleDouble::words(-0.0001984126984126984, -1.7209558293420705e-22),
 ];
-const SINE_TAIL: [f64; 4] = [2.7557319223985893e-06, -2.505210838544172e-08, 1.6059043836821613e-10, -7.647163731819816e-13];
+const SINE_TAIL: [f64; 4] = [
+    2.7557319223985893e-06,
+    -2.505210838544172e-08,
+    1.6059043836821613e-10,
+    -7.647163731819816e-13,
+];
 /// (cos x − 1)/x² in powers of x².
 const COSINE: [DoubleDouble; 4] = [
     DoubleDouble::words(-0.5, 0.0),
@@ -104,7 +109,8 @@ const COSINE: [DoubleDouble; 4] = [
     DoubleDouble::words(-0.001388888888888889, 5.300543954373577e-20),
     DoubleDouble::words(2.48015873015873e-05, 2.1511947866775882e-23),
 ];
-const COSINE_TAIL: [f64; 4] = [-2.755731922398589e-07, 2.08767569878681e-09, -1.1470745597729725e-11, 4.779477332387385e-14];
+const COSINE_TAIL: [f64; 4] =
+    [-2.755731922398589e-07, 2.08767569878681e-09, -1.1470745597729725e-11, 4.779477332387385e-14];
 
 /// Sine and cosine; NaN unless `x` is finite.
 pub(super) fn sin_cos(x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
@@ -136,15 +142,20 @@ fn near(x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
         (sin, cos_minus_one.plus(1.0))
     } else {
         let (sin_k, cos_k) = TABLE[k as usize];
-        (sin_k + (sin_k * cos_minus_one + cos_k * sin), cos_k + (cos_k * cos_minus_one - sin_k * sin))
+        (
+            sin_k + (sin_k * cos_minus_one + cos_k * sin),
+            cos_k + (cos_k * cos_minus_one - sin_k * sin),
+        )
     };
     (if x.high.is_sign_negative() { -sin } else { sin }, cos)
 }
 
-/// The integer nearest to x/(π/2), modulo four, and what is left of x, to all its digits whatever the size of x.
+/// The integer nearest to x/(π/2), modulo four, and what is left of x, to all its digits whatever
+/// the size of x.
 ///
-/// Payne and Hanek (1983): x/(π/2) modulo four in 448 bits, 446 of them after the point. The nearest of all numbers in two words to a
-/// multiple of π/2 agree with it in some 250 bits, so that more than 150 remain.
+/// Payne and Hanek (1983): x/(π/2) modulo four in 448 bits, 446 of them after the point. The
+/// nearest of all numbers in two words to a multiple of π/2 agree with it in some 250 bits, so that
+/// more than 150 remain.
 fn reduce(x: DoubleDouble) -> (u64, DoubleDouble) {
     let mut turns = [0; WORDS];
     add_quarter_turns(&mut turns, x.high);
@@ -171,7 +182,8 @@ fn add_quarter_turns(turns: &mut [u64; WORDS], x: f64) {
         return;
     }
     let (biased, fraction) = ((bits >> 52) as i32, bits & ((1 << 52) - 1));
-    let (mantissa, exponent) = if biased == 0 { (fraction, -1074) } else { (fraction | (1 << 52), biased - 1075) };
+    let (mantissa, exponent) =
+        if biased == 0 { (fraction, -1074) } else { (fraction | (1 << 52), biased - 1075) };
     let mut product = [0; WORDS];
     let mut carry = 0_u128;
     for (i, word) in product.iter_mut().enumerate().rev() {
@@ -193,9 +205,15 @@ fn add_quarter_turns(turns: &mut [u64; WORDS], x: f64) {
 
 /// 64 bits of 2/π from bit `offset` on; bits beyond both ends are zero.
 fn bits_from(offset: i32) -> u64 {
-    let word = |index: i32| usize::try_from(index).ok().and_then(|index| TWO_OVER_PI.get(index)).copied().unwrap_or(0);
+    let word = |index: i32| {
+        usize::try_from(index).ok().and_then(|index| TWO_OVER_PI.get(index)).copied().unwrap_or(0)
+    };
     let (index, shift) = (offset.div_euclid(64), offset.rem_euclid(64));
-    if shift == 0 { word(index) } else { (word(index) << shift) | (word(index + 1) >> (64 - shift)) }
+    if shift == 0 {
+        word(index)
+    } else {
+        (word(index) << shift) | (word(index + 1) >> (64 - shift))
+    }
 }
 
 /// The two's complement.
@@ -218,7 +236,8 @@ fn value(words: &[u64; WORDS]) -> DoubleDouble {
     sum
 }
 
-/// The angle of the point (`x`, `y`): the angle in one word, and its distance to the point's by one step of Newton's method.
+/// The angle of the point (`x`, `y`): the angle in one word, and its distance to the point's by one
+/// step of Newton's method.
 pub(super) fn atan2(y: DoubleDouble, x: DoubleDouble) -> DoubleDouble {
     let guess = libm::atan2(y.high, x.high);
     let (size_y, size_x) = (y.high.abs(), x.high.abs());

@@ -7,13 +7,18 @@ use core::str::FromStr;
 /// Why a text is no number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ParseError {
-    /// The index of the first byte that does not belong to a number; the length of the text if digits are missing at its end.
+    /// The index of the first byte that does not belong to a number; the length of the text if
+    /// digits are missing at its end.
     pub at: usize,
 }
 
 impl fmt::Display for ParseError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "no number from byte {} on; write digits with a point and an exponent, as in `-1.25e-3`", self.at)
+        write!(
+            f,
+            "no number from byte {} on; write digits with a point and an exponent, as in `-1.25e-3`",
+            self.at
+        )
     }
 }
 
@@ -25,11 +30,12 @@ const MOST_DIGITS: usize = 36;
 impl FromStr for DoubleDouble {
     type Err = ParseError;
 
-    /// Digits with an optional sign, point and exponent; the relative error is about 2⁻¹⁰² (2⁻⁹⁶ beyond 1e±45), and numbers of up to 15 digits without
-    /// a negative exponent are exact.
+    /// Digits with an optional sign, point and exponent; the relative error is about 2⁻¹⁰² (2⁻⁹⁶
+    /// beyond 1e±45), and numbers of up to 15 digits without a negative exponent are exact.
     fn from_str(text: &str) -> Result<Self, ParseError> {
         let (negative, mut rest) = sign(text);
-        let (mut mantissa, mut kept, mut exponent, mut any, mut after_point) = (0_u128, 0, 0_i64, false, false);
+        let (mut mantissa, mut kept, mut exponent, mut any, mut after_point) =
+            (0_u128, 0, 0_i64, false, false);
         while let Some(&byte) = rest.as_bytes().first() {
             match byte {
                 b'0'..=b'9' => {
@@ -70,7 +76,11 @@ impl FromStr for DoubleDouble {
         }
         let high = mantissa as f64;
         let whole = Self::sum(high, (mantissa as i128 - high as i128) as f64);
-        let value = if mantissa == 0 { Self::ZERO } else { times_power_of_ten(whole, exponent.clamp(-2000, 2000) as i32) };
+        let value = if mantissa == 0 {
+            Self::ZERO
+        } else {
+            times_power_of_ten(whole, exponent.clamp(-2000, 2000) as i32)
+        };
         Ok(if negative { -value } else { value })
     }
 }
@@ -98,7 +108,8 @@ fn times_power_of_ten(value: DoubleDouble, exponent: i32) -> DoubleDouble {
 }
 
 impl fmt::Display for DoubleDouble {
-    /// The digits asked for after the point, as `{:.30}`; else up to 32 digits without zeros at their end.
+    /// The digits asked for after the point, as `{:.30}`; else up to 32 digits without zeros at
+    /// their end.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.is_finite() {
             return fmt::Display::fmt(&self.to_f64(), f);
@@ -120,7 +131,8 @@ impl fmt::Display for DoubleDouble {
 }
 
 impl fmt::LowerExp for DoubleDouble {
-    /// The digits asked for after the point, as `{:.30e}`; else up to 32 digits without zeros at their end.
+    /// The digits asked for after the point, as `{:.30e}`; else up to 32 digits without zeros at
+    /// their end.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.is_finite() {
             return fmt::Display::fmt(&self.to_f64(), f);
@@ -183,8 +195,10 @@ impl Decimal {
             });
             groups.push(carry);
         }
-        let mut digits: Vec<u8> =
-            groups.iter().flat_map(|group| (0..9).rev().map(move |i| (group / 10_u64.pow(i) % 10) as u8)).collect();
+        let mut digits: Vec<u8> = groups
+            .iter()
+            .flat_map(|group| (0..9).rev().map(move |i| (group / 10_u64.pow(i) % 10) as u8))
+            .collect();
         let zeros = digits.iter().take_while(|digit| **digit == 0).count();
         let point = if zeros == digits.len() { 0 } else { 9 * whole as i32 - zeros as i32 };
         digits.drain(..zeros);
@@ -218,7 +232,11 @@ impl Decimal {
     }
 
     fn digit(&self, index: i32) -> char {
-        let digit = usize::try_from(index).ok().and_then(|index| self.digits.get(index)).copied().unwrap_or(0);
+        let digit = usize::try_from(index)
+            .ok()
+            .and_then(|index| self.digits.get(index))
+            .copied()
+            .unwrap_or(0);
         char::from(b'0' + digit)
     }
 
@@ -245,7 +263,8 @@ fn add(words: &mut [u32; AFTER + BEFORE], x: f64) {
     let bits = x.abs().to_bits();
     let (biased, fraction) = ((bits >> 52) as usize, bits & ((1 << 52) - 1));
     // The mantissa stands `shift` bits above 2⁻¹⁰⁸⁸, the unit of the least word.
-    let (mantissa, shift) = if biased == 0 { (fraction, 14) } else { (fraction | (1 << 52), biased + 13) };
+    let (mantissa, shift) =
+        if biased == 0 { (fraction, 14) } else { (fraction | (1 << 52), biased + 13) };
     let mut wide = u128::from(mantissa) << (shift % 32);
     let mut carry = 0_i64;
     for word in &mut words[shift / 32..] {

@@ -82,15 +82,21 @@ fn scaled(x: DoubleDouble, k: i32) -> DoubleDouble {
     x.scaled(power_of_two(half)).scaled(power_of_two(k - half))
 }
 
-/// The natural logarithm: k ln 2 + ln m, where one step of Halley's method takes ln m from one word to two.
+/// The natural logarithm: k ln 2 + ln m, where one step of Halley's method takes ln m from one word
+/// to two.
 pub(super) fn ln(x: DoubleDouble) -> DoubleDouble {
     if !(0.0 < x.high && x.high < f64::INFINITY) {
         return libm::log(x.high).into();
     }
-    let (x, shift) = if x.high < f64::MIN_POSITIVE { (x.scaled(power_of_two(100)), -100) } else { (x, 0) };
+    let (x, shift) =
+        if x.high < f64::MIN_POSITIVE { (x.scaled(power_of_two(100)), -100) } else { (x, 0) };
     let exponent = (x.high.to_bits() >> 52) as i32 - 1023;
     // m in [√½, √2], so that nothing cancels in the sum.
-    let k = if core::f64::consts::SQRT_2 < f64::from_bits((x.high.to_bits() & MANTISSA) | ONE) { exponent + 1 } else { exponent };
+    let k = if core::f64::consts::SQRT_2 < f64::from_bits((x.high.to_bits() & MANTISSA) | ONE) {
+        exponent + 1
+    } else {
+        exponent
+    };
     let fraction = scaled(x, -k) - DoubleDouble::ONE;
     let guess = libm::log(fraction.plus(1.0).high);
     let power = exp_minus_one(guess.into());
@@ -131,7 +137,8 @@ pub(super) fn tanh(x: DoubleDouble) -> DoubleDouble {
     part / part.plus(2.0)
 }
 
-/// `base` to a real power: exact products and a root where twice the exponent is a small integer, else e^(y ln x).
+/// `base` to a real power: exact products and a root where twice the exponent is a small integer,
+/// else e^(y ln x).
 pub(super) fn powf(base: DoubleDouble, exponent: DoubleDouble) -> DoubleDouble {
     if base.high < 0.0 {
         return DoubleDouble::NAN;
@@ -143,7 +150,11 @@ pub(super) fn powf(base: DoubleDouble, exponent: DoubleDouble) -> DoubleDouble {
         return DoubleDouble::NAN;
     }
     let twice = exponent.scaled(2.0);
-    if twice.low == 0.0 && twice.high.abs() <= 32.0 && twice.high == twice.high.round_ties_even() && base.high < f64::INFINITY {
+    if twice.low == 0.0
+        && twice.high.abs() <= 32.0
+        && twice.high == twice.high.round_ties_even()
+        && base.high < f64::INFINITY
+    {
         let count = twice.high.abs() as u32;
         let root = if count % 2 == 1 { base.abs().sqrt() } else { DoubleDouble::ONE };
         let power = base.abs().whole_power(count / 2) * root;

@@ -10,12 +10,15 @@ use super::exact::{ordered_sum, two_sum};
 use super::{Float, Real};
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// A number in two words, high + low with |low| at most half a unit in the last place of high: about 32 decimal digits.
+/// A number in two words, high + low with |low| at most half a unit in the last place of high:
+/// about 32 decimal digits.
 ///
-/// Sums, products, quotients and roots have relative errors of at most 3, 5, 15 and 4 times 2⁻¹⁰⁶ (Joldes, Muller and Popescu 2017, Tight
-/// and rigorous error bounds for basic building blocks of double-word arithmetic, ACM Trans. Math. Softw. 44, 15res), elementary functions
-/// about 2⁻¹⁰³, angles of any size included; a general power x^y about (1 + |y ln x|)·2⁻¹⁰³. Error-free sums are Knuth's (1969),
-/// products Dekker's (1971) with Veltkamp's splitting, so that no fused multiply-add is needed and the bits are the same everywhere.
+/// Sums, products, quotients and roots have relative errors of at most 3, 5, 15 and 4 times 2⁻¹⁰⁶
+/// (Joldes, Muller and Popescu 2017, Tight and rigorous error bounds for basic building blocks of
+/// double-word arithmetic, ACM Trans. Math. Softw. 44, 15res), elementary functions about 2⁻¹⁰³,
+/// angles of any size included; a general power x^y about (1 + |y ln x|)·2⁻¹⁰³. Error-free sums are
+/// Knuth's (1969), products Dekker's (1971) with Veltkamp's splitting, so that no fused
+/// multiply-add is needed and the bits are the same everywhere.
 ///
 /// The range is that of `f64`. Below 1e-291 the low word falls out of it, and with it the digits.
 ///
@@ -146,7 +149,8 @@ fn two_product(a: f64, b: f64) -> (f64, f64) {
     if !product.is_finite() {
         return (product, 0.0);
     }
-    // Splitting multiplies by 2²⁷: what would overflow then lends some of its exponent to the other factor.
+    // Splitting multiplies by 2²⁷: what would overflow then lends some of its exponent to the other
+    // factor.
     let (a, b) = if LARGE < a.abs() {
         (a * TINY_POWER, b / TINY_POWER)
     } else if LARGE < b.abs() {
@@ -181,7 +185,8 @@ fn polynomial(x: f64, coefficients: &[f64]) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * x + coefficient)
 }
 
-/// Σ coefficient · xᵏ, continued by coefficients of one word whose terms count to first digits only.
+/// Σ coefficient · xᵏ, continued by coefficients of one word whose terms count to first digits
+/// only.
 #[inline]
 fn series(x: DoubleDouble, coefficients: &[DoubleDouble], tail: &[f64]) -> DoubleDouble {
     let rest = DoubleDouble::words(polynomial(x.high, tail), 0.0);
@@ -228,7 +233,10 @@ impl Mul for DoubleDouble {
         if !high.is_finite() {
             return Self::words(high, 0.0);
         }
-        Self::ordered(high, low + (self.high * other.low + (self.low * other.high + self.low * other.low)))
+        Self::ordered(
+            high,
+            low + (self.high * other.low + (self.low * other.high + self.low * other.low)),
+        )
     }
 }
 
@@ -396,7 +404,8 @@ impl Real for DoubleDouble {
 }
 
 impl Float for DoubleDouble {
-    /// 2⁻¹⁰⁴: what a few operations near 1 are good to. The distance to the next number has no meaning for two words.
+    /// 2⁻¹⁰⁴: what a few operations near 1 are good to. The distance to the next number has no
+    /// meaning for two words.
     const EPSILON: Self = Self::words(power_of_two(-104), 0.0);
 
     #[inline]

@@ -27,7 +27,8 @@ impl Generator {
                     self.system.parameters.push(Parameter { name, kind });
                     if kind == Kind::Body {
                         let measures = [("M", Kind::Mass), ("Λ", Kind::Length)];
-                        let measures = measures.map(|(name, kind)| Parameter { name: name.to_owned(), kind });
+                        let measures =
+                            measures.map(|(name, kind)| Parameter { name: name.to_owned(), kind });
                         self.system.parameters.extend(measures);
                     }
                 }
@@ -37,7 +38,8 @@ impl Generator {
         let mut names = COORDINATES.to_vec();
         while 0 < left {
             let name = names.remove(self.random.below(names.len())).to_owned();
-            let length = if self.random.once_in(2) { Some(1 + self.random.below(left)) } else { None };
+            let length =
+                if self.random.once_in(2) { Some(1 + self.random.below(left)) } else { None };
             left -= length.unwrap_or(1);
             self.system.coordinates.push(Coordinate { name, length });
         }

@@ -5,13 +5,21 @@ use crate::nilpotent::Function;
 use crate::tree::{Expr, Let, Shape, Type};
 
 const LETS: [&str; 6] = ["P", "ζ", "G", "H", "W", "Z"];
-const FUNCTIONS: [&[Type]; 4] = [&[Type::Scalar], &[Type::Plane], &[Type::Scalar, Type::Plane], &[Type::Scalar, Type::Scalar]];
+const FUNCTIONS: [&[Type]; 4] =
+    [&[Type::Scalar], &[Type::Plane], &[Type::Scalar, Type::Plane], &[Type::Scalar, Type::Scalar]];
 
 impl Generator {
     pub(crate) fn define(&mut self) {
         for index in 0..self.random.below(4) {
-            let kind = self.random.of(&[Type::Scalar, Type::Plane, Type::Plane, Type::Complex, Type::Space]);
-            let mut may = May { velocities: false, orders: 0, lets: index, bound: None, arguments: &[] };
+            let kind = self.random.of(&[
+                Type::Scalar,
+                Type::Plane,
+                Type::Plane,
+                Type::Complex,
+                Type::Space,
+            ]);
+            let mut may =
+                May { velocities: false, orders: 0, lets: index, bound: None, arguments: &[] };
             let shape = match self.random.below(5) {
                 0 | 1 => Shape::Plain,
                 2 | 3 => {
@@ -47,7 +55,8 @@ impl Generator {
             Shape::Indexed(count) => Expr::LetMember(index, self.index(count, may)),
             Shape::Function(types) => {
                 let still = May { velocities: false, orders: 0, ..may };
-                let arguments = types.iter().map(|&kind| self.typed(kind, depth.min(1), still)).collect();
+                let arguments =
+                    types.iter().map(|&kind| self.typed(kind, depth.min(1), still)).collect();
                 Expr::Apply(index, arguments)
             }
         };

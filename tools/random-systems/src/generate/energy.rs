@@ -44,13 +44,17 @@ impl Generator {
                 0 => number(1),
                 1 => generator.positive_parameter(),
                 2 => sum(number(1), power(generator.bounded(1, may), 2)),
-                _ => sum(generator.positive_parameter(), product(number(2), power(generator.bounded(2, may), 2))),
+                _ => sum(
+                    generator.positive_parameter(),
+                    product(number(2), power(generator.bounded(2, may), 2)),
+                ),
             };
             if let Some(count) = length
                 && self.random.once_in(2)
             {
                 let mass = mass(self, May { bound: Some(count), ..may });
-                let velocity = self.rate(Expr::Velocity(coordinate, Some(Index::Bound(0)), coordinate % 3));
+                let velocity =
+                    self.rate(Expr::Velocity(coordinate, Some(Index::Bound(0)), coordinate % 3));
                 let term = product(quotient(mass, number(2)), power(velocity, 2));
                 let inclusive = self.random.once_in(3);
                 self.system.kinetic.push(Expr::Over(0, count, inclusive, Box::new(term)));

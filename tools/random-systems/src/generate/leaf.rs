@@ -5,7 +5,8 @@ use crate::tree::{Expr, Index, Kind, Property, Type, power, product, quotient};
 
 impl Generator {
     pub(crate) fn leaf(&mut self, may: May) -> Expr {
-        if let Some(index) = (!may.arguments.is_empty()).then(|| self.random.below(may.arguments.len()))
+        if let Some(index) =
+            (!may.arguments.is_empty()).then(|| self.random.below(may.arguments.len()))
             && self.random.once_in(2)
         {
             return match may.arguments[index] {
@@ -15,8 +16,18 @@ impl Generator {
         }
         match self.random.below(12) {
             0 => {
-                let (top, bottom) =
-                    self.random.of(&[(1, 1), (2, 1), (3, 1), (1, 2), (1, 4), (3, 4), (2, 3), (-1, 3), (7, 5), (-2, 1)]);
+                let (top, bottom) = self.random.of(&[
+                    (1, 1),
+                    (2, 1),
+                    (3, 1),
+                    (1, 2),
+                    (1, 4),
+                    (3, 4),
+                    (2, 3),
+                    (-1, 3),
+                    (7, 5),
+                    (-2, 1),
+                ]);
                 Expr::Number(top, bottom)
             }
             1..=3 => self.parameter(may),
@@ -33,11 +44,7 @@ impl Generator {
     pub(crate) fn index(&mut self, count: usize, may: May) -> Index {
         match may.bound {
             Some(bound) if bound <= count && self.random.below(4) != 0 => {
-                if self.random.once_in(4) {
-                    Index::Reversed(0, count)
-                } else {
-                    Index::Bound(0)
-                }
+                if self.random.once_in(4) { Index::Reversed(0, count) } else { Index::Bound(0) }
             }
             _ => Index::Number(self.random.below(count)),
         }
@@ -45,13 +52,15 @@ impl Generator {
 
     pub(crate) fn coordinate(&mut self, may: May) -> Expr {
         let coordinate = self.random.below(self.system.coordinates.len());
-        let member = self.system.coordinates[coordinate].length.map(|length| self.index(length, may));
+        let member =
+            self.system.coordinates[coordinate].length.map(|length| self.index(length, may));
         Expr::Coordinate(coordinate, member)
     }
 
     pub(crate) fn velocity(&mut self, may: May) -> Expr {
         let coordinate = self.random.below(self.system.coordinates.len());
-        let member = self.system.coordinates[coordinate].length.map(|length| self.index(length, may));
+        let member =
+            self.system.coordinates[coordinate].length.map(|length| self.index(length, may));
         self.velocity_of(coordinate, member)
     }
 
@@ -81,8 +90,9 @@ impl Generator {
     }
 
     pub(crate) fn positive_parameter(&mut self) -> Expr {
-        let scalars: Vec<usize> =
-            (0..self.system.parameters.len()).filter(|&index| self.system.parameters[index].kind == Kind::Scalar).collect();
+        let scalars: Vec<usize> = (0..self.system.parameters.len())
+            .filter(|&index| self.system.parameters[index].kind == Kind::Scalar)
+            .collect();
         Expr::Parameter(self.random.of(&scalars))
     }
 
@@ -92,7 +102,11 @@ impl Generator {
         let order = self.random.below(may.orders + 1);
         let components = self.system.inputs[index].components;
         let own = Expr::Input(index, order);
-        let part = if components == 1 { own } else { Expr::Component(Box::new(own), self.random.below(components)) };
+        let part = if components == 1 {
+            own
+        } else {
+            Expr::Component(Box::new(own), self.random.below(components))
+        };
         match order {
             0 => part,
             1 => self.rate(part),
@@ -107,7 +121,10 @@ impl Generator {
         match property {
             Property::Mass => quotient(own, self.measure(Kind::Mass)),
             Property::Center => quotient(own, self.measure(Kind::Length)),
-            Property::Inertia => quotient(own, product(self.measure(Kind::Mass), power(self.measure(Kind::Length), 2))),
+            Property::Inertia => quotient(
+                own,
+                product(self.measure(Kind::Mass), power(self.measure(Kind::Length), 2)),
+            ),
         }
     }
 
@@ -121,6 +138,10 @@ impl Generator {
 
     /// A rate as a pure number, where units are checked.
     pub(crate) fn rate(&mut self, rate: Expr) -> Expr {
-        if self.system.units || self.random.once_in(4) { quotient(rate, self.frequency()) } else { rate }
+        if self.system.units || self.random.once_in(4) {
+            quotient(rate, self.frequency())
+        } else {
+            rate
+        }
     }
 }

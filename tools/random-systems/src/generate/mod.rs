@@ -13,7 +13,8 @@ use super::tree::{Expr, Kind, System, Type, number, power, product, quotient, su
 /// What a system is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Manner {
-    /// Every function has an argument for which it is real and smooth, kinetic energies are positive, nothing is large.
+    /// Every function has an argument for which it is real and smooth, kinetic energies are
+    /// positive, nothing is large.
     Tame,
     /// Anything that is well formed.
     Wild,
@@ -24,7 +25,8 @@ pub enum Manner {
 struct May {
     /// Velocities of coordinates.
     velocities: bool,
-    /// The highest derivative of driven inputs: none where the derivative of all is taken, the first in energies.
+    /// The highest derivative of driven inputs: none where the derivative of all is taken, the
+    /// first in energies.
     orders: usize,
     /// Definitions with a smaller number than this.
     lets: usize,
@@ -47,7 +49,8 @@ pub fn system(seed: u64, manner: Manner) -> System {
 
 /// A function of coordinates and time.
 pub fn gauge(system: &System, random: &mut Random) -> Expr {
-    let mut generator = Generator { random: random.clone(), system: system.clone(), manner: Manner::Tame };
+    let mut generator =
+        Generator { random: random.clone(), system: system.clone(), manner: Manner::Tame };
     let may = May { velocities: false, orders: 0, lets: 0, bound: None, arguments: &[] };
     let coordinate = generator.coordinate(may);
     // The last term is the only one with a second power of its own, so that the whole moves.

@@ -15,7 +15,8 @@ impl Generator {
         let inner = depth - 1;
         match self.random.below(22) {
             0..=2 => {
-                let items = (0..2 + self.random.below(2)).map(|_| (self.random.once_in(3), self.scalar(inner, may)));
+                let items = (0..2 + self.random.below(2))
+                    .map(|_| (self.random.once_in(3), self.scalar(inner, may)));
                 Expr::Sum(items.collect())
             }
             3..=5 => product(self.scalar(inner, may), self.scalar(inner, may)),
@@ -30,10 +31,14 @@ impl Generator {
                 power(self.scalar(inner, may), exponent)
             }
             9 => {
-                let (top, bottom) = self.random.of(&[(1, 2), (-1, 2), (3, 2), (2, 3), (-1, 1), (-2, 1), (5, 4)]);
+                let (top, bottom) =
+                    self.random.of(&[(1, 2), (-1, 2), (3, 2), (2, 3), (-1, 1), (-2, 1), (5, 4)]);
                 Expr::Power(Box::new(self.positive(inner, may)), top, bottom)
             }
-            10 => Expr::GeneralPower(Box::new(self.positive(inner, may)), Box::new(self.bounded(inner, may))),
+            10 => Expr::GeneralPower(
+                Box::new(self.positive(inner, may)),
+                Box::new(self.bounded(inner, may)),
+            ),
             11..=14 => self.bounded(depth, may),
             15 => self.of_vector(inner, may),
             16 => self.of_vector(inner, may),
@@ -64,7 +69,13 @@ impl Generator {
             9 => call(Function::Atan, angle(self)),
             10 => {
                 let half = quotient(ring(self, Function::Sin), number(2));
-                let function = self.random.of(&[Function::Asin, Function::Acos, Function::Tan, Function::Sinh, Function::Cosh]);
+                let function = self.random.of(&[
+                    Function::Asin,
+                    Function::Acos,
+                    Function::Tan,
+                    Function::Sinh,
+                    Function::Cosh,
+                ]);
                 call(function, half)
             }
             11 => call(Function::Exp, Expr::Negative(Box::new(power(angle(self), 2)))),
@@ -139,7 +150,8 @@ impl Generator {
             0..=2 => Expr::Call(self.random.of(&functions), a),
             3 => quotient(*a, self.scalar(inner, may)),
             4 => {
-                let (top, bottom) = self.random.of(&[(1, 3), (-3, 2), (7, 1), (-5, 1), (1, 4), (11, 7), (0, 1)]);
+                let (top, bottom) =
+                    self.random.of(&[(1, 3), (-3, 2), (7, 1), (-5, 1), (1, 4), (11, 7), (0, 1)]);
                 Expr::Power(a, top, bottom)
             }
             5 => Expr::GeneralPower(a, Box::new(self.scalar(inner, may))),
@@ -182,7 +194,8 @@ impl Generator {
 
     /// The integral of the square of a velocity, of a height, or of a function of the point.
     fn integral(&mut self, may: May) -> Option<Expr> {
-        let body = self.system.parameters.iter().position(|parameter| parameter.kind == Kind::Body)?;
+        let body =
+            self.system.parameters.iter().position(|parameter| parameter.kind == Kind::Body)?;
         let still = May { velocities: false, orders: 0, arguments: &[], ..may };
         let point = quotient(Expr::Point, self.measure(Kind::Length));
         let turned = product(Expr::Cis(Box::new(self.angle(1, still)), false), point.clone());

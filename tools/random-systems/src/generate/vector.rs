@@ -16,13 +16,20 @@ impl Generator {
             1 | 2 => sum(self.plane(inner, may), self.plane(inner, may)),
             3 => product(self.scalar(inner, may), self.plane(inner, may)),
             4 => Expr::Perp(Box::new(self.plane(inner, may))),
-            5 | 6 => product(Expr::Cis(Box::new(self.angle(inner, may)), false), self.plane(inner, may)),
+            5 | 6 => {
+                product(Expr::Cis(Box::new(self.angle(inner, may)), false), self.plane(inner, may))
+            }
             7 => self.complex(depth, may),
-            8 | 9 => self.use_let(Type::Plane, inner, may).unwrap_or_else(|| Expr::Vector(vec![self.leaf(may), self.leaf(may)])),
+            8 | 9 => self
+                .use_let(Type::Plane, inner, may)
+                .unwrap_or_else(|| Expr::Vector(vec![self.leaf(may), self.leaf(may)])),
             10 => {
                 let angle = self.angle(0, may);
                 let call = |function| Expr::Call(function, Box::new(angle.clone()));
-                let turn = Expr::Vector(vec![call(Function::Sin), Expr::Negative(Box::new(call(Function::Cos)))]);
+                let turn = Expr::Vector(vec![
+                    call(Function::Sin),
+                    Expr::Negative(Box::new(call(Function::Cos))),
+                ]);
                 product(self.leaf(may), turn)
             }
             _ => Expr::Vector(vec![self.scalar(inner, may), self.scalar(inner, may)]),
@@ -51,7 +58,11 @@ impl Generator {
                 found.push(Expr::Input(index, 0));
             }
         }
-        if found.is_empty() { None } else { Some(found.swap_remove(self.random.below(found.len()))) }
+        if found.is_empty() {
+            None
+        } else {
+            Some(found.swap_remove(self.random.below(found.len())))
+        }
     }
 
     /// Something that is written as a complex number.
@@ -75,7 +86,9 @@ impl Generator {
     }
 
     pub(crate) fn space(&mut self, depth: usize, may: May) -> Expr {
-        let plain = |generator: &mut Self, depth| Expr::Vector((0..3).map(|_| generator.scalar(depth, may)).collect());
+        let plain = |generator: &mut Self, depth| {
+            Expr::Vector((0..3).map(|_| generator.scalar(depth, may)).collect())
+        };
         if depth == 0 {
             return self.whole(3, may).unwrap_or_else(|| plain(self, 0));
         }
@@ -93,7 +106,8 @@ impl Generator {
     /// A vector that moves, so that its derivative may be taken.
     pub(crate) fn moved(&mut self, vector: Expr) -> Expr {
         let may = May { velocities: false, orders: 0, lets: 0, bound: None, arguments: &[] };
-        let shift = Expr::Vector(vec![self.coordinate(may), product(number(2), self.coordinate(may))]);
+        let shift =
+            Expr::Vector(vec![self.coordinate(may), product(number(2), self.coordinate(may))]);
         sum(vector, shift)
     }
 }

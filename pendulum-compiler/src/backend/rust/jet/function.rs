@@ -38,7 +38,11 @@ impl Writer<'_, '_, '_> {
                 let x = self.shared("a", place, &x);
                 let rate = self.rate(&x);
                 self.halves += 3;
-                let (name, sign) = if function == Function::Tan { ("tan", quote!(+)) } else { ("tanh", quote!(-)) };
+                let (name, sign) = if function == Function::Tan {
+                    ("tan", quote!(+))
+                } else {
+                    ("tanh", quote!(-))
+                };
                 let name = format_ident!("{name}");
                 let value = quote!(series::integral(|| #x.#name(), &#rate, &#slope, &path.reciprocals, order));
                 self.name_in(place, &value, slot.clone());
@@ -47,22 +51,36 @@ impl Writer<'_, '_, '_> {
             Function::Ln => {
                 let (x, divisor) = (self.value(a), self.whole(a));
                 let x = self.shared("a", place, &x);
-                self.inverse(place, &quote!(#x.ln()), &quote!(series::rate(#x, order)), &divisor, false);
+                self.inverse(
+                    place,
+                    &quote!(#x.ln()),
+                    &quote!(series::rate(#x, order)),
+                    &divisor,
+                    false,
+                );
             }
             Function::Atan => {
                 let (x, series) = (self.value(a), self.whole(a));
                 let x = self.shared("a", place, &x);
                 self.halves += 1;
                 let divisor = self.kept(&quote!(#one + series::square(&#series, order)));
-                self.inverse(place, &quote!(#x.atan()), &quote!(series::rate(#x, order)), &divisor, false);
+                self.inverse(
+                    place,
+                    &quote!(#x.atan()),
+                    &quote!(series::rate(#x, order)),
+                    &divisor,
+                    false,
+                );
             }
             Function::Asin | Function::Acos => {
                 let (x, series) = (self.value(a), self.whole(a));
                 let (x, root, lead) = (self.shared("a", place, &x), self.slot(), self.lead());
                 self.halves += 2;
-                let below = self.shared("b", place, &quote!(#one - series::square(&#series, order)));
+                let below =
+                    self.shared("b", place, &quote!(#one - series::square(&#series, order)));
                 self.lines.extend(quote!(#root[k] = series::sqrt(#below, &#root, #lead, order);));
-                let name = format_ident!("{}", if function == Function::Asin { "asin" } else { "acos" });
+                let name =
+                    format_ident!("{}", if function == Function::Asin { "asin" } else { "acos" });
                 let rate = quote!(series::rate(#x, order));
                 self.inverse(place, &quote!(#x.#name()), &rate, &root, function == Function::Acos);
             }
@@ -73,8 +91,10 @@ impl Writer<'_, '_, '_> {
             }
             Function::Sign | Function::Step => {
                 let x = self.value(a);
-                let name = format_ident!("{}", if function == Function::Sign { "sign" } else { "step" });
-                // The value at order 0 is all there is; that of another order means nothing and is not used.
+                let name =
+                    format_ident!("{}", if function == Function::Sign { "sign" } else { "step" });
+                // The value at order 0 is all there is; that of another order means nothing and is
+                // not used.
                 self.name(place, &quote!(series::constant(#x.#name(), order)));
             }
         }
@@ -90,10 +110,21 @@ impl Writer<'_, '_, '_> {
     }
 
     /// A function with the value `start` whose rate is `rate` over `divisor`.
-    fn inverse(&mut self, place: Place, start: &TokenStream, rate: &TokenStream, divisor: &TokenStream, negative: bool) {
+    fn inverse(
+        &mut self,
+        place: Place,
+        start: &TokenStream,
+        rate: &TokenStream,
+        divisor: &TokenStream,
+        negative: bool,
+    ) {
         let (slot, lead, sign) = (self.slot(), self.lead(), negative.then(|| quote!(-)));
         self.halves += 2;
-        let slope = self.shared("r", place, &quote!(series::slope(#sign #rate, &#divisor, &#slot, #lead, order)));
+        let slope = self.shared(
+            "r",
+            place,
+            &quote!(series::slope(#sign #rate, &#divisor, &#slot, #lead, order)),
+        );
         self.lines.extend(quote!(#slot[k] = #slope;));
         self.name(place, &quote!(series::from_rate(|| #start, #slope, &path.reciprocals, order)));
     }
@@ -101,12 +132,14 @@ impl Writer<'_, '_, '_> {
     /// (x ẏ − y ẋ)/(x² + y²) is the rate of the angle of the point (x, y).
     pub(super) fn angle(&mut self, place: Place, y: Place, x: Place) {
         let (y_value, x_value) = (self.value(y), self.value(x));
-        let (y_value, x_value) = (self.shared("a", place, &y_value), self.shared("b", place, &x_value));
+        let (y_value, x_value) =
+            (self.shared("a", place, &y_value), self.shared("b", place, &x_value));
         let (y, x) = (self.whole(y), self.whole(x));
         let (y_rate, x_rate) = (self.rate(&y_value), self.rate(&x_value));
         self.halves += 6;
         let divisor = self.kept(&quote!(series::square(&#x, order) + series::square(&#y, order)));
-        let rate = quote!((series::behind(&#y_rate, &#x, order) - series::behind(&#x_rate, &#y, order)));
+        let rate =
+            quote!((series::behind(&#y_rate, &#x, order) - series::behind(&#x_rate, &#y, order)));
         self.inverse(place, &quote!(#y_value.atan2(#x_value)), &rate, &divisor, false);
     }
 
@@ -121,7 +154,8 @@ impl Writer<'_, '_, '_> {
         }
         if self.parameter_only[a.0] {
             let (a, b, lead) = (self.constant(a), self.value(b), self.lead());
-            let logarithm = self.shared("l", place, &quote!(series::leading(|| #a.ln(), #lead, order)));
+            let logarithm =
+                self.shared("l", place, &quote!(series::leading(|| #a.ln(), #lead, order)));
             self.exponential(place, &quote!(#b * #logarithm));
             return;
         }

@@ -1,8 +1,9 @@
 //! Taylor recurrences: one line for each operation of the equations, the same for every order.
 //!
-//! What only sums and constants touch is a number at the order in question; what a product or a function reads is kept as a series.
-//! Where coordinates are coupled by a mass matrix that moves, M q̈ = f is solved order by order:
-//! M\[0\] q̈\[k\] = f\[k\] − Σ M\[j\] q̈\[k−j\] over 1 ≤ j ≤ k, with M\[0\] factored once. Loops over the order live in the runtime.
+//! What only sums and constants touch is a number at the order in question; what a product or a
+//! function reads is kept as a series. Where coordinates are coupled by a mass matrix that moves, M
+//! q̈ = f is solved order by order: M\[0\] q̈\[k\] = f\[k\] − Σ M\[j\] q̈\[k−j\] over 1 ≤ j ≤ k,
+//! with M\[0\] factored once. Loops over the order live in the runtime.
 
 mod function;
 mod momentum_form;
@@ -21,14 +22,17 @@ use quote::{format_ident, quote};
 use sine_oscillator::swing;
 use std::collections::BTreeMap;
 
-/// The most convolutions, in halves, of a system whose orders are unrolled, and of one whose sums are loops in their places.
+/// The most convolutions, in halves, of a system whose orders are unrolled, and of one whose sums
+/// are loops in their places.
 const MOST_UNROLLED: usize = 10;
 const MOST_LOOPED: usize = 80;
 
-/// The most convolutions, in halves, of a system for which higher orders pay: the rest of a step costs as much.
+/// The most convolutions, in halves, of a system for which higher orders pay: the rest of a step
+/// costs as much.
 const MOST_CHEAP: usize = 4;
 
-/// The equations as a program: for each block of the mass matrix its rows, and what the program's results mean for it.
+/// The equations as a program: for each block of the mass matrix its rows, and what the program's
+/// results mean for it.
 pub(crate) struct Equations {
     pub(crate) program: Program,
     pub(crate) blocks: Vec<Block>,
@@ -46,8 +50,14 @@ pub(crate) enum Block {
 pub(crate) fn equations(graph: &Graph, motion: &Motion) -> Equations {
     let blocks = solve::blocks(&motion.mass_matrix);
     let moving = |rows: &[usize]| {
-        let dependencies = |&row: &usize| rows.iter().map(move |&column| graph.dependencies(motion.mass_matrix[row][column]));
-        1 < rows.len() && rows.iter().flat_map(dependencies).any(|dependencies| dependencies.any(Dependencies::STATE))
+        let dependencies = |&row: &usize| {
+            rows.iter().map(move |&column| graph.dependencies(motion.mass_matrix[row][column]))
+        };
+        1 < rows.len()
+            && rows
+                .iter()
+                .flat_map(dependencies)
+                .any(|dependencies| dependencies.any(Dependencies::STATE))
     };
     let mut roots: Vec<Id> = Vec::new();
     for rows in &blocks {
@@ -72,7 +82,9 @@ pub(crate) fn equations(graph: &Graph, motion: &Motion) -> Equations {
             }
             let mut masses = Vec::new();
             for (i, &row) in rows.iter().enumerate() {
-                let entry = |&column: &usize| (motion.mass_matrix[row][column] != Graph::ZERO).then(&mut next);
+                let entry = |&column: &usize| {
+                    (motion.mass_matrix[row][column] != Graph::ZERO).then(&mut next)
+                };
                 masses.push(rows[..=i].iter().map(entry).collect());
             }
             let forces = rows.iter().map(|_| next()).collect();
@@ -85,7 +97,8 @@ pub(crate) fn equations(graph: &Graph, motion: &Motion) -> Equations {
 impl Emitter<'_, '_> {
     /// The implementation of `Jets`.
     pub(crate) fn jets(&self) -> TokenStream {
-        let (krate, scalar, count, name) = (&self.krate, self.scalar(), self.count(), &self.model.block.name);
+        let (krate, scalar, count, name) =
+            (&self.krate, self.scalar(), self.count(), &self.model.block.name);
         let components: usize = self.model.inputs.iter().map(Quantity::count).sum();
         let unknown = quote!(::core::unimplemented!());
         let (kind, orders, per_digit, work, body) = match &self.motion {
@@ -117,12 +130,20 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// The type of the work, how orders are gone through and how many pay, the new work and the statements for one order.
-    fn recurrences(&self, motion: &Motion) -> (TokenStream, proc_macro2::Ident, TokenStream, TokenStream, TokenStream) {
+    /// The type of the work, how orders are gone through and how many pay, the new work and the
+    /// statements for one order.
+    fn recurrences(
+        &self,
+        motion: &Motion,
+    ) -> (TokenStream, proc_macro2::Ident, TokenStream, TokenStream, TokenStream) {
         let Equations { program, blocks } = equations(&self.graph, motion);
         let solved = self.solved(&program, &blocks);
         let coupled = matches!(&blocks[..], [Block::Coupled { .. }]);
-        let unsolved = motion.unsolved.as_ref().filter(|_| coupled).and_then(|unsolved| self.unsolved(motion, unsolved));
+        let unsolved = motion
+            .unsolved
+            .as_ref()
+            .filter(|_| coupled)
+            .and_then(|unsolved| self.unsolved(motion, unsolved));
         let Recurrences { lines, kind, work, halves } = match unsolved {
             Some(unsolved) if 2 * unsolved.halves < solved.halves => unsolved,
             _ => solved,
@@ -137,9 +158,11 @@ impl Emitter<'_, '_> {
         (kind, orders, per_digit, work, lines)
     }
 
-    /// The recurrences of accelerations, where coordinates are coupled in series with the mass matrix.
+    /// The recurrences of accelerations, where coordinates are coupled in series with the mass
+    /// matrix.
     fn solved(&self, program: &Program, blocks: &[Block]) -> Recurrences {
-        let (parameter_only, prepared) = (program.parameter_only(), program.kept(Stage::Parameters));
+        let (parameter_only, prepared) =
+            (program.parameter_only(), program.kept(Stage::Parameters));
         let mut writer = Writer::new(self, program, parameter_only, &prepared);
         let explicit = blocks.iter().filter_map(|block| match block {
             Block::Explicit(rows) => Some(rows),
@@ -147,10 +170,14 @@ impl Emitter<'_, '_> {
         });
         let swings: BTreeMap<usize, _> = explicit
             .flatten()
-            .filter_map(|&(row, place)| swing(program, &writer.parameter_only, row, place).map(|own| (row, own)))
+            .filter_map(|&(row, place)| {
+                swing(program, &writer.parameter_only, row, place).map(|own| (row, own))
+            })
             .collect();
         for place in 0..program.ops.len() {
-            if !writer.parameter_only[place] && !swings.values().any(|own| own.contains(&Place(place))) {
+            if !writer.parameter_only[place]
+                && !swings.values().any(|own| own.contains(&Place(place)))
+            {
                 writer.operation(Place(place));
             }
         }
@@ -179,7 +206,8 @@ impl Emitter<'_, '_> {
     /// The recurrences of equations that are not solved, where they have any.
     fn unsolved(&self, motion: &Motion, unsolved: &Unsolved) -> Option<Recurrences> {
         let program = schedule::of_series(&self.graph, &momentum_form::roots(unsolved));
-        let (parameter_only, prepared) = (program.parameter_only(), program.kept(Stage::Parameters));
+        let (parameter_only, prepared) =
+            (program.parameter_only(), program.kept(Stage::Parameters));
         let plan = Plan::new(&program, &parameter_only, unsolved)?;
         let mut writer = Writer::new(self, &program, parameter_only.clone(), &prepared);
         writer.unsolved(&plan, motion);
@@ -187,7 +215,8 @@ impl Emitter<'_, '_> {
     }
 }
 
-/// The recurrences of a system: the statements for one order, the type of the work and a new one, and the convolutions in halves.
+/// The recurrences of a system: the statements for one order, the type of the work and a new one,
+/// and the convolutions in halves.
 struct Recurrences {
     lines: TokenStream,
     kind: TokenStream,
@@ -212,14 +241,20 @@ struct Writer<'e, 'm, 'a> {
     leading: usize,
     /// The convolutions so far, in halves.
     halves: usize,
-    /// The sines and cosines that are found from turns, and the coefficients of what they are multiplied by.
+    /// The sines and cosines that are found from turns, and the coefficients of what they are
+    /// multiplied by.
     turned: BTreeMap<Place, TokenStream>,
     paired: Vec<(Place, TokenStream)>,
 }
 
 impl<'e, 'm, 'a> Writer<'e, 'm, 'a> {
     /// Nothing written yet.
-    fn new(emitter: &'e Emitter<'m, 'a>, program: &'e Program, parameter_only: Vec<bool>, prepared: &'e [Place]) -> Self {
+    fn new(
+        emitter: &'e Emitter<'m, 'a>,
+        program: &'e Program,
+        parameter_only: Vec<bool>,
+        prepared: &'e [Place],
+    ) -> Self {
         Self {
             emitter,
             parameter_only,
@@ -243,7 +278,8 @@ impl<'e, 'm, 'a> Writer<'e, 'm, 'a> {
         let (krate, scalar, length) = (&emitter.krate, emitter.scalar(), prepared.len());
         let prepare = emitter.body_after(program, prepared, &[]);
         let kinds = factors.iter().map(|size| quote!(#krate::jet::Factors<#scalar, #size>));
-        let kind = quote!(#krate::jet::Work<#scalar, (#(#kinds,)*), #slots, #pairs, #length, #leading>);
+        let kind =
+            quote!(#krate::jet::Work<#scalar, (#(#kinds,)*), #slots, #pairs, #length, #leading>);
         let empty = factors.iter().map(|_| quote!(#krate::jet::Factors::zero()));
         let work = quote!(#krate::jet::Work::new(#prepare, (#(#empty,)*)));
         Recurrences { lines, kind, work, halves }
@@ -368,7 +404,11 @@ impl Writer<'_, '_, '_> {
                 let (a, b) = (self.value(a), self.value(b));
                 let (a, b) = (self.shared("a", place, &a), self.shared("b", place, &b));
                 let lead = self.lead();
-                let first = self.shared("l", place, &quote!(series::leading(|| (#a - #b).step(), #lead, order)));
+                let first = self.shared(
+                    "l",
+                    place,
+                    &quote!(series::leading(|| (#a - #b).step(), #lead, order)),
+                );
                 let scalar = self.emitter.scalar();
                 self.name(place, &quote!(#first * #a + (#scalar::from_f64(1.0) - #first) * #b));
             }
@@ -397,7 +437,8 @@ impl Writer<'_, '_, '_> {
             Symbol::Coordinate(index) => quote!(path.q[#index]),
             Symbol::Velocity(index) => quote!(path.v[#index]),
             Symbol::Input { input, component, order } => {
-                let before: usize = self.emitter.model.inputs[..input].iter().map(Quantity::count).sum();
+                let before: usize =
+                    self.emitter.model.inputs[..input].iter().map(Quantity::count).sum();
                 let (index, order) = (before + component, usize::from(order));
                 let order = format_ident!("{}", ["position", "velocity", "acceleration"][order]);
                 quote!(drive[#index].#order)
@@ -444,8 +485,15 @@ impl Writer<'_, '_, '_> {
     }
 
     /// The accelerations of coordinates that a moving mass matrix couples.
-    fn coupled(&mut self, index: usize, rows: &[usize], masses: &[Vec<Option<Place>>], forces: &[Place]) {
-        let (index, krate, scalar) = (Literal::usize_unsuffixed(index), &self.emitter.krate, self.emitter.scalar());
+    fn coupled(
+        &mut self,
+        index: usize,
+        rows: &[usize],
+        masses: &[Vec<Option<Place>>],
+        forces: &[Place],
+    ) {
+        let (index, krate, scalar) =
+            (Literal::usize_unsuffixed(index), &self.emitter.krate, self.emitter.scalar());
         let size = rows.len();
         let entry = |i: usize, j: usize| masses[i.max(j)][i.min(j)];
         let mut right = Vec::new();

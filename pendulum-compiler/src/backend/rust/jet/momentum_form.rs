@@ -1,9 +1,13 @@
-//! Taylor recurrences from equations that are not solved: sums of rates of momenta, one order ahead.
+//! Taylor recurrences from equations that are not solved: sums of rates of momenta, one order
+//! ahead.
 //!
-//! Where positions are written with `let`, ṗ comes from few products: a chain has two for each link in its momenta and two in what they turn,
-//! while the products of its full mass matrix grow with the square of its length. At order k
-//! 1. the momenta are found at order k + 1 with q̈\[k\] = 0, which leaves a\[0\] v\[k+1\] out of each product a v;
-//! 2. with (k+1) p\[k+1\] for ṗ\[k\] the equations leave −M\[0\] q̈\[k\], where M is the mass matrix;
+//! Where positions are written with `let`, ṗ comes from few products: a chain has two for each link
+//! in its momenta and two in what they turn, while the products of its full mass matrix grow with
+//! the square of its length. At order k
+//! 1. the momenta are found at order k + 1 with q̈\[k\] = 0, which leaves a\[0\] v\[k+1\] out of
+//!    each product a v;
+//! 2. with (k+1) p\[k+1\] for ṗ\[k\] the equations leave −M\[0\] q̈\[k\], where M is the mass
+//!    matrix;
 //! 3. what q̈\[k\] adds to the series goes into their newest coefficients.
 
 use super::Writer;
@@ -53,8 +57,13 @@ pub(super) fn roots(unsolved: &Unsolved) -> Vec<Id> {
 }
 
 impl<'p> Plan<'p> {
-    /// The plan for the program of [`roots`]; `None` where a momentum is not affine in the velocities by sums and products.
-    pub(super) fn new(program: &'p Program, parameter_only: &'p [bool], unsolved: &Unsolved) -> Option<Self> {
+    /// The plan for the program of [`roots`]; `None` where a momentum is not affine in the
+    /// velocities by sums and products.
+    pub(super) fn new(
+        program: &'p Program,
+        parameter_only: &'p [bool],
+        unsolved: &Unsolved,
+    ) -> Option<Self> {
         let (carried, equations) = program.results.split_at(unsolved.carried.len());
         let (carried, equations) = (carried.to_vec(), equations.to_vec());
         let count = program.ops.len();
@@ -77,7 +86,8 @@ impl<'p> Plan<'p> {
                 Op::Load(Symbol::Velocity(_)) => moved[place] = ahead[place],
                 Op::Load(Symbol::Auxiliary(_)) => rated[place] = true,
                 _ => {
-                    moved[place] = ahead[place] && operands(op).iter().any(|operand| moved[operand.0]);
+                    moved[place] =
+                        ahead[place] && operands(op).iter().any(|operand| moved[operand.0]);
                     rated[place] = operands(op).iter().any(|operand| rated[operand.0]);
                 }
             }
@@ -93,7 +103,18 @@ impl<'p> Plan<'p> {
             }
         }
         let (turns, dots, inside) = (BTreeMap::new(), BTreeMap::new(), vec![false; count]);
-        let mut plan = Self { program, parameter_only, carried, equations, ahead, moved, rated, turns, dots, inside };
+        let mut plan = Self {
+            program,
+            parameter_only,
+            carried,
+            equations,
+            ahead,
+            moved,
+            rated,
+            turns,
+            dots,
+            inside,
+        };
         for place in (0..count).map(Place).filter(|place| plan.moved[place.0]) {
             if let Some(turn) = plan.turn(place) {
                 plan.turns.insert(place, turn);
@@ -120,7 +141,9 @@ impl<'p> Plan<'p> {
         let product = |place: Place| {
             let Op::Mul(a, b) = self.program.ops[place.0] else { return None };
             let of = |part: Place, factor: Place| match self.program.ops[part.0] {
-                Op::Part(function, pair) if !self.parameter_only[factor.0] && !self.ahead[factor.0] => {
+                Op::Part(function, pair)
+                    if !self.parameter_only[factor.0] && !self.ahead[factor.0] =>
+                {
                     Some((function, pair, factor))
                 }
                 _ => None,
@@ -191,7 +214,8 @@ impl Writer<'_, '_, '_> {
         self.gains(plan, &turns);
     }
 
-    /// The momenta one order ahead: the statements, and the pairs of products of a velocity with the sine and cosine of its coordinate.
+    /// The momenta one order ahead: the statements, and the pairs of products of a velocity with
+    /// the sine and cosine of its coordinate.
     fn momenta(&mut self, plan: &Plan<'_>) -> (TokenStream, BTreeMap<Place, TokenStream>) {
         let mut products: BTreeMap<Place, TokenStream> = BTreeMap::new();
         for index in 0..plan.program.ops.len() {
@@ -199,7 +223,8 @@ impl Writer<'_, '_, '_> {
             if !plan.ahead[index] {
                 continue;
             }
-            let turn = plan.turns.values().find(|turn| turn.pair == place).map(|turn| turn.coordinate);
+            let turn =
+                plan.turns.values().find(|turn| turn.pair == place).map(|turn| turn.coordinate);
             if let Some(coordinate) = turn {
                 let (pair, product) = (self.pair(), self.pair());
                 self.halves -= 4;
@@ -212,7 +237,8 @@ impl Writer<'_, '_, '_> {
                 self.turned.insert(place, pair);
                 products.insert(place, product);
             } else if let Some(turn) = plan.turns.get(&place) {
-                let (product, part) = (&products[&turn.pair], usize::from(turn.function == Function::Cos));
+                let (product, part) =
+                    (&products[&turn.pair], usize::from(turn.function == Function::Cos));
                 let constants = turn.constants.iter().map(|&constant| self.constant(constant));
                 let value = quote!(#product[k][#part] #(* #constants)*);
                 self.name(place, &value);
@@ -221,9 +247,13 @@ impl Writer<'_, '_, '_> {
             }
         }
         // What is read at the order before, or as a rate, has to stay.
-        let late =
-            (0..plan.program.ops.len()).filter(|&index| !plan.ahead[index] && !plan.parameter_only[index] && !plan.inside[index]);
-        let read: Vec<Place> = late.flat_map(|index| operands(&plan.program.ops[index])).chain(plan.carried.clone()).collect();
+        let late = (0..plan.program.ops.len()).filter(|&index| {
+            !plan.ahead[index] && !plan.parameter_only[index] && !plan.inside[index]
+        });
+        let read: Vec<Place> = late
+            .flat_map(|index| operands(&plan.program.ops[index]))
+            .chain(plan.carried.clone())
+            .collect();
         for place in read.into_iter().chain(plan.equations.clone()) {
             if plan.ahead[place.0] && !matches!(plan.program.ops[place.0], Op::SinCos(_)) {
                 let series = self.whole(place);
@@ -243,7 +273,8 @@ impl Writer<'_, '_, '_> {
                 let (turned, other) = (self.turned[pair].clone(), self.pair());
                 let (with_sin, with_cos) = (self.value(*a), self.value(*b));
                 let newest = local("b", index);
-                self.lines.extend(quote!(let #newest = [#with_sin, #with_cos]; #other[k] = #newest;));
+                self.lines
+                    .extend(quote!(let #newest = [#with_sin, #with_cos]; #other[k] = #newest;));
                 self.paired.extend([(*a, quote!(#other[k][0])), (*b, quote!(#other[k][1]))]);
                 self.name(Place(index), &quote!(series::dot(&#turned, &#other, #newest, order)));
                 continue;
@@ -268,13 +299,17 @@ impl Writer<'_, '_, '_> {
     /// The mass matrix at the start of the step, as `masses`.
     fn masses_at_start(&self, motion: &Motion) -> TokenStream {
         let count = motion.mass_matrix.len();
-        let roots: Vec<Id> = (0..count).flat_map(|i| motion.mass_matrix[i][..=i].iter().copied()).collect();
+        let roots: Vec<Id> =
+            (0..count).flat_map(|i| motion.mass_matrix[i][..=i].iter().copied()).collect();
         let program = schedule::program(&self.emitter.graph, &roots);
         let known = |angle: Place| match program.ops[angle.0] {
-            Op::Load(symbol @ Symbol::Coordinate(_)) => self.turned.iter().find_map(|(pair, series)| {
-                let Op::SinCos(own) = self.program.ops[pair.0] else { return None };
-                matches!(self.program.ops[own.0], Op::Load(other) if other == symbol).then(|| quote!(#series[0]))
-            }),
+            Op::Load(symbol @ Symbol::Coordinate(_)) => {
+                self.turned.iter().find_map(|(pair, series)| {
+                    let Op::SinCos(own) = self.program.ops[pair.0] else { return None };
+                    matches!(self.program.ops[own.0], Op::Load(other) if other == symbol)
+                        .then(|| quote!(#series[0]))
+                })
+            }
             _ => None,
         };
         // The sine and the cosine of an angle from those at hand.
@@ -301,7 +336,9 @@ impl Writer<'_, '_, '_> {
                     });
                     lines.extend(quote!(let #name = #value;));
                 }
-                Op::Call(function @ (Function::Sin | Function::Cos), angle) if pair(angle).is_some() => {
+                Op::Call(function @ (Function::Sin | Function::Cos), angle)
+                    if pair(angle).is_some() =>
+                {
                     let (value, part) = (pair(angle), usize::from(function == Function::Cos));
                     lines.extend(quote!(let #name = #value[#part];));
                 }
@@ -340,7 +377,8 @@ impl Writer<'_, '_, '_> {
         let mut turned: Vec<Place> = Vec::new();
         let sinks: Vec<bool> = self.sinks(plan);
         // A rate may stand before its momentum.
-        let (momenta, others): (Vec<usize>, Vec<usize>) = (0..plan.program.ops.len()).partition(|&index| plan.ahead[index]);
+        let (momenta, others): (Vec<usize>, Vec<usize>) =
+            (0..plan.program.ops.len()).partition(|&index| plan.ahead[index]);
         for index in momenta.into_iter().chain(others) {
             let (place, op) = (Place(index), &plan.program.ops[index]);
             if !(plan.moved[index] || plan.rated[index]) || !sinks[index] {
@@ -348,7 +386,8 @@ impl Writer<'_, '_, '_> {
             }
             let known = |gains: &[Option<TokenStream>], place: Place| gains[place.0].clone();
             let gain = if let Some(turn) = plan.turns.get(&place) {
-                let (gain, part) = (local("g", turn.coordinate), usize::from(turn.function == Function::Cos));
+                let (gain, part) =
+                    (local("g", turn.coordinate), usize::from(turn.function == Function::Cos));
                 let (pair, product) = (&self.turned[&turn.pair], &turns[&turn.pair]);
                 if !turned.contains(&turn.pair) {
                     turned.push(turn.pair);
@@ -408,7 +447,9 @@ impl Writer<'_, '_, '_> {
 
     /// The operations whose gains are kept in a series, or needed for one that is.
     fn sinks(&self, plan: &Plan<'_>) -> Vec<bool> {
-        let mut sinks: Vec<bool> = (0..plan.program.ops.len()).map(|index| self.series.contains_key(&Place(index))).collect();
+        let mut sinks: Vec<bool> = (0..plan.program.ops.len())
+            .map(|index| self.series.contains_key(&Place(index)))
+            .collect();
         for (place, turn) in &plan.turns {
             sinks[place.0] |= self.turned.contains_key(&turn.pair);
         }

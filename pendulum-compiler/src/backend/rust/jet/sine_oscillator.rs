@@ -1,7 +1,8 @@
 //! Swings: coordinates with q̈ = κ sin q + λ cos q, where κ and λ do not move.
 //!
-//! Their jets need neither sine nor cosine as a series. With a = q̈ and b = κ cos q − λ sin q is ȧ = b q̇ and ḃ = −a q̇ = −(q̇²/2)˙:
-//! one product and one square, each of whose terms comes once, in place of two products.
+//! Their jets need neither sine nor cosine as a series. With a = q̈ and b = κ cos q − λ sin q is
+//! ȧ = b q̇ and ḃ = −a q̇ = −(q̇²/2)˙: one product and one square, each of whose terms comes once,
+//! in place of two products.
 
 use super::Writer;
 use crate::algebra::expr::{Function, Symbol};
@@ -10,7 +11,8 @@ use proc_macro2::TokenStream;
 use quote::quote;
 use std::collections::BTreeSet;
 
-/// The operations between the coordinate and its acceleration, if they make it swing and nothing else reads them.
+/// The operations between the coordinate and its acceleration, if they make it swing and nothing
+/// else reads them.
 pub(super) fn swing(
     program: &Program,
     parameter_only: &[bool],
@@ -22,7 +24,10 @@ pub(super) fn swing(
         return None;
     }
     let read_outside = |(place, op): (usize, &Op)| {
-        !own.contains(&Place(place)) && operands(op).iter().any(|operand| own.contains(operand) && !parameter_only[operand.0])
+        !own.contains(&Place(place))
+            && operands(op)
+                .iter()
+                .any(|operand| own.contains(operand) && !parameter_only[operand.0])
     };
     let results = program.results.iter().filter(|result| own.contains(result)).count();
     let alone = results == 1 && !program.ops.iter().enumerate().any(read_outside);
@@ -80,8 +85,15 @@ impl Writer<'_, '_, '_> {
     }
 }
 
-/// Whether a place is a sum of multiples of the sine and the cosine of the coordinate; collects what moves on the way there.
-fn combines(program: &Program, parameter_only: &[bool], coordinate: usize, place: Place, own: &mut BTreeSet<Place>) -> bool {
+/// Whether a place is a sum of multiples of the sine and the cosine of the coordinate; collects
+/// what moves on the way there.
+fn combines(
+    program: &Program,
+    parameter_only: &[bool],
+    coordinate: usize,
+    place: Place,
+    own: &mut BTreeSet<Place>,
+) -> bool {
     if parameter_only[place.0] {
         return false;
     }
@@ -95,10 +107,15 @@ fn combines(program: &Program, parameter_only: &[bool], coordinate: usize, place
         }
         Op::Negative(a) => combines(program, parameter_only, coordinate, a, own),
         Op::Add(a, b) | Op::Sub(a, b) => {
-            combines(program, parameter_only, coordinate, a, own) && combines(program, parameter_only, coordinate, b, own)
+            combines(program, parameter_only, coordinate, a, own)
+                && combines(program, parameter_only, coordinate, b, own)
         }
-        Op::Mul(a, b) if parameter_only[a.0] => combines(program, parameter_only, coordinate, b, own),
-        Op::Mul(a, b) | Op::Div(a, b) if parameter_only[b.0] => combines(program, parameter_only, coordinate, a, own),
+        Op::Mul(a, b) if parameter_only[a.0] => {
+            combines(program, parameter_only, coordinate, b, own)
+        }
+        Op::Mul(a, b) | Op::Div(a, b) if parameter_only[b.0] => {
+            combines(program, parameter_only, coordinate, a, own)
+        }
         _ => false,
     }
 }

@@ -25,7 +25,11 @@ fn dancer() -> (Writer, &'static str) {
         let (sin, cos) = Real::sin_cos(f64::from(angle) / 2.0);
         [axis[0] * sin as f32, axis[1] * sin as f32, axis[2] * sin as f32, cos as f32]
     };
-    let turns = [quaternion([0.6, 0.0, 0.8], 0.3), quaternion([0.0, 1.0, 0.0], 1.4), quaternion([0.0, 0.6, -0.8], 2.0)];
+    let turns = [
+        quaternion([0.6, 0.0, 0.8], 0.3),
+        quaternion([0.0, 1.0, 0.0], 1.4),
+        quaternion([0.0, 0.6, -0.8], 2.0),
+    ];
     let mut curved = Vec::new();
     for (key, turn) in turns.iter().enumerate() {
         let tangent = [0.3 - key as f32, 0.2, 0.5 * key as f32, -0.4];
@@ -37,7 +41,13 @@ fn dancer() -> (Writer, &'static str) {
     file.channel(0, "rotation", "LINEAR", &[0.25, 1.0, 1.75], &turns.concat());
     file.channel(1, "scale", "LINEAR", &[0.0, 1.0, 2.0], &grow);
     file.channel(1, "rotation", "CUBICSPLINE", &[0.0, 0.75, 2.0], &curved);
-    file.channel(3, "translation", "STEP", &[0.0, 1.25, 1.5], &[1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    file.channel(
+        3,
+        "translation",
+        "STEP",
+        &[0.0, 1.25, 1.5],
+        &[1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+    );
     let nodes = r#"{"name":"hips","children":[1]},
         {"name":"spine","translation":[0.1,1,0],"children":[2]},
         {"name":"neck","matrix":[1,0,0,0, 0.25,2,0,0, 0,0,1,0, 0,0.5,0,1],"children":[3]},

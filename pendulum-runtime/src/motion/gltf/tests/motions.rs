@@ -21,12 +21,22 @@ fn kinks(motion: &NodeMotion, until: f64) -> Vec<f64> {
 #[test]
 fn a_node_on_lines_moves_as_lines_do() {
     let mut file = Writer::default();
-    file.channel(0, "translation", "LINEAR", &[0.5, 1.0, 2.0], &[0.0, 0.0, 0.0, 1.0, 2.0, 0.0, 1.0, 2.0, -4.0]);
+    file.channel(
+        0,
+        "translation",
+        "LINEAR",
+        &[0.5, 1.0, 2.0],
+        &[0.0, 0.0, 0.0, 1.0, 2.0, 0.0, 1.0, 2.0, -4.0],
+    );
     for bytes in [file.text(r#"{"name":"foot"}"#), file.binary(r#"{"name":"foot"}"#)] {
         let read = Gltf::read(&bytes).unwrap();
-        assert_eq!((read.node("foot"), read.animation("dance"), read.node("hand")), (Some(0), Some(0), None));
+        assert_eq!(
+            (read.node("foot"), read.animation("dance"), read.node("hand")),
+            (Some(0), Some(0), None)
+        );
         let motion = read.motion(0, 0).unwrap();
-        let lines = Linear::new(&[0.5, 1.0, 2.0], &[[0.0; 3], [1.0, 2.0, 0.0], [1.0, 2.0, -4.0]]).unwrap();
+        let lines =
+            Linear::new(&[0.5, 1.0, 2.0], &[[0.0; 3], [1.0, 2.0, 0.0], [1.0, 2.0, -4.0]]).unwrap();
         for k in 0..50 {
             let t = 0.05 * f64::from(k);
             for side in [Side::Before, Side::After] {
@@ -46,7 +56,13 @@ fn nodes_rest_where_no_channel_moves_them() {
     // Stays, moves and stays; jumps at 3 s only; turns from 4 s to 5 s.
     let stays = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
     file.channel(0, "translation", "LINEAR", &[0.0, 1.0, 2.0, 6.0], &stays);
-    file.channel(0, "scale", "STEP", &[0.0, 2.5, 3.0, 6.0], &[1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 2.0, 1.0, 1.0, 2.0, 1.0, 1.0]);
+    file.channel(
+        0,
+        "scale",
+        "STEP",
+        &[0.0, 2.5, 3.0, 6.0],
+        &[1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 2.0, 1.0, 1.0, 2.0, 1.0, 1.0],
+    );
     file.channel(1, "rotation", "LINEAR", &[4.0, 5.0], &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0]);
     let nodes = r#"{"children":[1]},{"translation":[1,0,0],"children":[2]},{"translation":[0,1,0]},{"translation":[0,9,0]}"#;
     let read = Gltf::read(&file.binary(nodes)).unwrap();
@@ -57,7 +73,10 @@ fn nodes_rest_where_no_channel_moves_them() {
         times.map(|t| rest(&parent, t)),
         [1.0, 1.0, 1.0, 1.5, 3.0, 3.0, f64::INFINITY, f64::INFINITY, f64::INFINITY, f64::INFINITY]
     );
-    assert_eq!(times.map(|t| rest(&child, t)), [1.0, 1.0, 1.0, 1.5, 3.0, 3.0, 4.0, 4.5, f64::INFINITY, f64::INFINITY]);
+    assert_eq!(
+        times.map(|t| rest(&child, t)),
+        [1.0, 1.0, 1.0, 1.5, 3.0, 3.0, 4.0, 4.5, f64::INFINITY, f64::INFINITY]
+    );
     // Whatever is said to rest has one position, both sides of every key included.
     let looped = child.clone().looped().unwrap();
     for motion in [parent, child, looped.clone()] {
@@ -77,12 +96,19 @@ fn nodes_rest_where_no_channel_moves_them() {
     assert_eq!(rest(&read.motion(0, 3).unwrap().looped().unwrap(), 1.0), f64::INFINITY);
 }
 
-/// A rod of two metres turned about z by a quarter turn in a second, the shorter way round although the signs differ.
+/// A rod of two metres turned about z by a quarter turn in a second, the shorter way round although
+/// the signs differ.
 #[test]
 fn a_turning_parent_carries_its_child_on_a_circle() {
     let half = 0.5f32.sqrt();
     let mut file = Writer::default();
-    file.channel(0, "rotation", "LINEAR", &[0.0, 1.0, 2.0], &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -half, -half, 0.0, 0.0, 1.0, 0.0]);
+    file.channel(
+        0,
+        "rotation",
+        "LINEAR",
+        &[0.0, 1.0, 2.0],
+        &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -half, -half, 0.0, 0.0, 1.0, 0.0],
+    );
     let bytes = file.binary(r#"{"children":[1]},{"translation":[2,0,0]}"#);
     let motion = Gltf::read(&bytes).unwrap().motion(0, 1).unwrap();
     let speed = core::f64::consts::FRAC_PI_2;
@@ -93,7 +119,11 @@ fn a_turning_parent_carries_its_child_on_a_circle() {
         // The key of single precision turns by π/2 within 10⁻⁷.
         close(sample.position, [2.0 * cos, 2.0 * sin, 0.0], 3e-7);
         close(sample.velocity, [-2.0 * speed * sin, 2.0 * speed * cos, 0.0], 1e-6);
-        close(sample.acceleration, [-2.0 * speed * speed * cos, -2.0 * speed * speed * sin, 0.0], 1e-6);
+        close(
+            sample.acceleration,
+            [-2.0 * speed * speed * cos, -2.0 * speed * speed * sin, 0.0],
+            1e-6,
+        );
     }
     // No jump at the key in the middle, where the speed stays the same.
     assert_eq!(kinks(&motion, 9.0), [0.0, 2.0]);
@@ -111,16 +141,27 @@ fn derivatives_are_those_of_the_position() {
             if kinks(&motion, 9.0).iter().any(|kink| (kink - t).abs() < 2.5 * h) {
                 continue;
             }
-            let x = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| at(&motion, t + k * h, Side::After).position);
+            let x =
+                [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| at(&motion, t + k * h, Side::After).position);
             let sample = at(&motion, t, Side::After);
             // Central differences of fourth order.
             let first = |d: usize| (x[0][d] - 8.0 * x[1][d] + 8.0 * x[3][d] - x[4][d]) / (12.0 * h);
-            let second = |d: usize| (-x[0][d] + 16.0 * x[1][d] - 30.0 * x[2][d] + 16.0 * x[3][d] - x[4][d]) / (12.0 * h * h);
+            let second = |d: usize| {
+                (-x[0][d] + 16.0 * x[1][d] - 30.0 * x[2][d] + 16.0 * x[3][d] - x[4][d])
+                    / (12.0 * h * h)
+            };
             close(sample.velocity, [0, 1, 2].map(first), 1e-8);
             close(sample.acceleration, [0, 1, 2].map(second), 1e-6);
-            for orders in [Orders::NONE, Orders::POSITION, Orders::VELOCITY, Orders::POSITION.and(Orders::ACCELERATION)] {
+            for orders in [
+                Orders::NONE,
+                Orders::POSITION,
+                Orders::VELOCITY,
+                Orders::POSITION.and(Orders::ACCELERATION),
+            ] {
                 let some: Sample<f64, 3> = motion.sample(Time::new(t), Side::After, orders);
-                let kept = |wanted: Orders, value: [f64; 3]| if orders.contains(wanted) { value } else { [0.0; 3] };
+                let kept = |wanted: Orders, value: [f64; 3]| {
+                    if orders.contains(wanted) { value } else { [0.0; 3] }
+                };
                 assert_eq!(some.position, kept(Orders::POSITION, sample.position));
                 assert_eq!(some.velocity, kept(Orders::VELOCITY, sample.velocity));
                 assert_eq!(some.acceleration, kept(Orders::ACCELERATION, sample.acceleration));
@@ -140,16 +181,26 @@ fn positions_are_those_of_matrices() {
     let nodes = r#"{"children":[1],"translation":[1,2,3]},{"children":[2],"translation":[0,1,0]},{"translation":[0.5,0,-1]}"#;
     let motion = Gltf::read(&file.text(nodes)).unwrap().motion(0, 2).unwrap();
     let wide = turns.map(|[x, y, z, w]| {
-        UnitQuaternion::from_quaternion(Quaternion::new(f64::from(w), f64::from(x), f64::from(y), f64::from(z)))
+        UnitQuaternion::from_quaternion(Quaternion::new(
+            f64::from(w),
+            f64::from(x),
+            f64::from(y),
+            f64::from(z),
+        ))
     });
     for k in 0..=10 {
         let t = f64::from(k) / 10.0;
         let place = |x: [f64; 3]| Matrix4::new_translation(&Vector3::from(x));
-        let scale = Matrix4::new_nonuniform_scaling(&Vector3::new(1.0 + 2.0 * t, 1.0 - 0.5 * t, 1.0 + t));
+        let scale =
+            Matrix4::new_nonuniform_scaling(&Vector3::new(1.0 + 2.0 * t, 1.0 - 0.5 * t, 1.0 + t));
         let outer = place([1.0, 2.0, 3.0]) * wide[0].slerp(&wide[1], t).to_homogeneous();
         let inner = place([0.0, 1.0, 0.0]) * wide[1].slerp(&wide[0], t).to_homogeneous() * scale;
         let expected = outer * inner * nalgebra::Vector4::new(0.5, 0.0, -1.0, 1.0);
-        close(at(&motion, t, Side::Before).position, [expected[0], expected[1], expected[2]], 1e-12);
+        close(
+            at(&motion, t, Side::Before).position,
+            [expected[0], expected[1], expected[2]],
+            1e-12,
+        );
     }
 }
 
@@ -179,7 +230,10 @@ fn a_loop_repeats_and_its_seam_is_a_kink_unless_smooth() {
             close(a.acceleration, b.acceleration, 1e-8);
         }
     }
-    assert_eq!(kinks(&looped, 2.5), [-0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 1.75, 2.0, 2.25, 2.5]);
+    assert_eq!(
+        kinks(&looped, 2.5),
+        [-0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 1.75, 2.0, 2.25, 2.5]
+    );
     for (kink, period) in [(0.75, 0.0), (0.75, 2.0 * 777.0), (1.5, 2.0 * 333.0), (0.0, 20.0)] {
         let [a, b] = [Side::Before, Side::After].map(|side| at(&looped, kink + period, side));
         let before = if kink == 0.0 { 2.0 } else { kink };
@@ -188,10 +242,18 @@ fn a_loop_repeats_and_its_seam_is_a_kink_unless_smooth() {
     // A full turn in four quarters has no seam.
     let half = 0.5f32.sqrt();
     let mut wheel = Writer::default();
-    let keys =
-        [[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, half, half], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, half, -half], [0.0, 0.0, 0.0, -1.0]];
+    let keys = [
+        [0.0, 0.0, 0.0, 1.0],
+        [0.0, 0.0, half, half],
+        [0.0, 0.0, 1.0, 0.0],
+        [0.0, 0.0, half, -half],
+        [0.0, 0.0, 0.0, -1.0],
+    ];
     wheel.channel(0, "rotation", "LINEAR", &[0.0, 1.0, 2.0, 3.0, 4.0], &keys.concat());
-    let rim = Gltf::read(&wheel.text(r#"{"children":[1]},{"translation":[1,0,0]}"#)).unwrap().motion(0, 1).unwrap();
+    let rim = Gltf::read(&wheel.text(r#"{"children":[1]},{"translation":[1,0,0]}"#))
+        .unwrap()
+        .motion(0, 1)
+        .unwrap();
     assert_eq!(kinks(&rim.looped().unwrap(), 30.0), [0.0f64; 0]);
 }
 

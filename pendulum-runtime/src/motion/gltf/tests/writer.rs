@@ -19,22 +19,44 @@ impl Writer {
         self.bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
         let index = self.count[0];
         let comma = if index == 0 { "" } else { "," };
-        write!(self.views, r#"{comma}{{"buffer":0,"byteOffset":{start},"byteLength":{}}}"#, 4 * numbers.len()).unwrap();
+        write!(
+            self.views,
+            r#"{comma}{{"buffer":0,"byteOffset":{start},"byteLength":{}}}"#,
+            4 * numbers.len()
+        )
+        .unwrap();
         let count = numbers.len() / width;
-        let accessor = format!(r#"{{"bufferView":{index},"componentType":5126,"count":{count},"type":"{kind}"}}"#);
+        let accessor = format!(
+            r#"{{"bufferView":{index},"componentType":5126,"count":{count},"type":"{kind}"}}"#
+        );
         write!(self.accessors, "{comma}{accessor}").unwrap();
         self.count[0] += 1;
         index
     }
 
-    pub(super) fn channel(&mut self, node: usize, path: &str, interpolation: &str, times: &[f32], values: &[f32]) {
+    pub(super) fn channel(
+        &mut self,
+        node: usize,
+        path: &str,
+        interpolation: &str,
+        times: &[f32],
+        values: &[f32],
+    ) {
         let width = if path == "rotation" { 4 } else { 3 };
         let input = self.accessor(times, "SCALAR", 1);
         let output = self.accessor(values, &format!("VEC{width}"), width);
         let sampler = self.count[1];
         let comma = if sampler == 0 { "" } else { "," };
-        write!(self.samplers, r#"{comma}{{"input":{input},"output":{output},"interpolation":"{interpolation}"}}"#).unwrap();
-        write!(self.channels, r#"{comma}{{"sampler":{sampler},"target":{{"node":{node},"path":"{path}"}}}}"#).unwrap();
+        write!(
+            self.samplers,
+            r#"{comma}{{"input":{input},"output":{output},"interpolation":"{interpolation}"}}"#
+        )
+        .unwrap();
+        write!(
+            self.channels,
+            r#"{comma}{{"sampler":{sampler},"target":{{"node":{node},"path":"{path}"}}}}"#
+        )
+        .unwrap();
         self.count[1] += 1;
     }
 
@@ -52,7 +74,8 @@ impl Writer {
 
     /// The bytes of a .gltf file with its buffer inside.
     pub(super) fn text(&self, nodes: &str) -> Vec<u8> {
-        let uri = format!(r#","uri":"data:application/octet-stream;base64,{}""#, base64(&self.bytes));
+        let uri =
+            format!(r#","uri":"data:application/octet-stream;base64,{}""#, base64(&self.bytes));
         self.json(nodes, &uri).into_bytes()
     }
 
@@ -61,7 +84,8 @@ impl Writer {
         let mut json = self.json(nodes, "").into_bytes();
         json.resize(json.len().next_multiple_of(4), b' ');
         let length = |bytes: usize| u32::try_from(bytes).unwrap().to_le_bytes();
-        let chunk = |kind: &[u8; 4], bytes: &[u8]| [&length(bytes.len()), &kind[..], bytes].concat();
+        let chunk =
+            |kind: &[u8; 4], bytes: &[u8]| [&length(bytes.len()), &kind[..], bytes].concat();
         let chunks = [chunk(b"JSON", &json), chunk(b"BIN\0", &self.bytes)].concat();
         [&b"glTF"[..], &2u32.to_le_bytes(), &length(12 + chunks.len()), &chunks].concat()
     }
@@ -71,7 +95,10 @@ pub(super) fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::new();
     for group in bytes.chunks(3) {
-        let word = group.iter().enumerate().fold(0u32, |word, (at, &byte)| word | u32::from(byte) << (16 - 8 * at));
+        let word = group
+            .iter()
+            .enumerate()
+            .fold(0u32, |word, (at, &byte)| word | u32::from(byte) << (16 - 8 * at));
         for digit in 0..4 {
             let value = word >> (18 - 6 * digit) & 63;
             text.push(if digit <= group.len() { char::from(DIGITS[value as usize]) } else { '=' });
