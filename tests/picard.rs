@@ -505,3 +505,15 @@ fn atoms_do_not_escape() {
     check!(f64);
     check!(f32);
 }
+
+/// An input without a value behind a kink is named, with the time.
+#[test]
+fn inputs_without_a_value_behind_a_kink_are_named() {
+    let push = Function::new(|t| [if t == 1.0 { f64::NAN } else { 1.0 }]).kinks(&[1.0]);
+    let pushed = Pushed::new().driven_by(push.resolution(1.0).unwrap());
+    let failure = solve(&pushed, (0.0, 2.0), [0.4], [0.0]).method(Picard).run().unwrap_err();
+    let Error::NotFinite { t, what: Quantity::Input { .. }, .. } = failure.error else {
+        panic!("{failure}")
+    };
+    assert_eq!(t, 1.0);
+}

@@ -1,9 +1,10 @@
 //! Dense output: the motion between the ends of a step.
 
+use super::FIXED;
 use super::kernel::{Equations, Within};
+use super::room::RoomOf;
 use super::side_by_side::SideBySide;
 use super::tableau::S;
-use super::{FIXED, RoomOf};
 use crate::integrate::field::Counted;
 use crate::integrate::node::Node;
 use crate::integrate::piece::{Basis, Piece, TERMS};

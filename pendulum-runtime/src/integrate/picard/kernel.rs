@@ -5,9 +5,9 @@
 
 #![allow(clippy::inline_always)]
 
+use super::room::{RoomOf, Tolerances};
 use super::side_by_side::SideBySide;
 use super::tableau::{BETWEEN, Columns, EIGHT, Nodes, REFINED, S, SIXTEEN};
-use super::{RoomOf, Tolerances};
 use crate::integrate::node::Node;
 use crate::integrate::span::Span;
 use crate::real::{Float, Lane, Octet};
