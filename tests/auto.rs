@@ -362,3 +362,16 @@ fn what_fixed_steps_took_is_not_kept_for_adaptive_ones() {
     one.advance_to(2.0).unwrap();
     assert_eq!(one.stats().method, "Picard");
 }
+
+#[test]
+fn the_choice_follows_the_tolerance() {
+    let double = Double::new(DoubleDouble::from(9.8));
+    let [q, v] = [1.3, 0.0].map(|x| [DoubleDouble::from(x); 2]);
+    let one = Integrator::new(&double, Auto, 0.0, q, v).unwrap();
+    let mut one = one.control(AdaptiveStep::default().rtol(1e-2)).unwrap();
+    one.step().unwrap();
+    assert_eq!(one.stats().method, "Dop853");
+    let mut one = one.control(AdaptiveStep::default().rtol(1e-25).atol(1e-25)).unwrap();
+    one.step().unwrap();
+    assert_eq!(one.stats().method, "Taylor");
+}

@@ -61,8 +61,8 @@ enum Choice {
 #[derive(Clone, Debug)]
 pub struct Room<R, P, X> {
     choice: Option<Choice>,
-    /// Whether it was chosen for adaptive steps.
-    adaptive: bool,
+    /// The relative tolerance of the adaptive steps that it was chosen for.
+    chosen_for: Option<f64>,
     dop853: R,
     picard: P,
     taylor: X,
@@ -114,7 +114,7 @@ impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Stepper<D, N> for Auto {
 
     fn room(&self, dynamics: &D) -> AnyRoom<D, N> {
         let (dop853, taylor) = (Dop853::stages(), Taylor::new().room(&Known(dynamics)));
-        Room { choice: None, adaptive: false, dop853, picard: Picard.room(dynamics), taylor }
+        Room { choice: None, chosen_for: None, dop853, picard: Picard.room(dynamics), taylor }
     }
 
     fn name(&self, room: &AnyRoom<D, N>) -> &'static str {
@@ -135,7 +135,7 @@ impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Stepper<D, N> for Auto {
         from: &mut Node<D::Scalar, N>,
         room: &mut AnyRoom<D, N>,
     ) -> Node<D::Scalar, N> {
-        room.adaptive = false;
+        room.chosen_for = None;
         if span.h < 0.0 {
             // The stages of the others would see a kink at the start from the wrong side.
             room.choice = Some(Choice::Taylor);
@@ -209,8 +209,9 @@ impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Control<Auto, D, N> for 
         let dynamics = field.dynamics;
         let backwards = target < from.t.to_f64();
         let (rtol, _) = self.tolerances::<D::Scalar>();
-        if !room.adaptive || backwards && room.choice != Some(Choice::Taylor) {
-            (room.choice, room.adaptive) = (Some(Auto::adaptive(dynamics, rtol, backwards)), true);
+        if room.chosen_for != Some(rtol) || backwards && room.choice != Some(Choice::Taylor) {
+            let choice = Auto::adaptive(dynamics, rtol, backwards);
+            (room.choice, room.chosen_for) = (Some(choice), Some(rtol));
         }
         if room.choice == Some(Choice::Taylor) {
             let known = Known(dynamics);
