@@ -359,34 +359,65 @@ fn errors_say_where() {
 /// goes through it.
 #[test]
 fn no_step_goes_through_a_wall() {
-    lagrangian! {
-        pub struct Floor { g, k }
-        coordinate y;
-        kinetic = ẏ^2/2;
-        potential = g*y;
-        force y = k*(1 - sign(y))/2;
+    // Down with g to the floor, up with k − g, which takes a part g/(k − g) of the time and of the
+    // height, up with the first speed again, and again.
+    let (g, y) = (10.0_f64, 1.0_f64);
+    let (fall, speed) = ((2.0 * y / g).sqrt(), (2.0 * g * y).sqrt());
+    for (k, rtol, bounces) in [
+        (1e3, 1e-14, 1.0),
+        (1e4, 1e-13, 1.0),
+        (1e5, 1e-12, 1.0),
+        (1e6, 1e-11, 1.0),
+        (1e3, 1e-6, 1.0),
+        (1e3, 1e-9, 1.0),
+        (1e4, 1e-10, 12.0),
+    ] {
+        let contact = 2.0 * speed / (k - g);
+        let flight = 1.0 - fall - contact;
+        let expected = speed * flight - g * flight * flight / 2.0;
+        let end = 1.0 + (bounces - 1.0) * (2.0 * fall + contact);
+        for at in [0.0, 1e3, 1e6] {
+            let floor = Floor::new(g, k, at);
+            let down = solve(&floor, (0.0, end), [at + y], [0.0]).method(Taylor::new());
+            let down = down.rtol(rtol).atol(rtol).run().unwrap();
+            let error = (down.end.q[0] - at - expected).abs();
+            // In the floor the rounding of the height is a time, too.
+            let rounding = f64::EPSILON * at * (1.0 + 0.1 * k);
+            let most = 100.0 * bounces * (rtol.max(1e-10) * (1.0 + at) + rounding);
+            assert!(error < most, "k = {k:e}, at {at:e}, rtol = {rtol:e}: {error:e}");
+            assert!(
+                f64::from(down.stats.rejected as u32) < 300.0 * bounces,
+                "k = {k:e}, at {at:e}, {rtol:e}: {:?}",
+                down.stats
+            );
+        }
     }
-    // Down with g to 0, up with k − g, which takes a part g/(k − g) of the time and of the height,
-    // up with the first speed again.
-    let expected = |k: f64| {
-        let (g, y) = (10.0, 1.0);
-        let (fall, speed) = ((2.0 * y / g).sqrt(), (2.0 * g * y).sqrt());
-        let t = 1.0 - fall - 2.0 * speed / (k - g);
-        speed * t - g * t * t / 2.0
-    };
-    for (k, rtol) in
-        [(1e3, 1e-14), (1e4, 1e-13), (1e5, 1e-12), (1e6, 1e-11), (1e3, 1e-6), (1e3, 1e-9)]
-    {
-        let floor = Floor::new(10.0, k);
-        let down = solve(&floor, (0.0, 1.0), [1.0], [0.0])
-            .method(Taylor::new())
-            .rtol(rtol)
-            .atol(rtol)
-            .run()
-            .unwrap();
-        let error = (down.end.q[0] - expected(k)).abs();
-        assert!(error < 100.0 * rtol.max(1e-10), "k = {k:e}, rtol = {rtol:e}: {error:e}");
-        assert!(down.stats.rejected < 200, "k = {k:e}, rtol = {rtol:e}: {:?}", down.stats);
+}
+
+lagrangian! {
+    /// A ball over a floor that throws it back.
+    pub struct Floor { g, k, at }
+    coordinate y;
+    kinetic = ẏ^2/2;
+    potential = g*y;
+    force y = k*(1 - sign(y - at))/2;
+}
+
+/// Nothing of a jump is remembered over a reset: the bits are those of a new integrator.
+#[test]
+fn a_reset_forgets_jumps() {
+    let floor = Floor::new(10.0, 1e4, 0.0);
+    let mut used = Integrator::new(&floor, Taylor::new(), 0.0, [1.0], [0.0]).unwrap();
+    used.advance_to(0.4).unwrap();
+    while used.stats().rejected == 0 {
+        used.step().unwrap();
+    }
+    let mut new = Integrator::new(&floor, Taylor::new(), 0.0, [1.5], [0.0]).unwrap();
+    used.reset(0.0, [1.5], [0.0]).unwrap();
+    for t in [0.3, 0.6, 1.0] {
+        used.advance_to(t).unwrap();
+        new.advance_to(t).unwrap();
+        assert_eq!(used.state(), new.state());
     }
 }
 

@@ -17,19 +17,25 @@ use crate::jet::{JetDynamics, Jets, LENGTH, MAX_ORDER, Orders, Path, Series};
 use crate::motion::Side;
 use crate::real::{Float, Real};
 use crate::system::{Dynamics, System, scalar_time};
+use crate::time::Time;
 
 /// The Taylor series of the motion: any order up to 30, adaptive, forwards and backwards in time.
 ///
 /// It suits every system that `lagrangian!` has made and every motion that is
 /// [`Analytic`](crate::motion::Analytic), and is the choice for the last digits and for the way
 /// back in time. Its steps are long and it rejects few: the coefficients tell the radius of
-/// convergence. A series knows nothing of a wall or a contact far from its centre, so that the
-/// accelerations at the end of each step are compared with its own, and a step at whose end they
-/// differ by more than the tolerance is halved. That is one evaluation a step, which
-/// [`Stats`](super::Stats) do not count: there each order of the series is one. Nobody looks
-/// between the ends: a wall or a needle that a step leads over goes unseen. It is explicit, so that
-/// a stiff spring or damper shortens its steps, and it is wrong where the equations themselves are
-/// not smooth: at the zeros of `abs`, and where the larger of two numbers changes.
+/// convergence. It is explicit: a stiff spring or damper shortens its steps.
+///
+/// A series knows nothing of a wall or a contact far from its centre. The accelerations a at the
+/// end of each step are therefore compared with those of the series of order p. A step is halved
+/// where h·|Δa|/p is more than 30 times the error allowed; after a first halving, where h·|Δa| is
+/// more than that error. Differences below a thousand units of rounding are allowed. After forty
+/// halvings the shortest step goes over what must be a jump. If 256 steps are halved, and
+/// none of them is a thousand times as long as one before it, the accelerations are taken to be
+/// inexact, and whole steps are taken until series hold again. Each comparison is one evaluation, which [`Stats`](super::Stats) do not count: there each order of the series is
+/// one. A needle or a thin wall goes unseen if a step ends behind it. The method is wrong where the
+/// equations themselves are not smooth: at the zeros of `abs` and `sign`, and where the larger of
+/// two numbers changes.
 ///
 /// The order is p = ⌈1 − c ln rtol⌉ with c = 0.8 for a coordinate that swings by itself and 0.7
 /// else, and the step is h = ρ rtol^(1/p) e^(−0.7/(p−1)), where ρ is the least of the radii of
@@ -83,16 +89,22 @@ pub struct Room<T, W, X, const N: usize> {
     /// What the tolerance decides.
     rule: Rule,
     /// The last time at which a series did not hold.
-    refuted: Option<f64>,
-    /// Whether the last step went over a jump.
-    crossed: bool,
-    /// One more for each step that was halved, two less for each that was not.
+    refuted: Option<Time>,
+    /// How many steps in a row went over a jump, or what seems to be one.
+    crossed: u32,
+    /// One more for each step that was halved, two less for each whole step whose series holds, and
+    /// none where steps are long again.
     doubts: u32,
+    /// The shortest step of these.
+    shortest: f64,
 }
 
-/// A jump is found within so many steps; if the series go on not to hold, the accelerations are not
-/// exact.
-const MOST_DOUBTS: u32 = 64;
+/// A jump is found within some forty steps, and behind it they are long again. If series go on not
+/// to hold, the accelerations are not exact.
+const MOST_DOUBTS: u32 = 256;
+
+/// A step is long again if it is so many times as long as the shortest before it.
+const FOUND: f64 = 1e3;
 
 /// What the tolerance decides about the length of a step.
 #[derive(Clone, Debug, Default)]
@@ -149,8 +161,9 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Stepper<D, N> for Taylor 
             order: 0,
             rule: Rule::default(),
             refuted: None,
-            crossed: false,
+            crossed: 0,
             doubts: 0,
+            shortest: f64::INFINITY,
         }
     }
 
@@ -274,13 +287,19 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
             from.t,
             GAP,
         )?;
+        if memory.h == 0.0 {
+            // At a start nothing is known of jumps.
+            (room.refuted, room.crossed, room.doubts) = (None, 0, 0);
+        }
         // Towards a time at which the last series did not hold.
+        let left = |refuted: Time| refuted.since(from.t.to_f64()) - from.t.low();
         room.refuted = room.refuted.filter(|&refuted| {
-            let left = -from.t.since(refuted);
+            let left = left(refuted);
             (left < 0.0) == backwards && resolution_of::<D::Scalar>(from.t) < left.abs()
         });
+        let mut holds = room.refuted.is_none();
         if let Some(refuted) = room.refuted {
-            let left = from.t.since(refuted).abs();
+            let left = left(refuted).abs();
             wanted = if left < wanted { left } else { wanted };
         }
         let mut span = fit(from.t, wanted, target);
@@ -292,18 +311,21 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         let (mut halved, mut crosses) = (0, false);
         // At the resolution of times no step can be shorter.
         while known && resolution_of::<D::Scalar>(from.t) < wanted {
-            let strict = room.doubts < MOST_DOUBTS && (0 < halved || room.refuted.is_some());
+            let strict = 0 < halved || room.refuted.is_some();
             let misfit = misfit(field.dynamics, room, &span, to, &weights[1], strict);
-            if misfit.allowed {
+            holds &= misfit.allowed;
+            if misfit.allowed || MOST_DOUBTS <= room.doubts {
                 break;
             }
             stats.rejected += 1;
             halved += 1;
-            room.refuted = Some(span.end.to_f64());
-            if halved == MOST_HALVED {
+            room.refuted = Some(span.end);
+            // A jump may be as wide as the rounding of the place: each further step over it is twice
+            // as long.
+            if MOST_HALVED.saturating_sub(room.crossed) <= halved {
                 // Something jumps within so short a step, which goes over that; or its series is
-                // right, and what does not fit is rounding. Behind a jump there is no other.
-                crosses = !misfit.rounding && !room.crossed;
+                // right, and what does not fit is rounding.
+                crosses = !misfit.rounding;
                 if !crosses {
                     (wanted, span) = (whole.h.abs(), whole);
                     *to = sum(room, from, &span);
@@ -325,8 +347,16 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
             let short = Error::StepSizeUnderflow { t, step: wanted, coordinate };
             return Err(self.unresolved(memory.h == 0.0, wanted).unwrap_or(short));
         }
-        room.crossed = crosses;
-        room.doubts = if 0 < halved { room.doubts + 1 } else { room.doubts.saturating_sub(2) };
+        room.crossed = if crosses { room.crossed + 1 } else { 0 };
+        if room.doubts < MOST_DOUBTS && FOUND * room.shortest < wanted || room.doubts == 0 {
+            (room.doubts, room.shortest) = (0, f64::INFINITY);
+        }
+        if 0 < halved {
+            room.doubts += 1;
+            room.shortest = if wanted < room.shortest { wanted } else { room.shortest };
+        } else if holds {
+            room.doubts = room.doubts.saturating_sub(2);
+        }
         if MOST_DOUBTS <= room.doubts {
             room.refuted = None;
         }
@@ -427,18 +457,21 @@ fn misfit<D: JetDynamics<N, Scalar: Float>, const N: usize>(
         (0..N).fold(0.0, |largest: f64, i| largest.max(values(i).to_f64().abs()))
     };
     let (q, v) = (&room.path.q, &room.path.v);
-    let (way, turn) = (largest(&|i| to.q.high[i] - q[i][0]), largest(&|i| a[i] - v[i][1]));
+    let series: [D::Scalar; N] = core::array::from_fn(|i| {
+        let orders = (1..=room.order).rev();
+        orders.fold(zero, |sum, k| sum * h + D::Scalar::from_f64(k as f64) * v[i][k])
+    });
     // Coordinates and time are rounded too, and the accelerations change with them as they do on
-    // the way.
+    // the way: those of the series, where a jump is no slope.
+    let way = largest(&|i| to.q.high[i] - q[i][0]);
+    let turns = [largest(&|i| a[i] - v[i][1]), largest(&|i| series[i] - v[i][1])];
+    let turn = if turns[1] < turns[0] { turns[1] } else { turns[0] };
     let by_place = if 0.0 < way { largest(&|i| to.q.high[i]) * (turn / way) } else { 0.0 };
     let by_time = span.end.to_f64().abs() * (turn / span.h.abs());
     let size = largest(&|i| a[i]) + by_place + if facts.autonomous { 0.0 } else { by_time };
     let (mut allowed, mut is_rounding) = (to.is_finite() && size.is_finite(), true);
     for i in 0..N {
-        let series = (1..=room.order)
-            .rev()
-            .fold(zero, |sum, k| sum * h + D::Scalar::from_f64(k as f64) * v[i][k]);
-        let difference = (a[i] - series).to_f64().abs();
+        let difference = (a[i] - series[i]).to_f64().abs();
         // That of a smooth series is gone after a halving; that of a jump is not, and the velocity
         // is off by all of it.
         let (share, most) = if strict { (1.0, 1.0) } else { (room.order as f64, MISFIT) };
