@@ -64,7 +64,7 @@ pub fn columns<T, const N: usize>(entries: &[T]) -> &[[T; N]] {
 pub fn longest_step<T: Real>(all: &[T], widths: T) -> T {
     let mut longest = T::from_f64(f64::INFINITY);
     for feature in all.as_chunks::<2>().0 {
-        // What never changes has no middle.
+        // A function that never changes has no middle.
         let bound = (widths / feature[0]).max(T::from_f64(0.5) * feature[1].abs());
         longest = feature[0].where_positive(longest.min(bound), longest);
     }

@@ -18,11 +18,12 @@ use crate::system::System;
 /// errors of a thousand periods of a shaken pivot add up to a few tolerances. It is explicit: a
 /// stiff spring or damper forces h·ω below about 6 whatever the tolerance.
 ///
-/// A step never goes unseen over a short pulse of a motion whose time scale is known: a
+/// No short pulse goes unseen of a motion whose time scale is known: a
 /// [`Function`](crate::motion::Function) says it by
 /// [`resolution`](crate::motion::Function::resolution), a motion of your own by
 /// [`longest_step`](crate::motion::Motion::longest_step). Where it is not known, a step is at most
-/// a fiftieth of the interval, which at loose tolerances may be too long.
+/// a fiftieth of the interval, or a second in an [`Integrator`](super::Integrator), which at loose
+/// tolerances may be too long.
 ///
 /// A rejected step costs eleven evaluations. Dense output is of order 7 and takes three more
 /// evaluations, only in those steps where it is asked for.

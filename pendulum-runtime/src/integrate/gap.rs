@@ -74,7 +74,7 @@ pub(crate) fn longest<S: System<N, Scalar: Float>, const N: usize>(
     }
     let longest = system.longest_step(scalar_time(t), S::Scalar::from_f64(APART / gap)).to_f64();
     let least = least(t);
-    // What is no number shows in the accelerations.
+    // The accelerations are no numbers then, either.
     if longest.is_nan() {
         f64::INFINITY
     } else if least < longest {

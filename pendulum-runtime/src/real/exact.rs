@@ -22,7 +22,7 @@ pub(crate) fn ordered_sum<T: Real>(high: T, low: T) -> (T, T) {
 
 /// a · b and its rounding error, for factors that come as they are and cut in halves (Dekker 1971).
 ///
-/// How they are cut depends on the scalar and on what may overflow.
+/// The cut is the caller's: it depends on the scalar and on the magnitudes.
 #[inline(always)]
 pub(crate) fn two_product<T: Real>(
     (a, [a_high, a_low]): (T, [T; 2]),

@@ -283,16 +283,16 @@ impl<T: Lane + Float> Scene<T> {
     /// Whether all threads may be used, as at first; the bits are the same. Without the feature
     /// `rayon` there is only one.
     ///
-    /// They are used where that is quicker: batches that take less than 0.2 ms never fork, the
-    /// others as long as it pays, which is measured while running: from time to time two batches go
-    /// the other way, after every 1024 at most, and are then the slower ones. As long as all
-    /// threads take less than half as long as one, none does.
+    /// They are used where that is quicker, which is measured while running. Batches that took less
+    /// than 0.2 ms on one thread do not fork. Two batches in a row are run the slower way from time
+    /// to time, to compare: at least once in 1024 batches, or once in 8192 while all threads take
+    /// less than half the time of one and their time stays within a quarter.
     pub fn set_parallel(&mut self, parallel: bool) {
         self.parallel = parallel;
     }
 
-    /// Whether every batch forks where threads are allowed, however short it is: for tests, which
-    /// are to see the bits of both ways.
+    /// Forks every batch where threads are allowed, however short it is: tests compare the bits of
+    /// both ways.
     #[doc(hidden)]
     pub fn set_always_fork(&mut self, always: bool) {
         self.threads.set_always(always);

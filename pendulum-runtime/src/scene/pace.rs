@@ -16,6 +16,9 @@ const TRIAL: u32 = 2;
 const CLEAR: f64 = 0.5;
 const WORSE: f64 = 1.25;
 
+/// So many trials in turn are left out at most.
+const MOST_SPARED: u32 = 8;
+
 /// The batches from one trial to the next, at first and at most: each trial that shows nothing new
 /// doubles them.
 const SOON: u32 = 32;
@@ -41,11 +44,20 @@ pub(super) struct Choice {
     left: u32,
     /// The batches from one trial to the next.
     period: u32,
+    /// The trials that were left out since the last one.
+    spared: u32,
 }
 
 impl Choice {
     pub(super) const fn new() -> Self {
-        Self { pace: [0.0; 2], better: Way::Alone, compared: 0.0, left: SOON, period: SOON }
+        Self {
+            pace: [0.0; 2],
+            better: Way::Alone,
+            compared: 0.0,
+            left: SOON,
+            period: SOON,
+            spared: 0,
+        }
     }
 
     /// How to go through so many pendulums times ticks.
@@ -64,10 +76,12 @@ impl Choice {
             self.left = self.left.min(SOON);
         }
         let clear = better == Way::Together && together < CLEAR * alone;
-        if self.left == TRIAL && clear && together < WORSE * self.compared {
-            self.left = 0;
+        // The pace alone may have become another, too.
+        let alike = together < WORSE * self.compared && self.compared < WORSE * together;
+        if self.left == TRIAL && clear && alike && self.spared < MOST_SPARED {
+            (self.left, self.spared) = (0, self.spared + 1);
         } else if self.left == 0 {
-            self.compared = together;
+            (self.compared, self.spared) = (together, 0);
         }
         if self.left == 0 {
             self.period = (2 * self.period).min(LATE);
@@ -153,5 +167,14 @@ mod tests {
         share_together(&mut choice, 1000, 1e5, 10.0, 6.0);
         choice.took(Way::Together, 1e5, 1e9);
         assert!(0.95 < share_together(&mut choice, 1000, 1e5, 10.0, 6.0));
+    }
+
+    #[test]
+    fn a_lighter_scene_goes_alone_again() {
+        let mut choice = Choice::new();
+        assert!(0.95 < share_together(&mut choice, 10_000, 1e6, 10.0, 4.0));
+        // Alone is much quicker now, and together as it was.
+        share_together(&mut choice, 10 * LATE, 1e6, 1.0, 3.9);
+        assert!(share_together(&mut choice, 10_000, 1e6, 1.0, 3.9) < 0.02);
     }
 }
