@@ -35,7 +35,7 @@ pub(crate) fn mutated(file: &[u8], random: &mut Random) -> Vec<u8> {
         let longest = random.of(&[4, 40, 4000]);
         let end = (at + 1 + random.below(longest)).min(bytes.len());
         match random.below(7) {
-            0 => bytes[at] = random.next() as u8,
+            0 => bytes[at] = random.bits() as u8,
             1 => drop(bytes.drain(at..end)),
             2 => {
                 let stretch = bytes[at..end].to_vec();

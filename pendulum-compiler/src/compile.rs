@@ -14,15 +14,17 @@ use crate::messages::Errors;
 use crate::model;
 use crate::model::unit;
 use crate::model::{Model, Quantity};
-use crate::schedule::{self, Count};
+use crate::schedule::{self, Operations};
 use crate::syntax::derive;
 use crate::syntax::parse;
 use proc_macro2::{LineColumn, TokenStream};
 use quote::quote;
 
-/// The items of a block of `lagrangian!`, with the path of the runtime in front.
+/// Expands a block of `lagrangian!` into Rust.
 ///
-/// The items are always there: each mistake adds a `compile_error!` at its tokens.
+/// `input` is the path of the runtime, a semicolon and the block: `::pendulum_runtime; struct …`.
+/// Each mistake becomes a `compile_error!` at its tokens. The items are emitted all the same, with
+/// open bodies, unless the struct itself cannot be read.
 pub fn expand(input: TokenStream) -> TokenStream {
     let mut errors = Errors::default();
     let items = passes(input, &mut errors, |analysis| Emitter::new(analysis).items());
@@ -30,10 +32,15 @@ pub fn expand(input: TokenStream) -> TokenStream {
     quote!(#errors #items)
 }
 
-/// The model and the equations of a block, given as source text; no macro is needed.
+/// Compiles a block given as source text, outside of any macro: its declarations and equations.
 ///
 /// # Errors
 /// All mistakes, in the order in which the passes meet them.
+///
+/// # Memory
+/// Outside of macros `proc_macro2` keeps each text of a thread for as long as the thread lives. A
+/// program that compiles without end does so in threads of their own, or gives all spans of the
+/// thread up by `proc_macro2::extra::invalidate_current_thread_spans`.
 ///
 /// ```
 /// let compiled = pendulum_compiler::compile(
@@ -46,14 +53,15 @@ pub fn expand(input: TokenStream) -> TokenStream {
 /// assert_eq!(compiled.equations, ["θ̈ = −g·sin θ/L"]);
 /// assert_eq!(compiled.operations.sincos, 1);
 ///
-/// let mistakes = pendulum_compiler::compile("struct Pendulum { L: m }\ncoordinate θ: rad;\nkinetic = L^2*ω^2/2;").unwrap_err();
+/// let block = "struct Pendulum { L: m }\ncoordinate θ: rad;\nkinetic = L^2*ω^2/2;";
+/// let mistakes = pendulum_compiler::compile(block).unwrap_err();
 /// assert!(mistakes[0].text.contains("`ω`"));
 /// assert_eq!((mistakes[0].start.line, mistakes[0].start.column), (3, 14));
 /// ```
 pub fn compile(source: &str) -> Result<Compiled, Vec<Message>> {
     let tokens: TokenStream = match source.parse() {
         Ok(tokens) => tokens,
-        Err(error) => return Err(vec![Message::new(error.to_string(), error.span())]),
+        Err(error) => return Err(vec![Message::new(NO_TOKENS.into(), error.span())]),
     };
     let mut errors = Errors::default();
     let compiled = passes(quote!(::pendulum_runtime; #tokens), &mut errors, Compiled::new);
@@ -66,7 +74,11 @@ pub fn compile(source: &str) -> Result<Compiled, Vec<Message>> {
     }
 }
 
-/// All passes, before `backend`; `None` if there is no block at all.
+/// Text that is not even tokens.
+const NO_TOKENS: &str = "this cannot be read: a bracket, a quote or a comment is not closed, or a \
+                         character does not belong to the language";
+
+/// Runs the passes and hands their result to `backend`; `None` if the struct cannot be read.
 fn passes<R>(
     input: TokenStream,
     errors: &mut Errors,
@@ -130,7 +142,10 @@ pub(crate) fn derived<R>(
     passes(tokens, errors, inspect).flatten()
 }
 
-/// The model and the equations of a block.
+/// The declarations and the equations of a block.
+///
+/// Formulas are in Unicode, or in ASCII if the block is. Families of coordinates are unfolded:
+/// there is an equation and a momentum for each scalar coordinate, in the order of declaration.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Compiled {
@@ -142,18 +157,17 @@ pub struct Compiled {
     pub coordinates: Vec<Declaration>,
     /// The driven inputs.
     pub inputs: Vec<Declaration>,
-    /// The equations of motion with their abbreviations, a line each: in Unicode, or in ASCII if
-    /// the block is.
+    /// The equations of motion, θ̈ = …; the right side of a very long one is left out, and says so.
     pub equations: Vec<String>,
-    /// The same lines in LaTeX.
+    /// The same equations in LaTeX, for a line of mathematics: without delimiters.
     pub latex: Vec<String>,
-    /// The energy, in the notation of the equations.
+    /// The energy Σ q̇ p − L.
     pub energy: String,
-    /// The power that forces, dissipation and motions supply.
+    /// The power that changes the energy: of forces, dissipation, time and driven inputs.
     pub power: String,
-    /// The momentum of each coordinate.
+    /// The momenta ∂L/∂q̇.
     pub momenta: Vec<String>,
-    /// The momenta that are conserved.
+    /// The conserved momenta.
     pub conserved: Vec<String>,
     /// The operations of one evaluation of the accelerations.
     pub operations: Operations,
@@ -163,48 +177,34 @@ pub struct Compiled {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Declaration {
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// Its unit, as written; empty without one.
+    /// The unit, as written; empty without one.
     pub unit: String,
-    /// The length of a vector or family; `None` for a scalar and a body.
+    /// The length of a vector or family; `None` for a scalar and for a body.
     pub length: Option<usize>,
-}
-
-/// The operations of a program, after the part that parameters alone decide.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct Operations {
-    /// Pairs of sine and cosine of one angle.
-    pub sincos: usize,
-    /// Other functions, roots among them.
-    pub functions: usize,
-    /// Products.
-    pub mul: usize,
-    /// Sums and differences.
-    pub add: usize,
-    /// Quotients.
-    pub div: usize,
+    /// Whether it is a rigid body.
+    pub body: bool,
 }
 
 /// A mistake in a block.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Message {
-    /// What is wrong, and what to do.
+    /// The mistake, and the way out.
     pub text: String,
-    /// The first character of the tokens at fault.
-    pub start: Place,
-    /// The one behind their last character.
-    pub end: Place,
+    /// The position of the first token at fault.
+    pub start: Position,
+    /// The position behind the last one.
+    pub end: Position,
 }
 
-/// A place in source text.
+/// A position in source text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Place {
+pub struct Position {
     /// The line, from 1 on.
     pub line: usize,
-    /// The character in the line, from 0 on.
+    /// The number of characters (`char`) before it in the line: θ̇ is two.
     pub column: usize,
 }
 
@@ -214,15 +214,9 @@ impl Message {
     }
 }
 
-impl From<LineColumn> for Place {
+impl From<LineColumn> for Position {
     fn from(LineColumn { line, column }: LineColumn) -> Self {
         Self { line, column }
-    }
-}
-
-impl From<Count> for Operations {
-    fn from(Count { sincos, functions, mul, add, div }: Count) -> Self {
-        Self { sincos, functions, mul, add, div }
     }
 }
 
@@ -246,6 +240,7 @@ impl Compiled {
                 name: quantity.name.to_string(),
                 unit: quantity.unit.clone(),
                 length: quantity.length,
+                body: quantity.body,
             };
             quantities.iter().map(declaration).collect()
         };
@@ -262,7 +257,7 @@ impl Compiled {
                 .iter()
                 .map(|conserved| unicode::conserved(&names, conserved))
                 .collect(),
-            operations: accelerations.count().into(),
+            operations: accelerations.count(),
             equations,
             latex,
         })
@@ -271,7 +266,7 @@ impl Compiled {
 
 #[cfg(test)]
 mod tests {
-    use super::{Place, compile};
+    use super::{NO_TOKENS, Position, compile};
 
     #[test]
     fn the_model_is_what_is_declared() {
@@ -310,13 +305,19 @@ mod tests {
                 .map(|message| (message.start, message.end))
                 .collect::<Vec<_>>()
         };
-        let at = |line, column| Place { line, column };
+        let at = |line, column| Position { line, column };
         assert_eq!(
             places("struct S {}\ncoordinate q;\nkinetic = q̇^2/2;\npotential = k*q;"),
             [(at(4, 12), at(4, 13))]
         );
-        // Not even tokens.
-        assert_eq!(places("struct S {\n").len(), 1);
+        // Columns count characters, and θ̇ is two.
+        assert_eq!(
+            places("struct S {} coordinate θ; kinetic = θ̇^2/2; potential = k*θ;"),
+            [(at(1, 56), at(1, 57))]
+        );
+        let unclosed = compile("coordinate θ;\nstruct S {").unwrap_err();
+        assert_eq!((unclosed.len(), unclosed[0].text.as_str()), (1, NO_TOKENS));
+        assert_eq!(unclosed[0].start, at(2, 9));
         assert_eq!(places("").len(), 1);
     }
 }

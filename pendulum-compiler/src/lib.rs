@@ -8,7 +8,7 @@
 //! compile     the order of the passes
 //! backend     Rust with its jets, Unicode, LaTeX, and the copy for editors
 //! mechanics   energies, Euler–Lagrange, elimination, symmetries, Jacobians
-//! schedule    expressions to straight programs
+//! schedule    expressions to straight-line programs
 //! model       names resolved, shapes and units
 //! syntax      tokens to a tree
 //! algebra     the graph of expressions: exact numbers, rules, derivatives, order
@@ -26,4 +26,5 @@ mod syntax;
 #[cfg(test)]
 mod tests;
 
-pub use compile::{Compiled, Declaration, Message, Operations, Place, compile, expand};
+pub use compile::{Compiled, Declaration, Message, Position, compile, expand};
+pub use schedule::Operations;

@@ -1,4 +1,4 @@
-//! What is written of a block: Rust, its equations in Unicode and LaTeX, and a copy for editors.
+//! Writers: Rust, equations in Unicode and LaTeX, and a copy of the block for editors.
 
 mod cancel;
 pub(crate) mod ide;

@@ -209,7 +209,7 @@ fn write(graph: &Graph, names: &Names, id: Id, level: Level) -> String {
             return format!("((1 + sign({}))/2)", write(graph, names, *argument, Level::Sum));
         }
         Node::Call(function, argument) => {
-            let text = format!("{}{}", function_name(*function), operand(graph, names, *argument));
+            let text = format!("{}{}", function.name(), operand(graph, names, *argument));
             if names.ascii {
                 return text;
             }
@@ -344,7 +344,7 @@ fn power(graph: &Graph, names: &Names, base: Id, exponent: Rational) -> String {
         && *function != Function::Abs
         && !names.ascii
     {
-        return format!("{}{raised}{}", function_name(*function), operand(graph, names, *argument));
+        return format!("{}{raised}{}", function.name(), operand(graph, names, *argument));
     }
     let inner = write(graph, names, base, Level::Power);
     format!("{inner}{raised}")
@@ -356,25 +356,6 @@ fn number(names: &Names, value: Rational, level: Level) -> String {
         format!("({text})")
     } else {
         text
-    }
-}
-
-fn function_name(function: Function) -> &'static str {
-    match function {
-        Function::Sin => "sin",
-        Function::Cos => "cos",
-        Function::Tan => "tan",
-        Function::Asin => "asin",
-        Function::Acos => "acos",
-        Function::Atan => "atan",
-        Function::Sinh => "sinh",
-        Function::Cosh => "cosh",
-        Function::Tanh => "tanh",
-        Function::Exp => "exp",
-        Function::Ln => "ln",
-        Function::Abs => "abs",
-        Function::Sign => "sign",
-        Function::Step => "step",
     }
 }
 

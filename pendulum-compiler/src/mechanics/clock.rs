@@ -1,5 +1,4 @@
-//! What time alone does to the equations: how narrow the functions of time are that stand in them,
-//! and when they have their middle.
+//! Time scales of the equations: width and middle of each function of time in them.
 //!
 //! A method samples accelerations at a few times in a step. Between two of them exp(−((t − t₀)/w)²)
 //! would stay unseen if w is small, so that steps are bounded by w. A function f(u) of a polynomial

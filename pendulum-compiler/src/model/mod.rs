@@ -261,7 +261,7 @@ fn rational(expr: &Expr, bound: &dyn Fn(&str) -> Option<i64>) -> Option<Rational
     }
 }
 
-/// "unknown name, with the nearest known one".
+/// The message about an unknown name, with the nearest known one.
 fn unknown<'b>(name: &str, known: impl Iterator<Item = &'b str>) -> String {
     match name::nearest(name, known) {
         Some(near) => format!("unknown name `{name}`; did you mean `{near}`?"),

@@ -3,17 +3,23 @@
 use super::{Op, Program};
 use crate::algebra::expr::Function;
 
-/// How many of each operation a program has.
+/// The operations of one evaluation, once everything that depends on parameters alone is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Count {
-    pub(crate) sincos: usize,
-    pub(crate) functions: usize,
-    pub(crate) mul: usize,
-    pub(crate) add: usize,
-    pub(crate) div: usize,
+#[non_exhaustive]
+pub struct Operations {
+    /// Pairs of sine and cosine of one angle.
+    pub sincos: usize,
+    /// Other functions, square roots among them.
+    pub functions: usize,
+    /// Products.
+    pub mul: usize,
+    /// Sums and differences.
+    pub add: usize,
+    /// Quotients.
+    pub div: usize,
 }
 
-impl Count {
+impl Operations {
     /// What the operations cost, in multiplications.
     pub(crate) fn cost(self) -> usize {
         self.mul + self.add + 4 * self.div + 20 * (self.sincos + self.functions)
@@ -22,8 +28,8 @@ impl Count {
 
 impl Program {
     /// The operations of one evaluation, after what parameters alone decide has been prepared.
-    pub(crate) fn count(&self) -> Count {
-        let mut count = Count::default();
+    pub(crate) fn count(&self) -> Operations {
+        let mut count = Operations::default();
         let parameter_only = self.parameter_only();
         for (op, _) in
             self.ops.iter().zip(parameter_only).filter(|(_, parameter_only)| !parameter_only)

@@ -14,7 +14,7 @@ mod term;
 
 use crate::algebra::expr::{Dependencies, Function, Graph, Id, Node};
 use crate::algebra::number::Rational;
-pub(crate) use cost::Count;
+pub use cost::Operations;
 pub(crate) use program::{Op, Place, Program, operands};
 use program::{mul, prune};
 pub(crate) use stage::Stage;

@@ -9,6 +9,7 @@ use crate::messages::Errors;
 use crate::model;
 use crate::syntax::ast::{Expr, ExprKind};
 use crate::syntax::parse;
+use crate::syntax::words::FUNCTIONS;
 
 #[test]
 fn the_left_side_becomes_the_right() {
@@ -154,5 +155,16 @@ fn tree(expr: &Expr, point: [f64; 3]) -> f64 {
             }
         }
         other => panic!("{other:?}"),
+    }
+}
+
+/// A function that is known and not lowered would make its energy vanish.
+#[test]
+fn every_function_is_lowered() {
+    for (name, count) in FUNCTIONS.iter().take_while(|row| row.0 != "dot") {
+        let mut graph = Graph::new();
+        let call = format!("{name}({})", ["a", "b"][..*count].join(", "));
+        let root = lowered(&mut graph, &call);
+        assert!(!graph.symbols(&[root]).is_empty(), "{call}");
     }
 }

@@ -13,7 +13,7 @@ use crate::messages::Errors;
 use crate::schedule;
 
 /// Compares every output of the two forms and gives the operations of both accelerations.
-fn compare(source: &str) -> [schedule::Count; 2] {
+fn compare(source: &str) -> [schedule::Operations; 2] {
     let mut errors = Errors::default();
     let counts = derived(source, &mut errors, |_, graph, motion, energies| {
         let extended = energies.extended.as_ref().unwrap();

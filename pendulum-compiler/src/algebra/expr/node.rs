@@ -84,3 +84,47 @@ pub(crate) enum Function {
     Sign,
     Step,
 }
+
+impl Function {
+    const ALL: [Self; 14] = [
+        Self::Sin,
+        Self::Cos,
+        Self::Tan,
+        Self::Asin,
+        Self::Acos,
+        Self::Atan,
+        Self::Sinh,
+        Self::Cosh,
+        Self::Tanh,
+        Self::Exp,
+        Self::Ln,
+        Self::Abs,
+        Self::Sign,
+        Self::Step,
+    ];
+
+    /// Its name in the language and in the runtime; `step` stands in derivatives alone.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Sin => "sin",
+            Self::Cos => "cos",
+            Self::Tan => "tan",
+            Self::Asin => "asin",
+            Self::Acos => "acos",
+            Self::Atan => "atan",
+            Self::Sinh => "sinh",
+            Self::Cosh => "cosh",
+            Self::Tanh => "tanh",
+            Self::Exp => "exp",
+            Self::Ln => "ln",
+            Self::Abs => "abs",
+            Self::Sign => "sign",
+            Self::Step => "step",
+        }
+    }
+
+    /// The function of a name.
+    pub(crate) fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|function| function.name() == name)
+    }
+}

@@ -3,7 +3,7 @@
 use super::Emitter;
 use crate::algebra::expr::Graph;
 use crate::backend::unicode::{self, Names};
-use crate::schedule::Count;
+use crate::schedule::Operations;
 use proc_macro2::TokenStream;
 use quote::quote;
 use std::fmt::Write;
@@ -51,7 +51,7 @@ impl Emitter<'_, '_> {
 }
 
 /// A count of operations in words.
-pub(crate) fn operations(count: Count) -> String {
+pub(crate) fn operations(count: Operations) -> String {
     let rows = [
         (count.sincos, "sine–cosine pair"),
         (count.functions, "other function"),

@@ -49,7 +49,7 @@ impl Emitter<'_, '_> {
             Op::Powf(a, b) => binary("powf", a, b),
             Op::Atan2(a, b) => binary("atan2", a, b),
             Op::Max(a, b) => binary("max", a, b),
-            Op::Call(function, a) => call(method(function), a),
+            Op::Call(function, a) => call(function.name(), a),
             Op::SinCos(_) => TokenStream::new(),
             Op::Part(function, pair) => {
                 let name = local(if function == Function::Sin { "s" } else { "c" }, pair.0);
@@ -136,24 +136,5 @@ fn decimal(literal: &number::Literal, scalar: &Ident) -> TokenStream {
             let value = Literal::f64_unsuffixed(digits.parse().unwrap_or(f64::NAN));
             quote!(#scalar::from_f64(#value))
         }
-    }
-}
-
-fn method(function: Function) -> &'static str {
-    match function {
-        Function::Sin => "sin",
-        Function::Cos => "cos",
-        Function::Tan => "tan",
-        Function::Asin => "asin",
-        Function::Acos => "acos",
-        Function::Atan => "atan",
-        Function::Sinh => "sinh",
-        Function::Cosh => "cosh",
-        Function::Tanh => "tanh",
-        Function::Exp => "exp",
-        Function::Ln => "ln",
-        Function::Abs => "abs",
-        Function::Sign => "sign",
-        Function::Step => "step",
     }
 }

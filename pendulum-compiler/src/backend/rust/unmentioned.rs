@@ -33,8 +33,8 @@ impl Emitter<'_, '_> {
         })
     }
 
-    /// Whether an attribute of the struct, or of the field with an index, is for the function of
-    /// the unmentioned parameters alone.
+    /// Returns whether an attribute of the struct, or of the field with an index, goes to the
+    /// function of the unmentioned parameters, and not to the struct or field itself.
     ///
     /// An expectation is fulfilled where the variable is unused, and not at the struct.
     pub(super) fn is_moved(&self, attribute: &Attribute, field: Option<usize>) -> bool {

@@ -315,8 +315,8 @@ impl Lower<'_, '_, '_, '_> {
             ("atan2", &[y, x]) => graph.atan2(y, x),
             ("min", &[a, b]) => graph.min(a, b),
             ("max", &[a, b]) => graph.max(a, b),
-            (_, &[a]) => match SCALAR.iter().find(|row| row.0 == name) {
-                Some(&(_, function)) => graph.call(function, a),
+            (_, &[a]) => match Function::named(name) {
+                Some(function) => graph.call(function, a),
                 None => return Value::Bad,
             },
             _ => return Value::Bad,
@@ -444,15 +444,6 @@ impl Lower<'_, '_, '_, '_> {
         }
     }
 }
-
-/// The functions of one scalar.
-#[rustfmt::skip]
-const SCALAR: &[(&str, Function)] = &[
-    ("ln", Function::Ln), ("sin", Function::Sin), ("cos", Function::Cos), ("tan", Function::Tan),
-    ("asin", Function::Asin), ("acos", Function::Acos), ("atan", Function::Atan),
-    ("sinh", Function::Sinh), ("cosh", Function::Cosh), ("tanh", Function::Tanh),
-    ("abs", Function::Abs), ("sign", Function::Sign),
-];
 
 /// Whether an index stands in an expression: one member of a family may be at rest.
 fn has_index(expr: &Expr) -> bool {

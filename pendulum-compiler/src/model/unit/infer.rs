@@ -325,7 +325,7 @@ impl Units<'_, '_, '_> {
                 if let Some(power) = constant(exponent) {
                     return self.expr(base).and_then(|unit| Unit::pure().times(&unit, power));
                 }
-                self.pure(base, "the base of a power whose exponent is no number");
+                self.pure(base, "the base of a power with a non-constant exponent");
                 self.pure(exponent, "an exponent");
                 Some(Unit::pure())
             }

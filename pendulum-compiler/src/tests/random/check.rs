@@ -1,4 +1,4 @@
-//! Everything that the macro derives of one system, against the reference.
+//! Everything that the compiler derives of one system, against the reference.
 
 use super::interpret::Values;
 use crate::algebra::expr::{Graph, Id};

@@ -1,4 +1,4 @@
-//! What the macro derived, computed at a state by the program that it would emit.
+//! The derived equations, computed at a state by the program that it would emit.
 
 use crate::algebra::expr::{Function, Graph, Id, Moment, Symbol};
 use crate::algebra::number::Literal;

@@ -39,7 +39,7 @@ struct May {
 /// The system of a seed.
 pub fn system(seed: u64, manner: Manner) -> System {
     let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5eed);
-    random.next();
+    random.bits();
     let mut generator = Generator { random, system: System { seed, ..System::default() }, manner };
     generator.declare();
     generator.define();
@@ -59,6 +59,10 @@ pub fn gauge(system: &System, random: &mut Random) -> Expr {
 }
 
 /// The parameter that a kind of quantity is measured in.
+///
+/// # Panics
+///
+/// If the system has no parameter of this kind.
 pub fn measure(system: &System, kind: Kind) -> Expr {
     let found = system.parameters.iter().position(|parameter| parameter.kind == kind);
     Expr::Parameter(found.expect("a system has a measure for what it has"))
