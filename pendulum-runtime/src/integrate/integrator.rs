@@ -1,14 +1,14 @@
 //! Integration step by step, by hand.
 
-use super::adaptive_step::AdaptiveStep;
-use super::control::Control;
-use super::driver::Driver;
-use super::event::{Event, Occurrence};
-use super::piece::Piece;
-use super::solution::{State, Stats};
-use super::stepper::Stepper;
-use super::watch::Watch;
 use crate::error::Error;
+use crate::integrate::events::detector::Watch;
+use crate::integrate::events::{Event, Occurrence};
+use crate::integrate::interpolant::Piece;
+use crate::integrate::solution::{State, Stats};
+use crate::integrate::step::adaptive::AdaptiveStep;
+use crate::integrate::step::controller::Control;
+use crate::integrate::step::driver::Driver;
+use crate::integrate::step::stepper::Stepper;
 use crate::real::Float;
 use crate::system::{Dynamics, Prepared, System};
 
@@ -44,7 +44,7 @@ where
 {
     /// At the coordinates `q` and velocities `v` at time `t`, with the default tolerances.
     ///
-    /// A method without error estimate needs a [`FixedStep`](super::FixedStep) from
+    /// A method without error estimate needs a [`FixedStep`](crate::integrate::FixedStep) from
     /// [`control`](Self::control) before its first step.
     pub fn new(
         dynamics: &'a D,
@@ -71,7 +71,7 @@ where
     D: Dynamics<N, Scalar: Float>,
     M: Stepper<Ready<'a, D, N>, N>,
 {
-    /// Chooses the steps otherwise: with a [`FixedStep`](super::FixedStep) or an [`AdaptiveStep`].
+    /// Chooses the steps otherwise: with a [`FixedStep`](crate::integrate::FixedStep) or an [`AdaptiveStep`].
     pub fn control<B: Control<M, Ready<'a, D, N>, N>>(
         self,
         control: B,

@@ -1,13 +1,13 @@
 //! What a method is: a way to take one step, and for some an estimate of its error.
 
-pub use super::control::{Control, Course, Memory};
-pub use super::field::{Accelerations, Counted, Field};
-use super::hermite;
-pub use super::node::Node;
-pub use super::piece::{Basis, Piece, TERMS};
-pub use super::span::Span;
-pub use super::stepper::Stepper;
-pub use super::sum::Sum;
+use crate::integrate::interpolant::hermite;
+pub use crate::integrate::interpolant::{Basis, Piece, TERMS};
+pub use crate::integrate::step::compensated::Sum;
+pub use crate::integrate::step::controller::{Control, Course, Memory};
+pub use crate::integrate::step::endpoint::Node;
+pub use crate::integrate::step::field::{Accelerations, Counted, Field};
+pub use crate::integrate::step::interval::Span;
+pub use crate::integrate::step::stepper::Stepper;
 use crate::real::Float;
 use crate::system::System;
 use crate::time::Time;

@@ -1,12 +1,12 @@
 //! Which states are kept.
 
-use super::dense::DenseOutput;
-use super::driver::Driver;
-use super::event::{Occurrence, Status};
-use super::field::first_in_state;
-use super::solution::{Failure, Solution, State, Stats};
-use super::stepper::Stepper;
 use crate::error::Error;
+use crate::integrate::events::{Occurrence, Status};
+use crate::integrate::interpolant::dense::DenseOutput;
+use crate::integrate::solution::{Failure, Solution, State, Stats};
+use crate::integrate::step::driver::Driver;
+use crate::integrate::step::field::first_in_state;
+use crate::integrate::step::stepper::Stepper;
 use crate::real::Float;
 use crate::system::{Dynamics, System};
 

@@ -1,9 +1,9 @@
 //! What an integration gives back.
 
-use super::dense::DenseOutput;
-use super::event::{Occurrence, Status};
-use super::node::Node;
 use crate::error::Error;
+use crate::integrate::events::{Occurrence, Status};
+use crate::integrate::interpolant::dense::DenseOutput;
+use crate::integrate::step::endpoint::Node;
 use crate::motion::Side;
 use crate::real::Float;
 use core::fmt;
@@ -70,7 +70,7 @@ impl<T: Float, const N: usize> Solution<T, N> {
 pub struct Stats {
     /// The name of the method.
     pub method: &'static str,
-    /// Evaluations of the accelerations, those for dense output included. [`Taylor`](super::Taylor)
+    /// Evaluations of the accelerations, those for dense output included. [`Taylor`](crate::integrate::Taylor)
     /// counts an order of its series as one; the one at the end of each step, by which it checks
     /// them, is not counted.
     pub evaluations: u64,

@@ -1,16 +1,16 @@
 //! `solve`: a builder for one integration from start to end.
 
-use super::adaptive_step::AdaptiveStep;
-use super::auto::Auto;
-use super::control::Control;
-use super::driver::Driver;
-use super::event::{Event, Status};
-use super::fixed_step::FixedStep;
-use super::output::{Output, Recorder, direction, in_order};
-use super::solution::{Failure, Solution, State, Stats};
-use super::stepper::Stepper;
-use super::watch::Watch;
 use crate::error::Error;
+use crate::integrate::events::detector::Watch;
+use crate::integrate::events::{Event, Status};
+use crate::integrate::methods::auto::Auto;
+use crate::integrate::output::{Output, Recorder, direction, in_order};
+use crate::integrate::solution::{Failure, Solution, State, Stats};
+use crate::integrate::step::adaptive::AdaptiveStep;
+use crate::integrate::step::controller::Control;
+use crate::integrate::step::driver::Driver;
+use crate::integrate::step::fixed::FixedStep;
+use crate::integrate::step::stepper::Stepper;
 use crate::real::Float;
 use crate::system::{Dynamics, Prepared, System};
 
@@ -20,7 +20,7 @@ use crate::system::{Dynamics, Prepared, System};
 /// Without further calls it uses the method that [`Auto`] chooses, with `rtol` and `atol` 1e-6, and
 /// gives the end state; [`Stats`] say which method it was. If motions have a kink at the start, `v`
 /// is the velocity after it. An interval that ends before it starts leads back in time; of the
-/// methods here only [`Taylor`](super::Taylor) does that.
+/// methods here only [`Taylor`](crate::integrate::Taylor) does that.
 ///
 /// Steps over a [`Function`](crate::motion::Function) without a resolution are at most a fiftieth
 /// of the interval long, as [`AdaptiveStep`] describes.
@@ -142,7 +142,7 @@ impl<const N: usize, D: Dynamics<N>, M> Solve<'_, N, D, M, AdaptiveStep<N>> {
     /// epsilons of the scalar.
     ///
     /// Over two words methods whose coefficients have the digits of `f64` hold none below 2.3e-15:
-    /// what lies below counts as that. Only [`Taylor`](super::Taylor) goes on to 5e-31.
+    /// what lies below counts as that. Only [`Taylor`](crate::integrate::Taylor) goes on to 5e-31.
     pub fn rtol(mut self, rtol: f64) -> Self {
         self.control = self.control.rtol(rtol);
         self

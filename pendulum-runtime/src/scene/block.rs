@@ -1,7 +1,7 @@
 //! A block of lanes: pendulums of one type that are computed together.
 
 use super::hung::{Hung, W, Wide};
-use crate::integrate::sum::Sum;
+use crate::integrate::step::compensated::Sum;
 use crate::real::{Float, Lane, Real};
 use crate::system::System;
 

@@ -1,7 +1,8 @@
 //! The fixed-step methods of a scene as data: where in a tick they look, and with which weights.
 
 use crate::integrate::method::Method;
-use crate::integrate::{Leapfrog, Rk4, Srkn6b, leapfrog, srkn6b};
+use crate::integrate::methods::{leapfrog, srkn6b};
+use crate::integrate::{Leapfrog, Rk4, Srkn6b};
 use crate::system::Facts;
 
 /// A fixed-step method.

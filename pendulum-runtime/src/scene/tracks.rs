@@ -5,7 +5,7 @@ use super::hung::Layout;
 use super::joint::{Active, Place};
 use super::scheme::{Grid, MOST_STAGES};
 use super::timetable::Timetable;
-use crate::integrate::span::Span;
+use crate::integrate::step::interval::Span;
 use crate::motion::{Orders, Side};
 use crate::real::{Float, Real};
 use crate::system::{Input, Purpose};

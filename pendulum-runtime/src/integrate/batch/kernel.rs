@@ -9,17 +9,17 @@
 
 use super::{Batch, Batched, Outcome, Problem, W, outcome};
 use crate::error::Error;
-use crate::integrate::adaptive_step::resolution;
-use crate::integrate::blame::blame;
-use crate::integrate::field::coordinate;
-use crate::integrate::gap;
-use crate::integrate::node::Node;
-use crate::integrate::power::power;
+use crate::integrate::methods::taylor::{GAP, Rule, TELLING, Taylor, largest, rest};
 use crate::integrate::solution::{State, Stats};
-use crate::integrate::span::Span;
-use crate::integrate::stepper::Stepper;
-use crate::integrate::sum::{Sum, splitter};
-use crate::integrate::taylor::{GAP, Rule, TELLING, Taylor, largest, rest};
+use crate::integrate::step::adaptive::resolution;
+use crate::integrate::step::compensated::{Sum, splitter};
+use crate::integrate::step::diagnose::blame;
+use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::fast_exp2::power;
+use crate::integrate::step::field::coordinate;
+use crate::integrate::step::gap;
+use crate::integrate::step::interval::Span;
+use crate::integrate::step::stepper::Stepper;
 use crate::jet::{Jets, Orders, Path};
 use crate::real::{Float, Lane, Lanes, Real};
 use crate::simd::Work;

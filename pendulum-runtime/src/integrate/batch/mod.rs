@@ -2,13 +2,13 @@
 
 mod kernel;
 
-use super::adaptive_step::AdaptiveStep;
-use super::control::Control;
-use super::driver::check_start;
-use super::output::{Output, Recorder};
-use super::solution::{Failure, Solution, State, Stats};
-use super::taylor::{Rule, Taylor};
 use crate::error::Error;
+use crate::integrate::methods::taylor::{Rule, Taylor};
+use crate::integrate::output::{Output, Recorder};
+use crate::integrate::solution::{Failure, Solution, State, Stats};
+use crate::integrate::step::adaptive::AdaptiveStep;
+use crate::integrate::step::controller::Control;
+use crate::integrate::step::driver::check_start;
 use crate::jet::Jets;
 use crate::real::{Float, Lane, Lanes};
 use crate::simd;
@@ -25,7 +25,7 @@ const W: usize = 8;
 /// steps: its solution has the same bits whatever its neighbours do. Where one ends, the next one
 /// takes its lane. The steps are those that `Taylor` chooses before it looks at their ends:
 /// `Taylor` compares the accelerations there with its series and halves a step that leads through a
-/// wall; a batch does neither. State and counters have the bits of [`solve`](super::solve)`(&system,
+/// wall; a batch does neither. State and counters have the bits of [`solve`](crate::integrate::solve)`(&system,
 /// time, q, v).method(Taylor::new())` wherever the [`Stats`] of that run count no rejected step. At
 /// walls, contacts and narrow kicks take `solve`.
 /// Worth it from about four motions on; it suits every system that `lagrangian!` has made without
@@ -201,7 +201,7 @@ fn outcome<T: Float, const N: usize>(
 ) -> Outcome<T, N> {
     let recorder = Recorder::new(Output::End, time);
     match error {
-        None => Ok(recorder.finish(end, super::event::Status::Completed, stats)),
+        None => Ok(recorder.finish(end, crate::integrate::events::Status::Completed, stats)),
         Some(error) => Err(recorder.fail(error, end, stats)),
     }
 }

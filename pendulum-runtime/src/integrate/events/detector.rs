@@ -1,0 +1,494 @@
+//! Finds the events within each step.
+
+use crate::error::Error;
+use crate::integrate::events::root::{Dip, Point, dip, root};
+use crate::integrate::events::{Condition, Direction, Event, Occurrence};
+use crate::integrate::interpolant::Piece;
+use crate::integrate::output::in_order;
+use crate::integrate::solution::State;
+use crate::integrate::step::driver::Driver;
+use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::stepper::Stepper;
+use crate::real::Float;
+use crate::system::{Dynamics, scalar_time};
+use crate::time::Time;
+
+/// The events of an integration and what is known of each.
+#[derive(Clone, Debug)]
+pub(crate) struct Watch<'a, T, const N: usize> {
+    events: &'a [Event<'a, T, N>],
+    tracks: Vec<Track<T>>,
+    /// Whether the next step is the first of a smooth stretch, before which there is nothing.
+    fresh: bool,
+    /// What happened in the last step, in order.
+    found: Vec<Occurrence<T, N>>,
+}
+
+/// What is known of an event at the state reached.
+#[derive(Clone, Copy, Debug)]
+struct Track<T> {
+    /// The value of the function.
+    value: T,
+    /// On which side of zero it is: its sign, or 0 where a root has just been passed.
+    side: i8,
+    /// How often it has happened.
+    count: u64,
+    /// When it has happened last.
+    last: Option<Time>,
+    /// The index of the next known time.
+    next: usize,
+}
+
+/// How near to its ends, in parts of a step, the function is looked at to see whether it falls or
+/// rises there.
+const NEAR: f64 = 1e-4;
+/// How soon after a root a function shows its sign, in parts of a step.
+const SHORTLY: f64 = 1e-7;
+/// The points at which it is looked at.
+const POINTS: [f64; 11] =
+    [-NEAR, 0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0 - NEAR, 1.0];
+
+impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
+    pub(crate) fn new(events: &'a [Event<'a, T, N>]) -> Self {
+        let track = Track { value: T::from_f64(0.0), side: 0, count: 0, last: None, next: 0 };
+        Self {
+            events,
+            tracks: vec![track; events.len()],
+            fresh: true,
+            found: Vec::with_capacity(events.len()),
+        }
+    }
+
+    /// Whether there is nothing to look for.
+    #[inline]
+    pub(crate) fn is_idle(&self) -> bool {
+        self.events.is_empty()
+    }
+
+    /// What happened in the last step.
+    pub(crate) fn found(&self) -> &[Occurrence<T, N>] {
+        &self.found
+    }
+
+    /// Begins at the state of `driver`.
+    pub(crate) fn begin<D, M, C>(
+        &mut self,
+        driver: &mut Driver<T, N, M, C, M::Stages>,
+        dynamics: &D,
+    ) -> Result<(), Error>
+    where
+        D: Dynamics<N, Scalar = T>,
+        M: Stepper<D, N>,
+    {
+        if self.is_idle() {
+            return Ok(());
+        }
+        let a = driver.accelerations(dynamics);
+        self.found.clear();
+        self.look(&driver.node, &a)
+    }
+
+    /// Finds what happened in the step that `driver` has just taken; if a terminal event did, puts
+    /// it back there and gives the index.
+    ///
+    /// On failure it is put back to the start of the step.
+    pub(crate) fn observe<D, M, C>(
+        &mut self,
+        driver: &mut Driver<T, N, M, C, M::Stages>,
+        dynamics: &D,
+    ) -> Result<Option<usize>, Error>
+    where
+        D: Dynamics<N, Scalar = T>,
+        M: Stepper<D, N>,
+    {
+        if self.is_idle() {
+            return Ok(None);
+        }
+        let rooted = self.events.iter().any(|event| matches!(event.condition, Condition::Root(_)));
+        let piece = if rooted { driver.piece(dynamics) } else { None };
+        let (end, beyond) = driver.ends();
+        match self.step(piece.as_ref(), &end, beyond.as_ref()) {
+            Err(error) => {
+                driver.retreat();
+                let a = driver.accelerations(dynamics);
+                self.found.clear();
+                // It has looked there before.
+                self.look(&driver.node, &a).ok();
+                Err(error)
+            }
+            Ok(None) => Ok(None),
+            Ok(Some(last)) => {
+                if last.time != end.t {
+                    driver.cut(last.time, &last.state);
+                    let a = driver.accelerations(dynamics);
+                    self.look(&driver.node, &a)?;
+                    for occurrence in
+                        self.found.iter().filter(|occurrence| occurrence.time == last.time)
+                    {
+                        self.tracks[occurrence.event].side = 0;
+                    }
+                }
+                Ok(Some(last.event))
+            }
+        }
+    }
+
+    /// Looks at the state from which the next step goes; `a` are the accelerations there.
+    fn look(&mut self, node: &Node<T, N>, a: &[T; N]) -> Result<(), Error> {
+        self.fresh = true;
+        for index in 0..self.events.len() {
+            match self.events[index].condition {
+                Condition::Times(times) => {
+                    in_order("events", times, f64::NEG_INFINITY, f64::INFINITY)?;
+                    self.tracks[index].next =
+                        times.partition_point(|time| *time <= node.t.to_f64());
+                }
+                Condition::Root(_) => {
+                    let place = Place { t: scalar_time(node.t), q: node.q.high, v: node.v.high };
+                    let value = self.value(index, &place)?;
+                    let track = &mut self.tracks[index];
+                    (track.value, track.side) = (value, side(value));
+                    if value.abs() <= self.rounding(index, &place, value, a) {
+                        self.tracks[index].side = 0;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The next known time, infinite if there is none.
+    pub(crate) fn next_time(&self) -> f64 {
+        let times = self.events.iter().zip(&self.tracks).filter_map(|(event, track)| {
+            match event.condition {
+                Condition::Times(times) => times.get(track.next).copied(),
+                Condition::Root(_) => None,
+            }
+        });
+        times.fold(f64::INFINITY, |first, time| if time < first { time } else { first })
+    }
+
+    /// Finds what happened in the step of `piece` that ended in `end`, and then, over a kink, in
+    /// `beyond`.
+    ///
+    /// Gives the terminal event, if there was one.
+    fn step(
+        &mut self,
+        piece: Option<&Piece<T, N>>,
+        end: &Node<T, N>,
+        beyond: Option<&Node<T, N>>,
+    ) -> Result<Option<Occurrence<T, N>>, Error> {
+        self.found.clear();
+        let fresh = self.fresh;
+        for index in 0..self.events.len() {
+            match self.events[index].condition {
+                Condition::Times(times) => {
+                    while times
+                        .get(self.tracks[index].next)
+                        .is_some_and(|time| *time <= end.t.to_f64())
+                    {
+                        self.tracks[index].next += 1;
+                        self.found.push(Occurrence {
+                            event: index,
+                            time: end.t,
+                            state: State::from(end),
+                        });
+                    }
+                }
+                Condition::Root(_) => {
+                    if let Some(piece) = piece {
+                        self.search(index, piece, end, fresh)?;
+                    }
+                    if let Some(beyond) = beyond {
+                        self.jump(index, beyond)?;
+                    }
+                }
+            }
+        }
+        self.fresh = beyond.is_some();
+        if let Some(beyond) = beyond {
+            for occurrence in self.found.iter_mut().filter(|occurrence| occurrence.time == beyond.t)
+            {
+                occurrence.state = State::from(beyond);
+            }
+        }
+        let start = end.t.to_f64();
+        let before = |a: &Occurrence<T, N>| (a.time.since(start), a.event);
+        self.found.sort_unstable_by(|a, b| {
+            before(a).partial_cmp(&before(b)).unwrap_or(core::cmp::Ordering::Equal)
+        });
+        Ok(self.count())
+    }
+
+    /// Counts what was found, up to the first terminal event.
+    fn count(&mut self) -> Option<Occurrence<T, N>> {
+        let mut terminal: Option<Occurrence<T, N>> = None;
+        let mut kept = 0;
+        for occurrence in &self.found {
+            // What happens at the very time of a terminal event happens too.
+            if terminal.is_some_and(|terminal| terminal.time != occurrence.time) {
+                break;
+            }
+            let track = &mut self.tracks[occurrence.event];
+            track.count += 1;
+            track.last = Some(occurrence.time);
+            if self.events[occurrence.event].terminal.is_some_and(|count| count <= track.count) {
+                terminal = terminal.or(Some(*occurrence));
+            }
+            kept += 1;
+        }
+        self.found.truncate(kept);
+        terminal
+    }
+
+    /// Searches one step for the roots of one function.
+    fn search(
+        &mut self,
+        index: usize,
+        piece: &Piece<T, N>,
+        end: &Node<T, N>,
+        fresh: bool,
+    ) -> Result<(), Error> {
+        let zero = T::from_f64(0.0);
+        let mut before: [Option<Point<T>>; 2] = [None; 2];
+        let mut side_before = self.tracks[index].side;
+        for (i, &theta) in POINTS.iter().enumerate() {
+            let theta = T::from_f64(theta);
+            let value = match i {
+                // A function may end where the step begins.
+                0 => match self.at(index, piece, theta) {
+                    Ok(value) if !fresh => value,
+                    _ => continue,
+                },
+                1 => self.tracks[index].value,
+                10 => self
+                    .value(index, &Place { t: scalar_time(end.t), q: end.q.high, v: end.v.high })?,
+                _ => self.at(index, piece, theta)?,
+            };
+            let mut point = (theta, value);
+            if i == 1 && side_before == 0 {
+                // A long step from a root may lead over the next: it must show its side soon.
+                let soon = T::from_f64(NEAR);
+                let place = Place::on(piece, soon);
+                if let (Ok(value), Ok(least)) =
+                    (self.value(index, &place), self.allowance(index, &place))
+                    && least < value.abs()
+                {
+                    (point, side_before) = ((soon, value), side(value));
+                }
+            }
+            let side_here = side(value);
+            if 1 < i {
+                match (side_before, before) {
+                    (0, _) => side_before = side_here,
+                    (_, [_, Some(last)]) if side_here == -side_before => {
+                        let theta = self.root(index, piece, last, point)?;
+                        self.push(index, piece, end, theta, side_here);
+                        side_before = side_here;
+                    }
+                    (_, [_, Some(_)]) if side_here == 0 => {
+                        // A root just here: what comes next shows whether it is crossed.
+                        let next = self
+                            .at(index, piece, theta + T::from_f64(SHORTLY))
+                            .unwrap_or(T::from_f64(f64::from(-side_before)));
+                        point.1 = next;
+                        let crossed = side(next) != side_before;
+                        self.push(index, piece, end, theta, if crossed { -side_before } else { 0 });
+                        side_before = side(next);
+                    }
+                    (_, [Some(first), Some(middle)])
+                        if side(first.1) == side_here && side(middle.1) == side_here =>
+                    {
+                        let lower = middle.1.abs() <= value.abs() && middle.1.abs() < first.1.abs();
+                        if lower && !(i == 2 && self.recent(index, piece)) {
+                            self.dip(index, piece, end, [first, middle, point])?;
+                        }
+                    }
+                    _ => {}
+                }
+            }
+            before = [before[1], Some(point)];
+        }
+        let track = &mut self.tracks[index];
+        track.value = before[1].map_or(zero, |point| point.1);
+        track.side = side_before;
+        Ok(())
+    }
+
+    /// Looks whether a function jumped over zero at a kink.
+    fn jump(&mut self, index: usize, beyond: &Node<T, N>) -> Result<(), Error> {
+        let value = self.value(
+            index,
+            &Place { t: scalar_time(beyond.t), q: beyond.q.high, v: beyond.v.high },
+        )?;
+        let (before, here) = (self.tracks[index].side, side(value));
+        if before != 0 && here == -before && self.counts(index, here) {
+            self.found.push(Occurrence {
+                event: index,
+                time: beyond.t,
+                state: State::from(beyond),
+            });
+        }
+        (self.tracks[index].value, self.tracks[index].side) = (value, here);
+        Ok(())
+    }
+
+    /// Whether the event has happened so shortly before the step that a dip around its start is the
+    /// same one.
+    fn recent(&self, index: usize, piece: &Piece<T, N>) -> bool {
+        let start = piece.span.start;
+        let since = |last: Time| (last.since(start.to_f64()) - start.low()).abs();
+        self.tracks[index].last.is_some_and(|last| since(last) <= 4.0 * NEAR * piece.span.h.abs())
+    }
+
+    /// Looks for a root, or a pair of them, in a dip of |g|.
+    fn dip(
+        &mut self,
+        index: usize,
+        piece: &Piece<T, N>,
+        end: &Node<T, N>,
+        points: [Point<T>; 3],
+    ) -> Result<(), Error> {
+        let sign = T::from_f64(f64::from(side(points[0].1)));
+        let tolerance = match self.events[index] {
+            Event { direction: Direction::Rising | Direction::Falling, .. } => T::from_f64(0.0),
+            Event { tolerance: Some(tolerance), .. } => T::from_f64(tolerance),
+            _ => self.allowance(index, &Place::on(piece, points[1].0))?,
+        };
+        let positive = points.map(|(theta, value)| (theta, sign * value));
+        match dip(&mut |theta| Ok(sign * self.at(index, piece, theta)?), positive, tolerance)? {
+            Dip::Away => {}
+            Dip::Touches(theta) => self.push(index, piece, end, theta, 0),
+            Dip::Crosses(theta) => {
+                let below = (theta, self.at(index, piece, theta)?);
+                for (from, to, here) in
+                    [(points[0], below, side(below.1)), (below, points[2], side(points[2].1))]
+                {
+                    let theta = self.root(index, piece, from, to)?;
+                    self.push(index, piece, end, theta, here);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn root(
+        &self,
+        index: usize,
+        piece: &Piece<T, N>,
+        from: Point<T>,
+        to: Point<T>,
+    ) -> Result<T, Error> {
+        root(&mut |theta| self.at(index, piece, theta), from, to)
+    }
+
+    /// Keeps an occurrence, if its direction counts; `here` is the side that it leads to, 0 if it
+    /// only touches.
+    fn push(&mut self, index: usize, piece: &Piece<T, N>, end: &Node<T, N>, theta: T, here: i8) {
+        if !self.counts(index, here) {
+            return;
+        }
+        // A dip around the start of a step may have its root before it, where the integration can
+        // no longer end.
+        let zero = T::from_f64(0.0);
+        let theta =
+            if theta < zero && self.events[index].terminal.is_some() { zero } else { theta };
+        let occurrence = if theta == T::from_f64(1.0) {
+            Occurrence { event: index, time: end.t, state: State::from(end) }
+        } else {
+            let passed = theta * piece.span.length();
+            let high = passed.to_f64();
+            let time = piece.span.start + high + (passed - T::from_f64(high)).to_f64();
+            let (q, v) = piece.at(theta);
+            Occurrence { event: index, time, state: State { t: time.to_f64(), q, v } }
+        };
+        self.found.push(occurrence);
+    }
+
+    fn counts(&self, index: usize, here: i8) -> bool {
+        match self.events[index].direction {
+            Direction::Both => true,
+            Direction::Rising => here == 1,
+            Direction::Falling => here == -1,
+        }
+    }
+
+    /// The function on the dense output.
+    fn at(&self, index: usize, piece: &Piece<T, N>, theta: T) -> Result<T, Error> {
+        self.value(index, &Place::on(piece, theta))
+    }
+
+    /// The function at a state.
+    fn value(&self, index: usize, place: &Place<T, N>) -> Result<T, Error> {
+        let Condition::Root(function) = self.events[index].condition else {
+            return Ok(T::from_f64(0.0));
+        };
+        let value = function(place.t, &place.q, &place.v);
+        if value.to_f64().is_nan() {
+            Err(Error::Event { t: place.t.to_f64(), event: index })
+        } else {
+            Ok(value)
+        }
+    }
+
+    /// What rounding the state and the time by a few units changes in the function.
+    fn rounding(&self, index: usize, place: &Place<T, N>, value: T, a: &[T; N]) -> T {
+        let unit = T::from_f64(4.0) * T::EPSILON;
+        let dt = unit * place.t.abs();
+        let later = Place {
+            t: place.t + dt,
+            q: core::array::from_fn(|i| place.q[i] + dt * place.v[i]),
+            v: core::array::from_fn(|i| place.v[i] + dt * a[i]),
+        };
+        // Accelerations that are not finite are for the step to report, and a function may end
+        // right here.
+        let zero = T::from_f64(0.0);
+        let later =
+            if a.iter().all(|a| a.is_finite()) { self.value(index, &later) } else { Ok(value) };
+        let drift = later.map_or(zero, |later| (later - value).abs());
+        drift + self.changes(index, place, value, |y| unit * y.abs())
+    }
+
+    /// What the usual errors of a solution change in the function.
+    fn allowance(&self, index: usize, place: &Place<T, N>) -> Result<T, Error> {
+        let unit = T::EPSILON.sqrt() / T::from_f64(16.0);
+        let value = self.value(index, place)?;
+        Ok(self.changes(index, place, value, |y| unit * (T::from_f64(1.0) + y.abs())))
+    }
+
+    /// Σ |change of the function| over changes of each component of the state.
+    fn changes(&self, index: usize, place: &Place<T, N>, value: T, change: impl Fn(T) -> T) -> T {
+        let mut sum = T::from_f64(0.0);
+        for i in 0..2 * N {
+            let mut other = *place;
+            let y = if i < N { &mut other.q[i] } else { &mut other.v[i - N] };
+            *y += change(*y);
+            sum += self
+                .value(index, &other)
+                .map_or(T::from_f64(0.0), |changed| (changed - value).abs());
+        }
+        sum
+    }
+}
+
+/// A time and the state there.
+#[derive(Clone, Copy)]
+struct Place<T, const N: usize> {
+    t: T,
+    q: [T; N],
+    v: [T; N],
+}
+
+impl<T: Float, const N: usize> Place<T, N> {
+    /// On the dense output.
+    fn on(piece: &Piece<T, N>, theta: T) -> Self {
+        let (q, v) = piece.at(theta);
+        Self { t: scalar_time::<T>(piece.span.start) + theta * piece.span.length(), q, v }
+    }
+}
+
+/// −1, 0 or 1.
+fn side<T: Float>(value: T) -> i8 {
+    let zero = T::from_f64(0.0);
+    i8::from(zero < value) - i8::from(value < zero)
+}

@@ -1,0 +1,66 @@
+//! Dense output over a whole integration.
+
+use crate::integrate::interpolant::{Basis, Piece};
+use crate::integrate::solution::State;
+use crate::integrate::step::interval::Span;
+use crate::motion::Side;
+use crate::real::Float;
+
+/// The pieces of all steps.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct DenseOutput<T, const N: usize> {
+    start: State<T, N>,
+    /// The direction of time: 1 or −1.
+    onwards: f64,
+    /// The steps in order; those from a kink start with the state after it.
+    spans: Vec<Span>,
+    /// For each step where its values end, and what its terms are multiplied by.
+    ends: Vec<(usize, Basis)>,
+    /// For each step the state at its start and the terms of both polynomials.
+    values: Vec<[T; N]>,
+    /// The last state.
+    end: State<T, N>,
+}
+
+impl<T: Float, const N: usize> DenseOutput<T, N> {
+    pub(crate) fn new(start: State<T, N>, onwards: f64) -> Self {
+        Self { start, onwards, spans: Vec::new(), ends: Vec::new(), values: Vec::new(), end: start }
+    }
+
+    /// Adds the next step and the state after it.
+    pub(crate) fn push(&mut self, piece: &Piece<T, N>, end: State<T, N>) {
+        self.spans.push(piece.span);
+        self.values.extend([piece.q0, piece.v0]);
+        self.values.extend_from_slice(&piece.q[..piece.terms]);
+        self.values.extend_from_slice(&piece.v[..piece.terms]);
+        self.ends.push((self.values.len(), piece.basis));
+        self.end = end;
+    }
+
+    /// The state at `t`, if it lies within.
+    pub(crate) fn at(&self, t: f64, side: Side) -> Option<State<T, N>> {
+        let onwards = self.onwards;
+        if !(onwards * self.start.t <= onwards * t && onwards * t <= onwards * self.end.t) {
+            return None;
+        }
+        let side = if onwards < 0.0 { side.opposite() } else { side };
+        if side == Side::After && t == self.end.t {
+            return Some(self.end);
+        }
+        // Steps that start before `t`; one that starts at `t` counts if the state beyond a kink is
+        // asked for.
+        let started = self.spans.partition_point(|span| match side {
+            Side::Before => 0.0 < -onwards * span.start.since(t),
+            Side::After => 0.0 <= -onwards * span.start.since(t),
+        });
+        let Some(index) = started.checked_sub(1) else { return Some(self.start) };
+        let span = &self.spans[index];
+        let (theta, one) = (span.fraction(t), T::from_f64(1.0));
+        let theta = if theta < one { theta } else { one };
+        let (end, basis) = self.ends[index];
+        let begin = if index == 0 { 0 } else { self.ends[index - 1].0 };
+        let (states, terms) = self.values[begin..end].split_at(2);
+        let (q, v) = terms.split_at(terms.len() / 2);
+        Some(State { t, q: basis.at(&states[0], q, theta), v: basis.at(&states[1], v, theta) })
+    }
+}

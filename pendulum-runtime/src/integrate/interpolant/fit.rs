@@ -1,0 +1,91 @@
+//! Polynomials in the form of a [`Piece`](crate::integrate::interpolant::Piece) through given values, slopes and
+//! curvatures.
+
+use crate::integrate::interpolant::TERMS;
+use crate::integrate::schemes::linear::Factors;
+use crate::real::Float;
+
+/// What is given at a place θ.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Condition {
+    /// y − y₀.
+    Value(f64),
+    /// dy/dθ.
+    Slope(f64),
+    /// d²y/dθ².
+    Curvature(f64),
+}
+
+/// Computes as many terms after the first, which is known, as there are conditions; they must be
+/// independent.
+pub(crate) fn fit<T: Float, const N: usize>(
+    terms: &mut [[T; N]; TERMS],
+    conditions: &[(Condition, [T; N])],
+) {
+    let row = |condition: &Condition| match *condition {
+        Condition::Value(theta) => basis(theta).map(|[value, ..]| value),
+        Condition::Slope(theta) => basis(theta).map(|[_, slope, _]| slope),
+        Condition::Curvature(theta) => basis(theta).map(|[.., curvature]| curvature),
+    };
+    let factors = Factors::<f64, TERMS, 1>::new(|_, _| {
+        core::array::from_fn(|index| match conditions.get(index) {
+            Some((condition, _)) => {
+                let row = row(condition);
+                core::array::from_fn(|k| if k < conditions.len() { row[k + 1] } else { 0.0 })
+            }
+            None => core::array::from_fn(|k| f64::from(u8::from(k == index))),
+        })
+    });
+    for i in 0..N {
+        let mut x = [[0.0; TERMS]];
+        for (index, (condition, value)) in conditions.iter().enumerate() {
+            x[0][index] = (value[i] - terms[0][i] * T::from_f64(row(condition)[0])).to_f64();
+        }
+        factors.solve(&mut x);
+        for index in 0..conditions.len() {
+            terms[index + 1][i] = T::from_f64(x[0][index]);
+        }
+    }
+}
+
+/// Value, slope and curvature of each of the polynomials θ, θ(1−θ), θ²(1−θ), ….
+fn basis(theta: f64) -> [[f64; 3]; TERMS] {
+    let [mut value, mut slope, mut curvature] = [1.0, 0.0, 0.0];
+    core::array::from_fn(|term| {
+        let (factor, rise) = if term % 2 == 0 { (theta, 1.0) } else { (1.0 - theta, -1.0) };
+        [value, slope, curvature] = [
+            value * factor,
+            slope * factor + value * rise,
+            curvature * factor + 2.0 * slope * rise,
+        ];
+        [value, slope, curvature]
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Condition, TERMS, fit};
+    use crate::integrate::interpolant::Basis;
+
+    #[test]
+    fn a_polynomial_is_found_again() {
+        // 1 + θ − θ³ + θ⁶/2, from its value at 1, and so on.
+        let y = |x: f64| 1.0 + x - x.powi(3) + 0.5 * x.powi(6);
+        let slope = |x: f64| 1.0 - 3.0 * x * x + 3.0 * x.powi(5);
+        let curvature = |x: f64| -6.0 * x + 15.0 * x.powi(4);
+        let mut terms = [[0.0]; TERMS];
+        terms[0] = [y(1.0) - y(0.0)];
+        let conditions = [
+            (Condition::Slope(0.0), [slope(0.0)]),
+            (Condition::Slope(1.0), [slope(1.0)]),
+            (Condition::Value(0.25), [y(0.25) - y(0.0)]),
+            (Condition::Curvature(-1.0), [curvature(-1.0)]),
+            (Condition::Curvature(-2.0), [curvature(-2.0)]),
+        ];
+        fit(&mut terms, &conditions);
+        for x in [0.1_f64, 0.5, 0.9] {
+            let [found] = Basis::Nested.at(&[y(0.0)], &terms[..6], x);
+            assert!((found - y(x)).abs() < 1e-14, "{found} {}", y(x));
+        }
+    }
+}

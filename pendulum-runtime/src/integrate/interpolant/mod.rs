@@ -1,0 +1,151 @@
+//! The motion within one step, as polynomials.
+
+pub(crate) mod dense;
+pub(crate) mod fit;
+pub(crate) mod hermite;
+
+use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::interval::Span;
+use crate::jet::MAX_ORDER;
+use crate::real::Float;
+
+/// The largest number of terms of a [`Piece`].
+pub const TERMS: usize = MAX_ORDER;
+
+/// Coordinates and velocities within a step as polynomials in θ = (t − start)/h.
+#[derive(Clone, Copy, Debug)]
+pub struct Piece<T, const N: usize> {
+    /// The step.
+    pub span: Span,
+    /// The coordinates at its start.
+    pub q0: [T; N],
+    /// The velocities at its start.
+    pub v0: [T; N],
+    /// The terms of the coordinates.
+    pub q: [[T; N]; TERMS],
+    /// The terms of the velocities.
+    pub v: [[T; N]; TERMS],
+    /// How many of them are not zero.
+    pub terms: usize,
+    /// What the terms are multiplied by.
+    pub basis: Basis,
+}
+
+/// What the terms of a [`Piece`] are multiplied by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Basis {
+    /// y(θ) = y₀ + θ(F₀ + (1−θ)(F₁ + θ(F₂ + (1−θ)(F₃ + …)))), the form of Hairer, Nørsett and
+    /// Wanner (1993), II.6: F₀ is the increment, so that both ends are met exactly, and F₁ and F₂
+    /// come from the slopes at the ends.
+    Nested,
+    /// y(θ) = y₀ + θ(F₀ + θ(F₁ + θ(F₂ + …))): a Taylor polynomial.
+    Powers,
+    /// y(θ) = y₀ + Σ F_k (P_{k+1}(2θ − 1) − P_{k+1}(−1)) with Legendre's polynomials P.
+    Legendre,
+}
+
+impl Basis {
+    /// The polynomial with these terms at θ.
+    pub(crate) fn at<T: Float, const N: usize>(
+        self,
+        y0: &[T; N],
+        terms: &[[T; N]],
+        theta: T,
+    ) -> [T; N] {
+        if self == Self::Legendre {
+            return legendre(y0, terms, theta);
+        }
+        let other = if self == Self::Nested { T::from_f64(1.0) - theta } else { theta };
+        let factors = [theta, other];
+        core::array::from_fn(|i| {
+            let zero = T::from_f64(0.0);
+            let sum = terms
+                .iter()
+                .enumerate()
+                .rev()
+                .fold(zero, |sum, (k, term)| (sum + term[i]) * factors[k % 2]);
+            y0[i] + sum
+        })
+    }
+}
+
+/// y₀ + Σ terms_k (P_{k+1}(2θ − 1) − P_{k+1}(−1)), where (k + 1) P_{k+1}(x) = (2k + 1) x P_k(x) − k
+/// P_{k−1}(x).
+fn legendre<T: Float, const N: usize>(y0: &[T; N], terms: &[[T; N]], theta: T) -> [T; N] {
+    let one = T::from_f64(1.0);
+    let x = theta - (one - theta);
+    let (mut before, mut now, mut sign) = (one, x, -one);
+    let mut sums = [T::from_f64(0.0); N];
+    for (k, term) in terms.iter().enumerate() {
+        for i in 0..N {
+            sums[i] += term[i] * (now - sign);
+        }
+        let k = (k + 1) as f64;
+        let next = T::ratio(2.0 * k + 1.0, k + 1.0) * (x * now) - T::ratio(k, k + 1.0) * before;
+        (before, now, sign) = (now, next, -sign);
+    }
+    core::array::from_fn(|i| y0[i] + sums[i])
+}
+
+impl<T: Float, const N: usize> Piece<T, N> {
+    /// The cubics through the states at both ends of `span` with the given slopes there: velocities
+    /// for the coordinates, accelerations for the velocities.
+    pub fn hermite(
+        span: &Span,
+        from: &Node<T, N>,
+        to: &Node<T, N>,
+        a0: &[T; N],
+        a1: &[T; N],
+    ) -> Self {
+        let mut piece = Self::linear(span, from, to);
+        let h = span.length::<T>();
+        clamp(&mut piece.q, h, &from.v.high, &to.v.high);
+        clamp(&mut piece.v, h, a0, a1);
+        piece.terms = 3;
+        piece
+    }
+
+    /// The straight line between the states at both ends.
+    pub fn linear(span: &Span, from: &Node<T, N>, to: &Node<T, N>) -> Self {
+        let zero = [[T::from_f64(0.0); N]; TERMS];
+        let mut piece = Self {
+            span: *span,
+            q0: from.q.high,
+            v0: from.v.high,
+            q: zero,
+            v: zero,
+            terms: 1,
+            basis: Basis::Nested,
+        };
+        piece.q[0] = to.q.since(&from.q);
+        piece.v[0] = to.v.since(&from.v);
+        piece
+    }
+
+    /// Gives the coordinates the slopes `v0` and `v1` at the ends.
+    pub(crate) fn clamp_coordinates(&mut self, h: T, v0: &[T; N], v1: &[T; N]) {
+        clamp(&mut self.q, h, v0, v1);
+    }
+
+    /// Coordinates and velocities at θ.
+    pub fn at(&self, theta: T) -> ([T; N], [T; N]) {
+        (
+            self.basis.at(&self.q0, &self.q[..self.terms], theta),
+            self.basis.at(&self.v0, &self.v[..self.terms], theta),
+        )
+    }
+}
+
+/// F₁ and F₂ from the slopes at both ends.
+fn clamp<T: Float, const N: usize>(
+    terms: &mut [[T; N]; TERMS],
+    h: T,
+    slope0: &[T; N],
+    slope1: &[T; N],
+) {
+    for i in 0..N {
+        let increment = terms[0][i];
+        terms[1][i] = h * slope0[i] - increment;
+        terms[2][i] = (increment - h * slope1[i]) - terms[1][i];
+    }
+}

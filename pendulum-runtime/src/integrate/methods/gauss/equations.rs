@@ -1,0 +1,268 @@
+//! The equations of one step, and two ways to come nearer to their solution.
+
+use super::tableau::Tableau;
+use crate::integrate::schemes::linear::{Factors, Square, times};
+use crate::integrate::step::compensated::Sum;
+use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::field::Field;
+use crate::integrate::step::interval::Span;
+use crate::motion::Side;
+use crate::real::{Float, Real};
+use crate::system::{Jacobians, System};
+use crate::time::Time;
+
+/// The slopes at the stages: q̇ and ṗ.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slopes<T, const N: usize, const S: usize> {
+    /// The velocities.
+    pub(super) v: [[T; N]; S],
+    /// The rates of the momenta.
+    pub(super) f: [[T; N]; S],
+}
+
+impl<T: Float, const N: usize, const S: usize> Slopes<T, N, S> {
+    pub(super) fn zero() -> Self {
+        let zero = [[T::from_f64(0.0); N]; S];
+        Self { v: zero, f: zero }
+    }
+
+    /// The polynomials through the slopes, one step later.
+    pub(super) fn ahead(&self, weights: &[[f64; S]; S]) -> Self {
+        let extrapolated = |slopes: &[[T; N]; S]| {
+            weights.map(|row| combined([T::from_f64(0.0); N], slopes, &row.map(T::from_f64)))
+        };
+        Self { v: extrapolated(&self.v), f: extrapolated(&self.f) }
+    }
+}
+
+/// How much an iteration has changed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Change {
+    /// The largest change of a slope, times h and in units of the coordinate or momentum.
+    pub(super) size: f64,
+    /// The same among the velocities alone.
+    pub(super) shift: f64,
+    /// The stage and the coordinate of the largest.
+    pub(super) place: (usize, usize),
+}
+
+/// The equations of one step.
+#[derive(Debug)]
+pub(super) struct Equations<Y: System<N>, const N: usize, const S: usize> {
+    h: Y::Scalar,
+    /// h b.
+    weights: [Y::Scalar; S],
+    ratios: [[Y::Scalar; S]; S],
+    times: [Time; S],
+    inputs: [Y::Inputs; S],
+    q: Sum<Y::Scalar, N>,
+    p: Sum<Y::Scalar, N>,
+}
+
+impl<Y: System<N, Scalar: Float>, const N: usize, const S: usize> Equations<Y, N, S> {
+    /// The equations of `span` from the coordinates `q` and the momenta `p`.
+    pub(super) fn new(
+        field: &mut impl Field<Y, N>,
+        span: &Span,
+        q: Sum<Y::Scalar, N>,
+        p: Sum<Y::Scalar, N>,
+    ) -> Self {
+        let tableau = const { &Tableau::<S>::GAUSS };
+        let stages = tableau.nodes.map(|c| span.at(c));
+        Self {
+            h: span.length(),
+            weights: tableau.weights.map(|b| Real::from_f64(b * span.h)),
+            ratios: tableau.ratios.map(|row| row.map(Real::from_f64)),
+            times: stages.map(|(t, _)| t),
+            inputs: stages.map(|(t, side)| field.inputs(t, side)),
+            q,
+            p,
+        }
+    }
+
+    /// The time of a stage.
+    pub(super) fn time(&self, stage: usize) -> Time {
+        self.times[stage]
+    }
+
+    /// h Σ b V and h Σ b F.
+    pub(super) fn increments(
+        &self,
+        slopes: &Slopes<Y::Scalar, N, S>,
+    ) -> ([Y::Scalar; N], [Y::Scalar; N]) {
+        let zero = [Y::Scalar::from_f64(0.0); N];
+        (combined(zero, &slopes.v, &self.weights), combined(zero, &slopes.f, &self.weights))
+    }
+
+    /// Momenta from forces, velocities from momenta, coordinates from velocities, forces from both.
+    ///
+    /// With a constant mass matrix two halves of it contract like (h·ω)², where evaluating
+    /// everything at the old slopes contracts like h·ω.
+    pub(super) fn sweep(
+        &self,
+        field: &mut impl Field<Y, N>,
+        slopes: &mut Slopes<Y::Scalar, N, S>,
+    ) -> Change {
+        let old = *slopes;
+        let (dq, dp) = (self.scaled(&old.v), self.scaled(&old.f));
+        for i in 0..S {
+            let (q, p) = (self.stage(&self.q, &dq, i), self.stage(&self.p, &dp, i));
+            slopes.v[i] = field.velocities(self.times[i], &q, &p, &self.inputs[i]);
+        }
+        let dq = self.scaled(&slopes.v);
+        for i in 0..S {
+            let q = self.stage(&self.q, &dq, i);
+            slopes.f[i] = field.momentum_rates(self.times[i], &q, &slopes.v[i], &self.inputs[i]);
+        }
+        self.change(&old, slopes)
+    }
+
+    /// One step of Newton's method, with M, ∂q̈/∂q and ∂q̈/∂q̇ at the start of the step in place of
+    /// the Jacobian.
+    ///
+    /// What the velocities at given momenta owe to the coordinates, and the mass matrix to time, is
+    /// left out of it: neither is ever stiff, and the residuals contain them.
+    pub(super) fn newton(
+        &self,
+        field: &mut impl Field<Y, N>,
+        linearized: &Linearized<Y::Scalar, N, S>,
+        slopes: &mut Slopes<Y::Scalar, N, S>,
+    ) -> Change {
+        let old = *slopes;
+        let zero = [Y::Scalar::from_f64(0.0); N];
+        let (mut residual, mut a) = ([zero; S], [zero; S]);
+        let (dq, dp) = (self.scaled(&old.v), self.scaled(&old.f));
+        for i in 0..S {
+            let (q, p) = (self.stage(&self.q, &dq, i), self.stage(&self.p, &dp, i));
+            let v = field.velocities(self.times[i], &q, &p, &self.inputs[i]);
+            let f = field.momentum_rates(self.times[i], &q, &v, &self.inputs[i]);
+            residual[i] = difference(&v, &old.v[i]);
+            let mut force = [difference(&f, &old.f[i])];
+            linearized.mass.solve(&mut force);
+            a[i] = force[0];
+        }
+        // α = M⁻¹ r_F + ∂q̈/∂q h Σ a δV + ∂q̈/∂q̇ h Σ a α with δV = r_V + h Σ a α.
+        for i in 0..S {
+            let q = combined(zero, &residual, &self.row(i));
+            let change = times(&linearized.stiffness, &q);
+            a[i] = core::array::from_fn(|k| a[i][k] + change[k]);
+        }
+        linearized.factors.solve(&mut a);
+        for i in 0..S {
+            let v = combined(residual[i], &a, &self.row(i));
+            let f = times(&linearized.mass_matrix, &a[i]);
+            slopes.v[i] = core::array::from_fn(|k| old.v[i][k] + v[k]);
+            slopes.f[i] = core::array::from_fn(|k| old.f[i][k] + f[k]);
+        }
+        self.change(&old, slopes)
+    }
+
+    /// h a_ij for one i.
+    fn row(&self, i: usize) -> [Y::Scalar; S] {
+        core::array::from_fn(|j| self.ratios[i][j] * self.weights[j])
+    }
+
+    /// h b_j slope_j for each j.
+    ///
+    /// Rounded here, where the slopes differ from step to step, the products have errors that
+    /// average out; h b_j m_ij would have the same in every step, and the method were symplectic no
+    /// more.
+    fn scaled(&self, slopes: &[[Y::Scalar; N]; S]) -> [[Y::Scalar; N]; S] {
+        core::array::from_fn(|j| slopes[j].map(|slope| self.weights[j] * slope))
+    }
+
+    /// start + Σ m_ij increment_j.
+    fn stage(
+        &self,
+        start: &Sum<Y::Scalar, N>,
+        increments: &[[Y::Scalar; N]; S],
+        i: usize,
+    ) -> [Y::Scalar; N] {
+        let increment = combined(start.low, increments, &self.ratios[i]);
+        core::array::from_fn(|k| start.high[k] + increment[k])
+    }
+
+    /// The largest difference between two sets of slopes; its size is not a number if a slope is
+    /// not.
+    fn change(&self, old: &Slopes<Y::Scalar, N, S>, new: &Slopes<Y::Scalar, N, S>) -> Change {
+        let mut largest = Change { size: 0.0, shift: 0.0, place: (0, 0) };
+        for (start, old, new) in [(&self.p, &old.f, &new.f), (&self.q, &old.v, &new.v)] {
+            largest.shift = 0.0;
+            for k in 0..N {
+                let mut scale = start.high[k].abs();
+                for slope in new {
+                    scale = scale.max((self.h * slope[k]).abs());
+                }
+                for i in 0..S {
+                    let change = (self.h * (new[i][k] - old[i][k])).abs();
+                    let size =
+                        if change == Real::from_f64(0.0) { 0.0 } else { (change / scale).to_f64() };
+                    if largest.shift < size {
+                        largest.shift = size;
+                    }
+                    if largest.size < size || size.is_nan() {
+                        (largest.size, largest.place) = (size, (i, k));
+                    }
+                }
+            }
+        }
+        largest
+    }
+}
+
+/// What Newton's method knows about the system.
+#[derive(Debug)]
+pub(super) struct Linearized<T, const N: usize, const S: usize> {
+    mass_matrix: Square<T, N>,
+    mass: Factors<T, N, 1>,
+    /// ∂q̈/∂q.
+    stiffness: Square<T, N>,
+    /// I − h A ⊗ ∂q̈/∂q̇ − h² A² ⊗ ∂q̈/∂q.
+    factors: Factors<T, N, S>,
+}
+
+impl<T: Float, const N: usize, const S: usize> Linearized<T, N, S> {
+    /// At the start of `span`.
+    pub(super) fn new<Y: Jacobians<N, Scalar = T>>(
+        field: &mut impl Field<Y, N>,
+        span: &Span,
+        from: &Node<T, N>,
+    ) -> Self {
+        let tableau = const { &Tableau::<S>::GAUSS };
+        let square = |matrix: &dyn Fn(usize, usize) -> T| -> Square<T, N> {
+            core::array::from_fn(|i| core::array::from_fn(|j| matrix(i, j)))
+        };
+        let inputs = field.inputs(from.t, Side::After);
+        let mass = field.mass_matrix(from.t, &from.q.high, &from.v.high, &inputs);
+        let mass_matrix = square(&|i, j| mass[(i, j)]);
+        let [stiffness, damping] = field.jacobians(from.t, Side::After, &from.q.high, &from.v.high);
+        let a = |i: usize, j: usize| tableau.ratios[i][j] * tableau.weights[j];
+        let factors = Factors::new(|i, j| {
+            let first = T::from_f64(span.h * a(i, j));
+            let second =
+                T::from_f64(span.h * span.h * (0..S).map(|k| a(i, k) * a(k, j)).sum::<f64>());
+            square(&|row, column| {
+                let unit = T::from_f64(if i == j && row == column { 1.0 } else { 0.0 });
+                unit - first * damping[(row, column)] - second * stiffness[(row, column)]
+            })
+        });
+        let mass = Factors::new(|_, _| mass_matrix);
+        Self { mass_matrix, mass, stiffness: square(&|i, j| stiffness[(i, j)]), factors }
+    }
+}
+
+/// start + Σ weight · slope, the terms added first.
+fn combined<T: Float, const N: usize, const S: usize>(
+    start: [T; N],
+    slopes: &[[T; N]; S],
+    weights: &[T; S],
+) -> [T; N] {
+    core::array::from_fn(|k| {
+        let sum = (1..S).fold(weights[0] * slopes[0][k], |sum, j| sum + weights[j] * slopes[j][k]);
+        start[k] + sum
+    })
+}
+
+fn difference<T: Float, const N: usize>(x: &[T; N], y: &[T; N]) -> [T; N] {
+    core::array::from_fn(|k| x[k] - y[k])
+}

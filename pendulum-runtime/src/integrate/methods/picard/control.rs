@@ -1,0 +1,295 @@
+//! The lengths of adaptive steps of Picard's iteration.
+
+use super::side_by_side::SideBySide;
+use super::tableau::S;
+use super::{Picard, attempt, tableau};
+use crate::error::{Error, Quantity};
+use crate::integrate::step::adaptive::{AdaptiveStep, at, resolution_of};
+use crate::integrate::step::controller::{Control, Course, Memory};
+use crate::integrate::step::diagnose::blame;
+use crate::integrate::step::fast_exp2::{log2, power};
+use crate::integrate::step::field::coordinate;
+use crate::integrate::step::interval::Span;
+use crate::integrate::step::stepper::Stepper;
+use crate::real::Float;
+use crate::system::System;
+use crate::time::Time;
+
+/// The error that a step aims at, and those beyond which the next one becomes longer or shorter.
+pub(super) const AIM: f64 = 1.0 / 16.0;
+/// `AIM` / 1.25¹⁵.
+const LOW: f64 = AIM * 0.0352;
+/// `AIM` / 0.86¹⁵.
+const HIGH: f64 = AIM * 9.6;
+/// More sweeps than these, and the steps become no longer, or shorter.
+const MANY: u32 = 4;
+const TOO_MANY: u32 = 9;
+
+impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N> {
+    fn check(&self) -> Result<(), Error> {
+        self.positive::<D::Scalar>()
+    }
+
+    fn least_steps(&self, length: f64) -> f64 {
+        self.least_steps_over(length)
+    }
+
+    #[inline]
+    fn step(
+        &self,
+        memory: &mut Memory,
+        course: Course<'_, '_, D, Picard, N>,
+    ) -> Result<Span, Error> {
+        let Course { method, field, from, to, stages: room, target, stats } = course;
+        let target = field
+            .dynamics
+            .next_break(from.t.to_f64())
+            .filter(|time| *time < target)
+            .unwrap_or(target);
+        let tolerances = self.tolerances::<D::Scalar>();
+        if memory.h == 0.0 {
+            if !from.start_acceleration(field).iter().all(|a| a.is_finite()) {
+                return Err(blame(method, field.dynamics, &Span::by(from.t, 0.0), from, room));
+            }
+            let left = -from.t.since(target);
+            memory.h = self.limited(true, self.automatic_step(2 * S as u32, field, from, left));
+        }
+        let mut wanted = memory.within_sight(
+            self.limited(false, memory.h),
+            field.dynamics,
+            from.t,
+            tableau::GAP,
+        )?;
+        let (mut retried, mut last_fault) = (false, None);
+        loop {
+            if wanted <= resolution_of::<D::Scalar>(from.t) && wanted < -from.t.since(target) {
+                let coordinate = coordinate(&<D::System as System<N>>::FACTS, room.worst());
+                let short =
+                    Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate };
+                let unresolved = self.unresolved(stats.accepted + stats.rejected == 0, wanted);
+                return Err(unresolved
+                    .or(last_fault.map(|fault| at(fault, from.t)))
+                    .unwrap_or(short));
+            }
+            let span = planned(memory, from.t, wanted, target);
+            attempt(field, &span, from, to, room, Some(&tolerances));
+            let error = room.ends.error;
+            if error <= 1.0 {
+                room.accept(to, span.h);
+                let sweeps = room.ends.progress.sweeps;
+                let mut next = wanted;
+                // A step that was cut short says little about longer ones.
+                if error < LOW && sweeps <= MANY && !retried && 0.5 * wanted <= span.h {
+                    let factor = scaled(error);
+                    let longer = span.h * if factor < 2.0 { factor } else { 2.0 };
+                    next = if 1.25 * wanted <= longer { longer } else { wanted };
+                } else if HIGH < error {
+                    next = span.h * scaled(error);
+                } else if TOO_MANY < sweeps {
+                    next = 0.95 * span.h;
+                }
+                memory.left = if next == memory.h { memory.left - 1 } else { 0 };
+                memory.h = next;
+                stats.accepted += 1;
+                return Ok(span);
+            }
+            stats.rejected += 1;
+            (retried, room.sweeps, memory.left) = (true, 2, 0);
+            wanted = span.h
+                * if error.is_finite() {
+                    last_fault = None;
+                    let factor = scaled(error);
+                    if factor < 0.2 { 0.2 } else { factor }
+                } else if !room.start.iter().all(|a| a.is_finite()) {
+                    return Err(blame(method, field.dynamics, &Span::by(from.t, 0.0), from, room));
+                } else if to.is_finite() {
+                    last_fault = None;
+                    0.5
+                } else {
+                    // A function may have left its domain, and a shorter step may stay inside; but
+                    // no step is short enough for an input that is not finite.
+                    last_fault = method.fault(field.dynamics, &span, from, room);
+                    if let Some(input @ Error::NotFinite { what: Quantity::Input { .. }, .. }) =
+                        last_fault
+                    {
+                        return Err(input);
+                    }
+                    0.1
+                };
+        }
+    }
+}
+
+/// The next of equal steps to `target`, which are about as long as `wanted`: a step goes on best as
+/// long as the one before.
+#[inline]
+fn planned(plan: &mut Memory, t: Time, wanted: f64, target: f64) -> Span {
+    let left = -t.since(target);
+    let goes_on =
+        |plan: &Memory| f64::abs(left - plan.left as f64 * plan.equal) <= 1e-9 * plan.equal;
+    if plan.left == 0 || plan.target != target || !goes_on(plan) {
+        let count = f64::ceil(left / wanted - 0.01);
+        let (count, equal) = if count < 1e9 {
+            (f64::max(count, 1.0), left / f64::max(count, 1.0))
+        } else {
+            (1e9, wanted)
+        };
+        (plan.left, plan.equal, plan.target) = (count as u64, equal, target);
+    }
+    if plan.left == 1 { Span::to(t, target) } else { Span::by(t, plan.equal) }
+}
+
+/// The factor by which a step would be longer whose error is the one aimed at.
+fn scaled(error: f64) -> f64 {
+    // Where accelerations do not have all derivatives the power is another, but then no power is
+    // right.
+    power(1023.0 + (log2(AIM) - log2(error)) / (2 * S - 1) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{AdaptiveStep, Control, Course, Memory, Picard, Stepper, planned};
+    use crate::integrate::methods::picard::Room;
+    use crate::integrate::solution::Stats;
+    use crate::integrate::step::endpoint::Node;
+    use crate::integrate::step::field::Counted;
+    use crate::integrate::tests::systems::Kepler;
+    use crate::real::Real;
+    use crate::system::{Staged, System};
+    use crate::time::Time;
+
+    /// Without stages.
+    impl<T: Real> Staged<2> for Kepler<T> {
+        type AtTime = ();
+        type AtPosition = ();
+
+        fn at_time(_: T, (): &()) {}
+
+        fn at_position(&self, (): &(), (): &(), _: T, _: &[T; 2], (): &()) {}
+
+        fn accelerations_staged(
+            &self,
+            (): &(),
+            (): &(),
+            (): &(),
+            t: T,
+            q: &[T; 2],
+            v: &[T; 2],
+            (): &(),
+        ) -> [T; 2] {
+            self.accelerations(t, q, v, &())
+        }
+    }
+
+    const PLANET: Kepler<f64> = Kepler { mu: 1.0 };
+
+    /// A planet on its way, with all that a step knows of the one before.
+    #[derive(Clone)]
+    struct Flight {
+        node: Node<f64, 2>,
+        memory: Memory,
+        room: Room<f64, (), 2>,
+        rejected: u64,
+    }
+
+    impl Flight {
+        fn new() -> Self {
+            let node = Node::new(Time::new(0.0), [0.5, 0.0], [0.0, 3.0_f64.sqrt()]);
+            Self { node, memory: Memory::default(), room: Picard.room(&PLANET), rejected: 0 }
+        }
+
+        /// Takes a step, the first attempt of the length `h`; the length of the one accepted.
+        fn step(&mut self, h: f64) -> f64 {
+            let (mut field, mut stats, mut to) =
+                (Counted::new(&PLANET), Stats::new("Picard"), self.node);
+            (self.memory.h, self.memory.left) = (h, 0);
+            let course = Course {
+                method: &Picard,
+                field: &mut field,
+                from: &mut self.node,
+                to: &mut to,
+                stages: &mut self.room,
+                target: f64::INFINITY,
+                stats: &mut stats,
+            };
+            let span = AdaptiveStep::new().rtol(1e-6).step(&mut self.memory, course).unwrap();
+            (self.node, self.rejected) = (to, stats.rejected);
+            span.h
+        }
+
+        /// The state and what the next step will see, with every bit.
+        fn bits(&self) -> String {
+            let Room { a, last, end, h, square, start, weights, ends, .. } = &self.room;
+            format!(
+                "{:?} {:?} {end:?} {h} {square:?} {start:?} {weights:?} {}",
+                self.node, a[*last], ends.error
+            )
+        }
+    }
+
+    /// A step after an attempt that was rejected is the one that would have come without it.
+    #[test]
+    fn nothing_of_a_rejected_attempt_stays() {
+        let (mut flight, mut rejected) = (Flight::new(), Vec::new());
+        for k in 0..60 {
+            let (mut tried, mut fresh) = (flight.clone(), flight.clone());
+            let h = tried.step(if k == 0 { 3.0 } else { 2.0 * flight.room.h });
+            if 0 < tried.rejected {
+                // Sweeps are counted anew after a rejection.
+                fresh.room.sweeps = 2;
+                assert_eq!((fresh.step(h), fresh.rejected), (h, 0), "step {k}");
+                assert_eq!(tried.bits(), fresh.bits(), "step {k}");
+                rejected.push(k);
+            }
+            flight.step(if k == 0 { 0.01 } else { flight.memory.h });
+        }
+        // The first one, which knows nothing of a step before, and others that go on from one.
+        assert!(rejected[0] == 0 && 20 <= rejected.len(), "{rejected:?}");
+    }
+
+    /// The lengths of the steps to `target`.
+    fn lengths(wanted: f64, start: f64, target: f64) -> Vec<f64> {
+        let (mut plan, mut t, mut lengths) = (Memory::default(), Time::new(start), Vec::new());
+        while t.since(target) < 0.0 {
+            let span = planned(&mut plan, t, wanted, target);
+            plan.left -= 1;
+            t = span.end;
+            lengths.push(span.h);
+        }
+        assert_eq!(t, Time::new(target));
+        lengths
+    }
+
+    #[test]
+    fn steps_to_a_target_are_equal() {
+        assert_eq!(lengths(1.0, 0.0, 3.0), [1.0; 3]);
+        assert_eq!(lengths(1.0, 0.0, 2.25), [0.75; 3]);
+        assert_eq!(lengths(1.0, 0.0, 1.009), [1.009]);
+        assert_eq!(lengths(1.0, 0.0, 0.3), [0.3]);
+        let many = lengths(0.013, 0.1, 10.1);
+        assert_eq!(many.len(), 770);
+        assert!(
+            many.iter().all(|h| (h * 77.0 - 1.0).abs() < 1e-12)
+                && many[..769].iter().all(|h| *h == many[0])
+        );
+    }
+
+    #[test]
+    fn without_a_target_they_are_as_wanted() {
+        let mut plan = Memory::default();
+        for k in 0..5 {
+            let span = planned(&mut plan, Time::new(f64::from(k)), 0.7, f64::INFINITY);
+            plan.left -= 1;
+            assert_eq!(span.h, 0.7);
+        }
+    }
+
+    #[test]
+    fn a_plan_ends_where_the_state_or_the_target_is_another() {
+        let mut plan = Memory::default();
+        assert_eq!(planned(&mut plan, Time::new(0.0), 1.0, 2.5).h, 2.5 / 3.0);
+        plan.left -= 1;
+        assert_eq!(planned(&mut plan, Time::new(0.5), 1.0, 2.5).h, 1.0);
+        assert_eq!(planned(&mut plan, Time::new(0.5), 1.0, 4.0).h, 3.5 / 4.0);
+    }
+}

@@ -1,0 +1,533 @@
+//! The sweeps of a step.
+//!
+//! Everything here is inlined into the code that [`simd`](crate::simd) compiles for several
+//! instruction sets, and has the same bits in each.
+
+#![allow(clippy::inline_always)]
+
+use super::room::{RoomOf, Tolerances};
+use super::side_by_side::SideBySide;
+use super::tableau::{BETWEEN, Columns, EIGHT, Nodes, REFINED, S, SIXTEEN};
+use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::interval::Span;
+use crate::real::{Float, Lane, Octet};
+use crate::simd::Work;
+use crate::system::{Staged, System, scalar_time};
+use crate::time::Time;
+use core::hint::black_box;
+
+/// One number for each node of a vector.
+pub(super) type Wide<T> = Octet<T>;
+
+/// The accelerations at the nodes of a step, by vector and coordinate.
+pub(super) type Stages<T, const N: usize, const G: usize> = [[Wide<T>; N]; G];
+
+/// The square of the error that may be left in the equations, over the one allowed: the change that
+/// one more sweep would make.
+const NEGLIGIBLE: f64 = 0.04;
+
+/// The square of the change that the last sweep of an adaptive step may make, over the error
+/// allowed, and of the one expected of it before it begins.
+const LAST_CHANGE: f64 = 1.0;
+const EXPECTED_CHANGE: f64 = 0.25;
+
+/// The system over lanes.
+type Of<D, const N: usize> = <D as SideBySide<N>>::Wide;
+
+/// The columns of h A and h² A² that lead from the values in `G` vectors to the points of one, for
+/// steps of one length: multiplied once, and not in every sweep.
+#[derive(Clone, Debug)]
+pub(super) struct Scaled<T, const G: usize> {
+    h: T,
+    once: [[[Wide<T>; 1]; S]; G],
+    twice: [[[Wide<T>; 1]; S]; G],
+}
+
+impl<T: Lane + Float, const G: usize> Scaled<T, G> {
+    pub(super) fn new() -> Self {
+        let zero = [[[Wide::splat(T::from_f64(0.0)); 1]; S]; G];
+        Self { h: T::from_f64(0.0), once: zero, twice: zero }
+    }
+
+    /// Makes them of the columns of A and A² for the vector `to`, if the length is another by more
+    /// than rounding.
+    #[inline(always)]
+    fn scale<const H: usize>(
+        &mut self,
+        h: T,
+        [once, twice]: [&'static Columns<G, H>; 2],
+        to: usize,
+    ) {
+        if f64::abs(self.h.to_f64() - h.to_f64()) <= 1e-15 * self.h.to_f64() {
+            return;
+        }
+        self.h = h;
+        let (h, square) = (Wide::splat(h), Wide::splat(h * h));
+        for g in 0..G {
+            for j in 0..S {
+                // One column at a time: the compiler would take a lane of each.
+                let (once, twice) = black_box((&once[g][j][to], &twice[g][j][to]));
+                self.once[g][j][0] = Wide::<T>::known(once) * h;
+                self.twice[g][j][0] = Wide::<T>::known(twice) * square;
+            }
+        }
+    }
+}
+
+/// A column of a tableau, as it stands there or scaled.
+trait Column<T> {
+    /// One number for each node.
+    fn lanes(&self) -> Wide<T>;
+}
+
+impl<T: Lane> Column<T> for Nodes {
+    #[inline(always)]
+    fn lanes(&self) -> Wide<T> {
+        Wide::known(self)
+    }
+}
+
+impl<T: Lane> Column<T> for Wide<T> {
+    #[inline(always)]
+    fn lanes(&self) -> Wide<T> {
+        *self
+    }
+}
+
+/// The equations of a step at 8 `G` nodes, and how well they are to be solved.
+pub(super) struct Equations<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> {
+    pub(super) dynamics: &'a D,
+    pub(super) prepared: &'a <Of<D, N> as System<N>>::Prepared,
+    pub(super) span: &'a Span,
+    /// The state at its start.
+    pub(super) from: &'a Node<T, N>,
+    /// The part of the error allowed that a unit of each acceleration makes in the step.
+    pub(super) weights: &'a [T; N],
+    /// The least number of sweeps and the most. The processor foresees the end of the loop where
+    /// the least number is right.
+    pub(super) least: u32,
+    pub(super) most: u32,
+    /// Whether the change made by the first sweep means anything.
+    pub(super) guessed: bool,
+    /// Whether the last sweeps look between the nodes too, and the very last one has to change
+    /// little.
+    pub(super) closing: bool,
+}
+
+/// How the iteration has ended.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Progress<T> {
+    /// The number of sweeps, and of the vectors evaluated in them.
+    pub(super) sweeps: u32,
+    pub(super) vectors: u32,
+    /// The square of the last change, over the error allowed.
+    pub(super) change: T,
+    /// What is left is negligible.
+    pub(super) done: bool,
+    /// It was after one sweep less.
+    pub(super) spare: bool,
+    /// All vectors that were to be evaluated are.
+    pub(super) complete: bool,
+}
+
+/// The number of coefficients by which the error of a step is judged.
+pub(super) const TAIL: usize = 5;
+
+/// What a step comes to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ends<T, const N: usize> {
+    /// The coefficients α₁₅, α₁₄, α₁₃, α₁₂ and α₁₆ of the accelerations after Legendre.
+    pub(super) tail: [[T; TAIL]; N],
+    /// The accelerations just before its end.
+    pub(super) last: [T; N],
+    /// The mean square of the accelerations: a short scalar does not hold the squares of all its
+    /// numbers.
+    pub(super) square: [f64; N],
+    pub(super) progress: Progress<T>,
+    /// Whether the equations are solved.
+    pub(super) solved: bool,
+    /// The error of the step over the one allowed.
+    pub(super) error: f64,
+}
+
+impl<T: Float, const N: usize> Ends<T, N> {
+    pub(super) fn new() -> Self {
+        let zero = [T::from_f64(0.0); N];
+        let progress = Progress {
+            sweeps: 0,
+            vectors: 0,
+            change: zero[0],
+            done: false,
+            spare: false,
+            complete: false,
+        };
+        Self {
+            tail: [[zero[0]; TAIL]; N],
+            last: zero,
+            square: [0.0; N],
+            progress,
+            solved: false,
+            error: 0.0,
+        }
+    }
+}
+
+/// A step onwards.
+pub(super) struct Onwards<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> {
+    pub(super) dynamics: &'a D,
+    pub(super) span: &'a Span,
+    /// The state at its start.
+    pub(super) from: &'a Node<T, N>,
+    /// Where the one at its end goes.
+    pub(super) to: &'a mut Node<T, N>,
+    /// What the step before left behind, or a first guess of the accelerations.
+    pub(super) room: &'a mut RoomOf<D, N>,
+    /// The length of this step over that of the step before; 0 with a first guess.
+    pub(super) ratio: f64,
+    pub(super) tolerances: &'a Tolerances<N>,
+    /// The most sweeps.
+    pub(super) most: u32,
+    /// Whether the error is asked for.
+    pub(super) adaptive: bool,
+}
+
+impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Onwards<'_, D, T, N> {
+    #[inline(always)]
+    fn run(self) {
+        let Self { dynamics, span, from, to, room, ratio, tolerances, most, adaptive } = self;
+        let (half, h, number) = (black_box(S / 2), span.length::<T>(), T::from_f64);
+        room.weigh(span.h, from, tolerances);
+        let [scaled, ahead, between] = &mut room.scaled;
+        scaled.scale(h, [&EIGHT.once, &EIGHT.twice], 0);
+        if adaptive {
+            between.scale(h, [&BETWEEN.once, &BETWEEN.twice], 0);
+        }
+        let [first, second] = &mut room.a;
+        let (before, a) = if room.last == 0 { (&*first, second) } else { (&*second, first) };
+        let goes_on = ratio == 1.0;
+        // The first sweep of an equal step needs no guess, and what it changes is of interest only
+        // where a second may be the last.
+        let guessed = !goes_on || room.sweeps < 3;
+        if goes_on {
+            ahead.scale(h, [&EIGHT.once_ahead, &EIGHT.twice_ahead], 0);
+            if guessed {
+                [*a] = sums(black_box(before), [&EIGHT.ahead], half);
+            }
+        } else if ratio == 0.0 {
+            *a = *before;
+        } else {
+            *a = extrapolated(black_box(before), number(ratio), half);
+        }
+        // By way of memory: the compiler would take the vectors of the three cases apart to join
+        // them.
+        let a = black_box(a);
+        // At the nodes and between them.
+        let mut new = [a[0], [Wide::splat(number(0.0)); N]];
+        let equations = Equations {
+            dynamics,
+            prepared: &room.prepared,
+            span,
+            from,
+            weights: &room.weights,
+            least: room.sweeps,
+            most,
+            guessed,
+            closing: adaptive,
+        };
+        let first = if goes_on { (before, &*ahead) } else { (&*a, &*scaled) };
+        let points = [&EIGHT.nodes[0], &BETWEEN.points[0]];
+        room.ends.progress =
+            sweeps(&equations, points, first, [&*scaled, &*between], &mut new, half);
+        *a = [new[0]];
+        let [sums] = sums(black_box(&new), [&BETWEEN.ends], half);
+        let [sums] = black_box(&sums);
+        *to = Node { t: span.end, a: None, ..*from };
+        for i in 0..N {
+            let [once, twice, a15, a14, a13, a12, a16, _] = sums[i].0;
+            room.ends.tail[i] = [a15, a14, a13, a12, a16 + number(BETWEEN.start) * room.start[i]];
+            room.ends.last[i] = new[1][i].0[S - 1];
+            let a = Octet(new[0][i].0.map(Float::to_f64));
+            room.ends.square[i] = total(black_box(&(a * a))) / S as f64;
+            to.q.add_product(i, h, from.v.high[i], h * (h * twice + from.v.low[i]));
+            to.v.add_one(i, h * once);
+        }
+        room.ends.solved = room.is_solved();
+        room.ends.error = if room.ends.solved && to.is_finite() { room.error() } else { f64::NAN };
+    }
+}
+
+/// A step once more, at twice as many nodes: what is between its ends.
+pub(super) struct Within<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> {
+    pub(super) equations: Equations<'a, D, T, N>,
+    /// The accelerations of the step.
+    pub(super) a: &'a Stages<T, N, 1>,
+    /// Where the coefficients of the accelerations after Legendre go.
+    pub(super) series: &'a mut Stages<T, N, 2>,
+    /// The sums of a sweep, by vector.
+    pub(super) scaled: &'a mut [Scaled<T, 2>; 2],
+    /// Where the number of sweeps goes.
+    pub(super) count: &'a mut u32,
+}
+
+impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Within<'_, D, T, N> {
+    #[inline(always)]
+    fn run(self) {
+        let half = black_box(S / 2);
+        let [mut a] = sums(black_box(self.a), [&REFINED], half);
+        let h = self.equations.span.length();
+        for (to, scaled) in self.scaled.iter_mut().enumerate() {
+            scaled.scale(h, [&SIXTEEN.once, &SIXTEEN.twice], to);
+        }
+        let (guess, [first, second]) = (a, &*self.scaled);
+        let points = [&SIXTEEN.nodes[0], &SIXTEEN.nodes[1]];
+        *self.count =
+            sweeps(&self.equations, points, (&guess, first), [first, second], &mut a, half).vectors;
+        [*self.series] = sums(black_box(&a), [&SIXTEEN.legendre], half);
+    }
+}
+
+/// The times of the nodes and the inputs there, in the last lane those just before `last`.
+#[inline(always)]
+fn at_nodes<D: SideBySide<N>, const N: usize>(
+    dynamics: &D,
+    span: &Span,
+    nodes: &Nodes,
+    last: Option<Time>,
+) -> (Wide<D::Scalar>, <D::Wide as System<N>>::Inputs) {
+    let (mut times, mut lanes) = ([span.start; S], Wide::splat(scalar_time(span.start)));
+    // Otherwise nobody looks at them.
+    if !<D::System as System<N>>::FACTS.autonomous {
+        for k in 0..S {
+            times[k] = span.start + nodes[k] * span.h;
+            lanes.0[k] = scalar_time(times[k]);
+        }
+    }
+    (lanes, dynamics.inputs_at(&times, last))
+}
+
+/// Evaluates the accelerations where the last ones lead, again and again, until that changes
+/// nothing.
+///
+/// The values in the first `G` of the `H` vectors lead to the points of all of them. The others are
+/// evaluated only in the closing sweeps.
+#[inline(always)]
+fn sweeps<
+    D: SideBySide<N, Scalar = T>,
+    T: Lane + Float,
+    const N: usize,
+    const G: usize,
+    const H: usize,
+>(
+    equations: &Equations<'_, D, T, N>,
+    points: [&'static Nodes; H],
+    (first, first_by): (&Stages<T, N, G>, &Scaled<T, G>),
+    scaled: [&Scaled<T, G>; H],
+    a: &mut Stages<T, N, H>,
+    half: usize,
+) -> Progress<T> {
+    let (zero, system) = (Wide::splat(T::from_f64(0.0)), equations.dynamics.widened());
+    let (h, prepared) = (Wide::splat(equations.span.length()), equations.prepared);
+    // Where the motion is without accelerations.
+    let mut straight = [[zero; N]; H];
+    let (t, inputs) = at_nodes(equations.dynamics, equations.span, points[0], None);
+    let mut known = [(t, inputs, Of::<D, N>::at_time(t, &inputs)); H];
+    let all = if G == H || equations.closing { H } else { G };
+    for g in 0..all {
+        let elapsed = Wide::<T>::known(points[g]) * h;
+        for i in 0..N {
+            straight[g][i] = Wide::splat(equations.from.q.high[i])
+                + elapsed * Wide::splat(equations.from.v.high[i]);
+        }
+        if 0 < g {
+            // The last of the points between the nodes is just before the end, at which a motion
+            // may have a kink.
+            let end = equations.span.end;
+            let last = if G < H && g + 1 == H && end.low() == 0.0 { Some(end) } else { None };
+            let (t, inputs) = at_nodes(equations.dynamics, equations.span, points[g], last);
+            known[g] = (t, inputs, Of::<D, N>::at_time(t, &inputs));
+        }
+    }
+    // In memory as vectors: the compiler would mix the lanes of different coordinates.
+    let lanes =
+        (straight, equations.from.v.high.map(Wide::splat), equations.weights.map(Wide::splat));
+    let (straight, v0, weights) = black_box(&lanes);
+    let blind = if equations.guessed { 1 } else { 2 };
+    let number = T::from_f64;
+    let mut progress = Progress {
+        sweeps: 0,
+        vectors: 0,
+        change: number(0.0),
+        done: false,
+        spare: false,
+        complete: false,
+    };
+    let (mut values, mut by) = (first, first_by);
+    let groups_of = |closing| if closing || G == H { H } else { G };
+    let (mut groups, mut near, mut was_near) = (groups_of(false), false, false);
+    let mut last;
+    loop {
+        let mut changes = zero;
+        for g in 0..groups {
+            let [once, twice] = sums(black_box(values), [&by.once, &by.twice], half);
+            let (mut q, mut v) = (straight[g], once[0]);
+            for i in 0..N {
+                q[i] += twice[0][i];
+                v[i] += v0[i];
+            }
+            let (t, inputs, at_time) = &known[g];
+            let at_position = system.at_position(prepared, at_time, *t, &q, inputs);
+            let new =
+                system.accelerations_staged(prepared, at_time, &at_position, *t, &q, &v, inputs);
+            if g < G {
+                for i in 0..N {
+                    let change = (new[i] - a[g][i]) * weights[i];
+                    changes += change * change;
+                }
+            }
+            a[g] = new;
+            by = scaled[(g + 1) % H];
+        }
+        let (change, earlier) = (total(black_box(&changes)), progress.change);
+        progress.sweeps += 1;
+        progress.vectors += groups as u32;
+        progress.change = change;
+        // Convergence is taken to be linear: the next change is to this one as this one to the one
+        // before. NaN fails the comparisons.
+        let (is_known, next) = (blind < progress.sweeps, change * change);
+        let shrinks = !is_known || change < earlier;
+        let is_last = !equations.closing || groups == H;
+        progress.complete = is_last;
+        let enough = is_known
+            && next <= number(NEGLIGIBLE) * earlier
+            && (!equations.closing || change <= number(LAST_CHANGE));
+        if equations.least <= progress.sweeps
+            && is_last
+            && (enough || !shrinks || equations.most <= progress.sweeps)
+        {
+            progress.done = enough;
+            progress.spare = was_near;
+            return progress;
+        }
+        // A change of nothing may be followed by one of rounding.
+        let stays = shrinks
+            || change <= number(16.0) * earlier
+            || equations.closing && change <= number(LAST_CHANGE);
+        if progress.sweeps < equations.least && !stays {
+            return progress;
+        }
+        let expected = if equations.closing { EXPECTED_CHANGE } else { NEGLIGIBLE };
+        let is_near = is_known && next <= number(expected) * earlier;
+        if equations.closing {
+            // Whether the closing sweep could have come before this one.
+            (near, was_near) = (near || is_near, near);
+            if equations.least <= progress.sweeps + 1
+                && (near || !shrinks || equations.most <= progress.sweeps + 1)
+            {
+                groups = groups_of(true);
+            }
+        } else {
+            was_near = is_near;
+        }
+        last = core::array::from_fn(|g| a[g]);
+        (values, by) = (&last, scaled[0]);
+    }
+}
+
+/// Σ value_j column_j for each coordinate and each set of columns.
+///
+/// The values have to be in memory, from where each goes to all lanes at once, and `half`, which is
+/// `S / 2`, must not be known to the compiler: it would write out the loop, and then gather what
+/// stands side by side.
+#[inline(always)]
+fn sums<T: Lane, K: Column<T>, const N: usize, const G: usize, const H: usize, const C: usize>(
+    values: &Stages<T, N, G>,
+    columns: [&[[[K; H]; S]; G]; C],
+    half: usize,
+) -> [Stages<T, N, H>; C] {
+    let zero = Wide::splat(T::from_f64(0.0));
+    let (mut even, mut odd) = ([[[zero; N]; H]; C], [[[zero; N]; H]; C]);
+    if N <= 2 {
+        for c in 0..C {
+            for j in 0..half {
+                let j = j % (S / 2);
+                for g in 0..G {
+                    for to in 0..H {
+                        let (x, y) =
+                            (columns[c][g][j][to].lanes(), columns[c][g][j + S / 2][to].lanes());
+                        for i in 0..N {
+                            even[c][to][i] += x * Wide::splat(values[g][i].0[j]);
+                            odd[c][to][i] += y * Wide::splat(values[g][i].0[j + S / 2]);
+                        }
+                    }
+                }
+            }
+        }
+    } else {
+        // Of a loop over more coordinates the compiler would make vectors with a coordinate in each
+        // lane.
+        for i in 0..N {
+            for j in 0..half {
+                let j = j % (S / 2);
+                for g in 0..G {
+                    let (x, y) =
+                        (Wide::splat(values[g][i].0[j]), Wide::splat(values[g][i].0[j + S / 2]));
+                    for c in 0..C {
+                        for to in 0..H {
+                            even[c][to][i] += columns[c][g][j][to].lanes() * x;
+                            odd[c][to][i] += columns[c][g][j + S / 2][to].lanes() * y;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    for c in 0..C {
+        for to in 0..H {
+            for i in 0..N {
+                even[c][to][i] += odd[c][to][i];
+            }
+        }
+    }
+    even
+}
+
+/// The sum over all lanes, of halves.
+#[inline(always)]
+fn total<T: Lane>(values: &Wide<T>) -> T {
+    let x = &values.0;
+    ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]))
+}
+
+/// The accelerations at the nodes of a step from those of the step before: the values of the
+/// polynomial through them.
+#[inline(always)]
+fn extrapolated<T: Lane, const N: usize>(
+    before: &Stages<T, N, 1>,
+    ratio: T,
+    half: usize,
+) -> Stages<T, N, 1> {
+    let one = Wide::splat(T::from_f64(1.0));
+    let at = one + Wide::<T>::known(&EIGHT.nodes[0]) * Wide::splat(ratio);
+    // Lagrange's polynomials: ∏ (x − c_k) over k < j and over k > j.
+    let mut weights = [one; S];
+    let mut product = one;
+    for j in 0..S {
+        weights[j] = product * Wide::splat(T::from_f64(EIGHT.lagrange[0][j]));
+        product *= at - Wide::splat(T::from_f64(EIGHT.nodes[0][j]));
+    }
+    product = one;
+    for j in (0..S).rev() {
+        weights[j] *= product;
+        product *= at - Wide::splat(T::from_f64(EIGHT.nodes[0][j]));
+    }
+    let weights = black_box(&weights);
+    let mut a = [[Wide::splat(T::from_f64(0.0)); N]; 1];
+    for i in 0..N {
+        for j in 0..half {
+            let j = j % (S / 2);
+            a[0][i] += weights[j] * Wide::splat(before[0][i].0[j]);
+            a[0][i] += weights[j + S / 2] * Wide::splat(before[0][i].0[j + S / 2]);
+        }
+    }
+    a
+}

@@ -1,0 +1,164 @@
+//! What a step of Picard's iteration leaves behind, and how it is judged.
+
+// What a step needs is inlined into what is compiled for several instruction sets.
+#![allow(clippy::inline_always)]
+
+use super::control::AIM;
+use super::kernel::{Ends, Progress, Scaled, Stages};
+use super::side_by_side::SideBySide;
+use super::tableau::S;
+use crate::integrate::step::endpoint::Node;
+use crate::real::{Float, Lane};
+use crate::system::{Dynamics, System};
+use crate::time::Time;
+
+/// What a step leaves behind.
+#[derive(Clone, Debug)]
+pub struct Room<T: Lane, P, const N: usize> {
+    /// What the parameters alone decide, over lanes.
+    pub(super) prepared: P,
+    /// The accelerations at the nodes, of the last step and of the one under way.
+    pub(super) a: [Stages<T, N, 1>; 2],
+    /// Which of the two is the last step.
+    pub(super) last: usize,
+    /// Time, coordinates and velocities at its end, and its length; nothing before the first step.
+    pub(super) end: Option<(Time, [T; N], [T; N])>,
+    pub(super) h: f64,
+    pub(super) ends: Ends<T, N>,
+    /// The mean square of the accelerations of the last step accepted, and the accelerations at its
+    /// end.
+    pub(super) square: [f64; N],
+    pub(super) start: [T; N],
+    /// Whether `start` is known: fixed steps do not look there.
+    pub(super) start_known: bool,
+    /// Sums for steps of the last length: of a sweep, of the first one after an equal step, of the
+    /// points between the nodes, and of a sweep at sixteen nodes.
+    pub(super) scaled: [Scaled<T, 1>; 3],
+    pub(super) within: [Scaled<T, 2>; 2],
+    /// The number of sweeps that is likely to suffice.
+    pub(super) sweeps: u32,
+    /// How exactly the equations were solved.
+    pub(super) weights: [T; N],
+    /// Where the equations of the step were not solved: its end and the coordinate that is
+    /// accelerated most.
+    pub(super) unsolved: Option<(Time, usize)>,
+}
+
+/// The room for the dynamics `D`.
+pub(super) type RoomOf<D, const N: usize> =
+    Room<<D as Dynamics<N>>::Scalar, <<D as SideBySide<N>>::Wide as System<N>>::Prepared, N>;
+
+/// The errors allowed in a step: relative, and absolute of coordinates and velocities.
+pub(super) type Tolerances<const N: usize> = (f64, ([f64; N], [f64; N]));
+
+/// The rounding of the scalar; the coefficients have the digits of `f64`.
+#[inline(always)]
+fn epsilon<T: Float>() -> f64 {
+    let epsilon = T::EPSILON.to_f64();
+    if epsilon < f64::EPSILON { f64::EPSILON } else { epsilon }
+}
+
+impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
+    /// The part of the error allowed that a unit of each acceleration makes in a step of length
+    /// `h`: by way of the velocity or of the coordinate.
+    ///
+    /// Nothing is asked for below the rounding of a step, and of a tolerance that is larger than
+    /// what the accelerations do in it a twentieth of that, or a thousandth of the tolerance: so
+    /// that the motion stays one.
+    #[inline(always)]
+    pub(super) fn weigh(&mut self, h: f64, from: &Node<T, N>, (rtol, atol): &Tolerances<N>) {
+        let rounding = 0.125 * epsilon::<T>();
+        let square = self
+            .square
+            .iter()
+            .fold(0.0, |largest, square| if largest < *square { *square } else { largest });
+        let gain = h * square.sqrt();
+        let allowed = |tolerance: f64, change: f64, value: f64| {
+            let least =
+                if 0.05 * change < 0.001 * tolerance { 0.001 * tolerance } else { 0.05 * change };
+            (if least < tolerance { least } else { tolerance })
+                + rounding * (value + epsilon::<T>())
+        };
+        for i in 0..N {
+            let (q, v) = (f64::abs(from.q.high[i].to_f64()), f64::abs(from.v.high[i].to_f64()));
+            let by_velocity = h / allowed(atol.1[i] + rtol * v, gain, v + gain);
+            let by_coordinate = h * h / allowed(atol.0[i] + rtol * q, h * gain, q + h * (v + gain));
+            let weight = if by_velocity < by_coordinate { by_coordinate } else { by_velocity };
+            self.weights[i] = T::from_f64(weight);
+        }
+    }
+
+    /// Whether the equations are solved: the iteration has come to its end, or to rounding.
+    #[inline(always)]
+    pub(super) fn is_solved(&self) -> bool {
+        let Ends { square, progress, .. } = &self.ends;
+        // Squares of very large accelerations are no scale.
+        if !(progress.complete && square.iter().all(|square| square.is_finite())) {
+            return false;
+        }
+        if progress.done {
+            return true;
+        }
+        let mut rounding = 0.01;
+        for i in 0..N {
+            let weight = self.weights[i].to_f64() * 8.0 * epsilon::<T>();
+            rounding += S as f64 * weight * weight * square[i];
+        }
+        // Not so if it has led far away.
+        rounding.is_finite() && progress.change.to_f64() <= rounding
+    }
+
+    /// The error of the step over the one allowed: in each coordinate w max(|α₁₆|, ε₇ min(1,
+    /// ε₇/ε₆), ε₇/16), where ε_k is the larger of |α_2k| and
+    /// |α_2k+1|.
+    ///
+    /// Gauss's nodes leave out what is beyond α₁₅. Where the coefficients fall, both of the first
+    /// terms are as large as that; at a corner, a jump or a narrow kick ε₇ is as large as ε₆, and a
+    /// jump between the start and the first node stands in α₁₆ alone. Rounding is no coefficient:
+    /// 32 ε of the accelerations, or 512 ε where all are alike.
+    #[inline(always)]
+    pub(super) fn error(&self) -> f64 {
+        let (mut error, epsilon) = (0.0, epsilon::<T>());
+        let larger = |a: f64, b: f64| if a < b { b } else { a };
+        for i in 0..N {
+            let [a15, a14, a13, a12, a16] = self.ends.tail[i].map(|x| f64::abs(x.to_f64()));
+            let (last, before) = (larger(a15, a14), larger(a13, a12));
+            let square = self.ends.square[i];
+            let noise = if before < 4.0 * last { 512.0 } else { 32.0 } * epsilon * square.sqrt();
+            let tail = larger(last, a16);
+            // NaN is an error, too.
+            if noise < tail || tail.is_nan() || a16.is_nan() {
+                let by_decay = last * (last / larger(before, last));
+                let part = self.weights[i].to_f64() * larger(a16, larger(by_decay, last / 16.0));
+                if error < part || part.is_nan() {
+                    error = part;
+                }
+            }
+            if square <= 0.0
+                && error < AIM
+                && self.a[self.last ^ 1][0][i].0.iter().any(|&a| a != T::from_f64(0.0))
+            {
+                // Too small for squares, which is not zero: steps become no longer.
+                error = AIM;
+            }
+        }
+        error
+    }
+
+    /// The coordinate with the largest accelerations, over those allowed.
+    pub(super) fn worst(&self) -> usize {
+        let part =
+            |i: usize| self.weights[i].to_f64() * self.weights[i].to_f64() * self.ends.square[i];
+        (1..N).fold(0, |worst, i| if part(worst) < part(i) { i } else { worst })
+    }
+
+    /// The step under way becomes the last one.
+    #[inline]
+    pub(super) fn accept(&mut self, to: &Node<T, N>, h: f64) {
+        let Progress { sweeps, spare, .. } = self.ends.progress;
+        self.sweeps = (sweeps - u32::from(spare)).clamp(2, 8);
+        self.last ^= 1;
+        (self.end, self.h) = (Some((to.t, to.q.high, to.v.high)), h);
+        (self.square, self.start) = (self.ends.square, self.ends.last);
+    }
+}

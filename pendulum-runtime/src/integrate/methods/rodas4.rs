@@ -1,0 +1,272 @@
+//! The Rosenbrock method of Hairer and Wanner of order 4, for stiff springs and dampers.
+
+use crate::integrate::interpolant::Piece;
+use crate::integrate::method::{Embedded, Method, Response, Suits, Weights};
+use crate::integrate::schemes::linear::{Factors, Square, times};
+use crate::integrate::schemes::runge_kutta::{Row, Slopes};
+use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::field::Field;
+use crate::integrate::step::gap::{all, widest};
+use crate::integrate::step::interval::Span;
+use crate::motion::Side;
+use crate::real::{Float, Real};
+use crate::system::{Jacobians, System};
+
+/// The linearly implicit (Rosenbrock) method of order 4 with an error estimate of order 3 of Hairer
+/// and Wanner: six evaluations, the Jacobians and one factorization a step, adaptive.
+///
+/// For stiff springs and dampers: it is L-stable, so that a damper of any strength brings its
+/// coordinate to rest without ringing and a spring too fast for the step is damped out, and no
+/// iteration can fail. Each stage (x, z) solves (I − hγ ∂q̈/∂q̇ − h²γ² ∂q̈/∂q) z = hγ r + h²γ²
+/// ∂q̈/∂q s, x = hγ (z + s), where s and r are what coordinates and velocities ask for: a system of
+/// the size of the coordinates. For smooth motions explicit methods are cheaper; where the fast
+/// oscillation itself matters or energy has to be kept over a long time, take
+/// [`Gauss`](crate::integrate::Gauss) with Newton's method.
+///
+/// Where time or a driven motion stands in the equations, ∂q̈/∂t is a difference of three
+/// accelerations close to the start of the step: two evaluations more. Dense output is of order 3
+/// and costs nothing.
+///
+/// It needs the generated Jacobians. Source: Hairer and Wanner (1996), Solving Ordinary
+/// Differential Equations II, IV.7, and their code RODAS for the digits.
+///
+/// ```compile_fail,E0277
+/// # use pendulum_runtime::{integrate::*, system::*};
+/// fn swing<S: System<1, Scalar = f64, Inputs = ()>>(system: &S) -> Result<f64, Failure<f64, 1>> {
+///     Ok(solve(system, (0.0, 10.0), [1.3], [0.0]).method(Rodas4).run()?.end.q[0])
+/// }
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rodas4;
+
+impl Rodas4 {
+    /// The method.
+    pub const fn new() -> Self {
+        Self
+    }
+}
+
+impl Method for Rodas4 {
+    const NAME: &'static str = "Rodas4";
+    const ORDER: u32 = 4;
+    const DENSE_ORDER: u32 = 3;
+    type Stages<T: Float, const N: usize> = Slopes<T, N, 6>;
+
+    fn stages<T: Float, const N: usize>() -> Slopes<T, N, 6> {
+        Slopes::zero()
+    }
+}
+
+impl<S: Jacobians<N, Scalar: Float>, const N: usize> Suits<S, N> for Rodas4 {
+    fn step(
+        &self,
+        field: &mut impl Field<S, N>,
+        span: &Span,
+        from: &mut Node<S::Scalar, N>,
+        k: &mut Slopes<S::Scalar, N, 6>,
+    ) -> Node<S::Scalar, N> {
+        let a = from.start_acceleration(field);
+        let linear = Linear::new(field, span, from, &a);
+        let zero = [S::Scalar::from_f64(0.0); N];
+        linear.solve(k, 0, &from.v.high, &a, (zero, zero), D[0]);
+        linear.stage(field, span, from, k, 1, A1, C1);
+        linear.stage(field, span, from, k, 2, A2, C2);
+        linear.stage(field, span, from, k, 3, A3, C3);
+        linear.stage(field, span, from, k, 4, A4, C4);
+        linear.stage(field, span, from, k, 5, A5, C5);
+        let (dq, dv) = k.weighted(B);
+        let mut to = Node { t: span.end, a: None, ..*from };
+        to.q.add(S::Scalar::from_f64(1.0), &dq);
+        to.v.add(S::Scalar::from_f64(1.0), &dv);
+        to
+    }
+
+    fn dense(
+        &self,
+        _: &mut impl Field<S, N>,
+        span: &Span,
+        from: &mut Node<S::Scalar, N>,
+        to: &mut Node<S::Scalar, N>,
+        k: &mut Slopes<S::Scalar, N, 6>,
+    ) -> Piece<S::Scalar, N> {
+        let mut piece = Piece::linear(span, from, to);
+        (piece.q[1], piece.v[1]) = k.weighted(H2);
+        (piece.q[2], piece.v[2]) = k.weighted(H3);
+        piece.terms = 3;
+        piece
+    }
+}
+
+impl Embedded for Rodas4 {
+    const RESPONSE: Response =
+        Response { alpha: 0.25, beta: 0.0, safety: 0.9, least: 0.2, greatest: 6.0 };
+    const GAP: f64 = widest(&C, &all::<6>());
+
+    #[inline]
+    fn error<T: Float, const N: usize>(
+        &self,
+        k: &Slopes<T, N, 6>,
+        _: f64,
+        weights: &Weights<N>,
+    ) -> f64 {
+        // The last stage is the difference to the embedded method.
+        (weights.square_sum(&k.v[5], &k.a[5]) / (2 * N) as f64).sqrt()
+    }
+}
+
+/// The linear equations of a step.
+struct Linear<T, const N: usize> {
+    h: T,
+    /// hγ.
+    scale: T,
+    /// ∂q̈/∂q.
+    stiffness: Square<T, N>,
+    /// ∂q̈/∂t, times h.
+    drive: [T; N],
+    factors: Factors<T, N, 1>,
+}
+
+impl<T: Float, const N: usize> Linear<T, N> {
+    fn new<S: Jacobians<N, Scalar = T>>(
+        field: &mut impl Field<S, N>,
+        span: &Span,
+        from: &Node<T, N>,
+        a: &[T; N],
+    ) -> Self {
+        let (q, v) = (&from.q.high, &from.v.high);
+        let [by_q, by_v] = field.jacobians(from.t, Side::After, q, v);
+        let scale = T::from_f64(GAMMA * span.h);
+        let stiffness: Square<T, N> =
+            core::array::from_fn(|i| core::array::from_fn(|j| by_q[(i, j)]));
+        let factors = Factors::new(|_, _| {
+            core::array::from_fn(|i| {
+                core::array::from_fn(|j| {
+                    let unit = T::from_f64(if i == j { 1.0 } else { 0.0 });
+                    unit - scale * (by_v[(i, j)] + scale * stiffness[i][j])
+                })
+            })
+        });
+        let drive = if S::FACTS.autonomous {
+            [T::from_f64(0.0); N]
+        } else {
+            // The parabola through three accelerations so close that its error is far below that of
+            // the method, and not so close that rounding is seen.
+            let part = T::EPSILON.sqrt().sqrt().to_f64();
+            let [once, twice] =
+                [part, 2.0 * part].map(|part| field.at(from.t + part * span.h, Side::After, q, v));
+            let (four, three, two) = (T::from_f64(4.0), T::from_f64(3.0), T::from_f64(2.0 * part));
+            core::array::from_fn(|i| (four * once[i] - twice[i] - three * a[i]) / two)
+        };
+        Self { h: span.length::<T>(), scale, stiffness, drive, factors }
+    }
+
+    /// Computes stage `index` from those before.
+    // A row is a constant: inlined, its indices and weights are too.
+    #[allow(clippy::inline_always, clippy::too_many_arguments)]
+    #[inline(always)]
+    fn stage<S: System<N, Scalar = T>, const K: usize>(
+        &self,
+        field: &mut impl Field<S, N>,
+        span: &Span,
+        from: &Node<T, N>,
+        k: &mut Slopes<T, N, 6>,
+        index: usize,
+        place: Row<K>,
+        memory: Row<K>,
+    ) {
+        let (dq, dv) = k.weighted(place);
+        let q = core::array::from_fn(|i| from.q.high[i] + (from.q.low[i] + dq[i]));
+        let v = core::array::from_fn(|i| from.v.high[i] + (from.v.low[i] + dv[i]));
+        let (t, side) = span.at(C[index]);
+        let a = field.at(t, side, &q, &v);
+        let memory = k.weighted(memory);
+        self.solve(k, index, &v, &a, memory, D[index]);
+    }
+
+    /// Solves for stage `index`, with the slopes `v` and `a` and what is left of earlier stages,
+    /// times h.
+    fn solve(
+        &self,
+        k: &mut Slopes<T, N, 6>,
+        index: usize,
+        v: &[T; N],
+        a: &[T; N],
+        memory: ([T; N], [T; N]),
+        drive: f64,
+    ) {
+        let drive = T::from_f64(drive);
+        let s: [T; N] = core::array::from_fn(|i| v[i] + memory.0[i] / self.h);
+        let pull = times(&self.stiffness, &s);
+        let mut z = [core::array::from_fn(|i| {
+            self.scale
+                * ((a[i] + memory.1[i] / self.h + drive * self.drive[i]) + self.scale * pull[i])
+        })];
+        self.factors.solve(&mut z);
+        k.a[index] = z[0];
+        k.v[index] = core::array::from_fn(|i| self.scale * (z[0][i] + s[i]));
+    }
+}
+
+const GAMMA: f64 = 0.25;
+
+const C: [f64; 6] = [0.0, 0.386, 0.21, 0.63, 1.0, 1.0];
+
+const D: [f64; 6] = [0.25, -0.1043, 0.1035, -0.03620000000000023, 0.0, 0.0];
+
+const A1: Row<1> = [(0, 1.544)];
+
+const A2: Row<2> = [(0, 0.9466785280815826), (1, 0.2557011698983284)];
+
+const A3: Row<3> = [(0, 3.314825187068521), (1, 2.896124015972201), (2, 0.9986419139977817)];
+
+const A4: Row<4> = [
+    (0, 1.221224509226641),
+    (1, 6.019134481288629),
+    (2, 12.53708332932087),
+    (3, -0.6878860361058950),
+];
+
+// The last stages start from the embedded method and differ from it by one stage each.
+
+const A5: Row<5> = [A4[0], A4[1], A4[2], A4[3], (4, 1.0)];
+
+const B: Row<6> = [A4[0], A4[1], A4[2], A4[3], (4, 1.0), (5, 1.0)];
+
+const C1: Row<1> = [(0, -5.6688)];
+
+const C2: Row<2> = [(0, -2.430093356833875), (1, -0.2063599157091915)];
+
+const C3: Row<3> = [(0, -0.1073529058151375), (1, -9.594562251023355), (2, -20.47028614809616)];
+
+const C4: Row<4> = [
+    (0, 7.496443313967647),
+    (1, -10.24680431464352),
+    (2, -33.99990352819905),
+    (3, 11.70890893206160),
+];
+
+const C5: Row<5> = [
+    (0, 8.083246795921522),
+    (1, -7.981132988064893),
+    (2, -31.52159432874371),
+    (3, 16.31930543123136),
+    (4, -6.058818238834054),
+];
+
+// The dense output.
+
+const H2: Row<5> = [
+    (0, 10.12623508344586),
+    (1, -7.487995877610167),
+    (2, -34.80091861555747),
+    (3, -7.992771707568823),
+    (4, 1.025137723295662),
+];
+
+const H3: Row<5> = [
+    (0, -0.6762803392801253),
+    (1, 6.087714651680015),
+    (2, 16.43084320892478),
+    (3, 24.76722511418386),
+    (4, -6.594389125716872),
+];

@@ -1,0 +1,314 @@
+//! Explicit multistep methods in summed form: what they share.
+//!
+//! d_n + Σ a_j d_{n−j} = Σ b_j f_{n−j} gives the second difference h² d_n = q_{n+1} − 2q_n +
+//! q_{n−1} from accelerations f; its first sum w_n = (q_{n+1} − q_n)/h = w_{n−1} + h d_n and its
+//! second q_{n+1} = q_n + h w_n are kept with compensation (Henrici 1962, 6.4).
+
+use crate::integrate::interpolant::Piece;
+use crate::integrate::interpolant::fit::{Condition, fit};
+use crate::integrate::interpolant::hermite;
+use crate::integrate::method::{Method, Suits};
+use crate::integrate::methods::dop853::{self, Dop853};
+use crate::integrate::step::compensated::Sum;
+use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::field::Field;
+use crate::integrate::step::interval::Span;
+use crate::motion::Side;
+use crate::real::Float;
+use crate::system::VelocityFree;
+use crate::time::Time;
+
+/// The coefficients of a method of order `P`, for the newest value first; as constants of a type
+/// the zeros among them cost nothing.
+pub(crate) trait Scheme<const P: usize> {
+    /// The weights b of the accelerations.
+    const KICKS: [f64; P];
+    /// The weights a of earlier second differences.
+    const ECHOES: [f64; P];
+    /// The weights g with which accelerations give the velocity at the end of a step, v_n =
+    /// w_{n−1} + h Σ g_j f_{n−j}.
+    const VELOCITIES: [f64; P] = velocities();
+}
+
+/// What a multistep method remembers: the last `P` points of a grid of equal steps.
+#[derive(Clone, Copy, Debug)]
+pub struct History<T, const N: usize, const P: usize> {
+    /// The accelerations at the last point.
+    newest: [T; N],
+    /// Those at the points before, in order.
+    f: Window<T, N, P>,
+    /// The second differences, divided by h².
+    d: Window<T, N, P>,
+    /// The last first difference, divided by h.
+    w: Sum<T, N>,
+    /// The length of the steps.
+    h: f64,
+    /// The number of points; 0 before the first step.
+    points: usize,
+    /// The last point: a state that is not there is not the next one of the grid.
+    end: (Time, Sum<T, N>, [T; N]),
+    /// For the first points.
+    starter: dop853::Stages<T, N>,
+}
+
+impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
+    pub(crate) fn new() -> Self {
+        let zero = [T::from_f64(0.0); N];
+        let end = (Time::new(0.0), Sum::new(zero), zero);
+        Self {
+            newest: zero,
+            f: Window::new(),
+            d: Window::new(),
+            w: Sum::new(zero),
+            h: 0.0,
+            points: 0,
+            end,
+            starter: Dop853::stages(),
+        }
+    }
+
+    /// Takes the step `span`.
+    ///
+    /// A state that comes from elsewhere, a kink (after which the accelerations in `from` are
+    /// unknown) and another length of the step begin a new grid. Its first `P` − 1 steps are taken
+    /// by `Dop853` in [`SUBSTEPS`] parts each.
+    #[inline]
+    pub(crate) fn step<C: Scheme<P>, S: VelocityFree<N, Scalar = T>>(
+        &mut self,
+        field: &mut impl Field<S, N>,
+        span: &Span,
+        from: &mut Node<T, N>,
+    ) -> Node<T, N> {
+        let same_step = (span.h - self.h).abs() <= 1e-10 * self.h;
+        let same_state = self.end == (from.t, from.q, from.v.high);
+        let goes_on = self.points != 0 && same_step && from.a.is_some() && same_state;
+        if goes_on && self.points == P {
+            self.multistep::<C, S>(field, span, from)
+        } else {
+            if !goes_on {
+                (self.points, self.h) = (1, span.h);
+                self.newest = from.start_acceleration(field);
+            }
+            self.start(field, span, from)
+        }
+    }
+
+    #[inline]
+    fn multistep<C: Scheme<P>, S: VelocityFree<N, Scalar = T>>(
+        &mut self,
+        field: &mut impl Field<S, N>,
+        span: &Span,
+        from: &Node<T, N>,
+    ) -> Node<T, N> {
+        let (h, last) = (T::from_f64(self.h), T::from_f64(span.h));
+        let (f, d, newest) = (self.f.values(), self.d.values(), self.newest);
+        // All that does not need the newest acceleration is computed first, while the processor
+        // still waits for it; so the coordinates take h w_{n−1} and h² d_n apart, and the long sums
+        // stand outside the chain from one acceleration to the next.
+        let older: [T; N] = core::array::from_fn(|i| {
+            sum(1, &C::KICKS, |j| f[P - j][i]) - sum(0, &C::ECHOES, |j| d[P - 1 - j][i])
+        });
+        let glide: [T; N] = core::array::from_fn(|i| sum(2, &C::VELOCITIES, |j| f[P + 1 - j][i]));
+        let mut q = self.end.1;
+        q.add(last, &self.w.high);
+        let kick = T::from_f64(C::KICKS[0]);
+        let (weight, rest) = (last * h * kick, older.map(|older| last * h * older));
+        q.add(T::from_f64(1.0), &core::array::from_fn(|i| weight * newest[i] + rest[i]));
+        let a = field.at(span.end, Side::Before, &q.high, &from.v.high);
+        let d = core::array::from_fn(|i| kick * newest[i] + older[i]);
+        self.w.add(h, &d);
+        // v = w + h ∫ u f(t + u h) du over [0, 1].
+        let [first, second] = [C::VELOCITIES[0], C::VELOCITIES[1]].map(T::from_f64);
+        let v = core::array::from_fn(|i| {
+            self.w.high[i] + h * (first * a[i] + (second * newest[i] + glide[i]))
+        });
+        self.d.push(d);
+        self.f.push(newest);
+        (self.newest, self.end) = (a, (span.end, q, v));
+        Node { t: span.end, q, v: Sum::new(v), a: Some(a) }
+    }
+
+    /// One of the first steps.
+    fn start<S: VelocityFree<N, Scalar = T>>(
+        &mut self,
+        field: &mut impl Field<S, N>,
+        span: &Span,
+        from: &mut Node<T, N>,
+    ) -> Node<T, N> {
+        let mut to = *from;
+        for part in 1..=SUBSTEPS {
+            let end = if part == SUBSTEPS {
+                span.end
+            } else {
+                span.start + span.h * part as f64 / SUBSTEPS as f64
+            };
+            let substep = Span { start: to.t, end, h: span.h / SUBSTEPS as f64, low: 0.0 };
+            to = Dop853.step(field, &substep, &mut to, &mut self.starter);
+        }
+        let difference = to.q.since(&from.q);
+        let w = Sum::new(difference.map(|difference| difference / T::from_f64(span.h)));
+        if 1 < self.points {
+            let rise = w.since(&self.w);
+            self.d.push(rise.map(|rise| rise / T::from_f64(span.h)));
+        }
+        self.f.push(self.newest);
+        self.newest = to.end_acceleration(field);
+        self.w = w;
+        self.points += 1;
+        self.end = (to.t, to.q, to.v.high);
+        to
+    }
+
+    /// The motion within the last step, from both ends and the accelerations before it.
+    pub(crate) fn dense<S: VelocityFree<N, Scalar = T>>(
+        &self,
+        field: &mut impl Field<S, N>,
+        span: &Span,
+        from: &mut Node<T, N>,
+        to: &mut Node<T, N>,
+    ) -> Piece<T, N> {
+        let (a0, a1) = (from.start_acceleration(field), to.end_acceleration(field));
+        if self.points < BEHIND {
+            // All pieces of an integration have the same number of terms.
+            return Piece { terms: BEHIND + 3, ..hermite::quintic(span, from, to, &a0, &a1) };
+        }
+        let h = T::from_f64(span.h);
+        let mut piece = Piece::linear(span, from, to);
+        let scaled = |values: &[T; N], factor: T| values.map(|value| factor * value);
+        let zero = (Condition::Slope(0.0), [T::from_f64(0.0); N]);
+        let (mut q, mut v) = ([zero; BEHIND + 2], [zero; BEHIND]);
+        for j in 0..BEHIND {
+            let (theta, f) =
+                (1.0 - j as f64, if j == 0 { &self.newest } else { &self.f.values()[P - j] });
+            q[j] = (Condition::Curvature(theta), scaled(f, h * h));
+            v[j] = (Condition::Slope(theta), scaled(f, h));
+        }
+        q[BEHIND] = (Condition::Slope(0.0), scaled(&from.v.high, h));
+        q[BEHIND + 1] = (Condition::Slope(1.0), scaled(&to.v.high, h));
+        fit(&mut piece.q, &q);
+        fit(&mut piece.v, &v);
+        piece.terms = BEHIND + 3;
+        piece
+    }
+}
+
+/// The number of parts into which a first step is divided: enough for an error at the level of
+/// rounding wherever the method is stable.
+const SUBSTEPS: usize = 4;
+
+/// The number of accelerations in the dense output.
+const BEHIND: usize = 7;
+
+/// Σ weight_j · value(j) from `first` on, in two sums of alternating terms, which halve the wait
+/// for the last addition.
+// Written out, because the compiler leaves some of these loops standing, with their comparisons in
+// them.
+#[allow(clippy::inline_always)]
+#[inline(always)]
+fn sum<T: Float, const P: usize>(
+    first: usize,
+    weights: &[f64; P],
+    value: impl Fn(usize) -> T,
+) -> T {
+    const { assert!(P <= 12) };
+    let mut sums = [T::from_f64(0.0); 2];
+    macro_rules! add {
+        ($($j:literal)*) => {$(
+            if first <= $j && $j < P && weights[$j] != 0.0 {
+                sums[$j % 2] += T::from_f64(weights[$j]) * value($j);
+            }
+        )*};
+    }
+    add!(11 10 9 8 7 6 5 4 3 2 1 0);
+    sums[0] + sums[1]
+}
+
+/// The last `P` values of a sequence, in a buffer that moves them only once in every 3 `P` steps:
+/// what was written recently and moved cannot be read before the processor has finished both.
+#[derive(Clone, Copy, Debug)]
+struct Window<T, const N: usize, const P: usize> {
+    buffer: [[[T; N]; P]; 4],
+    start: usize,
+}
+
+impl<T: Float, const N: usize, const P: usize> Window<T, N, P> {
+    fn new() -> Self {
+        Self { buffer: [[[T::from_f64(0.0); N]; P]; 4], start: 0 }
+    }
+
+    /// The values, the newest last.
+    #[inline]
+    fn values(&self) -> &[[T; N]; P] {
+        let values = self.buffer.as_flattened()[self.start..].first_chunk();
+        values.unwrap_or(&self.buffer[0])
+    }
+
+    #[inline]
+    fn push(&mut self, value: [T; N]) {
+        let buffer = self.buffer.as_flattened_mut();
+        if self.start == 3 * P {
+            buffer.copy_within(self.start.., 0);
+            self.start = 0;
+        }
+        buffer[self.start + P] = value;
+        self.start += 1;
+    }
+}
+
+/// The weights of velocities for order `P`; exact for accelerations that are polynomials.
+const fn velocities<const P: usize>() -> [f64; P] {
+    padded(match P {
+        8 => &VELOCITIES8,
+        10 => &VELOCITIES10,
+        12 => &VELOCITIES12,
+        _ => panic!("multistep methods have order 8, 10 or 12"),
+    })
+}
+
+/// `values` and zeros behind them.
+pub(crate) const fn padded<const P: usize>(values: &[f64]) -> [f64; P] {
+    let (mut padded, mut i) = ([0.0; P], 0);
+    while i < values.len() {
+        padded[i] = values[i];
+        i += 1;
+    }
+    padded
+}
+
+// Printed by tests/data/multistep.py.
+
+const VELOCITIES8: [f64; 7] = [
+    0.23602017195767197,
+    0.4774305555555556,
+    -0.4253720238095238,
+    0.35122354497354497,
+    -0.19104662698412697,
+    0.0599702380952381,
+    -0.00822585978835979,
+];
+
+const VELOCITIES10: [f64; 9] = [
+    0.223835014329806,
+    0.5682638888888889,
+    -0.7200209435626103,
+    0.8939858906525573,
+    -0.8113301917989418,
+    0.5096615961199294,
+    -0.20980379188712522,
+    0.0509457671957672,
+    -0.005537229938271605,
+];
+
+const VELOCITIES12: [f64; 11] = [
+    0.21502497590822245,
+    0.6516462053571429,
+    -1.0740100628056357,
+    1.7813400623296456,
+    -2.265120569534632,
+    2.1353147421637004,
+    -1.4654353242243867,
+    0.711832686988937,
+    -0.2321385199965929,
+    0.045637774487600875,
+    -0.004091970674001924,
+];

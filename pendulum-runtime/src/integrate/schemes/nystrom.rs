@@ -1,0 +1,117 @@
+//! The stages of explicit Runge–Kutta–Nyström methods for q̈ = a(t, q).
+
+use crate::integrate::interpolant::Piece;
+use crate::integrate::interpolant::hermite;
+use crate::integrate::method::Weights;
+use crate::integrate::schemes::runge_kutta::{Row, weighted};
+use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::field::Accelerations;
+use crate::integrate::step::interval::Span;
+use crate::real::Float;
+
+/// The accelerations at `S` stages.
+#[derive(Clone, Copy, Debug)]
+pub struct Kicks<T, const N: usize, const S: usize> {
+    /// The accelerations.
+    pub a: [[T; N]; S],
+}
+
+// A row is a constant: inlined, its indices and weights are too.
+#[allow(clippy::inline_always)]
+impl<T: Float, const N: usize, const S: usize> Kicks<T, N, S> {
+    /// All zero.
+    pub(crate) fn zero() -> Self {
+        Self { a: [[T::from_f64(0.0); N]; S] }
+    }
+
+    /// Makes the start of a step the first stage.
+    #[inline]
+    pub(crate) fn first(&mut self, field: &mut impl Accelerations<T, N>, from: &mut Node<T, N>) {
+        self.a[0] = from.start_acceleration(field);
+    }
+
+    /// Computes stage `index` at `start + c h`, where the coordinates are q + c h q̇ + h² Σ weight
+    /// · acceleration.
+    #[inline(always)]
+    pub(crate) fn stage<const K: usize>(
+        &mut self,
+        field: &mut impl Accelerations<T, N>,
+        span: &Span,
+        from: &Node<T, N>,
+        index: usize,
+        c: f64,
+        row: Row<K>,
+    ) {
+        let h = span.length::<T>();
+        let (drift, kick) = (T::from_f64(c) * h, h * h);
+        let sum = self.weighted(row);
+        let q = core::array::from_fn(|i| (from.q.high[i] + drift * from.v.high[i]) + kick * sum[i]);
+        let (t, side) = span.at(c);
+        // The accelerations of these systems do not look at the velocities.
+        self.a[index] = field.at(t, side, &q, &from.v.high);
+    }
+
+    /// Σ weight · acceleration.
+    #[inline(always)]
+    pub(crate) fn weighted<const K: usize>(&self, row: Row<K>) -> [T; N] {
+        weighted(&self.a, row)
+    }
+
+    /// The end of the step, from the weights for the coordinates and those for the velocities.
+    #[inline(always)]
+    pub(crate) fn end<const K: usize, const L: usize>(
+        &self,
+        span: &Span,
+        from: &Node<T, N>,
+        q: Row<K>,
+        v: Row<L>,
+    ) -> Node<T, N> {
+        let h = span.length::<T>();
+        let sum = self.weighted(q);
+        let mut to = Node { t: span.end, a: None, ..*from };
+        for i in 0..N {
+            // The drift is by far the largest part: its product keeps both words.
+            to.q.add_product(i, h, from.v.high[i], h * (from.v.low[i] + h * sum[i]));
+        }
+        to.v.add(h, &self.weighted(v));
+        to
+    }
+
+    /// The error from the differences of the weights of both orders, as a root mean square.
+    #[inline(always)]
+    pub(crate) fn error<const K: usize, const L: usize>(
+        &self,
+        h: f64,
+        weights: &Weights<N>,
+        q: Row<K>,
+        v: Row<L>,
+    ) -> f64 {
+        let q = self.weighted(q).map(|difference| T::from_f64(h) * difference);
+        h * (weights.square_sum(&q, &self.weighted(v)) / (2 * N) as f64).sqrt()
+    }
+
+    /// The motion within the step, whose end has the accelerations `a1`: what the quintic leaves
+    /// off is h² Σ weight · acceleration for the coordinates from the sixth term on, and h Σ weight
+    /// · acceleration for the velocities from the fourth on.
+    #[inline(always)]
+    pub(crate) fn dense<const K: usize, const Q: usize, const V: usize>(
+        &self,
+        span: &Span,
+        from: &Node<T, N>,
+        to: &Node<T, N>,
+        a1: &[T; N],
+        q: [Row<K>; Q],
+        v: [Row<K>; V],
+    ) -> Piece<T, N> {
+        let h = span.length::<T>();
+        let mut piece = hermite::quintic(span, from, to, &self.a[0], a1);
+        for (term, row) in q.into_iter().enumerate() {
+            piece.q[5 + term] = self.weighted(row).map(|sum| h * h * sum);
+        }
+        for (term, row) in v.into_iter().enumerate() {
+            piece.v[3 + term] = self.weighted(row).map(|sum| h * sum);
+        }
+        piece.terms = 5 + Q;
+        piece
+    }
+}

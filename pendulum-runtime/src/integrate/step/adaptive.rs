@@ -1,0 +1,401 @@
+//! Steps as long as the error allows.
+
+// What lanes use too has to be compiled for their vectors.
+#![allow(clippy::inline_always)]
+
+use crate::error::{Error, Quantity};
+use crate::integrate::method::{Embedded, Suits, Weights};
+use crate::integrate::step::controller::{Control, Course, Memory};
+use crate::integrate::step::diagnose::blame;
+use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::fast_exp2::{exp2, log2};
+use crate::integrate::step::field::{Accelerations, coordinate};
+use crate::integrate::step::interval::Span;
+use crate::integrate::step::short::shortest;
+use crate::integrate::step::stepper::Stepper;
+use crate::motion::Side;
+use crate::real::Float;
+use crate::system::{Dynamics, System};
+use crate::time::Time;
+
+/// The least tolerance that coefficients with the digits of `f64` hold over any scalar.
+const ONE_WORD: f64 = 10.0 * f64::EPSILON;
+
+/// Steps as long as the error allows.
+///
+/// A step is accepted if √(mean (eᵢ/(atolᵢ + rtol·max(|yᵢ|, |yᵢ′|)))²) ≤ 1 over all coordinates and
+/// velocities, where e is the method's estimate and y, y′ are the values before and after.
+/// Tolerances bound the error of one step; the error at the end also depends on how the motion
+/// amplifies it, and on how many steps there are: the errors of N steps that do not cancel add up
+/// to N tolerances. A drive of a kilohertz takes thousands of steps a second; ask for a tolerance
+/// that is smaller by as many digits.
+///
+/// Without `atol` it is `rtol`, in the units of each coordinate and velocity, whatever the method.
+/// The sum atol + rtol·|y| decides, and where y passes through zero or comes to rest atol alone:
+/// one that follows `rtol` makes the error there follow it too. A fixed number does not: beside
+/// `rtol` 1e-3, 1e-9 asks for six digits more near zero than elsewhere, in steps that nobody
+/// wanted, and beside 1e-12 it allows a thousand times the error that was asked for. Where
+/// coordinates are much smaller or greater than one, only you know what is small: say it by
+/// [`atol`](Self::atol) or [`atol_each`](Self::atol_each).
+///
+/// A step that would end beyond a time to be met (kink, stop, end) is cut there; one that would end
+/// less than 1 % before it is stretched to it; and if less than two steps are left they are made
+/// equal, so that no sliver is left. The size before a cut is remembered. The first step follows
+/// Hairer, Nørsett and Wanner (1993), II.4.
+///
+/// The estimate knows the accelerations at a few times only; what is over between two of them it
+/// does not see. So no two of them lie farther apart than 1.5 times the width of what time alone
+/// does: of functions of time in the equations, as far as `lagrangian!` finds it
+/// ([`System::longest_step`]), and of motions, as far as they say it
+/// ([`Motion::longest_step`](crate::motion::Motion::longest_step)). A
+/// [`Function`](crate::motion::Function) says it by its `resolution`; without that a step over it
+/// is at most a fiftieth of the interval, or one second where an [`Integrator`](crate::integrate::Integrator)
+/// knows no end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AdaptiveStep<const N: usize> {
+    rtol: Option<f64>,
+    atol: Option<([f64; N], [f64; N])>,
+    first_step: Option<f64>,
+    max_step: f64,
+}
+
+impl<const N: usize> Default for AdaptiveStep<N> {
+    fn default() -> Self {
+        Self { rtol: None, atol: None, first_step: None, max_step: 1e300 }
+    }
+}
+
+impl<const N: usize> AdaptiveStep<N> {
+    /// `rtol` 1e-6 (100 machine epsilons for `f32`), and `atol` the same.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The relative tolerance; at least ten machine epsilons of the scalar. Over two words methods
+    /// other than [`Taylor`](crate::integrate::Taylor) hold none below 2.3e-15, and what lies below counts as
+    /// that.
+    pub fn rtol(mut self, rtol: f64) -> Self {
+        self.rtol = Some(rtol);
+        self
+    }
+
+    /// The absolute tolerance of all coordinates and velocities; without this call `rtol`.
+    pub fn atol(self, atol: f64) -> Self {
+        self.atol_each([atol; N], [atol; N])
+    }
+
+    /// The absolute tolerances of each coordinate and of each velocity.
+    pub fn atol_each(mut self, q: [f64; N], v: [f64; N]) -> Self {
+        self.atol = Some((q, v));
+        self
+    }
+
+    /// The length of the first step in seconds, instead of an automatic one.
+    pub fn first_step(mut self, step: f64) -> Self {
+        self.first_step = Some(step);
+        self
+    }
+
+    /// The greatest length of a step in seconds.
+    pub fn max_step(mut self, step: f64) -> Self {
+        self.max_step = step;
+        self
+    }
+
+    fn relative<T: Float>(&self) -> f64 {
+        let least = 100.0 * T::EPSILON.to_f64();
+        self.rtol.unwrap_or(if 1e-6 < least { least } else { 1e-6 })
+    }
+
+    /// One over the error allowed between `from` and `to`.
+    fn weights<T: Float>(&self, from: &Node<T, N>, to: &Node<T, N>) -> Weights<N> {
+        let (rtol, atol) = self.tolerances::<T>();
+        let larger = |a: T, b: T| {
+            let (a, b) = (a.to_f64().abs(), b.to_f64().abs());
+            if a < b { b } else { a }
+        };
+        Weights {
+            q: core::array::from_fn(|i| {
+                1.0 / (atol.0[i] + rtol * larger(from.q.high[i], to.q.high[i]))
+            }),
+            v: core::array::from_fn(|i| {
+                1.0 / (atol.1[i] + rtol * larger(from.v.high[i], to.v.high[i]))
+            }),
+        }
+    }
+}
+
+impl<M, D, const N: usize> Control<M, D, N> for AdaptiveStep<N>
+where
+    M: Embedded + Suits<D::System, N>,
+    D: Dynamics<N, Scalar: Float>,
+{
+    fn check(&self) -> Result<(), Error> {
+        self.positive::<D::Scalar>()?;
+        let rtol = self.relative::<D::Scalar>();
+        if rtol < 10.0 * D::Scalar::EPSILON.to_f64() {
+            let required = "at least ten machine epsilons of the scalar (2.3e-15 for f64, 1.2e-6 for f32, 5e-31 for two words)";
+            return Err(Error::Setting { name: "rtol", value: rtol, required });
+        }
+        Ok(())
+    }
+
+    fn least_steps(&self, length: f64) -> f64 {
+        self.least_steps_over(length)
+    }
+
+    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, M, N>) -> Result<Span, Error> {
+        let Course { method, field, from, to, stages, target, stats } = course;
+        let response = M::RESPONSE;
+        // Coefficients that are rounded to one word leave an error of their own that no step is
+        // short enough for.
+        let rtol = self.relative::<D::Scalar>();
+        let this = Self { rtol: Some(if rtol < ONE_WORD { ONE_WORD } else { rtol }), ..*self };
+        if memory.h == 0.0 {
+            let at_once = Span::by(from.t, 0.0);
+            let a = from.start_acceleration(field);
+            if !a.iter().all(|a| a.is_finite()) {
+                return Err(blame(method, field.dynamics, &at_once, from, stages));
+            }
+            let left = -from.t.since(target);
+            memory.h =
+                self.first_step.unwrap_or_else(|| this.automatic_step(M::ORDER, field, from, left));
+            memory.error = log2(1e-4);
+        }
+        let wanted = if memory.h < self.max_step { memory.h } else { self.max_step };
+        let mut wanted = memory.within_sight(wanted, field.dynamics, from.t, M::GAP)?;
+        let (mut retried, mut last_fault) = (false, None);
+        loop {
+            if wanted <= resolution_of::<D::Scalar>(from.t) && wanted < -from.t.since(target) {
+                if let Some(error) = self.unresolved(stats.accepted + stats.rejected == 0, wanted) {
+                    return Err(error);
+                }
+                if let Some(fault) = last_fault {
+                    return Err(at(fault, from.t));
+                }
+                let index = this.worst(method, stages, memory, from);
+                let coordinate = coordinate(&<D::System as System<N>>::FACTS, index);
+                return Err(Error::StepSizeUnderflow {
+                    t: from.t.to_f64(),
+                    step: wanted,
+                    coordinate,
+                });
+            }
+            let span = fit(from.t, wanted, target);
+            *to = method.step(field, &span, from, stages);
+            let weights = this.weights(from, to);
+            let error =
+                if to.is_finite() { method.error(stages, span.h, &weights) } else { f64::NAN };
+            if error <= 1.0 {
+                let error = log2(error);
+                let factor =
+                    response.safety * exp2(response.beta * memory.error - response.alpha * error);
+                memory.h = span.h * if factor < response.least { response.least } else { factor };
+                // A step that was cut says little about longer ones, nothing if its error is
+                // rounding: what was wanted before stays possible.
+                let longest = if retried { span.h } else { span.h * response.greatest };
+                let longest = if longest < wanted && !retried { wanted } else { longest };
+                if longest < memory.h {
+                    memory.h = longest;
+                } else if span.h < 0.5 * wanted && memory.h < wanted && !retried {
+                    memory.h = wanted;
+                }
+                if wanted <= span.h {
+                    memory.error = if error < log2(1e-4) { log2(1e-4) } else { error };
+                }
+                stats.accepted += 1;
+                return Ok(span);
+            }
+            stats.rejected += 1;
+            retried = true;
+            if error.is_nan() {
+                last_fault = method.fault(field.dynamics, &span, from, stages);
+                // A function may have left its domain, and a shorter step may stay inside; but no
+                // step is short enough for an input that is not finite.
+                if let Some(input @ Error::NotFinite { what: Quantity::Input { .. }, .. }) =
+                    last_fault
+                {
+                    return Err(input);
+                }
+                wanted = 0.1 * span.h;
+            } else {
+                last_fault = None;
+                let factor = response.safety * exp2(-response.alpha * log2(error));
+                wanted = span.h * if factor < response.least { response.least } else { factor };
+            }
+        }
+    }
+}
+
+impl<const N: usize> AdaptiveStep<N> {
+    /// The relative tolerance, and the absolute ones of coordinates and velocities.
+    #[inline]
+    pub(crate) fn tolerances<T: Float>(&self) -> (f64, ([f64; N], [f64; N])) {
+        let rtol = self.relative::<T>();
+        (rtol, self.atol.unwrap_or(([rtol; N], [rtol; N])))
+    }
+
+    /// A lower bound of the number of steps over an interval.
+    pub(crate) fn least_steps_over(&self, length: f64) -> f64 {
+        length / self.max_step
+    }
+
+    /// Whether the length of the first step has a limit of its own.
+    pub(crate) fn limits_first(&self) -> bool {
+        self.first_step.is_some()
+    }
+
+    /// A length of step within the limits set.
+    #[inline(always)]
+    pub(crate) fn limited(&self, first: bool, wanted: f64) -> f64 {
+        let wanted = if self.max_step < wanted { self.max_step } else { wanted };
+        match self.first_step {
+            Some(step) if first && step < wanted => step,
+            _ => wanted,
+        }
+    }
+
+    /// The error for a step of the length `wanted`, which time does not resolve, if that was asked
+    /// for.
+    pub(crate) fn unresolved(&self, first: bool, wanted: f64) -> Option<Error> {
+        let value = self.first_step.filter(|step| first && *step <= wanted)?;
+        let required = "long enough to be told from zero at the start: above 1e-200 s, and above 1e-26 of the time there";
+        Some(Error::Setting { name: "first_step", value, required })
+    }
+
+    /// Whether all settings are positive.
+    pub(crate) fn positive<T: Float>(&self) -> Result<(), Error> {
+        let positive = |name, value: f64| {
+            let fine = (f64::MIN_POSITIVE..f64::INFINITY).contains(&value);
+            if fine {
+                Ok(())
+            } else {
+                Err(Error::Setting { name, value, required: "positive and finite" })
+            }
+        };
+        positive("rtol", self.relative::<T>())?;
+        if let Some((q, v)) = self.atol {
+            q.into_iter().chain(v).try_for_each(|atol| positive("atol", atol))?;
+        }
+        self.first_step.map_or(Ok(()), |step| positive("first_step", step))?;
+        if 0.0 < self.max_step {
+            Ok(())
+        } else {
+            Err(Error::Setting { name: "max_step", value: self.max_step, required: "positive" })
+        }
+    }
+
+    /// A first step with which the second derivative changes the state by about a hundredth of the
+    /// tolerance's root.
+    pub(crate) fn automatic_step<T: Float>(
+        &self,
+        order: u32,
+        field: &mut impl Accelerations<T, N>,
+        from: &mut Node<T, N>,
+        limit: f64,
+    ) -> f64 {
+        let weights = self.weights(from, from);
+        let norm = |q: &[T; N], v: &[T; N]| (weights.square_sum(q, v) / (2 * N) as f64).sqrt();
+        let (q0, v0, a0) = (from.q.high, from.v.high, from.start_acceleration(field));
+        let (state, slope) = (norm(&q0, &v0), norm(&v0, &a0));
+        let guess = if 1e-5 < state && 1e-5 < slope { 0.01 * (state / slope) } else { 1e-6 };
+        // An overflow in the norms leaves nothing to go by.
+        let guess = if 1e-100 < guess { guess } else { 1e-6 };
+        let h = if limit < guess { limit } else { guess };
+        let step = T::from_f64(h);
+        let q1 = core::array::from_fn(|i| q0[i] + step * v0[i]);
+        let v1 = core::array::from_fn(|i| v0[i] + step * a0[i]);
+        let a1 = field.at(from.t + h, Side::Before, &q1, &v1);
+        let change = norm(
+            &core::array::from_fn(|i| v1[i] - v0[i]),
+            &core::array::from_fn(|i| a1[i] - a0[i]),
+        ) / h;
+        let curvature = if change < slope { slope } else { change };
+        let longer = if curvature <= 1e-15 {
+            if 1e-3 * h < 1e-6 { 1e-6 } else { 1e-3 * h }
+        } else if curvature < f64::INFINITY {
+            exp2(log2(0.01 / curvature) / f64::from(order))
+        } else {
+            1e-3 * h
+        };
+        let step = if longer < 100.0 * h { longer } else { 100.0 * h };
+        // What time does not resolve is no step; the error of a longer one decides.
+        let least = 2.0 * resolution_of::<T>(from.t);
+        if step < least { least } else { step }
+    }
+
+    /// The coordinate with the largest error in the last step tried.
+    fn worst<T: Float, M: Embedded>(
+        &self,
+        method: &M,
+        stages: &M::Stages<T, N>,
+        memory: &Memory,
+        from: &Node<T, N>,
+    ) -> usize {
+        let all = self.weights(from, from);
+        let mut worst = (0, 0.0);
+        for index in 0..N {
+            let mut weights = Weights { q: [0.0; N], v: [0.0; N] };
+            (weights.q[index], weights.v[index]) = (all.q[index], all.v[index]);
+            let error = method.error(stages, memory.h, &weights);
+            if worst.1 < error {
+                worst = (index, error);
+            }
+        }
+        worst.0
+    }
+}
+
+/// The length of a step that time does not resolve: its second word has to hold the step to about
+/// ten digits.
+#[inline(always)]
+pub(crate) fn resolution(t: Time) -> f64 {
+    let resolution = 1e-26 * t.to_f64().abs();
+    if resolution < 1e-200 { 1e-200 } else { resolution }
+}
+
+/// The same in a scalar that may not hold so short a length.
+#[inline(always)]
+pub(crate) fn resolution_of<T: Float>(t: Time) -> f64 {
+    let (time, scalar) = (resolution(t), shortest::<T>());
+    if time < scalar { scalar } else { time }
+}
+
+/// A fault that shorter steps ran after, at the time from which none gets away.
+pub(crate) fn at(fault: Error, t: Time) -> Error {
+    match fault {
+        Error::NotFinite { what, suspects, .. } => {
+            Error::NotFinite { t: t.to_f64(), what, suspects }
+        }
+        other => other,
+    }
+}
+
+/// The step of length `wanted` from `t`, or what avoids going beyond `target` and leaving a sliver
+/// before it.
+pub(crate) fn fit(t: Time, wanted: f64, target: f64) -> Span {
+    let left = -t.since(target);
+    if left.abs() <= 1.01 * wanted {
+        Span::to(t, target)
+    } else if left.abs() < 2.0 * wanted {
+        Span::by(t, 0.5 * left)
+    } else {
+        Span::by(t, wanted.copysign(left))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Time, fit};
+
+    #[test]
+    fn no_slivers() {
+        let length = |wanted, target| fit(Time::new(0.0), wanted, target).h;
+        assert_eq!(length(1.0, f64::INFINITY), 1.0);
+        assert_eq!(length(1.0, 2.5), 1.0);
+        assert_eq!(length(1.0, 1.5), 0.75);
+        assert_eq!(length(1.0, 1.009), 1.009);
+        assert_eq!(length(1.0, 0.3), 0.3);
+        assert_eq!(fit(Time::new(0.1), 1.0, 0.3).end, Time::new(0.3));
+    }
+}

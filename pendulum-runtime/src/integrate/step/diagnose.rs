@@ -1,0 +1,120 @@
+//! Who is to blame for a step that failed.
+
+use crate::error::{Error, Quantity, Suspect};
+use crate::integrate::method::Suits;
+use crate::integrate::schemes::linear::Factors;
+use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::field::{Watched, first_in_state};
+use crate::integrate::step::interval::Span;
+use crate::integrate::step::stepper::Stepper;
+use crate::motion::Side;
+use crate::real::{Float, Real};
+use crate::system::{Dynamics, Purpose, System, scalar_time};
+use crate::time::Time;
+
+/// The error for a step, with what it has left in `stages`, that led to a number that is not
+/// finite.
+pub(crate) fn blame<D: Dynamics<N, Scalar: Float>, M: Stepper<D, N>, const N: usize>(
+    method: &M,
+    dynamics: &D,
+    span: &Span,
+    from: &Node<D::Scalar, N>,
+    stages: &M::Stages,
+) -> Error {
+    let coordinate = crate::integrate::step::field::coordinate(&<D::System as System<N>>::FACTS, 0);
+    let unknown = Error::NotFinite {
+        t: span.end.to_f64(),
+        what: Quantity::Velocity(coordinate),
+        suspects: Vec::new(),
+    };
+    method.fault(dynamics, span, from, stages).unwrap_or(unknown)
+}
+
+/// The first number in the stages of a step that is not finite, or where its equations were not
+/// solved, if there is one.
+pub(crate) fn fault<D: Dynamics<N, Scalar: Float>, M: Suits<D::System, N>, const N: usize>(
+    method: &M,
+    dynamics: &D,
+    span: &Span,
+    from: &Node<D::Scalar, N>,
+    stages: &M::Stages<D::Scalar, N>,
+) -> Option<Error> {
+    let facts = &<D::System as System<N>>::FACTS;
+    let unsolved = M::unsolved(stages);
+    let mut watched = Watched::new(dynamics);
+    let to = method.step(&mut watched, span, &mut Node { a: None, ..*from }, &mut M::stages());
+    if let Some((t, coordinate)) = watched.lost
+        && regular(dynamics, from)
+    {
+        return Some(Error::NoVelocity { t: t.to_f64(), coordinate });
+    }
+    // Where an iteration went astray, numbers that are not finite are not the cause but the effect.
+    if let Some((t, index)) = unsolved {
+        let coordinate = crate::integrate::step::field::coordinate(facts, index);
+        return Some(Error::NoConvergence { t: t.to_f64(), step: span.h, coordinate });
+    }
+    let at_end = || first_in_state(facts, &to.q.high, &to.v.high).map(|what| (span.end, what));
+    let (t, what) = watched.first.or_else(at_end)?;
+    if watched.singular {
+        return Some(Error::NotFinite {
+            t: t.to_f64(),
+            what,
+            suspects: suspects(dynamics.system()),
+        });
+    }
+    Some(not_finite(dynamics.system(), t, what))
+}
+
+/// Whether the mass matrix at the start of a step leads from velocities to momenta and back.
+fn regular<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    from: &Node<D::Scalar, N>,
+) -> bool {
+    let (t, q, v) = (scalar_time(from.t), &from.q.high, &from.v.high);
+    let inputs = dynamics.inputs(from.t, Side::After, Purpose::Momenta);
+    let mass = dynamics.system().mass_matrix(t, q, v, &inputs);
+    let momenta = Factors::<_, N, 1>::new(|_, _| {
+        core::array::from_fn(|i| core::array::from_fn(|j| mass[(i, j)]))
+    });
+    let mut unit = [[D::Scalar::from_f64(1.0); N]];
+    momenta.solve(&mut unit);
+    unit[0].iter().all(|x| x.is_finite())
+}
+
+/// The error for a number that is not finite, with the parameters that may be the cause.
+pub(crate) fn not_finite<S: System<N, Scalar: Float>, const N: usize>(
+    system: &S,
+    t: Time,
+    what: Quantity,
+) -> Error {
+    let suspects = if let Quantity::Acceleration(_) = what { suspects(system) } else { Vec::new() };
+    Error::NotFinite { t: t.to_f64(), what, suspects }
+}
+
+/// The parameters that are zero, infinite or not a number.
+pub(crate) fn suspects<S: System<N, Scalar: Float>, const N: usize>(system: &S) -> Vec<Suspect> {
+    parameters(system, |value| value == 0.0 || !value.is_finite())
+}
+
+/// The parameters that are negative.
+pub(crate) fn negative<S: System<N, Scalar: Float>, const N: usize>(system: &S) -> Vec<Suspect> {
+    parameters(system, |value| value < 0.0)
+}
+
+/// The parameters with values that are `suspicious`.
+fn parameters<S: System<N, Scalar: Float>, const N: usize>(
+    system: &S,
+    suspicious: impl Fn(f64) -> bool,
+) -> Vec<Suspect> {
+    let (mut index, mut suspects) = (0, Vec::new());
+    system.map(|parameter| {
+        let value = parameter.to_f64();
+        if suspicious(value) {
+            let parameter = S::FACTS.parameters.get(index).copied().unwrap_or("");
+            suspects.push(Suspect { parameter, value });
+        }
+        index += 1;
+        parameter
+    });
+    suspects
+}

@@ -1,0 +1,69 @@
+//! The state between two steps.
+
+// Picard's steps are compiled for several instruction sets.
+#![allow(clippy::inline_always)]
+
+use crate::integrate::step::compensated::Sum;
+use crate::integrate::step::field::Accelerations;
+use crate::integrate::step::interval::Span;
+use crate::motion::Side;
+use crate::real::Float;
+use crate::time::Time;
+
+/// The state at one end of a step, with the digits that rounding has left off.
+#[derive(Clone, Copy, Debug)]
+pub struct Node<T, const N: usize> {
+    /// The time.
+    pub t: Time,
+    /// The coordinates.
+    pub q: Sum<T, N>,
+    /// The velocities.
+    pub v: Sum<T, N>,
+    /// The accelerations, where somebody has computed them: from before if this is the end of a
+    /// step, from after if its start.
+    ///
+    /// The two differ at kinks only, and there the driver forgets them.
+    pub a: Option<[T; N]>,
+}
+
+impl<T: Float, const N: usize> Node<T, N> {
+    /// The state `q`, `v` at `t`.
+    pub fn new(t: Time, q: [T; N], v: [T; N]) -> Self {
+        Self { t, q: Sum::new(q), v: Sum::new(v), a: None }
+    }
+
+    /// The accelerations at the start of a step.
+    #[inline]
+    pub fn start_acceleration(&mut self, field: &mut impl Accelerations<T, N>) -> [T; N] {
+        self.acceleration(field, Side::After)
+    }
+
+    /// The accelerations at the end of a step.
+    #[inline]
+    pub fn end_acceleration(&mut self, field: &mut impl Accelerations<T, N>) -> [T; N] {
+        self.acceleration(field, Side::Before)
+    }
+
+    #[inline]
+    fn acceleration(&mut self, field: &mut impl Accelerations<T, N>, side: Side) -> [T; N] {
+        let (t, q, v) = (self.t, &self.q.high, &self.v.high);
+        *self.a.get_or_insert_with(|| field.at(t, side, q, v))
+    }
+
+    /// The node at the end of `span` whose coordinates and velocities have grown by `h·dq` and
+    /// `h·dv`.
+    #[inline]
+    pub fn advanced(&self, span: &Span, dq: &[T; N], dv: &[T; N]) -> Self {
+        let h = span.length::<T>();
+        let mut next = Self { t: span.end, a: None, ..*self };
+        next.q.add(h, dq);
+        next.v.add(h, dv);
+        next
+    }
+
+    /// Whether the whole state is finite.
+    #[inline(always)]
+    pub fn is_finite(&self) -> bool {
+        self.q.is_finite() && self.v.is_finite()
+    }
+}

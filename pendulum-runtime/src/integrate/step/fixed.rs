@@ -1,0 +1,146 @@
+//! Steps of equal length.
+
+use crate::error::Error;
+use crate::integrate::step::controller::{Control, Course, Memory};
+use crate::integrate::step::diagnose::blame;
+use crate::integrate::step::interval::Span;
+use crate::integrate::step::short::{is_short, straight};
+use crate::integrate::step::stepper::Stepper;
+use crate::real::Float;
+use crate::system::Dynamics;
+use crate::time::Time;
+
+/// Steps of equal length.
+///
+/// Every stretch between two times that a step must meet (start, kinks, stops, end) is divided into
+/// the least number of equal steps that are not longer than asked, so that each ends exactly there
+/// and no sliver is left; up to a relative 1e-9 longer counts as equal. Symplectic methods need it:
+/// a step size that varies with the state spoils them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FixedStep {
+    step: f64,
+    count: Option<u64>,
+}
+
+impl FixedStep {
+    /// Steps of at most this length in seconds.
+    pub const fn new(step: f64) -> Self {
+        Self { step, count: None }
+    }
+
+    /// `count` steps over a length of time, more if kinks divide it.
+    pub(crate) fn dividing(length: f64, count: u64) -> Self {
+        Self { step: length / count as f64, count: Some(count) }
+    }
+}
+
+impl<M: Stepper<D, N>, D: Dynamics<N, Scalar: Float>, const N: usize> Control<M, D, N>
+    for FixedStep
+{
+    fn check(&self) -> Result<(), Error> {
+        match self.count {
+            Some(0) => Err(Error::Setting { name: "steps", value: 0.0, required: "at least 1" }),
+            None if !(0.0 < self.step && self.step < f64::INFINITY) => Err(Error::Setting {
+                name: "step",
+                value: self.step,
+                required: "positive and finite",
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    fn least_steps(&self, length: f64) -> f64 {
+        steps(length, self.step)
+    }
+
+    #[inline]
+    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, M, N>) -> Result<Span, Error> {
+        let Course { method, field, from, to, stages, target, stats } = course;
+        let mut plan = *memory;
+        let span = self.next(&mut plan, from.t, target);
+        *to = if is_short::<D::Scalar>(span.h) {
+            straight(field, &span, from)
+        } else {
+            method.advance(field, &span, from, stages)
+        };
+        if !to.is_finite() {
+            return Err(blame(method, field.dynamics, &span, from, stages));
+        }
+        *memory = plan;
+        stats.accepted += 1;
+        Ok(span)
+    }
+}
+
+impl FixedStep {
+    /// The next step from `t` on the way to `target`.
+    #[inline]
+    fn next(&self, plan: &mut Memory, t: Time, target: f64) -> Span {
+        if target == f64::INFINITY {
+            plan.left = 0;
+            return Span::by(t, self.step);
+        }
+        if plan.left == 0 || plan.target != target {
+            let length = -t.since(target);
+            let count = steps(length.abs(), self.step);
+            *plan = Memory { h: length / count, left: count as u64, target, ..Memory::default() };
+        }
+        plan.left -= 1;
+        if plan.left == 0 { Span::to(t, target) } else { Span::by(t, plan.h) }
+    }
+}
+
+/// The least number of steps over `length` that are not longer than `step`.
+fn steps(length: f64, step: f64) -> f64 {
+    let count = (length / step * (1.0 - 1e-9)).ceil();
+    if 1.0 < count { count } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FixedStep, Memory, steps};
+    use crate::time::Time;
+
+    fn ends(step: f64, targets: &[f64]) -> Vec<f64> {
+        let (control, mut plan, mut t, mut ends) =
+            (FixedStep::new(step), Memory::default(), Time::new(0.0), Vec::new());
+        for &target in targets {
+            while 0.0 < -t.since(target) {
+                t = control.next(&mut plan, t, target).end;
+                ends.push(t.to_f64());
+            }
+        }
+        ends
+    }
+
+    #[test]
+    fn each_stretch_is_divided_evenly_and_met_exactly() {
+        assert_eq!(ends(0.3, &[1.0]), [0.25, 0.5, 0.75, 1.0]);
+        assert_eq!(ends(0.5, &[0.75, 1.0]), [0.375, 0.75, 1.0]);
+        assert_eq!(ends(10.0, &[1.0]), [1.0]);
+    }
+
+    #[test]
+    fn rounding_adds_no_step() {
+        // 10/0.001 and 0.7/0.1 lie a rounding error away from an integer.
+        assert_eq!(steps(10.0, 0.001), 10_000.0);
+        assert_eq!(steps(0.7, 0.1), 7.0);
+        assert_eq!(steps(0.7 + 1e-6, 0.1), 8.0);
+    }
+
+    #[test]
+    fn a_new_target_makes_a_new_plan() {
+        let (control, mut plan) = (FixedStep::new(0.1), Memory::default());
+        let span = control.next(&mut plan, Time::new(0.0), 1.0);
+        assert_eq!(span.h, 0.1);
+        let span = control.next(&mut plan, span.end, 0.15);
+        assert_eq!(span.end, Time::new(0.15));
+        let span = control.next(&mut plan, span.end, f64::INFINITY);
+        assert_eq!(span.h, 0.1);
+        // A step towards nothing in between was none of the ten.
+        let span = control.next(&mut plan, Time::new(0.0), 1.0);
+        let span = control.next(&mut plan, span.end, f64::INFINITY);
+        control.next(&mut plan, span.end, 1.0);
+        assert_eq!(plan.left, 7);
+    }
+}

@@ -1,0 +1,117 @@
+//! Whether the mass matrix is positive definite, as the kinetic energy of everything that has mass
+//! is.
+
+use crate::error::Error;
+use crate::integrate::step::diagnose::negative;
+use crate::integrate::step::field::coordinate;
+use crate::motion::Side;
+use crate::real::Float;
+use crate::system::{Dynamics, Facts, Purpose, System, scalar_time};
+use crate::time::Time;
+use nalgebra::SMatrix;
+
+/// Whether a step is due for [`inertia`] that is the `accepted`-th: one that ends on a kink, and
+/// every 64th, of more than sixteen coordinates every N²/4-th, so that it costs next to nothing.
+///
+/// Pivots change their sign only where the mass matrix is singular, which methods with step control
+/// do not pass.
+#[inline]
+pub(crate) fn is_due<S: System<N>, const N: usize>(accepted: u64, on_kink: bool) -> bool {
+    let every = if N <= 16 { 64 } else { (N * N / 4).next_power_of_two() as u64 };
+    varies(&S::FACTS) && (on_kink || accepted.is_multiple_of(every))
+}
+
+/// Whether pivots may change their sign on the way.
+pub(crate) fn varies(facts: &Facts) -> bool {
+    facts.derived && !facts.constant_mass_matrix
+}
+
+/// The error for a mass matrix that is not positive where `t`, `q` and `v` are.
+///
+/// Systems written by hand need not have a mass matrix, and are not asked for it.
+#[inline(never)]
+pub(crate) fn inertia<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    t: Time,
+    side: Side,
+    q: &[D::Scalar; N],
+    v: &[D::Scalar; N],
+) -> Result<(), Error> {
+    let facts = &<D::System as System<N>>::FACTS;
+    if !facts.derived {
+        return Ok(());
+    }
+    let inputs = dynamics.inputs(t, side, Purpose::Momenta);
+    let matrix = dynamics.system().mass_matrix(scalar_time(t), q, v, &inputs);
+    let Some((index, pivot)) = negative_pivot(matrix) else { return Ok(()) };
+    let suspects = negative(dynamics.system());
+    Err(Error::NegativeInertia {
+        t: t.to_f64(),
+        coordinate: coordinate(facts, index),
+        pivot,
+        suspects,
+    })
+}
+
+/// The first pivot of M = L D Lᵀ that rounding does not explain, if it is negative.
+///
+/// Pivots are compared with the diagonal that they have come from, whatever the units of the
+/// coordinates. What is zero to rounding, or no number, ends the search: there the accelerations
+/// say what is wrong.
+fn negative_pivot<T: Float, const N: usize>(mut matrix: SMatrix<T, N, N>) -> Option<(usize, f64)> {
+    let rounding = T::from_f64(8.0 * N as f64) * T::EPSILON;
+    let diagonal: [T; N] = core::array::from_fn(|i| matrix[(i, i)].abs());
+    for j in 0..N {
+        let pivot = matrix[(j, j)];
+        let noise = rounding * diagonal[j];
+        if pivot < -noise {
+            return Some((j, pivot.to_f64()));
+        }
+        // Neither if it is not a number.
+        let regular = noise < pivot;
+        if !regular {
+            return None;
+        }
+        for i in j + 1..N {
+            let factor = matrix[(i, j)] / pivot;
+            for k in j + 1..=i {
+                let part = factor * matrix[(k, j)];
+                matrix[(i, k)] -= part;
+            }
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::negative_pivot;
+    use nalgebra::{Matrix2, Matrix3};
+
+    #[test]
+    fn the_first_negative_pivot_is_found_in_any_units() {
+        for unit in [1e-150, 1.0, 1e150] {
+            let matrix =
+                |entries: [f64; 4]| Matrix2::new(entries[0], entries[1], entries[1], entries[3]);
+            let scaled = |[a, b, _, d]: [f64; 4]| matrix([a, b * unit, b * unit, d * unit * unit]);
+            assert_eq!(negative_pivot(scaled([2.0, 1.0, 1.0, 1.0])), None);
+            assert_eq!(negative_pivot(scaled([-1.0, 1.0, 1.0, 1.0])), Some((0, -1.0)));
+            let (index, pivot) = negative_pivot(scaled([2.0, 2.0, 2.0, 1.0])).unwrap();
+            assert!(index == 1 && (pivot / (unit * unit) + 1.0).abs() < 1e-12, "{pivot}");
+        }
+    }
+
+    /// What has rank one is singular, however it is rounded; a matrix that is not a number says
+    /// nothing.
+    #[test]
+    fn rounding_and_numbers_that_are_none_are_no_negative_pivots() {
+        for k in 1..2000 {
+            let x = [f64::from(k) / 7.0, 1.0 / f64::from(k), 0.3];
+            assert_eq!(negative_pivot(Matrix3::from_fn(|i, j| x[i] * x[j])), None);
+            let x = x.map(|x| x as f32);
+            assert_eq!(negative_pivot(Matrix3::from_fn(|i, j| x[i] * x[j])), None);
+        }
+        assert_eq!(negative_pivot(Matrix2::new(f64::NAN, 0.0, 0.0, -1.0)), None);
+        assert_eq!(negative_pivot(Matrix2::new(0.0, 1.0, 1.0, 0.0)), None);
+    }
+}

@@ -1,0 +1,16 @@
+//! One step: its length, its error, its end, and the loop that takes one after the other.
+
+pub(crate) mod adaptive;
+pub(crate) mod compensated;
+pub(crate) mod controller;
+pub(crate) mod diagnose;
+pub(crate) mod driver;
+pub(crate) mod endpoint;
+pub(crate) mod fast_exp2;
+pub(crate) mod field;
+pub(crate) mod fixed;
+pub(crate) mod gap;
+pub(crate) mod inertia;
+pub(crate) mod interval;
+pub(crate) mod short;
+pub(crate) mod stepper;

@@ -1,0 +1,71 @@
+//! Steps shorter than a single-precision number can say.
+
+use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::field::Accelerations;
+use crate::integrate::step::interval::Span;
+use crate::real::Float;
+
+/// The least length of a step that the scalar holds with all its digits; 0 where its range is that
+/// of time.
+#[inline]
+pub(crate) fn shortest<T: Float>() -> f64 {
+    if T::from_f64(1e300).is_finite() { 0.0 } else { f64::from(f32::MIN_POSITIVE) }
+}
+
+/// Whether the scalar cannot hold a step of the length `h`.
+#[inline]
+pub(crate) fn is_short<T: Float>(h: f64) -> bool {
+    h.abs() < shortest::<T>()
+}
+
+/// The end of a step with constant accelerations.
+///
+/// In 1e-38 s no finite acceleration of single precision moves a coordinate by more than 1e-38, and
+/// no velocity by more than a rounding error of what made it so large: what a method of higher
+/// order adds is nothing.
+#[cold]
+pub(crate) fn straight<T: Float, const N: usize>(
+    field: &mut impl Accelerations<T, N>,
+    span: &Span,
+    from: &mut Node<T, N>,
+) -> Node<T, N> {
+    let a =
+        if span.h < 0.0 { from.end_acceleration(field) } else { from.start_acceleration(field) };
+    let mut to = Node { t: span.end, a: None, ..*from };
+    for i in 0..N {
+        let gain = times(span.h, a[i]);
+        to.q.add_one(i, times(span.h, from.v.high[i] + T::from_f64(0.5) * gain));
+        to.v.add_one(i, gain);
+    }
+    to
+}
+
+/// h x, where the scalar need not hold h.
+fn times<T: Float>(mut h: f64, mut x: T) -> T {
+    const PART: f64 = f64::from_bits((1023 - 100) << 52);
+    while h.abs() < PART && h != 0.0 {
+        h /= PART;
+        x *= T::from_f64(PART);
+    }
+    x * T::from_f64(h)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{is_short, times};
+    use crate::real::DoubleDouble;
+
+    #[test]
+    fn products_need_no_length_in_single_precision() {
+        assert_eq!(times(1e-60, 1e30_f32), 1e-30);
+        assert_eq!(times(-1e-40, 3e38_f32), -0.03);
+        assert_eq!(times(1e-300, 3e38_f32), 0.0);
+        assert_eq!(times(0.5, 3.0_f32), 1.5);
+    }
+
+    #[test]
+    fn only_single_precision_has_short_steps() {
+        assert!(is_short::<f32>(1e-39) && is_short::<f32>(-1e-300) && !is_short::<f32>(2e-38));
+        assert!(!is_short::<f64>(1e-300) && !is_short::<DoubleDouble>(1e-300));
+    }
+}
