@@ -6,7 +6,7 @@
 
 #![allow(mixed_script_confusables, missing_docs)]
 
-use pendulum_runtime::integrate::{SideBySide, Solution, State};
+use pendulum_runtime::integrate::{LaneDynamics, Solution, State};
 use pendulum_runtime::jet::JetDynamics;
 use pendulum_runtime::motion::Sinusoid;
 use pendulum_runtime::prelude::*;
@@ -72,7 +72,7 @@ lagrangian! {
 
 /// Every value within a hundred times the tolerance asked; from t = 50 on the errors of all steps
 /// before have been carried along for many periods, and ten thousand times is asked.
-fn check<D: JetDynamics<N, Scalar = f64> + SideBySide<N>, const N: usize>(
+fn check<D: JetDynamics<N, Scalar = f64> + LaneDynamics<N>, const N: usize>(
     dynamics: &D,
     q: [f64; N],
     v: [f64; N],
@@ -83,7 +83,7 @@ fn check<D: JetDynamics<N, Scalar = f64> + SideBySide<N>, const N: usize>(
     }
 }
 
-fn check_within<D: JetDynamics<N, Scalar = f64> + SideBySide<N>, const N: usize>(
+fn check_within<D: JetDynamics<N, Scalar = f64> + LaneDynamics<N>, const N: usize>(
     factor: f64,
     dynamics: &D,
     q: [f64; N],
@@ -117,7 +117,7 @@ fn check_velocity_free<D, const N: usize>(
     v: [f64; N],
     rows: &[(f64, &[f64])],
 ) where
-    D: JetDynamics<N, Scalar = f64, System: VelocityFree<N>> + SideBySide<N>,
+    D: JetDynamics<N, Scalar = f64, System: VelocityFree<N>> + LaneDynamics<N>,
 {
     check(dynamics, q, v, rows);
     for &(t, expected) in rows {

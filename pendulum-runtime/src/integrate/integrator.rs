@@ -1,9 +1,9 @@
 //! Integration step by step, by hand.
 
 use crate::error::Error;
-use crate::integrate::events::detector::Watch;
+use crate::integrate::events::detector::EventDetector;
 use crate::integrate::events::{Event, Occurrence};
-use crate::integrate::interpolant::Piece;
+use crate::integrate::interpolant::Interpolant;
 use crate::integrate::solution::{State, Stats};
 use crate::integrate::step::adaptive::AdaptiveStep;
 use crate::integrate::step::controller::Control;
@@ -30,7 +30,7 @@ where
 {
     dynamics: Ready<'a, D, N>,
     driver: Driver<D::Scalar, N, M, C, <M as Stepper<Ready<'a, D, N>, N>>::Stages>,
-    watch: Watch<'a, D::Scalar, N>,
+    watch: EventDetector<'a, D::Scalar, N>,
     /// What happened in the last call.
     found: Vec<Occurrence<D::Scalar, N>>,
     terminal: Option<usize>,
@@ -58,7 +58,7 @@ where
         Ok(Self {
             dynamics,
             driver,
-            watch: Watch::new(&[]),
+            watch: EventDetector::new(&[]),
             found: Vec::new(),
             terminal: None,
             max_steps: 10_000_000,
@@ -93,7 +93,7 @@ where
     /// A terminal one ends the step and the call that leads to it, with the state at the event; the
     /// next call goes on from there, or from where [`reset`](Self::reset) has put the state.
     pub fn events(mut self, events: &'a [Event<'a, D::Scalar, N>]) -> Result<Self, Error> {
-        self.watch = Watch::new(events);
+        self.watch = EventDetector::new(events);
         self.watch.begin(&mut self.driver, &self.dynamics)?;
         Ok(self)
     }
@@ -196,8 +196,8 @@ where
     /// The motion within the last step; `None` before the first and after one that failed.
     ///
     /// Methods that need further evaluations for it take them now.
-    pub fn last_step(&mut self) -> Option<Piece<D::Scalar, N>> {
-        self.driver.piece(&self.dynamics)
+    pub fn interpolant(&mut self) -> Option<Interpolant<D::Scalar, N>> {
+        self.driver.interpolant(&self.dynamics)
     }
 
     /// The time reached.

@@ -1,12 +1,12 @@
 //! What a method is: a way to take one step, and for some an estimate of its error.
 
 use crate::integrate::interpolant::hermite;
-pub use crate::integrate::interpolant::{Basis, Piece, TERMS};
-pub use crate::integrate::step::compensated::Sum;
-pub use crate::integrate::step::controller::{Control, Course, Memory};
-pub use crate::integrate::step::endpoint::Node;
+pub use crate::integrate::interpolant::{Basis, Interpolant, TERMS};
+pub use crate::integrate::step::compensated::Compensated;
+pub use crate::integrate::step::controller::{Control, ControllerState, StepContext};
+pub use crate::integrate::step::endpoint::Endpoint;
 pub use crate::integrate::step::field::{Accelerations, Counted, Field};
-pub use crate::integrate::step::interval::Span;
+pub use crate::integrate::step::interval::StepInterval;
 pub use crate::integrate::step::stepper::Stepper;
 use crate::real::Float;
 use crate::system::System;
@@ -141,17 +141,17 @@ pub trait Suits<S, const N: usize>: Method
 where
     S: System<N, Scalar: Float>,
 {
-    /// Goes from `from` to the end of `span`.
+    /// Goes from `from` to the end of `interval`.
     ///
     /// The accelerations at the start may be kept in `from`, those at the end in the node that is
     /// returned.
     fn step(
         &self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
         stages: &mut Self::Stages<S::Scalar, N>,
-    ) -> Node<S::Scalar, N>;
+    ) -> Endpoint<S::Scalar, N>;
 
     /// The motion within the step just taken; evaluates what it needs beyond the step itself.
     ///
@@ -160,13 +160,13 @@ where
     fn dense(
         &self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
-        to: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
+        to: &mut Endpoint<S::Scalar, N>,
         stages: &mut Self::Stages<S::Scalar, N>,
-    ) -> Piece<S::Scalar, N> {
+    ) -> Interpolant<S::Scalar, N> {
         let _ = stages;
         let (a0, a1) = (from.start_acceleration(field), to.end_acceleration(field));
-        hermite::quintic(span, from, to, &a0, &a1)
+        hermite::quintic(interval, from, to, &a0, &a1)
     }
 }

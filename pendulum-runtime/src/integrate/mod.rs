@@ -51,7 +51,7 @@ pub use methods::dprkn8::Dprkn8;
 pub use methods::dprkn12::Dprkn12;
 pub use methods::gauss::{Gauss, Newton, Sweeps};
 pub use methods::leapfrog::Leapfrog;
-pub use methods::picard::{Picard, SideBySide};
+pub use methods::picard::{LaneDynamics, Picard};
 pub use methods::quinlan_tremaine::QuinlanTremaine;
 pub use methods::rk4::Rk4;
 pub use methods::rodas4::Rodas4;

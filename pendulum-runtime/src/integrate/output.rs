@@ -187,23 +187,23 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
     {
         let (end, state) = (driver.node.t, State::from(&driver.node));
         if self.dense.is_some() || 0.0 < self.onwards * end.since(self.next) {
-            let Some(piece) = driver.piece(dynamics) else { return Ok(()) };
+            let Some(interpolant) = driver.interpolant(dynamics) else { return Ok(()) };
             let not_finite = |t: f64, q: &[T; N], v: &[T; N]| {
                 let what = first_in_state(&<D::System as System<N>>::FACTS, q, v);
                 what.map_or(Ok(()), |what| Err(Error::NotFinite { t, what, suspects: Vec::new() }))
             };
             if self.dense.is_some() {
-                let mut terms = piece.q[..piece.terms].iter().zip(&piece.v);
+                let mut terms = interpolant.q[..interpolant.terms].iter().zip(&interpolant.v);
                 terms.try_for_each(|(q, v)| not_finite(end.to_f64(), q, v))?;
             }
             while 0.0 < self.onwards * end.since(self.next) {
-                let (q, v) = piece.at(piece.span.fraction(self.next));
+                let (q, v) = interpolant.at(interpolant.span.fraction(self.next));
                 not_finite(self.next, &q, &v)?;
                 self.push(State { t: self.next, q, v });
                 self.advance();
             }
             if let Some(dense) = &mut self.dense {
-                dense.push(&piece, state);
+                dense.push(&interpolant, state);
             }
         }
         self.push_while_next_is(state);

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::integrate::events::{Occurrence, Status};
 use crate::integrate::interpolant::dense::DenseOutput;
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::motion::Side;
 use crate::real::Float;
 use core::fmt;
@@ -19,8 +19,8 @@ pub struct State<T, const N: usize> {
     pub v: [T; N],
 }
 
-impl<T: Float, const N: usize> From<&Node<T, N>> for State<T, N> {
-    fn from(node: &Node<T, N>) -> Self {
+impl<T: Float, const N: usize> From<&Endpoint<T, N>> for State<T, N> {
+    fn from(node: &Endpoint<T, N>) -> Self {
         Self { t: node.t.to_f64(), q: node.q.high, v: node.v.high }
     }
 }

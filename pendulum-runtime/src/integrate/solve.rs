@@ -1,7 +1,7 @@
 //! `solve`: a builder for one integration from start to end.
 
 use crate::error::Error;
-use crate::integrate::events::detector::Watch;
+use crate::integrate::events::detector::EventDetector;
 use crate::integrate::events::{Event, Status};
 use crate::integrate::methods::auto::Auto;
 use crate::integrate::output::{Output, Recorder, direction, in_order};
@@ -224,7 +224,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         let onwards = direction(self.time.0, end);
         let ahead = |driver: &Driver<_, N, _, _, _>, t| onwards * driver.node.t.since(t) < 0.0;
         let mut stops = self.stops.iter().copied().peekable();
-        let mut watch = Watch::new(self.events);
+        let mut watch = EventDetector::new(self.events);
         recorder.begin(State::from(&driver.node), self.dense);
         watch.begin(driver, dynamics)?;
         while ahead(driver, end) {

@@ -16,7 +16,7 @@ mod sum;
 mod tests;
 
 pub(crate) use dynamics::Known;
-pub use dynamics::{JetDynamics, PerhapsJets};
+pub use dynamics::{JetDynamics, MaybeJets};
 pub use factors::Factors;
 pub use order::{
     Called, Calling, Constant, First, Looped, Order, Orders, Running, Second, Unrolled,

@@ -1,15 +1,15 @@
 //! A block of lanes: pendulums of one type that are computed together.
 
 use super::hung::{Hung, W, Wide};
-use crate::integrate::step::compensated::Sum;
+use crate::integrate::step::compensated::Compensated;
 use crate::real::{Float, Lane, Real};
 use crate::system::System;
 
 /// [`W`] pendulums of one type.
 pub(super) struct Block<S: Hung<T, N>, T: Lane + Float, const N: usize> {
     pub(super) prepared: <S::Lanes as System<N>>::Prepared,
-    pub(super) q: Sum<Wide<T>, N>,
-    pub(super) v: Sum<Wide<T>, N>,
+    pub(super) q: Compensated<Wide<T>, N>,
+    pub(super) v: Compensated<Wide<T>, N>,
     /// The state one tick before.
     pub(super) before: [[Wide<T>; N]; 2],
     /// By lane, the track that it follows.
@@ -80,8 +80,8 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
         let zero = [Wide::from_f64(0.0); N];
         let block = Self {
             prepared: system.prepare(),
-            q: Sum::new(zero),
-            v: Sum::new(zero),
+            q: Compensated::new(zero),
+            v: Compensated::new(zero),
             before: [zero; 2],
             track: [0; W],
             failed: 0,

@@ -13,7 +13,7 @@ use super::inputs::{Followed, Inputs, nothing};
 use super::scheme::{Grid, MOST_STAGES, Scheme};
 use super::tracks::{Piece, Tracks};
 use crate::integrate::methods::{leapfrog, srkn6b};
-use crate::integrate::step::compensated::Sum;
+use crate::integrate::step::compensated::Compensated;
 use crate::real::{Float, Lane, Real};
 use crate::simd::Work;
 use crate::system::{Staged, System, scalar_time};
@@ -252,8 +252,8 @@ fn step_of<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, con
     weights: &Weights<T>,
     times: &[Wide<T>; K],
     inputs: &[Inputs<S, T, N>; K],
-    q: &mut Sum<Wide<T>, N>,
-    v: &mut Sum<Wide<T>, N>,
+    q: &mut Compensated<Wide<T>, N>,
+    v: &mut Compensated<Wide<T>, N>,
     extras: Option<&Extras<T, N>>,
 ) {
     decay(v, extras);
@@ -310,7 +310,10 @@ fn step_of<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, con
 
 /// Half of the damping of a step.
 #[inline(always)]
-fn decay<T: Lane + Float, const N: usize>(v: &mut Sum<Wide<T>, N>, extras: Option<&Extras<T, N>>) {
+fn decay<T: Lane + Float, const N: usize>(
+    v: &mut Compensated<Wide<T>, N>,
+    extras: Option<&Extras<T, N>>,
+) {
     if let Some(extras) = extras {
         for i in 0..N {
             v.high[i] *= extras.factor;
@@ -322,8 +325,8 @@ fn decay<T: Lane + Float, const N: usize>(v: &mut Sum<Wide<T>, N>, extras: Optio
 #[inline(always)]
 fn drift<T: Lane + Float, const N: usize>(
     weight: Wide<T>,
-    q: &mut Sum<Wide<T>, N>,
-    v: &mut Sum<Wide<T>, N>,
+    q: &mut Compensated<Wide<T>, N>,
+    v: &mut Compensated<Wide<T>, N>,
     extras: Option<&Extras<T, N>>,
 ) {
     q.add(weight, &v.high);
@@ -334,8 +337,8 @@ fn drift<T: Lane + Float, const N: usize>(
 /// beyond is its mirror image, shortened by the restitution.
 #[inline(always)]
 fn stop<T: Lane + Float, const N: usize>(
-    q: &mut Sum<Wide<T>, N>,
-    v: &mut Sum<Wide<T>, N>,
+    q: &mut Compensated<Wide<T>, N>,
+    v: &mut Compensated<Wide<T>, N>,
     extras: Option<&Extras<T, N>>,
 ) {
     let Some(extras) = extras else { return };

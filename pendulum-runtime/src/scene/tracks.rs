@@ -5,7 +5,7 @@ use super::hung::Layout;
 use super::joint::{Active, Place};
 use super::scheme::{Grid, MOST_STAGES};
 use super::timetable::Timetable;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::motion::{Orders, Side};
 use crate::real::{Float, Real};
 use crate::system::{Input, Purpose};
@@ -298,7 +298,11 @@ impl<T: Real + Float> Tracks<T> {
                     Time::new(start) + f64::from(index) / steps * length
                 };
                 let last = f64::from(index) + 1.0 == steps;
-                let span = if last { Span::to(from, stop) } else { Span::by(from, length / steps) };
+                let span = if last {
+                    StepInterval::to(from, stop)
+                } else {
+                    StepInterval::by(from, length / steps)
+                };
                 let begin = self.extra.len();
                 let mut times = [from; MOST_STAGES];
                 for (stage, &fraction) in grid.scheme.stages().iter().enumerate() {

@@ -9,16 +9,16 @@
 
 use super::{Batch, Batched, Outcome, Problem, W, outcome};
 use crate::error::Error;
-use crate::integrate::methods::taylor::{GAP, Rule, TELLING, Taylor, largest, rest};
+use crate::integrate::methods::taylor::{GAP, LAST_ORDERS, Rule, Taylor, largest, rest};
 use crate::integrate::solution::{State, Stats};
 use crate::integrate::step::adaptive::resolution;
-use crate::integrate::step::compensated::{Sum, splitter};
+use crate::integrate::step::compensated::{Compensated, splitter};
 use crate::integrate::step::diagnose::blame;
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::fast_exp2::power;
 use crate::integrate::step::field::coordinate;
 use crate::integrate::step::gap;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::stepper::Stepper;
 use crate::jet::{Jets, Orders, Path};
 use crate::real::{Float, Lane, Lanes, Real};
@@ -42,7 +42,7 @@ pub(super) struct Run<'a, S: Batched<N>, const N: usize> {
     /// The parameters of all lanes.
     parameters: Vec<Wide<S::Scalar>>,
     system: S::Wide,
-    room: Box<Room<S, N>>,
+    workspace: Box<Workspace<S, N>>,
     lanes: Flight<S::Scalar, N>,
     /// The problem in each lane; none where it is idle.
     problem: [Option<usize>; W],
@@ -57,7 +57,7 @@ pub(super) struct Run<'a, S: Batched<N>, const N: usize> {
 }
 
 /// The room for the jets.
-struct Room<S: Batched<N>, const N: usize> {
+struct Workspace<S: Batched<N>, const N: usize> {
     path: Path<Wide<S::Scalar>, N>,
     drive: <S::Wide as Jets<N>>::Drive,
     work: <S::Wide as Jets<N>>::Work,
@@ -66,8 +66,8 @@ struct Room<S: Batched<N>, const N: usize> {
 /// The states of all lanes.
 #[derive(Clone, Copy)]
 struct Flight<T, const N: usize> {
-    q: Sum<Wide<T>, N>,
-    v: Sum<Wide<T>, N>,
+    q: Compensated<Wide<T>, N>,
+    v: Compensated<Wide<T>, N>,
     /// The words of the time.
     high: Wide<f64>,
     low: Wide<f64>,
@@ -100,7 +100,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             Wide::splat(parameter)
         });
         let (rtol, atol) = batch.control.tolerances::<S::Scalar>();
-        let still = Sum::new([zero; N]);
+        let still = Compensated::new([zero; N]);
         let number = Wide::from_f64(0.0);
         let mut run = Self {
             batch,
@@ -111,7 +111,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             atol: [atol.0, atol.1],
             rtol,
             parameters,
-            room: Box::new(Room {
+            workspace: Box::new(Workspace {
                 path: Path::new(),
                 drive: S::Wide::drive(),
                 work: system.work(),
@@ -144,7 +144,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
     #[inline(always)]
     fn step(&mut self) {
         let from = self.lanes;
-        let Room { path, drive, work } = &mut *self.room;
+        let Workspace { path, drive, work } = &mut *self.workspace;
         for l in 0..W {
             path.t.0[l] = S::Scalar::from_f64(from.high.0[l]) + S::Scalar::from_f64(from.low.0[l]);
         }
@@ -200,7 +200,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         for l in 0..W {
             length.0[l] = S::Scalar::from_f64(h[0].0[l]) + S::Scalar::from_f64(h[1].0[l]);
         }
-        let (path, splitter) = (&self.room.path, Wide::splat(splitter::<S::Scalar>()));
+        let (path, splitter) = (&self.workspace.path, Wide::splat(splitter::<S::Scalar>()));
         let mut finite = Wide::from_f64(0.0);
         for i in 0..N {
             for (sum, series) in [(&mut self.lanes.q, &path.q[i]), (&mut self.lanes.v, &path.v[i])]
@@ -236,7 +236,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         told: Wide<f64>,
         weights: &[[Wide<f64>; N]; 2],
     ) {
-        let mut wanted = longer(&self.room.path, &self.rule, weights, told);
+        let mut wanted = longer(&self.workspace.path, &self.rule, weights, told);
         for l in 0..W {
             wanted.0[l] = self.limited(from, l, self.begun[l] == self.round, wanted.0[l]);
         }
@@ -244,8 +244,8 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         for l in 0..W {
             let (t, end) = (Time::from_words(from.high.0[l], from.low.0[l]), from.end.0[l]);
             if 0.0 < from.live.0[l] && reaches(t, end, wanted.0[l]) {
-                let span = Span::to(t, end);
-                (h[0].0[l], h[1].0[l]) = (span.h, span.low);
+                let interval = StepInterval::to(t, end);
+                (h[0].0[l], h[1].0[l]) = (interval.h, interval.low);
             }
         }
         self.first = false;
@@ -264,8 +264,12 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             let end = self.lanes.end.0[l];
             let close = reaches(from.t, end, wanted.0[l]);
             let error = if !to.is_finite() {
-                let span = if close { Span::to(from.t, end) } else { Span::by(from.t, h.0[l]) };
-                Some(self.not_finite(&from, &span, l))
+                let interval = if close {
+                    StepInterval::to(from.t, end)
+                } else {
+                    StepInterval::by(from.t, h.0[l])
+                };
+                Some(self.not_finite(&from, &interval, l))
             } else if is_short(from.t, end, wanted.0[l]) {
                 let unresolved = self.batch.control.unresolved(steps == 1, wanted.0[l]);
                 Some(unresolved.unwrap_or_else(|| self.underflow(before, &from, wanted.0[l], l)))
@@ -296,17 +300,22 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
     }
 
     /// The error for a step of a lane that led to a number that is not finite.
-    fn not_finite(&self, from: &Node<S::Scalar, N>, span: &Span, l: usize) -> Error {
+    fn not_finite(
+        &self,
+        from: &Endpoint<S::Scalar, N>,
+        interval: &StepInterval,
+        l: usize,
+    ) -> Error {
         let method = &self.batch.method;
         let system = &self.problems[self.problem[l].unwrap_or(0)].system;
-        blame(method, system, span, from, &Stepper::<S, N>::room(method, system))
+        blame(method, system, interval, from, &Stepper::<S, N>::workspace(method, system))
     }
 
     /// The error for a step of a lane that is too short.
     fn underflow(
         &self,
         before: &Flight<S::Scalar, N>,
-        from: &Node<S::Scalar, N>,
+        from: &Endpoint<S::Scalar, N>,
         wanted: f64,
         l: usize,
     ) -> Error {
@@ -315,8 +324,8 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         let mut path = Path::new();
         let k = self.rule.order;
         for i in 0..N {
-            path.q[i][k] = self.room.path.q[i][k].0[l];
-            path.v[i][k] = self.room.path.v[i][k].0[l];
+            path.q[i][k] = self.workspace.path.q[i][k].0[l];
+            path.v[i][k] = self.workspace.path.v[i][k].0[l];
         }
         let (_, index) = largest(&path, k, &one);
         let coordinate = coordinate(&S::FACTS, index);
@@ -343,7 +352,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
                 index += 1;
                 parameters.next().copied().unwrap_or(Wide::splat(parameter))
             });
-            self.room.work = self.system.work();
+            self.workspace.work = self.system.work();
         }
         self.deadline = (0..W)
             .filter(|&l| self.problem[l].is_some())
@@ -365,7 +374,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
                     }
                     parameter
                 });
-                self.put(l, &Node::new(Time::new(problem.time.0), problem.q, problem.v));
+                self.put(l, &Endpoint::new(Time::new(problem.time.0), problem.q, problem.v));
                 (self.lanes.end.0[l], self.lanes.live.0[l]) = (problem.time.1, 1.0);
                 (self.problem[l], self.begun[l]) = (Some(self.next), self.round);
                 self.first = self.batch.control.limits_first();
@@ -394,7 +403,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         }
     }
 
-    fn put(&mut self, l: usize, node: &Node<S::Scalar, N>) {
+    fn put(&mut self, l: usize, node: &Endpoint<S::Scalar, N>) {
         (self.lanes.high.0[l], self.lanes.low.0[l]) = (node.t.to_f64(), node.t.low());
         for i in 0..N {
             (self.lanes.q.high[i].0[l], self.lanes.q.low[i].0[l]) = (node.q.high[i], node.q.low[i]);
@@ -404,13 +413,13 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
 }
 
 /// The state in a lane.
-fn node<T: Lane + Float, const N: usize>(lanes: &Flight<T, N>, l: usize) -> Node<T, N> {
-    let sum = |sum: &Sum<Wide<T>, N>| Sum {
+fn node<T: Lane + Float, const N: usize>(lanes: &Flight<T, N>, l: usize) -> Endpoint<T, N> {
+    let sum = |sum: &Compensated<Wide<T>, N>| Compensated {
         high: sum.high.map(|x| x.0[l]),
         low: sum.low.map(|x| x.0[l]),
     };
     let t = Time::from_words(lanes.high.0[l], lanes.low.0[l]);
-    Node { t, q: sum(&lanes.q), v: sum(&lanes.v), a: None }
+    Endpoint { t, q: sum(&lanes.q), v: sum(&lanes.v), a: None }
 }
 
 /// One over the error allowed.
@@ -443,7 +452,7 @@ fn told<T: Lane + Float, const N: usize>(
     weights: &[[Wide<f64>; N]; 2],
 ) -> Wide<f64> {
     let mut least = Wide::from_f64(f64::INFINITY);
-    for back in 0..TELLING {
+    for back in 0..LAST_ORDERS {
         least =
             nearest(least, told_by(path, rule, weights, rule.order.saturating_sub(back).max(1)));
     }
@@ -472,7 +481,7 @@ fn longer<T: Lane + Float, const N: usize>(
     if !open.contains(&true) {
         return lengths(told);
     }
-    for k in (1..=rule.order.saturating_sub(TELLING)).rev() {
+    for k in (1..=rule.order.saturating_sub(LAST_ORDERS)).rev() {
         let earlier = told_by(path, rule, weights, k);
         for l in 0..W {
             if open[l] && earlier.0[l] < f64::INFINITY {

@@ -3,11 +3,11 @@
 use crate::error::Error;
 use crate::integrate::events::root::{Dip, Point, dip, root};
 use crate::integrate::events::{Condition, Direction, Event, Occurrence};
-use crate::integrate::interpolant::Piece;
+use crate::integrate::interpolant::Interpolant;
 use crate::integrate::output::in_order;
 use crate::integrate::solution::State;
 use crate::integrate::step::driver::Driver;
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::stepper::Stepper;
 use crate::real::Float;
 use crate::system::{Dynamics, scalar_time};
@@ -15,7 +15,7 @@ use crate::time::Time;
 
 /// The events of an integration and what is known of each.
 #[derive(Clone, Debug)]
-pub(crate) struct Watch<'a, T, const N: usize> {
+pub(crate) struct EventDetector<'a, T, const N: usize> {
     events: &'a [Event<'a, T, N>],
     tracks: Vec<Track<T>>,
     /// Whether the next step is the first of a smooth stretch, before which there is nothing.
@@ -48,7 +48,7 @@ const SHORTLY: f64 = 1e-7;
 const POINTS: [f64; 11] =
     [-NEAR, 0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0 - NEAR, 1.0];
 
-impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
+impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
     pub(crate) fn new(events: &'a [Event<'a, T, N>]) -> Self {
         let track = Track { value: T::from_f64(0.0), side: 0, count: 0, last: None, next: 0 };
         Self {
@@ -105,9 +105,9 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
             return Ok(None);
         }
         let rooted = self.events.iter().any(|event| matches!(event.condition, Condition::Root(_)));
-        let piece = if rooted { driver.piece(dynamics) } else { None };
+        let interpolant = if rooted { driver.interpolant(dynamics) } else { None };
         let (end, beyond) = driver.ends();
-        match self.step(piece.as_ref(), &end, beyond.as_ref()) {
+        match self.step(interpolant.as_ref(), &end, beyond.as_ref()) {
             Err(error) => {
                 driver.retreat();
                 let a = driver.accelerations(dynamics);
@@ -134,7 +134,7 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
     }
 
     /// Looks at the state from which the next step goes; `a` are the accelerations there.
-    fn look(&mut self, node: &Node<T, N>, a: &[T; N]) -> Result<(), Error> {
+    fn look(&mut self, node: &Endpoint<T, N>, a: &[T; N]) -> Result<(), Error> {
         self.fresh = true;
         for index in 0..self.events.len() {
             match self.events[index].condition {
@@ -168,15 +168,15 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
         times.fold(f64::INFINITY, |first, time| if time < first { time } else { first })
     }
 
-    /// Finds what happened in the step of `piece` that ended in `end`, and then, over a kink, in
+    /// Finds what happened in the step of `interpolant` that ended in `end`, and then, over a kink, in
     /// `beyond`.
     ///
     /// Gives the terminal event, if there was one.
     fn step(
         &mut self,
-        piece: Option<&Piece<T, N>>,
-        end: &Node<T, N>,
-        beyond: Option<&Node<T, N>>,
+        interpolant: Option<&Interpolant<T, N>>,
+        end: &Endpoint<T, N>,
+        beyond: Option<&Endpoint<T, N>>,
     ) -> Result<Option<Occurrence<T, N>>, Error> {
         self.found.clear();
         let fresh = self.fresh;
@@ -196,8 +196,8 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
                     }
                 }
                 Condition::Root(_) => {
-                    if let Some(piece) = piece {
-                        self.search(index, piece, end, fresh)?;
+                    if let Some(interpolant) = interpolant {
+                        self.search(index, interpolant, end, fresh)?;
                     }
                     if let Some(beyond) = beyond {
                         self.jump(index, beyond)?;
@@ -245,8 +245,8 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
     fn search(
         &mut self,
         index: usize,
-        piece: &Piece<T, N>,
-        end: &Node<T, N>,
+        interpolant: &Interpolant<T, N>,
+        end: &Endpoint<T, N>,
         fresh: bool,
     ) -> Result<(), Error> {
         let zero = T::from_f64(0.0);
@@ -256,20 +256,20 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
             let theta = T::from_f64(theta);
             let value = match i {
                 // A function may end where the step begins.
-                0 => match self.at(index, piece, theta) {
+                0 => match self.at(index, interpolant, theta) {
                     Ok(value) if !fresh => value,
                     _ => continue,
                 },
                 1 => self.tracks[index].value,
                 10 => self
                     .value(index, &Place { t: scalar_time(end.t), q: end.q.high, v: end.v.high })?,
-                _ => self.at(index, piece, theta)?,
+                _ => self.at(index, interpolant, theta)?,
             };
             let mut point = (theta, value);
             if i == 1 && side_before == 0 {
                 // A long step from a root may lead over the next: it must show its side soon.
                 let soon = T::from_f64(NEAR);
-                let place = Place::on(piece, soon);
+                let place = Place::on(interpolant, soon);
                 if let (Ok(value), Ok(least)) =
                     (self.value(index, &place), self.allowance(index, &place))
                     && least < value.abs()
@@ -282,26 +282,32 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
                 match (side_before, before) {
                     (0, _) => side_before = side_here,
                     (_, [_, Some(last)]) if side_here == -side_before => {
-                        let theta = self.root(index, piece, last, point)?;
-                        self.push(index, piece, end, theta, side_here);
+                        let theta = self.root(index, interpolant, last, point)?;
+                        self.push(index, interpolant, end, theta, side_here);
                         side_before = side_here;
                     }
                     (_, [_, Some(_)]) if side_here == 0 => {
                         // A root just here: what comes next shows whether it is crossed.
                         let next = self
-                            .at(index, piece, theta + T::from_f64(SHORTLY))
+                            .at(index, interpolant, theta + T::from_f64(SHORTLY))
                             .unwrap_or(T::from_f64(f64::from(-side_before)));
                         point.1 = next;
                         let crossed = side(next) != side_before;
-                        self.push(index, piece, end, theta, if crossed { -side_before } else { 0 });
+                        self.push(
+                            index,
+                            interpolant,
+                            end,
+                            theta,
+                            if crossed { -side_before } else { 0 },
+                        );
                         side_before = side(next);
                     }
                     (_, [Some(first), Some(middle)])
                         if side(first.1) == side_here && side(middle.1) == side_here =>
                     {
                         let lower = middle.1.abs() <= value.abs() && middle.1.abs() < first.1.abs();
-                        if lower && !(i == 2 && self.recent(index, piece)) {
-                            self.dip(index, piece, end, [first, middle, point])?;
+                        if lower && !(i == 2 && self.recent(index, interpolant)) {
+                            self.dip(index, interpolant, end, [first, middle, point])?;
                         }
                     }
                     _ => {}
@@ -316,7 +322,7 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
     }
 
     /// Looks whether a function jumped over zero at a kink.
-    fn jump(&mut self, index: usize, beyond: &Node<T, N>) -> Result<(), Error> {
+    fn jump(&mut self, index: usize, beyond: &Endpoint<T, N>) -> Result<(), Error> {
         let value = self.value(
             index,
             &Place { t: scalar_time(beyond.t), q: beyond.q.high, v: beyond.v.high },
@@ -335,37 +341,40 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
 
     /// Whether the event has happened so shortly before the step that a dip around its start is the
     /// same one.
-    fn recent(&self, index: usize, piece: &Piece<T, N>) -> bool {
-        let start = piece.span.start;
+    fn recent(&self, index: usize, interpolant: &Interpolant<T, N>) -> bool {
+        let start = interpolant.interval.start;
         let since = |last: Time| (last.since(start.to_f64()) - start.low()).abs();
-        self.tracks[index].last.is_some_and(|last| since(last) <= 4.0 * NEAR * piece.span.h.abs())
+        self.tracks[index]
+            .last
+            .is_some_and(|last| since(last) <= 4.0 * NEAR * interpolant.interval.h.abs())
     }
 
     /// Looks for a root, or a pair of them, in a dip of |g|.
     fn dip(
         &mut self,
         index: usize,
-        piece: &Piece<T, N>,
-        end: &Node<T, N>,
+        interpolant: &Interpolant<T, N>,
+        end: &Endpoint<T, N>,
         points: [Point<T>; 3],
     ) -> Result<(), Error> {
         let sign = T::from_f64(f64::from(side(points[0].1)));
         let tolerance = match self.events[index] {
             Event { direction: Direction::Rising | Direction::Falling, .. } => T::from_f64(0.0),
             Event { tolerance: Some(tolerance), .. } => T::from_f64(tolerance),
-            _ => self.allowance(index, &Place::on(piece, points[1].0))?,
+            _ => self.allowance(index, &Place::on(interpolant, points[1].0))?,
         };
         let positive = points.map(|(theta, value)| (theta, sign * value));
-        match dip(&mut |theta| Ok(sign * self.at(index, piece, theta)?), positive, tolerance)? {
+        match dip(&mut |theta| Ok(sign * self.at(index, interpolant, theta)?), positive, tolerance)?
+        {
             Dip::Away => {}
-            Dip::Touches(theta) => self.push(index, piece, end, theta, 0),
+            Dip::Touches(theta) => self.push(index, interpolant, end, theta, 0),
             Dip::Crosses(theta) => {
-                let below = (theta, self.at(index, piece, theta)?);
+                let below = (theta, self.at(index, interpolant, theta)?);
                 for (from, to, here) in
                     [(points[0], below, side(below.1)), (below, points[2], side(points[2].1))]
                 {
-                    let theta = self.root(index, piece, from, to)?;
-                    self.push(index, piece, end, theta, here);
+                    let theta = self.root(index, interpolant, from, to)?;
+                    self.push(index, interpolant, end, theta, here);
                 }
             }
         }
@@ -375,16 +384,23 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
     fn root(
         &self,
         index: usize,
-        piece: &Piece<T, N>,
+        interpolant: &Interpolant<T, N>,
         from: Point<T>,
         to: Point<T>,
     ) -> Result<T, Error> {
-        root(&mut |theta| self.at(index, piece, theta), from, to)
+        root(&mut |theta| self.at(index, interpolant, theta), from, to)
     }
 
     /// Keeps an occurrence, if its direction counts; `here` is the side that it leads to, 0 if it
     /// only touches.
-    fn push(&mut self, index: usize, piece: &Piece<T, N>, end: &Node<T, N>, theta: T, here: i8) {
+    fn push(
+        &mut self,
+        index: usize,
+        interpolant: &Interpolant<T, N>,
+        end: &Endpoint<T, N>,
+        theta: T,
+        here: i8,
+    ) {
         if !self.counts(index, here) {
             return;
         }
@@ -396,10 +412,10 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
         let occurrence = if theta == T::from_f64(1.0) {
             Occurrence { event: index, time: end.t, state: State::from(end) }
         } else {
-            let passed = theta * piece.span.length();
+            let passed = theta * interpolant.interval.length();
             let high = passed.to_f64();
-            let time = piece.span.start + high + (passed - T::from_f64(high)).to_f64();
-            let (q, v) = piece.at(theta);
+            let time = interpolant.interval.start + high + (passed - T::from_f64(high)).to_f64();
+            let (q, v) = interpolant.at(theta);
             Occurrence { event: index, time, state: State { t: time.to_f64(), q, v } }
         };
         self.found.push(occurrence);
@@ -414,8 +430,8 @@ impl<'a, T: Float, const N: usize> Watch<'a, T, N> {
     }
 
     /// The function on the dense output.
-    fn at(&self, index: usize, piece: &Piece<T, N>, theta: T) -> Result<T, Error> {
-        self.value(index, &Place::on(piece, theta))
+    fn at(&self, index: usize, interpolant: &Interpolant<T, N>, theta: T) -> Result<T, Error> {
+        self.value(index, &Place::on(interpolant, theta))
     }
 
     /// The function at a state.
@@ -481,9 +497,13 @@ struct Place<T, const N: usize> {
 
 impl<T: Float, const N: usize> Place<T, N> {
     /// On the dense output.
-    fn on(piece: &Piece<T, N>, theta: T) -> Self {
-        let (q, v) = piece.at(theta);
-        Self { t: scalar_time::<T>(piece.span.start) + theta * piece.span.length(), q, v }
+    fn on(interpolant: &Interpolant<T, N>, theta: T) -> Self {
+        let (q, v) = interpolant.at(theta);
+        Self {
+            t: scalar_time::<T>(interpolant.interval.start) + theta * interpolant.interval.length(),
+            q,
+            v,
+        }
     }
 }
 

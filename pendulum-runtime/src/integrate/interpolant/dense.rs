@@ -1,8 +1,8 @@
 //! Dense output over a whole integration.
 
-use crate::integrate::interpolant::{Basis, Piece};
+use crate::integrate::interpolant::{Basis, Interpolant};
 use crate::integrate::solution::State;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
 use crate::real::Float;
 
@@ -13,7 +13,7 @@ pub(crate) struct DenseOutput<T, const N: usize> {
     /// The direction of time: 1 or −1.
     onwards: f64,
     /// The steps in order; those from a kink start with the state after it.
-    spans: Vec<Span>,
+    spans: Vec<StepInterval>,
     /// For each step where its values end, and what its terms are multiplied by.
     ends: Vec<(usize, Basis)>,
     /// For each step the state at its start and the terms of both polynomials.
@@ -28,12 +28,12 @@ impl<T: Float, const N: usize> DenseOutput<T, N> {
     }
 
     /// Adds the next step and the state after it.
-    pub(crate) fn push(&mut self, piece: &Piece<T, N>, end: State<T, N>) {
-        self.spans.push(piece.span);
-        self.values.extend([piece.q0, piece.v0]);
-        self.values.extend_from_slice(&piece.q[..piece.terms]);
-        self.values.extend_from_slice(&piece.v[..piece.terms]);
-        self.ends.push((self.values.len(), piece.basis));
+    pub(crate) fn push(&mut self, interpolant: &Interpolant<T, N>, end: State<T, N>) {
+        self.spans.push(interpolant.interval);
+        self.values.extend([interpolant.q0, interpolant.v0]);
+        self.values.extend_from_slice(&interpolant.q[..interpolant.terms]);
+        self.values.extend_from_slice(&interpolant.v[..interpolant.terms]);
+        self.ends.push((self.values.len(), interpolant.basis));
         self.end = end;
     }
 
@@ -49,13 +49,13 @@ impl<T: Float, const N: usize> DenseOutput<T, N> {
         }
         // Steps that start before `t`; one that starts at `t` counts if the state beyond a kink is
         // asked for.
-        let started = self.spans.partition_point(|span| match side {
-            Side::Before => 0.0 < -onwards * span.start.since(t),
-            Side::After => 0.0 <= -onwards * span.start.since(t),
+        let started = self.spans.partition_point(|interval| match side {
+            Side::Before => 0.0 < -onwards * interval.start.since(t),
+            Side::After => 0.0 <= -onwards * interval.start.since(t),
         });
         let Some(index) = started.checked_sub(1) else { return Some(self.start) };
-        let span = &self.spans[index];
-        let (theta, one) = (span.fraction(t), T::from_f64(1.0));
+        let interval = &self.spans[index];
+        let (theta, one) = (interval.fraction(t), T::from_f64(1.0));
         let theta = if theta < one { theta } else { one };
         let (end, basis) = self.ends[index];
         let begin = if index == 0 { 0 } else { self.ends[index - 1].0 };

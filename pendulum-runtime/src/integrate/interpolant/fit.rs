@@ -1,4 +1,4 @@
-//! Polynomials in the form of a [`Piece`](crate::integrate::interpolant::Piece) through given values, slopes and
+//! Polynomials in the form of a [`Interpolant`](crate::integrate::interpolant::Piece) through given values, slopes and
 //! curvatures.
 
 use crate::integrate::interpolant::TERMS;

@@ -4,19 +4,19 @@ pub(crate) mod dense;
 pub(crate) mod fit;
 pub(crate) mod hermite;
 
-use crate::integrate::step::endpoint::Node;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::step::interval::StepInterval;
 use crate::jet::MAX_ORDER;
 use crate::real::Float;
 
-/// The largest number of terms of a [`Piece`].
+/// The largest number of terms of a [`Interpolant`].
 pub const TERMS: usize = MAX_ORDER;
 
 /// Coordinates and velocities within a step as polynomials in θ = (t − start)/h.
 #[derive(Clone, Copy, Debug)]
-pub struct Piece<T, const N: usize> {
+pub struct Interpolant<T, const N: usize> {
     /// The step.
-    pub span: Span,
+    pub interval: StepInterval,
     /// The coordinates at its start.
     pub q0: [T; N],
     /// The velocities at its start.
@@ -31,7 +31,7 @@ pub struct Piece<T, const N: usize> {
     pub basis: Basis,
 }
 
-/// What the terms of a [`Piece`] are multiplied by.
+/// What the terms of a [`Interpolant`] are multiplied by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Basis {
     /// y(θ) = y₀ + θ(F₀ + (1−θ)(F₁ + θ(F₂ + (1−θ)(F₃ + …)))), the form of Hairer, Nørsett and
@@ -87,29 +87,29 @@ fn legendre<T: Float, const N: usize>(y0: &[T; N], terms: &[[T; N]], theta: T) -
     core::array::from_fn(|i| y0[i] + sums[i])
 }
 
-impl<T: Float, const N: usize> Piece<T, N> {
-    /// The cubics through the states at both ends of `span` with the given slopes there: velocities
+impl<T: Float, const N: usize> Interpolant<T, N> {
+    /// The cubics through the states at both ends of `interval` with the given slopes there: velocities
     /// for the coordinates, accelerations for the velocities.
     pub fn hermite(
-        span: &Span,
-        from: &Node<T, N>,
-        to: &Node<T, N>,
+        interval: &StepInterval,
+        from: &Endpoint<T, N>,
+        to: &Endpoint<T, N>,
         a0: &[T; N],
         a1: &[T; N],
     ) -> Self {
-        let mut piece = Self::linear(span, from, to);
-        let h = span.length::<T>();
-        clamp(&mut piece.q, h, &from.v.high, &to.v.high);
-        clamp(&mut piece.v, h, a0, a1);
-        piece.terms = 3;
-        piece
+        let mut interpolant = Self::linear(interval, from, to);
+        let h = interval.length::<T>();
+        clamp(&mut interpolant.q, h, &from.v.high, &to.v.high);
+        clamp(&mut interpolant.v, h, a0, a1);
+        interpolant.terms = 3;
+        interpolant
     }
 
     /// The straight line between the states at both ends.
-    pub fn linear(span: &Span, from: &Node<T, N>, to: &Node<T, N>) -> Self {
+    pub fn linear(interval: &StepInterval, from: &Endpoint<T, N>, to: &Endpoint<T, N>) -> Self {
         let zero = [[T::from_f64(0.0); N]; TERMS];
-        let mut piece = Self {
-            span: *span,
+        let mut interpolant = Self {
+            interval: *interval,
             q0: from.q.high,
             v0: from.v.high,
             q: zero,
@@ -117,9 +117,9 @@ impl<T: Float, const N: usize> Piece<T, N> {
             terms: 1,
             basis: Basis::Nested,
         };
-        piece.q[0] = to.q.since(&from.q);
-        piece.v[0] = to.v.since(&from.v);
-        piece
+        interpolant.q[0] = to.q.since(&from.q);
+        interpolant.v[0] = to.v.since(&from.v);
+        interpolant
     }
 
     /// Gives the coordinates the slopes `v0` and `v1` at the ends.

@@ -1,21 +1,21 @@
 //! The choice of a method.
 
 use crate::error::Error;
-use crate::integrate::interpolant::Piece;
+use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Method, Suits};
 use crate::integrate::methods::dop853::Dop853;
-use crate::integrate::methods::picard::{Picard, SideBySide};
+use crate::integrate::methods::picard::{LaneDynamics, Picard};
 use crate::integrate::methods::srkn14a::{self, Srkn14a};
-use crate::integrate::methods::taylor::{RoomOf, Taylor};
+use crate::integrate::methods::taylor::{Taylor, WorkspaceOf};
 use crate::integrate::schemes::splitting::drift_kick_drift_in_two_words;
 use crate::integrate::step::adaptive::AdaptiveStep;
-use crate::integrate::step::controller::{Control, Course, Memory};
+use crate::integrate::step::controller::{Control, ControllerState, StepContext};
 use crate::integrate::step::diagnose;
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::{Counted, Field};
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::stepper::Stepper;
-use crate::jet::{Jets, Known, Orders, PerhapsJets};
+use crate::jet::{Jets, Known, MaybeJets, Orders};
 use crate::real::Float;
 use crate::system::{Dynamics, System};
 
@@ -59,7 +59,7 @@ enum Choice {
 
 /// Room for whatever is chosen.
 #[derive(Clone, Debug)]
-pub struct Room<R, P, X> {
+pub struct Workspace<R, P, X> {
     choice: Option<Choice>,
     /// The relative tolerance of the adaptive steps that it was chosen for.
     chosen_for: Option<f64>,
@@ -69,15 +69,15 @@ pub struct Room<R, P, X> {
 }
 
 /// The room for the dynamics `D`.
-type AnyRoom<D, const N: usize> = Room<
+type AnyWorkspace<D, const N: usize> = Workspace<
     <Dop853 as Method>::Stages<<D as Dynamics<N>>::Scalar, N>,
     <Picard as Stepper<D, N>>::Stages,
-    RoomOf<D, N>,
+    WorkspaceOf<D, N>,
 >;
 
 impl Auto {
     /// The choice for adaptive steps.
-    fn adaptive<D: PerhapsJets<N, Scalar: Float>, const N: usize>(
+    fn adaptive<D: MaybeJets<N, Scalar: Float>, const N: usize>(
         dynamics: &D,
         rtol: f64,
         backwards: bool,
@@ -100,25 +100,31 @@ impl Auto {
 }
 
 /// Whether Taylor series are right.
-fn goes_by_series<D: PerhapsJets<N>, const N: usize>(dynamics: &D) -> bool {
+fn goes_by_series<D: MaybeJets<N>, const N: usize>(dynamics: &D) -> bool {
     <D::System as System<N>>::FACTS.smooth && dynamics.is_analytic()
 }
 
-impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Stepper<D, N> for Auto {
+impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Stepper<D, N> for Auto {
     const NAME: &'static str = "Auto";
-    type Stages = AnyRoom<D, N>;
+    type Stages = AnyWorkspace<D, N>;
 
     fn goes_back(&self, dynamics: &D) -> bool {
         goes_by_series(dynamics)
     }
 
-    fn room(&self, dynamics: &D) -> AnyRoom<D, N> {
-        let (dop853, taylor) = (Dop853::stages(), Taylor::new().room(&Known(dynamics)));
-        Room { choice: None, chosen_for: None, dop853, picard: Picard.room(dynamics), taylor }
+    fn workspace(&self, dynamics: &D) -> AnyWorkspace<D, N> {
+        let (dop853, taylor) = (Dop853::stages(), Taylor::new().workspace(&Known(dynamics)));
+        Workspace {
+            choice: None,
+            chosen_for: None,
+            dop853,
+            picard: Picard.workspace(dynamics),
+            taylor,
+        }
     }
 
-    fn name(&self, room: &AnyRoom<D, N>) -> &'static str {
-        match room.choice {
+    fn name(&self, workspace: &AnyWorkspace<D, N>) -> &'static str {
+        match workspace.choice {
             None => "Auto",
             Some(Choice::Dop853) => <Dop853 as Method>::NAME,
             Some(Choice::Picard) => <Picard as Stepper<D, N>>::NAME,
@@ -131,62 +137,64 @@ impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Stepper<D, N> for Auto {
     fn advance(
         &self,
         field: &mut Counted<'_, D>,
-        span: &Span,
-        from: &mut Node<D::Scalar, N>,
-        room: &mut AnyRoom<D, N>,
-    ) -> Node<D::Scalar, N> {
-        room.chosen_for = None;
-        if span.h < 0.0 {
+        interval: &StepInterval,
+        from: &mut Endpoint<D::Scalar, N>,
+        workspace: &mut AnyWorkspace<D, N>,
+    ) -> Endpoint<D::Scalar, N> {
+        workspace.chosen_for = None;
+        if interval.h < 0.0 {
             // The stages of the others would see a kink at the start from the wrong side.
-            room.choice = Some(Choice::Taylor);
+            workspace.choice = Some(Choice::Taylor);
             let known = Known(field.dynamics);
             let mut series = Counted::new(&known);
-            let to = Taylor::new().advance(&mut series, span, from, &mut room.taylor);
+            let to = Taylor::new().advance(&mut series, interval, from, &mut workspace.taylor);
             field.evaluations += series.evaluations;
             to
         } else if <D::System as System<N>>::FACTS.velocity_free {
-            room.choice = Some(Choice::Srkn14a);
-            Symplectic.step(field, span, from, &mut ())
+            workspace.choice = Some(Choice::Srkn14a);
+            Symplectic.step(field, interval, from, &mut ())
         } else {
-            room.choice = Some(Choice::Dop853);
-            Dop853.step(field, span, from, &mut room.dop853)
+            workspace.choice = Some(Choice::Dop853);
+            Dop853.step(field, interval, from, &mut workspace.dop853)
         }
     }
 
     fn within(
         &self,
         field: &mut Counted<'_, D>,
-        span: &Span,
-        from: &mut Node<D::Scalar, N>,
-        to: &mut Node<D::Scalar, N>,
-        room: &mut AnyRoom<D, N>,
-    ) -> Piece<D::Scalar, N> {
-        match room.choice {
+        interval: &StepInterval,
+        from: &mut Endpoint<D::Scalar, N>,
+        to: &mut Endpoint<D::Scalar, N>,
+        workspace: &mut AnyWorkspace<D, N>,
+    ) -> Interpolant<D::Scalar, N> {
+        match workspace.choice {
             Some(Choice::Taylor) => Taylor::new().within(
                 &mut Counted::new(&Known(field.dynamics)),
-                span,
+                interval,
                 from,
                 to,
-                &mut room.taylor,
+                &mut workspace.taylor,
             ),
-            Some(Choice::Picard) => Picard.within(field, span, from, to, &mut room.picard),
-            Some(Choice::Srkn14a) => Symplectic.dense(field, span, from, to, &mut ()),
-            _ => Dop853.dense(field, span, from, to, &mut room.dop853),
+            Some(Choice::Picard) => Picard.within(field, interval, from, to, &mut workspace.picard),
+            Some(Choice::Srkn14a) => Symplectic.dense(field, interval, from, to, &mut ()),
+            _ => Dop853.dense(field, interval, from, to, &mut workspace.dop853),
         }
     }
 
     fn fault(
         &self,
         dynamics: &D,
-        span: &Span,
-        from: &Node<D::Scalar, N>,
-        room: &AnyRoom<D, N>,
+        interval: &StepInterval,
+        from: &Endpoint<D::Scalar, N>,
+        workspace: &AnyWorkspace<D, N>,
     ) -> Option<Error> {
-        match room.choice {
-            Some(Choice::Taylor) => Taylor::new().fault(&Known(dynamics), span, from, &room.taylor),
-            Some(Choice::Picard) => Picard.fault(dynamics, span, from, &room.picard),
-            Some(Choice::Srkn14a) => diagnose::fault(&Symplectic, dynamics, span, from, &()),
-            _ => diagnose::fault(&Dop853, dynamics, span, from, &room.dop853),
+        match workspace.choice {
+            Some(Choice::Taylor) => {
+                Taylor::new().fault(&Known(dynamics), interval, from, &workspace.taylor)
+            }
+            Some(Choice::Picard) => Picard.fault(dynamics, interval, from, &workspace.picard),
+            Some(Choice::Srkn14a) => diagnose::fault(&Symplectic, dynamics, interval, from, &()),
+            _ => diagnose::fault(&Dop853, dynamics, interval, from, &workspace.dop853),
         }
     }
 
@@ -195,7 +203,7 @@ impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Stepper<D, N> for Auto {
     }
 }
 
-impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Control<Auto, D, N> for AdaptiveStep<N> {
+impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Control<Auto, D, N> for AdaptiveStep<N> {
     fn check(&self) -> Result<(), Error> {
         self.positive::<D::Scalar>()
     }
@@ -204,23 +212,29 @@ impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Control<Auto, D, N> for 
         self.least_steps_over(length)
     }
 
-    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, Auto, N>) -> Result<Span, Error> {
-        let Course { field, from, to, stages: room, target, stats, .. } = course;
+    fn step(
+        &self,
+        memory: &mut ControllerState,
+        course: StepContext<'_, '_, D, Auto, N>,
+    ) -> Result<StepInterval, Error> {
+        let StepContext { field, from, to, stages: workspace, target, stats, .. } = course;
         let dynamics = field.dynamics;
         let backwards = target < from.t.to_f64();
         let (rtol, _) = self.tolerances::<D::Scalar>();
-        if room.chosen_for != Some(rtol) || backwards && room.choice != Some(Choice::Taylor) {
+        if workspace.chosen_for != Some(rtol)
+            || backwards && workspace.choice != Some(Choice::Taylor)
+        {
             let choice = Auto::adaptive(dynamics, rtol, backwards);
-            (room.choice, room.chosen_for) = (Some(choice), Some(rtol));
+            (workspace.choice, workspace.chosen_for) = (Some(choice), Some(rtol));
         }
-        if room.choice == Some(Choice::Taylor) {
+        if workspace.choice == Some(Choice::Taylor) {
             let known = Known(dynamics);
             let mut series = Counted::new(&known);
-            let stages = &mut room.taylor;
+            let stages = &mut workspace.taylor;
             let taken = Control::step(
                 self,
                 memory,
-                Course {
+                StepContext {
                     method: &Taylor::new(),
                     field: &mut series,
                     from,
@@ -233,16 +247,16 @@ impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Control<Auto, D, N> for 
             field.evaluations += series.evaluations;
             return taken;
         }
-        if room.choice == Some(Choice::Picard) {
+        if workspace.choice == Some(Choice::Picard) {
             return Control::step(
                 self,
                 memory,
-                Course {
+                StepContext {
                     method: &Picard,
                     field,
                     from,
                     to,
-                    stages: &mut room.picard,
+                    stages: &mut workspace.picard,
                     target,
                     stats,
                 },
@@ -252,7 +266,15 @@ impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Control<Auto, D, N> for 
         Control::step(
             self,
             memory,
-            Course { method: &Dop853, field, from, to, stages: &mut room.dop853, target, stats },
+            StepContext {
+                method: &Dop853,
+                field,
+                from,
+                to,
+                stages: &mut workspace.dop853,
+                target,
+                stats,
+            },
         )
     }
 }
@@ -275,10 +297,10 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Symplectic {
     fn step(
         &self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
         (): &mut (),
-    ) -> Node<S::Scalar, N> {
-        drift_kick_drift_in_two_words(&srkn14a::SPLITTING, field, span, from)
+    ) -> Endpoint<S::Scalar, N> {
+        drift_kick_drift_in_two_words(&srkn14a::SPLITTING, field, interval, from)
     }
 }

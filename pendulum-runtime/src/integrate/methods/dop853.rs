@@ -1,12 +1,12 @@
 //! The method of Dormand and Prince of order 8, in the form of Hairer.
 
-use crate::integrate::interpolant::Piece;
+use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Embedded, Method, Response, Suits, Weights};
 use crate::integrate::schemes::runge_kutta::{Row, Slopes};
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::gap::widest;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
 use crate::system::System;
 
@@ -58,51 +58,51 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Dop853 {
     fn step(
         &self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
         stages: &mut Stages<S::Scalar, N>,
-    ) -> Node<S::Scalar, N> {
+    ) -> Endpoint<S::Scalar, N> {
         let k = &mut stages.k;
         k.first(field, from);
-        k.stage(field, span, from, 1, C[1], A1);
-        k.stage(field, span, from, 2, C[2], A2);
-        k.stage(field, span, from, 3, C[3], A3);
-        k.stage(field, span, from, 4, C[4], A4);
-        k.stage(field, span, from, 5, C[5], A5);
-        k.stage(field, span, from, 6, C[6], A6);
-        k.stage(field, span, from, 7, C[7], A7);
-        k.stage(field, span, from, 8, C[8], A8);
-        k.stage(field, span, from, 9, C[9], A9);
-        k.stage(field, span, from, 10, C[10], A10);
-        k.stage(field, span, from, 11, C[11], A11);
+        k.stage(field, interval, from, 1, C[1], A1);
+        k.stage(field, interval, from, 2, C[2], A2);
+        k.stage(field, interval, from, 3, C[3], A3);
+        k.stage(field, interval, from, 4, C[4], A4);
+        k.stage(field, interval, from, 5, C[5], A5);
+        k.stage(field, interval, from, 6, C[6], A6);
+        k.stage(field, interval, from, 7, C[7], A7);
+        k.stage(field, interval, from, 8, C[8], A8);
+        k.stage(field, interval, from, 9, C[9], A9);
+        k.stage(field, interval, from, 10, C[10], A10);
+        k.stage(field, interval, from, 11, C[11], A11);
         stages.increment = k.weighted(B);
-        from.advanced(span, &stages.increment.0, &stages.increment.1)
+        from.advanced(interval, &stages.increment.0, &stages.increment.1)
     }
 
     fn dense(
         &self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
-        to: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
+        to: &mut Endpoint<S::Scalar, N>,
         stages: &mut Stages<S::Scalar, N>,
-    ) -> Piece<S::Scalar, N> {
+    ) -> Interpolant<S::Scalar, N> {
         let k = &mut stages.k;
         k.v[12] = to.v.high;
         k.a[12] = to.end_acceleration(field);
-        k.stage(field, span, from, 13, C[13], A13);
-        k.stage(field, span, from, 14, C[14], A14);
-        k.stage(field, span, from, 15, C[15], A15);
-        let mut piece = Piece::hermite(span, from, to, &k.a[0], &k.a[12]);
-        let h = span.length::<S::Scalar>();
+        k.stage(field, interval, from, 13, C[13], A13);
+        k.stage(field, interval, from, 14, C[14], A14);
+        k.stage(field, interval, from, 15, C[15], A15);
+        let mut interpolant = Interpolant::hermite(interval, from, to, &k.a[0], &k.a[12]);
+        let h = interval.length::<S::Scalar>();
         for (term, (q, v)) in
             [k.weighted(D3), k.weighted(D4), k.weighted(D5), k.weighted(D6)].into_iter().enumerate()
         {
-            piece.q[3 + term] = q.map(|sum| h * sum);
-            piece.v[3 + term] = v.map(|sum| h * sum);
+            interpolant.q[3 + term] = q.map(|sum| h * sum);
+            interpolant.v[3 + term] = v.map(|sum| h * sum);
         }
-        piece.terms = 7;
-        piece
+        interpolant.terms = 7;
+        interpolant
     }
 }
 

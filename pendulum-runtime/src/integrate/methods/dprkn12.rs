@@ -1,13 +1,13 @@
 //! The Nyström pair of Dormand, El-Mikkawy and Prince of order 12.
 
-use crate::integrate::interpolant::Piece;
+use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Embedded, Method, Response, Suits, Weights};
 use crate::integrate::schemes::nystrom::Kicks;
 use crate::integrate::schemes::runge_kutta::Row;
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::gap::widest;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
 use crate::system::VelocityFree;
 
@@ -64,40 +64,40 @@ impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Dprkn12 
     fn step(
         &self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
         k: &mut Kicks<S::Scalar, N, 18>,
-    ) -> Node<S::Scalar, N> {
+    ) -> Endpoint<S::Scalar, N> {
         k.first(field, from);
-        k.stage(field, span, from, 1, C[1], A1);
-        k.stage(field, span, from, 2, C[2], A2);
-        k.stage(field, span, from, 3, C[3], A3);
-        k.stage(field, span, from, 4, C[4], A4);
-        k.stage(field, span, from, 5, C[5], A5);
-        k.stage(field, span, from, 6, C[6], A6);
-        k.stage(field, span, from, 7, C[7], A7);
-        k.stage(field, span, from, 8, C[8], A8);
-        k.stage(field, span, from, 9, C[9], A9);
-        k.stage(field, span, from, 10, C[10], A10);
-        k.stage(field, span, from, 11, C[11], A11);
-        k.stage(field, span, from, 12, C[12], A12);
-        k.stage(field, span, from, 13, C[13], A13);
-        k.stage(field, span, from, 14, C[14], A14);
-        k.stage(field, span, from, 15, C[15], A15);
-        k.stage(field, span, from, 16, C[16], A16);
-        k.end(span, from, Q, V)
+        k.stage(field, interval, from, 1, C[1], A1);
+        k.stage(field, interval, from, 2, C[2], A2);
+        k.stage(field, interval, from, 3, C[3], A3);
+        k.stage(field, interval, from, 4, C[4], A4);
+        k.stage(field, interval, from, 5, C[5], A5);
+        k.stage(field, interval, from, 6, C[6], A6);
+        k.stage(field, interval, from, 7, C[7], A7);
+        k.stage(field, interval, from, 8, C[8], A8);
+        k.stage(field, interval, from, 9, C[9], A9);
+        k.stage(field, interval, from, 10, C[10], A10);
+        k.stage(field, interval, from, 11, C[11], A11);
+        k.stage(field, interval, from, 12, C[12], A12);
+        k.stage(field, interval, from, 13, C[13], A13);
+        k.stage(field, interval, from, 14, C[14], A14);
+        k.stage(field, interval, from, 15, C[15], A15);
+        k.stage(field, interval, from, 16, C[16], A16);
+        k.end(interval, from, Q, V)
     }
 
     fn dense(
         &self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
-        to: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
+        to: &mut Endpoint<S::Scalar, N>,
         k: &mut Kicks<S::Scalar, N, 18>,
-    ) -> Piece<S::Scalar, N> {
+    ) -> Interpolant<S::Scalar, N> {
         k.a[17] = to.end_acceleration(field);
-        k.dense(span, from, to, &k.a[17], DQ, DV)
+        k.dense(interval, from, to, &k.a[17], DQ, DV)
     }
 }
 

@@ -1,13 +1,13 @@
 //! The Nyström pair of Dormand, El-Mikkawy and Prince of order 8.
 
-use crate::integrate::interpolant::Piece;
+use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Embedded, Method, Response, Suits, Weights};
 use crate::integrate::schemes::nystrom::Kicks;
 use crate::integrate::schemes::runge_kutta::Row;
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::gap::widest;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
 use crate::system::VelocityFree;
 
@@ -62,19 +62,19 @@ impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Dprkn8 {
     fn step(
         &self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
         k: &mut Kicks<S::Scalar, N, 9>,
-    ) -> Node<S::Scalar, N> {
+    ) -> Endpoint<S::Scalar, N> {
         k.first(field, from);
-        k.stage(field, span, from, 1, C[1], A1);
-        k.stage(field, span, from, 2, C[2], A2);
-        k.stage(field, span, from, 3, C[3], A3);
-        k.stage(field, span, from, 4, C[4], A4);
-        k.stage(field, span, from, 5, C[5], A5);
-        k.stage(field, span, from, 6, C[6], A6);
-        k.stage(field, span, from, 7, C[7], A7);
-        let mut to = k.end(span, from, Q, V);
+        k.stage(field, interval, from, 1, C[1], A1);
+        k.stage(field, interval, from, 2, C[2], A2);
+        k.stage(field, interval, from, 3, C[3], A3);
+        k.stage(field, interval, from, 4, C[4], A4);
+        k.stage(field, interval, from, 5, C[5], A5);
+        k.stage(field, interval, from, 6, C[6], A6);
+        k.stage(field, interval, from, 7, C[7], A7);
+        let mut to = k.end(interval, from, Q, V);
         k.a[8] = to.end_acceleration(field);
         to
     }
@@ -82,12 +82,12 @@ impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Dprkn8 {
     fn dense(
         &self,
         _: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
-        to: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
+        to: &mut Endpoint<S::Scalar, N>,
         k: &mut Kicks<S::Scalar, N, 9>,
-    ) -> Piece<S::Scalar, N> {
-        k.dense(span, from, to, &k.a[8], DQ, DV)
+    ) -> Interpolant<S::Scalar, N> {
+        k.dense(interval, from, to, &k.a[8], DQ, DV)
     }
 }
 

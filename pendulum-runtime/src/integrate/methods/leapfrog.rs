@@ -1,12 +1,12 @@
 //! The leapfrog method.
 
-use crate::integrate::interpolant::Piece;
+use crate::integrate::interpolant::Interpolant;
 use crate::integrate::interpolant::hermite;
 use crate::integrate::method::{Method, Suits};
 use crate::integrate::schemes::splitting::{Splitting, drift_kick_drift};
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
 use crate::system::VelocityFree;
 
@@ -48,22 +48,22 @@ impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Leapfrog
     fn step(
         &self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
         (): &mut (),
-    ) -> Node<S::Scalar, N> {
-        drift_kick_drift(&SPLITTING, field, span, from)
+    ) -> Endpoint<S::Scalar, N> {
+        drift_kick_drift(&SPLITTING, field, interval, from)
     }
 
     fn dense(
         &self,
         _: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
-        to: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
+        to: &mut Endpoint<S::Scalar, N>,
         (): &mut (),
-    ) -> Piece<S::Scalar, N> {
-        hermite::cubic(span, from, to)
+    ) -> Interpolant<S::Scalar, N> {
+        hermite::cubic(interval, from, to)
     }
 }
 

@@ -1,11 +1,11 @@
 //! The symmetric multistep methods of Quinlan and Tremaine.
 
-use crate::integrate::interpolant::Piece;
+use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Method, Suits};
 use crate::integrate::schemes::multistep::{History, Scheme, padded};
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
 use crate::system::VelocityFree;
 
@@ -52,13 +52,13 @@ impl<const P: usize> QuinlanTremaine<P> {
 }
 
 impl<const P: usize> Scheme<P> for QuinlanTremaine<P> {
-    const KICKS: [f64; P] = padded(match P {
+    const BETA: [f64; P] = padded(match P {
         8 => &KICKS8,
         10 => &KICKS10,
         12 => &KICKS12,
         _ => panic!("`QuinlanTremaine<P>` has order 8, 10 or 12"),
     });
-    const ECHOES: [f64; P] = padded(match P {
+    const ALPHA: [f64; P] = padded(match P {
         8 => &ECHOES8,
         10 => &ECHOES10,
         12 => &ECHOES12,
@@ -88,22 +88,22 @@ impl<S: VelocityFree<N, Scalar: Float>, const N: usize, const P: usize> Suits<S,
     fn step(
         &self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
         history: &mut History<S::Scalar, N, P>,
-    ) -> Node<S::Scalar, N> {
-        history.step::<Self, S>(field, span, from)
+    ) -> Endpoint<S::Scalar, N> {
+        history.step::<Self, S>(field, interval, from)
     }
 
     fn dense(
         &self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
-        to: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
+        to: &mut Endpoint<S::Scalar, N>,
         history: &mut History<S::Scalar, N, P>,
-    ) -> Piece<S::Scalar, N> {
-        history.dense(field, span, from, to)
+    ) -> Interpolant<S::Scalar, N> {
+        history.dense(field, interval, from, to)
     }
 }
 

@@ -2,9 +2,9 @@
 
 use crate::integrate::method::{Method, Suits};
 use crate::integrate::schemes::runge_kutta::Slopes;
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::real::{Float, Real};
 use crate::system::System;
 
@@ -45,18 +45,18 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Rk4 {
     fn step(
         &self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
         k: &mut Slopes<S::Scalar, N, 4>,
-    ) -> Node<S::Scalar, N> {
+    ) -> Endpoint<S::Scalar, N> {
         k.first(field, from);
-        k.stage(field, span, from, 1, 0.5, [(0, 0.5)]);
-        k.stage(field, span, from, 2, 0.5, [(1, 0.5)]);
-        k.stage(field, span, from, 3, 1.0, [(2, 1.0)]);
+        k.stage(field, interval, from, 1, 0.5, [(0, 0.5)]);
+        k.stage(field, interval, from, 2, 0.5, [(1, 0.5)]);
+        k.stage(field, interval, from, 3, 1.0, [(2, 1.0)]);
         // The weights are integers and the sixth is divided off: rounded sixths do not add up to
         // one.
         let (dq, dv) = k.weighted([(0, 1.0), (1, 2.0), (2, 2.0), (3, 1.0)]);
         let six = S::Scalar::from_f64(6.0);
-        from.advanced(span, &dq.map(|sum| sum / six), &dv.map(|sum| sum / six))
+        from.advanced(interval, &dq.map(|sum| sum / six), &dv.map(|sum| sum / six))
     }
 }

@@ -1,13 +1,13 @@
 //! The Rosenbrock method of Hairer and Wanner of order 4, for stiff springs and dampers.
 
-use crate::integrate::interpolant::Piece;
+use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Embedded, Method, Response, Suits, Weights};
 use crate::integrate::schemes::linear::{Factors, Square, times};
 use crate::integrate::schemes::runge_kutta::{Row, Slopes};
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::gap::{all, widest};
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
 use crate::real::{Float, Real};
 use crate::system::{Jacobians, System};
@@ -61,21 +61,21 @@ impl<S: Jacobians<N, Scalar: Float>, const N: usize> Suits<S, N> for Rodas4 {
     fn step(
         &self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
         k: &mut Slopes<S::Scalar, N, 6>,
-    ) -> Node<S::Scalar, N> {
+    ) -> Endpoint<S::Scalar, N> {
         let a = from.start_acceleration(field);
-        let linear = Linear::new(field, span, from, &a);
+        let linear = Linear::new(field, interval, from, &a);
         let zero = [S::Scalar::from_f64(0.0); N];
         linear.solve(k, 0, &from.v.high, &a, (zero, zero), D[0]);
-        linear.stage(field, span, from, k, 1, A1, C1);
-        linear.stage(field, span, from, k, 2, A2, C2);
-        linear.stage(field, span, from, k, 3, A3, C3);
-        linear.stage(field, span, from, k, 4, A4, C4);
-        linear.stage(field, span, from, k, 5, A5, C5);
+        linear.stage(field, interval, from, k, 1, A1, C1);
+        linear.stage(field, interval, from, k, 2, A2, C2);
+        linear.stage(field, interval, from, k, 3, A3, C3);
+        linear.stage(field, interval, from, k, 4, A4, C4);
+        linear.stage(field, interval, from, k, 5, A5, C5);
         let (dq, dv) = k.weighted(B);
-        let mut to = Node { t: span.end, a: None, ..*from };
+        let mut to = Endpoint { t: interval.end, a: None, ..*from };
         to.q.add(S::Scalar::from_f64(1.0), &dq);
         to.v.add(S::Scalar::from_f64(1.0), &dv);
         to
@@ -84,16 +84,16 @@ impl<S: Jacobians<N, Scalar: Float>, const N: usize> Suits<S, N> for Rodas4 {
     fn dense(
         &self,
         _: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
-        to: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
+        to: &mut Endpoint<S::Scalar, N>,
         k: &mut Slopes<S::Scalar, N, 6>,
-    ) -> Piece<S::Scalar, N> {
-        let mut piece = Piece::linear(span, from, to);
-        (piece.q[1], piece.v[1]) = k.weighted(H2);
-        (piece.q[2], piece.v[2]) = k.weighted(H3);
-        piece.terms = 3;
-        piece
+    ) -> Interpolant<S::Scalar, N> {
+        let mut interpolant = Interpolant::linear(interval, from, to);
+        (interpolant.q[1], interpolant.v[1]) = k.weighted(H2);
+        (interpolant.q[2], interpolant.v[2]) = k.weighted(H3);
+        interpolant.terms = 3;
+        interpolant
     }
 }
 
@@ -129,13 +129,13 @@ struct Linear<T, const N: usize> {
 impl<T: Float, const N: usize> Linear<T, N> {
     fn new<S: Jacobians<N, Scalar = T>>(
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &Node<T, N>,
+        interval: &StepInterval,
+        from: &Endpoint<T, N>,
         a: &[T; N],
     ) -> Self {
         let (q, v) = (&from.q.high, &from.v.high);
         let [by_q, by_v] = field.jacobians(from.t, Side::After, q, v);
-        let scale = T::from_f64(GAMMA * span.h);
+        let scale = T::from_f64(GAMMA * interval.h);
         let stiffness: Square<T, N> =
             core::array::from_fn(|i| core::array::from_fn(|j| by_q[(i, j)]));
         let factors = Factors::new(|_, _| {
@@ -152,12 +152,12 @@ impl<T: Float, const N: usize> Linear<T, N> {
             // The parabola through three accelerations so close that its error is far below that of
             // the method, and not so close that rounding is seen.
             let part = T::EPSILON.sqrt().sqrt().to_f64();
-            let [once, twice] =
-                [part, 2.0 * part].map(|part| field.at(from.t + part * span.h, Side::After, q, v));
+            let [once, twice] = [part, 2.0 * part]
+                .map(|part| field.at(from.t + part * interval.h, Side::After, q, v));
             let (four, three, two) = (T::from_f64(4.0), T::from_f64(3.0), T::from_f64(2.0 * part));
             core::array::from_fn(|i| (four * once[i] - twice[i] - three * a[i]) / two)
         };
-        Self { h: span.length::<T>(), scale, stiffness, drive, factors }
+        Self { h: interval.length::<T>(), scale, stiffness, drive, factors }
     }
 
     /// Computes stage `index` from those before.
@@ -167,8 +167,8 @@ impl<T: Float, const N: usize> Linear<T, N> {
     fn stage<S: System<N, Scalar = T>, const K: usize>(
         &self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &Node<T, N>,
+        interval: &StepInterval,
+        from: &Endpoint<T, N>,
         k: &mut Slopes<T, N, 6>,
         index: usize,
         place: Row<K>,
@@ -177,7 +177,7 @@ impl<T: Float, const N: usize> Linear<T, N> {
         let (dq, dv) = k.weighted(place);
         let q = core::array::from_fn(|i| from.q.high[i] + (from.q.low[i] + dq[i]));
         let v = core::array::from_fn(|i| from.v.high[i] + (from.v.low[i] + dv[i]));
-        let (t, side) = span.at(C[index]);
+        let (t, side) = interval.at(C[index]);
         let a = field.at(t, side, &q, &v);
         let memory = k.weighted(memory);
         self.solve(k, index, &v, &a, memory, D[index]);

@@ -2,9 +2,9 @@
 
 use crate::integrate::method::{Method, Suits};
 use crate::integrate::schemes::splitting::{Splitting, kick_drift_kick};
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
 use crate::system::VelocityFree;
 
@@ -44,11 +44,11 @@ impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Srkn11b 
     fn step(
         &self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
         (): &mut (),
-    ) -> Node<S::Scalar, N> {
-        kick_drift_kick(&SPLITTING, field, span, from)
+    ) -> Endpoint<S::Scalar, N> {
+        kick_drift_kick(&SPLITTING, field, interval, from)
     }
 }
 

@@ -2,9 +2,9 @@
 
 use crate::integrate::method::{Method, Suits};
 use crate::integrate::schemes::splitting::{Splitting, drift_kick_drift_in_two_words};
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
 use crate::system::VelocityFree;
 
@@ -48,11 +48,11 @@ impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Srkn14a 
     fn step(
         &self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
         (): &mut (),
-    ) -> Node<S::Scalar, N> {
-        drift_kick_drift_in_two_words(&SPLITTING, field, span, from)
+    ) -> Endpoint<S::Scalar, N> {
+        drift_kick_drift_in_two_words(&SPLITTING, field, interval, from)
     }
 }
 

@@ -1,11 +1,11 @@
 //! The symplectic Euler method.
 
-use crate::integrate::interpolant::Piece;
+use crate::integrate::interpolant::Interpolant;
 use crate::integrate::interpolant::hermite;
 use crate::integrate::method::{Method, Suits};
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
 use crate::system::System;
 
@@ -48,13 +48,13 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for SymplecticEule
     fn step(
         &self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
         (): &mut (),
-    ) -> Node<S::Scalar, N> {
-        let h = span.length::<S::Scalar>();
+    ) -> Endpoint<S::Scalar, N> {
+        let h = interval.length::<S::Scalar>();
         let a = from.start_acceleration(field);
-        let mut to = Node { t: span.end, a: None, ..*from };
+        let mut to = Endpoint { t: interval.end, a: None, ..*from };
         to.v.add(h, &a);
         to.q.add(h, &to.v.high);
         to
@@ -63,11 +63,11 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for SymplecticEule
     fn dense(
         &self,
         _: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
-        to: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
+        to: &mut Endpoint<S::Scalar, N>,
         (): &mut (),
-    ) -> Piece<S::Scalar, N> {
-        hermite::cubic(span, from, to)
+    ) -> Interpolant<S::Scalar, N> {
+        hermite::cubic(interval, from, to)
     }
 }

@@ -4,14 +4,14 @@
 #![allow(clippy::inline_always)]
 
 use crate::error::{Error, Quantity};
-use crate::integrate::interpolant::{Basis, Piece, TERMS};
+use crate::integrate::interpolant::{Basis, Interpolant, TERMS};
 use crate::integrate::step::adaptive::{AdaptiveStep, fit, resolution_of};
-use crate::integrate::step::controller::{Control, Course, Memory};
+use crate::integrate::step::controller::{Control, ControllerState, StepContext};
 use crate::integrate::step::diagnose::{self, blame};
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::fast_exp2::{digits, log2, power};
 use crate::integrate::step::field::{Accelerations, Counted, Watched, coordinate, first_in_state};
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::stepper::Stepper;
 use crate::jet::{JetDynamics, Jets, LENGTH, MAX_ORDER, Orders, Path, Series};
 use crate::motion::Side;
@@ -80,7 +80,7 @@ impl Taylor {
 
 /// The jet at the start of a step.
 #[derive(Clone, Debug)]
-pub struct Room<T, W, X, const N: usize> {
+pub struct Workspace<T, W, X, const N: usize> {
     path: Path<T, N>,
     drive: X,
     work: W,
@@ -138,7 +138,7 @@ impl Rule {
 }
 
 /// The room for the jets of the dynamics `D`.
-pub(crate) type RoomOf<D, const N: usize> = Room<
+pub(crate) type WorkspaceOf<D, const N: usize> = Workspace<
     <D as Dynamics<N>>::Scalar,
     <<D as Dynamics<N>>::System as Jets<N>>::Work,
     <<D as Dynamics<N>>::System as Jets<N>>::Drive,
@@ -147,14 +147,14 @@ pub(crate) type RoomOf<D, const N: usize> = Room<
 
 impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Stepper<D, N> for Taylor {
     const NAME: &'static str = "Taylor";
-    type Stages = RoomOf<D, N>;
+    type Stages = WorkspaceOf<D, N>;
 
     fn goes_back(&self, _: &D) -> bool {
         true
     }
 
-    fn room(&self, dynamics: &D) -> RoomOf<D, N> {
-        Room {
+    fn workspace(&self, dynamics: &D) -> WorkspaceOf<D, N> {
+        Workspace {
             path: Path::new(),
             drive: D::System::drive(),
             work: dynamics.system().work(),
@@ -170,73 +170,74 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Stepper<D, N> for Taylor 
     fn advance(
         &self,
         field: &mut Counted<'_, D>,
-        span: &Span,
-        from: &mut Node<D::Scalar, N>,
-        room: &mut RoomOf<D, N>,
-    ) -> Node<D::Scalar, N> {
+        interval: &StepInterval,
+        from: &mut Endpoint<D::Scalar, N>,
+        workspace: &mut WorkspaceOf<D, N>,
+    ) -> Endpoint<D::Scalar, N> {
         let order = self.fixed::<D::Scalar>();
-        expand(field, from, side(span.h), order, room);
-        sum(room, from, span)
+        expand(field, from, side(interval.h), order, workspace);
+        sum(workspace, from, interval)
     }
 
     fn within(
         &self,
         _: &mut Counted<'_, D>,
-        span: &Span,
-        from: &mut Node<D::Scalar, N>,
-        _: &mut Node<D::Scalar, N>,
-        room: &mut RoomOf<D, N>,
-    ) -> Piece<D::Scalar, N> {
-        let (h, zero) = (span.length::<D::Scalar>(), [[D::Scalar::from_f64(0.0); N]; TERMS]);
+        interval: &StepInterval,
+        from: &mut Endpoint<D::Scalar, N>,
+        _: &mut Endpoint<D::Scalar, N>,
+        workspace: &mut WorkspaceOf<D, N>,
+    ) -> Interpolant<D::Scalar, N> {
+        let (h, zero) = (interval.length::<D::Scalar>(), [[D::Scalar::from_f64(0.0); N]; TERMS]);
         let (q0, v0) = (from.q.high, from.v.high);
-        let mut piece = Piece {
-            span: *span,
+        let mut interpolant = Interpolant {
+            interval: *interval,
             q0,
             v0,
             q: zero,
             v: zero,
-            terms: room.order,
+            terms: workspace.order,
             basis: Basis::Powers,
         };
         let mut power = h;
-        for k in 1..=room.order {
+        for k in 1..=workspace.order {
             for i in 0..N {
-                piece.q[k - 1][i] = room.path.q[i][k] * power;
-                piece.v[k - 1][i] = room.path.v[i][k] * power;
+                interpolant.q[k - 1][i] = workspace.path.q[i][k] * power;
+                interpolant.v[k - 1][i] = workspace.path.v[i][k] * power;
             }
             power *= h;
         }
-        piece
+        interpolant
     }
 
     fn fault(
         &self,
         dynamics: &D,
-        span: &Span,
-        from: &Node<D::Scalar, N>,
-        _: &RoomOf<D, N>,
+        interval: &StepInterval,
+        from: &Endpoint<D::Scalar, N>,
+        _: &WorkspaceOf<D, N>,
     ) -> Option<Error> {
         let mut watched = Watched::new(dynamics);
-        watched.at(from.t, side(span.h), &from.q.high, &from.v.high);
-        let mut room = self.room(dynamics);
+        watched.at(from.t, side(interval.h), &from.q.high, &from.v.high);
+        let mut workspace = self.workspace(dynamics);
         expand(
             &mut Counted::new(dynamics),
             from,
-            side(span.h),
+            side(interval.h),
             self.fixed::<D::Scalar>(),
-            &mut room,
+            &mut workspace,
         );
         let facts = &<D::System as System<N>>::FACTS;
         let finite = |series: &Series<D::Scalar>| series.iter().all(|x| x.is_finite());
-        let infinite = (0..N).find(|&i| !finite(&room.path.v[i]) || !finite(&room.path.q[i]));
+        let infinite =
+            (0..N).find(|&i| !finite(&workspace.path.v[i]) || !finite(&workspace.path.q[i]));
         let (t, what) = watched
             .first
             .or_else(|| {
                 infinite.map(|index| (from.t, Quantity::Acceleration(coordinate(facts, index))))
             })
             .or_else(|| {
-                let to = sum(&room, from, span);
-                first_in_state(facts, &to.q.high, &to.v.high).map(|what| (span.end, what))
+                let to = sum(&workspace, from, interval);
+                first_in_state(facts, &to.q.high, &to.v.high).map(|what| (interval.end, what))
             })?;
         Some(diagnose::not_finite(dynamics.system(), t, what))
     }
@@ -257,10 +258,10 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
 
     fn step(
         &self,
-        memory: &mut Memory,
-        course: Course<'_, '_, D, Taylor, N>,
-    ) -> Result<Span, Error> {
-        let Course { method, field, from, to, stages: room, target, stats } = course;
+        memory: &mut ControllerState,
+        course: StepContext<'_, '_, D, Taylor, N>,
+    ) -> Result<StepInterval, Error> {
+        let StepContext { method, field, from, to, stages: workspace, target, stats } = course;
         let t = from.t.to_f64();
         let backwards = target < t;
         let target = if backwards {
@@ -269,16 +270,16 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
             field.dynamics.next_break(t).filter(|time| *time < target).unwrap_or(target)
         };
         let (rtol, atol) = self.tolerances::<D::Scalar>();
-        if room.rule.tolerance != rtol {
-            room.rule = Rule::new::<D::System, N>(*method, rtol);
+        if workspace.rule.tolerance != rtol {
+            workspace.rule = Rule::new::<D::System, N>(*method, rtol);
         }
-        let order = room.rule.order;
-        expand(field, from, if backwards { Side::Before } else { Side::After }, order, room);
+        let order = workspace.rule.order;
+        expand(field, from, if backwards { Side::Before } else { Side::After }, order, workspace);
         let weights = [
             core::array::from_fn(|i| 1.0 / (atol.0[i] + rtol * from.q.high[i].to_f64().abs())),
             core::array::from_fn(|i| 1.0 / (atol.1[i] + rtol * from.v.high[i].to_f64().abs())),
         ];
-        let wanted = length(&room.path, &room.rule, &weights);
+        let wanted = length(&workspace.path, &workspace.rule, &weights);
         // A uniform motion may go on for ever, but it has to come to an end.
         let wanted = if wanted == f64::INFINITY && target == wanted { 1.0 } else { wanted };
         let mut wanted = memory.within_sight(
@@ -289,80 +290,83 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         )?;
         if memory.h == 0.0 {
             // At a start nothing is known of jumps.
-            (room.refuted, room.crossed, room.doubts) = (None, 0, 0);
+            (workspace.refuted, workspace.crossed, workspace.doubts) = (None, 0, 0);
         }
         // Towards a time at which the last series did not hold.
         let left = |refuted: Time| refuted.since(from.t.to_f64()) - from.t.low();
-        room.refuted = room.refuted.filter(|&refuted| {
+        workspace.refuted = workspace.refuted.filter(|&refuted| {
             let left = left(refuted);
             (left < 0.0) == backwards && resolution_of::<D::Scalar>(from.t) < left.abs()
         });
-        let mut holds = room.refuted.is_none();
-        if let Some(refuted) = room.refuted {
+        let mut holds = workspace.refuted.is_none();
+        if let Some(refuted) = workspace.refuted {
             let left = left(refuted).abs();
             wanted = if left < wanted { left } else { wanted };
         }
-        let mut span = fit(from.t, wanted, target);
-        *to = sum(room, from, &span);
-        let whole = span;
+        let mut interval = fit(from.t, wanted, target);
+        *to = sum(workspace, from, &interval);
+        let whole = interval;
         let finite = |series: &Series<D::Scalar>| series[..=order].iter().all(|x| x.is_finite());
-        let known =
-            to.is_finite() || (0..N).all(|i| finite(&room.path.q[i]) && finite(&room.path.v[i]));
+        let known = to.is_finite()
+            || (0..N).all(|i| finite(&workspace.path.q[i]) && finite(&workspace.path.v[i]));
         let (mut halved, mut crosses) = (0, false);
         // At the resolution of times no step can be shorter.
         while known && resolution_of::<D::Scalar>(from.t) < wanted {
-            let strict = 0 < halved || room.refuted.is_some();
-            let misfit = misfit(field.dynamics, room, &span, to, &weights[1], strict);
+            let strict = 0 < halved || workspace.refuted.is_some();
+            let misfit = misfit(field.dynamics, workspace, &interval, to, &weights[1], strict);
             holds &= misfit.allowed;
-            if misfit.allowed || MOST_DOUBTS <= room.doubts {
+            if misfit.allowed || MOST_DOUBTS <= workspace.doubts {
                 break;
             }
             stats.rejected += 1;
             halved += 1;
-            room.refuted = Some(span.end);
+            workspace.refuted = Some(interval.end);
             // A jump may be as wide as the rounding of the place: each further step over it is twice
             // as long.
-            if MOST_HALVED.saturating_sub(room.crossed) <= halved {
+            if MOST_HALVED.saturating_sub(workspace.crossed) <= halved {
                 // Something jumps within so short a step, which goes over that; or its series is
                 // right, and what does not fit is rounding.
                 crosses = !misfit.rounding;
                 if !crosses {
-                    (wanted, span) = (whole.h.abs(), whole);
-                    *to = sum(room, from, &span);
+                    (wanted, interval) = (whole.h.abs(), whole);
+                    *to = sum(workspace, from, &interval);
                 }
-                room.refuted = None;
+                workspace.refuted = None;
                 break;
             }
             // The same series ends sooner.
-            wanted = 0.5 * span.h.abs();
-            span = fit(from.t, wanted, target);
-            *to = sum(room, from, &span);
+            wanted = 0.5 * interval.h.abs();
+            interval = fit(from.t, wanted, target);
+            *to = sum(workspace, from, &interval);
         }
         if !to.is_finite() {
-            return Err(blame(method, field.dynamics, &whole, from, room));
+            return Err(blame(method, field.dynamics, &whole, from, workspace));
         }
         if wanted <= resolution_of::<D::Scalar>(from.t) && wanted < from.t.since(target).abs() {
-            let (_, index) = largest(&room.path, order, &weights);
+            let (_, index) = largest(&workspace.path, order, &weights);
             let coordinate = coordinate(&<D::System as System<N>>::FACTS, index);
             let short = Error::StepSizeUnderflow { t, step: wanted, coordinate };
             return Err(self.unresolved(memory.h == 0.0, wanted).unwrap_or(short));
         }
-        room.crossed = if crosses { room.crossed + 1 } else { 0 };
-        if room.doubts < MOST_DOUBTS && FOUND * room.shortest < wanted || room.doubts == 0 {
-            (room.doubts, room.shortest) = (0, f64::INFINITY);
+        workspace.crossed = if crosses { workspace.crossed + 1 } else { 0 };
+        if workspace.doubts < MOST_DOUBTS && FOUND * workspace.shortest < wanted
+            || workspace.doubts == 0
+        {
+            (workspace.doubts, workspace.shortest) = (0, f64::INFINITY);
         }
         if 0 < halved {
-            room.doubts += 1;
-            room.shortest = if wanted < room.shortest { wanted } else { room.shortest };
+            workspace.doubts += 1;
+            workspace.shortest =
+                if wanted < workspace.shortest { wanted } else { workspace.shortest };
         } else if holds {
-            room.doubts = room.doubts.saturating_sub(2);
+            workspace.doubts = workspace.doubts.saturating_sub(2);
         }
-        if MOST_DOUBTS <= room.doubts {
-            room.refuted = None;
+        if MOST_DOUBTS <= workspace.doubts {
+            workspace.refuted = None;
         }
         memory.h = wanted;
         stats.accepted += 1;
-        Ok(span)
+        Ok(interval)
     }
 }
 
@@ -379,17 +383,17 @@ fn side(h: f64) -> Side {
 #[inline]
 fn expand<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     field: &mut Counted<'_, D>,
-    from: &Node<D::Scalar, N>,
+    from: &Endpoint<D::Scalar, N>,
     side: Side,
     order: usize,
-    room: &mut RoomOf<D, N>,
+    workspace: &mut WorkspaceOf<D, N>,
 ) {
-    if room.order != order {
+    if workspace.order != order {
         // No coefficient of a higher order may stay.
-        room.path = Path::new();
-        room.order = order;
+        workspace.path = Path::new();
+        workspace.order = order;
     }
-    let Room { path, drive, work, .. } = room;
+    let Workspace { path, drive, work, .. } = workspace;
     path.t = scalar_time(from.t);
     for i in 0..N {
         path.q[i][0] = from.q.high[i];
@@ -404,15 +408,25 @@ fn expand<D: JetDynamics<N, Scalar: Float>, const N: usize>(
 /// come with both words.
 #[inline]
 fn sum<T: Float, W, X, const N: usize>(
-    room: &Room<T, W, X, N>,
-    from: &Node<T, N>,
-    span: &Span,
-) -> Node<T, N> {
-    let h = span.length::<T>();
-    let mut to = Node { t: span.end, a: None, ..*from };
+    workspace: &Workspace<T, W, X, N>,
+    from: &Endpoint<T, N>,
+    interval: &StepInterval,
+) -> Endpoint<T, N> {
+    let h = interval.length::<T>();
+    let mut to = Endpoint { t: interval.end, a: None, ..*from };
     for i in 0..N {
-        to.q.add_product(i, h, room.path.q[i][1], rest(&room.path.q[i], room.order, h));
-        to.v.add_product(i, h, room.path.v[i][1], rest(&room.path.v[i], room.order, h));
+        to.q.add_product(
+            i,
+            h,
+            workspace.path.q[i][1],
+            rest(&workspace.path.q[i], workspace.order, h),
+        );
+        to.v.add_product(
+            i,
+            h,
+            workspace.path.v[i][1],
+            rest(&workspace.path.v[i], workspace.order, h),
+        );
     }
     to
 }
@@ -439,15 +453,20 @@ struct Misfit {
 /// coordinates and time.
 fn misfit<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
-    room: &RoomOf<D, N>,
-    span: &Span,
-    to: &Node<D::Scalar, N>,
+    workspace: &WorkspaceOf<D, N>,
+    interval: &StepInterval,
+    to: &Endpoint<D::Scalar, N>,
     weights: &[f64; N],
     strict: bool,
 ) -> Misfit {
-    let (h, zero) = (span.length::<D::Scalar>(), D::Scalar::from_f64(0.0));
+    let (h, zero) = (interval.length::<D::Scalar>(), D::Scalar::from_f64(0.0));
     // Beside the orders of the series, which are what evaluations of this method count.
-    let a = Counted::new(dynamics).at(span.end, side(span.h).opposite(), &to.q.high, &to.v.high);
+    let a = Counted::new(dynamics).at(
+        interval.end,
+        side(interval.h).opposite(),
+        &to.q.high,
+        &to.v.high,
+    );
     // Motions have the digits of `f64`.
     let facts = &<D::System as System<N>>::FACTS;
     let epsilon = D::Scalar::EPSILON.to_f64();
@@ -456,9 +475,9 @@ fn misfit<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     let largest = |values: &dyn Fn(usize) -> D::Scalar| {
         (0..N).fold(0.0, |largest: f64, i| largest.max(values(i).to_f64().abs()))
     };
-    let (q, v) = (&room.path.q, &room.path.v);
+    let (q, v) = (&workspace.path.q, &workspace.path.v);
     let series: [D::Scalar; N] = core::array::from_fn(|i| {
-        let orders = (1..=room.order).rev();
+        let orders = (1..=workspace.order).rev();
         orders.fold(zero, |sum, k| sum * h + D::Scalar::from_f64(k as f64) * v[i][k])
     });
     // Coordinates and time are rounded too, and the accelerations change with them as they do on
@@ -467,16 +486,16 @@ fn misfit<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     let turns = [largest(&|i| a[i] - v[i][1]), largest(&|i| series[i] - v[i][1])];
     let turn = if turns[1] < turns[0] { turns[1] } else { turns[0] };
     let by_place = if 0.0 < way { largest(&|i| to.q.high[i]) * (turn / way) } else { 0.0 };
-    let by_time = span.end.to_f64().abs() * (turn / span.h.abs());
+    let by_time = interval.end.to_f64().abs() * (turn / interval.h.abs());
     let size = largest(&|i| a[i]) + by_place + if facts.autonomous { 0.0 } else { by_time };
     let (mut allowed, mut is_rounding) = (to.is_finite() && size.is_finite(), true);
     for i in 0..N {
         let difference = (a[i] - series[i]).to_f64().abs();
         // That of a smooth series is gone after a halving; that of a jump is not, and the velocity
         // is off by all of it.
-        let (share, most) = if strict { (1.0, 1.0) } else { (room.order as f64, MISFIT) };
-        let misfit = span.h.abs() * difference / share;
-        let noise = rounding * (to.v.high[i].to_f64().abs() + span.h.abs() * size);
+        let (share, most) = if strict { (1.0, 1.0) } else { (workspace.order as f64, MISFIT) };
+        let misfit = interval.h.abs() * difference / share;
+        let noise = rounding * (to.v.high[i].to_f64().abs() + interval.h.abs() * size);
         allowed &= misfit * weights[i] <= most + noise * weights[i];
         is_rounding &= difference <= 1e3 * rounding * size;
     }
@@ -503,7 +522,7 @@ pub(crate) fn rest<T: Real>(series: &Series<T>, order: usize, h: T) -> T {
 
 /// How many of the last coefficients tell the length of a step. A motion from rest in a symmetric
 /// place has one order in four only.
-pub(crate) const TELLING: usize = 4;
+pub(crate) const LAST_ORDERS: usize = 4;
 
 /// The length of a step at whose end the last term of the series is as large as allowed; infinite
 /// for a uniform motion.
@@ -519,7 +538,7 @@ fn length<T: Float, const N: usize>(
         let longest = rule.told(coefficient, k);
         least = if longest < least { longest } else { least };
         told += 1;
-        if TELLING <= told && least < f64::INFINITY {
+        if LAST_ORDERS <= told && least < f64::INFINITY {
             break;
         }
     }

@@ -1,12 +1,12 @@
 //! The method of Tsitouras of order 5.
 
-use crate::integrate::interpolant::Piece;
+use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Embedded, Method, Response, Suits, Weights};
 use crate::integrate::schemes::runge_kutta::{Row, Slopes};
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::gap::widest;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
 use crate::system::System;
 
@@ -49,18 +49,18 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Tsit5 {
     fn step(
         &self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
         k: &mut Slopes<S::Scalar, N, 7>,
-    ) -> Node<S::Scalar, N> {
+    ) -> Endpoint<S::Scalar, N> {
         k.first(field, from);
-        k.stage(field, span, from, 1, C[1], A1);
-        k.stage(field, span, from, 2, C[2], A2);
-        k.stage(field, span, from, 3, C[3], A3);
-        k.stage(field, span, from, 4, C[4], A4);
-        k.stage(field, span, from, 5, C[5], A5);
+        k.stage(field, interval, from, 1, C[1], A1);
+        k.stage(field, interval, from, 2, C[2], A2);
+        k.stage(field, interval, from, 3, C[3], A3);
+        k.stage(field, interval, from, 4, C[4], A4);
+        k.stage(field, interval, from, 5, C[5], A5);
         let (dq, dv) = k.weighted(B);
-        let mut to = from.advanced(span, &dq, &dv);
+        let mut to = from.advanced(interval, &dq, &dv);
         k.v[6] = to.v.high;
         k.a[6] = to.end_acceleration(field);
         to
@@ -69,18 +69,18 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Tsit5 {
     fn dense(
         &self,
         _: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<S::Scalar, N>,
-        to: &mut Node<S::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<S::Scalar, N>,
+        to: &mut Endpoint<S::Scalar, N>,
         k: &mut Slopes<S::Scalar, N, 7>,
-    ) -> Piece<S::Scalar, N> {
-        let h = span.length::<S::Scalar>();
-        let mut piece = Piece::hermite(span, from, to, &k.a[0], &k.a[6]);
+    ) -> Interpolant<S::Scalar, N> {
+        let h = interval.length::<S::Scalar>();
+        let mut interpolant = Interpolant::hermite(interval, from, to, &k.a[0], &k.a[6]);
         let (q, v) = k.weighted(D);
-        piece.q[3] = q.map(|sum| h * sum);
-        piece.v[3] = v.map(|sum| h * sum);
-        piece.terms = 4;
-        piece
+        interpolant.q[3] = q.map(|sum| h * sum);
+        interpolant.v[3] = v.map(|sum| h * sum);
+        interpolant.terms = 4;
+        interpolant
     }
 }
 

@@ -4,15 +4,15 @@
 //! q_{n−1} from accelerations f; its first sum w_n = (q_{n+1} − q_n)/h = w_{n−1} + h d_n and its
 //! second q_{n+1} = q_n + h w_n are kept with compensation (Henrici 1962, 6.4).
 
-use crate::integrate::interpolant::Piece;
+use crate::integrate::interpolant::Interpolant;
 use crate::integrate::interpolant::fit::{Condition, fit};
 use crate::integrate::interpolant::hermite;
 use crate::integrate::method::{Method, Suits};
 use crate::integrate::methods::dop853::{self, Dop853};
-use crate::integrate::step::compensated::Sum;
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::compensated::Compensated;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
 use crate::real::Float;
 use crate::system::VelocityFree;
@@ -22,9 +22,9 @@ use crate::time::Time;
 /// the zeros among them cost nothing.
 pub(crate) trait Scheme<const P: usize> {
     /// The weights b of the accelerations.
-    const KICKS: [f64; P];
+    const BETA: [f64; P];
     /// The weights a of earlier second differences.
-    const ECHOES: [f64; P];
+    const ALPHA: [f64; P];
     /// The weights g with which accelerations give the velocity at the end of a step, v_n =
     /// w_{n−1} + h Σ g_j f_{n−j}.
     const VELOCITIES: [f64; P] = velocities();
@@ -40,13 +40,13 @@ pub struct History<T, const N: usize, const P: usize> {
     /// The second differences, divided by h².
     d: Window<T, N, P>,
     /// The last first difference, divided by h.
-    w: Sum<T, N>,
+    w: Compensated<T, N>,
     /// The length of the steps.
     h: f64,
     /// The number of points; 0 before the first step.
     points: usize,
     /// The last point: a state that is not there is not the next one of the grid.
-    end: (Time, Sum<T, N>, [T; N]),
+    end: (Time, Compensated<T, N>, [T; N]),
     /// For the first points.
     starter: dop853::Stages<T, N>,
 }
@@ -54,12 +54,12 @@ pub struct History<T, const N: usize, const P: usize> {
 impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
     pub(crate) fn new() -> Self {
         let zero = [T::from_f64(0.0); N];
-        let end = (Time::new(0.0), Sum::new(zero), zero);
+        let end = (Time::new(0.0), Compensated::new(zero), zero);
         Self {
             newest: zero,
             f: Window::new(),
             d: Window::new(),
-            w: Sum::new(zero),
+            w: Compensated::new(zero),
             h: 0.0,
             points: 0,
             end,
@@ -67,7 +67,7 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
         }
     }
 
-    /// Takes the step `span`.
+    /// Takes the step `interval`.
     ///
     /// A state that comes from elsewhere, a kink (after which the accelerations in `from` are
     /// unknown) and another length of the step begin a new grid. Its first `P` − 1 steps are taken
@@ -76,20 +76,20 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
     pub(crate) fn step<C: Scheme<P>, S: VelocityFree<N, Scalar = T>>(
         &mut self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<T, N>,
-    ) -> Node<T, N> {
-        let same_step = (span.h - self.h).abs() <= 1e-10 * self.h;
+        interval: &StepInterval,
+        from: &mut Endpoint<T, N>,
+    ) -> Endpoint<T, N> {
+        let same_step = (interval.h - self.h).abs() <= 1e-10 * self.h;
         let same_state = self.end == (from.t, from.q, from.v.high);
         let goes_on = self.points != 0 && same_step && from.a.is_some() && same_state;
         if goes_on && self.points == P {
-            self.multistep::<C, S>(field, span, from)
+            self.multistep::<C, S>(field, interval, from)
         } else {
             if !goes_on {
-                (self.points, self.h) = (1, span.h);
+                (self.points, self.h) = (1, interval.h);
                 self.newest = from.start_acceleration(field);
             }
-            self.start(field, span, from)
+            self.start(field, interval, from)
         }
     }
 
@@ -97,24 +97,24 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
     fn multistep<C: Scheme<P>, S: VelocityFree<N, Scalar = T>>(
         &mut self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &Node<T, N>,
-    ) -> Node<T, N> {
-        let (h, last) = (T::from_f64(self.h), T::from_f64(span.h));
+        interval: &StepInterval,
+        from: &Endpoint<T, N>,
+    ) -> Endpoint<T, N> {
+        let (h, last) = (T::from_f64(self.h), T::from_f64(interval.h));
         let (f, d, newest) = (self.f.values(), self.d.values(), self.newest);
         // All that does not need the newest acceleration is computed first, while the processor
         // still waits for it; so the coordinates take h w_{n−1} and h² d_n apart, and the long sums
         // stand outside the chain from one acceleration to the next.
         let older: [T; N] = core::array::from_fn(|i| {
-            sum(1, &C::KICKS, |j| f[P - j][i]) - sum(0, &C::ECHOES, |j| d[P - 1 - j][i])
+            sum(1, &C::BETA, |j| f[P - j][i]) - sum(0, &C::ALPHA, |j| d[P - 1 - j][i])
         });
         let glide: [T; N] = core::array::from_fn(|i| sum(2, &C::VELOCITIES, |j| f[P + 1 - j][i]));
         let mut q = self.end.1;
         q.add(last, &self.w.high);
-        let kick = T::from_f64(C::KICKS[0]);
+        let kick = T::from_f64(C::BETA[0]);
         let (weight, rest) = (last * h * kick, older.map(|older| last * h * older));
         q.add(T::from_f64(1.0), &core::array::from_fn(|i| weight * newest[i] + rest[i]));
-        let a = field.at(span.end, Side::Before, &q.high, &from.v.high);
+        let a = field.at(interval.end, Side::Before, &q.high, &from.v.high);
         let d = core::array::from_fn(|i| kick * newest[i] + older[i]);
         self.w.add(h, &d);
         // v = w + h ∫ u f(t + u h) du over [0, 1].
@@ -124,32 +124,33 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
         });
         self.d.push(d);
         self.f.push(newest);
-        (self.newest, self.end) = (a, (span.end, q, v));
-        Node { t: span.end, q, v: Sum::new(v), a: Some(a) }
+        (self.newest, self.end) = (a, (interval.end, q, v));
+        Endpoint { t: interval.end, q, v: Compensated::new(v), a: Some(a) }
     }
 
     /// One of the first steps.
     fn start<S: VelocityFree<N, Scalar = T>>(
         &mut self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<T, N>,
-    ) -> Node<T, N> {
+        interval: &StepInterval,
+        from: &mut Endpoint<T, N>,
+    ) -> Endpoint<T, N> {
         let mut to = *from;
         for part in 1..=SUBSTEPS {
             let end = if part == SUBSTEPS {
-                span.end
+                interval.end
             } else {
-                span.start + span.h * part as f64 / SUBSTEPS as f64
+                interval.start + interval.h * part as f64 / SUBSTEPS as f64
             };
-            let substep = Span { start: to.t, end, h: span.h / SUBSTEPS as f64, low: 0.0 };
+            let substep =
+                StepInterval { start: to.t, end, h: interval.h / SUBSTEPS as f64, low: 0.0 };
             to = Dop853.step(field, &substep, &mut to, &mut self.starter);
         }
         let difference = to.q.since(&from.q);
-        let w = Sum::new(difference.map(|difference| difference / T::from_f64(span.h)));
+        let w = Compensated::new(difference.map(|difference| difference / T::from_f64(interval.h)));
         if 1 < self.points {
             let rise = w.since(&self.w);
-            self.d.push(rise.map(|rise| rise / T::from_f64(span.h)));
+            self.d.push(rise.map(|rise| rise / T::from_f64(interval.h)));
         }
         self.f.push(self.newest);
         self.newest = to.end_acceleration(field);
@@ -163,17 +164,20 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
     pub(crate) fn dense<S: VelocityFree<N, Scalar = T>>(
         &self,
         field: &mut impl Field<S, N>,
-        span: &Span,
-        from: &mut Node<T, N>,
-        to: &mut Node<T, N>,
-    ) -> Piece<T, N> {
+        interval: &StepInterval,
+        from: &mut Endpoint<T, N>,
+        to: &mut Endpoint<T, N>,
+    ) -> Interpolant<T, N> {
         let (a0, a1) = (from.start_acceleration(field), to.end_acceleration(field));
         if self.points < BEHIND {
             // All pieces of an integration have the same number of terms.
-            return Piece { terms: BEHIND + 3, ..hermite::quintic(span, from, to, &a0, &a1) };
+            return Interpolant {
+                terms: BEHIND + 3,
+                ..hermite::quintic(interval, from, to, &a0, &a1)
+            };
         }
-        let h = T::from_f64(span.h);
-        let mut piece = Piece::linear(span, from, to);
+        let h = T::from_f64(interval.h);
+        let mut interpolant = Interpolant::linear(interval, from, to);
         let scaled = |values: &[T; N], factor: T| values.map(|value| factor * value);
         let zero = (Condition::Slope(0.0), [T::from_f64(0.0); N]);
         let (mut q, mut v) = ([zero; BEHIND + 2], [zero; BEHIND]);
@@ -185,10 +189,10 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
         }
         q[BEHIND] = (Condition::Slope(0.0), scaled(&from.v.high, h));
         q[BEHIND + 1] = (Condition::Slope(1.0), scaled(&to.v.high, h));
-        fit(&mut piece.q, &q);
-        fit(&mut piece.v, &v);
-        piece.terms = BEHIND + 3;
-        piece
+        fit(&mut interpolant.q, &q);
+        fit(&mut interpolant.v, &v);
+        interpolant.terms = BEHIND + 3;
+        interpolant
     }
 }
 

@@ -1,12 +1,12 @@
 //! The stages of explicit Runge–Kutta–Nyström methods for q̈ = a(t, q).
 
-use crate::integrate::interpolant::Piece;
+use crate::integrate::interpolant::Interpolant;
 use crate::integrate::interpolant::hermite;
 use crate::integrate::method::Weights;
 use crate::integrate::schemes::runge_kutta::{Row, weighted};
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Accelerations;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
 
 /// The accelerations at `S` stages.
@@ -26,7 +26,11 @@ impl<T: Float, const N: usize, const S: usize> Kicks<T, N, S> {
 
     /// Makes the start of a step the first stage.
     #[inline]
-    pub(crate) fn first(&mut self, field: &mut impl Accelerations<T, N>, from: &mut Node<T, N>) {
+    pub(crate) fn first(
+        &mut self,
+        field: &mut impl Accelerations<T, N>,
+        from: &mut Endpoint<T, N>,
+    ) {
         self.a[0] = from.start_acceleration(field);
     }
 
@@ -36,17 +40,17 @@ impl<T: Float, const N: usize, const S: usize> Kicks<T, N, S> {
     pub(crate) fn stage<const K: usize>(
         &mut self,
         field: &mut impl Accelerations<T, N>,
-        span: &Span,
-        from: &Node<T, N>,
+        interval: &StepInterval,
+        from: &Endpoint<T, N>,
         index: usize,
         c: f64,
         row: Row<K>,
     ) {
-        let h = span.length::<T>();
+        let h = interval.length::<T>();
         let (drift, kick) = (T::from_f64(c) * h, h * h);
         let sum = self.weighted(row);
         let q = core::array::from_fn(|i| (from.q.high[i] + drift * from.v.high[i]) + kick * sum[i]);
-        let (t, side) = span.at(c);
+        let (t, side) = interval.at(c);
         // The accelerations of these systems do not look at the velocities.
         self.a[index] = field.at(t, side, &q, &from.v.high);
     }
@@ -61,14 +65,14 @@ impl<T: Float, const N: usize, const S: usize> Kicks<T, N, S> {
     #[inline(always)]
     pub(crate) fn end<const K: usize, const L: usize>(
         &self,
-        span: &Span,
-        from: &Node<T, N>,
+        interval: &StepInterval,
+        from: &Endpoint<T, N>,
         q: Row<K>,
         v: Row<L>,
-    ) -> Node<T, N> {
-        let h = span.length::<T>();
+    ) -> Endpoint<T, N> {
+        let h = interval.length::<T>();
         let sum = self.weighted(q);
-        let mut to = Node { t: span.end, a: None, ..*from };
+        let mut to = Endpoint { t: interval.end, a: None, ..*from };
         for i in 0..N {
             // The drift is by far the largest part: its product keeps both words.
             to.q.add_product(i, h, from.v.high[i], h * (from.v.low[i] + h * sum[i]));
@@ -96,22 +100,22 @@ impl<T: Float, const N: usize, const S: usize> Kicks<T, N, S> {
     #[inline(always)]
     pub(crate) fn dense<const K: usize, const Q: usize, const V: usize>(
         &self,
-        span: &Span,
-        from: &Node<T, N>,
-        to: &Node<T, N>,
+        interval: &StepInterval,
+        from: &Endpoint<T, N>,
+        to: &Endpoint<T, N>,
         a1: &[T; N],
         q: [Row<K>; Q],
         v: [Row<K>; V],
-    ) -> Piece<T, N> {
-        let h = span.length::<T>();
-        let mut piece = hermite::quintic(span, from, to, &self.a[0], a1);
+    ) -> Interpolant<T, N> {
+        let h = interval.length::<T>();
+        let mut interpolant = hermite::quintic(interval, from, to, &self.a[0], a1);
         for (term, row) in q.into_iter().enumerate() {
-            piece.q[5 + term] = self.weighted(row).map(|sum| h * h * sum);
+            interpolant.q[5 + term] = self.weighted(row).map(|sum| h * h * sum);
         }
         for (term, row) in v.into_iter().enumerate() {
-            piece.v[3 + term] = self.weighted(row).map(|sum| h * sum);
+            interpolant.v[3 + term] = self.weighted(row).map(|sum| h * sum);
         }
-        piece.terms = 5 + Q;
-        piece
+        interpolant.terms = 5 + Q;
+        interpolant
     }
 }

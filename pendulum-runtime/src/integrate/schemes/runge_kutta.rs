@@ -1,8 +1,8 @@
 //! The stages of explicit Runge–Kutta methods for (q, q̇)′ = (q̇, a(t, q, q̇)).
 
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Accelerations;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
 
 /// One row of a tableau without its zeros: the indices of earlier stages, from 0, and their
@@ -27,7 +27,11 @@ impl<T: Float, const N: usize, const S: usize> Slopes<T, N, S> {
 
     /// Makes the start of a step the first stage.
     #[inline]
-    pub(crate) fn first(&mut self, field: &mut impl Accelerations<T, N>, from: &mut Node<T, N>) {
+    pub(crate) fn first(
+        &mut self,
+        field: &mut impl Accelerations<T, N>,
+        from: &mut Endpoint<T, N>,
+    ) {
         self.v[0] = from.v.high;
         self.a[0] = from.start_acceleration(field);
     }
@@ -39,17 +43,17 @@ impl<T: Float, const N: usize, const S: usize> Slopes<T, N, S> {
     pub(crate) fn stage<const K: usize>(
         &mut self,
         field: &mut impl Accelerations<T, N>,
-        span: &Span,
-        from: &Node<T, N>,
+        interval: &StepInterval,
+        from: &Endpoint<T, N>,
         index: usize,
         c: f64,
         row: Row<K>,
     ) {
-        let h = span.length::<T>();
+        let h = interval.length::<T>();
         let (dq, dv) = self.weighted(row);
         let q = core::array::from_fn(|i| from.q.high[i] + h * dq[i]);
         let v = core::array::from_fn(|i| from.v.high[i] + h * dv[i]);
-        let (t, side) = span.at(c);
+        let (t, side) = interval.at(c);
         self.v[index] = v;
         self.a[index] = field.at(t, side, &q, &v);
     }

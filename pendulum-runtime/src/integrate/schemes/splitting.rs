@@ -3,9 +3,9 @@
 //! A drift moves the coordinates with fixed velocities and advances the time, a kick changes the
 //! velocities with fixed coordinates.
 
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Accelerations;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
 
 /// A palindromic splitting with `S` evaluations a step.
@@ -24,16 +24,16 @@ pub(crate) struct Splitting<const OUTER: usize, const S: usize> {
 pub(crate) fn kick_drift_kick<T: Float, const N: usize, const OUTER: usize, const S: usize>(
     splitting: &Splitting<OUTER, S>,
     field: &mut impl Accelerations<T, N>,
-    span: &Span,
-    from: &mut Node<T, N>,
-) -> Node<T, N> {
-    let h = span.length::<T>();
+    interval: &StepInterval,
+    from: &mut Endpoint<T, N>,
+) -> Endpoint<T, N> {
+    let h = interval.length::<T>();
     let mut a = from.start_acceleration(field);
-    let mut to = Node { t: span.end, ..*from };
+    let mut to = Endpoint { t: interval.end, ..*from };
     for i in 0..S {
         to.v.add(T::from_f64(splitting.outer[i]) * h, &a);
         to.q.add(T::from_f64(splitting.inner[i]) * h, &to.v.high);
-        let (t, side) = span.at(splitting.times[i]);
+        let (t, side) = interval.at(splitting.times[i]);
         a = field.at(t, side, &to.q.high, &to.v.high);
     }
     to.v.add(T::from_f64(splitting.outer[S]) * h, &a);
@@ -46,14 +46,14 @@ pub(crate) fn kick_drift_kick<T: Float, const N: usize, const OUTER: usize, cons
 pub(crate) fn drift_kick_drift<T: Float, const N: usize, const OUTER: usize, const S: usize>(
     splitting: &Splitting<OUTER, S>,
     field: &mut impl Accelerations<T, N>,
-    span: &Span,
-    from: &Node<T, N>,
-) -> Node<T, N> {
-    let h = span.length::<T>();
-    let mut to = Node { t: span.end, a: None, ..*from };
+    interval: &StepInterval,
+    from: &Endpoint<T, N>,
+) -> Endpoint<T, N> {
+    let h = interval.length::<T>();
+    let mut to = Endpoint { t: interval.end, a: None, ..*from };
     for i in 0..S {
         to.q.add(T::from_f64(splitting.outer[i]) * h, &to.v.high);
-        let (t, side) = span.at(splitting.times[i]);
+        let (t, side) = interval.at(splitting.times[i]);
         let a = field.at(t, side, &to.q.high, &to.v.high);
         to.v.add(T::from_f64(splitting.inner[i]) * h, &a);
     }
@@ -72,14 +72,14 @@ pub(crate) fn drift_kick_drift_in_two_words<
 >(
     splitting: &Splitting<OUTER, S>,
     field: &mut impl Accelerations<T, N>,
-    span: &Span,
-    from: &Node<T, N>,
-) -> Node<T, N> {
-    let (h, zero) = (span.length::<T>(), [T::from_f64(0.0); N]);
-    let mut to = Node { t: span.end, a: None, ..*from };
+    interval: &StepInterval,
+    from: &Endpoint<T, N>,
+) -> Endpoint<T, N> {
+    let (h, zero) = (interval.length::<T>(), [T::from_f64(0.0); N]);
+    let mut to = Endpoint { t: interval.end, a: None, ..*from };
     for i in 0..S {
         to.q.add_both(T::from_f64(splitting.outer[i]) * h, &to.v.high, &to.v.low);
-        let (t, side) = span.at(splitting.times[i]);
+        let (t, side) = interval.at(splitting.times[i]);
         let a = field.at(t, side, &to.q.high, &to.v.high);
         to.v.add_both(T::from_f64(splitting.inner[i]) * h, &a, &zero);
     }

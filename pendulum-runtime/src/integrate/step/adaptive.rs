@@ -5,12 +5,12 @@
 
 use crate::error::{Error, Quantity};
 use crate::integrate::method::{Embedded, Suits, Weights};
-use crate::integrate::step::controller::{Control, Course, Memory};
+use crate::integrate::step::controller::{Control, ControllerState, StepContext};
 use crate::integrate::step::diagnose::blame;
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::fast_exp2::{exp2, log2};
 use crate::integrate::step::field::{Accelerations, coordinate};
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::short::shortest;
 use crate::integrate::step::stepper::Stepper;
 use crate::motion::Side;
@@ -108,7 +108,7 @@ impl<const N: usize> AdaptiveStep<N> {
     }
 
     /// One over the error allowed between `from` and `to`.
-    fn weights<T: Float>(&self, from: &Node<T, N>, to: &Node<T, N>) -> Weights<N> {
+    fn weights<T: Float>(&self, from: &Endpoint<T, N>, to: &Endpoint<T, N>) -> Weights<N> {
         let (rtol, atol) = self.tolerances::<T>();
         let larger = |a: T, b: T| {
             let (a, b) = (a.to_f64().abs(), b.to_f64().abs());
@@ -144,15 +144,19 @@ where
         self.least_steps_over(length)
     }
 
-    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, M, N>) -> Result<Span, Error> {
-        let Course { method, field, from, to, stages, target, stats } = course;
+    fn step(
+        &self,
+        memory: &mut ControllerState,
+        course: StepContext<'_, '_, D, M, N>,
+    ) -> Result<StepInterval, Error> {
+        let StepContext { method, field, from, to, stages, target, stats } = course;
         let response = M::RESPONSE;
         // Coefficients that are rounded to one word leave an error of their own that no step is
         // short enough for.
         let rtol = self.relative::<D::Scalar>();
         let this = Self { rtol: Some(if rtol < ONE_WORD { ONE_WORD } else { rtol }), ..*self };
         if memory.h == 0.0 {
-            let at_once = Span::by(from.t, 0.0);
+            let at_once = StepInterval::by(from.t, 0.0);
             let a = from.start_acceleration(field);
             if !a.iter().all(|a| a.is_finite()) {
                 return Err(blame(method, field.dynamics, &at_once, from, stages));
@@ -181,35 +185,36 @@ where
                     coordinate,
                 });
             }
-            let span = fit(from.t, wanted, target);
-            *to = method.step(field, &span, from, stages);
+            let interval = fit(from.t, wanted, target);
+            *to = method.step(field, &interval, from, stages);
             let weights = this.weights(from, to);
             let error =
-                if to.is_finite() { method.error(stages, span.h, &weights) } else { f64::NAN };
+                if to.is_finite() { method.error(stages, interval.h, &weights) } else { f64::NAN };
             if error <= 1.0 {
                 let error = log2(error);
                 let factor =
                     response.safety * exp2(response.beta * memory.error - response.alpha * error);
-                memory.h = span.h * if factor < response.least { response.least } else { factor };
+                memory.h =
+                    interval.h * if factor < response.least { response.least } else { factor };
                 // A step that was cut says little about longer ones, nothing if its error is
                 // rounding: what was wanted before stays possible.
-                let longest = if retried { span.h } else { span.h * response.greatest };
+                let longest = if retried { interval.h } else { interval.h * response.greatest };
                 let longest = if longest < wanted && !retried { wanted } else { longest };
                 if longest < memory.h {
                     memory.h = longest;
-                } else if span.h < 0.5 * wanted && memory.h < wanted && !retried {
+                } else if interval.h < 0.5 * wanted && memory.h < wanted && !retried {
                     memory.h = wanted;
                 }
-                if wanted <= span.h {
+                if wanted <= interval.h {
                     memory.error = if error < log2(1e-4) { log2(1e-4) } else { error };
                 }
                 stats.accepted += 1;
-                return Ok(span);
+                return Ok(interval);
             }
             stats.rejected += 1;
             retried = true;
             if error.is_nan() {
-                last_fault = method.fault(field.dynamics, &span, from, stages);
+                last_fault = method.fault(field.dynamics, &interval, from, stages);
                 // A function may have left its domain, and a shorter step may stay inside; but no
                 // step is short enough for an input that is not finite.
                 if let Some(input @ Error::NotFinite { what: Quantity::Input { .. }, .. }) =
@@ -217,11 +222,11 @@ where
                 {
                     return Err(input);
                 }
-                wanted = 0.1 * span.h;
+                wanted = 0.1 * interval.h;
             } else {
                 last_fault = None;
                 let factor = response.safety * exp2(-response.alpha * log2(error));
-                wanted = span.h * if factor < response.least { response.least } else { factor };
+                wanted = interval.h * if factor < response.least { response.least } else { factor };
             }
         }
     }
@@ -291,7 +296,7 @@ impl<const N: usize> AdaptiveStep<N> {
         &self,
         order: u32,
         field: &mut impl Accelerations<T, N>,
-        from: &mut Node<T, N>,
+        from: &mut Endpoint<T, N>,
         limit: f64,
     ) -> f64 {
         let weights = self.weights(from, from);
@@ -329,8 +334,8 @@ impl<const N: usize> AdaptiveStep<N> {
         &self,
         method: &M,
         stages: &M::Stages<T, N>,
-        memory: &Memory,
-        from: &Node<T, N>,
+        memory: &ControllerState,
+        from: &Endpoint<T, N>,
     ) -> usize {
         let all = self.weights(from, from);
         let mut worst = (0, 0.0);
@@ -373,14 +378,14 @@ pub(crate) fn at(fault: Error, t: Time) -> Error {
 
 /// The step of length `wanted` from `t`, or what avoids going beyond `target` and leaving a sliver
 /// before it.
-pub(crate) fn fit(t: Time, wanted: f64, target: f64) -> Span {
+pub(crate) fn fit(t: Time, wanted: f64, target: f64) -> StepInterval {
     let left = -t.since(target);
     if left.abs() <= 1.01 * wanted {
-        Span::to(t, target)
+        StepInterval::to(t, target)
     } else if left.abs() < 2.0 * wanted {
-        Span::by(t, 0.5 * left)
+        StepInterval::by(t, 0.5 * left)
     } else {
-        Span::by(t, wanted.copysign(left))
+        StepInterval::by(t, wanted.copysign(left))
     }
 }
 

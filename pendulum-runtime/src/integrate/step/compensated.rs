@@ -11,14 +11,14 @@ use crate::real::{Float, Real};
 /// `high`: the sum of Kahan (1965), with the two-sum of Knuth (1969) in it, which is exact whatever
 /// the magnitudes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sum<T, const N: usize> {
+pub struct Compensated<T, const N: usize> {
     /// The numbers as everybody else sees them.
     pub high: [T; N],
     /// What rounding has left off.
     pub low: [T; N],
 }
 
-impl<T: Real, const N: usize> Sum<T, N> {
+impl<T: Real, const N: usize> Compensated<T, N> {
     /// The numbers `high`, exactly.
     #[inline]
     pub fn new(high: [T; N]) -> Self {
@@ -58,7 +58,7 @@ impl<T: Real, const N: usize> Sum<T, N> {
     }
 }
 
-impl<T: Float, const N: usize> Sum<T, N> {
+impl<T: Float, const N: usize> Compensated<T, N> {
     /// Adds `a · b + rest` to one of the numbers; the product comes with both words.
     #[inline(always)]
     pub fn add_product(&mut self, index: usize, a: T, b: T, rest: T) {
@@ -98,11 +98,11 @@ fn halves<T: Real>(x: T, splitter: T) -> [T; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::Sum;
+    use super::Compensated;
 
     #[test]
     fn ten_million_tenths_of_a_single() {
-        let mut sum = Sum::new([0.0_f32]);
+        let mut sum = Compensated::new([0.0_f32]);
         for _ in 0..10_000_000 {
             sum.add(0.5, &[0.2]);
         }
@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn an_increment_larger_than_the_sum_loses_nothing() {
-        let mut sum = Sum::new([1e-20_f64]);
+        let mut sum = Compensated::new([1e-20_f64]);
         sum.add(1.0, &[1.0]);
         assert_eq!((sum.high, sum.low), ([1.0], [1e-20]));
     }
@@ -121,14 +121,14 @@ mod tests {
     fn products_keep_their_low_word() {
         // (1 + ε)² = 1 + 2ε + ε².
         let a = 1.0 + f64::EPSILON;
-        let mut sum = Sum::new([2.0]);
+        let mut sum = Compensated::new([2.0]);
         sum.add_product(0, a, a, 0.0);
         assert_eq!(
             (sum.high, sum.low),
             ([3.0 + 2.0 * f64::EPSILON], [f64::EPSILON * f64::EPSILON])
         );
         let a = 1.0 + f32::EPSILON;
-        let mut sum = Sum::new([2.0_f32]);
+        let mut sum = Compensated::new([2.0_f32]);
         sum.add_product(0, a, a, 0.0);
         assert_eq!(
             (sum.high, sum.low),
@@ -138,7 +138,7 @@ mod tests {
 
     #[test]
     fn differences_see_the_low_words() {
-        let start = Sum::new([1.0_f64]);
+        let start = Compensated::new([1.0_f64]);
         let mut end = start;
         end.add(1.0, &[1e-17]);
         assert_eq!(end.high, start.high);

@@ -2,10 +2,10 @@
 
 use crate::error::Error;
 use crate::integrate::solution::Stats;
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Counted;
 use crate::integrate::step::gap::WITHOUT_INTERVAL;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::stepper::Stepper;
 use crate::real::Float;
 use crate::system::Dynamics;
@@ -24,12 +24,16 @@ where
 
     /// Takes one step from `course.from` towards `course.target`, not beyond it, and puts its end
     /// into `course.to`; if it fails, nothing but that and caches has changed.
-    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, M, N>) -> Result<Span, Error>;
+    fn step(
+        &self,
+        memory: &mut ControllerState,
+        course: StepContext<'_, '_, D, M, N>,
+    ) -> Result<StepInterval, Error>;
 }
 
 /// What a control remembers from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Memory {
+pub struct ControllerState {
     /// The length of the steps towards `target`, or the next one that the error suggests; 0 before
     /// the first.
     pub(crate) h: f64,
@@ -44,7 +48,7 @@ pub struct Memory {
     pub(crate) unknown: f64,
 }
 
-impl Default for Memory {
+impl Default for ControllerState {
     fn default() -> Self {
         Self { h: 0.0, left: 0, equal: 0.0, target: 0.0, error: 0.0, unknown: WITHOUT_INTERVAL }
     }
@@ -52,7 +56,7 @@ impl Default for Memory {
 
 /// What a control works with.
 #[derive(Debug)]
-pub struct Course<'a, 'd, D, M, const N: usize>
+pub struct StepContext<'a, 'd, D, M, const N: usize>
 where
     D: Dynamics<N, Scalar: Float>,
     M: Stepper<D, N>,
@@ -62,9 +66,9 @@ where
     /// The accelerations.
     pub(crate) field: &'a mut Counted<'d, D>,
     /// The state.
-    pub(crate) from: &'a mut Node<D::Scalar, N>,
+    pub(crate) from: &'a mut Endpoint<D::Scalar, N>,
     /// Where the state at the end of the step goes.
-    pub(crate) to: &'a mut Node<D::Scalar, N>,
+    pub(crate) to: &'a mut Endpoint<D::Scalar, N>,
     /// What the step leaves behind.
     pub(crate) stages: &'a mut M::Stages,
     /// The time not to go beyond; infinite if there is none.

@@ -3,9 +3,9 @@
 use crate::error::{Error, Quantity, Suspect};
 use crate::integrate::method::Suits;
 use crate::integrate::schemes::linear::Factors;
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::{Watched, first_in_state};
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::stepper::Stepper;
 use crate::motion::Side;
 use crate::real::{Float, Real};
@@ -17,17 +17,17 @@ use crate::time::Time;
 pub(crate) fn blame<D: Dynamics<N, Scalar: Float>, M: Stepper<D, N>, const N: usize>(
     method: &M,
     dynamics: &D,
-    span: &Span,
-    from: &Node<D::Scalar, N>,
+    interval: &StepInterval,
+    from: &Endpoint<D::Scalar, N>,
     stages: &M::Stages,
 ) -> Error {
     let coordinate = crate::integrate::step::field::coordinate(&<D::System as System<N>>::FACTS, 0);
     let unknown = Error::NotFinite {
-        t: span.end.to_f64(),
+        t: interval.end.to_f64(),
         what: Quantity::Velocity(coordinate),
         suspects: Vec::new(),
     };
-    method.fault(dynamics, span, from, stages).unwrap_or(unknown)
+    method.fault(dynamics, interval, from, stages).unwrap_or(unknown)
 }
 
 /// The first number in the stages of a step that is not finite, or where its equations were not
@@ -35,14 +35,15 @@ pub(crate) fn blame<D: Dynamics<N, Scalar: Float>, M: Stepper<D, N>, const N: us
 pub(crate) fn fault<D: Dynamics<N, Scalar: Float>, M: Suits<D::System, N>, const N: usize>(
     method: &M,
     dynamics: &D,
-    span: &Span,
-    from: &Node<D::Scalar, N>,
+    interval: &StepInterval,
+    from: &Endpoint<D::Scalar, N>,
     stages: &M::Stages<D::Scalar, N>,
 ) -> Option<Error> {
     let facts = &<D::System as System<N>>::FACTS;
     let unsolved = M::unsolved(stages);
     let mut watched = Watched::new(dynamics);
-    let to = method.step(&mut watched, span, &mut Node { a: None, ..*from }, &mut M::stages());
+    let to =
+        method.step(&mut watched, interval, &mut Endpoint { a: None, ..*from }, &mut M::stages());
     if let Some((t, coordinate)) = watched.lost
         && regular(dynamics, from)
     {
@@ -51,9 +52,9 @@ pub(crate) fn fault<D: Dynamics<N, Scalar: Float>, M: Suits<D::System, N>, const
     // Where an iteration went astray, numbers that are not finite are not the cause but the effect.
     if let Some((t, index)) = unsolved {
         let coordinate = crate::integrate::step::field::coordinate(facts, index);
-        return Some(Error::NoConvergence { t: t.to_f64(), step: span.h, coordinate });
+        return Some(Error::NoConvergence { t: t.to_f64(), step: interval.h, coordinate });
     }
-    let at_end = || first_in_state(facts, &to.q.high, &to.v.high).map(|what| (span.end, what));
+    let at_end = || first_in_state(facts, &to.q.high, &to.v.high).map(|what| (interval.end, what));
     let (t, what) = watched.first.or_else(at_end)?;
     if watched.singular {
         return Some(Error::NotFinite {
@@ -68,7 +69,7 @@ pub(crate) fn fault<D: Dynamics<N, Scalar: Float>, M: Suits<D::System, N>, const
 /// Whether the mass matrix at the start of a step leads from velocities to momenta and back.
 fn regular<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
-    from: &Node<D::Scalar, N>,
+    from: &Endpoint<D::Scalar, N>,
 ) -> bool {
     let (t, q, v) = (scalar_time(from.t), &from.q.high, &from.v.high);
     let inputs = dynamics.inputs(from.t, Side::After, Purpose::Momenta);

@@ -1,15 +1,15 @@
 //! The loop that all ways of integrating share: one step at a time, onto kinks and over them.
 
 use crate::error::{Error, Part, Quantity};
-use crate::integrate::interpolant::Piece;
+use crate::integrate::interpolant::Interpolant;
 use crate::integrate::solution::{State, Stats};
-use crate::integrate::step::controller::{Control, Course, Memory};
+use crate::integrate::step::controller::{Control, ControllerState, StepContext};
 use crate::integrate::step::diagnose::blame;
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::{Counted, coordinate, first_in_inputs, first_in_state};
 use crate::integrate::step::gap::PART;
 use crate::integrate::step::inertia::{inertia, is_due, varies};
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::short::{is_short, straight};
 use crate::integrate::step::stepper::Stepper;
 use crate::motion::Side;
@@ -23,18 +23,18 @@ pub(crate) struct Driver<T, const N: usize, M, C, R> {
     pub(crate) method: M,
     pub(crate) control: C,
     /// The state reached; at a kink the one beyond it.
-    pub(crate) node: Node<T, N>,
+    pub(crate) node: Endpoint<T, N>,
     pub(crate) stats: Stats,
     /// The last step and the node at its start; nothing before the first step and after one that
     /// failed.
-    last: Option<Span>,
-    from: Node<T, N>,
+    last: Option<StepInterval>,
+    from: Endpoint<T, N>,
     /// The motion within it, once somebody has asked.
-    within: Option<Piece<T, N>>,
+    within: Option<Interpolant<T, N>>,
     /// The node at its end on this side of the kink, if it ended on one.
-    before_kink: Option<Node<T, N>>,
+    before_kink: Option<Endpoint<T, N>>,
     stages: R,
-    memory: Memory,
+    memory: ControllerState,
     /// Whether the last step went back in time.
     backwards: bool,
     /// The next kink in that direction, infinite if there is none.
@@ -56,10 +56,10 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
         M: Stepper<D, N, Stages = R>,
     {
         check_start(dynamics, Time::new(t), &q, &v)?;
-        let node = Node::new(Time::new(t), q, v);
+        let node = Endpoint::new(Time::new(t), q, v);
         let kink = next_kink(&method, dynamics, t, false)?;
         let stats = Stats::new(M::NAME);
-        let (stages, memory) = (method.room(dynamics), Memory::default());
+        let (stages, memory) = (method.workspace(dynamics), ControllerState::default());
         Ok(Self {
             method,
             control,
@@ -92,8 +92,9 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
         self.kink = next_kink(&self.method, dynamics, t, false)?;
         self.backwards = false;
         // A long step from a state that it was not chosen for may go over events.
-        self.memory = Memory { unknown: self.memory.unknown, ..Memory::default() };
-        self.node = Node::new(Time::new(t), q, v);
+        self.memory =
+            ControllerState { unknown: self.memory.unknown, ..ControllerState::default() };
+        self.node = Endpoint::new(Time::new(t), q, v);
         (self.last, self.within, self.before_kink) = (None, None, None);
         Ok(())
     }
@@ -132,7 +133,7 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
             kink,
             ..
         } = self;
-        let memory = Memory { unknown: memory.unknown, ..Memory::default() };
+        let memory = ControllerState { unknown: memory.unknown, ..ControllerState::default() };
         Driver {
             method,
             control,
@@ -175,7 +176,7 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
         let target = if kink_comes_first { self.kink } else { target };
         let mut field = Counted::new(dynamics);
         let mut from = self.node;
-        let course = Course {
+        let course = StepContext {
             method: &self.method,
             field: &mut field,
             from: &mut from,
@@ -191,8 +192,8 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
             self.control.step(&mut self.memory, course)
         };
         self.stats.evaluations += field.evaluations;
-        match taken.and_then(|span| self.arrive(dynamics, &span).map(|()| span)) {
-            Ok(span) => (self.last, self.within, self.from) = (Some(span), None, from),
+        match taken.and_then(|interval| self.arrive(dynamics, &interval).map(|()| interval)) {
+            Ok(interval) => (self.last, self.within, self.from) = (Some(interval), None, from),
             Err(error) => {
                 self.node = from;
                 // The stages are those of the step that failed.
@@ -207,14 +208,14 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
         }
     }
 
-    /// Carries the state over the kink if a step over `span` has ended on it.
+    /// Carries the state over the kink if a step over `interval` has ended on it.
     #[inline]
-    fn arrive<D>(&mut self, dynamics: &D, span: &Span) -> Result<(), Error>
+    fn arrive<D>(&mut self, dynamics: &D, interval: &StepInterval) -> Result<(), Error>
     where
         D: Dynamics<N, Scalar = T>,
         M: Stepper<D, N, Stages = R>,
     {
-        if span.end == Time::new(self.kink) {
+        if interval.end == Time::new(self.kink) {
             let before = self.node;
             cross(dynamics, &mut self.node, self.backwards)?;
             self.kink = next_kink(&self.method, dynamics, self.kink, self.backwards)?;
@@ -235,7 +236,7 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
         if !varies(&<D::System as System<N>>::FACTS) {
             return Ok(());
         }
-        let Node { t, q, v, .. } = &self.node;
+        let Endpoint { t, q, v, .. } = &self.node;
         let checked = inertia(dynamics, *t, onwards(self.backwards), &q.high, &v.high);
         if checked.is_err() {
             self.retreat();
@@ -260,24 +261,25 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
     }
 
     /// The motion within the last step, if there was one; evaluates what the method needs for it.
-    pub(crate) fn piece<D>(&mut self, dynamics: &D) -> Option<Piece<T, N>>
+    pub(crate) fn interpolant<D>(&mut self, dynamics: &D) -> Option<Interpolant<T, N>>
     where
         D: Dynamics<N, Scalar = T>,
         M: Stepper<D, N, Stages = R>,
     {
-        let span = self.last.as_ref()?;
+        let interval = self.last.as_ref()?;
         if self.within.is_some() {
             return self.within;
         }
         let to = self.before_kink.as_mut().unwrap_or(&mut self.node);
-        if is_short::<T>(span.h) {
-            self.within = Some(Piece::linear(span, &self.from, to));
+        if is_short::<T>(interval.h) {
+            self.within = Some(Interpolant::linear(interval, &self.from, to));
             return self.within;
         }
         let mut field = Counted::new(dynamics);
-        let piece = self.method.within(&mut field, span, &mut self.from, to, &mut self.stages);
+        let interpolant =
+            self.method.within(&mut field, interval, &mut self.from, to, &mut self.stages);
         self.stats.evaluations += field.evaluations;
-        self.within = Some(piece);
+        self.within = Some(interpolant);
         self.within
     }
 
@@ -290,14 +292,14 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
     }
 
     /// The end of the last step; if that was on a kink, the states on both sides.
-    pub(crate) fn ends(&self) -> (Node<T, N>, Option<Node<T, N>>) {
+    pub(crate) fn ends(&self) -> (Endpoint<T, N>, Option<Endpoint<T, N>>) {
         self.before_kink.map_or((self.node, None), |before| (before, Some(self.node)))
     }
 
     /// Ends the last step at a state within.
     pub(crate) fn cut(&mut self, t: Time, state: &State<T, N>) {
         self.uncross();
-        self.node = Node::new(t, state.q, state.v);
+        self.node = Endpoint::new(t, state.q, state.v);
     }
 
     /// Takes the last step back.
@@ -317,7 +319,7 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
     }
 
     /// The state on this side of a kink, if the last step has ended on one.
-    pub(crate) fn before_kink(&self) -> Option<&Node<T, N>> {
+    pub(crate) fn before_kink(&self) -> Option<&Endpoint<T, N>> {
         self.before_kink.as_ref()
     }
 
@@ -338,20 +340,22 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
 
 /// A single step to a target so near that the scalar does not hold the distance.
 #[cold]
-fn short<D, M, T, const N: usize>(course: Course<'_, '_, D, M, N>) -> Result<Span, Error>
+fn short<D, M, T, const N: usize>(
+    course: StepContext<'_, '_, D, M, N>,
+) -> Result<StepInterval, Error>
 where
     D: Dynamics<N, Scalar = T>,
     M: Stepper<D, N>,
     T: Float,
 {
-    let Course { method, field, from, to, stages, target, stats } = course;
-    let span = Span::to(from.t, target);
-    *to = straight(field, &span, from);
+    let StepContext { method, field, from, to, stages, target, stats } = course;
+    let interval = StepInterval::to(from.t, target);
+    *to = straight(field, &interval, from);
     if !to.is_finite() {
-        return Err(blame(method, field.dynamics, &span, from, stages));
+        return Err(blame(method, field.dynamics, &interval, from, stages));
     }
     stats.accepted += 1;
-    Ok(span)
+    Ok(interval)
 }
 
 /// The side of the start of a step.
@@ -400,7 +404,7 @@ where
 /// Carries the velocities over the kink at `node.t`.
 fn cross<D, T, const N: usize>(
     dynamics: &D,
-    node: &mut Node<T, N>,
+    node: &mut Endpoint<T, N>,
     backwards: bool,
 ) -> Result<(), Error>
 where

@@ -3,22 +3,22 @@
 // Picard's steps are compiled for several instruction sets.
 #![allow(clippy::inline_always)]
 
-use crate::integrate::step::compensated::Sum;
+use crate::integrate::step::compensated::Compensated;
 use crate::integrate::step::field::Accelerations;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
 use crate::real::Float;
 use crate::time::Time;
 
 /// The state at one end of a step, with the digits that rounding has left off.
 #[derive(Clone, Copy, Debug)]
-pub struct Node<T, const N: usize> {
+pub struct Endpoint<T, const N: usize> {
     /// The time.
     pub t: Time,
     /// The coordinates.
-    pub q: Sum<T, N>,
+    pub q: Compensated<T, N>,
     /// The velocities.
-    pub v: Sum<T, N>,
+    pub v: Compensated<T, N>,
     /// The accelerations, where somebody has computed them: from before if this is the end of a
     /// step, from after if its start.
     ///
@@ -26,10 +26,10 @@ pub struct Node<T, const N: usize> {
     pub a: Option<[T; N]>,
 }
 
-impl<T: Float, const N: usize> Node<T, N> {
+impl<T: Float, const N: usize> Endpoint<T, N> {
     /// The state `q`, `v` at `t`.
     pub fn new(t: Time, q: [T; N], v: [T; N]) -> Self {
-        Self { t, q: Sum::new(q), v: Sum::new(v), a: None }
+        Self { t, q: Compensated::new(q), v: Compensated::new(v), a: None }
     }
 
     /// The accelerations at the start of a step.
@@ -50,12 +50,12 @@ impl<T: Float, const N: usize> Node<T, N> {
         *self.a.get_or_insert_with(|| field.at(t, side, q, v))
     }
 
-    /// The node at the end of `span` whose coordinates and velocities have grown by `h·dq` and
+    /// The node at the end of `interval` whose coordinates and velocities have grown by `h·dq` and
     /// `h·dv`.
     #[inline]
-    pub fn advanced(&self, span: &Span, dq: &[T; N], dv: &[T; N]) -> Self {
-        let h = span.length::<T>();
-        let mut next = Self { t: span.end, a: None, ..*self };
+    pub fn advanced(&self, interval: &StepInterval, dq: &[T; N], dv: &[T; N]) -> Self {
+        let h = interval.length::<T>();
+        let mut next = Self { t: interval.end, a: None, ..*self };
         next.q.add(h, dq);
         next.v.add(h, dv);
         next

@@ -1,9 +1,9 @@
 //! Steps of equal length.
 
 use crate::error::Error;
-use crate::integrate::step::controller::{Control, Course, Memory};
+use crate::integrate::step::controller::{Control, ControllerState, StepContext};
 use crate::integrate::step::diagnose::blame;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::short::{is_short, straight};
 use crate::integrate::step::stepper::Stepper;
 use crate::real::Float;
@@ -54,39 +54,48 @@ impl<M: Stepper<D, N>, D: Dynamics<N, Scalar: Float>, const N: usize> Control<M,
     }
 
     #[inline]
-    fn step(&self, memory: &mut Memory, course: Course<'_, '_, D, M, N>) -> Result<Span, Error> {
-        let Course { method, field, from, to, stages, target, stats } = course;
+    fn step(
+        &self,
+        memory: &mut ControllerState,
+        course: StepContext<'_, '_, D, M, N>,
+    ) -> Result<StepInterval, Error> {
+        let StepContext { method, field, from, to, stages, target, stats } = course;
         let mut plan = *memory;
-        let span = self.next(&mut plan, from.t, target);
-        *to = if is_short::<D::Scalar>(span.h) {
-            straight(field, &span, from)
+        let interval = self.next(&mut plan, from.t, target);
+        *to = if is_short::<D::Scalar>(interval.h) {
+            straight(field, &interval, from)
         } else {
-            method.advance(field, &span, from, stages)
+            method.advance(field, &interval, from, stages)
         };
         if !to.is_finite() {
-            return Err(blame(method, field.dynamics, &span, from, stages));
+            return Err(blame(method, field.dynamics, &interval, from, stages));
         }
         *memory = plan;
         stats.accepted += 1;
-        Ok(span)
+        Ok(interval)
     }
 }
 
 impl FixedStep {
     /// The next step from `t` on the way to `target`.
     #[inline]
-    fn next(&self, plan: &mut Memory, t: Time, target: f64) -> Span {
+    fn next(&self, plan: &mut ControllerState, t: Time, target: f64) -> StepInterval {
         if target == f64::INFINITY {
             plan.left = 0;
-            return Span::by(t, self.step);
+            return StepInterval::by(t, self.step);
         }
         if plan.left == 0 || plan.target != target {
             let length = -t.since(target);
             let count = steps(length.abs(), self.step);
-            *plan = Memory { h: length / count, left: count as u64, target, ..Memory::default() };
+            *plan = ControllerState {
+                h: length / count,
+                left: count as u64,
+                target,
+                ..ControllerState::default()
+            };
         }
         plan.left -= 1;
-        if plan.left == 0 { Span::to(t, target) } else { Span::by(t, plan.h) }
+        if plan.left == 0 { StepInterval::to(t, target) } else { StepInterval::by(t, plan.h) }
     }
 }
 
@@ -98,12 +107,12 @@ fn steps(length: f64, step: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{FixedStep, Memory, steps};
+    use super::{ControllerState, FixedStep, steps};
     use crate::time::Time;
 
     fn ends(step: f64, targets: &[f64]) -> Vec<f64> {
         let (control, mut plan, mut t, mut ends) =
-            (FixedStep::new(step), Memory::default(), Time::new(0.0), Vec::new());
+            (FixedStep::new(step), ControllerState::default(), Time::new(0.0), Vec::new());
         for &target in targets {
             while 0.0 < -t.since(target) {
                 t = control.next(&mut plan, t, target).end;
@@ -130,17 +139,17 @@ mod tests {
 
     #[test]
     fn a_new_target_makes_a_new_plan() {
-        let (control, mut plan) = (FixedStep::new(0.1), Memory::default());
-        let span = control.next(&mut plan, Time::new(0.0), 1.0);
-        assert_eq!(span.h, 0.1);
-        let span = control.next(&mut plan, span.end, 0.15);
-        assert_eq!(span.end, Time::new(0.15));
-        let span = control.next(&mut plan, span.end, f64::INFINITY);
-        assert_eq!(span.h, 0.1);
+        let (control, mut plan) = (FixedStep::new(0.1), ControllerState::default());
+        let interval = control.next(&mut plan, Time::new(0.0), 1.0);
+        assert_eq!(interval.h, 0.1);
+        let interval = control.next(&mut plan, interval.end, 0.15);
+        assert_eq!(interval.end, Time::new(0.15));
+        let interval = control.next(&mut plan, interval.end, f64::INFINITY);
+        assert_eq!(interval.h, 0.1);
         // A step towards nothing in between was none of the ten.
-        let span = control.next(&mut plan, Time::new(0.0), 1.0);
-        let span = control.next(&mut plan, span.end, f64::INFINITY);
-        control.next(&mut plan, span.end, 1.0);
+        let interval = control.next(&mut plan, Time::new(0.0), 1.0);
+        let interval = control.next(&mut plan, interval.end, f64::INFINITY);
+        control.next(&mut plan, interval.end, 1.0);
         assert_eq!(plan.left, 7);
     }
 }

@@ -10,7 +10,7 @@
 
 use crate::error::Error;
 use crate::integrate::schemes::runge_kutta::Row;
-use crate::integrate::step::controller::Memory;
+use crate::integrate::step::controller::ControllerState;
 use crate::real::{Float, Real};
 use crate::system::{Dynamics, System, scalar_time};
 use crate::time::Time;
@@ -91,7 +91,7 @@ fn least(t: Time) -> f64 {
     if least < 1e-150 { 1e-150 } else { least }
 }
 
-impl Memory {
+impl ControllerState {
     /// `wanted`, or less if a step from `t` of a method whose samples lie `gap` of a step apart
     /// might miss what time alone does.
     #[inline]

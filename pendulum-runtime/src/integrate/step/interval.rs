@@ -10,7 +10,7 @@ use crate::time::Time;
 
 /// One step in time, free of kinks inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Span {
+pub struct StepInterval {
     /// Where it starts.
     pub start: Time,
     /// Where it ends.
@@ -21,7 +21,7 @@ pub struct Span {
     pub low: f64,
 }
 
-impl Span {
+impl StepInterval {
     /// The step of length `h` from `start`.
     pub fn by(start: Time, h: f64) -> Self {
         Self { start, end: start + h, h, low: 0.0 }
@@ -74,33 +74,33 @@ impl Span {
 
 #[cfg(test)]
 mod tests {
-    use super::Span;
+    use super::StepInterval;
     use crate::motion::Side;
     use crate::real::{DoubleDouble, Float, Real};
     use crate::time::Time;
 
     #[test]
     fn stages_look_into_the_step() {
-        let span = Span::to(Time::new(0.1), 0.3);
-        assert_eq!(span.at(0.0), (Time::new(0.1), Side::After));
-        assert_eq!(span.at(0.4).1, Side::After);
-        assert_eq!(span.at(0.6).1, Side::Before);
-        assert_eq!(span.at(1.0), (Time::new(0.3), Side::Before));
+        let interval = StepInterval::to(Time::new(0.1), 0.3);
+        assert_eq!(interval.at(0.0), (Time::new(0.1), Side::After));
+        assert_eq!(interval.at(0.4).1, Side::After);
+        assert_eq!(interval.at(0.6).1, Side::Before);
+        assert_eq!(interval.at(1.0), (Time::new(0.3), Side::Before));
     }
 
     #[test]
     fn the_part_that_has_passed_is_as_good_as_the_scalar() {
-        let span = Span::by(Time::new(1e9) + 1e-9, 0.25);
-        assert!((span.fraction::<f32>(1e9 + 0.125) - 0.5).abs() < 1e-7);
+        let interval = StepInterval::by(Time::new(1e9) + 1e-9, 0.25);
+        assert!((interval.fraction::<f32>(1e9 + 0.125) - 0.5).abs() < 1e-7);
         let exact =
             (DoubleDouble::from(0.125) - DoubleDouble::from(1e-9)) / DoubleDouble::from(0.25);
-        assert!((span.fraction::<DoubleDouble>(1e9 + 0.125) - exact).abs().to_f64() < 1e-31);
+        assert!((interval.fraction::<DoubleDouble>(1e9 + 0.125) - exact).abs().to_f64() < 1e-31);
         // Lengths that the scalar does not hold.
         for h in [5e-324, 1e-310, 1e-300, 1e-40, 1e40, 1e300, -1e-300] {
-            let half = Span::by(Time::new(0.0), h).fraction::<f32>(h / 2.0);
+            let half = StepInterval::by(Time::new(0.0), h).fraction::<f32>(h / 2.0);
             assert!(half == if h == 5e-324 { 0.0 } else { 0.5 }, "{h:e}: {half}");
             assert_eq!(
-                Span::by(Time::new(0.0), h).fraction::<DoubleDouble>(h).to_f64(),
+                StepInterval::by(Time::new(0.0), h).fraction::<DoubleDouble>(h).to_f64(),
                 1.0,
                 "{h:e}"
             );
@@ -108,7 +108,9 @@ mod tests {
         // A difference that one word does not hold.
         let exact = DoubleDouble::from(1.0) - DoubleDouble::from(1e-17);
         assert!(
-            (Span::by(Time::new(1e-17), 1.0).fraction::<DoubleDouble>(1.0) - exact).abs().to_f64()
+            (StepInterval::by(Time::new(1e-17), 1.0).fraction::<DoubleDouble>(1.0) - exact)
+                .abs()
+                .to_f64()
                 < 1e-31
         );
     }
@@ -116,12 +118,12 @@ mod tests {
     #[test]
     fn the_end_is_exact_and_the_length_sees_both_words() {
         let start = Time::new(1e9) + 1e-9;
-        let span = Span::to(start, 1e9 + 1.0);
-        assert_eq!(span.end.to_f64(), 1e9 + 1.0);
-        assert_eq!(span.end.low(), 0.0);
-        assert_eq!(span.h, 1.0 - 1e-9);
-        let span = Span::to(Time::new(0.1), 1.0);
-        assert_eq!((span.start + span.h) + span.low, span.end);
-        assert_eq!((span.h, span.low), (0.9, -2.7755575615628914e-17));
+        let interval = StepInterval::to(start, 1e9 + 1.0);
+        assert_eq!(interval.end.to_f64(), 1e9 + 1.0);
+        assert_eq!(interval.end.low(), 0.0);
+        assert_eq!(interval.h, 1.0 - 1e-9);
+        let interval = StepInterval::to(Time::new(0.1), 1.0);
+        assert_eq!((interval.start + interval.h) + interval.low, interval.end);
+        assert_eq!((interval.h, interval.low), (0.9, -2.7755575615628914e-17));
     }
 }

@@ -1,8 +1,8 @@
 //! Steps shorter than a single-precision number can say.
 
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Accelerations;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
 
 /// The least length of a step that the scalar holds with all its digits; 0 where its range is that
@@ -26,15 +26,18 @@ pub(crate) fn is_short<T: Float>(h: f64) -> bool {
 #[cold]
 pub(crate) fn straight<T: Float, const N: usize>(
     field: &mut impl Accelerations<T, N>,
-    span: &Span,
-    from: &mut Node<T, N>,
-) -> Node<T, N> {
-    let a =
-        if span.h < 0.0 { from.end_acceleration(field) } else { from.start_acceleration(field) };
-    let mut to = Node { t: span.end, a: None, ..*from };
+    interval: &StepInterval,
+    from: &mut Endpoint<T, N>,
+) -> Endpoint<T, N> {
+    let a = if interval.h < 0.0 {
+        from.end_acceleration(field)
+    } else {
+        from.start_acceleration(field)
+    };
+    let mut to = Endpoint { t: interval.end, a: None, ..*from };
     for i in 0..N {
-        let gain = times(span.h, a[i]);
-        to.q.add_one(i, times(span.h, from.v.high[i] + T::from_f64(0.5) * gain));
+        let gain = times(interval.h, a[i]);
+        to.q.add_one(i, times(interval.h, from.v.high[i] + T::from_f64(0.5) * gain));
         to.v.add_one(i, gain);
     }
     to

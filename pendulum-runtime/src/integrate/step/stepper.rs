@@ -1,12 +1,12 @@
 //! A method at work on some dynamics: what drivers and controls see of it.
 
 use crate::error::Error;
-use crate::integrate::interpolant::Piece;
+use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Method, Suits};
 use crate::integrate::step::diagnose;
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Counted;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
 use crate::system::Dynamics;
 
@@ -31,7 +31,7 @@ pub trait Stepper<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::f
     }
 
     /// Room for the stages.
-    fn room(&self, dynamics: &D) -> Self::Stages;
+    fn workspace(&self, dynamics: &D) -> Self::Stages;
 
     /// The name of the method that has taken the steps, if that is another one.
     fn name(&self, stages: &Self::Stages) -> &'static str {
@@ -39,32 +39,32 @@ pub trait Stepper<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::f
         Self::NAME
     }
 
-    /// Goes from `from` to the end of `span`.
+    /// Goes from `from` to the end of `interval`.
     fn advance(
         &self,
         field: &mut Counted<'_, D>,
-        span: &Span,
-        from: &mut Node<D::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<D::Scalar, N>,
         stages: &mut Self::Stages,
-    ) -> Node<D::Scalar, N>;
+    ) -> Endpoint<D::Scalar, N>;
 
     /// The motion within the step just taken.
     fn within(
         &self,
         field: &mut Counted<'_, D>,
-        span: &Span,
-        from: &mut Node<D::Scalar, N>,
-        to: &mut Node<D::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<D::Scalar, N>,
+        to: &mut Endpoint<D::Scalar, N>,
         stages: &mut Self::Stages,
-    ) -> Piece<D::Scalar, N>;
+    ) -> Interpolant<D::Scalar, N>;
 
     /// The first number in a step that is not finite, or what `stages` say of equations that were
     /// not solved, if there is one.
     fn fault(
         &self,
         dynamics: &D,
-        span: &Span,
-        from: &Node<D::Scalar, N>,
+        interval: &StepInterval,
+        from: &Endpoint<D::Scalar, N>,
         stages: &Self::Stages,
     ) -> Option<Error>;
 
@@ -80,7 +80,7 @@ where
     const NAME: &'static str = M::NAME;
     type Stages = M::Stages<D::Scalar, N>;
 
-    fn room(&self, _: &D) -> Self::Stages {
+    fn workspace(&self, _: &D) -> Self::Stages {
         M::stages()
     }
 
@@ -88,33 +88,33 @@ where
     fn advance(
         &self,
         field: &mut Counted<'_, D>,
-        span: &Span,
-        from: &mut Node<D::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<D::Scalar, N>,
         stages: &mut Self::Stages,
-    ) -> Node<D::Scalar, N> {
-        self.step(field, span, from, stages)
+    ) -> Endpoint<D::Scalar, N> {
+        self.step(field, interval, from, stages)
     }
 
     #[inline]
     fn within(
         &self,
         field: &mut Counted<'_, D>,
-        span: &Span,
-        from: &mut Node<D::Scalar, N>,
-        to: &mut Node<D::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<D::Scalar, N>,
+        to: &mut Endpoint<D::Scalar, N>,
         stages: &mut Self::Stages,
-    ) -> Piece<D::Scalar, N> {
-        self.dense(field, span, from, to, stages)
+    ) -> Interpolant<D::Scalar, N> {
+        self.dense(field, interval, from, to, stages)
     }
 
     fn fault(
         &self,
         dynamics: &D,
-        span: &Span,
-        from: &Node<D::Scalar, N>,
+        interval: &StepInterval,
+        from: &Endpoint<D::Scalar, N>,
         stages: &Self::Stages,
     ) -> Option<Error> {
-        diagnose::fault(self, dynamics, span, from, stages)
+        diagnose::fault(self, dynamics, interval, from, stages)
     }
 
     fn kink(&self, dynamics: &D, t: f64, _: bool) -> Option<f64> {

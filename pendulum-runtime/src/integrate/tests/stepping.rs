@@ -77,12 +77,12 @@ fn adaptive_steps_survive_being_cut_into_frames() {
 fn the_last_step_is_known_within() {
     let pendulum = pendulum();
     let mut integrator = Integrator::new(&pendulum, Dop853, 0.0, [1.3], [0.0]).unwrap();
-    assert!(integrator.last_step().is_none());
+    assert!(integrator.interpolant().is_none());
     integrator.step().unwrap();
-    let piece = integrator.last_step().unwrap();
-    let (q, v) = piece.at(1.0);
+    let interpolant = integrator.interpolant().unwrap();
+    let (q, v) = interpolant.at(1.0);
     assert!((q[0] - integrator.q()[0]).abs() < 1e-15 && (v[0] - integrator.v()[0]).abs() < 1e-15);
-    assert_eq!(piece.at(0.0), ([1.3], [0.0]));
+    assert_eq!(interpolant.at(0.0), ([1.3], [0.0]));
 }
 
 #[test]
@@ -143,7 +143,7 @@ fn a_failed_step_leaves_the_state_before_it() {
     assert!(integrator.step().is_err());
     assert_eq!(integrator.state(), state);
     // What the method would tell about the motion belongs to the failed one.
-    assert!(integrator.last_step().is_none());
+    assert!(integrator.interpolant().is_none());
 }
 
 #[test]

@@ -2,22 +2,22 @@
 
 use super::tableau::Tableau;
 use crate::integrate::interpolant::fit::{Condition, fit};
-use crate::integrate::interpolant::{Piece, TERMS};
-use crate::integrate::step::endpoint::Node;
-use crate::integrate::step::interval::Span;
+use crate::integrate::interpolant::{Interpolant, TERMS};
+use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
 
 /// The polynomial of degree S + 1 through the velocities at both ends and at the stages, and its
 /// integral (a cubic if S = 1).
-pub(super) fn piece<T: Float, const N: usize, const S: usize>(
-    span: &Span,
-    from: &Node<T, N>,
-    to: &Node<T, N>,
+pub(super) fn interpolant<T: Float, const N: usize, const S: usize>(
+    interval: &StepInterval,
+    from: &Endpoint<T, N>,
+    to: &Endpoint<T, N>,
     stages: &[[T; N]; S],
-) -> Piece<T, N> {
+) -> Interpolant<T, N> {
     let nodes = const { &Tableau::<S>::GAUSS.nodes };
-    let mut piece = Piece::linear(span, from, to);
-    let h = span.length::<T>();
+    let mut interpolant = Interpolant::linear(interval, from, to);
+    let h = interval.length::<T>();
     let zero = (Condition::Slope(0.0), [T::from_f64(0.0); N]);
     let (mut q, mut v) = ([zero; TERMS], [zero; TERMS]);
     for (j, (&node, stage)) in nodes.iter().zip(stages).enumerate() {
@@ -28,8 +28,8 @@ pub(super) fn piece<T: Float, const N: usize, const S: usize>(
     // is not needed.
     q[S - 1] = (Condition::Slope(0.0), from.v.high.map(|v| h * v));
     q[S] = (Condition::Slope(1.0), to.v.high.map(|v| h * v));
-    fit(&mut piece.q, &q[..=S]);
-    fit(&mut piece.v, &v[..S]);
-    piece.terms = S + 2;
-    piece
+    fit(&mut interpolant.q, &q[..=S]);
+    fit(&mut interpolant.v, &v[..S]);
+    interpolant.terms = S + 2;
+    interpolant
 }

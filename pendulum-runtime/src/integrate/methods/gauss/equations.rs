@@ -2,10 +2,10 @@
 
 use super::tableau::Tableau;
 use crate::integrate::schemes::linear::{Factors, Square, times};
-use crate::integrate::step::compensated::Sum;
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::compensated::Compensated;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
 use crate::real::{Float, Real};
 use crate::system::{Jacobians, System};
@@ -55,23 +55,23 @@ pub(super) struct Equations<Y: System<N>, const N: usize, const S: usize> {
     ratios: [[Y::Scalar; S]; S],
     times: [Time; S],
     inputs: [Y::Inputs; S],
-    q: Sum<Y::Scalar, N>,
-    p: Sum<Y::Scalar, N>,
+    q: Compensated<Y::Scalar, N>,
+    p: Compensated<Y::Scalar, N>,
 }
 
 impl<Y: System<N, Scalar: Float>, const N: usize, const S: usize> Equations<Y, N, S> {
-    /// The equations of `span` from the coordinates `q` and the momenta `p`.
+    /// The equations of `interval` from the coordinates `q` and the momenta `p`.
     pub(super) fn new(
         field: &mut impl Field<Y, N>,
-        span: &Span,
-        q: Sum<Y::Scalar, N>,
-        p: Sum<Y::Scalar, N>,
+        interval: &StepInterval,
+        q: Compensated<Y::Scalar, N>,
+        p: Compensated<Y::Scalar, N>,
     ) -> Self {
         let tableau = const { &Tableau::<S>::GAUSS };
-        let stages = tableau.nodes.map(|c| span.at(c));
+        let stages = tableau.nodes.map(|c| interval.at(c));
         Self {
-            h: span.length(),
-            weights: tableau.weights.map(|b| Real::from_f64(b * span.h)),
+            h: interval.length(),
+            weights: tableau.weights.map(|b| Real::from_f64(b * interval.h)),
             ratios: tableau.ratios.map(|row| row.map(Real::from_f64)),
             times: stages.map(|(t, _)| t),
             inputs: stages.map(|(t, side)| field.inputs(t, side)),
@@ -174,7 +174,7 @@ impl<Y: System<N, Scalar: Float>, const N: usize, const S: usize> Equations<Y, N
     /// start + Σ m_ij increment_j.
     fn stage(
         &self,
-        start: &Sum<Y::Scalar, N>,
+        start: &Compensated<Y::Scalar, N>,
         increments: &[[Y::Scalar; N]; S],
         i: usize,
     ) -> [Y::Scalar; N] {
@@ -222,11 +222,11 @@ pub(super) struct Linearized<T, const N: usize, const S: usize> {
 }
 
 impl<T: Float, const N: usize, const S: usize> Linearized<T, N, S> {
-    /// At the start of `span`.
+    /// At the start of `interval`.
     pub(super) fn new<Y: Jacobians<N, Scalar = T>>(
         field: &mut impl Field<Y, N>,
-        span: &Span,
-        from: &Node<T, N>,
+        interval: &StepInterval,
+        from: &Endpoint<T, N>,
     ) -> Self {
         let tableau = const { &Tableau::<S>::GAUSS };
         let square = |matrix: &dyn Fn(usize, usize) -> T| -> Square<T, N> {
@@ -238,9 +238,10 @@ impl<T: Float, const N: usize, const S: usize> Linearized<T, N, S> {
         let [stiffness, damping] = field.jacobians(from.t, Side::After, &from.q.high, &from.v.high);
         let a = |i: usize, j: usize| tableau.ratios[i][j] * tableau.weights[j];
         let factors = Factors::new(|i, j| {
-            let first = T::from_f64(span.h * a(i, j));
-            let second =
-                T::from_f64(span.h * span.h * (0..S).map(|k| a(i, k) * a(k, j)).sum::<f64>());
+            let first = T::from_f64(interval.h * a(i, j));
+            let second = T::from_f64(
+                interval.h * interval.h * (0..S).map(|k| a(i, k) * a(k, j)).sum::<f64>(),
+            );
             square(&|row, column| {
                 let unit = T::from_f64(if i == j && row == column { 1.0 } else { 0.0 });
                 unit - first * damping[(row, column)] - second * stiffness[(row, column)]

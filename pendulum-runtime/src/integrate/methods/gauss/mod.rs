@@ -4,12 +4,12 @@ mod dense;
 mod equations;
 mod tableau;
 
-use crate::integrate::interpolant::Piece;
+use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Method, Suits};
-use crate::integrate::step::compensated::Sum;
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::compensated::Compensated;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
 use crate::real::Float;
 use crate::system::{Jacobians, System};
@@ -102,7 +102,7 @@ impl<const S: usize, I: Copy + core::fmt::Debug> Method for Gauss<S, I> {
     fn stages<T: Float, const N: usize>() -> Stages<T, N, S> {
         Stages {
             slopes: Slopes::zero(),
-            p: Sum::new([T::from_f64(0.0); N]),
+            p: Compensated::new([T::from_f64(0.0); N]),
             end: None,
             h: 0.0,
             unsolved: None,
@@ -118,23 +118,25 @@ impl<Y: System<N, Scalar: Float>, const N: usize, const S: usize> Suits<Y, N> fo
     fn step(
         &self,
         field: &mut impl Field<Y, N>,
-        span: &Span,
-        from: &mut Node<Y::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<Y::Scalar, N>,
         stages: &mut Stages<Y::Scalar, N, S>,
-    ) -> Node<Y::Scalar, N> {
-        let equations = stages.begin(field, span, from);
-        stages.finish(field, span, from, &equations, |field, slopes| equations.sweep(field, slopes))
+    ) -> Endpoint<Y::Scalar, N> {
+        let equations = stages.begin(field, interval, from);
+        stages.finish(field, interval, from, &equations, |field, slopes| {
+            equations.sweep(field, slopes)
+        })
     }
 
     fn dense(
         &self,
         _: &mut impl Field<Y, N>,
-        span: &Span,
-        from: &mut Node<Y::Scalar, N>,
-        to: &mut Node<Y::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<Y::Scalar, N>,
+        to: &mut Endpoint<Y::Scalar, N>,
         stages: &mut Stages<Y::Scalar, N, S>,
-    ) -> Piece<Y::Scalar, N> {
-        dense::piece(span, from, to, &stages.slopes.v)
+    ) -> Interpolant<Y::Scalar, N> {
+        dense::interpolant(interval, from, to, &stages.slopes.v)
     }
 }
 
@@ -144,13 +146,13 @@ impl<Y: Jacobians<N, Scalar: Float>, const N: usize, const S: usize> Suits<Y, N>
     fn step(
         &self,
         field: &mut impl Field<Y, N>,
-        span: &Span,
-        from: &mut Node<Y::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<Y::Scalar, N>,
         stages: &mut Stages<Y::Scalar, N, S>,
-    ) -> Node<Y::Scalar, N> {
-        let equations = stages.begin(field, span, from);
-        let linearized = Linearized::new(field, span, from);
-        stages.finish(field, span, from, &equations, |field, slopes| {
+    ) -> Endpoint<Y::Scalar, N> {
+        let equations = stages.begin(field, interval, from);
+        let linearized = Linearized::new(field, interval, from);
+        stages.finish(field, interval, from, &equations, |field, slopes| {
             equations.newton(field, &linearized, slopes)
         })
     }
@@ -158,12 +160,12 @@ impl<Y: Jacobians<N, Scalar: Float>, const N: usize, const S: usize> Suits<Y, N>
     fn dense(
         &self,
         _: &mut impl Field<Y, N>,
-        span: &Span,
-        from: &mut Node<Y::Scalar, N>,
-        to: &mut Node<Y::Scalar, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<Y::Scalar, N>,
+        to: &mut Endpoint<Y::Scalar, N>,
         stages: &mut Stages<Y::Scalar, N, S>,
-    ) -> Piece<Y::Scalar, N> {
-        dense::piece(span, from, to, &stages.slopes.v)
+    ) -> Interpolant<Y::Scalar, N> {
+        dense::interpolant(interval, from, to, &stages.slopes.v)
     }
 }
 
@@ -171,9 +173,9 @@ impl<Y: Jacobians<N, Scalar: Float>, const N: usize, const S: usize> Suits<Y, N>
 #[derive(Clone, Copy, Debug)]
 pub struct Stages<T, const N: usize, const S: usize> {
     slopes: Slopes<T, N, S>,
-    p: Sum<T, N>,
+    p: Compensated<T, N>,
     /// The state to which `p` belongs, and the length of the step before it.
-    end: Option<Node<T, N>>,
+    end: Option<Endpoint<T, N>>,
     h: f64,
     unsolved: Option<(Time, usize)>,
 }
@@ -183,50 +185,55 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
     fn begin<Y: System<N, Scalar = T>>(
         &mut self,
         field: &mut impl Field<Y, N>,
-        span: &Span,
-        from: &Node<T, N>,
+        interval: &StepInterval,
+        from: &Endpoint<T, N>,
     ) -> Equations<Y, N, S> {
         let goes_on =
             self.end.is_some_and(|end| end.t == from.t && end.q == from.q && end.v == from.v);
         if !goes_on {
             // The state comes from outside or from beyond a kink.
             let inputs = field.inputs(from.t, Side::After);
-            self.p = Sum::new(field.momenta(from.t, &from.q.high, &from.v.high, &inputs));
+            self.p = Compensated::new(field.momenta(from.t, &from.q.high, &from.v.high, &inputs));
         }
-        if goes_on && (span.h - self.h).abs() <= 1e-3 * self.h {
+        if goes_on && (interval.h - self.h).abs() <= 1e-3 * self.h {
             self.slopes = self.slopes.ahead(&Tableau::<S>::GAUSS.ahead);
         } else {
             let inputs = field.inputs(from.t, Side::After);
             let f = field.momentum_rates(from.t, &from.q.high, &from.v.high, &inputs);
             self.slopes = Slopes { v: [from.v.high; S], f: [f; S] };
         }
-        (self.end, self.h, self.unsolved) = (None, span.h, None);
-        Equations::new(field, span, from.q, self.p)
+        (self.end, self.h, self.unsolved) = (None, interval.h, None);
+        Equations::new(field, interval, from.q, self.p)
     }
 
     /// Improves the slopes until rounding stops it, and takes the step.
     fn finish<Y: System<N, Scalar = T>, F: Field<Y, N>>(
         &mut self,
         field: &mut F,
-        span: &Span,
-        from: &Node<T, N>,
+        interval: &StepInterval,
+        from: &Endpoint<T, N>,
         equations: &Equations<Y, N, S>,
         improve: impl FnMut(&mut F, &mut Slopes<T, N, S>) -> Change,
-    ) -> Node<T, N> {
-        let mut to = Node { t: span.end, a: None, ..*from };
+    ) -> Endpoint<T, N> {
+        let mut to = Endpoint { t: interval.end, a: None, ..*from };
         match self.iterate(field, improve) {
             Ok(()) => {
                 let (dq, dp) = equations.increments(&self.slopes);
                 let one = T::from_f64(1.0);
                 to.q.add(one, &dq);
                 self.p.add(one, &dp);
-                let inputs = field.inputs(span.end, Side::Before);
-                to.v = Sum::new(field.velocities(span.end, &to.q.high, &self.p.high, &inputs));
+                let inputs = field.inputs(interval.end, Side::Before);
+                to.v = Compensated::new(field.velocities(
+                    interval.end,
+                    &to.q.high,
+                    &self.p.high,
+                    &inputs,
+                ));
                 self.end = Some(to);
             }
             Err(astray) => {
                 self.unsolved = astray.map(|(stage, index)| (equations.time(stage), index));
-                to.v = Sum::new([T::from_f64(f64::NAN); N]);
+                to.v = Compensated::new([T::from_f64(f64::NAN); N]);
             }
         }
         to

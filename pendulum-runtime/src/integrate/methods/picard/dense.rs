@@ -2,13 +2,13 @@
 
 use super::FIXED;
 use super::kernel::{Equations, Within};
-use super::room::RoomOf;
-use super::side_by_side::SideBySide;
+use super::lanes::LaneDynamics;
 use super::tableau::S;
-use crate::integrate::interpolant::{Basis, Piece, TERMS};
-use crate::integrate::step::endpoint::Node;
+use super::workspace::WorkspaceOf;
+use crate::integrate::interpolant::{Basis, Interpolant, TERMS};
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Counted;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::real::{Octet, Real};
 use crate::simd;
 
@@ -17,40 +17,40 @@ const COUNT: usize = 2 * S;
 
 /// The collocation polynomial at sixteen nodes: the one at eight meets the ends with order 16, but
 /// what is between them with order 9 only.
-pub(super) fn piece<D: SideBySide<N>, const N: usize>(
+pub(super) fn interpolant<D: LaneDynamics<N>, const N: usize>(
     field: &mut Counted<'_, D>,
-    span: &Span,
-    from: &Node<D::Scalar, N>,
-    to: &Node<D::Scalar, N>,
-    room: &mut RoomOf<D, N>,
-) -> Piece<D::Scalar, N> {
-    let (number, h) = (D::Scalar::from_f64, span.length::<D::Scalar>());
+    interval: &StepInterval,
+    from: &Endpoint<D::Scalar, N>,
+    to: &Endpoint<D::Scalar, N>,
+    workspace: &mut WorkspaceOf<D, N>,
+) -> Interpolant<D::Scalar, N> {
+    let (number, h) = (D::Scalar::from_f64, interval.length::<D::Scalar>());
     let zero = number(0.0);
     let (mut series, mut count) = ([[Octet::splat(zero); N]; 2], 0);
     simd::wide(Within {
         equations: Equations {
             dynamics: field.dynamics,
-            prepared: &room.prepared,
-            span,
+            prepared: &workspace.prepared,
+            interval,
             from,
-            weights: &room.weights,
+            weights: &workspace.weights,
             least: 2,
             most: FIXED,
             guessed: true,
             closing: false,
         },
-        a: &room.a[room.last],
+        a: &workspace.a[workspace.last],
         series: &mut series,
-        scaled: &mut room.within,
+        scaled: &mut workspace.within,
         count: &mut count,
     });
     field.evaluations += u64::from(count) * S as u64;
-    let mut piece = Piece {
+    let mut interpolant = Interpolant {
         basis: Basis::Legendre,
         terms: COUNT + 1,
         q: [[zero; N]; TERMS],
         v: [[zero; N]; TERMS],
-        ..Piece::linear(span, from, to)
+        ..Interpolant::linear(interval, from, to)
     };
     // ∫ P_k = (P_{k+1} − P_{k−1})/(4k + 2), so that a series α_k becomes h (α_{k−1}/(4k − 2) −
     // α_{k+1}/(4k + 6)).
@@ -66,7 +66,7 @@ pub(super) fn piece<D: SideBySide<N>, const N: usize>(
         v[0] = from.v.high[i];
         for k in 1..=COUNT {
             v[k] = integrated(&a, k);
-            piece.v[k - 1][i] = v[k];
+            interpolant.v[k - 1][i] = v[k];
         }
         // P_k(−1) is 1 for even k and −1 for odd ones.
         for k in 1..=COUNT {
@@ -77,17 +77,17 @@ pub(super) fn piece<D: SideBySide<N>, const N: usize>(
             }
         }
         for k in 1..=COUNT + 1 {
-            piece.q[k - 1][i] = integrated(&v, k);
+            interpolant.q[k - 1][i] = integrated(&v, k);
         }
         // The ends are met exactly: what is left, less than the error of the step, goes straight
         // from one to the other.
         for (terms, [start, end]) in [
-            (&mut piece.q, [from.q.high[i], to.q.high[i]]),
-            (&mut piece.v, [from.v.high[i], to.v.high[i]]),
+            (&mut interpolant.q, [from.q.high[i], to.q.high[i]]),
+            (&mut interpolant.v, [from.v.high[i], to.v.high[i]]),
         ] {
             let half = (0..=COUNT).step_by(2).fold(zero, |sum, k| sum + terms[k][i]);
             terms[0][i] += (end - start) / number(2.0) - half;
         }
     }
-    piece
+    interpolant
 }

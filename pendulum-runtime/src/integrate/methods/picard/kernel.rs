@@ -5,11 +5,11 @@
 
 #![allow(clippy::inline_always)]
 
-use super::room::{RoomOf, Tolerances};
-use super::side_by_side::SideBySide;
+use super::lanes::LaneDynamics;
 use super::tableau::{BETWEEN, Columns, EIGHT, Nodes, REFINED, S, SIXTEEN};
-use crate::integrate::step::endpoint::Node;
-use crate::integrate::step::interval::Span;
+use super::workspace::{Tolerances, WorkspaceOf};
+use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::step::interval::StepInterval;
 use crate::real::{Float, Lane, Octet};
 use crate::simd::Work;
 use crate::system::{Staged, System, scalar_time};
@@ -32,7 +32,7 @@ const LAST_CHANGE: f64 = 1.0;
 const EXPECTED_CHANGE: f64 = 0.25;
 
 /// The system over lanes.
-type Of<D, const N: usize> = <D as SideBySide<N>>::Wide;
+type Of<D, const N: usize> = <D as LaneDynamics<N>>::Wide;
 
 /// The columns of h A and h² A² that lead from the values in `G` vectors to the points of one, for
 /// steps of one length: multiplied once, and not in every sweep.
@@ -95,12 +95,12 @@ impl<T: Lane> Column<T> for Wide<T> {
 }
 
 /// The equations of a step at 8 `G` nodes, and how well they are to be solved.
-pub(super) struct Equations<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> {
+pub(super) struct Equations<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> {
     pub(super) dynamics: &'a D,
     pub(super) prepared: &'a <Of<D, N> as System<N>>::Prepared,
-    pub(super) span: &'a Span,
+    pub(super) interval: &'a StepInterval,
     /// The state at its start.
-    pub(super) from: &'a Node<T, N>,
+    pub(super) from: &'a Endpoint<T, N>,
     /// The part of the error allowed that a unit of each acceleration makes in the step.
     pub(super) weights: &'a [T; N],
     /// The least number of sweeps and the most. The processor foresees the end of the loop where
@@ -173,15 +173,15 @@ impl<T: Float, const N: usize> Ends<T, N> {
 }
 
 /// A step onwards.
-pub(super) struct Onwards<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> {
+pub(super) struct Onwards<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> {
     pub(super) dynamics: &'a D,
-    pub(super) span: &'a Span,
+    pub(super) interval: &'a StepInterval,
     /// The state at its start.
-    pub(super) from: &'a Node<T, N>,
+    pub(super) from: &'a Endpoint<T, N>,
     /// Where the one at its end goes.
-    pub(super) to: &'a mut Node<T, N>,
+    pub(super) to: &'a mut Endpoint<T, N>,
     /// What the step before left behind, or a first guess of the accelerations.
-    pub(super) room: &'a mut RoomOf<D, N>,
+    pub(super) workspace: &'a mut WorkspaceOf<D, N>,
     /// The length of this step over that of the step before; 0 with a first guess.
     pub(super) ratio: f64,
     pub(super) tolerances: &'a Tolerances<N>,
@@ -191,23 +191,26 @@ pub(super) struct Onwards<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, con
     pub(super) adaptive: bool,
 }
 
-impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Onwards<'_, D, T, N> {
+impl<D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> Work
+    for Onwards<'_, D, T, N>
+{
     #[inline(always)]
     fn run(self) {
-        let Self { dynamics, span, from, to, room, ratio, tolerances, most, adaptive } = self;
-        let (half, h, number) = (black_box(S / 2), span.length::<T>(), T::from_f64);
-        room.weigh(span.h, from, tolerances);
-        let [scaled, ahead, between] = &mut room.scaled;
+        let Self { dynamics, interval, from, to, workspace, ratio, tolerances, most, adaptive } =
+            self;
+        let (half, h, number) = (black_box(S / 2), interval.length::<T>(), T::from_f64);
+        workspace.weigh(interval.h, from, tolerances);
+        let [scaled, ahead, between] = &mut workspace.scaled;
         scaled.scale(h, [&EIGHT.once, &EIGHT.twice], 0);
         if adaptive {
             between.scale(h, [&BETWEEN.once, &BETWEEN.twice], 0);
         }
-        let [first, second] = &mut room.a;
-        let (before, a) = if room.last == 0 { (&*first, second) } else { (&*second, first) };
+        let [first, second] = &mut workspace.a;
+        let (before, a) = if workspace.last == 0 { (&*first, second) } else { (&*second, first) };
         let goes_on = ratio == 1.0;
         // The first sweep of an equal step needs no guess, and what it changes is of interest only
         // where a second may be the last.
-        let guessed = !goes_on || room.sweeps < 3;
+        let guessed = !goes_on || workspace.sweeps < 3;
         if goes_on {
             ahead.scale(h, [&EIGHT.once_ahead, &EIGHT.twice_ahead], 0);
             if guessed {
@@ -225,39 +228,41 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Onw
         let mut new = [a[0], [Wide::splat(number(0.0)); N]];
         let equations = Equations {
             dynamics,
-            prepared: &room.prepared,
-            span,
+            prepared: &workspace.prepared,
+            interval,
             from,
-            weights: &room.weights,
-            least: room.sweeps,
+            weights: &workspace.weights,
+            least: workspace.sweeps,
             most,
             guessed,
             closing: adaptive,
         };
         let first = if goes_on { (before, &*ahead) } else { (&*a, &*scaled) };
         let points = [&EIGHT.nodes[0], &BETWEEN.points[0]];
-        room.ends.progress =
+        workspace.ends.progress =
             sweeps(&equations, points, first, [&*scaled, &*between], &mut new, half);
         *a = [new[0]];
         let [sums] = sums(black_box(&new), [&BETWEEN.ends], half);
         let [sums] = black_box(&sums);
-        *to = Node { t: span.end, a: None, ..*from };
+        *to = Endpoint { t: interval.end, a: None, ..*from };
         for i in 0..N {
             let [once, twice, a15, a14, a13, a12, a16, _] = sums[i].0;
-            room.ends.tail[i] = [a15, a14, a13, a12, a16 + number(BETWEEN.start) * room.start[i]];
-            room.ends.last[i] = new[1][i].0[S - 1];
+            workspace.ends.tail[i] =
+                [a15, a14, a13, a12, a16 + number(BETWEEN.start) * workspace.start[i]];
+            workspace.ends.last[i] = new[1][i].0[S - 1];
             let a = Octet(new[0][i].0.map(Float::to_f64));
-            room.ends.square[i] = total(black_box(&(a * a))) / S as f64;
+            workspace.ends.square[i] = total(black_box(&(a * a))) / S as f64;
             to.q.add_product(i, h, from.v.high[i], h * (h * twice + from.v.low[i]));
             to.v.add_one(i, h * once);
         }
-        room.ends.solved = room.is_solved();
-        room.ends.error = if room.ends.solved && to.is_finite() { room.error() } else { f64::NAN };
+        workspace.ends.solved = workspace.is_solved();
+        workspace.ends.error =
+            if workspace.ends.solved && to.is_finite() { workspace.error() } else { f64::NAN };
     }
 }
 
 /// A step once more, at twice as many nodes: what is between its ends.
-pub(super) struct Within<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> {
+pub(super) struct Within<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> {
     pub(super) equations: Equations<'a, D, T, N>,
     /// The accelerations of the step.
     pub(super) a: &'a Stages<T, N, 1>,
@@ -269,12 +274,12 @@ pub(super) struct Within<'a, D: SideBySide<N, Scalar = T>, T: Lane + Float, cons
     pub(super) count: &'a mut u32,
 }
 
-impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Within<'_, D, T, N> {
+impl<D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Within<'_, D, T, N> {
     #[inline(always)]
     fn run(self) {
         let half = black_box(S / 2);
         let [mut a] = sums(black_box(self.a), [&REFINED], half);
-        let h = self.equations.span.length();
+        let h = self.equations.interval.length();
         for (to, scaled) in self.scaled.iter_mut().enumerate() {
             scaled.scale(h, [&SIXTEEN.once, &SIXTEEN.twice], to);
         }
@@ -288,17 +293,17 @@ impl<D: SideBySide<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Wit
 
 /// The times of the nodes and the inputs there, in the last lane those just before `last`.
 #[inline(always)]
-fn at_nodes<D: SideBySide<N>, const N: usize>(
+fn at_nodes<D: LaneDynamics<N>, const N: usize>(
     dynamics: &D,
-    span: &Span,
+    interval: &StepInterval,
     nodes: &Nodes,
     last: Option<Time>,
 ) -> (Wide<D::Scalar>, <D::Wide as System<N>>::Inputs) {
-    let (mut times, mut lanes) = ([span.start; S], Wide::splat(scalar_time(span.start)));
+    let (mut times, mut lanes) = ([interval.start; S], Wide::splat(scalar_time(interval.start)));
     // Otherwise nobody looks at them.
     if !<D::System as System<N>>::FACTS.autonomous {
         for k in 0..S {
-            times[k] = span.start + nodes[k] * span.h;
+            times[k] = interval.start + nodes[k] * interval.h;
             lanes.0[k] = scalar_time(times[k]);
         }
     }
@@ -312,7 +317,7 @@ fn at_nodes<D: SideBySide<N>, const N: usize>(
 /// evaluated only in the closing sweeps.
 #[inline(always)]
 fn sweeps<
-    D: SideBySide<N, Scalar = T>,
+    D: LaneDynamics<N, Scalar = T>,
     T: Lane + Float,
     const N: usize,
     const G: usize,
@@ -326,10 +331,10 @@ fn sweeps<
     half: usize,
 ) -> Progress<T> {
     let (zero, system) = (Wide::splat(T::from_f64(0.0)), equations.dynamics.widened());
-    let (h, prepared) = (Wide::splat(equations.span.length()), equations.prepared);
+    let (h, prepared) = (Wide::splat(equations.interval.length()), equations.prepared);
     // Where the motion is without accelerations.
     let mut straight = [[zero; N]; H];
-    let (t, inputs) = at_nodes(equations.dynamics, equations.span, points[0], None);
+    let (t, inputs) = at_nodes(equations.dynamics, equations.interval, points[0], None);
     let mut known = [(t, inputs, Of::<D, N>::at_time(t, &inputs)); H];
     let all = if G == H || equations.closing { H } else { G };
     for g in 0..all {
@@ -341,9 +346,9 @@ fn sweeps<
         if 0 < g {
             // The last of the points between the nodes is just before the end, at which a motion
             // may have a kink.
-            let end = equations.span.end;
+            let end = equations.interval.end;
             let last = if G < H && g + 1 == H && end.low() == 0.0 { Some(end) } else { None };
-            let (t, inputs) = at_nodes(equations.dynamics, equations.span, points[g], last);
+            let (t, inputs) = at_nodes(equations.dynamics, equations.interval, points[g], last);
             known[g] = (t, inputs, Of::<D, N>::at_time(t, &inputs));
         }
     }

@@ -4,28 +4,28 @@
 // What a step needs is inlined into what is compiled for several instruction sets.
 #![allow(clippy::inline_always)]
 
-mod control;
+mod controller;
 mod dense;
 mod kernel;
-mod room;
-mod side_by_side;
+mod lanes;
 mod tableau;
+mod workspace;
 
 use crate::error::Error;
-use crate::integrate::interpolant::Piece;
+use crate::integrate::interpolant::Interpolant;
 use crate::integrate::step::diagnose;
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::{Accelerations, Counted, Watched, coordinate, first_in_state};
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::stepper::Stepper;
 use crate::motion::Side;
 use crate::real::{Float, Octet, Real};
 use crate::simd;
 use crate::system::System;
 use kernel::{Ends, Onwards, Scaled};
-use room::{Room, RoomOf, Tolerances};
-pub use side_by_side::SideBySide;
+pub use lanes::LaneDynamics;
 use tableau::{EIGHT, S};
+use workspace::{Tolerances, Workspace, WorkspaceOf};
 
 /// Collocation with the accelerations at eight Gauss nodes, which are evaluated side by side in the
 /// lanes of a vector: order 16, adaptive.
@@ -89,58 +89,59 @@ pub struct Picard;
 const ADAPTIVE: u32 = 12;
 const FIXED: u32 = 60;
 
-/// A step over `span` that leads `to` its end; the room holds what it leaves behind until it is
+/// A step over `interval` that leads `to` its end; the room holds what it leaves behind until it is
 /// accepted.
 #[inline]
-fn attempt<D: SideBySide<N>, const N: usize>(
+fn attempt<D: LaneDynamics<N>, const N: usize>(
     field: &mut Counted<'_, D>,
-    span: &Span,
-    from: &mut Node<D::Scalar, N>,
-    to: &mut Node<D::Scalar, N>,
-    room: &mut RoomOf<D, N>,
+    interval: &StepInterval,
+    from: &mut Endpoint<D::Scalar, N>,
+    to: &mut Endpoint<D::Scalar, N>,
+    workspace: &mut WorkspaceOf<D, N>,
     tolerances: Option<&Tolerances<N>>,
 ) {
-    let goes_on = room
+    let goes_on = workspace
         .end
         .as_ref()
         .is_some_and(|(t, q, v)| *t == from.t && *q == from.q.high && *v == from.v.high);
-    let ratio = if goes_on && span.h <= 2.0 * room.h { span.h / room.h } else { 0.0 };
+    let ratio =
+        if goes_on && interval.h <= 2.0 * workspace.h { interval.h / workspace.h } else { 0.0 };
     // Equal but for rounding: it leads only to the first sweep.
     let ratio = if f64::abs(ratio - 1.0) <= 1e-12 { 1.0 } else { ratio };
     if ratio == 0.0 {
         let a = from.start_acceleration(field);
-        (room.a[room.last], room.sweeps) = ([a.map(Octet::splat)], 2);
-        room.square = a.map(|a| a.to_f64() * a.to_f64());
+        (workspace.a[workspace.last], workspace.sweeps) = ([a.map(Octet::splat)], 2);
+        workspace.square = a.map(|a| a.to_f64() * a.to_f64());
     }
     // Behind a kink the accelerations are not those before it. Kinks and stops have times of one
     // word.
     let may_break = !<D::System as System<N>>::FACTS.autonomous && from.t.low() == 0.0;
-    if tolerances.is_some() && (ratio == 0.0 || !room.start_known || may_break) {
-        (room.start, room.start_known) = (from.start_acceleration(field), true);
+    if tolerances.is_some() && (ratio == 0.0 || !workspace.start_known || may_break) {
+        (workspace.start, workspace.start_known) = (from.start_acceleration(field), true);
     }
     let (most, adaptive) = if tolerances.is_some() { (ADAPTIVE, true) } else { (FIXED, false) };
     let tolerances = tolerances.unwrap_or(&(0.0, ([0.0; N], [0.0; N])));
     simd::widest(Onwards {
         dynamics: field.dynamics,
-        span,
+        interval,
         from,
         to,
-        room,
+        workspace,
         ratio,
         tolerances,
         most,
         adaptive,
     });
-    field.evaluations += u64::from(room.ends.progress.vectors) * S as u64;
+    field.evaluations += u64::from(workspace.ends.progress.vectors) * S as u64;
 }
 
-impl<D: SideBySide<N>, const N: usize> Stepper<D, N> for Picard {
+impl<D: LaneDynamics<N>, const N: usize> Stepper<D, N> for Picard {
     const NAME: &'static str = "Picard";
-    type Stages = RoomOf<D, N>;
+    type Stages = WorkspaceOf<D, N>;
 
-    fn room(&self, dynamics: &D) -> RoomOf<D, N> {
+    fn workspace(&self, dynamics: &D) -> WorkspaceOf<D, N> {
         let zero = D::Scalar::from_f64(0.0);
-        Room {
+        Workspace {
             prepared: dynamics.widened().prepare(),
             a: [[[Octet::splat(zero); N]]; 2],
             last: 0,
@@ -162,19 +163,19 @@ impl<D: SideBySide<N>, const N: usize> Stepper<D, N> for Picard {
     fn advance(
         &self,
         field: &mut Counted<'_, D>,
-        span: &Span,
-        from: &mut Node<D::Scalar, N>,
-        room: &mut RoomOf<D, N>,
-    ) -> Node<D::Scalar, N> {
+        interval: &StepInterval,
+        from: &mut Endpoint<D::Scalar, N>,
+        workspace: &mut WorkspaceOf<D, N>,
+    ) -> Endpoint<D::Scalar, N> {
         let mut to = *from;
-        attempt(field, span, from, &mut to, room, None);
-        room.unsolved = None;
-        if room.ends.solved {
-            room.accept(&to, span.h);
-            room.start_known = false;
+        attempt(field, interval, from, &mut to, workspace, None);
+        workspace.unsolved = None;
+        if workspace.ends.solved {
+            workspace.accept(&to, interval.h);
+            workspace.start_known = false;
         } else {
-            if room.ends.progress.change.is_finite() {
-                room.unsolved = Some((span.end, room.worst()));
+            if workspace.ends.progress.change.is_finite() {
+                workspace.unsolved = Some((interval.end, workspace.worst()));
             }
             to.v.high = [D::Scalar::from_f64(f64::NAN); N];
         }
@@ -184,32 +185,33 @@ impl<D: SideBySide<N>, const N: usize> Stepper<D, N> for Picard {
     fn within(
         &self,
         field: &mut Counted<'_, D>,
-        span: &Span,
-        from: &mut Node<D::Scalar, N>,
-        to: &mut Node<D::Scalar, N>,
-        room: &mut RoomOf<D, N>,
-    ) -> Piece<D::Scalar, N> {
-        dense::piece(field, span, from, to, room)
+        interval: &StepInterval,
+        from: &mut Endpoint<D::Scalar, N>,
+        to: &mut Endpoint<D::Scalar, N>,
+        workspace: &mut WorkspaceOf<D, N>,
+    ) -> Interpolant<D::Scalar, N> {
+        dense::interpolant(field, interval, from, to, workspace)
     }
 
     fn fault(
         &self,
         dynamics: &D,
-        span: &Span,
-        from: &Node<D::Scalar, N>,
-        room: &RoomOf<D, N>,
+        interval: &StepInterval,
+        from: &Endpoint<D::Scalar, N>,
+        workspace: &WorkspaceOf<D, N>,
     ) -> Option<Error> {
         let facts = &<D::System as System<N>>::FACTS;
-        if let Some((t, index)) = room.unsolved {
+        if let Some((t, index)) = workspace.unsolved {
             return Some(Error::NoConvergence {
                 t: t.to_f64(),
-                step: span.h,
+                step: interval.h,
                 coordinate: coordinate(facts, index),
             });
         }
         let mut watched = Watched::new(dynamics);
-        let to = one_by_one(&mut watched, span, from);
-        let at_end = || first_in_state(facts, &to.q.high, &to.v.high).map(|what| (span.end, what));
+        let to = one_by_one(&mut watched, interval, from);
+        let at_end =
+            || first_in_state(facts, &to.q.high, &to.v.high).map(|what| (interval.end, what));
         let (t, what) = watched.first.or_else(at_end)?;
         Some(diagnose::not_finite(dynamics.system(), t, what))
     }
@@ -223,11 +225,11 @@ impl<D: SideBySide<N>, const N: usize> Stepper<D, N> for Picard {
 /// number that is not finite comes from.
 fn one_by_one<T: Float, const N: usize>(
     field: &mut impl Accelerations<T, N>,
-    span: &Span,
-    from: &Node<T, N>,
-) -> Node<T, N> {
+    interval: &StepInterval,
+    from: &Endpoint<T, N>,
+) -> Endpoint<T, N> {
     let (h, start) =
-        (span.length::<T>(), field.at(span.start, Side::After, &from.q.high, &from.v.high));
+        (interval.length::<T>(), field.at(interval.start, Side::After, &from.q.high, &from.v.high));
     let sum = |columns: &dyn Fn(usize) -> f64, a: &[[T; N]; S], i: usize| {
         (0..S).fold(T::from_f64(0.0), |sum, j| sum + T::from_f64(columns(j)) * a[j][i])
     };
@@ -244,11 +246,11 @@ fn one_by_one<T: Float, const N: usize>(
             let v = core::array::from_fn(|i| {
                 from.v.high[i] + h * sum(&|j| EIGHT.once[0][j][0][k], &last, i)
             });
-            let (t, side) = span.at(EIGHT.nodes[0][k]);
+            let (t, side) = interval.at(EIGHT.nodes[0][k]);
             *a = field.at(t, side, &q, &v);
         }
     }
-    let mut to = Node { t: span.end, a: None, ..*from };
+    let mut to = Endpoint { t: interval.end, a: None, ..*from };
     for i in 0..N {
         to.q.high[i] += h * from.v.high[i] + h * h * sum(&|j| EIGHT.ends[0][j][0][1], &a, i);
         to.v.high[i] += h * sum(&|j| EIGHT.ends[0][j][0][0], &a, i);

@@ -3,18 +3,18 @@
 // What a step needs is inlined into what is compiled for several instruction sets.
 #![allow(clippy::inline_always)]
 
-use super::control::AIM;
+use super::controller::AIM;
 use super::kernel::{Ends, Progress, Scaled, Stages};
-use super::side_by_side::SideBySide;
+use super::lanes::LaneDynamics;
 use super::tableau::S;
-use crate::integrate::step::endpoint::Node;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::real::{Float, Lane};
 use crate::system::{Dynamics, System};
 use crate::time::Time;
 
 /// What a step leaves behind.
 #[derive(Clone, Debug)]
-pub struct Room<T: Lane, P, const N: usize> {
+pub struct Workspace<T: Lane, P, const N: usize> {
     /// What the parameters alone decide, over lanes.
     pub(super) prepared: P,
     /// The accelerations at the nodes, of the last step and of the one under way.
@@ -45,8 +45,8 @@ pub struct Room<T: Lane, P, const N: usize> {
 }
 
 /// The room for the dynamics `D`.
-pub(super) type RoomOf<D, const N: usize> =
-    Room<<D as Dynamics<N>>::Scalar, <<D as SideBySide<N>>::Wide as System<N>>::Prepared, N>;
+pub(super) type WorkspaceOf<D, const N: usize> =
+    Workspace<<D as Dynamics<N>>::Scalar, <<D as LaneDynamics<N>>::Wide as System<N>>::Prepared, N>;
 
 /// The errors allowed in a step: relative, and absolute of coordinates and velocities.
 pub(super) type Tolerances<const N: usize> = (f64, ([f64; N], [f64; N]));
@@ -58,7 +58,7 @@ fn epsilon<T: Float>() -> f64 {
     if epsilon < f64::EPSILON { f64::EPSILON } else { epsilon }
 }
 
-impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
+impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
     /// The part of the error allowed that a unit of each acceleration makes in a step of length
     /// `h`: by way of the velocity or of the coordinate.
     ///
@@ -66,7 +66,7 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
     /// what the accelerations do in it a twentieth of that, or a thousandth of the tolerance: so
     /// that the motion stays one.
     #[inline(always)]
-    pub(super) fn weigh(&mut self, h: f64, from: &Node<T, N>, (rtol, atol): &Tolerances<N>) {
+    pub(super) fn weigh(&mut self, h: f64, from: &Endpoint<T, N>, (rtol, atol): &Tolerances<N>) {
         let rounding = 0.125 * epsilon::<T>();
         let square = self
             .square
@@ -154,7 +154,7 @@ impl<T: Lane + Float, P, const N: usize> Room<T, P, N> {
 
     /// The step under way becomes the last one.
     #[inline]
-    pub(super) fn accept(&mut self, to: &Node<T, N>, h: f64) {
+    pub(super) fn accept(&mut self, to: &Endpoint<T, N>, h: f64) {
         let Progress { sweeps, spare, .. } = self.ends.progress;
         self.sweeps = (sweeps - u32::from(spare)).clamp(2, 8);
         self.last ^= 1;

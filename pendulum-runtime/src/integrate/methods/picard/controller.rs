@@ -1,15 +1,15 @@
 //! The lengths of adaptive steps of Picard's iteration.
 
-use super::side_by_side::SideBySide;
+use super::lanes::LaneDynamics;
 use super::tableau::S;
 use super::{Picard, attempt, tableau};
 use crate::error::{Error, Quantity};
 use crate::integrate::step::adaptive::{AdaptiveStep, at, resolution_of};
-use crate::integrate::step::controller::{Control, Course, Memory};
+use crate::integrate::step::controller::{Control, ControllerState, StepContext};
 use crate::integrate::step::diagnose::blame;
 use crate::integrate::step::fast_exp2::{log2, power};
 use crate::integrate::step::field::coordinate;
-use crate::integrate::step::interval::Span;
+use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::stepper::Stepper;
 use crate::real::Float;
 use crate::system::System;
@@ -25,7 +25,7 @@ const HIGH: f64 = AIM * 9.6;
 const MANY: u32 = 4;
 const TOO_MANY: u32 = 9;
 
-impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N> {
+impl<D: LaneDynamics<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N> {
     fn check(&self) -> Result<(), Error> {
         self.positive::<D::Scalar>()
     }
@@ -37,10 +37,10 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
     #[inline]
     fn step(
         &self,
-        memory: &mut Memory,
-        course: Course<'_, '_, D, Picard, N>,
-    ) -> Result<Span, Error> {
-        let Course { method, field, from, to, stages: room, target, stats } = course;
+        memory: &mut ControllerState,
+        course: StepContext<'_, '_, D, Picard, N>,
+    ) -> Result<StepInterval, Error> {
+        let StepContext { method, field, from, to, stages: workspace, target, stats } = course;
         let target = field
             .dynamics
             .next_break(from.t.to_f64())
@@ -49,7 +49,13 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
         let tolerances = self.tolerances::<D::Scalar>();
         if memory.h == 0.0 {
             if !from.start_acceleration(field).iter().all(|a| a.is_finite()) {
-                return Err(blame(method, field.dynamics, &Span::by(from.t, 0.0), from, room));
+                return Err(blame(
+                    method,
+                    field.dynamics,
+                    &StepInterval::by(from.t, 0.0),
+                    from,
+                    workspace,
+                ));
             }
             let left = -from.t.since(target);
             memory.h = self.limited(true, self.automatic_step(2 * S as u32, field, from, left));
@@ -63,7 +69,7 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
         let (mut retried, mut last_fault) = (false, None);
         loop {
             if wanted <= resolution_of::<D::Scalar>(from.t) && wanted < -from.t.since(target) {
-                let coordinate = coordinate(&<D::System as System<N>>::FACTS, room.worst());
+                let coordinate = coordinate(&<D::System as System<N>>::FACTS, workspace.worst());
                 let short =
                     Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate };
                 let unresolved = self.unresolved(stats.accepted + stats.rejected == 0, wanted);
@@ -71,44 +77,50 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
                     .or(last_fault.map(|fault| at(fault, from.t)))
                     .unwrap_or(short));
             }
-            let span = planned(memory, from.t, wanted, target);
-            attempt(field, &span, from, to, room, Some(&tolerances));
-            let error = room.ends.error;
+            let interval = planned(memory, from.t, wanted, target);
+            attempt(field, &interval, from, to, workspace, Some(&tolerances));
+            let error = workspace.ends.error;
             if error <= 1.0 {
-                room.accept(to, span.h);
-                let sweeps = room.ends.progress.sweeps;
+                workspace.accept(to, interval.h);
+                let sweeps = workspace.ends.progress.sweeps;
                 let mut next = wanted;
                 // A step that was cut short says little about longer ones.
-                if error < LOW && sweeps <= MANY && !retried && 0.5 * wanted <= span.h {
+                if error < LOW && sweeps <= MANY && !retried && 0.5 * wanted <= interval.h {
                     let factor = scaled(error);
-                    let longer = span.h * if factor < 2.0 { factor } else { 2.0 };
+                    let longer = interval.h * if factor < 2.0 { factor } else { 2.0 };
                     next = if 1.25 * wanted <= longer { longer } else { wanted };
                 } else if HIGH < error {
-                    next = span.h * scaled(error);
+                    next = interval.h * scaled(error);
                 } else if TOO_MANY < sweeps {
-                    next = 0.95 * span.h;
+                    next = 0.95 * interval.h;
                 }
                 memory.left = if next == memory.h { memory.left - 1 } else { 0 };
                 memory.h = next;
                 stats.accepted += 1;
-                return Ok(span);
+                return Ok(interval);
             }
             stats.rejected += 1;
-            (retried, room.sweeps, memory.left) = (true, 2, 0);
-            wanted = span.h
+            (retried, workspace.sweeps, memory.left) = (true, 2, 0);
+            wanted = interval.h
                 * if error.is_finite() {
                     last_fault = None;
                     let factor = scaled(error);
                     if factor < 0.2 { 0.2 } else { factor }
-                } else if !room.start.iter().all(|a| a.is_finite()) {
-                    return Err(blame(method, field.dynamics, &Span::by(from.t, 0.0), from, room));
+                } else if !workspace.start.iter().all(|a| a.is_finite()) {
+                    return Err(blame(
+                        method,
+                        field.dynamics,
+                        &StepInterval::by(from.t, 0.0),
+                        from,
+                        workspace,
+                    ));
                 } else if to.is_finite() {
                     last_fault = None;
                     0.5
                 } else {
                     // A function may have left its domain, and a shorter step may stay inside; but
                     // no step is short enough for an input that is not finite.
-                    last_fault = method.fault(field.dynamics, &span, from, room);
+                    last_fault = method.fault(field.dynamics, &interval, from, workspace);
                     if let Some(input @ Error::NotFinite { what: Quantity::Input { .. }, .. }) =
                         last_fault
                     {
@@ -123,10 +135,11 @@ impl<D: SideBySide<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N>
 /// The next of equal steps to `target`, which are about as long as `wanted`: a step goes on best as
 /// long as the one before.
 #[inline]
-fn planned(plan: &mut Memory, t: Time, wanted: f64, target: f64) -> Span {
+fn planned(plan: &mut ControllerState, t: Time, wanted: f64, target: f64) -> StepInterval {
     let left = -t.since(target);
-    let goes_on =
-        |plan: &Memory| f64::abs(left - plan.left as f64 * plan.equal) <= 1e-9 * plan.equal;
+    let goes_on = |plan: &ControllerState| {
+        f64::abs(left - plan.left as f64 * plan.equal) <= 1e-9 * plan.equal
+    };
     if plan.left == 0 || plan.target != target || !goes_on(plan) {
         let count = f64::ceil(left / wanted - 0.01);
         let (count, equal) = if count < 1e9 {
@@ -136,7 +149,7 @@ fn planned(plan: &mut Memory, t: Time, wanted: f64, target: f64) -> Span {
         };
         (plan.left, plan.equal, plan.target) = (count as u64, equal, target);
     }
-    if plan.left == 1 { Span::to(t, target) } else { Span::by(t, plan.equal) }
+    if plan.left == 1 { StepInterval::to(t, target) } else { StepInterval::by(t, plan.equal) }
 }
 
 /// The factor by which a step would be longer whose error is the one aimed at.
@@ -148,10 +161,10 @@ fn scaled(error: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{AdaptiveStep, Control, Course, Memory, Picard, Stepper, planned};
-    use crate::integrate::methods::picard::Room;
+    use super::{AdaptiveStep, Control, ControllerState, Picard, StepContext, Stepper, planned};
+    use crate::integrate::methods::picard::Workspace;
     use crate::integrate::solution::Stats;
-    use crate::integrate::step::endpoint::Node;
+    use crate::integrate::step::endpoint::Endpoint;
     use crate::integrate::step::field::Counted;
     use crate::integrate::tests::systems::Kepler;
     use crate::real::Real;
@@ -186,16 +199,21 @@ mod tests {
     /// A planet on its way, with all that a step knows of the one before.
     #[derive(Clone)]
     struct Flight {
-        node: Node<f64, 2>,
-        memory: Memory,
-        room: Room<f64, (), 2>,
+        node: Endpoint<f64, 2>,
+        memory: ControllerState,
+        workspace: Workspace<f64, (), 2>,
         rejected: u64,
     }
 
     impl Flight {
         fn new() -> Self {
-            let node = Node::new(Time::new(0.0), [0.5, 0.0], [0.0, 3.0_f64.sqrt()]);
-            Self { node, memory: Memory::default(), room: Picard.room(&PLANET), rejected: 0 }
+            let node = Endpoint::new(Time::new(0.0), [0.5, 0.0], [0.0, 3.0_f64.sqrt()]);
+            Self {
+                node,
+                memory: ControllerState::default(),
+                workspace: Picard.workspace(&PLANET),
+                rejected: 0,
+            }
         }
 
         /// Takes a step, the first attempt of the length `h`; the length of the one accepted.
@@ -203,23 +221,23 @@ mod tests {
             let (mut field, mut stats, mut to) =
                 (Counted::new(&PLANET), Stats::new("Picard"), self.node);
             (self.memory.h, self.memory.left) = (h, 0);
-            let course = Course {
+            let course = StepContext {
                 method: &Picard,
                 field: &mut field,
                 from: &mut self.node,
                 to: &mut to,
-                stages: &mut self.room,
+                stages: &mut self.workspace,
                 target: f64::INFINITY,
                 stats: &mut stats,
             };
-            let span = AdaptiveStep::new().rtol(1e-6).step(&mut self.memory, course).unwrap();
+            let interval = AdaptiveStep::new().rtol(1e-6).step(&mut self.memory, course).unwrap();
             (self.node, self.rejected) = (to, stats.rejected);
-            span.h
+            interval.h
         }
 
         /// The state and what the next step will see, with every bit.
         fn bits(&self) -> String {
-            let Room { a, last, end, h, square, start, weights, ends, .. } = &self.room;
+            let Workspace { a, last, end, h, square, start, weights, ends, .. } = &self.workspace;
             format!(
                 "{:?} {:?} {end:?} {h} {square:?} {start:?} {weights:?} {}",
                 self.node, a[*last], ends.error
@@ -233,10 +251,10 @@ mod tests {
         let (mut flight, mut rejected) = (Flight::new(), Vec::new());
         for k in 0..60 {
             let (mut tried, mut fresh) = (flight.clone(), flight.clone());
-            let h = tried.step(if k == 0 { 3.0 } else { 2.0 * flight.room.h });
+            let h = tried.step(if k == 0 { 3.0 } else { 2.0 * flight.workspace.h });
             if 0 < tried.rejected {
                 // Sweeps are counted anew after a rejection.
-                fresh.room.sweeps = 2;
+                fresh.workspace.sweeps = 2;
                 assert_eq!((fresh.step(h), fresh.rejected), (h, 0), "step {k}");
                 assert_eq!(tried.bits(), fresh.bits(), "step {k}");
                 rejected.push(k);
@@ -249,12 +267,13 @@ mod tests {
 
     /// The lengths of the steps to `target`.
     fn lengths(wanted: f64, start: f64, target: f64) -> Vec<f64> {
-        let (mut plan, mut t, mut lengths) = (Memory::default(), Time::new(start), Vec::new());
+        let (mut plan, mut t, mut lengths) =
+            (ControllerState::default(), Time::new(start), Vec::new());
         while t.since(target) < 0.0 {
-            let span = planned(&mut plan, t, wanted, target);
+            let interval = planned(&mut plan, t, wanted, target);
             plan.left -= 1;
-            t = span.end;
-            lengths.push(span.h);
+            t = interval.end;
+            lengths.push(interval.h);
         }
         assert_eq!(t, Time::new(target));
         lengths
@@ -276,17 +295,17 @@ mod tests {
 
     #[test]
     fn without_a_target_they_are_as_wanted() {
-        let mut plan = Memory::default();
+        let mut plan = ControllerState::default();
         for k in 0..5 {
-            let span = planned(&mut plan, Time::new(f64::from(k)), 0.7, f64::INFINITY);
+            let interval = planned(&mut plan, Time::new(f64::from(k)), 0.7, f64::INFINITY);
             plan.left -= 1;
-            assert_eq!(span.h, 0.7);
+            assert_eq!(interval.h, 0.7);
         }
     }
 
     #[test]
     fn a_plan_ends_where_the_state_or_the_target_is_another() {
-        let mut plan = Memory::default();
+        let mut plan = ControllerState::default();
         assert_eq!(planned(&mut plan, Time::new(0.0), 1.0, 2.5).h, 2.5 / 3.0);
         plan.left -= 1;
         assert_eq!(planned(&mut plan, Time::new(0.5), 1.0, 2.5).h, 1.0);

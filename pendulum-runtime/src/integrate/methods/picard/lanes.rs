@@ -17,7 +17,7 @@ use super::tableau::S;
     message = "`{Self}` cannot be evaluated at several times at once",
     note = "`Picard` takes systems that `lagrangian!` has made; for others use `Dop853`"
 )]
-pub trait SideBySide<const N: usize>: Dynamics<N, Scalar: Lane + Float> {
+pub trait LaneDynamics<const N: usize>: Dynamics<N, Scalar: Lane + Float> {
     /// The system over lanes.
     #[doc(hidden)]
     type Wide: Staged<N, Scalar = Octet<Self::Scalar>>;
@@ -37,7 +37,7 @@ pub trait SideBySide<const N: usize>: Dynamics<N, Scalar: Lane + Float> {
     fn next_break(&self, t: f64) -> Option<f64>;
 }
 
-impl<S0, const N: usize> SideBySide<N> for S0
+impl<S0, const N: usize> LaneDynamics<N> for S0
 where
     S0: System<N, Scalar: Lane + Float, Inputs: NoInputs<S0>>,
     S0::With<Octet<S0::Scalar>>: Staged<N, Inputs: NoInputs<S0>>,
@@ -60,10 +60,10 @@ where
     }
 }
 
-impl<S0, M, const N: usize> SideBySide<N> for Driven<S0, M>
+impl<S0, M, const N: usize> LaneDynamics<N> for Driven<S0, M>
 where
     S0: System<N, Scalar: Lane + Float>,
-    M: MotionsSideBySide<S0::Inputs, S0::Scalar> + PerhapsAnalytic<S0::Inputs, S0::Scalar>,
+    M: LaneMotions<S0::Inputs, S0::Scalar> + PerhapsAnalytic<S0::Inputs, S0::Scalar>,
     S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = M::Wide>,
 {
     type Wide = S0::With<Octet<S0::Scalar>>;
@@ -84,7 +84,7 @@ where
     }
 }
 
-impl<D: SideBySide<N>, const N: usize> SideBySide<N>
+impl<D: LaneDynamics<N>, const N: usize> LaneDynamics<N>
     for Prepared<'_, D, <D::System as System<N>>::Prepared>
 {
     type Wide = D::Wide;
@@ -107,7 +107,7 @@ impl<D: SideBySide<N>, const N: usize> SideBySide<N>
 
 /// A tuple of motions, sampled at several times at once.
 #[doc(hidden)]
-pub trait MotionsSideBySide<Inputs, T>: crate::motion::Motions<Inputs> {
+pub trait LaneMotions<Inputs, T>: crate::motion::Motions<Inputs> {
     /// One sample for each motion, with a time in each lane.
     type Wide: Samples;
 
@@ -116,7 +116,7 @@ pub trait MotionsSideBySide<Inputs, T>: crate::motion::Motions<Inputs> {
     fn sample_all(&self, times: &[Time; 8], last: Option<Time>, inputs: &[Input]) -> Self::Wide;
 }
 
-impl<T: Real> MotionsSideBySide<(), T> for () {
+impl<T: Real> LaneMotions<(), T> for () {
     type Wide = ();
 
     #[inline(always)]
@@ -145,7 +145,7 @@ fn sampled<T: Lane, M: Motion<T, DIM>, const DIM: usize>(
 
 macro_rules! tuples {
     ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
-        impl<T: Lane, $($motion: Motion<T, $dim>, const $dim: usize),+> MotionsSideBySide<($(Sample<T, $dim>,)+), T> for ($($motion,)+) {
+        impl<T: Lane, $($motion: Motion<T, $dim>, const $dim: usize),+> LaneMotions<($(Sample<T, $dim>,)+), T> for ($($motion,)+) {
             type Wide = ($(Sample<Octet<T>, $dim>,)+);
 
             #[inline(always)]
