@@ -6,7 +6,7 @@
 
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::FixedStep;
-use pendulum_runtime::integrate::method::Suits;
+use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Linear, Sinusoid};
 use pendulum_runtime::prelude::*;
 
@@ -31,7 +31,7 @@ fn after<D: Dynamics<N, Scalar = f64>, const N: usize>(
     end: f64,
     q: [f64; N],
     v: [f64; N],
-    method: impl Suits<D::System, N>,
+    method: impl Method<D, N>,
     steps: u64,
 ) -> ([f64; N], [f64; N]) {
     let end = solve(dynamics, (0.0, end), q, v).method(method).steps(steps).run().unwrap().end;
@@ -203,7 +203,7 @@ fn quadratic_invariants_are_kept() {
 
 /// The largest entry of JᵀΩJ − Ω, where J is the Jacobian of one step of the double pendulum in
 /// coordinates and momenta, from central differences of order 6.
-fn symplectic_defect(method: impl Suits<Double<f64>, 2>, h: f64) -> f64 {
+fn symplectic_defect(method: impl Method<Double<f64>, 2>, h: f64) -> f64 {
     let system = double();
     let step = |z: [f64; 4]| {
         let q = [z[0], z[1]];

@@ -3,7 +3,7 @@
 
 #![allow(mixed_script_confusables, missing_docs)]
 
-use pendulum_runtime::integrate::method::Suits;
+use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::{DoubleDouble, Float};
 
@@ -123,7 +123,7 @@ fn an_extrapolated_leapfrog_reaches_28_digits() {
 
 #[test]
 fn every_method_runs() {
-    fn at_the_end(method: impl Suits<Simple<DoubleDouble>, 1>, steps: u64) -> f64 {
+    fn at_the_end(method: impl Method<Simple<DoubleDouble>, 1>, steps: u64) -> f64 {
         let system = Simple::new(DoubleDouble::from(1.0));
         let (end, exact) = PENDULUM[1];
         let solution = solve(&system, (0.0, end), [number("1.3")], [0.0.into()])

@@ -6,7 +6,7 @@
 
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::FixedStep;
-use pendulum_runtime::integrate::method::Suits;
+use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Linear, Sinusoid};
 use pendulum_runtime::prelude::*;
 
@@ -23,7 +23,7 @@ fn error<D: Dynamics<N, Scalar = f64>, const N: usize>(
     (q, v): ([f64; N], [f64; N]),
     end: f64,
     exact: &[f64],
-    method: impl Suits<D::System, N>,
+    method: impl Method<D, N>,
     steps: u64,
 ) -> f64 {
     let end = solve(dynamics, (0.0, end), q, v).method(method).steps(steps).run().unwrap().end;
@@ -32,17 +32,17 @@ fn error<D: Dynamics<N, Scalar = f64>, const N: usize>(
 
 const SHAKEN: [f64; 2] = [0.0342105591464723414299261, -1.02072871213303888830643];
 
-fn simple(method: impl Suits<Simple<f64>, 1>, steps: u64) -> f64 {
+fn simple(method: impl Method<Simple<f64>, 1>, steps: u64) -> f64 {
     let exact = [0.0294296671795643777888240, -1.21001499988647025461485];
     error(&Simple { g: 1.0 }, ([1.3], [0.0]), 100.0, &exact, method, steps)
 }
 
-fn driven(method: impl Suits<Hung<f64>, 1>, steps: u64) -> f64 {
+fn driven(method: impl Method<Driven<Hung<f64>, (Sinusoid<2>,)>, 1>, steps: u64) -> f64 {
     let shaken = Hung { l: 1.0, g: 1.0 }.driven_by(Sinusoid::new([0.25, 0.0], 2.0, [0.0; 2]));
     error(&shaken, ([0.5], [0.0]), 10.0, &SHAKEN, method, steps)
 }
 
-fn henon_heiles(method: impl Suits<HenonHeiles<f64>, 2>, steps: u64) -> f64 {
+fn henon_heiles(method: impl Method<HenonHeiles<f64>, 2>, steps: u64) -> f64 {
     let exact = [
         -0.0401942378760688167944025,
         0.679016921772021642134722,

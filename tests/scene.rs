@@ -3,7 +3,7 @@
 
 #![allow(mixed_script_confusables, missing_docs)]
 
-use pendulum_runtime::integrate::method::Suits;
+use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Linear, Sinusoid, Spline, Still};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scene::{Fixed, Handle, Scene, SceneError, Status};
@@ -74,7 +74,7 @@ fn zoo(tolerance: f64) -> Scene<f64> {
 
 fn same_as_scalar<M>(method: M, tolerance: f64)
 where
-    M: Fixed + Suits<Simple<f64>, 1> + Copy,
+    M: Fixed<Simple<f64>, 1> + Method<Simple<f64>, 1>,
 {
     let mut scene = Scene::<f64>::new(256.0).unwrap();
     scene.set_tolerance(tolerance).unwrap();

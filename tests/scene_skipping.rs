@@ -2,7 +2,7 @@
 
 #![allow(mixed_script_confusables, missing_docs)]
 
-use pendulum_runtime::integrate::method::Suits;
+use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Motion, Orders, Sample, Side, Sinusoid};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scene::{Fixed, Scene};
@@ -257,7 +257,9 @@ fn what_parameters_decide_is_computed_once() {
 /// alone.
 macro_rules! neighbours {
     ($name:ident, $float:ident) => {
-        fn $name<M: Fixed + Suits<Hanging<$float>, 1> + Copy>(
+        fn $name<
+            M: Fixed<Hanging<$float>, 1> + Method<Driven<Hanging<$float>, (Sinusoid<2>,)>, 1>,
+        >(
             method: M,
             pattern: fn(usize) -> usize,
         ) {

@@ -4,7 +4,7 @@
 
 #![allow(mixed_script_confusables, missing_docs)]
 
-use pendulum_runtime::integrate::method::Suits;
+use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Linear, Sinusoid};
 use pendulum_runtime::prelude::*;
 
@@ -28,7 +28,7 @@ fn error<D: Dynamics<N, Scalar = f64>, const N: usize>(
     steps: u64,
 ) -> f64
 where
-    Rodas4: Suits<D::System, N>,
+    Rodas4: Method<D, N>,
 {
     let end =
         solve(dynamics, (0.0, 10.0), q, [0.0; N]).method(Rodas4).steps(steps).run().unwrap().end;

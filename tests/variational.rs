@@ -3,7 +3,7 @@
 #![allow(mixed_script_confusables, missing_docs)]
 
 use pendulum_runtime::integrate::AdaptiveStep;
-use pendulum_runtime::integrate::method::Suits;
+use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Linear, Motions};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::{DoubleDouble, Float};
@@ -181,7 +181,7 @@ fn floquet_traces_of_the_mathieu_equation() {
 fn compare<S, const N: usize, const M: usize, X>(
     system: &S,
     motions: &X,
-    method: impl Suits<S, N> + Suits<Variational<S, N, M>, M>,
+    method: impl Method<Driven<S, X>, N> + Method<Driven<Variational<S, N, M>, X>, M>,
     steps: u64,
 ) where
     S: Jacobians<N, Scalar = DoubleDouble, With<DoubleDouble> = S> + Clone,

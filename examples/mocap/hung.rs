@@ -128,7 +128,7 @@ impl Swing {
         bar: &ProgressBar,
     ) -> Result<Self, Box<dyn Error>>
     where
-        Dop853: pendulum_runtime::integrate::method::Suits<D::System, 1>,
+        Dop853: pendulum_runtime::integrate::method::Method<D, 1>,
     {
         let span = (times[0], times[times.len() - 1]);
         let solution = solve(dynamics, span, [0.0], [0.0])

@@ -5,11 +5,10 @@ use crate::numbers::{error, largest, line};
 use crate::reference;
 use crate::report::{Figure, Report, Scale, Test};
 use crate::systems::{Cart, Double, Simple, Spherical};
-use pendulum_runtime::integrate::method::{Control, Stepper};
+use pendulum_runtime::integrate::method::{Controller, Method};
 use pendulum_runtime::integrate::{FixedStep, State};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::{DoubleDouble, Float};
-use pendulum_runtime::system::Prepared;
 
 pub(crate) const TESTS: &[Test] = &[
     Test { id: "S1", title: "long drift", run: drift },
@@ -39,9 +38,8 @@ struct Trace {
 /// Takes `steps` steps of length `h`; plain summation throws the low words away after each.
 fn trace<M>(method: M, h: f64, steps: u64, plain: bool) -> Trace
 where
-    M: for<'a> Stepper<Prepared<'a, Simple<f64>, <Simple<f64> as System<1>>::Prepared>, 1>,
-    FixedStep:
-        for<'a> Control<M, Prepared<'a, Simple<f64>, <Simple<f64> as System<1>>::Prepared>, 1>,
+    M: Method<Simple<f64>, 1>,
+    FixedStep: Controller<M, Simple<f64>, 1>,
 {
     let (system, swing) = (Simple::new(1.0), Swing::from(1.3));
     let energy = |q: f64, v: f64| system.energy(0.0, &[q], &[v], &());
@@ -330,8 +328,8 @@ fn conserved<S, M, const N: usize>(
 ) -> f64
 where
     S: System<N, Scalar = f64, Inputs = ()>,
-    M: for<'a> Stepper<Prepared<'a, S, S::Prepared>, N>,
-    FixedStep: for<'a> Control<M, Prepared<'a, S, S::Prepared>, N>,
+    M: Method<S, N>,
+    FixedStep: Controller<M, S, N>,
 {
     let mut run =
         Integrator::new(system, method, 0.0, q, v).unwrap().control(FixedStep::new(h)).unwrap();

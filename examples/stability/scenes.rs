@@ -4,7 +4,7 @@ use crate::memory::memory;
 use crate::random::Random;
 use crate::report::{Report, Scale};
 use crate::systems::{Double, Hung, Simple};
-use pendulum_runtime::integrate::method::Suits;
+use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Linear, Sinusoid, Spline, Still};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::Lane;
@@ -57,7 +57,7 @@ pub(crate) fn bits(scale: Scale, report: &mut Report) {
 }
 
 /// How many of fifty pendulums end elsewhere in a scene than by `solve`.
-fn alone<M: Fixed + Suits<Simple<f64>, 1> + Copy>(method: M, seconds: u32) -> usize {
+fn alone<M: Fixed<Simple<f64>, 1> + Method<Simple<f64>, 1>>(method: M, seconds: u32) -> usize {
     let mut scene = Scene::<f64>::new(BINARY).unwrap();
     scene.set_tolerance(1e-2).unwrap();
     let mut random = Random::new(9);

@@ -7,11 +7,11 @@ use crate::reference;
 use crate::report::{Report, Scale, Test};
 use crate::systems::{Cart, Damped, Double, Elastic, Kepler, Simple};
 use pendulum_runtime::error::Error;
-use pendulum_runtime::integrate::method::{Control, Stepper};
+use pendulum_runtime::integrate::method::{Controller, Method};
 use pendulum_runtime::integrate::{AdaptiveStep, State};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::{DoubleDouble, Float};
-use pendulum_runtime::system::{Jacobians, Prepared};
+use pendulum_runtime::system::Jacobians;
 
 pub(crate) const TESTS: &[Test] = &[
     Test { id: "S18", title: "stiff spring", run: spring },
@@ -159,8 +159,8 @@ fn spread<S, M, const N: usize>(
 ) -> Spread
 where
     S: Jacobians<N, Scalar = f64, Inputs = ()>,
-    M: for<'a> Stepper<Prepared<'a, S, S::Prepared>, N> + Stepper<S, N>,
-    AdaptiveStep<N>: for<'a> Control<M, Prepared<'a, S, S::Prepared>, N>,
+    M: Method<S, N>,
+    AdaptiveStep<N>: Controller<M, S, N>,
 {
     let run = |tolerance: f64, first: Option<f64>| {
         let problem =

@@ -4,17 +4,13 @@ use crate::error::Error;
 use crate::integrate::events::detector::EventDetector;
 use crate::integrate::events::{Event, Occurrence};
 use crate::integrate::interpolant::Interpolant;
+use crate::integrate::method::Method;
 use crate::integrate::solution::{State, Stats};
 use crate::integrate::step::adaptive::AdaptiveStep;
-use crate::integrate::step::controller::Control;
-use crate::integrate::step::driver::Driver;
-use crate::integrate::step::stepper::Stepper;
+use crate::integrate::step::controller::Controller;
+use crate::integrate::step::integration::Integration;
 use crate::real::Float;
-use crate::system::{Dynamics, Prepared, System};
-
-/// Dynamics that are prepared.
-type Ready<'a, D, const N: usize> =
-    Prepared<'a, D, <<D as Dynamics<N>>::System as System<N>>::Prepared>;
+use crate::system::Dynamics;
 
 /// An integration that goes on for as long as somebody asks for the next step; no step allocates.
 ///
@@ -26,11 +22,10 @@ type Ready<'a, D, const N: usize> =
 pub struct Integrator<'a, const N: usize, D, M, C = AdaptiveStep<N>>
 where
     D: Dynamics<N, Scalar: Float>,
-    M: Stepper<Ready<'a, D, N>, N>,
+    M: Method<D, N>,
 {
-    dynamics: Ready<'a, D, N>,
-    driver: Driver<D::Scalar, N, M, C, <M as Stepper<Ready<'a, D, N>, N>>::Stages>,
-    watch: EventDetector<'a, D::Scalar, N>,
+    integration: Integration<'a, N, D, M, C>,
+    detector: EventDetector<'a, D::Scalar, N>,
     /// What happened in the last call.
     found: Vec<Occurrence<D::Scalar, N>>,
     terminal: Option<usize>,
@@ -40,7 +35,7 @@ where
 impl<'a, const N: usize, D, M> Integrator<'a, N, D, M>
 where
     D: Dynamics<N, Scalar: Float>,
-    M: Stepper<Ready<'a, D, N>, N>,
+    M: Method<D, N>,
 {
     /// At the coordinates `q` and velocities `v` at time `t`, with the default tolerances.
     ///
@@ -53,12 +48,9 @@ where
         q: [D::Scalar; N],
         v: [D::Scalar; N],
     ) -> Result<Self, Error> {
-        let dynamics = Prepared::new(dynamics);
-        let driver = Driver::new(&dynamics, method, AdaptiveStep::new(), t, q, v)?;
         Ok(Self {
-            dynamics,
-            driver,
-            watch: EventDetector::new(&[]),
+            integration: Integration::new(dynamics, method, AdaptiveStep::new(), t, q, v)?,
+            detector: EventDetector::new(&[]),
             found: Vec::new(),
             terminal: None,
             max_steps: 10_000_000,
@@ -69,23 +61,17 @@ where
 impl<'a, const N: usize, D, M, C> Integrator<'a, N, D, M, C>
 where
     D: Dynamics<N, Scalar: Float>,
-    M: Stepper<Ready<'a, D, N>, N>,
+    M: Method<D, N>,
 {
     /// Chooses the steps otherwise: with a [`FixedStep`](crate::integrate::FixedStep) or an [`AdaptiveStep`].
-    pub fn control<B: Control<M, Ready<'a, D, N>, N>>(
+    pub fn control<B: Controller<M, D, N>>(
         self,
         control: B,
     ) -> Result<Integrator<'a, N, D, M, B>, Error> {
         control.check()?;
-        let Self { dynamics, driver, watch, found, terminal, max_steps } = self;
-        Ok(Integrator {
-            dynamics,
-            driver: driver.controlled(control),
-            watch,
-            found,
-            terminal,
-            max_steps,
-        })
+        let Self { integration, detector, found, terminal, max_steps } = self;
+        let integration = integration.controlled(control);
+        Ok(Integrator { integration, detector, found, terminal, max_steps })
     }
 
     /// Looks for events from here on, forwards in time.
@@ -93,8 +79,8 @@ where
     /// A terminal one ends the step and the call that leads to it, with the state at the event; the
     /// next call goes on from there, or from where [`reset`](Self::reset) has put the state.
     pub fn events(mut self, events: &'a [Event<'a, D::Scalar, N>]) -> Result<Self, Error> {
-        self.watch = EventDetector::new(events);
-        self.watch.begin(&mut self.driver, &self.dynamics)?;
+        self.detector = EventDetector::new(events);
+        self.detector.begin(&mut self.integration)?;
         Ok(self)
     }
 
@@ -109,7 +95,7 @@ where
     #[inline]
     pub fn step(&mut self) -> Result<(), Error>
     where
-        C: Control<M, Ready<'a, D, N>, N>,
+        C: Controller<M, D, N>,
     {
         self.found.clear();
         self.terminal = None;
@@ -119,12 +105,12 @@ where
     #[inline]
     fn step_towards(&mut self, target: f64) -> Result<(), Error>
     where
-        C: Control<M, Ready<'a, D, N>, N>,
+        C: Controller<M, D, N>,
     {
-        let event = self.watch.next_time();
-        self.driver.step(&self.dynamics, if event < target { event } else { target })?;
-        self.terminal = self.watch.observe(&mut self.driver, &self.dynamics)?;
-        self.found.extend_from_slice(self.watch.found());
+        let event = self.detector.next_time();
+        self.integration.step(if event < target { event } else { target })?;
+        self.terminal = self.detector.observe(&mut self.integration)?;
+        self.found.extend_from_slice(self.detector.found());
         Ok(())
     }
 
@@ -132,20 +118,21 @@ where
     /// can go back in time do so for an earlier time, if there are no events to look for.
     pub fn advance_to(&mut self, t: f64) -> Result<(), Error>
     where
-        C: Control<M, Ready<'a, D, N>, N>,
+        C: Controller<M, D, N>,
     {
         self.found.clear();
         self.terminal = None;
         if !((self.t() <= t
-            || self.driver.method.goes_back(&self.dynamics) && self.watch.is_idle())
+            || self.integration.method.goes_back(self.integration.dynamics)
+                && self.detector.is_idle())
             && t.is_finite())
         {
             return Err(Error::Interval { start: self.t(), end: t });
         }
         let steps = |stats: &Stats| stats.accepted + stats.rejected;
-        let before = steps(&self.driver.stats);
+        let before = steps(&self.integration.stats);
         while self.t() != t && self.terminal.is_none() {
-            if self.max_steps <= steps(&self.driver.stats) - before {
+            if self.max_steps <= steps(&self.integration.stats) - before {
                 return Err(Error::MaxSteps { t: self.t(), max_steps: self.max_steps });
             }
             self.step_towards(t)?;
@@ -156,8 +143,8 @@ where
     /// Puts the state elsewhere, or the same state to another time; what follows is as if the
     /// integration began there.
     pub fn reset(&mut self, t: f64, q: [D::Scalar; N], v: [D::Scalar; N]) -> Result<(), Error> {
-        self.driver.reset(&self.dynamics, t, q, v)?;
-        self.watch.begin(&mut self.driver, &self.dynamics)
+        self.integration.reset(t, q, v)?;
+        self.detector.begin(&mut self.integration)
     }
 
     /// Moves the coordinates by `high + low` and keeps what rounding has left off, which
@@ -170,7 +157,7 @@ where
     /// # use core::f64::consts::TAU;
     /// # use pendulum_runtime::{error::Error, integrate::*, integrate::method::*, system::*};
     /// # fn wind<'a, S, M, C>(run: &mut Integrator<'a, 1, S, M, C>) -> Result<(), Error>
-    /// # where S: System<1, Scalar = f64, Inputs = ()>, M: Stepper<Prepared<'a, S, S::Prepared>, 1> {
+    /// # where S: System<1, Scalar = f64, Inputs = ()>, M: Method<S, 1> {
     /// // 2π is this number and 2.449…e-16.
     /// let turns = (run.q()[0] / TAU).round();
     /// run.displace([-turns * TAU], [-turns * 2.4492935982947064e-16])?;
@@ -178,8 +165,8 @@ where
     /// # }
     /// ```
     pub fn displace(&mut self, high: [D::Scalar; N], low: [D::Scalar; N]) -> Result<(), Error> {
-        self.driver.displace(&self.dynamics, &high, &low)?;
-        self.watch.begin(&mut self.driver, &self.dynamics)
+        self.integration.displace(&high, &low)?;
+        self.detector.begin(&mut self.integration)
     }
 
     /// The events that happened in the last call of [`step`](Self::step) or
@@ -197,31 +184,31 @@ where
     ///
     /// Methods that need further evaluations for it take them now.
     pub fn interpolant(&mut self) -> Option<Interpolant<D::Scalar, N>> {
-        self.driver.interpolant(&self.dynamics)
+        self.integration.interpolant()
     }
 
     /// The time reached.
     pub fn t(&self) -> f64 {
-        self.driver.t()
+        self.integration.t()
     }
 
     /// The coordinates.
     pub fn q(&self) -> &[D::Scalar; N] {
-        &self.driver.node.q.high
+        &self.integration.end.q.high
     }
 
     /// The velocities; at a kink those beyond it.
     pub fn v(&self) -> &[D::Scalar; N] {
-        &self.driver.node.v.high
+        &self.integration.end.v.high
     }
 
     /// Time, coordinates and velocities together.
     pub fn state(&self) -> State<D::Scalar, N> {
-        State::from(&self.driver.node)
+        State::from(&self.integration.end)
     }
 
     /// What it took so far.
     pub fn stats(&self) -> Stats {
-        self.driver.stats::<Ready<'a, D, N>>()
+        self.integration.stats()
     }
 }

@@ -1,46 +1,133 @@
-//! What a method is: a way to take one step, and for some an estimate of its error.
+//! Methods: the trait that each implements, and what they work with.
+//!
+//! A method outside of this crate implements [`Method`], and [`Adaptive`] if it estimates its error;
+//! the example `own_method` has one.
 
+pub use super::interpolant::{Basis, Interpolant, TERMS};
+pub use super::step::compensated::Compensated;
+pub use super::step::controller::{
+    Controller, ControllerState, StepContext, StepLaw, Trial, Verdict,
+};
+use super::step::diagnose;
+pub use super::step::endpoint::Endpoint;
+pub use super::step::field::{Field, InputsOf};
+pub use super::step::interval::StepInterval;
+use crate::error::Error;
 use crate::integrate::interpolant::hermite;
-pub use crate::integrate::interpolant::{Basis, Interpolant, TERMS};
-pub use crate::integrate::step::compensated::Compensated;
-pub use crate::integrate::step::controller::{Control, ControllerState, StepContext};
-pub use crate::integrate::step::endpoint::Endpoint;
-pub use crate::integrate::step::field::{Accelerations, Counted, Field};
-pub use crate::integrate::step::interval::StepInterval;
-pub use crate::integrate::step::stepper::Stepper;
 use crate::real::Float;
-use crate::system::System;
+use crate::system::Dynamics;
 use crate::time::Time;
 
-/// A method for q̈ = a(t, q, q̇): what is known about it.
+/// A method that integrates the dynamics `D`: q̈ = a(t, q, q̇).
 ///
-/// For which systems it is right, and how it steps them, says [`Suits`].
-pub trait Method: Copy + core::fmt::Debug {
+/// Splitting, Nyström and multistep methods integrate [`VelocityFree`](crate::system::VelocityFree)
+/// systems, those that solve equations by Newton's method systems with
+/// [`Jacobians`](crate::system::Jacobians), which all generated systems have; the others integrate
+/// every system:
+///
+/// ```
+/// # use pendulum_runtime::{integrate::*, system::*};
+/// fn swing<S: VelocityFree<1> + System<1, Scalar = f64, Inputs = ()>>(system: &S) -> Result<f64, Failure<f64, 1>> {
+///     Ok(solve(system, (0.0, 10.0), [1.3], [0.0]).method(Leapfrog).step(0.01).run()?.end.q[0])
+/// }
+/// ```
+///
+/// ```compile_fail,E0277
+/// # use pendulum_runtime::{integrate::*, system::*};
+/// fn swing<S: System<1, Scalar = f64, Inputs = ()>>(system: &S) -> Result<f64, Failure<f64, 1>> {
+///     Ok(solve(system, (0.0, 10.0), [1.3], [0.0]).method(Leapfrog).step(0.01).run()?.end.q[0])
+/// }
+/// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot integrate `{D}`",
+    note = "without `.method(…)`, `solve` chooses for systems that `lagrangian!` has made; for others name a method, as `.method(Dop853)`"
+)]
+pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fmt::Debug {
     /// The name.
     const NAME: &'static str;
-    /// The order p: the error at a fixed time falls with the p-th power of the step.
-    const ORDER: u32;
-    /// The order of the dense output: the power of the step with which the error of the coordinates
-    /// between two steps falls.
-    const DENSE_ORDER: u32;
-    /// What one step leaves behind for its error estimate and dense output.
-    type Stages<T: Float, const N: usize>: Clone + core::fmt::Debug;
+    /// Memory for one step, and for what it leaves to the error estimate, the interpolant and the
+    /// next step.
+    type Workspace: Clone + core::fmt::Debug;
 
-    /// Room for the stages.
-    fn stages<T: Float, const N: usize>() -> Self::Stages<T, N>;
+    /// A workspace before the first step.
+    fn workspace(&self, dynamics: &D) -> Self::Workspace;
 
-    /// Where the equations of the step just taken could not be solved: the time and the index of
-    /// the coordinate; explicit methods have none to solve.
+    /// Goes from `from` to the end of `interval`.
     ///
-    /// Asked for after a step that has ended in numbers that are not finite.
-    fn unsolved<T: Float, const N: usize>(stages: &Self::Stages<T, N>) -> Option<(Time, usize)> {
-        let _ = stages;
+    /// The accelerations at the start may be kept in `from`, those at the end in the endpoint that
+    /// is returned.
+    fn attempt(
+        &self,
+        field: &mut Field<'_, D, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<D::Scalar, N>,
+        workspace: &mut Self::Workspace,
+    ) -> Endpoint<D::Scalar, N>;
+
+    /// The error of the step just taken, times `weights`, as a root mean square; a method that is
+    /// [`Adaptive`] estimates it.
+    fn error(&self, workspace: &Self::Workspace, h: f64, weights: &Weights<N>) -> f64 {
+        let _ = (workspace, h, weights);
+        f64::INFINITY
+    }
+
+    /// The motion within the step just taken; evaluates what it needs beyond the step itself.
+    ///
+    /// Without an interpolant of its own a method has the quintic through coordinates, velocities
+    /// and accelerations at both ends of the step.
+    fn interpolant(
+        &self,
+        field: &mut Field<'_, D, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<D::Scalar, N>,
+        to: &mut Endpoint<D::Scalar, N>,
+        workspace: &mut Self::Workspace,
+    ) -> Interpolant<D::Scalar, N> {
+        let _ = workspace;
+        let (a0, a1) = (from.start_acceleration(field), to.end_acceleration(field));
+        hermite::quintic(interval, from, to, &a0, &a1)
+    }
+
+    /// The cause of a step that ended in numbers that are not finite, if it is found: the first
+    /// such number in the step, taken once more, or the equations that were not solved.
+    fn diagnose(
+        &self,
+        field: &Field<'_, D, N>,
+        interval: &StepInterval,
+        from: &Endpoint<D::Scalar, N>,
+        workspace: &Self::Workspace,
+    ) -> Option<Error> {
+        diagnose::fault(self, field, interval, from, workspace)
+    }
+
+    /// The time and the index of the coordinate where the equations of the step just taken could
+    /// not be solved; explicit methods have none to solve.
+    fn unsolved(&self, workspace: &Self::Workspace) -> Option<(Time, usize)> {
+        let _ = workspace;
         None
+    }
+
+    /// The name of the method that has taken the steps, if that is another one.
+    fn name(&self, workspace: &Self::Workspace) -> &'static str {
+        let _ = workspace;
+        Self::NAME
+    }
+
+    /// Whether the method goes back in time too.
+    fn goes_back(&self, dynamics: &D) -> bool {
+        let _ = dynamics;
+        false
+    }
+
+    /// The next kink after `t`, or the last one before it.
+    fn kink(&self, dynamics: &D, t: f64, backwards: bool) -> Option<f64> {
+        let _ = backwards;
+        dynamics.next_kink(t)
     }
 }
 
-/// A method with an error estimate, which can choose its own steps; others do not compile without a
-/// step size:
+/// A method whose [`error`](Method::error) is an estimate, which can choose its own steps; others do
+/// not compile without a step size:
 ///
 /// ```
 /// # use pendulum_runtime::{integrate::*, system::*};
@@ -62,25 +149,20 @@ pub trait Method: Copy + core::fmt::Debug {
     label = "a step size is missing",
     note = "give `solve(…)` a `.step(h)` or `.steps(n)` and an `Integrator` a `.control(FixedStep::new(h))`, or use `Tsit5` or `Dop853`"
 )]
-pub trait Embedded: Method {
-    /// How the step size answers to the error.
+pub trait Adaptive {
+    /// The order p of the first step: its length h is chosen for an error of about h^p.
+    const ORDER: u32;
+
+    /// The response of the step size to the error.
     const RESPONSE: Response;
 
-    /// The widest gap between two times whose accelerations the estimate contains, in steps: what
-    /// is narrower may stay unseen.
+    /// The widest gap between two times whose accelerations the estimate contains, in steps:
+    /// anything narrower may stay unseen.
     const GAP: f64 = 1.0;
-
-    /// The error of the step just taken, times `weights`, as a root mean square.
-    fn error<T: Float, const N: usize>(
-        &self,
-        stages: &Self::Stages<T, N>,
-        h: f64,
-        weights: &Weights<N>,
-    ) -> f64;
 }
 
-/// How the step size answers to the error: h ← h · safety · err^(−α) · e^β with the error e of the
-/// step before, within limits (Gustafsson 1991).
+/// The response of the step size to the error: h ← h · safety · err^(−α) · e^β with the error e of
+/// the step before, within limits (Gustafsson 1991).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response {
     /// α.
@@ -91,7 +173,7 @@ pub struct Response {
     pub safety: f64,
     /// The least factor between two steps.
     pub least: f64,
-    /// The greatest.
+    /// The greatest factor between two steps.
     pub greatest: f64,
 }
 
@@ -105,7 +187,7 @@ pub struct Weights<const N: usize> {
 }
 
 impl<const N: usize> Weights<N> {
-    /// Σ (e·weight)² over coordinates and velocities; not a number if an error is not.
+    /// Σ (e·weight)² over coordinates and velocities; NaN if an error is.
     #[inline]
     pub fn square_sum<T: Float>(&self, q: &[T; N], v: &[T; N]) -> f64 {
         let mut sum = 0.0;
@@ -115,58 +197,5 @@ impl<const N: usize> Weights<N> {
             sum += q * q + v * v;
         }
         sum
-    }
-}
-
-/// Methods that are right for the system `S`, and how they step it.
-///
-/// Splitting, Nyström and multistep methods want [`VelocityFree`](crate::system::VelocityFree)
-/// systems, those that solve equations by Newton's method [`Jacobians`](crate::system::Jacobians),
-/// which all generated systems have; the others suit every system:
-///
-/// ```
-/// # use pendulum_runtime::{integrate::*, system::*};
-/// fn swing<S: VelocityFree<1> + System<1, Scalar = f64, Inputs = ()>>(system: &S) -> Result<f64, Failure<f64, 1>> {
-///     Ok(solve(system, (0.0, 10.0), [1.3], [0.0]).method(Leapfrog).step(0.01).run()?.end.q[0])
-/// }
-/// ```
-///
-/// ```compile_fail,E0277
-/// # use pendulum_runtime::{integrate::*, system::*};
-/// fn swing<S: System<1, Scalar = f64, Inputs = ()>>(system: &S) -> Result<f64, Failure<f64, 1>> {
-///     Ok(solve(system, (0.0, 10.0), [1.3], [0.0]).method(Leapfrog).step(0.01).run()?.end.q[0])
-/// }
-/// ```
-pub trait Suits<S, const N: usize>: Method
-where
-    S: System<N, Scalar: Float>,
-{
-    /// Goes from `from` to the end of `interval`.
-    ///
-    /// The accelerations at the start may be kept in `from`, those at the end in the node that is
-    /// returned.
-    fn step(
-        &self,
-        field: &mut impl Field<S, N>,
-        interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
-        stages: &mut Self::Stages<S::Scalar, N>,
-    ) -> Endpoint<S::Scalar, N>;
-
-    /// The motion within the step just taken; evaluates what it needs beyond the step itself.
-    ///
-    /// A method without dense output of its own has the quintic through coordinates, velocities and
-    /// accelerations at both ends of the step.
-    fn dense(
-        &self,
-        field: &mut impl Field<S, N>,
-        interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
-        to: &mut Endpoint<S::Scalar, N>,
-        stages: &mut Self::Stages<S::Scalar, N>,
-    ) -> Interpolant<S::Scalar, N> {
-        let _ = stages;
-        let (a0, a1) = (from.start_acceleration(field), to.end_acceleration(field));
-        hermite::quintic(interval, from, to, &a0, &a1)
     }
 }

@@ -3,10 +3,10 @@
 use crate::error::Error;
 use crate::integrate::events::{Occurrence, Status};
 use crate::integrate::interpolant::dense::DenseOutput;
+use crate::integrate::method::Method;
 use crate::integrate::solution::{Failure, Solution, State, Stats};
-use crate::integrate::step::driver::Driver;
 use crate::integrate::step::field::first_in_state;
-use crate::integrate::step::stepper::Stepper;
+use crate::integrate::step::integration::Integration;
 use crate::real::Float;
 use crate::system::{Dynamics, System};
 
@@ -144,25 +144,24 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
         self.output.time(index, self.interval).unwrap_or(self.onwards * f64::INFINITY)
     }
 
-    /// Takes in the step that `driver` has just taken.
+    /// Takes in the step that `integration` has just taken.
     #[inline]
     pub(crate) fn step<D, M, C>(
         &mut self,
-        driver: &mut Driver<T, N, M, C, M::Stages>,
-        dynamics: &D,
+        integration: &mut Integration<'_, N, D, M, C>,
     ) -> Result<(), Error>
     where
         D: Dynamics<N, Scalar = T>,
-        M: Stepper<D, N>,
+        M: Method<D, N>,
     {
-        if self.dense.is_some() || self.onwards * self.next <= self.onwards * driver.t() {
-            self.within(driver, dynamics)?;
+        if self.dense.is_some() || self.onwards * self.next <= self.onwards * integration.t() {
+            self.within(integration)?;
         }
         if let Output::Steps = self.output {
-            if let Some(before) = driver.before_kink() {
+            if let Some(before) = integration.before_kink() {
                 self.push(before.into());
             }
-            self.push((&driver.node).into());
+            self.push((&integration.end).into());
         }
         Ok(())
     }
@@ -178,16 +177,15 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
     /// range before h is.
     fn within<D, M, C>(
         &mut self,
-        driver: &mut Driver<T, N, M, C, M::Stages>,
-        dynamics: &D,
+        integration: &mut Integration<'_, N, D, M, C>,
     ) -> Result<(), Error>
     where
         D: Dynamics<N, Scalar = T>,
-        M: Stepper<D, N>,
+        M: Method<D, N>,
     {
-        let (end, state) = (driver.node.t, State::from(&driver.node));
+        let (end, state) = (integration.end.t, State::from(&integration.end));
         if self.dense.is_some() || 0.0 < self.onwards * end.since(self.next) {
-            let Some(interpolant) = driver.interpolant(dynamics) else { return Ok(()) };
+            let Some(interpolant) = integration.interpolant() else { return Ok(()) };
             let not_finite = |t: f64, q: &[T; N], v: &[T; N]| {
                 let what = first_in_state(&<D::System as System<N>>::FACTS, q, v);
                 what.map_or(Ok(()), |what| Err(Error::NotFinite { t, what, suspects: Vec::new() }))
@@ -197,7 +195,7 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
                 terms.try_for_each(|(q, v)| not_finite(end.to_f64(), q, v))?;
             }
             while 0.0 < self.onwards * end.since(self.next) {
-                let (q, v) = interpolant.at(interpolant.span.fraction(self.next));
+                let (q, v) = interpolant.at(interpolant.interval.fraction(self.next));
                 not_finite(self.next, &q, &v)?;
                 self.push(State { t: self.next, q, v });
                 self.advance();

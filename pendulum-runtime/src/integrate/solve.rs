@@ -3,16 +3,17 @@
 use crate::error::Error;
 use crate::integrate::events::detector::EventDetector;
 use crate::integrate::events::{Event, Status};
+use crate::integrate::method::Method;
 use crate::integrate::methods::auto::Auto;
 use crate::integrate::output::{Output, Recorder, direction, in_order};
 use crate::integrate::solution::{Failure, Solution, State, Stats};
 use crate::integrate::step::adaptive::AdaptiveStep;
-use crate::integrate::step::controller::Control;
-use crate::integrate::step::driver::Driver;
+use crate::integrate::step::controller::Controller;
+use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::fixed::FixedStep;
-use crate::integrate::step::stepper::Stepper;
+use crate::integrate::step::integration::Integration;
 use crate::real::Float;
-use crate::system::{Dynamics, Prepared, System};
+use crate::system::Dynamics;
 
 /// Integrates `dynamics` over the interval `time = (start, end)` in seconds from the coordinates
 /// `q` and the velocities `v`.
@@ -36,7 +37,7 @@ pub fn solve<const N: usize, D: Dynamics<N>>(
         q,
         v,
         method: Auto,
-        control: AdaptiveStep::new(),
+        controller: AdaptiveStep::new(),
         output: Output::End,
         dense: false,
         stops: &[],
@@ -54,7 +55,7 @@ pub struct Solve<'a, const N: usize, D: Dynamics<N>, M, C> {
     q: [D::Scalar; N],
     v: [D::Scalar; N],
     method: M,
-    control: C,
+    controller: C,
     output: Output<'a>,
     dense: bool,
     stops: &'a [f64],
@@ -64,13 +65,13 @@ pub struct Solve<'a, const N: usize, D: Dynamics<N>, M, C> {
 
 impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M, C> {
     /// Uses another method.
-    pub fn method<B: Stepper<D, N>>(self, method: B) -> Solve<'a, N, D, B, C>
+    pub fn method<B: Method<D, N>>(self, method: B) -> Solve<'a, N, D, B, C>
     where
         D: Dynamics<N, Scalar: Float>,
     {
-        let control = self.control;
+        let controller = self.controller;
         let Self { dynamics, time, q, v, output, dense, stops, events, max_steps, .. } = self;
-        Solve { dynamics, time, q, v, method, control, output, dense, stops, events, max_steps }
+        Solve { dynamics, time, q, v, method, controller, output, dense, stops, events, max_steps }
     }
 
     /// Takes equal steps of at most `step` seconds, as [`FixedStep`] describes.
@@ -130,10 +131,10 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
         self
     }
 
-    fn control<B>(self, control: B) -> Solve<'a, N, D, M, B> {
+    fn control<B>(self, controller: B) -> Solve<'a, N, D, M, B> {
         let Self { dynamics, time, q, v, method, output, dense, stops, events, max_steps, .. } =
             self;
-        Solve { dynamics, time, q, v, method, control, output, dense, stops, events, max_steps }
+        Solve { dynamics, time, q, v, method, controller, output, dense, stops, events, max_steps }
     }
 }
 
@@ -144,102 +145,95 @@ impl<const N: usize, D: Dynamics<N>, M> Solve<'_, N, D, M, AdaptiveStep<N>> {
     /// Over two words methods whose coefficients have the digits of `f64` hold none below 2.3e-15:
     /// what lies below counts as that. Only [`Taylor`](crate::integrate::Taylor) goes on to 5e-31.
     pub fn rtol(mut self, rtol: f64) -> Self {
-        self.control = self.control.rtol(rtol);
+        self.controller = self.controller.rtol(rtol);
         self
     }
 
     /// The absolute tolerance of all coordinates and velocities; without this call `rtol`, in the
     /// units of each, as [`AdaptiveStep`] explains.
     pub fn atol(mut self, atol: f64) -> Self {
-        self.control = self.control.atol(atol);
+        self.controller = self.controller.atol(atol);
         self
     }
 
     /// The absolute tolerances of each coordinate and of each velocity.
     pub fn atol_each(mut self, q: [f64; N], v: [f64; N]) -> Self {
-        self.control = self.control.atol_each(q, v);
+        self.controller = self.controller.atol_each(q, v);
         self
     }
 
     /// The length of the first step in seconds, instead of an automatic one.
     pub fn first_step(mut self, step: f64) -> Self {
-        self.control = self.control.first_step(step);
+        self.controller = self.controller.first_step(step);
         self
     }
 
     /// The greatest length of a step in seconds.
     pub fn max_step(mut self, step: f64) -> Self {
-        self.control = self.control.max_step(step);
+        self.controller = self.controller.max_step(step);
         self
     }
 }
 
-impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N, D, M, C> {
+impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, M, C> {
     /// Integrates.
     ///
     /// On failure the error comes with everything reached until then. A method that is wrong for
     /// the system or lacks a step size does not compile.
     pub fn run(self) -> Result<Solution<D::Scalar, N>, Failure<D::Scalar, N>>
     where
-        M: Stepper<Prepared<'a, D, <D::System as System<N>>::Prepared>, N>,
-        C: Control<M, Prepared<'a, D, <D::System as System<N>>::Prepared>, N>,
+        M: Method<D, N>,
+        C: Controller<M, D, N>,
     {
         let mut recorder = Recorder::new(self.output, self.time);
         let given = State { t: self.time.0, q: self.q, v: self.v };
-        let dynamics = Prepared::new(self.dynamics);
-        match self.check(&dynamics).and_then(|()| {
-            Driver::new(&dynamics, self.method, self.control, self.time.0, self.q, self.v)
+        match self.check().and_then(|()| {
+            let (t, q, v) = (self.time.0, self.q, self.v);
+            Integration::new(self.dynamics, self.method, self.controller, t, q, v)
         }) {
             Err(error) => Err(recorder.fail(error, given, Stats::new(M::NAME))),
-            Ok(driver) => {
-                let mut driver = driver.over((self.time.1 - self.time.0).abs());
-                match self.integrate(&dynamics, &mut driver, &mut recorder) {
-                    Err(error) => Err(recorder.fail(
-                        error,
-                        State::from(&driver.node),
-                        driver.stats::<Prepared<'a, D, _>>(),
-                    )),
-                    Ok(status) => Ok(recorder.finish(
-                        State::from(&driver.node),
-                        status,
-                        driver.stats::<Prepared<'a, D, _>>(),
-                    )),
+            Ok(integration) => {
+                let mut integration = integration.over((self.time.1 - self.time.0).abs());
+                let ended = self.integrate(&mut integration, &mut recorder);
+                let (end, stats) = (State::from(&integration.end), integration.stats());
+                match ended {
+                    Err(error) => Err(recorder.fail(error, end, stats)),
+                    Ok(status) => Ok(recorder.finish(end, status, stats)),
                 }
             }
         }
     }
 
-    fn integrate<P>(
+    fn integrate(
         &self,
-        dynamics: &P,
-        driver: &mut Driver<D::Scalar, N, M, C, M::Stages>,
+        integration: &mut Integration<'_, N, D, M, C>,
         recorder: &mut Recorder<'_, D::Scalar, N>,
     ) -> Result<Status, Error>
     where
-        P: Dynamics<N, Scalar = D::Scalar>,
-        M: Stepper<P, N>,
-        C: Control<M, P, N>,
+        M: Method<D, N>,
+        C: Controller<M, D, N>,
     {
         let end = self.time.1;
         let onwards = direction(self.time.0, end);
-        let ahead = |driver: &Driver<_, N, _, _, _>, t| onwards * driver.node.t.since(t) < 0.0;
+        let ahead = |at: &Endpoint<D::Scalar, N>, t| onwards * at.t.since(t) < 0.0;
         let mut stops = self.stops.iter().copied().peekable();
-        let mut watch = EventDetector::new(self.events);
-        recorder.begin(State::from(&driver.node), self.dense);
-        watch.begin(driver, dynamics)?;
-        while ahead(driver, end) {
-            if self.max_steps <= driver.stats.accepted + driver.stats.rejected {
-                return Err(Error::MaxSteps { t: driver.t(), max_steps: self.max_steps });
+        let mut detector = EventDetector::new(self.events);
+        recorder.begin(State::from(&integration.end), self.dense);
+        detector.begin(integration)?;
+        while ahead(&integration.end, end) {
+            let Stats { accepted, rejected, .. } = integration.stats;
+            if self.max_steps <= accepted + rejected {
+                return Err(Error::MaxSteps { t: integration.t(), max_steps: self.max_steps });
             }
-            while stops.next_if(|stop| !ahead(driver, *stop)).is_some() {}
-            let (stop, event) = (stops.peek().copied().unwrap_or(end), watch.next_time());
-            driver.step(dynamics, if event < stop { event } else { stop })?;
-            if !ahead(driver, end) {
-                driver.look(dynamics)?;
+            while stops.next_if(|stop| !ahead(&integration.end, *stop)).is_some() {}
+            let (stop, event) = (stops.peek().copied().unwrap_or(end), detector.next_time());
+            integration.step(if event < stop { event } else { stop })?;
+            if !ahead(&integration.end, end) {
+                integration.look()?;
             }
-            let terminal = watch.observe(driver, dynamics)?;
-            recorder.step(driver, dynamics)?;
-            recorder.events(watch.found());
+            let terminal = detector.observe(integration)?;
+            recorder.step(integration)?;
+            recorder.events(detector.found());
             if let Some(event) = terminal {
                 return Ok(Status::Event(event));
             }
@@ -247,22 +241,21 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         Ok(Status::Completed)
     }
 
-    fn check<P>(&self, dynamics: &P) -> Result<(), Error>
+    fn check(&self) -> Result<(), Error>
     where
-        P: Dynamics<N, Scalar = D::Scalar>,
-        M: Stepper<P, N>,
-        C: Control<M, P, N>,
+        M: Method<D, N>,
+        C: Controller<M, D, N>,
     {
         let (start, end) = self.time;
         if !((end - start).is_finite()
-            && (start <= end || self.method.goes_back(dynamics) && self.events.is_empty()))
+            && (start <= end || self.method.goes_back(self.dynamics) && self.events.is_empty()))
         {
             return Err(Error::Interval { start, end });
         }
-        self.control.check()?;
+        self.controller.check()?;
         self.output.check(start, end)?;
         in_order("t_stops", self.stops, start, end)?;
-        if (self.max_steps as f64) < self.control.least_steps((end - start).abs()) {
+        if (self.max_steps as f64) < self.controller.least_steps((end - start).abs()) {
             return Err(Error::MaxSteps { t: start, max_steps: self.max_steps });
         }
         Ok(())

@@ -3,7 +3,7 @@
 
 use super::{InputSeries, Jets};
 use crate::motion::{AnalyticMotions, PerhapsAnalytic, Side};
-use crate::system::{Driven, Dynamics, NoInputs, Prepared, Purpose, System};
+use crate::system::{Driven, Dynamics, NoInputs, Purpose, System};
 use crate::time::Time;
 
 /// Dynamics of which [`Taylor`](crate::integrate::Taylor) can compute the jets.
@@ -131,22 +131,6 @@ impl<const N: usize, S: Jets<N>, M: PerhapsAnalytic<S::Inputs, S::Scalar>> Maybe
     of_motions!(next_break last_break last_kink);
 }
 
-impl<const N: usize, D: JetDynamics<N>> JetDynamics<N>
-    for Prepared<'_, D, <D::System as System<N>>::Prepared>
-{
-    of_inner!(self, self.dynamics(); next_break last_break last_kink);
-}
-
-impl<const N: usize, D: MaybeJets<N>> MaybeJets<N>
-    for Prepared<'_, D, <D::System as System<N>>::Prepared>
-{
-    fn is_analytic(&self) -> bool {
-        self.dynamics().is_analytic()
-    }
-
-    of_inner!(self, self.dynamics(); next_break last_break last_kink);
-}
-
 /// Dynamics whose motions have turned out to be analytic.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Known<'a, D>(pub(crate) &'a D);
@@ -178,13 +162,14 @@ impl<const N: usize, D: Dynamics<N>> Dynamics<N> for Known<'_, D> {
     }
 
     #[inline]
-    fn accelerations_at(
+    fn accelerations_with(
         &self,
+        prepared: &<D::System as System<N>>::Prepared,
         t: Time,
         side: Side,
         q: &[D::Scalar; N],
         v: &[D::Scalar; N],
     ) -> [D::Scalar; N] {
-        self.0.accelerations_at(t, side, q, v)
+        self.0.accelerations_with(prepared, t, side, q, v)
     }
 }

@@ -85,7 +85,6 @@ pub use scheme::{Fixed, Scheme};
 pub use screen::Return;
 pub use snapshot::{GroupState, Snapshot};
 
-use crate::integrate::method::Suits;
 use crate::motion::Motion;
 use crate::real::{Float, Lane};
 use clock::Clock;
@@ -252,7 +251,7 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// Nothing of that type hangs here yet.
-    pub fn set_method<S: Hung<T, N>, const N: usize, M: Fixed + Suits<S, N>>(
+    pub fn set_method<S: Hung<T, N>, const N: usize, M: Fixed<S, N>>(
         &mut self,
         _: M,
     ) -> Result<(), SceneError> {

@@ -1,9 +1,8 @@
 //! The fixed-step methods of a scene as data: where in a tick they look, and with which weights.
 
-use crate::integrate::method::Method;
 use crate::integrate::methods::{leapfrog, srkn6b};
 use crate::integrate::{Leapfrog, Rk4, Srkn6b};
-use crate::system::Facts;
+use crate::system::{Facts, System, VelocityFree};
 
 /// A fixed-step method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -19,21 +18,22 @@ pub enum Scheme {
     Rk4,
 }
 
-/// The methods of [`integrate`](crate::integrate) that a scene has.
-pub trait Fixed: Method {
+/// The methods of [`integrate`](crate::integrate) that a scene has, for the systems `S` that they
+/// are right for.
+pub trait Fixed<S, const N: usize> {
     /// The method as data.
     const SCHEME: Scheme;
 }
 
-impl Fixed for Leapfrog {
+impl<S: VelocityFree<N>, const N: usize> Fixed<S, N> for Leapfrog {
     const SCHEME: Scheme = Scheme::Leapfrog;
 }
 
-impl Fixed for Srkn6b {
+impl<S: VelocityFree<N>, const N: usize> Fixed<S, N> for Srkn6b {
     const SCHEME: Scheme = Scheme::Srkn6b;
 }
 
-impl Fixed for Rk4 {
+impl<S: System<N>, const N: usize> Fixed<S, N> for Rk4 {
     const SCHEME: Scheme = Scheme::Rk4;
 }
 

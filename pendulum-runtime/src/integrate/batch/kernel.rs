@@ -9,17 +9,18 @@
 
 use super::{Batch, Batched, Outcome, Problem, W, outcome};
 use crate::error::Error;
+use crate::integrate::method::Method;
 use crate::integrate::methods::taylor::{GAP, LAST_ORDERS, Rule, Taylor, largest, rest};
 use crate::integrate::solution::{State, Stats};
 use crate::integrate::step::adaptive::resolution;
 use crate::integrate::step::compensated::{Compensated, splitter};
-use crate::integrate::step::diagnose::blame;
+use crate::integrate::step::diagnose;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::fast_exp2::power;
+use crate::integrate::step::field::Field;
 use crate::integrate::step::field::coordinate;
 use crate::integrate::step::gap;
 use crate::integrate::step::interval::StepInterval;
-use crate::integrate::step::stepper::Stepper;
 use crate::jet::{Jets, Orders, Path};
 use crate::real::{Float, Lane, Lanes, Real};
 use crate::simd::Work;
@@ -277,7 +278,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
                 None
             };
             let (taken, tried) = if error.is_some() { (steps - 1, steps) } else { (steps, steps) };
-            let mut stats = Stats::new(<Taylor as Stepper<S, N>>::NAME);
+            let mut stats = Stats::new(<Taylor as Method<S, N>>::NAME);
             (stats.accepted, stats.evaluations) = (taken, tried * self.rule.order as u64);
             let time = self.problems[index].time;
             if error.is_some() {
@@ -308,7 +309,9 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
     ) -> Error {
         let method = &self.batch.method;
         let system = &self.problems[self.problem[l].unwrap_or(0)].system;
-        blame(method, system, interval, from, &Stepper::<S, N>::workspace(method, system))
+        let prepared = system.prepare();
+        let field = Field::new(system, &prepared);
+        diagnose::cause(method, &field, interval, from, &Method::<S, N>::workspace(method, system))
     }
 
     /// The error for a step of a lane that is too short.
@@ -383,7 +386,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             Ok(true) => None,
             Err(error) => Some(error),
         };
-        let stats = Stats::new(<Taylor as Stepper<S, N>>::NAME);
+        let stats = Stats::new(<Taylor as Method<S, N>>::NAME);
         self.outcomes[self.next] = Some(outcome(problem.time, given, stats, error));
     }
 

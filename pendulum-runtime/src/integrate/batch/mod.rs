@@ -7,8 +7,8 @@ use crate::integrate::methods::taylor::{Rule, Taylor};
 use crate::integrate::output::{Output, Recorder};
 use crate::integrate::solution::{Failure, Solution, State, Stats};
 use crate::integrate::step::adaptive::AdaptiveStep;
-use crate::integrate::step::controller::Control;
-use crate::integrate::step::driver::check_start;
+use crate::integrate::step::controller::Controller;
+use crate::integrate::step::integration::check_start;
 use crate::jet::Jets;
 use crate::real::{Float, Lane, Lanes};
 use crate::simd;
@@ -161,7 +161,7 @@ impl<const N: usize> Batch<N> {
         &self,
         problems: &[Problem<S, N>],
     ) -> Result<Vec<Outcome<S::Scalar, N>>, Error> {
-        <AdaptiveStep<N> as Control<Taylor, S, N>>::check(&self.control)?;
+        <AdaptiveStep<N> as Controller<Taylor, S, N>>::check(&self.control)?;
         let Some(mut run) = kernel::Run::new(self, problems) else { return Ok(Vec::new()) };
         simd::widest(kernel::Steps(&mut run));
         Ok(run.outcomes())

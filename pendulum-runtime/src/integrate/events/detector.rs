@@ -4,11 +4,11 @@ use crate::error::Error;
 use crate::integrate::events::root::{Dip, Point, dip, root};
 use crate::integrate::events::{Condition, Direction, Event, Occurrence};
 use crate::integrate::interpolant::Interpolant;
+use crate::integrate::method::Method;
 use crate::integrate::output::in_order;
 use crate::integrate::solution::State;
-use crate::integrate::step::driver::Driver;
 use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::stepper::Stepper;
+use crate::integrate::step::integration::Integration;
 use crate::real::Float;
 use crate::system::{Dynamics, scalar_time};
 use crate::time::Time;
@@ -70,58 +70,56 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         &self.found
     }
 
-    /// Begins at the state of `driver`.
+    /// Begins at the state of `integration`.
     pub(crate) fn begin<D, M, C>(
         &mut self,
-        driver: &mut Driver<T, N, M, C, M::Stages>,
-        dynamics: &D,
+        integration: &mut Integration<'_, N, D, M, C>,
     ) -> Result<(), Error>
     where
         D: Dynamics<N, Scalar = T>,
-        M: Stepper<D, N>,
+        M: Method<D, N>,
     {
         if self.is_idle() {
             return Ok(());
         }
-        let a = driver.accelerations(dynamics);
+        let a = integration.accelerations();
         self.found.clear();
-        self.look(&driver.node, &a)
+        self.look(&integration.end, &a)
     }
 
-    /// Finds what happened in the step that `driver` has just taken; if a terminal event did, puts
+    /// Finds what happened in the step that `integration` has just taken; if a terminal event did, puts
     /// it back there and gives the index.
     ///
     /// On failure it is put back to the start of the step.
     pub(crate) fn observe<D, M, C>(
         &mut self,
-        driver: &mut Driver<T, N, M, C, M::Stages>,
-        dynamics: &D,
+        integration: &mut Integration<'_, N, D, M, C>,
     ) -> Result<Option<usize>, Error>
     where
         D: Dynamics<N, Scalar = T>,
-        M: Stepper<D, N>,
+        M: Method<D, N>,
     {
         if self.is_idle() {
             return Ok(None);
         }
         let rooted = self.events.iter().any(|event| matches!(event.condition, Condition::Root(_)));
-        let interpolant = if rooted { driver.interpolant(dynamics) } else { None };
-        let (end, beyond) = driver.ends();
+        let interpolant = if rooted { integration.interpolant() } else { None };
+        let (end, beyond) = integration.ends();
         match self.step(interpolant.as_ref(), &end, beyond.as_ref()) {
             Err(error) => {
-                driver.retreat();
-                let a = driver.accelerations(dynamics);
+                integration.retreat();
+                let a = integration.accelerations();
                 self.found.clear();
                 // It has looked there before.
-                self.look(&driver.node, &a).ok();
+                self.look(&integration.end, &a).ok();
                 Err(error)
             }
             Ok(None) => Ok(None),
             Ok(Some(last)) => {
                 if last.time != end.t {
-                    driver.cut(last.time, &last.state);
-                    let a = driver.accelerations(dynamics);
-                    self.look(&driver.node, &a)?;
+                    integration.cut(last.time, &last.state);
+                    let a = integration.accelerations();
+                    self.look(&integration.end, &a)?;
                     for occurrence in
                         self.found.iter().filter(|occurrence| occurrence.time == last.time)
                     {

@@ -2,19 +2,17 @@
 
 use crate::error::Error;
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::method::{Method, Suits};
+use crate::integrate::method::Method;
 use crate::integrate::methods::dop853::Dop853;
 use crate::integrate::methods::picard::{LaneDynamics, Picard};
-use crate::integrate::methods::srkn14a::{self, Srkn14a};
+use crate::integrate::methods::srkn14a;
 use crate::integrate::methods::taylor::{Taylor, WorkspaceOf};
 use crate::integrate::schemes::splitting::drift_kick_drift_in_two_words;
 use crate::integrate::step::adaptive::AdaptiveStep;
-use crate::integrate::step::controller::{Control, ControllerState, StepContext};
-use crate::integrate::step::diagnose;
+use crate::integrate::step::controller::{Controller, ControllerState, StepContext, StepLaw};
 use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::{Counted, Field};
+use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
-use crate::integrate::step::stepper::Stepper;
 use crate::jet::{Jets, Known, MaybeJets, Orders};
 use crate::real::Float;
 use crate::system::{Dynamics, System};
@@ -68,10 +66,10 @@ pub struct Workspace<R, P, X> {
     taylor: X,
 }
 
-/// The room for the dynamics `D`.
+/// The workspace for the dynamics `D`.
 type AnyWorkspace<D, const N: usize> = Workspace<
-    <Dop853 as Method>::Stages<<D as Dynamics<N>>::Scalar, N>,
-    <Picard as Stepper<D, N>>::Stages,
+    <Dop853 as Method<D, N>>::Workspace,
+    <Picard as Method<D, N>>::Workspace,
     WorkspaceOf<D, N>,
 >;
 
@@ -104,39 +102,24 @@ fn goes_by_series<D: MaybeJets<N>, const N: usize>(dynamics: &D) -> bool {
     <D::System as System<N>>::FACTS.smooth && dynamics.is_analytic()
 }
 
-impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Stepper<D, N> for Auto {
+impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Method<D, N> for Auto {
     const NAME: &'static str = "Auto";
-    type Stages = AnyWorkspace<D, N>;
-
-    fn goes_back(&self, dynamics: &D) -> bool {
-        goes_by_series(dynamics)
-    }
+    type Workspace = AnyWorkspace<D, N>;
 
     fn workspace(&self, dynamics: &D) -> AnyWorkspace<D, N> {
-        let (dop853, taylor) = (Dop853::stages(), Taylor::new().workspace(&Known(dynamics)));
         Workspace {
             choice: None,
             chosen_for: None,
-            dop853,
+            dop853: Dop853.workspace(dynamics),
             picard: Picard.workspace(dynamics),
-            taylor,
-        }
-    }
-
-    fn name(&self, workspace: &AnyWorkspace<D, N>) -> &'static str {
-        match workspace.choice {
-            None => "Auto",
-            Some(Choice::Dop853) => <Dop853 as Method>::NAME,
-            Some(Choice::Picard) => <Picard as Stepper<D, N>>::NAME,
-            Some(Choice::Srkn14a) => <Srkn14a as Method>::NAME,
-            Some(Choice::Taylor) => <Taylor as Stepper<Known<'_, D>, N>>::NAME,
+            taylor: Taylor::new().workspace(&Known(dynamics)),
         }
     }
 
     #[inline]
-    fn advance(
+    fn attempt(
         &self,
-        field: &mut Counted<'_, D>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         workspace: &mut AnyWorkspace<D, N>,
@@ -146,56 +129,73 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Stepper<D, N> for Auto {
             // The stages of the others would see a kink at the start from the wrong side.
             workspace.choice = Some(Choice::Taylor);
             let known = Known(field.dynamics);
-            let mut series = Counted::new(&known);
-            let to = Taylor::new().advance(&mut series, interval, from, &mut workspace.taylor);
+            let mut series = Field::new(&known, field.prepared);
+            let to = Taylor::new().attempt(&mut series, interval, from, &mut workspace.taylor);
             field.evaluations += series.evaluations;
             to
         } else if <D::System as System<N>>::FACTS.velocity_free {
             workspace.choice = Some(Choice::Srkn14a);
-            Symplectic.step(field, interval, from, &mut ())
+            Symplectic.attempt(field, interval, from, &mut ())
         } else {
             workspace.choice = Some(Choice::Dop853);
-            Dop853.step(field, interval, from, &mut workspace.dop853)
+            Dop853.attempt(field, interval, from, &mut workspace.dop853)
         }
     }
 
-    fn within(
+    fn interpolant(
         &self,
-        field: &mut Counted<'_, D>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         to: &mut Endpoint<D::Scalar, N>,
         workspace: &mut AnyWorkspace<D, N>,
     ) -> Interpolant<D::Scalar, N> {
         match workspace.choice {
-            Some(Choice::Taylor) => Taylor::new().within(
-                &mut Counted::new(&Known(field.dynamics)),
-                interval,
-                from,
-                to,
-                &mut workspace.taylor,
-            ),
-            Some(Choice::Picard) => Picard.within(field, interval, from, to, &mut workspace.picard),
-            Some(Choice::Srkn14a) => Symplectic.dense(field, interval, from, to, &mut ()),
-            _ => Dop853.dense(field, interval, from, to, &mut workspace.dop853),
+            Some(Choice::Taylor) => {
+                let known = Known(field.dynamics);
+                let mut series = Field::new(&known, field.prepared);
+                let taylor = &mut workspace.taylor;
+                Taylor::new().interpolant(&mut series, interval, from, to, taylor)
+            }
+            Some(Choice::Picard) => {
+                Picard.interpolant(field, interval, from, to, &mut workspace.picard)
+            }
+            Some(Choice::Srkn14a) => Symplectic.interpolant(field, interval, from, to, &mut ()),
+            _ => Dop853.interpolant(field, interval, from, to, &mut workspace.dop853),
         }
     }
 
-    fn fault(
+    fn diagnose(
         &self,
-        dynamics: &D,
+        field: &Field<'_, D, N>,
         interval: &StepInterval,
         from: &Endpoint<D::Scalar, N>,
         workspace: &AnyWorkspace<D, N>,
     ) -> Option<Error> {
         match workspace.choice {
             Some(Choice::Taylor) => {
-                Taylor::new().fault(&Known(dynamics), interval, from, &workspace.taylor)
+                let known = Known(field.dynamics);
+                let series = Field::new(&known, field.prepared);
+                Taylor::new().diagnose(&series, interval, from, &workspace.taylor)
             }
-            Some(Choice::Picard) => Picard.fault(dynamics, interval, from, &workspace.picard),
-            Some(Choice::Srkn14a) => diagnose::fault(&Symplectic, dynamics, interval, from, &()),
-            _ => diagnose::fault(&Dop853, dynamics, interval, from, &workspace.dop853),
+            Some(Choice::Picard) => Picard.diagnose(field, interval, from, &workspace.picard),
+            Some(Choice::Srkn14a) => Symplectic.diagnose(field, interval, from, &()),
+            _ => Dop853.diagnose(field, interval, from, &workspace.dop853),
         }
+    }
+
+    fn name(&self, workspace: &AnyWorkspace<D, N>) -> &'static str {
+        match workspace.choice {
+            None => "Auto",
+            Some(Choice::Dop853) => <Dop853 as Method<D, N>>::NAME,
+            Some(Choice::Picard) => <Picard as Method<D, N>>::NAME,
+            Some(Choice::Srkn14a) => <Symplectic as Method<D, N>>::NAME,
+            Some(Choice::Taylor) => <Taylor as Method<Known<'_, D>, N>>::NAME,
+        }
+    }
+
+    fn goes_back(&self, dynamics: &D) -> bool {
+        goes_by_series(dynamics)
     }
 
     fn kink(&self, dynamics: &D, t: f64, backwards: bool) -> Option<f64> {
@@ -203,7 +203,7 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Stepper<D, N> for Auto {
     }
 }
 
-impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Control<Auto, D, N> for AdaptiveStep<N> {
+impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Controller<Auto, D, N> for AdaptiveStep<N> {
     fn check(&self) -> Result<(), Error> {
         self.positive::<D::Scalar>()
     }
@@ -212,12 +212,13 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Control<Auto, D, N> for 
         self.least_steps_over(length)
     }
 
+    /// Leaves the step to the method chosen.
     fn step(
         &self,
-        memory: &mut ControllerState,
-        course: StepContext<'_, '_, D, Auto, N>,
+        state: &mut ControllerState,
+        context: StepContext<'_, '_, D, Auto, N>,
     ) -> Result<StepInterval, Error> {
-        let StepContext { field, from, to, stages: workspace, target, stats, .. } = course;
+        let StepContext { field, from, to, workspace, target, stats, .. } = context;
         let dynamics = field.dynamics;
         let backwards = target < from.t.to_f64();
         let (rtol, _) = self.tolerances::<D::Scalar>();
@@ -227,55 +228,36 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Control<Auto, D, N> for 
             let choice = Auto::adaptive(dynamics, rtol, backwards);
             (workspace.choice, workspace.chosen_for) = (Some(choice), Some(rtol));
         }
-        if workspace.choice == Some(Choice::Taylor) {
-            let known = Known(dynamics);
-            let mut series = Counted::new(&known);
-            let stages = &mut workspace.taylor;
-            let taken = Control::step(
-                self,
-                memory,
-                StepContext {
-                    method: &Taylor::new(),
-                    field: &mut series,
+        match workspace.choice {
+            Some(Choice::Taylor) => {
+                let known = Known(dynamics);
+                let field_of_known = &mut Field::new(&known, field.prepared);
+                let (method, workspace) = (&Taylor::new(), &mut workspace.taylor);
+                let context = StepContext {
+                    method,
+                    field: field_of_known,
                     from,
                     to,
-                    stages,
+                    workspace,
                     target,
                     stats,
-                },
-            );
-            field.evaluations += series.evaluations;
-            return taken;
+                };
+                let taken = self.take_step(state, context);
+                field.evaluations += field_of_known.evaluations;
+                taken
+            }
+            Some(Choice::Picard) => {
+                let (method, workspace) = (&Picard, &mut workspace.picard);
+                let context = StepContext { method, field, from, to, workspace, target, stats };
+                self.take_step(state, context)
+            }
+            _ => {
+                Controller::<Dop853, D, N>::check(self)?;
+                let (method, workspace) = (&Dop853, &mut workspace.dop853);
+                let context = StepContext { method, field, from, to, workspace, target, stats };
+                self.take_step(state, context)
+            }
         }
-        if workspace.choice == Some(Choice::Picard) {
-            return Control::step(
-                self,
-                memory,
-                StepContext {
-                    method: &Picard,
-                    field,
-                    from,
-                    to,
-                    stages: &mut workspace.picard,
-                    target,
-                    stats,
-                },
-            );
-        }
-        Control::<Dop853, D, N>::check(self)?;
-        Control::step(
-            self,
-            memory,
-            StepContext {
-                method: &Dop853,
-                field,
-                from,
-                to,
-                stages: &mut workspace.dop853,
-                target,
-                stats,
-            },
-        )
     }
 }
 
@@ -283,24 +265,20 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Control<Auto, D, N> for 
 #[derive(Clone, Copy, Debug)]
 struct Symplectic;
 
-impl Method for Symplectic {
-    const NAME: &'static str = <Srkn14a as Method>::NAME;
-    const ORDER: u32 = Srkn14a::ORDER;
-    const DENSE_ORDER: u32 = Srkn14a::DENSE_ORDER;
-    type Stages<T: Float, const N: usize> = ();
+impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Symplectic {
+    const NAME: &'static str = srkn14a::NAME;
+    type Workspace = ();
 
-    fn stages<T: Float, const N: usize>() {}
-}
+    fn workspace(&self, _: &D) {}
 
-impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Symplectic {
     #[inline]
-    fn step(
+    fn attempt(
         &self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
+        from: &mut Endpoint<D::Scalar, N>,
         (): &mut (),
-    ) -> Endpoint<S::Scalar, N> {
+    ) -> Endpoint<D::Scalar, N> {
         drift_kick_drift_in_two_words(&srkn14a::SPLITTING, field, interval, from)
     }
 }

@@ -1,14 +1,14 @@
 //! The method of Dormand and Prince of order 8, in the form of Hairer.
 
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::method::{Embedded, Method, Response, Suits, Weights};
+use crate::integrate::method::{Adaptive, Method, Response, Weights};
 use crate::integrate::schemes::runge_kutta::{Row, Slopes};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::gap::widest;
 use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
-use crate::system::System;
+use crate::system::Dynamics;
 
 /// The explicit Runge–Kutta method of order 8 of Dormand and Prince with error estimates of orders
 /// 5 and 3: twelve evaluations a step, adaptive.
@@ -41,27 +41,22 @@ impl Dop853 {
     }
 }
 
-impl Method for Dop853 {
+impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Dop853 {
     const NAME: &'static str = "Dop853";
-    const ORDER: u32 = 8;
-    const DENSE_ORDER: u32 = 7;
-    type Stages<T: Float, const N: usize> = Stages<T, N>;
+    type Workspace = Stages<D::Scalar, N>;
 
-    fn stages<T: Float, const N: usize>() -> Stages<T, N> {
-        let zero = [T::from_f64(0.0); N];
-        Stages { k: Slopes::zero(), increment: (zero, zero) }
+    fn workspace(&self, _: &D) -> Self::Workspace {
+        Stages::zero()
     }
-}
 
-impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Dop853 {
     #[inline]
-    fn step(
+    fn attempt(
         &self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
-        stages: &mut Stages<S::Scalar, N>,
-    ) -> Endpoint<S::Scalar, N> {
+        from: &mut Endpoint<D::Scalar, N>,
+        stages: &mut Stages<D::Scalar, N>,
+    ) -> Endpoint<D::Scalar, N> {
         let k = &mut stages.k;
         k.first(field, from);
         k.stage(field, interval, from, 1, C[1], A1);
@@ -79,14 +74,14 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Dop853 {
         from.advanced(interval, &stages.increment.0, &stages.increment.1)
     }
 
-    fn dense(
+    fn interpolant(
         &self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
-        to: &mut Endpoint<S::Scalar, N>,
-        stages: &mut Stages<S::Scalar, N>,
-    ) -> Interpolant<S::Scalar, N> {
+        from: &mut Endpoint<D::Scalar, N>,
+        to: &mut Endpoint<D::Scalar, N>,
+        stages: &mut Stages<D::Scalar, N>,
+    ) -> Interpolant<D::Scalar, N> {
         let k = &mut stages.k;
         k.v[12] = to.v.high;
         k.a[12] = to.end_acceleration(field);
@@ -94,7 +89,7 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Dop853 {
         k.stage(field, interval, from, 14, C[14], A14);
         k.stage(field, interval, from, 15, C[15], A15);
         let mut interpolant = Interpolant::hermite(interval, from, to, &k.a[0], &k.a[12]);
-        let h = interval.length::<S::Scalar>();
+        let h = interval.length::<D::Scalar>();
         for (term, (q, v)) in
             [k.weighted(D3), k.weighted(D4), k.weighted(D5), k.weighted(D6)].into_iter().enumerate()
         {
@@ -104,28 +99,14 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Dop853 {
         interpolant.terms = 7;
         interpolant
     }
-}
-
-impl Embedded for Dop853 {
-    // A little memory of the last error and a safety factor below the usual 0.9 reject one step in
-    // twenty instead of one in five, and take a tenth fewer evaluations for the same error of
-    // pendulums and orbits.
-    const RESPONSE: Response =
-        Response { alpha: 0.11, beta: 0.02, safety: 0.8, least: 1.0 / 3.0, greatest: 6.0 };
-    const GAP: f64 = widest(&C, &E5);
 
     #[inline]
-    fn error<T: Float, const N: usize>(
-        &self,
-        stages: &Stages<T, N>,
-        h: f64,
-        weights: &Weights<N>,
-    ) -> f64 {
+    fn error(&self, stages: &Stages<D::Scalar, N>, h: f64, weights: &Weights<N>) -> f64 {
         let (dq, dv) = &stages.increment;
         let (q5, v5) = stages.k.weighted(E5);
         let (q3, v3) = stages.k.weighted(B3);
         let fifth = weights.square_sum(&q5, &v5);
-        let third = weights.square_sum::<T>(
+        let third = weights.square_sum::<D::Scalar>(
             &core::array::from_fn(|i| dq[i] - q3[i]),
             &core::array::from_fn(|i| dv[i] - v3[i]),
         );
@@ -137,6 +118,16 @@ impl Embedded for Dop853 {
     }
 }
 
+impl Adaptive for Dop853 {
+    const ORDER: u32 = 8;
+    // A little memory of the last error and a safety factor below the usual 0.9 reject one step in
+    // twenty instead of one in five, and take a tenth fewer evaluations for the same error of
+    // pendulums and orbits.
+    const RESPONSE: Response =
+        Response { alpha: 0.11, beta: 0.02, safety: 0.8, least: 1.0 / 3.0, greatest: 6.0 };
+    const GAP: f64 = widest(&C, &E5);
+}
+
 /// By how much steps are held more exact than in Hairer's program, with which three orbits of
 /// eccentricity 0.3 end 240 tolerances off.
 const STRICTNESS: f64 = 2.0;
@@ -146,6 +137,13 @@ const STRICTNESS: f64 = 2.0;
 pub struct Stages<T, const N: usize> {
     k: Slopes<T, N, 16>,
     increment: ([T; N], [T; N]),
+}
+
+impl<T: Float, const N: usize> Stages<T, N> {
+    pub(crate) fn zero() -> Self {
+        let zero = [T::from_f64(0.0); N];
+        Self { k: Slopes::zero(), increment: (zero, zero) }
+    }
 }
 
 // Stages 0 to 11 make the step, 12 is the slope at its end, 13 to 15 belong to the dense output.

@@ -1,7 +1,7 @@
 //! The Nyström pair of Dormand, El-Mikkawy and Prince of order 12.
 
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::method::{Embedded, Method, Response, Suits, Weights};
+use crate::integrate::method::{Adaptive, Method, Response, Weights};
 use crate::integrate::schemes::nystrom::Kicks;
 use crate::integrate::schemes::runge_kutta::Row;
 use crate::integrate::step::endpoint::Endpoint;
@@ -9,7 +9,7 @@ use crate::integrate::step::field::Field;
 use crate::integrate::step::gap::widest;
 use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
-use crate::system::VelocityFree;
+use crate::system::{Dynamics, VelocityFree};
 
 /// The Runge–Kutta–Nyström pair of orders 12 and 10 of Dormand, El-Mikkawy and Prince: seventeen
 /// evaluations a step, adaptive.
@@ -48,26 +48,24 @@ impl Dprkn12 {
     }
 }
 
-impl Method for Dprkn12 {
+impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize> Method<D, N>
+    for Dprkn12
+{
     const NAME: &'static str = "Dprkn12";
-    const ORDER: u32 = 12;
-    const DENSE_ORDER: u32 = 9;
-    type Stages<T: Float, const N: usize> = Kicks<T, N, 18>;
+    type Workspace = Kicks<D::Scalar, N, 18>;
 
-    fn stages<T: Float, const N: usize>() -> Kicks<T, N, 18> {
+    fn workspace(&self, _: &D) -> Self::Workspace {
         Kicks::zero()
     }
-}
 
-impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Dprkn12 {
     #[inline]
-    fn step(
+    fn attempt(
         &self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
-        k: &mut Kicks<S::Scalar, N, 18>,
-    ) -> Endpoint<S::Scalar, N> {
+        from: &mut Endpoint<D::Scalar, N>,
+        k: &mut Kicks<D::Scalar, N, 18>,
+    ) -> Endpoint<D::Scalar, N> {
         k.first(field, from);
         k.stage(field, interval, from, 1, C[1], A1);
         k.stage(field, interval, from, 2, C[2], A2);
@@ -88,33 +86,29 @@ impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Dprkn12 
         k.end(interval, from, Q, V)
     }
 
-    fn dense(
+    fn interpolant(
         &self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
-        to: &mut Endpoint<S::Scalar, N>,
-        k: &mut Kicks<S::Scalar, N, 18>,
-    ) -> Interpolant<S::Scalar, N> {
+        from: &mut Endpoint<D::Scalar, N>,
+        to: &mut Endpoint<D::Scalar, N>,
+        k: &mut Kicks<D::Scalar, N, 18>,
+    ) -> Interpolant<D::Scalar, N> {
         k.a[17] = to.end_acceleration(field);
         k.dense(interval, from, to, &k.a[17], DQ, DV)
     }
+
+    #[inline]
+    fn error(&self, k: &Kicks<D::Scalar, N, 18>, h: f64, weights: &Weights<N>) -> f64 {
+        k.error(h, weights, EQ, EV)
+    }
 }
 
-impl Embedded for Dprkn12 {
+impl Adaptive for Dprkn12 {
+    const ORDER: u32 = 12;
     const RESPONSE: Response =
         Response { alpha: 0.08, beta: 0.015, safety: 0.8, least: 0.2, greatest: 6.0 };
     const GAP: f64 = widest(&C, &EV);
-
-    #[inline]
-    fn error<T: Float, const N: usize>(
-        &self,
-        k: &Kicks<T, N, 18>,
-        h: f64,
-        weights: &Weights<N>,
-    ) -> f64 {
-        k.error(h, weights, EQ, EV)
-    }
 }
 
 // Printed by tests/data/nystrom.py.

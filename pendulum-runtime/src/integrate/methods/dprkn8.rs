@@ -1,7 +1,7 @@
 //! The Nyström pair of Dormand, El-Mikkawy and Prince of order 8.
 
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::method::{Embedded, Method, Response, Suits, Weights};
+use crate::integrate::method::{Adaptive, Method, Response, Weights};
 use crate::integrate::schemes::nystrom::Kicks;
 use crate::integrate::schemes::runge_kutta::Row;
 use crate::integrate::step::endpoint::Endpoint;
@@ -9,7 +9,7 @@ use crate::integrate::step::field::Field;
 use crate::integrate::step::gap::widest;
 use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
-use crate::system::VelocityFree;
+use crate::system::{Dynamics, VelocityFree};
 
 /// The Runge–Kutta–Nyström pair of orders 8 and 6 of Dormand, El-Mikkawy and Prince: eight
 /// evaluations a step, adaptive.
@@ -46,26 +46,24 @@ impl Dprkn8 {
     }
 }
 
-impl Method for Dprkn8 {
+impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize> Method<D, N>
+    for Dprkn8
+{
     const NAME: &'static str = "Dprkn8";
-    const ORDER: u32 = 8;
-    const DENSE_ORDER: u32 = 6;
-    type Stages<T: Float, const N: usize> = Kicks<T, N, 9>;
+    type Workspace = Kicks<D::Scalar, N, 9>;
 
-    fn stages<T: Float, const N: usize>() -> Kicks<T, N, 9> {
+    fn workspace(&self, _: &D) -> Self::Workspace {
         Kicks::zero()
     }
-}
 
-impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Dprkn8 {
     #[inline]
-    fn step(
+    fn attempt(
         &self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
-        k: &mut Kicks<S::Scalar, N, 9>,
-    ) -> Endpoint<S::Scalar, N> {
+        from: &mut Endpoint<D::Scalar, N>,
+        k: &mut Kicks<D::Scalar, N, 9>,
+    ) -> Endpoint<D::Scalar, N> {
         k.first(field, from);
         k.stage(field, interval, from, 1, C[1], A1);
         k.stage(field, interval, from, 2, C[2], A2);
@@ -79,32 +77,28 @@ impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Dprkn8 {
         to
     }
 
-    fn dense(
+    fn interpolant(
         &self,
-        _: &mut impl Field<S, N>,
+        _: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
-        to: &mut Endpoint<S::Scalar, N>,
-        k: &mut Kicks<S::Scalar, N, 9>,
-    ) -> Interpolant<S::Scalar, N> {
+        from: &mut Endpoint<D::Scalar, N>,
+        to: &mut Endpoint<D::Scalar, N>,
+        k: &mut Kicks<D::Scalar, N, 9>,
+    ) -> Interpolant<D::Scalar, N> {
         k.dense(interval, from, to, &k.a[8], DQ, DV)
+    }
+
+    #[inline]
+    fn error(&self, k: &Kicks<D::Scalar, N, 9>, h: f64, weights: &Weights<N>) -> f64 {
+        k.error(h, weights, EQ, EV)
     }
 }
 
-impl Embedded for Dprkn8 {
+impl Adaptive for Dprkn8 {
+    const ORDER: u32 = 8;
     const RESPONSE: Response =
         Response { alpha: 0.125, beta: 0.025, safety: 0.8, least: 0.2, greatest: 6.0 };
     const GAP: f64 = widest(&C, &EV);
-
-    #[inline]
-    fn error<T: Float, const N: usize>(
-        &self,
-        k: &Kicks<T, N, 9>,
-        h: f64,
-        weights: &Weights<N>,
-    ) -> f64 {
-        k.error(h, weights, EQ, EV)
-    }
 }
 
 // Printed by tests/data/nystrom.py.

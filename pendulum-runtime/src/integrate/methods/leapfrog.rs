@@ -2,13 +2,13 @@
 
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::interpolant::hermite;
-use crate::integrate::method::{Method, Suits};
+use crate::integrate::method::Method;
 use crate::integrate::schemes::splitting::{Splitting, drift_kick_drift};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
-use crate::system::VelocityFree;
+use crate::system::{Dynamics, VelocityFree};
 
 /// The leapfrog (Störmer–Verlet) method in the order drift, kick, drift: order 2, one evaluation a
 /// step, fixed step.
@@ -34,35 +34,33 @@ impl Leapfrog {
     }
 }
 
-impl Method for Leapfrog {
+impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize> Method<D, N>
+    for Leapfrog
+{
     const NAME: &'static str = "Leapfrog";
-    const ORDER: u32 = 2;
-    const DENSE_ORDER: u32 = 2;
-    type Stages<T: Float, const N: usize> = ();
+    type Workspace = ();
 
-    fn stages<T: Float, const N: usize>() {}
-}
+    fn workspace(&self, _: &D) {}
 
-impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Leapfrog {
     #[inline]
-    fn step(
+    fn attempt(
         &self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
+        from: &mut Endpoint<D::Scalar, N>,
         (): &mut (),
-    ) -> Endpoint<S::Scalar, N> {
+    ) -> Endpoint<D::Scalar, N> {
         drift_kick_drift(&SPLITTING, field, interval, from)
     }
 
-    fn dense(
+    fn interpolant(
         &self,
-        _: &mut impl Field<S, N>,
+        _: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
-        to: &mut Endpoint<S::Scalar, N>,
+        from: &mut Endpoint<D::Scalar, N>,
+        to: &mut Endpoint<D::Scalar, N>,
         (): &mut (),
-    ) -> Interpolant<S::Scalar, N> {
+    ) -> Interpolant<D::Scalar, N> {
         hermite::cubic(interval, from, to)
     }
 }

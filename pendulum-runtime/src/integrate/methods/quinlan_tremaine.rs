@@ -1,13 +1,13 @@
 //! The symmetric multistep methods of Quinlan and Tremaine.
 
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::method::{Method, Suits};
+use crate::integrate::method::Method;
 use crate::integrate::schemes::multistep::{History, Scheme, padded};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
-use crate::system::VelocityFree;
+use crate::system::{Dynamics, VelocityFree};
 
 /// The explicit symmetric multistep method of Quinlan and Tremaine of order `P` = 8, 10 or 12: one
 /// evaluation a step, fixed step.
@@ -53,63 +53,59 @@ impl<const P: usize> QuinlanTremaine<P> {
 
 impl<const P: usize> Scheme<P> for QuinlanTremaine<P> {
     const BETA: [f64; P] = padded(match P {
-        8 => &KICKS8,
-        10 => &KICKS10,
-        12 => &KICKS12,
+        8 => &BETA8,
+        10 => &BETA10,
+        12 => &BETA12,
         _ => panic!("`QuinlanTremaine<P>` has order 8, 10 or 12"),
     });
     const ALPHA: [f64; P] = padded(match P {
-        8 => &ECHOES8,
-        10 => &ECHOES10,
-        12 => &ECHOES12,
+        8 => &ALPHA8,
+        10 => &ALPHA10,
+        12 => &ALPHA12,
         _ => panic!("`QuinlanTremaine<P>` has order 8, 10 or 12"),
     });
 }
 
-impl<const P: usize> Method for QuinlanTremaine<P> {
+impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize, const P: usize>
+    Method<D, N> for QuinlanTremaine<P>
+{
     const NAME: &'static str = match P {
         8 => "QuinlanTremaine<8>",
         10 => "QuinlanTremaine<10>",
         _ => "QuinlanTremaine<12>",
     };
-    const ORDER: u32 = P as u32;
-    const DENSE_ORDER: u32 = 5;
-    type Stages<T: Float, const N: usize> = History<T, N, P>;
+    type Workspace = History<D::Scalar, N, P>;
 
-    fn stages<T: Float, const N: usize>() -> History<T, N, P> {
+    fn workspace(&self, _: &D) -> Self::Workspace {
         History::new()
     }
-}
 
-impl<S: VelocityFree<N, Scalar: Float>, const N: usize, const P: usize> Suits<S, N>
-    for QuinlanTremaine<P>
-{
     #[inline]
-    fn step(
+    fn attempt(
         &self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
-        history: &mut History<S::Scalar, N, P>,
-    ) -> Endpoint<S::Scalar, N> {
-        history.step::<Self, S>(field, interval, from)
+        from: &mut Endpoint<D::Scalar, N>,
+        history: &mut History<D::Scalar, N, P>,
+    ) -> Endpoint<D::Scalar, N> {
+        history.step::<Self, D>(field, interval, from)
     }
 
-    fn dense(
+    fn interpolant(
         &self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
-        to: &mut Endpoint<S::Scalar, N>,
-        history: &mut History<S::Scalar, N, P>,
-    ) -> Interpolant<S::Scalar, N> {
-        history.dense(field, interval, from, to)
+        from: &mut Endpoint<D::Scalar, N>,
+        to: &mut Endpoint<D::Scalar, N>,
+        history: &mut History<D::Scalar, N, P>,
+    ) -> Interpolant<D::Scalar, N> {
+        history.interpolant(field, interval, from, to)
     }
 }
 
 // Printed by tests/data/multistep.py.
 
-const KICKS8: [f64; 7] = [
+const BETA8: [f64; 7] = [
     1.460896164021164,
     -1.9528769841269842,
     5.080109126984127,
@@ -119,9 +115,9 @@ const KICKS8: [f64; 7] = [
     1.460896164021164,
 ];
 
-const ECHOES8: [f64; 6] = [0.0, 1.0, 1.0, 1.0, 0.0, 1.0];
+const ALPHA8: [f64; 6] = [0.0, 1.0, 1.0, 1.0, 0.0, 1.0];
 
-const KICKS10: [f64; 9] = [
+const BETA10: [f64; 9] = [
     1.6500785383597885,
     -2.0054398148148147,
     9.885234788359789,
@@ -133,9 +129,9 @@ const KICKS10: [f64; 9] = [
     1.6500785383597885,
 ];
 
-const ECHOES10: [f64; 8] = [1.0, 2.0, 2.0, 3.0, 2.0, 2.0, 1.0, 1.0];
+const ALPHA10: [f64; 8] = [1.0, 2.0, 2.0, 3.0, 2.0, 2.0, 1.0, 1.0];
 
-const KICKS12: [f64; 11] = [
+const BETA12: [f64; 11] = [
     1.7095686966390091,
     -4.3139136528980275,
     15.268517936056998,
@@ -149,4 +145,4 @@ const KICKS12: [f64; 11] = [
     1.7095686966390091,
 ];
 
-const ECHOES12: [f64; 10] = [0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0, 1.0];
+const ALPHA12: [f64; 10] = [0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0, 1.0];

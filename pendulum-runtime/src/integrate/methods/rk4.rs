@@ -1,12 +1,12 @@
 //! The classical Runge–Kutta method.
 
-use crate::integrate::method::{Method, Suits};
+use crate::integrate::method::Method;
 use crate::integrate::schemes::runge_kutta::Slopes;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
 use crate::real::{Float, Real};
-use crate::system::System;
+use crate::system::Dynamics;
 
 /// The classical Runge–Kutta method: order 4, four evaluations a step, fixed step.
 ///
@@ -29,26 +29,22 @@ impl Rk4 {
     }
 }
 
-impl Method for Rk4 {
+impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Rk4 {
     const NAME: &'static str = "Rk4";
-    const ORDER: u32 = 4;
-    const DENSE_ORDER: u32 = 4;
-    type Stages<T: Float, const N: usize> = Slopes<T, N, 4>;
+    type Workspace = Slopes<D::Scalar, N, 4>;
 
-    fn stages<T: Float, const N: usize>() -> Slopes<T, N, 4> {
+    fn workspace(&self, _: &D) -> Self::Workspace {
         Slopes::zero()
     }
-}
 
-impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Rk4 {
     #[inline]
-    fn step(
+    fn attempt(
         &self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
-        k: &mut Slopes<S::Scalar, N, 4>,
-    ) -> Endpoint<S::Scalar, N> {
+        from: &mut Endpoint<D::Scalar, N>,
+        k: &mut Slopes<D::Scalar, N, 4>,
+    ) -> Endpoint<D::Scalar, N> {
         k.first(field, from);
         k.stage(field, interval, from, 1, 0.5, [(0, 0.5)]);
         k.stage(field, interval, from, 2, 0.5, [(1, 0.5)]);
@@ -56,7 +52,7 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Rk4 {
         // The weights are integers and the sixth is divided off: rounded sixths do not add up to
         // one.
         let (dq, dv) = k.weighted([(0, 1.0), (1, 2.0), (2, 2.0), (3, 1.0)]);
-        let six = S::Scalar::from_f64(6.0);
+        let six = D::Scalar::from_f64(6.0);
         from.advanced(interval, &dq.map(|sum| sum / six), &dv.map(|sum| sum / six))
     }
 }

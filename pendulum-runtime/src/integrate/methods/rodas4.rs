@@ -1,7 +1,7 @@
 //! The Rosenbrock method of Hairer and Wanner of order 4, for stiff springs and dampers.
 
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::method::{Embedded, Method, Response, Suits, Weights};
+use crate::integrate::method::{Adaptive, Method, Response, Weights};
 use crate::integrate::schemes::linear::{Factors, Square, times};
 use crate::integrate::schemes::runge_kutta::{Row, Slopes};
 use crate::integrate::step::endpoint::Endpoint;
@@ -10,7 +10,7 @@ use crate::integrate::step::gap::{all, widest};
 use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
 use crate::real::{Float, Real};
-use crate::system::{Jacobians, System};
+use crate::system::{Dynamics, Jacobians, System};
 
 /// The linearly implicit (Rosenbrock) method of order 4 with an error estimate of order 3 of Hairer
 /// and Wanner: six evaluations, the Jacobians and one factorization a step, adaptive.
@@ -46,28 +46,24 @@ impl Rodas4 {
     }
 }
 
-impl Method for Rodas4 {
+impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize> Method<D, N> for Rodas4 {
     const NAME: &'static str = "Rodas4";
-    const ORDER: u32 = 4;
-    const DENSE_ORDER: u32 = 3;
-    type Stages<T: Float, const N: usize> = Slopes<T, N, 6>;
+    type Workspace = Slopes<D::Scalar, N, 6>;
 
-    fn stages<T: Float, const N: usize>() -> Slopes<T, N, 6> {
+    fn workspace(&self, _: &D) -> Self::Workspace {
         Slopes::zero()
     }
-}
 
-impl<S: Jacobians<N, Scalar: Float>, const N: usize> Suits<S, N> for Rodas4 {
-    fn step(
+    fn attempt(
         &self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
-        k: &mut Slopes<S::Scalar, N, 6>,
-    ) -> Endpoint<S::Scalar, N> {
+        from: &mut Endpoint<D::Scalar, N>,
+        k: &mut Slopes<D::Scalar, N, 6>,
+    ) -> Endpoint<D::Scalar, N> {
         let a = from.start_acceleration(field);
         let linear = Linear::new(field, interval, from, &a);
-        let zero = [S::Scalar::from_f64(0.0); N];
+        let zero = [D::Scalar::from_f64(0.0); N];
         linear.solve(k, 0, &from.v.high, &a, (zero, zero), D[0]);
         linear.stage(field, interval, from, k, 1, A1, C1);
         linear.stage(field, interval, from, k, 2, A2, C2);
@@ -76,42 +72,38 @@ impl<S: Jacobians<N, Scalar: Float>, const N: usize> Suits<S, N> for Rodas4 {
         linear.stage(field, interval, from, k, 5, A5, C5);
         let (dq, dv) = k.weighted(B);
         let mut to = Endpoint { t: interval.end, a: None, ..*from };
-        to.q.add(S::Scalar::from_f64(1.0), &dq);
-        to.v.add(S::Scalar::from_f64(1.0), &dv);
+        to.q.add(D::Scalar::from_f64(1.0), &dq);
+        to.v.add(D::Scalar::from_f64(1.0), &dv);
         to
     }
 
-    fn dense(
+    fn interpolant(
         &self,
-        _: &mut impl Field<S, N>,
+        _: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
-        to: &mut Endpoint<S::Scalar, N>,
-        k: &mut Slopes<S::Scalar, N, 6>,
-    ) -> Interpolant<S::Scalar, N> {
+        from: &mut Endpoint<D::Scalar, N>,
+        to: &mut Endpoint<D::Scalar, N>,
+        k: &mut Slopes<D::Scalar, N, 6>,
+    ) -> Interpolant<D::Scalar, N> {
         let mut interpolant = Interpolant::linear(interval, from, to);
         (interpolant.q[1], interpolant.v[1]) = k.weighted(H2);
         (interpolant.q[2], interpolant.v[2]) = k.weighted(H3);
         interpolant.terms = 3;
         interpolant
     }
-}
-
-impl Embedded for Rodas4 {
-    const RESPONSE: Response =
-        Response { alpha: 0.25, beta: 0.0, safety: 0.9, least: 0.2, greatest: 6.0 };
-    const GAP: f64 = widest(&C, &all::<6>());
 
     #[inline]
-    fn error<T: Float, const N: usize>(
-        &self,
-        k: &Slopes<T, N, 6>,
-        _: f64,
-        weights: &Weights<N>,
-    ) -> f64 {
+    fn error(&self, k: &Slopes<D::Scalar, N, 6>, _: f64, weights: &Weights<N>) -> f64 {
         // The last stage is the difference to the embedded method.
         (weights.square_sum(&k.v[5], &k.a[5]) / (2 * N) as f64).sqrt()
     }
+}
+
+impl Adaptive for Rodas4 {
+    const ORDER: u32 = 4;
+    const RESPONSE: Response =
+        Response { alpha: 0.25, beta: 0.0, safety: 0.9, least: 0.2, greatest: 6.0 };
+    const GAP: f64 = widest(&C, &all::<6>());
 }
 
 /// The linear equations of a step.
@@ -127,8 +119,8 @@ struct Linear<T, const N: usize> {
 }
 
 impl<T: Float, const N: usize> Linear<T, N> {
-    fn new<S: Jacobians<N, Scalar = T>>(
-        field: &mut impl Field<S, N>,
+    fn new<D: Dynamics<N, Scalar = T, System: Jacobians<N>>>(
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &Endpoint<T, N>,
         a: &[T; N],
@@ -146,7 +138,7 @@ impl<T: Float, const N: usize> Linear<T, N> {
                 })
             })
         });
-        let drive = if S::FACTS.autonomous {
+        let drive = if D::System::FACTS.autonomous {
             [T::from_f64(0.0); N]
         } else {
             // The parabola through three accelerations so close that its error is far below that of
@@ -164,9 +156,9 @@ impl<T: Float, const N: usize> Linear<T, N> {
     // A row is a constant: inlined, its indices and weights are too.
     #[allow(clippy::inline_always, clippy::too_many_arguments)]
     #[inline(always)]
-    fn stage<S: System<N, Scalar = T>, const K: usize>(
+    fn stage<D: Dynamics<N, Scalar = T>, const K: usize>(
         &self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &Endpoint<T, N>,
         k: &mut Slopes<T, N, 6>,

@@ -1,12 +1,12 @@
 //! A splitting method of Blanes and Moan with eleven evaluations.
 
-use crate::integrate::method::{Method, Suits};
+use crate::integrate::method::Method;
 use crate::integrate::schemes::splitting::{Splitting, kick_drift_kick};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
-use crate::system::VelocityFree;
+use crate::system::{Dynamics, VelocityFree};
 
 /// The symplectic Runge–Kutta–Nyström splitting with eleven evaluations of Blanes and Moan: order
 /// 6, fixed step.
@@ -30,24 +30,22 @@ impl Srkn11b {
     }
 }
 
-impl Method for Srkn11b {
+impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize> Method<D, N>
+    for Srkn11b
+{
     const NAME: &'static str = "Srkn11b";
-    const ORDER: u32 = 6;
-    const DENSE_ORDER: u32 = 5;
-    type Stages<T: Float, const N: usize> = ();
+    type Workspace = ();
 
-    fn stages<T: Float, const N: usize>() {}
-}
+    fn workspace(&self, _: &D) {}
 
-impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Srkn11b {
     #[inline]
-    fn step(
+    fn attempt(
         &self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
+        from: &mut Endpoint<D::Scalar, N>,
         (): &mut (),
-    ) -> Endpoint<S::Scalar, N> {
+    ) -> Endpoint<D::Scalar, N> {
         kick_drift_kick(&SPLITTING, field, interval, from)
     }
 }

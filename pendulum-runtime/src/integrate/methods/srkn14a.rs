@@ -1,12 +1,12 @@
 //! A splitting method of Blanes and Moan with fourteen evaluations.
 
-use crate::integrate::method::{Method, Suits};
+use crate::integrate::method::Method;
 use crate::integrate::schemes::splitting::{Splitting, drift_kick_drift_in_two_words};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
-use crate::system::VelocityFree;
+use crate::system::{Dynamics, VelocityFree};
 
 /// The symplectic Runge–Kutta–Nyström splitting with fourteen evaluations of Blanes and Moan: order
 /// 6, fixed step.
@@ -34,27 +34,27 @@ impl Srkn14a {
     }
 }
 
-impl Method for Srkn14a {
-    const NAME: &'static str = "Srkn14a";
-    const ORDER: u32 = 6;
-    const DENSE_ORDER: u32 = 5;
-    type Stages<T: Float, const N: usize> = ();
+impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize> Method<D, N>
+    for Srkn14a
+{
+    const NAME: &'static str = NAME;
+    type Workspace = ();
 
-    fn stages<T: Float, const N: usize>() {}
-}
+    fn workspace(&self, _: &D) {}
 
-impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Srkn14a {
     #[inline]
-    fn step(
+    fn attempt(
         &self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
+        from: &mut Endpoint<D::Scalar, N>,
         (): &mut (),
-    ) -> Endpoint<S::Scalar, N> {
+    ) -> Endpoint<D::Scalar, N> {
         drift_kick_drift_in_two_words(&SPLITTING, field, interval, from)
     }
 }
+
+pub(crate) const NAME: &str = "Srkn14a";
 
 pub(crate) const SPLITTING: Splitting<15, 14> = Splitting::drifts_outside(
     &[A1, A2, A3, A4, A5, A6, A7, 1.0 - 2.0 * (A1 + A2 + A3 + A4 + A5 + A6 + A7)],

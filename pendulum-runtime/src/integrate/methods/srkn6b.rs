@@ -1,12 +1,12 @@
 //! A splitting method of Blanes and Moan with six evaluations.
 
-use crate::integrate::method::{Method, Suits};
+use crate::integrate::method::Method;
 use crate::integrate::schemes::splitting::{Splitting, kick_drift_kick};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
-use crate::system::VelocityFree;
+use crate::system::{Dynamics, VelocityFree};
 
 /// The symplectic Runge–Kutta–Nyström splitting with six evaluations of Blanes and Moan: order 4,
 /// fixed step.
@@ -31,24 +31,22 @@ impl Srkn6b {
     }
 }
 
-impl Method for Srkn6b {
+impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize> Method<D, N>
+    for Srkn6b
+{
     const NAME: &'static str = "Srkn6b";
-    const ORDER: u32 = 4;
-    const DENSE_ORDER: u32 = 4;
-    type Stages<T: Float, const N: usize> = ();
+    type Workspace = ();
 
-    fn stages<T: Float, const N: usize>() {}
-}
+    fn workspace(&self, _: &D) {}
 
-impl<S: VelocityFree<N, Scalar: Float>, const N: usize> Suits<S, N> for Srkn6b {
     #[inline]
-    fn step(
+    fn attempt(
         &self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
+        from: &mut Endpoint<D::Scalar, N>,
         (): &mut (),
-    ) -> Endpoint<S::Scalar, N> {
+    ) -> Endpoint<D::Scalar, N> {
         kick_drift_kick(&SPLITTING, field, interval, from)
     }
 }

@@ -2,12 +2,12 @@
 
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::interpolant::hermite;
-use crate::integrate::method::{Method, Suits};
+use crate::integrate::method::Method;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
-use crate::system::System;
+use crate::system::Dynamics;
 
 /// The symplectic (semi-implicit) Euler method: order 1, one evaluation a step, fixed step. A
 /// baseline, not a recommendation.
@@ -34,25 +34,21 @@ impl SymplecticEuler {
     }
 }
 
-impl Method for SymplecticEuler {
+impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for SymplecticEuler {
     const NAME: &'static str = "SymplecticEuler";
-    const ORDER: u32 = 1;
-    const DENSE_ORDER: u32 = 1;
-    type Stages<T: Float, const N: usize> = ();
+    type Workspace = ();
 
-    fn stages<T: Float, const N: usize>() {}
-}
+    fn workspace(&self, _: &D) {}
 
-impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for SymplecticEuler {
     #[inline]
-    fn step(
+    fn attempt(
         &self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
+        from: &mut Endpoint<D::Scalar, N>,
         (): &mut (),
-    ) -> Endpoint<S::Scalar, N> {
-        let h = interval.length::<S::Scalar>();
+    ) -> Endpoint<D::Scalar, N> {
+        let h = interval.length::<D::Scalar>();
         let a = from.start_acceleration(field);
         let mut to = Endpoint { t: interval.end, a: None, ..*from };
         to.v.add(h, &a);
@@ -60,14 +56,14 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for SymplecticEule
         to
     }
 
-    fn dense(
+    fn interpolant(
         &self,
-        _: &mut impl Field<S, N>,
+        _: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
-        to: &mut Endpoint<S::Scalar, N>,
+        from: &mut Endpoint<D::Scalar, N>,
+        to: &mut Endpoint<D::Scalar, N>,
         (): &mut (),
-    ) -> Interpolant<S::Scalar, N> {
+    ) -> Interpolant<D::Scalar, N> {
         hermite::cubic(interval, from, to)
     }
 }

@@ -5,14 +5,16 @@
 
 use crate::error::{Error, Quantity};
 use crate::integrate::interpolant::{Basis, Interpolant, TERMS};
+use crate::integrate::method::Method;
 use crate::integrate::step::adaptive::{AdaptiveStep, fit, resolution_of};
-use crate::integrate::step::controller::{Control, ControllerState, StepContext};
-use crate::integrate::step::diagnose::{self, blame};
+use crate::integrate::step::controller::{
+    Controller, ControllerState, StepContext, StepLaw, Trial, Verdict,
+};
+use crate::integrate::step::diagnose;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::fast_exp2::{digits, log2, power};
-use crate::integrate::step::field::{Accelerations, Counted, Watched, coordinate, first_in_state};
+use crate::integrate::step::field::{Field, coordinate, first_in_state};
 use crate::integrate::step::interval::StepInterval;
-use crate::integrate::step::stepper::Stepper;
 use crate::jet::{JetDynamics, Jets, LENGTH, MAX_ORDER, Orders, Path, Series};
 use crate::motion::Side;
 use crate::real::{Float, Real};
@@ -88,15 +90,11 @@ pub struct Workspace<T, W, X, const N: usize> {
     order: usize,
     /// What the tolerance decides.
     rule: Rule,
-    /// The last time at which a series did not hold.
-    refuted: Option<Time>,
-    /// How many steps in a row went over a jump, or what seems to be one.
-    crossed: u32,
-    /// One more for each step that was halved, two less for each whole step whose series holds, and
-    /// none where steps are long again.
-    doubts: u32,
-    /// The shortest step of these.
-    shortest: f64,
+    /// One over the errors allowed of coordinates and velocities at the start.
+    weights: [[f64; N]; 2],
+    /// The step as it would be if its series held.
+    whole: StepInterval,
+    doubts: Doubts,
 }
 
 /// A jump is found within some forty steps, and behind it they are long again. If series go on not
@@ -145,9 +143,9 @@ pub(crate) type WorkspaceOf<D, const N: usize> = Workspace<
     N,
 >;
 
-impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Stepper<D, N> for Taylor {
+impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Taylor {
     const NAME: &'static str = "Taylor";
-    type Stages = WorkspaceOf<D, N>;
+    type Workspace = WorkspaceOf<D, N>;
 
     fn goes_back(&self, _: &D) -> bool {
         true
@@ -160,16 +158,15 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Stepper<D, N> for Taylor 
             work: dynamics.system().work(),
             order: 0,
             rule: Rule::default(),
-            refuted: None,
-            crossed: 0,
-            doubts: 0,
-            shortest: f64::INFINITY,
+            weights: [[0.0; N]; 2],
+            whole: StepInterval::by(Time::new(0.0), 0.0),
+            doubts: Doubts::default(),
         }
     }
 
-    fn advance(
+    fn attempt(
         &self,
-        field: &mut Counted<'_, D>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         workspace: &mut WorkspaceOf<D, N>,
@@ -179,9 +176,9 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Stepper<D, N> for Taylor 
         sum(workspace, from, interval)
     }
 
-    fn within(
+    fn interpolant(
         &self,
-        _: &mut Counted<'_, D>,
+        _: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         _: &mut Endpoint<D::Scalar, N>,
@@ -209,28 +206,26 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Stepper<D, N> for Taylor 
         interpolant
     }
 
-    fn fault(
+    fn diagnose(
         &self,
-        dynamics: &D,
+        field: &Field<'_, D, N>,
         interval: &StepInterval,
         from: &Endpoint<D::Scalar, N>,
         _: &WorkspaceOf<D, N>,
     ) -> Option<Error> {
-        let mut watched = Watched::new(dynamics);
-        watched.at(from.t, side(interval.h), &from.q.high, &from.v.high);
+        let (dynamics, side) = (field.dynamics, side(interval.h));
+        let mut watched = field.watching();
+        watched.at(from.t, side, &from.q.high, &from.v.high);
         let mut workspace = self.workspace(dynamics);
-        expand(
-            &mut Counted::new(dynamics),
-            from,
-            side(interval.h),
-            self.fixed::<D::Scalar>(),
-            &mut workspace,
-        );
+        let order = self.fixed::<D::Scalar>();
+        let mut series = Field::new(dynamics, field.prepared);
+        expand(&mut series, from, side, order, &mut workspace);
         let facts = &<D::System as System<N>>::FACTS;
         let finite = |series: &Series<D::Scalar>| series.iter().all(|x| x.is_finite());
-        let infinite =
-            (0..N).find(|&i| !finite(&workspace.path.v[i]) || !finite(&workspace.path.q[i]));
+        let Path { q, v, .. } = &workspace.path;
+        let infinite = (0..N).find(|&i| !finite(&v[i]) || !finite(&q[i]));
         let (t, what) = watched
+            .findings()
             .first
             .or_else(|| {
                 infinite.map(|index| (from.t, Quantity::Acceleration(coordinate(facts, index))))
@@ -247,7 +242,9 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Stepper<D, N> for Taylor 
     }
 }
 
-impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for AdaptiveStep<N> {
+impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Controller<Taylor, D, N>
+    for AdaptiveStep<N>
+{
     fn check(&self) -> Result<(), Error> {
         self.positive::<D::Scalar>()
     }
@@ -256,13 +253,24 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         self.least_steps_over(length)
     }
 
+    #[inline]
     fn step(
         &self,
-        memory: &mut ControllerState,
-        course: StepContext<'_, '_, D, Taylor, N>,
+        state: &mut ControllerState,
+        context: StepContext<'_, '_, D, Taylor, N>,
     ) -> Result<StepInterval, Error> {
-        let StepContext { method, field, from, to, stages: workspace, target, stats } = course;
-        let t = from.t.to_f64();
+        self.take_step(state, context)
+    }
+}
+
+impl<D: JetDynamics<N, Scalar: Float>, const N: usize> StepLaw<Taylor, D, N> for AdaptiveStep<N> {
+    fn propose(
+        &self,
+        state: &mut ControllerState,
+        context: &mut StepContext<'_, '_, D, Taylor, N>,
+    ) -> Result<Trial, Error> {
+        let StepContext { method, field, from, workspace, target, .. } = context;
+        let (t, target) = (from.t.to_f64(), *target);
         let backwards = target < t;
         let target = if backwards {
             field.dynamics.last_break(t).filter(|time| target < *time).unwrap_or(target)
@@ -271,102 +279,172 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Control<Taylor, D, N> for
         };
         let (rtol, atol) = self.tolerances::<D::Scalar>();
         if workspace.rule.tolerance != rtol {
-            workspace.rule = Rule::new::<D::System, N>(*method, rtol);
+            workspace.rule = Rule::new::<D::System, N>(**method, rtol);
         }
-        let order = workspace.rule.order;
-        expand(field, from, if backwards { Side::Before } else { Side::After }, order, workspace);
-        let weights = [
+        let side = if backwards { Side::Before } else { Side::After };
+        expand(field, from, side, workspace.rule.order, workspace);
+        workspace.weights = [
             core::array::from_fn(|i| 1.0 / (atol.0[i] + rtol * from.q.high[i].to_f64().abs())),
             core::array::from_fn(|i| 1.0 / (atol.1[i] + rtol * from.v.high[i].to_f64().abs())),
         ];
-        let wanted = length(&workspace.path, &workspace.rule, &weights);
+        let wanted = length(&workspace.path, &workspace.rule, &workspace.weights);
         // A uniform motion may go on for ever, but it has to come to an end.
         let wanted = if wanted == f64::INFINITY && target == wanted { 1.0 } else { wanted };
-        let mut wanted = memory.within_sight(
-            self.limited(memory.h == 0.0, wanted),
-            field.dynamics,
-            from.t,
-            GAP,
-        )?;
-        if memory.h == 0.0 {
+        let wanted = self.limited(state.h == 0.0, wanted);
+        let wanted = state.within_sight(wanted, field.dynamics, from.t, GAP)?;
+        if state.h == 0.0 {
             // At a start nothing is known of jumps.
-            (workspace.refuted, workspace.crossed, workspace.doubts) = (None, 0, 0);
+            workspace.doubts = Doubts::default();
         }
-        // Towards a time at which the last series did not hold.
-        let left = |refuted: Time| refuted.since(from.t.to_f64()) - from.t.low();
-        workspace.refuted = workspace.refuted.filter(|&refuted| {
-            let left = left(refuted);
-            (left < 0.0) == backwards && resolution_of::<D::Scalar>(from.t) < left.abs()
-        });
-        let mut holds = workspace.refuted.is_none();
-        if let Some(refuted) = workspace.refuted {
-            let left = left(refuted).abs();
-            wanted = if left < wanted { left } else { wanted };
-        }
-        let mut interval = fit(from.t, wanted, target);
-        *to = sum(workspace, from, &interval);
-        let whole = interval;
+        let resolution = resolution_of::<D::Scalar>(from.t);
+        let wanted = workspace.doubts.begin(from.t, backwards, resolution, wanted);
+        workspace.whole = fit(from.t, wanted, target);
+        Ok(Trial::new(wanted, target))
+    }
+
+    fn interval(
+        &self,
+        _: &mut ControllerState,
+        context: &mut StepContext<'_, '_, D, Taylor, N>,
+        trial: &mut Trial,
+    ) -> Result<StepInterval, Error> {
+        Ok(fit(context.from.t, trial.wanted, trial.target))
+    }
+
+    /// The error is that of the accelerations at the end: zero where it is allowed, and infinite
+    /// where it is not.
+    fn estimate(
+        &self,
+        context: &mut StepContext<'_, '_, D, Taylor, N>,
+        trial: &Trial,
+        interval: &StepInterval,
+    ) -> f64 {
+        let StepContext { field, from, to, workspace, .. } = context;
+        **to = sum(workspace, from, interval);
+        let order = workspace.rule.order;
         let finite = |series: &Series<D::Scalar>| series[..=order].iter().all(|x| x.is_finite());
-        let known = to.is_finite()
-            || (0..N).all(|i| finite(&workspace.path.q[i]) && finite(&workspace.path.v[i]));
-        let (mut halved, mut crosses) = (0, false);
+        let Path { q, v, .. } = &workspace.path;
+        let known =
+            0 < trial.rejected || to.is_finite() || (0..N).all(|i| finite(&q[i]) && finite(&v[i]));
         // At the resolution of times no step can be shorter.
-        while known && resolution_of::<D::Scalar>(from.t) < wanted {
-            let strict = 0 < halved || workspace.refuted.is_some();
-            let misfit = misfit(field.dynamics, workspace, &interval, to, &weights[1], strict);
-            holds &= misfit.allowed;
-            if misfit.allowed || MOST_DOUBTS <= workspace.doubts {
-                break;
-            }
-            stats.rejected += 1;
-            halved += 1;
-            workspace.refuted = Some(interval.end);
-            // A jump may be as wide as the rounding of the place: each further step over it is twice
-            // as long.
-            if MOST_HALVED.saturating_sub(workspace.crossed) <= halved {
-                // Something jumps within so short a step, which goes over that; or its series is
-                // right, and what does not fit is rounding.
-                crosses = !misfit.rounding;
-                if !crosses {
-                    (wanted, interval) = (whole.h.abs(), whole);
-                    *to = sum(workspace, from, &interval);
-                }
-                workspace.refuted = None;
-                break;
-            }
-            // The same series ends sooner.
-            wanted = 0.5 * interval.h.abs();
-            interval = fit(from.t, wanted, target);
-            *to = sum(workspace, from, &interval);
+        let shortest = trial.wanted <= resolution_of::<D::Scalar>(from.t);
+        if !known || shortest || workspace.doubts.trusts {
+            return 0.0;
         }
+        let strict = 0 < trial.rejected || workspace.doubts.refuted.is_some();
+        let misfit = misfit(field, workspace, interval, to, strict);
+        workspace.doubts.holds &= misfit.allowed;
+        workspace.doubts.rounding = misfit.rounding;
+        if misfit.allowed || MOST_DOUBTS <= workspace.doubts.count { 0.0 } else { f64::INFINITY }
+    }
+
+    fn judge(
+        &self,
+        state: &mut ControllerState,
+        context: &mut StepContext<'_, '_, D, Taylor, N>,
+        trial: &mut Trial,
+        interval: &StepInterval,
+        error: f64,
+    ) -> Result<Verdict, Error> {
+        if 1.0 < error {
+            let whole = context.workspace.whole.h.abs();
+            let doubts = &mut context.workspace.doubts;
+            return Ok(Verdict::Reject { length: doubts.shorten(trial, interval, whole) });
+        }
+        let StepContext { method, field, from, to, workspace, .. } = context;
         if !to.is_finite() {
-            return Err(blame(method, field.dynamics, &whole, from, workspace));
+            return Err(diagnose::cause(*method, field, &workspace.whole, from, workspace));
         }
-        if wanted <= resolution_of::<D::Scalar>(from.t) && wanted < from.t.since(target).abs() {
-            let (_, index) = largest(&workspace.path, order, &weights);
-            let coordinate = coordinate(&<D::System as System<N>>::FACTS, index);
-            let short = Error::StepSizeUnderflow { t, step: wanted, coordinate };
-            return Err(self.unresolved(memory.h == 0.0, wanted).unwrap_or(short));
+        self.resolved(context, trial, |context| {
+            let Workspace { path, order, weights, .. } = &*context.workspace;
+            largest(path, *order, weights).1
+        })?;
+        context.workspace.doubts.accept(0 < trial.rejected, trial.wanted);
+        state.h = trial.wanted;
+        Ok(Verdict::Accept)
+    }
+}
+
+/// Doubts about series, from step to step.
+#[derive(Clone, Copy, Debug)]
+struct Doubts {
+    /// The last time at which a series did not hold.
+    refuted: Option<Time>,
+    /// How many steps in a row went over a jump, or over something like one.
+    crossed: u32,
+    /// One more for each step that was halved, two less for each whole step whose series holds, and
+    /// none where steps are long again.
+    count: u32,
+    /// The shortest step of these.
+    shortest: f64,
+    /// Of the step under way: its series holds, as far as it was looked at.
+    holds: bool,
+    /// It differs from the accelerations by no more than rounding.
+    rounding: bool,
+    /// It goes over a jump.
+    crosses: bool,
+    /// It is taken without another look.
+    trusts: bool,
+}
+
+impl Default for Doubts {
+    fn default() -> Self {
+        Self {
+            refuted: None,
+            crossed: 0,
+            count: 0,
+            shortest: f64::INFINITY,
+            holds: true,
+            rounding: false,
+            crosses: false,
+            trusts: false,
         }
-        workspace.crossed = if crosses { workspace.crossed + 1 } else { 0 };
-        if workspace.doubts < MOST_DOUBTS && FOUND * workspace.shortest < wanted
-            || workspace.doubts == 0
-        {
-            (workspace.doubts, workspace.shortest) = (0, f64::INFINITY);
+    }
+}
+
+impl Doubts {
+    /// Begins a step from `t`; its length is `wanted`, or less if a series did not hold before.
+    fn begin(&mut self, t: Time, backwards: bool, resolution: f64, wanted: f64) -> f64 {
+        let left = |refuted: Time| refuted.since(t.to_f64()) - t.low();
+        self.refuted = self.refuted.filter(|&refuted| {
+            let left = left(refuted);
+            (left < 0.0) == backwards && resolution < left.abs()
+        });
+        (self.holds, self.crosses, self.trusts) = (self.refuted.is_none(), false, false);
+        let left = self.refuted.map_or(f64::INFINITY, |refuted| left(refuted).abs());
+        if left < wanted { left } else { wanted }
+    }
+
+    /// The length of the next attempt after one whose series does not hold at its end.
+    fn shorten(&mut self, trial: &Trial, interval: &StepInterval, whole: f64) -> f64 {
+        let halved = trial.rejected + 1;
+        self.refuted = Some(interval.end);
+        // A jump may be as wide as the rounding of the place: each further step over it is twice as
+        // long.
+        if halved < MOST_HALVED.saturating_sub(self.crossed) {
+            return 0.5 * interval.h.abs();
         }
-        if 0 < halved {
-            workspace.doubts += 1;
-            workspace.shortest =
-                if wanted < workspace.shortest { wanted } else { workspace.shortest };
-        } else if holds {
-            workspace.doubts = workspace.doubts.saturating_sub(2);
+        // Something jumps within so short a step, which goes over that; or its series is right, and
+        // the difference is rounding.
+        (self.refuted, self.crosses, self.trusts) = (None, !self.rounding, true);
+        if self.crosses { trial.wanted } else { whole }
+    }
+
+    /// The step is taken, after shorter attempts if it was `halved`.
+    fn accept(&mut self, halved: bool, taken: f64) {
+        self.crossed = if self.crosses { self.crossed + 1 } else { 0 };
+        if self.count < MOST_DOUBTS && FOUND * self.shortest < taken || self.count == 0 {
+            (self.count, self.shortest) = (0, f64::INFINITY);
         }
-        if MOST_DOUBTS <= workspace.doubts {
-            workspace.refuted = None;
+        if halved {
+            self.count += 1;
+            self.shortest = if taken < self.shortest { taken } else { self.shortest };
+        } else if self.holds {
+            self.count = self.count.saturating_sub(2);
         }
-        memory.h = wanted;
-        stats.accepted += 1;
-        Ok(interval)
+        if MOST_DOUBTS <= self.count {
+            self.refuted = None;
+        }
     }
 }
 
@@ -382,7 +460,7 @@ fn side(h: f64) -> Side {
 /// The jet at `from`.
 #[inline]
 fn expand<D: JetDynamics<N, Scalar: Float>, const N: usize>(
-    field: &mut Counted<'_, D>,
+    field: &mut Field<'_, D, N>,
     from: &Endpoint<D::Scalar, N>,
     side: Side,
     order: usize,
@@ -452,21 +530,16 @@ struct Misfit {
 /// coefficients tell nothing. Rounding is taken for a thousand ε of velocities, accelerations,
 /// coordinates and time.
 fn misfit<D: JetDynamics<N, Scalar: Float>, const N: usize>(
-    dynamics: &D,
+    field: &Field<'_, D, N>,
     workspace: &WorkspaceOf<D, N>,
     interval: &StepInterval,
     to: &Endpoint<D::Scalar, N>,
-    weights: &[f64; N],
     strict: bool,
 ) -> Misfit {
     let (h, zero) = (interval.length::<D::Scalar>(), D::Scalar::from_f64(0.0));
     // Beside the orders of the series, which are what evaluations of this method count.
-    let a = Counted::new(dynamics).at(
-        interval.end,
-        side(interval.h).opposite(),
-        &to.q.high,
-        &to.v.high,
-    );
+    let mut end = Field::new(field.dynamics, field.prepared);
+    let a = end.at(interval.end, side(interval.h).opposite(), &to.q.high, &to.v.high);
     // Motions have the digits of `f64`.
     let facts = &<D::System as System<N>>::FACTS;
     let epsilon = D::Scalar::EPSILON.to_f64();
@@ -475,7 +548,7 @@ fn misfit<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     let largest = |values: &dyn Fn(usize) -> D::Scalar| {
         (0..N).fold(0.0, |largest: f64, i| largest.max(values(i).to_f64().abs()))
     };
-    let (q, v) = (&workspace.path.q, &workspace.path.v);
+    let (q, v, weights) = (&workspace.path.q, &workspace.path.v, &workspace.weights[1]);
     let series: [D::Scalar; N] = core::array::from_fn(|i| {
         let orders = (1..=workspace.order).rev();
         orders.fold(zero, |sum, k| sum * h + D::Scalar::from_f64(k as f64) * v[i][k])

@@ -1,14 +1,14 @@
 //! The method of Tsitouras of order 5.
 
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::method::{Embedded, Method, Response, Suits, Weights};
+use crate::integrate::method::{Adaptive, Method, Response, Weights};
 use crate::integrate::schemes::runge_kutta::{Row, Slopes};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::gap::widest;
 use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
-use crate::system::System;
+use crate::system::Dynamics;
 
 /// The explicit Runge–Kutta pair of orders 5 and 4 of Tsitouras: six evaluations a step, adaptive.
 ///
@@ -33,26 +33,22 @@ impl Tsit5 {
     }
 }
 
-impl Method for Tsit5 {
+impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Tsit5 {
     const NAME: &'static str = "Tsit5";
-    const ORDER: u32 = 5;
-    const DENSE_ORDER: u32 = 4;
-    type Stages<T: Float, const N: usize> = Slopes<T, N, 7>;
+    type Workspace = Slopes<D::Scalar, N, 7>;
 
-    fn stages<T: Float, const N: usize>() -> Slopes<T, N, 7> {
+    fn workspace(&self, _: &D) -> Self::Workspace {
         Slopes::zero()
     }
-}
 
-impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Tsit5 {
     #[inline]
-    fn step(
+    fn attempt(
         &self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
-        k: &mut Slopes<S::Scalar, N, 7>,
-    ) -> Endpoint<S::Scalar, N> {
+        from: &mut Endpoint<D::Scalar, N>,
+        k: &mut Slopes<D::Scalar, N, 7>,
+    ) -> Endpoint<D::Scalar, N> {
         k.first(field, from);
         k.stage(field, interval, from, 1, C[1], A1);
         k.stage(field, interval, from, 2, C[2], A2);
@@ -66,15 +62,15 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Tsit5 {
         to
     }
 
-    fn dense(
+    fn interpolant(
         &self,
-        _: &mut impl Field<S, N>,
+        _: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<S::Scalar, N>,
-        to: &mut Endpoint<S::Scalar, N>,
-        k: &mut Slopes<S::Scalar, N, 7>,
-    ) -> Interpolant<S::Scalar, N> {
-        let h = interval.length::<S::Scalar>();
+        from: &mut Endpoint<D::Scalar, N>,
+        to: &mut Endpoint<D::Scalar, N>,
+        k: &mut Slopes<D::Scalar, N, 7>,
+    ) -> Interpolant<D::Scalar, N> {
+        let h = interval.length::<D::Scalar>();
         let mut interpolant = Interpolant::hermite(interval, from, to, &k.a[0], &k.a[6]);
         let (q, v) = k.weighted(D);
         interpolant.q[3] = q.map(|sum| h * sum);
@@ -82,23 +78,19 @@ impl<S: System<N, Scalar: Float>, const N: usize> Suits<S, N> for Tsit5 {
         interpolant.terms = 4;
         interpolant
     }
-}
-
-impl Embedded for Tsit5 {
-    const RESPONSE: Response =
-        Response { alpha: 0.17, beta: 0.04, safety: 0.8, least: 0.2, greatest: 10.0 };
-    const GAP: f64 = widest(&C, &E);
 
     #[inline]
-    fn error<T: Float, const N: usize>(
-        &self,
-        k: &Slopes<T, N, 7>,
-        h: f64,
-        weights: &Weights<N>,
-    ) -> f64 {
+    fn error(&self, k: &Slopes<D::Scalar, N, 7>, h: f64, weights: &Weights<N>) -> f64 {
         let (q, v) = k.weighted(E);
         h * (weights.square_sum(&q, &v) / (2 * N) as f64).sqrt()
     }
+}
+
+impl Adaptive for Tsit5 {
+    const ORDER: u32 = 5;
+    const RESPONSE: Response =
+        Response { alpha: 0.17, beta: 0.04, safety: 0.8, least: 0.2, greatest: 10.0 };
+    const GAP: f64 = widest(&C, &E);
 }
 
 const C: [f64; 7] = [0.0, 0.161, 0.327, 0.9, 0.9800255409045097, 1.0, 1.0];

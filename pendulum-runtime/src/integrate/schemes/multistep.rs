@@ -7,7 +7,7 @@
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::interpolant::fit::{Condition, fit};
 use crate::integrate::interpolant::hermite;
-use crate::integrate::method::{Method, Suits};
+use crate::integrate::method::Method;
 use crate::integrate::methods::dop853::{self, Dop853};
 use crate::integrate::step::compensated::Compensated;
 use crate::integrate::step::endpoint::Endpoint;
@@ -15,7 +15,7 @@ use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
 use crate::real::Float;
-use crate::system::VelocityFree;
+use crate::system::Dynamics;
 use crate::time::Time;
 
 /// The coefficients of a method of order `P`, for the newest value first; as constants of a type
@@ -63,7 +63,7 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
             h: 0.0,
             points: 0,
             end,
-            starter: Dop853::stages(),
+            starter: dop853::Stages::zero(),
         }
     }
 
@@ -73,9 +73,9 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
     /// unknown) and another length of the step begin a new grid. Its first `P` − 1 steps are taken
     /// by `Dop853` in [`SUBSTEPS`] parts each.
     #[inline]
-    pub(crate) fn step<C: Scheme<P>, S: VelocityFree<N, Scalar = T>>(
+    pub(crate) fn step<C: Scheme<P>, D: Dynamics<N, Scalar = T>>(
         &mut self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &mut Endpoint<T, N>,
     ) -> Endpoint<T, N> {
@@ -83,7 +83,7 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
         let same_state = self.end == (from.t, from.q, from.v.high);
         let goes_on = self.points != 0 && same_step && from.a.is_some() && same_state;
         if goes_on && self.points == P {
-            self.multistep::<C, S>(field, interval, from)
+            self.multistep::<C, D>(field, interval, from)
         } else {
             if !goes_on {
                 (self.points, self.h) = (1, interval.h);
@@ -94,9 +94,9 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
     }
 
     #[inline]
-    fn multistep<C: Scheme<P>, S: VelocityFree<N, Scalar = T>>(
+    fn multistep<C: Scheme<P>, D: Dynamics<N, Scalar = T>>(
         &mut self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &Endpoint<T, N>,
     ) -> Endpoint<T, N> {
@@ -129,9 +129,9 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
     }
 
     /// One of the first steps.
-    fn start<S: VelocityFree<N, Scalar = T>>(
+    fn start<D: Dynamics<N, Scalar = T>>(
         &mut self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &mut Endpoint<T, N>,
     ) -> Endpoint<T, N> {
@@ -144,7 +144,7 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
             };
             let substep =
                 StepInterval { start: to.t, end, h: interval.h / SUBSTEPS as f64, low: 0.0 };
-            to = Dop853.step(field, &substep, &mut to, &mut self.starter);
+            to = Dop853.attempt(field, &substep, &mut to, &mut self.starter);
         }
         let difference = to.q.since(&from.q);
         let w = Compensated::new(difference.map(|difference| difference / T::from_f64(interval.h)));
@@ -161,9 +161,9 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
     }
 
     /// The motion within the last step, from both ends and the accelerations before it.
-    pub(crate) fn dense<S: VelocityFree<N, Scalar = T>>(
+    pub(crate) fn interpolant<D: Dynamics<N, Scalar = T>>(
         &self,
-        field: &mut impl Field<S, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &mut Endpoint<T, N>,
         to: &mut Endpoint<T, N>,

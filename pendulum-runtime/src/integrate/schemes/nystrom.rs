@@ -5,9 +5,10 @@ use crate::integrate::interpolant::hermite;
 use crate::integrate::method::Weights;
 use crate::integrate::schemes::runge_kutta::{Row, weighted};
 use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Accelerations;
+use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
+use crate::system::Dynamics;
 
 /// The accelerations at `S` stages.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +29,7 @@ impl<T: Float, const N: usize, const S: usize> Kicks<T, N, S> {
     #[inline]
     pub(crate) fn first(
         &mut self,
-        field: &mut impl Accelerations<T, N>,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
         from: &mut Endpoint<T, N>,
     ) {
         self.a[0] = from.start_acceleration(field);
@@ -39,7 +40,7 @@ impl<T: Float, const N: usize, const S: usize> Kicks<T, N, S> {
     #[inline(always)]
     pub(crate) fn stage<const K: usize>(
         &mut self,
-        field: &mut impl Accelerations<T, N>,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
         interval: &StepInterval,
         from: &Endpoint<T, N>,
         index: usize,

@@ -1,9 +1,10 @@
 //! The stages of explicit Runge–Kutta methods for (q, q̇)′ = (q̇, a(t, q, q̇)).
 
 use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Accelerations;
+use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
+use crate::system::Dynamics;
 
 /// One row of a tableau without its zeros: the indices of earlier stages, from 0, and their
 /// weights.
@@ -29,7 +30,7 @@ impl<T: Float, const N: usize, const S: usize> Slopes<T, N, S> {
     #[inline]
     pub(crate) fn first(
         &mut self,
-        field: &mut impl Accelerations<T, N>,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
         from: &mut Endpoint<T, N>,
     ) {
         self.v[0] = from.v.high;
@@ -42,7 +43,7 @@ impl<T: Float, const N: usize, const S: usize> Slopes<T, N, S> {
     #[inline(always)]
     pub(crate) fn stage<const K: usize>(
         &mut self,
-        field: &mut impl Accelerations<T, N>,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
         interval: &StepInterval,
         from: &Endpoint<T, N>,
         index: usize,

@@ -4,9 +4,10 @@
 //! velocities with fixed coordinates.
 
 use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Accelerations;
+use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
+use crate::system::Dynamics;
 
 /// A palindromic splitting with `S` evaluations a step.
 #[derive(Clone, Copy, Debug)]
@@ -23,7 +24,7 @@ pub(crate) struct Splitting<const OUTER: usize, const S: usize> {
 #[inline]
 pub(crate) fn kick_drift_kick<T: Float, const N: usize, const OUTER: usize, const S: usize>(
     splitting: &Splitting<OUTER, S>,
-    field: &mut impl Accelerations<T, N>,
+    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
     interval: &StepInterval,
     from: &mut Endpoint<T, N>,
 ) -> Endpoint<T, N> {
@@ -45,7 +46,7 @@ pub(crate) fn kick_drift_kick<T: Float, const N: usize, const OUTER: usize, cons
 #[inline]
 pub(crate) fn drift_kick_drift<T: Float, const N: usize, const OUTER: usize, const S: usize>(
     splitting: &Splitting<OUTER, S>,
-    field: &mut impl Accelerations<T, N>,
+    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
     interval: &StepInterval,
     from: &Endpoint<T, N>,
 ) -> Endpoint<T, N> {
@@ -71,7 +72,7 @@ pub(crate) fn drift_kick_drift_in_two_words<
     const S: usize,
 >(
     splitting: &Splitting<OUTER, S>,
-    field: &mut impl Accelerations<T, N>,
+    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
     interval: &StepInterval,
     from: &Endpoint<T, N>,
 ) -> Endpoint<T, N> {

@@ -3,18 +3,18 @@
 // What lanes use too has to be compiled for their vectors.
 #![allow(clippy::inline_always)]
 
-use crate::error::{Error, Quantity};
-use crate::integrate::method::{Embedded, Suits, Weights};
-use crate::integrate::step::controller::{Control, ControllerState, StepContext};
-use crate::integrate::step::diagnose::blame;
+use crate::error::Error;
+use crate::integrate::method::{Adaptive, Method, Weights};
+use crate::integrate::step::controller::{
+    Controller, ControllerState, StepContext, StepLaw, Trial, Verdict,
+};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::fast_exp2::{exp2, log2};
-use crate::integrate::step::field::{Accelerations, coordinate};
+use crate::integrate::step::field::coordinate;
 use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::short::shortest;
-use crate::integrate::step::stepper::Stepper;
 use crate::motion::Side;
-use crate::real::Float;
+use crate::real::{Float, Real};
 use crate::system::{Dynamics, System};
 use crate::time::Time;
 
@@ -125,9 +125,9 @@ impl<const N: usize> AdaptiveStep<N> {
     }
 }
 
-impl<M, D, const N: usize> Control<M, D, N> for AdaptiveStep<N>
+impl<M, D, const N: usize> Controller<M, D, N> for AdaptiveStep<N>
 where
-    M: Embedded + Suits<D::System, N>,
+    M: Method<D, N> + Adaptive,
     D: Dynamics<N, Scalar: Float>,
 {
     fn check(&self) -> Result<(), Error> {
@@ -144,95 +144,145 @@ where
         self.least_steps_over(length)
     }
 
+    #[inline]
     fn step(
         &self,
-        memory: &mut ControllerState,
-        course: StepContext<'_, '_, D, M, N>,
+        state: &mut ControllerState,
+        context: StepContext<'_, '_, D, M, N>,
     ) -> Result<StepInterval, Error> {
-        let StepContext { method, field, from, to, stages, target, stats } = course;
-        let response = M::RESPONSE;
-        // Coefficients that are rounded to one word leave an error of their own that no step is
-        // short enough for.
-        let rtol = self.relative::<D::Scalar>();
-        let this = Self { rtol: Some(if rtol < ONE_WORD { ONE_WORD } else { rtol }), ..*self };
-        if memory.h == 0.0 {
-            let at_once = StepInterval::by(from.t, 0.0);
-            let a = from.start_acceleration(field);
-            if !a.iter().all(|a| a.is_finite()) {
-                return Err(blame(method, field.dynamics, &at_once, from, stages));
-            }
-            let left = -from.t.since(target);
-            memory.h =
-                self.first_step.unwrap_or_else(|| this.automatic_step(M::ORDER, field, from, left));
-            memory.error = log2(1e-4);
+        self.take_step(state, context)
+    }
+}
+
+impl<M, D, const N: usize> StepLaw<M, D, N> for AdaptiveStep<N>
+where
+    M: Method<D, N> + Adaptive,
+    D: Dynamics<N, Scalar: Float>,
+{
+    #[inline]
+    fn propose(
+        &self,
+        state: &mut ControllerState,
+        context: &mut StepContext<'_, '_, D, M, N>,
+    ) -> Result<Trial, Error> {
+        if state.h == 0.0 {
+            let (order, first) = (M::ORDER, self.first_step);
+            state.h = match first {
+                Some(step) => context.started().map(|_| step)?,
+                None => self.in_one_word::<D::Scalar>().automatic_step(order, context)?,
+            };
+            state.error = log2(1e-4);
         }
-        let wanted = if memory.h < self.max_step { memory.h } else { self.max_step };
-        let mut wanted = memory.within_sight(wanted, field.dynamics, from.t, M::GAP)?;
-        let (mut retried, mut last_fault) = (false, None);
-        loop {
-            if wanted <= resolution_of::<D::Scalar>(from.t) && wanted < -from.t.since(target) {
-                if let Some(error) = self.unresolved(stats.accepted + stats.rejected == 0, wanted) {
-                    return Err(error);
-                }
-                if let Some(fault) = last_fault {
-                    return Err(at(fault, from.t));
-                }
-                let index = this.worst(method, stages, memory, from);
-                let coordinate = coordinate(&<D::System as System<N>>::FACTS, index);
-                return Err(Error::StepSizeUnderflow {
-                    t: from.t.to_f64(),
-                    step: wanted,
-                    coordinate,
-                });
-            }
-            let interval = fit(from.t, wanted, target);
-            *to = method.step(field, &interval, from, stages);
-            let weights = this.weights(from, to);
-            let error =
-                if to.is_finite() { method.error(stages, interval.h, &weights) } else { f64::NAN };
-            if error <= 1.0 {
-                let error = log2(error);
-                let factor =
-                    response.safety * exp2(response.beta * memory.error - response.alpha * error);
-                memory.h =
-                    interval.h * if factor < response.least { response.least } else { factor };
-                // A step that was cut says little about longer ones, nothing if its error is
-                // rounding: what was wanted before stays possible.
-                let longest = if retried { interval.h } else { interval.h * response.greatest };
-                let longest = if longest < wanted && !retried { wanted } else { longest };
-                if longest < memory.h {
-                    memory.h = longest;
-                } else if interval.h < 0.5 * wanted && memory.h < wanted && !retried {
-                    memory.h = wanted;
-                }
-                if wanted <= interval.h {
-                    memory.error = if error < log2(1e-4) { log2(1e-4) } else { error };
-                }
-                stats.accepted += 1;
-                return Ok(interval);
-            }
-            stats.rejected += 1;
-            retried = true;
-            if error.is_nan() {
-                last_fault = method.fault(field.dynamics, &interval, from, stages);
-                // A function may have left its domain, and a shorter step may stay inside; but no
-                // step is short enough for an input that is not finite.
-                if let Some(input @ Error::NotFinite { what: Quantity::Input { .. }, .. }) =
-                    last_fault
-                {
-                    return Err(input);
-                }
-                wanted = 0.1 * interval.h;
-            } else {
-                last_fault = None;
-                let factor = response.safety * exp2(-response.alpha * log2(error));
-                wanted = interval.h * if factor < response.least { response.least } else { factor };
-            }
+        let wanted = if state.h < self.max_step { state.h } else { self.max_step };
+        let StepContext { field, from, target, .. } = context;
+        Ok(Trial::new(state.within_sight(wanted, field.dynamics, from.t, M::GAP)?, *target))
+    }
+
+    #[inline]
+    fn interval(
+        &self,
+        state: &mut ControllerState,
+        context: &mut StepContext<'_, '_, D, M, N>,
+        trial: &mut Trial,
+    ) -> Result<StepInterval, Error> {
+        self.resolved(context, trial, |context| self.worst(state, context))?;
+        Ok(fit(context.from.t, trial.wanted, trial.target))
+    }
+
+    #[inline]
+    fn estimate(
+        &self,
+        context: &mut StepContext<'_, '_, D, M, N>,
+        _: &Trial,
+        interval: &StepInterval,
+    ) -> f64 {
+        let StepContext { method, field, from, to, workspace, .. } = context;
+        **to = method.attempt(field, interval, from, workspace);
+        if !to.is_finite() {
+            return f64::NAN;
         }
+        let weights = self.in_one_word::<D::Scalar>().weights(from, to);
+        method.error(workspace, interval.h, &weights)
+    }
+
+    #[inline]
+    fn judge(
+        &self,
+        state: &mut ControllerState,
+        context: &mut StepContext<'_, '_, D, M, N>,
+        trial: &mut Trial,
+        interval: &StepInterval,
+        error: f64,
+    ) -> Result<Verdict, Error> {
+        let (response, h, wanted) = (M::RESPONSE, interval.h, trial.wanted);
+        let retried = 0 < trial.rejected;
+        if error <= 1.0 {
+            let error = log2(error);
+            let factor =
+                response.safety * exp2(response.beta * state.error - response.alpha * error);
+            state.h = h * if factor < response.least { response.least } else { factor };
+            // A step that was cut says little about longer ones, nothing if its error is
+            // rounding: what was wanted before stays possible.
+            let longest = if retried { h } else { h * response.greatest };
+            let longest = if longest < wanted && !retried { wanted } else { longest };
+            if longest < state.h {
+                state.h = longest;
+            } else if h < 0.5 * wanted && state.h < wanted && !retried {
+                state.h = wanted;
+            }
+            if wanted <= h {
+                state.error = if error < log2(1e-4) { log2(1e-4) } else { error };
+            }
+            return Ok(Verdict::Accept);
+        }
+        let length = if error.is_nan() {
+            context.note_fault(trial, interval)?;
+            0.1 * h
+        } else {
+            trial.fault = None;
+            let factor = response.safety * exp2(-response.alpha * log2(error));
+            h * if factor < response.least { response.least } else { factor }
+        };
+        Ok(Verdict::Reject { length })
     }
 }
 
 impl<const N: usize> AdaptiveStep<N> {
+    /// The error if time does not resolve an attempt that does not reach the target; `worst` gives
+    /// the coordinate that it names.
+    #[inline(always)]
+    pub(crate) fn resolved<D, M>(
+        &self,
+        context: &mut StepContext<'_, '_, D, M, N>,
+        trial: &mut Trial,
+        worst: impl FnOnce(&mut StepContext<'_, '_, D, M, N>) -> usize,
+    ) -> Result<(), Error>
+    where
+        D: Dynamics<N, Scalar: Float>,
+        M: Method<D, N>,
+    {
+        let (t, step) = (context.from.t, trial.wanted);
+        if !(step <= resolution_of::<D::Scalar>(t) && step < t.since(trial.target).abs()) {
+            return Ok(());
+        }
+        let first = context.stats.accepted + context.stats.rejected == 0;
+        if let Some(error) = self.unresolved(first, step) {
+            return Err(error);
+        }
+        if let Some(fault) = trial.fault.take() {
+            return Err(at(fault, t));
+        }
+        let coordinate = coordinate(&<D::System as System<N>>::FACTS, worst(context));
+        Err(Error::StepSizeUnderflow { t: t.to_f64(), step, coordinate })
+    }
+
+    /// With a relative tolerance that coefficients rounded to one word can hold: no step is short
+    /// enough for the error that they leave.
+    fn in_one_word<T: Float>(&self) -> Self {
+        let rtol = self.relative::<T>();
+        Self { rtol: Some(if rtol < ONE_WORD { ONE_WORD } else { rtol }), ..*self }
+    }
+
     /// The relative tolerance, and the absolute ones of coordinates and velocities.
     #[inline]
     pub(crate) fn tolerances<T: Float>(&self) -> (f64, ([f64; N], [f64; N])) {
@@ -292,22 +342,29 @@ impl<const N: usize> AdaptiveStep<N> {
 
     /// A first step with which the second derivative changes the state by about a hundredth of the
     /// tolerance's root.
-    pub(crate) fn automatic_step<T: Float>(
+    pub(crate) fn automatic_step<D, M>(
         &self,
         order: u32,
-        field: &mut impl Accelerations<T, N>,
-        from: &mut Endpoint<T, N>,
-        limit: f64,
-    ) -> f64 {
+        context: &mut StepContext<'_, '_, D, M, N>,
+    ) -> Result<f64, Error>
+    where
+        D: Dynamics<N, Scalar: Float>,
+        M: Method<D, N>,
+    {
+        let a0 = context.started()?;
+        let StepContext { field, from, target, .. } = context;
+        let limit = -from.t.since(*target);
         let weights = self.weights(from, from);
-        let norm = |q: &[T; N], v: &[T; N]| (weights.square_sum(q, v) / (2 * N) as f64).sqrt();
-        let (q0, v0, a0) = (from.q.high, from.v.high, from.start_acceleration(field));
+        let norm = |q: &[D::Scalar; N], v: &[D::Scalar; N]| {
+            (weights.square_sum(q, v) / (2 * N) as f64).sqrt()
+        };
+        let (q0, v0) = (from.q.high, from.v.high);
         let (state, slope) = (norm(&q0, &v0), norm(&v0, &a0));
         let guess = if 1e-5 < state && 1e-5 < slope { 0.01 * (state / slope) } else { 1e-6 };
         // An overflow in the norms leaves nothing to go by.
         let guess = if 1e-100 < guess { guess } else { 1e-6 };
         let h = if limit < guess { limit } else { guess };
-        let step = T::from_f64(h);
+        let step = D::Scalar::from_f64(h);
         let q1 = core::array::from_fn(|i| q0[i] + step * v0[i]);
         let v1 = core::array::from_fn(|i| v0[i] + step * a0[i]);
         let a1 = field.at(from.t + h, Side::Before, &q1, &v1);
@@ -325,24 +382,23 @@ impl<const N: usize> AdaptiveStep<N> {
         };
         let step = if longer < 100.0 * h { longer } else { 100.0 * h };
         // What time does not resolve is no step; the error of a longer one decides.
-        let least = 2.0 * resolution_of::<T>(from.t);
-        if step < least { least } else { step }
+        let least = 2.0 * resolution_of::<D::Scalar>(from.t);
+        Ok(if step < least { least } else { step })
     }
 
     /// The coordinate with the largest error in the last step tried.
-    fn worst<T: Float, M: Embedded>(
+    fn worst<D: Dynamics<N, Scalar: Float>, M: Method<D, N>>(
         &self,
-        method: &M,
-        stages: &M::Stages<T, N>,
-        memory: &ControllerState,
-        from: &Endpoint<T, N>,
+        state: &ControllerState,
+        context: &StepContext<'_, '_, D, M, N>,
     ) -> usize {
-        let all = self.weights(from, from);
+        let StepContext { method, from, workspace, .. } = context;
+        let all = self.in_one_word::<D::Scalar>().weights(from, from);
         let mut worst = (0, 0.0);
         for index in 0..N {
             let mut weights = Weights { q: [0.0; N], v: [0.0; N] };
             (weights.q[index], weights.v[index]) = (all.q[index], all.v[index]);
-            let error = method.error(stages, memory.h, &weights);
+            let error = method.error(workspace, state.h, &weights);
             if worst.1 < error {
                 worst = (index, error);
             }

@@ -1,37 +1,138 @@
-//! What decides about the length of steps: the interface that fixed and adaptive steps share.
+//! Controllers: how long the next step is, and whether one is good enough.
 
-use crate::error::Error;
+use crate::error::{Error, Quantity};
+use crate::integrate::method::Method;
 use crate::integrate::solution::Stats;
+use crate::integrate::step::diagnose;
 use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Counted;
+use crate::integrate::step::field::Field;
 use crate::integrate::step::gap::WITHOUT_INTERVAL;
 use crate::integrate::step::interval::StepInterval;
-use crate::integrate::step::stepper::Stepper;
 use crate::real::Float;
 use crate::system::Dynamics;
 
-/// What decides about the length of the steps of the method `M` on the dynamics `D`.
-pub trait Control<M, D, const N: usize>: Copy + core::fmt::Debug
+/// A controller of the steps of the method `M` on the dynamics `D`: it chooses lengths and judges
+/// errors, and never steps.
+pub trait Controller<M, D, const N: usize>: Copy + core::fmt::Debug
 where
-    M: Stepper<D, N>,
+    M: Method<D, N>,
     D: Dynamics<N, Scalar: Float>,
 {
-    /// Whether the settings make sense.
+    /// The error in the settings, if there is one.
     fn check(&self) -> Result<(), Error>;
 
     /// A lower bound of the number of steps over an interval.
     fn least_steps(&self, length: f64) -> f64;
 
-    /// Takes one step from `course.from` towards `course.target`, not beyond it, and puts its end
-    /// into `course.to`; if it fails, nothing but that and caches has changed.
+    /// Takes one step from `context.from` towards `context.target`, not beyond it, and puts its end
+    /// into `context.to`.
     fn step(
         &self,
-        memory: &mut ControllerState,
-        course: StepContext<'_, '_, D, M, N>,
+        state: &mut ControllerState,
+        context: StepContext<'_, '_, D, M, N>,
     ) -> Result<StepInterval, Error>;
 }
 
-/// What a control remembers from step to step.
+/// The law by which a controller chooses lengths and judges errors.
+pub trait StepLaw<M, D, const N: usize>: Controller<M, D, N>
+where
+    M: Method<D, N>,
+    D: Dynamics<N, Scalar: Float>,
+{
+    /// The length of the first attempt at a step from `context.from`, and the time not to go
+    /// beyond.
+    fn propose(
+        &self,
+        state: &mut ControllerState,
+        context: &mut StepContext<'_, '_, D, M, N>,
+    ) -> Result<Trial, Error>;
+
+    /// The interval of the next attempt.
+    fn interval(
+        &self,
+        state: &mut ControllerState,
+        context: &mut StepContext<'_, '_, D, M, N>,
+        trial: &mut Trial,
+    ) -> Result<StepInterval, Error>;
+
+    /// Puts the end of a step over `interval` into `context.to`, and gives its error over the one
+    /// allowed: NaN where the end is not finite.
+    fn estimate(
+        &self,
+        context: &mut StepContext<'_, '_, D, M, N>,
+        trial: &Trial,
+        interval: &StepInterval,
+    ) -> f64;
+
+    /// The verdict on an attempt with this error.
+    fn judge(
+        &self,
+        state: &mut ControllerState,
+        context: &mut StepContext<'_, '_, D, M, N>,
+        trial: &mut Trial,
+        interval: &StepInterval,
+        error: f64,
+    ) -> Result<Verdict, Error>;
+
+    /// Takes one step: the only loop over attempts.
+    #[inline]
+    fn take_step(
+        &self,
+        state: &mut ControllerState,
+        mut context: StepContext<'_, '_, D, M, N>,
+    ) -> Result<StepInterval, Error> {
+        let mut trial = self.propose(state, &mut context)?;
+        loop {
+            let interval = self.interval(state, &mut context, &mut trial)?;
+            let error = self.estimate(&mut context, &trial, &interval);
+            match self.judge(state, &mut context, &mut trial, &interval, error)? {
+                Verdict::Accept => {
+                    context.stats.accepted += 1;
+                    return Ok(interval);
+                }
+                Verdict::Reject { length } => {
+                    context.stats.rejected += 1;
+                    (trial.wanted, trial.rejected) = (length, trial.rejected + 1);
+                }
+            }
+        }
+    }
+}
+
+/// The attempts at one step.
+#[derive(Debug)]
+pub struct Trial {
+    /// The length wanted, without its sign.
+    pub wanted: f64,
+    /// The time not to go beyond; infinite if there is none.
+    pub target: f64,
+    /// The number of attempts rejected.
+    pub rejected: u32,
+    /// The cause of the last rejection, if its end was not finite.
+    pub fault: Option<Error>,
+}
+
+impl Trial {
+    /// Before the first attempt.
+    #[inline]
+    pub fn new(wanted: f64, target: f64) -> Self {
+        Self { wanted, target, rejected: 0, fault: None }
+    }
+}
+
+/// The verdict on an attempt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Verdict {
+    /// It is a step.
+    Accept,
+    /// It is none; the next attempt has this length.
+    Reject {
+        /// In seconds, without its sign.
+        length: f64,
+    },
+}
+
+/// The memory of a controller from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControllerState {
     /// The length of the steps towards `target`, or the next one that the error suggests; 0 before
@@ -40,7 +141,7 @@ pub struct ControllerState {
     /// The number of equal steps left, and where it is not `h`, their length.
     pub(crate) left: u64,
     pub(crate) equal: f64,
-    /// Where they lead.
+    /// The time to which they lead.
     pub(crate) target: f64,
     /// The binary logarithm of the error of the last step.
     pub(crate) error: f64,
@@ -54,25 +155,58 @@ impl Default for ControllerState {
     }
 }
 
-/// What a control works with.
+/// One step under way.
 #[derive(Debug)]
 pub struct StepContext<'a, 'd, D, M, const N: usize>
 where
     D: Dynamics<N, Scalar: Float>,
-    M: Stepper<D, N>,
+    M: Method<D, N>,
 {
     /// The method.
-    pub(crate) method: &'a M,
+    pub method: &'a M,
     /// The accelerations.
-    pub(crate) field: &'a mut Counted<'d, D>,
+    pub field: &'a mut Field<'d, D, N>,
     /// The state.
-    pub(crate) from: &'a mut Endpoint<D::Scalar, N>,
-    /// Where the state at the end of the step goes.
-    pub(crate) to: &'a mut Endpoint<D::Scalar, N>,
-    /// What the step leaves behind.
-    pub(crate) stages: &'a mut M::Stages,
+    pub from: &'a mut Endpoint<D::Scalar, N>,
+    /// The state at the end of the step.
+    pub to: &'a mut Endpoint<D::Scalar, N>,
+    /// The workspace of the method.
+    pub workspace: &'a mut M::Workspace,
     /// The time not to go beyond; infinite if there is none.
-    pub(crate) target: f64,
+    pub target: f64,
     /// The counters.
-    pub(crate) stats: &'a mut Stats,
+    pub stats: &'a mut Stats,
+}
+
+impl<D, M, const N: usize> StepContext<'_, '_, D, M, N>
+where
+    D: Dynamics<N, Scalar: Float>,
+    M: Method<D, N>,
+{
+    /// The accelerations at the start, if they are numbers.
+    pub(crate) fn started(&mut self) -> Result<[D::Scalar; N], Error> {
+        let a = self.from.start_acceleration(self.field);
+        if a.iter().all(|a| a.is_finite()) {
+            return Ok(a);
+        }
+        let at_once = StepInterval::by(self.from.t, 0.0);
+        Err(diagnose::cause(self.method, self.field, &at_once, self.from, self.workspace))
+    }
+
+    /// Keeps the cause of an attempt whose end is not finite, or gives it at once if no shorter
+    /// step gets around it.
+    #[cold]
+    pub(crate) fn note_fault(
+        &mut self,
+        trial: &mut Trial,
+        interval: &StepInterval,
+    ) -> Result<(), Error> {
+        trial.fault = self.method.diagnose(self.field, interval, self.from, self.workspace);
+        // A function may have left its domain, and a shorter step may stay inside; but no step is
+        // short enough for an input that is not finite.
+        if let Some(input @ Error::NotFinite { what: Quantity::Input { .. }, .. }) = &trial.fault {
+            return Err(input.clone());
+        }
+        Ok(())
+    }
 }

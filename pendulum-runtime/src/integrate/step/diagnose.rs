@@ -1,62 +1,62 @@
-//! Who is to blame for a step that failed.
+//! The cause of a step that failed.
 
 use crate::error::{Error, Quantity, Suspect};
-use crate::integrate::method::Suits;
+use crate::integrate::method::Method;
 use crate::integrate::schemes::linear::Factors;
 use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::{Watched, first_in_state};
+use crate::integrate::step::field::{Field, coordinate, first_in_state};
 use crate::integrate::step::interval::StepInterval;
-use crate::integrate::step::stepper::Stepper;
 use crate::motion::Side;
 use crate::real::{Float, Real};
 use crate::system::{Dynamics, Purpose, System, scalar_time};
 use crate::time::Time;
 
-/// The error for a step, with what it has left in `stages`, that led to a number that is not
+/// The error for a step, with what it has left in `workspace`, that led to a number that is not
 /// finite.
-pub(crate) fn blame<D: Dynamics<N, Scalar: Float>, M: Stepper<D, N>, const N: usize>(
+pub(crate) fn cause<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usize>(
     method: &M,
-    dynamics: &D,
+    field: &Field<'_, D, N>,
     interval: &StepInterval,
     from: &Endpoint<D::Scalar, N>,
-    stages: &M::Stages,
+    workspace: &M::Workspace,
 ) -> Error {
-    let coordinate = crate::integrate::step::field::coordinate(&<D::System as System<N>>::FACTS, 0);
-    let unknown = Error::NotFinite {
+    let coordinate = coordinate(&<D::System as System<N>>::FACTS, 0);
+    method.diagnose(field, interval, from, workspace).unwrap_or_else(|| Error::NotFinite {
         t: interval.end.to_f64(),
         what: Quantity::Velocity(coordinate),
         suspects: Vec::new(),
-    };
-    method.fault(dynamics, interval, from, stages).unwrap_or(unknown)
+    })
 }
 
-/// The first number in the stages of a step that is not finite, or where its equations were not
-/// solved, if there is one.
-pub(crate) fn fault<D: Dynamics<N, Scalar: Float>, M: Suits<D::System, N>, const N: usize>(
+/// The first number in the evaluations of a step that is not finite, or where its equations were
+/// not solved, if there is one.
+pub(crate) fn fault<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usize>(
     method: &M,
-    dynamics: &D,
+    field: &Field<'_, D, N>,
     interval: &StepInterval,
     from: &Endpoint<D::Scalar, N>,
-    stages: &M::Stages<D::Scalar, N>,
+    workspace: &M::Workspace,
 ) -> Option<Error> {
     let facts = &<D::System as System<N>>::FACTS;
-    let unsolved = M::unsolved(stages);
-    let mut watched = Watched::new(dynamics);
-    let to =
-        method.step(&mut watched, interval, &mut Endpoint { a: None, ..*from }, &mut M::stages());
-    if let Some((t, coordinate)) = watched.lost
+    let dynamics = field.dynamics;
+    let unsolved = method.unsolved(workspace);
+    let mut watched = field.watching();
+    let mut start = Endpoint { a: None, ..*from };
+    let to = method.attempt(&mut watched, interval, &mut start, &mut method.workspace(dynamics));
+    let findings = watched.findings();
+    if let Some((t, coordinate)) = findings.lost
         && regular(dynamics, from)
     {
         return Some(Error::NoVelocity { t: t.to_f64(), coordinate });
     }
     // Where an iteration went astray, numbers that are not finite are not the cause but the effect.
     if let Some((t, index)) = unsolved {
-        let coordinate = crate::integrate::step::field::coordinate(facts, index);
+        let coordinate = coordinate(facts, index);
         return Some(Error::NoConvergence { t: t.to_f64(), step: interval.h, coordinate });
     }
     let at_end = || first_in_state(facts, &to.q.high, &to.v.high).map(|what| (interval.end, what));
-    let (t, what) = watched.first.or_else(at_end)?;
-    if watched.singular {
+    let (t, what) = findings.first.or_else(at_end)?;
+    if findings.singular {
         return Some(Error::NotFinite {
             t: t.to_f64(),
             what,

@@ -4,10 +4,11 @@
 #![allow(clippy::inline_always)]
 
 use crate::integrate::step::compensated::Compensated;
-use crate::integrate::step::field::Accelerations;
+use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
 use crate::real::Float;
+use crate::system::Dynamics;
 use crate::time::Time;
 
 /// The state at one end of a step, with the digits that rounding has left off.
@@ -22,7 +23,7 @@ pub struct Endpoint<T, const N: usize> {
     /// The accelerations, where somebody has computed them: from before if this is the end of a
     /// step, from after if its start.
     ///
-    /// The two differ at kinks only, and there the driver forgets them.
+    /// The two differ at kinks only, and there the loop forgets them.
     pub a: Option<[T; N]>,
 }
 
@@ -34,23 +35,33 @@ impl<T: Float, const N: usize> Endpoint<T, N> {
 
     /// The accelerations at the start of a step.
     #[inline]
-    pub fn start_acceleration(&mut self, field: &mut impl Accelerations<T, N>) -> [T; N] {
+    pub fn start_acceleration(
+        &mut self,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+    ) -> [T; N] {
         self.acceleration(field, Side::After)
     }
 
     /// The accelerations at the end of a step.
     #[inline]
-    pub fn end_acceleration(&mut self, field: &mut impl Accelerations<T, N>) -> [T; N] {
+    pub fn end_acceleration(
+        &mut self,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+    ) -> [T; N] {
         self.acceleration(field, Side::Before)
     }
 
     #[inline]
-    fn acceleration(&mut self, field: &mut impl Accelerations<T, N>, side: Side) -> [T; N] {
+    fn acceleration(
+        &mut self,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+        side: Side,
+    ) -> [T; N] {
         let (t, q, v) = (self.t, &self.q.high, &self.v.high);
         *self.a.get_or_insert_with(|| field.at(t, side, q, v))
     }
 
-    /// The node at the end of `interval` whose coordinates and velocities have grown by `h·dq` and
+    /// The endpoint of `interval` whose coordinates and velocities have grown by `h·dq` and
     /// `h·dv`.
     #[inline]
     pub fn advanced(&self, interval: &StepInterval, dq: &[T; N], dv: &[T; N]) -> Self {

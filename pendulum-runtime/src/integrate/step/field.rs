@@ -1,4 +1,4 @@
-//! The accelerations as the methods see them: counted, or watched for numbers that are not finite.
+//! The accelerations as the methods see them: counted, and watched after a step that failed.
 
 use crate::error::{Coordinate, Quantity};
 use crate::motion::Side;
@@ -7,286 +7,143 @@ use crate::system::{Dynamics, Facts, Jacobians, Purpose, Samples, System, scalar
 use crate::time::Time;
 use nalgebra::SMatrix;
 
-/// q̈ as a function of time and state: what a method integrates.
-pub trait Accelerations<T, const N: usize> {
-    /// The accelerations at `t`, seen from `side`.
-    fn at(&mut self, t: Time, side: Side, q: &[T; N], v: &[T; N]) -> [T; N];
-}
+/// The driven inputs of the dynamics `D`.
+pub type InputsOf<D, const N: usize> = <<D as Dynamics<N>>::System as System<N>>::Inputs;
 
-/// All that a method can ask of the system `S` and the motions that drive it.
-pub trait Field<S: System<N>, const N: usize>: Accelerations<S::Scalar, N> {
-    /// The samples of the driven inputs that the momentum form needs at `t`, seen from `side`.
-    fn inputs(&mut self, t: Time, side: Side) -> S::Inputs;
+/// Everything that the parameters of the dynamics `D` decide alone.
+pub(crate) type PreparedOf<D, const N: usize> = <<D as Dynamics<N>>::System as System<N>>::Prepared;
 
-    /// The momenta p = ∂L/∂q̇.
-    fn momenta(
-        &mut self,
-        t: Time,
-        q: &[S::Scalar; N],
-        v: &[S::Scalar; N],
-        inputs: &S::Inputs,
-    ) -> [S::Scalar; N];
-
-    /// The velocities that give the momenta `p`.
-    fn velocities(
-        &mut self,
-        t: Time,
-        q: &[S::Scalar; N],
-        p: &[S::Scalar; N],
-        inputs: &S::Inputs,
-    ) -> [S::Scalar; N];
-
-    /// dp/dt; counts as an evaluation, together with the velocities.
-    fn momentum_rates(
-        &mut self,
-        t: Time,
-        q: &[S::Scalar; N],
-        v: &[S::Scalar; N],
-        inputs: &S::Inputs,
-    ) -> [S::Scalar; N];
-
-    /// The mass matrix M = ∂²L/∂q̇².
-    fn mass_matrix(
-        &mut self,
-        t: Time,
-        q: &[S::Scalar; N],
-        v: &[S::Scalar; N],
-        inputs: &S::Inputs,
-    ) -> SMatrix<S::Scalar, N, N>;
-
-    /// ∂q̈/∂q and ∂q̈/∂q̇ at `t`, seen from `side`.
-    fn jacobians(
-        &mut self,
-        t: Time,
-        side: Side,
-        q: &[S::Scalar; N],
-        v: &[S::Scalar; N],
-    ) -> [SMatrix<S::Scalar, N, N>; 2]
-    where
-        S: Jacobians<N>;
-}
-
-/// The accelerations of some dynamics, with the number of evaluations.
+/// Everything that a method can ask of the dynamics `D`: accelerations, and the momentum form.
 #[derive(Debug)]
-pub struct Counted<'a, D> {
+pub struct Field<'a, D: Dynamics<N>, const N: usize> {
     pub(crate) dynamics: &'a D,
+    pub(crate) prepared: &'a PreparedOf<D, N>,
+    /// The number of evaluations.
     pub(crate) evaluations: u64,
+    /// The first number that is not finite, if this field looks for it.
+    findings: Option<Findings>,
 }
 
-impl<'a, D> Counted<'a, D> {
-    /// None evaluated yet.
-    pub fn new(dynamics: &'a D) -> Self {
-        Self { dynamics, evaluations: 0 }
-    }
-}
-
-impl<const N: usize, D: Dynamics<N>> Accelerations<D::Scalar, N> for Counted<'_, D> {
-    #[inline]
-    fn at(
-        &mut self,
-        t: Time,
-        side: Side,
-        q: &[D::Scalar; N],
-        v: &[D::Scalar; N],
-    ) -> [D::Scalar; N] {
-        self.evaluations += 1;
-        self.dynamics.accelerations_at(t, side, q, v)
-    }
-}
-
-impl<const N: usize, D: Dynamics<N>> Field<D::System, N> for Counted<'_, D> {
-    #[inline]
-    fn inputs(&mut self, t: Time, side: Side) -> <D::System as System<N>>::Inputs {
-        self.dynamics.inputs(t, side, Purpose::Momenta)
-    }
-
-    #[inline]
-    fn momenta(
-        &mut self,
-        t: Time,
-        q: &[D::Scalar; N],
-        v: &[D::Scalar; N],
-        inputs: &<D::System as System<N>>::Inputs,
-    ) -> [D::Scalar; N] {
-        self.dynamics.system().momenta(scalar_time(t), q, v, inputs)
-    }
-
-    #[inline]
-    fn velocities(
-        &mut self,
-        t: Time,
-        q: &[D::Scalar; N],
-        p: &[D::Scalar; N],
-        inputs: &<D::System as System<N>>::Inputs,
-    ) -> [D::Scalar; N] {
-        self.dynamics.system().velocities(scalar_time(t), q, p, inputs)
-    }
-
-    #[inline]
-    fn momentum_rates(
-        &mut self,
-        t: Time,
-        q: &[D::Scalar; N],
-        v: &[D::Scalar; N],
-        inputs: &<D::System as System<N>>::Inputs,
-    ) -> [D::Scalar; N] {
-        self.evaluations += 1;
-        self.dynamics.system().momentum_rates(scalar_time(t), q, v, inputs)
-    }
-
-    fn mass_matrix(
-        &mut self,
-        t: Time,
-        q: &[D::Scalar; N],
-        v: &[D::Scalar; N],
-        inputs: &<D::System as System<N>>::Inputs,
-    ) -> SMatrix<D::Scalar, N, N> {
-        self.dynamics.system().mass_matrix(scalar_time(t), q, v, inputs)
-    }
-
-    fn jacobians(
-        &mut self,
-        t: Time,
-        side: Side,
-        q: &[D::Scalar; N],
-        v: &[D::Scalar; N],
-    ) -> [SMatrix<D::Scalar, N, N>; 2]
-    where
-        D::System: Jacobians<N>,
-    {
-        jacobians(self.dynamics, t, side, q, v)
-    }
-}
-
-fn jacobians<const N: usize, D: Dynamics<N, System: Jacobians<N>>>(
-    dynamics: &D,
-    t: Time,
-    side: Side,
-    q: &[D::Scalar; N],
-    v: &[D::Scalar; N],
-) -> [SMatrix<D::Scalar, N, N>; 2] {
-    let (system, inputs, t) =
-        (dynamics.system(), dynamics.inputs(t, side, Purpose::Accelerations), scalar_time(t));
-    [system.position_jacobian(t, q, v, &inputs), system.velocity_jacobian(t, q, v, &inputs)]
-}
-
-/// The accelerations of some dynamics and the first number in them, or on the way to them, that is
-/// not finite.
+/// The first number that is not finite in the evaluations of a step, or on the way to them.
 ///
-/// A failed step is taken once more through this to find out where it failed, so that successful
-/// ones need not look.
-#[derive(Debug)]
-pub(crate) struct Watched<'a, D> {
-    pub(crate) dynamics: &'a D,
+/// A failed step is taken once more to find it, so that successful ones need not look.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Findings {
     pub(crate) first: Option<(Time, Quantity)>,
     /// It is a velocity that belongs to a finite momentum: the mass matrix has no inverse there, or
     /// no velocity gives that momentum.
     pub(crate) singular: bool,
-    /// The time and the coordinate if it is one that was not found, and not one beyond all numbers.
+    /// The time and the coordinate if that velocity was not found, and is not beyond all numbers.
     pub(crate) lost: Option<(Time, Coordinate)>,
 }
 
-impl<const N: usize, D: Dynamics<N, Scalar: Float>> Accelerations<D::Scalar, N> for Watched<'_, D> {
-    fn at(
+impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize> Field<'a, D, N> {
+    /// No evaluation yet.
+    #[inline]
+    pub(crate) fn new(dynamics: &'a D, prepared: &'a PreparedOf<D, N>) -> Self {
+        Self { dynamics, prepared, evaluations: 0, findings: None }
+    }
+
+    /// The same dynamics, watched for numbers that are not finite.
+    pub(crate) fn watching(&self) -> Self {
+        Self { findings: Some(Findings::default()), ..Self::new(self.dynamics, self.prepared) }
+    }
+
+    /// The first number that was not finite.
+    pub(crate) fn findings(&self) -> Findings {
+        self.findings.unwrap_or_default()
+    }
+
+    /// The dynamics.
+    pub fn dynamics(&self) -> &'a D {
+        self.dynamics
+    }
+
+    /// The accelerations at `t`, seen from `side`; counts as an evaluation.
+    #[inline]
+    pub fn at(
         &mut self,
         t: Time,
         side: Side,
         q: &[D::Scalar; N],
         v: &[D::Scalar; N],
     ) -> [D::Scalar; N] {
-        let facts = &<D::System as System<N>>::FACTS;
-        let inputs = self.dynamics.inputs(t, side, Purpose::Accelerations);
-        let a = self.dynamics.system().accelerations(scalar_time(t), q, v, &inputs);
-        self.look(t, || {
-            let state = first_in_state(facts, q, v).or_else(|| first_in_inputs(facts, &inputs));
-            state.or_else(|| {
-                first_in(&a).map(|index| Quantity::Acceleration(coordinate(facts, index)))
-            })
-        });
+        self.evaluations += 1;
+        let a = self.dynamics.accelerations_with(self.prepared, t, side, q, v);
+        if self.findings.is_some() {
+            self.look_at(t, side, q, v, &a);
+        }
         a
     }
-}
 
-impl<'a, D> Watched<'a, D> {
-    pub(crate) fn new(dynamics: &'a D) -> Self {
-        Self { dynamics, first: None, singular: false, lost: None }
-    }
-
-    fn look(&mut self, t: Time, what: impl FnOnce() -> Option<Quantity>) {
-        if self.first.is_none() {
-            self.first = what().map(|what| (t, what));
-        }
-    }
-}
-
-impl<const N: usize, D: Dynamics<N, Scalar: Float>> Field<D::System, N> for Watched<'_, D> {
-    fn inputs(&mut self, t: Time, side: Side) -> <D::System as System<N>>::Inputs {
+    /// The samples of the driven inputs that the momentum form needs at `t`, seen from `side`.
+    #[inline]
+    pub fn inputs(&mut self, t: Time, side: Side) -> InputsOf<D, N> {
         let inputs = self.dynamics.inputs(t, side, Purpose::Momenta);
-        self.look(t, || first_in_inputs(&<D::System as System<N>>::FACTS, &inputs));
+        self.look(t, || first_in_inputs(Self::facts(), &inputs));
         inputs
     }
 
-    fn momenta(
+    /// The momenta p = ∂L/∂q̇.
+    #[inline]
+    pub fn momenta(
         &mut self,
         t: Time,
         q: &[D::Scalar; N],
         v: &[D::Scalar; N],
-        inputs: &<D::System as System<N>>::Inputs,
+        inputs: &InputsOf<D, N>,
     ) -> [D::Scalar; N] {
-        self.look(t, || first_in_state(&<D::System as System<N>>::FACTS, q, v));
+        self.look(t, || first_in_state(Self::facts(), q, v));
         self.dynamics.system().momenta(scalar_time(t), q, v, inputs)
     }
 
-    fn velocities(
+    /// The velocities that give the momenta `p`.
+    #[inline]
+    pub fn velocities(
         &mut self,
         t: Time,
         q: &[D::Scalar; N],
         p: &[D::Scalar; N],
-        inputs: &<D::System as System<N>>::Inputs,
+        inputs: &InputsOf<D, N>,
     ) -> [D::Scalar; N] {
         let v = self.dynamics.system().velocities(scalar_time(t), q, p, inputs);
-        self.singular |= self.first.is_none()
-            && first_in(p).is_none()
-            && first_in(q).is_none()
-            && first_in(&v).is_some();
-        if self.singular && self.lost.is_none() && self.first.is_none() {
-            let facts = &<D::System as System<N>>::FACTS;
-            // Only what is no number has no order.
-            self.lost = v
-                .iter()
-                .position(|velocity| velocity.partial_cmp(velocity).is_none())
-                .map(|index| (t, coordinate(facts, index)));
+        if self.findings.is_some() {
+            self.look_at_velocities(t, q, p, &v);
         }
-        self.look(t, || first_in_state(&<D::System as System<N>>::FACTS, q, &v));
         v
     }
 
-    fn momentum_rates(
+    /// dp/dt; counts as an evaluation, together with the velocities.
+    #[inline]
+    pub fn momentum_rates(
         &mut self,
         t: Time,
         q: &[D::Scalar; N],
         v: &[D::Scalar; N],
-        inputs: &<D::System as System<N>>::Inputs,
+        inputs: &InputsOf<D, N>,
     ) -> [D::Scalar; N] {
-        let facts = &<D::System as System<N>>::FACTS;
+        self.evaluations += 1;
         let rates = self.dynamics.system().momentum_rates(scalar_time(t), q, v, inputs);
         self.look(t, || {
-            first_in(&rates).map(|index| Quantity::Acceleration(coordinate(facts, index)))
+            let index = first_in(&rates)?;
+            Some(Quantity::Acceleration(coordinate(Self::facts(), index)))
         });
         rates
     }
 
-    fn mass_matrix(
+    /// The mass matrix M = ∂²L/∂q̇².
+    pub fn mass_matrix(
         &mut self,
         t: Time,
         q: &[D::Scalar; N],
         v: &[D::Scalar; N],
-        inputs: &<D::System as System<N>>::Inputs,
+        inputs: &InputsOf<D, N>,
     ) -> SMatrix<D::Scalar, N, N> {
         self.dynamics.system().mass_matrix(scalar_time(t), q, v, inputs)
     }
 
-    fn jacobians(
+    /// ∂q̈/∂q and ∂q̈/∂q̇ at `t`, seen from `side`.
+    pub fn jacobians(
         &mut self,
         t: Time,
         side: Side,
@@ -296,17 +153,75 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>> Field<D::System, N> for Watc
     where
         D::System: Jacobians<N>,
     {
-        let jacobians = jacobians(self.dynamics, t, side, q, v);
+        let (system, time) = (self.dynamics.system(), scalar_time(t));
+        let inputs = self.dynamics.inputs(t, side, Purpose::Accelerations);
+        let jacobians = [
+            system.position_jacobian(time, q, v, &inputs),
+            system.velocity_jacobian(time, q, v, &inputs),
+        ];
         self.look(t, || {
             let entries = |matrix: &SMatrix<D::Scalar, N, N>| {
-                (0..N).find(|&i| !matrix.row(i).iter().all(|x| x.is_finite()))
+                (0..N).find(|&i| matrix.row(i).iter().any(|x| !x.is_finite()))
             };
-            let row = jacobians.iter().find_map(entries);
-            row.map(|index| {
-                Quantity::Acceleration(coordinate(&<D::System as System<N>>::FACTS, index))
-            })
+            let index = jacobians.iter().find_map(entries)?;
+            Some(Quantity::Acceleration(coordinate(Self::facts(), index)))
         });
         jacobians
+    }
+
+    fn facts() -> &'static Facts {
+        &<D::System as System<N>>::FACTS
+    }
+
+    #[inline]
+    fn look(&mut self, t: Time, what: impl FnOnce() -> Option<Quantity>) {
+        if let Some(findings) = &mut self.findings
+            && findings.first.is_none()
+        {
+            findings.first = what().map(|what| (t, what));
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn look_at(
+        &mut self,
+        t: Time,
+        side: Side,
+        q: &[D::Scalar; N],
+        v: &[D::Scalar; N],
+        a: &[D::Scalar; N],
+    ) {
+        let inputs = self.dynamics.inputs(t, side, Purpose::Accelerations);
+        self.look(t, || {
+            let facts = Self::facts();
+            let state = first_in_state(facts, q, v).or_else(|| first_in_inputs(facts, &inputs));
+            state.or_else(|| Some(Quantity::Acceleration(coordinate(facts, first_in(a)?))))
+        });
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn look_at_velocities(
+        &mut self,
+        t: Time,
+        q: &[D::Scalar; N],
+        p: &[D::Scalar; N],
+        v: &[D::Scalar; N],
+    ) {
+        let facts = Self::facts();
+        if let Some(findings) = &mut self.findings
+            && findings.first.is_none()
+        {
+            findings.singular |=
+                first_in(p).is_none() && first_in(q).is_none() && first_in(v).is_some();
+            if findings.singular && findings.lost.is_none() {
+                // NaN alone has no order.
+                let lost = v.iter().position(|v| v.partial_cmp(v).is_none());
+                findings.lost = lost.map(|index| (t, coordinate(facts, index)));
+            }
+        }
+        self.look(t, || first_in_state(facts, q, v));
     }
 }
 

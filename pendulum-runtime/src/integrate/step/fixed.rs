@@ -1,11 +1,13 @@
 //! Steps of equal length.
 
 use crate::error::Error;
-use crate::integrate::step::controller::{Control, ControllerState, StepContext};
-use crate::integrate::step::diagnose::blame;
+use crate::integrate::method::Method;
+use crate::integrate::step::controller::{
+    Controller, ControllerState, StepContext, StepLaw, Trial, Verdict,
+};
+use crate::integrate::step::diagnose;
 use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::short::{is_short, straight};
-use crate::integrate::step::stepper::Stepper;
 use crate::real::Float;
 use crate::system::Dynamics;
 use crate::time::Time;
@@ -34,7 +36,7 @@ impl FixedStep {
     }
 }
 
-impl<M: Stepper<D, N>, D: Dynamics<N, Scalar: Float>, const N: usize> Control<M, D, N>
+impl<M: Method<D, N>, D: Dynamics<N, Scalar: Float>, const N: usize> Controller<M, D, N>
     for FixedStep
 {
     fn check(&self) -> Result<(), Error> {
@@ -56,23 +58,65 @@ impl<M: Stepper<D, N>, D: Dynamics<N, Scalar: Float>, const N: usize> Control<M,
     #[inline]
     fn step(
         &self,
-        memory: &mut ControllerState,
-        course: StepContext<'_, '_, D, M, N>,
+        state: &mut ControllerState,
+        context: StepContext<'_, '_, D, M, N>,
     ) -> Result<StepInterval, Error> {
-        let StepContext { method, field, from, to, stages, target, stats } = course;
-        let mut plan = *memory;
-        let interval = self.next(&mut plan, from.t, target);
-        *to = if is_short::<D::Scalar>(interval.h) {
-            straight(field, &interval, from)
+        self.take_step(state, context)
+    }
+}
+
+impl<M: Method<D, N>, D: Dynamics<N, Scalar: Float>, const N: usize> StepLaw<M, D, N>
+    for FixedStep
+{
+    #[inline]
+    fn propose(
+        &self,
+        _: &mut ControllerState,
+        context: &mut StepContext<'_, '_, D, M, N>,
+    ) -> Result<Trial, Error> {
+        Ok(Trial::new(self.step, context.target))
+    }
+
+    #[inline]
+    fn interval(
+        &self,
+        state: &mut ControllerState,
+        context: &mut StepContext<'_, '_, D, M, N>,
+        trial: &mut Trial,
+    ) -> Result<StepInterval, Error> {
+        Ok(self.next(state, context.from.t, trial.target))
+    }
+
+    #[inline]
+    fn estimate(
+        &self,
+        context: &mut StepContext<'_, '_, D, M, N>,
+        _: &Trial,
+        interval: &StepInterval,
+    ) -> f64 {
+        let StepContext { method, field, from, to, workspace, .. } = context;
+        **to = if is_short::<D::Scalar>(interval.h) {
+            straight(field, interval, from)
         } else {
-            method.advance(field, &interval, from, stages)
+            method.attempt(field, interval, from, workspace)
         };
-        if !to.is_finite() {
-            return Err(blame(method, field.dynamics, &interval, from, stages));
+        if to.is_finite() { 0.0 } else { f64::NAN }
+    }
+
+    #[inline]
+    fn judge(
+        &self,
+        _: &mut ControllerState,
+        context: &mut StepContext<'_, '_, D, M, N>,
+        _: &mut Trial,
+        interval: &StepInterval,
+        error: f64,
+    ) -> Result<Verdict, Error> {
+        if error.is_nan() {
+            let StepContext { method, field, from, workspace, .. } = context;
+            return Err(diagnose::cause(*method, field, interval, from, workspace));
         }
-        *memory = plan;
-        stats.accepted += 1;
-        Ok(interval)
+        Ok(Verdict::Accept)
     }
 }
 

@@ -128,7 +128,7 @@ impl ControllerState {
 #[cfg(test)]
 mod tests {
     use super::{all, widest};
-    use crate::integrate::method::Embedded;
+    use crate::integrate::method::Adaptive;
     use crate::integrate::{Dop853, Dprkn8, Dprkn12, Rodas4, Tsit5};
 
     #[test]

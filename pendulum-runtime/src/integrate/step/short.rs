@@ -1,9 +1,10 @@
 //! Steps shorter than a single-precision number can say.
 
 use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Accelerations;
+use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
+use crate::system::Dynamics;
 
 /// The least length of a step that the scalar holds with all its digits; 0 where its range is that
 /// of time.
@@ -25,7 +26,7 @@ pub(crate) fn is_short<T: Float>(h: f64) -> bool {
 /// order adds is nothing.
 #[cold]
 pub(crate) fn straight<T: Float, const N: usize>(
-    field: &mut impl Accelerations<T, N>,
+    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
     interval: &StepInterval,
     from: &mut Endpoint<T, N>,
 ) -> Endpoint<T, N> {

@@ -5,7 +5,7 @@ use super::systems::{
     henon_heiles, oscillator, pendulum, shaken,
 };
 use super::{distance, fixed};
-use crate::integrate::method::Suits;
+use crate::integrate::method::Method;
 use crate::integrate::{
     Dop853, Dprkn8, Dprkn12, Leapfrog, Rk4, Solution, Srkn6b, Srkn11b, Srkn14a, Stats,
     SymplecticEuler, Tsit5, solve,
@@ -31,12 +31,12 @@ const REGULAR: [f64; 4] = [
     -0.560065536725151040213534517241,
 ];
 
-fn pendulum_error(method: impl Suits<Pendulum<f64>, 1>, steps: u64) -> f64 {
+fn pendulum_error(method: impl Method<Pendulum<f64>, 1>, steps: u64) -> f64 {
     let end = fixed(&pendulum(), 100.0, [1.3], [0.0], method, steps);
     distance(&end.q, &end.v, &PENDULUM)
 }
 
-fn chaotic_error(method: impl Suits<DoublePendulum<f64>, 2>, steps: u64) -> f64 {
+fn chaotic_error(method: impl Method<DoublePendulum<f64>, 2>, steps: u64) -> f64 {
     let end = fixed(&double_pendulum(), 10.0, [2.0, 2.5], [0.0; 2], method, steps);
     distance(&end.q, &end.v, &CHAOTIC)
 }

@@ -1,7 +1,7 @@
 //! Energy over long times.
 
 use super::systems::{henon_heiles, pendulum};
-use crate::integrate::method::Suits;
+use crate::integrate::method::Method;
 use crate::integrate::{FixedStep, Integrator, Leapfrog, Rk4, Srkn6b, Srkn14a};
 use crate::system::{System, VelocityFree};
 
@@ -11,7 +11,7 @@ fn drift<S, const N: usize>(
     system: &S,
     q: [f64; N],
     v: [f64; N],
-    method: impl Suits<S, N>,
+    method: impl Method<S, N>,
     h: f64,
     steps: u64,
 ) -> f64

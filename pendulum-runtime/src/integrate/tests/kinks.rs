@@ -1,7 +1,7 @@
 //! Motions whose velocity jumps: steps land on the kinks and the momenta go over them unchanged.
 
 use super::systems::{LinearKeys, MovingPendulum, moving, pendulum};
-use crate::integrate::method::Suits;
+use crate::integrate::method::Method;
 use crate::integrate::{Dop853, Integrator, Leapfrog, Rk4, Srkn6b, Srkn11b, Srkn14a, Tsit5, solve};
 use crate::motion::Side;
 use crate::real::Real;
@@ -26,7 +26,7 @@ fn keyed() -> Keyed {
 /// θ(5) from θ = 0.3 at rest.
 const EXACT: f64 = -0.129608683467;
 
-fn error(method: impl Suits<MovingPendulum<f64>, 1>, steps_per_key: u32) -> f64 {
+fn error(method: impl Method<Keyed, 1>, steps_per_key: u32) -> f64 {
     let step = 1.0 / (24.0 * f64::from(steps_per_key));
     let solution =
         solve(&keyed(), (0.0, 5.0), [0.3], [0.0]).method(method).step(step).run().unwrap();

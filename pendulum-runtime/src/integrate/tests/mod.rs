@@ -10,7 +10,7 @@ mod output;
 mod stepping;
 pub(super) mod systems;
 
-use crate::integrate::method::Suits;
+use crate::integrate::method::Method;
 use crate::integrate::{State, solve};
 use crate::system::Dynamics;
 
@@ -30,7 +30,7 @@ fn fixed<D: Dynamics<N, Scalar = f64>, const N: usize>(
     end: f64,
     q: [f64; N],
     v: [f64; N],
-    method: impl Suits<D::System, N>,
+    method: impl Method<D, N>,
     steps: u64,
 ) -> State<f64, N> {
     let solution = solve(dynamics, (0.0, end), q, v).method(method).steps(steps).run().unwrap();

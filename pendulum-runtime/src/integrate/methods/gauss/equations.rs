@@ -4,11 +4,11 @@ use super::tableau::Tableau;
 use crate::integrate::schemes::linear::{Factors, Square, times};
 use crate::integrate::step::compensated::Compensated;
 use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
+use crate::integrate::step::field::{Field, InputsOf};
 use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
 use crate::real::{Float, Real};
-use crate::system::{Jacobians, System};
+use crate::system::{Dynamics, Jacobians};
 use crate::time::Time;
 
 /// The slopes at the stages: q̇ and ṗ.
@@ -48,24 +48,24 @@ pub(super) struct Change {
 
 /// The equations of one step.
 #[derive(Debug)]
-pub(super) struct Equations<Y: System<N>, const N: usize, const S: usize> {
-    h: Y::Scalar,
+pub(super) struct Equations<D: Dynamics<N>, const N: usize, const S: usize> {
+    h: D::Scalar,
     /// h b.
-    weights: [Y::Scalar; S],
-    ratios: [[Y::Scalar; S]; S],
+    weights: [D::Scalar; S],
+    ratios: [[D::Scalar; S]; S],
     times: [Time; S],
-    inputs: [Y::Inputs; S],
-    q: Compensated<Y::Scalar, N>,
-    p: Compensated<Y::Scalar, N>,
+    inputs: [InputsOf<D, N>; S],
+    q: Compensated<D::Scalar, N>,
+    p: Compensated<D::Scalar, N>,
 }
 
-impl<Y: System<N, Scalar: Float>, const N: usize, const S: usize> Equations<Y, N, S> {
+impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D, N, S> {
     /// The equations of `interval` from the coordinates `q` and the momenta `p`.
     pub(super) fn new(
-        field: &mut impl Field<Y, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        q: Compensated<Y::Scalar, N>,
-        p: Compensated<Y::Scalar, N>,
+        q: Compensated<D::Scalar, N>,
+        p: Compensated<D::Scalar, N>,
     ) -> Self {
         let tableau = const { &Tableau::<S>::GAUSS };
         let stages = tableau.nodes.map(|c| interval.at(c));
@@ -88,9 +88,9 @@ impl<Y: System<N, Scalar: Float>, const N: usize, const S: usize> Equations<Y, N
     /// h Σ b V and h Σ b F.
     pub(super) fn increments(
         &self,
-        slopes: &Slopes<Y::Scalar, N, S>,
-    ) -> ([Y::Scalar; N], [Y::Scalar; N]) {
-        let zero = [Y::Scalar::from_f64(0.0); N];
+        slopes: &Slopes<D::Scalar, N, S>,
+    ) -> ([D::Scalar; N], [D::Scalar; N]) {
+        let zero = [D::Scalar::from_f64(0.0); N];
         (combined(zero, &slopes.v, &self.weights), combined(zero, &slopes.f, &self.weights))
     }
 
@@ -100,8 +100,8 @@ impl<Y: System<N, Scalar: Float>, const N: usize, const S: usize> Equations<Y, N
     /// everything at the old slopes contracts like h·ω.
     pub(super) fn sweep(
         &self,
-        field: &mut impl Field<Y, N>,
-        slopes: &mut Slopes<Y::Scalar, N, S>,
+        field: &mut Field<'_, D, N>,
+        slopes: &mut Slopes<D::Scalar, N, S>,
     ) -> Change {
         let old = *slopes;
         let (dq, dp) = (self.scaled(&old.v), self.scaled(&old.f));
@@ -124,12 +124,12 @@ impl<Y: System<N, Scalar: Float>, const N: usize, const S: usize> Equations<Y, N
     /// left out of it: neither is ever stiff, and the residuals contain them.
     pub(super) fn newton(
         &self,
-        field: &mut impl Field<Y, N>,
-        linearized: &Linearized<Y::Scalar, N, S>,
-        slopes: &mut Slopes<Y::Scalar, N, S>,
+        field: &mut Field<'_, D, N>,
+        linearized: &Linearized<D::Scalar, N, S>,
+        slopes: &mut Slopes<D::Scalar, N, S>,
     ) -> Change {
         let old = *slopes;
-        let zero = [Y::Scalar::from_f64(0.0); N];
+        let zero = [D::Scalar::from_f64(0.0); N];
         let (mut residual, mut a) = ([zero; S], [zero; S]);
         let (dq, dp) = (self.scaled(&old.v), self.scaled(&old.f));
         for i in 0..S {
@@ -158,7 +158,7 @@ impl<Y: System<N, Scalar: Float>, const N: usize, const S: usize> Equations<Y, N
     }
 
     /// h a_ij for one i.
-    fn row(&self, i: usize) -> [Y::Scalar; S] {
+    fn row(&self, i: usize) -> [D::Scalar; S] {
         core::array::from_fn(|j| self.ratios[i][j] * self.weights[j])
     }
 
@@ -167,24 +167,24 @@ impl<Y: System<N, Scalar: Float>, const N: usize, const S: usize> Equations<Y, N
     /// Rounded here, where the slopes differ from step to step, the products have errors that
     /// average out; h b_j m_ij would have the same in every step, and the method were symplectic no
     /// more.
-    fn scaled(&self, slopes: &[[Y::Scalar; N]; S]) -> [[Y::Scalar; N]; S] {
+    fn scaled(&self, slopes: &[[D::Scalar; N]; S]) -> [[D::Scalar; N]; S] {
         core::array::from_fn(|j| slopes[j].map(|slope| self.weights[j] * slope))
     }
 
     /// start + Σ m_ij increment_j.
     fn stage(
         &self,
-        start: &Compensated<Y::Scalar, N>,
-        increments: &[[Y::Scalar; N]; S],
+        start: &Compensated<D::Scalar, N>,
+        increments: &[[D::Scalar; N]; S],
         i: usize,
-    ) -> [Y::Scalar; N] {
+    ) -> [D::Scalar; N] {
         let increment = combined(start.low, increments, &self.ratios[i]);
         core::array::from_fn(|k| start.high[k] + increment[k])
     }
 
     /// The largest difference between two sets of slopes; its size is not a number if a slope is
     /// not.
-    fn change(&self, old: &Slopes<Y::Scalar, N, S>, new: &Slopes<Y::Scalar, N, S>) -> Change {
+    fn change(&self, old: &Slopes<D::Scalar, N, S>, new: &Slopes<D::Scalar, N, S>) -> Change {
         let mut largest = Change { size: 0.0, shift: 0.0, place: (0, 0) };
         for (start, old, new) in [(&self.p, &old.f, &new.f), (&self.q, &old.v, &new.v)] {
             largest.shift = 0.0;
@@ -223,8 +223,8 @@ pub(super) struct Linearized<T, const N: usize, const S: usize> {
 
 impl<T: Float, const N: usize, const S: usize> Linearized<T, N, S> {
     /// At the start of `interval`.
-    pub(super) fn new<Y: Jacobians<N, Scalar = T>>(
-        field: &mut impl Field<Y, N>,
+    pub(super) fn new<D: Dynamics<N, Scalar = T, System: Jacobians<N>>>(
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &Endpoint<T, N>,
     ) -> Self {

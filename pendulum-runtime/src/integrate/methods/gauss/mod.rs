@@ -5,14 +5,14 @@ mod equations;
 mod tableau;
 
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::method::{Method, Suits};
+use crate::integrate::method::Method;
 use crate::integrate::step::compensated::Compensated;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
 use crate::real::Float;
-use crate::system::{Jacobians, System};
+use crate::system::{Dynamics, Jacobians};
 use crate::time::Time;
 use equations::{Change, Equations, Linearized, Slopes};
 pub(super) use tableau::Tableau;
@@ -87,69 +87,73 @@ impl<const S: usize> Gauss<S> {
     }
 }
 
-impl<const S: usize, I: Copy + core::fmt::Debug> Method for Gauss<S, I> {
-    const NAME: &'static str = match S {
+/// The name of the method with `S` stages.
+const fn name<const S: usize>() -> &'static str {
+    match S {
         1 => "Gauss<1>",
         2 => "Gauss<2>",
         3 => "Gauss<3>",
         4 => "Gauss<4>",
         _ => "Gauss<8>",
-    };
-    const ORDER: u32 = 2 * S as u32;
-    const DENSE_ORDER: u32 = if S < 2 { 2 } else { S as u32 + 2 };
-    type Stages<T: Float, const N: usize> = Stages<T, N, S>;
-
-    fn stages<T: Float, const N: usize>() -> Stages<T, N, S> {
-        Stages {
-            slopes: Slopes::zero(),
-            p: Compensated::new([T::from_f64(0.0); N]),
-            end: None,
-            h: 0.0,
-            unsolved: None,
-        }
-    }
-
-    fn unsolved<T: Float, const N: usize>(stages: &Stages<T, N, S>) -> Option<(Time, usize)> {
-        stages.unsolved
     }
 }
 
-impl<Y: System<N, Scalar: Float>, const N: usize, const S: usize> Suits<Y, N> for Gauss<S, Sweeps> {
-    fn step(
+impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Method<D, N>
+    for Gauss<S, Sweeps>
+{
+    const NAME: &'static str = name::<S>();
+    type Workspace = Stages<D::Scalar, N, S>;
+
+    fn workspace(&self, _: &D) -> Self::Workspace {
+        Stages::new()
+    }
+
+    fn attempt(
         &self,
-        field: &mut impl Field<Y, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<Y::Scalar, N>,
-        stages: &mut Stages<Y::Scalar, N, S>,
-    ) -> Endpoint<Y::Scalar, N> {
+        from: &mut Endpoint<D::Scalar, N>,
+        stages: &mut Self::Workspace,
+    ) -> Endpoint<D::Scalar, N> {
         let equations = stages.begin(field, interval, from);
         stages.finish(field, interval, from, &equations, |field, slopes| {
             equations.sweep(field, slopes)
         })
     }
 
-    fn dense(
+    fn interpolant(
         &self,
-        _: &mut impl Field<Y, N>,
+        _: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<Y::Scalar, N>,
-        to: &mut Endpoint<Y::Scalar, N>,
-        stages: &mut Stages<Y::Scalar, N, S>,
-    ) -> Interpolant<Y::Scalar, N> {
+        from: &mut Endpoint<D::Scalar, N>,
+        to: &mut Endpoint<D::Scalar, N>,
+        stages: &mut Self::Workspace,
+    ) -> Interpolant<D::Scalar, N> {
         dense::interpolant(interval, from, to, &stages.slopes.v)
+    }
+
+    fn unsolved(&self, stages: &Self::Workspace) -> Option<(Time, usize)> {
+        stages.unsolved
     }
 }
 
-impl<Y: Jacobians<N, Scalar: Float>, const N: usize, const S: usize> Suits<Y, N>
-    for Gauss<S, Newton>
+impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize, const S: usize>
+    Method<D, N> for Gauss<S, Newton>
 {
-    fn step(
+    const NAME: &'static str = name::<S>();
+    type Workspace = Stages<D::Scalar, N, S>;
+
+    fn workspace(&self, _: &D) -> Self::Workspace {
+        Stages::new()
+    }
+
+    fn attempt(
         &self,
-        field: &mut impl Field<Y, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<Y::Scalar, N>,
-        stages: &mut Stages<Y::Scalar, N, S>,
-    ) -> Endpoint<Y::Scalar, N> {
+        from: &mut Endpoint<D::Scalar, N>,
+        stages: &mut Self::Workspace,
+    ) -> Endpoint<D::Scalar, N> {
         let equations = stages.begin(field, interval, from);
         let linearized = Linearized::new(field, interval, from);
         stages.finish(field, interval, from, &equations, |field, slopes| {
@@ -157,15 +161,19 @@ impl<Y: Jacobians<N, Scalar: Float>, const N: usize, const S: usize> Suits<Y, N>
         })
     }
 
-    fn dense(
+    fn interpolant(
         &self,
-        _: &mut impl Field<Y, N>,
+        _: &mut Field<'_, D, N>,
         interval: &StepInterval,
-        from: &mut Endpoint<Y::Scalar, N>,
-        to: &mut Endpoint<Y::Scalar, N>,
-        stages: &mut Stages<Y::Scalar, N, S>,
-    ) -> Interpolant<Y::Scalar, N> {
+        from: &mut Endpoint<D::Scalar, N>,
+        to: &mut Endpoint<D::Scalar, N>,
+        stages: &mut Self::Workspace,
+    ) -> Interpolant<D::Scalar, N> {
         dense::interpolant(interval, from, to, &stages.slopes.v)
+    }
+
+    fn unsolved(&self, stages: &Self::Workspace) -> Option<(Time, usize)> {
+        stages.unsolved
     }
 }
 
@@ -181,13 +189,23 @@ pub struct Stages<T, const N: usize, const S: usize> {
 }
 
 impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
+    fn new() -> Self {
+        Self {
+            slopes: Slopes::zero(),
+            p: Compensated::new([T::from_f64(0.0); N]),
+            end: None,
+            h: 0.0,
+            unsolved: None,
+        }
+    }
+
     /// The equations of the next step, with a first guess in `slopes`.
-    fn begin<Y: System<N, Scalar = T>>(
+    fn begin<D: Dynamics<N, Scalar = T>>(
         &mut self,
-        field: &mut impl Field<Y, N>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &Endpoint<T, N>,
-    ) -> Equations<Y, N, S> {
+    ) -> Equations<D, N, S> {
         let goes_on =
             self.end.is_some_and(|end| end.t == from.t && end.q == from.q && end.v == from.v);
         if !goes_on {
@@ -207,13 +225,13 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
     }
 
     /// Improves the slopes until rounding stops it, and takes the step.
-    fn finish<Y: System<N, Scalar = T>, F: Field<Y, N>>(
+    fn finish<'a, D: Dynamics<N, Scalar = T>>(
         &mut self,
-        field: &mut F,
+        field: &mut Field<'a, D, N>,
         interval: &StepInterval,
         from: &Endpoint<T, N>,
-        equations: &Equations<Y, N, S>,
-        improve: impl FnMut(&mut F, &mut Slopes<T, N, S>) -> Change,
+        equations: &Equations<D, N, S>,
+        improve: impl FnMut(&mut Field<'a, D, N>, &mut Slopes<T, N, S>) -> Change,
     ) -> Endpoint<T, N> {
         let mut to = Endpoint { t: interval.end, a: None, ..*from };
         match self.iterate(field, improve) {

@@ -2,17 +2,16 @@
 
 use super::lanes::LaneDynamics;
 use super::tableau::S;
-use super::{Picard, attempt, tableau};
-use crate::error::{Error, Quantity};
-use crate::integrate::step::adaptive::{AdaptiveStep, at, resolution_of};
-use crate::integrate::step::controller::{Control, ControllerState, StepContext};
-use crate::integrate::step::diagnose::blame;
+use super::{Picard, iterate, tableau};
+use crate::error::Error;
+use crate::integrate::step::adaptive::AdaptiveStep;
+use crate::integrate::step::controller::{
+    Controller, ControllerState, StepContext, StepLaw, Trial, Verdict,
+};
+use crate::integrate::step::diagnose;
 use crate::integrate::step::fast_exp2::{log2, power};
-use crate::integrate::step::field::coordinate;
 use crate::integrate::step::interval::StepInterval;
-use crate::integrate::step::stepper::Stepper;
 use crate::real::Float;
-use crate::system::System;
 use crate::time::Time;
 
 /// The error that a step aims at, and those beyond which the next one becomes longer or shorter.
@@ -25,7 +24,7 @@ const HIGH: f64 = AIM * 9.6;
 const MANY: u32 = 4;
 const TOO_MANY: u32 = 9;
 
-impl<D: LaneDynamics<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<N> {
+impl<D: LaneDynamics<N>, const N: usize> Controller<Picard, D, N> for AdaptiveStep<N> {
     fn check(&self) -> Result<(), Error> {
         self.positive::<D::Scalar>()
     }
@@ -37,98 +36,101 @@ impl<D: LaneDynamics<N>, const N: usize> Control<Picard, D, N> for AdaptiveStep<
     #[inline]
     fn step(
         &self,
-        memory: &mut ControllerState,
-        course: StepContext<'_, '_, D, Picard, N>,
+        state: &mut ControllerState,
+        context: StepContext<'_, '_, D, Picard, N>,
     ) -> Result<StepInterval, Error> {
-        let StepContext { method, field, from, to, stages: workspace, target, stats } = course;
-        let target = field
-            .dynamics
-            .next_break(from.t.to_f64())
-            .filter(|time| *time < target)
-            .unwrap_or(target);
-        let tolerances = self.tolerances::<D::Scalar>();
-        if memory.h == 0.0 {
-            if !from.start_acceleration(field).iter().all(|a| a.is_finite()) {
-                return Err(blame(
-                    method,
-                    field.dynamics,
-                    &StepInterval::by(from.t, 0.0),
-                    from,
-                    workspace,
-                ));
-            }
-            let left = -from.t.since(target);
-            memory.h = self.limited(true, self.automatic_step(2 * S as u32, field, from, left));
+        self.take_step(state, context)
+    }
+}
+
+impl<D: LaneDynamics<N>, const N: usize> StepLaw<Picard, D, N> for AdaptiveStep<N> {
+    #[inline(always)]
+    fn propose(
+        &self,
+        state: &mut ControllerState,
+        context: &mut StepContext<'_, '_, D, Picard, N>,
+    ) -> Result<Trial, Error> {
+        let (dynamics, t) = (context.field.dynamics, context.from.t);
+        if let Some(time) = dynamics.next_break(t.to_f64())
+            && time < context.target
+        {
+            context.target = time;
         }
-        let mut wanted = memory.within_sight(
-            self.limited(false, memory.h),
-            field.dynamics,
-            from.t,
-            tableau::GAP,
-        )?;
-        let (mut retried, mut last_fault) = (false, None);
-        loop {
-            if wanted <= resolution_of::<D::Scalar>(from.t) && wanted < -from.t.since(target) {
-                let coordinate = coordinate(&<D::System as System<N>>::FACTS, workspace.worst());
-                let short =
-                    Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate };
-                let unresolved = self.unresolved(stats.accepted + stats.rejected == 0, wanted);
-                return Err(unresolved
-                    .or(last_fault.map(|fault| at(fault, from.t)))
-                    .unwrap_or(short));
-            }
-            let interval = planned(memory, from.t, wanted, target);
-            attempt(field, &interval, from, to, workspace, Some(&tolerances));
-            let error = workspace.ends.error;
-            if error <= 1.0 {
-                workspace.accept(to, interval.h);
-                let sweeps = workspace.ends.progress.sweeps;
-                let mut next = wanted;
-                // A step that was cut short says little about longer ones.
-                if error < LOW && sweeps <= MANY && !retried && 0.5 * wanted <= interval.h {
-                    let factor = scaled(error);
-                    let longer = interval.h * if factor < 2.0 { factor } else { 2.0 };
-                    next = if 1.25 * wanted <= longer { longer } else { wanted };
-                } else if HIGH < error {
-                    next = interval.h * scaled(error);
-                } else if TOO_MANY < sweeps {
-                    next = 0.95 * interval.h;
-                }
-                memory.left = if next == memory.h { memory.left - 1 } else { 0 };
-                memory.h = next;
-                stats.accepted += 1;
-                return Ok(interval);
-            }
-            stats.rejected += 1;
-            (retried, workspace.sweeps, memory.left) = (true, 2, 0);
-            wanted = interval.h
-                * if error.is_finite() {
-                    last_fault = None;
-                    let factor = scaled(error);
-                    if factor < 0.2 { 0.2 } else { factor }
-                } else if !workspace.start.iter().all(|a| a.is_finite()) {
-                    return Err(blame(
-                        method,
-                        field.dynamics,
-                        &StepInterval::by(from.t, 0.0),
-                        from,
-                        workspace,
-                    ));
-                } else if to.is_finite() {
-                    last_fault = None;
-                    0.5
-                } else {
-                    // A function may have left its domain, and a shorter step may stay inside; but
-                    // no step is short enough for an input that is not finite.
-                    last_fault = method.fault(field.dynamics, &interval, from, workspace);
-                    if let Some(input @ Error::NotFinite { what: Quantity::Input { .. }, .. }) =
-                        last_fault
-                    {
-                        return Err(input);
-                    }
-                    0.1
-                };
+        if state.h == 0.0 {
+            state.h = self.limited(true, self.automatic_step(2 * S as u32, context)?);
         }
+        let wanted = self.limited(false, state.h);
+        Ok(Trial::new(state.within_sight(wanted, dynamics, t, tableau::GAP)?, context.target))
+    }
+
+    #[inline(always)]
+    fn interval(
+        &self,
+        state: &mut ControllerState,
+        context: &mut StepContext<'_, '_, D, Picard, N>,
+        trial: &mut Trial,
+    ) -> Result<StepInterval, Error> {
+        self.resolved(context, trial, |context| context.workspace.worst())?;
+        Ok(planned(state, context.from.t, trial.wanted, trial.target))
+    }
+
+    #[inline(always)]
+    fn estimate(
+        &self,
+        context: &mut StepContext<'_, '_, D, Picard, N>,
+        _: &Trial,
+        interval: &StepInterval,
+    ) -> f64 {
+        let StepContext { field, from, to, workspace, .. } = context;
+        iterate(field, interval, from, to, workspace, Some(&self.tolerances::<D::Scalar>()));
+        workspace.ends.error
+    }
+
+    #[inline(always)]
+    fn judge(
+        &self,
+        state: &mut ControllerState,
+        context: &mut StepContext<'_, '_, D, Picard, N>,
+        trial: &mut Trial,
+        interval: &StepInterval,
+        error: f64,
+    ) -> Result<Verdict, Error> {
+        let StepContext { method, field, from, to, workspace, .. } = context;
+        let (h, wanted) = (interval.h, trial.wanted);
+        if error <= 1.0 {
+            workspace.accept(to, h);
+            let sweeps = workspace.ends.progress.sweeps;
+            let mut next = wanted;
+            // A step that was cut short says little about longer ones.
+            if error < LOW && sweeps <= MANY && trial.rejected == 0 && 0.5 * wanted <= h {
+                let factor = scaled(error);
+                let longer = h * if factor < 2.0 { factor } else { 2.0 };
+                next = if 1.25 * wanted <= longer { longer } else { wanted };
+            } else if HIGH < error {
+                next = h * scaled(error);
+            } else if TOO_MANY < sweeps {
+                next = 0.95 * h;
+            }
+            state.left = if next == state.h { state.left - 1 } else { 0 };
+            state.h = next;
+            return Ok(Verdict::Accept);
+        }
+        (workspace.sweeps, state.left) = (2, 0);
+        let factor = if error.is_finite() {
+            trial.fault = None;
+            let factor = scaled(error);
+            if factor < 0.2 { 0.2 } else { factor }
+        } else if !workspace.start.iter().all(|a| a.is_finite()) {
+            let at_once = StepInterval::by(from.t, 0.0);
+            return Err(diagnose::cause(*method, field, &at_once, from, workspace));
+        } else if to.is_finite() {
+            trial.fault = None;
+            0.5
+        } else {
+            context.note_fault(trial, interval)?;
+            0.1
+        };
+        Ok(Verdict::Reject { length: h * factor })
     }
 }
 
@@ -161,11 +163,12 @@ fn scaled(error: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{AdaptiveStep, Control, ControllerState, Picard, StepContext, Stepper, planned};
+    use super::{AdaptiveStep, Controller, ControllerState, Picard, StepContext, planned};
+    use crate::integrate::method::Method;
     use crate::integrate::methods::picard::Workspace;
     use crate::integrate::solution::Stats;
     use crate::integrate::step::endpoint::Endpoint;
-    use crate::integrate::step::field::Counted;
+    use crate::integrate::step::field::Field;
     use crate::integrate::tests::systems::Kepler;
     use crate::real::Real;
     use crate::system::{Staged, System};
@@ -219,14 +222,14 @@ mod tests {
         /// Takes a step, the first attempt of the length `h`; the length of the one accepted.
         fn step(&mut self, h: f64) -> f64 {
             let (mut field, mut stats, mut to) =
-                (Counted::new(&PLANET), Stats::new("Picard"), self.node);
+                (Field::new(&PLANET, &()), Stats::new("Picard"), self.node);
             (self.memory.h, self.memory.left) = (h, 0);
             let course = StepContext {
                 method: &Picard,
                 field: &mut field,
                 from: &mut self.node,
                 to: &mut to,
-                stages: &mut self.workspace,
+                workspace: &mut self.workspace,
                 target: f64::INFINITY,
                 stats: &mut stats,
             };

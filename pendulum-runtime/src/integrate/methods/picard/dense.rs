@@ -7,7 +7,7 @@ use super::tableau::S;
 use super::workspace::WorkspaceOf;
 use crate::integrate::interpolant::{Basis, Interpolant, TERMS};
 use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Counted;
+use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
 use crate::real::{Octet, Real};
 use crate::simd;
@@ -18,7 +18,7 @@ const COUNT: usize = 2 * S;
 /// The collocation polynomial at sixteen nodes: the one at eight meets the ends with order 16, but
 /// what is between them with order 9 only.
 pub(super) fn interpolant<D: LaneDynamics<N>, const N: usize>(
-    field: &mut Counted<'_, D>,
+    field: &mut Field<'_, D, N>,
     interval: &StepInterval,
     from: &Endpoint<D::Scalar, N>,
     to: &Endpoint<D::Scalar, N>,

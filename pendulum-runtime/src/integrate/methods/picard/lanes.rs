@@ -4,9 +4,7 @@
 
 use crate::motion::{Motion, Orders, PerhapsAnalytic, Sample, Side, orders};
 use crate::real::{Float, Lane, Octet, Real};
-use crate::system::{
-    Driven, Dynamics, Input, NoInputs, Prepared, Purpose, Samples, Staged, System,
-};
+use crate::system::{Driven, Dynamics, Input, NoInputs, Purpose, Samples, Staged, System};
 use crate::time::Time;
 
 use super::tableau::S;
@@ -81,27 +79,6 @@ where
     #[inline]
     fn next_break(&self, t: f64) -> Option<f64> {
         self.motions.next_break(t)
-    }
-}
-
-impl<D: LaneDynamics<N>, const N: usize> LaneDynamics<N>
-    for Prepared<'_, D, <D::System as System<N>>::Prepared>
-{
-    type Wide = D::Wide;
-
-    #[inline(always)]
-    fn widened(&self) -> D::Wide {
-        self.dynamics().widened()
-    }
-
-    #[inline(always)]
-    fn inputs_at(&self, times: &[Time; S], last: Option<Time>) -> <D::Wide as System<N>>::Inputs {
-        self.dynamics().inputs_at(times, last)
-    }
-
-    #[inline]
-    fn next_break(&self, t: f64) -> Option<f64> {
-        self.dynamics().next_break(t)
     }
 }
 

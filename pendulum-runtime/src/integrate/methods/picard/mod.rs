@@ -13,14 +13,15 @@ mod workspace;
 
 use crate::error::Error;
 use crate::integrate::interpolant::Interpolant;
+use crate::integrate::method::Method;
 use crate::integrate::step::diagnose;
 use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::{Accelerations, Counted, Watched, coordinate, first_in_state};
+use crate::integrate::step::field::{Field, coordinate, first_in_state};
 use crate::integrate::step::interval::StepInterval;
-use crate::integrate::step::stepper::Stepper;
 use crate::motion::Side;
 use crate::real::{Float, Octet, Real};
 use crate::simd;
+use crate::system::Dynamics;
 use crate::system::System;
 use kernel::{Ends, Onwards, Scaled};
 pub use lanes::LaneDynamics;
@@ -92,8 +93,8 @@ const FIXED: u32 = 60;
 /// A step over `interval` that leads `to` its end; the room holds what it leaves behind until it is
 /// accepted.
 #[inline]
-fn attempt<D: LaneDynamics<N>, const N: usize>(
-    field: &mut Counted<'_, D>,
+fn iterate<D: LaneDynamics<N>, const N: usize>(
+    field: &mut Field<'_, D, N>,
     interval: &StepInterval,
     from: &mut Endpoint<D::Scalar, N>,
     to: &mut Endpoint<D::Scalar, N>,
@@ -135,9 +136,9 @@ fn attempt<D: LaneDynamics<N>, const N: usize>(
     field.evaluations += u64::from(workspace.ends.progress.vectors) * S as u64;
 }
 
-impl<D: LaneDynamics<N>, const N: usize> Stepper<D, N> for Picard {
+impl<D: LaneDynamics<N>, const N: usize> Method<D, N> for Picard {
     const NAME: &'static str = "Picard";
-    type Stages = WorkspaceOf<D, N>;
+    type Workspace = WorkspaceOf<D, N>;
 
     fn workspace(&self, dynamics: &D) -> WorkspaceOf<D, N> {
         let zero = D::Scalar::from_f64(0.0);
@@ -160,15 +161,15 @@ impl<D: LaneDynamics<N>, const N: usize> Stepper<D, N> for Picard {
     }
 
     #[inline]
-    fn advance(
+    fn attempt(
         &self,
-        field: &mut Counted<'_, D>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         workspace: &mut WorkspaceOf<D, N>,
     ) -> Endpoint<D::Scalar, N> {
         let mut to = *from;
-        attempt(field, interval, from, &mut to, workspace, None);
+        iterate(field, interval, from, &mut to, workspace, None);
         workspace.unsolved = None;
         if workspace.ends.solved {
             workspace.accept(&to, interval.h);
@@ -182,9 +183,9 @@ impl<D: LaneDynamics<N>, const N: usize> Stepper<D, N> for Picard {
         to
     }
 
-    fn within(
+    fn interpolant(
         &self,
-        field: &mut Counted<'_, D>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         to: &mut Endpoint<D::Scalar, N>,
@@ -193,9 +194,9 @@ impl<D: LaneDynamics<N>, const N: usize> Stepper<D, N> for Picard {
         dense::interpolant(field, interval, from, to, workspace)
     }
 
-    fn fault(
+    fn diagnose(
         &self,
-        dynamics: &D,
+        field: &Field<'_, D, N>,
         interval: &StepInterval,
         from: &Endpoint<D::Scalar, N>,
         workspace: &WorkspaceOf<D, N>,
@@ -208,23 +209,19 @@ impl<D: LaneDynamics<N>, const N: usize> Stepper<D, N> for Picard {
                 coordinate: coordinate(facts, index),
             });
         }
-        let mut watched = Watched::new(dynamics);
+        let mut watched = field.watching();
         let to = one_by_one(&mut watched, interval, from);
         let at_end =
             || first_in_state(facts, &to.q.high, &to.v.high).map(|what| (interval.end, what));
-        let (t, what) = watched.first.or_else(at_end)?;
-        Some(diagnose::not_finite(dynamics.system(), t, what))
-    }
-
-    fn kink(&self, dynamics: &D, t: f64, _: bool) -> Option<f64> {
-        dynamics.next_kink(t)
+        let (t, what) = watched.findings().first.or_else(at_end)?;
+        Some(diagnose::not_finite(field.dynamics.system(), t, what))
     }
 }
 
 /// The same step without lanes and with as many sweeps as an adaptive step may take: to see what a
 /// number that is not finite comes from.
 fn one_by_one<T: Float, const N: usize>(
-    field: &mut impl Accelerations<T, N>,
+    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
     interval: &StepInterval,
     from: &Endpoint<T, N>,
 ) -> Endpoint<T, N> {

@@ -2,151 +2,135 @@
 
 use crate::error::{Error, Part, Quantity};
 use crate::integrate::interpolant::Interpolant;
+use crate::integrate::method::Method;
 use crate::integrate::solution::{State, Stats};
-use crate::integrate::step::controller::{Control, ControllerState, StepContext};
-use crate::integrate::step::diagnose::blame;
+use crate::integrate::step::controller::{Controller, ControllerState, StepContext};
+use crate::integrate::step::diagnose;
 use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::{Counted, coordinate, first_in_inputs, first_in_state};
+use crate::integrate::step::field::{
+    Field, PreparedOf, coordinate, first_in_inputs, first_in_state,
+};
 use crate::integrate::step::gap::PART;
 use crate::integrate::step::inertia::{inertia, is_due, varies};
 use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::short::{is_short, straight};
-use crate::integrate::step::stepper::Stepper;
 use crate::motion::Side;
-use crate::real::Float;
+use crate::real::{Float, Real};
 use crate::system::{Dynamics, Purpose, System};
 use crate::time::Time;
 
-/// An integration under way, apart from the dynamics.
+/// An integration under way.
 #[derive(Clone, Debug)]
-pub(crate) struct Driver<T, const N: usize, M, C, R> {
+pub(crate) struct Integration<'a, const N: usize, D, M, C>
+where
+    D: Dynamics<N, Scalar: Float>,
+    M: Method<D, N>,
+{
+    pub(crate) dynamics: &'a D,
+    prepared: PreparedOf<D, N>,
     pub(crate) method: M,
-    pub(crate) control: C,
+    controller: C,
     /// The state reached; at a kink the one beyond it.
-    pub(crate) node: Endpoint<T, N>,
+    pub(crate) end: Endpoint<D::Scalar, N>,
     pub(crate) stats: Stats,
-    /// The last step and the node at its start; nothing before the first step and after one that
-    /// failed.
+    /// The last step and its start; nothing before the first step and after one that failed.
     last: Option<StepInterval>,
-    from: Endpoint<T, N>,
+    from: Endpoint<D::Scalar, N>,
     /// The motion within it, once somebody has asked.
-    within: Option<Interpolant<T, N>>,
-    /// The node at its end on this side of the kink, if it ended on one.
-    before_kink: Option<Endpoint<T, N>>,
-    stages: R,
-    memory: ControllerState,
-    /// Whether the last step went back in time.
+    interpolant: Option<Interpolant<D::Scalar, N>>,
+    /// Its end on this side of the kink, if it ended on one.
+    before_kink: Option<Endpoint<D::Scalar, N>>,
+    workspace: M::Workspace,
+    state: ControllerState,
+    /// The last step went back in time.
     backwards: bool,
     /// The next kink in that direction, infinite if there is none.
     kink: f64,
 }
 
-impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
+impl<'a, const N: usize, D, M, C> Integration<'a, N, D, M, C>
+where
+    D: Dynamics<N, Scalar: Float>,
+    M: Method<D, N>,
+{
     /// At `q`, `v` and `t`, if they are finite and the mass matrix is positive there.
-    pub(crate) fn new<D>(
-        dynamics: &D,
+    pub(crate) fn new(
+        dynamics: &'a D,
         method: M,
-        control: C,
+        controller: C,
         t: f64,
-        q: [T; N],
-        v: [T; N],
-    ) -> Result<Self, Error>
-    where
-        D: Dynamics<N, Scalar = T>,
-        M: Stepper<D, N, Stages = R>,
-    {
+        q: [D::Scalar; N],
+        v: [D::Scalar; N],
+    ) -> Result<Self, Error> {
         check_start(dynamics, Time::new(t), &q, &v)?;
-        let node = Endpoint::new(Time::new(t), q, v);
+        let end = Endpoint::new(Time::new(t), q, v);
         let kink = next_kink(&method, dynamics, t, false)?;
-        let stats = Stats::new(M::NAME);
-        let (stages, memory) = (method.workspace(dynamics), ControllerState::default());
         Ok(Self {
+            dynamics,
+            prepared: dynamics.system().prepare(),
+            workspace: method.workspace(dynamics),
             method,
-            control,
-            node,
-            stats,
+            controller,
+            end,
+            stats: Stats::new(M::NAME),
             last: None,
-            from: node,
-            within: None,
+            from: end,
+            interpolant: None,
             before_kink: None,
-            stages,
-            memory,
+            state: ControllerState::default(),
             backwards: false,
             kink,
         })
     }
 
     /// Puts the state elsewhere; counters stay, steps are chosen as at a start.
-    pub(crate) fn reset<D>(
+    pub(crate) fn reset(
         &mut self,
-        dynamics: &D,
         t: f64,
-        q: [T; N],
-        v: [T; N],
-    ) -> Result<(), Error>
-    where
-        D: Dynamics<N, Scalar = T>,
-        M: Stepper<D, N, Stages = R>,
-    {
-        check_start(dynamics, Time::new(t), &q, &v)?;
-        self.kink = next_kink(&self.method, dynamics, t, false)?;
+        q: [D::Scalar; N],
+        v: [D::Scalar; N],
+    ) -> Result<(), Error> {
+        check_start(self.dynamics, Time::new(t), &q, &v)?;
+        self.kink = next_kink(&self.method, self.dynamics, t, false)?;
         self.backwards = false;
         // A long step from a state that it was not chosen for may go over events.
-        self.memory =
-            ControllerState { unknown: self.memory.unknown, ..ControllerState::default() };
-        self.node = Endpoint::new(Time::new(t), q, v);
-        (self.last, self.within, self.before_kink) = (None, None, None);
+        self.state = ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
+        self.end = Endpoint::new(Time::new(t), q, v);
+        (self.last, self.interpolant, self.before_kink) = (None, None, None);
         Ok(())
     }
 
     /// Moves the coordinates by `high + low`; what rounding has left off stays.
-    pub(crate) fn displace<D>(
+    pub(crate) fn displace(
         &mut self,
-        dynamics: &D,
-        high: &[T; N],
-        low: &[T; N],
-    ) -> Result<(), Error>
-    where
-        D: Dynamics<N, Scalar = T>,
-    {
-        let mut q = self.node.q;
-        q.add_both(T::from_f64(1.0), high, low);
-        check_start(dynamics, self.node.t, &q.high, &self.node.v.high)?;
-        (self.node.q, self.node.a) = (q, None);
-        (self.last, self.within, self.before_kink) = (None, None, None);
+        high: &[D::Scalar; N],
+        low: &[D::Scalar; N],
+    ) -> Result<(), Error> {
+        let mut q = self.end.q;
+        q.add_both(D::Scalar::from_f64(1.0), high, low);
+        check_start(self.dynamics, self.end.t, &q.high, &self.end.v.high)?;
+        (self.end.q, self.end.a) = (q, None);
+        (self.last, self.interpolant, self.before_kink) = (None, None, None);
         Ok(())
     }
 
-    /// The same integration under another control.
-    pub(crate) fn controlled<B>(self, control: B) -> Driver<T, N, M, B, R> {
-        let Self {
-            method,
-            node,
-            stats,
-            last,
-            from,
-            within,
-            before_kink,
-            stages,
-            memory,
-            backwards,
-            kink,
-            ..
-        } = self;
-        let memory = ControllerState { unknown: memory.unknown, ..ControllerState::default() };
-        Driver {
-            method,
-            control,
-            node,
-            stats,
-            last,
-            from,
-            within,
-            before_kink,
-            stages,
-            memory,
-            backwards,
-            kink,
+    /// The same integration under another controller.
+    pub(crate) fn controlled<B>(self, controller: B) -> Integration<'a, N, D, M, B> {
+        Integration {
+            dynamics: self.dynamics,
+            prepared: self.prepared,
+            method: self.method,
+            controller,
+            end: self.end,
+            stats: self.stats,
+            last: self.last,
+            from: self.from,
+            interpolant: self.interpolant,
+            before_kink: self.before_kink,
+            workspace: self.workspace,
+            state: ControllerState { unknown: self.state.unknown, ..ControllerState::default() },
+            backwards: self.backwards,
+            kink: self.kink,
         }
     }
 
@@ -154,7 +138,7 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
     pub(crate) fn over(mut self, length: f64) -> Self {
         // Part of a length of few units in the last place may be none, which is no length of a
         // step.
-        self.memory.unknown = f64::max(PART * length, f64::MIN_POSITIVE);
+        self.state.unknown = f64::max(PART * length, f64::MIN_POSITIVE);
         self
     }
 
@@ -162,47 +146,47 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
     ///
     /// On failure the state is the one before the step.
     #[inline]
-    pub(crate) fn step<D>(&mut self, dynamics: &D, target: f64) -> Result<(), Error>
+    pub(crate) fn step(&mut self, target: f64) -> Result<(), Error>
     where
-        D: Dynamics<N, Scalar = T>,
-        M: Stepper<D, N, Stages = R>,
-        C: Control<M, D, N>,
+        C: Controller<M, D, N>,
     {
-        let backwards = 0.0 < self.node.t.since(target);
+        let backwards = 0.0 < self.end.t.since(target);
         if backwards != self.backwards {
-            self.turn(dynamics, backwards)?;
+            self.turn(backwards)?;
         }
         let kink_comes_first = if backwards { target < self.kink } else { self.kink < target };
         let target = if kink_comes_first { self.kink } else { target };
-        let mut field = Counted::new(dynamics);
-        let mut from = self.node;
-        let course = StepContext {
+        let mut field = Field::new(self.dynamics, &self.prepared);
+        let (mut from, before) = (self.end, self.state);
+        let context = StepContext {
             method: &self.method,
             field: &mut field,
             from: &mut from,
-            to: &mut self.node,
-            stages: &mut self.stages,
+            to: &mut self.end,
+            workspace: &mut self.workspace,
             target,
             stats: &mut self.stats,
         };
-        let left = -course.from.t.since(target);
-        let taken = if is_short::<T>(left) {
-            short(course)
+        let left = -context.from.t.since(target);
+        let taken = if is_short::<D::Scalar>(left) {
+            short(context)
         } else {
-            self.control.step(&mut self.memory, course)
+            self.controller.step(&mut self.state, context)
         };
         self.stats.evaluations += field.evaluations;
-        match taken.and_then(|interval| self.arrive(dynamics, &interval).map(|()| interval)) {
-            Ok(interval) => (self.last, self.within, self.from) = (Some(interval), None, from),
+        match taken.and_then(|interval| self.arrive(&interval).map(|()| interval)) {
+            Ok(interval) => {
+                (self.last, self.interpolant, self.from) = (Some(interval), None, from);
+            }
             Err(error) => {
-                self.node = from;
-                // The stages are those of the step that failed.
-                (self.last, self.within) = (None, None);
+                (self.end, self.state) = (from, before);
+                // The workspace is that of the step that failed.
+                (self.last, self.interpolant) = (None, None);
                 return Err(error);
             }
         }
         if is_due::<D::System, N>(self.stats.accepted, self.before_kink.is_some()) {
-            self.look(dynamics)
+            self.look()
         } else {
             Ok(())
         }
@@ -210,15 +194,11 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
 
     /// Carries the state over the kink if a step over `interval` has ended on it.
     #[inline]
-    fn arrive<D>(&mut self, dynamics: &D, interval: &StepInterval) -> Result<(), Error>
-    where
-        D: Dynamics<N, Scalar = T>,
-        M: Stepper<D, N, Stages = R>,
-    {
+    fn arrive(&mut self, interval: &StepInterval) -> Result<(), Error> {
         if interval.end == Time::new(self.kink) {
-            let before = self.node;
-            cross(dynamics, &mut self.node, self.backwards)?;
-            self.kink = next_kink(&self.method, dynamics, self.kink, self.backwards)?;
+            let before = self.end;
+            cross(self.dynamics, &mut self.end, self.backwards)?;
+            self.kink = next_kink(&self.method, self.dynamics, self.kink, self.backwards)?;
             self.stats.kinks += 1;
             self.before_kink = Some(before);
         } else if self.before_kink.is_some() {
@@ -232,12 +212,12 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
     // Out of the way of the steps.
     #[cold]
     #[inline(never)]
-    pub(crate) fn look<D: Dynamics<N, Scalar = T>>(&mut self, dynamics: &D) -> Result<(), Error> {
+    pub(crate) fn look(&mut self) -> Result<(), Error> {
         if !varies(&<D::System as System<N>>::FACTS) {
             return Ok(());
         }
-        let Endpoint { t, q, v, .. } = &self.node;
-        let checked = inertia(dynamics, *t, onwards(self.backwards), &q.high, &v.high);
+        let Endpoint { t, q, v, .. } = &self.end;
+        let checked = inertia(self.dynamics, *t, onwards(self.backwards), &q.high, &v.high);
         if checked.is_err() {
             self.retreat();
             self.stats.accepted -= 1;
@@ -247,71 +227,63 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
 
     /// Goes on in the other direction.
     #[cold]
-    fn turn<D>(&mut self, dynamics: &D, backwards: bool) -> Result<(), Error>
-    where
-        D: Dynamics<N, Scalar = T>,
-        M: Stepper<D, N, Stages = R>,
-    {
-        self.kink = next_kink(&self.method, dynamics, self.t(), backwards)?;
+    fn turn(&mut self, backwards: bool) -> Result<(), Error> {
+        self.kink = next_kink(&self.method, self.dynamics, self.t(), backwards)?;
         self.backwards = backwards;
         if let Some(before) = self.before_kink.take() {
-            self.node = before;
+            self.end = before;
         }
         Ok(())
     }
 
     /// The motion within the last step, if there was one; evaluates what the method needs for it.
-    pub(crate) fn interpolant<D>(&mut self, dynamics: &D) -> Option<Interpolant<T, N>>
-    where
-        D: Dynamics<N, Scalar = T>,
-        M: Stepper<D, N, Stages = R>,
-    {
+    pub(crate) fn interpolant(&mut self) -> Option<Interpolant<D::Scalar, N>> {
         let interval = self.last.as_ref()?;
-        if self.within.is_some() {
-            return self.within;
+        if self.interpolant.is_some() {
+            return self.interpolant;
         }
-        let to = self.before_kink.as_mut().unwrap_or(&mut self.node);
-        if is_short::<T>(interval.h) {
-            self.within = Some(Interpolant::linear(interval, &self.from, to));
-            return self.within;
+        let to = self.before_kink.as_mut().unwrap_or(&mut self.end);
+        if is_short::<D::Scalar>(interval.h) {
+            self.interpolant = Some(Interpolant::linear(interval, &self.from, to));
+            return self.interpolant;
         }
-        let mut field = Counted::new(dynamics);
+        let mut field = Field::new(self.dynamics, &self.prepared);
         let interpolant =
-            self.method.within(&mut field, interval, &mut self.from, to, &mut self.stages);
+            self.method.interpolant(&mut field, interval, &mut self.from, to, &mut self.workspace);
         self.stats.evaluations += field.evaluations;
-        self.within = Some(interpolant);
-        self.within
+        self.interpolant = Some(interpolant);
+        self.interpolant
     }
 
     /// The accelerations at the state reached; the next step begins with them.
-    pub(crate) fn accelerations<D: Dynamics<N, Scalar = T>>(&mut self, dynamics: &D) -> [T; N] {
-        let mut field = Counted::new(dynamics);
-        let a = self.node.start_acceleration(&mut field);
+    pub(crate) fn accelerations(&mut self) -> [D::Scalar; N] {
+        let mut field = Field::new(self.dynamics, &self.prepared);
+        let a = self.end.start_acceleration(&mut field);
         self.stats.evaluations += field.evaluations;
         a
     }
 
     /// The end of the last step; if that was on a kink, the states on both sides.
-    pub(crate) fn ends(&self) -> (Endpoint<T, N>, Option<Endpoint<T, N>>) {
-        self.before_kink.map_or((self.node, None), |before| (before, Some(self.node)))
+    pub(crate) fn ends(&self) -> (Endpoint<D::Scalar, N>, Option<Endpoint<D::Scalar, N>>) {
+        self.before_kink.map_or((self.end, None), |before| (before, Some(self.end)))
     }
 
     /// Ends the last step at a state within.
-    pub(crate) fn cut(&mut self, t: Time, state: &State<T, N>) {
+    pub(crate) fn cut(&mut self, t: Time, state: &State<D::Scalar, N>) {
         self.uncross();
-        self.node = Endpoint::new(t, state.q, state.v);
+        self.end = Endpoint::new(t, state.q, state.v);
     }
 
     /// Takes the last step back.
     pub(crate) fn retreat(&mut self) {
         self.uncross();
-        self.node = self.from;
-        (self.last, self.within) = (None, None);
+        self.end = self.from;
+        (self.last, self.interpolant) = (None, None);
     }
 
     /// Forgets that the last step ended on a kink, and the plan that led there.
     fn uncross(&mut self) {
-        self.memory.left = 0;
+        self.state.left = 0;
         if let Some(before) = self.before_kink.take() {
             self.kink = before.t.to_f64();
             self.stats.kinks -= 1;
@@ -319,40 +291,33 @@ impl<T: Float, const N: usize, M: Copy, C, R> Driver<T, N, M, C, R> {
     }
 
     /// The state on this side of a kink, if the last step has ended on one.
-    pub(crate) fn before_kink(&self) -> Option<&Endpoint<T, N>> {
+    pub(crate) fn before_kink(&self) -> Option<&Endpoint<D::Scalar, N>> {
         self.before_kink.as_ref()
     }
 
-    /// What it took so far, and which method took it.
-    pub(crate) fn stats<D>(&self) -> Stats
-    where
-        D: Dynamics<N, Scalar = T>,
-        M: Stepper<D, N, Stages = R>,
-    {
-        Stats { method: self.method.name(&self.stages), ..self.stats }
+    /// The counters so far, and the method that has taken the steps.
+    pub(crate) fn stats(&self) -> Stats {
+        Stats { method: self.method.name(&self.workspace), ..self.stats }
     }
 
     /// The time reached.
     pub(crate) fn t(&self) -> f64 {
-        self.node.t.to_f64()
+        self.end.t.to_f64()
     }
 }
 
 /// A single step to a target so near that the scalar does not hold the distance.
 #[cold]
-fn short<D, M, T, const N: usize>(
-    course: StepContext<'_, '_, D, M, N>,
-) -> Result<StepInterval, Error>
+fn short<D, M, const N: usize>(context: StepContext<'_, '_, D, M, N>) -> Result<StepInterval, Error>
 where
-    D: Dynamics<N, Scalar = T>,
-    M: Stepper<D, N>,
-    T: Float,
+    D: Dynamics<N, Scalar: Float>,
+    M: Method<D, N>,
 {
-    let StepContext { method, field, from, to, stages, target, stats } = course;
+    let StepContext { method, field, from, to, workspace, target, stats } = context;
     let interval = StepInterval::to(from.t, target);
     *to = straight(field, &interval, from);
     if !to.is_finite() {
-        return Err(blame(method, field.dynamics, &interval, from, stages));
+        return Err(diagnose::cause(method, field, &interval, from, workspace));
     }
     stats.accepted += 1;
     Ok(interval)
@@ -392,7 +357,7 @@ fn next_kink<D, M, const N: usize>(
 ) -> Result<f64, Error>
 where
     D: Dynamics<N, Scalar: Float>,
-    M: Stepper<D, N>,
+    M: Method<D, N>,
 {
     match method.kink(dynamics, t, backwards) {
         None => Ok(if backwards { f64::NEG_INFINITY } else { f64::INFINITY }),
