@@ -55,10 +55,10 @@ pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fm
     /// Goes from `from` to the end of `interval`.
     ///
     /// The accelerations at the start may be kept in `from`, those at the end in the endpoint that
-    /// is returned.
-    fn attempt(
+    /// is returned. A step that failed is taken once more with a field that is watched (`W`).
+    fn attempt<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         workspace: &mut Self::Workspace,

@@ -81,14 +81,14 @@ impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize, con
     }
 
     #[inline]
-    fn attempt(
+    fn attempt<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         history: &mut History<D::Scalar, N, P>,
     ) -> Endpoint<D::Scalar, N> {
-        history.step::<Self, D>(field, interval, from)
+        history.step::<Self, D, W>(field, interval, from)
     }
 
     fn interpolant(

@@ -164,9 +164,9 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Taylor {
         }
     }
 
-    fn attempt(
+    fn attempt<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         workspace: &mut WorkspaceOf<D, N>,
@@ -214,7 +214,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Taylor {
         _: &WorkspaceOf<D, N>,
     ) -> Option<Error> {
         let (dynamics, side) = (field.dynamics, side(interval.h));
-        let mut watched = field.watching();
+        let mut watched = field.watched();
         watched.at(from.t, side, &from.q.high, &from.v.high);
         let mut workspace = self.workspace(dynamics);
         let order = self.fixed::<D::Scalar>();
@@ -225,7 +225,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Taylor {
         let Path { q, v, .. } = &workspace.path;
         let infinite = (0..N).find(|&i| !finite(&v[i]) || !finite(&q[i]));
         let (t, what) = watched
-            .findings()
+            .findings
             .first
             .or_else(|| {
                 infinite.map(|index| (from.t, Quantity::Acceleration(coordinate(facts, index))))
@@ -459,8 +459,8 @@ fn side(h: f64) -> Side {
 
 /// The jet at `from`.
 #[inline]
-fn expand<D: JetDynamics<N, Scalar: Float>, const N: usize>(
-    field: &mut Field<'_, D, N>,
+fn expand<D: JetDynamics<N, Scalar: Float>, const N: usize, const W: bool>(
+    field: &mut Field<'_, D, N, W>,
     from: &Endpoint<D::Scalar, N>,
     side: Side,
     order: usize,

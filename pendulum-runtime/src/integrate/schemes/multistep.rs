@@ -73,9 +73,9 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
     /// unknown) and another length of the step begin a new grid. Its first `P` − 1 steps are taken
     /// by `Dop853` in [`SUBSTEPS`] parts each.
     #[inline]
-    pub(crate) fn step<C: Scheme<P>, D: Dynamics<N, Scalar = T>>(
+    pub(crate) fn step<C: Scheme<P>, D: Dynamics<N, Scalar = T>, const W: bool>(
         &mut self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<T, N>,
     ) -> Endpoint<T, N> {
@@ -83,7 +83,7 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
         let same_state = self.end == (from.t, from.q, from.v.high);
         let goes_on = self.points != 0 && same_step && from.a.is_some() && same_state;
         if goes_on && self.points == P {
-            self.multistep::<C, D>(field, interval, from)
+            self.multistep::<C, D, W>(field, interval, from)
         } else {
             if !goes_on {
                 (self.points, self.h) = (1, interval.h);
@@ -94,9 +94,9 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
     }
 
     #[inline]
-    fn multistep<C: Scheme<P>, D: Dynamics<N, Scalar = T>>(
+    fn multistep<C: Scheme<P>, D: Dynamics<N, Scalar = T>, const W: bool>(
         &mut self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &Endpoint<T, N>,
     ) -> Endpoint<T, N> {
@@ -129,9 +129,9 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
     }
 
     /// One of the first steps.
-    fn start<D: Dynamics<N, Scalar = T>>(
+    fn start<D: Dynamics<N, Scalar = T>, const W: bool>(
         &mut self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<T, N>,
     ) -> Endpoint<T, N> {

@@ -28,9 +28,9 @@ impl<T: Float, const N: usize, const S: usize> Slopes<T, N, S> {
 
     /// Makes the start of a step the first stage.
     #[inline]
-    pub(crate) fn first(
+    pub(crate) fn first<const W: bool>(
         &mut self,
-        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
         from: &mut Endpoint<T, N>,
     ) {
         self.v[0] = from.v.high;
@@ -41,9 +41,9 @@ impl<T: Float, const N: usize, const S: usize> Slopes<T, N, S> {
     // A row is a constant: inlined, its indices and weights are too.
     #[allow(clippy::inline_always)]
     #[inline(always)]
-    pub(crate) fn stage<const K: usize>(
+    pub(crate) fn stage<const K: usize, const W: bool>(
         &mut self,
-        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
         interval: &StepInterval,
         from: &Endpoint<T, N>,
         index: usize,

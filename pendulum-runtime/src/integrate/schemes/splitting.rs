@@ -22,9 +22,15 @@ pub(crate) struct Splitting<const OUTER: usize, const S: usize> {
 
 /// Kicks outside, drifts inside, an evaluation after each drift; the last one serves the next step.
 #[inline]
-pub(crate) fn kick_drift_kick<T: Float, const N: usize, const OUTER: usize, const S: usize>(
+pub(crate) fn kick_drift_kick<
+    T: Float,
+    const N: usize,
+    const OUTER: usize,
+    const S: usize,
+    const W: bool,
+>(
     splitting: &Splitting<OUTER, S>,
-    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
     interval: &StepInterval,
     from: &mut Endpoint<T, N>,
 ) -> Endpoint<T, N> {
@@ -44,9 +50,15 @@ pub(crate) fn kick_drift_kick<T: Float, const N: usize, const OUTER: usize, cons
 
 /// Drifts outside, kicks inside, an evaluation for each kick; none at the ends of the step.
 #[inline]
-pub(crate) fn drift_kick_drift<T: Float, const N: usize, const OUTER: usize, const S: usize>(
+pub(crate) fn drift_kick_drift<
+    T: Float,
+    const N: usize,
+    const OUTER: usize,
+    const S: usize,
+    const W: bool,
+>(
     splitting: &Splitting<OUTER, S>,
-    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
     interval: &StepInterval,
     from: &Endpoint<T, N>,
 ) -> Endpoint<T, N> {
@@ -70,9 +82,10 @@ pub(crate) fn drift_kick_drift_in_two_words<
     const N: usize,
     const OUTER: usize,
     const S: usize,
+    const W: bool,
 >(
     splitting: &Splitting<OUTER, S>,
-    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
     interval: &StepInterval,
     from: &Endpoint<T, N>,
 ) -> Endpoint<T, N> {

@@ -25,7 +25,8 @@ where
     fn least_steps(&self, length: f64) -> f64;
 
     /// Takes one step from `context.from` towards `context.target`, not beyond it, and puts its end
-    /// into `context.to`.
+    /// into `context.to`; steps of fixed length are taken as they are, others by
+    /// [`StepLaw::take_step`].
     fn step(
         &self,
         state: &mut ControllerState,

@@ -40,10 +40,10 @@ pub(crate) fn fault<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usi
     let facts = &<D::System as System<N>>::FACTS;
     let dynamics = field.dynamics;
     let unsolved = method.unsolved(workspace);
-    let mut watched = field.watching();
+    let mut watched = field.watched();
     let mut start = Endpoint { a: None, ..*from };
     let to = method.attempt(&mut watched, interval, &mut start, &mut method.workspace(dynamics));
-    let findings = watched.findings();
+    let findings = watched.findings;
     if let Some((t, coordinate)) = findings.lost
         && regular(dynamics, from)
     {

@@ -35,26 +35,26 @@ impl<T: Float, const N: usize> Endpoint<T, N> {
 
     /// The accelerations at the start of a step.
     #[inline]
-    pub fn start_acceleration(
+    pub fn start_acceleration<const W: bool>(
         &mut self,
-        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
     ) -> [T; N] {
         self.acceleration(field, Side::After)
     }
 
     /// The accelerations at the end of a step.
     #[inline]
-    pub fn end_acceleration(
+    pub fn end_acceleration<const W: bool>(
         &mut self,
-        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
     ) -> [T; N] {
         self.acceleration(field, Side::Before)
     }
 
     #[inline]
-    fn acceleration(
+    fn acceleration<const W: bool>(
         &mut self,
-        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
         side: Side,
     ) -> [T; N] {
         let (t, q, v) = (self.t, &self.q.high, &self.v.high);

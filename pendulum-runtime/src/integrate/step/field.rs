@@ -14,19 +14,20 @@ pub type InputsOf<D, const N: usize> = <<D as Dynamics<N>>::System as System<N>>
 pub(crate) type PreparedOf<D, const N: usize> = <<D as Dynamics<N>>::System as System<N>>::Prepared;
 
 /// Everything that a method can ask of the dynamics `D`: accelerations, and the momentum form.
+///
+/// A field that is `WATCHED` looks for the first number that is not finite: a step that failed is
+/// taken once more through one, so that successful ones need not look.
 #[derive(Debug)]
-pub struct Field<'a, D: Dynamics<N>, const N: usize> {
+pub struct Field<'a, D: Dynamics<N>, const N: usize, const WATCHED: bool = false> {
     pub(crate) dynamics: &'a D,
     pub(crate) prepared: &'a PreparedOf<D, N>,
     /// The number of evaluations.
     pub(crate) evaluations: u64,
-    /// The first number that is not finite, if this field looks for it.
-    findings: Option<Findings>,
+    /// The first number that is not finite.
+    pub(crate) findings: Findings,
 }
 
 /// The first number that is not finite in the evaluations of a step, or on the way to them.
-///
-/// A failed step is taken once more to find it, so that successful ones need not look.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Findings {
     pub(crate) first: Option<(Time, Quantity)>,
@@ -37,23 +38,23 @@ pub(crate) struct Findings {
     pub(crate) lost: Option<(Time, Coordinate)>,
 }
 
-impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize> Field<'a, D, N> {
+impl<'a, D: Dynamics<N>, const N: usize> Field<'a, D, N> {
     /// No evaluation yet.
     #[inline]
     pub(crate) fn new(dynamics: &'a D, prepared: &'a PreparedOf<D, N>) -> Self {
-        Self { dynamics, prepared, evaluations: 0, findings: None }
+        Self { dynamics, prepared, evaluations: 0, findings: Findings::default() }
     }
 
-    /// The same dynamics, watched for numbers that are not finite.
-    pub(crate) fn watching(&self) -> Self {
-        Self { findings: Some(Findings::default()), ..Self::new(self.dynamics, self.prepared) }
+    /// The same dynamics, watched.
+    pub(crate) fn watched(&self) -> Field<'a, D, N, true> {
+        let Self { dynamics, prepared, .. } = *self;
+        Field { dynamics, prepared, evaluations: 0, findings: Findings::default() }
     }
+}
 
-    /// The first number that was not finite.
-    pub(crate) fn findings(&self) -> Findings {
-        self.findings.unwrap_or_default()
-    }
-
+impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
+    Field<'a, D, N, WATCHED>
+{
     /// The dynamics.
     pub fn dynamics(&self) -> &'a D {
         self.dynamics
@@ -70,7 +71,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize> Field<'a, D, N> {
     ) -> [D::Scalar; N] {
         self.evaluations += 1;
         let a = self.dynamics.accelerations_with(self.prepared, t, side, q, v);
-        if self.findings.is_some() {
+        if WATCHED {
             self.look_at(t, side, q, v, &a);
         }
         a
@@ -107,7 +108,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize> Field<'a, D, N> {
         inputs: &InputsOf<D, N>,
     ) -> [D::Scalar; N] {
         let v = self.dynamics.system().velocities(scalar_time(t), q, p, inputs);
-        if self.findings.is_some() {
+        if WATCHED {
             self.look_at_velocities(t, q, p, &v);
         }
         v
@@ -175,10 +176,8 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize> Field<'a, D, N> {
 
     #[inline]
     fn look(&mut self, t: Time, what: impl FnOnce() -> Option<Quantity>) {
-        if let Some(findings) = &mut self.findings
-            && findings.first.is_none()
-        {
-            findings.first = what().map(|what| (t, what));
+        if WATCHED && self.findings.first.is_none() {
+            self.findings.first = what().map(|what| (t, what));
         }
     }
 
@@ -210,9 +209,8 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize> Field<'a, D, N> {
         v: &[D::Scalar; N],
     ) {
         let facts = Self::facts();
-        if let Some(findings) = &mut self.findings
-            && findings.first.is_none()
-        {
+        let findings = &mut self.findings;
+        if findings.first.is_none() {
             findings.singular |=
                 first_in(p).is_none() && first_in(q).is_none() && first_in(v).is_some();
             if findings.singular && findings.lost.is_none() {

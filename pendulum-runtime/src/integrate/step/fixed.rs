@@ -2,9 +2,7 @@
 
 use crate::error::Error;
 use crate::integrate::method::Method;
-use crate::integrate::step::controller::{
-    Controller, ControllerState, StepContext, StepLaw, Trial, Verdict,
-};
+use crate::integrate::step::controller::{Controller, ControllerState, StepContext};
 use crate::integrate::step::diagnose;
 use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::short::{is_short, straight};
@@ -61,62 +59,20 @@ impl<M: Method<D, N>, D: Dynamics<N, Scalar: Float>, const N: usize> Controller<
         state: &mut ControllerState,
         context: StepContext<'_, '_, D, M, N>,
     ) -> Result<StepInterval, Error> {
-        self.take_step(state, context)
-    }
-}
-
-impl<M: Method<D, N>, D: Dynamics<N, Scalar: Float>, const N: usize> StepLaw<M, D, N>
-    for FixedStep
-{
-    #[inline]
-    fn propose(
-        &self,
-        _: &mut ControllerState,
-        context: &mut StepContext<'_, '_, D, M, N>,
-    ) -> Result<Trial, Error> {
-        Ok(Trial::new(self.step, context.target))
-    }
-
-    #[inline]
-    fn interval(
-        &self,
-        state: &mut ControllerState,
-        context: &mut StepContext<'_, '_, D, M, N>,
-        trial: &mut Trial,
-    ) -> Result<StepInterval, Error> {
-        Ok(self.next(state, context.from.t, trial.target))
-    }
-
-    #[inline]
-    fn estimate(
-        &self,
-        context: &mut StepContext<'_, '_, D, M, N>,
-        _: &Trial,
-        interval: &StepInterval,
-    ) -> f64 {
-        let StepContext { method, field, from, to, workspace, .. } = context;
-        **to = if is_short::<D::Scalar>(interval.h) {
-            straight(field, interval, from)
+        let StepContext { method, field, from, to, workspace, target, stats } = context;
+        let mut plan = *state;
+        let interval = self.next(&mut plan, from.t, target);
+        *to = if is_short::<D::Scalar>(interval.h) {
+            straight(field, &interval, from)
         } else {
-            method.attempt(field, interval, from, workspace)
+            method.attempt(field, &interval, from, workspace)
         };
-        if to.is_finite() { 0.0 } else { f64::NAN }
-    }
-
-    #[inline]
-    fn judge(
-        &self,
-        _: &mut ControllerState,
-        context: &mut StepContext<'_, '_, D, M, N>,
-        _: &mut Trial,
-        interval: &StepInterval,
-        error: f64,
-    ) -> Result<Verdict, Error> {
-        if error.is_nan() {
-            let StepContext { method, field, from, workspace, .. } = context;
-            return Err(diagnose::cause(*method, field, interval, from, workspace));
+        if !to.is_finite() {
+            return Err(diagnose::cause(method, field, &interval, from, workspace));
         }
-        Ok(Verdict::Accept)
+        *state = plan;
+        stats.accepted += 1;
+        Ok(interval)
     }
 }
 

@@ -157,7 +157,7 @@ where
         let kink_comes_first = if backwards { target < self.kink } else { self.kink < target };
         let target = if kink_comes_first { self.kink } else { target };
         let mut field = Field::new(self.dynamics, &self.prepared);
-        let (mut from, before) = (self.end, self.state);
+        let mut from = self.end;
         let context = StepContext {
             method: &self.method,
             field: &mut field,
@@ -179,7 +179,7 @@ where
                 (self.last, self.interpolant, self.from) = (Some(interval), None, from);
             }
             Err(error) => {
-                (self.end, self.state) = (from, before);
+                self.end = from;
                 // The workspace is that of the step that failed.
                 (self.last, self.interpolant) = (None, None);
                 return Err(error);

@@ -25,8 +25,8 @@ pub(crate) fn is_short<T: Float>(h: f64) -> bool {
 /// no velocity by more than a rounding error of what made it so large: what a method of higher
 /// order adds is nothing.
 #[cold]
-pub(crate) fn straight<T: Float, const N: usize>(
-    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+pub(crate) fn straight<T: Float, const N: usize, const W: bool>(
+    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
     interval: &StepInterval,
     from: &mut Endpoint<T, N>,
 ) -> Endpoint<T, N> {

@@ -61,8 +61,8 @@ pub(super) struct Equations<D: Dynamics<N>, const N: usize, const S: usize> {
 
 impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D, N, S> {
     /// The equations of `interval` from the coordinates `q` and the momenta `p`.
-    pub(super) fn new(
-        field: &mut Field<'_, D, N>,
+    pub(super) fn new<const W: bool>(
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         q: Compensated<D::Scalar, N>,
         p: Compensated<D::Scalar, N>,
@@ -98,9 +98,9 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
     ///
     /// With a constant mass matrix two halves of it contract like (h·ω)², where evaluating
     /// everything at the old slopes contracts like h·ω.
-    pub(super) fn sweep(
+    pub(super) fn sweep<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         slopes: &mut Slopes<D::Scalar, N, S>,
     ) -> Change {
         let old = *slopes;
@@ -122,9 +122,9 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
     ///
     /// What the velocities at given momenta owe to the coordinates, and the mass matrix to time, is
     /// left out of it: neither is ever stiff, and the residuals contain them.
-    pub(super) fn newton(
+    pub(super) fn newton<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         linearized: &Linearized<D::Scalar, N, S>,
         slopes: &mut Slopes<D::Scalar, N, S>,
     ) -> Change {
@@ -223,8 +223,8 @@ pub(super) struct Linearized<T, const N: usize, const S: usize> {
 
 impl<T: Float, const N: usize, const S: usize> Linearized<T, N, S> {
     /// At the start of `interval`.
-    pub(super) fn new<D: Dynamics<N, Scalar = T, System: Jacobians<N>>>(
-        field: &mut Field<'_, D, N>,
+    pub(super) fn new<D: Dynamics<N, Scalar = T, System: Jacobians<N>>, const W: bool>(
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &Endpoint<T, N>,
     ) -> Self {

@@ -93,8 +93,8 @@ const FIXED: u32 = 60;
 /// A step over `interval` that leads `to` its end; the room holds what it leaves behind until it is
 /// accepted.
 #[inline]
-fn iterate<D: LaneDynamics<N>, const N: usize>(
-    field: &mut Field<'_, D, N>,
+fn iterate<D: LaneDynamics<N>, const N: usize, const W: bool>(
+    field: &mut Field<'_, D, N, W>,
     interval: &StepInterval,
     from: &mut Endpoint<D::Scalar, N>,
     to: &mut Endpoint<D::Scalar, N>,
@@ -161,9 +161,9 @@ impl<D: LaneDynamics<N>, const N: usize> Method<D, N> for Picard {
     }
 
     #[inline]
-    fn attempt(
+    fn attempt<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         workspace: &mut WorkspaceOf<D, N>,
@@ -209,19 +209,19 @@ impl<D: LaneDynamics<N>, const N: usize> Method<D, N> for Picard {
                 coordinate: coordinate(facts, index),
             });
         }
-        let mut watched = field.watching();
+        let mut watched = field.watched();
         let to = one_by_one(&mut watched, interval, from);
         let at_end =
             || first_in_state(facts, &to.q.high, &to.v.high).map(|what| (interval.end, what));
-        let (t, what) = watched.findings().first.or_else(at_end)?;
+        let (t, what) = watched.findings.first.or_else(at_end)?;
         Some(diagnose::not_finite(field.dynamics.system(), t, what))
     }
 }
 
 /// The same step without lanes and with as many sweeps as an adaptive step may take: to see what a
 /// number that is not finite comes from.
-fn one_by_one<T: Float, const N: usize>(
-    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+fn one_by_one<T: Float, const N: usize, const W: bool>(
+    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
     interval: &StepInterval,
     from: &Endpoint<T, N>,
 ) -> Endpoint<T, N> {
