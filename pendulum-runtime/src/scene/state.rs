@@ -1,11 +1,13 @@
 //! Reading and writing pendulums.
 
-use super::error::SceneError;
-use super::group::{Group, Status, check_state, inputs_at};
-use super::hung::Hung;
-use super::{Handle, Joint, Scene};
 use crate::motion::{Orders, Side};
 use crate::real::{Float, Lane, Real};
+use crate::scene::error::SceneError;
+use crate::scene::group::members::{Group, Status, check_state, inputs_at};
+use crate::scene::handle::Handle;
+use crate::scene::lanes::system::Hung;
+use crate::scene::sampling::joint::Joint;
+use crate::scene::scene::Scene;
 use crate::system::{Purpose, scalar_time};
 use crate::time::Time;
 
@@ -15,7 +17,7 @@ impl<T: Lane + Float> Scene<T> {
     /// # Panics
     /// If the pendulum is not in this scene, as indexing does.
     pub fn state<S: Hung<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> ([T; N], [T; N]) {
-        self.known(pendulum).states(pendulum.index)[1]
+        self.known(pendulum).states(pendulum.index())[1]
     }
 
     /// The coordinates that are `alpha` of the way from the tick before the last to the last: the
@@ -31,7 +33,7 @@ impl<T: Lane + Float> Scene<T> {
         pendulum: Handle<S, N>,
         alpha: f64,
     ) -> [T; N] {
-        let states = self.known(pendulum).states(pendulum.index);
+        let states = self.known(pendulum).states(pendulum.index());
         hermite(self.clock.step(), alpha, &states)
     }
 
@@ -80,7 +82,7 @@ impl<T: Lane + Float> Scene<T> {
     /// # Panics
     /// If the pendulum is not in this scene, as indexing does.
     pub fn energy<S: Hung<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> T {
-        let loose = self.known(pendulum).read(pendulum.index);
+        let loose = self.known(pendulum).read(pendulum.index());
         let t = Time::new(self.time());
         let inputs = inputs_at::<S, T, N>(
             &self.places,
@@ -100,7 +102,7 @@ impl<T: Lane + Float> Scene<T> {
     /// If the pendulum is not in this scene, as indexing does.
     pub fn system<S: Hung<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> S {
         let group = self.known(pendulum);
-        group.system_of(&group.read(pendulum.index).parameters)
+        group.system_of(&group.read(pendulum.index()).parameters)
     }
 
     /// What a pendulum is doing.
@@ -108,7 +110,7 @@ impl<T: Lane + Float> Scene<T> {
     /// # Panics
     /// If the pendulum is not in this scene, as indexing does.
     pub fn status<S: Hung<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> Status {
-        self.known(pendulum).status[pendulum.index as usize]
+        self.known(pendulum).status[pendulum.index() as usize]
     }
 
     /// Wakes a pendulum, whatever it was doing, at the state in which it is.
@@ -120,56 +122,56 @@ impl<T: Lane + Float> Scene<T> {
         pendulum: Handle<S, N>,
     ) -> Result<(), SceneError> {
         let group = self.checked(pendulum)?;
-        group.status[pendulum.index as usize] = Status::Awake;
-        group.set_awake(pendulum.index, true);
+        group.status[pendulum.index() as usize] = Status::Awake;
+        group.set_awake(pendulum.index(), true);
         self.dirty = true;
         Ok(())
     }
 
     /// The group of a pendulum that is there.
-    pub(super) fn known<S: Hung<T, N>, const N: usize>(
+    pub(crate) fn known<S: Hung<T, N>, const N: usize>(
         &self,
         pendulum: Handle<S, N>,
     ) -> &Group<S, T, N> {
         let group =
-            self.group::<S, N>().filter(|group| (pendulum.index as usize) < group.table.len());
+            self.group::<S, N>().filter(|group| (pendulum.index() as usize) < group.table.len());
         group.unwrap_or_else(|| panic!("{}", unknown(pendulum)))
     }
 
     /// The group of a pendulum.
-    pub(super) fn checked<S: Hung<T, N>, const N: usize>(
+    pub(crate) fn checked<S: Hung<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
     ) -> Result<&mut Group<S, T, N>, SceneError> {
         let group = self.group_mut::<S, N>().map(|(group, ..)| group);
         group
-            .filter(|group| (pendulum.index as usize) < group.table.len())
+            .filter(|group| (pendulum.index() as usize) < group.table.len())
             .ok_or_else(|| unknown(pendulum))
     }
 
     /// Changes what belongs to a pendulum and does not change its steps; one that sleeps wakes.
-    pub(super) fn change<S: Hung<T, N>, const N: usize>(
+    pub(crate) fn change<S: Hung<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
-        change: impl FnOnce(&mut super::bucket::Loose<T, N>),
+        change: impl FnOnce(&mut crate::scene::lanes::bucket::Loose<T, N>),
     ) -> Result<(), SceneError> {
         let group = self.checked(pendulum)?;
-        let mut loose = group.read(pendulum.index);
+        let mut loose = group.read(pendulum.index());
         change(&mut loose);
         group.write(&loose);
-        group.unmake_bed(pendulum.index);
-        group.rouse(pendulum.index);
+        group.unmake_bed(pendulum.index());
+        group.rouse(pendulum.index());
         self.dirty = true;
         Ok(())
     }
 }
 
 fn unknown<S: Hung<T, N>, T: Lane + Float, const N: usize>(pendulum: Handle<S, N>) -> SceneError {
-    SceneError::Pendulum { kind: S::FACTS.name, index: pendulum.index }
+    SceneError::Pendulum { kind: S::FACTS.name, index: pendulum.index() }
 }
 
 /// The cubic through coordinates and velocities at both ends of a step `h`.
-pub(super) fn hermite<T: Real, const N: usize>(
+pub(crate) fn hermite<T: Real, const N: usize>(
     h: f64,
     alpha: f64,
     [(q0, v0), (q1, v1)]: &[([T; N], [T; N]); 2],

@@ -6,43 +6,43 @@
 
 #![allow(clippy::inline_always)]
 
-use super::assemble::{Assemble, By};
-use super::block::{Block, Extras, Rare, half_decay};
-use super::hung::{Hung, Known, W, Wide};
-use super::inputs::{Followed, Inputs, nothing};
-use super::scheme::{Grid, MOST_STAGES, Scheme};
-use super::tracks::{Piece, Tracks};
 use crate::integrate::sum::Sum;
 use crate::integrate::{leapfrog, srkn6b};
 use crate::real::{Float, Lane, Real};
+use crate::scene::lanes::block::{Block, Extras, Rare, half_decay};
+use crate::scene::lanes::inputs::{Followed, Inputs, nothing};
+use crate::scene::lanes::system::{Hung, Known, W, Wide};
+use crate::scene::sampling::assemble::{Assemble, By};
+use crate::scene::sampling::scheme::{Grid, MOST_STAGES, Scheme};
+use crate::scene::sampling::tracks::{Piece, Tracks};
 use crate::simd::Work;
 use crate::system::{Staged, System, scalar_time};
 use crate::time::Time;
 use core::sync::atomic::{AtomicBool, Ordering};
 
 /// What blocks need to go through a batch of ticks.
-pub(super) struct Batch<'a, T> {
-    pub(super) grid: Grid,
+pub(crate) struct Batch<'a, T> {
+    pub(crate) grid: Grid,
     /// The length of a step.
-    pub(super) h: f64,
+    pub(crate) h: f64,
     /// The ticks.
-    pub(super) ticks: usize,
+    pub(crate) ticks: usize,
     /// The times of all evaluations.
-    pub(super) times: &'a [Time],
-    pub(super) tracks: &'a Tracks<T>,
+    pub(crate) times: &'a [Time],
+    pub(crate) tracks: &'a Tracks<T>,
     /// All joints rest for ever: each track has one record.
-    pub(super) still: bool,
+    pub(crate) still: bool,
     /// Whether some lane has failed.
-    pub(super) failed: AtomicBool,
+    pub(crate) failed: AtomicBool,
 }
 
 /// Blocks on their way through a batch, of which the last has so many lanes that are awake.
-pub(super) struct Run<'a, S: Hung<T, N>, T: Lane + Float, const N: usize> {
-    pub(super) blocks: &'a mut [Block<S, T, N>],
+pub(crate) struct Run<'a, S: Hung<T, N>, T: Lane + Float, const N: usize> {
+    pub(crate) blocks: &'a mut [Block<S, T, N>],
     /// The other parts of the blocks.
-    pub(super) rare: &'a [Rare<S, T, N>],
-    pub(super) lanes_of_last: usize,
-    pub(super) batch: &'a Batch<'a, T>,
+    pub(crate) rare: &'a [Rare<S, T, N>],
+    pub(crate) lanes_of_last: usize,
+    pub(crate) batch: &'a Batch<'a, T>,
 }
 
 impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Work for Run<'_, S, T, N> {

@@ -1,23 +1,23 @@
 //! What the pendulums of a bucket see of their joints during a batch of ticks.
 
-use super::clock::Clock;
-use super::hung::Layout;
-use super::joint::{Active, Place};
-use super::scheme::{Grid, MOST_STAGES};
-use super::timetable::Timetable;
 use crate::integrate::span::Span;
 use crate::motion::{Orders, Side};
 use crate::real::{Float, Real};
+use crate::scene::lanes::system::Layout;
+use crate::scene::sampling::clock::Clock;
+use crate::scene::sampling::joint::{Active, Place};
+use crate::scene::sampling::scheme::{Grid, MOST_STAGES};
+use crate::scene::sampling::timetable::Timetable;
 use crate::system::{Input, Purpose};
 use crate::time::Time;
 use std::collections::BTreeMap;
 
 /// The ticks that are done at once.
-pub(super) const BATCH: usize = 8;
+pub(crate) const BATCH: usize = 8;
 
 /// The distinct tuples of joints that pendulums of a bucket hang on, and what is sampled of them.
 #[derive(Clone, Debug)]
-pub(super) struct Tracks<T> {
+pub(crate) struct Tracks<T> {
     /// The joints of a track.
     inputs: usize,
     /// Those of all tracks, one track after the other.
@@ -39,32 +39,32 @@ pub(super) struct Tracks<T> {
 
 /// A step in a tick that has been cut at kinks.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Piece {
-    pub(super) h: f64,
+pub(crate) struct Piece {
+    pub(crate) h: f64,
     /// The times of the evaluations.
-    pub(super) times: [Time; MOST_STAGES],
+    pub(crate) times: [Time; MOST_STAGES],
     /// Where the records of the evaluations begin.
-    pub(super) begin: usize,
+    pub(crate) begin: usize,
     /// If there is a kink at its end: its time and where the records for the momenta before and
     /// after begin.
-    pub(super) jump: Option<(f64, usize)>,
+    pub(crate) jump: Option<(f64, usize)>,
 }
 
 /// What is needed to read a joint's samples.
-pub(super) struct Sampled<'a, T> {
-    pub(super) clock: &'a Clock,
-    pub(super) tick: i64,
-    pub(super) ticks: usize,
-    pub(super) places: &'a [Place<T>],
-    pub(super) actives: &'a [Active],
-    pub(super) numbers: &'a [T],
-    pub(super) timetable: &'a Timetable,
+pub(crate) struct Sampled<'a, T> {
+    pub(crate) clock: &'a Clock,
+    pub(crate) tick: i64,
+    pub(crate) ticks: usize,
+    pub(crate) places: &'a [Place<T>],
+    pub(crate) actives: &'a [Active],
+    pub(crate) numbers: &'a [T],
+    pub(crate) timetable: &'a Timetable,
     /// Whether some joint has a kink.
-    pub(super) kinks: bool,
+    pub(crate) kinks: bool,
 }
 
 impl<T: Real + Float> Tracks<T> {
-    pub(super) fn new(inputs: usize) -> Self {
+    pub(crate) fn new(inputs: usize) -> Self {
         Self {
             inputs,
             joints: Vec::new(),
@@ -79,7 +79,7 @@ impl<T: Real + Float> Tracks<T> {
     }
 
     /// The track of `joints`.
-    pub(super) fn find(&mut self, joints: &[u32]) -> u32 {
+    pub(crate) fn find(&mut self, joints: &[u32]) -> u32 {
         if let Some(&track) = self.by_joints.get(joints) {
             return track;
         }
@@ -90,22 +90,22 @@ impl<T: Real + Float> Tracks<T> {
         track
     }
 
-    pub(super) fn joints(&self, track: u32) -> &[u32] {
+    pub(crate) fn joints(&self, track: u32) -> &[u32] {
         &self.joints[track as usize * self.inputs..][..self.inputs]
     }
 
-    pub(super) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.awake.len()
     }
 
     /// Counts one pendulum more or less that is awake.
-    pub(super) fn stir(&mut self, track: u32, up: bool) {
+    pub(crate) fn stir(&mut self, track: u32, up: bool) {
         let awake = &mut self.awake[track as usize];
         *awake = if up { *awake + 1 } else { *awake - 1 };
     }
 
     /// Tells `visit` every joint that somebody awake hangs on, with what the equations need of it.
-    pub(super) fn needs(&self, inputs: &[Input], mut visit: impl FnMut(u32, Orders)) {
+    pub(crate) fn needs(&self, inputs: &[Input], mut visit: impl FnMut(u32, Orders)) {
         for (track, &awake) in self.awake.iter().enumerate() {
             if awake != 0 {
                 for (input, &joint) in self.joints(track as u32).iter().enumerate() {
@@ -116,12 +116,12 @@ impl<T: Real + Float> Tracks<T> {
     }
 
     /// Whether somebody is awake on a track.
-    pub(super) fn is_awake(&self, track: usize) -> bool {
+    pub(crate) fn is_awake(&self, track: usize) -> bool {
         self.awake[track] != 0
     }
 
     /// Reads what was sampled of the joints for a batch.
-    pub(super) fn load(
+    pub(crate) fn load(
         &mut self,
         grid: Grid,
         layout: &Layout,
@@ -174,7 +174,7 @@ impl<T: Real + Float> Tracks<T> {
         records: &mut [T],
         fork: bool,
     ) {
-        use super::threads::{part, share};
+        use crate::scene::threads::{part, share};
         const LEAST: usize = 512;
         let length = self.stride * layout.width;
         if !fork || self.count() < 2 * LEAST || length == 0 {
@@ -346,7 +346,7 @@ impl<T: Real + Float> Tracks<T> {
     }
 
     /// Reads the constant records of joints that rest for ever.
-    pub(super) fn load_still(
+    pub(crate) fn load_still(
         &mut self,
         layout: &Layout,
         inputs: &[Input],
@@ -372,20 +372,20 @@ impl<T: Real + Float> Tracks<T> {
     /// The record of a track at an evaluation of the batch; of one at rest all are the first.
     #[inline(always)]
     #[allow(clippy::inline_always)]
-    pub(super) fn record(&self, track: u32, evaluation: usize, width: usize) -> &[T] {
+    pub(crate) fn record(&self, track: u32, evaluation: usize, width: usize) -> &[T] {
         &self.records[(track as usize * self.stride + evaluation) * width..][..width]
     }
 
     /// Whether a tick of the batch has been cut for any track.
     #[inline]
-    pub(super) fn any_cut(&self) -> bool {
+    pub(crate) fn any_cut(&self) -> bool {
         !self.cuts.is_empty()
     }
 
     /// The pieces of a tick, none if it is whole.
     #[inline(always)]
     #[allow(clippy::inline_always)]
-    pub(super) fn pieces(&self, tick: usize, track: u32) -> &[Piece] {
+    pub(crate) fn pieces(&self, tick: usize, track: u32) -> &[Piece] {
         let track = track as usize;
         if self.cuts.is_empty() || !self.is_awake(track) {
             return &[];
@@ -394,7 +394,7 @@ impl<T: Real + Float> Tracks<T> {
         &self.pieces[begin as usize..][..count as usize]
     }
 
-    pub(super) fn extra(&self) -> &[T] {
+    pub(crate) fn extra(&self) -> &[T] {
         &self.extra
     }
 }

@@ -1,8 +1,8 @@
 //! Where a pendulum comes to rest.
 
-use super::bucket::Extra;
-use super::frequency::cube_root_of_rounding;
 use crate::real::Float;
+use crate::scene::group::frequency::cube_root_of_rounding;
+use crate::scene::lanes::bucket::Extra;
 use crate::system::System;
 use nalgebra::{DMatrix, DVector};
 
@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 ///
 /// Newton's method where the pendulum is stable and it halves the acceleration, otherwise steps
 /// q̈/(2ω²) with the fastest frequency ω.
-pub(super) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
+pub(crate) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
     system: &S,
     t: T,
     q: &[T; N],

@@ -1,18 +1,18 @@
 //! Joints: motions of any type, each sampled once per time for all that hangs on it.
 
-use super::clock::Clock;
 use crate::motion::{Motion, Orders, Sample, Side};
 use crate::real::Real;
+use crate::scene::sampling::clock::Clock;
 use crate::time::Time;
 use core::fmt;
 use std::sync::Arc;
 
 /// A joint of a scene that moves in `D` dimensions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Joint<const D: usize>(pub(super) u32);
+pub struct Joint<const D: usize>(pub(crate) u32);
 
 /// A motion whose type and dimension are forgotten.
-pub(super) trait Drive<T>: Send + Sync {
+pub(crate) trait Drive<T>: Send + Sync {
     fn has(&self) -> Orders;
     fn components(&self) -> usize;
     /// Writes those of position, velocity and acceleration that are in `orders`, one after the
@@ -111,7 +111,7 @@ impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Forgot
 }
 
 /// `motion` as a drive.
-pub(super) fn forget<T: Real, M: Motion<T, D> + Send + Sync + 'static, const D: usize>(
+pub(crate) fn forget<T: Real, M: Motion<T, D> + Send + Sync + 'static, const D: usize>(
     motion: M,
 ) -> Arc<dyn Drive<T>> {
     Arc::new(Forgotten(motion))
@@ -119,33 +119,33 @@ pub(super) fn forget<T: Real, M: Motion<T, D> + Send + Sync + 'static, const D: 
 
 /// A joint.
 #[derive(Clone)]
-pub(super) struct Place<T> {
-    pub(super) drive: Arc<dyn Drive<T>>,
+pub(crate) struct Place<T> {
+    pub(crate) drive: Arc<dyn Drive<T>>,
     /// Whether it always rests, so that it is never sampled.
-    pub(super) still: bool,
+    pub(crate) still: bool,
     /// What those that are awake on it need.
-    pub(super) orders: Orders,
+    pub(crate) orders: Orders,
     /// By bit, the grids on which it is needed.
-    pub(super) grids: u64,
+    pub(crate) grids: u64,
     /// Its number among those that are sampled.
-    pub(super) active: u32,
+    pub(crate) active: u32,
 }
 
 /// A joint that somebody awake needs, and what was last sampled of it.
 #[derive(Debug)]
-pub(super) struct Active {
-    pub(super) joint: u32,
+pub(crate) struct Active {
+    pub(crate) joint: u32,
     /// The class of the timetable for the grids on which it is needed.
-    pub(super) class: u32,
+    pub(crate) class: u32,
     /// What those that are awake on it need.
-    pub(super) orders: Orders,
-    pub(super) components: usize,
+    pub(crate) orders: Orders,
+    pub(crate) components: usize,
     /// The first kink after the time last looked at; NaN before anybody has looked.
     kink: f64,
     /// Where its samples begin.
-    pub(super) offset: usize,
+    pub(crate) offset: usize,
     /// Whether each tick of the batch, from its first, has a kink in it or at its end.
-    pub(super) kinked: u32,
+    pub(crate) kinked: u32,
 }
 
 impl<T> fmt::Debug for Place<T> {
@@ -158,7 +158,7 @@ impl<T> fmt::Debug for Place<T> {
 }
 
 impl<T: Real> Place<T> {
-    pub(super) fn new(drive: Arc<dyn Drive<T>>) -> Self {
+    pub(crate) fn new(drive: Arc<dyn Drive<T>>) -> Self {
         // From the beginning of time: a scene may go back.
         let still = drive.rest_until(f64::NEG_INFINITY) == f64::INFINITY;
         Self { drive, still, orders: Orders::NONE, grids: 0, active: 0 }
@@ -166,7 +166,7 @@ impl<T: Real> Place<T> {
 }
 
 impl Active {
-    pub(super) fn new<T: Real>(joint: u32, place: &Place<T>, class: u32) -> Self {
+    pub(crate) fn new<T: Real>(joint: u32, place: &Place<T>, class: u32) -> Self {
         let components = place.drive.components();
         Self {
             joint,
@@ -180,13 +180,13 @@ impl Active {
     }
 
     /// The numbers in a sample.
-    pub(super) fn width(&self) -> usize {
+    pub(crate) fn width(&self) -> usize {
         self.components * self.orders.count()
     }
 
     /// Samples the ticks from `tick` at `times`; ticks with a kink in them or at their ends are
     /// left out.
-    pub(super) fn sample<T: Real>(
+    pub(crate) fn sample<T: Real>(
         &mut self,
         drive: &dyn Drive<T>,
         clock: &Clock,

@@ -38,20 +38,20 @@ impl Fixed for Rk4 {
 
 /// A method and the equal steps that it takes in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(super) struct Grid {
-    pub(super) scheme: Scheme,
-    pub(super) substeps: u32,
+pub(crate) struct Grid {
+    pub(crate) scheme: Scheme,
+    pub(crate) substeps: u32,
 }
 
 /// More steps than this no tick is divided into.
-pub(super) const MOST_SUBSTEPS: u32 = 64;
+pub(crate) const MOST_SUBSTEPS: u32 = 64;
 
 /// The most evaluations in a step.
-pub(super) const MOST_STAGES: usize = 7;
+pub(crate) const MOST_STAGES: usize = 7;
 
 impl Scheme {
     /// The times of the evaluations of a step, in steps.
-    pub(super) fn stages(self) -> &'static [f64] {
+    pub(crate) fn stages(self) -> &'static [f64] {
         const SRKN6B: [f64; 7] = {
             let [a, b, c, d, e, f] = srkn6b::SPLITTING.times;
             [0.0, a, b, c, d, e, f]
@@ -86,7 +86,7 @@ impl Scheme {
     }
 
     /// The steps in a tick of `phase` radians, a power of two.
-    pub(super) fn substeps(self, phase: f64, tolerance: f64) -> u32 {
+    pub(crate) fn substeps(self, phase: f64, tolerance: f64) -> u32 {
         let (longest, mut substeps) = (self.longest(tolerance), 1);
         while substeps < MOST_SUBSTEPS && longest * f64::from(substeps) < phase {
             substeps *= 2;
@@ -95,7 +95,7 @@ impl Scheme {
     }
 
     /// The cheapest method for a system in ticks of `phase` radians.
-    pub(super) fn cheapest(facts: &Facts, phase: f64, tolerance: f64) -> Grid {
+    pub(crate) fn cheapest(facts: &Facts, phase: f64, tolerance: f64) -> Grid {
         let grid = |scheme: Self| Grid { scheme, substeps: scheme.substeps(phase, tolerance) };
         if !(facts.velocity_free && facts.constant_mass_matrix) {
             return grid(Self::Rk4);
@@ -109,14 +109,14 @@ impl Scheme {
 
 impl Grid {
     /// The times of all evaluations in a tick, in ticks, step by step.
-    pub(super) fn fractions(self) -> impl Iterator<Item = f64> {
+    pub(crate) fn fractions(self) -> impl Iterator<Item = f64> {
         let steps = f64::from(self.substeps);
         (0..self.substeps).flat_map(move |step| {
             self.scheme.stages().iter().map(move |stage| (f64::from(step) + stage) / steps)
         })
     }
 
-    pub(super) fn count(self) -> usize {
+    pub(crate) fn count(self) -> usize {
         self.substeps as usize * self.scheme.stages().len()
     }
 }

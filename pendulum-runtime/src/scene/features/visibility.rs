@@ -1,13 +1,14 @@
 //! Pendulums that nobody sees.
 
-use super::error::SceneError;
-use super::group::{Status, inputs_at};
-use super::hung::Hung;
-use super::joint::Place;
-use super::{Handle, Scene};
 use crate::integrate::{Dop853, solve};
 use crate::motion::{Side, shorter};
 use crate::real::{Float, Lane};
+use crate::scene::error::SceneError;
+use crate::scene::group::members::{Status, inputs_at};
+use crate::scene::handle::Handle;
+use crate::scene::lanes::system::Hung;
+use crate::scene::sampling::joint::Place;
+use crate::scene::scene::Scene;
 use crate::system::{Dynamics, Purpose, scalar_time};
 use crate::time::Time;
 
@@ -31,7 +32,7 @@ struct Hanging<'a, S, T, const N: usize> {
     system: S,
     places: &'a [Place<T>],
     joints: Vec<u32>,
-    extra: super::bucket::Extra<T, N>,
+    extra: crate::scene::lanes::bucket::Extra<T, N>,
 }
 
 impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Dynamics<N> for Hanging<'_, S, T, N> {

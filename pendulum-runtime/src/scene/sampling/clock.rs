@@ -1,13 +1,13 @@
 //! Time as a whole number of ticks, whatever the frames are.
 
-use super::SceneError;
+use crate::scene::error::SceneError;
 use crate::time::Time;
 
 /// The time of a scene: a whole number of ticks, and the time that frames have asked for beyond it.
 ///
 /// Frame times are summed in two words, so that the ticks done depend on their sum alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Clock {
+pub(crate) struct Clock {
     /// Ticks in a second.
     rate: f64,
     /// The ticks done.
@@ -23,7 +23,7 @@ pub(super) struct Clock {
 const SLACK: f64 = 1e-6;
 
 impl Clock {
-    pub(super) fn new(rate: f64) -> Result<Self, SceneError> {
+    pub(crate) fn new(rate: f64) -> Result<Self, SceneError> {
         if (1e-3..=1e6).contains(&rate) {
             Ok(Self { rate, tick: 0, asked: Time::new(0.0), origin: 0 })
         } else {
@@ -35,24 +35,24 @@ impl Clock {
         }
     }
 
-    pub(super) fn tick(&self) -> i64 {
+    pub(crate) fn tick(&self) -> i64 {
         self.tick
     }
 
     /// The length of a tick in seconds.
-    pub(super) fn step(&self) -> f64 {
+    pub(crate) fn step(&self) -> f64 {
         1.0 / self.rate
     }
 
     /// The time of a tick: the nearest `f64`, and the whole.
     ///
     /// Ends of ticks have one word, so that a kink there is met exactly.
-    pub(super) fn time(&self, tick: i64) -> f64 {
+    pub(crate) fn time(&self, tick: i64) -> f64 {
         tick as f64 / self.rate
     }
 
     /// The last tick before `t`: a kink at the end of a tick belongs to it.
-    pub(super) fn last_before(&self, t: f64) -> i64 {
+    pub(crate) fn last_before(&self, t: f64) -> i64 {
         let guess = (t * self.rate).floor();
         if 9e18 <= guess {
             return i64::MAX;
@@ -63,7 +63,7 @@ impl Clock {
     }
 
     /// The time that is `fraction` of a tick after `tick`.
-    pub(super) fn within(&self, tick: i64, fraction: f64) -> Time {
+    pub(crate) fn within(&self, tick: i64, fraction: f64) -> Time {
         if fraction == 0.0 {
             Time::new(self.time(tick))
         } else if fraction == 1.0 {
@@ -75,7 +75,7 @@ impl Clock {
 
     /// Takes `dt` seconds more, of which at most `limit`; gives the ticks that are due and the
     /// seconds dropped.
-    pub(super) fn ask(&mut self, dt: f64, limit: f64) -> Result<(u64, f64), SceneError> {
+    pub(crate) fn ask(&mut self, dt: f64, limit: f64) -> Result<(u64, f64), SceneError> {
         if !(0.0..f64::INFINITY).contains(&dt) {
             return Err(SceneError::FrameTime(dt));
         }
@@ -86,22 +86,22 @@ impl Clock {
     }
 
     /// Counts ticks that have been done.
-    pub(super) fn passed(&mut self, ticks: u64) {
+    pub(crate) fn passed(&mut self, ticks: u64) {
         self.tick += ticks as i64;
     }
 
     /// Jumps to another tick; no part of a tick is left over.
-    pub(super) fn jump(&mut self, tick: i64) {
+    pub(crate) fn jump(&mut self, tick: i64) {
         (self.tick, self.origin, self.asked) = (tick, tick, Time::new(0.0));
     }
 
     /// Moves by whole ticks what frames have asked for too: for ticks that no frame has asked for.
-    pub(super) fn shift(&mut self, ticks: i64) {
+    pub(crate) fn shift(&mut self, ticks: i64) {
         self.origin += ticks;
     }
 
     /// The part of the next tick that frames have asked for, in [0, 1).
-    pub(super) fn fraction(&self) -> f64 {
+    pub(crate) fn fraction(&self) -> f64 {
         let ticks = self.asked.to_f64() * self.rate - (self.tick - self.origin) as f64
             + self.asked.low() * self.rate;
         if ticks <= 0.0 {
@@ -114,11 +114,11 @@ impl Clock {
     }
 
     /// Everything that changes: ticks, origin and both words of what was asked for.
-    pub(super) fn state(&self) -> (i64, i64, [f64; 2]) {
+    pub(crate) fn state(&self) -> (i64, i64, [f64; 2]) {
         (self.tick, self.origin, [self.asked.to_f64(), self.asked.low()])
     }
 
-    pub(super) fn restore(&mut self, (tick, origin, asked): (i64, i64, [f64; 2])) {
+    pub(crate) fn restore(&mut self, (tick, origin, asked): (i64, i64, [f64; 2])) {
         (self.tick, self.origin, self.asked) = (tick, origin, Time::new(asked[0]) + asked[1]);
     }
 }

@@ -1,13 +1,14 @@
 //! Everything that changes while a scene runs, as plain numbers.
 
-use super::bucket::{Extra, Kind, Loose, still};
-use super::error::{Failure, SceneError};
-use super::group::{Group, Status};
-use super::hung::{Hung, Known};
-use super::joint::Place;
-use super::scheme::{Grid, MOST_SUBSTEPS, Scheme};
-use super::{Scene, hash};
 use crate::real::{Float, Lane, Real};
+use crate::scene::error::{Failure, SceneError};
+use crate::scene::features::hash;
+use crate::scene::group::members::{Group, Status};
+use crate::scene::lanes::bucket::{Extra, Kind, Loose, still};
+use crate::scene::lanes::system::{Hung, Known};
+use crate::scene::sampling::joint::Place;
+use crate::scene::sampling::scheme::{Grid, MOST_SUBSTEPS, Scheme};
+use crate::scene::scene::Scene;
 
 /// The state of a scene: time, states, parameters, damping, stops, who sleeps and who has failed.
 ///
@@ -48,7 +49,7 @@ const fn numbers(coordinates: usize) -> usize {
     6 * coordinates + 2 * coordinates + 4
 }
 
-pub(super) fn save<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+pub(crate) fn save<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     group: &Group<S, T, N>,
 ) -> GroupState<T> {
     let count = group.table.len();
@@ -76,7 +77,7 @@ pub(super) fn save<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     state
 }
 
-pub(super) fn accepts<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+pub(crate) fn accepts<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     group: &Group<S, T, N>,
     state: &GroupState<T>,
 ) -> Result<(), SceneError> {
@@ -107,7 +108,7 @@ pub(super) fn accepts<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     Ok(())
 }
 
-pub(super) fn restore<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+pub(crate) fn restore<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     group: &mut Group<S, T, N>,
     places: &[Place<T>],
     state: &GroupState<T>,
@@ -160,7 +161,7 @@ pub(super) fn restore<S: Hung<T, N>, T: Lane + Float, const N: usize>(
 }
 
 /// The largest differences of coordinates and of velocities.
-pub(super) fn gap<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+pub(crate) fn gap<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     group: &Group<S, T, N>,
     state: &GroupState<T>,
 ) -> [f64; 2] {
@@ -180,7 +181,7 @@ pub(super) fn gap<S: Hung<T, N>, T: Lane + Float, const N: usize>(
 }
 
 impl<T> Snapshot<T> {
-    pub(super) fn groups(&self) -> &[GroupState<T>] {
+    pub(crate) fn groups(&self) -> &[GroupState<T>] {
         &self.groups
     }
 }

@@ -8,7 +8,7 @@ use crate::system::System;
 ///
 /// It is the largest root of |λ| over the eigenvalues λ of ∂q̈/∂q, by power iteration with central
 /// differences, at `q` and at three states beside it, or the size of ∂q̈/∂q̇, whichever is larger.
-pub(super) fn fastest<S: System<N, Scalar = T>, T: Float, const N: usize>(
+pub(crate) fn fastest<S: System<N, Scalar = T>, T: Float, const N: usize>(
     system: &S,
     t: T,
     q: &[T; N],
@@ -36,7 +36,7 @@ pub(super) fn fastest<S: System<N, Scalar = T>, T: Float, const N: usize>(
 }
 
 /// The step for which rounding and truncation of a central difference are alike.
-pub(super) fn cube_root_of_rounding<T: Float>() -> f64 {
+pub(crate) fn cube_root_of_rounding<T: Float>() -> f64 {
     Real::powf(T::EPSILON.to_f64(), 1.0 / 3.0)
 }
 

@@ -1,30 +1,30 @@
 //! All pendulums of one type.
 
-use super::assemble::{Assemble, By};
-use super::bucket::{self, Bucket, Extra, Failed, Kind, Loose};
-use super::clock::Clock;
-use super::director::Carry;
-use super::error::{Failure, SceneError};
-use super::frequency;
-use super::hung::{Hung, Layout};
-use super::joint::Place;
-use super::rest;
-use super::scheme::{Grid, MOST_SUBSTEPS, Scheme};
-use super::sleep::{Alarms, Bed};
-use super::snapshot::{self, GroupState};
-use super::tracks::Sampled;
 use crate::error::{Coordinate, Error, Quantity};
 use crate::integrate::blame::suspects;
 use crate::integrate::field::{coordinate, first_in_inputs};
 use crate::motion::{Orders, Side};
 use crate::real::{Float, Lane};
+use crate::scene::error::{Failure, SceneError};
+use crate::scene::features::commands::Carry;
+use crate::scene::features::sleep::{Alarms, Bed};
+use crate::scene::features::snapshot::{self, GroupState};
+use crate::scene::group::frequency;
+use crate::scene::group::rest;
+use crate::scene::lanes::bucket::{self, Bucket, Extra, Failed, Kind, Loose};
+use crate::scene::lanes::system::{Hung, Layout};
+use crate::scene::sampling::assemble::{Assemble, By};
+use crate::scene::sampling::clock::Clock;
+use crate::scene::sampling::joint::Place;
+use crate::scene::sampling::scheme::{Grid, MOST_SUBSTEPS, Scheme};
+use crate::scene::sampling::tracks::Sampled;
 use crate::system::{Purpose, scalar_time};
 use crate::time::Time;
 use core::any::Any;
 use core::cmp::Reverse;
 
 /// All pendulums of the type `S`, as the scene sees them.
-pub(super) trait AnyGroup<T>: Send + Sync {
+pub(crate) trait AnyGroup<T>: Send + Sync {
     fn as_any(&self) -> &dyn Any;
     fn as_any_mut(&mut self) -> &mut dyn Any;
     /// Tells `visit` every joint that somebody awake hangs on, with what is needed of it and when.
@@ -79,9 +79,9 @@ pub(super) trait AnyGroup<T>: Send + Sync {
 
 /// Where a pendulum is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Location {
-    pub(super) bucket: u32,
-    pub(super) slot: u32,
+pub(crate) struct Location {
+    pub(crate) bucket: u32,
+    pub(crate) slot: u32,
 }
 
 /// What a pendulum is doing.
@@ -99,22 +99,22 @@ pub enum Status {
 }
 
 /// All pendulums of one type.
-pub(super) struct Group<S: Hung<T, N>, T: Lane + Float, const N: usize> {
-    pub(super) prototype: S,
+pub(crate) struct Group<S: Hung<T, N>, T: Lane + Float, const N: usize> {
+    pub(crate) prototype: S,
     /// The method that somebody has chosen.
-    pub(super) scheme: Option<Scheme>,
-    pub(super) buckets: Vec<Bucket<S, T, N>>,
-    pub(super) table: Vec<Location>,
-    pub(super) status: Vec<Status>,
+    pub(crate) scheme: Option<Scheme>,
+    pub(crate) buckets: Vec<Bucket<S, T, N>>,
+    pub(crate) table: Vec<Location>,
+    pub(crate) status: Vec<Status>,
     /// The relative errors of the phase that steps are chosen by.
     tolerances: Vec<f64>,
-    pub(super) alarms: Alarms,
+    pub(crate) alarms: Alarms,
     /// By pendulum, once somebody has looked.
-    pub(super) beds: Vec<Option<Bed<T, N>>>,
+    pub(crate) beds: Vec<Option<Bed<T, N>>>,
 }
 
 impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
-    pub(super) fn new(prototype: S) -> Self {
+    pub(crate) fn new(prototype: S) -> Self {
         Self {
             prototype,
             scheme: None,
@@ -128,7 +128,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Hangs a pendulum on joints; it is awake.
-    pub(super) fn hang(
+    pub(crate) fn hang(
         &mut self,
         clock: &Clock,
         places: &[Place<T>],
@@ -156,7 +156,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// What the pendulum has in common with others.
-    pub(super) fn kind(
+    pub(crate) fn kind(
         &self,
         clock: &Clock,
         places: &[Place<T>],
@@ -185,7 +185,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Puts a pendulum into its bucket, asleep.
-    pub(super) fn insert(&mut self, kind: Kind, loose: &Loose<T, N>) {
+    pub(crate) fn insert(&mut self, kind: Kind, loose: &Loose<T, N>) {
         let bucket =
             self.buckets.iter().position(|bucket| bucket.kind == kind).unwrap_or_else(|| {
                 self.buckets.push(Bucket::new(kind));
@@ -196,7 +196,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Takes a pendulum out of its bucket; `insert` puts it back.
-    pub(super) fn remove(&mut self, id: u32) -> Loose<T, N> {
+    pub(crate) fn remove(&mut self, id: u32) -> Loose<T, N> {
         self.set_awake(id, false);
         let Location { bucket, slot } = self.table[id as usize];
         let last = self.buckets[bucket as usize].len - 1;
@@ -207,14 +207,15 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Moves a pendulum among those that are computed, or away from them.
-    pub(super) fn set_awake(&mut self, id: u32, awake: bool) {
+    pub(crate) fn set_awake(&mut self, id: u32, awake: bool) {
         let Location { bucket, slot } = self.table[id as usize];
         let (index, slot) = (bucket as usize, slot as usize);
         let bucket = &mut self.buckets[index];
         if (slot < bucket.awake) == awake {
             return;
         }
-        let track = bucket.blocks[slot / super::hung::W].track[slot % super::hung::W];
+        let track = bucket.blocks[slot / crate::scene::lanes::system::W].track
+            [slot % crate::scene::lanes::system::W];
         bucket.tracks.stir(track, awake);
         if awake {
             bucket.awake += 1;
@@ -233,31 +234,31 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         }
     }
 
-    pub(super) fn is_awake(&self, id: u32) -> bool {
+    pub(crate) fn is_awake(&self, id: u32) -> bool {
         let Location { bucket, slot } = self.table[id as usize];
         (slot as usize) < self.buckets[bucket as usize].awake
     }
 
     /// The joints of a pendulum.
-    pub(super) fn joints(&self, id: u32) -> &[u32] {
+    pub(crate) fn joints(&self, id: u32) -> &[u32] {
         let Location { bucket, slot } = self.table[id as usize];
         self.buckets[bucket as usize].joints(slot as usize)
     }
 
     /// A pendulum with all that belongs to it.
-    pub(super) fn read(&self, id: u32) -> Loose<T, N> {
+    pub(crate) fn read(&self, id: u32) -> Loose<T, N> {
         let Location { bucket, slot } = self.table[id as usize];
         self.buckets[bucket as usize].read(slot as usize)
     }
 
     /// Writes a pendulum back to where it is.
-    pub(super) fn write(&mut self, loose: &Loose<T, N>) {
+    pub(crate) fn write(&mut self, loose: &Loose<T, N>) {
         let Location { bucket, slot } = self.table[loose.id as usize];
         self.buckets[bucket as usize].write(slot as usize, loose);
     }
 
     /// Writes a pendulum back that may need other steps than before.
-    pub(super) fn rewrite(&mut self, clock: &Clock, places: &[Place<T>], loose: &Loose<T, N>) {
+    pub(crate) fn rewrite(&mut self, clock: &Clock, places: &[Place<T>], loose: &Loose<T, N>) {
         let system = self.system_of(&loose.parameters);
         let kind = self.kind(clock, places, &system, loose);
         if self.buckets[self.table[loose.id as usize].bucket as usize].kind == kind {
@@ -270,7 +271,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Wakes a pendulum that sleeps.
-    pub(super) fn rouse(&mut self, id: u32) {
+    pub(crate) fn rouse(&mut self, id: u32) {
         if let Status::Asleep(_) = self.status[id as usize] {
             self.status[id as usize] = Status::Awake;
             self.set_awake(id, true);
@@ -278,7 +279,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Where a pendulum comes to rest with its joints at rest where they are at `t`.
-    pub(super) fn rest_of(
+    pub(crate) fn rest_of(
         &self,
         places: &[Place<T>],
         loose: &Loose<T, N>,
@@ -300,7 +301,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Lets a pendulum hang at rest; one that has failed swings again.
-    pub(super) fn rest(
+    pub(crate) fn rest(
         &mut self,
         clock: &Clock,
         places: &[Place<T>],
@@ -320,17 +321,17 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// The system with these parameters.
-    pub(super) fn system_of(&self, parameters: &[T]) -> S {
+    pub(crate) fn system_of(&self, parameters: &[T]) -> S {
         let mut parameters = parameters.iter();
         self.prototype.mapped(|parameter| parameters.next().copied().unwrap_or(parameter))
     }
 
     /// The state of a pendulum now and one tick before.
-    pub(super) fn states(&self, id: u32) -> [([T; N], [T; N]); 2] {
+    pub(crate) fn states(&self, id: u32) -> [([T; N], [T; N]); 2] {
         let Location { bucket, slot } = self.table[id as usize];
         let (block, lane) = (
-            &self.buckets[bucket as usize].blocks[slot as usize / super::hung::W],
-            slot as usize % super::hung::W,
+            &self.buckets[bucket as usize].blocks[slot as usize / crate::scene::lanes::system::W],
+            slot as usize % crate::scene::lanes::system::W,
         );
         let before =
             [&block.before[0], &block.before[1]].map(|lanes| lanes.map(|lanes| lanes.0[lane]));
@@ -524,7 +525,7 @@ fn blame<S: Hung<T, N>, T: Lane + Float, const N: usize>(
 
 /// The inputs of a system on joints, with what `purpose` needs; at rest if asked so: only the
 /// positions then.
-pub(super) fn inputs_at<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+pub(crate) fn inputs_at<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     places: &[Place<T>],
     joints: &[u32],
     t: Time,
@@ -553,7 +554,7 @@ pub(super) fn inputs_at<S: Hung<T, N>, T: Lane + Float, const N: usize>(
 }
 
 /// Whether a state is finite.
-pub(super) fn check_state<T: Float, const N: usize>(
+pub(crate) fn check_state<T: Float, const N: usize>(
     facts: &crate::system::Facts,
     values: &[T; N],
 ) -> Result<(), SceneError> {
@@ -571,7 +572,7 @@ pub(super) fn check_state<T: Float, const N: usize>(
 
 /// Whether joints exist, move in as many dimensions as their inputs and have what the equations
 /// need.
-pub(super) fn check_joints<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+pub(crate) fn check_joints<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     places: &[Place<T>],
     joints: &[u32],
 ) -> Result<(), SceneError> {
@@ -587,7 +588,7 @@ pub(super) fn check_joints<S: Hung<T, N>, T: Lane + Float, const N: usize>(
 }
 
 /// Whether a motion has what the equations need of an input.
-pub(super) fn check_motion(
+pub(crate) fn check_motion(
     facts: &crate::system::Facts,
     input: usize,
     has: Orders,

@@ -1,13 +1,15 @@
 //! What directors ask for: resets, teleports, mirrors, damping, stops, parameters that change while
 //! the scene runs.
 
-use super::bucket::Extra;
-use super::error::SceneError;
-use super::hung::Hung;
-use super::joint::{Place, forget};
-use super::{Handle, Joint, Scene};
 use crate::motion::Motion;
 use crate::real::{Float, Lane};
+use crate::scene::error::SceneError;
+use crate::scene::handle::Handle;
+use crate::scene::lanes::bucket::Extra;
+use crate::scene::lanes::system::Hung;
+use crate::scene::sampling::joint::Joint;
+use crate::scene::sampling::joint::{Place, forget};
+use crate::scene::scene::Scene;
 
 /// What becomes of the swing when a joint is given another motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,9 +2,9 @@
 
 #![allow(clippy::inline_always)]
 
-use super::joint::Joint;
 use crate::motion::Sample;
 use crate::real::Real;
+use crate::scene::sampling::joint::Joint;
 use crate::system::Samples;
 
 /// The numbers of samples. A closure would do, but that need not be inlined, and then is compiled
@@ -15,7 +15,7 @@ pub trait Numbers<T> {
 }
 
 /// Numbers that a function gives, where it does not matter.
-pub(super) struct By<F>(pub(super) F);
+pub(crate) struct By<F>(pub(crate) F);
 
 impl<T, F: FnMut(usize, usize, usize) -> T> Numbers<T> for By<F> {
     fn number(&mut self, input: usize, derivative: usize, component: usize) -> T {

@@ -1,15 +1,16 @@
 //! Sleep: pendulums that hardly move, on joints that rest, are not computed until their joints
 //! move.
 
-use super::bucket::{Extra, Loose};
-use super::clock::Clock;
-use super::frequency;
-use super::group::{Group, Status, inputs_at};
-use super::hung::{Hung, W};
-use super::joint::Place;
-use super::{Scene, SceneError};
 use crate::motion::Side;
 use crate::real::{Float, Lane, Real};
+use crate::scene::error::SceneError;
+use crate::scene::group::frequency;
+use crate::scene::group::members::{Group, Status, inputs_at};
+use crate::scene::lanes::bucket::{Extra, Loose};
+use crate::scene::lanes::system::{Hung, W};
+use crate::scene::sampling::clock::Clock;
+use crate::scene::sampling::joint::Place;
+use crate::scene::scene::Scene;
 use crate::system::Purpose;
 use crate::time::Time;
 use core::cmp::Reverse;
@@ -17,14 +18,14 @@ use nalgebra::DMatrix;
 use std::collections::BinaryHeap;
 
 /// The ticks from one look for sleepers to the next.
-pub(super) const LOOK: i64 = 16;
+pub(crate) const LOOK: i64 = 16;
 
 /// When sleepers are to wake: ticks and pendulums.
-pub(super) type Alarms = BinaryHeap<Reverse<(i64, u32)>>;
+pub(crate) type Alarms = BinaryHeap<Reverse<(i64, u32)>>;
 
 /// What decides whether a pendulum may sleep while its joints rest.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bed<T, const N: usize> {
+pub(crate) struct Bed<T, const N: usize> {
     /// The tick in which the joints move again: another rest needs another bed.
     until: i64,
     /// Where it would come to rest.
@@ -93,7 +94,7 @@ impl<T: Lane + Float> Scene<T> {
     }
 
     /// Wakes all that sleep.
-    pub(super) fn wake_all(&mut self) {
+    pub(crate) fn wake_all(&mut self) {
         for (_, group) in &mut self.groups {
             self.dirty |= group.ring(i64::MAX);
         }
@@ -101,7 +102,7 @@ impl<T: Lane + Float> Scene<T> {
 
     /// Wakes those whose joints are about to move, and lets others fall asleep; gives the ticks
     /// until that is to be done again.
-    pub(super) fn watch(&mut self) -> u64 {
+    pub(crate) fn watch(&mut self) -> u64 {
         let tick = self.clock.tick();
         let Self { clock, places, groups, sleep, dirty, .. } = self;
         let mut next = i64::MAX;
@@ -121,7 +122,7 @@ impl<T: Lane + Float> Scene<T> {
 
 impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// Wakes those whose time has come; all at the end of time.
-    pub(super) fn wake_up_to(&mut self, tick: i64) -> bool {
+    pub(crate) fn wake_up_to(&mut self, tick: i64) -> bool {
         let mut woken = false;
         if tick == i64::MAX {
             self.alarms.clear();
@@ -144,7 +145,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Lets those fall asleep that may.
-    pub(super) fn fall_asleep(
+    pub(crate) fn fall_asleep(
         &mut self,
         clock: &Clock,
         places: &[Place<T>],
@@ -210,13 +211,13 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Sets the alarms of all that sleep.
-    pub(super) fn reset_alarms(&mut self) {
+    pub(crate) fn reset_alarms(&mut self) {
         self.alarms =
             (0..).zip(&self.status).filter_map(|(id, status)| alarm(id, *status)).collect();
     }
 
     /// Forgets whether a pendulum may sleep.
-    pub(super) fn unmake_bed(&mut self, id: u32) {
+    pub(crate) fn unmake_bed(&mut self, id: u32) {
         if let Some(bed) = self.beds.get_mut(id as usize) {
             *bed = None;
         }

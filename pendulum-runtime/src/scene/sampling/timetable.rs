@@ -1,12 +1,12 @@
 //! When in a tick joints are sampled: once per time for all grids that need them.
 
-use super::clock::Clock;
-use super::scheme::Grid;
+use crate::scene::sampling::clock::Clock;
+use crate::scene::sampling::scheme::Grid;
 use crate::time::Time;
 
 /// All grids of a scene, and for each set of them that some joint serves the times of its samples.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Timetable {
+pub(crate) struct Timetable {
     grids: Vec<Grid>,
     classes: Vec<Class>,
 }
@@ -25,7 +25,7 @@ struct Class {
 
 impl Timetable {
     /// The bit of a grid.
-    pub(super) fn bit(&mut self, grid: Grid) -> u64 {
+    pub(crate) fn bit(&mut self, grid: Grid) -> u64 {
         let index = self.grids.iter().position(|&known| known == grid).unwrap_or_else(|| {
             self.grids.push(grid);
             self.classes.clear();
@@ -35,7 +35,7 @@ impl Timetable {
     }
 
     /// The class of a set of grids.
-    pub(super) fn class(&mut self, grids: u64) -> u32 {
+    pub(crate) fn class(&mut self, grids: u64) -> u32 {
         if let Some(index) = self.classes.iter().position(|class| class.grids == grids) {
             return index as u32;
         }
@@ -64,7 +64,7 @@ impl Timetable {
     }
 
     /// Writes down the times of a batch.
-    pub(super) fn begin(&mut self, clock: &Clock, tick: i64, ticks: usize) {
+    pub(crate) fn begin(&mut self, clock: &Clock, tick: i64, ticks: usize) {
         for Class { fractions, times, .. } in &mut self.classes {
             times.clear();
             for now in tick..tick + ticks as i64 {
@@ -74,7 +74,7 @@ impl Timetable {
     }
 
     /// The times at which joints of a class are sampled in a batch, tick by tick.
-    pub(super) fn times(&self, class: u32) -> &[Time] {
+    pub(crate) fn times(&self, class: u32) -> &[Time] {
         &self.classes[class as usize].times
     }
 
@@ -84,7 +84,7 @@ impl Timetable {
     }
 
     /// The samples in a tick, and those among them that the evaluations of `grid` take.
-    pub(super) fn nodes(&self, class: u32, grid: Grid) -> (usize, &[u16]) {
+    pub(crate) fn nodes(&self, class: u32, grid: Grid) -> (usize, &[u16]) {
         let class = &self.classes[class as usize];
         let index = self.grids.iter().position(|&known| known == grid).unwrap_or(0);
         (class.fractions.len(), &class.nodes[index])
@@ -94,7 +94,7 @@ impl Timetable {
 #[cfg(test)]
 mod tests {
     use super::Timetable;
-    use crate::scene::scheme::{Grid, Scheme};
+    use crate::scene::sampling::scheme::{Grid, Scheme};
 
     #[test]
     fn grids_share_their_times() {

@@ -1,13 +1,16 @@
 //! Batches of ticks on one thread or on all.
 
+#[cfg(any(feature = "rayon", test))]
+mod pace;
+
 #[cfg(feature = "rayon")]
-use super::pace::{Choice, Way};
+use pace::{Choice, Way};
 #[cfg(feature = "rayon")]
 use std::time::Instant;
 
 /// The threads that batches are given.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Threads {
+pub(crate) struct Threads {
     #[cfg(feature = "rayon")]
     choice: Choice,
     /// Whether every batch forks, whatever that costs.
@@ -16,7 +19,7 @@ pub(super) struct Threads {
 }
 
 impl Threads {
-    pub(super) const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self {
             #[cfg(feature = "rayon")]
             choice: Choice::new(),
@@ -27,14 +30,14 @@ impl Threads {
 
     /// Forks for every batch and measures nothing, or chooses again.
     #[cfg(feature = "rayon")]
-    pub(super) fn set_always(&mut self, always: bool) {
+    pub(crate) fn set_always(&mut self, always: bool) {
         self.always = always;
     }
 
     /// Does `batch`, which takes so many pendulums through so many ticks; it is told whether to
     /// fork.
     #[cfg(feature = "rayon")]
-    pub(super) fn measured<R>(
+    pub(crate) fn measured<R>(
         &mut self,
         pendulum_ticks: usize,
         batch: impl FnOnce(bool) -> R,
@@ -57,12 +60,12 @@ impl Threads {
     /// Without threads nothing forks.
     #[cfg(not(feature = "rayon"))]
     #[allow(clippy::unused_self)]
-    pub(super) fn set_always(&mut self, _: bool) {}
+    pub(crate) fn set_always(&mut self, _: bool) {}
 
     /// Does `batch`, alone.
     #[cfg(not(feature = "rayon"))]
     #[allow(clippy::unused_self)]
-    pub(super) fn measured<R>(&mut self, _: usize, batch: impl FnOnce(bool) -> R) -> R {
+    pub(crate) fn measured<R>(&mut self, _: usize, batch: impl FnOnce(bool) -> R) -> R {
         batch(false)
     }
 }
@@ -73,13 +76,13 @@ const PARTS: usize = 4;
 
 /// The length of the parts that `count` things are divided into for all threads, at least `least`.
 #[cfg(feature = "rayon")]
-pub(super) fn part(count: usize, least: usize) -> usize {
+pub(crate) fn part(count: usize, least: usize) -> usize {
     count.div_ceil(PARTS * rayon::current_num_threads()).max(least)
 }
 
 /// Does `work` for all `parts`, on this thread and on all others that have time.
 #[cfg(feature = "rayon")]
-pub(super) fn share<P: Send>(parts: impl Iterator<Item = P> + Send, work: impl Fn(P) + Sync) {
+pub(crate) fn share<P: Send>(parts: impl Iterator<Item = P> + Send, work: impl Fn(P) + Sync) {
     use std::sync::{Mutex, PoisonError};
     let parts = Mutex::new(parts);
     let take = || parts.lock().unwrap_or_else(PoisonError::into_inner).next();

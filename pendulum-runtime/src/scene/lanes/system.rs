@@ -1,14 +1,14 @@
 //! The types of systems that can hang in a scene.
 
-use super::assemble::Assemble;
 use crate::real::{Float, Lane, Lanes};
+use crate::scene::sampling::assemble::Assemble;
 use crate::system::{Input, Purpose, Staged, System};
 
 /// The lanes of a block.
-pub(super) const W: usize = 32;
+pub(crate) const W: usize = 32;
 
 /// Several numbers, one for each pendulum of a block.
-pub(super) type Wide<T> = Lanes<T, W>;
+pub(crate) type Wide<T> = Lanes<T, W>;
 
 /// A system that can hang in a scene over the scalar `T`: every type that `lagrangian!` generates,
 /// over `f32` and `f64`.
@@ -49,18 +49,18 @@ where
 /// Where the derivatives of each input begin in a record that holds those that a purpose needs, one
 /// after the other.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Layout {
+pub(crate) struct Layout {
     /// By input and derivative; [`NONE`] if it is not needed.
     begin: [[usize; 3]; 8],
     /// The numbers in a record.
-    pub(super) width: usize,
+    pub(crate) width: usize,
 }
 
 const NONE: usize = usize::MAX;
 
 impl Layout {
     /// The layout for `inputs` with so many `components` each.
-    pub(super) const fn new(inputs: &[Input], components: &[usize], purpose: Purpose) -> Self {
+    pub(crate) const fn new(inputs: &[Input], components: &[usize], purpose: Purpose) -> Self {
         let (mut begin, mut width, mut input) = ([[NONE; 3]; 8], 0, 0);
         while input < components.len() {
             let orders = crate::motion::orders(inputs, input, purpose);
@@ -80,25 +80,25 @@ impl Layout {
     /// The place of a number in a record, if it is there.
     #[inline(always)]
     #[allow(clippy::inline_always)]
-    pub(super) fn place(&self, input: usize, derivative: usize, component: usize) -> Option<usize> {
+    pub(crate) fn place(&self, input: usize, derivative: usize, component: usize) -> Option<usize> {
         let begin = self.begin[input][derivative];
         if begin == NONE { None } else { Some(begin + component) }
     }
 }
 
 /// The two layouts of a system and whether splitting methods suit it.
-pub(super) struct Known<S, const N: usize>(core::marker::PhantomData<S>);
+pub(crate) struct Known<S, const N: usize>(core::marker::PhantomData<S>);
 
 impl<S: System<N, Inputs: Assemble<S::Scalar>>, const N: usize> Known<S, N> {
-    pub(super) const FORCES: Layout = Layout::new(
+    pub(crate) const FORCES: Layout = Layout::new(
         S::FACTS.inputs,
         <S::Inputs as Assemble<S::Scalar>>::COMPONENTS,
         Purpose::Accelerations,
     );
-    pub(super) const MOMENTA: Layout = Layout::new(
+    pub(crate) const MOMENTA: Layout = Layout::new(
         S::FACTS.inputs,
         <S::Inputs as Assemble<S::Scalar>>::COMPONENTS,
         Purpose::Momenta,
     );
-    pub(super) const SPLITS: bool = S::FACTS.velocity_free && S::FACTS.constant_mass_matrix;
+    pub(crate) const SPLITS: bool = S::FACTS.velocity_free && S::FACTS.constant_mass_matrix;
 }

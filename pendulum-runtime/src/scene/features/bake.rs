@@ -1,10 +1,11 @@
 //! Curves in place of a simulation.
 
-use super::error::SceneError;
-use super::hung::Hung;
-use super::state::hermite;
-use super::{Handle, Scene};
 use crate::real::{Float, Lane};
+use crate::scene::error::SceneError;
+use crate::scene::handle::Handle;
+use crate::scene::lanes::system::Hung;
+use crate::scene::scene::Scene;
+use crate::scene::state::hermite;
 
 /// The motion of a pendulum as keys, joined by the cubics through coordinates and velocities at
 /// both ends (Hermite).

@@ -2,18 +2,18 @@
 
 #![allow(clippy::inline_always)]
 
-use super::assemble::{Assemble, Numbers};
-use super::hung::{Hung, Layout, W, Wide};
-use super::tracks::Tracks;
 use crate::real::{Float, Lane, Real};
+use crate::scene::lanes::system::{Hung, Layout, W, Wide};
+use crate::scene::sampling::assemble::{Assemble, Numbers};
+use crate::scene::sampling::tracks::Tracks;
 use crate::system::System;
 
 /// The driven inputs of all lanes at one time.
-pub(super) type Inputs<S, T, const N: usize> = <<S as Hung<T, N>>::Lanes as System<N>>::Inputs;
+pub(crate) type Inputs<S, T, const N: usize> = <<S as Hung<T, N>>::Lanes as System<N>>::Inputs;
 
 /// Inputs that are all zero.
 #[inline(always)]
-pub(super) fn nothing<S: Hung<T, N>, T: Lane + Float, const N: usize>() -> Inputs<S, T, N> {
+pub(crate) fn nothing<S: Hung<T, N>, T: Lane + Float, const N: usize>() -> Inputs<S, T, N> {
     Assemble::assemble(&mut Nothing)
 }
 
@@ -27,7 +27,7 @@ impl<T: Lane> Numbers<Wide<T>> for Nothing {
 }
 
 /// The tracks that the lanes of a block follow through a batch.
-pub(super) struct Followed<'a, T> {
+pub(crate) struct Followed<'a, T> {
     tracks: &'a Tracks<T>,
     layout: &'a Layout,
     track: &'a [u32; W],
@@ -47,7 +47,7 @@ struct Runs<T> {
 
 impl<'a, T: Lane + Float> Followed<'a, T> {
     #[inline(always)]
-    pub(super) fn new(tracks: &'a Tracks<T>, layout: &'a Layout, track: &'a [u32; W]) -> Self {
+    pub(crate) fn new(tracks: &'a Tracks<T>, layout: &'a Layout, track: &'a [u32; W]) -> Self {
         let zero = T::from_f64(0.0);
         let mut runs = Runs { count: 1, track: [track[0]; MOST_RUNS], begin: [zero; MOST_RUNS] };
         let mut others = 0u32;
@@ -69,7 +69,7 @@ impl<'a, T: Lane + Float> Followed<'a, T> {
 
     /// The inputs at an evaluation of the batch.
     #[inline(always)]
-    pub(super) fn inputs<S: Hung<T, N>, const N: usize>(
+    pub(crate) fn inputs<S: Hung<T, N>, const N: usize>(
         &self,
         evaluation: usize,
     ) -> Inputs<S, T, N> {

@@ -1,15 +1,15 @@
 //! Ticks: joints are sampled, then all blocks go through a batch.
 
-use super::Scene;
-use super::bucket::Failed;
-use super::clock::Clock;
-use super::error::SceneError;
-use super::joint::{Active, Place};
-#[cfg(feature = "rayon")]
-use super::threads::{part, share};
-use super::timetable::Timetable;
-use super::tracks::{BATCH, Sampled};
 use crate::real::{Float, Lane};
+use crate::scene::error::SceneError;
+use crate::scene::lanes::bucket::Failed;
+use crate::scene::sampling::clock::Clock;
+use crate::scene::sampling::joint::{Active, Place};
+use crate::scene::sampling::timetable::Timetable;
+use crate::scene::sampling::tracks::{BATCH, Sampled};
+use crate::scene::scene::Scene;
+#[cfg(feature = "rayon")]
+use crate::scene::threads::{part, share};
 use core::sync::atomic::{AtomicBool, Ordering};
 
 /// What [`Scene::advance`] has done.
@@ -47,14 +47,14 @@ impl<T: Lane + Float> Scene<T> {
         self.whole_ticks(u64::from(ticks))
     }
 
-    pub(super) fn whole_ticks(&mut self, ticks: u64) -> Advanced {
+    pub(crate) fn whole_ticks(&mut self, ticks: u64) -> Advanced {
         let failed = self.failures.len();
         self.clock.shift(ticks as i64);
         self.ticks(ticks);
         Advanced { ticks, dropped: 0.0, failed: self.failures.len() - failed }
     }
 
-    pub(super) fn ticks(&mut self, mut ticks: u64) {
+    pub(crate) fn ticks(&mut self, mut ticks: u64) {
         while 0 < ticks {
             let batch = ticks.min(self.watch()).min(BATCH as u64);
             self.batch(batch as usize);

@@ -1,8 +1,9 @@
 //! Runs before the beginning: warm-up, and loops that close.
 
-use super::error::SceneError;
-use super::{Advanced, Scene};
 use crate::real::{Float, Lane};
+use crate::scene::advance::Advanced;
+use crate::scene::error::SceneError;
+use crate::scene::scene::Scene;
 
 /// What [`Scene::close_loop`] has reached.
 #[derive(Clone, Copy, Debug, PartialEq)]

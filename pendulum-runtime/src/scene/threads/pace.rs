@@ -26,14 +26,14 @@ const LATE: u32 = 1024;
 
 /// How a batch goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
+pub(crate) enum Way {
     Alone,
     Together,
 }
 
 /// The choice between one thread and all.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Choice {
+pub(crate) struct Choice {
     /// Nanoseconds for a pendulum and tick alone and together; 0 as long as nobody knows.
     pace: [f64; 2],
     /// The better way when it was last looked at.
@@ -49,7 +49,7 @@ pub(super) struct Choice {
 }
 
 impl Choice {
-    pub(super) const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self {
             pace: [0.0; 2],
             better: Way::Alone,
@@ -61,7 +61,7 @@ impl Choice {
     }
 
     /// How to go through so many pendulums times ticks.
-    pub(super) fn way(&mut self, pendulum_ticks: f64) -> Way {
+    pub(crate) fn way(&mut self, pendulum_ticks: f64) -> Way {
         let [alone, together] = self.pace;
         if alone == 0.0 || alone * pendulum_ticks < LEAST {
             return Way::Alone;
@@ -96,7 +96,7 @@ impl Choice {
     }
 
     /// Takes in how long a batch has taken.
-    pub(super) fn took(&mut self, way: Way, pendulum_ticks: f64, nanoseconds: f64) {
+    pub(crate) fn took(&mut self, way: Way, pendulum_ticks: f64, nanoseconds: f64) {
         let (pace, now) = (&mut self.pace[way as usize], nanoseconds / pendulum_ticks);
         // An interruption may take a thousand times as long and says nothing; what lasts is
         // believed after a few batches.

@@ -1,13 +1,13 @@
 //! Pendulums of one type that take the same steps: those that are awake first, all in blocks of
 //! lanes.
 
-use super::block::{Block, Extras, Rare, half_decay};
-use super::hung::{Hung, Known, W, Wide};
-use super::joint::Place;
-use super::kernel::{Batch, Run};
-use super::scheme::Grid;
-use super::tracks::{Sampled, Tracks};
 use crate::real::{Float, Lane, Real};
+use crate::scene::lanes::block::{Block, Extras, Rare, half_decay};
+use crate::scene::lanes::kernel::{Batch, Run};
+use crate::scene::lanes::system::{Hung, Known, W, Wide};
+use crate::scene::sampling::joint::Place;
+use crate::scene::sampling::scheme::Grid;
+use crate::scene::sampling::tracks::{Sampled, Tracks};
 use crate::simd::widest;
 use crate::system::System;
 use crate::time::Time;
@@ -15,42 +15,42 @@ use core::sync::atomic::AtomicBool;
 
 /// What pendulums have in common that are computed together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Kind {
-    pub(super) grid: Grid,
+pub(crate) struct Kind {
+    pub(crate) grid: Grid,
     /// Their joints rest for ever.
-    pub(super) still: bool,
+    pub(crate) still: bool,
 }
 
 /// Pendulums of one kind.
-pub(super) struct Bucket<S: Hung<T, N>, T: Lane + Float, const N: usize> {
-    pub(super) kind: Kind,
-    pub(super) tracks: Tracks<T>,
-    pub(super) blocks: Vec<Block<S, T, N>>,
+pub(crate) struct Bucket<S: Hung<T, N>, T: Lane + Float, const N: usize> {
+    pub(crate) kind: Kind,
+    pub(crate) tracks: Tracks<T>,
+    pub(crate) blocks: Vec<Block<S, T, N>>,
     /// The other part of each block.
-    pub(super) rare: Vec<Rare<S, T, N>>,
+    pub(crate) rare: Vec<Rare<S, T, N>>,
     /// The parameters: as many lanes for each block as the system has parameters.
-    pub(super) parameters: Vec<Wide<T>>,
+    pub(crate) parameters: Vec<Wide<T>>,
     /// All, and those at the front that are awake.
-    pub(super) len: usize,
-    pub(super) awake: usize,
+    pub(crate) len: usize,
+    pub(crate) awake: usize,
     times: Vec<Time>,
     stale: bool,
 }
 
 /// A pendulum outside of all buckets.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Loose<T, const N: usize> {
-    pub(super) id: u32,
-    pub(super) joints: Vec<u32>,
-    pub(super) parameters: Vec<T>,
+pub(crate) struct Loose<T, const N: usize> {
+    pub(crate) id: u32,
+    pub(crate) joints: Vec<u32>,
+    pub(crate) parameters: Vec<T>,
     /// Coordinates and velocities, each with its low words, and both one tick before.
-    pub(super) state: [[T; N]; 6],
-    pub(super) extra: Extra<T, N>,
+    pub(crate) state: [[T; N]; 6],
+    pub(crate) extra: Extra<T, N>,
 }
 
 impl<T: Real, const N: usize> Loose<T, N> {
     /// Holds the state within hard limits.
-    pub(super) fn hold(&mut self) {
+    pub(crate) fn hold(&mut self) {
         let [q, q_low, v, v_low, ..] = &mut self.state;
         let before = (*q, *v);
         self.extra.hold(q, v);
@@ -62,17 +62,17 @@ impl<T: Real, const N: usize> Loose<T, N> {
 
 /// What acts on one pendulum beside its equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Extra<T, const N: usize> {
-    pub(super) damping: T,
-    pub(super) low: [T; N],
-    pub(super) high: [T; N],
-    pub(super) restitution: T,
-    pub(super) stiffness: T,
-    pub(super) hard: T,
+pub(crate) struct Extra<T, const N: usize> {
+    pub(crate) damping: T,
+    pub(crate) low: [T; N],
+    pub(crate) high: [T; N],
+    pub(crate) restitution: T,
+    pub(crate) stiffness: T,
+    pub(crate) hard: T,
 }
 
 impl<T: Real, const N: usize> Extra<T, N> {
-    pub(super) fn none() -> Self {
+    pub(crate) fn none() -> Self {
         let number = T::from_f64;
         Self {
             damping: number(0.0),
@@ -85,24 +85,24 @@ impl<T: Real, const N: usize> Extra<T, N> {
     }
 
     /// Whether the limits are walls.
-    pub(super) fn is_hard(&self) -> bool {
+    pub(crate) fn is_hard(&self) -> bool {
         self.hard != T::from_f64(0.0)
     }
 
     /// The nearest coordinates within the limits.
-    pub(super) fn inside(&self, q: &[T; N]) -> [T; N] {
+    pub(crate) fn inside(&self, q: &[T; N]) -> [T; N] {
         core::array::from_fn(|i| Real::min(Real::max(q[i], self.low[i]), self.high[i]))
     }
 
     /// The accelerations of soft stops, −k times what lies beyond the limits.
-    pub(super) fn push(&self, q: &[T; N]) -> [T; N] {
+    pub(crate) fn push(&self, q: &[T; N]) -> [T; N] {
         let inside = self.inside(q);
         core::array::from_fn(|i| self.stiffness * (inside[i] - q[i]))
     }
 
     /// Holds a state within hard limits: what lies beyond them lies at them, and goes no further
     /// out.
-    pub(super) fn hold(&self, q: &mut [T; N], v: &mut [T; N]) {
+    pub(crate) fn hold(&self, q: &mut [T; N], v: &mut [T; N]) {
         if !self.is_hard() {
             return;
         }
@@ -121,11 +121,13 @@ impl<T: Real, const N: usize> Extra<T, N> {
 }
 
 /// A lane that has failed: the pendulum and the ticks since the beginning of the batch.
-pub(super) type Failed = (u32, u8);
+pub(crate) type Failed = (u32, u8);
 
 impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
-    pub(super) fn new(kind: Kind) -> Self {
-        let tracks = Tracks::new(<S::Inputs as super::assemble::Assemble<T>>::COMPONENTS.len());
+    pub(crate) fn new(kind: Kind) -> Self {
+        let tracks = Tracks::new(
+            <S::Inputs as crate::scene::sampling::assemble::Assemble<T>>::COMPONENTS.len(),
+        );
         Self {
             kind,
             tracks,
@@ -144,7 +146,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     }
 
     /// Adds a pendulum at the end, where it sleeps; gives its slot.
-    pub(super) fn push(&mut self, prototype: &S, loose: &Loose<T, N>) -> usize {
+    pub(crate) fn push(&mut self, prototype: &S, loose: &Loose<T, N>) -> usize {
         let slot = self.len;
         if slot == self.blocks.len() * W {
             let (block, rare) = Block::new(prototype);
@@ -161,7 +163,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     }
 
     /// Takes out the last pendulum, which must sleep.
-    pub(super) fn pop(&mut self) {
+    pub(crate) fn pop(&mut self) {
         self.len -= 1;
         if self.len <= (self.blocks.len() - 1) * W {
             self.blocks.pop();
@@ -171,7 +173,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     }
 
     /// What acts on the pendulum in a slot and its state, as in [`Loose`].
-    pub(super) fn numbers(&self, slot: usize) -> (Extra<T, N>, [[T; N]; 6]) {
+    pub(crate) fn numbers(&self, slot: usize) -> (Extra<T, N>, [[T; N]; 6]) {
         let (block, lane) = (&self.blocks[slot / W], slot % W);
         let of = |lanes: &[Wide<T>; N]| lanes.map(|lanes| lanes.0[lane]);
         let extra = block.extras.as_deref().map_or_else(Extra::none, |extras| Extra {
@@ -190,25 +192,25 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     }
 
     /// The pendulum in a slot.
-    pub(super) fn read(&self, slot: usize) -> Loose<T, N> {
+    pub(crate) fn read(&self, slot: usize) -> Loose<T, N> {
         let (extra, state) = self.numbers(slot);
         let parameters = self.parameters_of(slot).collect();
         Loose { id: self.id(slot), joints: self.joints(slot).to_vec(), parameters, state, extra }
     }
 
     /// The joints of the pendulum in a slot.
-    pub(super) fn joints(&self, slot: usize) -> &[u32] {
+    pub(crate) fn joints(&self, slot: usize) -> &[u32] {
         self.tracks.joints(self.blocks[slot / W].track[slot % W])
     }
 
     /// The parameters of the pendulum in a slot.
-    pub(super) fn parameters_of(&self, slot: usize) -> impl Iterator<Item = T> {
+    pub(crate) fn parameters_of(&self, slot: usize) -> impl Iterator<Item = T> {
         let count = Self::parameter_count();
         self.parameters[slot / W * count..][..count].iter().map(move |lanes| lanes.0[slot % W])
     }
 
     /// Puts a pendulum into a slot.
-    pub(super) fn write(&mut self, slot: usize, loose: &Loose<T, N>) {
+    pub(crate) fn write(&mut self, slot: usize, loose: &Loose<T, N>) {
         let track = self.tracks.find(&loose.joints);
         let count = Self::parameter_count();
         let lane = slot % W;
@@ -245,7 +247,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     }
 
     /// Lets the pendulums in two slots change places.
-    pub(super) fn swap(&mut self, a: usize, b: usize) {
+    pub(crate) fn swap(&mut self, a: usize, b: usize) {
         if a != b {
             let (first, second) = (self.read(a), self.read(b));
             self.write(a, &second);
@@ -253,12 +255,12 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         }
     }
 
-    pub(super) fn id(&self, slot: usize) -> u32 {
+    pub(crate) fn id(&self, slot: usize) -> u32 {
         self.rare[slot / W].id[slot % W]
     }
 
     /// Computes once what parameters alone decide, where they have changed.
-    pub(super) fn settle(&mut self, prototype: &S, step: f64) {
+    pub(crate) fn settle(&mut self, prototype: &S, step: f64) {
         if !self.stale {
             return;
         }
@@ -286,7 +288,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     }
 
     /// Goes through a batch of ticks; gives the lanes that failed.
-    pub(super) fn run(&mut self, sampled: &Sampled<'_, T>, fork: bool, failed: &mut Vec<Failed>) {
+    pub(crate) fn run(&mut self, sampled: &Sampled<'_, T>, fork: bool, failed: &mut Vec<Failed>) {
         if self.awake == 0 {
             return;
         }
@@ -346,7 +348,7 @@ fn through<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     batch: &Batch<'_, T>,
     fork: bool,
 ) {
-    use super::threads::{part, share};
+    use crate::scene::threads::{part, share};
     const LEAST: usize = 32;
     if !fork || blocks.len() < 2 * LEAST {
         return widest(Run { blocks, rare, lanes_of_last, batch });
@@ -377,6 +379,6 @@ fn through<S: Hung<T, N>, T: Lane + Float, const N: usize>(
 }
 
 /// Whether joints are among those that rest for ever.
-pub(super) fn still<T>(places: &[Place<T>], joints: &[u32]) -> bool {
+pub(crate) fn still<T>(places: &[Place<T>], joints: &[u32]) -> bool {
     joints.iter().all(|&joint| places[joint as usize].still)
 }
