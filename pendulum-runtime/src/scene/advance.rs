@@ -2,6 +2,7 @@
 
 use crate::real::{Float, Lane};
 use crate::scene::error::SceneError;
+use crate::scene::group::sleep::LOOK;
 use crate::scene::lanes::bucket::Failed;
 use crate::scene::sampling::clock::Clock;
 use crate::scene::sampling::joint::{Active, Place};
@@ -63,6 +64,24 @@ impl<T: Lane + Float> Scene<T> {
         }
     }
 
+    /// Wakes those whose joints are about to move, and lets others fall asleep; gives the ticks
+    /// until that is to be done again.
+    fn watch(&mut self) -> u64 {
+        let tick = self.clock.tick();
+        let Self { clock, places, groups, sleep, dirty, .. } = self;
+        let mut next = i64::MAX;
+        for (_, group) in groups.iter_mut() {
+            *dirty |= group.ring(tick);
+            if let Some(tolerance) = *sleep {
+                if tick.rem_euclid(LOOK) == 0 {
+                    *dirty |= group.lull(clock, places, tolerance);
+                }
+                next = next.min(LOOK - tick.rem_euclid(LOOK));
+            }
+            next = next.min(group.next_alarm().saturating_sub(tick));
+        }
+        next.max(1) as u64
+    }
     /// Goes through `ticks` ticks, at most [`BATCH`].
     fn batch(&mut self, ticks: usize) {
         if self.dirty {

@@ -4,7 +4,9 @@ use crate::integrate::method::Suits;
 use crate::motion::Motion;
 use crate::real::{Float, Lane};
 use crate::scene::error::{Failure, SceneError};
-use crate::scene::group::members::{AnyGroup, Group, check_joints, check_state};
+use crate::scene::group::any::AnyGroup;
+use crate::scene::group::joints::{check_joints, check_state};
+use crate::scene::group::members::Group;
 use crate::scene::handle::Handle;
 use crate::scene::lanes::system::Hung;
 use crate::scene::sampling::assemble::Anchor;
@@ -197,6 +199,14 @@ impl<T: Lane + Float> Scene<T> {
     /// takes.
     pub fn alpha(&self) -> f64 {
         self.clock.fraction()
+    }
+
+    /// The pendulums that are computed, and all.
+    pub fn awake(&self) -> (usize, usize) {
+        self.groups.iter().fold((0, 0), |(awake, all), (_, group)| {
+            let (more, others) = group.awake();
+            (awake + more, all + others)
+        })
     }
 
     /// The pendulums that have failed, in the order of time.

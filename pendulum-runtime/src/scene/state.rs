@@ -3,8 +3,11 @@
 use crate::motion::{Orders, Side};
 use crate::real::{Float, Lane, Real};
 use crate::scene::error::SceneError;
-use crate::scene::group::members::{Group, Status, check_state, inputs_at};
+use crate::scene::group::joints::{check_state, inputs_at};
+use crate::scene::group::members::Group;
+use crate::scene::group::status::Status;
 use crate::scene::handle::Handle;
+use crate::scene::lanes::detached::Loose;
 use crate::scene::lanes::system::Hung;
 use crate::scene::sampling::joint::Joint;
 use crate::scene::scene::Scene;
@@ -153,7 +156,7 @@ impl<T: Lane + Float> Scene<T> {
     pub(crate) fn change<S: Hung<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
-        change: impl FnOnce(&mut crate::scene::lanes::bucket::Loose<T, N>),
+        change: impl FnOnce(&mut Loose<T, N>),
     ) -> Result<(), SceneError> {
         let group = self.checked(pendulum)?;
         let mut loose = group.read(pendulum.index());

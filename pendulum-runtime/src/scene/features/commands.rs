@@ -4,23 +4,12 @@
 use crate::motion::Motion;
 use crate::real::{Float, Lane};
 use crate::scene::error::SceneError;
+use crate::scene::group::change::Carry;
 use crate::scene::handle::Handle;
-use crate::scene::lanes::bucket::Extra;
+use crate::scene::lanes::limits::Extra;
 use crate::scene::lanes::system::Hung;
-use crate::scene::sampling::joint::Joint;
-use crate::scene::sampling::joint::{Place, forget};
+use crate::scene::sampling::joint::{Joint, Place, forget};
 use crate::scene::scene::Scene;
-
-/// What becomes of the swing when a joint is given another motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Carry {
-    /// Coordinates and velocities stay: a teleport that nobody feels.
-    Swing,
-    /// The momenta stay: a jump in the velocity of the joint is a blow.
-    Momentum,
-    /// The pendulums hang at rest.
-    Rest,
-}
 
 /// How a coordinate is kept within its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]

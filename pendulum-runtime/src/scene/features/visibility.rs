@@ -4,8 +4,10 @@ use crate::integrate::{Dop853, solve};
 use crate::motion::{Side, shorter};
 use crate::real::{Float, Lane};
 use crate::scene::error::SceneError;
-use crate::scene::group::members::{Status, inputs_at};
+use crate::scene::group::joints::inputs_at;
+use crate::scene::group::status::Status;
 use crate::scene::handle::Handle;
+use crate::scene::lanes::limits::Extra;
 use crate::scene::lanes::system::Hung;
 use crate::scene::sampling::joint::Place;
 use crate::scene::scene::Scene;
@@ -32,7 +34,7 @@ struct Hanging<'a, S, T, const N: usize> {
     system: S,
     places: &'a [Place<T>],
     joints: Vec<u32>,
-    extra: crate::scene::lanes::bucket::Extra<T, N>,
+    extra: Extra<T, N>,
 }
 
 impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Dynamics<N> for Hanging<'_, S, T, N> {

@@ -2,7 +2,7 @@
 
 use crate::real::Float;
 use crate::scene::group::frequency::cube_root_of_rounding;
-use crate::scene::lanes::bucket::Extra;
+use crate::scene::lanes::limits::Extra;
 use crate::system::System;
 use nalgebra::{DMatrix, DVector};
 

@@ -2,6 +2,7 @@
 
 use crate::integrate::sum::Sum;
 use crate::real::{Float, Lane, Real};
+use crate::scene::lanes::limits::Extras;
 use crate::scene::lanes::system::{Hung, W, Wide};
 use crate::system::System;
 
@@ -31,46 +32,6 @@ pub(crate) struct Rare<S: Hung<T, N>, T: Lane + Float, const N: usize> {
     /// Whether parameters have changed, so that `system` and what it has prepared must be made
     /// anew.
     pub(crate) stale: bool,
-}
-
-/// What acts on pendulums beside their equations.
-#[derive(Clone, Debug)]
-pub(crate) struct Extras<T, const N: usize> {
-    /// γ in 1/s.
-    pub(crate) damping: Wide<T>,
-    /// e^(−γh/2) for the whole step of the bucket.
-    pub(crate) factor: Wide<T>,
-    /// Some lane has stops.
-    pub(crate) stops: bool,
-    pub(crate) low: [Wide<T>; N],
-    pub(crate) high: [Wide<T>; N],
-    /// What is left of the velocity after a hard stop.
-    pub(crate) restitution: Wide<T>,
-    /// The acceleration in 1/s² per unit beyond a soft stop; zero for hard ones.
-    pub(crate) stiffness: Wide<T>,
-    /// One where the stop is hard, zero where it is soft.
-    pub(crate) hard: Wide<T>,
-}
-
-impl<T: Lane + Float, const N: usize> Extras<T, N> {
-    pub(crate) fn none() -> Self {
-        let lanes = |value| Wide::from_f64(value);
-        Self {
-            damping: lanes(0.0),
-            factor: lanes(1.0),
-            stops: false,
-            low: [lanes(f64::NEG_INFINITY); N],
-            high: [lanes(f64::INFINITY); N],
-            restitution: lanes(0.0),
-            stiffness: lanes(0.0),
-            hard: lanes(1.0),
-        }
-    }
-}
-
-/// e^(−γh/2).
-pub(crate) fn half_decay<T: Real>(damping: T, h: f64) -> T {
-    (damping * T::from_f64(-0.5 * h)).exp()
 }
 
 impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {

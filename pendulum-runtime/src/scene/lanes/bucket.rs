@@ -1,11 +1,12 @@
 //! Pendulums of one type that take the same steps: those that are awake first, all in blocks of
 //! lanes.
 
-use crate::real::{Float, Lane, Real};
-use crate::scene::lanes::block::{Block, Extras, Rare, half_decay};
+use crate::real::{Float, Lane};
+use crate::scene::lanes::block::{Block, Rare};
+use crate::scene::lanes::detached::Loose;
 use crate::scene::lanes::kernel::{Batch, Run};
+use crate::scene::lanes::limits::{Extra, Extras, half_decay};
 use crate::scene::lanes::system::{Hung, Known, W, Wide};
-use crate::scene::sampling::joint::Place;
 use crate::scene::sampling::scheme::Grid;
 use crate::scene::sampling::tracks::{Sampled, Tracks};
 use crate::simd::widest;
@@ -35,89 +36,6 @@ pub(crate) struct Bucket<S: Hung<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) awake: usize,
     times: Vec<Time>,
     stale: bool,
-}
-
-/// A pendulum outside of all buckets.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Loose<T, const N: usize> {
-    pub(crate) id: u32,
-    pub(crate) joints: Vec<u32>,
-    pub(crate) parameters: Vec<T>,
-    /// Coordinates and velocities, each with its low words, and both one tick before.
-    pub(crate) state: [[T; N]; 6],
-    pub(crate) extra: Extra<T, N>,
-}
-
-impl<T: Real, const N: usize> Loose<T, N> {
-    /// Holds the state within hard limits.
-    pub(crate) fn hold(&mut self) {
-        let [q, q_low, v, v_low, ..] = &mut self.state;
-        let before = (*q, *v);
-        self.extra.hold(q, v);
-        if before != (*q, *v) {
-            (*q_low, *v_low) = ([T::from_f64(0.0); N], [T::from_f64(0.0); N]);
-        }
-    }
-}
-
-/// What acts on one pendulum beside its equations.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Extra<T, const N: usize> {
-    pub(crate) damping: T,
-    pub(crate) low: [T; N],
-    pub(crate) high: [T; N],
-    pub(crate) restitution: T,
-    pub(crate) stiffness: T,
-    pub(crate) hard: T,
-}
-
-impl<T: Real, const N: usize> Extra<T, N> {
-    pub(crate) fn none() -> Self {
-        let number = T::from_f64;
-        Self {
-            damping: number(0.0),
-            low: [number(f64::NEG_INFINITY); N],
-            high: [number(f64::INFINITY); N],
-            restitution: number(0.0),
-            stiffness: number(0.0),
-            hard: number(1.0),
-        }
-    }
-
-    /// Whether the limits are walls.
-    pub(crate) fn is_hard(&self) -> bool {
-        self.hard != T::from_f64(0.0)
-    }
-
-    /// The nearest coordinates within the limits.
-    pub(crate) fn inside(&self, q: &[T; N]) -> [T; N] {
-        core::array::from_fn(|i| Real::min(Real::max(q[i], self.low[i]), self.high[i]))
-    }
-
-    /// The accelerations of soft stops, −k times what lies beyond the limits.
-    pub(crate) fn push(&self, q: &[T; N]) -> [T; N] {
-        let inside = self.inside(q);
-        core::array::from_fn(|i| self.stiffness * (inside[i] - q[i]))
-    }
-
-    /// Holds a state within hard limits: what lies beyond them lies at them, and goes no further
-    /// out.
-    pub(crate) fn hold(&self, q: &mut [T; N], v: &mut [T; N]) {
-        if !self.is_hard() {
-            return;
-        }
-        let (inside, zero) = (self.inside(q), T::from_f64(0.0));
-        for i in 0..N {
-            if inside[i] != q[i] {
-                v[i] = if inside[i] == self.low[i] {
-                    Real::max(v[i], zero)
-                } else {
-                    Real::min(v[i], zero)
-                };
-                q[i] = inside[i];
-            }
-        }
-    }
 }
 
 /// A lane that has failed: the pendulum and the ticks since the beginning of the batch.
@@ -376,9 +294,4 @@ fn through<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     _: bool,
 ) {
     widest(Run { blocks, rare, lanes_of_last, batch });
-}
-
-/// Whether joints are among those that rest for ever.
-pub(crate) fn still<T>(places: &[Place<T>], joints: &[u32]) -> bool {
-    joints.iter().all(|&joint| places[joint as usize].still)
 }

@@ -3,8 +3,9 @@
 #![allow(clippy::inline_always)]
 
 use crate::real::{Float, Lane, Real};
-use crate::scene::lanes::system::{Hung, Layout, W, Wide};
+use crate::scene::lanes::system::{Hung, W, Wide};
 use crate::scene::sampling::assemble::{Assemble, Numbers};
+use crate::scene::sampling::layout::Layout;
 use crate::scene::sampling::tracks::Tracks;
 use crate::system::System;
 

@@ -9,8 +9,9 @@
 use crate::integrate::sum::Sum;
 use crate::integrate::{leapfrog, srkn6b};
 use crate::real::{Float, Lane, Real};
-use crate::scene::lanes::block::{Block, Extras, Rare, half_decay};
+use crate::scene::lanes::block::{Block, Rare};
 use crate::scene::lanes::inputs::{Followed, Inputs, nothing};
+use crate::scene::lanes::limits::{Extras, half_decay};
 use crate::scene::lanes::system::{Hung, Known, W, Wide};
 use crate::scene::sampling::assemble::{Assemble, By};
 use crate::scene::sampling::scheme::{Grid, MOST_STAGES, Scheme};

@@ -2,6 +2,8 @@
 
 pub(super) mod block;
 pub(super) mod bucket;
+pub(super) mod detached;
 pub(super) mod inputs;
 pub(super) mod kernel;
+pub(super) mod limits;
 pub(super) mod system;

@@ -225,3 +225,8 @@ impl Active {
         self.kink <= end
     }
 }
+
+/// Whether joints are among those that rest for ever.
+pub(crate) fn still<T>(places: &[Place<T>], joints: &[u32]) -> bool {
+    joints.iter().all(|&joint| places[joint as usize].still)
+}

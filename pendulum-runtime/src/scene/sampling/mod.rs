@@ -3,6 +3,7 @@
 pub(super) mod assemble;
 pub(super) mod clock;
 pub(super) mod joint;
+pub(super) mod layout;
 pub(super) mod scheme;
 pub(super) mod timetable;
 pub(super) mod tracks;

@@ -3,9 +3,9 @@
 use crate::integrate::span::Span;
 use crate::motion::{Orders, Side};
 use crate::real::{Float, Real};
-use crate::scene::lanes::system::Layout;
 use crate::scene::sampling::clock::Clock;
 use crate::scene::sampling::joint::{Active, Place};
+use crate::scene::sampling::layout::Layout;
 use crate::scene::sampling::scheme::{Grid, MOST_STAGES};
 use crate::scene::sampling::timetable::Timetable;
 use crate::system::{Input, Purpose};

@@ -1,0 +1,176 @@
+//! The pendulums of a type as the scene sees them.
+
+use crate::motion::Orders;
+use crate::real::{Float, Lane};
+use crate::scene::error::{Failure, SceneError};
+use crate::scene::group::change::Carry;
+use crate::scene::group::fault::blame;
+use crate::scene::group::members::Group;
+use crate::scene::group::saved::GroupState;
+use crate::scene::group::status::Status;
+use crate::scene::lanes::bucket::Failed;
+use crate::scene::lanes::system::Hung;
+use crate::scene::sampling::clock::Clock;
+use crate::scene::sampling::joint::Place;
+use crate::scene::sampling::scheme::Grid;
+use crate::scene::sampling::tracks::Sampled;
+use core::any::Any;
+use core::cmp::Reverse;
+
+/// All pendulums of the type `S`, as the scene sees them.
+pub(crate) trait AnyGroup<T>: Send + Sync {
+    fn as_any(&self) -> &dyn Any;
+    fn as_any_mut(&mut self) -> &mut dyn Any;
+    /// Tells `visit` every joint that somebody awake hangs on, with what is needed of it and when.
+    fn needs(&self, visit: &mut dyn FnMut(u32, Orders, Grid));
+    /// Makes ready for a batch.
+    fn settle(&mut self, clock: &Clock);
+    /// Goes through a batch.
+    fn run(&mut self, sampled: &Sampled<'_, T>, fork: bool, failed: &mut Vec<Failed>);
+    /// Takes a pendulum that has failed in a tick away from those that are computed, and says why
+    /// it failed.
+    fn fail(&mut self, clock: &Clock, places: &[Place<T>], id: u32, tick: i64) -> Failure;
+    /// All that changes while running.
+    fn save(&self) -> GroupState<T>;
+    /// Whether a saved state belongs to this group; what differs if not.
+    fn accepts(&self, state: &GroupState<T>) -> Result<(), SceneError>;
+    /// The largest differences of coordinates and of velocities from a saved state.
+    fn gap(&self, state: &GroupState<T>) -> [f64; 2];
+    /// Lets all pendulums hang at rest.
+    fn reset(&mut self, clock: &Clock, places: &[Place<T>]) -> Result<(), SceneError>;
+    /// Whether a motion has what those on a joint need.
+    fn accepts_motion(&self, joint: u32, has: Orders) -> Result<(), SceneError>;
+    /// A joint has another motion than `before`.
+    fn moved(
+        &mut self,
+        clock: &Clock,
+        before: &[Place<T>],
+        places: &[Place<T>],
+        joint: u32,
+        carry: Carry,
+    ) -> Result<(), SceneError>;
+    /// Sets a parameter of all, if they have it.
+    fn set_parameter(
+        &mut self,
+        clock: &Clock,
+        places: &[Place<T>],
+        name: &str,
+        value: T,
+    ) -> Option<usize>;
+    /// Wakes those whose time has come; whether there were any.
+    fn ring(&mut self, tick: i64) -> bool;
+    /// The tick at which somebody is to wake, far away if nobody is.
+    fn next_alarm(&self) -> i64;
+    /// Lets those fall asleep that may; whether there were any.
+    fn lull(&mut self, clock: &Clock, places: &[Place<T>], tolerance: f64) -> bool;
+    /// Forgets who may sleep.
+    fn unmake_beds(&mut self);
+    /// Those that are computed, and all.
+    fn awake(&self) -> (usize, usize);
+    /// Puts back what was saved.
+    fn restore(&mut self, places: &[Place<T>], state: &GroupState<T>);
+}
+
+impl<S: Hung<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T, N> {
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+
+    fn as_any_mut(&mut self) -> &mut dyn Any {
+        self
+    }
+
+    fn needs(&self, visit: &mut dyn FnMut(u32, Orders, Grid)) {
+        for bucket in self.buckets.iter().filter(|bucket| !bucket.kind.still && bucket.awake != 0) {
+            bucket
+                .tracks
+                .needs(S::FACTS.inputs, |joint, orders| visit(joint, orders, bucket.kind.grid));
+        }
+    }
+
+    fn settle(&mut self, clock: &Clock) {
+        for bucket in &mut self.buckets {
+            bucket.settle(&self.prototype, clock.step());
+        }
+    }
+
+    fn run(&mut self, sampled: &Sampled<'_, T>, fork: bool, failed: &mut Vec<Failed>) {
+        for bucket in &mut self.buckets {
+            bucket.run(sampled, fork, failed);
+        }
+    }
+
+    fn fail(&mut self, clock: &Clock, places: &[Place<T>], id: u32, tick: i64) -> Failure {
+        self.set_awake(id, false);
+        self.status[id as usize] = Status::Failed;
+        let loose = self.read(id);
+        let t = clock.time(tick);
+        let error = blame(&self.system_of(&loose.parameters), places, &loose, t);
+        Failure { kind: S::FACTS.name, index: id, t, error }
+    }
+
+    fn save(&self) -> GroupState<T> {
+        Group::save(self)
+    }
+
+    fn ring(&mut self, tick: i64) -> bool {
+        self.wake_up_to(tick)
+    }
+
+    fn next_alarm(&self) -> i64 {
+        self.alarms.peek().map_or(i64::MAX, |Reverse((tick, _))| *tick)
+    }
+
+    fn lull(&mut self, clock: &Clock, places: &[Place<T>], tolerance: f64) -> bool {
+        self.fall_asleep(clock, places, tolerance)
+    }
+
+    fn unmake_beds(&mut self) {
+        self.beds.clear();
+    }
+
+    fn awake(&self) -> (usize, usize) {
+        (self.buckets.iter().map(|bucket| bucket.awake).sum(), self.table.len())
+    }
+
+    fn gap(&self, state: &GroupState<T>) -> [f64; 2] {
+        Group::gap(self, state)
+    }
+
+    fn accepts(&self, state: &GroupState<T>) -> Result<(), SceneError> {
+        Group::accepts(self, state)
+    }
+
+    fn reset(&mut self, clock: &Clock, places: &[Place<T>]) -> Result<(), SceneError> {
+        Group::reset(self, clock, places)
+    }
+
+    fn accepts_motion(&self, joint: u32, has: Orders) -> Result<(), SceneError> {
+        Group::accepts_motion(self, joint, has)
+    }
+
+    fn moved(
+        &mut self,
+        clock: &Clock,
+        before: &[Place<T>],
+        places: &[Place<T>],
+        joint: u32,
+        carry: Carry,
+    ) -> Result<(), SceneError> {
+        Group::moved(self, clock, before, places, joint, carry)
+    }
+
+    fn set_parameter(
+        &mut self,
+        clock: &Clock,
+        places: &[Place<T>],
+        name: &str,
+        value: T,
+    ) -> Option<usize> {
+        Group::set_parameter(self, clock, places, name, value)
+    }
+
+    fn restore(&mut self, places: &[Place<T>], state: &GroupState<T>) {
+        Group::restore(self, places, state);
+    }
+}
