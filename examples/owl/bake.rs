@@ -92,7 +92,7 @@ pub(crate) fn swing(
             return Err(format!(
                 "{failed} feathers failed at {} s: {}",
                 scene.time(),
-                scene.failures()[0]
+                scene.faults()[0]
             )
             .into());
         }

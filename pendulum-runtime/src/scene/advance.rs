@@ -5,7 +5,7 @@ use crate::scene::error::SceneError;
 use crate::scene::group::sleep::LOOK;
 use crate::scene::lanes::bucket::Failed;
 use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::{Active, Place};
+use crate::scene::sampling::joint::{Active, JointSlot};
 use crate::scene::sampling::timetable::Timetable;
 use crate::scene::sampling::tracks::{BATCH, Sampled};
 use crate::scene::scene::Scene;
@@ -38,9 +38,9 @@ impl<T: Lane + Float> Scene<T> {
             return Ok(Advanced::default());
         }
         let (ticks, dropped) = self.clock.ask(dt, self.longest_frame)?;
-        let failed = self.failures.len();
+        let failed = self.faults.len();
         self.ticks(ticks);
-        Ok(Advanced { ticks, dropped, failed: self.failures.len() - failed })
+        Ok(Advanced { ticks, dropped, failed: self.faults.len() - failed })
     }
 
     /// Does so many ticks, which no frame needs to ask for.
@@ -49,15 +49,15 @@ impl<T: Lane + Float> Scene<T> {
     }
 
     pub(crate) fn whole_ticks(&mut self, ticks: u64) -> Advanced {
-        let failed = self.failures.len();
+        let failed = self.faults.len();
         self.clock.shift(ticks as i64);
         self.ticks(ticks);
-        Advanced { ticks, dropped: 0.0, failed: self.failures.len() - failed }
+        Advanced { ticks, dropped: 0.0, failed: self.faults.len() - failed }
     }
 
     pub(crate) fn ticks(&mut self, mut ticks: u64) {
         while 0 < ticks {
-            let batch = ticks.min(self.watch()).min(BATCH as u64);
+            let batch = ticks.min(self.update_sleep()).min(BATCH as u64);
             self.batch(batch as usize);
             self.clock.passed(batch);
             ticks -= batch;
@@ -66,15 +66,15 @@ impl<T: Lane + Float> Scene<T> {
 
     /// Wakes those whose joints are about to move, and lets others fall asleep; gives the ticks
     /// until that is to be done again.
-    fn watch(&mut self) -> u64 {
+    fn update_sleep(&mut self) -> u64 {
         let tick = self.clock.tick();
-        let Self { clock, places, groups, sleep, dirty, .. } = self;
+        let Self { clock, joint_slots, groups, sleep, dirty, .. } = self;
         let mut next = i64::MAX;
         for (_, group) in groups.iter_mut() {
-            *dirty |= group.ring(tick);
+            *dirty |= group.wake_due(tick);
             if let Some(tolerance) = *sleep {
                 if tick.rem_euclid(LOOK) == 0 {
-                    *dirty |= group.lull(clock, places, tolerance);
+                    *dirty |= group.fall_asleep(clock, joint_slots, tolerance);
                 }
                 next = next.min(LOOK - tick.rem_euclid(LOOK));
             }
@@ -97,13 +97,13 @@ impl<T: Lane + Float> Scene<T> {
     fn computed(&mut self, ticks: usize, fork: bool) {
         let tick = self.clock.tick();
         let kinks = self.sample(tick, ticks, fork);
-        let Self { clock, places, actives, numbers, timetable, groups, failures, .. } = self;
+        let Self { clock, joint_slots, actives, numbers, timetable, groups, faults, .. } = self;
         let mut all: Vec<(u8, usize, u32)> = Vec::new();
         let mut failed: Vec<Failed> = Vec::new();
         for (index, (_, group)) in groups.iter_mut().enumerate() {
             group.settle(clock);
             let sampled =
-                Sampled { clock, tick, ticks, places, actives, numbers, timetable, kinks };
+                Sampled { clock, tick, ticks, joint_slots, actives, numbers, timetable, kinks };
             group.run(&sampled, fork, &mut failed);
             all.extend(failed.drain(..).map(|(id, at)| (at, index, id)));
         }
@@ -111,16 +111,16 @@ impl<T: Lane + Float> Scene<T> {
         // By time, whatever was done in one batch.
         all.sort_unstable();
         for (at, index, id) in all {
-            failures.push(groups[index].1.fail(clock, places, id, tick + i64::from(at)));
+            faults.push(groups[index].1.fail(clock, joint_slots, id, tick + i64::from(at)));
         }
     }
 
     /// Tells every joint who needs it, and when.
     fn assign(&mut self) {
         self.dirty = false;
-        let Self { places, actives, groups, timetable, .. } = self;
-        for place in places.iter_mut() {
-            (place.orders, place.grids) = (crate::motion::Orders::NONE, 0);
+        let Self { joint_slots, actives, groups, timetable, .. } = self;
+        for joint_slot in joint_slots.iter_mut() {
+            (joint_slot.orders, joint_slot.grids) = (crate::motion::Orders::NONE, 0);
         }
         for (_, group) in groups.iter() {
             // The bit of the grid is looked up once a bucket, not once a joint.
@@ -131,29 +131,30 @@ impl<T: Lane + Float> Scene<T> {
                     _ => timetable.bit(grid),
                 };
                 known = Some((grid, bit));
-                let place = &mut places[joint as usize];
-                place.orders = place.orders.and(orders);
-                place.grids |= bit;
+                let joint_slot = &mut joint_slots[joint as usize];
+                joint_slot.orders = joint_slot.orders.and(orders);
+                joint_slot.grids |= bit;
             });
         }
         actives.clear();
         let mut last = None;
-        for (joint, place) in
-            (0..).zip(places.iter_mut()).filter(|(_, place)| place.grids != 0 && !place.still)
+        for (joint, joint_slot) in (0..)
+            .zip(joint_slots.iter_mut())
+            .filter(|(_, joint_slot)| joint_slot.grids != 0 && !joint_slot.still)
         {
             let class = match last {
-                Some((grids, class)) if grids == place.grids => class,
-                _ => timetable.class(place.grids),
+                Some((grids, class)) if grids == joint_slot.grids => class,
+                _ => timetable.class(joint_slot.grids),
             };
-            last = Some((place.grids, class));
-            place.active = actives.len() as u32;
-            actives.push(Active::new(joint, place, class));
+            last = Some((joint_slot.grids, class));
+            joint_slot.active = actives.len() as u32;
+            actives.push(Active::new(joint, joint_slot, class));
         }
     }
 
     /// Samples all joints that somebody needs; whether there are kinks.
     fn sample(&mut self, tick: i64, ticks: usize, fork: bool) -> bool {
-        let Self { clock, places, actives, numbers, timetable, .. } = self;
+        let Self { clock, joint_slots, actives, numbers, timetable, .. } = self;
         timetable.begin(clock, tick, ticks);
         let mut length = 0;
         let kinks = AtomicBool::new(false);
@@ -163,7 +164,7 @@ impl<T: Lane + Float> Scene<T> {
             length += shared.length(active);
         }
         numbers.resize(length, T::from_f64(0.0));
-        shared.sample_all(places, actives, numbers, fork);
+        shared.sample_all(joint_slots, actives, numbers, fork);
         kinks.into_inner()
     }
 }
@@ -188,14 +189,14 @@ impl Times<'_> {
     /// Samples joints into `numbers`, which begin at the offset of the first.
     fn sample<T: Lane + Float>(
         &self,
-        places: &[Place<T>],
+        joint_slots: &[JointSlot<T>],
         actives: &mut [Active],
         numbers: &mut [T],
     ) {
         let (mut begin, mut kinked) = (0, 0);
         for active in actives {
             let (length, times) = (self.length(active), self.timetable.times(active.class));
-            let drive = &*places[active.joint as usize].drive;
+            let drive = &*joint_slots[active.joint as usize].drive;
             active.sample(
                 drive,
                 self.clock,
@@ -216,32 +217,32 @@ impl Times<'_> {
     #[cfg(feature = "rayon")]
     fn sample_all<T: Lane + Float>(
         &self,
-        places: &[Place<T>],
+        joint_slots: &[JointSlot<T>],
         actives: &mut [Active],
         numbers: &mut [T],
         fork: bool,
     ) {
         const LEAST: usize = 256;
         if !fork || actives.len() < 2 * LEAST {
-            return self.sample(places, actives, numbers);
+            return self.sample(joint_slots, actives, numbers);
         }
         let (part, mut rest) = (part(actives.len(), LEAST), numbers);
         let parts = actives.chunks_mut(part).map(|actives| {
             let size = actives.iter().map(|active| self.length(active)).sum();
             (actives, rest.split_off_mut(..size).unwrap_or_default())
         });
-        share(parts, |(actives, numbers)| self.sample(places, actives, numbers));
+        share(parts, |(actives, numbers)| self.sample(joint_slots, actives, numbers));
     }
 
     /// Samples joints.
     #[cfg(not(feature = "rayon"))]
     fn sample_all<T: Lane + Float>(
         &self,
-        places: &[Place<T>],
+        joint_slots: &[JointSlot<T>],
         actives: &mut [Active],
         numbers: &mut [T],
         _: bool,
     ) {
-        self.sample(places, actives, numbers);
+        self.sample(joint_slots, actives, numbers);
     }
 }

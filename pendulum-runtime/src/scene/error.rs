@@ -113,7 +113,7 @@ impl core::error::Error for SceneError {}
 
 /// A pendulum whose state has ceased to be finite: it hangs frozen where it was last good.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Failure {
+pub struct SceneFault {
     /// The name of its type.
     pub kind: &'static str,
     /// Its number among those of its type, in the order of hanging.
@@ -124,7 +124,7 @@ pub struct Failure {
     pub error: Error,
 }
 
-impl fmt::Display for Failure {
+impl fmt::Display for SceneFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "`{}` {}: {}", self.kind, self.index, self.error)
     }

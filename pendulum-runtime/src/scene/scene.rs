@@ -3,15 +3,15 @@
 use crate::integrate::method::Suits;
 use crate::motion::Motion;
 use crate::real::{Float, Lane};
-use crate::scene::error::{Failure, SceneError};
+use crate::scene::error::{SceneError, SceneFault};
 use crate::scene::group::any::AnyGroup;
 use crate::scene::group::joints::{check_joints, check_state};
 use crate::scene::group::members::Group;
 use crate::scene::handle::Handle;
-use crate::scene::lanes::system::Hung;
+use crate::scene::lanes::system::SceneSystem;
 use crate::scene::sampling::assemble::Anchor;
 use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::{Active, Joint, Place, forget};
+use crate::scene::sampling::joint::{Active, Joint, JointSlot, erase};
 use crate::scene::sampling::scheme::Fixed;
 use crate::scene::sampling::timetable::Timetable;
 use crate::scene::threads::Threads;
@@ -21,7 +21,7 @@ use core::fmt;
 /// Joints with their motions and pendulums of any type hung on them, over `f32` or `f64`.
 pub struct Scene<T> {
     pub(super) clock: Clock,
-    pub(super) places: Vec<Place<T>>,
+    pub(super) joint_slots: Vec<JointSlot<T>>,
     /// Those that somebody awake needs.
     pub(super) actives: Vec<Active>,
     pub(super) groups: Vec<(TypeId, Box<dyn AnyGroup<T>>)>,
@@ -36,18 +36,18 @@ pub struct Scene<T> {
     pub(super) threads: Threads,
     pub(super) paused: bool,
     pub(super) sleep: Option<f64>,
-    pub(super) failures: Vec<Failure>,
+    pub(super) faults: Vec<SceneFault>,
 }
 
 /// A group, and what of the scene its pendulums see.
 pub(super) type Parts<'a, S, T, const N: usize> =
-    (&'a mut Group<S, T, N>, &'a Clock, &'a [Place<T>]);
+    (&'a mut Group<S, T, N>, &'a Clock, &'a [JointSlot<T>]);
 
 impl<T> fmt::Debug for Scene<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Scene")
             .field("clock", &self.clock)
-            .field("joints", &self.places.len())
+            .field("joints", &self.joint_slots.len())
             .finish_non_exhaustive()
     }
 }
@@ -58,7 +58,7 @@ impl<T: Lane + Float> Scene<T> {
     pub fn new(rate: f64) -> Result<Self, SceneError> {
         Ok(Self {
             clock: Clock::new(rate)?,
-            places: Vec::new(),
+            joint_slots: Vec::new(),
             actives: Vec::new(),
             groups: Vec::new(),
             timetable: Timetable::default(),
@@ -70,7 +70,7 @@ impl<T: Lane + Float> Scene<T> {
             threads: Threads::new(),
             paused: false,
             sleep: None,
-            failures: Vec::new(),
+            faults: Vec::new(),
         })
     }
 
@@ -79,8 +79,8 @@ impl<T: Lane + Float> Scene<T> {
         &mut self,
         motion: M,
     ) -> Joint<D> {
-        self.places.push(Place::new(forget(motion)));
-        Joint(self.places.len() as u32 - 1)
+        self.joint_slots.push(JointSlot::new(erase(motion)));
+        Joint(self.joint_slots.len() as u32 - 1)
     }
 
     /// Hangs a system on a joint, on a tuple of joints or, without driven inputs, on `()`, with
@@ -91,7 +91,7 @@ impl<T: Lane + Float> Scene<T> {
     /// equations need.
     // Taken by value, so that both can be made in the call.
     #[allow(clippy::needless_pass_by_value)]
-    pub fn hang<S: Hung<T, N>, const N: usize>(
+    pub fn hang<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         anchor: impl Anchor<S::Inputs>,
         system: S,
@@ -101,7 +101,7 @@ impl<T: Lane + Float> Scene<T> {
         check_state(&S::FACTS, &q)?;
         check_state(&S::FACTS, &v)?;
         let joints = anchor.joints();
-        check_joints::<S, T, N>(&self.places, &joints)?;
+        check_joints::<S, T, N>(&self.joint_slots, &joints)?;
         // Nothing is refused from here on, so that no empty group stays behind.
         let index = self.index_of::<S, N>().unwrap_or_else(|| {
             let group = Group::<S, T, N>::new(system.mapped(|parameter| parameter));
@@ -109,10 +109,10 @@ impl<T: Lane + Float> Scene<T> {
             self.groups.len() - 1
         });
         self.dirty = true;
-        let Self { clock, places, groups, tolerance, .. } = self;
+        let Self { clock, joint_slots, groups, tolerance, .. } = self;
         let group = groups[index].1.as_any_mut().downcast_mut::<Group<S, T, N>>();
         let group = group.ok_or(SceneError::Pendulum { kind: S::FACTS.name, index: 0 })?;
-        Ok(Handle::new(group.hang(clock, places, joints, &system, *tolerance, [q, v])))
+        Ok(Handle::new(group.hang(clock, joint_slots, joints, &system, *tolerance, [q, v])))
     }
 
     /// The relative error of the phase by which methods and steps are chosen for what is hung from
@@ -134,16 +134,16 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// Nothing of that type hangs here yet.
-    pub fn set_method<S: Hung<T, N>, const N: usize, M: Fixed + Suits<S, N>>(
+    pub fn set_method<S: SceneSystem<T, N>, const N: usize, M: Fixed + Suits<S, N>>(
         &mut self,
         _: M,
     ) -> Result<(), SceneError> {
         let missing = SceneError::Pendulum { kind: S::FACTS.name, index: 0 };
-        let (group, clock, places) = self.group_mut::<S, N>().ok_or(missing)?;
+        let (group, clock, joint_slots) = self.group_mut::<S, N>().ok_or(missing)?;
         group.scheme = Some(M::SCHEME);
         for id in 0..group.table.len() as u32 {
-            let loose = group.read(id);
-            group.rewrite(clock, places, &loose);
+            let detached = group.read(id);
+            group.rewrite(clock, joint_slots, &detached);
         }
         self.dirty = true;
         Ok(())
@@ -210,23 +210,23 @@ impl<T: Lane + Float> Scene<T> {
     }
 
     /// The pendulums that have failed, in the order of time.
-    pub fn failures(&self) -> &[Failure] {
-        &self.failures
+    pub fn faults(&self) -> &[SceneFault] {
+        &self.faults
     }
 
-    pub(super) fn index_of<S: Hung<T, N>, const N: usize>(&self) -> Option<usize> {
+    pub(super) fn index_of<S: SceneSystem<T, N>, const N: usize>(&self) -> Option<usize> {
         let id = TypeId::of::<Group<S, T, N>>();
         self.groups.iter().position(|(other, _)| *other == id)
     }
 
-    pub(super) fn group<S: Hung<T, N>, const N: usize>(&self) -> Option<&Group<S, T, N>> {
+    pub(super) fn group<S: SceneSystem<T, N>, const N: usize>(&self) -> Option<&Group<S, T, N>> {
         self.groups[self.index_of::<S, N>()?].1.as_any().downcast_ref()
     }
 
-    pub(super) fn group_mut<S: Hung<T, N>, const N: usize>(
+    pub(super) fn group_mut<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
     ) -> Option<Parts<'_, S, T, N>> {
         let index = self.index_of::<S, N>()?;
-        Some((self.groups[index].1.as_any_mut().downcast_mut()?, &self.clock, &self.places))
+        Some((self.groups[index].1.as_any_mut().downcast_mut()?, &self.clock, &self.joint_slots))
     }
 }

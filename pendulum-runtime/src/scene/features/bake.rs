@@ -3,7 +3,7 @@
 use crate::real::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::handle::Handle;
-use crate::scene::lanes::system::Hung;
+use crate::scene::lanes::system::SceneSystem;
 use crate::scene::scene::Scene;
 use crate::scene::state::hermite;
 
@@ -71,7 +71,7 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// A pendulum of another scene, a bound that is negative or no number.
-    pub fn bake<S: Hung<T, N>, const N: usize>(
+    pub fn bake<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulums: &[Handle<S, N>],
         ticks: u32,

@@ -4,11 +4,11 @@
 use crate::motion::Motion;
 use crate::real::{Float, Lane};
 use crate::scene::error::SceneError;
-use crate::scene::group::change::Carry;
+use crate::scene::group::change::Preserve;
 use crate::scene::handle::Handle;
-use crate::scene::lanes::limits::Extra;
-use crate::scene::lanes::system::Hung;
-use crate::scene::sampling::joint::{Joint, Place, forget};
+use crate::scene::lanes::limits::Limits;
+use crate::scene::lanes::system::SceneSystem;
+use crate::scene::sampling::joint::{Joint, JointSlot, erase};
 use crate::scene::scene::Scene;
 
 /// How a coordinate is kept within its limits.
@@ -32,14 +32,14 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// A pendulum of another scene, or one that comes to rest nowhere.
-    pub fn reset_to_rest<S: Hung<T, N>, const N: usize>(
+    pub fn reset_to_rest<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
     ) -> Result<(), SceneError> {
         self.checked(pendulum)?;
         self.dirty = true;
-        let (group, clock, places) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
-        group.rest(clock, places, pendulum.index())
+        let (group, clock, joint_slots) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
+        group.rest(clock, joint_slots, pendulum.index())
     }
 
     /// Lets all pendulums hang at rest.
@@ -49,8 +49,8 @@ impl<T: Lane + Float> Scene<T> {
     pub fn reset_all_to_rest(&mut self) -> Result<(), SceneError> {
         let snapshot = self.snapshot();
         self.dirty = true;
-        let Self { clock, places, groups, .. } = self;
-        let reset = groups.iter_mut().try_for_each(|(_, group)| group.reset(clock, places));
+        let Self { clock, joint_slots, groups, .. } = self;
+        let reset = groups.iter_mut().try_for_each(|(_, group)| group.reset(clock, joint_slots));
         reset.or_else(|error| self.restore(&snapshot).and(Err(error)))
     }
 
@@ -59,7 +59,7 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// A pendulum of another scene, a sign that is neither 1 nor −1.
-    pub fn mirror<S: Hung<T, N>, const N: usize>(
+    pub fn mirror<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
         signs: [f64; N],
@@ -67,14 +67,14 @@ impl<T: Lane + Float> Scene<T> {
         if let Some(&value) = signs.iter().find(|sign| sign.abs() != 1.0) {
             return Err(SceneError::Setting { name: "signs", value, required: "1 or -1" });
         }
-        self.change(pendulum, |loose| {
+        self.change(pendulum, |detached| {
             for (i, &sign) in signs.iter().enumerate() {
-                for numbers in &mut loose.state {
+                for numbers in &mut detached.state {
                     numbers[i] *= T::from_f64(sign);
                 }
                 if sign < 0.0 {
-                    (loose.extra.low[i], loose.extra.high[i]) =
-                        (-loose.extra.high[i], -loose.extra.low[i]);
+                    (detached.limits.low[i], detached.limits.high[i]) =
+                        (-detached.limits.high[i], -detached.limits.low[i]);
                 }
             }
         })
@@ -84,31 +84,34 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// A joint of another scene, a motion that lacks what the equations of a pendulum on it need;
-    /// with [`Carry::Rest`] a pendulum that comes to rest nowhere.
+    /// with [`Preserve::Nothing`] a pendulum that comes to rest nowhere.
     pub fn set_motion<M, const D: usize>(
         &mut self,
         joint: Joint<D>,
         motion: M,
-        carry: Carry,
+        preserve: Preserve,
     ) -> Result<(), SceneError>
     where
         M: Motion<T, D> + Send + Sync + 'static,
     {
-        let place = self.places.get(joint.0 as usize).filter(|place| place.drive.components() == D);
-        place.ok_or(SceneError::Joint(joint.0))?;
+        let joint_slot = self
+            .joint_slots
+            .get(joint.0 as usize)
+            .filter(|joint_slot| joint_slot.drive.components() == D);
+        joint_slot.ok_or(SceneError::Joint(joint.0))?;
         for (_, group) in &self.groups {
             group.accepts_motion(joint.0, M::HAS)?;
         }
-        let snapshot = (carry == Carry::Rest).then(|| self.snapshot());
-        let before = self.places.clone();
-        self.places[joint.0 as usize] = Place::new(forget::<T, M, D>(motion));
+        let snapshot = (preserve == Preserve::Nothing).then(|| self.snapshot());
+        let before = self.joint_slots.clone();
+        self.joint_slots[joint.0 as usize] = JointSlot::new(erase::<T, M, D>(motion));
         self.dirty = true;
-        let Self { clock, places, groups, .. } = self;
+        let Self { clock, joint_slots, groups, .. } = self;
         let moved = groups
             .iter_mut()
-            .try_for_each(|(_, group)| group.moved(clock, &before, places, joint.0, carry));
+            .try_for_each(|(_, group)| group.moved(clock, &before, joint_slots, joint.0, preserve));
         if let (Err(_), Some(snapshot)) = (&moved, snapshot) {
-            self.places = before;
+            self.joint_slots = before;
             self.restore(&snapshot)?;
         }
         moved
@@ -125,7 +128,7 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// A pendulum of another scene, a damping that is negative or not finite.
-    pub fn set_damping<S: Hung<T, N>, const N: usize>(
+    pub fn set_damping<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
         damping: f64,
@@ -137,7 +140,7 @@ impl<T: Lane + Float> Scene<T> {
                 required: "zero or positive",
             });
         }
-        self.change(pendulum, |loose| loose.extra.damping = T::from_f64(damping))
+        self.change(pendulum, |detached| detached.limits.damping = T::from_f64(damping))
     }
 
     /// Keeps coordinates within `low` and `high`, in place of the limits set before; infinite
@@ -151,7 +154,7 @@ impl<T: Lane + Float> Scene<T> {
     /// # Errors
     /// A pendulum of another scene, limits in the wrong order or that leave no finite place, a
     /// restitution outside of [0, 1], a negative stiffness.
-    pub fn set_limits<S: Hung<T, N>, const N: usize>(
+    pub fn set_limits<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
         low: [T; N],
@@ -195,13 +198,13 @@ impl<T: Lane + Float> Scene<T> {
         }
         .map(T::from_f64);
         self.checked(pendulum)?;
-        let (group, clock, places) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
-        let mut loose = group.read(pendulum.index());
-        loose.extra = Extra { low, high, restitution, stiffness, hard, ..loose.extra };
-        loose.hold();
-        group.unmake_bed(pendulum.index());
-        group.rewrite(clock, places, &loose);
-        group.rouse(pendulum.index());
+        let (group, clock, joint_slots) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
+        let mut detached = group.read(pendulum.index());
+        detached.limits = Limits { low, high, restitution, stiffness, hard, ..detached.limits };
+        detached.hold();
+        group.forget_criterion(pendulum.index());
+        group.rewrite(clock, joint_slots, &detached);
+        group.wake(pendulum.index());
         self.dirty = true;
         Ok(())
     }
@@ -211,7 +214,7 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// A pendulum of another scene, a name that it does not have, a value that is not finite.
-    pub fn set_parameter<S: Hung<T, N>, const N: usize>(
+    pub fn set_parameter<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
         name: &str,
@@ -221,12 +224,12 @@ impl<T: Lane + Float> Scene<T> {
         finite(value)?;
         let index = S::FACTS.parameters.iter().position(|parameter| *parameter == name);
         let index = index.ok_or_else(|| SceneError::Parameter(name.to_owned()))?;
-        let (group, clock, places) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
-        let mut loose = group.read(pendulum.index());
-        loose.parameters[index] = value;
-        group.rewrite(clock, places, &loose);
-        group.rouse(pendulum.index());
-        group.unmake_bed(pendulum.index());
+        let (group, clock, joint_slots) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
+        let mut detached = group.read(pendulum.index());
+        detached.parameters[index] = value;
+        group.rewrite(clock, joint_slots, &detached);
+        group.wake(pendulum.index());
+        group.forget_criterion(pendulum.index());
         self.dirty = true;
         Ok(())
     }
@@ -240,10 +243,10 @@ impl<T: Lane + Float> Scene<T> {
     pub fn set_parameter_everywhere(&mut self, name: &str, value: T) -> Result<usize, SceneError> {
         finite(value)?;
         self.dirty = true;
-        let Self { clock, places, groups, .. } = self;
+        let Self { clock, joint_slots, groups, .. } = self;
         let changed: Vec<usize> = groups
             .iter_mut()
-            .filter_map(|(_, group)| group.set_parameter(clock, places, name, value))
+            .filter_map(|(_, group)| group.set_parameter(clock, joint_slots, name, value))
             .collect();
         if changed.is_empty() {
             Err(SceneError::Parameter(name.to_owned()))

@@ -25,7 +25,7 @@ impl<T: Lane + Float> Scene<T> {
         }
         self.sleep = tolerance;
         for (_, group) in &mut self.groups {
-            group.unmake_beds();
+            group.forget_criteria();
         }
         if tolerance.is_none() {
             self.wake_all();
@@ -36,7 +36,7 @@ impl<T: Lane + Float> Scene<T> {
     /// Wakes all that sleep.
     pub(crate) fn wake_all(&mut self) {
         for (_, group) in &mut self.groups {
-            self.dirty |= group.ring(i64::MAX);
+            self.dirty |= group.wake_due(i64::MAX);
         }
     }
 }

@@ -1,10 +1,10 @@
 //! Everything that changes while a scene runs, as plain numbers.
 
 use crate::real::{Float, Lane, Real};
-use crate::scene::error::{Failure, SceneError};
+use crate::scene::error::{SceneError, SceneFault};
 use crate::scene::features::hash;
 use crate::scene::group::saved::GroupState;
-use crate::scene::group::status::Status;
+use crate::scene::group::status::SceneStatus;
 use crate::scene::scene::Scene;
 
 /// The state of a scene: time, states, parameters, damping, stops, who sleeps and who has failed.
@@ -20,7 +20,7 @@ pub struct Snapshot<T> {
     clock: (i64, i64, [f64; 2]),
     groups: Vec<GroupState<T>>,
     #[cfg_attr(feature = "serde", serde(skip))]
-    failures: Vec<Failure>,
+    faults: Vec<SceneFault>,
 }
 
 /// The time of a tick beyond these is no longer exact.
@@ -36,7 +36,7 @@ impl<T: Lane + Float> Scene<T> {
     /// Everything that changes while the scene runs.
     pub fn snapshot(&self) -> Snapshot<T> {
         let groups = self.groups.iter().map(|(_, group)| group.save()).collect();
-        Snapshot { clock: self.clock.state(), groups, failures: self.failures.clone() }
+        Snapshot { clock: self.clock.state(), groups, faults: self.faults.clone() }
     }
 
     /// Puts the scene back to where a snapshot was taken; what follows has the same bits as it had
@@ -59,9 +59,9 @@ impl<T: Lane + Float> Scene<T> {
         }
         self.clock.restore(snapshot.clock);
         for ((_, group), state) in self.groups.iter_mut().zip(&snapshot.groups) {
-            group.restore(&self.places, state);
+            group.restore(&self.joint_slots, state);
         }
-        self.failures.clone_from(&snapshot.failures);
+        self.faults.clone_from(&snapshot.faults);
         self.dirty = true;
         Ok(())
     }
@@ -83,10 +83,10 @@ impl<T: Real + Float> Snapshot<T> {
             hash.add(group.pendulums.len() as u64);
             for &(scheme, substeps, status) in &group.pendulums {
                 let (status, tick) = match status {
-                    Status::Awake => (0, 0),
-                    Status::Asleep(tick) => (1, tick),
-                    Status::Hidden(tick) => (2, tick),
-                    Status::Failed => (3, 0),
+                    SceneStatus::Awake => (0, 0),
+                    SceneStatus::Asleep(tick) => (1, tick),
+                    SceneStatus::Hidden(tick) => (2, tick),
+                    SceneStatus::Failed => (3, 0),
                 };
                 hash.add(scheme as u64 | u64::from(substeps) << 8 | status << 40);
                 hash.add(tick as u64);

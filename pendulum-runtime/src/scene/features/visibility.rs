@@ -5,20 +5,20 @@ use crate::motion::{Side, shorter};
 use crate::real::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::group::joints::inputs_at;
-use crate::scene::group::status::Status;
+use crate::scene::group::status::SceneStatus;
 use crate::scene::handle::Handle;
-use crate::scene::lanes::limits::Extra;
-use crate::scene::lanes::system::Hung;
-use crate::scene::sampling::joint::Place;
+use crate::scene::lanes::limits::Limits;
+use crate::scene::lanes::system::SceneSystem;
+use crate::scene::sampling::joint::JointSlot;
 use crate::scene::scene::Scene;
 use crate::system::{Dynamics, Purpose, scalar_time};
 use crate::time::Time;
 
 /// How a pendulum comes back to the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Return {
+pub enum Resume {
     /// It goes on from where it was.
-    Pause,
+    Unchanged,
     /// It hangs at rest.
     Rest,
     /// It makes up for the time in a few large accurate steps; if that was longer than so many
@@ -32,12 +32,12 @@ pub enum Return {
 /// A pendulum on the joints of a scene, with its damping and its soft stops.
 struct Hanging<'a, S, T, const N: usize> {
     system: S,
-    places: &'a [Place<T>],
+    joint_slots: &'a [JointSlot<T>],
     joints: Vec<u32>,
-    extra: Extra<T, N>,
+    limits: Limits<T, N>,
 }
 
-impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Dynamics<N> for Hanging<'_, S, T, N> {
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Dynamics<N> for Hanging<'_, S, T, N> {
     type System = S;
     type Scalar = T;
 
@@ -46,18 +46,19 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Dynamics<N> for Hanging<'_,
     }
 
     fn inputs(&self, t: Time, side: Side, purpose: Purpose) -> S::Inputs {
-        inputs_at::<S, T, N>(self.places, &self.joints, t, side, purpose, false)
+        inputs_at::<S, T, N>(self.joint_slots, &self.joints, t, side, purpose, false)
     }
 
     fn next_kink(&self, t: f64) -> Option<f64> {
-        let next =
-            |&joint: &u32| self.places[joint as usize].drive.next_kink(t).filter(|&kink| t < kink);
+        let next = |&joint: &u32| {
+            self.joint_slots[joint as usize].drive.next_kink(t).filter(|&kink| t < kink)
+        };
         self.joints.iter().filter_map(next).min_by(f64::total_cmp)
     }
 
     fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
         let longest = |&joint: &u32| {
-            self.places[joint as usize].drive.longest_step(t, widths).unwrap_or(unknown)
+            self.joint_slots[joint as usize].drive.longest_step(t, widths).unwrap_or(unknown)
         };
         self.joints.iter().map(longest).fold(f64::INFINITY, shorter)
     }
@@ -72,9 +73,9 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Dynamics<N> for Hanging<'_,
     ) -> [T; N] {
         let inputs = self.inputs(t, side, Purpose::Accelerations);
         let mut a = self.system.accelerations_prepared(prepared, scalar_time(t), q, v, &inputs);
-        let push = self.extra.push(q);
+        let push = self.limits.push(q);
         for i in 0..N {
-            a[i] += push[i] - self.extra.damping * v[i];
+            a[i] += push[i] - self.limits.damping * v[i];
         }
         a
     }
@@ -86,15 +87,15 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// A pendulum of another scene.
-    pub fn hide<S: Hung<T, N>, const N: usize>(
+    pub fn hide<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
     ) -> Result<(), SceneError> {
         let tick = self.tick();
         let group = self.checked(pendulum)?;
         let status = &mut group.status[pendulum.index() as usize];
-        if matches!(status, Status::Awake | Status::Asleep(_)) {
-            *status = Status::Hidden(tick);
+        if matches!(status, SceneStatus::Awake | SceneStatus::Asleep(_)) {
+            *status = SceneStatus::Hidden(tick);
             group.set_awake(pendulum.index(), false);
             self.dirty = true;
         }
@@ -109,27 +110,29 @@ impl<T: Lane + Float> Scene<T> {
     /// # Errors
     /// A pendulum of another scene, a time that is not positive, a pendulum that comes to rest
     /// nowhere, an integration that fails; it stays hidden then.
-    pub fn show<S: Hung<T, N>, const N: usize>(
+    pub fn show<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
-        how: Return,
+        how: Resume,
     ) -> Result<(), SceneError> {
         let id = pendulum.index();
-        let Status::Hidden(since) = self.checked(pendulum)?.status[id as usize] else {
+        let SceneStatus::Hidden(since) = self.checked(pendulum)?.status[id as usize] else {
             return Ok(());
         };
-        let (group, clock, places) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
-        let mut loose = group.read(id);
+        let (group, clock, joint_slots) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
+        let mut detached = group.read(id);
         let zero = [T::from_f64(0.0); N];
-        let mut put = |q, v| loose.state = [q, zero, v, zero, q, v];
+        let mut put = |q, v| detached.state = [q, zero, v, zero, q, v];
         let restless = SceneError::Restless { kind: S::FACTS.name, index: id };
         match how {
-            Return::Pause => {}
-            Return::Rest => put(
-                group.rest_of(places, &group.read(id), clock.time(clock.tick())).ok_or(restless)?,
+            Resume::Unchanged => {}
+            Resume::Rest => put(
+                group
+                    .rest_of(joint_slots, &group.read(id), clock.time(clock.tick()))
+                    .ok_or(restless)?,
                 zero,
             ),
-            Return::CatchUp { longest } => {
+            Resume::CatchUp { longest } => {
                 if longest <= 0.0 || longest.is_nan() {
                     return Err(SceneError::Setting {
                         name: "longest",
@@ -141,12 +144,13 @@ impl<T: Lane + Float> Scene<T> {
                 let (mut start, mut from) = (clock.time(since), group.read(id));
                 if longest < now - start {
                     start = now - longest;
-                    let q = group.rest_of(places, &from, start).ok_or(restless)?;
+                    let q = group.rest_of(joint_slots, &from, start).ok_or(restless)?;
                     (from.state[0], from.state[2]) = (q, zero);
                 }
                 let system = group.system_of(&from.parameters);
                 let [q, _, v, ..] = from.state;
-                let hanging = Hanging { system, places, joints: from.joints, extra: from.extra };
+                let hanging =
+                    Hanging { system, joint_slots, joints: from.joints, limits: from.limits };
                 if start < now {
                     let solution = solve(&hanging, (start, now), q, v)
                         .method(Dop853)
@@ -156,12 +160,12 @@ impl<T: Lane + Float> Scene<T> {
                     let end =
                         solution.map_err(|failure| SceneError::Integration(failure.error))?.end;
                     let (mut q, mut v) = (end.q, end.v);
-                    from.extra.hold(&mut q, &mut v);
+                    from.limits.hold(&mut q, &mut v);
                     put(q, v);
                 }
             }
         }
-        group.write(&loose);
+        group.write(&detached);
         self.wake(pendulum)
     }
 }

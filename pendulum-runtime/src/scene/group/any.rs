@@ -2,16 +2,16 @@
 
 use crate::motion::Orders;
 use crate::real::{Float, Lane};
-use crate::scene::error::{Failure, SceneError};
-use crate::scene::group::change::Carry;
+use crate::scene::error::{SceneError, SceneFault};
+use crate::scene::group::change::Preserve;
 use crate::scene::group::fault::blame;
 use crate::scene::group::members::Group;
 use crate::scene::group::saved::GroupState;
-use crate::scene::group::status::Status;
+use crate::scene::group::status::SceneStatus;
 use crate::scene::lanes::bucket::Failed;
-use crate::scene::lanes::system::Hung;
+use crate::scene::lanes::system::SceneSystem;
 use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::Place;
+use crate::scene::sampling::joint::JointSlot;
 use crate::scene::sampling::scheme::Grid;
 use crate::scene::sampling::tracks::Sampled;
 use core::any::Any;
@@ -29,7 +29,13 @@ pub(crate) trait AnyGroup<T>: Send + Sync {
     fn run(&mut self, sampled: &Sampled<'_, T>, fork: bool, failed: &mut Vec<Failed>);
     /// Takes a pendulum that has failed in a tick away from those that are computed, and says why
     /// it failed.
-    fn fail(&mut self, clock: &Clock, places: &[Place<T>], id: u32, tick: i64) -> Failure;
+    fn fail(
+        &mut self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        id: u32,
+        tick: i64,
+    ) -> SceneFault;
     /// All that changes while running.
     fn save(&self) -> GroupState<T>;
     /// Whether a saved state belongs to this group; what differs if not.
@@ -37,41 +43,41 @@ pub(crate) trait AnyGroup<T>: Send + Sync {
     /// The largest differences of coordinates and of velocities from a saved state.
     fn gap(&self, state: &GroupState<T>) -> [f64; 2];
     /// Lets all pendulums hang at rest.
-    fn reset(&mut self, clock: &Clock, places: &[Place<T>]) -> Result<(), SceneError>;
+    fn reset(&mut self, clock: &Clock, joint_slots: &[JointSlot<T>]) -> Result<(), SceneError>;
     /// Whether a motion has what those on a joint need.
     fn accepts_motion(&self, joint: u32, has: Orders) -> Result<(), SceneError>;
     /// A joint has another motion than `before`.
     fn moved(
         &mut self,
         clock: &Clock,
-        before: &[Place<T>],
-        places: &[Place<T>],
+        before: &[JointSlot<T>],
+        joint_slots: &[JointSlot<T>],
         joint: u32,
-        carry: Carry,
+        preserve: Preserve,
     ) -> Result<(), SceneError>;
     /// Sets a parameter of all, if they have it.
     fn set_parameter(
         &mut self,
         clock: &Clock,
-        places: &[Place<T>],
+        joint_slots: &[JointSlot<T>],
         name: &str,
         value: T,
     ) -> Option<usize>;
     /// Wakes those whose time has come; whether there were any.
-    fn ring(&mut self, tick: i64) -> bool;
+    fn wake_due(&mut self, tick: i64) -> bool;
     /// The tick at which somebody is to wake, far away if nobody is.
     fn next_alarm(&self) -> i64;
     /// Lets those fall asleep that may; whether there were any.
-    fn lull(&mut self, clock: &Clock, places: &[Place<T>], tolerance: f64) -> bool;
+    fn fall_asleep(&mut self, clock: &Clock, joint_slots: &[JointSlot<T>], tolerance: f64) -> bool;
     /// Forgets who may sleep.
-    fn unmake_beds(&mut self);
+    fn forget_criteria(&mut self);
     /// Those that are computed, and all.
     fn awake(&self) -> (usize, usize);
     /// Puts back what was saved.
-    fn restore(&mut self, places: &[Place<T>], state: &GroupState<T>);
+    fn restore(&mut self, joint_slots: &[JointSlot<T>], state: &GroupState<T>);
 }
 
-impl<S: Hung<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T, N> {
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T, N> {
     fn as_any(&self) -> &dyn Any {
         self
     }
@@ -100,33 +106,39 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T,
         }
     }
 
-    fn fail(&mut self, clock: &Clock, places: &[Place<T>], id: u32, tick: i64) -> Failure {
+    fn fail(
+        &mut self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        id: u32,
+        tick: i64,
+    ) -> SceneFault {
         self.set_awake(id, false);
-        self.status[id as usize] = Status::Failed;
-        let loose = self.read(id);
+        self.status[id as usize] = SceneStatus::Failed;
+        let detached = self.read(id);
         let t = clock.time(tick);
-        let error = blame(&self.system_of(&loose.parameters), places, &loose, t);
-        Failure { kind: S::FACTS.name, index: id, t, error }
+        let error = blame(&self.system_of(&detached.parameters), joint_slots, &detached, t);
+        SceneFault { kind: S::FACTS.name, index: id, t, error }
     }
 
     fn save(&self) -> GroupState<T> {
         Group::save(self)
     }
 
-    fn ring(&mut self, tick: i64) -> bool {
-        self.wake_up_to(tick)
+    fn wake_due(&mut self, tick: i64) -> bool {
+        self.wake_due(tick)
     }
 
     fn next_alarm(&self) -> i64 {
         self.alarms.peek().map_or(i64::MAX, |Reverse((tick, _))| *tick)
     }
 
-    fn lull(&mut self, clock: &Clock, places: &[Place<T>], tolerance: f64) -> bool {
-        self.fall_asleep(clock, places, tolerance)
+    fn fall_asleep(&mut self, clock: &Clock, joint_slots: &[JointSlot<T>], tolerance: f64) -> bool {
+        self.fall_asleep(clock, joint_slots, tolerance)
     }
 
-    fn unmake_beds(&mut self) {
-        self.beds.clear();
+    fn forget_criteria(&mut self) {
+        self.criteria.clear();
     }
 
     fn awake(&self) -> (usize, usize) {
@@ -141,8 +153,8 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T,
         Group::accepts(self, state)
     }
 
-    fn reset(&mut self, clock: &Clock, places: &[Place<T>]) -> Result<(), SceneError> {
-        Group::reset(self, clock, places)
+    fn reset(&mut self, clock: &Clock, joint_slots: &[JointSlot<T>]) -> Result<(), SceneError> {
+        Group::reset(self, clock, joint_slots)
     }
 
     fn accepts_motion(&self, joint: u32, has: Orders) -> Result<(), SceneError> {
@@ -152,25 +164,25 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T,
     fn moved(
         &mut self,
         clock: &Clock,
-        before: &[Place<T>],
-        places: &[Place<T>],
+        before: &[JointSlot<T>],
+        joint_slots: &[JointSlot<T>],
         joint: u32,
-        carry: Carry,
+        preserve: Preserve,
     ) -> Result<(), SceneError> {
-        Group::moved(self, clock, before, places, joint, carry)
+        Group::moved(self, clock, before, joint_slots, joint, preserve)
     }
 
     fn set_parameter(
         &mut self,
         clock: &Clock,
-        places: &[Place<T>],
+        joint_slots: &[JointSlot<T>],
         name: &str,
         value: T,
     ) -> Option<usize> {
-        Group::set_parameter(self, clock, places, name, value)
+        Group::set_parameter(self, clock, joint_slots, name, value)
     }
 
-    fn restore(&mut self, places: &[Place<T>], state: &GroupState<T>) {
-        Group::restore(self, places, state);
+    fn restore(&mut self, joint_slots: &[JointSlot<T>], state: &GroupState<T>) {
+        Group::restore(self, joint_slots, state);
     }
 }

@@ -5,27 +5,31 @@ use crate::real::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::group::joints::{check_motion, inputs_at};
 use crate::scene::group::members::Group;
-use crate::scene::lanes::system::Hung;
+use crate::scene::lanes::system::SceneSystem;
 use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::Place;
+use crate::scene::sampling::joint::JointSlot;
 use crate::system::{Purpose, scalar_time};
 use crate::time::Time;
 
 /// What becomes of the swing when a joint is given another motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Carry {
+pub enum Preserve {
     /// Coordinates and velocities stay: a teleport that nobody feels.
     Swing,
     /// The momenta stay: a jump in the velocity of the joint is a blow.
     Momentum,
     /// The pendulums hang at rest.
-    Rest,
+    Nothing,
 }
 
-impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// Lets all pendulums hang at rest.
-    pub(super) fn reset(&mut self, clock: &Clock, places: &[Place<T>]) -> Result<(), SceneError> {
-        (0..self.table.len() as u32).try_for_each(|id| self.rest(clock, places, id))
+    pub(super) fn reset(
+        &mut self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+    ) -> Result<(), SceneError> {
+        (0..self.table.len() as u32).try_for_each(|id| self.rest(clock, joint_slots, id))
     }
 
     /// Whether a motion has what those on a joint need.
@@ -46,39 +50,46 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     pub(super) fn moved(
         &mut self,
         clock: &Clock,
-        before: &[Place<T>],
-        places: &[Place<T>],
+        before: &[JointSlot<T>],
+        joint_slots: &[JointSlot<T>],
         joint: u32,
-        carry: Carry,
+        preserve: Preserve,
     ) -> Result<(), SceneError> {
         let time = Time::new(clock.time(clock.tick()));
         for id in 0..self.table.len() as u32 {
             if !self.joints(id).contains(&joint) {
                 continue;
             }
-            let mut loose = self.read(id);
-            if carry == Carry::Momentum {
-                let inputs = |places, side| {
-                    inputs_at::<S, T, N>(places, &loose.joints, time, side, Purpose::Momenta, false)
+            let mut detached = self.read(id);
+            if preserve == Preserve::Momentum {
+                let inputs = |joint_slots, side| {
+                    inputs_at::<S, T, N>(
+                        joint_slots,
+                        &detached.joints,
+                        time,
+                        side,
+                        Purpose::Momenta,
+                        false,
+                    )
                 };
-                let (old, new) = (inputs(before, Side::Before), inputs(places, Side::After));
-                let (system, t) = (self.system_of(&loose.parameters), scalar_time(time));
-                let [q, _, v, ..] = loose.state;
+                let (old, new) = (inputs(before, Side::Before), inputs(joint_slots, Side::After));
+                let (system, t) = (self.system_of(&detached.parameters), scalar_time(time));
+                let [q, _, v, ..] = detached.state;
                 if old != new {
                     let after = system.velocities(t, &q, &system.momenta(t, &q, &v, &old), &new);
                     // One whose equations have no solution keeps its velocity, and fails in the
                     // next tick, which says why.
                     if after.iter().all(|v| v.is_finite()) {
-                        (loose.state[2], loose.state[3]) = (after, [T::from_f64(0.0); N]);
+                        (detached.state[2], detached.state[3]) = (after, [T::from_f64(0.0); N]);
                     }
                 }
             }
-            self.rewrite(clock, places, &loose);
-            if carry == Carry::Rest {
-                self.rest(clock, places, id)?;
+            self.rewrite(clock, joint_slots, &detached);
+            if preserve == Preserve::Nothing {
+                self.rest(clock, joint_slots, id)?;
             }
-            self.rouse(id);
-            self.unmake_bed(id);
+            self.wake(id);
+            self.forget_criterion(id);
         }
         Ok(())
     }
@@ -87,18 +98,18 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     pub(super) fn set_parameter(
         &mut self,
         clock: &Clock,
-        places: &[Place<T>],
+        joint_slots: &[JointSlot<T>],
         name: &str,
         value: T,
     ) -> Option<usize> {
         let index = S::FACTS.parameters.iter().position(|parameter| *parameter == name)?;
         for id in 0..self.table.len() as u32 {
-            let mut loose = self.read(id);
-            loose.parameters[index] = value;
-            self.rewrite(clock, places, &loose);
-            self.rouse(id);
+            let mut detached = self.read(id);
+            detached.parameters[index] = value;
+            self.rewrite(clock, joint_slots, &detached);
+            self.wake(id);
         }
-        self.beds.clear();
+        self.criteria.clear();
         Some(self.table.len())
     }
 }

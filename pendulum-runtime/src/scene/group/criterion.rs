@@ -3,11 +3,11 @@
 use crate::motion::Side;
 use crate::real::{Float, Lane, Real};
 use crate::scene::group::joints::inputs_at;
-use crate::scene::lanes::detached::Loose;
-use crate::scene::lanes::limits::Extra;
-use crate::scene::lanes::system::Hung;
+use crate::scene::lanes::detached::Detached;
+use crate::scene::lanes::limits::Limits;
+use crate::scene::lanes::system::SceneSystem;
 use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::Place;
+use crate::scene::sampling::joint::JointSlot;
 use crate::system::Purpose;
 use crate::time::Time;
 use core::cmp::Reverse;
@@ -19,8 +19,8 @@ pub(crate) type Alarms = BinaryHeap<Reverse<(i64, u32)>>;
 
 /// What decides whether a pendulum may sleep while its joints rest.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Bed<T, const N: usize> {
-    /// The tick in which the joints move again: another rest needs another bed.
+pub(crate) struct SleepCriterion<T, const N: usize> {
+    /// The tick in which the joints move again: another rest has a criterion of its own.
     pub(super) until: i64,
     /// Where it would come to rest.
     pub(super) rest: [T; N],
@@ -34,7 +34,7 @@ pub(crate) struct Bed<T, const N: usize> {
     pub(super) reach: T,
 }
 
-impl<T: Lane + Float, const N: usize> Bed<T, N> {
+impl<T: Lane + Float, const N: usize> SleepCriterion<T, N> {
     /// Whether another look would find no more: what moves fast does not fall asleep, and what is
     /// not too far from its rest has no other.
     pub(super) fn lasts(&self, q: &[T; N], v: &[T; N]) -> bool {
@@ -51,27 +51,34 @@ impl<T: Lane + Float, const N: usize> Bed<T, N> {
 }
 
 /// A system on joints that rest where they are.
-pub(super) struct AtRest<'a, S: Hung<T, N>, T: Lane + Float, const N: usize> {
+pub(super) struct AtRest<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     system: &'a S,
     pub(super) t: T,
     pub(super) forces: S::Inputs,
     momenta: S::Inputs,
-    extra: &'a Extra<T, N>,
+    limits: &'a Limits<T, N>,
 }
 
-impl<'a, S: Hung<T, N>, T: Lane + Float, const N: usize> AtRest<'a, S, T, N> {
+impl<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AtRest<'a, S, T, N> {
     pub(super) fn new(
         system: &'a S,
         clock: &Clock,
-        places: &[Place<T>],
-        loose: &'a Loose<T, N>,
+        joint_slots: &[JointSlot<T>],
+        detached: &'a Detached<T, N>,
     ) -> Self {
         let t = clock.time(clock.tick());
         let inputs = |purpose| {
-            inputs_at::<S, T, N>(places, &loose.joints, Time::new(t), Side::After, purpose, true)
+            inputs_at::<S, T, N>(
+                joint_slots,
+                &detached.joints,
+                Time::new(t),
+                Side::After,
+                purpose,
+                true,
+            )
         };
         let (forces, momenta) = (inputs(Purpose::Accelerations), inputs(Purpose::Momenta));
-        Self { system, t: T::from_f64(t), forces, momenta, extra: &loose.extra }
+        Self { system, t: T::from_f64(t), forces, momenta, limits: &detached.limits }
     }
 
     /// q̇ᵀMq̇/2.
@@ -90,9 +97,9 @@ impl<'a, S: Hung<T, N>, T: Lane + Float, const N: usize> AtRest<'a, S, T, N> {
     /// energies would have lost all their digits in single precision. Nothing gets through a wall.
     pub(super) fn lifted(&self, rest: &[T; N], by: &[T; N]) -> T {
         let zero = [T::from_f64(0.0); N];
-        if self.extra.is_hard()
+        if self.limits.is_hard()
             && (0..N).any(|i| {
-                rest[i] + by[i] < self.extra.low[i] || self.extra.high[i] < rest[i] + by[i]
+                rest[i] + by[i] < self.limits.low[i] || self.limits.high[i] < rest[i] + by[i]
             })
         {
             return T::from_f64(f64::INFINITY);
@@ -101,10 +108,10 @@ impl<'a, S: Hung<T, N>, T: Lane + Float, const N: usize> AtRest<'a, S, T, N> {
             let q = core::array::from_fn(|i| rest[i] + T::from_f64(part) * by[i]);
             let forces = self.system.forces(self.t, &q, &zero, &self.forces);
             let work = (0..N).fold(T::from_f64(0.0), |sum, i| sum - by[i] * forces[i]);
-            if self.extra.stiffness == zero[0] {
+            if self.limits.stiffness == zero[0] {
                 work
             } else {
-                work - self.product(&q, by, &self.extra.push(&q))
+                work - self.product(&q, by, &self.limits.push(&q))
             }
         };
         (work(0.0) + T::from_f64(4.0) * work(0.5) + work(1.0)) / T::from_f64(6.0)

@@ -6,29 +6,29 @@ use crate::integrate::field::{coordinate, first_in_inputs};
 use crate::motion::Side;
 use crate::real::{Float, Lane};
 use crate::scene::group::joints::inputs_at;
-use crate::scene::lanes::detached::Loose;
-use crate::scene::lanes::system::Hung;
-use crate::scene::sampling::joint::Place;
+use crate::scene::lanes::detached::Detached;
+use crate::scene::lanes::system::SceneSystem;
+use crate::scene::sampling::joint::JointSlot;
 use crate::system::{Purpose, scalar_time};
 use crate::time::Time;
 
 /// What is not finite in the tick that begins at `t` with the state of `loose`.
-pub(super) fn blame<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+pub(super) fn blame<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     system: &S,
-    places: &[Place<T>],
-    loose: &Loose<T, N>,
+    joint_slots: &[JointSlot<T>],
+    detached: &Detached<T, N>,
     t: f64,
 ) -> Error {
     let time = Time::new(t);
     let inputs = inputs_at::<S, T, N>(
-        places,
-        &loose.joints,
+        joint_slots,
+        &detached.joints,
         time,
         Side::After,
         Purpose::Accelerations,
         false,
     );
-    let [q, _, v, ..] = &loose.state;
+    let [q, _, v, ..] = &detached.state;
     let mut what = first_in_inputs(&S::FACTS, &inputs);
     if what.is_none() {
         let a = system.accelerations(scalar_time(time), q, v, &inputs);

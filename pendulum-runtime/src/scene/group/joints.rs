@@ -4,17 +4,17 @@ use crate::error::Coordinate;
 use crate::motion::{Orders, Side, orders};
 use crate::real::{Float, Lane};
 use crate::scene::error::SceneError;
-use crate::scene::lanes::system::Hung;
+use crate::scene::lanes::system::SceneSystem;
 use crate::scene::sampling::assemble::{Assemble, By};
-use crate::scene::sampling::joint::Place;
+use crate::scene::sampling::joint::JointSlot;
 use crate::scene::sampling::layout::Layout;
 use crate::system::{Facts, Purpose};
 use crate::time::Time;
 
 /// The inputs of a system on joints, with what `purpose` needs; at rest if asked so: only the
 /// positions then.
-pub(crate) fn inputs_at<S: Hung<T, N>, T: Lane + Float, const N: usize>(
-    places: &[Place<T>],
+pub(crate) fn inputs_at<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+    joint_slots: &[JointSlot<T>],
     joints: &[u32],
     t: Time,
     side: Side,
@@ -26,7 +26,7 @@ pub(crate) fn inputs_at<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     let mut record = vec![T::from_f64(0.0); layout.width];
     let mut at = 0;
     for (input, &joint) in joints.iter().enumerate() {
-        let drive = &places[joint as usize].drive;
+        let drive = &joint_slots[joint as usize].drive;
         let needed = orders(S::FACTS.inputs, input, purpose);
         let own = components[input] * needed.count();
         if !at_rest {
@@ -60,17 +60,17 @@ pub(crate) fn check_state<T: Float, const N: usize>(
 
 /// Whether joints exist, move in as many dimensions as their inputs and have what the equations
 /// need.
-pub(crate) fn check_joints<S: Hung<T, N>, T: Lane + Float, const N: usize>(
-    places: &[Place<T>],
+pub(crate) fn check_joints<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+    joint_slots: &[JointSlot<T>],
     joints: &[u32],
 ) -> Result<(), SceneError> {
     for (input, &joint) in joints.iter().enumerate() {
         let components = <S::Inputs as Assemble<T>>::COMPONENTS.get(input);
-        let place = places
+        let joint_slot = joint_slots
             .get(joint as usize)
-            .filter(|place| components == Some(&place.drive.components()));
-        let place = place.ok_or(SceneError::Joint(joint))?;
-        check_motion(&S::FACTS, input, place.drive.has())?;
+            .filter(|joint_slot| components == Some(&joint_slot.drive.components()));
+        let joint_slot = joint_slot.ok_or(SceneError::Joint(joint))?;
+        check_motion(&S::FACTS, input, joint_slot.drive.has())?;
     }
     Ok(())
 }

@@ -3,16 +3,16 @@
 use crate::motion::Side;
 use crate::real::{Float, Lane};
 use crate::scene::error::SceneError;
-use crate::scene::group::criterion::{Alarms, Bed};
+use crate::scene::group::criterion::{Alarms, SleepCriterion};
 use crate::scene::group::joints::inputs_at;
-use crate::scene::group::status::Status;
+use crate::scene::group::status::SceneStatus;
 use crate::scene::group::{frequency, rest};
 use crate::scene::lanes::bucket::{Bucket, Kind};
-use crate::scene::lanes::detached::Loose;
-use crate::scene::lanes::limits::Extra;
-use crate::scene::lanes::system::Hung;
+use crate::scene::lanes::detached::Detached;
+use crate::scene::lanes::limits::Limits;
+use crate::scene::lanes::system::SceneSystem;
 use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::{Place, still};
+use crate::scene::sampling::joint::{JointSlot, still};
 use crate::scene::sampling::scheme::{Grid, MOST_SUBSTEPS, Scheme};
 use crate::system::Purpose;
 use crate::time::Time;
@@ -25,21 +25,21 @@ pub(crate) struct Location {
 }
 
 /// All pendulums of one type.
-pub(crate) struct Group<S: Hung<T, N>, T: Lane + Float, const N: usize> {
+pub(crate) struct Group<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) prototype: S,
     /// The method that somebody has chosen.
     pub(crate) scheme: Option<Scheme>,
     pub(crate) buckets: Vec<Bucket<S, T, N>>,
     pub(crate) table: Vec<Location>,
-    pub(crate) status: Vec<Status>,
+    pub(crate) status: Vec<SceneStatus>,
     /// The relative errors of the phase that steps are chosen by.
     tolerances: Vec<f64>,
     pub(crate) alarms: Alarms,
     /// By pendulum, once somebody has looked.
-    pub(crate) beds: Vec<Option<Bed<T, N>>>,
+    pub(crate) criteria: Vec<Option<SleepCriterion<T, N>>>,
 }
 
-impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     pub(crate) fn new(prototype: S) -> Self {
         Self {
             prototype,
@@ -49,7 +49,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             status: Vec::new(),
             tolerances: Vec::new(),
             alarms: Alarms::new(),
-            beds: Vec::new(),
+            criteria: Vec::new(),
         }
     }
 
@@ -57,7 +57,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     pub(crate) fn hang(
         &mut self,
         clock: &Clock,
-        places: &[Place<T>],
+        joint_slots: &[JointSlot<T>],
         joints: Vec<u32>,
         system: &S,
         tolerance: f64,
@@ -70,13 +70,18 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             parameter
         });
         let zero = [T::from_f64(0.0); N];
-        let loose =
-            Loose { id, joints, parameters, state: [q, zero, v, zero, q, v], extra: Extra::none() };
+        let detached = Detached {
+            id,
+            joints,
+            parameters,
+            state: [q, zero, v, zero, q, v],
+            limits: Limits::none(),
+        };
         self.table.push(Location { bucket: 0, slot: 0 });
-        self.status.push(Status::Awake);
+        self.status.push(SceneStatus::Awake);
         self.tolerances.push(tolerance);
-        let kind = self.kind(clock, places, system, &loose);
-        self.insert(kind, &loose);
+        let kind = self.kind(clock, joint_slots, system, &detached);
+        self.insert(kind, &detached);
         self.set_awake(id, true);
         id
     }
@@ -85,51 +90,51 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     pub(crate) fn kind(
         &self,
         clock: &Clock,
-        places: &[Place<T>],
+        joint_slots: &[JointSlot<T>],
         system: &S,
-        loose: &Loose<T, N>,
+        detached: &Detached<T, N>,
     ) -> Kind {
         let t = clock.time(clock.tick());
         let inputs = inputs_at::<S, T, N>(
-            places,
-            &loose.joints,
+            joint_slots,
+            &detached.joints,
             Time::new(t),
             Side::After,
             Purpose::Accelerations,
             true,
         );
-        let omega = frequency::fastest(system, T::from_f64(t), &loose.state[0], &inputs);
+        let omega = frequency::fastest(system, T::from_f64(t), &detached.state[0], &inputs);
         // A soft stop swings too.
-        let phase = omega.max(loose.extra.stiffness.to_f64().sqrt()) * clock.step();
-        let tolerance = self.tolerances[loose.id as usize];
+        let phase = omega.max(detached.limits.stiffness.to_f64().sqrt()) * clock.step();
+        let tolerance = self.tolerances[detached.id as usize];
         let grid = match self.scheme {
             Some(scheme) => Grid { scheme, substeps: scheme.substeps(phase, tolerance) },
             None => Scheme::cheapest(&S::FACTS, phase, tolerance),
         };
         debug_assert!(grid.substeps <= MOST_SUBSTEPS);
-        Kind { grid, still: still(places, &loose.joints) }
+        Kind { grid, still: still(joint_slots, &detached.joints) }
     }
 
     /// Puts a pendulum into its bucket, asleep.
-    pub(crate) fn insert(&mut self, kind: Kind, loose: &Loose<T, N>) {
+    pub(crate) fn insert(&mut self, kind: Kind, detached: &Detached<T, N>) {
         let bucket =
             self.buckets.iter().position(|bucket| bucket.kind == kind).unwrap_or_else(|| {
                 self.buckets.push(Bucket::new(kind));
                 self.buckets.len() - 1
             });
-        let slot = self.buckets[bucket].push(&self.prototype, loose);
-        self.table[loose.id as usize] = Location { bucket: bucket as u32, slot: slot as u32 };
+        let slot = self.buckets[bucket].push(&self.prototype, detached);
+        self.table[detached.id as usize] = Location { bucket: bucket as u32, slot: slot as u32 };
     }
 
     /// Takes a pendulum out of its bucket; `insert` puts it back.
-    pub(crate) fn remove(&mut self, id: u32) -> Loose<T, N> {
+    pub(crate) fn remove(&mut self, id: u32) -> Detached<T, N> {
         self.set_awake(id, false);
         let Location { bucket, slot } = self.table[id as usize];
         let last = self.buckets[bucket as usize].len - 1;
         self.swap(bucket as usize, slot as usize, last);
-        let loose = self.buckets[bucket as usize].read(last);
+        let detached = self.buckets[bucket as usize].read(last);
         self.buckets[bucket as usize].pop();
-        loose
+        detached
     }
 
     /// Moves a pendulum among those that are computed, or away from them.
@@ -142,7 +147,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         }
         let track = bucket.blocks[slot / crate::scene::lanes::system::W].track
             [slot % crate::scene::lanes::system::W];
-        bucket.tracks.stir(track, awake);
+        bucket.tracks.count_awake(track, awake);
         if awake {
             bucket.awake += 1;
         } else {
@@ -172,34 +177,39 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// A pendulum with all that belongs to it.
-    pub(crate) fn read(&self, id: u32) -> Loose<T, N> {
+    pub(crate) fn read(&self, id: u32) -> Detached<T, N> {
         let Location { bucket, slot } = self.table[id as usize];
         self.buckets[bucket as usize].read(slot as usize)
     }
 
     /// Writes a pendulum back to where it is.
-    pub(crate) fn write(&mut self, loose: &Loose<T, N>) {
-        let Location { bucket, slot } = self.table[loose.id as usize];
-        self.buckets[bucket as usize].write(slot as usize, loose);
+    pub(crate) fn write(&mut self, detached: &Detached<T, N>) {
+        let Location { bucket, slot } = self.table[detached.id as usize];
+        self.buckets[bucket as usize].write(slot as usize, detached);
     }
 
     /// Writes a pendulum back that may need other steps than before.
-    pub(crate) fn rewrite(&mut self, clock: &Clock, places: &[Place<T>], loose: &Loose<T, N>) {
-        let system = self.system_of(&loose.parameters);
-        let kind = self.kind(clock, places, &system, loose);
-        if self.buckets[self.table[loose.id as usize].bucket as usize].kind == kind {
-            return self.write(loose);
+    pub(crate) fn rewrite(
+        &mut self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        detached: &Detached<T, N>,
+    ) {
+        let system = self.system_of(&detached.parameters);
+        let kind = self.kind(clock, joint_slots, &system, detached);
+        if self.buckets[self.table[detached.id as usize].bucket as usize].kind == kind {
+            return self.write(detached);
         }
-        let awake = self.is_awake(loose.id);
-        self.remove(loose.id);
-        self.insert(kind, loose);
-        self.set_awake(loose.id, awake);
+        let awake = self.is_awake(detached.id);
+        self.remove(detached.id);
+        self.insert(kind, detached);
+        self.set_awake(detached.id, awake);
     }
 
     /// Wakes a pendulum that sleeps.
-    pub(crate) fn rouse(&mut self, id: u32) {
-        if let Status::Asleep(_) = self.status[id as usize] {
-            self.status[id as usize] = Status::Awake;
+    pub(crate) fn wake(&mut self, id: u32) {
+        if let SceneStatus::Asleep(_) = self.status[id as usize] {
+            self.status[id as usize] = SceneStatus::Awake;
             self.set_awake(id, true);
         }
     }
@@ -207,40 +217,40 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// Where a pendulum comes to rest with its joints at rest where they are at `t`.
     pub(crate) fn rest_of(
         &self,
-        places: &[Place<T>],
-        loose: &Loose<T, N>,
+        joint_slots: &[JointSlot<T>],
+        detached: &Detached<T, N>,
         t: f64,
     ) -> Option<[T; N]> {
-        let system = self.system_of(&loose.parameters);
+        let system = self.system_of(&detached.parameters);
         let inputs = inputs_at::<S, T, N>(
-            places,
-            &loose.joints,
+            joint_slots,
+            &detached.joints,
             Time::new(t),
             Side::After,
             Purpose::Accelerations,
             true,
         );
         let t = T::from_f64(t);
-        let omega = frequency::fastest(&system, t, &loose.state[0], &inputs)
-            .max(loose.extra.stiffness.to_f64().sqrt());
-        rest::rest(&system, t, &loose.state[0], &inputs, omega, &loose.extra)
+        let omega = frequency::fastest(&system, t, &detached.state[0], &inputs)
+            .max(detached.limits.stiffness.to_f64().sqrt());
+        rest::rest(&system, t, &detached.state[0], &inputs, omega, &detached.limits)
     }
 
     /// Lets a pendulum hang at rest; one that has failed swings again.
     pub(crate) fn rest(
         &mut self,
         clock: &Clock,
-        places: &[Place<T>],
+        joint_slots: &[JointSlot<T>],
         id: u32,
     ) -> Result<(), SceneError> {
-        let mut loose = self.read(id);
+        let mut detached = self.read(id);
         let missing = SceneError::Restless { kind: S::FACTS.name, index: id };
-        let q = self.rest_of(places, &loose, clock.time(clock.tick())).ok_or(missing)?;
+        let q = self.rest_of(joint_slots, &detached, clock.time(clock.tick())).ok_or(missing)?;
         let zero = [T::from_f64(0.0); N];
-        loose.state = [q, zero, zero, zero, q, zero];
-        self.write(&loose);
-        if self.status[id as usize] == Status::Failed {
-            self.status[id as usize] = Status::Awake;
+        detached.state = [q, zero, zero, zero, q, zero];
+        self.write(&detached);
+        if self.status[id as usize] == SceneStatus::Failed {
+            self.status[id as usize] = SceneStatus::Awake;
             self.set_awake(id, true);
         }
         Ok(())

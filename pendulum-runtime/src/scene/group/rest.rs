@@ -2,7 +2,7 @@
 
 use crate::real::Float;
 use crate::scene::group::frequency::cube_root_of_rounding;
-use crate::scene::lanes::limits::Extra;
+use crate::scene::lanes::limits::Limits;
 use crate::system::System;
 use nalgebra::{DMatrix, DVector};
 
@@ -17,17 +17,17 @@ pub(crate) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
     q: &[T; N],
     inputs: &S::Inputs,
     omega: f64,
-    extra: &Extra<T, N>,
+    limits: &Limits<T, N>,
 ) -> Option<[T; N]> {
     let prepared = system.prepare();
     let zero = [T::from_f64(0.0); N];
     let a = |q: &[T; N]| -> [f64; N] {
         let (a, push) =
-            (system.accelerations_prepared(&prepared, t, q, &zero, inputs), extra.push(q));
+            (system.accelerations_prepared(&prepared, t, q, &zero, inputs), limits.push(q));
         core::array::from_fn(|i| (a[i] + push[i]).to_f64())
     };
     let size = |a: &[f64; N]| a.iter().fold(0.0f64, |size, a| size.max(a.abs()));
-    let held = |q: [T; N]| if extra.is_hard() { extra.inside(&q) } else { q };
+    let held = |q: [T; N]| if limits.is_hard() { limits.inside(&q) } else { q };
     let moved = |q: &[T; N], by: &[f64]| -> [T; N] {
         held(core::array::from_fn(|i| q[i] + T::from_f64(by[i])))
     };
@@ -40,8 +40,8 @@ pub(crate) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
         }
         // A wall bears what presses on it.
         let mut presses = false;
-        for i in (0..N).filter(|_| extra.is_hard()) {
-            if here[i] < 0.0 && q[i] == extra.low[i] || 0.0 < here[i] && q[i] == extra.high[i] {
+        for i in (0..N).filter(|_| limits.is_hard()) {
+            if here[i] < 0.0 && q[i] == limits.low[i] || 0.0 < here[i] && q[i] == limits.high[i] {
                 (here[i], presses) = (0.0, true);
             }
         }

@@ -3,12 +3,12 @@
 use crate::real::{Float, Lane, Real};
 use crate::scene::error::SceneError;
 use crate::scene::group::members::Group;
-use crate::scene::group::status::Status;
+use crate::scene::group::status::SceneStatus;
 use crate::scene::lanes::bucket::Kind;
-use crate::scene::lanes::detached::Loose;
-use crate::scene::lanes::limits::Extra;
-use crate::scene::lanes::system::{Hung, Known};
-use crate::scene::sampling::joint::{Place, still};
+use crate::scene::lanes::detached::Detached;
+use crate::scene::lanes::limits::Limits;
+use crate::scene::lanes::system::{Layouts, SceneSystem};
+use crate::scene::sampling::joint::{JointSlot, still};
 use crate::scene::sampling::scheme::{Grid, MOST_SUBSTEPS, Scheme};
 
 /// The state of all pendulums of a type, in the order of hanging.
@@ -16,7 +16,7 @@ use crate::scene::sampling::scheme::{Grid, MOST_SUBSTEPS, Scheme};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GroupState<T> {
     pub(crate) kind: String,
-    pub(crate) pendulums: Vec<(Scheme, u32, Status)>,
+    pub(crate) pendulums: Vec<(Scheme, u32, SceneStatus)>,
     /// Parameters, states and extras of one pendulum after the other.
     pub(crate) numbers: Vec<T>,
 }
@@ -31,7 +31,7 @@ const fn numbers(coordinates: usize) -> usize {
     6 * coordinates + 2 * coordinates + 4
 }
 
-impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// Everything that changes while the scene runs.
     pub(super) fn save(&self) -> GroupState<T> {
         let count = self.table.len();
@@ -44,17 +44,22 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             let bucket = &self.buckets[location.bucket as usize];
             let Grid { scheme, substeps } = bucket.kind.grid;
             state.pendulums.push((scheme, substeps, self.status[index]));
-            let (extra, values) = bucket.numbers(location.slot as usize);
+            let (limits, values) = bucket.numbers(location.slot as usize);
             state.numbers.extend(bucket.parameters_of(location.slot as usize));
             state.numbers.extend(values.iter().flatten());
             state.numbers.extend(
-                extra
+                limits
                     .low
                     .iter()
-                    .chain(&extra.high)
+                    .chain(&limits.high)
                     .map(|&limit| Real::max(Real::min(limit, most()), -most::<T>())),
             );
-            state.numbers.extend([extra.damping, extra.restitution, extra.stiffness, extra.hard]);
+            state.numbers.extend([
+                limits.damping,
+                limits.restitution,
+                limits.stiffness,
+                limits.hard,
+            ]);
         }
         state
     }
@@ -71,7 +76,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             return Err(SceneError::Snapshot("the numbers of its pendulums differ"));
         }
         let suits = |scheme, substeps: u32| {
-            (scheme == Scheme::Rk4 || Known::<S, N>::SPLITS)
+            (scheme == Scheme::Rk4 || Layouts::<S, N>::SPLITS)
                 && substeps <= MOST_SUBSTEPS
                 && substeps.is_power_of_two()
         };
@@ -90,7 +95,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Puts back what was saved.
-    pub(super) fn restore(&mut self, places: &[Place<T>], state: &GroupState<T>) {
+    pub(super) fn restore(&mut self, joint_slots: &[JointSlot<T>], state: &GroupState<T>) {
         let zero = T::from_f64(0.0);
         let mut rest = &state.numbers[..];
         let mut take = |count: usize| {
@@ -106,14 +111,14 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                 values
             };
             let numbers = core::array::from_fn(|_| array());
-            let mut limits = || {
+            let mut limit = || {
                 array().map(|limit| {
                     if limit.abs() < most() { limit } else { limit * T::from_f64(f64::INFINITY) }
                 })
             };
-            let (low, high) = (limits(), limits());
+            let (low, high) = (limit(), limit());
             let last = take(4);
-            let extra = Extra {
+            let limits = Limits {
                 damping: last[0],
                 low,
                 high,
@@ -122,20 +127,20 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                 hard: last[3],
             };
             let joints = self.joints(id).to_vec();
-            let kind = Kind { grid: Grid { scheme, substeps }, still: still(places, &joints) };
-            let loose = Loose { id, joints, parameters, state: numbers, extra };
+            let kind = Kind { grid: Grid { scheme, substeps }, still: still(joint_slots, &joints) };
+            let detached = Detached { id, joints, parameters, state: numbers, limits };
             let location = self.table[id as usize];
             if self.buckets[location.bucket as usize].kind == kind {
-                self.write(&loose);
+                self.write(&detached);
             } else {
                 self.remove(id);
-                self.insert(kind, &loose);
+                self.insert(kind, &detached);
             }
             self.status[id as usize] = status;
-            self.set_awake(id, status == Status::Awake);
+            self.set_awake(id, status == SceneStatus::Awake);
         }
         self.reset_alarms();
-        self.beds.clear();
+        self.criteria.clear();
     }
 
     /// The largest differences of coordinates and of velocities.

@@ -2,27 +2,27 @@
 //! move.
 
 use crate::real::{Float, Lane, Real};
-use crate::scene::group::criterion::{AtRest, Bed, barrier};
+use crate::scene::group::criterion::{AtRest, SleepCriterion, barrier};
 use crate::scene::group::frequency;
 use crate::scene::group::members::Group;
-use crate::scene::group::status::Status;
-use crate::scene::lanes::system::{Hung, W};
+use crate::scene::group::status::SceneStatus;
+use crate::scene::lanes::system::{SceneSystem, W};
 use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::Place;
+use crate::scene::sampling::joint::JointSlot;
 use core::cmp::Reverse;
 
 /// The ticks from one look for sleepers to the next.
 pub(crate) const LOOK: i64 = 16;
 
-impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// Wakes those whose time has come; all at the end of time.
-    pub(crate) fn wake_up_to(&mut self, tick: i64) -> bool {
+    pub(crate) fn wake_due(&mut self, tick: i64) -> bool {
         let mut woken = false;
         if tick == i64::MAX {
             self.alarms.clear();
             for id in 0..self.table.len() as u32 {
-                woken |= matches!(self.status[id as usize], Status::Asleep(_));
-                self.rouse(id);
+                woken |= matches!(self.status[id as usize], SceneStatus::Asleep(_));
+                self.wake(id);
             }
         }
         while let Some(&Reverse((when, id))) = self.alarms.peek()
@@ -30,8 +30,8 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         {
             self.alarms.pop();
             // Others have been woken before.
-            if self.status[id as usize] == Status::Asleep(when) {
-                self.rouse(id);
+            if self.status[id as usize] == SceneStatus::Asleep(when) {
+                self.wake(id);
                 woken = true;
             }
         }
@@ -42,14 +42,14 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     pub(crate) fn fall_asleep(
         &mut self,
         clock: &Clock,
-        places: &[Place<T>],
+        joint_slots: &[JointSlot<T>],
         tolerance: f64,
     ) -> bool {
         if S::FACTS.explicit_time {
             return false;
         }
         let (tick, now) = (clock.tick(), clock.time(clock.tick()));
-        self.beds.resize(self.table.len(), None);
+        self.criteria.resize(self.table.len(), None);
         let mut sleepers: Vec<(u32, i64)> = Vec::new();
         for index in 0..self.buckets.len() {
             let bucket = &self.buckets[index];
@@ -59,7 +59,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                     if !bucket.tracks.is_awake(track as usize) {
                         return tick;
                     }
-                    let rest = |&joint: &u32| places[joint as usize].drive.rest_until(now);
+                    let rest = |&joint: &u32| joint_slots[joint as usize].drive.rest_until(now);
                     clock.last_before(
                         bucket.tracks.joints(track).iter().map(rest).fold(f64::INFINITY, f64::min),
                     )
@@ -73,27 +73,28 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                     continue;
                 }
                 let (q, v) = block.state(lane);
-                let known =
-                    self.beds[id as usize].filter(|bed| bed.until == wake && bed.lasts(&q, &v));
-                let bed = known.unwrap_or_else(|| self.bed(clock, places, id, tolerance, wake));
-                self.beds[id as usize] = Some(bed);
-                let slow = T::from_f64(0.0) < bed.energy
-                    && (0..N).all(|i| Real::abs(v[i]) <= bed.speed[i]);
+                let known = self.criteria[id as usize]
+                    .filter(|criterion| criterion.until == wake && criterion.lasts(&q, &v));
+                let criterion = known
+                    .unwrap_or_else(|| self.criterion(clock, joint_slots, id, tolerance, wake));
+                self.criteria[id as usize] = Some(criterion);
+                let slow = T::from_f64(0.0) < criterion.energy
+                    && (0..N).all(|i| Real::abs(v[i]) <= criterion.speed[i]);
                 if slow
-                    && bed.distance(&q) <= bed.near
-                    && self.calm(clock, places, id, &q, &v, &bed)
+                    && criterion.distance(&q) <= criterion.near
+                    && self.is_calm(clock, joint_slots, id, &q, &v, &criterion)
                 {
                     sleepers.push((id, wake));
                 }
             }
         }
         for &(id, wake) in &sleepers {
-            let mut loose = self.read(id);
+            let mut detached = self.read(id);
             let zero = [T::from_f64(0.0); N];
-            let q = loose.state[0];
-            loose.state = [q, loose.state[1], zero, zero, q, zero];
-            self.write(&loose);
-            self.status[id as usize] = Status::Asleep(wake);
+            let q = detached.state[0];
+            detached.state = [q, detached.state[1], zero, zero, q, zero];
+            self.write(&detached);
+            self.status[id as usize] = SceneStatus::Asleep(wake);
             self.set_awake(id, false);
             self.alarms.extend(alarm(id, self.status[id as usize]));
         }
@@ -111,45 +112,45 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Forgets whether a pendulum may sleep.
-    pub(crate) fn unmake_bed(&mut self, id: u32) {
-        if let Some(bed) = self.beds.get_mut(id as usize) {
-            *bed = None;
+    pub(crate) fn forget_criterion(&mut self, id: u32) {
+        if let Some(criterion) = self.criteria.get_mut(id as usize) {
+            *criterion = None;
         }
     }
 
     /// Whether the energy is small enough.
-    fn calm(
+    fn is_calm(
         &self,
         clock: &Clock,
-        places: &[Place<T>],
+        joint_slots: &[JointSlot<T>],
         id: u32,
         q: &[T; N],
         v: &[T; N],
-        bed: &Bed<T, N>,
+        criterion: &SleepCriterion<T, N>,
     ) -> bool {
-        let loose = self.read(id);
-        let system = self.system_of(&loose.parameters);
-        let rest = AtRest::new(&system, clock, places, &loose);
-        let by = core::array::from_fn(|i| q[i] - bed.rest[i]);
-        rest.kinetic(q, v) + rest.lifted(&bed.rest, &by) <= bed.energy
+        let detached = self.read(id);
+        let system = self.system_of(&detached.parameters);
+        let rest = AtRest::new(&system, clock, joint_slots, &detached);
+        let by = core::array::from_fn(|i| q[i] - criterion.rest[i]);
+        rest.kinetic(q, v) + rest.lifted(&criterion.rest, &by) <= criterion.energy
     }
 
     /// What decides whether a pendulum may sleep.
-    fn bed(
+    fn criterion(
         &self,
         clock: &Clock,
-        places: &[Place<T>],
+        joint_slots: &[JointSlot<T>],
         id: u32,
         tolerance: f64,
         until: i64,
-    ) -> Bed<T, N> {
-        let (loose, near) = (self.read(id), T::from_f64(4.0 * tolerance));
-        let system = self.system_of(&loose.parameters);
-        let still = AtRest::new(&system, clock, places, &loose);
-        let [q, ..] = loose.state;
+    ) -> SleepCriterion<T, N> {
+        let (detached, near) = (self.read(id), T::from_f64(4.0 * tolerance));
+        let system = self.system_of(&detached.parameters);
+        let still = AtRest::new(&system, clock, joint_slots, &detached);
+        let [q, ..] = detached.state;
         // Where it may not sleep it is looked at again when it is slow.
         let omega = frequency::fastest(&system, still.t, &q, &still.forces);
-        let never = Bed {
+        let never = SleepCriterion {
             until,
             rest: q,
             energy: T::from_f64(-1.0),
@@ -157,7 +158,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             near,
             reach: near,
         };
-        let Some(rest) = self.rest_of(places, &loose, clock.time(clock.tick())) else {
+        let Some(rest) = self.rest_of(joint_slots, &detached, clock.time(clock.tick())) else {
             return never;
         };
         let lifted = |by: &[f64; N]| still.lifted(&rest, &by.map(T::from_f64)).to_f64();
@@ -168,16 +169,19 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         let speed = core::array::from_fn(|i| {
             (T::from_f64(2.42) * energy * still.mobility(&rest, i)).sqrt()
         });
-        let bed = Bed { until, rest, energy, speed, near, reach: near };
+        let criterion = SleepCriterion { until, rest, energy, speed, near, reach: near };
         // A tenth more, so that a swing that grows is not looked at in every turn.
-        Bed { reach: Real::max(near, T::from_f64(1.1) * bed.distance(&q)), ..bed }
+        SleepCriterion {
+            reach: Real::max(near, T::from_f64(1.1) * criterion.distance(&q)),
+            ..criterion
+        }
     }
 }
 
 /// When a pendulum is to wake, if it ever is.
-fn alarm(id: u32, status: Status) -> Option<Reverse<(i64, u32)>> {
+fn alarm(id: u32, status: SceneStatus) -> Option<Reverse<(i64, u32)>> {
     match status {
-        Status::Asleep(tick) if tick != i64::MAX => Some(Reverse((tick, id))),
+        SceneStatus::Asleep(tick) if tick != i64::MAX => Some(Reverse((tick, id))),
         _ => None,
     }
 }

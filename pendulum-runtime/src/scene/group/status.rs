@@ -3,7 +3,7 @@
 /// What a pendulum is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Status {
+pub enum SceneStatus {
     /// It swings.
     Awake,
     /// It rests until the tick given, or until somebody wakes it.

@@ -2,12 +2,12 @@
 
 use crate::integrate::sum::Sum;
 use crate::real::{Float, Lane, Real};
-use crate::scene::lanes::limits::Extras;
-use crate::scene::lanes::system::{Hung, W, Wide};
+use crate::scene::lanes::limits::LaneLimits;
+use crate::scene::lanes::system::{SceneSystem, W, Wide};
 use crate::system::System;
 
 /// [`W`] pendulums of one type.
-pub(crate) struct Block<S: Hung<T, N>, T: Lane + Float, const N: usize> {
+pub(crate) struct Block<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) prepared: <S::Lanes as System<N>>::Prepared,
     pub(crate) q: Sum<Wide<T>, N>,
     pub(crate) v: Sum<Wide<T>, N>,
@@ -20,12 +20,12 @@ pub(crate) struct Block<S: Hung<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) failed: u64,
     pub(crate) failed_at: [u8; W],
     /// Damping and stops, if any lane has them.
-    pub(crate) extras: Option<Box<Extras<T, N>>>,
+    pub(crate) limits: Option<Box<LaneLimits<T, N>>>,
 }
 
 /// What most steps do not read of [`W`] pendulums: between the states it would only use up the
 /// caches.
-pub(crate) struct Rare<S: Hung<T, N>, T: Lane + Float, const N: usize> {
+pub(crate) struct ColdData<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) system: S::Lanes,
     /// By lane, its number in the group.
     pub(crate) id: [u32; W],
@@ -34,9 +34,9 @@ pub(crate) struct Rare<S: Hung<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) stale: bool,
 }
 
-impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
     /// A block of pendulums like `prototype`, at rest at zero.
-    pub(crate) fn new(prototype: &S) -> (Self, Rare<S, T, N>) {
+    pub(crate) fn new(prototype: &S) -> (Self, ColdData<S, T, N>) {
         let system = prototype.widen(Wide::splat);
         let zero = [Wide::from_f64(0.0); N];
         let block = Self {
@@ -47,9 +47,9 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
             track: [0; W],
             failed: 0,
             failed_at: [0; W],
-            extras: None,
+            limits: None,
         };
-        (block, Rare { system, id: [0; W], stale: false })
+        (block, ColdData { system, id: [0; W], stale: false })
     }
 
     /// The state of a lane: coordinates and velocities.

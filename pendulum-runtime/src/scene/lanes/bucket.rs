@@ -2,11 +2,11 @@
 //! lanes.
 
 use crate::real::{Float, Lane};
-use crate::scene::lanes::block::{Block, Rare};
-use crate::scene::lanes::detached::Loose;
+use crate::scene::lanes::block::{Block, ColdData};
+use crate::scene::lanes::detached::Detached;
 use crate::scene::lanes::kernel::{Batch, Run};
-use crate::scene::lanes::limits::{Extra, Extras, half_decay};
-use crate::scene::lanes::system::{Hung, Known, W, Wide};
+use crate::scene::lanes::limits::{LaneLimits, Limits, half_decay};
+use crate::scene::lanes::system::{Layouts, SceneSystem, W, Wide};
 use crate::scene::sampling::scheme::Grid;
 use crate::scene::sampling::tracks::{Sampled, Tracks};
 use crate::simd::widest;
@@ -23,12 +23,12 @@ pub(crate) struct Kind {
 }
 
 /// Pendulums of one kind.
-pub(crate) struct Bucket<S: Hung<T, N>, T: Lane + Float, const N: usize> {
+pub(crate) struct Bucket<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) kind: Kind,
     pub(crate) tracks: Tracks<T>,
     pub(crate) blocks: Vec<Block<S, T, N>>,
     /// The other part of each block.
-    pub(crate) rare: Vec<Rare<S, T, N>>,
+    pub(crate) cold: Vec<ColdData<S, T, N>>,
     /// The parameters: as many lanes for each block as the system has parameters.
     pub(crate) parameters: Vec<Wide<T>>,
     /// All, and those at the front that are awake.
@@ -41,7 +41,7 @@ pub(crate) struct Bucket<S: Hung<T, N>, T: Lane + Float, const N: usize> {
 /// A lane that has failed: the pendulum and the ticks since the beginning of the batch.
 pub(crate) type Failed = (u32, u8);
 
-impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     pub(crate) fn new(kind: Kind) -> Self {
         let tracks = Tracks::new(
             <S::Inputs as crate::scene::sampling::assemble::Assemble<T>>::COMPONENTS.len(),
@@ -50,7 +50,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
             kind,
             tracks,
             blocks: Vec::new(),
-            rare: Vec::new(),
+            cold: Vec::new(),
             parameters: Vec::new(),
             len: 0,
             awake: 0,
@@ -64,19 +64,19 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     }
 
     /// Adds a pendulum at the end, where it sleeps; gives its slot.
-    pub(crate) fn push(&mut self, prototype: &S, loose: &Loose<T, N>) -> usize {
+    pub(crate) fn push(&mut self, prototype: &S, detached: &Detached<T, N>) -> usize {
         let slot = self.len;
         if slot == self.blocks.len() * W {
-            let (block, rare) = Block::new(prototype);
+            let (block, cold) = Block::new(prototype);
             self.blocks.push(block);
-            self.rare.push(rare);
+            self.cold.push(cold);
             prototype.mapped(|parameter| {
                 self.parameters.push(Wide::splat(parameter));
                 parameter
             });
         }
         self.len += 1;
-        self.write(slot, loose);
+        self.write(slot, detached);
         slot
     }
 
@@ -85,35 +85,41 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         self.len -= 1;
         if self.len <= (self.blocks.len() - 1) * W {
             self.blocks.pop();
-            self.rare.pop();
+            self.cold.pop();
             self.parameters.truncate(self.blocks.len() * Self::parameter_count());
         }
     }
 
-    /// What acts on the pendulum in a slot and its state, as in [`Loose`].
-    pub(crate) fn numbers(&self, slot: usize) -> (Extra<T, N>, [[T; N]; 6]) {
+    /// What acts on the pendulum in a slot and its state, as in [`Detached`].
+    pub(crate) fn numbers(&self, slot: usize) -> (Limits<T, N>, [[T; N]; 6]) {
         let (block, lane) = (&self.blocks[slot / W], slot % W);
         let of = |lanes: &[Wide<T>; N]| lanes.map(|lanes| lanes.0[lane]);
-        let extra = block.extras.as_deref().map_or_else(Extra::none, |extras| Extra {
-            damping: extras.damping.0[lane],
-            low: of(&extras.low),
-            high: of(&extras.high),
-            restitution: extras.restitution.0[lane],
-            stiffness: extras.stiffness.0[lane],
-            hard: extras.hard.0[lane],
+        let limits = block.limits.as_deref().map_or_else(Limits::none, |limits| Limits {
+            damping: limits.damping.0[lane],
+            low: of(&limits.low),
+            high: of(&limits.high),
+            restitution: limits.restitution.0[lane],
+            stiffness: limits.stiffness.0[lane],
+            hard: limits.hard.0[lane],
         });
         let [before_q, before_v] = &block.before;
         (
-            extra,
+            limits,
             [&block.q.high, &block.q.low, &block.v.high, &block.v.low, before_q, before_v].map(of),
         )
     }
 
     /// The pendulum in a slot.
-    pub(crate) fn read(&self, slot: usize) -> Loose<T, N> {
-        let (extra, state) = self.numbers(slot);
+    pub(crate) fn read(&self, slot: usize) -> Detached<T, N> {
+        let (limits, state) = self.numbers(slot);
         let parameters = self.parameters_of(slot).collect();
-        Loose { id: self.id(slot), joints: self.joints(slot).to_vec(), parameters, state, extra }
+        Detached {
+            id: self.id(slot),
+            joints: self.joints(slot).to_vec(),
+            parameters,
+            state,
+            limits,
+        }
     }
 
     /// The joints of the pendulum in a slot.
@@ -128,40 +134,40 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     }
 
     /// Puts a pendulum into a slot.
-    pub(crate) fn write(&mut self, slot: usize, loose: &Loose<T, N>) {
-        let track = self.tracks.find(&loose.joints);
+    pub(crate) fn write(&mut self, slot: usize, detached: &Detached<T, N>) {
+        let track = self.tracks.find(&detached.joints);
         let count = Self::parameter_count();
         let lane = slot % W;
         let parameters = &mut self.parameters[slot / W * count..][..count];
-        let (block, rare) = (&mut self.blocks[slot / W], &mut self.rare[slot / W]);
-        for (lanes, &parameter) in parameters.iter_mut().zip(&loose.parameters) {
+        let (block, cold) = (&mut self.blocks[slot / W], &mut self.cold[slot / W]);
+        for (lanes, &parameter) in parameters.iter_mut().zip(&detached.parameters) {
             lanes.0[lane] = parameter;
         }
-        rare.stale = true;
+        cold.stale = true;
         self.stale = true;
-        (block.track[lane], rare.id[lane]) = (track, loose.id);
+        (block.track[lane], cold.id[lane]) = (track, detached.id);
         let Block { q, v, before: [before_q, before_v], .. } = block;
         for (lanes, numbers) in
             [&mut q.high, &mut q.low, &mut v.high, &mut v.low, before_q, before_v]
                 .into_iter()
-                .zip(&loose.state)
+                .zip(&detached.state)
         {
             for i in 0..N {
                 lanes[i].0[lane] = numbers[i];
             }
         }
-        let extra = &loose.extra;
-        if block.extras.is_none() && *extra == Extra::none() {
+        let own = &detached.limits;
+        if block.limits.is_none() && *own == Limits::none() {
             return;
         }
-        let extras = block.extras.get_or_insert_with(|| Box::new(Extras::none()));
+        let limits = block.limits.get_or_insert_with(|| Box::new(LaneLimits::none()));
         for i in 0..N {
-            (extras.low[i].0[lane], extras.high[i].0[lane]) = (extra.low[i], extra.high[i]);
+            (limits.low[i].0[lane], limits.high[i].0[lane]) = (own.low[i], own.high[i]);
         }
-        extras.damping.0[lane] = extra.damping;
-        extras.restitution.0[lane] = extra.restitution;
-        extras.stiffness.0[lane] = extra.stiffness;
-        extras.hard.0[lane] = extra.hard;
+        limits.damping.0[lane] = own.damping;
+        limits.restitution.0[lane] = own.restitution;
+        limits.stiffness.0[lane] = own.stiffness;
+        limits.hard.0[lane] = own.hard;
     }
 
     /// Lets the pendulums in two slots change places.
@@ -174,7 +180,7 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     }
 
     pub(crate) fn id(&self, slot: usize) -> u32 {
-        self.rare[slot / W].id[slot % W]
+        self.cold[slot / W].id[slot % W]
     }
 
     /// Computes once what parameters alone decide, where they have changed.
@@ -184,21 +190,21 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         }
         self.stale = false;
         let (count, h) = (Self::parameter_count(), step / f64::from(self.kind.grid.substeps));
-        let blocks = self.blocks.iter_mut().zip(&mut self.rare).enumerate();
-        for (index, (block, rare)) in blocks.filter(|(_, (_, rare))| rare.stale) {
+        let blocks = self.blocks.iter_mut().zip(&mut self.cold).enumerate();
+        for (index, (block, cold)) in blocks.filter(|(_, (_, cold))| cold.stale) {
             let mut parameters = self.parameters[index * count..][..count].iter();
-            rare.system = prototype.widen(|parameter| {
+            cold.system = prototype.widen(|parameter| {
                 parameters.next().map_or(Wide::splat(parameter), |lanes| *lanes)
             });
-            block.prepared = rare.system.prepare();
-            rare.stale = false;
-            if let Some(extras) = &mut block.extras {
+            block.prepared = cold.system.prepare();
+            cold.stale = false;
+            if let Some(limits) = &mut block.limits {
                 let infinity = T::from_f64(f64::INFINITY);
-                extras.stops = false;
+                limits.stops = false;
                 for lane in 0..W {
-                    extras.factor.0[lane] = half_decay(extras.damping.0[lane], h);
-                    extras.stops |= (0..N).any(|i| {
-                        extras.low[i].0[lane] != -infinity || extras.high[i].0[lane] != infinity
+                    limits.factor.0[lane] = half_decay(limits.damping.0[lane], h);
+                    limits.stops |= (0..N).any(|i| {
+                        limits.low[i].0[lane] != -infinity || limits.high[i].0[lane] != infinity
                     });
                 }
             }
@@ -211,14 +217,14 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
             return;
         }
         let (layout, momenta) =
-            (const { &Known::<S, N>::FORCES }, const { &Known::<S, N>::MOMENTA });
+            (const { &Layouts::<S, N>::FORCES }, const { &Layouts::<S, N>::MOMENTA });
         let Kind { grid, still } = self.kind;
         if still {
             self.tracks.load_still(
                 layout,
                 S::FACTS.inputs,
                 sampled.clock.time(sampled.tick),
-                sampled.places,
+                sampled.joint_slots,
             );
         } else {
             self.tracks.load(grid, layout, momenta, S::FACTS.inputs, sampled, fork);
@@ -242,15 +248,15 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         };
         let blocks = &mut self.blocks[..self.awake.div_ceil(W)];
         let lanes_of_last = (self.awake - 1) % W + 1;
-        through(blocks, &self.rare, lanes_of_last, &batch, fork);
+        run_blocks(blocks, &self.cold, lanes_of_last, &batch, fork);
         if !batch.failed.into_inner() {
             return;
         }
-        for (block, rare) in
-            blocks.iter_mut().zip(&self.rare).filter(|(block, _)| block.failed != 0)
+        for (block, cold) in
+            blocks.iter_mut().zip(&self.cold).filter(|(block, _)| block.failed != 0)
         {
             for lane in (0..W).filter(|lane| block.failed & (1 << lane) != 0) {
-                failed.push((rare.id[lane], block.failed_at[lane]));
+                failed.push((cold.id[lane], block.failed_at[lane]));
             }
             block.failed = 0;
         }
@@ -259,9 +265,9 @@ impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
 
 /// Takes all blocks through a batch, on all threads if there are many.
 #[cfg(feature = "rayon")]
-fn through<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+fn run_blocks<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     blocks: &mut [Block<S, T, N>],
-    rare: &[Rare<S, T, N>],
+    cold: &[ColdData<S, T, N>],
     lanes_of_last: usize,
     batch: &Batch<'_, T>,
     fork: bool,
@@ -269,15 +275,15 @@ fn through<S: Hung<T, N>, T: Lane + Float, const N: usize>(
     use crate::scene::threads::{part, share};
     const LEAST: usize = 32;
     if !fork || blocks.len() < 2 * LEAST {
-        return widest(Run { blocks, rare, lanes_of_last, batch });
+        return widest(Run { blocks, cold, lanes_of_last, batch });
     }
     let part = part(blocks.len(), LEAST);
     let last = blocks.len().div_ceil(part) - 1;
-    let parts = blocks.chunks_mut(part).zip(rare.chunks(part)).enumerate();
-    share(parts, |(index, (blocks, rare))| {
+    let parts = blocks.chunks_mut(part).zip(cold.chunks(part)).enumerate();
+    share(parts, |(index, (blocks, cold))| {
         widest(Run {
             blocks,
-            rare,
+            cold,
             lanes_of_last: if index == last { lanes_of_last } else { W },
             batch,
         });
@@ -286,12 +292,12 @@ fn through<S: Hung<T, N>, T: Lane + Float, const N: usize>(
 
 /// Takes all blocks through a batch.
 #[cfg(not(feature = "rayon"))]
-fn through<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+fn run_blocks<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     blocks: &mut [Block<S, T, N>],
-    rare: &[Rare<S, T, N>],
+    cold: &[ColdData<S, T, N>],
     lanes_of_last: usize,
     batch: &Batch<'_, T>,
     _: bool,
 ) {
-    widest(Run { blocks, rare, lanes_of_last, batch });
+    widest(Run { blocks, cold, lanes_of_last, batch });
 }

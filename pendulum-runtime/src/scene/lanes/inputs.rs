@@ -3,18 +3,19 @@
 #![allow(clippy::inline_always)]
 
 use crate::real::{Float, Lane, Real};
-use crate::scene::lanes::system::{Hung, W, Wide};
+use crate::scene::lanes::system::{SceneSystem, W, Wide};
 use crate::scene::sampling::assemble::{Assemble, Numbers};
 use crate::scene::sampling::layout::Layout;
 use crate::scene::sampling::tracks::Tracks;
 use crate::system::System;
 
 /// The driven inputs of all lanes at one time.
-pub(crate) type Inputs<S, T, const N: usize> = <<S as Hung<T, N>>::Lanes as System<N>>::Inputs;
+pub(crate) type Inputs<S, T, const N: usize> =
+    <<S as SceneSystem<T, N>>::Lanes as System<N>>::Inputs;
 
 /// Inputs that are all zero.
 #[inline(always)]
-pub(crate) fn nothing<S: Hung<T, N>, T: Lane + Float, const N: usize>() -> Inputs<S, T, N> {
+pub(crate) fn nothing<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>() -> Inputs<S, T, N> {
     Assemble::assemble(&mut Nothing)
 }
 
@@ -70,7 +71,7 @@ impl<'a, T: Lane + Float> Followed<'a, T> {
 
     /// The inputs at an evaluation of the batch.
     #[inline(always)]
-    pub(crate) fn inputs<S: Hung<T, N>, const N: usize>(
+    pub(crate) fn inputs<S: SceneSystem<T, N>, const N: usize>(
         &self,
         evaluation: usize,
     ) -> Inputs<S, T, N> {

@@ -9,10 +9,10 @@
 use crate::integrate::sum::Sum;
 use crate::integrate::{leapfrog, srkn6b};
 use crate::real::{Float, Lane, Real};
-use crate::scene::lanes::block::{Block, Rare};
+use crate::scene::lanes::block::{Block, ColdData};
 use crate::scene::lanes::inputs::{Followed, Inputs, nothing};
-use crate::scene::lanes::limits::{Extras, half_decay};
-use crate::scene::lanes::system::{Hung, Known, W, Wide};
+use crate::scene::lanes::limits::{LaneLimits, half_decay};
+use crate::scene::lanes::system::{Layouts, SceneSystem, W, Wide};
 use crate::scene::sampling::assemble::{Assemble, By};
 use crate::scene::sampling::scheme::{Grid, MOST_STAGES, Scheme};
 use crate::scene::sampling::tracks::{Piece, Tracks};
@@ -38,28 +38,28 @@ pub(crate) struct Batch<'a, T> {
 }
 
 /// Blocks on their way through a batch, of which the last has so many lanes that are awake.
-pub(crate) struct Run<'a, S: Hung<T, N>, T: Lane + Float, const N: usize> {
+pub(crate) struct Run<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) blocks: &'a mut [Block<S, T, N>],
     /// The other parts of the blocks.
-    pub(crate) rare: &'a [Rare<S, T, N>],
+    pub(crate) cold: &'a [ColdData<S, T, N>],
     pub(crate) lanes_of_last: usize,
     pub(crate) batch: &'a Batch<'a, T>,
 }
 
-impl<S: Hung<T, N>, T: Lane + Float, const N: usize> Work for Run<'_, S, T, N> {
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Work for Run<'_, S, T, N> {
     #[inline(always)]
     fn run(self) {
         let last = self.blocks.len().wrapping_sub(1);
-        for (index, (block, Rare { system, .. })) in
-            self.blocks.iter_mut().zip(self.rare).enumerate()
+        for (index, (block, ColdData { system, .. })) in
+            self.blocks.iter_mut().zip(self.cold).enumerate()
         {
             let lanes = if index == last { self.lanes_of_last } else { W };
             let kept = (lanes < W).then_some((block.q, block.v, block.before));
             match self.batch.grid.scheme {
-                Scheme::Leapfrog if Known::<S, N>::SPLITS => {
+                Scheme::Leapfrog if Layouts::<S, N>::SPLITS => {
                     batch::<S, T, N, LEAPFROG, 1>(block, system, self.batch);
                 }
-                Scheme::Srkn6b if Known::<S, N>::SPLITS => {
+                Scheme::Srkn6b if Layouts::<S, N>::SPLITS => {
                     batch::<S, T, N, SRKN6B, 7>(block, system, self.batch);
                 }
                 _ => batch::<S, T, N, RK4, 3>(block, system, self.batch),
@@ -123,14 +123,20 @@ impl<T: Lane + Float> Weights<T> {
 }
 
 #[inline(always)]
-fn batch<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, const K: usize>(
+fn batch<
+    S: SceneSystem<T, N>,
+    T: Lane + Float,
+    const N: usize,
+    const SCHEME: u8,
+    const K: usize,
+>(
     block: &mut Block<S, T, N>,
     system: &S::Lanes,
     batch: &Batch<'_, T>,
 ) {
     let stages = K;
     let weights = Weights::<T>::new::<SCHEME>(|weight| Wide::from_f64(weight * batch.h));
-    let layout = const { &Known::<S, N>::FORCES };
+    let layout = const { &Layouts::<S, N>::FORCES };
     let zero = T::from_f64(0.0);
     let track = block.track;
     let followed = Followed::new(batch.tracks, layout, &track);
@@ -156,7 +162,7 @@ fn batch<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, const
                         inputs[stage] = followed.inputs::<S, N>(evaluation + stage);
                     }
                 }
-                let Block { prepared, q, v, extras, .. } = &mut *block;
+                let Block { prepared, q, v, limits, .. } = &mut *block;
                 step_of::<S, T, N, SCHEME, K>(
                     system,
                     prepared,
@@ -165,7 +171,7 @@ fn batch<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, const
                     &inputs,
                     q,
                     v,
-                    extras.as_deref(),
+                    limits.as_deref(),
                 );
             }
         }
@@ -188,7 +194,7 @@ fn batch<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, const
 /// Puts the lanes that are not finite back to where the tick began, for good.
 #[cold]
 #[inline(never)]
-fn freeze<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+fn freeze<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     block: &mut Block<S, T, N>,
     finite: &Wide<T>,
     tick: usize,
@@ -213,24 +219,24 @@ fn freeze<S: Hung<T, N>, T: Lane + Float, const N: usize>(
 
 /// The accelerations, with those of soft stops.
 #[inline(always)]
-fn accelerations<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+fn accelerations<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     system: &S::Lanes,
     prepared: &<S::Lanes as System<N>>::Prepared,
     t: Wide<T>,
     inputs: &Inputs<S, T, N>,
     q: &[Wide<T>; N],
     v: &[Wide<T>; N],
-    extras: Option<&Extras<T, N>>,
+    limits: Option<&LaneLimits<T, N>>,
 ) -> [Wide<T>; N] {
     let at_time = S::Lanes::at_time(t, inputs);
     let at_position = system.at_position(prepared, &at_time, t, q, inputs);
     let mut a = system.accelerations_staged(prepared, &at_time, &at_position, t, q, v, inputs);
-    if let Some(extras) = extras
-        && extras.stops
+    if let Some(limits) = limits
+        && limits.stops
     {
         for i in 0..N {
             for lane in 0..W {
-                let (x, low, high) = (q[i].0[lane], extras.low[i].0[lane], extras.high[i].0[lane]);
+                let (x, low, high) = (q[i].0[lane], limits.low[i].0[lane], limits.high[i].0[lane]);
                 let beyond = if high < x {
                     x - high
                 } else if x < low {
@@ -238,7 +244,7 @@ fn accelerations<S: Hung<T, N>, T: Lane + Float, const N: usize>(
                 } else {
                     T::from_f64(0.0)
                 };
-                a[i].0[lane] -= extras.stiffness.0[lane] * beyond;
+                a[i].0[lane] -= limits.stiffness.0[lane] * beyond;
             }
         }
     }
@@ -247,7 +253,13 @@ fn accelerations<S: Hung<T, N>, T: Lane + Float, const N: usize>(
 
 #[inline(always)]
 #[allow(clippy::too_many_arguments)]
-fn step_of<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, const K: usize>(
+fn step_of<
+    S: SceneSystem<T, N>,
+    T: Lane + Float,
+    const N: usize,
+    const SCHEME: u8,
+    const K: usize,
+>(
     system: &S::Lanes,
     prepared: &<S::Lanes as System<N>>::Prepared,
     weights: &Weights<T>,
@@ -255,26 +267,26 @@ fn step_of<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, con
     inputs: &[Inputs<S, T, N>; K],
     q: &mut Sum<Wide<T>, N>,
     v: &mut Sum<Wide<T>, N>,
-    extras: Option<&Extras<T, N>>,
+    limits: Option<&LaneLimits<T, N>>,
 ) {
-    decay(v, extras);
+    decay(v, limits);
     let at = |stage: usize, q: &[Wide<T>; N], v: &[Wide<T>; N]| {
-        accelerations::<S, T, N>(system, prepared, times[stage], &inputs[stage], q, v, extras)
+        accelerations::<S, T, N>(system, prepared, times[stage], &inputs[stage], q, v, limits)
     };
     match SCHEME {
         LEAPFROG => {
-            drift::<T, N>(weights.outer[0], q, v, extras);
+            drift::<T, N>(weights.outer[0], q, v, limits);
             let a = accelerations::<S, T, N>(
-                system, prepared, times[0], &inputs[0], &q.high, &v.high, extras,
+                system, prepared, times[0], &inputs[0], &q.high, &v.high, limits,
             );
             v.add(weights.inner[0], &a);
-            drift::<T, N>(weights.outer[1], q, v, extras);
+            drift::<T, N>(weights.outer[1], q, v, limits);
         }
         SRKN6B => {
             let mut a = at(0, &q.high, &v.high);
             for i in 0..6 {
                 v.add(weights.outer[i], &a);
-                drift::<T, N>(weights.inner[i], q, v, extras);
+                drift::<T, N>(weights.inner[i], q, v, limits);
                 a = at(i + 1, &q.high, &v.high);
             }
             v.add(weights.outer[6], &a);
@@ -303,19 +315,22 @@ fn step_of<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, con
             }
             q.add(weights.h, &sum_q);
             v.add(weights.h, &sum_v);
-            stop::<T, N>(q, v, extras);
+            stop::<T, N>(q, v, limits);
         }
     }
-    decay(v, extras);
+    decay(v, limits);
 }
 
 /// Half of the damping of a step.
 #[inline(always)]
-fn decay<T: Lane + Float, const N: usize>(v: &mut Sum<Wide<T>, N>, extras: Option<&Extras<T, N>>) {
-    if let Some(extras) = extras {
+fn decay<T: Lane + Float, const N: usize>(
+    v: &mut Sum<Wide<T>, N>,
+    limits: Option<&LaneLimits<T, N>>,
+) {
+    if let Some(limits) = limits {
         for i in 0..N {
-            v.high[i] *= extras.factor;
-            v.low[i] *= extras.factor;
+            v.high[i] *= limits.factor;
+            v.low[i] *= limits.factor;
         }
     }
 }
@@ -325,10 +340,10 @@ fn drift<T: Lane + Float, const N: usize>(
     weight: Wide<T>,
     q: &mut Sum<Wide<T>, N>,
     v: &mut Sum<Wide<T>, N>,
-    extras: Option<&Extras<T, N>>,
+    limits: Option<&LaneLimits<T, N>>,
 ) {
     q.add(weight, &v.high);
-    stop::<T, N>(q, v, extras);
+    stop::<T, N>(q, v, limits);
 }
 
 /// Throws what has gone beyond a hard stop back: within a drift the path is straight, so what lies
@@ -337,20 +352,20 @@ fn drift<T: Lane + Float, const N: usize>(
 fn stop<T: Lane + Float, const N: usize>(
     q: &mut Sum<Wide<T>, N>,
     v: &mut Sum<Wide<T>, N>,
-    extras: Option<&Extras<T, N>>,
+    limits: Option<&LaneLimits<T, N>>,
 ) {
-    let Some(extras) = extras else { return };
-    if !extras.stops {
+    let Some(limits) = limits else { return };
+    if !limits.stops {
         return;
     }
     let zero = T::from_f64(0.0);
     for i in 0..N {
         for lane in 0..W {
-            if extras.hard.0[lane] == zero {
+            if limits.hard.0[lane] == zero {
                 continue;
             }
             let (x, speed) = (q.high[i].0[lane], v.high[i].0[lane]);
-            let (low, high) = (extras.low[i].0[lane], extras.high[i].0[lane]);
+            let (low, high) = (limits.low[i].0[lane], limits.high[i].0[lane]);
             let limit = if high < x && zero < speed {
                 high
             } else if x < low && speed < zero {
@@ -358,7 +373,7 @@ fn stop<T: Lane + Float, const N: usize>(
             } else {
                 continue;
             };
-            let e = extras.restitution.0[lane];
+            let e = limits.restitution.0[lane];
             // Where the other limit is as near it holds, too.
             let back = Real::min(Real::max(limit - e * (x - limit), low), high);
             (q.high[i].0[lane], q.low[i].0[lane]) = (back, zero);
@@ -370,7 +385,13 @@ fn stop<T: Lane + Float, const N: usize>(
 /// A tick that kinks cut into pieces, others in each lane.
 #[cold]
 #[inline(never)]
-fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, const K: usize>(
+fn cut_tick<
+    S: SceneSystem<T, N>,
+    T: Lane + Float,
+    const N: usize,
+    const SCHEME: u8,
+    const K: usize,
+>(
     block: &mut Block<S, T, N>,
     system: &S::Lanes,
     batch: &Batch<'_, T>,
@@ -378,7 +399,7 @@ fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, co
 ) {
     let stages = K;
     let substeps = batch.grid.substeps as usize;
-    let layout = const { &Known::<S, N>::FORCES };
+    let layout = const { &Layouts::<S, N>::FORCES };
     let pieces = block.track.map(|track| batch.tracks.pieces(tick, track));
     let steps = pieces
         .iter()
@@ -412,7 +433,7 @@ fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, co
                 let Some(place) = layout.place(input, derivative, component) else { return lanes };
                 for lane in (0..W).filter(|&lane| active[lane]) {
                     lanes.0[lane] = if let Some(piece) = pieces[lane].get(step) {
-                        batch.tracks.extra()[piece.begin + stage * layout.width + place]
+                        batch.tracks.piece_records()[piece.begin + stage * layout.width + place]
                     } else {
                         let evaluation = (tick * substeps + step) * stages + stage;
                         batch.tracks.record(block.track[lane], evaluation, layout.width)[place]
@@ -428,12 +449,12 @@ fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, co
             }
             lanes
         });
-        let extras = block.extras.as_deref().map(|extras| {
-            let mut extras = extras.clone();
+        let limits = block.limits.as_deref().map(|limits| {
+            let mut limits = limits.clone();
             for lane in 0..W {
-                extras.factor.0[lane] = half_decay(extras.damping.0[lane], lengths[lane]);
+                limits.factor.0[lane] = half_decay(limits.damping.0[lane], lengths[lane]);
             }
-            extras
+            limits
         });
         let (mut q, mut v) = (block.q, block.v);
         step_of::<S, T, N, SCHEME, K>(
@@ -444,7 +465,7 @@ fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, co
             &inputs,
             &mut q,
             &mut v,
-            extras.as_ref(),
+            limits.as_ref(),
         );
         for lane in (0..W).filter(|&lane| active[lane]) {
             copy_lane(&mut block.q.high, &q.high, lane);
@@ -457,18 +478,18 @@ fn cut_tick<S: Hung<T, N>, T: Lane + Float, const N: usize, const SCHEME: u8, co
 }
 
 /// Carries the momenta over the kinks at the ends of the pieces just done.
-fn cross<S: Hung<T, N>, T: Lane + Float, const N: usize>(
+fn cross<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     block: &mut Block<S, T, N>,
     system: &S::Lanes,
     batch: &Batch<'_, T>,
     pieces: &[Option<&Piece>; W],
 ) {
-    let layout = const { &Known::<S, N>::MOMENTA };
-    let extra = batch.tracks.extra();
+    let layout = const { &Layouts::<S, N>::MOMENTA };
+    let records = batch.tracks.piece_records();
     let mut jumps = [None; W];
     for lane in 0..W {
         if let Some((time, begin)) = pieces[lane].and_then(|piece| piece.jump)
-            && extra[begin..][..layout.width] != extra[begin + layout.width..][..layout.width]
+            && records[begin..][..layout.width] != records[begin + layout.width..][..layout.width]
         {
             jumps[lane] = Some((time, begin));
         }
@@ -482,7 +503,7 @@ fn cross<S: Hung<T, N>, T: Lane + Float, const N: usize>(
             if let Some(place) = layout.place(input, derivative, component) {
                 for lane in 0..W {
                     if let Some((_, begin)) = jumps[lane] {
-                        lanes.0[lane] = extra[begin + after * layout.width + place];
+                        lanes.0[lane] = records[begin + after * layout.width + place];
                     }
                 }
             }

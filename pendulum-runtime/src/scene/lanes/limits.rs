@@ -5,7 +5,7 @@ use crate::scene::lanes::system::Wide;
 
 /// What acts on one pendulum beside its equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Extra<T, const N: usize> {
+pub(crate) struct Limits<T, const N: usize> {
     pub(crate) damping: T,
     pub(crate) low: [T; N],
     pub(crate) high: [T; N],
@@ -14,7 +14,7 @@ pub(crate) struct Extra<T, const N: usize> {
     pub(crate) hard: T,
 }
 
-impl<T: Real, const N: usize> Extra<T, N> {
+impl<T: Real, const N: usize> Limits<T, N> {
     pub(crate) fn none() -> Self {
         let number = T::from_f64;
         Self {
@@ -65,7 +65,7 @@ impl<T: Real, const N: usize> Extra<T, N> {
 
 /// What acts on pendulums beside their equations.
 #[derive(Clone, Debug)]
-pub(crate) struct Extras<T, const N: usize> {
+pub(crate) struct LaneLimits<T, const N: usize> {
     /// γ in 1/s.
     pub(crate) damping: Wide<T>,
     /// e^(−γh/2) for the whole step of the bucket.
@@ -82,7 +82,7 @@ pub(crate) struct Extras<T, const N: usize> {
     pub(crate) hard: Wide<T>,
 }
 
-impl<T: Lane + Float, const N: usize> Extras<T, N> {
+impl<T: Lane + Float, const N: usize> LaneLimits<T, N> {
     pub(crate) fn none() -> Self {
         let lanes = |value| Wide::from_f64(value);
         Self {

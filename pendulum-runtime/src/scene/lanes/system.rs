@@ -13,7 +13,7 @@ pub(crate) type Wide<T> = Lanes<T, W>;
 
 /// A system that can hang in a scene over the scalar `T`: every type that `lagrangian!` generates,
 /// over `f32` and `f64`.
-pub trait Hung<T: Lane + Float, const N: usize>:
+pub trait SceneSystem<T: Lane + Float, const N: usize>:
     System<N, Scalar = T, Inputs: Assemble<T>> + Sized + Send + Sync + 'static
 {
     /// The same system over lanes.
@@ -31,7 +31,7 @@ pub trait Hung<T: Lane + Float, const N: usize>:
     fn mapped(&self, map: impl FnMut(T) -> T) -> Self;
 }
 
-impl<S, T: Lane + Float, const N: usize> Hung<T, N> for S
+impl<S, T: Lane + Float, const N: usize> SceneSystem<T, N> for S
 where
     S: System<N, Scalar = T, Inputs: Assemble<T>, With<T> = S> + Send + Sync + 'static,
     S::With<Wide<T>>: Staged<N, Inputs: Assemble<Wide<T>>, Prepared: Send + Sync> + Send + Sync,
@@ -48,9 +48,9 @@ where
 }
 
 /// The two layouts of a system and whether splitting methods suit it.
-pub(crate) struct Known<S, const N: usize>(core::marker::PhantomData<S>);
+pub(crate) struct Layouts<S, const N: usize>(core::marker::PhantomData<S>);
 
-impl<S: System<N, Inputs: Assemble<S::Scalar>>, const N: usize> Known<S, N> {
+impl<S: System<N, Inputs: Assemble<S::Scalar>>, const N: usize> Layouts<S, N> {
     pub(crate) const FORCES: Layout = Layout::new(
         S::FACTS.inputs,
         <S::Inputs as Assemble<S::Scalar>>::COMPONENTS,

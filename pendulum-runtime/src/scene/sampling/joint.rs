@@ -47,9 +47,9 @@ fn put<T: Real, const D: usize>(sample: &Sample<T, D>, orders: Orders, numbers: 
     }
 }
 
-struct Forgotten<M, const D: usize>(M);
+struct ErasedMotion<M, const D: usize>(M);
 
-impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Forgotten<M, D> {
+impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for ErasedMotion<M, D> {
     fn has(&self) -> Orders {
         M::HAS
     }
@@ -111,15 +111,15 @@ impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Forgot
 }
 
 /// `motion` as a drive.
-pub(crate) fn forget<T: Real, M: Motion<T, D> + Send + Sync + 'static, const D: usize>(
+pub(crate) fn erase<T: Real, M: Motion<T, D> + Send + Sync + 'static, const D: usize>(
     motion: M,
 ) -> Arc<dyn Drive<T>> {
-    Arc::new(Forgotten(motion))
+    Arc::new(ErasedMotion(motion))
 }
 
 /// A joint.
 #[derive(Clone)]
-pub(crate) struct Place<T> {
+pub(crate) struct JointSlot<T> {
     pub(crate) drive: Arc<dyn Drive<T>>,
     /// Whether it always rests, so that it is never sampled.
     pub(crate) still: bool,
@@ -148,16 +148,16 @@ pub(crate) struct Active {
     pub(crate) kinked: u32,
 }
 
-impl<T> fmt::Debug for Place<T> {
+impl<T> fmt::Debug for JointSlot<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Place")
+        f.debug_struct("JointSlot")
             .field("still", &self.still)
             .field("orders", &self.orders)
             .finish_non_exhaustive()
     }
 }
 
-impl<T: Real> Place<T> {
+impl<T: Real> JointSlot<T> {
     pub(crate) fn new(drive: Arc<dyn Drive<T>>) -> Self {
         // From the beginning of time: a scene may go back.
         let still = drive.rest_until(f64::NEG_INFINITY) == f64::INFINITY;
@@ -166,12 +166,12 @@ impl<T: Real> Place<T> {
 }
 
 impl Active {
-    pub(crate) fn new<T: Real>(joint: u32, place: &Place<T>, class: u32) -> Self {
-        let components = place.drive.components();
+    pub(crate) fn new<T: Real>(joint: u32, joint_slot: &JointSlot<T>, class: u32) -> Self {
+        let components = joint_slot.drive.components();
         Self {
             joint,
             class,
-            orders: place.orders,
+            orders: joint_slot.orders,
             components,
             kink: f64::NAN,
             offset: 0,
@@ -227,6 +227,6 @@ impl Active {
 }
 
 /// Whether joints are among those that rest for ever.
-pub(crate) fn still<T>(places: &[Place<T>], joints: &[u32]) -> bool {
-    joints.iter().all(|&joint| places[joint as usize].still)
+pub(crate) fn still<T>(joint_slots: &[JointSlot<T>], joints: &[u32]) -> bool {
+    joints.iter().all(|&joint| joint_slots[joint as usize].still)
 }

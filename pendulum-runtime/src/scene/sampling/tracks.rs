@@ -4,7 +4,7 @@ use crate::integrate::span::Span;
 use crate::motion::{Orders, Side};
 use crate::real::{Float, Real};
 use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::{Active, Place};
+use crate::scene::sampling::joint::{Active, JointSlot};
 use crate::scene::sampling::layout::Layout;
 use crate::scene::sampling::scheme::{Grid, MOST_STAGES};
 use crate::scene::sampling::timetable::Timetable;
@@ -34,7 +34,7 @@ pub(crate) struct Tracks<T> {
     cuts: Vec<(u32, u32)>,
     pieces: Vec<Piece>,
     /// The records of pieces.
-    extra: Vec<T>,
+    piece_records: Vec<T>,
 }
 
 /// A step in a tick that has been cut at kinks.
@@ -55,7 +55,7 @@ pub(crate) struct Sampled<'a, T> {
     pub(crate) clock: &'a Clock,
     pub(crate) tick: i64,
     pub(crate) ticks: usize,
-    pub(crate) places: &'a [Place<T>],
+    pub(crate) joint_slots: &'a [JointSlot<T>],
     pub(crate) actives: &'a [Active],
     pub(crate) numbers: &'a [T],
     pub(crate) timetable: &'a Timetable,
@@ -74,7 +74,7 @@ impl<T: Real + Float> Tracks<T> {
             stride: 0,
             cuts: Vec::new(),
             pieces: Vec::new(),
-            extra: Vec::new(),
+            piece_records: Vec::new(),
         }
     }
 
@@ -99,7 +99,7 @@ impl<T: Real + Float> Tracks<T> {
     }
 
     /// Counts one pendulum more or less that is awake.
-    pub(crate) fn stir(&mut self, track: u32, up: bool) {
+    pub(crate) fn count_awake(&mut self, track: u32, up: bool) {
         let awake = &mut self.awake[track as usize];
         *awake = if up { *awake + 1 } else { *awake - 1 };
     }
@@ -133,7 +133,7 @@ impl<T: Real + Float> Tracks<T> {
         let tracks = self.count();
         self.cuts.clear();
         self.pieces.clear();
-        self.extra.clear();
+        self.piece_records.clear();
         self.stride = sampled.ticks * grid.count();
         let mut records = core::mem::take(&mut self.records);
         records.resize(self.stride * tracks * layout.width, T::from_f64(0.0));
@@ -158,9 +158,12 @@ impl<T: Real + Float> Tracks<T> {
 
     /// Whether each tick of the batch has a kink for a track, by bit.
     fn kinked(&self, track: usize, sampled: &Sampled<'_, T>) -> u32 {
-        let moving = self.joints(track as u32).iter().map(|&joint| &sampled.places[joint as usize]);
-        let moving = moving.filter(|place| !place.still && place.grids != 0);
-        moving.fold(0, |kinked, place| kinked | sampled.actives[place.active as usize].kinked)
+        let moving =
+            self.joints(track as u32).iter().map(|&joint| &sampled.joint_slots[joint as usize]);
+        let moving = moving.filter(|joint_slot| !joint_slot.still && joint_slot.grids != 0);
+        moving.fold(0, |kinked, joint_slot| {
+            kinked | sampled.actives[joint_slot.active as usize].kinked
+        })
     }
 
     /// Reads the records of all tracks, on all threads if there are many.
@@ -220,22 +223,27 @@ impl<T: Real + Float> Tracks<T> {
             }
             let mut at = 0;
             for (input, &joint) in self.joints(track as u32).iter().enumerate() {
-                let place = &sampled.places[joint as usize];
+                let joint_slot = &sampled.joint_slots[joint as usize];
                 let orders = crate::motion::orders(inputs, input, Purpose::Accelerations);
                 if orders == Orders::NONE {
                     continue;
                 }
-                if place.still {
+                if joint_slot.still {
                     // At rest among others that move: the same record everywhere.
-                    let own = place.drive.components() * orders.count();
+                    let own = joint_slot.drive.components() * orders.count();
                     let now = Time::new(sampled.clock.time(sampled.tick));
                     for record in records.chunks_exact_mut(width) {
-                        place.drive.sample(now, Side::After, orders, &mut record[at..at + own]);
+                        joint_slot.drive.sample(
+                            now,
+                            Side::After,
+                            orders,
+                            &mut record[at..at + own],
+                        );
                     }
                     at += own;
                     continue;
                 }
-                let active = &sampled.actives[place.active as usize];
+                let active = &sampled.actives[joint_slot.active as usize];
                 let own = active.components * orders.count();
                 let (nodes, mine) = sampled.timetable.nodes(active.class, grid);
                 let alike = nodes == evaluations
@@ -285,7 +293,7 @@ impl<T: Real + Float> Tracks<T> {
         while start < end {
             let kink = joints
                 .iter()
-                .filter_map(|&joint| sampled.places[joint as usize].drive.next_kink(start));
+                .filter_map(|&joint| sampled.joint_slots[joint as usize].drive.next_kink(start));
             let kink =
                 kink.filter(|&kink| start < kink && kink <= end).fold(f64::INFINITY, f64::min);
             let stop = if kink < end { kink } else { end };
@@ -299,7 +307,7 @@ impl<T: Real + Float> Tracks<T> {
                 };
                 let last = f64::from(index) + 1.0 == steps;
                 let span = if last { Span::to(from, stop) } else { Span::by(from, length / steps) };
-                let begin = self.extra.len();
+                let begin = self.piece_records.len();
                 let mut times = [from; MOST_STAGES];
                 for (stage, &fraction) in grid.scheme.stages().iter().enumerate() {
                     let (t, side) = span.at(fraction);
@@ -308,7 +316,7 @@ impl<T: Real + Float> Tracks<T> {
                 }
                 let mut jump = None;
                 if last && kink == stop && 0 < momenta.width {
-                    jump = Some((kink, self.extra.len()));
+                    jump = Some((kink, self.piece_records.len()));
                     for side in [Side::Before, Side::After] {
                         self.append(
                             joints,
@@ -337,11 +345,12 @@ impl<T: Real + Float> Tracks<T> {
         sampled: &Sampled<'_, T>,
     ) {
         for (input, &joint) in joints.iter().enumerate() {
-            let drive = &sampled.places[joint as usize].drive;
+            let drive = &sampled.joint_slots[joint as usize].drive;
             let orders = crate::motion::orders(inputs, input, purpose);
-            let begin = self.extra.len();
-            self.extra.resize(begin + drive.components() * orders.count(), T::from_f64(0.0));
-            drive.sample(t, side, orders, &mut self.extra[begin..]);
+            let begin = self.piece_records.len();
+            self.piece_records
+                .resize(begin + drive.components() * orders.count(), T::from_f64(0.0));
+            drive.sample(t, side, orders, &mut self.piece_records[begin..]);
         }
     }
 
@@ -351,7 +360,7 @@ impl<T: Real + Float> Tracks<T> {
         layout: &Layout,
         inputs: &[Input],
         now: f64,
-        places: &[Place<T>],
+        joint_slots: &[JointSlot<T>],
     ) {
         self.records.resize(self.count() * layout.width, T::from_f64(0.0));
         self.stride = 1;
@@ -360,7 +369,7 @@ impl<T: Real + Float> Tracks<T> {
             for (input, &joint) in
                 self.joints[track * self.inputs..][..self.inputs].iter().enumerate()
             {
-                let drive = &places[joint as usize].drive;
+                let drive = &joint_slots[joint as usize].drive;
                 let orders = crate::motion::orders(inputs, input, Purpose::Accelerations);
                 let own = drive.components() * orders.count();
                 drive.sample(Time::new(now), Side::After, orders, &mut self.records[to..to + own]);
@@ -394,8 +403,8 @@ impl<T: Real + Float> Tracks<T> {
         &self.pieces[begin as usize..][..count as usize]
     }
 
-    pub(crate) fn extra(&self) -> &[T] {
-        &self.extra
+    pub(crate) fn piece_records(&self) -> &[T] {
+        &self.piece_records
     }
 }
 
