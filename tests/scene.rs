@@ -685,17 +685,17 @@ fn a_pause_does_not_show() {
 
 #[test]
 fn joints_are_felt_as_much_as_directors_want() {
-    use pendulum_runtime::motion::Felt;
+    use pendulum_runtime::motion::Attenuated;
     let mut scene = Scene::<f64>::new(240.0).unwrap();
     scene.set_tolerance(1e-9).unwrap();
     let shake = Sinusoid::new([0.1, 0.0], 9.0, [0.0, 0.0]);
     // A tenth of a shake is what a tenth of the amplitude is, and a speed below the limit is all
     // felt.
-    let tenth = scene.joint(Felt::new(shake, 0.1, f64::INFINITY).unwrap());
+    let tenth = scene.joint(Attenuated::new(shake, 0.1, f64::INFINITY).unwrap());
     let small = scene.joint(Sinusoid::new([0.01, 0.0], 9.0, [0.0, 0.0]));
-    let below = scene.joint(Felt::new(shake, 1.0, 0.91).unwrap());
+    let below = scene.joint(Attenuated::new(shake, 1.0, 0.91).unwrap());
     let whole = scene.joint(shake);
-    let beyond = scene.joint(Felt::new(shake, 1.0, 0.3).unwrap());
+    let beyond = scene.joint(Attenuated::new(shake, 1.0, 0.3).unwrap());
     let all = [tenth, small, below, whole, beyond]
         .map(|joint| scene.hang(joint, Hanging::new(0.1, 0.5), [0.1], [0.0]).unwrap());
     scene.advance(2.0).unwrap();
@@ -705,7 +705,7 @@ fn joints_are_felt_as_much_as_directors_want() {
         "{tenth} {small} {below} {whole}"
     );
     // Cut speeds through the kinks, by an integrator that lands on them.
-    let alone = Hanging::new(0.1, 0.5).driven_by(Felt::new(shake, 1.0, 0.3).unwrap());
+    let alone = Hanging::new(0.1, 0.5).driven_by(Attenuated::new(shake, 1.0, 0.3).unwrap());
     let exact = solve(&alone, (0.0, 2.0), [0.1], [0.0]).rtol(1e-12).atol(1e-13).run().unwrap();
     assert!((beyond - exact.end.q[0]).abs() < 1e-7, "{beyond} for {}", exact.end.q[0]);
     assert!((beyond - whole).abs() > 0.01);

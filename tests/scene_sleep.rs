@@ -2,7 +2,7 @@
 
 #![allow(mixed_script_confusables, missing_docs)]
 
-use pendulum_runtime::motion::{Linear, Motion, Orders, Sample, Side, Sinusoid, Still};
+use pendulum_runtime::motion::{Derivatives, Linear, Motion, Sample, Side, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scene::{Handle, Resume, Scene, SceneStatus, Stop};
 use pendulum_runtime::time::Time;
@@ -49,11 +49,11 @@ fn keys() -> Linear<2> {
 struct Watched(Arc<AtomicUsize>);
 
 impl Motion<f64, 2> for Watched {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<f64, 2> {
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<f64, 2> {
         self.0.fetch_add(1, Ordering::Relaxed);
-        Motion::<f64, 2>::sample(&Sinusoid::new([0.01, 0.0], 5.0, [0.0, 0.0]), t, side, orders)
+        Motion::<f64, 2>::sample(&Sinusoid::new([0.01, 0.0], 5.0, [0.0, 0.0]), t, side, wanted)
     }
 
     fn next_kink(&self, _: f64) -> Option<f64> {

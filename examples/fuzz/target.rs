@@ -104,7 +104,7 @@ fn motion_capture(seed: u64) -> Verdict {
 /// A glTF file with something wrong in it, and the motions of all its nodes.
 #[cfg(feature = "gltf")]
 fn gltf(seed: u64) -> Verdict {
-    use pendulum_runtime::motion::{Motion, Orders, Side, gltf::Gltf};
+    use pendulum_runtime::motion::{Derivatives, Motion, Side, gltf::Gltf};
     use pendulum_runtime::time::Time;
 
     let mut random = Random(seed);
@@ -119,7 +119,7 @@ fn gltf(seed: u64) -> Verdict {
         for node in 0..file.nodes().count() {
             let Ok(motion) = file.motion(animation, node) else { return Verdict::Refused };
             let sample =
-                Motion::<f64, 3>::sample(&motion, Time::new(0.3), Side::After, Orders::ALL);
+                Motion::<f64, 3>::sample(&motion, Time::new(0.3), Side::After, Derivatives::ALL);
             let kink = Motion::<f64, 3>::next_kink(&motion, 0.3);
             if kink.is_some_and(|kink| kink <= 0.3) {
                 return Verdict::Wrong(format!("a kink at {kink:?} after 0.3, {sample:?}"));

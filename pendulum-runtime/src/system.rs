@@ -1,6 +1,6 @@
 //! What `lagrangian!` generates, and a system together with the motions that drive it.
 
-use crate::motion::{Motions, Orders, Sample, Side, sufficient};
+use crate::motion::{Derivatives, Motions, Sample, Side, sufficient};
 use crate::real::Real;
 use crate::time::Time;
 use core::fmt::Debug;
@@ -367,13 +367,13 @@ pub struct Input {
     /// The number of components.
     pub components: usize,
     /// What the accelerations and forces need.
-    pub accelerations: Orders,
+    pub accelerations: Derivatives,
     /// What momenta, velocities and momentum rates need.
-    pub momenta: Orders,
+    pub momenta: Derivatives,
     /// What the energy needs.
-    pub energy: Orders,
+    pub energy: Derivatives,
     /// What the power needs.
-    pub power: Orders,
+    pub power: Derivatives,
 }
 
 /// The samples of all driven inputs of a system: `()` or a tuple of [`Sample`]s.
@@ -441,7 +441,7 @@ pub enum Purpose {
 
 impl Input {
     /// The derivatives that `purpose` needs.
-    pub const fn orders(&self, purpose: Purpose) -> Orders {
+    pub const fn derivatives(&self, purpose: Purpose) -> Derivatives {
         match purpose {
             Purpose::Accelerations => self.accelerations,
             Purpose::Momenta => self.momenta,

@@ -15,7 +15,7 @@ use super::srkn14a::{self, Srkn14a};
 use super::stepper::Stepper;
 use super::taylor::{RoomOf, Taylor};
 use crate::error::Error;
-use crate::jet::{Jets, Known, Orders, PerhapsJets};
+use crate::jet::{Jets, Known, MaybeJets, Unrolling};
 use crate::real::Float;
 use crate::system::{Dynamics, System};
 
@@ -77,7 +77,7 @@ type AnyRoom<D, const N: usize> = Room<
 
 impl Auto {
     /// The choice for adaptive steps.
-    fn adaptive<D: PerhapsJets<N, Scalar: Float>, const N: usize>(
+    fn adaptive<D: MaybeJets<N, Scalar: Float>, const N: usize>(
         dynamics: &D,
         rtol: f64,
         backwards: bool,
@@ -85,7 +85,7 @@ impl Auto {
         let facts = &<D::System as System<N>>::FACTS;
         let two_words = D::Scalar::EPSILON.to_f64() < 1e-17;
         let pays = if two_words {
-            rtol < <D::System as Jets<N>>::Orders::PAYS_BELOW
+            rtol < <D::System as Jets<N>>::Unrolling::PAYS_BELOW
         } else {
             facts.linear && facts.autonomous
         };
@@ -100,11 +100,11 @@ impl Auto {
 }
 
 /// Whether Taylor series are right.
-fn goes_by_series<D: PerhapsJets<N>, const N: usize>(dynamics: &D) -> bool {
+fn goes_by_series<D: MaybeJets<N>, const N: usize>(dynamics: &D) -> bool {
     <D::System as System<N>>::FACTS.smooth && dynamics.is_analytic()
 }
 
-impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Stepper<D, N> for Auto {
+impl<D: MaybeJets<N> + SideBySide<N>, const N: usize> Stepper<D, N> for Auto {
     const NAME: &'static str = "Auto";
     type Stages = AnyRoom<D, N>;
 
@@ -195,7 +195,7 @@ impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Stepper<D, N> for Auto {
     }
 }
 
-impl<D: PerhapsJets<N> + SideBySide<N>, const N: usize> Control<Auto, D, N> for AdaptiveStep<N> {
+impl<D: MaybeJets<N> + SideBySide<N>, const N: usize> Control<Auto, D, N> for AdaptiveStep<N> {
     fn check(&self) -> Result<(), Error> {
         self.positive::<D::Scalar>()
     }

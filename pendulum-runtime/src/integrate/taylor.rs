@@ -13,7 +13,7 @@ use super::power::{digits, log2, power};
 use super::span::Span;
 use super::stepper::Stepper;
 use crate::error::{Error, Quantity};
-use crate::jet::{JetDynamics, Jets, LENGTH, MAX_ORDER, Orders, Path, Series};
+use crate::jet::{JetDynamics, Jets, LENGTH, MAX_ORDER, Path, Series, Unrolling};
 use crate::motion::Side;
 use crate::real::{Float, Real};
 use crate::system::{Dynamics, System, scalar_time};
@@ -396,7 +396,7 @@ fn expand<D: JetDynamics<N, Scalar: Float>, const N: usize>(
         path.v[i][0] = from.v.high[i];
     }
     field.dynamics.drive(from.t, side, order, drive);
-    <D::System as Jets<N>>::Orders::run(field.dynamics.system(), order, path, drive, work);
+    <D::System as Jets<N>>::Unrolling::run(field.dynamics.system(), order, path, drive, work);
     field.evaluations += order as u64;
 }
 

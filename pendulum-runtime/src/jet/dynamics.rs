@@ -2,7 +2,7 @@
 //! inputs.
 
 use super::{InputSeries, Jets};
-use crate::motion::{AnalyticMotions, PerhapsAnalytic, Side};
+use crate::motion::{AnalyticMotions, MaybeAnalytic, Side};
 use crate::system::{Driven, Dynamics, NoInputs, Prepared, Purpose, System};
 use crate::time::Time;
 
@@ -37,7 +37,7 @@ pub trait JetDynamics<const N: usize>: Dynamics<N, System: Jets<N>> {
     label = "what `lagrangian!` knows about a system decides about the method",
     note = "name one: `solve(…).method(Dop853)`"
 )]
-pub trait PerhapsJets<const N: usize>: Dynamics<N, System: Jets<N>> {
+pub trait MaybeJets<const N: usize>: Dynamics<N, System: Jets<N>> {
     /// Whether the jets are known: every motion is analytic.
     fn is_analytic(&self) -> bool;
 
@@ -107,7 +107,7 @@ impl<const N: usize, S: Jets<N, Inputs: NoInputs<S>>> JetDynamics<N> for S {
     none!(next_break last_break last_kink);
 }
 
-impl<const N: usize, S: Jets<N, Inputs: NoInputs<S>>> PerhapsJets<N> for S {
+impl<const N: usize, S: Jets<N, Inputs: NoInputs<S>>> MaybeJets<N> for S {
     fn is_analytic(&self) -> bool {
         true
     }
@@ -121,7 +121,7 @@ impl<const N: usize, S: Jets<N>, M: AnalyticMotions<S::Inputs, S::Scalar>> JetDy
     of_motions!(next_break last_break last_kink);
 }
 
-impl<const N: usize, S: Jets<N>, M: PerhapsAnalytic<S::Inputs, S::Scalar>> PerhapsJets<N>
+impl<const N: usize, S: Jets<N>, M: MaybeAnalytic<S::Inputs, S::Scalar>> MaybeJets<N>
     for Driven<S, M>
 {
     fn is_analytic(&self) -> bool {
@@ -137,7 +137,7 @@ impl<const N: usize, D: JetDynamics<N>> JetDynamics<N>
     of_inner!(self, self.dynamics(); next_break last_break last_kink);
 }
 
-impl<const N: usize, D: PerhapsJets<N>> PerhapsJets<N>
+impl<const N: usize, D: MaybeJets<N>> MaybeJets<N>
     for Prepared<'_, D, <D::System as System<N>>::Prepared>
 {
     fn is_analytic(&self) -> bool {
@@ -151,7 +151,7 @@ impl<const N: usize, D: PerhapsJets<N>> PerhapsJets<N>
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Known<'a, D>(pub(crate) &'a D);
 
-impl<const N: usize, D: PerhapsJets<N>> JetDynamics<N> for Known<'_, D> {
+impl<const N: usize, D: MaybeJets<N>> JetDynamics<N> for Known<'_, D> {
     of_inner!(self, self.0; next_break last_break last_kink);
 }
 

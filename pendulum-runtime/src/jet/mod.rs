@@ -16,10 +16,10 @@ mod sum;
 mod tests;
 
 pub(crate) use dynamics::Known;
-pub use dynamics::{JetDynamics, PerhapsJets};
+pub use dynamics::{JetDynamics, MaybeJets};
 pub use factors::Factors;
 pub use order::{
-    Called, Calling, Constant, First, Looped, Order, Orders, Running, Second, Unrolled,
+    Called, Calling, Constant, First, Looped, Order, Running, Second, Unrolled, Unrolling,
 };
 
 use crate::real::Real;
@@ -51,7 +51,7 @@ pub trait Jets<const N: usize>: System<N> {
     type Drive: Clone + Debug + AsMut<[InputSeries<Self::Scalar>]>;
     /// How the orders are gone through: [`Unrolled`] for short equations, [`Looped`] for others,
     /// [`Called`] for long ones.
-    type Orders: Orders;
+    type Unrolling: Unrolling;
 
     /// c in the order p = ⌈1 − c ln rtol⌉ with which [`Taylor`](crate::integrate::Taylor) takes
     /// least time, measured: the less an order costs beside the rest of a step, the more orders

@@ -152,7 +152,7 @@ fn second_swing<T: Real>(k: usize, v: &Series<T>, a: &mut Series<T>, b: &mut Ser
 }
 
 /// A way to go through the orders of a jet.
-pub trait Orders {
+pub trait Unrolling {
     /// The tolerance below which [`Taylor`](crate::integrate::Taylor) is faster than
     /// [`Dop853`](crate::integrate::Dop853), as the benchmark `work_precision` measures it.
     const PAYS_BELOW: f64;
@@ -192,7 +192,7 @@ pub struct Looped;
 #[derive(Clone, Copy, Debug)]
 pub struct Called;
 
-impl Orders for Looped {
+impl Unrolling for Looped {
     const PAYS_BELOW: f64 = 2e-7;
 
     // Alone in its function, the loop keeps what it needs in registers.
@@ -208,7 +208,7 @@ impl Orders for Looped {
     }
 }
 
-impl Orders for Called {
+impl Unrolling for Called {
     const PAYS_BELOW: f64 = 2e-14;
 
     // Alone in its function, the loop keeps what it needs in registers.
@@ -227,7 +227,7 @@ impl Orders for Called {
     }
 }
 
-impl Orders for Unrolled {
+impl Unrolling for Unrolled {
     const PAYS_BELOW: f64 = 1.0;
 
     // Alone in its function, the loop keeps what it needs in registers.

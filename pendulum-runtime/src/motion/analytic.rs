@@ -175,7 +175,7 @@ pub trait AnalyticMotions<Inputs, T: Real>: Motions<Inputs> {
 /// analytic.
 ///
 /// The part of one that is not is missing in all other answers.
-pub trait PerhapsAnalytic<Inputs, T: Real>: Motions<Inputs> {
+pub trait MaybeAnalytic<Inputs, T: Real>: Motions<Inputs> {
     /// Whether every one is analytic.
     fn is_analytic(&self) -> bool;
 
@@ -243,7 +243,7 @@ impl<T: Real> AnalyticMotions<(), T> for () {
     nothing!(next_break last_break last_kink);
 }
 
-impl<T: Real> PerhapsAnalytic<(), T> for () {
+impl<T: Real> MaybeAnalytic<(), T> for () {
     fn is_analytic(&self) -> bool {
         true
     }
@@ -259,7 +259,7 @@ macro_rules! tuples {
             answers!(self, [$(Some(&self.$index), $dim);+]);
         }
 
-        impl<T: Real, $($motion: Motion<T, $dim>, const $dim: usize),+> PerhapsAnalytic<($(Sample<T, $dim>,)+), T> for ($($motion,)+) {
+        impl<T: Real, $($motion: Motion<T, $dim>, const $dim: usize),+> MaybeAnalytic<($(Sample<T, $dim>,)+), T> for ($($motion,)+) {
             fn is_analytic(&self) -> bool {
                 $(self.$index.analytic().is_some())&&+
             }

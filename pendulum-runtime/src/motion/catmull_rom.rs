@@ -1,7 +1,7 @@
 //! Catmull–Rom curves.
 
 use super::piecewise::{Piecewise, checked};
-use super::{Analytic, Motion, MotionError, Orders, Sample, Side};
+use super::{Analytic, Derivatives, Motion, MotionError, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
@@ -63,11 +63,11 @@ impl<const D: usize> CatmullRom<D> {
 }
 
 impl<T: Real, const D: usize> Motion<T, D> for CatmullRom<D> {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
     #[inline]
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
-        self.0.sample(t, side, orders)
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
+        self.0.sample(t, side, wanted)
     }
 
     fn next_kink(&self, t: f64) -> Option<f64> {

@@ -1,7 +1,7 @@
 //! Motions sampled at a frame rate.
 
 use super::piecewise::Piecewise;
-use super::{Analytic, CatmullRom, Linear, Motion, MotionError, Orders, Sample, Side, Spline};
+use super::{Analytic, CatmullRom, Derivatives, Linear, Motion, MotionError, Sample, Side, Spline};
 use crate::real::Real;
 use crate::time::Time;
 
@@ -93,14 +93,14 @@ impl<const D: usize> Clip<D> {
 }
 
 impl<T: Real, const D: usize> Motion<T, D> for Clip<D> {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
     #[inline]
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
         match &self.curve {
-            Curve::Linear(curve) => curve.sample(t, side, orders),
-            Curve::CatmullRom(curve) => curve.sample(t, side, orders),
-            Curve::Spline(curve) => curve.sample(t, side, orders),
+            Curve::Linear(curve) => curve.sample(t, side, wanted),
+            Curve::CatmullRom(curve) => curve.sample(t, side, wanted),
+            Curve::Spline(curve) => curve.sample(t, side, wanted),
         }
     }
 

@@ -1,7 +1,7 @@
 //! Straight lines between keys.
 
 use super::piecewise::{Piecewise, checked};
-use super::{Analytic, Motion, MotionError, Orders, Sample, Side};
+use super::{Analytic, Derivatives, Motion, MotionError, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
@@ -38,15 +38,15 @@ impl<const D: usize> Linear<D> {
 }
 
 impl<T: Real, const D: usize> Motion<T, D> for Linear<D> {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
     #[inline]
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
-        if orders == Orders::ACCELERATION {
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
+        if wanted == Derivatives::ACCELERATION {
             // Zero on every line: which one it is does not matter.
             return Sample::zero();
         }
-        self.0.sample(t, side, orders)
+        self.0.sample(t, side, wanted)
     }
 
     fn next_kink(&self, t: f64) -> Option<f64> {

@@ -5,10 +5,10 @@
 //! values, one from each side.
 
 mod analytic;
+mod attenuated;
 mod catmull_rom;
 mod clip;
 mod error;
-mod felt;
 mod function;
 #[cfg(feature = "gltf")]
 pub mod gltf;
@@ -24,12 +24,12 @@ mod tests;
 use crate::real::{Lane, Octet, Real};
 use crate::system::{Input, Purpose};
 use crate::time::Time;
-pub use analytic::{Analytic, AnalyticMotions, PerhapsAnalytic};
+pub use analytic::{Analytic, AnalyticMotions, MaybeAnalytic};
+pub use attenuated::Attenuated;
 pub use catmull_rom::CatmullRom;
 pub use clip::{Clip, Interpolation};
 pub use error::MotionError;
-pub use felt::Felt;
-pub use function::{Function, Missing, Part};
+pub use function::{Function, MaybeFunction, Missing};
 pub use linear::Linear;
 pub use projected::Projected;
 pub use sinusoid::Sinusoid;
@@ -39,29 +39,29 @@ pub use still::Still;
 /// A prescribed motion in `D` dimensions over the scalar `T`.
 pub trait Motion<T: Real, const D: usize> {
     /// The derivatives that this motion has between its kinks.
-    const HAS: Orders;
+    const HAS: Derivatives;
 
-    /// Position, velocity and acceleration at `t`; those that `orders` leaves out are zero.
+    /// Position, velocity and acceleration at `t`; those that `wanted` leaves out are zero.
     ///
     /// At a kink the value is the limit from `side`; elsewhere `side` does not matter.
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D>;
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D>;
 
     /// The same at as many times as there are samples, after a kink: for motions that can do
     /// several at once, with the same bits.
-    fn sample_all(&self, times: &[Time], orders: Orders, samples: &mut [Sample<T, D>]) {
+    fn sample_all(&self, times: &[Time], wanted: Derivatives, samples: &mut [Sample<T, D>]) {
         for (sample, &t) in samples.iter_mut().zip(times) {
-            *sample = self.sample(t, Side::After, orders);
+            *sample = self.sample(t, Side::After, wanted);
         }
     }
 
     /// The same at eight times, a lane each, with the bits of single samples: what
     /// [`Picard`](crate::integrate::Picard) asks for.
-    fn sample_lanes(&self, times: &[Time; 8], orders: Orders) -> Sample<Octet<T>, D>
+    fn sample_lanes(&self, times: &[Time; 8], wanted: Derivatives) -> Sample<Octet<T>, D>
     where
         T: Lane,
     {
         let mut samples = [Sample::zero(); 8];
-        self.sample_all(times, orders, &mut samples);
+        self.sample_all(times, wanted, &mut samples);
         let mut lanes = Sample::<Octet<T>, D>::zero();
         for (k, sample) in samples.iter().enumerate() {
             for d in 0..D {
@@ -110,9 +110,9 @@ pub trait Motion<T: Real, const D: usize> {
 
 /// A set of derivatives: of a motion's position, velocity and acceleration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Orders(u8);
+pub struct Derivatives(u8);
 
-impl Orders {
+impl Derivatives {
     /// Nothing at all.
     pub const NONE: Self = Self(0);
     /// The position x.
@@ -124,8 +124,8 @@ impl Orders {
     /// All three.
     pub const ALL: Self = Self(7);
 
-    /// Those of `self` and those of `other`.
-    pub const fn and(self, other: Self) -> Self {
+    /// The derivatives that are in `self`, in `other` or in both.
+    pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
@@ -194,7 +194,7 @@ impl<T: Copy, const D: usize> Sample<T, D> {
 /// The motions of all driven inputs of a system: `()` or a tuple, in the order of declaration.
 pub trait Motions<Inputs> {
     /// The derivatives that each motion has.
-    const HAS: &'static [Orders];
+    const HAS: &'static [Derivatives];
 
     /// One sample for each motion.
     fn sample(&self, t: Time, side: Side, inputs: &[Input], purpose: Purpose) -> Inputs;
@@ -211,11 +211,12 @@ pub trait Motions<Inputs> {
 }
 
 /// Whether motions that have the derivatives `has` can drive `inputs`.
-pub(crate) const fn sufficient(has: &[Orders], inputs: &[Input]) -> bool {
+pub(crate) const fn sufficient(has: &[Derivatives], inputs: &[Input]) -> bool {
     let mut index = 0;
     while index < inputs.len() {
         let input = &inputs[index];
-        let needed = input.accelerations.and(input.momenta).and(input.energy).and(input.power);
+        let needed =
+            input.accelerations.union(input.momenta).union(input.energy).union(input.power);
         if !has[index].contains(needed) {
             return false;
         }
@@ -225,7 +226,7 @@ pub(crate) const fn sufficient(has: &[Orders], inputs: &[Input]) -> bool {
 }
 
 impl Motions<()> for () {
-    const HAS: &'static [Orders] = &[];
+    const HAS: &'static [Derivatives] = &[];
 
     fn sample(&self, _: Time, _: Side, _: &[Input], _: Purpose) {}
 
@@ -255,18 +256,22 @@ fn earlier(a: Option<f64>, b: Option<f64>) -> Option<f64> {
 }
 
 /// What an input is asked for; everything, if its system does not say.
-pub(crate) const fn orders(inputs: &[Input], index: usize, purpose: Purpose) -> Orders {
-    if index < inputs.len() { inputs[index].orders(purpose) } else { Orders::ALL }
+pub(crate) const fn derivatives_of(
+    inputs: &[Input],
+    index: usize,
+    purpose: Purpose,
+) -> Derivatives {
+    if index < inputs.len() { inputs[index].derivatives(purpose) } else { Derivatives::ALL }
 }
 
 macro_rules! tuples {
     ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
         impl<T: Real, $($motion: Motion<T, $dim>, const $dim: usize),+> Motions<($(Sample<T, $dim>,)+)> for ($($motion,)+) {
-            const HAS: &'static [Orders] = &[$($motion::HAS),+];
+            const HAS: &'static [Derivatives] = &[$($motion::HAS),+];
 
             #[inline]
             fn sample(&self, t: Time, side: Side, inputs: &[Input], purpose: Purpose) -> ($(Sample<T, $dim>,)+) {
-                ($(self.$index.sample(t, side, orders(inputs, $index, purpose)),)+)
+                ($(self.$index.sample(t, side, derivatives_of(inputs, $index, purpose)),)+)
             }
 
             fn next_kink(&self, t: f64) -> Option<f64> {

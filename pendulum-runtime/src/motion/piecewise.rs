@@ -1,6 +1,6 @@
 //! Cubic pieces between keys: what linear keys, Catmull–Rom curves and splines are evaluated by.
 
-use super::{MotionError, Orders, Sample, Side};
+use super::{Derivatives, MotionError, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
@@ -198,7 +198,7 @@ impl<const D: usize> Piecewise<D> {
     /// Position, velocity and acceleration at its end.
     fn end_of(&self, piece: usize) -> [[f64; D]; 3] {
         let h = self.times[piece + 1] - self.times[piece];
-        let sample: Sample<f64, D> = evaluate(&self.pieces[piece], h, Orders::ALL);
+        let sample: Sample<f64, D> = evaluate(&self.pieces[piece], h, Derivatives::ALL);
         let next =
             if piece + 1 < self.pieces.len() { self.pieces[piece + 1][0] } else { self.last };
         [next, sample.velocity, sample.acceleration]
@@ -249,18 +249,18 @@ impl<const D: usize> Piecewise<D> {
     }
 
     #[inline]
-    pub(super) fn sample<T: Real>(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
+    pub(super) fn sample<T: Real>(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
         match self.place(t, side) {
             Place::Rest { after } => {
                 let mut sample = Sample::zero();
-                if orders.contains(Orders::POSITION) {
+                if wanted.contains(Derivatives::POSITION) {
                     let value =
                         if after || self.pieces.is_empty() { self.last } else { self.pieces[0][0] };
                     sample.position = value.map(T::from_f64);
                 }
                 sample
             }
-            Place::Piece(piece, u) => evaluate(&self.pieces[piece], u, orders),
+            Place::Piece(piece, u) => evaluate(&self.pieces[piece], u, wanted),
         }
     }
 
@@ -454,18 +454,18 @@ fn passed(times: &[f64], t: f64, before: impl Fn(f64) -> bool) -> usize {
 fn evaluate<T: Real, const D: usize>(
     piece: &[[f64; D]; 4],
     u: f64,
-    orders: Orders,
+    wanted: Derivatives,
 ) -> Sample<T, D> {
     let [a, b, c, d] = piece;
     let mut sample = Sample::zero();
     for k in 0..D {
-        if orders.contains(Orders::POSITION) {
+        if wanted.contains(Derivatives::POSITION) {
             sample.position[k] = T::from_f64(a[k] + u * (b[k] + u * (c[k] + u * d[k])));
         }
-        if orders.contains(Orders::VELOCITY) {
+        if wanted.contains(Derivatives::VELOCITY) {
             sample.velocity[k] = T::from_f64(b[k] + u * (2.0 * c[k] + u * (3.0 * d[k])));
         }
-        if orders.contains(Orders::ACCELERATION) {
+        if wanted.contains(Derivatives::ACCELERATION) {
             sample.acceleration[k] = T::from_f64(2.0 * c[k] + u * (6.0 * d[k]));
         }
     }

@@ -1,7 +1,7 @@
 //! Cubic splines.
 
 use super::piecewise::{Piecewise, checked};
-use super::{Analytic, Motion, MotionError, Orders, Sample, Side};
+use super::{Analytic, Derivatives, Motion, MotionError, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
@@ -184,11 +184,11 @@ fn periodic<const D: usize>(rows: &[Row<D>], seam: Row<D>) -> Vec<[f64; D]> {
 }
 
 impl<T: Real, const D: usize> Motion<T, D> for Spline<D> {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
     #[inline]
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
-        self.0.sample(t, side, orders)
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
+        self.0.sample(t, side, wanted)
     }
 
     fn next_kink(&self, t: f64) -> Option<f64> {

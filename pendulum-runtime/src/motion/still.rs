@@ -1,6 +1,6 @@
 //! A point at rest.
 
-use super::{Analytic, Motion, Orders, Sample, Side};
+use super::{Analytic, Derivatives, Motion, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
@@ -19,12 +19,12 @@ impl<const D: usize> Still<D> {
 }
 
 impl<T: Real, const D: usize> Motion<T, D> for Still<D> {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
     #[inline]
-    fn sample(&self, _: Time, _: Side, orders: Orders) -> Sample<T, D> {
+    fn sample(&self, _: Time, _: Side, wanted: Derivatives) -> Sample<T, D> {
         let mut sample = Sample::zero();
-        if orders.contains(Orders::POSITION) {
+        if wanted.contains(Derivatives::POSITION) {
             sample.position = self.position.map(T::from_f64);
         }
         sample

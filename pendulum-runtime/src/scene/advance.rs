@@ -120,19 +120,19 @@ impl<T: Lane + Float> Scene<T> {
         self.dirty = false;
         let Self { joint_slots, actives, groups, timetable, .. } = self;
         for joint_slot in joint_slots.iter_mut() {
-            (joint_slot.orders, joint_slot.grids) = (crate::motion::Orders::NONE, 0);
+            (joint_slot.wanted, joint_slot.grids) = (crate::motion::Derivatives::NONE, 0);
         }
         for (_, group) in groups.iter() {
             // The bit of the grid is looked up once a bucket, not once a joint.
             let mut known = None;
-            group.needs(&mut |joint, orders, grid| {
+            group.needs(&mut |joint, wanted, grid| {
                 let bit = match known {
                     Some((last, bit)) if last == grid => bit,
                     _ => timetable.bit(grid),
                 };
                 known = Some((grid, bit));
                 let joint_slot = &mut joint_slots[joint as usize];
-                joint_slot.orders = joint_slot.orders.and(orders);
+                joint_slot.wanted = joint_slot.wanted.union(wanted);
                 joint_slot.grids |= bit;
             });
         }

@@ -1,6 +1,6 @@
 //! Reading and writing pendulums.
 
-use crate::motion::{Orders, Side};
+use crate::motion::{Derivatives, Side};
 use crate::real::{Float, Lane, Real};
 use crate::scene::error::SceneError;
 use crate::scene::group::joints::{check_state, inputs_at};
@@ -61,7 +61,7 @@ impl<T: Lane + Float> Scene<T> {
         self.joint_slots[joint.0 as usize].drive.sample(
             t,
             Side::After,
-            Orders::POSITION,
+            Derivatives::POSITION,
             &mut position,
         );
         position

@@ -20,7 +20,7 @@ use crate::integrate::span::Span;
 use crate::integrate::stepper::Stepper;
 use crate::integrate::sum::{Sum, splitter};
 use crate::integrate::taylor::{GAP, Rule, TELLING, Taylor, largest, rest};
-use crate::jet::{Jets, Orders, Path};
+use crate::jet::{Jets, Path, Unrolling};
 use crate::real::{Float, Lane, Lanes, Real};
 use crate::simd::Work;
 use crate::time::Time;
@@ -152,7 +152,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             path.q[i][0] = self.lanes.q.high[i];
             path.v[i][0] = self.lanes.v.high[i];
         }
-        <S::Wide as Jets<N>>::Orders::run_in_lanes(
+        <S::Wide as Jets<N>>::Unrolling::run_in_lanes(
             &self.system,
             self.rule.order,
             path,

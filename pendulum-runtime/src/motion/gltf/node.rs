@@ -2,7 +2,7 @@
 
 use super::jet::{Jet, turned};
 use super::track::{Track, Turn};
-use crate::motion::{Motion, MotionError, Orders, Sample, Side};
+use crate::motion::{Derivatives, Motion, MotionError, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
@@ -104,8 +104,9 @@ impl NodeMotion {
         if self.duration <= 0.0 {
             return Err(MotionError::OneKey);
         }
-        let end: Sample<f64, 3> = self.sample(Time::new(self.duration), Side::Before, Orders::ALL);
-        let start: Sample<f64, 3> = self.sample(Time::new(0.0), Side::After, Orders::ALL);
+        let end: Sample<f64, 3> =
+            self.sample(Time::new(self.duration), Side::Before, Derivatives::ALL);
+        let start: Sample<f64, 3> = self.sample(Time::new(0.0), Side::After, Derivatives::ALL);
         self.kinks.retain(|&kink| 0.0 < kink && kink < self.duration);
         let pairs = [
             (end.position, start.position),
@@ -156,26 +157,26 @@ impl NodeMotion {
 }
 
 impl<T: Real> Motion<T, 3> for NodeMotion {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, 3> {
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, 3> {
         let t = self.local(t, side);
         let mut series = [[0.0; 3]; 3];
-        if orders.contains(Orders::ACCELERATION) {
+        if wanted.contains(Derivatives::ACCELERATION) {
             series = self.world::<3>(t, side).map(|jet| jet.0);
-        } else if orders.contains(Orders::VELOCITY) {
+        } else if wanted.contains(Derivatives::VELOCITY) {
             series = self.world::<2>(t, side).map(|Jet([x, v])| [x, v, 0.0]);
-        } else if orders.contains(Orders::POSITION) {
+        } else if wanted.contains(Derivatives::POSITION) {
             series = self.world::<1>(t, side).map(|Jet([x])| [x, 0.0, 0.0]);
         }
         let mut sample = Sample::zero();
-        if orders.contains(Orders::POSITION) {
+        if wanted.contains(Derivatives::POSITION) {
             sample.position = series.map(|axis| T::from_f64(axis[0]));
         }
-        if orders.contains(Orders::VELOCITY) {
+        if wanted.contains(Derivatives::VELOCITY) {
             sample.velocity = series.map(|axis| T::from_f64(axis[1]));
         }
-        if orders.contains(Orders::ACCELERATION) {
+        if wanted.contains(Derivatives::ACCELERATION) {
             sample.acceleration = series.map(|axis| T::from_f64(2.0 * axis[2]));
         }
         sample

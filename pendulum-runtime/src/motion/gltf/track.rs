@@ -2,7 +2,7 @@
 
 use super::jet::Jet;
 use crate::motion::piecewise::Piecewise;
-use crate::motion::{Orders, Side};
+use crate::motion::{Derivatives, Side};
 use crate::real::Real;
 use crate::time::Time;
 
@@ -101,14 +101,14 @@ impl Turn {
 
 /// A curve of cubics as a Taylor series.
 fn jets<const D: usize, const N: usize>(curve: &Piecewise<D>, t: Time, side: Side) -> [Jet<N>; D] {
-    let mut orders = Orders::POSITION;
+    let mut wanted = Derivatives::POSITION;
     if 1 < N {
-        orders = orders.and(Orders::VELOCITY);
+        wanted = wanted.union(Derivatives::VELOCITY);
     }
     if 2 < N {
-        orders = orders.and(Orders::ACCELERATION);
+        wanted = wanted.union(Derivatives::ACCELERATION);
     }
-    let sample = curve.sample::<f64>(t, side, orders);
+    let sample = curve.sample::<f64>(t, side, wanted);
     core::array::from_fn(|d| {
         let all = [sample.position[d], sample.velocity[d], 0.5 * sample.acceleration[d]];
         Jet(core::array::from_fn(|order| all[order]))

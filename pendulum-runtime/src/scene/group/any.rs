@@ -1,6 +1,6 @@
 //! The pendulums of a type as the scene sees them.
 
-use crate::motion::Orders;
+use crate::motion::Derivatives;
 use crate::real::{Float, Lane};
 use crate::scene::error::{SceneError, SceneFault};
 use crate::scene::group::change::Preserve;
@@ -22,7 +22,7 @@ pub(crate) trait AnyGroup<T>: Send + Sync {
     fn as_any(&self) -> &dyn Any;
     fn as_any_mut(&mut self) -> &mut dyn Any;
     /// Tells `visit` every joint that somebody awake hangs on, with what is needed of it and when.
-    fn needs(&self, visit: &mut dyn FnMut(u32, Orders, Grid));
+    fn needs(&self, visit: &mut dyn FnMut(u32, Derivatives, Grid));
     /// Makes ready for a batch.
     fn settle(&mut self, clock: &Clock);
     /// Goes through a batch.
@@ -45,7 +45,7 @@ pub(crate) trait AnyGroup<T>: Send + Sync {
     /// Lets all pendulums hang at rest.
     fn reset(&mut self, clock: &Clock, joint_slots: &[JointSlot<T>]) -> Result<(), SceneError>;
     /// Whether a motion has what those on a joint need.
-    fn accepts_motion(&self, joint: u32, has: Orders) -> Result<(), SceneError>;
+    fn accepts_motion(&self, joint: u32, has: Derivatives) -> Result<(), SceneError>;
     /// A joint has another motion than `before`.
     fn moved(
         &mut self,
@@ -86,11 +86,11 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
         self
     }
 
-    fn needs(&self, visit: &mut dyn FnMut(u32, Orders, Grid)) {
+    fn needs(&self, visit: &mut dyn FnMut(u32, Derivatives, Grid)) {
         for bucket in self.buckets.iter().filter(|bucket| !bucket.kind.still && bucket.awake != 0) {
             bucket
                 .tracks
-                .needs(S::FACTS.inputs, |joint, orders| visit(joint, orders, bucket.kind.grid));
+                .needs(S::FACTS.inputs, |joint, wanted| visit(joint, wanted, bucket.kind.grid));
         }
     }
 
@@ -157,7 +157,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
         Group::reset(self, clock, joint_slots)
     }
 
-    fn accepts_motion(&self, joint: u32, has: Orders) -> Result<(), SceneError> {
+    fn accepts_motion(&self, joint: u32, has: Derivatives) -> Result<(), SceneError> {
         Group::accepts_motion(self, joint, has)
     }
 

@@ -1,6 +1,6 @@
 //! Changes of motions and parameters.
 
-use crate::motion::{Orders, Side};
+use crate::motion::{Derivatives, Side};
 use crate::real::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::group::joints::{check_motion, inputs_at};
@@ -33,7 +33,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Whether a motion has what those on a joint need.
-    pub(super) fn accepts_motion(&self, joint: u32, has: Orders) -> Result<(), SceneError> {
+    pub(super) fn accepts_motion(&self, joint: u32, has: Derivatives) -> Result<(), SceneError> {
         for bucket in &self.buckets {
             for track in 0..bucket.tracks.count() as u32 {
                 for (input, &other) in bucket.tracks.joints(track).iter().enumerate() {

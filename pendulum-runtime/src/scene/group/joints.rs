@@ -1,7 +1,7 @@
 //! Joints and states that a system accepts, and its inputs on them.
 
 use crate::error::Coordinate;
-use crate::motion::{Orders, Side, orders};
+use crate::motion::{Derivatives, Side, derivatives_of};
 use crate::real::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::lanes::system::SceneSystem;
@@ -27,12 +27,12 @@ pub(crate) fn inputs_at<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     let mut at = 0;
     for (input, &joint) in joints.iter().enumerate() {
         let drive = &joint_slots[joint as usize].drive;
-        let needed = orders(S::FACTS.inputs, input, purpose);
+        let needed = derivatives_of(S::FACTS.inputs, input, purpose);
         let own = components[input] * needed.count();
         if !at_rest {
             drive.sample(t, side, needed, &mut record[at..at + own]);
-        } else if needed.contains(Orders::POSITION) {
-            drive.sample(t, side, Orders::POSITION, &mut record[at..at + components[input]]);
+        } else if needed.contains(Derivatives::POSITION) {
+            drive.sample(t, side, Derivatives::POSITION, &mut record[at..at + components[input]]);
         }
         at += own;
     }
@@ -76,11 +76,15 @@ pub(crate) fn check_joints<S: SceneSystem<T, N>, T: Lane + Float, const N: usize
 }
 
 /// Whether a motion has what the equations need of an input.
-pub(crate) fn check_motion(facts: &Facts, input: usize, has: Orders) -> Result<(), SceneError> {
+pub(crate) fn check_motion(
+    facts: &Facts,
+    input: usize,
+    has: Derivatives,
+) -> Result<(), SceneError> {
     let needed = [Purpose::Accelerations, Purpose::Momenta]
-        .map(|purpose| orders(facts.inputs, input, purpose));
+        .map(|purpose| derivatives_of(facts.inputs, input, purpose));
     for derivative in 0..3 {
-        let order = Orders::of(derivative);
+        let order = Derivatives::of(derivative);
         if needed.iter().any(|needed| needed.contains(order)) && !has.contains(order) {
             let input = facts.inputs.get(input).map_or("", |input| input.name);
             return Err(SceneError::Derivative { input, derivative });

@@ -1,6 +1,6 @@
 //! Joints: motions of any type, each sampled once per time for all that hangs on it.
 
-use crate::motion::{Motion, Orders, Sample, Side};
+use crate::motion::{Derivatives, Motion, Sample, Side};
 use crate::real::Real;
 use crate::scene::sampling::clock::Clock;
 use crate::time::Time;
@@ -13,14 +13,14 @@ pub struct Joint<const D: usize>(pub(crate) u32);
 
 /// A motion whose type and dimension are forgotten.
 pub(crate) trait Drive<T>: Send + Sync {
-    fn has(&self) -> Orders;
+    fn has(&self) -> Derivatives;
     fn components(&self) -> usize;
-    /// Writes those of position, velocity and acceleration that are in `orders`, one after the
+    /// Writes those of position, velocity and acceleration that are in `wanted`, one after the
     /// other.
-    fn sample(&self, t: Time, side: Side, orders: Orders, numbers: &mut [T]);
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives, numbers: &mut [T]);
     /// The same at several times, one record after the other; a time that stands twice in
     /// succession is sampled once.
-    fn sample_all(&self, times: &[Time], orders: Orders, numbers: &mut [T]);
+    fn sample_all(&self, times: &[Time], wanted: Derivatives, numbers: &mut [T]);
     fn next_kink(&self, t: f64) -> Option<f64>;
     fn rest_until(&self, t: f64) -> f64;
     fn longest_step(&self, t: f64, widths: f64) -> Option<f64>;
@@ -29,17 +29,17 @@ pub(crate) trait Drive<T>: Send + Sync {
 /// The times that are sampled at once.
 const AT_ONCE: usize = 8;
 
-/// Writes those derivatives of a sample that are in `orders`, one after the other.
+/// Writes those derivatives of a sample that are in `wanted`, one after the other.
 #[inline]
-fn put<T: Real, const D: usize>(sample: &Sample<T, D>, orders: Orders, numbers: &mut [T]) {
+fn put<T: Real, const D: usize>(sample: &Sample<T, D>, wanted: Derivatives, numbers: &mut [T]) {
     let all = [
-        (Orders::POSITION, &sample.position),
-        (Orders::VELOCITY, &sample.velocity),
-        (Orders::ACCELERATION, &sample.acceleration),
+        (Derivatives::POSITION, &sample.position),
+        (Derivatives::VELOCITY, &sample.velocity),
+        (Derivatives::ACCELERATION, &sample.acceleration),
     ];
     let mut rest = numbers;
     for (order, values) in all {
-        if orders.contains(order) {
+        if wanted.contains(order) {
             let (here, after) = rest.split_at_mut(D);
             here.copy_from_slice(values);
             rest = after;
@@ -50,7 +50,7 @@ fn put<T: Real, const D: usize>(sample: &Sample<T, D>, orders: Orders, numbers: 
 struct ErasedMotion<M, const D: usize>(M);
 
 impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for ErasedMotion<M, D> {
-    fn has(&self) -> Orders {
+    fn has(&self) -> Derivatives {
         M::HAS
     }
 
@@ -59,37 +59,37 @@ impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Erased
     }
 
     #[inline]
-    fn sample(&self, t: Time, side: Side, orders: Orders, numbers: &mut [T]) {
-        put(&self.0.sample(t, side, orders), orders, numbers);
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives, numbers: &mut [T]) {
+        put(&self.0.sample(t, side, wanted), wanted, numbers);
     }
 
-    fn sample_all(&self, times: &[Time], orders: Orders, numbers: &mut [T]) {
-        let width = D * orders.count();
+    fn sample_all(&self, times: &[Time], wanted: Derivatives, numbers: &mut [T]) {
+        let width = D * wanted.count();
         if width == 0 {
             return;
         }
         let again = |index: usize| 0 < index && times[index - 1] == times[index];
-        let (mut wanted, mut samples) = ([Time::new(0.0); AT_ONCE], [Sample::zero(); AT_ONCE]);
+        let (mut distinct, mut samples) = ([Time::new(0.0); AT_ONCE], [Sample::zero(); AT_ONCE]);
         let mut begin = 0;
         while begin < times.len() {
             let (mut end, mut count) = (begin, 0);
             while end < times.len() && (count < AT_ONCE || again(end)) {
                 if !again(end) {
-                    wanted[count] = times[end];
+                    distinct[count] = times[end];
                     count += 1;
                 }
                 end += 1;
             }
             // Without a kink the side is all one, but only one side gives the same bits however
             // ticks are cut into batches.
-            self.0.sample_all(&wanted[..count], orders, &mut samples[..count]);
+            self.0.sample_all(&distinct[..count], wanted, &mut samples[..count]);
             let mut next = 0;
             for index in begin..end {
                 let (before, here) = numbers.split_at_mut(index * width);
                 if again(index) {
                     here[..width].copy_from_slice(&before[(index - 1) * width..]);
                 } else {
-                    put(&samples[next], orders, &mut here[..width]);
+                    put(&samples[next], wanted, &mut here[..width]);
                     next += 1;
                 }
             }
@@ -124,7 +124,7 @@ pub(crate) struct JointSlot<T> {
     /// Whether it always rests, so that it is never sampled.
     pub(crate) still: bool,
     /// What those that are awake on it need.
-    pub(crate) orders: Orders,
+    pub(crate) wanted: Derivatives,
     /// By bit, the grids on which it is needed.
     pub(crate) grids: u64,
     /// Its number among those that are sampled.
@@ -138,7 +138,7 @@ pub(crate) struct Active {
     /// The class of the timetable for the grids on which it is needed.
     pub(crate) class: u32,
     /// What those that are awake on it need.
-    pub(crate) orders: Orders,
+    pub(crate) wanted: Derivatives,
     pub(crate) components: usize,
     /// The first kink after the time last looked at; NaN before anybody has looked.
     kink: f64,
@@ -152,7 +152,7 @@ impl<T> fmt::Debug for JointSlot<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("JointSlot")
             .field("still", &self.still)
-            .field("orders", &self.orders)
+            .field("wanted", &self.wanted)
             .finish_non_exhaustive()
     }
 }
@@ -161,7 +161,7 @@ impl<T: Real> JointSlot<T> {
     pub(crate) fn new(drive: Arc<dyn Drive<T>>) -> Self {
         // From the beginning of time: a scene may go back.
         let still = drive.rest_until(f64::NEG_INFINITY) == f64::INFINITY;
-        Self { drive, still, orders: Orders::NONE, grids: 0, active: 0 }
+        Self { drive, still, wanted: Derivatives::NONE, grids: 0, active: 0 }
     }
 }
 
@@ -171,7 +171,7 @@ impl Active {
         Self {
             joint,
             class,
-            orders: joint_slot.orders,
+            wanted: joint_slot.wanted,
             components,
             kink: f64::NAN,
             offset: 0,
@@ -181,7 +181,7 @@ impl Active {
 
     /// The numbers in a sample.
     pub(crate) fn width(&self) -> usize {
-        self.components * self.orders.count()
+        self.components * self.wanted.count()
     }
 
     /// Samples the ticks from `tick` at `times`; ticks with a kink in them or at their ends are
@@ -197,7 +197,7 @@ impl Active {
     ) {
         self.kinked = 0;
         if !self.kink_within(drive, clock.time(tick), clock.time(tick + ticks as i64)) {
-            return drive.sample_all(times, self.orders, numbers);
+            return drive.sample_all(times, self.wanted, numbers);
         }
         let (per_tick, width) = (times.len() / ticks, self.width());
         for index in 0..ticks {
@@ -206,7 +206,7 @@ impl Active {
                 self.kinked |= 1 << index;
             } else {
                 let numbers = &mut numbers[index * per_tick * width..][..per_tick * width];
-                drive.sample_all(&times[index * per_tick..][..per_tick], self.orders, numbers);
+                drive.sample_all(&times[index * per_tick..][..per_tick], self.wanted, numbers);
             }
         }
     }

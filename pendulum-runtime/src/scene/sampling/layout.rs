@@ -1,6 +1,6 @@
 //! Places of numbers in the records of samples.
 
-use crate::motion::{Orders, orders};
+use crate::motion::{Derivatives, derivatives_of};
 use crate::system::{Input, Purpose};
 
 /// Where the derivatives of each input begin in a record that holds those that a purpose needs, one
@@ -20,10 +20,10 @@ impl Layout {
     pub(crate) const fn new(inputs: &[Input], components: &[usize], purpose: Purpose) -> Self {
         let (mut begin, mut width, mut input) = ([[NONE; 3]; 8], 0, 0);
         while input < components.len() {
-            let needed = orders(inputs, input, purpose);
+            let needed = derivatives_of(inputs, input, purpose);
             let mut derivative = 0;
             while derivative < 3 {
-                if needed.contains(Orders::of(derivative)) {
+                if needed.contains(Derivatives::of(derivative)) {
                     begin[input][derivative] = width;
                     width += components[input];
                 }

@@ -1,7 +1,7 @@
 //! What the pendulums of a bucket see of their joints during a batch of ticks.
 
 use crate::integrate::span::Span;
-use crate::motion::{Orders, Side};
+use crate::motion::{Derivatives, Side};
 use crate::real::{Float, Real};
 use crate::scene::sampling::clock::Clock;
 use crate::scene::sampling::joint::{Active, JointSlot};
@@ -105,11 +105,14 @@ impl<T: Real + Float> Tracks<T> {
     }
 
     /// Tells `visit` every joint that somebody awake hangs on, with what the equations need of it.
-    pub(crate) fn needs(&self, inputs: &[Input], mut visit: impl FnMut(u32, Orders)) {
+    pub(crate) fn needs(&self, inputs: &[Input], mut visit: impl FnMut(u32, Derivatives)) {
         for (track, &awake) in self.awake.iter().enumerate() {
             if awake != 0 {
                 for (input, &joint) in self.joints(track as u32).iter().enumerate() {
-                    visit(joint, crate::motion::orders(inputs, input, Purpose::Accelerations));
+                    visit(
+                        joint,
+                        crate::motion::derivatives_of(inputs, input, Purpose::Accelerations),
+                    );
                 }
             }
         }
@@ -224,19 +227,19 @@ impl<T: Real + Float> Tracks<T> {
             let mut at = 0;
             for (input, &joint) in self.joints(track as u32).iter().enumerate() {
                 let joint_slot = &sampled.joint_slots[joint as usize];
-                let orders = crate::motion::orders(inputs, input, Purpose::Accelerations);
-                if orders == Orders::NONE {
+                let wanted = crate::motion::derivatives_of(inputs, input, Purpose::Accelerations);
+                if wanted == Derivatives::NONE {
                     continue;
                 }
                 if joint_slot.still {
                     // At rest among others that move: the same record everywhere.
-                    let own = joint_slot.drive.components() * orders.count();
+                    let own = joint_slot.drive.components() * wanted.count();
                     let now = Time::new(sampled.clock.time(sampled.tick));
                     for record in records.chunks_exact_mut(width) {
                         joint_slot.drive.sample(
                             now,
                             Side::After,
-                            orders,
+                            wanted,
                             &mut record[at..at + own],
                         );
                     }
@@ -244,11 +247,11 @@ impl<T: Real + Float> Tracks<T> {
                     continue;
                 }
                 let active = &sampled.actives[joint_slot.active as usize];
-                let own = active.components * orders.count();
+                let own = active.components * wanted.count();
                 let (nodes, mine) = sampled.timetable.nodes(active.class, grid);
                 let alike = nodes == evaluations
                     && mine.iter().enumerate().all(|(index, &node)| index == usize::from(node));
-                if own == width && orders == active.orders && alike {
+                if own == width && wanted == active.wanted && alike {
                     // Nobody else wants anything else of it.
                     let length = records.len();
                     records.copy_from_slice(&sampled.numbers[active.offset..][..length]);
@@ -261,9 +264,9 @@ impl<T: Real + Float> Tracks<T> {
                             let numbers = &sampled.numbers[from..];
                             narrow(
                                 active.components,
-                                active.orders,
+                                active.wanted,
                                 numbers,
-                                orders,
+                                wanted,
                                 &mut record[at..at + own],
                             );
                         }
@@ -346,11 +349,11 @@ impl<T: Real + Float> Tracks<T> {
     ) {
         for (input, &joint) in joints.iter().enumerate() {
             let drive = &sampled.joint_slots[joint as usize].drive;
-            let orders = crate::motion::orders(inputs, input, purpose);
+            let wanted = crate::motion::derivatives_of(inputs, input, purpose);
             let begin = self.piece_records.len();
             self.piece_records
-                .resize(begin + drive.components() * orders.count(), T::from_f64(0.0));
-            drive.sample(t, side, orders, &mut self.piece_records[begin..]);
+                .resize(begin + drive.components() * wanted.count(), T::from_f64(0.0));
+            drive.sample(t, side, wanted, &mut self.piece_records[begin..]);
         }
     }
 
@@ -370,9 +373,9 @@ impl<T: Real + Float> Tracks<T> {
                 self.joints[track * self.inputs..][..self.inputs].iter().enumerate()
             {
                 let drive = &joint_slots[joint as usize].drive;
-                let orders = crate::motion::orders(inputs, input, Purpose::Accelerations);
-                let own = drive.components() * orders.count();
-                drive.sample(Time::new(now), Side::After, orders, &mut self.records[to..to + own]);
+                let wanted = crate::motion::derivatives_of(inputs, input, Purpose::Accelerations);
+                let own = drive.components() * wanted.count();
+                drive.sample(Time::new(now), Side::After, wanted, &mut self.records[to..to + own]);
                 to += own;
             }
         }
@@ -410,14 +413,20 @@ impl<T: Real + Float> Tracks<T> {
 
 /// Copies those of the derivatives in `has` that are in `wanted`.
 #[inline]
-fn narrow<T: Copy>(components: usize, has: Orders, numbers: &[T], wanted: Orders, to: &mut [T]) {
+fn narrow<T: Copy>(
+    components: usize,
+    has: Derivatives,
+    numbers: &[T],
+    wanted: Derivatives,
+    to: &mut [T],
+) {
     if has == wanted {
         to.copy_from_slice(&numbers[..to.len()]);
         return;
     }
     let (mut from, mut filled) = (0, 0);
     for derivative in 0..3 {
-        let order = Orders::of(derivative);
+        let order = Derivatives::of(derivative);
         if wanted.contains(order) {
             to[filled..filled + components].copy_from_slice(&numbers[from..from + components]);
             filled += components;

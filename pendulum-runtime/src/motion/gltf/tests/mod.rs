@@ -5,13 +5,13 @@ mod files;
 mod motions;
 mod writer;
 
-use crate::motion::{Motion, Orders, Sample, Side};
+use crate::motion::{Derivatives, Motion, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 use writer::Writer;
 
 fn at(motion: &impl Motion<f64, 3>, t: f64, side: Side) -> Sample<f64, 3> {
-    motion.sample(Time::new(t), side, Orders::ALL)
+    motion.sample(Time::new(t), side, Derivatives::ALL)
 }
 
 fn close(a: [f64; 3], b: [f64; 3], slack: f64) {

@@ -3,7 +3,7 @@
 use super::writer::Writer;
 use super::{at, close, dancer};
 use crate::motion::gltf::{Gltf, NodeMotion};
-use crate::motion::{Linear, Motion, Orders, Projected, Sample, Side};
+use crate::motion::{Derivatives, Linear, Motion, Projected, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 use nalgebra::{Matrix4, Quaternion, UnitQuaternion, Vector3};
@@ -152,19 +152,19 @@ fn derivatives_are_those_of_the_position() {
             };
             close(sample.velocity, [0, 1, 2].map(first), 1e-8);
             close(sample.acceleration, [0, 1, 2].map(second), 1e-6);
-            for orders in [
-                Orders::NONE,
-                Orders::POSITION,
-                Orders::VELOCITY,
-                Orders::POSITION.and(Orders::ACCELERATION),
+            for wanted in [
+                Derivatives::NONE,
+                Derivatives::POSITION,
+                Derivatives::VELOCITY,
+                Derivatives::POSITION.union(Derivatives::ACCELERATION),
             ] {
-                let some: Sample<f64, 3> = motion.sample(Time::new(t), Side::After, orders);
-                let kept = |wanted: Orders, value: [f64; 3]| {
-                    if orders.contains(wanted) { value } else { [0.0; 3] }
+                let some: Sample<f64, 3> = motion.sample(Time::new(t), Side::After, wanted);
+                let kept = |derivative: Derivatives, value: [f64; 3]| {
+                    if wanted.contains(derivative) { value } else { [0.0; 3] }
                 };
-                assert_eq!(some.position, kept(Orders::POSITION, sample.position));
-                assert_eq!(some.velocity, kept(Orders::VELOCITY, sample.velocity));
-                assert_eq!(some.acceleration, kept(Orders::ACCELERATION, sample.acceleration));
+                assert_eq!(some.position, kept(Derivatives::POSITION, sample.position));
+                assert_eq!(some.velocity, kept(Derivatives::VELOCITY, sample.velocity));
+                assert_eq!(some.acceleration, kept(Derivatives::ACCELERATION, sample.acceleration));
             }
         }
     }
@@ -263,7 +263,7 @@ fn a_plane_sees_two_directions() {
     let motion = Gltf::read(&file.binary(nodes)).unwrap().motion(0, 2).unwrap();
     let space = at(&motion, 0.6, Side::After);
     let seen = Projected::new(motion, [[0.0, 0.0, -0.01], [0.0, 0.01, 0.0]]);
-    let plane: Sample<f64, 2> = seen.sample(Time::new(0.6), Side::After, Orders::ALL);
+    let plane: Sample<f64, 2> = seen.sample(Time::new(0.6), Side::After, Derivatives::ALL);
     assert_eq!(plane.position, [-0.01 * space.position[2], 0.01 * space.position[1]]);
     assert_eq!(plane.acceleration, [-0.01 * space.acceleration[2], 0.01 * space.acceleration[1]]);
     assert_eq!(Motion::<f64, 2>::next_kink(&seen, 0.3), Some(0.5));

@@ -1,6 +1,6 @@
 //! A motion of which only a part is felt.
 
-use super::{Motion, MotionError, Orders, Sample, Side};
+use super::{Derivatives, Motion, MotionError, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
@@ -12,7 +12,7 @@ use crate::time::Time;
 /// Running feels like walking with a limit, and a root motion of which a tenth is felt has a gain
 /// of 0.1. Where the speed reaches the limit the acceleration jumps: a kink.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Felt<M> {
+pub struct Attenuated<M> {
     motion: M,
     gain: f64,
     limit: f64,
@@ -25,7 +25,7 @@ const CELL: f64 = 1.0 / 128.0;
 /// As many are searched at once; their ends are kinks, so that nobody searches farther.
 const CELLS: i64 = 512;
 
-impl<M> Felt<M> {
+impl<M> Attenuated<M> {
     /// The motion with so much of it felt; a limit of infinity is none.
     ///
     /// # Errors
@@ -45,7 +45,7 @@ impl<M> Felt<M> {
     where
         M: Motion<f64, D>,
     {
-        let sample = self.motion.sample(Time::new(t), Side::After, Orders::VELOCITY);
+        let sample = self.motion.sample(Time::new(t), Side::After, Derivatives::VELOCITY);
         self.limit * self.limit < square(&sample.velocity)
     }
 
@@ -103,15 +103,15 @@ fn square<T: Real, const D: usize>(v: &[T; D]) -> T {
     v.iter().fold(T::from_f64(0.0), |sum, &v| sum + v * v)
 }
 
-impl<T: Real, const D: usize, M: Motion<T, D> + Motion<f64, D>> Motion<T, D> for Felt<M> {
-    const HAS: Orders = <M as Motion<T, D>>::HAS;
+impl<T: Real, const D: usize, M: Motion<T, D> + Motion<f64, D>> Motion<T, D> for Attenuated<M> {
+    const HAS: Derivatives = <M as Motion<T, D>>::HAS;
 
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
         let limited = self.limit < f64::INFINITY;
-        let asked = if limited && orders.contains(Orders::ACCELERATION) {
-            orders.and(Orders::VELOCITY)
+        let asked = if limited && wanted.contains(Derivatives::ACCELERATION) {
+            wanted.union(Derivatives::VELOCITY)
         } else {
-            orders
+            wanted
         };
         let mut sample: Sample<T, D> = self.motion.sample(t, side, asked);
         let gain = T::from_f64(self.gain);
@@ -134,7 +134,7 @@ impl<T: Real, const D: usize, M: Motion<T, D> + Motion<f64, D>> Motion<T, D> for
             sample.velocity[d] *= gain;
             sample.acceleration[d] *= gain;
         }
-        if asked != orders && !orders.contains(Orders::VELOCITY) {
+        if asked != wanted && !wanted.contains(Derivatives::VELOCITY) {
             sample.velocity = [T::from_f64(0.0); D];
         }
         sample
