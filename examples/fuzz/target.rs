@@ -104,7 +104,8 @@ fn motion_capture(seed: u64) -> Verdict {
 /// A glTF file with something wrong in it, and the motions of all its nodes.
 #[cfg(feature = "gltf")]
 fn gltf(seed: u64) -> Verdict {
-    use pendulum_runtime::motion::{Derivatives, Motion, Side, gltf::Gltf};
+    use pendulum_runtime::import::gltf::Gltf;
+    use pendulum_runtime::motion::{Derivatives, Motion, Side};
     use pendulum_runtime::time::Time;
 
     let mut random = Random(seed);
@@ -132,7 +133,7 @@ fn gltf(seed: u64) -> Verdict {
 /// A drawing with something wrong in it.
 #[cfg(feature = "svg")]
 fn svg(seed: u64) -> Verdict {
-    use pendulum_runtime::drawing::{Drawing, Units};
+    use pendulum_runtime::import::svg::{Drawing, Units};
 
     const OWL: &[u8] = include_bytes!("../data/owl.svg");
     const SMALL: &[u8] = br##"<svg xmlns="http://www.w3.org/2000/svg" width="100" height="100"><g id="arm"><circle id="arm.keyed" cx="50" cy="10" r="1"/>

@@ -4,7 +4,7 @@ use crate::UNITS;
 use crate::bake::{Course, FRAMES, RATE};
 use crate::dance::PERIOD;
 use crate::rig::{Keyed, Rig};
-use pendulum_runtime::drawing::Joint;
+use pendulum_runtime::import::svg::Joint;
 use pendulum_runtime::motion::{Derivatives, Motion, Sample, Side};
 use std::fmt::Write;
 

@@ -2,7 +2,7 @@
 
 use crate::{UNITS, dance};
 use pendulum_runtime::body::Body;
-use pendulum_runtime::drawing::{Drawing, Joint, Role};
+use pendulum_runtime::import::svg::{Drawing, Joint, Role};
 use pendulum_runtime::motion::{Derivatives, Motion, Sample, Side, Spline};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::time::Time;
@@ -181,7 +181,7 @@ impl<T: Real> Motion<T, 2> for Pivot {
 mod tests {
     use super::Rig;
     use crate::UNITS;
-    use pendulum_runtime::drawing::Drawing;
+    use pendulum_runtime::import::svg::Drawing;
     use pendulum_runtime::motion::{Derivatives, Motion, Sample, Side};
 
     fn drawing() -> Drawing {

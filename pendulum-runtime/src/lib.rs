@@ -4,9 +4,9 @@
 mod macros;
 
 pub mod body;
-#[cfg(feature = "svg")]
-pub mod drawing;
 pub mod error;
+#[cfg(any(feature = "gltf", feature = "svg"))]
+pub mod import;
 pub mod integrate;
 pub mod jet;
 pub mod linearize;

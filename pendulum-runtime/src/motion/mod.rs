@@ -10,10 +10,8 @@ mod catmull_rom;
 mod clip;
 mod error;
 mod function;
-#[cfg(feature = "gltf")]
-pub mod gltf;
 mod linear;
-mod piecewise;
+pub(crate) mod piecewise;
 mod projected;
 mod sinusoid;
 mod spline;

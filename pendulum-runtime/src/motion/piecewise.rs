@@ -6,7 +6,7 @@ use crate::time::Time;
 
 /// A curve of cubics between keys; it rests before the first key and after the last, or repeats.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Piecewise<const D: usize> {
+pub(crate) struct Piecewise<const D: usize> {
     times: Vec<f64>,
     /// Coefficients of 1, u, u², u³ in the time u since the key.
     pieces: Vec<[[f64; D]; 4]>,
@@ -39,7 +39,7 @@ enum Place {
 }
 
 /// Times that increase and values that are finite, as many of both.
-pub(super) fn checked<const D: usize>(
+pub(crate) fn checked<const D: usize>(
     times: &[f64],
     values: &[[f64; D]],
 ) -> Result<(), MotionError> {
@@ -63,7 +63,7 @@ pub(super) fn checked<const D: usize>(
 impl<const D: usize> Piecewise<D> {
     /// Pieces that meet at `times`; `values` are those at the keys, `slopes` the velocities at both
     /// ends of each piece.
-    pub(super) fn hermite(times: &[f64], values: &[[f64; D]], slopes: &[[[f64; D]; 2]]) -> Self {
+    pub(crate) fn hermite(times: &[f64], values: &[[f64; D]], slopes: &[[[f64; D]; 2]]) -> Self {
         let mut pieces = Vec::with_capacity(slopes.len());
         for (index, [from, to]) in slopes.iter().enumerate() {
             let h = times[index + 1] - times[index];
@@ -89,7 +89,7 @@ impl<const D: usize> Piecewise<D> {
     }
 
     /// Straight lines; the velocity jumps at the keys.
-    pub(super) fn lines(times: &[f64], values: &[[f64; D]]) -> Self {
+    pub(crate) fn lines(times: &[f64], values: &[[f64; D]]) -> Self {
         let slope = |key: usize| {
             let h = times[key + 1] - times[key];
             let mut slope = [0.0; D];
@@ -104,7 +104,7 @@ impl<const D: usize> Piecewise<D> {
 
     /// Values that are kept from each key to the next, where they jump.
     #[cfg(feature = "gltf")]
-    pub(super) fn steps(times: &[f64], values: &[[f64; D]]) -> Self {
+    pub(crate) fn steps(times: &[f64], values: &[[f64; D]]) -> Self {
         let last = values.len() - 1;
         let rest = [0.0; D];
         let pieces = values[..last].iter().map(|&value| [value, rest, rest, rest]).collect();
@@ -124,14 +124,14 @@ impl<const D: usize> Piecewise<D> {
 
     /// Where position, velocity or acceleration jumps, within the keys.
     #[cfg(feature = "gltf")]
-    pub(super) fn kinks(&self) -> &[f64] {
+    pub(crate) fn kinks(&self) -> &[f64] {
         &self.kinks
     }
 
     /// The pieces as coefficients of 1, u, u², u³ in the time u since the key, and how long each
     /// lasts.
     #[cfg(feature = "gltf")]
-    pub(super) fn pieces(&self) -> impl Iterator<Item = (&[[f64; D]; 4], f64)> {
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = (&[[f64; D]; 4], f64)> {
         self.pieces.iter().zip(self.times.windows(2).map(|pair| pair[1] - pair[0]))
     }
 
@@ -145,14 +145,14 @@ impl<const D: usize> Piecewise<D> {
     }
 
     /// Declares the curve free of kinks.
-    pub(super) fn smooth(mut self) -> Self {
+    pub(crate) fn smooth(mut self) -> Self {
         self.kinks.clear();
         self
     }
 
     /// Says at which keys there is a jump: where `jumps` and at the ends, unless the curve comes to
     /// rest there smoothly.
-    pub(super) fn with_kinks(mut self, interior: bool) -> Self {
+    pub(crate) fn with_kinks(mut self, interior: bool) -> Self {
         let count = self.times.len();
         if self.pieces.is_empty() {
             return self;
@@ -174,7 +174,7 @@ impl<const D: usize> Piecewise<D> {
     }
 
     /// Repeats the curve for ever; the seam is a kink unless it is smooth.
-    pub(super) fn looped(mut self) -> Result<Self, MotionError> {
+    pub(crate) fn looped(mut self) -> Result<Self, MotionError> {
         let count = self.times.len();
         if count < 2 {
             return Err(MotionError::OneKey);
@@ -249,7 +249,7 @@ impl<const D: usize> Piecewise<D> {
     }
 
     #[inline]
-    pub(super) fn sample<T: Real>(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
+    pub(crate) fn sample<T: Real>(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
         match self.place(t, side) {
             Place::Rest { after } => {
                 let mut sample = Sample::zero();
@@ -265,7 +265,7 @@ impl<const D: usize> Piecewise<D> {
     }
 
     /// Coefficients of 1, u, u², u³ of one component in the time u since `t`.
-    pub(super) fn cubic(&self, t: Time, side: Side, component: usize) -> [f64; 4] {
+    pub(crate) fn cubic(&self, t: Time, side: Side, component: usize) -> [f64; 4] {
         match self.place(t, side) {
             Place::Rest { after } => {
                 let value =
@@ -286,7 +286,7 @@ impl<const D: usize> Piecewise<D> {
 
     /// The longest step from `t` that does not go unseen over a piece: `widths` times as long as
     /// any that it may reach.
-    pub(super) fn longest_step(&self, t: f64, widths: f64) -> f64 {
+    pub(crate) fn longest_step(&self, t: f64, widths: f64) -> f64 {
         let length = |key: Option<f64>, other: Option<f64>| Some(widths * (key? - other?).abs());
         // The piece under way, or nothing beyond the keys.
         let next = self.next_key(t);
@@ -328,22 +328,22 @@ impl<const D: usize> Piecewise<D> {
         if distance < longest { distance } else { longest }
     }
 
-    pub(super) fn next_kink(&self, t: f64) -> Option<f64> {
+    pub(crate) fn next_kink(&self, t: f64) -> Option<f64> {
         self.next(&self.kinks, t)
     }
 
     /// The last kink before `t`.
-    pub(super) fn last_kink(&self, t: f64) -> Option<f64> {
+    pub(crate) fn last_kink(&self, t: f64) -> Option<f64> {
         self.last(&self.kinks, t)
     }
 
     /// The first key after `t`.
-    pub(super) fn next_key(&self, t: f64) -> Option<f64> {
+    pub(crate) fn next_key(&self, t: f64) -> Option<f64> {
         self.next(&self.times, t)
     }
 
     /// The last key before `t`.
-    pub(super) fn last_key(&self, t: f64) -> Option<f64> {
+    pub(crate) fn last_key(&self, t: f64) -> Option<f64> {
         self.last(&self.times, t)
     }
 
@@ -391,7 +391,7 @@ impl<const D: usize> Piecewise<D> {
 
 impl<const D: usize> Piecewise<D> {
     /// The time up to which the curve is constant from `t` on.
-    pub(super) fn rest_until(&self, t: f64) -> f64 {
+    pub(crate) fn rest_until(&self, t: f64) -> f64 {
         let rests = |piece: usize| {
             self.pieces[piece][1..].iter().flatten().all(|&coefficient| coefficient == 0.0)
         };

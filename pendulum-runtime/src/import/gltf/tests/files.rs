@@ -2,8 +2,8 @@
 
 use super::writer::base64;
 use super::{at, close, dancer};
+use crate::import::gltf::Gltf;
 use crate::motion::Side;
-use crate::motion::gltf::Gltf;
 
 /// Shorts that stand for fractions, with gaps between them; and a sparse accessor over nothing.
 #[test]

@@ -3,7 +3,7 @@
 use super::writer::Writer;
 use super::{at, dancer};
 use crate::body::random::Random;
-use crate::motion::gltf::Gltf;
+use crate::import::gltf::Gltf;
 use crate::motion::{Motion, Side};
 use std::fmt::Write;
 

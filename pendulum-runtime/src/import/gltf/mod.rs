@@ -2,7 +2,7 @@
 //!
 //! ```no_run
 //! use pendulum_runtime::motion::Projected;
-//! use pendulum_runtime::motion::gltf::Gltf;
+//! use pendulum_runtime::import::gltf::Gltf;
 //!
 //! let file = Gltf::open("fox.glb")?;
 //! let (walk, tail) = (file.animation("Walk").unwrap(), file.node("b_Tail03_014").unwrap());

@@ -2,7 +2,7 @@
 
 use super::writer::Writer;
 use super::{at, close, dancer};
-use crate::motion::gltf::{Gltf, NodeMotion};
+use crate::import::gltf::{Gltf, NodeMotion};
 use crate::motion::{Derivatives, Linear, Motion, Projected, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;

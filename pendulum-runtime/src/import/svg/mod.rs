@@ -8,7 +8,7 @@
 //! can draw it. Groups within groups are joints on joints; other groups only collect shapes.
 //!
 //! ```
-//! use pendulum_runtime::drawing::{Drawing, Role, Units};
+//! use pendulum_runtime::import::svg::{Drawing, Role, Units};
 //!
 //! let text = r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 100">
 //!   <g id="arm"><circle id="arm.keyed" cx="50" cy="20" r="1"/>
@@ -23,7 +23,7 @@
 //! let body = sign.body.unwrap();
 //! assert!((body.mass - 0.5 * 2.0 * 0.020 * 0.030).abs() < 1e-9);
 //! assert!((body.center[1] + 0.015).abs() < 1e-9); // below its pivot: y points up
-//! # Ok::<(), pendulum_runtime::drawing::DrawingError>(())
+//! # Ok::<(), pendulum_runtime::import::svg::DrawingError>(())
 //! ```
 //!
 //! What a shape weighs: its area under its fill rule, Bézier curves and holes exactly
