@@ -4,7 +4,7 @@ use crate::UNITS;
 use crate::bake::{Course, FRAMES, RATE};
 use crate::dance::PERIOD;
 use crate::rig::{Keyed, Rig};
-use pendulum_runtime::import::svg::Joint;
+use pendulum_runtime::import::svg::DrawnJoint;
 use pendulum_runtime::motion::{Derivatives, Motion, Sample, Side};
 use std::fmt::Write;
 
@@ -47,7 +47,7 @@ pub(crate) fn frames(keyed: &Keyed<'_>) -> (Vec<f64>, Vec<[f64; 2]>) {
     (times().map(turn).collect(), times().map(shift).collect())
 }
 
-fn rotation(joint: &Joint, angles: &[f64]) -> String {
+fn rotation(joint: &DrawnJoint, angles: &[f64]) -> String {
     let values = angles.iter().map(|&angle| {
         let [degrees, x, y] = joint.rotation(angle);
         format!("{degrees:.2} {x:.1} {y:.1}")

@@ -2,7 +2,7 @@
 
 use crate::{UNITS, dance};
 use pendulum_runtime::body::Body;
-use pendulum_runtime::import::svg::{Drawing, Joint, Role};
+use pendulum_runtime::import::svg::{Drawing, DrawnJoint, Role};
 use pendulum_runtime::motion::{Derivatives, Motion, Sample, Side, Spline};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::time::Time;
@@ -19,7 +19,7 @@ pub(crate) struct Rig<'a> {
 /// A joint moved by keys.
 #[derive(Clone, Debug)]
 pub(crate) struct Keyed<'a> {
-    pub(crate) joint: &'a Joint,
+    pub(crate) joint: &'a DrawnJoint,
     /// On its parent.
     pub(crate) turn: Arc<Spline<1>>,
     /// How far it goes itself, which only a root does.
@@ -33,7 +33,7 @@ pub(crate) struct Keyed<'a> {
 /// A feather on a keyed joint.
 #[derive(Clone, Debug)]
 pub(crate) struct Hung<'a> {
-    pub(crate) joint: &'a Joint,
+    pub(crate) joint: &'a DrawnJoint,
     /// The number of the keyed joint.
     pub(crate) on: usize,
     pub(crate) body: Body,
@@ -108,7 +108,7 @@ impl<'a> Rig<'a> {
     }
 }
 
-fn between(from: &Joint, to: &Joint) -> [f64; 2] {
+fn between(from: &DrawnJoint, to: &DrawnJoint) -> [f64; 2] {
     [to.pivot[0] - from.pivot[0], to.pivot[1] - from.pivot[1]]
 }
 

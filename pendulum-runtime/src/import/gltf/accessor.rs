@@ -1,6 +1,6 @@
 //! Numbers out of buffers, every bound checked.
 
-use super::GltfError;
+use super::error::GltfError;
 use core::cell::Cell;
 use gltf::json::accessor::{Accessor, ComponentType, Type};
 use gltf::json::validation::Checked;

@@ -1,6 +1,6 @@
 //! The bytes that a file refers to: the chunk of a GLB, data URIs, files beside it.
 
-use super::GltfError;
+use super::error::GltfError;
 use gltf::json::Root;
 use std::fs::File;
 use std::io::Read;

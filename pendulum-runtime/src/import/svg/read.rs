@@ -1,6 +1,8 @@
 //! From the tree of `usvg` to joints.
 
-use super::{Drawing, DrawingError, Joint, Role, Skipped, Units, Why, size};
+use super::drawing::{Drawing, DrawnJoint, Role, Skipped, Units, Why};
+use super::error::DrawingError;
+use super::size;
 use crate::body::{Body, BodyError, FillRule, Outline};
 use crate::real::Real;
 use std::collections::{BTreeMap, BTreeSet};
@@ -185,7 +187,7 @@ impl Reader {
                 let (scale, mirrored) = similarity(transform)
                     .ok_or_else(|| DrawingError::Sheared { name: name.clone() })?;
                 let pixel = self.units.pixel;
-                self.drawing.joints.push(Joint {
+                self.drawing.joints.push(DrawnJoint {
                     role: pivot.role,
                     parent: joint,
                     pivot: [pixel * pivot.at[0], -pixel * pivot.at[1]],
