@@ -3,23 +3,23 @@
 #[macro_use]
 mod macros;
 
+pub mod analysis;
 pub mod body;
 pub mod error;
 #[cfg(any(feature = "gltf", feature = "svg"))]
 pub mod import;
 pub mod integrate;
 pub mod jet;
-pub mod linearize;
+
 pub mod motion;
 pub mod real;
 pub mod scene;
 mod simd;
 pub mod system;
 pub mod time;
-pub mod variational;
 
 #[doc(hidden)]
-#[path = "private.rs"]
+#[path = "system/generated.rs"]
 pub mod __private;
 
 /// What a program that writes a `lagrangian!` block and integrates it needs.

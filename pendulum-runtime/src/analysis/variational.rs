@@ -12,14 +12,14 @@ use nalgebra::{DMatrix, SMatrix};
 /// coordinate at the start, ∂q/∂q̇₀ for each velocity there, and ∂q/∂p for as many parameters as
 /// fit, in the order of `FACTS.parameters`; its velocities are the derivatives of q̇ likewise.
 /// Every column δq obeys δq̈ = A δq + B δq̇ + c with the generated Jacobians A = ∂q̈/∂q, B =
-/// ∂q̈/∂q̇ and, for a parameter, c = ∂q̈/∂p. [`size`] gives `M`.
+/// ∂q̈/∂q̇ and, for a parameter, c = ∂q̈/∂p. [`variational_size`] gives `M`.
 ///
 /// Step control watches the columns as it watches the motion. Over a kink the derivatives of the
 /// momenta go on, as the momenta do.
 ///
 /// ```
 /// use pendulum_runtime::prelude::*;
-/// use pendulum_runtime::variational::{Variational, size};
+/// use pendulum_runtime::analysis::{Variational, variational_size};
 ///
 /// # mod system {
 /// pendulum_runtime::lagrangian! {
@@ -32,7 +32,7 @@ use nalgebra::{DMatrix, SMatrix};
 /// # use system::Spring;
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// // One coordinate, and of its two parameters the first.
-/// const M: usize = size(1, 1);
+/// const M: usize = variational_size(1, 1);
 /// let spring = Variational::<_, 1, M>::new(Spring::new(4.0, 1.0));
 /// let (q, v) = spring.start([1.0], [0.0]);
 /// let end = solve(&spring, (0.0, 1.0), q, v).method(Dop853).rtol(1e-12).atol(1e-12).run()?.end;
@@ -57,7 +57,7 @@ pub struct Variational<S, const N: usize, const M: usize> {
 
 /// The number of coordinates of a [`Variational`] system with `coordinates` and the sensitivities
 /// to the first `parameters`.
-pub const fn size(coordinates: usize, parameters: usize) -> usize {
+pub const fn variational_size(coordinates: usize, parameters: usize) -> usize {
     coordinates * (1 + 2 * coordinates + parameters)
 }
 
@@ -65,8 +65,8 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
     /// The number of parameters whose sensitivities are computed.
     pub const PARAMETERS: usize = {
         assert!(
-            0 < N && M.is_multiple_of(N) && size(N, 0) <= M,
-            "the size of a variational system is `size(coordinates, parameters)`"
+            0 < N && M.is_multiple_of(N) && variational_size(N, 0) <= M,
+            "the size of a variational system is `variational_size(coordinates, parameters)`"
         );
         let parameters = M / N - 1 - 2 * N;
         assert!(parameters <= S::FACTS.parameters.len(), "there are not as many parameters");
