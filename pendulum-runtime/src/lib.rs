@@ -19,8 +19,7 @@ pub mod system;
 pub mod time;
 
 #[doc(hidden)]
-#[path = "system/generated.rs"]
-pub mod __private;
+pub use system::generated as __private;
 
 /// What a program that writes a `lagrangian!` block and integrates it needs.
 pub mod prelude {
