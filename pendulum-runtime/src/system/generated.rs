@@ -1,58 +1,10 @@
 //! What generated code names; no one else may rely on it.
 
 use crate::real::Real;
-use crate::system::{Facts, Input, System};
+use crate::system::System;
+pub use crate::system::facts::{Known, facts};
 pub use nalgebra::SMatrix;
 pub use pendulum_macros::lagrangian;
-
-/// All fields of [`Facts`], which others cannot name.
-#[derive(Clone, Copy, Debug)]
-#[allow(missing_docs)]
-pub struct Known {
-    pub name: &'static str,
-    pub coordinates: &'static [&'static str],
-    pub parameters: &'static [&'static str],
-    pub units: &'static [&'static str],
-    pub inputs: &'static [Input],
-    pub autonomous: bool,
-    pub explicit_time: bool,
-    pub separable: bool,
-    pub velocity_free: bool,
-    pub constant_mass_matrix: bool,
-    pub nonconservative: bool,
-    pub smooth: bool,
-    pub linear: bool,
-    pub cyclic: &'static [usize],
-    pub conserved: &'static [&'static str],
-    pub unused: &'static [&'static str],
-    pub equations: &'static str,
-    pub latex: &'static str,
-}
-
-/// The facts of a generated system.
-pub const fn facts(known: Known) -> Facts {
-    Facts {
-        name: known.name,
-        coordinates: known.coordinates,
-        parameters: known.parameters,
-        units: known.units,
-        inputs: known.inputs,
-        autonomous: known.autonomous,
-        explicit_time: known.explicit_time,
-        separable: known.separable,
-        velocity_free: known.velocity_free,
-        constant_mass_matrix: known.constant_mass_matrix,
-        nonconservative: known.nonconservative,
-        smooth: known.smooth,
-        linear: known.linear,
-        cyclic: known.cyclic,
-        conserved: known.conserved,
-        unused: known.unused,
-        equations: known.equations,
-        latex: known.latex,
-        derived: true,
-    }
-}
 
 /// The columns of a matrix of `N` rows, stored one after the other.
 pub fn columns<T, const N: usize>(entries: &[T]) -> &[[T; N]] {
