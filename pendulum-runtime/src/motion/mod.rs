@@ -288,13 +288,4 @@ macro_rules! tuples {
     )+};
 }
 
-tuples! {
-    (A DA 0)
-    (A DA 0, B DB 1)
-    (A DA 0, B DB 1, C DC 2)
-    (A DA 0, B DB 1, C DC 2, D DD 3)
-    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4)
-    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4, F DF 5)
-    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4, F DF 5, G DG 6)
-    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4, F DF 5, G DG 6, H DH 7)
-}
+for_tuples_of_motions!(tuples);

@@ -35,7 +35,7 @@ impl Samples for () {
 }
 
 macro_rules! samples {
-    ($(($($dim:ident $index:tt),+))+) => {$(
+    ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
         impl<T: Real, $(const $dim: usize),+> Samples for ($(Sample<T, $dim>,)+) {
             fn first_not_finite(&self) -> Option<(usize, usize, usize)> {
                 $(if let Some((derivative, component)) = first_in_sample(&self.$index) {
@@ -47,16 +47,7 @@ macro_rules! samples {
     )+};
 }
 
-samples! {
-    (A 0)
-    (A 0, B 1)
-    (A 0, B 1, C 2)
-    (A 0, B 1, C 2, D 3)
-    (A 0, B 1, C 2, D 3, E 4)
-    (A 0, B 1, C 2, D 3, E 4, F 5)
-    (A 0, B 1, C 2, D 3, E 4, F 5, G 6)
-    (A 0, B 1, C 2, D 3, E 4, F 5, G 6, H 7)
-}
+for_tuples_of_motions!(samples);
 
 /// The derivative and the component of the first number in `sample` that is not finite.
 fn first_in_sample<T: Real, const D: usize>(sample: &Sample<T, D>) -> Option<(usize, usize)> {

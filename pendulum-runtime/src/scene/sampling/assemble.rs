@@ -71,7 +71,7 @@ fn sample<T: Real, const D: usize>(input: usize, numbers: &mut impl Numbers<T>) 
 }
 
 macro_rules! tuples {
-    ($(($($dim:ident $index:tt),+))+) => {$(
+    ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
         impl<T: Real, $(const $dim: usize),+> Assemble<T> for ($(Sample<T, $dim>,)+) {
             const COMPONENTS: &'static [usize] = &[$($dim),+];
 
@@ -89,13 +89,4 @@ macro_rules! tuples {
     )+};
 }
 
-tuples! {
-    (A 0)
-    (A 0, B 1)
-    (A 0, B 1, C 2)
-    (A 0, B 1, C 2, D 3)
-    (A 0, B 1, C 2, D 3, E 4)
-    (A 0, B 1, C 2, D 3, E 4, F 5)
-    (A 0, B 1, C 2, D 3, E 4, F 5, G 6)
-    (A 0, B 1, C 2, D 3, E 4, F 5, G 6, H 7)
-}
+for_tuples_of_motions!(tuples);
