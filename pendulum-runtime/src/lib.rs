@@ -14,6 +14,7 @@ pub mod jet;
 pub mod motion;
 pub mod real;
 pub mod scene;
+mod sealed;
 mod simd;
 pub mod system;
 pub mod time;

@@ -8,6 +8,7 @@ use nalgebra::{DMatrix, DVector, SMatrix};
 
 /// Small motions δ about a state at rest: M δ̈ + C δ̇ + K δ = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Linearization<const N: usize> {
     /// The mass matrix M.
     pub mass: SMatrix<f64, N, N>,
@@ -19,6 +20,7 @@ pub struct Linearization<const N: usize> {
 
 /// The undamped vibrations about an equilibrium.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct NormalModes {
     /// The squares ω² of the angular frequencies in (rad/s)², ascending; negative for a direction
     /// in which the state is unstable.
@@ -28,7 +30,7 @@ pub struct NormalModes {
 }
 
 /// Why there are no normal modes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ModeError {
     /// The mass matrix is not positive definite at the state.

@@ -24,7 +24,8 @@ enum Curve<const D: usize> {
 }
 
 /// How the frames of a clip are joined.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Interpolation {
     /// By straight lines.
     Linear,

@@ -20,6 +20,7 @@ mod still;
 mod tests;
 
 use crate::real::{Lane, Octet, Real};
+use crate::sealed::Sealed;
 use crate::system::{Input, Purpose};
 use crate::time::Time;
 pub use analytic::{Analytic, AnalyticMotions, MaybeAnalytic};
@@ -107,7 +108,7 @@ pub trait Motion<T: Real, const D: usize> {
 }
 
 /// A set of derivatives: of a motion's position, velocity and acceleration.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Derivatives(u8);
 
 impl Derivatives {
@@ -144,7 +145,7 @@ impl Derivatives {
 }
 
 /// The side from which a kink is seen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Side {
     /// The limit from earlier times.
     Before,
@@ -172,6 +173,8 @@ pub struct Sample<T, const D: usize> {
     /// ẍ.
     pub acceleration: [T; D],
 }
+
+impl<T, const D: usize> Sealed for Sample<T, D> {}
 
 impl<T: Real, const D: usize> Sample<T, D> {
     /// Zero in all components.

@@ -15,6 +15,7 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 /// What [`Scene::advance`] has done.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Advanced {
     /// The ticks done.
     pub ticks: u64,

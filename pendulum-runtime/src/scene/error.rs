@@ -104,15 +104,26 @@ impl fmt::Display for SceneError {
                 f,
                 "the snapshot is not one of this scene: {what}; restore it where it was taken"
             ),
-            Self::Integration(error) => write!(f, "{error}"),
+            Self::Integration(_) => write!(
+                f,
+                "the time in which the pendulum was hidden could not be made up for; show it in another way"
+            ),
         }
     }
 }
 
-impl core::error::Error for SceneError {}
+impl core::error::Error for SceneError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Integration(error) => Some(error),
+            _ => None,
+        }
+    }
+}
 
 /// A pendulum whose state has ceased to be finite: it hangs frozen where it was last good.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SceneFault {
     /// The name of its type.
     pub kind: &'static str,
@@ -127,5 +138,21 @@ pub struct SceneFault {
 impl fmt::Display for SceneFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "`{}` {}: {}", self.kind, self.index, self.error)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::SceneError;
+    use crate::error::Error;
+    use core::error::Error as _;
+
+    #[test]
+    fn causes_are_sources_and_no_part_of_the_message() {
+        let cause = Error::MaxSteps { t: 1.0, max_steps: 7 };
+        let error = SceneError::Integration(cause.clone());
+        assert_eq!(error.source().unwrap().to_string(), cause.to_string());
+        assert!(!error.to_string().contains(&cause.to_string()), "{error}");
+        assert!(SceneError::Joint(0).source().is_none());
     }
 }

@@ -1,6 +1,8 @@
 //! Handles of pendulums.
 
+use core::cmp::Ordering;
 use core::fmt;
+use core::hash::{Hash, Hasher};
 use core::marker::PhantomData;
 
 /// A pendulum in a scene: its type and its number among those of its type.
@@ -37,8 +39,44 @@ impl<S, const N: usize> PartialEq for Handle<S, N> {
 
 impl<S, const N: usize> Eq for Handle<S, N> {}
 
+impl<S, const N: usize> PartialOrd for Handle<S, N> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// The order of hanging.
+impl<S, const N: usize> Ord for Handle<S, N> {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.index.cmp(&other.index)
+    }
+}
+
+impl<S, const N: usize> Hash for Handle<S, N> {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.index.hash(state);
+    }
+}
+
 impl<S, const N: usize> fmt::Debug for Handle<S, N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("Handle").field(&self.index).finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Handle;
+    use std::collections::{BTreeSet, HashSet};
+
+    /// A type without any trait: handles need none of it.
+    struct Bob;
+
+    #[test]
+    fn handles_are_keys_of_maps() {
+        let handle = Handle::<Bob, 1>::new;
+        let ordered: BTreeSet<_> = [handle(2), handle(0), handle(2)].into();
+        assert!(ordered.into_iter().eq([handle(0), handle(2)]));
+        assert_eq!(HashSet::from([handle(1), handle(1)]).len(), 1);
     }
 }

@@ -1,6 +1,6 @@
 //! Scenes: many systems on many joints, and nothing computed that the scene does not need.
 //!
-//! A [`Scene`] holds joints, each with a [`Motion`], and pendulums of any type that `lagrangian!`
+//! A [`Scene`] holds joints, each with a [`Motion`](crate::motion::Motion), and pendulums of any type that `lagrangian!`
 //! generates hung on them. [`Scene::advance`] takes frame times and does whole ticks of a fixed
 //! length, so that the motion does not depend on how time is cut into frames; [`Scene::pose`]
 //! interpolates between the last two ticks.

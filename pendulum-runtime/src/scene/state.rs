@@ -54,7 +54,10 @@ impl<T: Lane + Float> Scene<T> {
         }
     }
 
-    /// Where a joint is at the time of [`pose`](Self::pose).
+    /// The position of a joint at the time of [`pose`](Self::pose).
+    ///
+    /// # Panics
+    /// If the joint is not in this scene, as indexing does.
     pub fn joint_pose<const D: usize>(&self, joint: Joint<D>, alpha: f64) -> [T; D] {
         let mut position = [T::from_f64(0.0); D];
         let t = self.clock.within(self.clock.tick() - 1, alpha);

@@ -15,7 +15,7 @@ use nalgebra::SMatrix;
 pub trait System<const N: usize> {
     /// The scalar of parameters and state.
     type Scalar: Real;
-    /// `()` or a tuple with a [`Sample`] for each driven input, in the order of declaration.
+    /// `()` or a tuple with a [`Sample`](crate::motion::Sample) for each driven input, in the order of declaration.
     type Inputs: Samples;
     /// The same system over another scalar.
     type With<U: Real>: System<N, Scalar = U>;

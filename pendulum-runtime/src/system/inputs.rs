@@ -62,16 +62,17 @@ fn first_in_sample<T: Real, const D: usize>(sample: &Sample<T, D>) -> Option<(us
 }
 
 /// The output for which a driven input is sampled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Purpose {
-    /// [`System::accelerations`] and [`System::forces`].
+    /// [`System::accelerations`](crate::system::System::accelerations) and [`System::forces`](crate::system::System::forces).
     Accelerations,
-    /// [`System::momenta`], [`System::velocities`], [`System::momentum_rates`] and
-    /// [`System::mass_matrix`].
+    /// [`System::momenta`](crate::system::System::momenta), [`System::velocities`](crate::system::System::velocities), [`System::momentum_rates`](crate::system::System::momentum_rates) and
+    /// [`System::mass_matrix`](crate::system::System::mass_matrix).
     Momenta,
-    /// [`System::energy`] and the two energies of [`SplitEnergy`].
+    /// [`System::energy`](crate::system::System::energy) and the two energies of [`SplitEnergy`](crate::system::SplitEnergy).
     Energy,
-    /// [`System::power`].
+    /// [`System::power`](crate::system::System::power).
     Power,
 }
 

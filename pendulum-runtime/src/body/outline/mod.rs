@@ -41,7 +41,7 @@ pub struct Outline {
 }
 
 /// What is inside of curves that cross or lie within each other.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FillRule {
     /// What they go around, counted with the direction.
     #[default]

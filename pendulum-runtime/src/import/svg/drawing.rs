@@ -14,6 +14,7 @@ pub struct Units {
 
 /// The joints of a drawing.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Drawing {
     /// Parents stand before their children, otherwise in the order of the drawing.
     pub joints: Vec<DrawnJoint>,
@@ -27,6 +28,7 @@ pub struct Drawing {
 
 /// A group of a drawing with a pivot.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct DrawnJoint {
     /// The id of the group.
     pub name: String,
@@ -63,7 +65,8 @@ impl DrawnJoint {
 }
 
 /// What moves a joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Role {
     /// Keys.
     Keyed,
@@ -73,6 +76,7 @@ pub enum Role {
 
 /// A shape that weighs nothing.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Skipped {
     /// Its id, or the line of the text on which an element without one begins.
     pub id: String,
@@ -81,7 +85,8 @@ pub struct Skipped {
 }
 
 /// Why a shape weighs nothing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Why {
     /// It has no fill, at most a stroke.
     NoFill,

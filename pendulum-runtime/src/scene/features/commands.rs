@@ -13,6 +13,7 @@ use crate::scene::scene::Scene;
 
 /// How a coordinate is kept within its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Stop {
     /// A wall: what flies at it comes back with this part of its velocity, in [0, 1].
     Hard {

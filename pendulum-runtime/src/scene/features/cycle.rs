@@ -7,6 +7,7 @@ use crate::scene::scene::Scene;
 
 /// What [`Scene::close_loop`] has reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Closed {
     /// The turns simulated.
     pub turns: u32,

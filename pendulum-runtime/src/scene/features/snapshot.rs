@@ -11,7 +11,7 @@ use crate::scene::scene::Scene;
 ///
 /// Motions and the list of joints and pendulums are not in it: it is restored to the scene that it
 /// was taken of, or to one that was built in the same way. Written to a file, it keeps who has
-/// failed and not why: [`Scene::failures`] is empty after it was read. With `serde_json` the bits
+/// failed and not why: [`Scene::faults`] is empty after it was read. With `serde_json` the bits
 /// stay what they are if its feature `float_roundtrip` is on.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -16,6 +16,7 @@ use crate::time::Time;
 
 /// How a pendulum comes back to the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Resume {
     /// It goes on from where it was.
     Unchanged,

@@ -12,7 +12,8 @@ use crate::system::{Purpose, scalar_time};
 use crate::time::Time;
 
 /// What becomes of the swing when a joint is given another motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Preserve {
     /// Coordinates and velocities stay: a teleport that nobody feels.
     Swing,

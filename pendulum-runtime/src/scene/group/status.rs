@@ -1,8 +1,9 @@
 //! Whether pendulums are computed.
 
 /// What a pendulum is doing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum SceneStatus {
     /// It swings.
     Awake,

@@ -7,6 +7,7 @@ use crate::scene::lanes::system::{SceneSystem, W, Wide};
 use crate::scene::sampling::assemble::{Assemble, Numbers};
 use crate::scene::sampling::layout::Layout;
 use crate::scene::sampling::tracks::Tracks;
+use crate::sealed::Sealed;
 use crate::system::System;
 
 /// The driven inputs of all lanes at one time.
@@ -20,6 +21,8 @@ pub(crate) fn nothing<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>() -
 }
 
 struct Nothing;
+
+impl Sealed for Nothing {}
 
 impl<T: Lane> Numbers<Wide<T>> for Nothing {
     #[inline(always)]
@@ -98,6 +101,8 @@ struct Spread<'a, T> {
     layout: &'a Layout,
 }
 
+impl<T> Sealed for Spread<'_, T> {}
+
 impl<T: Lane> Numbers<Wide<T>> for Spread<'_, T> {
     #[inline(always)]
     fn number(&mut self, input: usize, derivative: usize, component: usize) -> Wide<T> {
@@ -121,6 +126,8 @@ struct Gathered<'a, T> {
     records: &'a [&'a [T]; W],
     layout: &'a Layout,
 }
+
+impl<T> Sealed for Gathered<'_, T> {}
 
 impl<T: Lane> Numbers<Wide<T>> for Gathered<'_, T> {
     #[inline(always)]

@@ -5,17 +5,20 @@
 use crate::motion::Sample;
 use crate::real::Real;
 use crate::scene::sampling::joint::Joint;
+use crate::sealed::Sealed;
 use crate::system::Samples;
 
 /// The numbers of samples. A closure would do, but that need not be inlined, and then is compiled
 /// for other instructions.
-pub trait Numbers<T> {
+pub trait Numbers<T>: Sealed {
     /// The number in input i, derivative d (0 for the position) and component c.
     fn number(&mut self, input: usize, derivative: usize, component: usize) -> T;
 }
 
 /// Numbers that a function gives, where it does not matter.
 pub(crate) struct By<F>(pub(crate) F);
+
+impl<F> Sealed for By<F> {}
 
 impl<T, F: FnMut(usize, usize, usize) -> T> Numbers<T> for By<F> {
     fn number(&mut self, input: usize, derivative: usize, component: usize) -> T {
@@ -24,7 +27,7 @@ impl<T, F: FnMut(usize, usize, usize) -> T> Numbers<T> for By<F> {
 }
 
 /// The samples of all driven inputs of a system over the scalar `T`, put together number by number.
-pub trait Assemble<T>: Samples {
+pub trait Assemble<T>: Samples + Sealed {
     /// The components of each input.
     const COMPONENTS: &'static [usize];
 
@@ -41,7 +44,7 @@ impl<T: Real> Assemble<T> for () {
 
 /// What a system hangs on: `()`, a [`Joint`] or a tuple of joints, one for each driven input in the
 /// order of declaration.
-pub trait Anchor<Inputs> {
+pub trait Anchor<Inputs>: Sealed {
     /// The joints by number.
     #[doc(hidden)]
     fn joints(&self) -> Vec<u32>;

@@ -3,6 +3,7 @@
 use crate::motion::{Derivatives, Motion, Sample, Side};
 use crate::real::Real;
 use crate::scene::sampling::clock::Clock;
+use crate::sealed::Sealed;
 use crate::time::Time;
 use core::fmt;
 use std::sync::Arc;
@@ -10,6 +11,8 @@ use std::sync::Arc;
 /// A joint of a scene that moves in `D` dimensions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Joint<const D: usize>(pub(crate) u32);
+
+impl<const D: usize> Sealed for Joint<D> {}
 
 /// A motion whose type and dimension are forgotten.
 pub(crate) trait Drive<T>: Send + Sync {

@@ -2,11 +2,13 @@
 
 use crate::integrate::method::Method;
 use crate::integrate::{Leapfrog, Rk4, Srkn6b, leapfrog, srkn6b};
+use crate::sealed::Sealed;
 use crate::system::Facts;
 
 /// A fixed-step method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Scheme {
     /// [`Leapfrog`](crate::integrate::Leapfrog): order 2, one evaluation a step, for velocity-free
     /// systems.
@@ -19,10 +21,16 @@ pub enum Scheme {
 }
 
 /// The methods of [`integrate`](crate::integrate) that a scene has.
-pub trait Fixed: Method {
+pub trait Fixed: Method + Sealed {
     /// The method as data.
     const SCHEME: Scheme;
 }
+
+impl Sealed for Leapfrog {}
+
+impl Sealed for Srkn6b {}
+
+impl Sealed for Rk4 {}
 
 impl Fixed for Leapfrog {
     const SCHEME: Scheme = Scheme::Leapfrog;
