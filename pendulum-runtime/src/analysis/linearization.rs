@@ -29,7 +29,7 @@ pub struct NormalModes {
     pub shapes: DMatrix<f64>,
 }
 
-/// Why there are no normal modes.
+/// Reason for which there are no normal modes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ModeError {

@@ -304,7 +304,7 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
         )
     }
 
-    /// That of the system.
+    /// The energy of the system.
     fn energy(
         &self,
         t: S::Scalar,
@@ -315,7 +315,7 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
         self.system.energy(t, &column(q, 0), &column(v, 0), inputs)
     }
 
-    /// That of the system.
+    /// The power of the system.
     fn power(
         &self,
         t: S::Scalar,
@@ -326,7 +326,7 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
         self.system.power(t, &column(q, 0), &column(v, 0), inputs)
     }
 
-    /// Those of the system and their derivatives.
+    /// The momenta of the system and their derivatives.
     fn momenta(
         &self,
         t: S::Scalar,
@@ -383,7 +383,7 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
         })
     }
 
-    /// Those of the system.
+    /// The conserved quantities of the system.
     fn conserved(
         &self,
         t: S::Scalar,
@@ -395,7 +395,7 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
         self.system.conserved(t, &column(q, 0), &column(v, 0), inputs, values);
     }
 
-    /// That of the system: derivatives of its functions of time are as narrow as they.
+    /// The bound of the system: derivatives of its functions of time are as narrow as they.
     fn longest_step(&self, t: S::Scalar, widths: S::Scalar) -> S::Scalar {
         self.system.longest_step(t, widths)
     }
@@ -412,7 +412,7 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
     }
 }
 
-/// Where the accelerations contain no velocity, their derivatives do not either.
+/// Derivatives of accelerations without velocities contain no velocity either.
 impl<S: Jacobians<N> + VelocityFree<N>, const N: usize, const M: usize> VelocityFree<M>
     for Variational<S, N, M>
 {

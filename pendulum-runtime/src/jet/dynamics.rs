@@ -38,7 +38,7 @@ pub trait JetDynamics<const N: usize>: Dynamics<N, System: Jets<N>> {
     note = "name one: `solve(…).method(Dop853)`"
 )]
 pub trait MaybeJets<const N: usize>: Dynamics<N, System: Jets<N>> {
-    /// Whether the jets are known: every motion is analytic.
+    /// Returns true if the jets are known: every motion is analytic.
     fn is_analytic(&self) -> bool;
 
     /// As [`JetDynamics::drive`].

@@ -9,7 +9,7 @@ pub trait Order: Copy + Sealed {
     /// Another order, known at run time.
     type At: Order;
 
-    /// As a number below [`LENGTH`].
+    /// The order as a number below [`LENGTH`].
     fn index(self) -> usize;
 
     /// The order `index`, below [`LENGTH`].

@@ -13,7 +13,7 @@ use crate::scene::scene::Scene;
 use crate::scene::threads::{part, share};
 use core::sync::atomic::{AtomicBool, Ordering};
 
-/// What [`Scene::advance`] has done.
+/// Result of [`Scene::advance`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Advanced {
@@ -94,7 +94,7 @@ impl<T: Lane + Float> Scene<T> {
         self.threads = threads;
     }
 
-    /// The same, on all threads or on one.
+    /// Computes a batch on all threads or on one.
     fn computed(&mut self, ticks: usize, fork: bool) {
         let tick = self.clock.tick();
         let kinks = self.sample(tick, ticks, fork);
@@ -170,7 +170,7 @@ impl<T: Lane + Float> Scene<T> {
     }
 }
 
-/// What all samplers share.
+/// Values that all samplers share.
 #[derive(Clone, Copy)]
 struct Times<'a> {
     clock: &'a Clock,

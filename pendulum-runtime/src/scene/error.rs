@@ -1,9 +1,9 @@
-//! What a scene refuses, and what fails in it.
+//! Errors of requests to a scene, and faults of its pendulums.
 
 use crate::error::{Coordinate, Error};
 use core::fmt;
 
-/// Why a scene did not do what it was asked to; it is as it was before.
+/// Reason for which a scene did not do what it was asked to; the scene is as it was before.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SceneError {
@@ -15,7 +15,7 @@ pub enum SceneError {
         name: &'static str,
         /// The value given.
         value: f64,
-        /// What it has to be.
+        /// The requirement.
         required: &'static str,
     },
     /// A coordinate or velocity that a pendulum was given is infinite or not a number.
@@ -131,7 +131,7 @@ pub struct SceneFault {
     pub index: u32,
     /// The beginning of the tick in which it happened, in seconds.
     pub t: f64,
-    /// What went wrong.
+    /// The error.
     pub error: Error,
 }
 

@@ -1,9 +1,9 @@
 //! Scenes: many systems on many joints, and nothing computed that the scene does not need.
 //!
-//! A [`Scene`] holds joints, each with a [`Motion`](crate::motion::Motion), and pendulums of any type that `lagrangian!`
-//! generates hung on them. [`Scene::advance`] takes frame times and does whole ticks of a fixed
-//! length, so that the motion does not depend on how time is cut into frames; [`Scene::pose`]
-//! interpolates between the last two ticks.
+//! A [`Scene`] holds joints, each with a [`Motion`](crate::motion::Motion), and pendulums that hang
+//! on them, of any type that `lagrangian!` generates. [`Scene::advance`] takes frame times and does
+//! whole ticks of a fixed length, so that the motion does not depend on how time is cut into
+//! frames; [`Scene::pose`] interpolates between the last two ticks.
 //!
 //! ```
 //! # #![allow(mixed_script_confusables)]
@@ -32,7 +32,7 @@
 //! # Ok::<(), pendulum_runtime::scene::SceneError>(())
 //! ```
 //!
-//! # How it is computed
+//! # Computation
 //!
 //! Pendulums of one type that take the same steps stand in blocks of 32 lanes, structures of
 //! arrays, and go through eight ticks at a time; the code is compiled for several instruction sets

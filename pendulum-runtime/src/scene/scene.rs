@@ -22,11 +22,11 @@ use core::fmt;
 pub struct Scene<T> {
     pub(super) clock: Clock,
     pub(super) joint_slots: Vec<JointSlot<T>>,
-    /// Those that somebody awake needs.
+    /// The joints that a pendulum which is awake needs.
     pub(super) actives: Vec<Active>,
     pub(super) groups: Vec<(TypeId, Box<dyn AnyGroup<T>>)>,
     pub(super) timetable: Timetable,
-    /// What was sampled of the joints in a batch.
+    /// Samples of the joints in a batch.
     pub(super) numbers: Vec<T>,
     /// Somebody has been hung up, woken or put to sleep since the timetable was made.
     pub(super) dirty: bool,
@@ -162,8 +162,8 @@ impl<T: Lane + Float> Scene<T> {
         Ok(())
     }
 
-    /// Whether all threads may be used, as at first; the bits are the same. Without the feature
-    /// `rayon` there is only one.
+    /// Allows or forbids the use of all threads, which is allowed at first; the bits are the same.
+    /// Without the feature `rayon` there is only one.
     ///
     /// They are used where that is quicker, which is measured while running. Batches that took less
     /// than 0.2 ms on one thread do not fork. Two batches in a row are run the slower way from time

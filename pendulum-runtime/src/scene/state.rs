@@ -119,7 +119,7 @@ impl<T: Lane + Float> Scene<T> {
         group.system_of(&group.read(pendulum.index()).parameters)
     }
 
-    /// What a pendulum is doing.
+    /// The status of a pendulum.
     ///
     /// # Panics
     /// If the pendulum is not in this scene, as indexing does.

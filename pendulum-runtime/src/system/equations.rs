@@ -15,21 +15,22 @@ use nalgebra::SMatrix;
 pub trait System<const N: usize> {
     /// The scalar of parameters and state.
     type Scalar: Real;
-    /// `()` or a tuple with a [`Sample`](crate::motion::Sample) for each driven input, in the order of declaration.
+    /// `()` or a tuple with a [`Sample`](crate::motion::Sample) for each driven input, in the order
+    /// of declaration.
     type Inputs: Samples;
     /// The same system over another scalar.
     type With<U: Real>: System<N, Scalar = U>;
-    /// What the accelerations need and the parameters alone decide, computed once; `()` for systems
-    /// written by hand.
+    /// Values that the accelerations need and the parameters alone decide, computed once; `()` for
+    /// systems written by hand.
     type Prepared: Copy + Debug;
 
-    /// What is known about the system before it runs.
+    /// Facts about the system that are known before it runs.
     const FACTS: Facts;
 
     /// The same system with every parameter mapped, in the order of `FACTS.parameters`.
     fn map<U: Real>(&self, map: impl FnMut(Self::Scalar) -> U) -> Self::With<U>;
 
-    /// What parameters alone decide.
+    /// Computes the values that parameters alone decide.
     fn prepare(&self) -> Self::Prepared;
 
     /// The accelerations q̈ with what [`prepare`](Self::prepare) gave.
@@ -170,15 +171,15 @@ pub trait System<const N: usize> {
 /// The last stage gives the same bits as [`System::accelerations`]. Generated stages are always
 /// inlined, so that loops over [lanes](crate::real::Lanes) use the vectors of the code around them.
 pub trait Staged<const N: usize>: System<N> {
-    /// What time and driven inputs alone decide.
+    /// Values that time and driven inputs alone decide.
     type AtTime: Copy + Debug;
-    /// What the position adds to it.
+    /// Values that the position adds.
     type AtPosition: Copy + Debug;
 
-    /// What time and driven inputs alone decide, whatever the parameters.
+    /// Computes the values that time and driven inputs alone decide, whatever the parameters.
     fn at_time(t: Self::Scalar, inputs: &Self::Inputs) -> Self::AtTime;
 
-    /// What can be computed before the velocities are known.
+    /// Computes the values that do not need the velocities.
     fn at_position(
         &self,
         prepared: &Self::Prepared,

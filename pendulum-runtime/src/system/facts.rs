@@ -37,8 +37,8 @@ facts! {
     pub name: &'static str = "",
     /// The coordinates as written, a family as `θ[0]`, `θ[1]`, ….
     pub coordinates: &'static [&'static str] = &[],
-    /// The parameters in the order of [`System::map`](crate::system::System::map), a vector as `c.x`, `c.y`, a family as
-    /// `m[0]`, ….
+    /// The parameters in the order of [`System::map`](crate::system::System::map), a vector as
+    /// `c.x`, `c.y`, a family as `m[0]`, ….
     pub parameters: &'static [&'static str] = &[],
     /// The units of the parameters as written, empty where none was given.
     pub units: &'static [&'static str] = &[],
@@ -64,10 +64,10 @@ facts! {
     pub linear: bool = false,
     /// The coordinates that do not stand in the Lagrangian, by index.
     pub cyclic: &'static [usize] = &[],
-    /// The conserved quantities that [`System::conserved`](crate::system::System::conserved) gives, in terms of the momenta: `p_φ`,
-    /// `x·p_y − y·p_x`. The energy is not among them; it is conserved where [`System::power`](crate::system::System::power) is
-    /// zero, as it is without `dissipation` and `force` if neither time nor a driven input stands
-    /// in the energy.
+    /// The conserved quantities that [`System::conserved`](crate::system::System::conserved) gives,
+    /// in terms of the momenta: `p_φ`, `x·p_y − y·p_x`. The energy is not among them; it is
+    /// conserved where [`System::power`](crate::system::System::power) is zero, as it is without
+    /// `dissipation` and `force` if neither time nor a driven input stands in the energy.
     pub conserved: &'static [&'static str] = &[],
     /// The parameters that the accelerations do not need.
     pub unused: &'static [&'static str] = &[],

@@ -1,4 +1,4 @@
-//! What generated code names; no one else may rely on it.
+//! Names of generated code; no one else may rely on them.
 
 use crate::real::Real;
 use crate::system::System;

@@ -4,20 +4,20 @@ use crate::motion::{Derivatives, Sample};
 use crate::real::Real;
 use core::fmt::Debug;
 
-/// What a system takes from one of its driven inputs.
+/// Needs of a system of one of its driven inputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Input {
     /// The name as written.
     pub name: &'static str,
     /// The number of components.
     pub components: usize,
-    /// What the accelerations and forces need.
+    /// Derivatives that accelerations and forces need.
     pub accelerations: Derivatives,
-    /// What momenta, velocities and momentum rates need.
+    /// Derivatives that momenta, velocities and momentum rates need.
     pub momenta: Derivatives,
-    /// What the energy needs.
+    /// Derivatives that the energy needs.
     pub energy: Derivatives,
-    /// What the power needs.
+    /// Derivatives that the power needs.
     pub power: Derivatives,
 }
 
@@ -65,12 +65,16 @@ fn first_in_sample<T: Real, const D: usize>(sample: &Sample<T, D>) -> Option<(us
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Purpose {
-    /// [`System::accelerations`](crate::system::System::accelerations) and [`System::forces`](crate::system::System::forces).
+    /// [`System::accelerations`](crate::system::System::accelerations) and
+    /// [`System::forces`](crate::system::System::forces).
     Accelerations,
-    /// [`System::momenta`](crate::system::System::momenta), [`System::velocities`](crate::system::System::velocities), [`System::momentum_rates`](crate::system::System::momentum_rates) and
+    /// [`System::momenta`](crate::system::System::momenta),
+    /// [`System::velocities`](crate::system::System::velocities),
+    /// [`System::momentum_rates`](crate::system::System::momentum_rates) and
     /// [`System::mass_matrix`](crate::system::System::mass_matrix).
     Momenta,
-    /// [`System::energy`](crate::system::System::energy) and the two energies of [`SplitEnergy`](crate::system::SplitEnergy).
+    /// [`System::energy`](crate::system::System::energy) and the two energies of
+    /// [`SplitEnergy`](crate::system::SplitEnergy).
     Energy,
     /// [`System::power`](crate::system::System::power).
     Power,

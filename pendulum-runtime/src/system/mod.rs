@@ -1,4 +1,4 @@
-//! What `lagrangian!` generates, and a system together with the motions that drive it.
+//! Systems as `lagrangian!` generates them, and together with the motions that drive them.
 
 mod dynamics;
 mod equations;

@@ -13,7 +13,7 @@ const MOST: usize = 1 << 16;
 /// Elements that one motion may take, however often its channels name the same ones.
 const BUDGET: usize = 1 << 24;
 
-/// What numbers are read from.
+/// Bytes from which numbers are read.
 #[derive(Clone, Debug)]
 pub(super) struct Source<'a> {
     root: &'a Root,

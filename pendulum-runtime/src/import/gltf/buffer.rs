@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// Whether a URI names a file beside, not one anywhere.
+/// Returns true if a URI names a file beside the file, not one anywhere.
 fn beside(uri: &str) -> bool {
     !uri.starts_with('/') && !uri.contains(':') && !uri.contains('\\')
 }

@@ -1,15 +1,15 @@
-//! Why a glTF file cannot be read.
+//! Errors of glTF files.
 
 use core::fmt;
 
-/// Why a glTF file cannot be read: where in it, what is wrong, what to do.
+/// Reason for which a glTF file cannot be read: the place in it, the mistake, the advice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GltfError {
     /// The part of the file, as `accessors[3]` or `animations[0].channels[2]`.
     pub place: String,
-    /// What is wrong there.
+    /// The mistake.
     pub what: String,
-    /// What to do about it.
+    /// The advice.
     pub advice: &'static str,
 }
 

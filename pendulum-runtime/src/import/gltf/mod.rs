@@ -42,7 +42,7 @@ use track::{Arcs, Track, Turn, dot, vanishing};
 /// Times, values and what is between them.
 type Keys<const D: usize> = (Vec<f64>, Vec<[f64; D]>, Interpolation);
 
-/// What to do about a file that contradicts itself.
+/// Advice for a file that contradicts itself.
 const MEND: &str = "mend the file or export it again";
 
 /// A glTF file: a hierarchy of nodes and the animations that move them.
@@ -166,7 +166,7 @@ impl Gltf {
         Ok(NodeMotion::new(chain, duration(&source, played).map_err(|error| error.within(&outer))?))
     }
 
-    /// How a node stands on its parent while some channels of an animation play.
+    /// Position of a node on its parent while some channels of an animation play.
     fn local(
         &self,
         source: &Source<'_>,

@@ -6,7 +6,7 @@ use crate::motion::{Derivatives, Motion, MotionError, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
-/// How a node stands on its parent.
+/// Position of a node on its parent.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Local {
     /// Translation, rotation and scale: p ↦ x + R S p.
@@ -15,7 +15,7 @@ pub(super) enum Local {
     Matrix([[f64; 4]; 3]),
 }
 
-/// What channels move.
+/// Parts of a position that channels move.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Parts {
     pub(super) translation: Track,

@@ -3,7 +3,7 @@
 use crate::body::Body;
 use core::fmt;
 
-/// What a drawing is measured in.
+/// Units of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Units {
     /// Metres in a pixel, the drawing's unit of length.
@@ -32,21 +32,21 @@ pub struct Drawing {
 pub struct DrawnJoint {
     /// The id of the group.
     pub name: String,
-    /// What moves it.
+    /// The cause of its motion.
     pub role: Role,
     /// The joint on which it stands.
     pub parent: Option<usize>,
     /// The pivot in metres, from the upper left corner of the drawing, y up: what is drawn has a
     /// negative y.
     pub pivot: [f64; 2],
-    /// What is filled in the group but not on further joints in it, as seen from the pivot, as
-    /// drawn; nothing if nothing is.
+    /// The body that the filled shapes make in the group and not on further joints in it, as seen
+    /// from the pivot, as drawn; `None` without such shapes.
     pub body: Option<Body>,
     /// The number of shapes in the body.
     pub shapes: usize,
     /// The pivot in the group's own coordinates, in pixels, y down.
     pub anchor: [f64; 2],
-    /// Whether the group is mirrored: then it turns the other way in its own coordinates.
+    /// True if the group is mirrored: then it turns the other way in its own coordinates.
     pub mirrored: bool,
     /// Pixels of the drawing in a unit of the group's own coordinates.
     pub scale: f64,
@@ -64,7 +64,7 @@ impl DrawnJoint {
     }
 }
 
-/// What moves a joint.
+/// Cause of the motion of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Role {
@@ -80,28 +80,28 @@ pub enum Role {
 pub struct Skipped {
     /// Its id, or the line of the text on which an element without one begins.
     pub id: String,
-    /// Why it weighs nothing.
+    /// The reason.
     pub why: Why,
 }
 
-/// Why a shape weighs nothing.
+/// Reason for which a shape weighs nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Why {
-    /// It has no fill, at most a stroke.
+    /// The shape has no fill, at most a stroke.
     NoFill,
-    /// It is not visible.
+    /// The shape is not visible.
     Hidden,
     /// Its opacity is zero.
     Transparent,
-    /// It has no area.
+    /// The shape has no area.
     NoArea,
-    /// It is an image.
+    /// The element is an image.
     Image,
-    /// It is a text.
+    /// The element is a text.
     Text,
-    /// It is not drawn: it has no size, a transform that leaves none, `display="none"`, or a clip
-    /// path or filter that is empty or missing.
+    /// The element is not drawn: it has no size, a transform that leaves none, `display="none"`, or
+    /// a clip path or filter that is empty or missing.
     NotDrawn,
 }
 

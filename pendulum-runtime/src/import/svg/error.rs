@@ -1,9 +1,9 @@
-//! Why a drawing cannot be read.
+//! Errors of drawings.
 
 use crate::body::BodyError;
 use core::fmt;
 
-/// Why a drawing cannot be read.
+/// Reason for which a drawing cannot be read.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum DrawingError {
@@ -51,7 +51,7 @@ pub enum DrawingError {
     Body {
         /// The shape.
         id: String,
-        /// What is wrong with it.
+        /// The mistake in it.
         error: BodyError,
     },
 }

@@ -26,12 +26,12 @@ struct Pivot {
     at: [f64; 2],
 }
 
-/// What is known of the drawing while its tree is walked.
+/// Knowledge about the drawing while its tree is walked.
 struct Reader {
     units: Units,
     /// By the names of their groups.
     pivots: BTreeMap<String, Pivot>,
-    /// Where the groups of the joints begin, by their names, until their joints are there.
+    /// Beginnings of the groups of the joints by their names, until their joints are there.
     inside: BTreeMap<String, Option<usize>>,
     bodies: Vec<Vec<Body>>,
     drawing: Drawing,
@@ -129,7 +129,8 @@ impl Reader {
         Ok(())
     }
 
-    /// What only the text shows: where groups begin, and the shapes that the tree leaves out.
+    /// Facts that only the text shows: beginnings of groups, and the shapes that the tree leaves
+    /// out.
     fn elements(
         &mut self,
         document: &Document<'_>,

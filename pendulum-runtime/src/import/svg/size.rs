@@ -13,7 +13,7 @@ const GREATEST: f64 = 1e12;
 /// The lengths of shapes that are made of arcs, and what percentages are taken of.
 const LENGTHS: [&str; 10] = ["cx", "cy", "height", "r", "rx", "ry", "viewBox", "width", "x", "y"];
 
-/// Whether an element is so large that it should not be converted.
+/// Returns true if an element is so large that it should not be converted.
 pub(super) fn is_vast(element: Node<'_, '_>) -> bool {
     match element.tag_name().name() {
         "circle" | "ellipse" | "rect" | "svg" => {
@@ -24,7 +24,7 @@ pub(super) fn is_vast(element: Node<'_, '_>) -> bool {
     }
 }
 
-/// Whether one of the numbers at the beginnings of the words of a text is too large.
+/// Returns true if one of the numbers at the beginnings of the words of a text is too large.
 fn has_vast_number(text: &str) -> bool {
     text.split(|c: char| c.is_whitespace() || c == ',').any(|word| {
         let end =
@@ -37,19 +37,19 @@ fn has_vast_number(text: &str) -> bool {
     })
 }
 
-/// Whether one of the arcs of a path may belong to an ellipse that is too large.
+/// Returns true if one of the arcs of a path may belong to an ellipse that is too large.
 fn has_vast_arc(path: &str) -> bool {
     // No point so far is further away.
     let mut reach = 0.0;
-    // What stands behind an error is not drawn.
+    // Segments behind an error are not drawn.
     for segment in PathParser::from(path).map_while(Result::ok) {
         if let PathSegment::EllipticalArc { rx, ry, x, y, .. } = segment {
             let (short, long) =
                 if rx.abs() < ry.abs() { (rx.abs(), ry.abs()) } else { (ry.abs(), rx.abs()) };
             let span = reach + x.abs() + y.abs();
-            // Where the ends are too far apart for the ellipse, it grows.
+            // The ellipse grows if the ends are too far apart for it.
             let growth = if short < span { span / short } else { 1.0 };
-            // What is not a number is not.
+            // NaN is not too large.
             let fine = long * growth <= GREATEST;
             if 0.0 < short && !fine {
                 return true;

@@ -115,7 +115,7 @@ fn farthest([a, b, c, d]: [f64; 4]) -> f64 {
     a.abs().max(d.abs()).max(inside(sum / (3.0 * cubic))).max(inside(linear / sum))
 }
 
-/// As few keys as a greedy search leaves: from each key as far as the bound allows.
+/// Keys found by a greedy search: each is as far from the one before as the bound allows.
 fn thinned<T: Lane + Float, const N: usize>(
     step: f64,
     live: &[([T; N], [T; N])],

@@ -1,4 +1,4 @@
-//! What directors ask for: resets, teleports, mirrors, damping, stops, parameters that change while
+//! Commands to a scene: resets, teleports, mirrors, damping, stops, parameters that change while
 //! the scene runs.
 
 use crate::motion::Motion;
@@ -11,7 +11,7 @@ use crate::scene::lanes::system::SceneSystem;
 use crate::scene::sampling::joint::{Joint, JointSlot, erase};
 use crate::scene::scene::Scene;
 
-/// How a coordinate is kept within its limits.
+/// Kind of the limits of a coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Stop {

@@ -5,7 +5,7 @@ use crate::scene::advance::Advanced;
 use crate::scene::error::SceneError;
 use crate::scene::scene::Scene;
 
-/// What [`Scene::close_loop`] has reached.
+/// Result of [`Scene::close_loop`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Closed {
@@ -39,7 +39,7 @@ impl<T: Lane + Float> Scene<T> {
 
     /// Does the `ticks` before now; the clock is as before.
     fn before(&mut self, ticks: u64) -> Advanced {
-        // Who sleeps now need not have slept then.
+        // A pendulum that sleeps now need not have slept then.
         self.wake_all();
         let clock = self.clock.state();
         self.clock.jump(self.clock.tick() - ticks as i64);

@@ -14,16 +14,16 @@ use crate::scene::scene::Scene;
 use crate::system::{Dynamics, Purpose, scalar_time};
 use crate::time::Time;
 
-/// How a pendulum comes back to the screen.
+/// State in which a hidden pendulum comes back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Resume {
-    /// It goes on from where it was.
+    /// The pendulum goes on from where it was.
     Unchanged,
-    /// It hangs at rest.
+    /// The pendulum hangs at rest.
     Rest,
-    /// It makes up for the time in a few large accurate steps; if that was longer than so many
-    /// seconds, it begins at rest so long ago.
+    /// The pendulum makes up for the time in a few large accurate steps; where that time is longer
+    /// than `longest`, the pendulum begins at rest that long ago.
     CatchUp {
         /// The longest time that is made up for, in seconds.
         longest: f64,

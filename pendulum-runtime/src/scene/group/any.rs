@@ -4,7 +4,7 @@ use crate::motion::Derivatives;
 use crate::real::{Float, Lane};
 use crate::scene::error::{SceneError, SceneFault};
 use crate::scene::group::change::Preserve;
-use crate::scene::group::fault::blame;
+use crate::scene::group::fault::diagnose;
 use crate::scene::group::members::Group;
 use crate::scene::group::saved::GroupState;
 use crate::scene::group::status::SceneStatus;
@@ -21,14 +21,15 @@ use core::cmp::Reverse;
 pub(crate) trait AnyGroup<T>: Send + Sync {
     fn as_any(&self) -> &dyn Any;
     fn as_any_mut(&mut self) -> &mut dyn Any;
-    /// Tells `visit` every joint that somebody awake hangs on, with what is needed of it and when.
+    /// Visits every joint of pendulums that are awake, with the derivatives needed of it and the
+    /// grid of their times.
     fn needs(&self, visit: &mut dyn FnMut(u32, Derivatives, Grid));
-    /// Makes ready for a batch.
+    /// Prepares a batch: computes once what parameters alone decide.
     fn settle(&mut self, clock: &Clock);
     /// Goes through a batch.
     fn run(&mut self, sampled: &Sampled<'_, T>, fork: bool, failed: &mut Vec<Failed>);
-    /// Takes a pendulum that has failed in a tick away from those that are computed, and says why
-    /// it failed.
+    /// Takes a pendulum that has failed in a tick away from those that are computed, and returns
+    /// the reason.
     fn fail(
         &mut self,
         clock: &Clock,
@@ -36,17 +37,17 @@ pub(crate) trait AnyGroup<T>: Send + Sync {
         id: u32,
         tick: i64,
     ) -> SceneFault;
-    /// All that changes while running.
+    /// Everything that changes while the scene runs.
     fn save(&self) -> GroupState<T>;
-    /// Whether a saved state belongs to this group; what differs if not.
+    /// Refuses a saved state that does not belong to this group, and names the difference.
     fn accepts(&self, state: &GroupState<T>) -> Result<(), SceneError>;
     /// The largest differences of coordinates and of velocities from a saved state.
     fn gap(&self, state: &GroupState<T>) -> [f64; 2];
     /// Lets all pendulums hang at rest.
     fn reset(&mut self, clock: &Clock, joint_slots: &[JointSlot<T>]) -> Result<(), SceneError>;
-    /// Whether a motion has what those on a joint need.
+    /// Refuses a motion that lacks a derivative which the pendulums on a joint need.
     fn accepts_motion(&self, joint: u32, has: Derivatives) -> Result<(), SceneError>;
-    /// A joint has another motion than `before`.
+    /// Adapts pendulums to the motion of a joint that was given in place of the one in `before`.
     fn moved(
         &mut self,
         clock: &Clock,
@@ -55,7 +56,7 @@ pub(crate) trait AnyGroup<T>: Send + Sync {
         joint: u32,
         preserve: Preserve,
     ) -> Result<(), SceneError>;
-    /// Sets a parameter of all, if they have it.
+    /// Sets a parameter of all pendulums, if they have it; returns their number.
     fn set_parameter(
         &mut self,
         clock: &Clock,
@@ -63,17 +64,17 @@ pub(crate) trait AnyGroup<T>: Send + Sync {
         name: &str,
         value: T,
     ) -> Option<usize>;
-    /// Wakes those whose time has come; whether there were any.
+    /// Wakes the sleepers whose time has come; returns true if there were any.
     fn wake_due(&mut self, tick: i64) -> bool;
-    /// The tick at which somebody is to wake, far away if nobody is.
+    /// The next tick at which a pendulum wakes, `i64::MAX` if none does.
     fn next_alarm(&self) -> i64;
-    /// Lets those fall asleep that may; whether there were any.
+    /// Lets the pendulums fall asleep that may; returns true if there were any.
     fn fall_asleep(&mut self, clock: &Clock, joint_slots: &[JointSlot<T>], tolerance: f64) -> bool;
-    /// Forgets who may sleep.
+    /// Forgets the criteria of sleep.
     fn forget_criteria(&mut self);
-    /// Those that are computed, and all.
+    /// The number of pendulums that are computed, and of all.
     fn awake(&self) -> (usize, usize);
-    /// Puts back what was saved.
+    /// Restores a saved state.
     fn restore(&mut self, joint_slots: &[JointSlot<T>], state: &GroupState<T>);
 }
 
@@ -117,7 +118,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
         self.status[id as usize] = SceneStatus::Failed;
         let detached = self.read(id);
         let t = clock.time(tick);
-        let error = blame(&self.system_of(&detached.parameters), joint_slots, &detached, t);
+        let error = diagnose(&self.system_of(&detached.parameters), joint_slots, &detached, t);
         SceneFault { kind: S::FACTS.name, index: id, t, error }
     }
 

@@ -11,7 +11,7 @@ use crate::scene::sampling::joint::JointSlot;
 use crate::system::{Purpose, scalar_time};
 use crate::time::Time;
 
-/// What becomes of the swing when a joint is given another motion.
+/// Part of the state that stays when a joint is given another motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Preserve {
@@ -33,7 +33,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         (0..self.table.len() as u32).try_for_each(|id| self.rest(clock, joint_slots, id))
     }
 
-    /// Whether a motion has what those on a joint need.
+    /// Refuses a motion that lacks a derivative which the pendulums on a joint need.
     pub(super) fn accepts_motion(&self, joint: u32, has: Derivatives) -> Result<(), SceneError> {
         for bucket in &self.buckets {
             for track in 0..bucket.tracks.count() as u32 {
@@ -47,7 +47,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         Ok(())
     }
 
-    /// A joint has another motion than `before`.
+    /// Adapts pendulums to the motion of a joint that was given in place of the one in `before`.
     pub(super) fn moved(
         &mut self,
         clock: &Clock,
@@ -95,7 +95,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         Ok(())
     }
 
-    /// Sets a parameter of all, if they have it.
+    /// Sets a parameter of all pendulums, if they have it; returns their number.
     pub(super) fn set_parameter(
         &mut self,
         clock: &Clock,

@@ -14,15 +14,15 @@ use core::cmp::Reverse;
 use nalgebra::DMatrix;
 use std::collections::BinaryHeap;
 
-/// When sleepers are to wake: ticks and pendulums.
+/// Times at which sleepers wake: ticks and pendulums.
 pub(crate) type Alarms = BinaryHeap<Reverse<(i64, u32)>>;
 
-/// What decides whether a pendulum may sleep while its joints rest.
+/// Bounds by which a pendulum may sleep while its joints rest.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SleepCriterion<T, const N: usize> {
     /// The tick in which the joints move again: another rest has a criterion of its own.
     pub(super) until: i64,
-    /// Where it would come to rest.
+    /// Coordinates at which the pendulum would come to rest.
     pub(super) rest: [T; N],
     /// The energy above that at rest below which it sleeps; negative if it may not.
     pub(super) energy: T,
@@ -30,19 +30,19 @@ pub(crate) struct SleepCriterion<T, const N: usize> {
     pub(super) speed: [T; N],
     /// No coordinate is farther from rest with so little energy.
     pub(super) near: T,
-    /// So far from rest it is known to come back to it.
+    /// Distance from rest within which the pendulum is known to come back to it.
     pub(super) reach: T,
 }
 
 impl<T: Lane + Float, const N: usize> SleepCriterion<T, N> {
-    /// Whether another look would find no more: what moves fast does not fall asleep, and what is
-    /// not too far from its rest has no other.
+    /// Returns true if another look would find no more: a pendulum that moves fast does not fall
+    /// asleep, and one that is not too far from its rest has no other.
     pub(super) fn lasts(&self, q: &[T; N], v: &[T; N]) -> bool {
         let fast = (0..N).any(|i| T::from_f64(4.0) * self.speed[i] < Real::abs(v[i]));
         fast || T::from_f64(0.0) < self.energy && self.distance(q) <= self.reach
     }
 
-    /// How far the coordinates are from rest.
+    /// Largest distance of a coordinate from rest.
     pub(super) fn distance(&self, q: &[T; N]) -> T {
         (0..N).fold(T::from_f64(0.0), |distance, i| {
             Real::max(distance, Real::abs(q[i] - self.rest[i]))

@@ -12,8 +12,9 @@ use crate::scene::sampling::joint::JointSlot;
 use crate::system::{Purpose, scalar_time};
 use crate::time::Time;
 
-/// What is not finite in the tick that begins at `t` with the state of `loose`.
-pub(super) fn blame<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+/// Error that names the value which is not finite in the tick that begins at `t` with the state of
+/// `detached`.
+pub(super) fn diagnose<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     system: &S,
     joint_slots: &[JointSlot<T>],
     detached: &Detached<T, N>,
@@ -37,7 +38,7 @@ pub(super) fn blame<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
             .position(|a| !a.is_finite())
             .map(|index| Quantity::Acceleration(coordinate(&S::FACTS, index)));
     }
-    // Where the tick begins well, it is the velocity that grows beyond all bounds.
+    // If the tick begins well, the velocity grows beyond all bounds in it.
     let fastest = |i: &usize, j: &usize| v[*i].to_f64().abs().total_cmp(&v[*j].to_f64().abs());
     let what = what.unwrap_or_else(|| {
         Quantity::Velocity(coordinate(&S::FACTS, (0..N).max_by(fastest).unwrap_or(0)))

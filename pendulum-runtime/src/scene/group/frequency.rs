@@ -1,4 +1,4 @@
-//! How fast a system swings: what its steps are chosen by.
+//! Frequencies of systems, by which steps are chosen.
 
 use crate::real::{Float, Real};
 use crate::system::System;

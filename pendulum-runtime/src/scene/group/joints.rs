@@ -41,7 +41,7 @@ pub(crate) fn inputs_at<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     }))
 }
 
-/// Whether a state is finite.
+/// Refuses a state that is not finite.
 pub(crate) fn check_state<T: Float, const N: usize>(
     facts: &Facts,
     values: &[T; N],
@@ -58,8 +58,8 @@ pub(crate) fn check_state<T: Float, const N: usize>(
     }
 }
 
-/// Whether joints exist, move in as many dimensions as their inputs and have what the equations
-/// need.
+/// Refuses joints that do not exist, move in another number of dimensions than their inputs or lack
+/// a derivative that the equations need.
 pub(crate) fn check_joints<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     joint_slots: &[JointSlot<T>],
     joints: &[u32],
@@ -75,7 +75,7 @@ pub(crate) fn check_joints<S: SceneSystem<T, N>, T: Lane + Float, const N: usize
     Ok(())
 }
 
-/// Whether a motion has what the equations need of an input.
+/// Refuses a motion that lacks a derivative which the equations need of an input.
 pub(crate) fn check_motion(
     facts: &Facts,
     input: usize,

@@ -17,7 +17,7 @@ use crate::scene::sampling::scheme::{Grid, MOST_SUBSTEPS, Scheme};
 use crate::system::Purpose;
 use crate::time::Time;
 
-/// Where a pendulum is.
+/// Place of a pendulum in its group.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Location {
     pub(crate) bucket: u32,
@@ -86,7 +86,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         id
     }
 
-    /// What the pendulum has in common with others.
+    /// The kind of a pendulum: its steps, and whether its joints rest for ever.
     pub(crate) fn kind(
         &self,
         clock: &Clock,
@@ -214,7 +214,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         }
     }
 
-    /// Where a pendulum comes to rest with its joints at rest where they are at `t`.
+    /// Coordinates at which a pendulum comes to rest with its joints at rest where they are at `t`.
     pub(crate) fn rest_of(
         &self,
         joint_slots: &[JointSlot<T>],

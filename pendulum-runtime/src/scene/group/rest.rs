@@ -1,4 +1,4 @@
-//! Where a pendulum comes to rest.
+//! States of rest.
 
 use crate::real::Float;
 use crate::scene::group::frequency::cube_root_of_rounding;

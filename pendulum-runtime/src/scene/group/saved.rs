@@ -94,7 +94,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         Ok(())
     }
 
-    /// Puts back what was saved.
+    /// Restores a saved state.
     pub(super) fn restore(&mut self, joint_slots: &[JointSlot<T>], state: &GroupState<T>) {
         let zero = T::from_f64(0.0);
         let mut rest = &state.numbers[..];

@@ -15,7 +15,8 @@ use core::cmp::Reverse;
 pub(crate) const LOOK: i64 = 16;
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
-    /// Wakes those whose time has come; all at the end of time.
+    /// Wakes the sleepers whose time has come, all of them at `i64::MAX`; returns true if there
+    /// were any.
     pub(crate) fn wake_due(&mut self, tick: i64) -> bool {
         let mut woken = false;
         if tick == i64::MAX {
@@ -29,7 +30,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             && when <= tick
         {
             self.alarms.pop();
-            // Others have been woken before.
+            // Other sleepers have been woken before.
             if self.status[id as usize] == SceneStatus::Asleep(when) {
                 self.wake(id);
                 woken = true;
@@ -38,7 +39,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         woken
     }
 
-    /// Lets those fall asleep that may.
+    /// Lets the pendulums fall asleep that may; returns true if there were any.
     pub(crate) fn fall_asleep(
         &mut self,
         clock: &Clock,
@@ -98,7 +99,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             self.set_awake(id, false);
             self.alarms.extend(alarm(id, self.status[id as usize]));
         }
-        // Those of sleepers that were woken stay behind.
+        // Alarms of sleepers that were woken stay behind.
         if 2 * self.table.len() < self.alarms.len() {
             self.reset_alarms();
         }
@@ -118,7 +119,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         }
     }
 
-    /// Whether the energy is small enough.
+    /// Returns true if the energy is small enough to sleep.
     fn is_calm(
         &self,
         clock: &Clock,
@@ -135,7 +136,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         rest.kinetic(q, v) + rest.lifted(&criterion.rest, &by) <= criterion.energy
     }
 
-    /// What decides whether a pendulum may sleep.
+    /// Finds the criterion by which a pendulum may sleep.
     fn criterion(
         &self,
         clock: &Clock,
@@ -148,7 +149,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         let system = self.system_of(&detached.parameters);
         let still = AtRest::new(&system, clock, joint_slots, &detached);
         let [q, ..] = detached.state;
-        // Where it may not sleep it is looked at again when it is slow.
+        // A pendulum that may not sleep is looked at again when it is slow.
         let omega = frequency::fastest(&system, still.t, &q, &still.forces);
         let never = SleepCriterion {
             until,
@@ -178,7 +179,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 }
 
-/// When a pendulum is to wake, if it ever is.
+/// Alarm of a pendulum that sleeps for a limited time.
 fn alarm(id: u32, status: SceneStatus) -> Option<Reverse<(i64, u32)>> {
     match status {
         SceneStatus::Asleep(tick) if tick != i64::MAX => Some(Reverse((tick, id))),

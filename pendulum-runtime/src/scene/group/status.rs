@@ -1,15 +1,15 @@
-//! Whether pendulums are computed.
+//! Statuses of pendulums.
 
-/// What a pendulum is doing.
+/// Status of a pendulum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum SceneStatus {
-    /// It swings.
+    /// The pendulum swings.
     Awake,
-    /// It rests until the tick given, or until somebody wakes it.
+    /// The pendulum rests until the tick given, or until somebody wakes it.
     Asleep(i64),
-    /// It has been taken off the screen at the tick given.
+    /// The pendulum was hidden at the tick given and is not computed.
     Hidden(i64),
     /// Its state has ceased to be finite; it hangs where it was last good.
     Failed,

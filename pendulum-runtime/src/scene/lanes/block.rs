@@ -23,14 +23,13 @@ pub(crate) struct Block<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) limits: Option<Box<LaneLimits<T, N>>>,
 }
 
-/// What most steps do not read of [`W`] pendulums: between the states it would only use up the
-/// caches.
+/// Data of [`W`] pendulums that most steps do not read: between the states they would only use up
+/// the caches.
 pub(crate) struct ColdData<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) system: S::Lanes,
     /// By lane, its number in the group.
     pub(crate) id: [u32; W],
-    /// Whether parameters have changed, so that `system` and what it has prepared must be made
-    /// anew.
+    /// Parameters have changed, so that `system` and its prepared values must be made anew.
     pub(crate) stale: bool,
 }
 

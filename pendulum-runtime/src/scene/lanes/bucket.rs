@@ -14,7 +14,7 @@ use crate::system::System;
 use crate::time::Time;
 use core::sync::atomic::AtomicBool;
 
-/// What pendulums have in common that are computed together.
+/// Properties shared by pendulums that are computed together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Kind {
     pub(crate) grid: Grid,
@@ -31,7 +31,7 @@ pub(crate) struct Bucket<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> 
     pub(crate) cold: Vec<ColdData<S, T, N>>,
     /// The parameters: as many lanes for each block as the system has parameters.
     pub(crate) parameters: Vec<Wide<T>>,
-    /// All, and those at the front that are awake.
+    /// The number of all pendulums, and of those at the front that are awake.
     pub(crate) len: usize,
     pub(crate) awake: usize,
     times: Vec<Time>,
@@ -90,7 +90,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         }
     }
 
-    /// What acts on the pendulum in a slot and its state, as in [`Detached`].
+    /// The limits of the pendulum in a slot and its state, as in [`Detached`].
     pub(crate) fn numbers(&self, slot: usize) -> (Limits<T, N>, [[T; N]; 6]) {
         let (block, lane) = (&self.blocks[slot / W], slot % W);
         let of = |lanes: &[Wide<T>; N]| lanes.map(|lanes| lanes.0[lane]);

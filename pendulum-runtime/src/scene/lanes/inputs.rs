@@ -40,7 +40,7 @@ pub(crate) struct Followed<'a, T> {
     runs: Option<Runs<T>>,
 }
 
-/// More of them, and each lane looks for itself.
+/// The most runs; with more of them each lane is looked up on its own.
 const MOST_RUNS: usize = 8;
 
 struct Runs<T> {

@@ -21,7 +21,7 @@ use crate::system::{Staged, System, scalar_time};
 use crate::time::Time;
 use core::sync::atomic::{AtomicBool, Ordering};
 
-/// What blocks need to go through a batch of ticks.
+/// Data that blocks need to go through a batch of ticks.
 pub(crate) struct Batch<'a, T> {
     pub(crate) grid: Grid,
     /// The length of a step.
@@ -31,9 +31,9 @@ pub(crate) struct Batch<'a, T> {
     /// The times of all evaluations.
     pub(crate) times: &'a [Time],
     pub(crate) tracks: &'a Tracks<T>,
-    /// All joints rest for ever: each track has one record.
+    /// All joints rest for ever, so that each track has one record.
     pub(crate) still: bool,
-    /// Whether some lane has failed.
+    /// Some lane has failed.
     pub(crate) failed: AtomicBool,
 }
 
@@ -65,7 +65,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Work for Run<'_, S, 
                 _ => batch::<S, T, N, RK4, 3>(block, system, self.batch),
             }
             if let Some((q, v, [before_q, before_v])) = kept {
-                // Those beyond sleep.
+                // Puts the lanes of sleepers back.
                 for lane in lanes..W {
                     copy_lane(&mut block.q.high, &q.high, lane);
                     copy_lane(&mut block.q.low, &q.low, lane);
@@ -374,7 +374,7 @@ fn stop<T: Lane + Float, const N: usize>(
                 continue;
             };
             let e = limits.restitution.0[lane];
-            // Where the other limit is as near it holds, too.
+            // The other limit, if it is as near, holds too.
             let back = Real::min(Real::max(limit - e * (x - limit), low), high);
             (q.high[i].0[lane], q.low[i].0[lane]) = (back, zero);
             (v.high[i].0[lane], v.low[i].0[lane]) = (-(e * speed), zero);

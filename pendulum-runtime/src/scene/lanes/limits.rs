@@ -3,7 +3,7 @@
 use crate::real::{Float, Lane, Real};
 use crate::scene::lanes::system::Wide;
 
-/// What acts on one pendulum beside its equations.
+/// Damping and stops of one pendulum, which act beside its equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Limits<T, const N: usize> {
     pub(crate) damping: T,
@@ -27,7 +27,7 @@ impl<T: Real, const N: usize> Limits<T, N> {
         }
     }
 
-    /// Whether the limits are walls.
+    /// Returns true if the limits are walls.
     pub(crate) fn is_hard(&self) -> bool {
         self.hard != T::from_f64(0.0)
     }
@@ -63,7 +63,7 @@ impl<T: Real, const N: usize> Limits<T, N> {
     }
 }
 
-/// What acts on pendulums beside their equations.
+/// Damping and stops of a block of pendulums, which act beside their equations.
 #[derive(Clone, Debug)]
 pub(crate) struct LaneLimits<T, const N: usize> {
     /// γ in 1/s.
@@ -74,7 +74,7 @@ pub(crate) struct LaneLimits<T, const N: usize> {
     pub(crate) stops: bool,
     pub(crate) low: [Wide<T>; N],
     pub(crate) high: [Wide<T>; N],
-    /// What is left of the velocity after a hard stop.
+    /// The part of the velocity that a hard stop leaves.
     pub(crate) restitution: Wide<T>,
     /// The acceleration in 1/s² per unit beyond a soft stop; zero for hard ones.
     pub(crate) stiffness: Wide<T>,

@@ -42,8 +42,8 @@ impl<T: Real> Assemble<T> for () {
     fn assemble(_: &mut impl Numbers<T>) -> Self {}
 }
 
-/// What a system hangs on: `()`, a [`Joint`] or a tuple of joints, one for each driven input in the
-/// order of declaration.
+/// Joints on which a system hangs: `()`, a [`Joint`] or a tuple of joints, one for each driven
+/// input in the order of declaration.
 pub trait Anchor<Inputs>: Sealed {
     /// The joints by number.
     #[doc(hidden)]

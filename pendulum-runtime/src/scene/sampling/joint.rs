@@ -21,7 +21,7 @@ pub(crate) trait Drive<T>: Send + Sync {
     /// Writes those of position, velocity and acceleration that are in `wanted`, one after the
     /// other.
     fn sample(&self, t: Time, side: Side, wanted: Derivatives, numbers: &mut [T]);
-    /// The same at several times, one record after the other; a time that stands twice in
+    /// Writes samples at several times, one record after the other; a time that stands twice in
     /// succession is sampled once.
     fn sample_all(&self, times: &[Time], wanted: Derivatives, numbers: &mut [T]);
     fn next_kink(&self, t: f64) -> Option<f64>;
@@ -124,9 +124,9 @@ pub(crate) fn erase<T: Real, M: Motion<T, D> + Send + Sync + 'static, const D: u
 #[derive(Clone)]
 pub(crate) struct JointSlot<T> {
     pub(crate) drive: Arc<dyn Drive<T>>,
-    /// Whether it always rests, so that it is never sampled.
+    /// The joint always rests, so that it is never sampled.
     pub(crate) still: bool,
-    /// What those that are awake on it need.
+    /// Derivatives that the pendulums awake on the joint need.
     pub(crate) wanted: Derivatives,
     /// By bit, the grids on which it is needed.
     pub(crate) grids: u64,
@@ -140,14 +140,14 @@ pub(crate) struct Active {
     pub(crate) joint: u32,
     /// The class of the timetable for the grids on which it is needed.
     pub(crate) class: u32,
-    /// What those that are awake on it need.
+    /// Derivatives that the pendulums awake on the joint need.
     pub(crate) wanted: Derivatives,
     pub(crate) components: usize,
     /// The first kink after the time last looked at; NaN before anybody has looked.
     kink: f64,
-    /// Where its samples begin.
+    /// Index at which the samples of the joint begin.
     pub(crate) offset: usize,
-    /// Whether each tick of the batch, from its first, has a kink in it or at its end.
+    /// Ticks of the batch with a kink in them or at their ends, by bit.
     pub(crate) kinked: u32,
 }
 
@@ -214,7 +214,7 @@ impl Active {
         }
     }
 
-    /// Whether there is a kink after `start`, up to and with `end`.
+    /// Returns true if there is a kink after `start` and not after `end`.
     fn kink_within<T>(&mut self, drive: &dyn Drive<T>, start: f64, end: f64) -> bool {
         // Also where nobody has looked yet.
         let ahead = start < self.kink;
@@ -229,7 +229,7 @@ impl Active {
     }
 }
 
-/// Whether joints are among those that rest for ever.
+/// Returns true if all of the joints rest for ever.
 pub(crate) fn still<T>(joint_slots: &[JointSlot<T>], joints: &[u32]) -> bool {
     joints.iter().all(|&joint| joint_slots[joint as usize].still)
 }

@@ -3,7 +3,7 @@
 use crate::motion::{Derivatives, derivatives_of};
 use crate::system::{Input, Purpose};
 
-/// Where the derivatives of each input begin in a record that holds those that a purpose needs, one
+/// Places of the derivatives of each input in a record that holds those that a purpose needs, one
 /// after the other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layout {

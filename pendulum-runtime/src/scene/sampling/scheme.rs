@@ -51,7 +51,7 @@ pub(crate) struct Grid {
     pub(crate) substeps: u32,
 }
 
-/// More steps than this no tick is divided into.
+/// The most steps into which a tick is divided.
 pub(crate) const MOST_SUBSTEPS: u32 = 64;
 
 /// The most evaluations in a step.

@@ -1,10 +1,11 @@
-//! When in a tick joints are sampled: once per time for all grids that need them.
+//! Times within a tick at which joints are sampled: once per time for all grids that need them.
 
 use crate::scene::sampling::clock::Clock;
 use crate::scene::sampling::scheme::Grid;
 use crate::time::Time;
 
-/// All grids of a scene, and for each set of them that some joint serves the times of its samples.
+/// All grids of a scene and, for each set of grids that some joint serves, the times of its
+/// samples.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Timetable {
     grids: Vec<Grid>,

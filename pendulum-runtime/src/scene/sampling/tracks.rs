@@ -1,4 +1,4 @@
-//! What the pendulums of a bucket see of their joints during a batch of ticks.
+//! Tracks: the samples of joints that the pendulums of a bucket see during a batch of ticks.
 
 use crate::integrate::span::Span;
 use crate::motion::{Derivatives, Side};
@@ -20,7 +20,7 @@ pub(crate) const BATCH: usize = 8;
 pub(crate) struct Tracks<T> {
     /// The joints of a track.
     inputs: usize,
-    /// Those of all tracks, one track after the other.
+    /// The joints of all tracks, one track after the other.
     joints: Vec<u32>,
     by_joints: BTreeMap<Vec<u32>, u32>,
     /// The pendulums that are awake on each.
@@ -43,14 +43,14 @@ pub(crate) struct Piece {
     pub(crate) h: f64,
     /// The times of the evaluations.
     pub(crate) times: [Time; MOST_STAGES],
-    /// Where the records of the evaluations begin.
+    /// Index at which the records of the evaluations begin.
     pub(crate) begin: usize,
-    /// If there is a kink at its end: its time and where the records for the momenta before and
-    /// after begin.
+    /// The time of the kink at the end of the piece, if there is one, and the index at which the
+    /// records for the momenta before and after it begin.
     pub(crate) jump: Option<(f64, usize)>,
 }
 
-/// What is needed to read a joint's samples.
+/// Samples of all joints in a batch, with what it takes to read them.
 pub(crate) struct Sampled<'a, T> {
     pub(crate) clock: &'a Clock,
     pub(crate) tick: i64,
@@ -59,7 +59,7 @@ pub(crate) struct Sampled<'a, T> {
     pub(crate) actives: &'a [Active],
     pub(crate) numbers: &'a [T],
     pub(crate) timetable: &'a Timetable,
-    /// Whether some joint has a kink.
+    /// Some joint has a kink.
     pub(crate) kinks: bool,
 }
 
@@ -118,7 +118,7 @@ impl<T: Real + Float> Tracks<T> {
         }
     }
 
-    /// Whether somebody is awake on a track.
+    /// Returns true if a pendulum on the track is awake.
     pub(crate) fn is_awake(&self, track: usize) -> bool {
         self.awake[track] != 0
     }
@@ -159,7 +159,7 @@ impl<T: Real + Float> Tracks<T> {
         }
     }
 
-    /// Whether each tick of the batch has a kink for a track, by bit.
+    /// Ticks of the batch in which a track has a kink, by bit.
     fn kinked(&self, track: usize, sampled: &Sampled<'_, T>) -> u32 {
         let moving =
             self.joints(track as u32).iter().map(|&joint| &sampled.joint_slots[joint as usize]);
@@ -388,7 +388,7 @@ impl<T: Real + Float> Tracks<T> {
         &self.records[(track as usize * self.stride + evaluation) * width..][..width]
     }
 
-    /// Whether a tick of the batch has been cut for any track.
+    /// Returns true if a tick of the batch has been cut for any track.
     #[inline]
     pub(crate) fn any_cut(&self) -> bool {
         !self.cuts.is_empty()

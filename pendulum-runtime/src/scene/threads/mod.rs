@@ -13,7 +13,7 @@ use std::time::Instant;
 pub(crate) struct Threads {
     #[cfg(feature = "rayon")]
     choice: Choice,
-    /// Whether every batch forks, whatever that costs.
+    /// Every batch forks, whatever that costs.
     #[cfg(feature = "rayon")]
     always: bool,
 }
@@ -112,7 +112,7 @@ mod tests {
             (0..100).filter(|_| threads.measured(work, |fork| fork)).count()
         };
         assert_eq!((forks(&mut threads, 1), forks(&mut threads, 1_000_000)), (100, 100));
-        // Where threads are forbidden there is no work for them.
+        // Forbidden threads have no work.
         assert_eq!(forks(&mut threads, 0), 0);
         threads.set_always(false);
         assert_eq!(forks(&mut threads, 1), 0);

@@ -1,4 +1,4 @@
-//! Whether a batch of ticks is worth more than one thread.
+//! Choice between one thread and all for a batch of ticks.
 //!
 //! A fork wakes threads that sleep, which takes as long as a thousand pendulums or, where others
 //! want the same cores, a million. How long nobody knows beforehand, so it is measured: the same
@@ -16,7 +16,7 @@ const TRIAL: u32 = 2;
 const CLEAR: f64 = 0.5;
 const WORSE: f64 = 1.25;
 
-/// So many trials in turn are left out at most.
+/// The most trials in turn that are left out.
 const MOST_SPARED: u32 = 8;
 
 /// The batches from one trial to the next, at first and at most: each trial that shows nothing new
@@ -24,7 +24,7 @@ const MOST_SPARED: u32 = 8;
 const SOON: u32 = 32;
 const LATE: u32 = 1024;
 
-/// How a batch goes.
+/// Ways to run a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Way {
     Alone,
@@ -60,7 +60,7 @@ impl Choice {
         }
     }
 
-    /// How to go through so many pendulums times ticks.
+    /// Chooses the way for so many pendulums times ticks.
     pub(crate) fn way(&mut self, pendulum_ticks: f64) -> Way {
         let [alone, together] = self.pace;
         if alone == 0.0 || alone * pendulum_ticks < LEAST {
@@ -141,7 +141,7 @@ mod tests {
     fn the_quicker_way_is_taken_and_the_other_tried_seldom() {
         let mut choice = Choice::new();
         assert!(0.95 < share_together(&mut choice, 10_000, 1e5, 10.0, 6.0));
-        // Others come and want the cores.
+        // Other programs come and want the cores.
         assert!(share_together(&mut choice, 10_000, 1e5, 10.0, 15.0) < 0.02);
         // And go again: that is noticed at the next trial.
         share_together(&mut choice, 2 * LATE, 1e5, 10.0, 6.0);
@@ -159,7 +159,7 @@ mod tests {
         // A little worse is no reason yet, and an interruption none that lasts.
         choice.took(Way::Together, 1e5, 1e9);
         assert!(least < share_together(&mut choice, 100 * LATE, 1e5, 10.0, 2.4));
-        // What is worse by a quarter is; alone has become quicker too, which only a trial shows.
+        // A quarter worse is one; alone has become quicker too, which only a trial shows.
         share_together(&mut choice, 2 * LATE, 1e5, 1.0, 3.2);
         assert!(share_together(&mut choice, 10_000, 1e5, 1.0, 3.2) < 0.02);
     }

@@ -1,4 +1,4 @@
-//! What is refused: broken files, impossible keys, sizes that lie, wrong bytes.
+//! Refusals: broken files, impossible keys, sizes that lie, wrong bytes.
 
 use super::writer::Writer;
 use super::{at, dancer};

@@ -1,4 +1,4 @@
-//! How files hold their numbers: packed, sparse, beside the file.
+//! Numbers in files: packed, sparse, beside the file.
 
 use super::writer::base64;
 use super::{at, close, dancer};

@@ -1,4 +1,4 @@
-//! How nodes move: interpolation, hierarchies, derivatives, kinks, loops and rests.
+//! Motions of nodes: interpolation, hierarchies, derivatives, kinks, loops and rests.
 
 use super::writer::Writer;
 use super::{at, close, dancer};
