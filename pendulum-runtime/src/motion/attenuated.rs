@@ -1,6 +1,8 @@
 //! A motion of which only a part is felt.
 
-use super::{Derivatives, Motion, MotionError, Sample, Side};
+use crate::motion::error::MotionError;
+use crate::motion::prescribed::{Motion, earlier};
+use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
@@ -22,7 +24,7 @@ pub struct Attenuated<M> {
 /// shorter is met without a kink.
 const CELL: f64 = 1.0 / 128.0;
 
-/// As many are searched at once; their ends are kinks, so that nobody searches farther.
+/// The cells that are searched at once; their ends are kinks, so that nobody searches farther.
 const CELLS: i64 = 512;
 
 impl<M> Attenuated<M> {
@@ -40,7 +42,7 @@ impl<M> Attenuated<M> {
         Ok(Self { motion, gain, limit })
     }
 
-    /// Whether the speed after `t` is beyond the limit.
+    /// Returns true if the speed after `t` is beyond the limit.
     fn is_fast<const D: usize>(&self, t: f64) -> bool
     where
         M: Motion<f64, D>,
@@ -150,7 +152,7 @@ impl<T: Real, const D: usize, M: Motion<T, D> + Motion<f64, D>> Motion<T, D> for
         if t < rest && own.is_none_or(|own| rest <= own) {
             return if rest < f64::INFINITY { Some(rest) } else { own };
         }
-        super::earlier(own, self.crossing(t, own.unwrap_or(f64::INFINITY)))
+        earlier(own, self.crossing(t, own.unwrap_or(f64::INFINITY)))
     }
 
     fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {

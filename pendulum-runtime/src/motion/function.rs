@@ -1,6 +1,8 @@
 //! Motions given by functions of time.
 
-use super::{Derivatives, Motion, MotionError, Sample, Side};
+use crate::motion::error::MotionError;
+use crate::motion::prescribed::Motion;
+use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 use core::fmt;
@@ -46,7 +48,7 @@ pub struct Missing;
 
 /// A function of time, or the lack of one.
 pub trait MaybeFunction<const D: usize> {
-    /// Whether there is one.
+    /// True if there is a function.
     const EXISTS: bool;
 
     /// Its value; zero if there is none.

@@ -1,7 +1,10 @@
 //! Straight lines between keys.
 
-use super::piecewise::{Piecewise, checked};
-use super::{Analytic, Derivatives, Motion, MotionError, Sample, Side};
+use crate::motion::analytic::Analytic;
+use crate::motion::error::MotionError;
+use crate::motion::piecewise::{Piecewise, analytic_pieces, checked};
+use crate::motion::prescribed::Motion;
+use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
@@ -31,7 +34,7 @@ impl<const D: usize> Linear<D> {
         Ok(Self(self.0.looped()?))
     }
 
-    /// What it is made of.
+    /// The pieces of the line.
     pub(super) fn pieces(&self) -> &Piecewise<D> {
         &self.0
     }
@@ -66,3 +69,5 @@ impl<T: Real, const D: usize> Motion<T, D> for Linear<D> {
         self.0.rest_until(t)
     }
 }
+
+analytic_pieces!(Linear);

@@ -1,6 +1,7 @@
 //! Cubic pieces between keys: what linear keys, Catmull–Rom curves and splines are evaluated by.
 
-use super::{Derivatives, MotionError, Sample, Side};
+use crate::motion::error::MotionError;
+use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
@@ -13,13 +14,13 @@ pub(crate) struct Piecewise<const D: usize> {
     /// The value at the last key.
     last: [f64; D],
     looped: bool,
-    /// Where position, velocity or acceleration jumps, within the keys.
+    /// Times within the keys at which position, velocity or acceleration jumps.
     kinks: Vec<f64>,
     /// The shortest time between two keys.
     finest: f64,
 }
 
-/// So many pieces ahead are compared with a step.
+/// The pieces ahead that are compared with a step.
 const MOST_AHEAD: u32 = 64;
 
 /// The shortest time between two keys.
@@ -30,7 +31,7 @@ fn finest(times: &[f64]) -> f64 {
         .fold(f64::INFINITY, |a, b| if b < a { b } else { a })
 }
 
-/// Where a time lies among the keys.
+/// Place of a time among the keys.
 enum Place {
     /// Before the first key, or after the last.
     Rest { after: bool },
@@ -122,7 +123,7 @@ impl<const D: usize> Piecewise<D> {
         }
     }
 
-    /// Where position, velocity or acceleration jumps, within the keys.
+    /// Times within the keys at which position, velocity or acceleration jumps.
     #[cfg(feature = "gltf")]
     pub(crate) fn kinks(&self) -> &[f64] {
         &self.kinks
@@ -432,7 +433,7 @@ impl<const D: usize> Piecewise<D> {
     }
 }
 
-/// How many of `times`, which increase, lie before one near `t`.
+/// Number of those of `times`, which increase, that lie before one near `t`.
 ///
 /// Most keys stand at equal distances: they are looked for where they ought to be, and only then by
 /// bisection, which touches memory in ten more places.
@@ -472,7 +473,7 @@ fn evaluate<T: Real, const D: usize>(
     sample
 }
 
-/// Whether two ends meet up to rounding.
+/// Returns true if two ends meet up to rounding.
 fn close<const D: usize>(a: &[[f64; D]; 3], b: &[[f64; D]; 3]) -> bool {
     (0..3).all(|order| {
         let size =
@@ -480,6 +481,44 @@ fn close<const D: usize>(a: &[[f64; D]; 3], b: &[[f64; D]; 3]) -> bool {
         (0..D).all(|k| (a[order][k] - b[order][k]).abs() <= 1e-9 * size)
     })
 }
+
+/// Implements [`Analytic`] for a motion that is made of cubic pieces.
+macro_rules! analytic_pieces {
+    ($motion:ident) => {
+        impl<T: $crate::real::Real, const D: usize> $crate::motion::analytic::Analytic<T, D>
+            for $motion<D>
+        {
+            fn series(
+                &self,
+                t: $crate::time::Time,
+                side: $crate::motion::sample::Side,
+                component: usize,
+                count: usize,
+                position: &mut $crate::jet::Series<T>,
+            ) {
+                $crate::motion::analytic::polynomial(
+                    self.pieces().cubic(t, side, component),
+                    count,
+                    position,
+                );
+            }
+
+            fn next_break(&self, t: f64) -> Option<f64> {
+                self.pieces().next_key(t)
+            }
+
+            fn last_break(&self, t: f64) -> Option<f64> {
+                self.pieces().last_key(t)
+            }
+
+            fn last_kink(&self, t: f64) -> Option<f64> {
+                self.pieces().last_kink(t)
+            }
+        }
+    };
+}
+
+pub(super) use analytic_pieces;
 
 #[cfg(test)]
 mod tests {

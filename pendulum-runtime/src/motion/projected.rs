@@ -1,7 +1,9 @@
 //! Motions in space, seen in a plane.
 
-use super::{Analytic, Derivatives, Motion, Sample, Side};
 use crate::jet::Series;
+use crate::motion::analytic::Analytic;
+use crate::motion::prescribed::Motion;
+use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 

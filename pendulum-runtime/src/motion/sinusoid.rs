@@ -3,7 +3,10 @@
 // Lanes have to be compiled for their vectors.
 #![allow(clippy::inline_always)]
 
-use super::{Analytic, Derivatives, Motion, Sample, Side};
+use crate::jet::Series;
+use crate::motion::analytic::Analytic;
+use crate::motion::prescribed::Motion;
+use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::real::exact::{two_product, two_sum};
 use crate::real::{Lane, Octet, Real};
 use crate::simd::{Work, widest};
@@ -151,7 +154,7 @@ trait Halved: Real {
         (self, [upper, self - upper])
     }
 
-    /// Whether the magnitude of any of them is greater.
+    /// Returns true if the magnitude of any of them is greater.
     fn exceeds(self, limit: f64) -> bool;
 }
 
@@ -259,5 +262,32 @@ impl<T: Real, const D: usize> Work for Several<'_, T, D> {
         for (index, sample) in self.samples.iter_mut().enumerate() {
             *sample = self.sinusoid.at(self.wanted, |d| (sin[d][index], cos[d][index]));
         }
+    }
+}
+
+impl<T: Real, const D: usize> Analytic<T, D> for Sinusoid<D> {
+    /// k(k−1) x\[k\] = −ω² x\[k−2\].
+    fn series(&self, t: Time, _: Side, component: usize, count: usize, position: &mut Series<T>) {
+        let (a, w) = (self.amplitude[component], self.frequency);
+        let (sin, cos) = self.sin_cos(component, t);
+        let (mut even, mut odd) = (a * sin, a * w * cos);
+        for (k, coefficient) in position.iter_mut().take(count).enumerate() {
+            *coefficient = T::from_f64(even);
+            let next = -(w * w * even) / ((k + 1) * (k + 2)) as f64;
+            (even, odd) = (odd, next);
+        }
+        position[0] = T::from_f64(self.offset[component] + a * sin);
+    }
+
+    fn next_break(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn last_break(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn last_kink(&self, _: f64) -> Option<f64> {
+        None
     }
 }

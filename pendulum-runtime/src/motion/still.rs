@@ -1,13 +1,16 @@
 //! A point at rest.
 
-use super::{Analytic, Derivatives, Motion, Sample, Side};
+use crate::jet::Series;
+use crate::motion::analytic::{Analytic, polynomial};
+use crate::motion::prescribed::Motion;
+use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
 /// A point at rest: x(t) = `position`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Still<const D: usize> {
-    /// Where it is, in metres.
+    /// The position in metres.
     pub position: [f64; D],
 }
 
@@ -45,5 +48,23 @@ impl<T: Real, const D: usize> Motion<T, D> for Still<D> {
 
     fn rest_until(&self, _: f64) -> f64 {
         f64::INFINITY
+    }
+}
+
+impl<T: Real, const D: usize> Analytic<T, D> for Still<D> {
+    fn series(&self, _: Time, _: Side, component: usize, count: usize, position: &mut Series<T>) {
+        polynomial([self.position[component]], count, position);
+    }
+
+    fn next_break(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn last_break(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn last_kink(&self, _: f64) -> Option<f64> {
+        None
     }
 }

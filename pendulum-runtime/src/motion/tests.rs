@@ -1,6 +1,8 @@
 //! Motions against closed forms, differences and their own limits.
 
 use super::*;
+use crate::real::Real;
+use crate::time::Time;
 
 const TIMES: [f64; 6] = [0.0, 0.4, 0.7, 1.5, 1.9, 3.0];
 
