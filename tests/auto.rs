@@ -5,8 +5,8 @@
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::{AdaptiveStep, FixedStep};
 use pendulum_runtime::motion::{
-    Analytic, CatmullRom, Clip, Function, Interpolation, Motion, Orders, Projected, Sample, Side,
-    Sinusoid,
+    Analytic, CatmullRom, Clip, Derivatives, Function, Interpolation, Motion, Projected, Sample,
+    Side, Sinusoid,
 };
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::DoubleDouble;
@@ -230,9 +230,9 @@ fn step_by_step_it_says_what_it_uses() {
 struct Parabola<const KNOWN: bool>;
 
 impl<const KNOWN: bool> Motion<f64, 2> for Parabola<KNOWN> {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
-    fn sample(&self, t: Time, _: Side, _: Orders) -> Sample<f64, 2> {
+    fn sample(&self, t: Time, _: Side, _: Derivatives) -> Sample<f64, 2> {
         let t = t.to_f64();
         Sample { position: [0.0, 0.5 * t * t], velocity: [0.0, t], acceleration: [0.0, 1.0] }
     }

@@ -5,7 +5,7 @@
 
 use core::f64::consts::TAU;
 use pendulum_runtime::jet::Series;
-use pendulum_runtime::motion::{Analytic, Orders, Sample, Side, Sinusoid};
+use pendulum_runtime::motion::{Analytic, Derivatives, Sample, Side, Sinusoid};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::{DoubleDouble, Float};
 use pendulum_runtime::time::Time;
@@ -39,9 +39,9 @@ impl Exact {
 }
 
 impl Motion<DoubleDouble, 2> for Exact {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
-    fn sample(&self, t: Time, _: Side, _: Orders) -> Sample<DoubleDouble, 2> {
+    fn sample(&self, t: Time, _: Side, _: Derivatives) -> Sample<DoubleDouble, 2> {
         let ([position, velocity, acceleration], zero) = (self.at(t), DoubleDouble::from(0.0));
         Sample {
             position: [zero, position],

@@ -7,7 +7,7 @@
 
 #![allow(mixed_script_confusables, missing_docs)]
 
-use pendulum_runtime::jet::{JetDynamics, Jets, MAX_ORDER, Orders, Path, Series};
+use pendulum_runtime::jet::{JetDynamics, Jets, MAX_ORDER, Path, Series, Unrolling};
 use pendulum_runtime::motion::{Interpolation, Side, Sinusoid, Spline, Still};
 use pendulum_runtime::time::Time;
 
@@ -38,7 +38,7 @@ fn check<D: JetDynamics<N, Scalar = f64>, const N: usize>(
         (path.q[i][0], path.v[i][0]) = (q[i], v[i]);
     }
     dynamics.drive(Time::new(t), Side::After, MAX_ORDER, &mut drive);
-    <D::System as Jets<N>>::Orders::run(system, MAX_ORDER, &mut path, &drive, &mut work);
+    <D::System as Jets<N>>::Unrolling::run(system, MAX_ORDER, &mut path, &drive, &mut work);
     for h in [0.0, 0.5 * h, -0.5 * h, h] {
         let at = |series: &[Series<f64>; N]| -> [f64; N] {
             core::array::from_fn(|i| sum(&series[i], h))

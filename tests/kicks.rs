@@ -8,7 +8,7 @@ mod random;
 
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::{Batch, Problem, Solution};
-use pendulum_runtime::motion::{Function, MotionError, Orders, Sample, Side, Spline};
+use pendulum_runtime::motion::{Derivatives, Function, MotionError, Sample, Side, Spline};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::time::Time;
 use random::Random;
@@ -319,9 +319,9 @@ fn a_resolution_is_a_positive_time() {
 struct Confused(f64);
 
 impl Motion<f64, 1> for Confused {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
-    fn sample(&self, _: Time, _: Side, _: Orders) -> Sample<f64, 1> {
+    fn sample(&self, _: Time, _: Side, _: Derivatives) -> Sample<f64, 1> {
         Sample::zero()
     }
 

@@ -3,7 +3,7 @@
 
 #![allow(mixed_script_confusables, missing_docs)]
 
-use pendulum_runtime::linearize::linearize;
+use pendulum_runtime::analysis::linearize;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::Jacobians;
 

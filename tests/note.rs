@@ -371,10 +371,10 @@ fn the_three_notations_print_one_equation() {
 /// |ẋ|² m/2 and m g h(x) are in L and nowhere in the equations: only ẍ is asked for.
 #[test]
 fn terms_that_cannot_matter_vanish() {
-    use pendulum_runtime::motion::Orders;
+    use pendulum_runtime::motion::Derivatives;
     for facts in facts!(exact) {
-        assert_eq!(facts.inputs[0].accelerations, Orders::ACCELERATION);
-        assert_eq!(facts.inputs[0].momenta, Orders::VELOCITY);
+        assert_eq!(facts.inputs[0].accelerations, Derivatives::ACCELERATION);
+        assert_eq!(facts.inputs[0].momenta, Derivatives::VELOCITY);
         assert!(
             facts.velocity_free
                 && facts.constant_mass_matrix

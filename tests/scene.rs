@@ -6,7 +6,7 @@
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Linear, Sinusoid, Spline, Still};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::scene::{Fixed, Handle, Scene, SceneError, Status};
+use pendulum_runtime::scene::{Fixed, Handle, Scene, SceneError, SceneStatus};
 
 #[path = "common/pendulums.rs"]
 mod pendulums;
@@ -250,12 +250,12 @@ fn failures_stay_where_they_are() {
         let handle = Handle::<Hanging<f64>, 1>::new(index);
         if index == 7 {
             assert_eq!(bad.state(handle), ([0.1 * 7.0], [0.0]));
-            assert_eq!(bad.status(handle), Status::Failed);
+            assert_eq!(bad.status(handle), SceneStatus::Failed);
         } else {
             assert_eq!(bad.state(handle), good.state(handle));
         }
     }
-    let message = bad.failures()[0].to_string();
+    let message = bad.faults()[0].to_string();
     assert!(
         message.starts_with(
             "`Hanging` 7: at t = 0.0 the acceleration of `θ` is not finite; check parameter `L`"
@@ -291,7 +291,7 @@ fn bad_input_is_refused() {
         Err(SceneError::Joint(0))
     ));
     let refused =
-        other.set_motion(joint, Still::new([0.0, 0.0]), pendulum_runtime::scene::Carry::Swing);
+        other.set_motion(joint, Still::new([0.0, 0.0]), pendulum_runtime::scene::Preserve::Swing);
     assert_eq!(refused, Err(SceneError::Joint(0)));
     let position = pendulum_runtime::motion::Function::new(|t: f64| [t, 0.0]);
     let vague = scene.joint(position);
@@ -440,7 +440,7 @@ fn failures_stand_in_the_order_of_time() {
         for _ in 0..8 / ticks {
             scene.advance_ticks(ticks);
         }
-        scene.failures().iter().map(|failure| (failure.kind, failure.t)).collect::<Vec<_>>()
+        scene.faults().iter().map(|failure| (failure.kind, failure.t)).collect::<Vec<_>>()
     };
     assert_eq!(failures(8), failures(1));
     assert_eq!(
@@ -464,18 +464,18 @@ fn only_the_one_that_is_meant_is_reset() {
     let second = scene.hang((), other::Simple::new(0.1, 1.0), [0.7], [0.0]).unwrap();
     // One that has failed swings again.
     scene.advance_ticks(1);
-    assert_eq!(scene.status(first), Status::Failed);
+    assert_eq!(scene.status(first), SceneStatus::Failed);
     assert!(scene.reset_to_rest(first).is_err());
     scene.set_parameter(first, "L", 1.0).unwrap();
     let before = scene.state(second);
     scene.reset_to_rest(first).unwrap();
-    assert_eq!((scene.state(second), scene.status(first)), (before, Status::Awake));
+    assert_eq!((scene.state(second), scene.status(first)), (before, SceneStatus::Awake));
     assert!(scene.state(first).0[0].abs() < 1e-12);
 }
 
 #[test]
 fn directors_get_what_they_ask_for() {
-    use pendulum_runtime::scene::Carry;
+    use pendulum_runtime::scene::Preserve;
     let mut scene = zoo(1e-3);
     let handle = Handle::<Hanging<f64>, 1>::new(4);
     let double = Handle::<Double<f64>, 2>::new(3);
@@ -510,13 +510,13 @@ fn directors_get_what_they_ask_for() {
     let joint = scene.joint(Still::new([0.0, 0.0]));
     let handle = scene.hang(joint, Hanging::new(0.1, 0.5), [0.2], [0.1]).unwrap();
     let away = Linear::new(&[-1.0, 9.0], &[[0.0, 0.0], [20.0, 0.0]]).unwrap();
-    scene.set_motion(joint, away.clone(), Carry::Swing).unwrap();
+    scene.set_motion(joint, away.clone(), Preserve::Swing).unwrap();
     assert_eq!(scene.state(handle), ([0.2], [0.1]));
-    scene.set_motion(joint, Still::new([7.0, 0.0]), Carry::Swing).unwrap();
-    scene.set_motion(joint, away, Carry::Momentum).unwrap();
+    scene.set_motion(joint, Still::new([7.0, 0.0]), Preserve::Swing).unwrap();
+    scene.set_motion(joint, away, Preserve::Momentum).unwrap();
     // Δθ̇ = −Δẋ cos θ / L.
     assert!((scene.state(handle).1[0] - (0.1 - 2.0 * 0.2f64.cos() / 0.5)).abs() < 1e-14);
-    scene.set_motion(joint, Still::new([7.0, 0.0]), Carry::Rest).unwrap();
+    scene.set_motion(joint, Still::new([7.0, 0.0]), Preserve::Nothing).unwrap();
     assert_eq!(scene.state(handle).1, [0.0]);
     assert!(scene.state(handle).0[0].abs() < 1e-12);
 }
@@ -685,17 +685,17 @@ fn a_pause_does_not_show() {
 
 #[test]
 fn joints_are_felt_as_much_as_directors_want() {
-    use pendulum_runtime::motion::Felt;
+    use pendulum_runtime::motion::Attenuated;
     let mut scene = Scene::<f64>::new(240.0).unwrap();
     scene.set_tolerance(1e-9).unwrap();
     let shake = Sinusoid::new([0.1, 0.0], 9.0, [0.0, 0.0]);
     // A tenth of a shake is what a tenth of the amplitude is, and a speed below the limit is all
     // felt.
-    let tenth = scene.joint(Felt::new(shake, 0.1, f64::INFINITY).unwrap());
+    let tenth = scene.joint(Attenuated::new(shake, 0.1, f64::INFINITY).unwrap());
     let small = scene.joint(Sinusoid::new([0.01, 0.0], 9.0, [0.0, 0.0]));
-    let below = scene.joint(Felt::new(shake, 1.0, 0.91).unwrap());
+    let below = scene.joint(Attenuated::new(shake, 1.0, 0.91).unwrap());
     let whole = scene.joint(shake);
-    let beyond = scene.joint(Felt::new(shake, 1.0, 0.3).unwrap());
+    let beyond = scene.joint(Attenuated::new(shake, 1.0, 0.3).unwrap());
     let all = [tenth, small, below, whole, beyond]
         .map(|joint| scene.hang(joint, Hanging::new(0.1, 0.5), [0.1], [0.0]).unwrap());
     scene.advance(2.0).unwrap();
@@ -705,7 +705,7 @@ fn joints_are_felt_as_much_as_directors_want() {
         "{tenth} {small} {below} {whole}"
     );
     // Cut speeds through the kinks, by an integrator that lands on them.
-    let alone = Hanging::new(0.1, 0.5).driven_by(Felt::new(shake, 1.0, 0.3).unwrap());
+    let alone = Hanging::new(0.1, 0.5).driven_by(Attenuated::new(shake, 1.0, 0.3).unwrap());
     let exact = solve(&alone, (0.0, 2.0), [0.1], [0.0]).rtol(1e-12).atol(1e-13).run().unwrap();
     assert!((beyond - exact.end.q[0]).abs() < 1e-7, "{beyond} for {}", exact.end.q[0]);
     assert!((beyond - whole).abs() > 0.01);

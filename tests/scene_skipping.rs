@@ -3,7 +3,7 @@
 #![allow(mixed_script_confusables, missing_docs)]
 
 use pendulum_runtime::integrate::method::Method;
-use pendulum_runtime::motion::{Motion, Orders, Sample, Side, Sinusoid};
+use pendulum_runtime::motion::{Derivatives, Motion, Sample, Side, Sinusoid};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scene::{Fixed, Scene};
 use pendulum_runtime::time::Time;
@@ -23,12 +23,15 @@ use random::Random;
 struct Watched(Arc<AtomicUsize>);
 
 impl Motion<f64, 2> for Watched {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<f64, 2> {
-        assert!(orders == Orders::ACCELERATION || orders == Orders::NONE, "asked for {orders:?}");
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<f64, 2> {
+        assert!(
+            wanted == Derivatives::ACCELERATION || wanted == Derivatives::NONE,
+            "asked for {wanted:?}"
+        );
         self.0.fetch_add(1, Ordering::Relaxed);
-        Motion::<f64, 2>::sample(&Sinusoid::new([0.1, 0.0], 5.0, [0.0, 0.0]), t, side, orders)
+        Motion::<f64, 2>::sample(&Sinusoid::new([0.1, 0.0], 5.0, [0.0, 0.0]), t, side, wanted)
     }
 
     fn next_kink(&self, _: f64) -> Option<f64> {
@@ -60,10 +63,10 @@ fn joints_are_asked_once_per_time_for_what_is_needed() {
 struct Asleep(Arc<AtomicUsize>);
 
 impl Motion<f64, 2> for Asleep {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
-    fn sample(&self, _: Time, _: Side, orders: Orders) -> Sample<f64, 2> {
-        if orders.contains(Orders::ACCELERATION) || orders.contains(Orders::VELOCITY) {
+    fn sample(&self, _: Time, _: Side, wanted: Derivatives) -> Sample<f64, 2> {
+        if wanted.contains(Derivatives::ACCELERATION) || wanted.contains(Derivatives::VELOCITY) {
             self.0.fetch_add(1, Ordering::Relaxed);
         }
         Sample::zero()

@@ -2,9 +2,9 @@
 
 #![allow(mixed_script_confusables, missing_docs)]
 
-use pendulum_runtime::motion::{Linear, Motion, Orders, Sample, Side, Sinusoid, Still};
+use pendulum_runtime::motion::{Derivatives, Linear, Motion, Sample, Side, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::scene::{Handle, Return, Scene, Status, Stop};
+use pendulum_runtime::scene::{Handle, Resume, Scene, SceneStatus, Stop};
 use pendulum_runtime::time::Time;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -49,11 +49,11 @@ fn keys() -> Linear<2> {
 struct Watched(Arc<AtomicUsize>);
 
 impl Motion<f64, 2> for Watched {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<f64, 2> {
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<f64, 2> {
         self.0.fetch_add(1, Ordering::Relaxed);
-        Motion::<f64, 2>::sample(&Sinusoid::new([0.01, 0.0], 5.0, [0.0, 0.0]), t, side, orders)
+        Motion::<f64, 2>::sample(&Sinusoid::new([0.01, 0.0], 5.0, [0.0, 0.0]), t, side, wanted)
     }
 
     fn next_kink(&self, _: f64) -> Option<f64> {
@@ -83,8 +83,8 @@ fn sleepers_wake_with_the_tick_in_which_their_joint_moves() {
     assert_eq!(scene.awake().0, 41);
     scene.advance(19.0).unwrap();
     assert_eq!(scene.awake(), (1, 41));
-    assert_eq!(scene.status(handles[0]), Status::Asleep(7199));
-    assert_eq!(scene.status(moving), Status::Awake);
+    assert_eq!(scene.status(handles[0]), SceneStatus::Asleep(7199));
+    assert_eq!(scene.status(moving), SceneStatus::Awake);
     // Nobody sleeps through a whole swing, at the top of which it is slow too.
     let asleep = scene.state(handles[7]);
     assert!(asleep.0[0].abs() < 2e-3 && asleep.1 == [0.0]);
@@ -145,9 +145,9 @@ fn what_comes_back_to_the_screen_has_not_stood_still() {
         scene.advance(1.75).unwrap();
     }
     assert_eq!(hidden.awake().0, 0);
-    hidden.show(handles[0], Return::Pause).unwrap();
-    hidden.show(handles[1], Return::Rest).unwrap();
-    hidden.show(handles[2], Return::CatchUp { longest: 60.0 }).unwrap();
+    hidden.show(handles[0], Resume::Unchanged).unwrap();
+    hidden.show(handles[1], Resume::Rest).unwrap();
+    hidden.show(handles[2], Resume::CatchUp { longest: 60.0 }).unwrap();
     assert_eq!(hidden.state(handles[0]).0, q);
     assert!(hidden.state(handles[1]).0[0].abs() < 1e-12);
     let (exact, made_up) = (seen.state(shown[2]), hidden.state(handles[2]));
@@ -164,21 +164,21 @@ fn another_rest_is_another_bed() {
     let handle = scene.hang(joint, Strung::new(0.1, 4.0), [0.05, 0.0], [0.0, 0.0]).unwrap();
     scene.set_damping(handle, 2.0).unwrap();
     scene.advance(19.0).unwrap();
-    assert_eq!(scene.status(handle), Status::Asleep(4799));
+    assert_eq!(scene.status(handle), SceneStatus::Asleep(4799));
     scene.advance(1.5).unwrap();
-    assert_eq!(scene.status(handle), Status::Awake);
+    assert_eq!(scene.status(handle), SceneStatus::Awake);
     scene.advance(20.0).unwrap();
-    assert_eq!(scene.status(handle), Status::Asleep(i64::MAX));
+    assert_eq!(scene.status(handle), SceneStatus::Asleep(i64::MAX));
     let (q, _) = scene.state(handle);
     assert!(q.iter().all(|q| (q - 0.3).abs() < 1e-3), "{q:?}");
     // Where it is dragged away it wakes, and without sleep all wake.
     scene.set_state(handle, [0.4, 0.3], [0.0, 0.0]).unwrap();
     scene.advance(30.0).unwrap();
-    assert!(matches!(scene.status(handle), Status::Asleep(_)));
+    assert!(matches!(scene.status(handle), SceneStatus::Asleep(_)));
     scene.mirror(handle, [-1.0, -1.0]).unwrap();
-    assert_eq!(scene.status(handle), Status::Awake);
+    assert_eq!(scene.status(handle), SceneStatus::Awake);
     scene.advance(30.0).unwrap();
-    assert!(matches!(scene.status(handle), Status::Asleep(_)));
+    assert!(matches!(scene.status(handle), SceneStatus::Asleep(_)));
     scene.set_sleep(None).unwrap();
     assert_eq!(scene.awake(), (1, 1));
     scene.advance(1.0).unwrap();
@@ -202,10 +202,10 @@ fn nobody_sleeps_who_is_about_to_be_moved() {
         scene.advance_ticks(1);
         assert_eq!(
             [scene.status(blown), scene.status(high), scene.status(swinging)],
-            [Status::Awake; 3]
+            [SceneStatus::Awake; 3]
         );
     }
-    assert_eq!(scene.status(hardly), Status::Asleep(i64::MAX));
+    assert_eq!(scene.status(hardly), SceneStatus::Asleep(i64::MAX));
     assert!(scene.state(blown).0[0].abs() > 1e-3);
 }
 
@@ -238,7 +238,7 @@ fn joints_of_sleepers_are_not_asked() {
     scene.advance(60.0).unwrap();
     assert_eq!(asked.load(Ordering::Relaxed), 0);
     // A minute is made up for in far fewer steps than its 14400 ticks.
-    scene.show(handle, Return::CatchUp { longest: 100.0 }).unwrap();
+    scene.show(handle, Resume::CatchUp { longest: 100.0 }).unwrap();
     let steps = asked.load(Ordering::Relaxed);
     assert!(steps < 4_500, "{steps}");
     let alone = Hanging::new(0.1, 0.5).driven_by(Sinusoid::new([0.01, 0.0], 5.0, [0.0, 0.0]));
@@ -247,13 +247,13 @@ fn joints_of_sleepers_are_not_asked() {
     // What was hidden too long begins at rest.
     scene.hide(handle).unwrap();
     scene.advance(60.0).unwrap();
-    scene.show(handle, Return::CatchUp { longest: 2.0 }).unwrap();
+    scene.show(handle, Resume::CatchUp { longest: 2.0 }).unwrap();
     let late = solve(&alone, (118.0, 120.0), [0.0], [0.0]).rtol(1e-12).atol(1e-12).run().unwrap();
     assert!((scene.state(handle).0[0] - late.end.q[0]).abs() < 1e-4);
-    assert!(scene.show(handle, Return::CatchUp { longest: -1.0 }).is_ok());
+    assert!(scene.show(handle, Resume::CatchUp { longest: -1.0 }).is_ok());
     scene.hide(handle).unwrap();
-    assert!(scene.show(handle, Return::CatchUp { longest: -1.0 }).is_err());
-    assert!(matches!(scene.status(handle), Status::Hidden(_)));
+    assert!(scene.show(handle, Resume::CatchUp { longest: -1.0 }).is_err());
+    assert!(matches!(scene.status(handle), SceneStatus::Hidden(_)));
 }
 
 #[test]
@@ -274,7 +274,7 @@ fn who_has_gone_round_sleeps_where_it_hangs() {
     for _ in 0..40 {
         scene.advance(1.0).unwrap();
         for handle in [round, put, high] {
-            if scene.status(handle) != Status::Awake {
+            if scene.status(handle) != SceneStatus::Awake {
                 let (q, _) = scene.state(handle);
                 assert!(q[0].sin().abs() < 2e-3 && 0.0 < q[0].cos(), "{q:?}");
             }
@@ -307,7 +307,8 @@ fn limits_are_felt_at_rest_and_asleep() {
     for _ in 0..20 {
         scene.advance(0.5).unwrap();
         assert!(
-            scene.status(soft) == Status::Awake || (scene.state(soft).0[0] - rest).abs() < 2e-3
+            scene.status(soft) == SceneStatus::Awake
+                || (scene.state(soft).0[0] - rest).abs() < 2e-3
         );
     }
     assert_eq!(scene.awake(), (0, 2));
@@ -335,7 +336,7 @@ fn catching_up_begins_at_the_rest_of_that_time() {
     }
     scene.hide(handles[1]).unwrap();
     scene.advance(10.0).unwrap();
-    scene.show(handles[1], Return::CatchUp { longest: 2.0 }).unwrap();
+    scene.show(handles[1], Resume::CatchUp { longest: 2.0 }).unwrap();
     let [(live, _), (caught_up, _)] = handles.map(|handle| scene.state(handle));
     assert!(
         live[0] > 1.0 && (0..2).all(|i| (live[i] - caught_up[i]).abs() < 5e-3),

@@ -2,13 +2,13 @@
 
 #![allow(mixed_script_confusables, missing_docs)]
 
+use pendulum_runtime::analysis::{Variational, variational_size};
 use pendulum_runtime::integrate::AdaptiveStep;
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Linear, Motions};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::{DoubleDouble, Float};
 use pendulum_runtime::system::Jacobians;
-use pendulum_runtime::variational::{Variational, size};
 
 mod systems {
     use pendulum_runtime::lagrangian;
@@ -77,7 +77,7 @@ fn close(found: f64, expected: f64, within: f64) {
 fn the_forced_pendulum_has_the_published_sensitivities() {
     // `tests/data/variational.py`; rounded, they are those of heyoka.py's tutorial on variational
     // equations.
-    const M: usize = size(1, 1);
+    const M: usize = variational_size(1, 1);
     let system = Variational::<_, 1, M>::new(Forced::new(0.4));
     let (q, v) = system.start([0.2], [0.3]);
     let end =
@@ -111,7 +111,7 @@ fn the_forced_pendulum_has_the_published_sensitivities() {
 
 #[test]
 fn second_derivatives_are_differences_of_first_ones_in_two_words() {
-    const M: usize = size(1, 0);
+    const M: usize = variational_size(1, 0);
     let system = Variational::<_, 1, M>::new(Forced::new(DoubleDouble::ratio(4.0, 10.0)));
     let h = DoubleDouble::from(1e-9);
     let columns = |x: DoubleDouble, y: DoubleDouble| {
@@ -148,7 +148,7 @@ fn second_derivatives_are_differences_of_first_ones_in_two_words() {
 
 #[test]
 fn floquet_traces_of_the_mathieu_equation() {
-    const M: usize = size(1, 0);
+    const M: usize = variational_size(1, 0);
     for (a, q, trace, growth) in [
         (1.0, 0.125, -2.03853581929074585533901, 0.062386058345395653242),
         (1.0, 0.5, -2.61241890662466033556423, 0.24314575698414496958),
@@ -226,10 +226,25 @@ fn compare<S, const N: usize, const M: usize, X>(
 #[test]
 fn columns_are_the_derivatives_of_the_discrete_motion() {
     let number = DoubleDouble::from;
-    compare::<_, 1, { size(1, 2) }, _>(&Simple::new(number(1.25), number(0.75)), &(), Leapfrog, 50);
-    compare::<_, 1, { size(1, 1) }, _>(&Simple::new(number(1.25), number(0.75)), &(), Srkn14a, 10);
-    compare::<_, 1, { size(1, 1) }, _>(&Forced::new(number(0.5)), &(), Rk4, 50);
-    compare::<_, 2, { size(2, 2) }, _>(&Double::new(number(1.25), number(0.75)), &(), Dop853, 10);
+    compare::<_, 1, { variational_size(1, 2) }, _>(
+        &Simple::new(number(1.25), number(0.75)),
+        &(),
+        Leapfrog,
+        50,
+    );
+    compare::<_, 1, { variational_size(1, 1) }, _>(
+        &Simple::new(number(1.25), number(0.75)),
+        &(),
+        Srkn14a,
+        10,
+    );
+    compare::<_, 1, { variational_size(1, 1) }, _>(&Forced::new(number(0.5)), &(), Rk4, 50);
+    compare::<_, 2, { variational_size(2, 2) }, _>(
+        &Double::new(number(1.25), number(0.75)),
+        &(),
+        Dop853,
+        10,
+    );
 }
 
 #[test]
@@ -240,15 +255,15 @@ fn kinks_are_crossed_by_the_derivatives_of_the_momenta() {
         Linear::new(&[0.0, 0.5, 1.25, 2.0], &[[0.0, 0.0], [0.3, 0.1], [0.1, -0.2], [0.5, 0.2]])
             .unwrap();
     let system = Hung::new(number(0.75), number(1.25), number(0.5), number(0.25));
-    compare::<_, 2, { size(2, 4) }, _>(&system, &(hand.clone(),), Rk4, 16);
-    compare::<_, 2, { size(2, 4) }, _>(&system, &(hand,), Tsit5, 16);
+    compare::<_, 2, { variational_size(2, 4) }, _>(&system, &(hand.clone(),), Rk4, 16);
+    compare::<_, 2, { variational_size(2, 4) }, _>(&system, &(hand,), Tsit5, 16);
 }
 
 #[test]
 fn the_energy_has_no_gradient_along_the_flow() {
     // E(q(t), v(t)) = E(q₀, v₀): its gradient at the end, drawn back by the transition, is that at
     // the start.
-    const M: usize = size(2, 0);
+    const M: usize = variational_size(2, 0);
     let plain = Double::new(1.0, 1.0);
     let system = Variational::<_, 2, M>::new(plain.clone());
     let (q0, v0) = ([2.0, 2.5], [0.0, 0.25]);
@@ -276,7 +291,7 @@ fn the_energy_has_no_gradient_along_the_flow() {
 /// The growth of a small difference, its length brought back to one every ten seconds (Benettin et
 /// al. 1980).
 fn lyapunov_exponent(seconds: u32) -> f64 {
-    const M: usize = size(2, 0);
+    const M: usize = variational_size(2, 0);
     let system = Variational::<_, 2, M>::new(Double::new(1.0, 1.0));
     let (mut q, mut v) = system.start([2.0, 2.5], [0.0; 2]);
     // Of the columns the first is enough.
@@ -305,7 +320,7 @@ fn the_chaotic_double_pendulum_has_its_lyapunov_exponent() {
 
 #[test]
 fn facts_and_errors_are_those_of_the_system() {
-    const M: usize = size(1, 2);
+    const M: usize = variational_size(1, 2);
     let system = Variational::<_, 1, M>::new(Simple::new(1.0, 0.0));
     assert_eq!(<Variational<Simple, 1, M> as System<M>>::FACTS.parameters, ["g", "l"]);
     let (q, v) = system.start([1.0], [0.0]);

@@ -104,7 +104,8 @@ fn motion_capture(seed: u64) -> Verdict {
 /// A glTF file with something wrong in it, and the motions of all its nodes.
 #[cfg(feature = "gltf")]
 fn gltf(seed: u64) -> Verdict {
-    use pendulum_runtime::motion::{Motion, Orders, Side, gltf::Gltf};
+    use pendulum_runtime::import::gltf::Gltf;
+    use pendulum_runtime::motion::{Derivatives, Motion, Side};
     use pendulum_runtime::time::Time;
 
     let mut random = Random(seed);
@@ -119,7 +120,7 @@ fn gltf(seed: u64) -> Verdict {
         for node in 0..file.nodes().count() {
             let Ok(motion) = file.motion(animation, node) else { return Verdict::Refused };
             let sample =
-                Motion::<f64, 3>::sample(&motion, Time::new(0.3), Side::After, Orders::ALL);
+                Motion::<f64, 3>::sample(&motion, Time::new(0.3), Side::After, Derivatives::ALL);
             let kink = Motion::<f64, 3>::next_kink(&motion, 0.3);
             if kink.is_some_and(|kink| kink <= 0.3) {
                 return Verdict::Wrong(format!("a kink at {kink:?} after 0.3, {sample:?}"));
@@ -132,7 +133,7 @@ fn gltf(seed: u64) -> Verdict {
 /// A drawing with something wrong in it.
 #[cfg(feature = "svg")]
 fn svg(seed: u64) -> Verdict {
-    use pendulum_runtime::drawing::{Drawing, Units};
+    use pendulum_runtime::import::svg::{Drawing, Units};
 
     const OWL: &[u8] = include_bytes!("../data/owl.svg");
     const SMALL: &[u8] = br##"<svg xmlns="http://www.w3.org/2000/svg" width="100" height="100"><g id="arm"><circle id="arm.keyed" cx="50" cy="10" r="1"/>

@@ -1,7 +1,7 @@
 //! The same pendulum by hand: I θ̈ = −m ⟨ẍ + g e_y, (e^{iθ} c)⊥⟩ − c θ̇.
 
 use pendulum_runtime::body::Body;
-use pendulum_runtime::motion::{Orders, Sample};
+use pendulum_runtime::motion::{Derivatives, Sample};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::{Facts, Input};
 
@@ -44,10 +44,10 @@ impl<T: Real> System<1> for Hand<T> {
         facts.inputs = &[Input {
             name: "x",
             components: 2,
-            accelerations: Orders::ACCELERATION,
-            momenta: Orders::VELOCITY,
-            energy: Orders::POSITION.and(Orders::VELOCITY),
-            power: Orders::VELOCITY.and(Orders::ACCELERATION),
+            accelerations: Derivatives::ACCELERATION,
+            momenta: Derivatives::VELOCITY,
+            energy: Derivatives::POSITION.union(Derivatives::VELOCITY),
+            power: Derivatives::VELOCITY.union(Derivatives::ACCELERATION),
         }];
         facts.constant_mass_matrix = true;
         facts

@@ -4,7 +4,7 @@ use crate::Tag;
 use crate::hand::Hand;
 use indicatif::ProgressBar;
 use pendulum_runtime::body::Polygon;
-use pendulum_runtime::motion::{Clip, Interpolation, Orders, Side};
+use pendulum_runtime::motion::{Clip, Derivatives, Interpolation, Side};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::time::Time;
 use std::error::Error;
@@ -102,7 +102,8 @@ impl Hung {
             acceleration = acceleration.max(ours.abs());
         }
         let at = |&t: &f64| {
-            Motion::<f64, 2>::sample(&curve, Time::new(t), Side::Before, Orders::POSITION).position
+            Motion::<f64, 2>::sample(&curve, Time::new(t), Side::Before, Derivatives::POSITION)
+                .position
         };
         let pivot = times.iter().map(at).collect();
         Ok(Self {

@@ -4,8 +4,8 @@ use crate::UNITS;
 use crate::bake::{Course, FRAMES, RATE};
 use crate::dance::PERIOD;
 use crate::rig::{Keyed, Rig};
-use pendulum_runtime::drawing::Joint;
-use pendulum_runtime::motion::{Motion, Orders, Sample, Side};
+use pendulum_runtime::import::svg::DrawnJoint;
+use pendulum_runtime::motion::{Derivatives, Motion, Sample, Side};
 use std::fmt::Write;
 
 /// The text of the drawing, playing.
@@ -36,18 +36,18 @@ pub(crate) fn draw(text: &str, rig: &Rig<'_>, courses: &[Course]) -> String {
 pub(crate) fn frames(keyed: &Keyed<'_>) -> (Vec<f64>, Vec<[f64; 2]>) {
     let times = || (0..FRAMES).map(|frame| (frame as f64 / RATE as f64).into());
     let turn = |t| {
-        let sample: Sample<f64, 1> = keyed.turn.sample(t, Side::After, Orders::POSITION);
+        let sample: Sample<f64, 1> = keyed.turn.sample(t, Side::After, Derivatives::POSITION);
         sample.position[0]
     };
     let shift = |t| {
-        let sample: Sample<f64, 2> = keyed.way.sample(t, Side::After, Orders::POSITION);
+        let sample: Sample<f64, 2> = keyed.way.sample(t, Side::After, Derivatives::POSITION);
         let [x, y] = sample.position.map(|metres| metres / UNITS.pixel / keyed.joint.scale);
         [x, -y]
     };
     (times().map(turn).collect(), times().map(shift).collect())
 }
 
-fn rotation(joint: &Joint, angles: &[f64]) -> String {
+fn rotation(joint: &DrawnJoint, angles: &[f64]) -> String {
     let values = angles.iter().map(|&angle| {
         let [degrees, x, y] = joint.rotation(angle);
         format!("{degrees:.2} {x:.1} {y:.1}")

@@ -4,7 +4,7 @@ use crate::dance::PERIOD;
 use crate::feather::{Feather, frequency};
 use crate::rig::{Angle, Rig};
 use indicatif::ProgressBar;
-use pendulum_runtime::motion::{Motion, Orders, Sample, Side};
+use pendulum_runtime::motion::{Derivatives, Motion, Sample, Side};
 use pendulum_runtime::scene::{Handle, Scene};
 use std::error::Error;
 
@@ -92,7 +92,7 @@ pub(crate) fn swing(
             return Err(format!(
                 "{failed} feathers failed at {} s: {}",
                 scene.time(),
-                scene.failures()[0]
+                scene.faults()[0]
             )
             .into());
         }
@@ -122,6 +122,6 @@ pub(crate) fn swing(
 }
 
 fn angle(angle: &Angle, t: f64) -> f64 {
-    let sample: Sample<f64, 1> = angle.sample(t.into(), Side::After, Orders::POSITION);
+    let sample: Sample<f64, 1> = angle.sample(t.into(), Side::After, Derivatives::POSITION);
     sample.position[0]
 }

@@ -139,8 +139,8 @@ pub(crate) fn way(name: &str, pixel: f64) -> Result<Spline<2>, MotionError> {
     let count = 80;
     let grid: Vec<f64> = (0..count).map(|key| PERIOD * f64::from(key) / f64::from(count)).collect();
     let at = |spline: &Spline<1>, t: f64| {
-        use pendulum_runtime::motion::{Motion, Orders, Sample, Side};
-        let sample: Sample<f64, 1> = spline.sample(t.into(), Side::After, Orders::POSITION);
+        use pendulum_runtime::motion::{Derivatives, Motion, Sample, Side};
+        let sample: Sample<f64, 1> = spline.sample(t.into(), Side::After, Derivatives::POSITION);
         sample.position[0]
     };
     let values = grid.iter().map(|&t| [at(&along, t), at(&up, t)]).collect();

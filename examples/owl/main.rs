@@ -1,7 +1,7 @@
 //! An owl of a hundred feathers, each a pendulum that weighs what is drawn.
 //!
 //! `cargo run --release --features svg --example owl [file.svg]` reads the drawing, whose groups
-//! are joints (see `pendulum_runtime::drawing`), moves the keyed ones through a dance of four
+//! are joints (see `pendulum_runtime::import::svg`), moves the keyed ones through a dance of four
 //! seconds that repeats, lets the feathers swing until their motion repeats too, and writes
 //! `target/owl.svg`, which plays in a browser, and `target/owl.html`, a page with sliders for
 //! gravity and damping.
@@ -17,7 +17,7 @@ mod rig;
 
 use bake::{Baked, Course, Settings};
 use indicatif::{ProgressBar, ProgressStyle};
-use pendulum_runtime::drawing::{Drawing, Role, Units};
+use pendulum_runtime::import::svg::{Drawing, Role, Units};
 use rig::Rig;
 use std::error::Error;
 use std::fs;

@@ -2,8 +2,8 @@
 
 use crate::{UNITS, dance};
 use pendulum_runtime::body::Body;
-use pendulum_runtime::drawing::{Drawing, Joint, Role};
-use pendulum_runtime::motion::{Motion, Orders, Sample, Side, Spline};
+use pendulum_runtime::import::svg::{Drawing, DrawnJoint, Role};
+use pendulum_runtime::motion::{Derivatives, Motion, Sample, Side, Spline};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::time::Time;
 use std::error::Error;
@@ -19,7 +19,7 @@ pub(crate) struct Rig<'a> {
 /// A joint moved by keys.
 #[derive(Clone, Debug)]
 pub(crate) struct Keyed<'a> {
-    pub(crate) joint: &'a Joint,
+    pub(crate) joint: &'a DrawnJoint,
     /// On its parent.
     pub(crate) turn: Arc<Spline<1>>,
     /// How far it goes itself, which only a root does.
@@ -33,7 +33,7 @@ pub(crate) struct Keyed<'a> {
 /// A feather on a keyed joint.
 #[derive(Clone, Debug)]
 pub(crate) struct Hung<'a> {
-    pub(crate) joint: &'a Joint,
+    pub(crate) joint: &'a DrawnJoint,
     /// The number of the keyed joint.
     pub(crate) on: usize,
     pub(crate) body: Body,
@@ -108,16 +108,16 @@ impl<'a> Rig<'a> {
     }
 }
 
-fn between(from: &Joint, to: &Joint) -> [f64; 2] {
+fn between(from: &DrawnJoint, to: &DrawnJoint) -> [f64; 2] {
     [to.pivot[0] - from.pivot[0], to.pivot[1] - from.pivot[1]]
 }
 
 impl Angle {
-    fn at(&self, t: Time, side: Side, orders: Orders) -> [f64; 3] {
+    fn at(&self, t: Time, side: Side, wanted: Derivatives) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for turn in &self.0 {
             let Sample { position, velocity, acceleration }: Sample<f64, 1> =
-                turn.sample(t, side, orders);
+                turn.sample(t, side, wanted);
             for (sum, part) in sum.iter_mut().zip([position, velocity, acceleration]) {
                 *sum += part[0];
             }
@@ -127,11 +127,11 @@ impl Angle {
 }
 
 impl<T: Real> Motion<T, 1> for Angle {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, 1> {
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, 1> {
         let [position, velocity, acceleration] =
-            self.at(t, side, orders).map(|value| [T::from_f64(value)]);
+            self.at(t, side, wanted).map(|value| [T::from_f64(value)]);
         Sample { position, velocity, acceleration }
     }
 
@@ -142,15 +142,15 @@ impl<T: Real> Motion<T, 1> for Angle {
 }
 
 impl<T: Real> Motion<T, 2> for Pivot {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, 2> {
-        let mut sum: Sample<f64, 2> = self.way.sample(t, side, orders);
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, 2> {
+        let mut sum: Sample<f64, 2> = self.way.sample(t, side, wanted);
         for (axis, start) in self.start.into_iter().enumerate() {
             sum.position[axis] += start;
         }
         for (angle, [a, b]) in &self.arms {
-            let [angle, speed, change] = angle.at(t, side, Orders::ALL);
+            let [angle, speed, change] = angle.at(t, side, Derivatives::ALL);
             let (sin, cos) = Real::sin_cos(angle);
             let arm = [cos * a - sin * b, sin * a + cos * b];
             let turned = [-arm[1], arm[0]];
@@ -160,12 +160,13 @@ impl<T: Real> Motion<T, 2> for Pivot {
                 sum.acceleration[axis] += change * turned[axis] - speed * speed * arm[axis];
             }
         }
-        let kept =
-            |order: Orders, value: [f64; 2]| if orders.contains(order) { value } else { [0.0; 2] };
+        let kept = |order: Derivatives, value: [f64; 2]| {
+            if wanted.contains(order) { value } else { [0.0; 2] }
+        };
         Sample {
-            position: kept(Orders::POSITION, sum.position),
-            velocity: kept(Orders::VELOCITY, sum.velocity),
-            acceleration: kept(Orders::ACCELERATION, sum.acceleration),
+            position: kept(Derivatives::POSITION, sum.position),
+            velocity: kept(Derivatives::VELOCITY, sum.velocity),
+            acceleration: kept(Derivatives::ACCELERATION, sum.acceleration),
         }
         .map(T::from_f64)
     }
@@ -180,8 +181,8 @@ impl<T: Real> Motion<T, 2> for Pivot {
 mod tests {
     use super::Rig;
     use crate::UNITS;
-    use pendulum_runtime::drawing::Drawing;
-    use pendulum_runtime::motion::{Motion, Orders, Sample, Side};
+    use pendulum_runtime::import::svg::Drawing;
+    use pendulum_runtime::motion::{Derivatives, Motion, Sample, Side};
 
     fn drawing() -> Drawing {
         Drawing::read(include_str!("../data/owl.svg"), UNITS).unwrap()
@@ -211,7 +212,7 @@ mod tests {
             for k in 0..40 {
                 let (t, h) = (0.1 * f64::from(k) + 0.013, 1e-4);
                 let [before, now, after]: [Sample<f64, 2>; 3] = [t - h, t, t + h]
-                    .map(|t| keyed.place.sample(t.into(), Side::After, Orders::ALL));
+                    .map(|t| keyed.place.sample(t.into(), Side::After, Derivatives::ALL));
                 for axis in 0..2 {
                     let slope = (after.position[axis] - before.position[axis]) / (2.0 * h);
                     let bend = (after.velocity[axis] - before.velocity[axis]) / (2.0 * h);

@@ -8,7 +8,7 @@ use crate::systems::{Effective, Hung, Kapitza, Simple};
 use pendulum_runtime::error::{Error, Quantity};
 use pendulum_runtime::integrate::Failure;
 use pendulum_runtime::motion::{
-    CatmullRom, Function, Linear, Motion, Orders, Sample, Side, Sinusoid,
+    CatmullRom, Derivatives, Function, Linear, Motion, Sample, Side, Sinusoid,
 };
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::{DoubleDouble, Lanes, Real};
@@ -218,7 +218,7 @@ fn keyed(_: Scale, report: &mut Report) {
     let hidden = {
         let motion = CatmullRom::new(&times, &values).unwrap();
         let at = move |t: f64| -> Sample<f64, 2> {
-            motion.sample(Time::new(t), Side::After, Orders::ALL)
+            motion.sample(Time::new(t), Side::After, Derivatives::ALL)
         };
         let (a, b) = (at.clone(), at.clone());
         hung().driven_by(
@@ -345,9 +345,9 @@ struct Clock<'a> {
 }
 
 impl<T: Real> Motion<T, 2> for Clock<'_> {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
-    fn sample(&self, t: Time, _: Side, _: Orders) -> Sample<T, 2> {
+    fn sample(&self, t: Time, _: Side, _: Derivatives) -> Sample<T, 2> {
         let halves = 2.0 * t.since(self.origin) / self.step;
         let mut worst = self.worst.lock().unwrap();
         *worst = larger(*worst, (halves - halves.round()).abs() * 0.5 / halves.abs().max(1.0));

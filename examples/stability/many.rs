@@ -8,7 +8,7 @@ use crate::report::{Report, Scale, Test};
 use crate::scenes;
 use crate::systems::{Double, Hung, Simple};
 use pendulum_runtime::integrate::FixedStep;
-use pendulum_runtime::motion::{Motion, Orders, Side, Spline};
+use pendulum_runtime::motion::{Derivatives, Motion, Side, Spline};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::Lanes;
 use pendulum_runtime::system::System;
@@ -181,13 +181,13 @@ fn soak(scale: Scale, report: &mut Report) {
             let t = Time::new((f64::from(frame) + 0.5) * h);
             let drift = |q: &mut Lanes<f64, W>, v: &Lanes<f64, W>| *q += Lanes::splat(0.5 * h) * *v;
             drift(&mut q[0], &v[0]);
-            let inputs = (joint.sample(t, Side::After, Orders::ACCELERATION),);
+            let inputs = (joint.sample(t, Side::After, Derivatives::ACCELERATION),);
             let a = system.accelerations(Lanes::splat(t.to_f64()), &q, &v, &inputs);
             v[0] += Lanes::splat(h) * a[0];
             drift(&mut q[0], &v[0]);
             if let Some(system) = &watched {
                 one[0] += 0.5 * h * speed[0];
-                let inputs = (joint.sample(t, Side::After, Orders::ACCELERATION),);
+                let inputs = (joint.sample(t, Side::After, Derivatives::ACCELERATION),);
                 let a = system.accelerations(t.to_f64(), &one, &speed, &inputs);
                 speed[0] += h * a[0];
                 one[0] += 0.5 * h * speed[0];

@@ -8,7 +8,7 @@ use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Linear, Sinusoid, Spline, Still};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::Lane;
-use pendulum_runtime::scene::{Carry, Fixed, Handle, Joint, Return, Scene};
+use pendulum_runtime::scene::{Fixed, Handle, Joint, Preserve, Resume, Scene};
 
 /// Ticks a second whose length is a power of two, so that solvers take the same steps.
 const BINARY: f64 = 256.0;
@@ -174,12 +174,12 @@ fn with_motion<R>(seed: u64, now: f64, take: impl FnOnce(Moving) -> R) -> R {
 }
 
 /// Gives a joint another motion.
-fn teleport(scene: &mut Scene<f64>, joint: Joint<2>, seed: u64, carry: Carry) {
+fn teleport(scene: &mut Scene<f64>, joint: Joint<2>, seed: u64, preserve: Preserve) {
     let moved = with_motion(seed, scene.time(), |motion| match motion {
-        Moving::Keys(motion) => scene.set_motion(joint, motion, carry),
-        Moving::Curve(motion) => scene.set_motion(joint, motion, carry),
-        Moving::Swing(motion) => scene.set_motion(joint, motion, carry),
-        Moving::Still(motion) => scene.set_motion(joint, motion, carry),
+        Moving::Keys(motion) => scene.set_motion(joint, motion, preserve),
+        Moving::Curve(motion) => scene.set_motion(joint, motion, preserve),
+        Moving::Swing(motion) => scene.set_motion(joint, motion, preserve),
+        Moving::Still(motion) => scene.set_motion(joint, motion, preserve),
     });
     moved.unwrap();
 }
@@ -223,13 +223,13 @@ impl Crowd {
         let chance = |random: &mut Random, one_in: u64| random.bits().is_multiple_of(one_in);
         if chance(&mut self.random, 10) {
             let character = self.random.bits() as usize % self.joints.len();
-            let (seed, carry) = (
+            let (seed, preserve) = (
                 self.random.bits(),
-                if chance(&mut self.random, 2) { Carry::Swing } else { Carry::Momentum },
+                if chance(&mut self.random, 2) { Preserve::Swing } else { Preserve::Momentum },
             );
-            teleport(&mut self.scene, self.joints[character], seed, carry);
+            teleport(&mut self.scene, self.joints[character], seed, preserve);
             for single in self.singles.iter_mut().filter(|single| single.character == character) {
-                teleport(&mut single.scene, single.joint, seed, carry);
+                teleport(&mut single.scene, single.joint, seed, preserve);
             }
         }
         if chance(&mut self.random, 50) {
@@ -239,7 +239,7 @@ impl Crowd {
         if chance(&mut self.random, 20) {
             // Somebody whom nobody looks at goes on as if there had been no time.
             if let Some(pendulum) = self.hidden.take() {
-                self.scene.show(pendulum, Return::Pause).unwrap();
+                self.scene.show(pendulum, Resume::Unchanged).unwrap();
             } else {
                 let index = self.random.bits() as usize % self.pendulums.len();
                 if let Pendulum::One(pendulum) = self.pendulums[index]
@@ -277,7 +277,7 @@ impl Crowd {
                 q.iter().chain(&v).all(finite)
             }
         };
-        self.scene.failures().is_empty() && self.pendulums.iter().all(one)
+        self.scene.faults().is_empty() && self.pendulums.iter().all(one)
     }
 }
 

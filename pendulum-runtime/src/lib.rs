@@ -3,24 +3,24 @@
 #[macro_use]
 mod macros;
 
+pub mod analysis;
 pub mod body;
-#[cfg(feature = "svg")]
-pub mod drawing;
 pub mod error;
+#[cfg(any(feature = "gltf", feature = "svg"))]
+pub mod import;
 pub mod integrate;
 pub mod jet;
-pub mod linearize;
+
 pub mod motion;
 pub mod real;
 pub mod scene;
+mod sealed;
 mod simd;
 pub mod system;
 pub mod time;
-pub mod variational;
 
 #[doc(hidden)]
-#[path = "private.rs"]
-pub mod __private;
+pub use system::generated as __private;
 
 /// What a program that writes a `lagrangian!` block and integrates it needs.
 pub mod prelude {

@@ -1,4 +1,5 @@
-//! The macro that users write; it tells the procedural macro where this crate is.
+//! The macro that users write, which tells the procedural macro where this crate is, and the list
+//! of the tuples of motions.
 
 /// Takes a Lagrangian, differentiates it while the crate compiles and emits a type that implements
 /// [`System`](crate::system::System).
@@ -7,4 +8,21 @@
 #[macro_export]
 macro_rules! lagrangian {
     ($($token:tt)*) => { $crate::__private::lagrangian! { $crate; $($token)* } };
+}
+
+/// Hands the tuples of one to eight motions to a macro: for each member the names of its type and
+/// of its dimension, and its index.
+macro_rules! for_tuples_of_motions {
+    ($implementation:ident) => {
+        $implementation! {
+            (A DA 0)
+            (A DA 0, B DB 1)
+            (A DA 0, B DB 1, C DC 2)
+            (A DA 0, B DB 1, C DC 2, D DD 3)
+            (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4)
+            (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4, F DF 5)
+            (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4, F DF 5, G DG 6)
+            (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4, F DF 5, G DG 6, H DH 7)
+        }
+    };
 }

@@ -4,13 +4,15 @@
 #![allow(clippy::inline_always)]
 
 use crate::real::exact::{ordered_sum, two_sum};
+use core::fmt;
 use core::ops::{Add, AddAssign};
 
 /// A time in seconds, `hi + lo` with |lo| at most half a unit in the last place of `hi`.
 ///
 /// Integrators add their steps to it without losing the low digits; motions take differences to
 /// their keys first.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+// The high words decide unless they are the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub struct Time {
     hi: f64,
     lo: f64,
@@ -44,6 +46,13 @@ impl Time {
     pub fn since(self, origin: f64) -> f64 {
         // Sterbenz: near the origin the first difference is exact.
         (self.hi - origin) + self.lo
+    }
+}
+
+/// The nearest `f64`, in its format.
+impl fmt::Display for Time {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.hi.fmt(f)
     }
 }
 
@@ -82,6 +91,13 @@ mod tests {
         }
         // 600 · fl(1/60) = 10 within 600 half-ulps of 1/60.
         assert!((time.since(1e9) - 10.0).abs() < 600.0 * 1.8e-18 + 2e-15);
+    }
+
+    #[test]
+    fn times_are_ordered_by_both_words_and_shown_as_numbers() {
+        let (now, later) = (Time::new(1e15), Time::new(1e15) + 1e-3);
+        assert!(now < later && later < now + 1.0 && now.to_f64() == later.to_f64());
+        assert_eq!(format!("{:.2}", Time::new(0.1) + 0.025), "0.12");
     }
 
     #[test]

@@ -6,7 +6,7 @@
 
 mod polynomial;
 
-use pendulum_runtime::jet::{InputSeries, Jets, Orders, Path};
+use pendulum_runtime::jet::{InputSeries, Jets, Path, Unrolling};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::{DoubleDouble, Float};
 use pendulum_runtime::system::Staged;
@@ -195,7 +195,7 @@ fn run<S: Jets<N>, const N: usize>(
     drive: &S::Drive,
     work: &mut S::Work,
 ) {
-    S::Orders::run(system, 6, path, drive, work);
+    S::Unrolling::run(system, 6, path, drive, work);
 }
 
 /// The drive of a system whose type need not be named.

@@ -1,7 +1,7 @@
 //! Driven inputs that move by cubic polynomials, known by their derivatives at a time.
 
 use pendulum_runtime::jet::Series;
-use pendulum_runtime::motion::{Analytic, Motion, Orders, Sample, Side};
+use pendulum_runtime::motion::{Analytic, Derivatives, Motion, Sample, Side};
 use pendulum_runtime::time::Time;
 
 /// Components with position, velocity, acceleration and the third derivative at a time.
@@ -28,9 +28,9 @@ impl<const D: usize> Cubic<D> {
 }
 
 impl<const D: usize> Motion<f64, D> for Cubic<D> {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
-    fn sample(&self, t: Time, _: Side, _: Orders) -> Sample<f64, D> {
+    fn sample(&self, t: Time, _: Side, _: Derivatives) -> Sample<f64, D> {
         let of = |order: usize| core::array::from_fn(|i| self.orders(t, i)[order]);
         Sample { position: of(0), velocity: of(1), acceleration: of(2) }
     }

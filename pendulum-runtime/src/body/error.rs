@@ -1,9 +1,9 @@
-//! What can be wrong with a body.
+//! Errors of bodies.
 
 use core::error::Error;
 use core::fmt::{Display, Formatter, Result};
 
-/// Why a shape or a density is no body; rings count from the outer one, which is 0.
+/// Reason for which a shape or a density is no body; rings count from the outer one, which is 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BodyError {
@@ -18,7 +18,7 @@ pub enum BodyError {
     TooFewPoints {
         /// The ring.
         ring: usize,
-        /// How many it has.
+        /// The number of its points.
         points: usize,
     },
     /// A point with an infinite or NaN coordinate.
@@ -74,14 +74,14 @@ pub enum BodyError {
     },
     /// A density function that was negative, infinite or NaN.
     Density {
-        /// Where.
+        /// The point.
         at: [f64; 2],
-        /// What it returned.
+        /// The value that it returned.
         value: f64,
     },
     /// A relative tolerance outside of [10⁻¹³, 1).
     Tolerance {
-        /// What was asked for.
+        /// The tolerance asked for.
         rtol: f64,
     },
     /// A density that the quadrature could not resolve.
@@ -90,12 +90,12 @@ pub enum BodyError {
         rtol: f64,
         /// The relative error that was reached.
         reached: f64,
-        /// How often the density was asked for until then.
+        /// The number of evaluations of the density until then.
         evaluations: usize,
     },
     /// Too few samples for a standard error.
     TooFewSamples {
-        /// How many were asked for.
+        /// The number of samples asked for.
         samples: usize,
     },
     /// Lengths or masses whose moments are beyond the range of `f64`.

@@ -15,7 +15,7 @@ pub struct Estimate {
     pub center_error: [f64; 2],
     /// The error of the moment of inertia about the pivot, in kg m².
     pub inertia_error: f64,
-    /// How often the density was asked for.
+    /// The number of evaluations of the density.
     pub evaluations: usize,
 }
 
@@ -33,7 +33,7 @@ pub(super) fn body(moments: &Moments, origin: [f64; 2]) -> Result<Body, BodyErro
     Body { mass, center: [origin[0] + cx, origin[1] + cy], central }.checked()
 }
 
-/// What `density` says at `at`, if it can be a density.
+/// The value of `density` at `at`, if it can be a density.
 pub(super) fn checked(
     density: &mut impl FnMut([f64; 2]) -> f64,
     at: [f64; 2],

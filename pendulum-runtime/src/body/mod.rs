@@ -164,7 +164,7 @@ impl Body {
         sum.ok_or(BodyError::NoMass)?.checked()
     }
 
-    /// What is left when `hole` is cut out, which must lie inside.
+    /// The rest of the body when `hole`, which must lie inside, is cut out.
     pub fn without(self, hole: Self) -> Result<Self, BodyError> {
         let (body, hole) = (self.checked()?, hole.checked()?);
         if body.mass <= hole.mass {

@@ -9,7 +9,7 @@ pub trait Region {
     /// The lower left and the upper right corner of a box around it, in metres from the pivot.
     fn bounds(&self) -> ([f64; 2], [f64; 2]);
 
-    /// Whether a point lies inside.
+    /// Returns true if a point lies inside.
     fn contains(&self, point: [f64; 2]) -> bool;
 
     /// The body whose density in kg/m² is `density` inside and zero elsewhere, from `samples`

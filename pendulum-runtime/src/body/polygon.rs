@@ -173,7 +173,7 @@ impl Region for Polygon {
         ([x + low[0], y + low[1]], [x + high[0], y + high[1]])
     }
 
-    /// Whether a ray from the point crosses the rings an odd number of times.
+    /// Returns true if a ray from the point crosses the rings an odd number of times.
     fn contains(&self, point: [f64; 2]) -> bool {
         let [x, y] = [point[0] - self.origin[0], point[1] - self.origin[1]];
         let mut inside = false;

@@ -48,7 +48,7 @@ const LIMIT: usize = 2_000_000;
 /// estimates.
 const CAUTION: f64 = 6.0;
 
-/// What the rule finds on a triangle.
+/// Result of the rule on a triangle.
 #[derive(Clone, Copy, Default)]
 struct Sample {
     moments: Moments,
@@ -146,7 +146,7 @@ impl Cell {
             let [f, fu, fv, ff] = found.fit.map(|mean| 0.25 * mean);
             add(&mut fit, &[f, u * f + half * fu, v * f + half * fv, ff]);
         }
-        // Where the density jumps the difference may vanish by chance, and in all cells along the
+        // At a jump of the density the difference may vanish by chance, and in all cells along the
         // jump at once.
         let rough = roughness(triangle, &fit, integrand)?;
         let chance = CAUTION * rough * rough.sqrt() * fine[0];

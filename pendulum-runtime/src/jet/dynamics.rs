@@ -2,7 +2,7 @@
 //! inputs.
 
 use super::{InputSeries, Jets};
-use crate::motion::{AnalyticMotions, PerhapsAnalytic, Side};
+use crate::motion::{AnalyticMotions, MaybeAnalytic, Side};
 use crate::system::{Driven, Dynamics, NoInputs, Purpose, System};
 use crate::time::Time;
 
@@ -38,7 +38,7 @@ pub trait JetDynamics<const N: usize>: Dynamics<N, System: Jets<N>> {
     note = "name one: `solve(…).method(Dop853)`"
 )]
 pub trait MaybeJets<const N: usize>: Dynamics<N, System: Jets<N>> {
-    /// Whether the jets are known: every motion is analytic.
+    /// Returns true if the jets are known: every motion is analytic.
     fn is_analytic(&self) -> bool;
 
     /// As [`JetDynamics::drive`].
@@ -121,7 +121,7 @@ impl<const N: usize, S: Jets<N>, M: AnalyticMotions<S::Inputs, S::Scalar>> JetDy
     of_motions!(next_break last_break last_kink);
 }
 
-impl<const N: usize, S: Jets<N>, M: PerhapsAnalytic<S::Inputs, S::Scalar>> MaybeJets<N>
+impl<const N: usize, S: Jets<N>, M: MaybeAnalytic<S::Inputs, S::Scalar>> MaybeJets<N>
     for Driven<S, M>
 {
     fn is_analytic(&self) -> bool {

@@ -15,7 +15,7 @@ pub struct Factors<T, const B: usize> {
 }
 
 impl<T: Real, const B: usize> Factors<T, B> {
-    /// Those of nothing yet.
+    /// Factors of nothing yet.
     pub fn zero() -> Self {
         let zero = T::from_f64(0.0);
         Self { lower: [[zero; B]; B], reciprocal: [zero; B], inverse: [[zero; B]; B] }

@@ -19,7 +19,7 @@ pub(crate) use dynamics::Known;
 pub use dynamics::{JetDynamics, MaybeJets};
 pub use factors::Factors;
 pub use order::{
-    Called, Calling, Constant, First, Looped, Order, Orders, Running, Second, Unrolled,
+    Called, Calling, Constant, First, Looped, Order, Running, Second, Unrolled, Unrolling,
 };
 
 use crate::real::Real;
@@ -49,9 +49,9 @@ pub trait Jets<const N: usize>: System<N> {
     type Work: Clone + Debug;
     /// The series of the driven inputs, component by component.
     type Drive: Clone + Debug + AsMut<[InputSeries<Self::Scalar>]>;
-    /// How the orders are gone through: [`Unrolled`] for short equations, [`Looped`] for others,
+    /// The way through the orders: [`Unrolled`] for short equations, [`Looped`] for others,
     /// [`Called`] for long ones.
-    type Orders: Orders;
+    type Unrolling: Unrolling;
 
     /// c in the order p = ⌈1 − c ln rtol⌉ with which [`Taylor`](crate::integrate::Taylor) takes
     /// least time, measured: the less an order costs beside the rest of a step, the more orders
@@ -189,9 +189,9 @@ pub struct Work<T, F, const W: usize, const Q: usize, const P: usize, const L: u
     pub series: [Series<T>; W],
     /// Sines and cosines.
     pub pairs: [Pairs<T>; Q],
-    /// What parameters alone decide.
+    /// Values that parameters alone decide.
     pub still: [T; P],
-    /// What the leading coefficients decide: reciprocals and signs.
+    /// Values that the leading coefficients decide: reciprocals and signs.
     pub leading: [T; L],
     /// The mass matrix at the start of the step.
     pub factors: F,

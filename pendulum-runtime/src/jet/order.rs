@@ -2,13 +2,14 @@
 
 use super::{Jets, LENGTH, MAX_ORDER, Pairs, Path, Series, sum};
 use crate::real::Real;
+use crate::sealed::Sealed;
 
 /// The index k of the coefficient that is computed, and the sums of products up to it.
-pub trait Order: Copy {
+pub trait Order: Copy + Sealed {
     /// Another order, known at run time.
     type At: Order;
 
-    /// As a number below [`LENGTH`].
+    /// The order as a number below [`LENGTH`].
     fn index(self) -> usize;
 
     /// The order `index`, below [`LENGTH`].
@@ -72,6 +73,8 @@ impl Calling {
 
 macro_rules! orders {
     ($($(#[$inline:meta])? [$($parameter:tt)*] $order:ty, |$this:ident| $index:expr, $at:ident, $swing:ident;)+) => {$(
+        impl<$($parameter)*> Sealed for $order {}
+
         impl<$($parameter)*> Order for $order {
             type At = $at;
 
@@ -152,7 +155,7 @@ fn second_swing<T: Real>(k: usize, v: &Series<T>, a: &mut Series<T>, b: &mut Ser
 }
 
 /// A way to go through the orders of a jet.
-pub trait Orders {
+pub trait Unrolling: Sealed {
     /// The tolerance below which [`Taylor`](crate::integrate::Taylor) is faster than
     /// [`Dop853`](crate::integrate::Dop853), as the benchmark `work_precision` measures it.
     const PAYS_BELOW: f64;
@@ -192,7 +195,13 @@ pub struct Looped;
 #[derive(Clone, Copy, Debug)]
 pub struct Called;
 
-impl Orders for Looped {
+impl Sealed for Unrolled {}
+
+impl Sealed for Looped {}
+
+impl Sealed for Called {}
+
+impl Unrolling for Looped {
     const PAYS_BELOW: f64 = 2e-7;
 
     // Alone in its function, the loop keeps what it needs in registers.
@@ -208,7 +217,7 @@ impl Orders for Looped {
     }
 }
 
-impl Orders for Called {
+impl Unrolling for Called {
     const PAYS_BELOW: f64 = 2e-14;
 
     // Alone in its function, the loop keeps what it needs in registers.
@@ -227,7 +236,7 @@ impl Orders for Called {
     }
 }
 
-impl Orders for Unrolled {
+impl Unrolling for Unrolled {
     const PAYS_BELOW: f64 = 1.0;
 
     // Alone in its function, the loop keeps what it needs in registers.

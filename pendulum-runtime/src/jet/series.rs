@@ -274,7 +274,7 @@ pub fn from_rate<T: Real, O: Order>(
     if k == 0 { start() } else { reciprocals.over(rate, k) }
 }
 
-/// What the leading coefficients decide once for all orders.
+/// Computes once for all orders what the leading coefficients decide.
 #[inline(always)]
 pub fn leading<T: Real, O: Order>(start: impl FnOnce() -> T, leading: &mut T, order: O) -> T {
     if order.index() == 0 {

@@ -1,7 +1,10 @@
 //! Catmull–Rom curves.
 
-use super::piecewise::{Piecewise, checked};
-use super::{Analytic, Motion, MotionError, Orders, Sample, Side};
+use crate::motion::analytic::Analytic;
+use crate::motion::error::MotionError;
+use crate::motion::piecewise::{Piecewise, analytic_pieces, checked};
+use crate::motion::prescribed::Motion;
+use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
@@ -56,18 +59,18 @@ impl<const D: usize> CatmullRom<D> {
         Ok(Self(self.0.looped()?))
     }
 
-    /// What it is made of.
+    /// The cubic pieces of the curve.
     pub(super) fn pieces(&self) -> &Piecewise<D> {
         &self.0
     }
 }
 
 impl<T: Real, const D: usize> Motion<T, D> for CatmullRom<D> {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
     #[inline]
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
-        self.0.sample(t, side, orders)
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
+        self.0.sample(t, side, wanted)
     }
 
     fn next_kink(&self, t: f64) -> Option<f64> {
@@ -87,3 +90,5 @@ impl<T: Real, const D: usize> Motion<T, D> for CatmullRom<D> {
         self.0.rest_until(t)
     }
 }
+
+analytic_pieces!(CatmullRom);

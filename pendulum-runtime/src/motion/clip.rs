@@ -1,7 +1,13 @@
 //! Motions sampled at a frame rate.
 
-use super::piecewise::Piecewise;
-use super::{Analytic, CatmullRom, Linear, Motion, MotionError, Orders, Sample, Side, Spline};
+use crate::motion::analytic::Analytic;
+use crate::motion::catmull_rom::CatmullRom;
+use crate::motion::error::MotionError;
+use crate::motion::linear::Linear;
+use crate::motion::piecewise::{Piecewise, analytic_pieces};
+use crate::motion::prescribed::Motion;
+use crate::motion::sample::{Derivatives, Sample, Side};
+use crate::motion::spline::Spline;
 use crate::real::Real;
 use crate::time::Time;
 
@@ -23,8 +29,9 @@ enum Curve<const D: usize> {
     Spline(Spline<D>),
 }
 
-/// How the frames of a clip are joined.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// Interpolation between the frames of a clip.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Interpolation {
     /// By straight lines.
     Linear,
@@ -77,7 +84,7 @@ impl<const D: usize> Clip<D> {
         &self.frames
     }
 
-    /// What it is made of.
+    /// The cubic pieces of the curve.
     pub(super) fn pieces(&self) -> &Piecewise<D> {
         match &self.curve {
             Curve::Linear(curve) => curve.pieces(),
@@ -93,14 +100,14 @@ impl<const D: usize> Clip<D> {
 }
 
 impl<T: Real, const D: usize> Motion<T, D> for Clip<D> {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
     #[inline]
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
         match &self.curve {
-            Curve::Linear(curve) => curve.sample(t, side, orders),
-            Curve::CatmullRom(curve) => curve.sample(t, side, orders),
-            Curve::Spline(curve) => curve.sample(t, side, orders),
+            Curve::Linear(curve) => curve.sample(t, side, wanted),
+            Curve::CatmullRom(curve) => curve.sample(t, side, wanted),
+            Curve::Spline(curve) => curve.sample(t, side, wanted),
         }
     }
 
@@ -132,3 +139,5 @@ impl<T: Real, const D: usize> Motion<T, D> for Clip<D> {
         }
     }
 }
+
+analytic_pieces!(Clip);

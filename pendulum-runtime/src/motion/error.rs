@@ -1,8 +1,8 @@
-//! Why a motion cannot be made.
+//! Errors of motions.
 
 use core::fmt;
 
-/// Why a motion cannot be made from its keys.
+/// Reason for which a motion cannot be made from its keys.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MotionError {

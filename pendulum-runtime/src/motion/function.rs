@@ -1,6 +1,8 @@
 //! Motions given by functions of time.
 
-use super::{Motion, MotionError, Orders, Sample, Side};
+use crate::motion::error::MotionError;
+use crate::motion::prescribed::Motion;
+use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 use core::fmt;
@@ -45,15 +47,15 @@ pub struct Function<X, V = Missing, A = Missing> {
 pub struct Missing;
 
 /// A function of time, or the lack of one.
-pub trait Part<const D: usize> {
-    /// Whether there is one.
+pub trait MaybeFunction<const D: usize> {
+    /// True if there is a function.
     const EXISTS: bool;
 
     /// Its value; zero if there is none.
     fn at(&self, t: f64) -> [f64; D];
 }
 
-impl<const D: usize> Part<D> for Missing {
+impl<const D: usize> MaybeFunction<D> for Missing {
     const EXISTS: bool = false;
 
     fn at(&self, _: f64) -> [f64; D] {
@@ -61,7 +63,7 @@ impl<const D: usize> Part<D> for Missing {
     }
 }
 
-impl<const D: usize, F: Fn(f64) -> [f64; D]> Part<D> for F {
+impl<const D: usize, F: Fn(f64) -> [f64; D]> MaybeFunction<D> for F {
     const EXISTS: bool = true;
 
     fn at(&self, t: f64) -> [f64; D] {
@@ -145,29 +147,29 @@ impl<X, V, A> fmt::Debug for Function<X, V, A> {
     }
 }
 
-impl<T: Real, const D: usize, X: Part<D>, V: Part<D>, A: Part<D>> Motion<T, D>
-    for Function<X, V, A>
+impl<T: Real, const D: usize, X: MaybeFunction<D>, V: MaybeFunction<D>, A: MaybeFunction<D>>
+    Motion<T, D> for Function<X, V, A>
 {
-    const HAS: Orders = {
-        let velocity = if V::EXISTS { Orders::VELOCITY } else { Orders::NONE };
-        let acceleration = if A::EXISTS { Orders::ACCELERATION } else { Orders::NONE };
-        Orders::POSITION.and(velocity).and(acceleration)
+    const HAS: Derivatives = {
+        let velocity = if V::EXISTS { Derivatives::VELOCITY } else { Derivatives::NONE };
+        let acceleration = if A::EXISTS { Derivatives::ACCELERATION } else { Derivatives::NONE };
+        Derivatives::POSITION.union(velocity).union(acceleration)
     };
 
     #[inline]
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
         let exact = t.to_f64();
         let at_kink = side == Side::Before
             && self.kinks.binary_search_by(|kink| kink.total_cmp(&exact)).is_ok();
         let t = if at_kink { exact.next_down() } else { exact };
         let mut sample = Sample::zero();
-        if orders.contains(Orders::POSITION) {
+        if wanted.contains(Derivatives::POSITION) {
             sample.position = self.position.at(t).map(T::from_f64);
         }
-        if orders.contains(Orders::VELOCITY) {
+        if wanted.contains(Derivatives::VELOCITY) {
             sample.velocity = self.velocity.at(t).map(T::from_f64);
         }
-        if orders.contains(Orders::ACCELERATION) {
+        if wanted.contains(Derivatives::ACCELERATION) {
             sample.acceleration = self.acceleration.at(t).map(T::from_f64);
         }
         sample

@@ -1,7 +1,10 @@
 //! Straight lines between keys.
 
-use super::piecewise::{Piecewise, checked};
-use super::{Analytic, Motion, MotionError, Orders, Sample, Side};
+use crate::motion::analytic::Analytic;
+use crate::motion::error::MotionError;
+use crate::motion::piecewise::{Piecewise, analytic_pieces, checked};
+use crate::motion::prescribed::Motion;
+use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
@@ -31,22 +34,22 @@ impl<const D: usize> Linear<D> {
         Ok(Self(self.0.looped()?))
     }
 
-    /// What it is made of.
+    /// The pieces of the line.
     pub(super) fn pieces(&self) -> &Piecewise<D> {
         &self.0
     }
 }
 
 impl<T: Real, const D: usize> Motion<T, D> for Linear<D> {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
     #[inline]
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
-        if orders == Orders::ACCELERATION {
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
+        if wanted == Derivatives::ACCELERATION {
             // Zero on every line: which one it is does not matter.
             return Sample::zero();
         }
-        self.0.sample(t, side, orders)
+        self.0.sample(t, side, wanted)
     }
 
     fn next_kink(&self, t: f64) -> Option<f64> {
@@ -66,3 +69,5 @@ impl<T: Real, const D: usize> Motion<T, D> for Linear<D> {
         self.0.rest_until(t)
     }
 }
+
+analytic_pieces!(Linear);

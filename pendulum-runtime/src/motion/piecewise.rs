@@ -1,25 +1,26 @@
 //! Cubic pieces between keys: what linear keys, Catmull–Rom curves and splines are evaluated by.
 
-use super::{MotionError, Orders, Sample, Side};
+use crate::motion::error::MotionError;
+use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
 /// A curve of cubics between keys; it rests before the first key and after the last, or repeats.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Piecewise<const D: usize> {
+pub(crate) struct Piecewise<const D: usize> {
     times: Vec<f64>,
     /// Coefficients of 1, u, u², u³ in the time u since the key.
     pieces: Vec<[[f64; D]; 4]>,
     /// The value at the last key.
     last: [f64; D],
     looped: bool,
-    /// Where position, velocity or acceleration jumps, within the keys.
+    /// Times within the keys at which position, velocity or acceleration jumps.
     kinks: Vec<f64>,
     /// The shortest time between two keys.
     finest: f64,
 }
 
-/// So many pieces ahead are compared with a step.
+/// The pieces ahead that are compared with a step.
 const MOST_AHEAD: u32 = 64;
 
 /// The shortest time between two keys.
@@ -30,7 +31,7 @@ fn finest(times: &[f64]) -> f64 {
         .fold(f64::INFINITY, |a, b| if b < a { b } else { a })
 }
 
-/// Where a time lies among the keys.
+/// Place of a time among the keys.
 enum Place {
     /// Before the first key, or after the last.
     Rest { after: bool },
@@ -39,7 +40,7 @@ enum Place {
 }
 
 /// Times that increase and values that are finite, as many of both.
-pub(super) fn checked<const D: usize>(
+pub(crate) fn checked<const D: usize>(
     times: &[f64],
     values: &[[f64; D]],
 ) -> Result<(), MotionError> {
@@ -63,7 +64,7 @@ pub(super) fn checked<const D: usize>(
 impl<const D: usize> Piecewise<D> {
     /// Pieces that meet at `times`; `values` are those at the keys, `slopes` the velocities at both
     /// ends of each piece.
-    pub(super) fn hermite(times: &[f64], values: &[[f64; D]], slopes: &[[[f64; D]; 2]]) -> Self {
+    pub(crate) fn hermite(times: &[f64], values: &[[f64; D]], slopes: &[[[f64; D]; 2]]) -> Self {
         let mut pieces = Vec::with_capacity(slopes.len());
         for (index, [from, to]) in slopes.iter().enumerate() {
             let h = times[index + 1] - times[index];
@@ -89,7 +90,7 @@ impl<const D: usize> Piecewise<D> {
     }
 
     /// Straight lines; the velocity jumps at the keys.
-    pub(super) fn lines(times: &[f64], values: &[[f64; D]]) -> Self {
+    pub(crate) fn lines(times: &[f64], values: &[[f64; D]]) -> Self {
         let slope = |key: usize| {
             let h = times[key + 1] - times[key];
             let mut slope = [0.0; D];
@@ -104,7 +105,7 @@ impl<const D: usize> Piecewise<D> {
 
     /// Values that are kept from each key to the next, where they jump.
     #[cfg(feature = "gltf")]
-    pub(super) fn steps(times: &[f64], values: &[[f64; D]]) -> Self {
+    pub(crate) fn steps(times: &[f64], values: &[[f64; D]]) -> Self {
         let last = values.len() - 1;
         let rest = [0.0; D];
         let pieces = values[..last].iter().map(|&value| [value, rest, rest, rest]).collect();
@@ -122,16 +123,16 @@ impl<const D: usize> Piecewise<D> {
         }
     }
 
-    /// Where position, velocity or acceleration jumps, within the keys.
+    /// Times within the keys at which position, velocity or acceleration jumps.
     #[cfg(feature = "gltf")]
-    pub(super) fn kinks(&self) -> &[f64] {
+    pub(crate) fn kinks(&self) -> &[f64] {
         &self.kinks
     }
 
     /// The pieces as coefficients of 1, u, u², u³ in the time u since the key, and how long each
     /// lasts.
     #[cfg(feature = "gltf")]
-    pub(super) fn pieces(&self) -> impl Iterator<Item = (&[[f64; D]; 4], f64)> {
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = (&[[f64; D]; 4], f64)> {
         self.pieces.iter().zip(self.times.windows(2).map(|pair| pair[1] - pair[0]))
     }
 
@@ -145,14 +146,14 @@ impl<const D: usize> Piecewise<D> {
     }
 
     /// Declares the curve free of kinks.
-    pub(super) fn smooth(mut self) -> Self {
+    pub(crate) fn smooth(mut self) -> Self {
         self.kinks.clear();
         self
     }
 
     /// Says at which keys there is a jump: where `jumps` and at the ends, unless the curve comes to
     /// rest there smoothly.
-    pub(super) fn with_kinks(mut self, interior: bool) -> Self {
+    pub(crate) fn with_kinks(mut self, interior: bool) -> Self {
         let count = self.times.len();
         if self.pieces.is_empty() {
             return self;
@@ -174,7 +175,7 @@ impl<const D: usize> Piecewise<D> {
     }
 
     /// Repeats the curve for ever; the seam is a kink unless it is smooth.
-    pub(super) fn looped(mut self) -> Result<Self, MotionError> {
+    pub(crate) fn looped(mut self) -> Result<Self, MotionError> {
         let count = self.times.len();
         if count < 2 {
             return Err(MotionError::OneKey);
@@ -198,7 +199,7 @@ impl<const D: usize> Piecewise<D> {
     /// Position, velocity and acceleration at its end.
     fn end_of(&self, piece: usize) -> [[f64; D]; 3] {
         let h = self.times[piece + 1] - self.times[piece];
-        let sample: Sample<f64, D> = evaluate(&self.pieces[piece], h, Orders::ALL);
+        let sample: Sample<f64, D> = evaluate(&self.pieces[piece], h, Derivatives::ALL);
         let next =
             if piece + 1 < self.pieces.len() { self.pieces[piece + 1][0] } else { self.last };
         [next, sample.velocity, sample.acceleration]
@@ -249,23 +250,23 @@ impl<const D: usize> Piecewise<D> {
     }
 
     #[inline]
-    pub(super) fn sample<T: Real>(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
+    pub(crate) fn sample<T: Real>(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
         match self.place(t, side) {
             Place::Rest { after } => {
                 let mut sample = Sample::zero();
-                if orders.contains(Orders::POSITION) {
+                if wanted.contains(Derivatives::POSITION) {
                     let value =
                         if after || self.pieces.is_empty() { self.last } else { self.pieces[0][0] };
                     sample.position = value.map(T::from_f64);
                 }
                 sample
             }
-            Place::Piece(piece, u) => evaluate(&self.pieces[piece], u, orders),
+            Place::Piece(piece, u) => evaluate(&self.pieces[piece], u, wanted),
         }
     }
 
     /// Coefficients of 1, u, u², u³ of one component in the time u since `t`.
-    pub(super) fn cubic(&self, t: Time, side: Side, component: usize) -> [f64; 4] {
+    pub(crate) fn cubic(&self, t: Time, side: Side, component: usize) -> [f64; 4] {
         match self.place(t, side) {
             Place::Rest { after } => {
                 let value =
@@ -286,7 +287,7 @@ impl<const D: usize> Piecewise<D> {
 
     /// The longest step from `t` that does not go unseen over a piece: `widths` times as long as
     /// any that it may reach.
-    pub(super) fn longest_step(&self, t: f64, widths: f64) -> f64 {
+    pub(crate) fn longest_step(&self, t: f64, widths: f64) -> f64 {
         let length = |key: Option<f64>, other: Option<f64>| Some(widths * (key? - other?).abs());
         // The piece under way, or nothing beyond the keys.
         let next = self.next_key(t);
@@ -328,22 +329,22 @@ impl<const D: usize> Piecewise<D> {
         if distance < longest { distance } else { longest }
     }
 
-    pub(super) fn next_kink(&self, t: f64) -> Option<f64> {
+    pub(crate) fn next_kink(&self, t: f64) -> Option<f64> {
         self.next(&self.kinks, t)
     }
 
     /// The last kink before `t`.
-    pub(super) fn last_kink(&self, t: f64) -> Option<f64> {
+    pub(crate) fn last_kink(&self, t: f64) -> Option<f64> {
         self.last(&self.kinks, t)
     }
 
     /// The first key after `t`.
-    pub(super) fn next_key(&self, t: f64) -> Option<f64> {
+    pub(crate) fn next_key(&self, t: f64) -> Option<f64> {
         self.next(&self.times, t)
     }
 
     /// The last key before `t`.
-    pub(super) fn last_key(&self, t: f64) -> Option<f64> {
+    pub(crate) fn last_key(&self, t: f64) -> Option<f64> {
         self.last(&self.times, t)
     }
 
@@ -391,7 +392,7 @@ impl<const D: usize> Piecewise<D> {
 
 impl<const D: usize> Piecewise<D> {
     /// The time up to which the curve is constant from `t` on.
-    pub(super) fn rest_until(&self, t: f64) -> f64 {
+    pub(crate) fn rest_until(&self, t: f64) -> f64 {
         let rests = |piece: usize| {
             self.pieces[piece][1..].iter().flatten().all(|&coefficient| coefficient == 0.0)
         };
@@ -432,7 +433,7 @@ impl<const D: usize> Piecewise<D> {
     }
 }
 
-/// How many of `times`, which increase, lie before one near `t`.
+/// Number of those of `times`, which increase, that lie before one near `t`.
 ///
 /// Most keys stand at equal distances: they are looked for where they ought to be, and only then by
 /// bisection, which touches memory in ten more places.
@@ -454,25 +455,25 @@ fn passed(times: &[f64], t: f64, before: impl Fn(f64) -> bool) -> usize {
 fn evaluate<T: Real, const D: usize>(
     piece: &[[f64; D]; 4],
     u: f64,
-    orders: Orders,
+    wanted: Derivatives,
 ) -> Sample<T, D> {
     let [a, b, c, d] = piece;
     let mut sample = Sample::zero();
     for k in 0..D {
-        if orders.contains(Orders::POSITION) {
+        if wanted.contains(Derivatives::POSITION) {
             sample.position[k] = T::from_f64(a[k] + u * (b[k] + u * (c[k] + u * d[k])));
         }
-        if orders.contains(Orders::VELOCITY) {
+        if wanted.contains(Derivatives::VELOCITY) {
             sample.velocity[k] = T::from_f64(b[k] + u * (2.0 * c[k] + u * (3.0 * d[k])));
         }
-        if orders.contains(Orders::ACCELERATION) {
+        if wanted.contains(Derivatives::ACCELERATION) {
             sample.acceleration[k] = T::from_f64(2.0 * c[k] + u * (6.0 * d[k]));
         }
     }
     sample
 }
 
-/// Whether two ends meet up to rounding.
+/// Returns true if two ends meet up to rounding.
 fn close<const D: usize>(a: &[[f64; D]; 3], b: &[[f64; D]; 3]) -> bool {
     (0..3).all(|order| {
         let size =
@@ -480,6 +481,44 @@ fn close<const D: usize>(a: &[[f64; D]; 3], b: &[[f64; D]; 3]) -> bool {
         (0..D).all(|k| (a[order][k] - b[order][k]).abs() <= 1e-9 * size)
     })
 }
+
+/// Implements [`Analytic`] for a motion that is made of cubic pieces.
+macro_rules! analytic_pieces {
+    ($motion:ident) => {
+        impl<T: $crate::real::Real, const D: usize> $crate::motion::analytic::Analytic<T, D>
+            for $motion<D>
+        {
+            fn series(
+                &self,
+                t: $crate::time::Time,
+                side: $crate::motion::sample::Side,
+                component: usize,
+                count: usize,
+                position: &mut $crate::jet::Series<T>,
+            ) {
+                $crate::motion::analytic::polynomial(
+                    self.pieces().cubic(t, side, component),
+                    count,
+                    position,
+                );
+            }
+
+            fn next_break(&self, t: f64) -> Option<f64> {
+                self.pieces().next_key(t)
+            }
+
+            fn last_break(&self, t: f64) -> Option<f64> {
+                self.pieces().last_key(t)
+            }
+
+            fn last_kink(&self, t: f64) -> Option<f64> {
+                self.pieces().last_kink(t)
+            }
+        }
+    };
+}
+
+pub(super) use analytic_pieces;
 
 #[cfg(test)]
 mod tests {

@@ -1,7 +1,9 @@
 //! Motions in space, seen in a plane.
 
-use super::{Analytic, Motion, Orders, Sample, Side};
 use crate::jet::Series;
+use crate::motion::analytic::Analytic;
+use crate::motion::prescribed::Motion;
+use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
@@ -29,12 +31,12 @@ impl<M> Projected<M> {
 }
 
 impl<T: Real, M: Motion<T, 3>> Motion<T, 2> for Projected<M> {
-    const HAS: Orders = M::HAS;
+    const HAS: Derivatives = M::HAS;
 
     #[inline]
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, 2> {
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, 2> {
         let Seen { motion, rows } = &self.0;
-        let sample = motion.sample(t, side, orders);
+        let sample = motion.sample(t, side, wanted);
         let seen = |vector: [T; 3]| {
             rows.map(|row| {
                 let [a, b, c] = row.map(T::from_f64);

@@ -3,7 +3,10 @@
 // Lanes have to be compiled for their vectors.
 #![allow(clippy::inline_always)]
 
-use super::{Analytic, Motion, Orders, Sample, Side};
+use crate::jet::Series;
+use crate::motion::analytic::Analytic;
+use crate::motion::prescribed::Motion;
+use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::real::exact::{two_product, two_sum};
 use crate::real::{Lane, Octet, Real};
 use crate::simd::{Work, widest};
@@ -54,18 +57,18 @@ impl<const D: usize> Sinusoid<D> {
     }
 
     /// Position, velocity and acceleration of component `d` where its angle has this sine and
-    /// cosine; those that `orders` leaves out are zero.
+    /// cosine; those that `wanted` leaves out are zero.
     #[inline(always)]
-    fn of_component<L: Real>(&self, orders: Orders, d: usize, (sin, cos): (L, L)) -> [L; 3] {
+    fn of_component<L: Real>(&self, wanted: Derivatives, d: usize, (sin, cos): (L, L)) -> [L; 3] {
         let (a, w, number) = (self.amplitude[d], self.frequency, L::from_f64);
         let mut component = [number(0.0); 3];
-        if orders.contains(Orders::POSITION) {
+        if wanted.contains(Derivatives::POSITION) {
             component[0] = number(self.offset[d]) + number(a) * sin;
         }
-        if orders.contains(Orders::VELOCITY) {
+        if wanted.contains(Derivatives::VELOCITY) {
             component[1] = number(a * w) * cos;
         }
-        if orders.contains(Orders::ACCELERATION) {
+        if wanted.contains(Derivatives::ACCELERATION) {
             component[2] = -(number(a * w * w) * sin);
         }
         component
@@ -73,10 +76,14 @@ impl<const D: usize> Sinusoid<D> {
 
     /// The sample where the components have these sines and cosines.
     #[inline(always)]
-    fn at<T: Real>(&self, orders: Orders, sin_cos: impl Fn(usize) -> (f64, f64)) -> Sample<T, D> {
+    fn at<T: Real>(
+        &self,
+        wanted: Derivatives,
+        sin_cos: impl Fn(usize) -> (f64, f64),
+    ) -> Sample<T, D> {
         let mut sample = Sample::zero();
         for d in 0..D {
-            let component = self.of_component(orders, d, sin_cos(d)).map(T::from_f64);
+            let component = self.of_component(wanted, d, sin_cos(d)).map(T::from_f64);
             [sample.position[d], sample.velocity[d], sample.acceleration[d]] = component;
         }
         sample
@@ -89,21 +96,21 @@ impl<const D: usize> Sinusoid<D> {
 }
 
 impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
     #[inline]
-    fn sample(&self, t: Time, _: Side, orders: Orders) -> Sample<T, D> {
-        self.at(orders, |d| self.sin_cos(d, t))
+    fn sample(&self, t: Time, _: Side, wanted: Derivatives) -> Sample<T, D> {
+        self.at(wanted, |d| self.sin_cos(d, t))
     }
 
-    fn sample_all(&self, times: &[Time], orders: Orders, samples: &mut [Sample<T, D>]) {
+    fn sample_all(&self, times: &[Time], wanted: Derivatives, samples: &mut [Sample<T, D>]) {
         for (times, samples) in times.chunks(AT_ONCE).zip(samples.chunks_mut(AT_ONCE)) {
-            widest(Several { sinusoid: self, times, orders, samples });
+            widest(Several { sinusoid: self, times, wanted, samples });
         }
     }
 
     #[inline(always)]
-    fn sample_lanes(&self, times: &[Time; 8], orders: Orders) -> Sample<Octet<T>, D>
+    fn sample_lanes(&self, times: &[Time; 8], wanted: Derivatives) -> Sample<Octet<T>, D>
     where
         T: Lane,
     {
@@ -115,7 +122,7 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
                 sin_cos = self.sin_cos_at(d, angle);
             }
             let component =
-                self.of_component(orders, d, sin_cos).map(|octet| Octet(octet.0.map(T::from_f64)));
+                self.of_component(wanted, d, sin_cos).map(|octet| Octet(octet.0.map(T::from_f64)));
             [lanes.position[d], lanes.velocity[d], lanes.acceleration[d]] = component;
         }
         lanes
@@ -147,7 +154,7 @@ trait Halved: Real {
         (self, [upper, self - upper])
     }
 
-    /// Whether the magnitude of any of them is greater.
+    /// Returns true if the magnitude of any of them is greater.
     fn exceeds(self, limit: f64) -> bool;
 }
 
@@ -218,7 +225,7 @@ const AT_ONCE: usize = 8;
 struct Several<'a, T, const D: usize> {
     sinusoid: &'a Sinusoid<D>,
     times: &'a [Time],
-    orders: Orders,
+    wanted: Derivatives,
     samples: &'a mut [Sample<T, D>],
 }
 
@@ -253,7 +260,34 @@ impl<T: Real, const D: usize> Work for Several<'_, T, D> {
             first += together;
         }
         for (index, sample) in self.samples.iter_mut().enumerate() {
-            *sample = self.sinusoid.at(self.orders, |d| (sin[d][index], cos[d][index]));
+            *sample = self.sinusoid.at(self.wanted, |d| (sin[d][index], cos[d][index]));
         }
+    }
+}
+
+impl<T: Real, const D: usize> Analytic<T, D> for Sinusoid<D> {
+    /// k(k−1) x\[k\] = −ω² x\[k−2\].
+    fn series(&self, t: Time, _: Side, component: usize, count: usize, position: &mut Series<T>) {
+        let (a, w) = (self.amplitude[component], self.frequency);
+        let (sin, cos) = self.sin_cos(component, t);
+        let (mut even, mut odd) = (a * sin, a * w * cos);
+        for (k, coefficient) in position.iter_mut().take(count).enumerate() {
+            *coefficient = T::from_f64(even);
+            let next = -(w * w * even) / ((k + 1) * (k + 2)) as f64;
+            (even, odd) = (odd, next);
+        }
+        position[0] = T::from_f64(self.offset[component] + a * sin);
+    }
+
+    fn next_break(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn last_break(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn last_kink(&self, _: f64) -> Option<f64> {
+        None
     }
 }

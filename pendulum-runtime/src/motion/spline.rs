@@ -1,7 +1,10 @@
 //! Cubic splines.
 
-use super::piecewise::{Piecewise, checked};
-use super::{Analytic, Motion, MotionError, Orders, Sample, Side};
+use crate::motion::analytic::Analytic;
+use crate::motion::error::MotionError;
+use crate::motion::piecewise::{Piecewise, analytic_pieces, checked};
+use crate::motion::prescribed::Motion;
+use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
@@ -14,7 +17,7 @@ use crate::time::Time;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline<const D: usize>(Piecewise<D>);
 
-/// What holds at the ends of a spline.
+/// Conditions at the ends of a spline.
 enum Ends<const D: usize> {
     Natural,
     Clamped([f64; D], [f64; D]),
@@ -64,7 +67,7 @@ impl<const D: usize> Spline<D> {
         Ok(Self(Self::through(times, &values, &Ends::Periodic).0.looped()?.smooth()))
     }
 
-    /// What it is made of.
+    /// The cubic pieces of the curve.
     pub(super) fn pieces(&self) -> &Piecewise<D> {
         &self.0
     }
@@ -184,11 +187,11 @@ fn periodic<const D: usize>(rows: &[Row<D>], seam: Row<D>) -> Vec<[f64; D]> {
 }
 
 impl<T: Real, const D: usize> Motion<T, D> for Spline<D> {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
     #[inline]
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, D> {
-        self.0.sample(t, side, orders)
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
+        self.0.sample(t, side, wanted)
     }
 
     fn next_kink(&self, t: f64) -> Option<f64> {
@@ -208,3 +211,5 @@ impl<T: Real, const D: usize> Motion<T, D> for Spline<D> {
         self.0.rest_until(t)
     }
 }
+
+analytic_pieces!(Spline);

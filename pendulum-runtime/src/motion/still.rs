@@ -1,13 +1,16 @@
 //! A point at rest.
 
-use super::{Analytic, Motion, Orders, Sample, Side};
+use crate::jet::Series;
+use crate::motion::analytic::{Analytic, polynomial};
+use crate::motion::prescribed::Motion;
+use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::real::Real;
 use crate::time::Time;
 
 /// A point at rest: x(t) = `position`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Still<const D: usize> {
-    /// Where it is, in metres.
+    /// The position in metres.
     pub position: [f64; D],
 }
 
@@ -19,12 +22,12 @@ impl<const D: usize> Still<D> {
 }
 
 impl<T: Real, const D: usize> Motion<T, D> for Still<D> {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
     #[inline]
-    fn sample(&self, _: Time, _: Side, orders: Orders) -> Sample<T, D> {
+    fn sample(&self, _: Time, _: Side, wanted: Derivatives) -> Sample<T, D> {
         let mut sample = Sample::zero();
-        if orders.contains(Orders::POSITION) {
+        if wanted.contains(Derivatives::POSITION) {
             sample.position = self.position.map(T::from_f64);
         }
         sample
@@ -45,5 +48,23 @@ impl<T: Real, const D: usize> Motion<T, D> for Still<D> {
 
     fn rest_until(&self, _: f64) -> f64 {
         f64::INFINITY
+    }
+}
+
+impl<T: Real, const D: usize> Analytic<T, D> for Still<D> {
+    fn series(&self, _: Time, _: Side, component: usize, count: usize, position: &mut Series<T>) {
+        polynomial([self.position[component]], count, position);
+    }
+
+    fn next_break(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn last_break(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn last_kink(&self, _: f64) -> Option<f64> {
+        None
     }
 }

@@ -1,18 +1,20 @@
 //! Motions against closed forms, differences and their own limits.
 
 use super::*;
+use crate::real::Real;
+use crate::time::Time;
 
 const TIMES: [f64; 6] = [0.0, 0.4, 0.7, 1.5, 1.9, 3.0];
 
 fn at<const D: usize, M: Motion<f64, D>>(motion: &M, t: f64) -> Sample<f64, D> {
-    motion.sample(Time::new(t), Side::After, Orders::ALL)
+    motion.sample(Time::new(t), Side::After, Derivatives::ALL)
 }
 
 fn before<const D: usize, M: Motion<f64, D>>(motion: &M, t: f64) -> Sample<f64, D> {
-    motion.sample(Time::new(t), Side::Before, Orders::ALL)
+    motion.sample(Time::new(t), Side::Before, Derivatives::ALL)
 }
 
-fn has<M: Motion<f64, 1>>(_: &M) -> Orders {
+fn has<M: Motion<f64, 1>>(_: &M) -> Derivatives {
     M::HAS
 }
 
@@ -182,11 +184,11 @@ fn sinusoids_stay_within_their_amplitude() {
                     f64::from(lane as i32) / w
                 }) + 1e-9 / w
             });
-            let lanes = Motion::<f64, 2>::sample_lanes(&motion, &times, Orders::POSITION);
+            let lanes = Motion::<f64, 2>::sample_lanes(&motion, &times, Derivatives::POSITION);
             let mut all = [Sample::<f64, 2>::zero(); 8];
-            motion.sample_all(&times, Orders::POSITION, &mut all);
+            motion.sample_all(&times, Derivatives::POSITION, &mut all);
             for (lane, &t) in times.iter().enumerate() {
-                let sample: Sample<f64, 2> = motion.sample(t, Side::After, Orders::POSITION);
+                let sample: Sample<f64, 2> = motion.sample(t, Side::After, Derivatives::POSITION);
                 for d in 0..2 {
                     let x = sample.position[d];
                     assert!(x.abs() <= 1.0 + 4.0 * f64::EPSILON, "{w:e} · {t:?}: {x}");
@@ -217,11 +219,11 @@ fn fast_sinusoids_keep_their_phase() {
     for k in 0..500 {
         let times: [Time; 8] =
             core::array::from_fn(|lane| Time::new(f64::from(8 * k + lane as i32) * 1.37) + 1e-17);
-        let lanes = Motion::<f64, 1>::sample_lanes(&motion, &times, Orders::ALL);
+        let lanes = Motion::<f64, 1>::sample_lanes(&motion, &times, Derivatives::ALL);
         let mut all = [Sample::<f64, 1>::zero(); 8];
-        motion.sample_all(&times, Orders::ALL, &mut all);
+        motion.sample_all(&times, Derivatives::ALL, &mut all);
         for (lane, &t) in times.iter().enumerate() {
-            let sample: Sample<f64, 1> = motion.sample(t, Side::After, Orders::ALL);
+            let sample: Sample<f64, 1> = motion.sample(t, Side::After, Derivatives::ALL);
             let (sin, cos) = (word(w) * (word(t.to_f64()) + word(t.low())) + word(phase)).sin_cos();
             let scaled =
                 [sample.position[0], sample.velocity[0] / w, -sample.acceleration[0] / (w * w)];
@@ -262,8 +264,8 @@ fn functions_have_what_they_are_given() {
         .velocity(|t: f64| [if t < 0.0 { -1.0 } else { 1.0 }])
         .acceleration(|_| [0.0])
         .kinks(&[0.0]);
-    assert_eq!(has(&position), Orders::POSITION);
-    assert_eq!(has(&all), Orders::ALL);
+    assert_eq!(has(&position), Derivatives::POSITION);
+    assert_eq!(has(&all), Derivatives::ALL);
     assert_eq!(before(&all, 0.0).velocity, [-1.0]);
     assert_eq!(at(&all, 0.0).velocity, [1.0]);
     assert_eq!(kinks(&all, -1.0, 1.0), [0.0]);
@@ -272,7 +274,7 @@ fn functions_have_what_they_are_given() {
 #[test]
 fn what_is_not_asked_is_not_computed() {
     let spline = Spline::natural(&TIMES, &TIMES.map(|t| [t * t])).unwrap();
-    let sample: Sample<f64, 1> = spline.sample(Time::new(0.5), Side::After, Orders::VELOCITY);
+    let sample: Sample<f64, 1> = spline.sample(Time::new(0.5), Side::After, Derivatives::VELOCITY);
     assert_eq!((sample.position, sample.acceleration), ([0.0], [0.0]));
     assert_ne!(sample.velocity, [0.0]);
 }
@@ -283,14 +285,14 @@ fn times_far_from_zero_keep_their_resolution() {
     let values: Vec<[f64; 1]> = (0..10).map(|k| [f64::from(k) * 10.0]).collect();
     let linear = Linear::new(&times, &values).unwrap();
     let sample: Sample<f64, 1> =
-        linear.sample(Time::new(1e9) + 1.0 / 3.0, Side::After, Orders::ALL);
+        linear.sample(Time::new(1e9) + 1.0 / 3.0, Side::After, Derivatives::ALL);
     assert!((sample.position[0] - 10.0 / 3.0).abs() < 1e-15);
 }
 
 #[test]
 fn single_precision_and_single_keys_work() {
     let still = Linear::new(&[1.0], &[[2.0, 3.0]]).unwrap();
-    let sample: Sample<f32, 2> = still.sample(Time::new(0.0), Side::After, Orders::ALL);
+    let sample: Sample<f32, 2> = still.sample(Time::new(0.0), Side::After, Derivatives::ALL);
     assert_eq!(sample.position, [2.0, 3.0]);
     assert_eq!(Motion::<f32, 2>::next_kink(&still, 0.0), None);
     assert_eq!(at(&Spline::natural(&[1.0], &[[4.0]]).unwrap(), 1.0).position, [4.0]);
@@ -338,7 +340,7 @@ fn bad_keys_are_refused() {
 fn what_is_felt_is_cut_and_scaled() {
     // The speed is cos t between 1 and 0; beyond 0.6 it is cut.
     let whole = Sinusoid::new([1.0, 0.0], 1.0, [0.0, 0.0]);
-    let felt = Felt::new(whole, 0.5, 0.6).unwrap();
+    let felt = Attenuated::new(whole, 0.5, 0.6).unwrap();
     let crossing = 0.6f64.acos();
     let found = kinks(&felt, 0.0, 3.0);
     assert!(found.iter().any(|kink| (kink - crossing).abs() < 1e-14), "{found:?}");
@@ -356,7 +358,7 @@ fn what_is_felt_is_cut_and_scaled() {
     assert!((at(&felt, kink).acceleration[0] + 0.5 * crossing.sin()).abs() < 1e-12);
     // On a circle the speed is the same, and what is left of the acceleration is its direction's.
     let circle = Sinusoid::new([1.0, 1.0], 2.0, [0.0, std::f64::consts::FRAC_PI_2]);
-    let felt = Felt::new(circle, 1.0, 1.0).unwrap();
+    let felt = Attenuated::new(circle, 1.0, 1.0).unwrap();
     for t in [0.1, 0.8, 2.3] {
         let (sample, h) = (at(&felt, t), 1e-5);
         let (ahead, behind) = (at(&felt, t + h), at(&felt, t - h));
@@ -365,22 +367,24 @@ fn what_is_felt_is_cut_and_scaled() {
             let difference = (ahead.velocity[d] - behind.velocity[d]) / (2.0 * h);
             assert!((difference - sample.acceleration[d]).abs() < 1e-8, "{t}");
         }
-        let only: Sample<f64, 2> = felt.sample(Time::new(t), Side::After, Orders::ACCELERATION);
+        let only: Sample<f64, 2> =
+            felt.sample(Time::new(t), Side::After, Derivatives::ACCELERATION);
         assert_eq!((only.acceleration, only.velocity), (sample.acceleration, [0.0; 2]));
     }
     // It rests when the motion rests, and nobody searches for kinks until then.
-    let late = Felt::new(Linear::new(&[50.0, 51.0], &[[0.0], [3.0]]).unwrap(), 1.0, 2.0).unwrap();
+    let late =
+        Attenuated::new(Linear::new(&[50.0, 51.0], &[[0.0], [3.0]]).unwrap(), 1.0, 2.0).unwrap();
     assert_eq!(Motion::<f64, 1>::rest_until(&late, 0.0), 50.0);
     assert_eq!(Motion::<f64, 1>::next_kink(&late, 0.0), Some(50.0));
     assert_eq!(at(&late, 50.5).velocity, [2.0]);
     // Whoever asks, and when: the same kinks.
-    let two = |t: f64| Motion::<f64, 2>::next_kink(&Felt::new(whole, 0.5, 0.6).unwrap(), t);
+    let two = |t: f64| Motion::<f64, 2>::next_kink(&Attenuated::new(whole, 0.5, 0.6).unwrap(), t);
     assert_eq!(two(0.01), two(0.5));
     assert_eq!(two(2.3), two(3.7));
     assert!(
-        Felt::new(whole, f64::NAN, 1.0).is_err()
-            && Felt::new(whole, 1.0, 0.0).is_err()
-            && Felt::new(whole, 1.0, f64::NAN).is_err()
+        Attenuated::new(whole, f64::NAN, 1.0).is_err()
+            && Attenuated::new(whole, 1.0, 0.0).is_err()
+            && Attenuated::new(whole, 1.0, f64::NAN).is_err()
     );
 }
 
@@ -401,7 +405,7 @@ fn functions_bound_steps_by_their_resolution() {
     assert_eq!(bound(&known, 1.0), Some(2.5));
     let plane = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     assert_eq!(bound(&Projected::new(known.clone(), plane), 1.0), Some(2.5));
-    let felt = Felt::new(known, 0.5, 1.0).unwrap();
+    let felt = Attenuated::new(known, 0.5, 1.0).unwrap();
     assert_eq!(bound(&felt, 1.0), Some(2.5));
     assert_eq!(bound(&Still { position: [0.0] }, 1.0), Some(f64::INFINITY));
 }

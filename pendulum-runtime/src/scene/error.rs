@@ -1,9 +1,9 @@
-//! What a scene refuses, and what fails in it.
+//! Errors of requests to a scene, and faults of its pendulums.
 
 use crate::error::{Coordinate, Error};
 use core::fmt;
 
-/// Why a scene did not do what it was asked to; it is as it was before.
+/// Reason for which a scene did not do what it was asked to; the scene is as it was before.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SceneError {
@@ -15,7 +15,7 @@ pub enum SceneError {
         name: &'static str,
         /// The value given.
         value: f64,
-        /// What it has to be.
+        /// The requirement.
         required: &'static str,
     },
     /// A coordinate or velocity that a pendulum was given is infinite or not a number.
@@ -104,28 +104,55 @@ impl fmt::Display for SceneError {
                 f,
                 "the snapshot is not one of this scene: {what}; restore it where it was taken"
             ),
-            Self::Integration(error) => write!(f, "{error}"),
+            Self::Integration(_) => write!(
+                f,
+                "the time in which the pendulum was hidden could not be made up for; show it in another way"
+            ),
         }
     }
 }
 
-impl core::error::Error for SceneError {}
+impl core::error::Error for SceneError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Integration(error) => Some(error),
+            _ => None,
+        }
+    }
+}
 
 /// A pendulum whose state has ceased to be finite: it hangs frozen where it was last good.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Failure {
+#[non_exhaustive]
+pub struct SceneFault {
     /// The name of its type.
     pub kind: &'static str,
     /// Its number among those of its type, in the order of hanging.
     pub index: u32,
     /// The beginning of the tick in which it happened, in seconds.
     pub t: f64,
-    /// What went wrong.
+    /// The error.
     pub error: Error,
 }
 
-impl fmt::Display for Failure {
+impl fmt::Display for SceneFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "`{}` {}: {}", self.kind, self.index, self.error)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::SceneError;
+    use crate::error::Error;
+    use core::error::Error as _;
+
+    #[test]
+    fn causes_are_sources_and_no_part_of_the_message() {
+        let cause = Error::MaxSteps { t: 1.0, max_steps: 7 };
+        let error = SceneError::Integration(cause.clone());
+        assert_eq!(error.source().unwrap().to_string(), cause.to_string());
+        assert!(!error.to_string().contains(&cause.to_string()), "{error}");
+        assert!(SceneError::Joint(0).source().is_none());
     }
 }

@@ -1,11 +1,16 @@
 //! Reading and writing pendulums.
 
-use super::error::SceneError;
-use super::group::{Group, Status, check_state, inputs_at};
-use super::hung::Hung;
-use super::{Handle, Joint, Scene};
-use crate::motion::{Orders, Side};
+use crate::motion::{Derivatives, Side};
 use crate::real::{Float, Lane, Real};
+use crate::scene::error::SceneError;
+use crate::scene::group::joints::{check_state, inputs_at};
+use crate::scene::group::members::Group;
+use crate::scene::group::status::SceneStatus;
+use crate::scene::handle::Handle;
+use crate::scene::lanes::detached::Detached;
+use crate::scene::lanes::system::SceneSystem;
+use crate::scene::sampling::joint::Joint;
+use crate::scene::scene::Scene;
 use crate::system::{Purpose, scalar_time};
 use crate::time::Time;
 
@@ -14,8 +19,11 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Panics
     /// If the pendulum is not in this scene, as indexing does.
-    pub fn state<S: Hung<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> ([T; N], [T; N]) {
-        self.known(pendulum).states(pendulum.index)[1]
+    pub fn state<S: SceneSystem<T, N>, const N: usize>(
+        &self,
+        pendulum: Handle<S, N>,
+    ) -> ([T; N], [T; N]) {
+        self.known(pendulum).states(pendulum.index())[1]
     }
 
     /// The coordinates that are `alpha` of the way from the tick before the last to the last: the
@@ -26,17 +34,17 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Panics
     /// If the pendulum is not in this scene, as indexing does.
-    pub fn pose<S: Hung<T, N>, const N: usize>(
+    pub fn pose<S: SceneSystem<T, N>, const N: usize>(
         &self,
         pendulum: Handle<S, N>,
         alpha: f64,
     ) -> [T; N] {
-        let states = self.known(pendulum).states(pendulum.index);
+        let states = self.known(pendulum).states(pendulum.index());
         hermite(self.clock.step(), alpha, &states)
     }
 
     /// The poses of all pendulums of a type in the order of hanging; `poses` keeps its memory.
-    pub fn poses<S: Hung<T, N>, const N: usize>(&self, alpha: f64, poses: &mut Vec<[T; N]>) {
+    pub fn poses<S: SceneSystem<T, N>, const N: usize>(&self, alpha: f64, poses: &mut Vec<[T; N]>) {
         poses.clear();
         if let Some(group) = self.group::<S, N>() {
             let h = self.clock.step();
@@ -46,11 +54,19 @@ impl<T: Lane + Float> Scene<T> {
         }
     }
 
-    /// Where a joint is at the time of [`pose`](Self::pose).
+    /// The position of a joint at the time of [`pose`](Self::pose).
+    ///
+    /// # Panics
+    /// If the joint is not in this scene, as indexing does.
     pub fn joint_pose<const D: usize>(&self, joint: Joint<D>, alpha: f64) -> [T; D] {
         let mut position = [T::from_f64(0.0); D];
         let t = self.clock.within(self.clock.tick() - 1, alpha);
-        self.places[joint.0 as usize].drive.sample(t, Side::After, Orders::POSITION, &mut position);
+        self.joint_slots[joint.0 as usize].drive.sample(
+            t,
+            Side::After,
+            Derivatives::POSITION,
+            &mut position,
+        );
         position
     }
 
@@ -58,7 +74,7 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// A state that is not finite, a pendulum of another scene.
-    pub fn set_state<S: Hung<T, N>, const N: usize>(
+    pub fn set_state<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
         q: [T; N],
@@ -66,11 +82,11 @@ impl<T: Lane + Float> Scene<T> {
     ) -> Result<(), SceneError> {
         check_state(&S::FACTS, &q)?;
         check_state(&S::FACTS, &v)?;
-        self.change(pendulum, |loose| {
+        self.change(pendulum, |detached| {
             let zero = [T::from_f64(0.0); N];
-            loose.state = [q, zero, v, zero, q, v];
-            loose.hold();
-            (loose.state[4], loose.state[5]) = (loose.state[0], loose.state[2]);
+            detached.state = [q, zero, v, zero, q, v];
+            detached.hold();
+            (detached.state[4], detached.state[5]) = (detached.state[0], detached.state[2]);
         })?;
         self.wake(pendulum)
     }
@@ -79,18 +95,18 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Panics
     /// If the pendulum is not in this scene, as indexing does.
-    pub fn energy<S: Hung<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> T {
-        let loose = self.known(pendulum).read(pendulum.index);
+    pub fn energy<S: SceneSystem<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> T {
+        let detached = self.known(pendulum).read(pendulum.index());
         let t = Time::new(self.time());
         let inputs = inputs_at::<S, T, N>(
-            &self.places,
-            &loose.joints,
+            &self.joint_slots,
+            &detached.joints,
             t,
             Side::After,
             Purpose::Energy,
             false,
         );
-        let [q, _, v, ..] = &loose.state;
+        let [q, _, v, ..] = &detached.state;
         self.system(pendulum).energy(scalar_time(t), q, v, &inputs)
     }
 
@@ -98,78 +114,83 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Panics
     /// If the pendulum is not in this scene, as indexing does.
-    pub fn system<S: Hung<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> S {
+    pub fn system<S: SceneSystem<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> S {
         let group = self.known(pendulum);
-        group.system_of(&group.read(pendulum.index).parameters)
+        group.system_of(&group.read(pendulum.index()).parameters)
     }
 
-    /// What a pendulum is doing.
+    /// The status of a pendulum.
     ///
     /// # Panics
     /// If the pendulum is not in this scene, as indexing does.
-    pub fn status<S: Hung<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> Status {
-        self.known(pendulum).status[pendulum.index as usize]
+    pub fn status<S: SceneSystem<T, N>, const N: usize>(
+        &self,
+        pendulum: Handle<S, N>,
+    ) -> SceneStatus {
+        self.known(pendulum).status[pendulum.index() as usize]
     }
 
     /// Wakes a pendulum, whatever it was doing, at the state in which it is.
     ///
     /// # Errors
     /// A pendulum of another scene.
-    pub fn wake<S: Hung<T, N>, const N: usize>(
+    pub fn wake<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
     ) -> Result<(), SceneError> {
         let group = self.checked(pendulum)?;
-        group.status[pendulum.index as usize] = Status::Awake;
-        group.set_awake(pendulum.index, true);
+        group.status[pendulum.index() as usize] = SceneStatus::Awake;
+        group.set_awake(pendulum.index(), true);
         self.dirty = true;
         Ok(())
     }
 
     /// The group of a pendulum that is there.
-    pub(super) fn known<S: Hung<T, N>, const N: usize>(
+    pub(crate) fn known<S: SceneSystem<T, N>, const N: usize>(
         &self,
         pendulum: Handle<S, N>,
     ) -> &Group<S, T, N> {
         let group =
-            self.group::<S, N>().filter(|group| (pendulum.index as usize) < group.table.len());
+            self.group::<S, N>().filter(|group| (pendulum.index() as usize) < group.table.len());
         group.unwrap_or_else(|| panic!("{}", unknown(pendulum)))
     }
 
     /// The group of a pendulum.
-    pub(super) fn checked<S: Hung<T, N>, const N: usize>(
+    pub(crate) fn checked<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
     ) -> Result<&mut Group<S, T, N>, SceneError> {
         let group = self.group_mut::<S, N>().map(|(group, ..)| group);
         group
-            .filter(|group| (pendulum.index as usize) < group.table.len())
+            .filter(|group| (pendulum.index() as usize) < group.table.len())
             .ok_or_else(|| unknown(pendulum))
     }
 
     /// Changes what belongs to a pendulum and does not change its steps; one that sleeps wakes.
-    pub(super) fn change<S: Hung<T, N>, const N: usize>(
+    pub(crate) fn change<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
-        change: impl FnOnce(&mut super::bucket::Loose<T, N>),
+        change: impl FnOnce(&mut Detached<T, N>),
     ) -> Result<(), SceneError> {
         let group = self.checked(pendulum)?;
-        let mut loose = group.read(pendulum.index);
-        change(&mut loose);
-        group.write(&loose);
-        group.unmake_bed(pendulum.index);
-        group.rouse(pendulum.index);
+        let mut detached = group.read(pendulum.index());
+        change(&mut detached);
+        group.write(&detached);
+        group.forget_criterion(pendulum.index());
+        group.wake(pendulum.index());
         self.dirty = true;
         Ok(())
     }
 }
 
-fn unknown<S: Hung<T, N>, T: Lane + Float, const N: usize>(pendulum: Handle<S, N>) -> SceneError {
-    SceneError::Pendulum { kind: S::FACTS.name, index: pendulum.index }
+fn unknown<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+    pendulum: Handle<S, N>,
+) -> SceneError {
+    SceneError::Pendulum { kind: S::FACTS.name, index: pendulum.index() }
 }
 
 /// The cubic through coordinates and velocities at both ends of a step `h`.
-pub(super) fn hermite<T: Real, const N: usize>(
+pub(crate) fn hermite<T: Real, const N: usize>(
     h: f64,
     alpha: f64,
     [(q0, v0), (q1, v1)]: &[([T; N], [T; N]); 2],

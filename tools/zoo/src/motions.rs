@@ -1,7 +1,7 @@
 //! Prescribed motions: as a user gives them, and in two words with every break declared.
 
 use pendulum_runtime::motion::{
-    Analytic, CatmullRom, Function, Linear, Motion, Orders, Sample, Side, Sinusoid, Spline,
+    Analytic, CatmullRom, Derivatives, Function, Linear, Motion, Sample, Side, Sinusoid, Spline,
 };
 use pendulum_runtime::real::{Lane, Octet, Real};
 use pendulum_runtime::system::scalar_time;
@@ -164,21 +164,21 @@ macro_rules! each {
 }
 
 impl<T: Real> Motion<T, 2> for Given {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, 2> {
-        each!(self, motion => motion.sample(t, side, orders))
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, 2> {
+        each!(self, motion => motion.sample(t, side, wanted))
     }
 
-    fn sample_all(&self, times: &[Time], orders: Orders, samples: &mut [Sample<T, 2>]) {
-        each!(self, motion => motion.sample_all(times, orders, samples));
+    fn sample_all(&self, times: &[Time], wanted: Derivatives, samples: &mut [Sample<T, 2>]) {
+        each!(self, motion => motion.sample_all(times, wanted, samples));
     }
 
-    fn sample_lanes(&self, times: &[Time; 8], orders: Orders) -> Sample<Octet<T>, 2>
+    fn sample_lanes(&self, times: &[Time; 8], wanted: Derivatives) -> Sample<Octet<T>, 2>
     where
         T: Lane,
     {
-        each!(self, motion => motion.sample_lanes(times, orders))
+        each!(self, motion => motion.sample_lanes(times, wanted))
     }
 
     fn next_kink(&self, t: f64) -> Option<f64> {
@@ -199,11 +199,11 @@ pub(crate) struct Exact {
 }
 
 impl<T: Real> Motion<T, 2> for Exact {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
-    fn sample(&self, t: Time, side: Side, orders: Orders) -> Sample<T, 2> {
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, 2> {
         if let Some(keyed) = &self.keyed {
-            return keyed.sample(t, side, orders);
+            return keyed.sample(t, side, wanted);
         }
         let mut sample = Sample::zero();
         if let Some((shape, along)) = &self.shape {

@@ -127,7 +127,7 @@ impl Emitter<'_, '_> {
                     .zip(inputs[index])
                     .filter(|&(_, needed)| needed)
                     .map(|(part, _)| format_ident!("{part}"));
-                quote!(#krate::motion::Orders::NONE #(.and(#krate::motion::Orders::#parts))*)
+                quote!(#krate::motion::Derivatives::NONE #(.union(#krate::motion::Derivatives::#parts))*)
             });
             let purposes = ["accelerations", "momenta", "energy", "power"]
                 .map(|purpose| format_ident!("{purpose}"));

@@ -134,7 +134,7 @@ impl Emitter<'_, '_> {
             let (name, motion, dimension) = (quantity.name, format_ident!("M{index}"), quantity.count());
             let has = |constant: &str| {
                 let constant = format_ident!("{constant}");
-                quote!(<#motion as #krate::motion::Motion<#scalar, #dimension>>::HAS.contains(#krate::motion::Orders::#constant))
+                quote!(<#motion as #krate::motion::Motion<#scalar, #dimension>>::HAS.contains(#krate::motion::Derivatives::#constant))
             };
             let lacks = |what: &str, calls: &str| {
                 format!(

@@ -1,4 +1,4 @@
-//! Where the curves of an outline cross.
+//! Crossings of the curves of an outline.
 
 use super::curve::{CHORDS, Curve};
 use super::{Outline, Point};
@@ -90,7 +90,7 @@ struct Chord {
     index: usize,
 }
 
-/// Where two chords cross, as shares of both; ends count.
+/// Crossing of two chords as shares of both; ends count.
 fn crossing(one: &[Point; 2], other: &[Point; 2]) -> Option<[f64; 2]> {
     let [low, high] = [Real::min, Real::max]
         .map(|pick: fn(f64, f64) -> f64| [one, other].map(|ends| pick(ends[0][1], ends[1][1])));

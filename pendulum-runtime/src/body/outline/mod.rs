@@ -40,13 +40,13 @@ pub struct Outline {
     at: Point,
 }
 
-/// What is inside of curves that cross or lie within each other.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// Rule for the inside of curves that cross or lie within each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FillRule {
-    /// What they go around, counted with the direction.
+    /// Points that the curves go around, counted with the direction.
     #[default]
     NonZero,
-    /// What they go around an odd number of times.
+    /// Points that the curves go around an odd number of times.
     EvenOdd,
 }
 

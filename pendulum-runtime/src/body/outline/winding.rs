@@ -1,4 +1,4 @@
-//! What the curves of an outline have on either side: how often all of them go around it.
+//! Winding numbers of an outline on both sides of each of its curves.
 
 use super::curve::Curve;
 use super::{Outline, Point};
@@ -75,7 +75,7 @@ fn winding_to_the_right(number: usize, own: [Point; 2], strips: &[Strips; 2], sl
             continue;
         }
         let at = from[0] + (y - from[1]) / (to[1] - from[1]) * (to[0] - from[0]);
-        // Those that coincide lie as if each were a little beyond the one before.
+        // Chords that coincide lie as if each were a little beyond the one before.
         if if (x - at).abs() <= slack { number < other } else { x < at } {
             winding += if from[1] <= y { 1 } else { -1 };
         }

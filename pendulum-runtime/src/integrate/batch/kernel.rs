@@ -21,7 +21,7 @@ use crate::integrate::step::field::Field;
 use crate::integrate::step::field::coordinate;
 use crate::integrate::step::gap;
 use crate::integrate::step::interval::StepInterval;
-use crate::jet::{Jets, Orders, Path};
+use crate::jet::{Jets, Path, Unrolling};
 use crate::real::{Float, Lane, Lanes, Real};
 use crate::simd::Work;
 use crate::time::Time;
@@ -153,7 +153,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             path.q[i][0] = self.lanes.q.high[i];
             path.v[i][0] = self.lanes.v.high[i];
         }
-        <S::Wide as Jets<N>>::Orders::run_in_lanes(
+        <S::Wide as Jets<N>>::Unrolling::run_in_lanes(
             &self.system,
             self.rule.order,
             path,

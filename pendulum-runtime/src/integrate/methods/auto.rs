@@ -13,7 +13,7 @@ use crate::integrate::step::controller::{Controller, ControllerState, StepContex
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
-use crate::jet::{Jets, Known, MaybeJets, Orders};
+use crate::jet::{Jets, Known, MaybeJets, Unrolling};
 use crate::real::Float;
 use crate::system::{Dynamics, System};
 
@@ -83,7 +83,7 @@ impl Auto {
         let facts = &<D::System as System<N>>::FACTS;
         let two_words = D::Scalar::EPSILON.to_f64() < 1e-17;
         let pays = if two_words {
-            rtol < <D::System as Jets<N>>::Orders::PAYS_BELOW
+            rtol < <D::System as Jets<N>>::Unrolling::PAYS_BELOW
         } else {
             facts.linear && facts.autonomous
         };

@@ -15,7 +15,7 @@ use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::fast_exp2::{digits, log2, power};
 use crate::integrate::step::field::{Field, coordinate, first_in_state};
 use crate::integrate::step::interval::StepInterval;
-use crate::jet::{JetDynamics, Jets, LENGTH, MAX_ORDER, Orders, Path, Series};
+use crate::jet::{JetDynamics, Jets, LENGTH, MAX_ORDER, Path, Series, Unrolling};
 use crate::motion::Side;
 use crate::real::{Float, Real};
 use crate::system::{Dynamics, System, scalar_time};
@@ -478,7 +478,7 @@ fn expand<D: JetDynamics<N, Scalar: Float>, const N: usize, const W: bool>(
         path.v[i][0] = from.v.high[i];
     }
     field.dynamics.drive(from.t, side, order, drive);
-    <D::System as Jets<N>>::Orders::run(field.dynamics.system(), order, path, drive, work);
+    <D::System as Jets<N>>::Unrolling::run(field.dynamics.system(), order, path, drive, work);
     field.evaluations += order as u64;
 }
 

@@ -5,7 +5,7 @@ use super::systems::{
 };
 use crate::error::{Coordinate, Error, Part, Quantity, Suspect};
 use crate::integrate::{Dop853, Failure, Leapfrog, Rk4, Srkn14a, Tsit5, solve};
-use crate::motion::{Motion, Orders, Sample, Side};
+use crate::motion::{Derivatives, Motion, Sample, Side};
 use crate::system::Driven;
 use crate::time::Time;
 
@@ -321,9 +321,9 @@ fn numbers_that_grow_beyond_all_bounds() {
 struct Stuck(f64);
 
 impl Motion<f64, 2> for Stuck {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
-    fn sample(&self, _: Time, _: Side, _: Orders) -> Sample<f64, 2> {
+    fn sample(&self, _: Time, _: Side, _: Derivatives) -> Sample<f64, 2> {
         Sample::zero()
     }
 

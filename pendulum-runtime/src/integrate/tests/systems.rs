@@ -1,6 +1,6 @@
 //! Systems written by hand, with the names and numbers of the literature.
 
-use crate::motion::{Motion, Orders, Sample, Side};
+use crate::motion::{Derivatives, Motion, Sample, Side};
 use crate::real::Real;
 use crate::system::{Driven, Facts, Input, System, VelocityFree};
 use crate::time::Time;
@@ -122,10 +122,10 @@ system! {
 const X: Input = Input {
     name: "x",
     components: 2,
-    accelerations: Orders::ACCELERATION,
-    momenta: Orders::VELOCITY,
-    energy: Orders::ALL,
-    power: Orders::ALL,
+    accelerations: Derivatives::ACCELERATION,
+    momenta: Derivatives::VELOCITY,
+    energy: Derivatives::ALL,
+    power: Derivatives::ALL,
 };
 
 impl<T: Real> VelocityFree<1> for MovingPendulum<T> {}
@@ -228,9 +228,9 @@ pub(crate) struct Formula<F> {
 }
 
 impl<T: Real, const D: usize, F: Fn(f64) -> [[f64; D]; 3]> Motion<T, D> for Formula<F> {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
-    fn sample(&self, t: Time, _: Side, _: Orders) -> Sample<T, D> {
+    fn sample(&self, t: Time, _: Side, _: Derivatives) -> Sample<T, D> {
         let [position, velocity, acceleration] =
             (self.formula)(t.to_f64()).map(|values| values.map(T::from_f64));
         Sample { position, velocity, acceleration }
@@ -249,9 +249,9 @@ pub(crate) struct LinearKeys {
 }
 
 impl<T: Real> Motion<T, 2> for LinearKeys {
-    const HAS: Orders = Orders::ALL;
+    const HAS: Derivatives = Derivatives::ALL;
 
-    fn sample(&self, t: Time, side: Side, _: Orders) -> Sample<T, 2> {
+    fn sample(&self, t: Time, side: Side, _: Derivatives) -> Sample<T, 2> {
         let position = t.to_f64() * self.rate;
         let mut segment = position.floor();
         if side == Side::Before && segment / self.rate == t.to_f64() {

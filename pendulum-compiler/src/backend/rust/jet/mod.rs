@@ -101,7 +101,7 @@ impl Emitter<'_, '_> {
             (&self.krate, self.scalar(), self.count(), &self.model.block.name);
         let components: usize = self.model.inputs.iter().map(Quantity::count).sum();
         let unknown = quote!(::core::unimplemented!());
-        let (kind, orders, per_digit, work, body) = match &self.motion {
+        let (kind, unrolling, per_digit, work, body) = match &self.motion {
             None => (quote!(()), format_ident!("Looped"), quote!(0.7), unknown.clone(), unknown),
             Some(motion) => self.recurrences(motion),
         };
@@ -111,7 +111,7 @@ impl Emitter<'_, '_> {
             impl<#scalar: #krate::real::Real> #krate::jet::Jets<#count> for #name<#scalar> {
                 type Work = #kind;
                 type Drive = [#krate::jet::InputSeries<#scalar>; #components];
-                type Orders = #krate::jet::#orders;
+                type Unrolling = #krate::jet::#unrolling;
                 const PER_DIGIT: ::core::primitive::f64 = #per_digit;
 
                 fn work(&self) -> Self::Work { #work }
@@ -148,14 +148,14 @@ impl Emitter<'_, '_> {
             Some(unsolved) if 2 * unsolved.halves < solved.halves => unsolved,
             _ => solved,
         };
-        let orders = match halves {
+        let unrolling = match halves {
             0..=MOST_UNROLLED => "Unrolled",
             _ if halves <= MOST_LOOPED => "Looped",
             _ => "Called",
         };
-        let orders = format_ident!("{orders}");
+        let unrolling = format_ident!("{unrolling}");
         let per_digit = if halves <= MOST_CHEAP { quote!(0.8) } else { quote!(0.7) };
-        (kind, orders, per_digit, work, lines)
+        (kind, unrolling, per_digit, work, lines)
     }
 
     /// The recurrences of accelerations, where coordinates are coupled in series with the mass

@@ -2,7 +2,7 @@
 
 #![allow(clippy::inline_always)]
 
-use crate::motion::{Motion, Orders, PerhapsAnalytic, Sample, Side, orders};
+use crate::motion::{Derivatives, MaybeAnalytic, Motion, Sample, Side, derivatives_of};
 use crate::real::{Float, Lane, Octet, Real};
 use crate::system::{Driven, Dynamics, Input, NoInputs, Purpose, Samples, Staged, System};
 use crate::time::Time;
@@ -61,7 +61,7 @@ where
 impl<S0, M, const N: usize> LaneDynamics<N> for Driven<S0, M>
 where
     S0: System<N, Scalar: Lane + Float>,
-    M: LaneMotions<S0::Inputs, S0::Scalar> + PerhapsAnalytic<S0::Inputs, S0::Scalar>,
+    M: LaneMotions<S0::Inputs, S0::Scalar> + MaybeAnalytic<S0::Inputs, S0::Scalar>,
     S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = M::Wide>,
 {
     type Wide = S0::With<Octet<S0::Scalar>>;
@@ -106,11 +106,11 @@ fn sampled<T: Lane, M: Motion<T, DIM>, const DIM: usize>(
     motion: &M,
     times: &[Time; S],
     last: Option<Time>,
-    orders: Orders,
+    wanted: Derivatives,
 ) -> Sample<Octet<T>, DIM> {
-    let mut lanes = motion.sample_lanes(times, orders);
+    let mut lanes = motion.sample_lanes(times, wanted);
     if let Some(last) = last {
-        let sample = motion.sample(last, Side::Before, orders);
+        let sample = motion.sample(last, Side::Before, wanted);
         for d in 0..DIM {
             lanes.position[d].0[S - 1] = sample.position[d];
             lanes.velocity[d].0[S - 1] = sample.velocity[d];
@@ -127,7 +127,7 @@ macro_rules! tuples {
 
             #[inline(always)]
             fn sample_all(&self, times: &[Time; S], last: Option<Time>, inputs: &[Input]) -> Self::Wide {
-                ($(sampled(&self.$index, times, last, orders(inputs, $index, Purpose::Accelerations)),)+)
+                ($(sampled(&self.$index, times, last, derivatives_of(inputs, $index, Purpose::Accelerations)),)+)
             }
         }
     )+};

@@ -1,0 +1,419 @@
+//! Sensitivities: how a motion depends on where it starts and on its parameters.
+
+use crate::integrate::State;
+use crate::real::{Dual, Real};
+use crate::system::{Facts, Jacobians, System, VelocityFree};
+use nalgebra::{DMatrix, SMatrix};
+
+/// A system together with the variational equations along its motion: a system itself, for every
+/// method that takes equations written by hand (name one: `Dop853`, `Tsit5`, `Gauss`, …).
+///
+/// Its `M` coordinates are the `N` of the system and after them columns of `N`: ∂q/∂q₀ for each
+/// coordinate at the start, ∂q/∂q̇₀ for each velocity there, and ∂q/∂p for as many parameters as
+/// fit, in the order of `FACTS.parameters`; its velocities are the derivatives of q̇ likewise.
+/// Every column δq obeys δq̈ = A δq + B δq̇ + c with the generated Jacobians A = ∂q̈/∂q, B =
+/// ∂q̈/∂q̇ and, for a parameter, c = ∂q̈/∂p. [`variational_size`] gives `M`.
+///
+/// Step control watches the columns as it watches the motion. Over a kink the derivatives of the
+/// momenta go on, as the momenta do.
+///
+/// ```
+/// use pendulum_runtime::prelude::*;
+/// use pendulum_runtime::analysis::{Variational, variational_size};
+///
+/// # mod system {
+/// pendulum_runtime::lagrangian! {
+///     pub struct Spring { k, m }
+///     coordinate x;
+///     kinetic = m*ẋ^2/2;
+///     potential = k*x^2/2;
+/// }
+/// # }
+/// # use system::Spring;
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// // One coordinate, and of its two parameters the first.
+/// const M: usize = variational_size(1, 1);
+/// let spring = Variational::<_, 1, M>::new(Spring::new(4.0, 1.0));
+/// let (q, v) = spring.start([1.0], [0.0]);
+/// let end = solve(&spring, (0.0, 1.0), q, v).method(Dop853).rtol(1e-12).atol(1e-12).run()?.end;
+/// // x = cos ωt with ω² = k/m.
+/// let (by_k, _) = spring.by_parameter(&end, 0);
+/// assert!((by_k[0] + 2.0_f64.sin() / 4.0).abs() < 1e-10);
+/// let transition = spring.transition(&end);
+/// assert!((transition.trace() - 2.0 * 2.0_f64.cos()).abs() < 1e-10);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// A driven system is varied before its motions are bound: `Driven::new(Variational::<_, 1,
+/// M>::new(pendulum), (hand,))`.
+///
+/// Source: Hairer, Nørsett and Wanner (1993), Solving Ordinary Differential Equations I, I.14,
+/// equations 14.6 and 14.8.
+#[derive(Clone, Copy, Debug)]
+pub struct Variational<S, const N: usize, const M: usize> {
+    system: S,
+}
+
+/// The number of coordinates of a [`Variational`] system with `coordinates` and the sensitivities
+/// to the first `parameters`.
+pub const fn variational_size(coordinates: usize, parameters: usize) -> usize {
+    coordinates * (1 + 2 * coordinates + parameters)
+}
+
+impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
+    /// The number of parameters whose sensitivities are computed.
+    pub const PARAMETERS: usize = {
+        assert!(
+            0 < N && M.is_multiple_of(N) && variational_size(N, 0) <= M,
+            "the size of a variational system is `variational_size(coordinates, parameters)`"
+        );
+        let parameters = M / N - 1 - 2 * N;
+        assert!(parameters <= S::FACTS.parameters.len(), "there are not as many parameters");
+        parameters
+    };
+
+    /// Adds the variational equations to a system.
+    pub const fn new(system: S) -> Self {
+        const { assert!(Self::PARAMETERS <= M) };
+        Self { system }
+    }
+
+    /// The coordinates and velocities at the start: `q` and `v`, each of which depends on itself
+    /// alone.
+    pub fn start(&self, q: [S::Scalar; N], v: [S::Scalar; N]) -> ([S::Scalar; M], [S::Scalar; M]) {
+        // Column `first + k` has its one in row k: those of the coordinates come first, those of
+        // the velocities after them.
+        let columns = |own: [S::Scalar; N], first: usize| {
+            core::array::from_fn(|index| match (index / N, index % N) {
+                (0, row) => own[row],
+                (group, row) => number(if group == 1 + first + row { 1.0 } else { 0.0 }),
+            })
+        };
+        (columns(q, 0), columns(v, N))
+    }
+
+    /// The state of the system itself.
+    pub fn state(&self, state: &State<S::Scalar, M>) -> State<S::Scalar, N> {
+        State { t: state.t, q: column(&state.q, 0), v: column(&state.v, 0) }
+    }
+
+    /// ∂q and ∂q̇ by the coordinate with this index at the start.
+    ///
+    /// # Panics
+    /// If there is no such coordinate.
+    pub fn by_position(
+        &self,
+        state: &State<S::Scalar, M>,
+        index: usize,
+    ) -> ([S::Scalar; N], [S::Scalar; N]) {
+        assert!(index < N, "there is no coordinate {index}");
+        (column(&state.q, 1 + index), column(&state.v, 1 + index))
+    }
+
+    /// ∂q and ∂q̇ by the velocity with this index at the start.
+    ///
+    /// # Panics
+    /// If there is no such coordinate.
+    pub fn by_velocity(
+        &self,
+        state: &State<S::Scalar, M>,
+        index: usize,
+    ) -> ([S::Scalar; N], [S::Scalar; N]) {
+        assert!(index < N, "there is no coordinate {index}");
+        (column(&state.q, 1 + N + index), column(&state.v, 1 + N + index))
+    }
+
+    /// ∂q and ∂q̇ by the parameter with this index in `FACTS.parameters`.
+    ///
+    /// # Panics
+    /// If its sensitivities are not computed.
+    pub fn by_parameter(
+        &self,
+        state: &State<S::Scalar, M>,
+        index: usize,
+    ) -> ([S::Scalar; N], [S::Scalar; N]) {
+        assert!(
+            index < Self::PARAMETERS,
+            "the sensitivities to parameter {index} are not computed"
+        );
+        (column(&state.q, 1 + 2 * N + index), column(&state.v, 1 + 2 * N + index))
+    }
+
+    /// The state transition matrix ∂(q, q̇)/∂(q₀, q̇₀), 2`N` by 2`N`; after a period of a periodic
+    /// system its monodromy matrix.
+    pub fn transition(&self, state: &State<S::Scalar, M>) -> DMatrix<S::Scalar> {
+        DMatrix::from_fn(2 * N, 2 * N, |row, column| {
+            if row < N {
+                state.q[(1 + column) * N + row]
+            } else {
+                state.v[(1 + column) * N + row - N]
+            }
+        })
+    }
+
+    /// Every column as the derivatives of `output` in its direction; the first `N` entries are
+    /// those of `own`.
+    ///
+    /// `output` gets the system, the time, both arrays and the inputs over dual numbers.
+    #[allow(clippy::type_complexity)]
+    fn derivatives(
+        &self,
+        own: [S::Scalar; N],
+        (t, q, w, inputs): (S::Scalar, &[S::Scalar; M], &[S::Scalar; M], &S::Inputs),
+        output: impl Fn(
+            &Lifted<S, N>,
+            Dual<S::Scalar>,
+            &Duals<S, N>,
+            &Duals<S, N>,
+            &LiftedInputs<S, N>,
+        ) -> Duals<S, N>,
+    ) -> [S::Scalar; M] {
+        let inputs = S::inputs_over(inputs, Dual::constant);
+        let mut all = [number(0.0); M];
+        all[..N].copy_from_slice(&own);
+        for index in 1..M / N {
+            let mut parameter = 0;
+            let system = self.system.over(|value| {
+                parameter += 1;
+                // The parameters follow the 2N columns of the state.
+                if parameter + 2 * N == index {
+                    Dual::variable(value)
+                } else {
+                    Dual::constant(value)
+                }
+            });
+            let lift = |all: &[S::Scalar; M]| {
+                let (value, derivative) =
+                    (column::<_, N, M>(all, 0), column::<_, N, M>(all, index));
+                core::array::from_fn(|i| Dual { value: value[i], derivative: derivative[i] })
+            };
+            let found = output(&system, Dual::constant(t), &lift(q), &lift(w), &inputs);
+            all[index * N..][..N].copy_from_slice(&found.map(|dual| dual.derivative));
+        }
+        all
+    }
+}
+
+type Duals<S, const N: usize> = [Dual<<S as System<N>>::Scalar>; N];
+type Lifted<S, const N: usize> = <S as Jacobians<N>>::Over<Dual<<S as System<N>>::Scalar>>;
+type LiftedInputs<S, const N: usize> = <Lifted<S, N> as System<N>>::Inputs;
+
+fn number<T: Real>(value: f64) -> T {
+    T::from_f64(value)
+}
+
+/// The `index`-th group of `N` numbers.
+#[inline]
+fn column<T: Copy, const N: usize, const M: usize>(all: &[T; M], index: usize) -> [T; N] {
+    core::array::from_fn(|i| all[index * N + i])
+}
+
+impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
+    /// The accelerations of all columns after those of the system.
+    #[inline]
+    fn extended(
+        &self,
+        own: [S::Scalar; N],
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+    ) -> [S::Scalar; M] {
+        let (q0, v0) = (column(q, 0), column(v, 0));
+        let by_position = self.system.position_jacobian(t, &q0, &v0, inputs);
+        let mut all = [number(0.0); M];
+        all[..N].copy_from_slice(&own);
+        for start in (N..M).step_by(N) {
+            for i in 0..N {
+                for j in 0..N {
+                    all[start + i] += by_position[(i, j)] * q[start + j];
+                }
+            }
+        }
+        if !S::FACTS.velocity_free {
+            let by_velocity = self.system.velocity_jacobian(t, &q0, &v0, inputs);
+            for start in (N..M).step_by(N) {
+                for i in 0..N {
+                    for j in 0..N {
+                        all[start + i] += by_velocity[(i, j)] * v[start + j];
+                    }
+                }
+            }
+        }
+        if 0 < Self::PARAMETERS {
+            let mut columns = [[number(0.0); N]; M];
+            self.system.parameter_jacobian(t, &q0, &v0, inputs, &mut columns[..Self::PARAMETERS]);
+            for (k, column) in columns[..Self::PARAMETERS].iter().enumerate() {
+                for i in 0..N {
+                    all[(1 + 2 * N + k) * N + i] += column[i];
+                }
+            }
+        }
+        all
+    }
+}
+
+impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<S, N, M> {
+    type Scalar = S::Scalar;
+    type Inputs = S::Inputs;
+    type With<U: Real> = Variational<S::Over<U>, N, M>;
+    type Prepared = S::Prepared;
+
+    const FACTS: Facts = Facts { separable: false, cyclic: &[], ..S::FACTS };
+
+    fn map<U: Real>(&self, map: impl FnMut(S::Scalar) -> U) -> Self::With<U> {
+        Variational { system: self.system.over(map) }
+    }
+
+    fn prepare(&self) -> S::Prepared {
+        self.system.prepare()
+    }
+
+    #[inline]
+    fn accelerations_prepared(
+        &self,
+        prepared: &S::Prepared,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+    ) -> [S::Scalar; M] {
+        self.extended(
+            self.system.accelerations_prepared(prepared, t, &column(q, 0), &column(v, 0), inputs),
+            t,
+            q,
+            v,
+            inputs,
+        )
+    }
+
+    fn accelerations(
+        &self,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+    ) -> [S::Scalar; M] {
+        self.extended(
+            self.system.accelerations(t, &column(q, 0), &column(v, 0), inputs),
+            t,
+            q,
+            v,
+            inputs,
+        )
+    }
+
+    /// The energy of the system.
+    fn energy(
+        &self,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+    ) -> S::Scalar {
+        self.system.energy(t, &column(q, 0), &column(v, 0), inputs)
+    }
+
+    /// The power of the system.
+    fn power(
+        &self,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+    ) -> S::Scalar {
+        self.system.power(t, &column(q, 0), &column(v, 0), inputs)
+    }
+
+    /// The momenta of the system and their derivatives.
+    fn momenta(
+        &self,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+    ) -> [S::Scalar; M] {
+        let own = self.system.momenta(t, &column(q, 0), &column(v, 0), inputs);
+        self.derivatives(own, (t, q, v, inputs), System::momenta)
+    }
+
+    fn velocities(
+        &self,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        p: &[S::Scalar; M],
+        inputs: &S::Inputs,
+    ) -> [S::Scalar; M] {
+        let own = self.system.velocities(t, &column(q, 0), &column(p, 0), inputs);
+        self.derivatives(own, (t, q, p, inputs), System::velocities)
+    }
+
+    /// The mass matrix of the system, once for each column.
+    fn mass_matrix(
+        &self,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+    ) -> SMatrix<S::Scalar, M, M> {
+        let block = self.system.mass_matrix(t, &column(q, 0), &column(v, 0), inputs);
+        SMatrix::from_fn(|row, column| {
+            if row / N == column / N { block[(row % N, column % N)] } else { number(0.0) }
+        })
+    }
+
+    fn forces(
+        &self,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+    ) -> [S::Scalar; M] {
+        let block = self.system.mass_matrix(t, &column(q, 0), &column(v, 0), inputs);
+        let a = self.accelerations(t, q, v, inputs);
+        let own = self.system.forces(t, &column(q, 0), &column(v, 0), inputs);
+        core::array::from_fn(|index| {
+            let (group, row) = (index / N, index % N);
+            if group == 0 {
+                own[row]
+            } else {
+                (0..N).fold(number(0.0), |sum, j| sum + block[(row, j)] * a[group * N + j])
+            }
+        })
+    }
+
+    /// The conserved quantities of the system.
+    fn conserved(
+        &self,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+        values: &mut [S::Scalar],
+    ) {
+        self.system.conserved(t, &column(q, 0), &column(v, 0), inputs, values);
+    }
+
+    /// The bound of the system: derivatives of its functions of time are as narrow as they.
+    fn longest_step(&self, t: S::Scalar, widths: S::Scalar) -> S::Scalar {
+        self.system.longest_step(t, widths)
+    }
+
+    fn momentum_rates(
+        &self,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+    ) -> [S::Scalar; M] {
+        let own = self.system.momentum_rates(t, &column(q, 0), &column(v, 0), inputs);
+        self.derivatives(own, (t, q, v, inputs), System::momentum_rates)
+    }
+}
+
+/// Derivatives of accelerations without velocities contain no velocity either.
+impl<S: Jacobians<N> + VelocityFree<N>, const N: usize, const M: usize> VelocityFree<M>
+    for Variational<S, N, M>
+{
+}

@@ -1,0 +1,163 @@
+//! The bytes that a file refers to: the chunk of a GLB, data URIs, files beside it.
+
+use super::error::GltfError;
+use gltf::json::Root;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// Returns true if a URI names a file beside the file, not one anywhere.
+fn beside(uri: &str) -> bool {
+    !uri.starts_with('/') && !uri.contains(':') && !uri.contains('\\')
+}
+
+/// All buffers of a file; those in other files are looked for in `folder`.
+pub(super) fn buffers(
+    root: &Root,
+    blob: Option<Vec<u8>>,
+    folder: Option<&Path>,
+) -> Result<Vec<Vec<u8>>, GltfError> {
+    let mut blob = blob;
+    let mut buffers = Vec::with_capacity(root.buffers.len());
+    for (index, buffer) in root.buffers.iter().enumerate() {
+        let place = format!("buffers[{index}]");
+        let bytes = match &buffer.uri {
+            None if index == 0 => blob.take().ok_or_else(|| {
+                GltfError::new(&*place, "no uri and no BIN chunk", "give one of them")
+            })?,
+            None => {
+                return Err(GltfError::new(
+                    place,
+                    "no uri",
+                    "only the first buffer may be the BIN chunk",
+                ));
+            }
+            Some(uri) => match (uri.strip_prefix("data:"), folder) {
+                (Some(data), _) => inline(data)
+                    .map_err(|what| GltfError::new(&*place, what, "mend the data URI"))?,
+                (None, None) => {
+                    let advice = "read the file with `Gltf::open`, or pack it as .glb";
+                    return Err(GltfError::new(
+                        place,
+                        format!("its bytes are in the file `{uri}`"),
+                        advice,
+                    ));
+                }
+                (None, Some(folder)) if beside(uri) => {
+                    outside(&folder.join(unescaped(uri)), buffer.byte_length.0).map_err(
+                        |error| {
+                            GltfError::new(
+                                &*place,
+                                format!("`{uri}`: {error}"),
+                                "put it beside the glTF file",
+                            )
+                        },
+                    )?
+                }
+                (None, Some(_)) => {
+                    return Err(GltfError::new(
+                        place,
+                        format!("`{uri}` is no relative path"),
+                        "put it beside the glTF file",
+                    ));
+                }
+            },
+        };
+        if (bytes.len() as u64) < buffer.byte_length.0 {
+            let what = format!("{} bytes of {}", bytes.len(), buffer.byte_length.0);
+            return Err(GltfError::new(place, what, "the file is cut off; fetch it again"));
+        }
+        buffers.push(bytes);
+    }
+    Ok(buffers)
+}
+
+/// At most `length` bytes of a file.
+fn outside(path: &Path, length: u64) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(length).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// The bytes of a data URI, given without its scheme.
+fn inline(data: &str) -> Result<Vec<u8>, String> {
+    let (head, body) = data.split_once(',').ok_or("a data URI without a comma")?;
+    if head.ends_with(";base64") {
+        base64(body)
+    } else {
+        Err("a data URI that is not base64".into())
+    }
+}
+
+/// RFC 4648, section 4; the padding may be left out.
+fn base64(text: &str) -> Result<Vec<u8>, String> {
+    let digits = text.trim_end_matches('=').bytes();
+    let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
+    let (mut word, mut bits) = (0u32, 0);
+    for (index, digit) in digits.enumerate() {
+        let value = match digit {
+            b'A'..=b'Z' => digit - b'A',
+            b'a'..=b'z' => digit - b'a' + 26,
+            b'0'..=b'9' => digit - b'0' + 52,
+            b'+' | b'-' => 62,
+            b'/' | b'_' => 63,
+            _ => return Err(format!("byte {index} is no digit of base64")),
+        };
+        word = (word << 6 | u32::from(value)) & 0x00ff_ffff;
+        bits += 6;
+        if 8 <= bits {
+            bits -= 8;
+            bytes.push((word >> bits) as u8);
+        }
+    }
+    Ok(bytes)
+}
+
+/// A URI with its `%20` and the like replaced.
+fn unescaped(uri: &str) -> String {
+    let mut bytes = Vec::with_capacity(uri.len());
+    let mut rest = uri.as_bytes();
+    while let [first, tail @ ..] = rest {
+        let code = match (first, tail) {
+            (b'%', [high, low, ..]) => {
+                char::from(*high).to_digit(16).zip(char::from(*low).to_digit(16))
+            }
+            _ => None,
+        };
+        if let Some((high, low)) = code {
+            bytes.push((high * 16 + low) as u8);
+            rest = &tail[2..];
+        } else {
+            bytes.push(*first);
+            rest = tail;
+        }
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{base64, unescaped};
+
+    /// RFC 4648, section 10.
+    #[test]
+    fn base64_has_the_vectors_of_its_standard() {
+        for (text, bytes) in [
+            ("", ""),
+            ("Zg==", "f"),
+            ("Zm8=", "fo"),
+            ("Zm9v", "foo"),
+            ("Zm9vYg==", "foob"),
+            ("Zm9vYmFy", "foobar"),
+        ] {
+            assert_eq!(base64(text).unwrap(), bytes.as_bytes());
+            assert_eq!(base64(text.trim_end_matches('=')).unwrap(), bytes.as_bytes());
+        }
+        assert_eq!(base64("Zm9v!").unwrap_err(), "byte 4 is no digit of base64");
+    }
+
+    #[test]
+    fn escapes_are_replaced() {
+        assert_eq!(unescaped("a%20b%2Fc%zz%2"), "a b/c%zz%2");
+    }
+}

@@ -1,0 +1,6 @@
+//! Motions and bodies from files.
+
+#[cfg(feature = "gltf")]
+pub mod gltf;
+#[cfg(feature = "svg")]
+pub mod svg;

@@ -1,0 +1,328 @@
+//! From the tree of `usvg` to joints.
+
+use super::drawing::{Drawing, DrawnJoint, Role, Skipped, Units, Why};
+use super::error::DrawingError;
+use super::size;
+use crate::body::{Body, BodyError, FillRule, Outline};
+use crate::real::Real;
+use std::collections::{BTreeMap, BTreeSet};
+use usvg::roxmltree::{Document, Node, ParsingOptions};
+use usvg::tiny_skia_path::PathSegment;
+use usvg::{Group, ImageHrefResolver, Options, Path, Transform, Tree};
+
+/// Elements that are shapes.
+const SHAPES: [&str; 9] =
+    ["path", "rect", "circle", "ellipse", "line", "polyline", "polygon", "image", "text"];
+/// Elements whose contents are drawn elsewhere, if at all.
+const STORED: [&str; 7] = ["defs", "symbol", "clipPath", "mask", "pattern", "marker", "filter"];
+
+/// No shape has more curves: what is searched for crossings grows with their square.
+const MOST: usize = 1 << 14;
+
+/// A pivot in the drawing.
+struct Pivot {
+    role: Role,
+    /// In pixels of the drawing.
+    at: [f64; 2],
+}
+
+/// Knowledge about the drawing while its tree is walked.
+struct Reader {
+    units: Units,
+    /// By the names of their groups.
+    pivots: BTreeMap<String, Pivot>,
+    /// Beginnings of the groups of the joints by their names, until their joints are there.
+    inside: BTreeMap<String, Option<usize>>,
+    bodies: Vec<Vec<Body>>,
+    drawing: Drawing,
+}
+
+impl Drawing {
+    /// Reads the text of an SVG file.
+    ///
+    /// # Errors
+    /// A text that is no SVG; units that are not positive; pivots without a place or a group of
+    /// their name, or two of one name; joints whose transform does not keep shapes; pendulums
+    /// without a body.
+    pub fn read(text: &str, units: Units) -> Result<Self, DrawingError> {
+        for (what, value) in
+            [("metres a pixel", units.pixel), ("kilograms a square metre", units.density)]
+        {
+            if !(0.0 < value && value < f64::INFINITY) {
+                return Err(DrawingError::Unit { what, value });
+            }
+        }
+        let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
+        let document = Document::parse_with_options(text, options)
+            .map_err(|error| DrawingError::Syntax(error.to_string()))?;
+        if let Some(vast) =
+            document.descendants().find(|node| node.is_element() && size::is_vast(*node))
+        {
+            let line = || {
+                format!(
+                    "{} on line {}",
+                    vast.tag_name().name(),
+                    document.text_pos_at(vast.range().start).row
+                )
+            };
+            return Err(DrawingError::Large {
+                id: vast.attribute("id").map_or_else(line, str::to_owned),
+            });
+        }
+        // Nothing outside the text is read.
+        let none = ImageHrefResolver {
+            resolve_data: Box::new(|_, _, _| None),
+            resolve_string: Box::new(|_, _| None),
+        };
+        let options = Options { image_href_resolver: none, ..Options::default() };
+        let tree = Tree::from_xmltree(&document, &options)
+            .map_err(|error| DrawingError::Syntax(error.to_string()))?;
+        let size = [tree.size().width(), tree.size().height()].map(f64::from);
+
+        let mut reader = Reader {
+            units,
+            pivots: BTreeMap::new(),
+            inside: BTreeMap::new(),
+            bodies: Vec::new(),
+            drawing: Self { joints: Vec::new(), skipped: Vec::new(), loose: 0, size },
+        };
+        let mut ids = BTreeSet::new();
+        reader.find(tree.root(), &mut Vec::new(), &mut ids)?;
+        reader.elements(&document, &ids)?;
+        reader.weigh(tree.root(), None, 1.0)?;
+        reader.finish()
+    }
+}
+
+impl Reader {
+    /// Gathers the pivots, and the ids of all that is drawn.
+    fn find<'a>(
+        &mut self,
+        group: &'a Group,
+        around: &mut Vec<&'a str>,
+        ids: &mut BTreeSet<String>,
+    ) -> Result<(), DrawingError> {
+        around.push(group.id());
+        for node in group.children() {
+            ids.insert(node.id().to_string());
+            match node {
+                usvg::Node::Group(group) => self.find(group, around, ids)?,
+                usvg::Node::Path(path) => {
+                    let Some((name, role)) = pivot(path.id()) else { continue };
+                    if !around.contains(&name) {
+                        return Err(DrawingError::NoGroup { id: path.id().into() });
+                    }
+                    let bounds = path.data().bounds();
+                    let middle = [bounds.left() + bounds.right(), bounds.top() + bounds.bottom()];
+                    let at = map(path.abs_transform(), middle.map(|sum| 0.5 * f64::from(sum)));
+                    if !at.iter().all(|value| value.is_finite()) {
+                        return Err(DrawingError::NoPlace { id: path.id().into() });
+                    }
+                    if self.pivots.insert(name.into(), Pivot { role, at }).is_some() {
+                        return Err(DrawingError::Twice { name: name.into() });
+                    }
+                }
+                usvg::Node::Image(_) | usvg::Node::Text(_) => {}
+            }
+        }
+        around.pop();
+        Ok(())
+    }
+
+    /// Facts that only the text shows: beginnings of groups, and the shapes that the tree leaves
+    /// out.
+    fn elements(
+        &mut self,
+        document: &Document<'_>,
+        ids: &BTreeSet<String>,
+    ) -> Result<(), DrawingError> {
+        for node in document.descendants().filter(Node::is_element) {
+            let tag = node.tag_name().name();
+            let id = node.attribute("id").unwrap_or("");
+            if tag == "g" && self.pivots.contains_key(id) {
+                let inside =
+                    node.first_child().map_or(node.range().end, |child| child.range().start);
+                if self.inside.insert(id.into(), Some(inside)).is_some() {
+                    return Err(DrawingError::Twice { name: id.into() });
+                }
+            }
+            if !SHAPES.contains(&tag)
+                || node.ancestors().any(|outer| STORED.contains(&outer.tag_name().name()))
+            {
+                continue;
+            }
+            let drawn = ids.contains(id);
+            let why = match tag {
+                "image" => Why::Image,
+                "text" => Why::Text,
+                _ if id.is_empty() || drawn => continue,
+                _ if pivot(id).is_some() => return Err(DrawingError::NoPlace { id: id.into() }),
+                _ => Why::NotDrawn,
+            };
+            let line = || format!("{tag} on line {}", document.text_pos_at(node.range().start).row);
+            self.drawing
+                .skipped
+                .push(Skipped { id: if id.is_empty() { line() } else { id.into() }, why });
+        }
+        Ok(())
+    }
+
+    /// Walks a group that stands on `joint` and is as opaque as `opacity`.
+    fn weigh(
+        &mut self,
+        group: &Group,
+        joint: Option<usize>,
+        opacity: f64,
+    ) -> Result<(), DrawingError> {
+        let opacity = opacity * f64::from(group.opacity().get());
+        let joint = match self.pivots.get(group.id()) {
+            None => joint,
+            Some(pivot) => {
+                let name = group.id().to_string();
+                let element = self
+                    .inside
+                    .get_mut(&name)
+                    .ok_or_else(|| DrawingError::NoGroup { id: name.clone() })?;
+                let Some(inside) = element.take() else { return Err(DrawingError::Twice { name }) };
+                let transform = group.abs_transform();
+                let (scale, mirrored) = similarity(transform)
+                    .ok_or_else(|| DrawingError::Sheared { name: name.clone() })?;
+                let pixel = self.units.pixel;
+                self.drawing.joints.push(DrawnJoint {
+                    role: pivot.role,
+                    parent: joint,
+                    pivot: [pixel * pivot.at[0], -pixel * pivot.at[1]],
+                    body: None,
+                    shapes: 0,
+                    anchor: unmap(transform, pivot.at),
+                    mirrored,
+                    scale,
+                    inside,
+                    name,
+                });
+                self.bodies.push(Vec::new());
+                Some(self.bodies.len() - 1)
+            }
+        };
+        for node in group.children() {
+            match node {
+                usvg::Node::Group(group) => self.weigh(group, joint, opacity)?,
+                usvg::Node::Path(path) if pivot(path.id()).is_none() => {
+                    self.shape(path, joint, opacity)?;
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn shape(
+        &mut self,
+        path: &Path,
+        joint: Option<usize>,
+        opacity: f64,
+    ) -> Result<(), DrawingError> {
+        let joints = &self.drawing.joints;
+        let id = match (path.id(), joint) {
+            ("", Some(joint)) => format!("a shape of {}", joints[joint].name),
+            ("", None) => "a shape".into(),
+            (id, _) => id.into(),
+        };
+        let opacity = opacity * path.fill().map_or(0.0, |fill| f64::from(fill.opacity().get()));
+        let why = match path.fill() {
+            None => Some(Why::NoFill),
+            Some(_) if !path.is_visible() => Some(Why::Hidden),
+            Some(_) if opacity <= 0.0 => Some(Why::Transparent),
+            Some(_) => None,
+        };
+        if let Some(why) = why {
+            self.drawing.skipped.push(Skipped { id, why });
+            return Ok(());
+        }
+        if MOST < path.data().len() {
+            return Err(DrawingError::Large { id });
+        }
+        let rule = match path.fill().map(usvg::Fill::rule) {
+            Some(usvg::FillRule::EvenOdd) => FillRule::EvenOdd,
+            _ => FillRule::NonZero,
+        };
+        let pixel = self.units.pixel;
+        let metres = |x: f32, y: f32| {
+            let [x, y] = map(path.abs_transform(), [f64::from(x), f64::from(y)]);
+            [pixel * x, -pixel * y]
+        };
+        let mut outline = Outline::new(rule);
+        for segment in path.data().segments() {
+            outline = match segment {
+                PathSegment::MoveTo(to) => outline.move_to(metres(to.x, to.y)),
+                PathSegment::LineTo(to) => outline.line_to(metres(to.x, to.y)),
+                PathSegment::QuadTo(a, to) => outline.quad_to(metres(a.x, a.y), metres(to.x, to.y)),
+                PathSegment::CubicTo(a, b, to) => {
+                    outline.cubic_to(metres(a.x, a.y), metres(b.x, b.y), metres(to.x, to.y))
+                }
+                PathSegment::Close => outline,
+            };
+        }
+        match (outline.body(self.units.density * opacity), joint) {
+            (Ok(body), Some(joint)) => {
+                self.bodies[joint].push(body.with_pivot(self.drawing.joints[joint].pivot));
+            }
+            (Ok(_), None) => self.drawing.loose += 1,
+            (Err(BodyError::NoArea { .. } | BodyError::NoMass), _) => {
+                self.drawing.skipped.push(Skipped { id, why: Why::NoArea });
+            }
+            (Err(error), _) => return Err(DrawingError::Body { id, error }),
+        }
+        Ok(())
+    }
+
+    fn finish(mut self) -> Result<Drawing, DrawingError> {
+        for (joint, bodies) in self.drawing.joints.iter_mut().zip(self.bodies) {
+            joint.shapes = bodies.len();
+            joint.body = match Body::compound(bodies) {
+                Ok(body) => Some(body),
+                Err(BodyError::NoMass) if joint.role == Role::Keyed => None,
+                Err(BodyError::NoMass) => {
+                    return Err(DrawingError::NoBody { name: joint.name.clone() });
+                }
+                Err(error) => return Err(DrawingError::Body { id: joint.name.clone(), error }),
+            };
+        }
+        Ok(self.drawing)
+    }
+}
+
+/// The name and the role in the id of a pivot.
+fn pivot(id: &str) -> Option<(&str, Role)> {
+    let roles = [(".keyed", Role::Keyed), (".pendulum", Role::Pendulum)];
+    roles
+        .into_iter()
+        .find_map(|(end, role)| Some((id.strip_suffix(end)?, role)))
+        .filter(|(name, _)| !name.is_empty())
+}
+
+fn map(transform: Transform, [x, y]: [f64; 2]) -> [f64; 2] {
+    let [a, b, c, d, e, f] =
+        [transform.sx, transform.ky, transform.kx, transform.sy, transform.tx, transform.ty]
+            .map(f64::from);
+    [a * x + c * y + e, b * x + d * y + f]
+}
+
+fn unmap(transform: Transform, [x, y]: [f64; 2]) -> [f64; 2] {
+    let [a, b, c, d, e, f] =
+        [transform.sx, transform.ky, transform.kx, transform.sy, transform.tx, transform.ty]
+            .map(f64::from);
+    let (x, y, area) = (x - e, y - f, a * d - b * c);
+    [(d * x - c * y) / area, (a * y - b * x) / area]
+}
+
+/// The factor of a map that keeps shapes, up to single precision, and whether it mirrors them.
+fn similarity(transform: Transform) -> Option<(f64, bool)> {
+    let [a, b, c, d] = [transform.sx, transform.ky, transform.kx, transform.sy].map(f64::from);
+    let area = a * d - b * c;
+    let mirrored = area < 0.0;
+    let sign = if mirrored { -1.0 } else { 1.0 };
+    let size = Real::sqrt(area.abs());
+    let kept = (a - sign * d).abs() <= 1e-4 * size && (b + sign * c).abs() <= 1e-4 * size;
+    (0.0 < size && size.is_finite() && kept).then_some((size, mirrored))
+}

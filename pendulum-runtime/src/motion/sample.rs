@@ -1,0 +1,89 @@
+//! Samples of motions and the sets of derivatives in them.
+
+use crate::real::Real;
+use crate::sealed::Sealed;
+
+/// A set of derivatives: of a motion's position, velocity and acceleration.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Derivatives(u8);
+
+impl Derivatives {
+    /// Nothing at all.
+    pub const NONE: Self = Self(0);
+    /// The position x.
+    pub const POSITION: Self = Self(1);
+    /// The velocity ẋ.
+    pub const VELOCITY: Self = Self(2);
+    /// The acceleration ẍ.
+    pub const ACCELERATION: Self = Self(4);
+    /// All three.
+    pub const ALL: Self = Self(7);
+
+    /// The derivatives that are in `self`, in `other` or in both.
+    pub const fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Returns true if all derivatives in `other` are in `self`.
+    pub const fn contains(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+
+    /// The number of derivatives.
+    pub const fn count(self) -> usize {
+        self.0.count_ones() as usize
+    }
+
+    /// The derivative of that order alone: 0 is the position.
+    pub(crate) const fn of(derivative: usize) -> Self {
+        Self(1 << derivative)
+    }
+}
+
+/// The side from which a kink is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// The limit from earlier times.
+    Before,
+    /// The limit from later times.
+    After,
+}
+
+impl Side {
+    /// The other side.
+    pub const fn opposite(self) -> Self {
+        match self {
+            Self::Before => Self::After,
+            Self::After => Self::Before,
+        }
+    }
+}
+
+/// A motion at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample<T, const D: usize> {
+    /// x, in metres as a rule.
+    pub position: [T; D],
+    /// ẋ.
+    pub velocity: [T; D],
+    /// ẍ.
+    pub acceleration: [T; D],
+}
+
+impl<T, const D: usize> Sealed for Sample<T, D> {}
+
+impl<T: Real, const D: usize> Sample<T, D> {
+    /// Zero in all components.
+    pub fn zero() -> Self {
+        let zero = [T::from_f64(0.0); D];
+        Self { position: zero, velocity: zero, acceleration: zero }
+    }
+}
+
+impl<T: Copy, const D: usize> Sample<T, D> {
+    /// Every number mapped.
+    pub fn map<U>(&self, mut map: impl FnMut(T) -> U) -> Sample<U, D> {
+        let (position, velocity) = (self.position.map(&mut map), self.velocity.map(&mut map));
+        Sample { position, velocity, acceleration: self.acceleration.map(&mut map) }
+    }
+}

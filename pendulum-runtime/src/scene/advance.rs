@@ -1,0 +1,249 @@
+//! Ticks: joints are sampled, then all blocks go through a batch.
+
+use crate::real::{Float, Lane};
+use crate::scene::error::SceneError;
+use crate::scene::group::sleep::LOOK;
+use crate::scene::lanes::bucket::Failed;
+use crate::scene::sampling::clock::Clock;
+use crate::scene::sampling::joint::{Active, JointSlot};
+use crate::scene::sampling::timetable::Timetable;
+use crate::scene::sampling::tracks::{BATCH, Sampled};
+use crate::scene::scene::Scene;
+#[cfg(feature = "rayon")]
+use crate::scene::threads::{part, share};
+use core::sync::atomic::{AtomicBool, Ordering};
+
+/// Result of [`Scene::advance`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Advanced {
+    /// The ticks done.
+    pub ticks: u64,
+    /// The seconds that were more than the longest frame, and are lost.
+    pub dropped: f64,
+    /// The pendulums that have failed.
+    pub failed: usize,
+}
+
+impl<T: Lane + Float> Scene<T> {
+    /// Takes a frame of `dt` seconds: does all ticks that are due and keeps the rest for the next
+    /// frame.
+    ///
+    /// States at common times have the same bits however time is cut into frames. A frame of zero
+    /// does nothing; one longer than the [longest frame](Self::set_longest_frame) is cut.
+    ///
+    /// # Errors
+    /// A time that is negative, infinite or no number.
+    pub fn advance(&mut self, dt: f64) -> Result<Advanced, SceneError> {
+        if self.paused && (0.0..f64::INFINITY).contains(&dt) {
+            return Ok(Advanced::default());
+        }
+        let (ticks, dropped) = self.clock.ask(dt, self.longest_frame)?;
+        let failed = self.faults.len();
+        self.ticks(ticks);
+        Ok(Advanced { ticks, dropped, failed: self.faults.len() - failed })
+    }
+
+    /// Does so many ticks, which no frame needs to ask for.
+    pub fn advance_ticks(&mut self, ticks: u32) -> Advanced {
+        self.whole_ticks(u64::from(ticks))
+    }
+
+    pub(crate) fn whole_ticks(&mut self, ticks: u64) -> Advanced {
+        let failed = self.faults.len();
+        self.clock.shift(ticks as i64);
+        self.ticks(ticks);
+        Advanced { ticks, dropped: 0.0, failed: self.faults.len() - failed }
+    }
+
+    pub(crate) fn ticks(&mut self, mut ticks: u64) {
+        while 0 < ticks {
+            let batch = ticks.min(self.update_sleep()).min(BATCH as u64);
+            self.batch(batch as usize);
+            self.clock.passed(batch);
+            ticks -= batch;
+        }
+    }
+
+    /// Wakes those whose joints are about to move, and lets others fall asleep; gives the ticks
+    /// until that is to be done again.
+    fn update_sleep(&mut self) -> u64 {
+        let tick = self.clock.tick();
+        let Self { clock, joint_slots, groups, sleep, dirty, .. } = self;
+        let mut next = i64::MAX;
+        for (_, group) in groups.iter_mut() {
+            *dirty |= group.wake_due(tick);
+            if let Some(tolerance) = *sleep {
+                if tick.rem_euclid(LOOK) == 0 {
+                    *dirty |= group.fall_asleep(clock, joint_slots, tolerance);
+                }
+                next = next.min(LOOK - tick.rem_euclid(LOOK));
+            }
+            next = next.min(group.next_alarm().saturating_sub(tick));
+        }
+        next.max(1) as u64
+    }
+    /// Goes through `ticks` ticks, at most [`BATCH`].
+    fn batch(&mut self, ticks: usize) {
+        if self.dirty {
+            self.assign();
+        }
+        let mut threads = self.threads;
+        let work = if self.parallel { self.awake().0 * ticks } else { 0 };
+        threads.measured(work, |fork| self.computed(ticks, fork));
+        self.threads = threads;
+    }
+
+    /// Computes a batch on all threads or on one.
+    fn computed(&mut self, ticks: usize, fork: bool) {
+        let tick = self.clock.tick();
+        let kinks = self.sample(tick, ticks, fork);
+        let Self { clock, joint_slots, actives, numbers, timetable, groups, faults, .. } = self;
+        let mut all: Vec<(u8, usize, u32)> = Vec::new();
+        let mut failed: Vec<Failed> = Vec::new();
+        for (index, (_, group)) in groups.iter_mut().enumerate() {
+            group.settle(clock);
+            let sampled =
+                Sampled { clock, tick, ticks, joint_slots, actives, numbers, timetable, kinks };
+            group.run(&sampled, fork, &mut failed);
+            all.extend(failed.drain(..).map(|(id, at)| (at, index, id)));
+        }
+        self.dirty |= !all.is_empty();
+        // By time, whatever was done in one batch.
+        all.sort_unstable();
+        for (at, index, id) in all {
+            faults.push(groups[index].1.fail(clock, joint_slots, id, tick + i64::from(at)));
+        }
+    }
+
+    /// Tells every joint who needs it, and when.
+    fn assign(&mut self) {
+        self.dirty = false;
+        let Self { joint_slots, actives, groups, timetable, .. } = self;
+        for joint_slot in joint_slots.iter_mut() {
+            (joint_slot.wanted, joint_slot.grids) = (crate::motion::Derivatives::NONE, 0);
+        }
+        for (_, group) in groups.iter() {
+            // The bit of the grid is looked up once a bucket, not once a joint.
+            let mut known = None;
+            group.needs(&mut |joint, wanted, grid| {
+                let bit = match known {
+                    Some((last, bit)) if last == grid => bit,
+                    _ => timetable.bit(grid),
+                };
+                known = Some((grid, bit));
+                let joint_slot = &mut joint_slots[joint as usize];
+                joint_slot.wanted = joint_slot.wanted.union(wanted);
+                joint_slot.grids |= bit;
+            });
+        }
+        actives.clear();
+        let mut last = None;
+        for (joint, joint_slot) in (0..)
+            .zip(joint_slots.iter_mut())
+            .filter(|(_, joint_slot)| joint_slot.grids != 0 && !joint_slot.still)
+        {
+            let class = match last {
+                Some((grids, class)) if grids == joint_slot.grids => class,
+                _ => timetable.class(joint_slot.grids),
+            };
+            last = Some((joint_slot.grids, class));
+            joint_slot.active = actives.len() as u32;
+            actives.push(Active::new(joint, joint_slot, class));
+        }
+    }
+
+    /// Samples all joints that somebody needs; whether there are kinks.
+    fn sample(&mut self, tick: i64, ticks: usize, fork: bool) -> bool {
+        let Self { clock, joint_slots, actives, numbers, timetable, .. } = self;
+        timetable.begin(clock, tick, ticks);
+        let mut length = 0;
+        let kinks = AtomicBool::new(false);
+        let shared = Times { clock, timetable, tick, count: ticks, kinks: &kinks };
+        for active in actives.iter_mut() {
+            active.offset = length;
+            length += shared.length(active);
+        }
+        numbers.resize(length, T::from_f64(0.0));
+        shared.sample_all(joint_slots, actives, numbers, fork);
+        kinks.into_inner()
+    }
+}
+
+/// Values that all samplers share.
+#[derive(Clone, Copy)]
+struct Times<'a> {
+    clock: &'a Clock,
+    timetable: &'a Timetable,
+    tick: i64,
+    count: usize,
+    /// Somebody has found a kink.
+    kinks: &'a AtomicBool,
+}
+
+impl Times<'_> {
+    /// The numbers of a joint in a batch.
+    fn length(&self, active: &Active) -> usize {
+        self.timetable.times(active.class).len() * active.width()
+    }
+
+    /// Samples joints into `numbers`, which begin at the offset of the first.
+    fn sample<T: Lane + Float>(
+        &self,
+        joint_slots: &[JointSlot<T>],
+        actives: &mut [Active],
+        numbers: &mut [T],
+    ) {
+        let (mut begin, mut kinked) = (0, 0);
+        for active in actives {
+            let (length, times) = (self.length(active), self.timetable.times(active.class));
+            let drive = &*joint_slots[active.joint as usize].drive;
+            active.sample(
+                drive,
+                self.clock,
+                self.tick,
+                self.count,
+                times,
+                &mut numbers[begin..begin + length],
+            );
+            begin += length;
+            kinked |= active.kinked;
+        }
+        if kinked != 0 {
+            self.kinks.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Samples joints, on all threads if there are many.
+    #[cfg(feature = "rayon")]
+    fn sample_all<T: Lane + Float>(
+        &self,
+        joint_slots: &[JointSlot<T>],
+        actives: &mut [Active],
+        numbers: &mut [T],
+        fork: bool,
+    ) {
+        const LEAST: usize = 256;
+        if !fork || actives.len() < 2 * LEAST {
+            return self.sample(joint_slots, actives, numbers);
+        }
+        let (part, mut rest) = (part(actives.len(), LEAST), numbers);
+        let parts = actives.chunks_mut(part).map(|actives| {
+            let size = actives.iter().map(|active| self.length(active)).sum();
+            (actives, rest.split_off_mut(..size).unwrap_or_default())
+        });
+        share(parts, |(actives, numbers)| self.sample(joint_slots, actives, numbers));
+    }
+
+    /// Samples joints.
+    #[cfg(not(feature = "rayon"))]
+    fn sample_all<T: Lane + Float>(
+        &self,
+        joint_slots: &[JointSlot<T>],
+        actives: &mut [Active],
+        numbers: &mut [T],
+        _: bool,
+    ) {
+        self.sample(joint_slots, actives, numbers);
+    }
+}

@@ -1,0 +1,180 @@
+//! Curves in place of a simulation.
+
+use crate::real::{Float, Lane};
+use crate::scene::error::SceneError;
+use crate::scene::handle::Handle;
+use crate::scene::lanes::system::SceneSystem;
+use crate::scene::scene::Scene;
+use crate::scene::state::hermite;
+
+/// The motion of a pendulum as keys, joined by the cubics through coordinates and velocities at
+/// both ends (Hermite).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Baked<T, const N: usize> {
+    /// The length of a tick in seconds.
+    step: f64,
+    /// The ticks of the keys since the first.
+    ticks: Vec<u32>,
+    states: Vec<([T; N], [T; N])>,
+}
+
+impl<T: Lane + Float, const N: usize> Baked<T, N> {
+    /// The keys: time in seconds since the beginning, coordinates, velocities.
+    pub fn keys(&self) -> impl Iterator<Item = (f64, [T; N], [T; N])> {
+        self.ticks
+            .iter()
+            .zip(&self.states)
+            .map(|(&tick, &(q, v))| (f64::from(tick) * self.step, q, v))
+    }
+
+    /// The coordinates `ticks` after the beginning; beyond the ends those at the ends.
+    ///
+    /// With all ticks as keys it has the bits of [`Scene::pose`].
+    pub fn at(&self, ticks: f64) -> [T; N] {
+        let last = self.ticks.len() - 1;
+        let key = self.ticks.partition_point(|&key| f64::from(key) <= ticks);
+        if key == 0 || last == 0 {
+            return self.states[0].0;
+        }
+        if last < key {
+            return self.states[last].0;
+        }
+        self.between(key - 1, key, ticks)
+    }
+
+    fn between(&self, from: usize, to: usize, ticks: f64) -> [T; N] {
+        between(
+            self.step,
+            [self.ticks[from], self.ticks[to]],
+            [self.states[from], self.states[to]],
+            ticks,
+        )
+    }
+}
+
+/// The cubic between the states at two ticks.
+fn between<T: Lane + Float, const N: usize>(
+    step: f64,
+    ends: [u32; 2],
+    states: [([T; N], [T; N]); 2],
+    ticks: f64,
+) -> [T; N] {
+    let length = f64::from(ends[1] - ends[0]);
+    hermite(step * length, (ticks - f64::from(ends[0])) / length, &states)
+}
+
+impl<T: Lane + Float> Scene<T> {
+    /// The motion of `pendulums` over the next `ticks` ticks as keys, no coordinate of which is
+    /// ever off the [pose](Self::pose) by more than `bound`; the scene is as before.
+    ///
+    /// With a bound of zero every tick is a key, and the curve has the bits of the live motion.
+    ///
+    /// # Errors
+    /// A pendulum of another scene, a bound that is negative or no number.
+    pub fn bake<S: SceneSystem<T, N>, const N: usize>(
+        &mut self,
+        pendulums: &[Handle<S, N>],
+        ticks: u32,
+        bound: f64,
+    ) -> Result<Vec<Baked<T, N>>, SceneError> {
+        if !(0.0..f64::INFINITY).contains(&bound) {
+            return Err(SceneError::Setting {
+                name: "bound",
+                value: bound,
+                required: "zero or positive",
+            });
+        }
+        for &pendulum in pendulums {
+            self.checked(pendulum)?;
+        }
+        let snapshot = self.snapshot();
+        let mut live: Vec<Vec<([T; N], [T; N])>> =
+            pendulums.iter().map(|&pendulum| vec![self.state(pendulum)]).collect();
+        for _ in 0..ticks {
+            self.advance_ticks(1);
+            for (&pendulum, live) in pendulums.iter().zip(&mut live) {
+                live.push(self.state(pendulum));
+            }
+        }
+        self.restore(&snapshot)?;
+        let step = self.step();
+        Ok(live.iter().map(|live| thinned(step, live, bound)).collect())
+    }
+}
+
+/// The largest size on [0, 1] of the cubic with these values at 0, ⅓, ⅔ and 1.
+fn farthest([a, b, c, d]: [f64; 4]) -> f64 {
+    let linear = 0.5 * (-11.0 * a + 18.0 * b - 9.0 * c + 2.0 * d);
+    let square = 4.5 * (2.0 * a - 5.0 * b + 4.0 * c - d);
+    let cubic = 4.5 * (-a + 3.0 * b - 3.0 * c + d);
+    let at = |x: f64| (a + x * (linear + x * (square + x * cubic))).abs();
+    // The roots of the derivative, without cancellation.
+    let root = (square * square - 3.0 * cubic * linear).max(0.0).sqrt();
+    let sum = -(square + root.copysign(square));
+    let inside = |x: f64| if 0.0 < x && x < 1.0 { at(x) } else { 0.0 };
+    a.abs().max(d.abs()).max(inside(sum / (3.0 * cubic))).max(inside(linear / sum))
+}
+
+/// Keys found by a greedy search: each is as far from the one before as the bound allows.
+fn thinned<T: Lane + Float, const N: usize>(
+    step: f64,
+    live: &[([T; N], [T; N])],
+    bound: f64,
+) -> Baked<T, N> {
+    let last = live.len() - 1;
+    let fits = |from: usize, to: usize| {
+        let ends = [from as u32, to as u32];
+        (from..to).all(|tick| {
+            let off = |part: f64| {
+                let baked = between(step, ends, [live[from], live[to]], tick as f64 + part);
+                let pose = hermite(step, part, &[live[tick], live[tick + 1]]);
+                core::array::from_fn::<f64, N, _>(|i| (baked[i] - pose[i]).to_f64())
+            };
+            let off = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(off);
+            (0..N).all(|i| farthest(off.map(|off| off[i])) <= bound)
+        })
+    };
+    let mut baked = Baked { step, ticks: vec![0], states: vec![live[0]] };
+    let mut from = 0;
+    while from < last {
+        // Doubling, then halving: the farthest end is found in a logarithmic number of trials.
+        let (mut good, mut stride) = (from + 1, 2);
+        while 0.0 < bound && from + stride <= last && fits(from, from + stride) {
+            good = from + stride;
+            stride *= 2;
+        }
+        let mut bad = (from + stride).min(last + 1);
+        while 0.0 < bound && good + 1 < bad {
+            let middle = good.midpoint(bad);
+            if fits(from, middle) {
+                good = middle;
+            } else {
+                bad = middle;
+            }
+        }
+        baked.ticks.push(good as u32);
+        baked.states.push(live[good]);
+        from = good;
+    }
+    baked
+}
+
+#[cfg(test)]
+mod tests {
+    use super::farthest;
+
+    #[test]
+    fn the_farthest_of_a_cubic_is_found() {
+        let check = |cubic: fn(f64) -> f64| {
+            let found = farthest([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(cubic));
+            let tried = (0..=10_000).map(|k| cubic(f64::from(k) * 1e-4).abs()).fold(0.0, f64::max);
+            assert!((found - tried).abs() < 1e-7, "{found} for {tried}");
+        };
+        check(|x| x * (1.0 - x));
+        check(|x| x * (1.0 - x) * (0.5 - x));
+        check(|x| 1.0 - 3.0 * x + x * x - 2.0 * x * x * x);
+        check(|_| 0.25);
+        check(|x| 2.0 * x - 1.5);
+        check(|x| x * x * (1.0 - x));
+    }
+}

@@ -1,0 +1,9 @@
+//! Everything that a scene can do beside its ticks.
+
+pub(super) mod bake;
+pub(super) mod commands;
+pub(super) mod cycle;
+pub(super) mod hash;
+pub(super) mod sleep;
+pub(super) mod snapshot;
+pub(super) mod visibility;

@@ -1,0 +1,116 @@
+//! Changes of motions and parameters.
+
+use crate::motion::{Derivatives, Side};
+use crate::real::{Float, Lane};
+use crate::scene::error::SceneError;
+use crate::scene::group::joints::{check_motion, inputs_at};
+use crate::scene::group::members::Group;
+use crate::scene::lanes::system::SceneSystem;
+use crate::scene::sampling::clock::Clock;
+use crate::scene::sampling::joint::JointSlot;
+use crate::system::{Purpose, scalar_time};
+use crate::time::Time;
+
+/// Part of the state that stays when a joint is given another motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Preserve {
+    /// Coordinates and velocities stay: a teleport that nobody feels.
+    Swing,
+    /// The momenta stay: a jump in the velocity of the joint is a blow.
+    Momentum,
+    /// The pendulums hang at rest.
+    Nothing,
+}
+
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
+    /// Lets all pendulums hang at rest.
+    pub(super) fn reset(
+        &mut self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+    ) -> Result<(), SceneError> {
+        (0..self.table.len() as u32).try_for_each(|id| self.rest(clock, joint_slots, id))
+    }
+
+    /// Refuses a motion that lacks a derivative which the pendulums on a joint need.
+    pub(super) fn accepts_motion(&self, joint: u32, has: Derivatives) -> Result<(), SceneError> {
+        for bucket in &self.buckets {
+            for track in 0..bucket.tracks.count() as u32 {
+                for (input, &other) in bucket.tracks.joints(track).iter().enumerate() {
+                    if other == joint {
+                        check_motion(&S::FACTS, input, has)?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Adapts pendulums to the motion of a joint that was given in place of the one in `before`.
+    pub(super) fn moved(
+        &mut self,
+        clock: &Clock,
+        before: &[JointSlot<T>],
+        joint_slots: &[JointSlot<T>],
+        joint: u32,
+        preserve: Preserve,
+    ) -> Result<(), SceneError> {
+        let time = Time::new(clock.time(clock.tick()));
+        for id in 0..self.table.len() as u32 {
+            if !self.joints(id).contains(&joint) {
+                continue;
+            }
+            let mut detached = self.read(id);
+            if preserve == Preserve::Momentum {
+                let inputs = |joint_slots, side| {
+                    inputs_at::<S, T, N>(
+                        joint_slots,
+                        &detached.joints,
+                        time,
+                        side,
+                        Purpose::Momenta,
+                        false,
+                    )
+                };
+                let (old, new) = (inputs(before, Side::Before), inputs(joint_slots, Side::After));
+                let (system, t) = (self.system_of(&detached.parameters), scalar_time(time));
+                let [q, _, v, ..] = detached.state;
+                if old != new {
+                    let after = system.velocities(t, &q, &system.momenta(t, &q, &v, &old), &new);
+                    // One whose equations have no solution keeps its velocity, and fails in the
+                    // next tick, which says why.
+                    if after.iter().all(|v| v.is_finite()) {
+                        (detached.state[2], detached.state[3]) = (after, [T::from_f64(0.0); N]);
+                    }
+                }
+            }
+            self.rewrite(clock, joint_slots, &detached);
+            if preserve == Preserve::Nothing {
+                self.rest(clock, joint_slots, id)?;
+            }
+            self.wake(id);
+            self.forget_criterion(id);
+        }
+        Ok(())
+    }
+
+    /// Sets a parameter of all pendulums, if they have it; returns their number.
+    pub(super) fn set_parameter(
+        &mut self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        name: &str,
+        value: T,
+    ) -> Option<usize> {
+        let index = S::FACTS.parameters.iter().position(|parameter| *parameter == name)?;
+        for id in 0..self.table.len() as u32 {
+            let mut detached = self.read(id);
+            detached.parameters[index] = value;
+            self.rewrite(clock, joint_slots, &detached);
+            self.wake(id);
+        }
+        self.criteria.clear();
+        Some(self.table.len())
+    }
+}

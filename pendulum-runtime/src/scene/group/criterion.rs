@@ -1,0 +1,183 @@
+//! The criterion by which a pendulum may sleep.
+
+use crate::motion::Side;
+use crate::real::{Float, Lane, Real};
+use crate::scene::group::joints::inputs_at;
+use crate::scene::lanes::detached::Detached;
+use crate::scene::lanes::limits::Limits;
+use crate::scene::lanes::system::SceneSystem;
+use crate::scene::sampling::clock::Clock;
+use crate::scene::sampling::joint::JointSlot;
+use crate::system::Purpose;
+use crate::time::Time;
+use core::cmp::Reverse;
+use nalgebra::DMatrix;
+use std::collections::BinaryHeap;
+
+/// Times at which sleepers wake: ticks and pendulums.
+pub(crate) type Alarms = BinaryHeap<Reverse<(i64, u32)>>;
+
+/// Bounds by which a pendulum may sleep while its joints rest.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SleepCriterion<T, const N: usize> {
+    /// The tick in which the joints move again: another rest has a criterion of its own.
+    pub(super) until: i64,
+    /// Coordinates at which the pendulum would come to rest.
+    pub(super) rest: [T; N],
+    /// The energy above that at rest below which it sleeps; negative if it may not.
+    pub(super) energy: T,
+    /// No velocity is larger with so little energy.
+    pub(super) speed: [T; N],
+    /// No coordinate is farther from rest with so little energy.
+    pub(super) near: T,
+    /// Distance from rest within which the pendulum is known to come back to it.
+    pub(super) reach: T,
+}
+
+impl<T: Lane + Float, const N: usize> SleepCriterion<T, N> {
+    /// Returns true if another look would find no more: a pendulum that moves fast does not fall
+    /// asleep, and one that is not too far from its rest has no other.
+    pub(super) fn lasts(&self, q: &[T; N], v: &[T; N]) -> bool {
+        let fast = (0..N).any(|i| T::from_f64(4.0) * self.speed[i] < Real::abs(v[i]));
+        fast || T::from_f64(0.0) < self.energy && self.distance(q) <= self.reach
+    }
+
+    /// Largest distance of a coordinate from rest.
+    pub(super) fn distance(&self, q: &[T; N]) -> T {
+        (0..N).fold(T::from_f64(0.0), |distance, i| {
+            Real::max(distance, Real::abs(q[i] - self.rest[i]))
+        })
+    }
+}
+
+/// A system on joints that rest where they are.
+pub(super) struct AtRest<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
+    system: &'a S,
+    pub(super) t: T,
+    pub(super) forces: S::Inputs,
+    momenta: S::Inputs,
+    limits: &'a Limits<T, N>,
+}
+
+impl<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AtRest<'a, S, T, N> {
+    pub(super) fn new(
+        system: &'a S,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        detached: &'a Detached<T, N>,
+    ) -> Self {
+        let t = clock.time(clock.tick());
+        let inputs = |purpose| {
+            inputs_at::<S, T, N>(
+                joint_slots,
+                &detached.joints,
+                Time::new(t),
+                Side::After,
+                purpose,
+                true,
+            )
+        };
+        let (forces, momenta) = (inputs(Purpose::Accelerations), inputs(Purpose::Momenta));
+        Self { system, t: T::from_f64(t), forces, momenta, limits: &detached.limits }
+    }
+
+    /// q̇ᵀMq̇/2.
+    pub(super) fn kinetic(&self, q: &[T; N], v: &[T; N]) -> T {
+        T::from_f64(0.5) * self.product(q, v, v)
+    }
+
+    /// aᵀMb.
+    pub(super) fn product(&self, q: &[T; N], a: &[T; N], b: &[T; N]) -> T {
+        let p = |v: &[T; N]| self.system.momenta(self.t, q, v, &self.momenta);
+        let (moving, still) = (p(b), p(&[T::from_f64(0.0); N]));
+        (0..N).fold(T::from_f64(0.0), |sum, i| sum + a[i] * (moving[i] - still[i]))
+    }
+
+    /// The work that it takes to move from `rest` by `by`, by Simpson's rule over the forces:
+    /// energies would have lost all their digits in single precision. Nothing gets through a wall.
+    pub(super) fn lifted(&self, rest: &[T; N], by: &[T; N]) -> T {
+        let zero = [T::from_f64(0.0); N];
+        if self.limits.is_hard()
+            && (0..N).any(|i| {
+                rest[i] + by[i] < self.limits.low[i] || self.limits.high[i] < rest[i] + by[i]
+            })
+        {
+            return T::from_f64(f64::INFINITY);
+        }
+        let work = |part: f64| {
+            let q = core::array::from_fn(|i| rest[i] + T::from_f64(part) * by[i]);
+            let forces = self.system.forces(self.t, &q, &zero, &self.forces);
+            let work = (0..N).fold(T::from_f64(0.0), |sum, i| sum - by[i] * forces[i]);
+            if self.limits.stiffness == zero[0] {
+                work
+            } else {
+                work - self.product(&q, by, &self.limits.push(&q))
+            }
+        };
+        (work(0.0) + T::from_f64(4.0) * work(0.5) + work(1.0)) / T::from_f64(6.0)
+    }
+
+    /// (M⁻¹)ᵢᵢ.
+    pub(super) fn mobility(&self, q: &[T; N], i: usize) -> T {
+        let mut p = self.system.momenta(self.t, q, &[T::from_f64(0.0); N], &self.momenta);
+        p[i] += T::from_f64(1.0);
+        self.system.velocities(self.t, q, &p, &self.momenta)[i]
+    }
+}
+
+/// The energy without which no coordinate gets farther than `tolerance` from a minimum; `None` if
+/// it is no minimum.
+///
+/// With the energy qᵀHq/2 that is tolerance²/(2 (H⁻¹)ᵢᵢ), the least over all i: the others go where
+/// that costs least.
+pub(super) fn barrier<const N: usize>(
+    tolerance: f64,
+    above: impl Fn(&[f64; N]) -> f64,
+) -> Option<f64> {
+    let at = |moves: &[(usize, f64)]| {
+        let mut by = [0.0; N];
+        for &(i, sign) in moves {
+            by[i] += sign * tolerance;
+        }
+        above(&by)
+    };
+    // Alone, a coordinate takes the easier side.
+    let sides = |i: usize| [at(&[(i, 1.0)]), at(&[(i, -1.0)])];
+    let energy = if N == 1 {
+        let [ahead, behind] = sides(0);
+        ahead.min(behind)
+    } else {
+        let hessian = DMatrix::from_fn(N, N, |i, j| {
+            if i == j {
+                let [ahead, behind] = sides(i);
+                ahead + behind
+            } else {
+                let corner = |a, b| at(&[(i, a), (j, b)]);
+                (corner(1.0, 1.0) - corner(1.0, -1.0) - corner(-1.0, 1.0) + corner(-1.0, -1.0))
+                    / 4.0
+            }
+        });
+        let inverse = hessian.cholesky()?.inverse();
+        (0..N).map(|i| 0.5 / inverse[(i, i)]).fold(f64::INFINITY, f64::min)
+    };
+    (0.0 < energy && energy < f64::INFINITY).then_some(energy)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::barrier;
+
+    #[test]
+    fn coupled_coordinates_help_each_other_over_the_barrier() {
+        // Two coordinates tied by a stiff spring: both go together.
+        let tied = |by: &[f64; 2]| {
+            0.5 * (by[0] * by[0] + by[1] * by[1]) + 50.0 * (by[0] - by[1]) * (by[0] - by[1])
+        };
+        let energy = barrier(0.01, tied).unwrap();
+        let exact = 0.5e-4 / (101.0 / (101.0 * 101.0 - 1e4));
+        assert!((energy / exact - 1.0).abs() < 1e-9, "{energy} for {exact}");
+        assert_eq!(barrier(0.01, |by: &[f64; 1]| -by[0] * by[0]), None);
+        assert_eq!(barrier(0.01, |by: &[f64; 2]| by[0] * by[0] - by[1] * by[1]), None);
+        assert_eq!(barrier(0.01, |by: &[f64; 1]| by[0] * by[0]), Some(0.01 * 0.01));
+    }
+}

@@ -1,0 +1,48 @@
+//! Causes of states that are not finite.
+
+use crate::error::{Error, Quantity};
+use crate::integrate::step::diagnose::suspects;
+use crate::integrate::step::field::{coordinate, first_in_inputs};
+use crate::motion::Side;
+use crate::real::{Float, Lane};
+use crate::scene::group::joints::inputs_at;
+use crate::scene::lanes::detached::Detached;
+use crate::scene::lanes::system::SceneSystem;
+use crate::scene::sampling::joint::JointSlot;
+use crate::system::{Purpose, scalar_time};
+use crate::time::Time;
+
+/// Error that names the value which is not finite in the tick that begins at `t` with the state of
+/// `detached`.
+pub(super) fn diagnose<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+    system: &S,
+    joint_slots: &[JointSlot<T>],
+    detached: &Detached<T, N>,
+    t: f64,
+) -> Error {
+    let time = Time::new(t);
+    let inputs = inputs_at::<S, T, N>(
+        joint_slots,
+        &detached.joints,
+        time,
+        Side::After,
+        Purpose::Accelerations,
+        false,
+    );
+    let [q, _, v, ..] = &detached.state;
+    let mut what = first_in_inputs(&S::FACTS, &inputs);
+    if what.is_none() {
+        let a = system.accelerations(scalar_time(time), q, v, &inputs);
+        what = a
+            .iter()
+            .position(|a| !a.is_finite())
+            .map(|index| Quantity::Acceleration(coordinate(&S::FACTS, index)));
+    }
+    // If the tick begins well, the velocity grows beyond all bounds in it.
+    let fastest = |i: &usize, j: &usize| v[*i].to_f64().abs().total_cmp(&v[*j].to_f64().abs());
+    let what = what.unwrap_or_else(|| {
+        Quantity::Velocity(coordinate(&S::FACTS, (0..N).max_by(fastest).unwrap_or(0)))
+    });
+    let suspects = if let Quantity::Acceleration(_) = what { suspects(system) } else { Vec::new() };
+    Error::NotFinite { t, what, suspects }
+}

@@ -1,0 +1,94 @@
+//! Joints and states that a system accepts, and its inputs on them.
+
+use crate::error::Coordinate;
+use crate::motion::{Derivatives, Side, derivatives_of};
+use crate::real::{Float, Lane};
+use crate::scene::error::SceneError;
+use crate::scene::lanes::system::SceneSystem;
+use crate::scene::sampling::assemble::{Assemble, By};
+use crate::scene::sampling::joint::JointSlot;
+use crate::scene::sampling::layout::Layout;
+use crate::system::{Facts, Purpose};
+use crate::time::Time;
+
+/// The inputs of a system on joints, with what `purpose` needs; at rest if asked so: only the
+/// positions then.
+pub(crate) fn inputs_at<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+    joint_slots: &[JointSlot<T>],
+    joints: &[u32],
+    t: Time,
+    side: Side,
+    purpose: Purpose,
+    at_rest: bool,
+) -> S::Inputs {
+    let components = <S::Inputs as Assemble<T>>::COMPONENTS;
+    let layout = Layout::new(S::FACTS.inputs, components, purpose);
+    let mut record = vec![T::from_f64(0.0); layout.width];
+    let mut at = 0;
+    for (input, &joint) in joints.iter().enumerate() {
+        let drive = &joint_slots[joint as usize].drive;
+        let needed = derivatives_of(S::FACTS.inputs, input, purpose);
+        let own = components[input] * needed.count();
+        if !at_rest {
+            drive.sample(t, side, needed, &mut record[at..at + own]);
+        } else if needed.contains(Derivatives::POSITION) {
+            drive.sample(t, side, Derivatives::POSITION, &mut record[at..at + components[input]]);
+        }
+        at += own;
+    }
+    Assemble::assemble(&mut By(|input, derivative, component| {
+        layout.place(input, derivative, component).map_or(T::from_f64(0.0), |place| record[place])
+    }))
+}
+
+/// Refuses a state that is not finite.
+pub(crate) fn check_state<T: Float, const N: usize>(
+    facts: &Facts,
+    values: &[T; N],
+) -> Result<(), SceneError> {
+    match values.iter().position(|value| !value.is_finite()) {
+        None => Ok(()),
+        Some(index) => {
+            let name = facts.coordinates.get(index).copied().unwrap_or("");
+            Err(SceneError::State {
+                coordinate: Coordinate { index, name },
+                value: values[index].to_f64(),
+            })
+        }
+    }
+}
+
+/// Refuses joints that do not exist, move in another number of dimensions than their inputs or lack
+/// a derivative that the equations need.
+pub(crate) fn check_joints<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+    joint_slots: &[JointSlot<T>],
+    joints: &[u32],
+) -> Result<(), SceneError> {
+    for (input, &joint) in joints.iter().enumerate() {
+        let components = <S::Inputs as Assemble<T>>::COMPONENTS.get(input);
+        let joint_slot = joint_slots
+            .get(joint as usize)
+            .filter(|joint_slot| components == Some(&joint_slot.drive.components()));
+        let joint_slot = joint_slot.ok_or(SceneError::Joint(joint))?;
+        check_motion(&S::FACTS, input, joint_slot.drive.has())?;
+    }
+    Ok(())
+}
+
+/// Refuses a motion that lacks a derivative which the equations need of an input.
+pub(crate) fn check_motion(
+    facts: &Facts,
+    input: usize,
+    has: Derivatives,
+) -> Result<(), SceneError> {
+    let needed = [Purpose::Accelerations, Purpose::Momenta]
+        .map(|purpose| derivatives_of(facts.inputs, input, purpose));
+    for derivative in 0..3 {
+        let order = Derivatives::of(derivative);
+        if needed.iter().any(|needed| needed.contains(order)) && !has.contains(order) {
+            let input = facts.inputs.get(input).map_or("", |input| input.name);
+            return Err(SceneError::Derivative { input, derivative });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,276 @@
+//! All pendulums of one type.
+
+use crate::motion::Side;
+use crate::real::{Float, Lane};
+use crate::scene::error::SceneError;
+use crate::scene::group::criterion::{Alarms, SleepCriterion};
+use crate::scene::group::joints::inputs_at;
+use crate::scene::group::status::SceneStatus;
+use crate::scene::group::{frequency, rest};
+use crate::scene::lanes::bucket::{Bucket, Kind};
+use crate::scene::lanes::detached::Detached;
+use crate::scene::lanes::limits::Limits;
+use crate::scene::lanes::system::SceneSystem;
+use crate::scene::sampling::clock::Clock;
+use crate::scene::sampling::joint::{JointSlot, still};
+use crate::scene::sampling::scheme::{Grid, MOST_SUBSTEPS, Scheme};
+use crate::system::Purpose;
+use crate::time::Time;
+
+/// Place of a pendulum in its group.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Location {
+    pub(crate) bucket: u32,
+    pub(crate) slot: u32,
+}
+
+/// All pendulums of one type.
+pub(crate) struct Group<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
+    pub(crate) prototype: S,
+    /// The method that somebody has chosen.
+    pub(crate) scheme: Option<Scheme>,
+    pub(crate) buckets: Vec<Bucket<S, T, N>>,
+    pub(crate) table: Vec<Location>,
+    pub(crate) status: Vec<SceneStatus>,
+    /// The relative errors of the phase that steps are chosen by.
+    tolerances: Vec<f64>,
+    pub(crate) alarms: Alarms,
+    /// By pendulum, once somebody has looked.
+    pub(crate) criteria: Vec<Option<SleepCriterion<T, N>>>,
+}
+
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
+    pub(crate) fn new(prototype: S) -> Self {
+        Self {
+            prototype,
+            scheme: None,
+            buckets: Vec::new(),
+            table: Vec::new(),
+            status: Vec::new(),
+            tolerances: Vec::new(),
+            alarms: Alarms::new(),
+            criteria: Vec::new(),
+        }
+    }
+
+    /// Hangs a pendulum on joints; it is awake.
+    pub(crate) fn hang(
+        &mut self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        joints: Vec<u32>,
+        system: &S,
+        tolerance: f64,
+        [q, v]: [[T; N]; 2],
+    ) -> u32 {
+        let id = self.table.len() as u32;
+        let mut parameters = Vec::with_capacity(S::FACTS.parameters.len());
+        system.mapped(|parameter| {
+            parameters.push(parameter);
+            parameter
+        });
+        let zero = [T::from_f64(0.0); N];
+        let detached = Detached {
+            id,
+            joints,
+            parameters,
+            state: [q, zero, v, zero, q, v],
+            limits: Limits::none(),
+        };
+        self.table.push(Location { bucket: 0, slot: 0 });
+        self.status.push(SceneStatus::Awake);
+        self.tolerances.push(tolerance);
+        let kind = self.kind(clock, joint_slots, system, &detached);
+        self.insert(kind, &detached);
+        self.set_awake(id, true);
+        id
+    }
+
+    /// The kind of a pendulum: its steps, and whether its joints rest for ever.
+    pub(crate) fn kind(
+        &self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        system: &S,
+        detached: &Detached<T, N>,
+    ) -> Kind {
+        let t = clock.time(clock.tick());
+        let inputs = inputs_at::<S, T, N>(
+            joint_slots,
+            &detached.joints,
+            Time::new(t),
+            Side::After,
+            Purpose::Accelerations,
+            true,
+        );
+        let omega = frequency::fastest(system, T::from_f64(t), &detached.state[0], &inputs);
+        // A soft stop swings too.
+        let phase = omega.max(detached.limits.stiffness.to_f64().sqrt()) * clock.step();
+        let tolerance = self.tolerances[detached.id as usize];
+        let grid = match self.scheme {
+            Some(scheme) => Grid { scheme, substeps: scheme.substeps(phase, tolerance) },
+            None => Scheme::cheapest(&S::FACTS, phase, tolerance),
+        };
+        debug_assert!(grid.substeps <= MOST_SUBSTEPS);
+        Kind { grid, still: still(joint_slots, &detached.joints) }
+    }
+
+    /// Puts a pendulum into its bucket, asleep.
+    pub(crate) fn insert(&mut self, kind: Kind, detached: &Detached<T, N>) {
+        let bucket =
+            self.buckets.iter().position(|bucket| bucket.kind == kind).unwrap_or_else(|| {
+                self.buckets.push(Bucket::new(kind));
+                self.buckets.len() - 1
+            });
+        let slot = self.buckets[bucket].push(&self.prototype, detached);
+        self.table[detached.id as usize] = Location { bucket: bucket as u32, slot: slot as u32 };
+    }
+
+    /// Takes a pendulum out of its bucket; `insert` puts it back.
+    pub(crate) fn remove(&mut self, id: u32) -> Detached<T, N> {
+        self.set_awake(id, false);
+        let Location { bucket, slot } = self.table[id as usize];
+        let last = self.buckets[bucket as usize].len - 1;
+        self.swap(bucket as usize, slot as usize, last);
+        let detached = self.buckets[bucket as usize].read(last);
+        self.buckets[bucket as usize].pop();
+        detached
+    }
+
+    /// Moves a pendulum among those that are computed, or away from them.
+    pub(crate) fn set_awake(&mut self, id: u32, awake: bool) {
+        let Location { bucket, slot } = self.table[id as usize];
+        let (index, slot) = (bucket as usize, slot as usize);
+        let bucket = &mut self.buckets[index];
+        if (slot < bucket.awake) == awake {
+            return;
+        }
+        let track = bucket.blocks[slot / crate::scene::lanes::system::W].track
+            [slot % crate::scene::lanes::system::W];
+        bucket.tracks.count_awake(track, awake);
+        if awake {
+            bucket.awake += 1;
+        } else {
+            bucket.awake -= 1;
+        }
+        let other = if awake { bucket.awake - 1 } else { bucket.awake };
+        self.swap(index, slot, other);
+    }
+
+    fn swap(&mut self, bucket: usize, a: usize, b: usize) {
+        self.buckets[bucket].swap(a, b);
+        for slot in [a, b] {
+            let id = self.buckets[bucket].id(slot);
+            self.table[id as usize].slot = slot as u32;
+        }
+    }
+
+    pub(crate) fn is_awake(&self, id: u32) -> bool {
+        let Location { bucket, slot } = self.table[id as usize];
+        (slot as usize) < self.buckets[bucket as usize].awake
+    }
+
+    /// The joints of a pendulum.
+    pub(crate) fn joints(&self, id: u32) -> &[u32] {
+        let Location { bucket, slot } = self.table[id as usize];
+        self.buckets[bucket as usize].joints(slot as usize)
+    }
+
+    /// A pendulum with all that belongs to it.
+    pub(crate) fn read(&self, id: u32) -> Detached<T, N> {
+        let Location { bucket, slot } = self.table[id as usize];
+        self.buckets[bucket as usize].read(slot as usize)
+    }
+
+    /// Writes a pendulum back to where it is.
+    pub(crate) fn write(&mut self, detached: &Detached<T, N>) {
+        let Location { bucket, slot } = self.table[detached.id as usize];
+        self.buckets[bucket as usize].write(slot as usize, detached);
+    }
+
+    /// Writes a pendulum back that may need other steps than before.
+    pub(crate) fn rewrite(
+        &mut self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        detached: &Detached<T, N>,
+    ) {
+        let system = self.system_of(&detached.parameters);
+        let kind = self.kind(clock, joint_slots, &system, detached);
+        if self.buckets[self.table[detached.id as usize].bucket as usize].kind == kind {
+            return self.write(detached);
+        }
+        let awake = self.is_awake(detached.id);
+        self.remove(detached.id);
+        self.insert(kind, detached);
+        self.set_awake(detached.id, awake);
+    }
+
+    /// Wakes a pendulum that sleeps.
+    pub(crate) fn wake(&mut self, id: u32) {
+        if let SceneStatus::Asleep(_) = self.status[id as usize] {
+            self.status[id as usize] = SceneStatus::Awake;
+            self.set_awake(id, true);
+        }
+    }
+
+    /// Coordinates at which a pendulum comes to rest with its joints at rest where they are at `t`.
+    pub(crate) fn rest_of(
+        &self,
+        joint_slots: &[JointSlot<T>],
+        detached: &Detached<T, N>,
+        t: f64,
+    ) -> Option<[T; N]> {
+        let system = self.system_of(&detached.parameters);
+        let inputs = inputs_at::<S, T, N>(
+            joint_slots,
+            &detached.joints,
+            Time::new(t),
+            Side::After,
+            Purpose::Accelerations,
+            true,
+        );
+        let t = T::from_f64(t);
+        let omega = frequency::fastest(&system, t, &detached.state[0], &inputs)
+            .max(detached.limits.stiffness.to_f64().sqrt());
+        rest::rest(&system, t, &detached.state[0], &inputs, omega, &detached.limits)
+    }
+
+    /// Lets a pendulum hang at rest; one that has failed swings again.
+    pub(crate) fn rest(
+        &mut self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        id: u32,
+    ) -> Result<(), SceneError> {
+        let mut detached = self.read(id);
+        let missing = SceneError::Restless { kind: S::FACTS.name, index: id };
+        let q = self.rest_of(joint_slots, &detached, clock.time(clock.tick())).ok_or(missing)?;
+        let zero = [T::from_f64(0.0); N];
+        detached.state = [q, zero, zero, zero, q, zero];
+        self.write(&detached);
+        if self.status[id as usize] == SceneStatus::Failed {
+            self.status[id as usize] = SceneStatus::Awake;
+            self.set_awake(id, true);
+        }
+        Ok(())
+    }
+
+    /// The system with these parameters.
+    pub(crate) fn system_of(&self, parameters: &[T]) -> S {
+        let mut parameters = parameters.iter();
+        self.prototype.mapped(|parameter| parameters.next().copied().unwrap_or(parameter))
+    }
+
+    /// The state of a pendulum now and one tick before.
+    pub(crate) fn states(&self, id: u32) -> [([T; N], [T; N]); 2] {
+        let Location { bucket, slot } = self.table[id as usize];
+        let (block, lane) = (
+            &self.buckets[bucket as usize].blocks[slot as usize / crate::scene::lanes::system::W],
+            slot as usize % crate::scene::lanes::system::W,
+        );
+        let before =
+            [&block.before[0], &block.before[1]].map(|lanes| lanes.map(|lanes| lanes.0[lane]));
+        [(before[0], before[1]), block.state(lane)]
+    }
+}

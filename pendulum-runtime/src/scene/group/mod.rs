@@ -1,0 +1,13 @@
+//! The pendulums of one type: where each stands, and what a scene does with all of them.
+
+pub(super) mod any;
+pub(super) mod change;
+pub(super) mod criterion;
+pub(super) mod fault;
+pub(super) mod frequency;
+pub(super) mod joints;
+pub(super) mod members;
+pub(super) mod rest;
+pub(super) mod saved;
+pub(super) mod sleep;
+pub(super) mod status;

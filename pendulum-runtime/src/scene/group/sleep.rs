@@ -1,0 +1,188 @@
+//! Sleep: pendulums that hardly move, on joints that rest, are not computed until their joints
+//! move.
+
+use crate::real::{Float, Lane, Real};
+use crate::scene::group::criterion::{AtRest, SleepCriterion, barrier};
+use crate::scene::group::frequency;
+use crate::scene::group::members::Group;
+use crate::scene::group::status::SceneStatus;
+use crate::scene::lanes::system::{SceneSystem, W};
+use crate::scene::sampling::clock::Clock;
+use crate::scene::sampling::joint::JointSlot;
+use core::cmp::Reverse;
+
+/// The ticks from one look for sleepers to the next.
+pub(crate) const LOOK: i64 = 16;
+
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
+    /// Wakes the sleepers whose time has come, all of them at `i64::MAX`; returns true if there
+    /// were any.
+    pub(crate) fn wake_due(&mut self, tick: i64) -> bool {
+        let mut woken = false;
+        if tick == i64::MAX {
+            self.alarms.clear();
+            for id in 0..self.table.len() as u32 {
+                woken |= matches!(self.status[id as usize], SceneStatus::Asleep(_));
+                self.wake(id);
+            }
+        }
+        while let Some(&Reverse((when, id))) = self.alarms.peek()
+            && when <= tick
+        {
+            self.alarms.pop();
+            // Other sleepers have been woken before.
+            if self.status[id as usize] == SceneStatus::Asleep(when) {
+                self.wake(id);
+                woken = true;
+            }
+        }
+        woken
+    }
+
+    /// Lets the pendulums fall asleep that may; returns true if there were any.
+    pub(crate) fn fall_asleep(
+        &mut self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        tolerance: f64,
+    ) -> bool {
+        if S::FACTS.explicit_time {
+            return false;
+        }
+        let (tick, now) = (clock.tick(), clock.time(clock.tick()));
+        self.criteria.resize(self.table.len(), None);
+        let mut sleepers: Vec<(u32, i64)> = Vec::new();
+        for index in 0..self.buckets.len() {
+            let bucket = &self.buckets[index];
+            // The last tick that begins while the joints of a track still rest.
+            let until: Vec<i64> = (0..bucket.tracks.count() as u32)
+                .map(|track| {
+                    if !bucket.tracks.is_awake(track as usize) {
+                        return tick;
+                    }
+                    let rest = |&joint: &u32| joint_slots[joint as usize].drive.rest_until(now);
+                    clock.last_before(
+                        bucket.tracks.joints(track).iter().map(rest).fold(f64::INFINITY, f64::min),
+                    )
+                })
+                .collect();
+            for slot in 0..self.buckets[index].awake {
+                let bucket = &self.buckets[index];
+                let (block, lane) = (&bucket.blocks[slot / W], slot % W);
+                let (id, wake) = (bucket.id(slot), until[block.track[lane] as usize]);
+                if wake < tick + LOOK {
+                    continue;
+                }
+                let (q, v) = block.state(lane);
+                let known = self.criteria[id as usize]
+                    .filter(|criterion| criterion.until == wake && criterion.lasts(&q, &v));
+                let criterion = known
+                    .unwrap_or_else(|| self.criterion(clock, joint_slots, id, tolerance, wake));
+                self.criteria[id as usize] = Some(criterion);
+                let slow = T::from_f64(0.0) < criterion.energy
+                    && (0..N).all(|i| Real::abs(v[i]) <= criterion.speed[i]);
+                if slow
+                    && criterion.distance(&q) <= criterion.near
+                    && self.is_calm(clock, joint_slots, id, &q, &v, &criterion)
+                {
+                    sleepers.push((id, wake));
+                }
+            }
+        }
+        for &(id, wake) in &sleepers {
+            let mut detached = self.read(id);
+            let zero = [T::from_f64(0.0); N];
+            let q = detached.state[0];
+            detached.state = [q, detached.state[1], zero, zero, q, zero];
+            self.write(&detached);
+            self.status[id as usize] = SceneStatus::Asleep(wake);
+            self.set_awake(id, false);
+            self.alarms.extend(alarm(id, self.status[id as usize]));
+        }
+        // Alarms of sleepers that were woken stay behind.
+        if 2 * self.table.len() < self.alarms.len() {
+            self.reset_alarms();
+        }
+        !sleepers.is_empty()
+    }
+
+    /// Sets the alarms of all that sleep.
+    pub(crate) fn reset_alarms(&mut self) {
+        self.alarms =
+            (0..).zip(&self.status).filter_map(|(id, status)| alarm(id, *status)).collect();
+    }
+
+    /// Forgets whether a pendulum may sleep.
+    pub(crate) fn forget_criterion(&mut self, id: u32) {
+        if let Some(criterion) = self.criteria.get_mut(id as usize) {
+            *criterion = None;
+        }
+    }
+
+    /// Returns true if the energy is small enough to sleep.
+    fn is_calm(
+        &self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        id: u32,
+        q: &[T; N],
+        v: &[T; N],
+        criterion: &SleepCriterion<T, N>,
+    ) -> bool {
+        let detached = self.read(id);
+        let system = self.system_of(&detached.parameters);
+        let rest = AtRest::new(&system, clock, joint_slots, &detached);
+        let by = core::array::from_fn(|i| q[i] - criterion.rest[i]);
+        rest.kinetic(q, v) + rest.lifted(&criterion.rest, &by) <= criterion.energy
+    }
+
+    /// Finds the criterion by which a pendulum may sleep.
+    fn criterion(
+        &self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        id: u32,
+        tolerance: f64,
+        until: i64,
+    ) -> SleepCriterion<T, N> {
+        let (detached, near) = (self.read(id), T::from_f64(4.0 * tolerance));
+        let system = self.system_of(&detached.parameters);
+        let still = AtRest::new(&system, clock, joint_slots, &detached);
+        let [q, ..] = detached.state;
+        // A pendulum that may not sleep is looked at again when it is slow.
+        let omega = frequency::fastest(&system, still.t, &q, &still.forces);
+        let never = SleepCriterion {
+            until,
+            rest: q,
+            energy: T::from_f64(-1.0),
+            speed: [T::from_f64(omega * tolerance); N],
+            near,
+            reach: near,
+        };
+        let Some(rest) = self.rest_of(joint_slots, &detached, clock.time(clock.tick())) else {
+            return never;
+        };
+        let lifted = |by: &[f64; N]| still.lifted(&rest, &by.map(T::from_f64)).to_f64();
+        let Some(energy) = barrier(tolerance, lifted) else { return never };
+        let energy = T::from_f64(energy);
+        // T = pᵀM⁻¹p/2 bounds q̇ᵢ by √(2T (M⁻¹)ᵢᵢ), with a tenth more because M is not the same
+        // everywhere.
+        let speed = core::array::from_fn(|i| {
+            (T::from_f64(2.42) * energy * still.mobility(&rest, i)).sqrt()
+        });
+        let criterion = SleepCriterion { until, rest, energy, speed, near, reach: near };
+        // A tenth more, so that a swing that grows is not looked at in every turn.
+        SleepCriterion {
+            reach: Real::max(near, T::from_f64(1.1) * criterion.distance(&q)),
+            ..criterion
+        }
+    }
+}
+
+/// Alarm of a pendulum that sleeps for a limited time.
+fn alarm(id: u32, status: SceneStatus) -> Option<Reverse<(i64, u32)>> {
+    match status {
+        SceneStatus::Asleep(tick) if tick != i64::MAX => Some(Reverse((tick, id))),
+        _ => None,
+    }
+}

@@ -1,0 +1,303 @@
+//! Pendulums of one type that take the same steps: those that are awake first, all in blocks of
+//! lanes.
+
+use crate::real::{Float, Lane};
+use crate::scene::lanes::block::{Block, ColdData};
+use crate::scene::lanes::detached::Detached;
+use crate::scene::lanes::kernel::{Batch, Run};
+use crate::scene::lanes::limits::{LaneLimits, Limits, half_decay};
+use crate::scene::lanes::system::{Layouts, SceneSystem, W, Wide};
+use crate::scene::sampling::scheme::Grid;
+use crate::scene::sampling::tracks::{Sampled, Tracks};
+use crate::simd::widest;
+use crate::system::System;
+use crate::time::Time;
+use core::sync::atomic::AtomicBool;
+
+/// Properties shared by pendulums that are computed together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Kind {
+    pub(crate) grid: Grid,
+    /// Their joints rest for ever.
+    pub(crate) still: bool,
+}
+
+/// Pendulums of one kind.
+pub(crate) struct Bucket<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
+    pub(crate) kind: Kind,
+    pub(crate) tracks: Tracks<T>,
+    pub(crate) blocks: Vec<Block<S, T, N>>,
+    /// The other part of each block.
+    pub(crate) cold: Vec<ColdData<S, T, N>>,
+    /// The parameters: as many lanes for each block as the system has parameters.
+    pub(crate) parameters: Vec<Wide<T>>,
+    /// The number of all pendulums, and of those at the front that are awake.
+    pub(crate) len: usize,
+    pub(crate) awake: usize,
+    times: Vec<Time>,
+    stale: bool,
+}
+
+/// A lane that has failed: the pendulum and the ticks since the beginning of the batch.
+pub(crate) type Failed = (u32, u8);
+
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
+    pub(crate) fn new(kind: Kind) -> Self {
+        let tracks = Tracks::new(
+            <S::Inputs as crate::scene::sampling::assemble::Assemble<T>>::COMPONENTS.len(),
+        );
+        Self {
+            kind,
+            tracks,
+            blocks: Vec::new(),
+            cold: Vec::new(),
+            parameters: Vec::new(),
+            len: 0,
+            awake: 0,
+            times: Vec::new(),
+            stale: false,
+        }
+    }
+
+    const fn parameter_count() -> usize {
+        S::FACTS.parameters.len()
+    }
+
+    /// Adds a pendulum at the end, where it sleeps; gives its slot.
+    pub(crate) fn push(&mut self, prototype: &S, detached: &Detached<T, N>) -> usize {
+        let slot = self.len;
+        if slot == self.blocks.len() * W {
+            let (block, cold) = Block::new(prototype);
+            self.blocks.push(block);
+            self.cold.push(cold);
+            prototype.mapped(|parameter| {
+                self.parameters.push(Wide::splat(parameter));
+                parameter
+            });
+        }
+        self.len += 1;
+        self.write(slot, detached);
+        slot
+    }
+
+    /// Takes out the last pendulum, which must sleep.
+    pub(crate) fn pop(&mut self) {
+        self.len -= 1;
+        if self.len <= (self.blocks.len() - 1) * W {
+            self.blocks.pop();
+            self.cold.pop();
+            self.parameters.truncate(self.blocks.len() * Self::parameter_count());
+        }
+    }
+
+    /// The limits of the pendulum in a slot and its state, as in [`Detached`].
+    pub(crate) fn numbers(&self, slot: usize) -> (Limits<T, N>, [[T; N]; 6]) {
+        let (block, lane) = (&self.blocks[slot / W], slot % W);
+        let of = |lanes: &[Wide<T>; N]| lanes.map(|lanes| lanes.0[lane]);
+        let limits = block.limits.as_deref().map_or_else(Limits::none, |limits| Limits {
+            damping: limits.damping.0[lane],
+            low: of(&limits.low),
+            high: of(&limits.high),
+            restitution: limits.restitution.0[lane],
+            stiffness: limits.stiffness.0[lane],
+            hard: limits.hard.0[lane],
+        });
+        let [before_q, before_v] = &block.before;
+        (
+            limits,
+            [&block.q.high, &block.q.low, &block.v.high, &block.v.low, before_q, before_v].map(of),
+        )
+    }
+
+    /// The pendulum in a slot.
+    pub(crate) fn read(&self, slot: usize) -> Detached<T, N> {
+        let (limits, state) = self.numbers(slot);
+        let parameters = self.parameters_of(slot).collect();
+        Detached {
+            id: self.id(slot),
+            joints: self.joints(slot).to_vec(),
+            parameters,
+            state,
+            limits,
+        }
+    }
+
+    /// The joints of the pendulum in a slot.
+    pub(crate) fn joints(&self, slot: usize) -> &[u32] {
+        self.tracks.joints(self.blocks[slot / W].track[slot % W])
+    }
+
+    /// The parameters of the pendulum in a slot.
+    pub(crate) fn parameters_of(&self, slot: usize) -> impl Iterator<Item = T> {
+        let count = Self::parameter_count();
+        self.parameters[slot / W * count..][..count].iter().map(move |lanes| lanes.0[slot % W])
+    }
+
+    /// Puts a pendulum into a slot.
+    pub(crate) fn write(&mut self, slot: usize, detached: &Detached<T, N>) {
+        let track = self.tracks.find(&detached.joints);
+        let count = Self::parameter_count();
+        let lane = slot % W;
+        let parameters = &mut self.parameters[slot / W * count..][..count];
+        let (block, cold) = (&mut self.blocks[slot / W], &mut self.cold[slot / W]);
+        for (lanes, &parameter) in parameters.iter_mut().zip(&detached.parameters) {
+            lanes.0[lane] = parameter;
+        }
+        cold.stale = true;
+        self.stale = true;
+        (block.track[lane], cold.id[lane]) = (track, detached.id);
+        let Block { q, v, before: [before_q, before_v], .. } = block;
+        for (lanes, numbers) in
+            [&mut q.high, &mut q.low, &mut v.high, &mut v.low, before_q, before_v]
+                .into_iter()
+                .zip(&detached.state)
+        {
+            for i in 0..N {
+                lanes[i].0[lane] = numbers[i];
+            }
+        }
+        let own = &detached.limits;
+        if block.limits.is_none() && *own == Limits::none() {
+            return;
+        }
+        let limits = block.limits.get_or_insert_with(|| Box::new(LaneLimits::none()));
+        for i in 0..N {
+            (limits.low[i].0[lane], limits.high[i].0[lane]) = (own.low[i], own.high[i]);
+        }
+        limits.damping.0[lane] = own.damping;
+        limits.restitution.0[lane] = own.restitution;
+        limits.stiffness.0[lane] = own.stiffness;
+        limits.hard.0[lane] = own.hard;
+    }
+
+    /// Lets the pendulums in two slots change places.
+    pub(crate) fn swap(&mut self, a: usize, b: usize) {
+        if a != b {
+            let (first, second) = (self.read(a), self.read(b));
+            self.write(a, &second);
+            self.write(b, &first);
+        }
+    }
+
+    pub(crate) fn id(&self, slot: usize) -> u32 {
+        self.cold[slot / W].id[slot % W]
+    }
+
+    /// Computes once what parameters alone decide, where they have changed.
+    pub(crate) fn settle(&mut self, prototype: &S, step: f64) {
+        if !self.stale {
+            return;
+        }
+        self.stale = false;
+        let (count, h) = (Self::parameter_count(), step / f64::from(self.kind.grid.substeps));
+        let blocks = self.blocks.iter_mut().zip(&mut self.cold).enumerate();
+        for (index, (block, cold)) in blocks.filter(|(_, (_, cold))| cold.stale) {
+            let mut parameters = self.parameters[index * count..][..count].iter();
+            cold.system = prototype.widen(|parameter| {
+                parameters.next().map_or(Wide::splat(parameter), |lanes| *lanes)
+            });
+            block.prepared = cold.system.prepare();
+            cold.stale = false;
+            if let Some(limits) = &mut block.limits {
+                let infinity = T::from_f64(f64::INFINITY);
+                limits.stops = false;
+                for lane in 0..W {
+                    limits.factor.0[lane] = half_decay(limits.damping.0[lane], h);
+                    limits.stops |= (0..N).any(|i| {
+                        limits.low[i].0[lane] != -infinity || limits.high[i].0[lane] != infinity
+                    });
+                }
+            }
+        }
+    }
+
+    /// Goes through a batch of ticks; gives the lanes that failed.
+    pub(crate) fn run(&mut self, sampled: &Sampled<'_, T>, fork: bool, failed: &mut Vec<Failed>) {
+        if self.awake == 0 {
+            return;
+        }
+        let (layout, momenta) =
+            (const { &Layouts::<S, N>::FORCES }, const { &Layouts::<S, N>::MOMENTA });
+        let Kind { grid, still } = self.kind;
+        if still {
+            self.tracks.load_still(
+                layout,
+                S::FACTS.inputs,
+                sampled.clock.time(sampled.tick),
+                sampled.joint_slots,
+            );
+        } else {
+            self.tracks.load(grid, layout, momenta, S::FACTS.inputs, sampled, fork);
+        }
+        self.times.clear();
+        for tick in 0..sampled.ticks {
+            self.times.extend(
+                grid.fractions()
+                    .map(|fraction| sampled.clock.within(sampled.tick + tick as i64, fraction)),
+            );
+        }
+        let h = sampled.clock.step() / f64::from(grid.substeps);
+        let batch = Batch {
+            grid,
+            h,
+            ticks: sampled.ticks,
+            times: &self.times,
+            tracks: &self.tracks,
+            still,
+            failed: AtomicBool::new(false),
+        };
+        let blocks = &mut self.blocks[..self.awake.div_ceil(W)];
+        let lanes_of_last = (self.awake - 1) % W + 1;
+        run_blocks(blocks, &self.cold, lanes_of_last, &batch, fork);
+        if !batch.failed.into_inner() {
+            return;
+        }
+        for (block, cold) in
+            blocks.iter_mut().zip(&self.cold).filter(|(block, _)| block.failed != 0)
+        {
+            for lane in (0..W).filter(|lane| block.failed & (1 << lane) != 0) {
+                failed.push((cold.id[lane], block.failed_at[lane]));
+            }
+            block.failed = 0;
+        }
+    }
+}
+
+/// Takes all blocks through a batch, on all threads if there are many.
+#[cfg(feature = "rayon")]
+fn run_blocks<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+    blocks: &mut [Block<S, T, N>],
+    cold: &[ColdData<S, T, N>],
+    lanes_of_last: usize,
+    batch: &Batch<'_, T>,
+    fork: bool,
+) {
+    use crate::scene::threads::{part, share};
+    const LEAST: usize = 32;
+    if !fork || blocks.len() < 2 * LEAST {
+        return widest(Run { blocks, cold, lanes_of_last, batch });
+    }
+    let part = part(blocks.len(), LEAST);
+    let last = blocks.len().div_ceil(part) - 1;
+    let parts = blocks.chunks_mut(part).zip(cold.chunks(part)).enumerate();
+    share(parts, |(index, (blocks, cold))| {
+        widest(Run {
+            blocks,
+            cold,
+            lanes_of_last: if index == last { lanes_of_last } else { W },
+            batch,
+        });
+    });
+}
+
+/// Takes all blocks through a batch.
+#[cfg(not(feature = "rayon"))]
+fn run_blocks<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+    blocks: &mut [Block<S, T, N>],
+    cold: &[ColdData<S, T, N>],
+    lanes_of_last: usize,
+    batch: &Batch<'_, T>,
+    _: bool,
+) {
+    widest(Run { blocks, cold, lanes_of_last, batch });
+}

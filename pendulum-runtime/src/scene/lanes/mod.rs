@@ -1,0 +1,9 @@
+//! Blocks of lanes: pendulums of one type that are computed together.
+
+pub(super) mod block;
+pub(super) mod bucket;
+pub(super) mod detached;
+pub(super) mod inputs;
+pub(super) mod kernel;
+pub(super) mod limits;
+pub(super) mod system;

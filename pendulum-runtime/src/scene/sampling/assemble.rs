@@ -1,0 +1,95 @@
+//! Samples of driven inputs, put together from single numbers, and the joints that give them.
+
+#![allow(clippy::inline_always)]
+
+use crate::motion::Sample;
+use crate::real::Real;
+use crate::scene::sampling::joint::Joint;
+use crate::sealed::Sealed;
+use crate::system::Samples;
+
+/// The numbers of samples. A closure would do, but that need not be inlined, and then is compiled
+/// for other instructions.
+pub trait Numbers<T>: Sealed {
+    /// The number in input i, derivative d (0 for the position) and component c.
+    fn number(&mut self, input: usize, derivative: usize, component: usize) -> T;
+}
+
+/// Numbers that a function gives, where it does not matter.
+pub(crate) struct By<F>(pub(crate) F);
+
+impl<F> Sealed for By<F> {}
+
+impl<T, F: FnMut(usize, usize, usize) -> T> Numbers<T> for By<F> {
+    fn number(&mut self, input: usize, derivative: usize, component: usize) -> T {
+        (self.0)(input, derivative, component)
+    }
+}
+
+/// The samples of all driven inputs of a system over the scalar `T`, put together number by number.
+pub trait Assemble<T>: Samples + Sealed {
+    /// The components of each input.
+    const COMPONENTS: &'static [usize];
+
+    /// The samples of these numbers.
+    fn assemble(numbers: &mut impl Numbers<T>) -> Self;
+}
+
+impl<T: Real> Assemble<T> for () {
+    const COMPONENTS: &'static [usize] = &[];
+
+    #[inline(always)]
+    fn assemble(_: &mut impl Numbers<T>) -> Self {}
+}
+
+/// Joints on which a system hangs: `()`, a [`Joint`] or a tuple of joints, one for each driven
+/// input in the order of declaration.
+pub trait Anchor<Inputs>: Sealed {
+    /// The joints by number.
+    #[doc(hidden)]
+    fn joints(&self) -> Vec<u32>;
+}
+
+impl Anchor<()> for () {
+    fn joints(&self) -> Vec<u32> {
+        Vec::new()
+    }
+}
+
+impl<T: Real, const D: usize> Anchor<(Sample<T, D>,)> for Joint<D> {
+    fn joints(&self) -> Vec<u32> {
+        vec![self.0]
+    }
+}
+
+#[inline(always)]
+fn sample<T: Real, const D: usize>(input: usize, numbers: &mut impl Numbers<T>) -> Sample<T, D> {
+    let mut sample = Sample::zero();
+    for c in 0..D {
+        sample.position[c] = numbers.number(input, 0, c);
+        sample.velocity[c] = numbers.number(input, 1, c);
+        sample.acceleration[c] = numbers.number(input, 2, c);
+    }
+    sample
+}
+
+macro_rules! tuples {
+    ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
+        impl<T: Real, $(const $dim: usize),+> Assemble<T> for ($(Sample<T, $dim>,)+) {
+            const COMPONENTS: &'static [usize] = &[$($dim),+];
+
+            #[inline(always)]
+            fn assemble(numbers: &mut impl Numbers<T>) -> Self {
+                ($(sample::<T, $dim>($index, numbers),)+)
+            }
+        }
+
+        impl<T: Real, $(const $dim: usize),+> Anchor<($(Sample<T, $dim>,)+)> for ($(Joint<$dim>,)+) {
+            fn joints(&self) -> Vec<u32> {
+                vec![$((self.$index).0),+]
+            }
+        }
+    )+};
+}
+
+for_tuples_of_motions!(tuples);

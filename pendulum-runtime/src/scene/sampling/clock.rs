@@ -1,0 +1,162 @@
+//! Time as a whole number of ticks, whatever the frames are.
+
+use crate::scene::error::SceneError;
+use crate::time::Time;
+
+/// The time of a scene: a whole number of ticks, and the time that frames have asked for beyond it.
+///
+/// Frame times are summed in two words, so that the ticks done depend on their sum alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Clock {
+    /// Ticks in a second.
+    rate: f64,
+    /// The ticks done.
+    tick: i64,
+    /// The sum of the frame times.
+    asked: Time,
+    /// The ticks at which that sum began.
+    origin: i64,
+}
+
+/// A sum of frame times that lacks less than this part of a tick has reached it: thirds and
+/// twenty-fourths of a second are not binary fractions, and 24 of them must make a second.
+const SLACK: f64 = 1e-6;
+
+impl Clock {
+    pub(crate) fn new(rate: f64) -> Result<Self, SceneError> {
+        if (1e-3..=1e6).contains(&rate) {
+            Ok(Self { rate, tick: 0, asked: Time::new(0.0), origin: 0 })
+        } else {
+            Err(SceneError::Setting {
+                name: "rate",
+                value: rate,
+                required: "between 0.001 and a million ticks a second",
+            })
+        }
+    }
+
+    pub(crate) fn tick(&self) -> i64 {
+        self.tick
+    }
+
+    /// The length of a tick in seconds.
+    pub(crate) fn step(&self) -> f64 {
+        1.0 / self.rate
+    }
+
+    /// The time of a tick: the nearest `f64`, and the whole.
+    ///
+    /// Ends of ticks have one word, so that a kink there is met exactly.
+    pub(crate) fn time(&self, tick: i64) -> f64 {
+        tick as f64 / self.rate
+    }
+
+    /// The last tick before `t`: a kink at the end of a tick belongs to it.
+    pub(crate) fn last_before(&self, t: f64) -> i64 {
+        let guess = (t * self.rate).floor();
+        if 9e18 <= guess {
+            return i64::MAX;
+        }
+        // Rounded up, the guess is one too late.
+        let tick = guess as i64;
+        if t <= self.time(tick) { tick - 1 } else { tick }
+    }
+
+    /// The time that is `fraction` of a tick after `tick`.
+    pub(crate) fn within(&self, tick: i64, fraction: f64) -> Time {
+        if fraction == 0.0 {
+            Time::new(self.time(tick))
+        } else if fraction == 1.0 {
+            Time::new(self.time(tick + 1))
+        } else {
+            Time::new(self.time(tick)) + fraction * self.step()
+        }
+    }
+
+    /// Takes `dt` seconds more, of which at most `limit`; gives the ticks that are due and the
+    /// seconds dropped.
+    pub(crate) fn ask(&mut self, dt: f64, limit: f64) -> Result<(u64, f64), SceneError> {
+        if !(0.0..f64::INFINITY).contains(&dt) {
+            return Err(SceneError::FrameTime(dt));
+        }
+        let taken = if limit < dt { limit } else { dt };
+        self.asked += taken;
+        let due = (self.asked.to_f64() * self.rate + SLACK).floor() as i64 + self.origin;
+        Ok(((due - self.tick).max(0) as u64, dt - taken))
+    }
+
+    /// Counts ticks that have been done.
+    pub(crate) fn passed(&mut self, ticks: u64) {
+        self.tick += ticks as i64;
+    }
+
+    /// Jumps to another tick; no part of a tick is left over.
+    pub(crate) fn jump(&mut self, tick: i64) {
+        (self.tick, self.origin, self.asked) = (tick, tick, Time::new(0.0));
+    }
+
+    /// Moves by whole ticks what frames have asked for too: for ticks that no frame has asked for.
+    pub(crate) fn shift(&mut self, ticks: i64) {
+        self.origin += ticks;
+    }
+
+    /// The part of the next tick that frames have asked for, in [0, 1).
+    pub(crate) fn fraction(&self) -> f64 {
+        let ticks = self.asked.to_f64() * self.rate - (self.tick - self.origin) as f64
+            + self.asked.low() * self.rate;
+        if ticks <= 0.0 {
+            0.0
+        } else if ticks < 1.0 {
+            ticks
+        } else {
+            1.0f64.next_down()
+        }
+    }
+
+    /// Everything that changes: ticks, origin and both words of what was asked for.
+    pub(crate) fn state(&self) -> (i64, i64, [f64; 2]) {
+        (self.tick, self.origin, [self.asked.to_f64(), self.asked.low()])
+    }
+
+    pub(crate) fn restore(&mut self, (tick, origin, asked): (i64, i64, [f64; 2])) {
+        (self.tick, self.origin, self.asked) = (tick, origin, Time::new(asked[0]) + asked[1]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Clock;
+
+    #[test]
+    fn frames_make_whole_seconds() {
+        for frames in [24, 30, 60, 144, 240, 1000] {
+            let mut clock = Clock::new(240.0).unwrap();
+            for _ in 0..3600 * frames {
+                let (ticks, dropped) = clock.ask(1.0 / f64::from(frames), 1.0).unwrap();
+                clock.passed(ticks);
+                assert_eq!(dropped, 0.0);
+            }
+            assert_eq!(clock.tick(), 240 * 3600, "{frames}");
+        }
+    }
+
+    #[test]
+    fn what_is_too_long_is_dropped_and_what_is_no_time_refused() {
+        let mut clock = Clock::new(100.0).unwrap();
+        assert_eq!(clock.ask(3.0, 1.0).unwrap(), (100, 2.0));
+        assert_eq!(clock.ask(0.0, 1.0).unwrap(), (100, 0.0));
+        for dt in [-0.1, f64::NAN, f64::INFINITY] {
+            assert!(clock.ask(dt, 1.0).is_err());
+        }
+        assert!(Clock::new(0.0).is_err() && Clock::new(f64::NAN).is_err());
+    }
+
+    #[test]
+    fn what_is_left_over_is_a_part_of_a_tick() {
+        let mut clock = Clock::new(60.0).unwrap();
+        let (ticks, _) = clock.ask(2.5 / 60.0, 1.0).unwrap();
+        clock.passed(ticks);
+        assert_eq!(ticks, 2);
+        assert!((clock.fraction() - 0.5).abs() < 1e-12);
+    }
+}

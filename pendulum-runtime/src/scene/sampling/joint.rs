@@ -1,0 +1,235 @@
+//! Joints: motions of any type, each sampled once per time for all that hangs on it.
+
+use crate::motion::{Derivatives, Motion, Sample, Side};
+use crate::real::Real;
+use crate::scene::sampling::clock::Clock;
+use crate::sealed::Sealed;
+use crate::time::Time;
+use core::fmt;
+use std::sync::Arc;
+
+/// A joint of a scene that moves in `D` dimensions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Joint<const D: usize>(pub(crate) u32);
+
+impl<const D: usize> Sealed for Joint<D> {}
+
+/// A motion whose type and dimension are forgotten.
+pub(crate) trait Drive<T>: Send + Sync {
+    fn has(&self) -> Derivatives;
+    fn components(&self) -> usize;
+    /// Writes those of position, velocity and acceleration that are in `wanted`, one after the
+    /// other.
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives, numbers: &mut [T]);
+    /// Writes samples at several times, one record after the other; a time that stands twice in
+    /// succession is sampled once.
+    fn sample_all(&self, times: &[Time], wanted: Derivatives, numbers: &mut [T]);
+    fn next_kink(&self, t: f64) -> Option<f64>;
+    fn rest_until(&self, t: f64) -> f64;
+    fn longest_step(&self, t: f64, widths: f64) -> Option<f64>;
+}
+
+/// The times that are sampled at once.
+const AT_ONCE: usize = 8;
+
+/// Writes those derivatives of a sample that are in `wanted`, one after the other.
+#[inline]
+fn put<T: Real, const D: usize>(sample: &Sample<T, D>, wanted: Derivatives, numbers: &mut [T]) {
+    let all = [
+        (Derivatives::POSITION, &sample.position),
+        (Derivatives::VELOCITY, &sample.velocity),
+        (Derivatives::ACCELERATION, &sample.acceleration),
+    ];
+    let mut rest = numbers;
+    for (order, values) in all {
+        if wanted.contains(order) {
+            let (here, after) = rest.split_at_mut(D);
+            here.copy_from_slice(values);
+            rest = after;
+        }
+    }
+}
+
+struct ErasedMotion<M, const D: usize>(M);
+
+impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for ErasedMotion<M, D> {
+    fn has(&self) -> Derivatives {
+        M::HAS
+    }
+
+    fn components(&self) -> usize {
+        D
+    }
+
+    #[inline]
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives, numbers: &mut [T]) {
+        put(&self.0.sample(t, side, wanted), wanted, numbers);
+    }
+
+    fn sample_all(&self, times: &[Time], wanted: Derivatives, numbers: &mut [T]) {
+        let width = D * wanted.count();
+        if width == 0 {
+            return;
+        }
+        let again = |index: usize| 0 < index && times[index - 1] == times[index];
+        let (mut distinct, mut samples) = ([Time::new(0.0); AT_ONCE], [Sample::zero(); AT_ONCE]);
+        let mut begin = 0;
+        while begin < times.len() {
+            let (mut end, mut count) = (begin, 0);
+            while end < times.len() && (count < AT_ONCE || again(end)) {
+                if !again(end) {
+                    distinct[count] = times[end];
+                    count += 1;
+                }
+                end += 1;
+            }
+            // Without a kink the side is all one, but only one side gives the same bits however
+            // ticks are cut into batches.
+            self.0.sample_all(&distinct[..count], wanted, &mut samples[..count]);
+            let mut next = 0;
+            for index in begin..end {
+                let (before, here) = numbers.split_at_mut(index * width);
+                if again(index) {
+                    here[..width].copy_from_slice(&before[(index - 1) * width..]);
+                } else {
+                    put(&samples[next], wanted, &mut here[..width]);
+                    next += 1;
+                }
+            }
+            begin = end;
+        }
+    }
+
+    fn next_kink(&self, t: f64) -> Option<f64> {
+        self.0.next_kink(t)
+    }
+
+    fn rest_until(&self, t: f64) -> f64 {
+        self.0.rest_until(t)
+    }
+
+    fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
+        self.0.longest_step(t, widths)
+    }
+}
+
+/// `motion` as a drive.
+pub(crate) fn erase<T: Real, M: Motion<T, D> + Send + Sync + 'static, const D: usize>(
+    motion: M,
+) -> Arc<dyn Drive<T>> {
+    Arc::new(ErasedMotion(motion))
+}
+
+/// A joint.
+#[derive(Clone)]
+pub(crate) struct JointSlot<T> {
+    pub(crate) drive: Arc<dyn Drive<T>>,
+    /// The joint always rests, so that it is never sampled.
+    pub(crate) still: bool,
+    /// Derivatives that the pendulums awake on the joint need.
+    pub(crate) wanted: Derivatives,
+    /// By bit, the grids on which it is needed.
+    pub(crate) grids: u64,
+    /// Its number among those that are sampled.
+    pub(crate) active: u32,
+}
+
+/// A joint that somebody awake needs, and what was last sampled of it.
+#[derive(Debug)]
+pub(crate) struct Active {
+    pub(crate) joint: u32,
+    /// The class of the timetable for the grids on which it is needed.
+    pub(crate) class: u32,
+    /// Derivatives that the pendulums awake on the joint need.
+    pub(crate) wanted: Derivatives,
+    pub(crate) components: usize,
+    /// The first kink after the time last looked at; NaN before anybody has looked.
+    kink: f64,
+    /// Index at which the samples of the joint begin.
+    pub(crate) offset: usize,
+    /// Ticks of the batch with a kink in them or at their ends, by bit.
+    pub(crate) kinked: u32,
+}
+
+impl<T> fmt::Debug for JointSlot<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("JointSlot")
+            .field("still", &self.still)
+            .field("wanted", &self.wanted)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<T: Real> JointSlot<T> {
+    pub(crate) fn new(drive: Arc<dyn Drive<T>>) -> Self {
+        // From the beginning of time: a scene may go back.
+        let still = drive.rest_until(f64::NEG_INFINITY) == f64::INFINITY;
+        Self { drive, still, wanted: Derivatives::NONE, grids: 0, active: 0 }
+    }
+}
+
+impl Active {
+    pub(crate) fn new<T: Real>(joint: u32, joint_slot: &JointSlot<T>, class: u32) -> Self {
+        let components = joint_slot.drive.components();
+        Self {
+            joint,
+            class,
+            wanted: joint_slot.wanted,
+            components,
+            kink: f64::NAN,
+            offset: 0,
+            kinked: 0,
+        }
+    }
+
+    /// The numbers in a sample.
+    pub(crate) fn width(&self) -> usize {
+        self.components * self.wanted.count()
+    }
+
+    /// Samples the ticks from `tick` at `times`; ticks with a kink in them or at their ends are
+    /// left out.
+    pub(crate) fn sample<T: Real>(
+        &mut self,
+        drive: &dyn Drive<T>,
+        clock: &Clock,
+        tick: i64,
+        ticks: usize,
+        times: &[Time],
+        numbers: &mut [T],
+    ) {
+        self.kinked = 0;
+        if !self.kink_within(drive, clock.time(tick), clock.time(tick + ticks as i64)) {
+            return drive.sample_all(times, self.wanted, numbers);
+        }
+        let (per_tick, width) = (times.len() / ticks, self.width());
+        for index in 0..ticks {
+            let now = tick + index as i64;
+            if self.kink_within(drive, clock.time(now), clock.time(now + 1)) {
+                self.kinked |= 1 << index;
+            } else {
+                let numbers = &mut numbers[index * per_tick * width..][..per_tick * width];
+                drive.sample_all(&times[index * per_tick..][..per_tick], self.wanted, numbers);
+            }
+        }
+    }
+
+    /// Returns true if there is a kink after `start` and not after `end`.
+    fn kink_within<T>(&mut self, drive: &dyn Drive<T>, start: f64, end: f64) -> bool {
+        // Also where nobody has looked yet.
+        let ahead = start < self.kink;
+        if !ahead {
+            self.kink = match drive.next_kink(start) {
+                // A motion that has not passed what it says is next has no more to say.
+                Some(kink) if start < kink => kink,
+                _ => f64::INFINITY,
+            };
+        }
+        self.kink <= end
+    }
+}
+
+/// Returns true if all of the joints rest for ever.
+pub(crate) fn still<T>(joint_slots: &[JointSlot<T>], joints: &[u32]) -> bool {
+    joints.iter().all(|&joint| joint_slots[joint as usize].still)
+}

@@ -1,0 +1,9 @@
+//! Time in ticks, and the samples of joints at the times that the grids of the pendulums ask for.
+
+pub(super) mod assemble;
+pub(super) mod clock;
+pub(super) mod joint;
+pub(super) mod layout;
+pub(super) mod scheme;
+pub(super) mod timetable;
+pub(super) mod tracks;

@@ -1,0 +1,177 @@
+//! Systems together with the motions that drive them.
+
+use crate::motion::{Motions, Side, sufficient};
+use crate::real::Real;
+use crate::system::equations::System;
+use crate::system::inputs::{NoInputs, Purpose};
+use crate::time::Time;
+
+/// A system with a motion for each of its driven inputs: what an integrator takes.
+///
+/// Every system without driven inputs is one; a driven one becomes one by its method `driven_by`,
+/// which gives a [`Driven`].
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot be integrated",
+    label = "no system whose driven inputs have motions",
+    note = "integrators take systems that `lagrangian!` has made; driven inputs get their motions by `.driven_by(…)`"
+)]
+pub trait Dynamics<const N: usize> {
+    /// The system.
+    type System: System<N, Scalar = Self::Scalar>;
+    /// Its scalar.
+    type Scalar: Real;
+
+    /// The system.
+    fn system(&self) -> &Self::System;
+
+    /// The samples of all driven inputs at `t`, seen from `side`, with the derivatives that
+    /// `purpose` needs.
+    fn inputs(&self, t: Time, side: Side, purpose: Purpose) -> <Self::System as System<N>>::Inputs;
+
+    /// The first time after `t` at which a derivative of a driven input jumps.
+    fn next_kink(&self, t: f64) -> Option<f64>;
+
+    /// The longest step from `t` over the motions, as
+    /// [`Motion::longest_step`](crate::motion::Motion::longest_step); `unknown` stands for the
+    /// answer of those that do not know, and of dynamics with inputs that do not say it.
+    #[inline]
+    fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
+        let _ = (t, widths);
+        if <Self::System as System<N>>::FACTS.inputs.is_empty() { f64::INFINITY } else { unknown }
+    }
+
+    /// The accelerations at `t`, seen from `side`.
+    #[inline]
+    fn accelerations_at(
+        &self,
+        t: Time,
+        side: Side,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+    ) -> [Self::Scalar; N] {
+        self.accelerations_with(&self.system().prepare(), t, side, q, v)
+    }
+
+    /// The accelerations at `t`, seen from `side`, with what the parameters alone decide computed
+    /// before: what all methods call, and the place for forces beside those of the system.
+    #[inline]
+    fn accelerations_with(
+        &self,
+        prepared: &<Self::System as System<N>>::Prepared,
+        t: Time,
+        side: Side,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+    ) -> [Self::Scalar; N] {
+        let inputs = self.inputs(t, side, Purpose::Accelerations);
+        self.system().accelerations_prepared(prepared, scalar_time(t), q, v, &inputs)
+    }
+
+    /// The Jacobi integral at `t`.
+    fn energy_at(&self, t: f64, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> Self::Scalar {
+        let t = Time::new(t);
+        let inputs = self.inputs(t, Side::After, Purpose::Energy);
+        self.system().energy(scalar_time(t), q, v, &inputs)
+    }
+
+    /// dE/dt at `t`.
+    fn power_at(&self, t: f64, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> Self::Scalar {
+        let t = Time::new(t);
+        let inputs = self.inputs(t, Side::After, Purpose::Power);
+        self.system().power(scalar_time(t), q, v, &inputs)
+    }
+
+    /// The velocities beyond a kink at `t` from those on the side `from`: the momenta are the same
+    /// on both sides.
+    ///
+    /// Where nothing that the momenta contain jumps, they are the same numbers.
+    fn across_kink(
+        &self,
+        t: Time,
+        from: Side,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+    ) -> [Self::Scalar; N] {
+        let near = self.inputs(t, from, Purpose::Momenta);
+        let far = self.inputs(t, from.opposite(), Purpose::Momenta);
+        if near == far {
+            return *v;
+        }
+        let p = self.system().momenta(scalar_time(t), q, v, &near);
+        self.system().velocities(scalar_time(t), q, &p, &far)
+    }
+}
+
+/// `t` in the scalar of a system, with both of its words.
+#[inline]
+pub fn scalar_time<T: Real>(t: Time) -> T {
+    T::from_f64(t.to_f64()) + T::from_f64(t.low())
+}
+
+impl<const N: usize, S: System<N, Inputs: NoInputs<S>>> Dynamics<N> for S {
+    type System = S;
+    type Scalar = S::Scalar;
+
+    fn system(&self) -> &S {
+        self
+    }
+
+    #[inline]
+    fn inputs(&self, _: Time, _: Side, _: Purpose) -> S::Inputs {
+        NoInputs::none()
+    }
+
+    fn next_kink(&self, _: f64) -> Option<f64> {
+        None
+    }
+}
+
+/// A system and the motions of its driven inputs.
+#[derive(Clone, Debug)]
+pub struct Driven<S, M> {
+    /// The system.
+    pub system: S,
+    /// A tuple of motions in the order of declaration.
+    pub motions: M,
+}
+
+impl<S, M> Driven<S, M> {
+    /// Binds `motions`, a tuple with one motion for each driven input; does not compile if one of
+    /// them lacks a derivative that the equations need.
+    pub fn new<const N: usize>(system: S, motions: M) -> Self
+    where
+        S: System<N>,
+        M: Motions<S::Inputs>,
+    {
+        const {
+            assert!(
+                sufficient(M::HAS, S::FACTS.inputs),
+                "a motion that `driven_by` was given lacks a derivative that the equations of motion need; a `Function` gets them by `.velocity(…)` and `.acceleration(…)`"
+            );
+        };
+        Self { system, motions }
+    }
+}
+
+impl<const N: usize, S: System<N>, M: Motions<S::Inputs>> Dynamics<N> for Driven<S, M> {
+    type System = S;
+    type Scalar = S::Scalar;
+
+    fn system(&self) -> &S {
+        &self.system
+    }
+
+    #[inline]
+    fn inputs(&self, t: Time, side: Side, purpose: Purpose) -> S::Inputs {
+        self.motions.sample(t, side, S::FACTS.inputs, purpose)
+    }
+
+    fn next_kink(&self, t: f64) -> Option<f64> {
+        self.motions.next_kink(t)
+    }
+
+    #[inline]
+    fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
+        self.motions.longest_step(t, widths, unknown)
+    }
+}
