@@ -3,11 +3,12 @@
 
 use super::{Meaning, Model, plain, unknown};
 use crate::algebra::dimension::Dimension;
+use crate::algebra::functions::Word;
 use crate::messages::{Errors, Range};
 use crate::syntax::ast::{Binder, Expr, ExprKind, ForceIndex};
 use crate::syntax::elsewhere::{constant, function};
 use crate::syntax::name::{self, Name};
-use crate::syntax::words::{FUNCTIONS, UNITS};
+use crate::syntax::words::UNITS;
 use proc_macro2::Ident;
 use std::collections::BTreeSet;
 
@@ -73,8 +74,8 @@ impl Walk<'_, '_, '_> {
                 self.constant(exponent);
             }
             ExprKind::Call(name, items)
-                if scalar_functions()
-                    .any(|(function, count)| name == function && *count == items.len()) =>
+                if Word::named(&name.to_string())
+                    .is_some_and(|word| word.is_scalar() && word.arity() == items.len()) =>
             {
                 for item in items {
                     self.constant(item);
@@ -229,7 +230,7 @@ impl Walk<'_, '_, '_> {
             }
             (_, Some(_)) => {}
             (_, None) if self.model.block.recovery.declarations => {}
-            (text, None) if FUNCTIONS.iter().any(|(function, _)| *function == text) => {
+            (text, None) if Word::named(text).is_some() => {
                 self.errors.at(ident.span(), format!("`{ident}` is a function; write `{ident}(…)`"));
             }
             (_, None) => {
@@ -295,7 +296,7 @@ impl Walk<'_, '_, '_> {
             }
             return;
         }
-        if let Some(&(_, expected)) = FUNCTIONS.iter().find(|(function, _)| ident == function) {
+        if let Some(expected) = Word::named(&ident.to_string()).map(Word::arity) {
             if let ("dot", Some(product)) =
                 (ident.to_string().as_str(), function(&ident.to_string(), items))
             {
@@ -324,7 +325,7 @@ impl Walk<'_, '_, '_> {
                 .filter(|definition| definition.arguments.is_some())
                 .map(|definition| definition.name.to_string());
             let known: Vec<String> =
-                FUNCTIONS.iter().map(|(function, _)| (*function).to_owned()).chain(lets).collect();
+                Word::all().map(|word| word.name.to_owned()).chain(lets).collect();
             let nearest = || name::nearest(&ident.to_string(), known.iter().map(String::as_str));
             let message = match (function(&ident.to_string(), items), nearest()) {
                 (Some(call), _) => format!("unknown function `{ident}`; write `{call}`"),
@@ -347,11 +348,6 @@ impl Walk<'_, '_, '_> {
             .map(ToString::to_string)
             .collect()
     }
-}
-
-/// The functions of the table that take scalars to a scalar.
-fn scalar_functions() -> impl Iterator<Item = &'static (&'static str, usize)> {
-    FUNCTIONS.iter().take_while(|(function, _)| *function != "dot")
 }
 
 fn acceleration(name: &str) -> String {

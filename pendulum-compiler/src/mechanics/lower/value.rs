@@ -1,7 +1,8 @@
 //! Arithmetic of scalars, vectors and complex numbers.
 
 use super::{Lower, total_derivative};
-use crate::algebra::expr::{Dependencies, Function, Graph, Id, Node, Symbol};
+use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
+use crate::algebra::functions::Function;
 use crate::algebra::number::Rational;
 use crate::syntax::ast::Expr;
 use crate::syntax::text::text;

@@ -4,12 +4,13 @@ use super::Parser;
 use super::statement::STATEMENTS;
 use super::token::fragment;
 use crate::algebra::dimension::Dimension;
+use crate::algebra::functions::Word;
 use crate::messages::Range;
 use crate::syntax::ast::{Expr, ExprKind};
 use crate::syntax::elsewhere::{constant, function};
 use crate::syntax::name;
 use crate::syntax::text::text;
-use crate::syntax::words::{FUNCTIONS, UNITS};
+use crate::syntax::words::UNITS;
 use proc_macro2::{Delimiter, Ident, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Result};
@@ -68,7 +69,7 @@ impl Parser<'_> {
                     }
                 }
                 (ExprKind::Name(name), _) if self.is_function(name) => {
-                    let count = FUNCTIONS.iter().find(|row| name == row.0).map_or(1, |row| row.1);
+                    let count = Word::named(&name.to_string()).map_or(1, Word::arity);
                     let arguments = match token {
                         TokenTree::Ident(_) | TokenTree::Literal(_) if count == 1 => {
                             token.to_string()
@@ -120,7 +121,7 @@ impl Parser<'_> {
             return Ok(());
         };
         let inverse = format!("a{name}");
-        let instead = if power == "-1" && FUNCTIONS.contains(&(inverse.as_str(), 1)) {
+        let instead = if power == "-1" && takes(&inverse, 1) {
             format!("`{inverse}({argument})`, or `1/{name}({argument})`")
         } else {
             format!("`{name}({argument})^{power}`")
@@ -163,9 +164,7 @@ impl Parser<'_> {
             Ok(arguments) => {
                 operands.extend(arguments);
                 let list = || operands.iter().map(text).collect::<Vec<_>>().join(", ");
-                let own = FUNCTIONS
-                    .contains(&(&method, operands.len()))
-                    .then(|| format!("{method}({})", list()));
+                let own = takes(&method, operands.len()).then(|| format!("{method}({})", list()));
                 own.or_else(|| function(&method, &operands))
             }
             Err(_) => None,
@@ -187,8 +186,13 @@ impl Parser<'_> {
     }
 
     fn is_function(&self, name: &Ident) -> bool {
-        FUNCTIONS.iter().any(|row| name == row.0) && !self.is_declared(&name.to_string())
+        Word::named(&name.to_string()).is_some() && !self.is_declared(&name.to_string())
     }
+}
+
+/// Whether a function takes that many arguments.
+fn takes(name: &str, count: usize) -> bool {
+    Word::named(name).is_some_and(|word| word.arity() == count)
 }
 
 /// A comparison, which Rust has and formulas have not.
@@ -220,7 +224,7 @@ pub(super) fn path(input: ParseStream, first: Option<&Ident>, ascii: bool) -> sy
     }
     let instead = match constant(&last.0, ascii) {
         Some(constant) => format!("`{constant}`"),
-        None if FUNCTIONS.iter().any(|row| row.0 == last.0) => format!("`{}(…)`", last.0),
+        None if Word::named(&last.0).is_some() => format!("`{}(…)`", last.0),
         None => "a number, or declare a parameter".to_owned(),
     };
     Range { first: start, last: last.1 }

@@ -9,7 +9,8 @@ mod function;
 mod momentum_form;
 mod sine_oscillator;
 
-use crate::algebra::expr::{Dependencies, Function, Graph, Id, Symbol};
+use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
+use crate::algebra::functions::Function;
 use crate::backend::rust::{Emitter, local};
 use crate::mechanics::articulated::Unsolved;
 use crate::mechanics::motion::Motion;
