@@ -144,6 +144,9 @@ pub(crate) enum Recurrence {
     Linear(Function),
     /// ẏ = 0.
     Constant,
+    /// ẏ = f₁ u̇ with the next member of a family, whose methods take the order.
+    #[expect(dead_code, reason = "no function is a family yet")]
+    Family,
 }
 
 /// What the rate of an argument is divided by.
@@ -186,7 +189,7 @@ macro_rules! functions {
             pub(crate) const ALL: &[Self] = &[$(Self::$case $((<$kind>::MIN))?,)+];
 
             /// What the compiler knows of it.
-            pub(crate) const fn row(self) -> Row {
+            pub(crate) fn row(self) -> Row {
                 match self {
                     $(Self::$case $(($order))? => Row { name: stringify!($name), $($column)* },)+
                 }

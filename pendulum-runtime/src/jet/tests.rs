@@ -285,6 +285,30 @@ fn circular_and_hyperbolic_functions() {
     });
 }
 
+/// A function by its derivatives at zero.
+type Family = (&'static str, fn(i128) -> Fraction);
+
+#[test]
+fn families_of_derivatives() {
+    let a = argument(0);
+    let rate = rates(&a);
+    // The derivatives at zero of e²ˣ, of sine and cosine, and of a polynomial.
+    let families: [Family; 4] = [
+        ("exponential", |n| whole(1 << n)),
+        ("sine", |n| circular(n, true, true) * whole(factorial(n))),
+        ("cosine", |n| circular(n, false, true) * whole(factorial(n))),
+        ("polynomial", |n| if n < 4 { whole(n + 2) } else { whole(0) }),
+    ];
+    for (name, member) in families {
+        let mut members = vec![zero(); super::LENGTH];
+        let expected = composed(|n| member(n) / whole(factorial(n)), &a);
+        check(name, &expected, |order, _, _| {
+            let member = |n: usize| member(n as i128);
+            series::family(member, &rate, &mut members, &reciprocals(), order)
+        });
+    }
+}
+
 #[test]
 fn swings_have_the_sines_and_cosines_of_their_own_angle() {
     let (sine, cosine) = (fraction(-3, 2), whole(2));

@@ -1,12 +1,12 @@
 //! The recurrences of functions and powers.
 
-use super::Writer;
+use super::{LENGTH, Writer};
 use crate::algebra::functions::{Divisor, Function, Recurrence, Sign};
 use crate::backend::rust::local;
 use crate::backend::rust::operation::function_call;
 use crate::schedule::Place;
-use proc_macro2::TokenStream;
-use quote::quote;
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
 
 impl Writer<'_, '_, '_> {
     /// A function of one argument.
@@ -75,6 +75,25 @@ impl Writer<'_, '_, '_> {
                 let x = self.shared("a", place, &x);
                 let slope = function_call(slope, &x);
                 self.name(place, &quote!(series::leading(|| #slope, #lead, order) * #x));
+            }
+            Recurrence::Family => {
+                let (x, series) = (self.value(a), self.whole(a));
+                let start = self.shared("a", place, &quote!(#series[0]));
+                let rate = self.slots;
+                self.rate(&x);
+                let first = self.slots;
+                self.slots += LENGTH;
+                self.halves += 16;
+                let method = format_ident!("{}", function.row().name);
+                let member = Literal::u8_unsuffixed(function.order().unwrap_or(0));
+                self.name(
+                    place,
+                    &quote!({
+                        let (known, own) = work.series.split_at_mut(#first);
+                        series::family(|n| #start.#method(#member + n), &known[#rate], own, &path.reciprocals, order)
+                    }),
+                );
+                self.series.insert(place, quote!(work.series[#first]));
             }
             Recurrence::Constant => {
                 let x = self.value(a);

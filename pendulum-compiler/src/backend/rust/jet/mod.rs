@@ -32,6 +32,9 @@ const MOST_LOOPED: usize = 80;
 /// costs as much.
 const MOST_CHEAP: usize = 4;
 
+/// The number of coefficients of a series of the runtime.
+const LENGTH: usize = 32;
+
 /// The equations as a program: for each block of the mass matrix its rows, and what the program's
 /// results mean for it.
 pub(crate) struct Equations {
@@ -525,5 +528,13 @@ impl Writer<'_, '_, '_> {
             let [#(#names),*] = work.factors.#index.solve([#(#right),*]);
             #(path.a[#rows][k] = #names;)*
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn series_are_as_long_as_in_the_runtime() {
+        assert_eq!(super::LENGTH, pendulum_runtime::jet::LENGTH);
     }
 }
