@@ -15,7 +15,7 @@ use Derivative::{Call, Formula};
 use Kinks::{Corner, Jump, Smooth};
 use Notation::{Bars, Prefix};
 use Parity::{Even, Neither, Odd};
-use Recurrence::{Circular, Constant, Exponential, Hyperbolic, Linear, Quotient, Riccati};
+use Recurrence::{Circular, Constant, Exponential, Family, Hyperbolic, Linear, Quotient, Riccati};
 use Scale::{Bell, Bump, Oscillation};
 
 /// What the compiler knows of a function f of one argument.
@@ -145,7 +145,6 @@ pub(crate) enum Recurrence {
     /// ẏ = 0.
     Constant,
     /// ẏ = f₁ u̇ with the next member of a family, whose methods take the order.
-    #[expect(dead_code, reason = "no function is a family yet")]
     Family,
 }
 
@@ -317,6 +316,40 @@ functions! {
         value: |_, x| if x == 0.0 { 0.5 } else { f64::from(0.0 < x) },
         derivative: Formula(|_, _, _| Graph::ZERO), recurrence: Constant,
     }
+    // The derivative of the order of sin(x)/x.
+    Sinc(order: u8) = sinc {
+        word: true, units: UnitRule::Pure, domain: REAL, range: UNIT,
+        at_zero: match order % 4 {
+            0 => Rational::new(1, i128::from(order) + 1),
+            2 => Rational::new(-1, i128::from(order) + 1),
+            _ => ZERO,
+        },
+        parity: if order % 2 == 0 { Even } else { Odd },
+        kinks: Smooth, scale: Oscillation, cost: 20, notation: Prefix("\\operatorname{sinc}"),
+        ascii: Some(sinc_in_ascii), value: sinc,
+        derivative: Call(Function::Sinc(order.saturating_add(1))), recurrence: Family,
+    }
+}
+
+/// The derivative of an order of sin(x)/x: x sₙ + n sₙ₋₁ = sin⁽ⁿ⁾ x, upwards beyond x = n and
+/// downwards from a high order below.
+fn sinc(order: u8, x: f64) -> f64 {
+    let sine = |n: u8| [x.sin(), x.cos(), -x.sin(), -x.cos()][usize::from(n % 4)];
+    if f64::from(order) < x.abs() {
+        return (1..=order).fold(x.sin() / x, |value, n| (sine(n) - f64::from(n) * value) / x);
+    }
+    let orders = order + 1..=order.saturating_add(60);
+    orders.rev().fold(0.0, |value, n| (sine(n) - x * value) / f64::from(n))
+}
+
+/// The same relation, as the language reads it.
+fn sinc_in_ascii(order: u8, x: &str) -> String {
+    if order == 0 {
+        return format!("sinc({x})");
+    }
+    let sine = ["sin", "cos", "-sin", "-cos"][usize::from(order % 4)];
+    let (times, before) = (order, sinc_in_ascii(order - 1, x));
+    format!("(({sine}({x}) - {times}*{before})/({x}))")
 }
 
 /// 1 ± x².
