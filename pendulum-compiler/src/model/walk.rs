@@ -4,11 +4,10 @@
 use super::{Meaning, Model, plain, unknown};
 use crate::algebra::dimension::Dimension;
 use crate::algebra::functions::Word;
-use crate::messages::{Errors, Range};
+use crate::messages::{self, Errors, Range, UNITS};
 use crate::syntax::ast::{Binder, Expr, ExprKind, ForceIndex};
 use crate::syntax::elsewhere::{constant, function};
 use crate::syntax::name::{self, Name};
-use crate::syntax::words::UNITS;
 use proc_macro2::Ident;
 use std::collections::BTreeSet;
 
@@ -223,7 +222,7 @@ impl Walk<'_, '_, '_> {
                 ),
             ),
             (_, Some(Meaning::Coordinate(_))) if 1 < dots => {
-                self.errors.at(ident.span(), acceleration(&ident.to_string()));
+                self.errors.at(ident.span(), messages::acceleration(format!("`{ident}`")));
             }
             (_, Some(Meaning::Input(_))) if 2 < dots => {
                 self.errors.at(ident.span(), format!("`{ident}` is a third derivative; driven inputs have two"));
@@ -262,7 +261,9 @@ impl Walk<'_, '_, '_> {
                 && let Some(meaning) = moving(stem)
             {
                 return match meaning {
-                    Meaning::Coordinate(_) if suffix == "ddot" => acceleration(text),
+                    Meaning::Coordinate(_) if suffix == "ddot" => {
+                        messages::acceleration(format!("`{text}`"))
+                    }
                     _ => format!("unknown name `{text}`; did you mean `{stem}_{suffix}`?"),
                 };
             }
@@ -289,10 +290,7 @@ impl Walk<'_, '_, '_> {
             && let Some(arguments) = &self.model.lets[*index].arguments
         {
             if arguments.len() != count {
-                self.errors.at(
-                    range,
-                    format!("`{ident}` takes {}; {count} stand here", plural(arguments.len())),
-                );
+                self.errors.at(range, messages::arguments(ident, arguments.len(), count));
             }
             return;
         }
@@ -302,8 +300,7 @@ impl Walk<'_, '_, '_> {
             {
                 self.errors.at(range, format!("`dot` is the derivative of one argument; write `{product}` for a scalar product"));
             } else if expected != count {
-                self.errors
-                    .at(range, format!("`{ident}` takes {}; {count} stand here", plural(expected)));
+                self.errors.at(range, messages::arguments(ident, expected, count));
             }
             return;
         }
@@ -315,7 +312,10 @@ impl Walk<'_, '_, '_> {
         {
             self.errors.at(
                 ident.span(),
-                format!("`{ident}` is no function, and there is no implicit multiplication; write `{ident}*(…)`"),
+                format!(
+                    "`{ident}` is no function, and {}",
+                    messages::no_operator(&format!("`{ident}*(…)`"))
+                ),
             );
         } else if !self.model.block.recovery.declarations {
             let lets = self
@@ -348,14 +348,4 @@ impl Walk<'_, '_, '_> {
             .map(ToString::to_string)
             .collect()
     }
-}
-
-fn acceleration(name: &str) -> String {
-    format!(
-        "`{name}` is an acceleration, and a Lagrangian has none; only driven inputs have a second derivative"
-    )
-}
-
-fn plural(count: usize) -> String {
-    if count == 1 { "one argument".into() } else { format!("{count} arguments") }
 }

@@ -4,6 +4,7 @@ use super::value::Value;
 use super::{DEEPEST, LIMIT, Local, Lower};
 use crate::algebra::expr::{Graph, Id, Symbol};
 use crate::algebra::functions::{Function, Lowering, One, Two, Word};
+use crate::messages;
 use crate::model::{self, Meaning};
 use crate::syntax::ast::{Binder, Expr, ExprKind};
 use crate::syntax::name::{self, Name};
@@ -18,10 +19,10 @@ impl Lower<'_, '_, '_, '_> {
                 if self.vector_product(expr).is_none() {
                     self.wrong(
                         expr,
-                        &format!(
-                            "`{}` is {}, but a scalar is needed here; write `inner(u, v)`, `|u|` or a component",
-                            text(expr),
-                            other.kind()
+                        &messages::no_scalar(
+                            &text(expr),
+                            other.kind(),
+                            "`inner(u, v)`, `|u|` or a component",
                         ),
                     );
                 }
@@ -41,9 +42,10 @@ impl Lower<'_, '_, '_, '_> {
                     .map(text)
                     .collect();
                 let [a, b] = vectors.as_slice() else { return None };
-                let message = format!(
-                    "`{}` is the complex product of two plane vectors, but a scalar is needed here; write `inner({a}, {b})`",
-                    text(expr)
+                let message = messages::no_scalar(
+                    &text(expr),
+                    "the complex product of two plane vectors",
+                    &format!("`inner({a}, {b})`"),
                 );
                 Some(self.wrong(expr, &message))
             }
@@ -385,8 +387,7 @@ impl Lower<'_, '_, '_, '_> {
                         return self.wrong(index, &message);
                     }
                     Err(_) => {
-                        return self
-                            .wrong(index, "an index is a whole number known while compiling; write numbers and indices only");
+                        return self.wrong(index, &messages::unknown_number("an index"));
                     }
                 };
                 let mut value = self.definition(definition, Some(k), base.range);
