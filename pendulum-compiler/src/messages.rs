@@ -93,7 +93,8 @@ pub(crate) const TELL_CASES_APART: &str = "write `max`, `min`, `abs` or `sign` t
 /// A second derivative of what has only one; `what` as written.
 pub(crate) fn acceleration(what: impl Display) -> String {
     format!(
-        "{what} is an acceleration, and a Lagrangian has none; only driven inputs have a second derivative"
+        "{what} is an acceleration, and a Lagrangian has none; only driven inputs have a second \
+         derivative"
     )
 }
 

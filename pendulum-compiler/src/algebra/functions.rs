@@ -297,8 +297,8 @@ functions! {
         recurrence: Quotient(Divisor::Argument, Sign::Plus),
     }
     Abs = abs {
-        word: true, units: UnitRule::Same, domain: REAL, range: POSITIVE, at_zero: ZERO, parity: Even,
-        kinks: Corner, scale: Scale::Kink, cost: 20, notation: Bars, ascii: None,
+        word: true, units: UnitRule::Same, domain: REAL, range: POSITIVE, at_zero: ZERO,
+        parity: Even, kinks: Corner, scale: Scale::Kink, cost: 20, notation: Bars, ascii: None,
         value: |_, x| x.abs(), derivative: Call(Function::Sign), recurrence: Linear(Function::Sign),
     }
     Sign = sign {

@@ -242,8 +242,9 @@ pub fn sinh_cosh<T: Real, O: Order>(
     [reciprocals.over(with_cosh, k), reciprocals.over(with_sinh, k)]
 }
 
-/// f(x) for a family of functions that are each other's derivatives, fₙ′ = fₙ₊₁: `member` is fₙ(x\[0\])
-/// by n, and `own` takes the series of the members from f on, [`LENGTH`](super::LENGTH) of them.
+/// f(x) for a family of functions that are each other's derivatives, fₙ′ = fₙ₊₁: `member` gives
+/// fₙ(x\[0\]) for n, and `own` takes the series of the members from f on,
+/// [`LENGTH`](super::LENGTH) of them.
 ///
 /// k fₙ\[k\] = Σ j x\[j\] fₙ₊₁\[k−j\]: each order needs one more member at x\[0\] and one more
 /// coefficient of each before it. Nothing is divided by the argument, so that the series is as good
