@@ -94,6 +94,7 @@ forces! {
     Cosine: (cos(x - 2*y));
     Both: (sin(x)*cos(x) + sin(ẋ));
     Tangent: (tan(x + y/2));
+    SineOverAngle: (sinc(5*x*y)*ẋ + sinc(x - y/3));
     ArcSine: (asin(x*y));
     ArcCosine: (acos(x*y));
     ArcTangent: (atan(x + ẏ));
@@ -110,6 +111,33 @@ forces! {
     Larger: (max(x*y, 2)*x + max(x, y - 3) + min(x, 5 + y)*ẏ);
     Quotient: (ẏ/(x + c) + c/y + x/c + 1/3);
     Time: (sin(3*t)*x + t^2/(1 + t^4));
+}
+
+mod sinc {
+    pendulum_runtime::lagrangian! {
+        /// Its equations have sinc and its derivative, at one argument and at another.
+        pub(crate) struct Sinc { k }
+        coordinate x;
+        coordinate y;
+        kinetic = (2 + sinc(x))*ẋ^2/2 + ẏ^2/2;
+        potential = -k*sinc(x) - sinc(3*x*y)^2;
+    }
+}
+
+/// At zero, next to it and on both sides of where the evaluation changes.
+#[test]
+fn series_of_sinc_hold_at_zero() {
+    let system = sinc::Sinc::new(1.5);
+    for x in [0.0_f64, -0.0, 5e-324, 1e-160, -1e-9, 1e-3, 0.999_999, 1.000_001, 1.999, -2.001, 7.5]
+    {
+        // The argument 3 x y moves the faster the larger x is.
+        let h = 0.05 / (1.0 + x.abs());
+        for v in [0.0, 1e-7, -0.8] {
+            for [y, w] in [[0.4, 0.3], [0.0, 0.9]] {
+                check(&format!("sinc at {x}, {y}, {v}"), &system, 0.0, [x, y], [v, w], h);
+            }
+        }
+    }
 }
 
 mod systems {

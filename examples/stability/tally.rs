@@ -111,6 +111,11 @@ impl Real for Counted {
         (Self(sin), Self(cos))
     }
 
+    fn sinc(self, order: usize) -> Self {
+        note(|tally| &mut tally.sin_cos);
+        Self(self.0.sinc(order))
+    }
+
     unary! { tan asin acos atan sinh cosh tanh exp ln sqrt abs sign step }
     binary! { atan2 powf max min }
 }

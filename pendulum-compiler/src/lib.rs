@@ -11,7 +11,7 @@
 //! schedule    expressions to straight-line programs
 //! model       names resolved, shapes and units
 //! syntax      tokens to a tree
-//! algebra     the graph of expressions: exact numbers, rules, derivatives, order
+//! algebra     the graph of expressions: exact numbers, functions, rules, derivatives, order
 //! messages    what is wrong, at the tokens at fault
 //! ```
 

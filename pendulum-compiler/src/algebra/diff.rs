@@ -1,6 +1,7 @@
-//! Derivatives: one row per function, sums and products by their rules, each shared node once.
+//! Derivatives: functions by their rows, sums and products by their rules, each shared node once.
 
-use crate::algebra::expr::{Function, Graph, Id, Moment, Node, Symbol};
+use crate::algebra::expr::{Graph, Id, Moment, Node, Symbol};
+use crate::algebra::functions::Function;
 use crate::algebra::number::Rational;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -62,7 +63,7 @@ fn rule(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
             if inner == Graph::ZERO {
                 return Graph::ZERO;
             }
-            let outer = function_derivative(graph, function, argument, id);
+            let outer = function.derivative(graph, argument, id);
             graph.mul(outer, inner)
         }
         Node::Atan2(y, x) => {
@@ -87,26 +88,6 @@ fn rule(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
             let value = known(graph, inner);
             graph.atom(value)
         }
-    }
-}
-
-/// f′(u), where `value` is f(u).
-#[rustfmt::skip]
-fn function_derivative(g: &mut Graph, function: Function, u: Id, value: Id) -> Id {
-    match function {
-        Function::Sin  => g.call(Function::Cos, u),                                 // cos u
-        Function::Cos  => { let s = g.call(Function::Sin, u); g.negative(s) }       // -sin u
-        Function::Tan  => one_plus_square(g, value, Rational::ONE),                 // 1 + tan²u
-        Function::Asin => { let s = one_plus_square(g, u, Rational::MINUS_ONE); g.power(s, minus_half()) }
-        Function::Acos => { let s = one_plus_square(g, u, Rational::MINUS_ONE); let r = g.power(s, minus_half()); g.negative(r) }
-        Function::Atan => { let s = one_plus_square(g, u, Rational::ONE); g.power(s, Rational::MINUS_ONE) }
-        Function::Sinh => g.call(Function::Cosh, u),                                // cosh u
-        Function::Cosh => g.call(Function::Sinh, u),                                // sinh u
-        Function::Tanh => one_plus_square(g, value, Rational::MINUS_ONE),           // 1 - tanh²u
-        Function::Exp  => value,                                                    // exp u
-        Function::Ln   => g.power(u, Rational::MINUS_ONE),                          // 1/u
-        Function::Abs  => g.call(Function::Sign, u),                                // sign u
-        Function::Sign | Function::Step => Graph::ZERO,                             // 0 where they are smooth
     }
 }
 
@@ -143,15 +124,6 @@ fn moment_derivative(graph: &mut Graph, first: usize, moment: Moment, symbol: Sy
         5 => graph.number(signs[1]),
         _ => Graph::ZERO,
     }
-}
-
-fn one_plus_square(graph: &mut Graph, u: Id, sign: Rational) -> Id {
-    let square = graph.power(u, Rational::whole(2));
-    graph.sum(&[(Graph::ONE, Rational::ONE), (square, sign)])
-}
-
-fn minus_half() -> Rational {
-    Rational::HALF.negative()
 }
 
 /// `id` with some of its symbols replaced.

@@ -3,6 +3,7 @@
 pub(crate) mod diff;
 pub(crate) mod dimension;
 pub(crate) mod expr;
+pub(crate) mod functions;
 pub(crate) mod number;
 pub(crate) mod order;
 pub(crate) mod prime_field;

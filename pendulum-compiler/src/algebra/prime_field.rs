@@ -7,7 +7,8 @@
 //! what is left. With i, the root of −1, every number of the prime field has a root, so that points
 //! with many roots are never rare.
 
-use crate::algebra::expr::{Function, Graph, Id, Node, Symbol};
+use crate::algebra::expr::{Graph, Id, Node, Symbol};
+use crate::algebra::functions::Function;
 use crate::algebra::number::Rational;
 use std::collections::BTreeMap;
 
@@ -237,7 +238,7 @@ impl Point {
                     if *function == Function::Sin { sin } else { cos }
                 }
                 Node::Call(function, argument) => {
-                    self.random(&[*function as u64, known[argument].key(), 3])
+                    self.random(&[function.number(), known[argument].key(), 3])
                 }
                 Node::Atan2(a, b) => self.random(&[known[a].key(), known[b].key(), 4]),
                 Node::Max(a, b) => self.random(&[known[a].key(), known[b].key(), 5]),

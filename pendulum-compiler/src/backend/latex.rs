@@ -1,6 +1,7 @@
 //! Equations in LaTeX: `\ddot{\theta} = -\frac{g \sin\theta}{L}`.
 
-use crate::algebra::expr::{Function, Graph, Id, Moment, Node, Symbol};
+use crate::algebra::expr::{Graph, Id, Moment, Node, Symbol};
+use crate::algebra::functions::{Function, Notation};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::backend::unicode::{self, Names, Sides};
@@ -123,9 +124,9 @@ impl Writer<'_> {
             return format!("\\sqrt{{{}}}", self.sum(base));
         }
         if let Node::Call(function, argument) = self.graph.node(base)
-            && *function != Function::Abs
+            && let Some(command) = command(*function)
         {
-            return format!("{}^{{{exponent}}}{}", command(*function), self.argument(*argument));
+            return format!("{command}^{{{exponent}}}{}", self.argument(*argument));
         }
         format!("{}^{{{exponent}}}", self.closed(base))
     }
@@ -156,12 +157,10 @@ impl Writer<'_> {
                 let text = self.sum(id);
                 if text.starts_with('-') { format!("\\left({text}\\right)") } else { text }
             }
-            Node::Call(Function::Abs, argument) => {
-                format!("\\left|{}\\right|", self.sum(*argument))
-            }
-            Node::Call(function, argument) => {
-                format!("{}{}", command(*function), self.argument(*argument))
-            }
+            Node::Call(function, argument) => match command(*function) {
+                Some(command) => format!("{command}{}", self.argument(*argument)),
+                None => format!("\\left|{}\\right|", self.sum(*argument)),
+            },
             Node::Atan2(y, x) => {
                 format!("\\operatorname{{atan2}}\\left({}, {}\\right)", self.sum(*y), self.sum(*x))
             }
@@ -229,23 +228,14 @@ fn rational(value: Rational) -> String {
     format!("{sign}\\frac{{{}}}{{{}}}", value.numerator().abs(), value.denominator())
 }
 
-fn command(function: Function) -> &'static str {
-    match function {
-        Function::Sin => "\\sin",
-        Function::Cos => "\\cos",
-        Function::Tan => "\\tan",
-        Function::Asin => "\\arcsin",
-        Function::Acos => "\\arccos",
-        Function::Atan => "\\arctan",
-        Function::Sinh => "\\sinh",
-        Function::Cosh => "\\cosh",
-        Function::Tanh => "\\tanh",
-        Function::Exp => "\\exp",
-        Function::Ln => "\\ln",
-        Function::Abs => "\\operatorname{abs}",
-        Function::Sign => "\\operatorname{sign}",
-        Function::Step => "\\operatorname{step}",
-    }
+/// The command for a function; `None` if bars stand around its argument.
+fn command(function: Function) -> Option<String> {
+    let Notation::Prefix(command) = function.row().notation else { return None };
+    Some(match function.order() {
+        None | Some(0) => command.to_owned(),
+        Some(order @ 1..=3) => format!("{{{command}{}}}", "'".repeat(order.into())),
+        Some(order) => format!("{{{command}^{{({order})}}}}"),
+    })
 }
 
 /// A name such as `θ1`, `l[0]`, `B.center.x` or `theta_max` with dots: its first word is the

@@ -3,7 +3,8 @@
 //! Those of a block that is written in ASCII are in ASCII, as the language reads them:
 //! `theta_ddot = -g*sin(theta)/L`.
 
-use crate::algebra::expr::{Function, Graph, Id, Moment, Node, Symbol};
+use crate::algebra::expr::{Graph, Id, Moment, Node, Symbol};
+use crate::algebra::functions::{Function, Notation};
 use crate::algebra::number::{Literal, Rational, superscript};
 use crate::backend::cancel;
 use crate::mechanics::motion::Motion;
@@ -201,19 +202,23 @@ fn write(graph: &Graph, names: &Names, id: Id, level: Level) -> String {
         Node::Symbol(symbol) => return names.symbol(*symbol),
         Node::Sum(terms) => (sum(graph, names, terms), Level::Sum),
         Node::Product(coefficient, factors) => product(graph, names, *coefficient, factors),
-        Node::Call(Function::Abs, argument) => {
-            return format!("|{}|", write(graph, names, *argument, Level::Sum));
-        }
-        // The language has no word for it.
-        Node::Call(Function::Step, argument) if names.ascii => {
-            return format!("((1 + sign({}))/2)", write(graph, names, *argument, Level::Sum));
-        }
         Node::Call(function, argument) => {
-            let text = format!("{}{}", function.name(), operand(graph, names, *argument));
-            if names.ascii {
-                return text;
+            let row = function.row();
+            let inside = || write(graph, names, *argument, Level::Sum);
+            match (row.notation, row.ascii) {
+                (Notation::Bars, _) => return format!("|{}|", inside()),
+                (_, Some(ascii)) if names.ascii => {
+                    return ascii(function.order().unwrap_or(0), &inside());
+                }
+                (Notation::Prefix(_), _) => {
+                    let text =
+                        format!("{}{}", spelled(*function), operand(graph, names, *argument));
+                    if names.ascii {
+                        return text;
+                    }
+                    (text, Level::Product)
+                }
             }
-            (text, Level::Product)
         }
         Node::Atan2(y, x) => {
             return format!(
@@ -233,6 +238,11 @@ fn write(graph: &Graph, names: &Names, id: Id, level: Level) -> String {
     };
     let call = matches!(graph.node(id), Node::Call(..));
     if own < level && !(call && level == Level::Product) { format!("({text})") } else { text }
+}
+
+/// The name of a function with its primes.
+fn spelled(function: Function) -> String {
+    format!("{}{}", function.row().name, function.primes())
 }
 
 /// What a function is applied to, with what stands before it.
@@ -341,10 +351,10 @@ fn power(graph: &Graph, names: &Names, base: Id, exponent: Rational) -> String {
     }
     let raised = names.exponent(exponent);
     if let Node::Call(function, argument) = graph.node(base)
-        && *function != Function::Abs
+        && function.row().notation != Notation::Bars
         && !names.ascii
     {
-        return format!("{}{raised}{}", function.name(), operand(graph, names, *argument));
+        return format!("{}{raised}{}", spelled(*function), operand(graph, names, *argument));
     }
     let inner = write(graph, names, base, Level::Power);
     format!("{inner}{raised}")

@@ -5,7 +5,8 @@
 //! u = a tᵈ + … is as narrow as |a|^(−1/d).
 
 use crate::algebra::diff::{derivative, substitute};
-use crate::algebra::expr::{Dependencies, Function, Graph, Id, Node, Symbol};
+use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
+use crate::algebra::functions::{Function, Scale};
 use crate::algebra::number::Rational;
 use crate::algebra::order;
 use std::collections::{BTreeMap, BTreeSet};
@@ -99,14 +100,12 @@ impl Search {
 
     fn visit(&mut self, id: Id) {
         match self.graph.node(id).clone() {
-            Node::Call(Function::Sin | Function::Cos | Function::Tan, angle) => {
-                self.oscillation(angle);
-            }
-            Node::Call(Function::Ln, argument) => self.bump(argument),
-            Node::Call(Function::Abs | Function::Sign | Function::Step, argument) => {
-                self.corner(argument);
-            }
-            Node::Call(_, argument) => self.bell(argument),
+            Node::Call(function, argument) => match function.row().scale {
+                Scale::Oscillation => self.oscillation(argument),
+                Scale::Bell => self.bell(argument),
+                Scale::Bump => self.bump(argument),
+                Scale::Kink => self.corner(argument),
+            },
             Node::Max(a, b) => {
                 let difference = self.graph.sub(a, b);
                 self.corner(difference);

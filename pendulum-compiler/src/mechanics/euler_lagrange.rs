@@ -5,7 +5,8 @@
 //! the time.
 
 use crate::algebra::diff::derivative;
-use crate::algebra::expr::{Dependencies, Function, Graph, Id, Node, Symbol};
+use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
+use crate::algebra::functions::Kinks;
 use crate::algebra::number::Rational;
 use crate::algebra::order;
 use crate::algebra::rule;
@@ -178,7 +179,7 @@ fn solved(graph: &mut Graph, motion: &mut Motion, momenta: &[Id], sparse: Option
     if let Some(sparse) = sparse
         && LARGEST_DENSE < largest
         && !momenta.iter().any(|&momentum| jumps(graph, momentum))
-        && schedule::program(graph, &sparse.accelerations).count().cost() < largest.pow(3) / 3
+        && schedule::program(graph, &sparse.accelerations).cost() < largest.pow(3) / 3
     {
         // Elimination without structure would take n³/3 operations and as long to write down.
         motion.accelerations.clone_from(&sparse.accelerations);
@@ -197,7 +198,7 @@ fn solved(graph: &mut Graph, motion: &mut Motion, momenta: &[Id], sparse: Option
 
 /// Takes `other` where its cost is below a share of the own one.
 fn shorten(graph: &Graph, own: &mut [Id], other: &[Id], share: f64) {
-    let cost = |roots: &[Id]| schedule::program(graph, roots).count().cost() as f64;
+    let cost = |roots: &[Id]| schedule::program(graph, roots).cost() as f64;
     if cost(other) < share * cost(own) {
         own.clone_from_slice(other);
     }
@@ -324,7 +325,7 @@ pub(crate) fn invert(
 /// not show that it contains them.
 fn jumps(graph: &Graph, id: Id) -> bool {
     let jumps = |id: &Id| match graph.node(*id) {
-        Node::Call(Function::Sign | Function::Step, argument) => {
+        Node::Call(function, argument) if function.row().kinks == Kinks::Jump => {
             graph.dependencies(*argument).any(Dependencies::VELOCITY)
         }
         _ => false,

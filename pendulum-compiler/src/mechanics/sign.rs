@@ -2,7 +2,7 @@
 //! its mass matrix.
 
 use crate::algebra::dimension::Dimension;
-use crate::algebra::expr::{Dependencies, Function, Graph, Id, Moment, Node, Symbol};
+use crate::algebra::expr::{Dependencies, Graph, Id, Moment, Node, Symbol};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::mechanics::lower::Energies;
@@ -233,10 +233,7 @@ fn signs(model: &Model, graph: &Graph, roots: &[Id]) -> BTreeMap<Id, Option<Sign
                     Some(if square { sign } else { sign.times(signs[base]?) })
                 })
             }
-            Node::Call(Function::Exp | Function::Cosh | Function::Abs | Function::Step, _) => {
-                Some(Sign::Positive)
-            }
-            Node::Call(..) => None,
+            Node::Call(function, _) => (0.0 <= function.row().range[0]).then_some(Sign::Positive),
             Node::Max(a, b) => {
                 [signs[a], signs[b]].contains(&Some(Sign::Positive)).then_some(Sign::Positive)
             }

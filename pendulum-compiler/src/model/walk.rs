@@ -3,11 +3,11 @@
 
 use super::{Meaning, Model, plain, unknown};
 use crate::algebra::dimension::Dimension;
-use crate::messages::{Errors, Range};
+use crate::algebra::functions::Word;
+use crate::messages::{self, Errors, Range, UNITS};
 use crate::syntax::ast::{Binder, Expr, ExprKind, ForceIndex};
 use crate::syntax::elsewhere::{constant, function};
 use crate::syntax::name::{self, Name};
-use crate::syntax::words::{FUNCTIONS, UNITS};
 use proc_macro2::Ident;
 use std::collections::BTreeSet;
 
@@ -73,8 +73,8 @@ impl Walk<'_, '_, '_> {
                 self.constant(exponent);
             }
             ExprKind::Call(name, items)
-                if scalar_functions()
-                    .any(|(function, count)| name == function && *count == items.len()) =>
+                if Word::named(&name.to_string())
+                    .is_some_and(|word| word.is_scalar() && word.arity() == items.len()) =>
             {
                 for item in items {
                     self.constant(item);
@@ -222,14 +222,14 @@ impl Walk<'_, '_, '_> {
                 ),
             ),
             (_, Some(Meaning::Coordinate(_))) if 1 < dots => {
-                self.errors.at(ident.span(), acceleration(&ident.to_string()));
+                self.errors.at(ident.span(), messages::acceleration(format!("`{ident}`")));
             }
             (_, Some(Meaning::Input(_))) if 2 < dots => {
                 self.errors.at(ident.span(), format!("`{ident}` is a third derivative; driven inputs have two"));
             }
             (_, Some(_)) => {}
             (_, None) if self.model.block.recovery.declarations => {}
-            (text, None) if FUNCTIONS.iter().any(|(function, _)| *function == text) => {
+            (text, None) if Word::named(text).is_some() => {
                 self.errors.at(ident.span(), format!("`{ident}` is a function; write `{ident}(…)`"));
             }
             (_, None) => {
@@ -261,7 +261,9 @@ impl Walk<'_, '_, '_> {
                 && let Some(meaning) = moving(stem)
             {
                 return match meaning {
-                    Meaning::Coordinate(_) if suffix == "ddot" => acceleration(text),
+                    Meaning::Coordinate(_) if suffix == "ddot" => {
+                        messages::acceleration(format!("`{text}`"))
+                    }
                     _ => format!("unknown name `{text}`; did you mean `{stem}_{suffix}`?"),
                 };
             }
@@ -288,21 +290,17 @@ impl Walk<'_, '_, '_> {
             && let Some(arguments) = &self.model.lets[*index].arguments
         {
             if arguments.len() != count {
-                self.errors.at(
-                    range,
-                    format!("`{ident}` takes {}; {count} stand here", plural(arguments.len())),
-                );
+                self.errors.at(range, messages::arguments(ident, arguments.len(), count));
             }
             return;
         }
-        if let Some(&(_, expected)) = FUNCTIONS.iter().find(|(function, _)| ident == function) {
+        if let Some(expected) = Word::named(&ident.to_string()).map(Word::arity) {
             if let ("dot", Some(product)) =
                 (ident.to_string().as_str(), function(&ident.to_string(), items))
             {
                 self.errors.at(range, format!("`dot` is the derivative of one argument; write `{product}` for a scalar product"));
             } else if expected != count {
-                self.errors
-                    .at(range, format!("`{ident}` takes {}; {count} stand here", plural(expected)));
+                self.errors.at(range, messages::arguments(ident, expected, count));
             }
             return;
         }
@@ -314,7 +312,10 @@ impl Walk<'_, '_, '_> {
         {
             self.errors.at(
                 ident.span(),
-                format!("`{ident}` is no function, and there is no implicit multiplication; write `{ident}*(…)`"),
+                format!(
+                    "`{ident}` is no function, and {}",
+                    messages::no_operator(&format!("`{ident}*(…)`"))
+                ),
             );
         } else if !self.model.block.recovery.declarations {
             let lets = self
@@ -324,7 +325,7 @@ impl Walk<'_, '_, '_> {
                 .filter(|definition| definition.arguments.is_some())
                 .map(|definition| definition.name.to_string());
             let known: Vec<String> =
-                FUNCTIONS.iter().map(|(function, _)| (*function).to_owned()).chain(lets).collect();
+                Word::all().map(|word| word.name.to_owned()).chain(lets).collect();
             let nearest = || name::nearest(&ident.to_string(), known.iter().map(String::as_str));
             let message = match (function(&ident.to_string(), items), nearest()) {
                 (Some(call), _) => format!("unknown function `{ident}`; write `{call}`"),
@@ -347,19 +348,4 @@ impl Walk<'_, '_, '_> {
             .map(ToString::to_string)
             .collect()
     }
-}
-
-/// The functions of the table that take scalars to a scalar.
-fn scalar_functions() -> impl Iterator<Item = &'static (&'static str, usize)> {
-    FUNCTIONS.iter().take_while(|(function, _)| *function != "dot")
-}
-
-fn acceleration(name: &str) -> String {
-    format!(
-        "`{name}` is an acceleration, and a Lagrangian has none; only driven inputs have a second derivative"
-    )
-}
-
-fn plural(count: usize) -> String {
-    if count == 1 { "one argument".into() } else { format!("{count} arguments") }
 }

@@ -1,7 +1,7 @@
 //! What a program costs: its operations of each kind.
 
 use super::{Op, Program};
-use crate::algebra::expr::Function;
+use crate::algebra::functions::Function;
 
 /// The operations of one evaluation, once everything that depends on parameters alone is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,14 +19,29 @@ pub struct Operations {
     pub div: usize,
 }
 
-impl Operations {
-    /// What the operations cost, in multiplications.
-    pub(crate) fn cost(self) -> usize {
-        self.mul + self.add + 4 * self.div + 20 * (self.sincos + self.functions)
-    }
-}
+/// The cost of a function that is an operation of its own, in multiplications.
+const FUNCTION: usize = 20;
 
 impl Program {
+    /// The cost of one evaluation, in multiplications, after what parameters alone decide has been
+    /// prepared.
+    pub(crate) fn cost(&self) -> usize {
+        let cost = |(op, parameter_only): (&Op, bool)| match op {
+            _ if parameter_only => 0,
+            Op::Mul(..) | Op::Add(..) | Op::Sub(..) => 1,
+            Op::Div(..) => 4,
+            Op::SinCos(_) | Op::Sqrt(_) | Op::Powf(..) | Op::Atan2(..) | Op::Max(..) => FUNCTION,
+            Op::Call(function, _) => function.row().cost,
+            Op::Number(_)
+            | Op::Literal(_)
+            | Op::Pi
+            | Op::Load(_)
+            | Op::Negative(_)
+            | Op::Part(..) => 0,
+        };
+        self.ops.iter().zip(self.parameter_only()).map(cost).sum()
+    }
+
     /// The operations of one evaluation, after what parameters alone decide has been prepared.
     pub(crate) fn count(&self) -> Operations {
         let mut count = Operations::default();

@@ -12,7 +12,8 @@ mod stage;
 mod sum;
 mod term;
 
-use crate::algebra::expr::{Dependencies, Function, Graph, Id, Node};
+use crate::algebra::expr::{Dependencies, Graph, Id, Node};
+use crate::algebra::functions::Function;
 use crate::algebra::number::Rational;
 pub use cost::Operations;
 pub(crate) use program::{Op, Place, Program, operands};

@@ -1,6 +1,7 @@
 //! Straight programs: binary operations in order, each of which reads earlier ones.
 
-use crate::algebra::expr::{Function, Symbol};
+use crate::algebra::expr::Symbol;
+use crate::algebra::functions::Function;
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use std::collections::BTreeMap;

@@ -6,4 +6,3 @@ pub(crate) mod elsewhere;
 pub(crate) mod name;
 pub(crate) mod parse;
 pub(crate) mod text;
-pub(crate) mod words;

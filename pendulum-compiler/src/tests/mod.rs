@@ -16,6 +16,7 @@ mod absolute;
 mod clock;
 mod derivatives;
 mod fragments;
+mod functions;
 mod golden;
 mod growth;
 mod identities;

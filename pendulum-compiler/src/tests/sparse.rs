@@ -12,10 +12,10 @@ use crate::mechanics::solve;
 use crate::messages::Errors;
 use crate::schedule;
 
-/// Compares every output of the two forms and gives the operations of both accelerations.
-fn compare(source: &str) -> [schedule::Operations; 2] {
+/// Compares every output of the two forms and gives the programs of both accelerations.
+fn compare(source: &str) -> [schedule::Program; 2] {
     let mut errors = Errors::default();
-    let counts = derived(source, &mut errors, |_, graph, motion, energies| {
+    let programs = derived(source, &mut errors, |_, graph, motion, energies| {
         let extended = energies.extended.as_ref().unwrap();
         let sparse = articulated::sparse(graph, extended, motion.accelerations.len()).unwrap();
         let lagrangian = match (energies.lagrangian, energies.kinetic, energies.potential) {
@@ -61,10 +61,10 @@ fn compare(source: &str) -> [schedule::Operations; 2] {
             let difference = graph.sub(dense, sparse);
             assert!(vanishes(graph, difference), "{name} of {source}");
         }
-        [&accelerations, &sparse.accelerations].map(|roots| schedule::program(graph, roots).count())
+        [&accelerations, &sparse.accelerations].map(|roots| schedule::program(graph, roots))
     });
     assert!(errors.is_empty(), "{:?}", errors.messages());
-    counts.unwrap()
+    programs.unwrap()
 }
 
 fn vanishes(graph: &Graph, id: Id) -> bool {
@@ -126,7 +126,7 @@ const BLOCKS: &[(&str, &str)] = &[
 fn both_forms_are_the_same_functions() {
     for (name, source) in BLOCKS {
         println!("{name}");
-        let [dense, sparse] = compare(source);
+        let [dense, sparse] = compare(source).map(|program| program.count());
         println!("    dense {dense:?}\n    sparse {sparse:?}");
     }
 }

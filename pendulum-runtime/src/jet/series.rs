@@ -242,6 +242,30 @@ pub fn sinh_cosh<T: Real, O: Order>(
     [reciprocals.over(with_cosh, k), reciprocals.over(with_sinh, k)]
 }
 
+/// f(x) for a family of functions that are each other's derivatives, fₙ′ = fₙ₊₁: `member` gives
+/// fₙ(x\[0\]) for n, and `own` takes the series of the members from f on,
+/// [`LENGTH`](super::LENGTH) of them.
+///
+/// k fₙ\[k\] = Σ j x\[j\] fₙ₊₁\[k−j\]: each order needs one more member at x\[0\] and one more
+/// coefficient of each before it. Nothing is divided by the argument, so that the series is as good
+/// as the members, at zeros of the argument as elsewhere; order k takes k(k+1)/2 products.
+#[inline(always)]
+pub fn family<T: Real, O: Order>(
+    member: impl FnOnce(usize) -> T,
+    rate: &Series<T>,
+    own: &mut [Series<T>],
+    reciprocals: &Reciprocals<T>,
+    order: O,
+) -> T {
+    let k = order.index();
+    own[k][0] = member(k);
+    for j in 1..=k {
+        let coefficient = behind(rate, &own[k + 1 - j], order.at(j));
+        own[k - j][j] = reciprocals.over(coefficient, j);
+    }
+    own[0][k]
+}
+
 /// The rate z of y with r ẏ = ẋ, where `x` is k x\[k\]: r\[0\] z\[k\] = k x\[k\] − Σ r\[j\]
 /// z\[k−j\] over 0 < j < k.
 #[inline(always)]

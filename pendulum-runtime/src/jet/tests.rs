@@ -93,6 +93,12 @@ impl Real for Fraction {
 
     known!(tan 0 0, asin 0 0, atan 0 0, sinh 0 0, cosh 0 1, tanh 0 0, exp 0 1, ln 1 0, sqrt 1 1);
 
+    fn sinc(self, order: usize) -> Self {
+        assert_eq!(self.0, 0);
+        let order = order as i128;
+        circular(order, false, true) * fraction(factorial(order), order + 1)
+    }
+
     fn atan2(self, x: Self) -> Self {
         assert!(self.0 == 0 && 0 < x.0);
         self
@@ -283,6 +289,31 @@ fn circular_and_hyperbolic_functions() {
     check("exponential", &exponential, |order, _, own| {
         series::integral(|| x[0].exp(), &rate, own, &reciprocals(), order)
     });
+}
+
+/// A function by its derivatives at zero.
+type Family = (&'static str, fn(i128) -> Fraction);
+
+#[test]
+fn families_of_derivatives() {
+    let a = argument(0);
+    let rate = rates(&a);
+    // The derivatives at zero of e²ˣ, of sine and cosine, and of a polynomial.
+    let families: [Family; 5] = [
+        ("sinc", |n| whole(0).sinc(n as usize)),
+        ("exponential", |n| whole(1 << n)),
+        ("sine", |n| circular(n, true, true) * whole(factorial(n))),
+        ("cosine", |n| circular(n, false, true) * whole(factorial(n))),
+        ("polynomial", |n| if n < 4 { whole(n + 2) } else { whole(0) }),
+    ];
+    for (name, member) in families {
+        let mut members = vec![zero(); super::LENGTH];
+        let expected = composed(|n| member(n) / whole(factorial(n)), &a);
+        check(name, &expected, |order, _, _| {
+            let member = |n: usize| member(n as i128);
+            series::family(member, &rate, &mut members, &reciprocals(), order)
+        });
+    }
 }
 
 #[test]

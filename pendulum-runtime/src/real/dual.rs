@@ -144,6 +144,10 @@ impl<T: Real> Real for Dual<T> {
         self.chain(tan, number::<T>(1.0) + tan * tan)
     }
 
+    fn sinc(self, order: usize) -> Self {
+        self.chain(self.value.sinc(order), self.value.sinc(order + 1))
+    }
+
     fn asin(self) -> Self {
         self.chain(Real::asin(self.value), number::<T>(1.0) / circle(self.value))
     }
@@ -263,6 +267,10 @@ mod tests {
         close(slope!(sin, 0.75), 0.7316888688738209);
         close(slope!(cos, 0.75), -0.6816387600233341);
         close(slope!(tan, 0.75), 1.8678719641803279);
+        for (order, expected) in [(0, -0.23621708154305512), (1, -0.27893946258296526)] {
+            assert_eq!(Dual::constant(0.75).sinc(order).derivative, 0.0);
+            close(Dual::variable(0.75).sinc(order).derivative, expected);
+        }
         close(slope!(asin, 0.75), 1.511857892036909);
         close(slope!(acos, 0.75), -1.511857892036909);
         close(slope!(atan, 0.75), 0.64);

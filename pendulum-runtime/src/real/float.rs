@@ -1,6 +1,6 @@
 //! `f64` and `f32`.
 
-use super::{Float, Real, trig};
+use super::{Float, Real, sinc, trig};
 
 /// Both types go through the functions of `f64`; `f32` rounds their results once more, which leaves
 /// it next to correctly rounded. Only its sine and cosine have a shorter kernel.
@@ -30,6 +30,11 @@ macro_rules! float {
             #[inline]
             fn tan(self) -> Self {
                 libm::tan(f64::from(self)) as $float
+            }
+
+            #[inline]
+            fn sinc(self, order: usize) -> Self {
+                sinc::sinc(f64::from(self), order) as $float
             }
 
             #[inline]
@@ -184,6 +189,9 @@ mod tests {
     #[test]
     fn functions_have_their_values() {
         at!(tan(1.25), 3.0095696738628313);
+        at!(sinc(1.25, 0), 0.759187695484469);
+        at!(sinc(1.25, 1), -0.3550922664713602);
+        at!(sinc(1.25, 2), -0.1910400691302926);
         at!(asin(0.625), 0.6751315329370317);
         at!(acos(0.625), 0.895664793857865);
         at!(atan(1.25), 0.8960553845713439);

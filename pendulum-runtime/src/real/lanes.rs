@@ -233,6 +233,11 @@ macro_rules! number {
                 self.sin_cos().1
             }
 
+            #[inline(always)]
+            fn sinc(self, order: usize) -> Self {
+                self.each(|x| x.sinc(order))
+            }
+
             unary! { tan asin acos atan sinh cosh tanh exp ln sqrt abs sign step }
             binary! { atan2 powf max min }
 
@@ -282,6 +287,13 @@ mod tests {
         check(-a, |x, _| -x, "negative");
         check(a.sin(), |x, _| Real::sin(x), "sine");
         check(a.cos(), |x, _| Real::cos(x), "cosine");
+        for order in [0, 1, 2, 9] {
+            let numbers = numbers(a.sinc(order));
+            for (x, number) in x.into_iter().zip(numbers) {
+                let single = x.sinc(order);
+                assert_eq!(number.to_bits(), single.to_bits(), "sinc of {x}, order {order}");
+            }
+        }
         check(a.atan2(b), Real::atan2, "angle");
         check(a.max(b), Real::max, "larger");
         check(a.min(b), Real::min, "smaller");

@@ -91,6 +91,15 @@ TWO = {
               + [((0.0, 0.0), (-2.0, 0.0)), ((3.0, 0.0), (0.0, 0.0)), ((1.0, 0.0), (-1.0, 0.0)), ((1e-200, 0.0), (-1.0, 0.0))]),
     "powf": (mp.power, [(uniform(0.2, 5), (k / 2, 0.0)) for k in range(-9, 10)] + [(uniform(0.2, 5), uniform(-5, 5)) for _ in range(20)]),
 }
+ORDERS = [0, 1, 2, 5, 20]
+
+
+def sinc(x, order):
+    """The derivative of sin(x)/x, by x s_n + n s_{n-1} = the n-th derivative of sin x."""
+    result = mp.sin(x) / x
+    for n in range(1, order + 1):
+        result = ([mp.sin, mp.cos, lambda x: -mp.sin(x), lambda x: -mp.cos(x)][n % 4](x) - n * result) / x
+    return result
 
 
 def main():
@@ -99,6 +108,9 @@ def main():
             result = function(value(x))
             if mpf(2) ** -900 < abs(result):
                 print(name, *map(bits, x + words(result)))
+    for order in ORDERS:
+        for x in SMALL[:45] + of(lambda: uniform(0, 25), 20):
+            print(f"sinc{order}", *map(bits, x + words(sinc(value(x), order))))
     for name, (function, arguments) in TWO.items():
         for x, y in arguments:
             result = function(value(x), value(y))

@@ -11,5 +11,7 @@ VALUES = {
 }
 for name, value in VALUES.items():
     print("value of", name, repr(float(value)))
+for order in range(3):
+    print("value of sinc", order, repr(float(mp.diff(mp.sinc, X, order))), "and", repr(float(mp.diff(mp.sinc, mpf("0.75"), order))))
 for name in ["sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "ln"]:
     print("slope of", name, repr(float(mp.diff(getattr(mp, name), mpf("0.75")))))

@@ -11,11 +11,12 @@ mod product;
 mod sum;
 mod walk;
 
+use crate::algebra::functions::Function;
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::algebra::rule;
 pub(crate) use dependencies::Dependencies;
-pub(crate) use node::{Function, Id, Moment, Node, Symbol};
+pub(crate) use node::{Id, Moment, Node, Symbol};
 use std::collections::{BTreeMap, HashMap};
 use std::hash::{BuildHasherDefault, DefaultHasher};
 

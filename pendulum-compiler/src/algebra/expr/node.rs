@@ -1,5 +1,6 @@
 //! What the graph is made of: nodes and their leaves.
 
+use crate::algebra::functions::Function;
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 
@@ -64,67 +65,4 @@ pub(crate) enum Moment {
     Difference,
     /// S_xy.
     Product,
-}
-
-/// A function of one argument.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(crate) enum Function {
-    Sin,
-    Cos,
-    Tan,
-    Asin,
-    Acos,
-    Atan,
-    Sinh,
-    Cosh,
-    Tanh,
-    Exp,
-    Ln,
-    Abs,
-    Sign,
-    Step,
-}
-
-impl Function {
-    const ALL: [Self; 14] = [
-        Self::Sin,
-        Self::Cos,
-        Self::Tan,
-        Self::Asin,
-        Self::Acos,
-        Self::Atan,
-        Self::Sinh,
-        Self::Cosh,
-        Self::Tanh,
-        Self::Exp,
-        Self::Ln,
-        Self::Abs,
-        Self::Sign,
-        Self::Step,
-    ];
-
-    /// Its name in the language and in the runtime; `step` stands in derivatives alone.
-    pub(crate) const fn name(self) -> &'static str {
-        match self {
-            Self::Sin => "sin",
-            Self::Cos => "cos",
-            Self::Tan => "tan",
-            Self::Asin => "asin",
-            Self::Acos => "acos",
-            Self::Atan => "atan",
-            Self::Sinh => "sinh",
-            Self::Cosh => "cosh",
-            Self::Tanh => "tanh",
-            Self::Exp => "exp",
-            Self::Ln => "ln",
-            Self::Abs => "abs",
-            Self::Sign => "sign",
-            Self::Step => "step",
-        }
-    }
-
-    /// The function of a name.
-    pub(crate) fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|function| function.name() == name)
-    }
 }

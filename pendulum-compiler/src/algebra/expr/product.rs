@@ -1,6 +1,7 @@
 //! Products: flat, sorted, with a coefficient and an exponent for each base.
 
-use super::{Dependencies, Function, Graph, Id, Node, Terms};
+use super::{Dependencies, Graph, Id, Node, Terms};
+use crate::algebra::functions::Function;
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::algebra::rule;
@@ -221,7 +222,8 @@ fn number_power(value: Rational, exponent: Rational) -> Option<Rational> {
 
 #[cfg(test)]
 mod tests {
-    use crate::algebra::expr::{Function, Graph, Node, Symbol};
+    use crate::algebra::expr::{Graph, Node, Symbol};
+    use crate::algebra::functions::Function;
     use crate::algebra::number::Rational;
 
     #[test]

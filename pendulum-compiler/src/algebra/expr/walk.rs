@@ -1,7 +1,8 @@
 //! Walks through the graph: from an expression to all that it is made of, and to the same with
 //! other children.
 
-use super::{Dependencies, Function, Graph, Id, Node, Symbol};
+use super::{Dependencies, Graph, Id, Node, Symbol};
+use crate::algebra::functions::Kinks;
 use crate::algebra::number::Rational;
 use std::collections::BTreeSet;
 
@@ -56,11 +57,10 @@ impl Graph {
 
     /// Whether nothing that moves goes through a function that has a corner or jumps.
     pub(crate) fn smooth(&self, roots: &[Id]) -> bool {
-        let cornered = |&id: &Id| {
-            matches!(
-                self.node(id),
-                Node::Max(..) | Node::Call(Function::Abs | Function::Sign | Function::Step, _)
-            )
+        let cornered = |&id: &Id| match self.node(id) {
+            Node::Max(..) => true,
+            Node::Call(function, _) => function.row().kinks != Kinks::Smooth,
+            _ => false,
         };
         !self
             .reachable(roots)

@@ -2,7 +2,8 @@
 //! read.
 
 use super::{Emitter, local};
-use crate::algebra::expr::{Function, Moment, Symbol};
+use crate::algebra::expr::{Moment, Symbol};
+use crate::algebra::functions::Function;
 use crate::algebra::number;
 use crate::algebra::number::Rational;
 use crate::schedule::{Op, Place};
@@ -12,10 +13,6 @@ use quote::{format_ident, quote};
 impl Emitter<'_, '_> {
     pub(crate) fn operation(&self, op: &Op, at: impl Fn(Place) -> TokenStream) -> TokenStream {
         let scalar = self.scalar();
-        let call = |method: &str, place: Place| {
-            let (value, method) = (at(place), format_ident!("{method}"));
-            quote!(#value.#method())
-        };
         let binary = |method: &str, a: Place, b: Place| {
             let (a, b, method) = (at(a), at(b), format_ident!("{method}"));
             quote!(#a.#method(#b))
@@ -45,11 +42,17 @@ impl Emitter<'_, '_> {
                 let (a, b) = (at(a), at(b));
                 quote!((#a / #b))
             }
-            Op::Sqrt(a) => call("sqrt", a),
+            Op::Sqrt(a) => {
+                let a = at(a);
+                quote!(#a.sqrt())
+            }
             Op::Powf(a, b) => binary("powf", a, b),
             Op::Atan2(a, b) => binary("atan2", a, b),
             Op::Max(a, b) => binary("max", a, b),
-            Op::Call(function, a) => call(function.name(), a),
+            Op::Call(function, a) => {
+                let value = at(a);
+                function_call(function, &value)
+            }
             Op::SinCos(_) => TokenStream::new(),
             Op::Part(function, pair) => {
                 let name = local(if function == Function::Sin { "s" } else { "c" }, pair.0);
@@ -109,6 +112,13 @@ impl Emitter<'_, '_> {
             }
         }
     }
+}
+
+/// A function of a value.
+pub(super) fn function_call(function: Function, value: &TokenStream) -> TokenStream {
+    let method = format_ident!("{}", function.row().name);
+    let order = function.order().map(Literal::u8_unsuffixed);
+    quote!(#value.#method(#order))
 }
 
 fn number(value: Rational, scalar: &Ident) -> TokenStream {

@@ -3,7 +3,7 @@
 
 use super::Lower;
 use super::value::Value;
-use crate::algebra::expr::{Dependencies, Function, Graph, Id, Node, Symbol};
+use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::syntax::ast::Expr;
@@ -68,7 +68,7 @@ pub(crate) fn evaluate(
                 product * known(base).powf(ratio(exponent))
             })
         }
-        Node::Call(function, argument) => function_value(*function, known(*argument)),
+        Node::Call(function, argument) => function.value(known(*argument)),
         Node::Atan2(y, x) => known(*y).atan2(known(*x)),
         Node::Max(a, b) => known(*a).max(known(*b)),
         Node::Atom(inner) => known(*inner),
@@ -77,25 +77,4 @@ pub(crate) fn evaluate(
 
 fn ratio(number: Rational) -> f64 {
     number.numerator() as f64 / number.denominator() as f64
-}
-
-fn function_value(function: Function, x: f64) -> f64 {
-    match function {
-        Function::Sin => x.sin(),
-        Function::Cos => x.cos(),
-        Function::Tan => x.tan(),
-        Function::Asin => x.asin(),
-        Function::Acos => x.acos(),
-        Function::Atan => x.atan(),
-        Function::Sinh => x.sinh(),
-        Function::Cosh => x.cosh(),
-        Function::Tanh => x.tanh(),
-        Function::Exp => x.exp(),
-        Function::Ln => x.ln(),
-        Function::Abs => x.abs(),
-        Function::Sign if x == 0.0 => 0.0,
-        Function::Sign => x.signum(),
-        Function::Step if x == 0.0 => 0.5,
-        Function::Step => f64::from(0.0 < x),
-    }
 }

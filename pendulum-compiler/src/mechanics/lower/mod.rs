@@ -12,7 +12,7 @@ mod value;
 use crate::algebra::diff;
 use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
 use crate::algebra::number::Rational;
-use crate::messages::{Errors, Range};
+use crate::messages::{self, Errors, Range};
 use crate::model::{self, Model};
 use crate::syntax::ast::{Binder, Expr, ForceIndex, Role};
 use crate::syntax::name;
@@ -369,11 +369,7 @@ impl Lower<'_, '_, '_, '_> {
         }
         let definition = self.model.lets[index];
         if self.open.contains(&(index, k)) {
-            self.errors.once(
-                definition.expr.source,
-                range,
-                format!("`{}` is defined by itself; break the circle", definition.name),
-            );
+            self.errors.once(definition.expr.source, range, messages::circular(&definition.name));
             return Value::Bad;
         }
         self.open.push((index, k));
@@ -399,11 +395,7 @@ impl Lower<'_, '_, '_, '_> {
             return Value::Bad;
         }
         if self.open.iter().any(|&(other, _)| other == index) {
-            self.errors.once(
-                definition.expr.source,
-                range,
-                format!("`{}` is defined by itself; break the circle", definition.name),
-            );
+            self.errors.once(definition.expr.source, range, messages::circular(&definition.name));
             return Value::Bad;
         }
         self.open.push((index, None));
@@ -424,7 +416,7 @@ impl Lower<'_, '_, '_, '_> {
                 lower.errors.once(
                     expr.source,
                     range,
-                    "the end of a range is a whole number known while compiling; write numbers and indices only",
+                    messages::unknown_number("the end of a range"),
                 );
                 None
             }
@@ -458,11 +450,7 @@ impl Lower<'_, '_, '_, '_> {
                 None
             }
             Err(range) => {
-                self.errors.once(
-                    expr.source,
-                    range,
-                    "an index is a whole number known while compiling; write numbers and indices only",
-                );
+                self.errors.once(expr.source, range, messages::unknown_number("an index"));
                 None
             }
         }

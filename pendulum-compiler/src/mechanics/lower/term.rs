@@ -2,12 +2,13 @@
 
 use super::value::Value;
 use super::{DEEPEST, LIMIT, Local, Lower};
-use crate::algebra::expr::{Function, Graph, Id, Symbol};
+use crate::algebra::expr::{Graph, Id, Symbol};
+use crate::algebra::functions::{Function, Lowering, One, Two, Word};
+use crate::messages;
 use crate::model::{self, Meaning};
 use crate::syntax::ast::{Binder, Expr, ExprKind};
 use crate::syntax::name::{self, Name};
 use crate::syntax::text::text;
-use crate::syntax::words::FUNCTIONS;
 
 impl Lower<'_, '_, '_, '_> {
     pub(super) fn scalar(&mut self, expr: &Expr) -> Option<Id> {
@@ -18,10 +19,10 @@ impl Lower<'_, '_, '_, '_> {
                 if self.vector_product(expr).is_none() {
                     self.wrong(
                         expr,
-                        &format!(
-                            "`{}` is {}, but a scalar is needed here; write `inner(u, v)`, `|u|` or a component",
-                            text(expr),
-                            other.kind()
+                        &messages::no_scalar(
+                            &text(expr),
+                            other.kind(),
+                            "`inner(u, v)`, `|u|` or a component",
                         ),
                     );
                 }
@@ -41,9 +42,10 @@ impl Lower<'_, '_, '_, '_> {
                     .map(text)
                     .collect();
                 let [a, b] = vectors.as_slice() else { return None };
-                let message = format!(
-                    "`{}` is the complex product of two plane vectors, but a scalar is needed here; write `inner({a}, {b})`",
-                    text(expr)
+                let message = messages::no_scalar(
+                    &text(expr),
+                    "the complex product of two plane vectors",
+                    &format!("`inner({a}, {b})`"),
                 );
                 Some(self.wrong(expr, &message))
             }
@@ -239,14 +241,33 @@ impl Lower<'_, '_, '_, '_> {
             let value = self.apply(index, arguments, expr.range);
             return self.dotted(value, dots, expr);
         }
-        match (name, items) {
-            ("dot", [item]) => {
+        match (Word::named(name).map(|word| word.lowering), items) {
+            (Some(Lowering::One(one)), [a]) => self.call_of_one(one, a),
+            (Some(Lowering::Two(two)), [a, b]) => self.call_of_two(two, a, b),
+            _ => {
+                // The call has been reported, and the kind of its arguments is open.
+                for item in items {
+                    self.expr(item);
+                }
+                Value::Bad
+            }
+        }
+    }
+
+    fn call_of_one(&mut self, one: One, item: &Expr) -> Value {
+        match one {
+            One::Function(Function::Exp) => self.exponential(item),
+            One::Function(function) => self.of_scalar(item, |graph, a| graph.call(function, a)),
+            One::Sqrt => self.of_scalar(item, Graph::sqrt),
+            One::Cis => match self.scalar(item) {
+                Some(angle) => self.cis(angle),
+                None => Value::Bad,
+            },
+            One::Dot => {
                 let value = self.expr(item);
                 self.dot(value, item, has_index(item))
             }
-            ("inner", [a, b]) => self.inner(a, b),
-            ("cross", [a, b]) => self.cross(a, b),
-            ("perp", [item]) => match self.expr(item) {
+            One::Perp => match self.expr(item) {
                 Value::Bad => Value::Bad,
                 Value::Plane { parts: [x, y], complex } => {
                     Value::Plane { parts: [self.graph.negative(y), x], complex }
@@ -260,7 +281,7 @@ impl Lower<'_, '_, '_, '_> {
                     ),
                 ),
             },
-            ("height", [item]) => match self.expr(item) {
+            One::Height => match self.expr(item) {
                 Value::Bad => Value::Bad,
                 Value::Plane { parts, .. } => Value::Scalar(parts[1]),
                 Value::Space(parts) => Value::Scalar(parts[2]),
@@ -273,54 +294,52 @@ impl Lower<'_, '_, '_, '_> {
                     ),
                 ),
             },
-            ("cis", [item]) => match self.scalar(item) {
-                Some(angle) => self.cis(angle),
-                None => Value::Bad,
-            },
-            ("exp", [item]) => match self.expr(item) {
-                Value::Plane { parts: [re, im], complex: true } => {
-                    let magnitude = self.graph.call(Function::Exp, re);
-                    let turn = self.cis(im);
-                    self.map(turn, |graph, id| graph.mul(magnitude, id))
-                }
-                Value::Scalar(id) => Value::Scalar(self.graph.call(Function::Exp, id)),
-                Value::Bad => Value::Bad,
-                other => self.wrong(
-                    item,
-                    &format!(
-                        "`{}` is {}, but the exponent is a number; write `exp(i*φ)` for a turn",
-                        text(item),
-                        other.kind()
-                    ),
-                ),
-            },
-            _ => self.scalar_call(name, items),
         }
     }
 
-    pub(super) fn scalar_call(&mut self, name: &str, items: &[Expr]) -> Value {
-        if !FUNCTIONS.contains(&(name, items.len())) {
-            // The call has been reported, and the kind of its arguments is open.
-            for item in items {
-                self.expr(item);
-            }
-            return Value::Bad;
+    fn call_of_two(&mut self, two: Two, a: &Expr, b: &Expr) -> Value {
+        match two {
+            Two::Inner => self.inner(a, b),
+            Two::Cross => self.cross(a, b),
+            Two::Atan2 => self.of_scalars(a, b, Graph::atan2),
+            Two::Min => self.of_scalars(a, b, Graph::min),
+            Two::Max => self.of_scalars(a, b, Graph::max),
         }
+    }
+
+    fn of_scalar(&mut self, item: &Expr, function: impl FnOnce(&mut Graph, Id) -> Id) -> Value {
+        match self.scalar(item) {
+            Some(a) => Value::Scalar(function(self.graph, a)),
+            None => Value::Bad,
+        }
+    }
+
+    fn of_scalars(&mut self, a: &Expr, b: &Expr, function: fn(&mut Graph, Id, Id) -> Id) -> Value {
         // What is wrong with one argument is wrong with the call.
-        let values: Option<Vec<Id>> = items.iter().map(|item| self.scalar(item)).collect();
-        let Some(values) = values else { return Value::Bad };
-        let graph = &mut *self.graph;
-        Value::Scalar(match (name, values.as_slice()) {
-            ("sqrt", &[a]) => graph.sqrt(a),
-            ("atan2", &[y, x]) => graph.atan2(y, x),
-            ("min", &[a, b]) => graph.min(a, b),
-            ("max", &[a, b]) => graph.max(a, b),
-            (_, &[a]) => match Function::named(name) {
-                Some(function) => graph.call(function, a),
-                None => return Value::Bad,
-            },
-            _ => return Value::Bad,
-        })
+        let Some(a) = self.scalar(a) else { return Value::Bad };
+        let Some(b) = self.scalar(b) else { return Value::Bad };
+        Value::Scalar(function(self.graph, a, b))
+    }
+
+    /// The exponential of a number, which may be complex.
+    fn exponential(&mut self, item: &Expr) -> Value {
+        match self.expr(item) {
+            Value::Plane { parts: [re, im], complex: true } => {
+                let magnitude = self.graph.call(Function::Exp, re);
+                let turn = self.cis(im);
+                self.map(turn, |graph, id| graph.mul(magnitude, id))
+            }
+            Value::Scalar(id) => Value::Scalar(self.graph.call(Function::Exp, id)),
+            Value::Bad => Value::Bad,
+            other => self.wrong(
+                item,
+                &format!(
+                    "`{}` is {}, but the exponent is a number; write `exp(i*φ)` for a turn",
+                    text(item),
+                    other.kind()
+                ),
+            ),
+        }
     }
 
     pub(super) fn vector(&mut self, items: &[Expr], expr: &Expr) -> Value {
@@ -368,8 +387,7 @@ impl Lower<'_, '_, '_, '_> {
                         return self.wrong(index, &message);
                     }
                     Err(_) => {
-                        return self
-                            .wrong(index, "an index is a whole number known while compiling; write numbers and indices only");
+                        return self.wrong(index, &messages::unknown_number("an index"));
                     }
                 };
                 let mut value = self.definition(definition, Some(k), base.range);

@@ -1,8 +1,10 @@
 //! Arithmetic of scalars, vectors and complex numbers.
 
 use super::{Lower, total_derivative};
-use crate::algebra::expr::{Dependencies, Function, Graph, Id, Node, Symbol};
+use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
+use crate::algebra::functions::Function;
 use crate::algebra::number::Rational;
+use crate::messages;
 use crate::syntax::ast::Expr;
 use crate::syntax::text::text;
 
@@ -58,7 +60,10 @@ impl Lower<'_, '_, '_, '_> {
             return value;
         }
         if dependencies.any(Dependencies::VELOCITY) {
-            return self.wrong(expr, &format!("the derivative of a velocity in `{what}` is an acceleration, and a Lagrangian has none; only driven inputs have a second derivative"));
+            return self.wrong(
+                expr,
+                &messages::acceleration(format!("the derivative of a velocity in `{what}`")),
+            );
         }
         if dependencies.any(Dependencies::ACCELERATION_INPUT) {
             return self.wrong(
@@ -292,11 +297,7 @@ impl Lower<'_, '_, '_, '_> {
                 a.iter().copied().zip(b.iter().copied()).collect()
             }
             _ => {
-                let message = format!(
-                    "`inner` takes two vectors of one length; these are {} and {}",
-                    left.kind(),
-                    right.kind()
-                );
+                let message = messages::two_vectors("inner", left.kind(), right.kind());
                 return self.wrong(b, &message);
             }
         };
@@ -323,11 +324,7 @@ impl Lower<'_, '_, '_, '_> {
                 minor(a[0], b[1], a[1], b[0]),
             ]),
             _ => {
-                let message = format!(
-                    "`cross` takes two vectors of one length; these are {} and {}",
-                    left.kind(),
-                    right.kind()
-                );
+                let message = messages::two_vectors("cross", left.kind(), right.kind());
                 self.wrong(b, &message)
             }
         }

@@ -5,6 +5,7 @@
 //! exponents, and the first equation that has no unknown left and does not hold is the mistake.
 
 use super::{Dimension, constant};
+use crate::algebra::functions::{UnitRule, Word};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::messages::Errors;
@@ -392,28 +393,38 @@ impl Units<'_, '_, '_> {
                 unit.times(&Unit::of(second()), Rational::whole(-i64::from(dots)))
             });
         }
-        match (name, items) {
-            ("dot", [item]) => self
-                .expr(item)
-                .and_then(|unit| unit.times(&Unit::of(second()), Rational::MINUS_ONE)),
-            ("sqrt", [item]) => {
+        let units = Word::named(name).map_or(UnitRule::Pure, |word| word.units);
+        match (units, items) {
+            (UnitRule::Same, [item]) => self.expr(item),
+            (UnitRule::Root, [item]) => {
                 self.expr(item).and_then(|unit| Unit::pure().times(&unit, Rational::HALF))
             }
-            ("inner" | "cross", [a, b]) => {
+            (UnitRule::Rate, [item]) => self
+                .expr(item)
+                .and_then(|unit| unit.times(&Unit::of(second()), Rational::MINUS_ONE)),
+            (UnitRule::Product, [a, b]) => {
                 let (a, b) = (self.expr(a), self.expr(b));
                 a.zip(b).and_then(|(a, b)| a.times(&b, Rational::ONE))
             }
-            ("perp" | "height" | "abs", [item]) => self.expr(item),
-            ("sign", [item]) => {
+            (UnitRule::Any, [item]) => {
                 self.expr(item);
                 Some(Unit::pure())
             }
-            ("min" | "max", items) => self.common(items.iter(), &format!("`{name}`")),
-            ("atan2", items) => {
-                self.common(items.iter(), "`atan2`");
+            (UnitRule::Common, items) => self.common(items.iter(), &format!("`{name}`")),
+            (UnitRule::Ratio, items) => {
+                self.common(items.iter(), &format!("`{name}`"));
                 Some(Unit::pure())
             }
-            _ => {
+            // The number of arguments has been reported, if it is wrong.
+            (
+                UnitRule::Pure
+                | UnitRule::Same
+                | UnitRule::Root
+                | UnitRule::Rate
+                | UnitRule::Product
+                | UnitRule::Any,
+                _,
+            ) => {
                 for item in items {
                     self.pure(item, &format!("the argument of `{name}`"));
                 }

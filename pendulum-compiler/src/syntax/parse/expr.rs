@@ -5,7 +5,7 @@ use super::token::{checked, comma, end, fragment, identifier, unexpected};
 use super::{Parser, to_the_last};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
-use crate::messages::Range;
+use crate::messages::{self, Range};
 use crate::syntax::ast::{Expr, ExprKind};
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use quote::ToTokens;
@@ -211,8 +211,7 @@ impl Parser<'_> {
         let name = input.call(Ident::parse_any)?;
         checked(&name)?;
         if let Some(row) = FOREIGN.iter().find(|row| name == row.0) {
-            return Err(Range::from(name.span())
-                .error(format!("`{name}` is Rust, which has no place in a formula; {}", row.1)));
+            return Err(Range::from(name.span()).error(messages::rust(&name, row.1)));
         }
         if input.peek(Token![::]) {
             return Err(path(input, Some(&name), self.ascii));
@@ -279,7 +278,7 @@ impl Parser<'_> {
             } else if self.is_unit(Some(&suffix), input) {
                 no_unit()
             } else {
-                format!("there is no implicit multiplication; write `{digits}*{suffix}`")
+                messages::no_operator(&format!("`{digits}*{suffix}`"))
             };
             return Err(Range::from(span).error(message));
         }

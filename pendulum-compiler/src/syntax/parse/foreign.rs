@@ -4,12 +4,12 @@ use super::Parser;
 use super::statement::STATEMENTS;
 use super::token::fragment;
 use crate::algebra::dimension::Dimension;
-use crate::messages::Range;
+use crate::algebra::functions::Word;
+use crate::messages::{self, Range, TELL_CASES_APART, UNITS};
 use crate::syntax::ast::{Expr, ExprKind};
 use crate::syntax::elsewhere::{constant, function};
 use crate::syntax::name;
 use crate::syntax::text::text;
-use crate::syntax::words::{FUNCTIONS, UNITS};
 use proc_macro2::{Delimiter, Ident, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Result};
@@ -18,8 +18,8 @@ use syn::{Lifetime, Lit, Token, parenthesized};
 /// Words that begin Rust expressions, and what to write instead.
 #[rustfmt::skip]
 pub(super) const FOREIGN: &[(&str, &str)] = &[
-    ("if", "write `max`, `min`, `abs` or `sign` to tell cases apart"),
-    ("match", "write `max`, `min`, `abs` or `sign` to tell cases apart"),
+    ("if", TELL_CASES_APART),
+    ("match", TELL_CASES_APART),
     ("for", "write `sum(k in 0..5, …)`"),
     ("while", "write `sum(k in 0..5, …)`"),
     ("loop", "write `sum(k in 0..5, …)`"),
@@ -37,8 +37,7 @@ impl Parser<'_> {
     /// Two operands side by side: there is no implicit multiplication.
     pub(super) fn no_operand(&self, input: ParseStream, left: &Expr) -> Result<()> {
         if input.peek(Token![as]) {
-            return Err(Range::from(input.span())
-                .error("`as` is Rust, which has no place in a formula; leave the type out"));
+            return Err(Range::from(input.span()).error(messages::rust("as", "leave the type out")));
         }
         if let (ExprKind::Name(name), true) = (&left.kind, input.peek(Lifetime)) {
             let message =
@@ -62,13 +61,13 @@ impl Parser<'_> {
                 (_, TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis => {
                     match &left.kind {
                         ExprKind::Name(_) | ExprKind::Number(_) => Range::from(group.span_open())
-                            .error("there is no implicit multiplication; write `*` before `(`"),
+                            .error(messages::no_operator("`*` before `(`")),
                         _ => Range::from(group.span_open())
                             .error("an operator is missing before `(`; write `*` to multiply"),
                     }
                 }
                 (ExprKind::Name(name), _) if self.is_function(name) => {
-                    let count = FUNCTIONS.iter().find(|row| name == row.0).map_or(1, |row| row.1);
+                    let count = Word::named(&name.to_string()).map_or(1, Word::arity);
                     let arguments = match token {
                         TokenTree::Ident(_) | TokenTree::Literal(_) if count == 1 => {
                             token.to_string()
@@ -82,9 +81,7 @@ impl Parser<'_> {
                     right.error(message)
                 }
                 (ExprKind::Number(_), _) if self.is_unit(None, input) => right.error(no_unit()),
-                _ => right.error(format!(
-                    "there is no implicit multiplication; write `*` before `{token}`"
-                )),
+                _ => right.error(messages::no_operator(&format!("`*` before `{token}`"))),
             });
         }
         Ok(())
@@ -120,7 +117,7 @@ impl Parser<'_> {
             return Ok(());
         };
         let inverse = format!("a{name}");
-        let instead = if power == "-1" && FUNCTIONS.contains(&(inverse.as_str(), 1)) {
+        let instead = if power == "-1" && takes(&inverse, 1) {
             format!("`{inverse}({argument})`, or `1/{name}({argument})`")
         } else {
             format!("`{name}({argument})^{power}`")
@@ -163,9 +160,7 @@ impl Parser<'_> {
             Ok(arguments) => {
                 operands.extend(arguments);
                 let list = || operands.iter().map(text).collect::<Vec<_>>().join(", ");
-                let own = FUNCTIONS
-                    .contains(&(&method, operands.len()))
-                    .then(|| format!("{method}({})", list()));
+                let own = takes(&method, operands.len()).then(|| format!("{method}({})", list()));
                 own.or_else(|| function(&method, &operands))
             }
             Err(_) => None,
@@ -174,9 +169,8 @@ impl Parser<'_> {
             || "a function of the language, as in `sin(θ)`".to_owned(),
             |call| format!("`{call}`"),
         );
-        Range::from(name.span()).error(format!(
-            "`.{method}()` is Rust, which has no place in a formula; write {instead}"
-        ))
+        Range::from(name.span())
+            .error(messages::rust(format!(".{method}()"), &format!("write {instead}")))
     }
 
     /// The expressions between a pair of parentheses.
@@ -187,8 +181,13 @@ impl Parser<'_> {
     }
 
     fn is_function(&self, name: &Ident) -> bool {
-        FUNCTIONS.iter().any(|row| name == row.0) && !self.is_declared(&name.to_string())
+        Word::named(&name.to_string()).is_some() && !self.is_declared(&name.to_string())
     }
+}
+
+/// Whether a function takes that many arguments.
+fn takes(name: &str, count: usize) -> bool {
+    Word::named(name).is_some_and(|word| word.arity() == count)
 }
 
 /// A comparison, which Rust has and formulas have not.
@@ -202,7 +201,7 @@ pub(super) fn no_condition(input: ParseStream) -> Result<()> {
     {
         let sign = input.fork().parse::<TokenTree>()?;
         return Err(Range::from(sign.span())
-            .error("a formula has no conditions; write `max`, `min`, `abs` or `sign` to tell cases apart, as in `max(0, θ)`"));
+            .error(format!("a formula has no conditions; {TELL_CASES_APART}, as in `max(0, θ)`")));
     }
     Ok(())
 }
@@ -220,9 +219,8 @@ pub(super) fn path(input: ParseStream, first: Option<&Ident>, ascii: bool) -> sy
     }
     let instead = match constant(&last.0, ascii) {
         Some(constant) => format!("`{constant}`"),
-        None if FUNCTIONS.iter().any(|row| row.0 == last.0) => format!("`{}(…)`", last.0),
+        None if Word::named(&last.0).is_some() => format!("`{}(…)`", last.0),
         None => "a number, or declare a parameter".to_owned(),
     };
-    Range { first: start, last: last.1 }
-        .error(format!("`{text}` is Rust, which has no place in a formula; write {instead}"))
+    Range { first: start, last: last.1 }.error(messages::rust(text, &format!("write {instead}")))
 }

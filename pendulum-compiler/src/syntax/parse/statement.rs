@@ -16,11 +16,15 @@ use syn::{Attribute, Token, bracketed, parenthesized};
 pub(super) const STATEMENTS: [&str; 8] =
     ["coordinate", "driven", "let", "kinetic", "potential", "lagrangian", "dissipation", "force"];
 
+/// What to do instead of a constraint.
+const CONSTRAINTS: &str = "constraints, as closed loops need them, are not supported yet; choose \
+                           coordinates in which they hold by themselves";
+
 /// Statements that there are not yet, and what to write instead.
 #[rustfmt::skip]
 const UNSUPPORTED: &[(&str, &str)] = &[
-    ("constraint", "constraints, as closed loops need them, are not supported yet; choose coordinates in which they hold by themselves"),
-    ("redundant", "constraints, as closed loops need them, are not supported yet; choose coordinates in which they hold by themselves"),
+    ("constraint", CONSTRAINTS),
+    ("redundant", CONSTRAINTS),
     ("output", "outputs are not supported yet; compute the value in the program, from the coordinates and the velocities"),
     ("input", "inputs are not supported yet; declare it `driven` and bind a motion to it"),
     ("limit", "limits are not supported yet; write a soft stop, as in `potential = k/2*max(0, θ - w)^2;`, or let the program stop at an event"),

@@ -1,6 +1,6 @@
 //! Single tokens: names that may be declared, signs, brackets, and what is skipped after an error.
 
-use crate::messages::Range;
+use crate::messages::{self, Range};
 use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
 use syn::Token;
 use syn::ext::IdentExt;
@@ -87,11 +87,11 @@ pub(super) fn unexpected(input: ParseStream, expected: &str) -> syn::Error {
                 Delimiter::Bracket => "`[`",
                 Delimiter::None => "this",
             };
-            Range::from(group.span_open())
-                .error(format!("{open} is not expected here; expected {expected}"))
+            Range::from(group.span_open()).error(messages::unexpected(open, expected))
         }
-        Ok(token) => Range::from(token.span())
-            .error(format!("`{token}` is not expected here; expected {expected}")),
+        Ok(token) => {
+            Range::from(token.span()).error(messages::unexpected(&format!("`{token}`"), expected))
+        }
         Err(_) => Range::from(input.span())
             .error(format!("the input ends too early; expected {expected}")),
     }

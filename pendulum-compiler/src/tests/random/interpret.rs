@@ -1,6 +1,7 @@
 //! The derived equations, computed at a state by the program that it would emit.
 
-use crate::algebra::expr::{Function, Graph, Id, Moment, Symbol};
+use crate::algebra::expr::{Graph, Id, Moment, Symbol};
+use crate::algebra::functions::Function;
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::model::{Model, Quantity};
@@ -85,7 +86,7 @@ impl<T: Real> Values<T> {
                 Op::Powf(a, b) => at(a).powf(at(b)),
                 Op::Atan2(y, x) => at(y).atan2(at(x)),
                 Op::Max(a, b) => at(a).max(at(b)),
-                Op::Call(function, a) => call(function, at(a)),
+                Op::Call(function, a) => function.of(at(a)),
                 Op::SinCos(a) => {
                     known.push(at(a).sin_cos());
                     continue;
@@ -96,25 +97,6 @@ impl<T: Real> Values<T> {
             known.push((value, zero));
         }
         program.results.iter().map(|result| known[result.0].0).collect()
-    }
-}
-
-fn call<T: Real>(function: Function, x: T) -> T {
-    match function {
-        Function::Sin => x.sin(),
-        Function::Cos => x.cos(),
-        Function::Tan => x.tan(),
-        Function::Asin => x.asin(),
-        Function::Acos => x.acos(),
-        Function::Atan => x.atan(),
-        Function::Sinh => x.sinh(),
-        Function::Cosh => x.cosh(),
-        Function::Tanh => x.tanh(),
-        Function::Exp => x.exp(),
-        Function::Ln => x.ln(),
-        Function::Abs => x.abs(),
-        Function::Sign => x.sign(),
-        Function::Step => x.step(),
     }
 }
 

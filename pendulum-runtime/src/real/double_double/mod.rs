@@ -7,7 +7,7 @@ mod exponential;
 pub use decimal::ParseError;
 
 use super::exact::{ordered_sum, two_sum};
-use super::{Float, Real};
+use super::{Float, Real, sinc};
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A number in two words, high + low with |low| at most half a unit in the last place of high:
@@ -320,6 +320,10 @@ impl Real for DoubleDouble {
 
     fn sin_cos(self) -> (Self, Self) {
         angle::sin_cos(self)
+    }
+
+    fn sinc(self, order: usize) -> Self {
+        sinc::sinc(self, order)
     }
 
     fn asin(self) -> Self {

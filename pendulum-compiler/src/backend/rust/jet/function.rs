@@ -1,10 +1,11 @@
 //! The recurrences of functions and powers.
 
-use super::Writer;
-use crate::algebra::expr::Function;
+use super::{LENGTH, Writer};
+use crate::algebra::functions::{Divisor, Function, Recurrence, Sign};
 use crate::backend::rust::local;
+use crate::backend::rust::operation::function_call;
 use crate::schedule::Place;
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 impl Writer<'_, '_, '_> {
@@ -12,90 +13,94 @@ impl Writer<'_, '_, '_> {
     pub(super) fn call(&mut self, place: Place, function: Function, a: Place) {
         let scalar = self.emitter.scalar();
         let one = quote!(series::constant(#scalar::from_f64(1.0), order));
-        match function {
-            Function::Sin | Function::Cos => {
+        match function.row().recurrence {
+            Recurrence::Circular => {
                 self.sin_cos(place, a);
                 let name = local(if function == Function::Sin { "s" } else { "c" }, place.0);
                 self.values[place.0] = quote!(#name);
             }
-            Function::Sinh | Function::Cosh => {
+            Recurrence::Hyperbolic(part) => {
                 let (pair, x) = (self.pair(), self.value(a));
                 let (x, both) = (self.shared("a", place, &x), local("b", place.0));
                 let rate = self.rate(&x);
-                let part = usize::from(function == Function::Cosh);
                 self.lines.extend(quote! {
                     let #both = series::sinh_cosh(#x, &#rate, &#pair, &path.reciprocals, order);
                     #pair[k] = #both;
                 });
                 self.values[place.0] = quote!(#both[#part]);
             }
-            Function::Exp => {
+            Recurrence::Exponential => {
                 let x = self.value(a);
                 self.exponential(place, &x);
             }
-            Function::Tan | Function::Tanh => {
+            Recurrence::Riccati(sign) => {
                 let (x, slot, slope) = (self.value(a), self.slot(), self.slot());
                 let x = self.shared("a", place, &x);
                 let rate = self.rate(&x);
                 self.halves += 3;
-                let (name, sign) = if function == Function::Tan {
-                    ("tan", quote!(+))
-                } else {
-                    ("tanh", quote!(-))
-                };
-                let name = format_ident!("{name}");
-                let value = quote!(series::integral(|| #x.#name(), &#rate, &#slope, &path.reciprocals, order));
+                let start = function_call(function, &x);
+                let sign = if sign == Sign::Plus { quote!(+) } else { quote!(-) };
+                let value =
+                    quote!(series::integral(|| #start, &#rate, &#slope, &path.reciprocals, order));
                 self.name_in(place, &value, slot.clone());
                 self.lines.extend(quote!(#slope[k] = #one #sign series::square(&#slot, order);));
             }
-            Function::Ln => {
-                let (x, divisor) = (self.value(a), self.whole(a));
-                let x = self.shared("a", place, &x);
-                self.inverse(
-                    place,
-                    &quote!(#x.ln()),
-                    &quote!(series::rate(#x, order)),
-                    &divisor,
-                    false,
-                );
-            }
-            Function::Atan => {
+            Recurrence::Quotient(divisor, sign) => {
                 let (x, series) = (self.value(a), self.whole(a));
                 let x = self.shared("a", place, &x);
-                self.halves += 1;
-                let divisor = self.kept(&quote!(#one + series::square(&#series, order)));
-                self.inverse(
-                    place,
-                    &quote!(#x.atan()),
-                    &quote!(series::rate(#x, order)),
-                    &divisor,
-                    false,
-                );
+                let divisor = match divisor {
+                    Divisor::Argument => series,
+                    Divisor::OnePlusSquare => {
+                        self.halves += 1;
+                        self.kept(&quote!(#one + series::square(&#series, order)))
+                    }
+                    Divisor::RootOfOneMinusSquare => {
+                        let (root, lead) = (self.slot(), self.lead());
+                        self.halves += 2;
+                        let below = self.shared(
+                            "b",
+                            place,
+                            &quote!(#one - series::square(&#series, order)),
+                        );
+                        self.lines
+                            .extend(quote!(#root[k] = series::sqrt(#below, &#root, #lead, order);));
+                        root
+                    }
+                };
+                let (start, rate) = (function_call(function, &x), quote!(series::rate(#x, order)));
+                self.inverse(place, &start, &rate, &divisor, sign == Sign::Minus);
             }
-            Function::Asin | Function::Acos => {
-                let (x, series) = (self.value(a), self.whole(a));
-                let (x, root, lead) = (self.shared("a", place, &x), self.slot(), self.lead());
-                self.halves += 2;
-                let below =
-                    self.shared("b", place, &quote!(#one - series::square(&#series, order)));
-                self.lines.extend(quote!(#root[k] = series::sqrt(#below, &#root, #lead, order);));
-                let name =
-                    format_ident!("{}", if function == Function::Asin { "asin" } else { "acos" });
-                let rate = quote!(series::rate(#x, order));
-                self.inverse(place, &quote!(#x.#name()), &rate, &root, function == Function::Acos);
-            }
-            Function::Abs => {
+            Recurrence::Linear(slope) => {
                 let (x, lead) = (self.value(a), self.lead());
                 let x = self.shared("a", place, &x);
-                self.name(place, &quote!(series::leading(|| #x.sign(), #lead, order) * #x));
+                let slope = function_call(slope, &x);
+                self.name(place, &quote!(series::leading(|| #slope, #lead, order) * #x));
             }
-            Function::Sign | Function::Step => {
+            Recurrence::Family => {
+                let (x, series) = (self.value(a), self.whole(a));
+                let start = self.shared("a", place, &quote!(#series[0]));
+                let rate = self.slots;
+                self.rate(&x);
+                let first = self.slots;
+                self.slots += LENGTH;
+                self.halves += 16;
+                let method = format_ident!("{}", function.row().name);
+                let member = Literal::u8_unsuffixed(function.order().unwrap_or(0));
+                self.name(
+                    place,
+                    &quote!({
+                        let (known, own) = work.series.split_at_mut(#first);
+                        series::family(|n| #start.#method(#member + n), &known[#rate], own, &path.reciprocals, order)
+                    }),
+                );
+                self.series.insert(place, quote!(work.series[#first]));
+            }
+            Recurrence::Constant => {
                 let x = self.value(a);
-                let name =
-                    format_ident!("{}", if function == Function::Sign { "sign" } else { "step" });
+                let value = function_call(function, &x);
                 // The value at order 0 is all there is; that of another order means nothing and is
                 // not used.
-                self.name(place, &quote!(series::constant(#x.#name(), order)));
+                self.name(place, &quote!(series::constant(#value, order)));
             }
         }
     }

@@ -9,7 +9,8 @@ mod function;
 mod momentum_form;
 mod sine_oscillator;
 
-use crate::algebra::expr::{Dependencies, Function, Graph, Id, Symbol};
+use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
+use crate::algebra::functions::Function;
 use crate::backend::rust::{Emitter, local};
 use crate::mechanics::articulated::Unsolved;
 use crate::mechanics::motion::Motion;
@@ -30,6 +31,9 @@ const MOST_LOOPED: usize = 80;
 /// The most convolutions, in halves, of a system for which higher orders pay: the rest of a step
 /// costs as much.
 const MOST_CHEAP: usize = 4;
+
+/// The number of coefficients of a series of the runtime.
+const LENGTH: usize = 32;
 
 /// The equations as a program: for each block of the mass matrix its rows, and what the program's
 /// results mean for it.
@@ -524,5 +528,13 @@ impl Writer<'_, '_, '_> {
             let [#(#names),*] = work.factors.#index.solve([#(#right),*]);
             #(path.a[#rows][k] = #names;)*
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn series_are_as_long_as_in_the_runtime() {
+        assert_eq!(super::LENGTH, pendulum_runtime::jet::LENGTH);
     }
 }

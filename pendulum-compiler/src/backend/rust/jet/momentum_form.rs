@@ -11,7 +11,8 @@
 //! 3. what q̈\[k\] adds to the series goes into their newest coefficients.
 
 use super::Writer;
-use crate::algebra::expr::{Function, Id, Symbol};
+use crate::algebra::expr::{Id, Symbol};
+use crate::algebra::functions::Function;
 use crate::backend::rust::local;
 use crate::mechanics::articulated::Unsolved;
 use crate::mechanics::motion::Motion;

@@ -5,7 +5,8 @@
 //! in place of two products.
 
 use super::Writer;
-use crate::algebra::expr::{Function, Symbol};
+use crate::algebra::expr::Symbol;
+use crate::algebra::functions::Function;
 use crate::schedule::{Op, Place, Program, operands};
 use proc_macro2::TokenStream;
 use quote::quote;

@@ -1,0 +1,476 @@
+//! The functions of the language: a row for each, with all that the compiler knows of it.
+//!
+//! An ordinary function of one argument is a row of [`functions!`] and a method of the runtime's
+//! `Real`; a column that is missing does not compile. Functions with a structure of their own are
+//! rows of [`STRUCTURES`]: powers and two arguments are nodes of other kinds, vectors and
+//! derivatives are gone when energies are lowered. Three relations between functions stay where
+//! they are used: rules of `rule.rs`, sine and cosine as the point of a circle (in `schedule`, in
+//! `prime_field.rs` and in the jets), and magnitudes, which roots of squares become.
+
+use crate::algebra::expr::{Graph, Id};
+use crate::algebra::number::{Rational, superscript};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use Derivative::{Call, Formula};
+use Kinks::{Corner, Jump, Smooth};
+use Notation::{Bars, Prefix};
+use Parity::{Even, Neither, Odd};
+use Recurrence::{Circular, Constant, Exponential, Family, Hyperbolic, Linear, Quotient, Riccati};
+use Scale::{Bell, Bump, Oscillation};
+
+/// What the compiler knows of a function f of one argument.
+pub(crate) struct Row {
+    /// The name in the language, and of the method of `Real`.
+    pub(crate) name: &'static str,
+    /// Whether the language has it: other functions stand in derivatives alone.
+    pub(crate) word: bool,
+    /// The units of argument and value.
+    pub(crate) units: UnitRule,
+    /// An interval on which f is defined, and smooth but for its kinks.
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests take their arguments from it"))]
+    pub(crate) domain: [f64; 2],
+    /// Bounds of the values.
+    pub(crate) range: [f64; 2],
+    /// f(0), if the simplifier may write it.
+    pub(crate) at_zero: Option<Rational>,
+    /// f(−u) in terms of f(u).
+    pub(crate) parity: Parity,
+    /// What f or a derivative of it does at zero.
+    pub(crate) kinks: Kinks,
+    /// The width of f(u(t)).
+    pub(crate) scale: Scale,
+    /// The cost of a call, in multiplications.
+    pub(crate) cost: usize,
+    /// How equations show it.
+    pub(crate) notation: Notation,
+    /// The text in ASCII, from the order in a family and the text of u, where it is no call.
+    pub(crate) ascii: Option<fn(u8, &str) -> String>,
+    /// f(x) in the numbers of the compiler, from the order in a family and x.
+    pub(crate) value: fn(u8, f64) -> f64,
+    /// f′(u).
+    pub(crate) derivative: Derivative,
+    /// The Taylor series of f(u(t)) from that of u(t).
+    pub(crate) recurrence: Recurrence,
+}
+
+/// The units of arguments and value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum UnitRule {
+    /// Pure numbers to a pure number.
+    Pure,
+    /// The unit of the one argument.
+    Same,
+    /// Its root.
+    Root,
+    /// The unit per second.
+    Rate,
+    /// The product of the units of two arguments.
+    Product,
+    /// A pure number, of an argument with any unit.
+    Any,
+    /// The one unit that all arguments have.
+    Common,
+    /// A pure number, of arguments with one unit.
+    Ratio,
+}
+
+/// f(−u) in terms of f(u).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Parity {
+    /// −f(u).
+    Odd,
+    /// f(u).
+    Even,
+    /// Neither of the two.
+    Neither,
+}
+
+/// What happens at zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kinks {
+    /// Nothing: all derivatives exist.
+    Smooth,
+    /// The derivative jumps.
+    Corner,
+    /// The value jumps.
+    Jump,
+}
+
+/// The width of f(u(t)).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Scale {
+    /// That of a crest of a sine.
+    Oscillation,
+    /// f changes where u is of the order of one.
+    Bell,
+    /// f has no width of its own: that of u where it is not zero.
+    Bump,
+    /// A kink where u is zero.
+    Kink,
+}
+
+/// How equations show f(u).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Notation {
+    /// The name before u, or this command in LaTeX.
+    Prefix(&'static str),
+    /// |u|.
+    Bars,
+}
+
+/// f′(u).
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Derivative {
+    /// Another function of u.
+    Call(Function),
+    /// An expression in u and y = f(u).
+    Formula(fn(&mut Graph, Id, Id) -> Id),
+}
+
+/// The Taylor series of y = f(u(t)) from that of u(t).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Recurrence {
+    /// With its partner: sine and cosine.
+    Circular,
+    /// With its partner, in this place of the two: sinh and cosh.
+    Hyperbolic(usize),
+    /// ẏ = y u̇.
+    Exponential,
+    /// ẏ = (1 ± y²) u̇.
+    Riccati(Sign),
+    /// d ẏ = ± u̇ with a divisor d.
+    Quotient(Divisor, Sign),
+    /// y = a u, where a is the value of this function where the series begins.
+    Linear(Function),
+    /// ẏ = 0.
+    Constant,
+    /// ẏ = f₁ u̇ with the next member of a family, whose methods take the order.
+    Family,
+}
+
+/// What the rate of an argument is divided by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Divisor {
+    /// u.
+    Argument,
+    /// 1 + u².
+    OnePlusSquare,
+    /// √(1 − u²).
+    RootOfOneMinusSquare,
+}
+
+/// The sign of a term.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sign {
+    Plus,
+    Minus,
+}
+
+/// All numbers.
+const REAL: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+const POSITIVE: [f64; 2] = [0.0, f64::INFINITY];
+const UNIT: [f64; 2] = [-1.0, 1.0];
+const ZERO: Option<Rational> = Some(Rational::ZERO);
+const ONE: Option<Rational> = Some(Rational::ONE);
+
+/// A function, or a family of its derivatives, is `Case = name { columns }` or
+/// `Case(order: u8) = name { columns }`; the methods of a family take the order.
+macro_rules! functions {
+    ($($case:ident $(($order:ident: $kind:ty))? = $name:ident { $($column:tt)* })+) => {
+        /// A function of one argument; canonical order is the order of the rows.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub(crate) enum Function {
+            $($case $(($kind))?,)+
+        }
+
+        impl Function {
+            /// Every function; of a family the function itself.
+            pub(crate) const ALL: &[Self] = &[$(Self::$case $((<$kind>::MIN))?,)+];
+
+            /// What the compiler knows of it.
+            pub(crate) fn row(self) -> Row {
+                match self {
+                    $(Self::$case $(($order))? => Row { name: stringify!($name), $($column)* },)+
+                }
+            }
+
+            /// The order of the derivative, for a member of a family.
+            pub(crate) fn order(self) -> Option<u8> {
+                match self {
+                    $(Self::$case $(($order))? => None$(.or(Some($order)))?,)+
+                }
+            }
+
+            /// A number that no other function has.
+            pub(crate) fn number(self) -> u64 {
+                enum Place {
+                    $($case,)+
+                }
+                let place = match self {
+                    $(Self::$case { .. } => Place::$case as u64,)+
+                };
+                place | u64::from(self.order().unwrap_or(0)) << 32
+            }
+
+            /// The value over any scalar of the runtime.
+            #[cfg(test)]
+            pub(crate) fn of<T: pendulum_runtime::real::Real>(self, x: T) -> T {
+                match self {
+                    $(Self::$case $(($order))? => x.$name($($order.into())?),)+
+                }
+            }
+        }
+    };
+}
+
+functions! {
+    Sin = sin {
+        word: true, units: UnitRule::Pure, domain: REAL, range: UNIT, at_zero: ZERO, parity: Odd,
+        kinks: Smooth, scale: Oscillation, cost: 20, notation: Prefix("\\sin"), ascii: None,
+        value: |_, x| x.sin(), derivative: Call(Function::Cos), recurrence: Circular,
+    }
+    Cos = cos {
+        word: true, units: UnitRule::Pure, domain: REAL, range: UNIT, at_zero: ONE, parity: Even,
+        kinks: Smooth, scale: Oscillation, cost: 20, notation: Prefix("\\cos"), ascii: None,
+        value: |_, x| x.cos(), recurrence: Circular,
+        derivative: Formula(|g, u, _| { let s = g.call(Function::Sin, u); g.negative(s) }),
+    }
+    Tan = tan {
+        word: true, units: UnitRule::Pure, domain: [-FRAC_PI_2, FRAC_PI_2], range: REAL,
+        at_zero: ZERO, parity: Odd,
+        kinks: Smooth, scale: Oscillation, cost: 20, notation: Prefix("\\tan"), ascii: None,
+        value: |_, x| x.tan(), recurrence: Riccati(Sign::Plus),
+        derivative: Formula(|g, _, y| one_and_square(g, y, Sign::Plus)), // 1 + tan²u
+    }
+    Asin = asin {
+        word: true, units: UnitRule::Pure, domain: UNIT, range: [-FRAC_PI_2, FRAC_PI_2],
+        at_zero: ZERO, parity: Odd,
+        kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\arcsin"), ascii: None,
+        value: |_, x| x.asin(), derivative: Formula(|g, u, _| one_over_root(g, u)), // 1/√(1 − u²)
+        recurrence: Quotient(Divisor::RootOfOneMinusSquare, Sign::Plus),
+    }
+    Acos = acos {
+        word: true, units: UnitRule::Pure, domain: UNIT, range: [0.0, PI], at_zero: None,
+        parity: Neither,
+        kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\arccos"), ascii: None,
+        value: |_, x| x.acos(), recurrence: Quotient(Divisor::RootOfOneMinusSquare, Sign::Minus),
+        derivative: Formula(|g, u, _| { let r = one_over_root(g, u); g.negative(r) }),
+    }
+    Atan = atan {
+        word: true, units: UnitRule::Pure, domain: REAL, range: [-FRAC_PI_2, FRAC_PI_2],
+        at_zero: ZERO, parity: Odd,
+        kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\arctan"), ascii: None,
+        value: |_, x| x.atan(), recurrence: Quotient(Divisor::OnePlusSquare, Sign::Plus),
+        derivative: Formula(|g, u, _| {
+            let s = one_and_square(g, u, Sign::Plus);
+            g.power(s, Rational::MINUS_ONE) // 1/(1 + u²)
+        }),
+    }
+    Sinh = sinh {
+        word: true, units: UnitRule::Pure, domain: REAL, range: REAL, at_zero: ZERO, parity: Odd,
+        kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\sinh"), ascii: None,
+        value: |_, x| x.sinh(), derivative: Call(Function::Cosh), recurrence: Hyperbolic(0),
+    }
+    Cosh = cosh {
+        word: true, units: UnitRule::Pure, domain: REAL, range: [1.0, f64::INFINITY], at_zero: ONE,
+        parity: Even,
+        kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\cosh"), ascii: None,
+        value: |_, x| x.cosh(), derivative: Call(Function::Sinh), recurrence: Hyperbolic(1),
+    }
+    Tanh = tanh {
+        word: true, units: UnitRule::Pure, domain: REAL, range: UNIT, at_zero: ZERO, parity: Odd,
+        kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\tanh"), ascii: None,
+        value: |_, x| x.tanh(), recurrence: Riccati(Sign::Minus),
+        derivative: Formula(|g, _, y| one_and_square(g, y, Sign::Minus)), // 1 − tanh²u
+    }
+    Exp = exp {
+        word: true, units: UnitRule::Pure, domain: REAL, range: POSITIVE, at_zero: ONE,
+        parity: Neither,
+        kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\exp"), ascii: None,
+        value: |_, x| x.exp(), derivative: Formula(|_, _, y| y), recurrence: Exponential,
+    }
+    Ln = ln {
+        word: true, units: UnitRule::Pure, domain: POSITIVE, range: REAL, at_zero: None,
+        parity: Neither,
+        kinks: Smooth, scale: Bump, cost: 20, notation: Prefix("\\ln"), ascii: None,
+        value: |_, x| x.ln(), derivative: Formula(|g, u, _| g.power(u, Rational::MINUS_ONE)), // 1/u
+        recurrence: Quotient(Divisor::Argument, Sign::Plus),
+    }
+    Abs = abs {
+        word: true, units: UnitRule::Same, domain: REAL, range: POSITIVE, at_zero: ZERO,
+        parity: Even, kinks: Corner, scale: Scale::Kink, cost: 20, notation: Bars, ascii: None,
+        value: |_, x| x.abs(), derivative: Call(Function::Sign), recurrence: Linear(Function::Sign),
+    }
+    Sign = sign {
+        word: true, units: UnitRule::Any, domain: REAL, range: UNIT, at_zero: None, parity: Odd,
+        kinks: Jump, scale: Scale::Kink, cost: 20, notation: Prefix("\\operatorname{sign}"),
+        ascii: None, value: |_, x| if x == 0.0 { 0.0 } else { x.signum() },
+        derivative: Formula(|_, _, _| Graph::ZERO), recurrence: Constant,
+    }
+    // The derivative of max(0, u): ½ at zero.
+    Step = step {
+        word: false, units: UnitRule::Any, domain: REAL, range: [0.0, 1.0], at_zero: None,
+        parity: Neither,
+        kinks: Jump, scale: Scale::Kink, cost: 20, notation: Prefix("\\operatorname{step}"),
+        ascii: Some(|_, x| format!("((1 + sign({x}))/2)")),
+        value: |_, x| if x == 0.0 { 0.5 } else { f64::from(0.0 < x) },
+        derivative: Formula(|_, _, _| Graph::ZERO), recurrence: Constant,
+    }
+    // The derivative of the order of sin(x)/x.
+    Sinc(order: u8) = sinc {
+        word: true, units: UnitRule::Pure, domain: REAL, range: UNIT,
+        at_zero: match order % 4 {
+            0 => Rational::new(1, i128::from(order) + 1),
+            2 => Rational::new(-1, i128::from(order) + 1),
+            _ => ZERO,
+        },
+        parity: if order % 2 == 0 { Even } else { Odd },
+        kinks: Smooth, scale: Oscillation, cost: 20, notation: Prefix("\\operatorname{sinc}"),
+        ascii: Some(sinc_in_ascii), value: sinc,
+        derivative: Call(Function::Sinc(order.saturating_add(1))), recurrence: Family,
+    }
+}
+
+/// The derivative of an order of sin(x)/x: x sₙ + n sₙ₋₁ = sin⁽ⁿ⁾ x, upwards beyond x = n and
+/// downwards from a high order below.
+fn sinc(order: u8, x: f64) -> f64 {
+    let sine = |n: u8| [x.sin(), x.cos(), -x.sin(), -x.cos()][usize::from(n % 4)];
+    if f64::from(order) < x.abs() {
+        return (1..=order).fold(x.sin() / x, |value, n| (sine(n) - f64::from(n) * value) / x);
+    }
+    let orders = order + 1..=order.saturating_add(60);
+    orders.rev().fold(0.0, |value, n| (sine(n) - x * value) / f64::from(n))
+}
+
+/// The same relation, as the language reads it.
+fn sinc_in_ascii(order: u8, x: &str) -> String {
+    if order == 0 {
+        return format!("sinc({x})");
+    }
+    let sine = ["sin", "cos", "-sin", "-cos"][usize::from(order % 4)];
+    let (times, before) = (order, sinc_in_ascii(order - 1, x));
+    format!("(({sine}({x}) - {times}*{before})/({x}))")
+}
+
+/// 1 ± x².
+fn one_and_square(graph: &mut Graph, x: Id, sign: Sign) -> Id {
+    let square = graph.power(x, Rational::whole(2));
+    let sign = if sign == Sign::Plus { Rational::ONE } else { Rational::MINUS_ONE };
+    graph.sum(&[(Graph::ONE, Rational::ONE), (square, sign)])
+}
+
+/// 1/√(1 − x²).
+fn one_over_root(graph: &mut Graph, x: Id) -> Id {
+    let square = one_and_square(graph, x, Sign::Minus);
+    graph.power(square, Rational::HALF.negative())
+}
+
+impl Function {
+    /// f(x).
+    pub(crate) fn value(self, x: f64) -> f64 {
+        (self.row().value)(self.order().unwrap_or(0), x)
+    }
+
+    /// f′(u), where `y` is f(u).
+    pub(crate) fn derivative(self, graph: &mut Graph, u: Id, y: Id) -> Id {
+        match self.row().derivative {
+            Derivative::Call(function) => graph.call(function, u),
+            Derivative::Formula(formula) => formula(graph, u, y),
+        }
+    }
+
+    /// The primes behind the name of a derivative: ′, ″ and so on.
+    pub(crate) fn primes(self) -> String {
+        match self.order() {
+            None | Some(0) => String::new(),
+            Some(order @ 1..=3) => "′".repeat(order.into()),
+            Some(order) => format!("⁽{}⁾", superscript(order.into())),
+        }
+    }
+}
+
+/// A function of the language.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Word {
+    pub(crate) name: &'static str,
+    pub(crate) units: UnitRule,
+    pub(crate) lowering: Lowering,
+}
+
+/// What a function of the language becomes when energies are lowered, by its number of arguments.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Lowering {
+    One(One),
+    Two(Two),
+}
+
+/// A function of one argument.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum One {
+    /// A node.
+    Function(Function),
+    /// A power.
+    Sqrt,
+    Dot,
+    Perp,
+    Height,
+    Cis,
+}
+
+/// A function of two arguments.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Two {
+    Atan2,
+    Min,
+    Max,
+    Inner,
+    Cross,
+}
+
+/// The functions with a structure of their own.
+#[rustfmt::skip]
+const STRUCTURES: [Word; 10] = [
+    Word { name: "sqrt",   units: UnitRule::Root,    lowering: Lowering::One(One::Sqrt) },
+    Word { name: "atan2",  units: UnitRule::Ratio,   lowering: Lowering::Two(Two::Atan2) },
+    Word { name: "min",    units: UnitRule::Common,  lowering: Lowering::Two(Two::Min) },
+    Word { name: "max",    units: UnitRule::Common,  lowering: Lowering::Two(Two::Max) },
+    Word { name: "dot",    units: UnitRule::Rate,    lowering: Lowering::One(One::Dot) },
+    Word { name: "inner",  units: UnitRule::Product, lowering: Lowering::Two(Two::Inner) },
+    Word { name: "cross",  units: UnitRule::Product, lowering: Lowering::Two(Two::Cross) },
+    Word { name: "perp",   units: UnitRule::Same,    lowering: Lowering::One(One::Perp) },
+    Word { name: "height", units: UnitRule::Same,    lowering: Lowering::One(One::Height) },
+    Word { name: "cis",    units: UnitRule::Pure,    lowering: Lowering::One(One::Cis) },
+];
+
+impl Word {
+    /// All functions of the language.
+    pub(crate) fn all() -> impl Iterator<Item = Self> {
+        let functions = Function::ALL.iter().filter_map(|&function| {
+            let Row { name, word, units, .. } = function.row();
+            word.then_some(Self { name, units, lowering: Lowering::One(One::Function(function)) })
+        });
+        functions.chain(STRUCTURES)
+    }
+
+    /// The function of a name.
+    pub(crate) fn named(name: &str) -> Option<Self> {
+        Self::all().find(|word| word.name == name)
+    }
+
+    /// The number of arguments.
+    pub(crate) fn arity(self) -> usize {
+        match self.lowering {
+            Lowering::One(_) => 1,
+            Lowering::Two(_) => 2,
+        }
+    }
+
+    /// Whether it takes scalars to a scalar.
+    pub(crate) fn is_scalar(self) -> bool {
+        matches!(
+            self.lowering,
+            Lowering::One(One::Function(_) | One::Sqrt)
+                | Lowering::Two(Two::Atan2 | Two::Min | Two::Max)
+        )
+    }
+}
