@@ -1,17 +1,12 @@
 //! Bodies in a Lagrangian: the exact moving compound pendulum, the note's approximation beside it,
 //! and the integrals themselves.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::body::{Body, Polygon};
 use pendulum_runtime::motion::Sample;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::SplitEnergy;
 
-#[path = "common/random.rs"]
-mod random;
-
-use random::Random;
+use systems::random::Random;
 
 lagrangian! {
     /// The whole enchilada of note §6, exactly.

@@ -5,15 +5,10 @@
 //! equation a rod: the rod keeps its length, l θ̇² being the centripetal acceleration. Nothing in
 //! it knows of a Lagrangian.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::motion::Sample;
 use pendulum_runtime::prelude::*;
 
-#[path = "common/random.rs"]
-mod random;
-
-use random::Random;
+use systems::random::Random;
 
 macro_rules! chain {
     ($name:ident, $n:literal) => {

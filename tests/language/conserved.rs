@@ -1,16 +1,9 @@
 //! Conserved quantities: found while compiling, named, and constant along the motion.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::prelude::*;
 
-#[path = "common/pendulums.rs"]
-mod pendulums;
-#[path = "common/planet.rs"]
-mod planet;
-
-use pendulums::Hanging;
-use planet::Kepler;
+use systems::pendulums::Hanging;
+use systems::planet::Kepler;
 
 lagrangian! {
     pub struct CartPole { M: kg, m: kg, l: m, g: m/s^2 = 9.81 }

@@ -1,19 +1,12 @@
 //! Generated systems over numbers in two words: as a reference for `f64`, and integrated far beyond
 //! its digits.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::integrate::method::Suits;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::{DoubleDouble, Float};
 
-#[path = "common/random.rs"]
-mod random;
-#[path = "common/systems.rs"]
-mod systems;
-
-use random::Random;
-use systems::{Double, Five, Simple};
+use systems::problems::{Double, Five, Simple};
+use systems::random::Random;
 
 lagrangian! {
     /// Numbers of more digits than a double holds.

@@ -1,17 +1,12 @@
 //! Jacobians of generated systems against dual numbers, written out and by forward mode.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::body::Body;
 use pendulum_runtime::motion::Sample;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::Dual;
 use pendulum_runtime::system::Jacobians;
 
-#[path = "common/random.rs"]
-mod random;
-
-use random::Random;
+use systems::random::Random;
 
 lagrangian! {
     pub struct Body1 { B: body, c: N*m*s, g: m/s^2 = 9.81 }

@@ -5,17 +5,11 @@
 //! have to be the sum of the series of the accelerations. The two come from different programs: one
 //! solves for the accelerations by formulas, the other order by order.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::jet::{JetDynamics, Jets, MAX_ORDER, Orders, Path, Series};
 use pendulum_runtime::motion::{Interpolation, Side, Sinusoid, Spline, Still};
 use pendulum_runtime::time::Time;
 
-mod common {
-    pub(crate) mod random;
-}
-
-use common::random::Random;
+use systems::random::Random;
 
 /// Σ x[k] hᵏ.
 fn sum(series: &Series<f64>, h: f64) -> f64 {
@@ -112,7 +106,7 @@ forces! {
     Time: (sin(3*t)*x + t^2/(1 + t^4));
 }
 
-mod systems {
+mod blocks {
     use pendulum_runtime::lagrangian;
 
     lagrangian! {
@@ -197,7 +191,7 @@ fn coupled_coordinates() {
         let (q, v) = state();
         check(
             "chain",
-            &systems::Chain::new([1.0, 0.5, 2.0, 1.0], [1.0, 1.5, 0.7, 1.0], 9.81),
+            &blocks::Chain::new([1.0, 0.5, 2.0, 1.0], [1.0, 1.5, 0.7, 1.0], 9.81),
             0.0,
             q,
             v,
@@ -207,12 +201,12 @@ fn coupled_coordinates() {
             [0.0; 7].map(|_| random.uniform(-1.0, 1.0)),
             [0.0; 7].map(|_| random.uniform(-1.0, 1.0)),
         );
-        check("blocks", &systems::Blocks::new(0.3), 0.0, q, v, 0.03);
+        check("blocks", &blocks::Blocks::new(0.3), 0.0, q, v, 0.03);
         let (q, v) = (
             [0.0; 5].map(|_| random.uniform(0.2, 0.9)),
             [0.0; 5].map(|_| random.uniform(-1.0, 1.0)),
         );
-        check("tree", &systems::Tree::new(9.81, 3.0), 0.0, q, v, 0.01);
+        check("tree", &blocks::Tree::new(9.81, 3.0), 0.0, q, v, 0.01);
     }
 }
 
@@ -231,14 +225,14 @@ fn driven_coordinates() {
         );
         check(
             "sinusoid and spline",
-            &systems::Moving::new(9.81, 0.3).driven_by(sinusoid, spline.clone()),
+            &blocks::Moving::new(9.81, 0.3).driven_by(sinusoid, spline.clone()),
             t,
             q,
             v,
             0.02,
         );
         let machine =
-            systems::Machine::new([1.0, 0.5, 2.0], [1.0, 1.5, 0.7], 9.81, 0.3, 0.4, 0.7, 1.3);
+            blocks::Machine::new([1.0, 0.5, 2.0], [1.0, 1.5, 0.7], 9.81, 0.3, 0.4, 0.7, 1.3);
         let (angles, rates) = (
             [0.0; 4].map(|_| random.uniform(-3.0, 3.0)),
             [0.0; 4].map(|_| random.uniform(-1.0, 1.0)),
@@ -252,7 +246,7 @@ fn driven_coordinates() {
         );
         check(
             "clip and rest",
-            &systems::Moving::new(9.81, 0.3).driven_by(clip.unwrap(), Still::new([0.1])),
+            &blocks::Moving::new(9.81, 0.3).driven_by(clip.unwrap(), Still::new([0.1])),
             t,
             q,
             v,

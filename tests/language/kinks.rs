@@ -3,18 +3,11 @@
 //! The keys are those of a linear congruential generator, so that anyone can make them; the angles
 //! after five seconds were computed with aligned steps in the momentum form to twelve digits.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::motion::{CatmullRom, Function, Linear, Spline};
 use pendulum_runtime::prelude::*;
 
-#[path = "common/keys.rs"]
-mod keys;
-#[path = "common/pendulums.rs"]
-mod pendulums;
-
-use keys::keys;
-use pendulums::Hanging;
+use systems::keys::keys;
+use systems::pendulums::Hanging;
 
 fn pendulum() -> Hanging {
     Hanging::new(0.3, 0.5)

@@ -1,8 +1,6 @@
 //! Small oscillations of hanging chains: ω² = (g/l) times the zeros of the Laguerre polynomial L_N,
 //! for every N.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::linearize::linearize;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::Jacobians;

@@ -1,8 +1,6 @@
 //! Velocities from momenta where the Lagrangian is not quadratic in them: relativistic particles up
 //! to the speed of light.
 
-#![allow(missing_docs)]
-
 use pendulum_runtime::error::Error;
 use pendulum_runtime::motion::Linear;
 use pendulum_runtime::prelude::*;

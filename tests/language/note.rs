@@ -4,15 +4,10 @@
 //! with ⊥, in components and in complex numbers; all three must give the same equations, to the
 //! last operation.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::motion::Sample;
 use pendulum_runtime::prelude::*;
 
-#[path = "common/random.rs"]
-mod random;
-
-use random::Random;
+use systems::random::Random;
 
 /// θ̈ = −g sin θ / L.
 mod simple {

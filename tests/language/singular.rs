@@ -5,8 +5,6 @@
 //! at every state if the second mass is zero and where the links are aligned if the first is; if
 //! one of them is negative, a pivot is. the inertia of `Fading` ends at a time.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::error::{Coordinate, Error, Quantity};
 use pendulum_runtime::integrate::{Batch, Failure, FixedStep, Problem, Solution};
 use pendulum_runtime::motion::Linear;

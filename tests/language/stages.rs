@@ -1,16 +1,11 @@
 //! The stages of the accelerations and Hamilton's equations give the same numbers as the functions
 //! they are made of.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::motion::Sample;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::Staged;
 
-#[path = "common/random.rs"]
-mod random;
-
-use random::Random;
+use systems::random::Random;
 
 lagrangian! {
     /// A driven double pendulum whose second arm is shaken through a spring, with friction.

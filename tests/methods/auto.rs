@@ -1,7 +1,5 @@
 //! The method that `solve` chooses by itself.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::{AdaptiveStep, FixedStep};
 use pendulum_runtime::motion::{

@@ -1,20 +1,13 @@
 //! Batches of motions: in every lane the solution that the motion has alone.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::error::{Error, Part};
 use pendulum_runtime::integrate::{Batch, Batched, Problem};
 use pendulum_runtime::jet::JetDynamics;
 use pendulum_runtime::prelude::*;
 use std::fmt::Debug;
 
-#[path = "common/pendulums.rs"]
-mod pendulums;
-#[path = "common/systems.rs"]
-mod systems;
-
-use pendulums::Simple;
-use systems::{Double, Kepler};
+use systems::pendulums::Simple;
+use systems::problems::{Double, Kepler};
 
 lagrangian! {
     /// ẍ = k x² + p sin 2t: without a push it leaves for infinity in a finite time.

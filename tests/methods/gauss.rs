@@ -1,8 +1,6 @@
 //! The Gauss methods: order, digits, and what symplectic methods keep.
 //!
-//! The digits are those of `tests/problems.rs`.
-
-#![allow(mixed_script_confusables, missing_docs)]
+//! The digits are those of `tests/methods/problems.rs`.
 
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::FixedStep;
@@ -10,16 +8,11 @@ use pendulum_runtime::integrate::method::Suits;
 use pendulum_runtime::motion::{Linear, Sinusoid};
 use pendulum_runtime::prelude::*;
 
-#[path = "common/distance.rs"]
-mod distance;
-#[path = "common/keys.rs"]
-mod keys;
-#[path = "common/systems.rs"]
-mod systems;
-
-use distance::distance;
-use keys::keys;
-use systems::{Cart, DampedElastic, Double, Forced, Hoop, Hung, Kepler, Simple, Spherical};
+use systems::distance::distance;
+use systems::keys::keys;
+use systems::problems::{
+    Cart, DampedElastic, Double, Forced, Hoop, Hung, Kepler, Simple, Spherical,
+};
 
 /// Two links and bobs of one metre and one kilogram, g = 1 m/s².
 fn double() -> Double<f64> {
@@ -172,7 +165,7 @@ fn energy_changes_by_rounding_only() {
     assert!(drift < 2e-15, "{drift:e}");
 }
 
-/// Takes half a minute: `cargo test --release --test gauss -- --ignored`.
+/// Takes half a minute: `cargo test --release --test methods gauss -- --ignored`.
 #[test]
 #[ignore = "ten million steps"]
 fn energy_over_ten_million_steps() {
@@ -278,7 +271,7 @@ fn motion_reversed_returns() {
 
 #[test]
 fn momenta_carry_the_state_over_kinks() {
-    // The value of `tests/kinks.rs`.
+    // The value of `tests/language/kinks.rs`.
     let (times, values) = keys();
     let driven = Hung { l: 0.5, g: 9.81 }.driven_by(Linear::new(&times, &values).unwrap());
     let error = |end: ([f64; 1], [f64; 1])| (end.0[0] + 0.129608683467).abs();

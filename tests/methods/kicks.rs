@@ -1,17 +1,12 @@
 //! Kicks that are over between two samples of a long step: bounds of steps see to it that none is
 //! missed.
 
-#![allow(missing_docs, mixed_script_confusables)]
-
-#[path = "common/random.rs"]
-mod random;
-
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::{Batch, Problem, Solution};
 use pendulum_runtime::motion::{Function, MotionError, Orders, Sample, Side, Spline};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::time::Time;
-use random::Random;
+use systems::random::Random;
 
 lagrangian! {
     /// A pendulum that is pushed once.
@@ -276,6 +271,7 @@ fn keys_close_together() {
 /// Without a resolution a step is at most a fiftieth of the interval, and a second where there is
 /// none.
 #[test]
+#[ignore = "tens of seconds without optimization: `.ci/run` runs it"]
 fn functions_of_unknown_resolution() {
     let mut random = Random::new(11);
     for _ in 0..200 {

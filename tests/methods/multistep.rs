@@ -1,8 +1,6 @@
 //! The multistep methods of Quinlan and Tremaine: order, digits, starts and restarts.
 //!
-//! The digits are those of `tests/problems.rs`.
-
-#![allow(mixed_script_confusables, missing_docs)]
+//! The digits are those of `tests/methods/problems.rs`.
 
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::FixedStep;
@@ -10,13 +8,8 @@ use pendulum_runtime::integrate::method::Suits;
 use pendulum_runtime::motion::{Linear, Sinusoid};
 use pendulum_runtime::prelude::*;
 
-#[path = "common/distance.rs"]
-mod distance;
-#[path = "common/systems.rs"]
-mod systems;
-
-use distance::distance;
-use systems::{HenonHeiles, Hung, Simple};
+use systems::distance::distance;
+use systems::problems::{HenonHeiles, Hung, Simple};
 
 fn error<D: Dynamics<N, Scalar = f64>, const N: usize>(
     dynamics: &D,

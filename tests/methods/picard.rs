@@ -1,23 +1,14 @@
 //! The `Picard` method on generated systems: against trusted digits, over kinks, between its steps,
 //! in single precision, and where it has to stop.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::error::{Error, Quantity};
 use pendulum_runtime::integrate::{AdaptiveStep, FixedStep};
 use pendulum_runtime::motion::{CatmullRom, Function, Linear, Sinusoid, Spline};
 use pendulum_runtime::prelude::*;
 
-#[path = "common/keys.rs"]
-mod keys;
-#[path = "common/pendulums.rs"]
-mod pendulums;
-#[path = "common/systems.rs"]
-mod systems;
-
-use keys::keys;
-use pendulums::Hanging;
-use systems::{Double, Kepler, Simple};
+use systems::keys::keys;
+use systems::pendulums::Hanging;
+use systems::problems::{Double, Kepler, Simple};
 
 lagrangian! {
     pub struct Falling { g }

@@ -4,20 +4,13 @@
 //! beyond the digits given, and, where there is one, checked against the closed form (Jacobi and
 //! Bessel functions, Kepler's equation). Parameters are exact.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::integrate::{SideBySide, Solution, State};
 use pendulum_runtime::jet::JetDynamics;
 use pendulum_runtime::motion::Sinusoid;
 use pendulum_runtime::prelude::*;
 
-#[path = "common/distance.rs"]
-mod distance;
-#[path = "common/systems.rs"]
-mod systems;
-
-use distance::distance;
-use systems::{
+use systems::distance::distance;
+use systems::problems::{
     Cart, Double, Elastic, Five, Forced, HenonHeiles, Hoop, Kapitza, Kepler, Simple, Spherical,
     Triple,
 };

@@ -1,20 +1,13 @@
 //! The linearly implicit method: order, digits, and stiff springs and dampers.
 //!
-//! The digits are those of `tests/problems.rs`.
-
-#![allow(mixed_script_confusables, missing_docs)]
+//! The digits are those of `tests/methods/problems.rs`.
 
 use pendulum_runtime::integrate::method::Suits;
 use pendulum_runtime::motion::{Linear, Sinusoid};
 use pendulum_runtime::prelude::*;
 
-#[path = "common/distance.rs"]
-mod distance;
-#[path = "common/systems.rs"]
-mod systems;
-
-use distance::distance;
-use systems::{DampedElastic, Double, Forced, Hung, Simple};
+use systems::distance::distance;
+use systems::problems::{DampedElastic, Double, Forced, Hung, Simple};
 
 /// Two links and bobs of one metre and one kilogram, g = 1 m/s².
 fn double() -> Double<f64> {

@@ -1,23 +1,14 @@
 //! The `Taylor` method on generated systems: forwards, backwards, over kinks, in single precision,
 //! and where it has to stop.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::error::{Error, Quantity};
 use pendulum_runtime::integrate::{AdaptiveStep, Solution};
 use pendulum_runtime::motion::{CatmullRom, Linear, Side, Spline};
 use pendulum_runtime::prelude::*;
 
-#[path = "common/keys.rs"]
-mod keys;
-#[path = "common/pendulums.rs"]
-mod pendulums;
-#[path = "common/systems.rs"]
-mod systems;
-
-use keys::keys;
-use pendulums::Hanging;
-use systems::{Kepler, Simple};
+use systems::keys::keys;
+use systems::pendulums::Hanging;
+use systems::problems::{Kepler, Simple};
 
 lagrangian! {
     pub struct Falling { g }

@@ -1,16 +1,9 @@
 //! What the absolute tolerance is without a call, and what that does to work and error.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::prelude::*;
 
-#[path = "common/pendulums.rs"]
-mod pendulums;
-#[path = "common/planet.rs"]
-mod planet;
-
-use pendulums::Simple;
-use planet::Kepler;
+use systems::pendulums::Simple;
+use systems::planet::Kepler;
 
 lagrangian! {
     /// A pendulum that friction brings to rest.

@@ -1,20 +1,13 @@
 //! Scenes: the bits of the scalar methods in every lane, whatever the frames, the neighbours and
 //! the kinks.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::integrate::method::Suits;
 use pendulum_runtime::motion::{Linear, Sinusoid, Spline, Still};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scene::{Fixed, Handle, Scene, SceneError, Status};
 
-#[path = "common/pendulums.rs"]
-mod pendulums;
-#[path = "common/random.rs"]
-mod random;
-
-use pendulums::{Double, Hanging, Simple};
-use random::Random;
+use systems::pendulums::{Double, Hanging, Simple};
+use systems::random::Random;
 
 lagrangian! {
     #[derive(Clone, Debug)]

@@ -1,7 +1,5 @@
 //! Scenes compute once what many need, and nothing that nobody needs.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::integrate::method::Suits;
 use pendulum_runtime::motion::{Motion, Orders, Sample, Side, Sinusoid};
 use pendulum_runtime::prelude::*;
@@ -10,13 +8,8 @@ use pendulum_runtime::time::Time;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-#[path = "common/pendulums.rs"]
-mod pendulums;
-#[path = "common/random.rs"]
-mod random;
-
-use pendulums::{Double, Hanging, Simple};
-use random::Random;
+use systems::pendulums::{Double, Hanging, Simple};
+use systems::random::Random;
 
 /// A motion that counts how often it is asked, and refuses what no equation contains.
 #[derive(Clone)]

@@ -1,7 +1,5 @@
 //! Sleepers and what is off the screen: nothing is computed for them, and nothing of it shows.
 
-#![allow(mixed_script_confusables, missing_docs)]
-
 use pendulum_runtime::motion::{Linear, Motion, Orders, Sample, Side, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scene::{Handle, Return, Scene, Status, Stop};
@@ -9,13 +7,8 @@ use pendulum_runtime::time::Time;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-#[path = "common/pendulums.rs"]
-mod pendulums;
-#[path = "common/random.rs"]
-mod random;
-
-use pendulums::Hanging;
-use random::Random;
+use systems::pendulums::Hanging;
+use systems::random::Random;
 
 lagrangian! {
     #[derive(Clone, Debug)]

@@ -1,14 +1,14 @@
 //! Random input for everything that reads some: the whole expansion of `lagrangian!`, on tokens,
 //! broken blocks and random systems, and the reader of motion capture.
 //!
-//! `cargo run --release --example fuzz -- --seconds 1200 --seed 1` draws cases of every target in
+//! `cargo run --release -p fuzz -- --seconds 1200 --seed 1` draws cases of every target in
 //! turn until the time is over, prints a line for each target and fails if a case panicked, took
 //! longer than ten seconds, or needed more than a gigabyte. `--only TARGET --seed N --count 1`
 //! repeats one case, `--only equations --count 100000` draws so many of one.
 
 // Files are read here, and not played.
 #[allow(dead_code)]
-#[path = "../mocap/bvh.rs"]
+#[path = "../../../examples/mocap/bvh.rs"]
 mod bvh;
 mod files;
 mod memory;

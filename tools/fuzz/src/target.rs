@@ -87,7 +87,7 @@ fn forget_sources() {
     proc_macro2::extra::invalidate_current_thread_spans();
 }
 
-const JUMPS: &[u8] = include_bytes!("../data/jumps.bvh");
+const JUMPS: &[u8] = include_bytes!("../../../examples/data/jumps.bvh");
 
 /// A motion capture with something wrong in it.
 fn motion_capture(seed: u64) -> Verdict {
@@ -108,7 +108,7 @@ fn gltf(seed: u64) -> Verdict {
     use pendulum_runtime::time::Time;
 
     let mut random = Random(seed);
-    let whole = include_bytes!("../data/dance.gltf");
+    let whole = include_bytes!("../../../examples/data/dance.gltf");
     let bytes = if random.once_in(2) {
         mutated(whole, &mut random)
     } else {
@@ -134,7 +134,7 @@ fn gltf(seed: u64) -> Verdict {
 fn svg(seed: u64) -> Verdict {
     use pendulum_runtime::drawing::{Drawing, Units};
 
-    const OWL: &[u8] = include_bytes!("../data/owl.svg");
+    const OWL: &[u8] = include_bytes!("../../../examples/data/owl.svg");
     const SMALL: &[u8] = br##"<svg xmlns="http://www.w3.org/2000/svg" width="100" height="100"><g id="arm"><circle id="arm.keyed" cx="50" cy="10" r="1"/>
 <path d="M 48 10 L 52 10 C 55 40 55 60 52 80 L 48 80 Z M 49 20 h 2 v 2 h -2 z" fill="#123456" fill-opacity="0.5" fill-rule="evenodd"/>
 <g id="flag" transform="rotate(20 50 10)"><circle id="flag.pendulum" cx="50" cy="70" r="1" fill="none"/><ellipse cx="50" cy="79" rx="4" ry="9"/></g></g></svg>"##;

@@ -1,7 +1,7 @@
 //! What the macro makes of a system: operations of the accelerations at one state (after
 //! preparation), tokens of the whole expansion, and the time that the expansion takes.
 //!
-//! `cargo run --release --example operations` prints one line a system: `name coordinates sincos
+//! `cargo run --release -p operations` prints one line a system: `name coordinates sincos
 //! mul add div tokens expansion_ms`. Names on the command line choose some of them.
 
 mod systems;

@@ -1,10 +1,10 @@
 //! Driven motions: fast shaking, kinks, square waves, numbers that are none, late times.
 
-use crate::keys::keys;
 use crate::numbers::{error, error_from, larger, largest, truth};
 use crate::reference;
 use crate::report::{Figure, Report, Scale, Test};
 use crate::systems::{Effective, Hung, Kapitza, Simple};
+use ::systems::keys::keys;
 use pendulum_runtime::error::{Error, Quantity};
 use pendulum_runtime::integrate::Failure;
 use pendulum_runtime::motion::{

@@ -1,7 +1,7 @@
 //! The stress table: twenty-eight ways in which a simulation of a mechanical system goes wrong,
 //! each measured against a bar.
 //!
-//! `cargo run --release --example stability` prints a line a measurement, writes
+//! `cargo run --release -p stability` prints a line a measurement, writes
 //! `target/stability.csv` and the pictures `target/stability-*.svg`, and fails if a bar is missed.
 //! `--quick` takes less than a minute, `--long` an hour; `--only S7,S9` selects. With `--known` the
 //! misses whose reason is known, which `docs/accuracy.md` explains, do not count as failures.
@@ -13,22 +13,14 @@
 
 mod chains;
 mod chaos;
-#[path = "../../pendulum-runtime/benches/work_precision/colors.rs"]
-mod colors;
 mod driven;
 mod elliptic;
-#[path = "../../tests/common/fingerprints.rs"]
-mod fingerprints;
-#[path = "../../tests/common/keys.rs"]
-mod keys;
 mod long;
 mod many;
 mod memory;
 mod numbers;
 mod output;
 mod picture;
-#[path = "../../tests/common/random.rs"]
-mod random;
 mod reference;
 mod report;
 mod scenes;
@@ -83,7 +75,7 @@ fn table() -> Result<bool, Box<dyn Error>> {
     let reports = run(scale, &tests, &bar);
     bar.finish_and_clear();
 
-    let target = Path::new(env!("CARGO_MANIFEST_DIR")).join("target");
+    let target = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target");
     std::fs::create_dir_all(&target)?;
     let mut csv = "test,title,measurement,measured,least,bar,holds\n".to_owned();
     let (mut count, mut missed, mut failed) = (0, 0, 0);

@@ -1,12 +1,12 @@
 //! Many pendulums at once: the same bits in lanes, threads, scenes and alone, tiny numbers, a soak.
 
-use crate::fingerprints::{self, classical_step};
 use crate::memory::memory;
 use crate::numbers::larger;
-use crate::random::Random;
 use crate::report::{Report, Scale, Test};
 use crate::scenes;
 use crate::systems::{Double, Hung, Simple};
+use ::systems::fingerprints::{self, classical_step};
+use ::systems::random::Random;
 use pendulum_runtime::integrate::FixedStep;
 use pendulum_runtime::motion::{Motion, Orders, Side, Spline};
 use pendulum_runtime::prelude::*;
@@ -140,7 +140,7 @@ fn bits(scale: Scale, report: &mut Report) {
         here.iter().zip(&there).map(|(a, b)| a == b),
     );
     scenes::bits(scale, report);
-    let expected = include_str!("../../tests/data/determinism.txt");
+    let expected = include_str!("../../../tests/data/determinism.txt");
     let found = fingerprints::all();
     report.failures(
         format!(

@@ -1,8 +1,8 @@
 //! The pictures: energy and phase against time, separation of chaotic runs, error against step over
 //! kinks.
 
-use crate::colors::COLORS;
 use crate::report::{Curve, Figure};
+use ::systems::colors::COLORS;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::error::Error;
@@ -172,12 +172,13 @@ impl Page {
                 .pos(Pos::new(HPos::Right, VPos::Bottom));
             chart.draw_series(end.map(|end| Text::new(name.to_owned(), end, style.clone())))?;
         }
-        for (curve, color) in curves.iter().zip(COLORS) {
+        let colors = COLORS.map(|(red, green, blue)| RGBColor(red, green, blue));
+        for (curve, color) in curves.iter().zip(colors) {
             let points = curve.points.iter().map(|point| (to(point.0), point.1.log10()));
             chart.draw_series(LineSeries::new(points, color.stroke_width(2)))?;
         }
         let style = (FONT, 14).into_font().color(&BLACK).pos(Pos::new(HPos::Left, VPos::Center));
-        let names = curves.iter().map(|curve| curve.name.as_str()).zip(COLORS);
+        let names = curves.iter().map(|curve| curve.name.as_str()).zip(colors);
         for (row, (name, color)) in names.enumerate() {
             let y = 56 + 24 * row as i32;
             legend.draw(&PathElement::new([(4, y), (34, y)], color.stroke_width(2)))?;

@@ -1,9 +1,9 @@
 //! Scenes: the bits of scalar methods in lanes and threads, and a soak of random characters.
 
 use crate::memory::memory;
-use crate::random::Random;
 use crate::report::{Report, Scale};
 use crate::systems::{Double, Hung, Simple};
+use ::systems::random::Random;
 use pendulum_runtime::integrate::method::Suits;
 use pendulum_runtime::motion::{Linear, Sinusoid, Spline, Still};
 use pendulum_runtime::prelude::*;

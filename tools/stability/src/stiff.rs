@@ -2,10 +2,10 @@
 
 use crate::elliptic::Swing;
 use crate::numbers::{error, larger, largest, truth};
-use crate::random::Random;
 use crate::reference;
 use crate::report::{Report, Scale, Test};
 use crate::systems::{Cart, Damped, Double, Elastic, Kepler, Simple};
+use ::systems::random::Random;
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::method::{Control, Stepper};
 use pendulum_runtime::integrate::{AdaptiveStep, State};

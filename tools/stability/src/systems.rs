@@ -3,11 +3,10 @@
 
 #![allow(missing_docs)]
 
-#[path = "../../tests/common/systems.rs"]
-mod shared;
-
+pub(crate) use ::systems::problems::{
+    Cart, Double, Hung, Kapitza, Kepler, Simple, Spherical, Triple,
+};
 use pendulum_runtime::lagrangian;
-pub(crate) use shared::{Cart, Double, Forced, Hung, Kapitza, Kepler, Simple, Spherical, Triple};
 
 lagrangian! {
     /// The simple pendulum seen from its upper equilibrium.

@@ -3,7 +3,7 @@
 
 #![allow(missing_docs)]
 
-use crate::systems::{Cart, Double, Forced, Hung, Kepler, Simple, Spherical};
+use crate::problems::{Cart, Double, Forced, Hung, Kepler, Simple, Spherical};
 use pendulum_runtime::integrate::State;
 use pendulum_runtime::motion::{Linear, Spline};
 use pendulum_runtime::prelude::*;
@@ -104,7 +104,7 @@ macro_rules! velocity_free {
 }
 
 /// A line for each system and method: names and hash.
-pub(crate) fn all() -> Vec<String> {
+pub fn all() -> Vec<String> {
     let mut lines = Vec::new();
     let times = [0.0, 0.7, 1.9, 2.4, 4.0, 5.5];
     let keys = [[0.0, 0.0], [0.3, 0.1], [-0.2, 0.05], [0.1, -0.1], [0.4, 0.0], [0.0, 0.2]];
@@ -159,7 +159,7 @@ pub(crate) fn all() -> Vec<String> {
 }
 
 /// A classical step, over any scalar.
-pub(crate) fn classical_step<T: Real, S: System<N, Scalar = T, Inputs = ()>, const N: usize>(
+pub fn classical_step<T: Real, S: System<N, Scalar = T, Inputs = ()>, const N: usize>(
     system: &S,
     q: &mut [T; N],
     v: &mut [T; N],
@@ -184,7 +184,7 @@ pub(crate) fn classical_step<T: Real, S: System<N, Scalar = T, Inputs = ()>, con
 
 /// The systems without drive in eight lanes: the number of lanes whose bits differ from those of
 /// the system alone, after `steps` steps.
-pub(crate) fn lanes_that_differ(steps: usize) -> Vec<(&'static str, usize)> {
+pub fn lanes_that_differ(steps: usize) -> Vec<(&'static str, usize)> {
     let links: [f64; 9] = core::array::from_fn(|i| 0.3 + 0.1 * i as f64);
     vec![
         (

@@ -2,7 +2,7 @@
 
 /// K_i = 0.1 sin(0.12 i) + 0.004 (u_i − ½) at the times (i − 1)/24, from i = 0 on, with the numbers
 /// u_i of a linear congruential generator.
-pub(crate) fn keys() -> (Vec<f64>, Vec<[f64; 2]>) {
+pub fn keys() -> (Vec<f64>, Vec<[f64; 2]>) {
     let mut state = 12345u32;
     let mut next = || {
         state = state.wrapping_mul(1664525).wrapping_add(1013904223);

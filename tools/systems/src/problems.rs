@@ -1,4 +1,4 @@
-//! The test problems that several tests, examples and benchmarks integrate; `tests/problems.rs` has
+//! The test problems that several tests, examples and benchmarks integrate; `tests/methods/problems.rs` has
 //! their digits under the names P01, P11, …
 
 #![allow(missing_docs)]

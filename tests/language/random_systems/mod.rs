@@ -2,8 +2,6 @@
 //! evaluation of the source says, in `f64` and in double-double, jets have the derivatives of the
 //! motion, and a motion that is run backwards comes back to its start.
 
-#![allow(mixed_script_confusables, confusable_idents, missing_docs)]
-
 mod polynomial;
 
 use pendulum_runtime::jet::{InputSeries, Jets, Orders, Path};
