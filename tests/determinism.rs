@@ -6,10 +6,7 @@
 
 #![allow(missing_docs)]
 
-#[path = "common/fingerprints.rs"]
-mod fingerprints;
-#[path = "common/systems.rs"]
-mod systems;
+use systems::fingerprints;
 
 #[test]
 fn final_states_have_the_bits_that_are_checked_in() {

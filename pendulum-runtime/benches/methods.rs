@@ -11,10 +11,7 @@ use pendulum_runtime::prelude::*;
 use std::hint::black_box;
 use std::time::Instant;
 
-#[path = "../../tests/common/pendulums.rs"]
-mod pendulums;
-
-use pendulums::Simple;
+use systems::pendulums::Simple;
 
 /// g/L = 9.8.
 fn pendulum() -> Simple {

@@ -10,9 +10,7 @@ use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::Facts;
 use std::hint::black_box;
 use std::time::Instant;
-
-#[path = "../../tests/common/pendulums.rs"]
-mod generated;
+use systems::pendulums;
 
 /// A hand-written system: its accelerations, as one would write them down from the note.
 macro_rules! hand {
@@ -137,14 +135,14 @@ fn main() {
     let shake = || Sinusoid::new([0.2, 0.1], 5.0, [0.3, 1.0]);
     let (m, l, g, c, i) = (0.8, 1.2, 9.81, [0.3, -1.1], 1.5);
     println!("RK4, 20 000 steps over 20 s; medians of 40 pairs");
-    compare("simple", &generated::Simple::new(m, l), &Simple { l, g });
+    compare("simple", &pendulums::Simple::new(m, l), &Simple { l, g });
     compare(
         "moving",
-        &generated::Hanging::new(m, l).driven_by(shake()),
+        &pendulums::Hanging::new(m, l).driven_by(shake()),
         &Driven::new::<1>(Moving { l, g }, (shake(),)),
     );
-    compare("compound", &generated::Compound::new(m, c, i), &Compound { m, c, i, g });
-    let exact = generated::MovingCompound::new(m, c, i);
+    compare("compound", &pendulums::Compound::new(m, c, i), &Compound { m, c, i, g });
+    let exact = pendulums::MovingCompound::new(m, c, i);
     compare(
         "moving compound",
         &exact.driven_by(shake()),

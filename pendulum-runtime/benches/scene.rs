@@ -29,10 +29,7 @@ use std::fmt::Write;
 use std::hint::black_box;
 use std::time::Instant;
 
-#[path = "../../tests/common/pendulums.rs"]
-mod pendulums;
-
-use pendulums::{Hanging, Simple};
+use systems::pendulums::{Hanging, Simple};
 
 lagrangian! {
     #[derive(Clone, Debug)]

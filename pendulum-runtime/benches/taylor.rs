@@ -16,13 +16,8 @@ use pendulum_runtime::real::{DoubleDouble, Float};
 use std::hint::black_box;
 use std::time::Instant;
 
-#[path = "../../tests/common/pendulums.rs"]
-mod pendulums;
-#[path = "../../tests/common/systems.rs"]
-mod systems;
-
-use pendulums::Simple;
-use systems::{Double, Five};
+use systems::pendulums::Simple;
+use systems::problems::{Double, Five};
 
 /// g/L = 9.8.
 fn pendulum() -> Simple {

@@ -100,10 +100,17 @@ fn every_system_in_the_repository() {
 
 /// The files in which systems may stand.
 fn sources(root: &Path) -> Vec<PathBuf> {
-    let mut pending: Vec<PathBuf> =
-        ["README.md", "tests", "examples", "pendulum-runtime/src", "pendulum-runtime/benches"]
-            .map(|part| root.join(part))
-            .to_vec();
+    let mut pending: Vec<PathBuf> = [
+        "README.md",
+        "tests",
+        "examples",
+        "tools/stability",
+        "tools/systems",
+        "pendulum-runtime/src",
+        "pendulum-runtime/benches",
+    ]
+    .map(|part| root.join(part))
+    .to_vec();
     pending.push(root.join("pendulum-macros/language.md"));
     let mut files = Vec::new();
     while let Some(path) = pending.pop() {

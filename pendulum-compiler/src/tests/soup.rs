@@ -5,9 +5,9 @@ use proc_macro2::{TokenStream, TokenTree};
 use random_systems::Random;
 use random_systems::tokens::{BLOCKS, mutate, soup, transplant};
 
-/// How many of each; `SOUP=1000000` for more.
+/// How many of each; `SOUP=50000` in `.ci/run`, and any other number for more.
 fn rounds() -> u64 {
-    std::env::var("SOUP").ok().and_then(|text| text.parse().ok()).unwrap_or(50_000)
+    std::env::var("SOUP").ok().and_then(|text| text.parse().ok()).unwrap_or(10_000)
 }
 
 #[test]

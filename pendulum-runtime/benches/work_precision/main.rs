@@ -19,7 +19,6 @@
 #![allow(mixed_script_confusables, missing_docs, unreachable_pub)]
 
 mod checks;
-mod colors;
 mod measure;
 #[macro_use]
 mod methods;

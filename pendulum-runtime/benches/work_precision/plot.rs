@@ -1,11 +1,11 @@
 //! A picture for each system: error across, seconds up, both logarithmic.
 
-use crate::colors::COLORS;
 use crate::table::{Entry, Party};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::path::Path;
+use systems::colors::COLORS;
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Failure = Box<dyn std::error::Error>;
@@ -63,7 +63,8 @@ fn curves(system: &str, entries: &[Entry]) -> Vec<Curve> {
     let (mut ours, mut peers) = (0, 0);
     for curve in &mut curves {
         if curve.party == Party::Ours {
-            (curve.color, curve.mark) = (COLORS[ours % COLORS.len()], ours);
+            let (red, green, blue) = COLORS[ours % COLORS.len()];
+            (curve.color, curve.mark) = (RGBColor(red, green, blue), ours);
             ours += 1;
         } else {
             let grey = if curve.name.ends_with("by hand") || curve.name.ends_with("simplified") {

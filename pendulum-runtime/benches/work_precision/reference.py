@@ -8,7 +8,7 @@ Each system is a first-order system on a tape of operations, advanced by Taylor 
 Zou, 2005). Every value is computed twice, at 42 and 48 digits with different orders and steps, and the two agree to 32 digits. The
 pendulum (to t = 200 by series) and the planet agree with the Jacobi functions and with Kepler's equation. The equations are
 written here by hand, the chain as tridiagonal equations for the tensions of its rods (d'Alembert), and owe nothing to `lagrangian!`.
-With the decimal start values of `tests/problems.rs` the same code gives the digits that stand there.
+With the decimal start values of `tests/methods/problems.rs` the same code gives the digits that stand there.
 
 A parameter that is no dyadic number is the double next to it, because that is what every program under test is given; so are the states at
 t = 0, which `reference.txt` holds with all others: a line is a system, a time, the coordinates, the velocities.

@@ -1,14 +1,9 @@
 //! The systems of the benchmark, as a user would write them, with their parameters.
 
+use ::systems::pendulums::{Hanging, MovingCompound, Simple};
+use ::systems::problems::{Double, Elastic, Five, HenonHeiles, Kepler};
 use pendulum_runtime::motion::Sinusoid;
 use pendulum_runtime::system::Driven;
-use pendulums::{Hanging, MovingCompound, Simple};
-use shared::{Double, Elastic, Five, HenonHeiles, Kepler};
-
-#[path = "../../../tests/common/pendulums.rs"]
-mod pendulums;
-#[path = "../../../tests/common/systems.rs"]
-mod shared;
 
 /// g/L = 9.8.
 pub fn simple() -> Simple<f64> {

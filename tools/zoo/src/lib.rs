@@ -16,10 +16,6 @@ mod more_families;
 mod motions;
 mod random;
 mod report;
-// What tests and benchmarks integrate too.
-#[cfg(feature = "all")]
-#[path = "../../../tests/common/systems.rs"]
-mod systems;
 
 pub use case::Method;
 use case::Scalar;

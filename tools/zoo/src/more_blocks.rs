@@ -3,11 +3,11 @@
 #![allow(missing_docs)]
 
 use crate::case::{Case, Guide, MOST, Method, Run, Scalar, State};
-use crate::systems::{Double, HenonHeiles, Kepler, Simple};
 use crate::trial::{Trial, finished};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::DoubleDouble;
 use std::time::{Duration, Instant};
+use systems::problems::{Double, HenonHeiles, Kepler, Simple};
 
 lagrangian! {
     /// A pendulum with a soft stop at the angle m.

@@ -11,8 +11,8 @@ use crate::more_blocks::{
 };
 use crate::motions::{Drive, Shape};
 use crate::random::Random;
-use crate::systems::{Double, HenonHeiles, Kepler, Simple};
 use crate::trial::Trial;
+use systems::problems::{Double, HenonHeiles, Kepler, Simple};
 
 const fn single(name: &'static str, make: fn(&mut Random, Scalar) -> Problem) -> Family {
     Family { name, scalar: Scalar::F32, make }

@@ -173,7 +173,7 @@ fn other_coordinates_give_the_same_motion() {
 /// The systems that are compiled and run are those of the generator.
 #[test]
 fn written_systems_are_up_to_date() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/random_systems/blocks.rs");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/language/random_systems/blocks.rs");
     let text = super::written::file();
     if std::env::var_os("UPDATE_GOLDEN").is_some() {
         std::fs::write(path, &text).unwrap();

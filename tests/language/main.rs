@@ -1,0 +1,18 @@
+//! The language: what generated code computes for blocks of every kind.
+
+#![allow(confusable_idents, mixed_script_confusables, missing_docs)]
+
+pub mod bodies;
+pub mod chains;
+pub mod conserved;
+pub mod high_precision;
+pub mod jacobians;
+pub mod jets;
+pub mod kinks;
+pub mod modes;
+pub mod momenta;
+pub mod note;
+pub mod random_systems;
+pub mod singular;
+pub mod stages;
+pub mod variational;

@@ -1,0 +1,16 @@
+//! The methods: digits, orders, stops and what each of them keeps.
+
+#![allow(mixed_script_confusables, missing_docs)]
+
+pub mod auto;
+pub mod batch;
+pub mod extremes;
+pub mod fast_drive;
+pub mod gauss;
+pub mod kicks;
+pub mod multistep;
+pub mod picard;
+pub mod problems;
+pub mod stiff;
+pub mod taylor;
+pub mod tolerances;

@@ -1,0 +1,7 @@
+//! Scenes: many pendulums on joints.
+
+#![allow(mixed_script_confusables, missing_docs)]
+
+pub mod interface;
+pub mod skipping;
+pub mod sleep;

@@ -1,0 +1,165 @@
+//! What is fed with random input.
+
+use crate::bvh::Bvh;
+use crate::files::mutated;
+#[cfg(any(feature = "gltf", feature = "svg"))]
+use crate::files::renumbered;
+use pendulum_compiler::{compile, expand};
+use proc_macro2::TokenStream;
+use random_systems::Random;
+use random_systems::generate::{self, Manner};
+use random_systems::tokens::{BLOCKS, mutate, soup, transplant};
+
+/// What became of a case.
+pub(crate) enum Verdict {
+    Taken,
+    Refused,
+    Wrong(String),
+}
+
+/// Something that reads.
+pub(crate) struct Target {
+    pub(crate) name: &'static str,
+    /// The case of a seed.
+    pub(crate) case: fn(u64) -> Verdict,
+}
+
+/// All targets.
+pub(crate) const TARGETS: &[Target] = &[
+    Target { name: "tokens", case: tokens },
+    Target { name: "mutated-blocks", case: mutated_blocks },
+    Target { name: "blocks", case: blocks },
+    Target { name: "equations", case: equations },
+    Target { name: "motion-capture", case: motion_capture },
+    #[cfg(feature = "gltf")]
+    Target { name: "gltf", case: gltf },
+    #[cfg(feature = "svg")]
+    Target { name: "svg", case: svg },
+];
+
+/// Any tokens, now and then behind a struct.
+fn tokens(seed: u64) -> Verdict {
+    let mut random = Random(seed);
+    let mut tokens = parsed("::p;");
+    if random.once_in(2) {
+        tokens.extend(parsed("struct S { m, L: m }"));
+    }
+    tokens.extend(soup(&mut random, 0));
+    expansion(tokens)
+}
+
+/// Blocks of the tests and random ones, with some of their tokens changed.
+fn mutated_blocks(seed: u64) -> Verdict {
+    let mut random = Random(seed);
+    let block = if random.once_in(2) {
+        parsed(random.of(BLOCKS))
+    } else {
+        parsed(&format!("::p; {}", generate::system(seed, Manner::Wild).source("S")))
+    };
+    expansion(if random.once_in(2) {
+        mutate(block, &mut random)
+    } else {
+        transplant(block, &mut random)
+    })
+}
+
+/// Random systems of any kind, expanded.
+fn blocks(seed: u64) -> Verdict {
+    expansion(parsed(&format!("::p; {}", generate::system(seed, Manner::Wild).source("S"))))
+}
+
+/// Random tame systems, compiled as text: none is refused.
+fn equations(seed: u64) -> Verdict {
+    let source = generate::system(seed, Manner::Tame).source("Random");
+    let verdict = match compile(&source) {
+        Ok(compiled) if compiled.equations.is_empty() => {
+            Verdict::Wrong(format!("no equations of {source}"))
+        }
+        Ok(_) => Verdict::Taken,
+        Err(mistakes) => Verdict::Wrong(format!("refused: {mistakes:?}")),
+    };
+    forget_sources();
+    verdict
+}
+
+/// Places of tokens are kept for ever unless they are given up.
+fn forget_sources() {
+    proc_macro2::extra::invalidate_current_thread_spans();
+}
+
+const JUMPS: &[u8] = include_bytes!("../../../examples/data/jumps.bvh");
+
+/// A motion capture with something wrong in it.
+fn motion_capture(seed: u64) -> Verdict {
+    let mut random = Random(seed);
+    // Most of the file is rows of numbers.
+    let length = if random.once_in(2) { JUMPS.len() } else { 4000 + random.below(6000) };
+    let bytes = mutated(&JUMPS[..length], &mut random);
+    match Bvh::read(&String::from_utf8_lossy(&bytes)) {
+        Ok(_) => Verdict::Taken,
+        Err(_) => Verdict::Refused,
+    }
+}
+
+/// A glTF file with something wrong in it, and the motions of all its nodes.
+#[cfg(feature = "gltf")]
+fn gltf(seed: u64) -> Verdict {
+    use pendulum_runtime::import::gltf::Gltf;
+    use pendulum_runtime::motion::{Derivatives, Motion, Side};
+    use pendulum_runtime::time::Time;
+
+    let mut random = Random(seed);
+    let whole = include_bytes!("../../../examples/data/dance.gltf");
+    let bytes = if random.once_in(2) {
+        mutated(whole, &mut random)
+    } else {
+        renumbered(whole, &mut random)
+    };
+    let Ok(file) = Gltf::read(&bytes) else { return Verdict::Refused };
+    for animation in 0..file.animations().count() {
+        for node in 0..file.nodes().count() {
+            let Ok(motion) = file.motion(animation, node) else { return Verdict::Refused };
+            let sample =
+                Motion::<f64, 3>::sample(&motion, Time::new(0.3), Side::After, Derivatives::ALL);
+            let kink = Motion::<f64, 3>::next_kink(&motion, 0.3);
+            if kink.is_some_and(|kink| kink <= 0.3) {
+                return Verdict::Wrong(format!("a kink at {kink:?} after 0.3, {sample:?}"));
+            }
+        }
+    }
+    Verdict::Taken
+}
+
+/// A drawing with something wrong in it.
+#[cfg(feature = "svg")]
+fn svg(seed: u64) -> Verdict {
+    use pendulum_runtime::import::svg::{Drawing, Units};
+
+    const OWL: &[u8] = include_bytes!("../../../examples/data/owl.svg");
+    const SMALL: &[u8] = br##"<svg xmlns="http://www.w3.org/2000/svg" width="100" height="100"><g id="arm"><circle id="arm.keyed" cx="50" cy="10" r="1"/>
+<path d="M 48 10 L 52 10 C 55 40 55 60 52 80 L 48 80 Z M 49 20 h 2 v 2 h -2 z" fill="#123456" fill-opacity="0.5" fill-rule="evenodd"/>
+<g id="flag" transform="rotate(20 50 10)"><circle id="flag.pendulum" cx="50" cy="70" r="1" fill="none"/><ellipse cx="50" cy="79" rx="4" ry="9"/></g></g></svg>"##;
+    let mut random = Random(seed);
+    let whole = if random.once_in(20) { OWL } else { SMALL };
+    let bytes = if random.once_in(2) {
+        mutated(whole, &mut random)
+    } else {
+        renumbered(whole, &mut random)
+    };
+    match Drawing::read(&String::from_utf8_lossy(&bytes), Units { pixel: 0.001, density: 0.3 }) {
+        Ok(_) => Verdict::Taken,
+        Err(_) => Verdict::Refused,
+    }
+}
+
+/// The expansion, which is there whatever is wrong.
+fn expansion(tokens: TokenStream) -> Verdict {
+    let refused =
+        expand(tokens).into_iter().any(|token| token.to_string().contains("compile_error"));
+    forget_sources();
+    if refused { Verdict::Refused } else { Verdict::Taken }
+}
+
+fn parsed(text: &str) -> TokenStream {
+    text.parse().unwrap_or_else(|error| panic!("{error}: {text}"))
+}

@@ -1,0 +1,212 @@
+//! Many pendulums at once: the same bits in lanes, threads, scenes and alone, tiny numbers, a soak.
+
+use crate::memory::memory;
+use crate::numbers::larger;
+use crate::report::{Report, Scale, Test};
+use crate::scenes;
+use crate::systems::{Double, Hung, Simple};
+use ::systems::fingerprints::{self, classical_step};
+use ::systems::random::Random;
+use pendulum_runtime::integrate::FixedStep;
+use pendulum_runtime::motion::{Derivatives, Motion, Side, Spline};
+use pendulum_runtime::prelude::*;
+use pendulum_runtime::real::Lanes;
+use pendulum_runtime::system::System;
+use pendulum_runtime::time::Time;
+use std::time::Instant;
+
+pub(crate) const TESTS: &[Test] = &[
+    Test { id: "S11", title: "denormal numbers", run: denormals },
+    Test { id: "S22", title: "same bits", run: bits },
+    Test { id: "S28", title: "soak", run: soak },
+];
+
+fn denormals(scale: Scale, report: &mut Report) {
+    let system = Simple::new(1.0);
+    let steps = scale.pick(100_000, 1_000_000, 1_000_000);
+    let time = |start: f64| {
+        let mut run = Integrator::new(&system, Rk4, 0.0, [start], [0.0])
+            .unwrap()
+            .control(FixedStep::new(0.05))
+            .unwrap();
+        let begun = Instant::now();
+        for _ in 0..steps {
+            run.step().unwrap();
+        }
+        (begun.elapsed().as_secs_f64(), run.q()[0])
+    };
+    // A B A B, the shorter of each.
+    let (mut small, mut usual, mut end) = (f64::INFINITY, f64::INFINITY, 0.0);
+    for _ in 0..3 {
+        let (seconds, q) = time(1e-310);
+        (small, end) = (small.min(seconds), q);
+        usual = usual.min(time(1e-3).0);
+    }
+    report.at_most("swing of 1e-310 rad: magnitude after a million steps", end.abs(), 1.1e-310);
+    report.at_most("time of its steps over that of usual ones", small / usual, 3.0);
+    let faint = Simple::new(1e-200);
+    let end = solve(&faint, (0.0, 1e3), [1e-200], [0.0]).method(Dop853::new()).run().unwrap().end;
+    report
+        .failures("g θ = 1e-400, which is zero: it stays", [end.q[0] == 1e-200 && end.v[0] == 0.0]);
+    // One over the smallest tolerances is infinite: an error is as good as a number, NaN is
+    // neither.
+    let mut kept = Vec::new();
+    for atol in [0.0, 1e-322, 1e-310, 1e-305, 1e-300] {
+        for start in [0.0, 1e-310] {
+            let problem = || {
+                solve(&system, (0.0, 100.0), [start], [0.0])
+                    .method(Dop853::new())
+                    .atol(atol)
+                    .rtol(1e-10)
+                    .max_steps(100_000)
+            };
+            let ends = [
+                problem().run().map(|solution| solution.end),
+                problem().method(Tsit5::new()).run().map(|solution| solution.end),
+                problem().method(Rodas4::new()).run().map(|solution| solution.end),
+                problem().method(Taylor::new()).run().map(|solution| solution.end),
+                problem().method(Picard).run().map(|solution| solution.end),
+            ];
+            let near = 1.1e-310 + 1e3 * atol;
+            kept.extend(ends.map(|end| {
+                end.map_or(true, |end| end.q[0].abs() <= near && end.v[0].abs() <= near)
+            }));
+        }
+    }
+    report.failures(
+        "tolerances down to nothing: an error or numbers within them, five methods",
+        kept,
+    );
+}
+
+fn bits(scale: Scale, report: &mut Report) {
+    const W: usize = 8;
+    let steps = scale.pick(2_000, 20_000, 200_000);
+    let starts: [[f64; 2]; W] =
+        core::array::from_fn(|k| [2.0 - 0.3 * k as f64, 2.5 + 1e3 * (k / 6) as f64]);
+    let system = Double::new([1.0, 0.7], [0.9, 1.1], 9.81);
+    let wide = system.map(Lanes::<f64, W>::splat);
+    let mut q: [Lanes<f64, W>; 2] = core::array::from_fn(|i| Lanes(starts.map(|start| start[i])));
+    let mut v = [Lanes::splat(0.0); 2];
+    (0..steps).for_each(|_| classical_step(&wide, &mut q, &mut v, Lanes::splat(0.01)));
+    let alone = |k: usize| {
+        let (mut q, mut v) = (starts[k], [0.0; 2]);
+        (0..steps).for_each(|_| classical_step(&system, &mut q, &mut v, 0.01));
+        (q, v)
+    };
+    let same = (0..W).map(|k| alone(k) == (q.map(|q| q.0[k]), v.map(|v| v.0[k])));
+    report.failures(
+        format!(
+            "eight double pendulums in lanes and alone, {steps} steps of Rk4: lanes that differ"
+        ),
+        same,
+    );
+
+    let single = system.map(|x| x as f32);
+    let wide = single.map(Lanes::<f32, W>::splat);
+    let mut q: [Lanes<f32, W>; 2] =
+        core::array::from_fn(|i| Lanes(starts.map(|start| start[i] as f32)));
+    let mut v = [Lanes::splat(0.0f32); 2];
+    (0..steps).for_each(|_| classical_step(&wide, &mut q, &mut v, Lanes::splat(0.01)));
+    let same = (0..W).map(|k| {
+        let (mut a, mut b) = (starts[k].map(|x| x as f32), [0.0; 2]);
+        (0..steps).for_each(|_| classical_step(&single, &mut a, &mut b, 0.01));
+        (a, b) == (q.map(|q| q.0[k]), v.map(|v| v.0[k]))
+    });
+    report.failures("the same in single precision", same);
+
+    let differ = fingerprints::lanes_that_differ(scale.pick(200, 2000, 20_000));
+    report.at_most(
+        format!("{} systems in eight lanes and alone: lanes that differ", differ.len()),
+        differ.iter().map(|(_, lanes)| *lanes as f64).sum(),
+        0.0,
+    );
+
+    let run = |k: usize| {
+        solve(&system, (0.0, 50.0), starts[k], [0.0; 2])
+            .method(Dop853::new())
+            .rtol(1e-10)
+            .run()
+            .unwrap()
+            .end
+    };
+    let here: Vec<_> = (0..W).map(run).collect();
+    let there: Vec<_> = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..W).rev().map(|k| scope.spawn(move || run(k))).collect();
+        threads.into_iter().rev().map(|thread| thread.join().unwrap()).collect()
+    });
+    report.failures(
+        "the same runs in eight threads, in another order",
+        here.iter().zip(&there).map(|(a, b)| a == b),
+    );
+    scenes::bits(scale, report);
+    let expected = include_str!("../../../tests/data/determinism.txt");
+    let found = fingerprints::all();
+    report.failures(
+        format!(
+            "{} final states of all methods against the checked-in ones: this build",
+            found.len()
+        ),
+        found
+            .iter()
+            .zip(expected.lines())
+            .map(|(found, line)| found == line)
+            .chain([found.len() == expected.lines().count()]),
+    );
+}
+
+/// Pendulums on the joints of random characters: lanes of sixteen, a joint each, half a step before
+/// and after each force.
+fn soak(scale: Scale, report: &mut Report) {
+    const W: usize = 16;
+    let count = scale.pick(1_000, 10_000, 100_000);
+    let frames = 10_000;
+    let (h, mut random) = (1.0 / 60.0, Random::new(28));
+    let mut uniform = |low: f64, high: f64| random.uniform(low, high);
+    let (mut finite, mut drifted, mut grown) = (true, 0usize, 0.0);
+    let mut before = None;
+    for group in 0..count / W {
+        let times: Vec<f64> = (0..=60).map(|k| f64::from(k) * 0.25).collect();
+        let mut keys: Vec<[f64; 2]> =
+            times.iter().map(|_| [uniform(-0.2, 0.2), uniform(-0.05, 0.05)]).collect();
+        keys[60] = keys[0];
+        let joint = Spline::periodic(&times, &keys).unwrap();
+        let lengths: [f64; W] = core::array::from_fn(|_| uniform(0.1, 2.0));
+        let starts: [f64; W] = core::array::from_fn(|_| uniform(-3.0, 3.0));
+        let system = Hung::new(Lanes(lengths), Lanes::splat(9.81));
+        let (mut q, mut v) = ([Lanes(starts)], [Lanes::splat(0.0)]);
+        let watched = (group % 64 == 0).then(|| Hung::new(lengths[group % W], 9.81));
+        let (mut one, mut speed) = ([starts[group % W]], [0.0]);
+        for frame in 0..frames {
+            let t = Time::new((f64::from(frame) + 0.5) * h);
+            let drift = |q: &mut Lanes<f64, W>, v: &Lanes<f64, W>| *q += Lanes::splat(0.5 * h) * *v;
+            drift(&mut q[0], &v[0]);
+            let inputs = (joint.sample(t, Side::After, Derivatives::ACCELERATION),);
+            let a = system.accelerations(Lanes::splat(t.to_f64()), &q, &v, &inputs);
+            v[0] += Lanes::splat(h) * a[0];
+            drift(&mut q[0], &v[0]);
+            if let Some(system) = &watched {
+                one[0] += 0.5 * h * speed[0];
+                let inputs = (joint.sample(t, Side::After, Derivatives::ACCELERATION),);
+                let a = system.accelerations(t.to_f64(), &one, &speed, &inputs);
+                speed[0] += h * a[0];
+                one[0] += 0.5 * h * speed[0];
+            }
+        }
+        finite &= q[0].0.iter().chain(&v[0].0).all(|x| x.is_finite());
+        if watched.is_some() {
+            drifted += usize::from(q[0].0[group % W] != one[0] || v[0].0[group % W] != speed[0]);
+        }
+        if group == 8 {
+            before = memory();
+        }
+    }
+    if let (Some(before), Some(after)) = (before, memory()) {
+        grown = larger(grown, after - before);
+    }
+    report.failures(format!("{count} pendulums, {frames} frames: finite"), [finite]);
+    report.at_most("lanes that differ from the same pendulum alone", drifted as f64, 0.0);
+    // Another test may run beside this one.
+    report.at_most("growth of memory in bytes, other tests included", grown, 3e7);
+    scenes::soak(scale, report);
+}

@@ -1,0 +1,13 @@
+//! What tests, benchmarks and tools share: systems with a few helpers, and the final states of every
+//! method as hashes.
+
+#![allow(mixed_script_confusables)]
+
+pub mod colors;
+pub mod distance;
+pub mod fingerprints;
+pub mod keys;
+pub mod pendulums;
+pub mod planet;
+pub mod problems;
+pub mod random;
