@@ -104,6 +104,9 @@ macro_rules! velocity_free {
 }
 
 /// A line for each system and method: names and hash.
+///
+/// Inline: compiled by those who call it, and by nobody who wants a system alone.
+#[inline]
 pub fn all() -> Vec<String> {
     let mut lines = Vec::new();
     let times = [0.0, 0.7, 1.9, 2.4, 4.0, 5.5];
@@ -184,6 +187,7 @@ pub fn classical_step<T: Real, S: System<N, Scalar = T, Inputs = ()>, const N: u
 
 /// The systems without drive in eight lanes: the number of lanes whose bits differ from those of
 /// the system alone, after `steps` steps.
+#[inline]
 pub fn lanes_that_differ(steps: usize) -> Vec<(&'static str, usize)> {
     let links: [f64; 9] = core::array::from_fn(|i| 0.3 + 0.1 * i as f64);
     vec![
