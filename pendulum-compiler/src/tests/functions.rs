@@ -251,7 +251,11 @@ fn units_are_checked() {
 fn the_series_of_every_function_is_tested() {
     let tested = include_str!("../../../tests/language/jets.rs");
     for word in Word::all().filter(|word| word.is_scalar()) {
-        assert!(tested.contains(&format!("{}(", word.name)), "tests/language/jets.rs has no {}", word.name);
+        assert!(
+            tested.contains(&format!("{}(", word.name)),
+            "tests/language/jets.rs has no {}",
+            word.name
+        );
     }
 }
 

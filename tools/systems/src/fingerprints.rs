@@ -106,6 +106,10 @@ macro_rules! velocity_free {
 /// A line for each system and method: names and hash.
 ///
 /// Inline: compiled by those who call it, and by nobody who wants a system alone.
+///
+/// # Panics
+///
+/// If a method fails.
 #[inline]
 pub fn all() -> Vec<String> {
     let mut lines = Vec::new();
