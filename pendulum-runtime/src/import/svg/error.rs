@@ -9,6 +9,13 @@ use core::fmt;
 pub enum DrawingError {
     /// The text is no SVG.
     Syntax(String),
+    /// An element stands inside too many others.
+    Deep {
+        /// The line where it begins.
+        line: u32,
+        /// The most that are read.
+        most: usize,
+    },
     /// A unit is not a positive number.
     Unit {
         /// Which one.
@@ -59,6 +66,10 @@ pub enum DrawingError {
 impl fmt::Display for DrawingError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Deep { line, most } => write!(
+                f,
+                "the element on line {line} stands inside more than {most} others; take it out of some groups"
+            ),
             Self::Syntax(message) => write!(f, "{message}; give the text of an SVG file"),
             Self::Unit { what, value } => write!(f, "{value} {what}; give a positive number"),
             Self::NoGroup { id } => {

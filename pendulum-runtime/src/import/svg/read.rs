@@ -26,6 +26,15 @@ struct Pivot {
     at: [f64; 2],
 }
 
+/// The most elements around one another: each takes some kilobytes of the stack while groups are
+/// read.
+const DEEPEST: usize = 100;
+
+/// The first element that stands inside more than [`DEEPEST`] others.
+fn too_deep<'a>(document: &'a Document<'a>) -> Option<Node<'a, 'a>> {
+    document.descendants().find(|node| DEEPEST + 1 < node.ancestors().take(DEEPEST + 2).count())
+}
+
 /// Knowledge about the drawing while its tree is walked.
 struct Reader {
     units: Units,
@@ -55,6 +64,10 @@ impl Drawing {
         let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
         let document = Document::parse_with_options(text, options)
             .map_err(|error| DrawingError::Syntax(error.to_string()))?;
+        if let Some(deep) = too_deep(&document) {
+            let line = document.text_pos_at(deep.range().start).row;
+            return Err(DrawingError::Deep { line, most: DEEPEST });
+        }
         if let Some(vast) =
             document.descendants().find(|node| node.is_element() && size::is_vast(*node))
         {

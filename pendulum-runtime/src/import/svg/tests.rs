@@ -265,8 +265,11 @@ fn vast_drawings_neither_hang_nor_overflow() {
             "</g>".repeat(depth)
         )
     };
-    assert_eq!(read(&nested(900)).unwrap().loose, 1);
-    assert!(matches!(read(&nested(100_000)), Err(DrawingError::Syntax(_))));
+    assert_eq!(read(&nested(90)).unwrap().loose, 1);
+    for depth in [101, 900, 100_000] {
+        let refused = read(&nested(depth));
+        assert!(matches!(refused, Err(DrawingError::Deep { most: 100, .. })), "{depth}");
+    }
     let copies: Vec<String> = (1..25)
         .map(|k| format!("<g id='a{k}'><use href='#a{0}'/><use href='#a{0}'/></g>", k - 1))
         .collect();

@@ -25,7 +25,7 @@ use crate::system::{Dynamics, System};
 /// | adaptive | [`Picard`] |
 /// | | [`Taylor`] for linear systems without time and driven inputs, whose series converge everywhere |
 /// | | [`Taylor`] back in time, where there are series: every motion is [`Analytic`](crate::motion::Analytic) and the accelerations contain no `abs`, `sign`, `min` or `max` of something that moves |
-/// | fixed | [`Srkn14a`], which is symplectic, for velocity-free systems, [`Dop853`] for others |
+/// | fixed | [`Srkn14a`](crate::integrate::Srkn14a), which is symplectic, for velocity-free systems, [`Dop853`] for others |
 /// | | [`Taylor`] back in time |
 ///
 /// Scalars of two words stand in no lanes. `Taylor` takes the place of `Picard` there, for every
