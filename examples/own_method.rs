@@ -5,6 +5,7 @@
 
 #![allow(mixed_script_confusables, missing_docs)]
 
+use pendulum_runtime::integrate::Event;
 use pendulum_runtime::integrate::Solution;
 use pendulum_runtime::integrate::method::{
     Adaptive, Endpoint, Field, Interpolant, Method, Response, StepInterval, Weights,

@@ -3,6 +3,7 @@
 use pendulum_runtime::body::Body;
 use pendulum_runtime::motion::{Derivatives, Sample};
 use pendulum_runtime::prelude::*;
+use pendulum_runtime::system::System;
 use pendulum_runtime::system::{Facts, Input};
 
 /// A rigid body that hangs from a moving point.

@@ -164,9 +164,10 @@ fn feather(length: f64) -> Vec<[f64; 2]> {
 
 #[cfg(test)]
 mod tests {
-    use super::{DENSITY, Hand, Polygon, System, Tag, feather};
+    use super::{DENSITY, Hand, Polygon, Tag, feather};
     use pendulum_runtime::body::Body;
     use pendulum_runtime::motion::Sample;
+    use pendulum_runtime::system::System;
 
     fn body() -> Body {
         Polygon::new(&feather(0.16)).unwrap().body(DENSITY).unwrap()

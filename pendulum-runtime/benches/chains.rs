@@ -6,7 +6,7 @@
 
 #![allow(mixed_script_confusables, missing_docs)]
 
-use pendulum_runtime::prelude::*;
+use pendulum_runtime::system::System;
 use std::hint::black_box;
 use std::time::Instant;
 

@@ -8,6 +8,7 @@
 use pendulum_runtime::motion::{Sample, Sinusoid};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::Facts;
+use pendulum_runtime::system::System;
 use std::hint::black_box;
 use std::time::Instant;
 use systems::pendulums;

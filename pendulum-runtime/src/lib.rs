@@ -22,16 +22,19 @@ pub mod time;
 #[doc(hidden)]
 pub use system::generated as __private;
 
-/// What a program that writes a `lagrangian!` block and integrates it needs.
+/// The names for a program that writes a `lagrangian!` block and integrates it.
+///
+/// The methods of [`System`](crate::system::System) come along, its name does not: engines have a
+/// `System` and an [`Event`](crate::integrate::Event) of their own.
 pub mod prelude {
     pub use crate::integrate::{
-        Auto, Direction, Dop853, Dprkn8, Dprkn12, Event, Gauss, Integrator, Leapfrog, Picard,
-        QuinlanTremaine, Rk4, Rodas4, Srkn6b, Srkn11b, Srkn14a, SymplecticEuler, Taylor, Tsit5,
-        solve,
+        Auto, Batch, Direction, Dop853, Dprkn8, Dprkn12, Gauss, Integrator, Leapfrog, Picard,
+        QuinlanTremaine, Rk4, Rodas4, Solution, Srkn6b, Srkn11b, Srkn14a, State, SymplecticEuler,
+        Taylor, Tsit5, solve,
     };
     pub use crate::motion::Motion;
     pub use crate::real::Real;
-    pub use crate::system::{Driven, Dynamics, System, VelocityFree};
+    pub use crate::system::{Driven, Dynamics, Jacobians, System as _, VelocityFree};
     pub use crate::{lagrangian, motion};
 }
 

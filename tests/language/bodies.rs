@@ -5,6 +5,7 @@ use pendulum_runtime::body::{Body, Polygon};
 use pendulum_runtime::motion::Sample;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::SplitEnergy;
+use pendulum_runtime::system::System;
 
 use systems::random::Random;
 

@@ -1,6 +1,7 @@
 //! Conserved quantities: found while compiling, named, and constant along the motion.
 
 use pendulum_runtime::prelude::*;
+use pendulum_runtime::system::System;
 
 use systems::pendulums::Hanging;
 use systems::planet::Kepler;

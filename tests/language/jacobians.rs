@@ -5,6 +5,7 @@ use pendulum_runtime::motion::Sample;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::Dual;
 use pendulum_runtime::system::Jacobians;
+use pendulum_runtime::system::System;
 
 use systems::random::Random;
 

@@ -6,6 +6,7 @@
 
 use pendulum_runtime::motion::Sample;
 use pendulum_runtime::prelude::*;
+use pendulum_runtime::system::System;
 
 use systems::random::Random;
 

@@ -7,6 +7,7 @@ use pendulum_runtime::motion::{Linear, Motions};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::{DoubleDouble, Float};
 use pendulum_runtime::system::Jacobians;
+use pendulum_runtime::system::System;
 
 mod blocks {
     use pendulum_runtime::lagrangian;

@@ -1,6 +1,7 @@
 //! The method that `solve` chooses by itself.
 
 use pendulum_runtime::error::Error;
+use pendulum_runtime::integrate::Event;
 use pendulum_runtime::integrate::{AdaptiveStep, FixedStep};
 use pendulum_runtime::motion::{
     Analytic, CatmullRom, Clip, Derivatives, Function, Interpolation, Motion, Projected, Sample,

@@ -4,6 +4,7 @@ use pendulum_runtime::error::{Error, Part};
 use pendulum_runtime::integrate::{Batch, Batched, Problem};
 use pendulum_runtime::jet::JetDynamics;
 use pendulum_runtime::prelude::*;
+use pendulum_runtime::system::System;
 use std::fmt::Debug;
 
 use systems::pendulums::Simple;

@@ -3,6 +3,7 @@
 //! The digits are those of `tests/methods/problems.rs`.
 
 use pendulum_runtime::error::Error;
+use pendulum_runtime::integrate::Event;
 use pendulum_runtime::integrate::FixedStep;
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Linear, Sinusoid};

@@ -1,6 +1,7 @@
 //! What the absolute tolerance is without a call, and what that does to work and error.
 
 use pendulum_runtime::prelude::*;
+use pendulum_runtime::system::System;
 
 use systems::pendulums::Simple;
 use systems::planet::Kepler;

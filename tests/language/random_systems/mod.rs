@@ -8,6 +8,7 @@ use pendulum_runtime::jet::{InputSeries, Jets, Path, Unrolling};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::{DoubleDouble, Float};
 use pendulum_runtime::system::Staged;
+use pendulum_runtime::system::System;
 use polynomial::Driving;
 
 #[allow(clippy::all, clippy::pedantic, unused_imports, unused_variables, non_snake_case)]

@@ -4,6 +4,7 @@ use crate::numbers::{apart, error, error_from, larger, largest, line, truth};
 use crate::reference;
 use crate::report::{Figure, Report, Scale, Test};
 use crate::systems::{Double, Simple, Upright};
+use pendulum_runtime::integrate::Event;
 use pendulum_runtime::integrate::{FixedStep, State};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::{DoubleDouble, Real};

@@ -9,6 +9,7 @@ use pendulum_runtime::integrate::method::{Controller, Method};
 use pendulum_runtime::integrate::{FixedStep, State};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::{DoubleDouble, Float};
+use pendulum_runtime::system::System;
 
 pub(crate) const TESTS: &[Test] = &[
     Test { id: "S1", title: "long drift", run: drift },

@@ -5,6 +5,7 @@ use crate::numbers::{apart, error, larger, truth};
 use crate::reference;
 use crate::report::{Report, Scale, Test};
 use crate::systems::{Double, Simple, Triple};
+use pendulum_runtime::integrate::Event;
 use pendulum_runtime::integrate::Solution;
 use pendulum_runtime::motion::Side;
 use pendulum_runtime::prelude::*;

@@ -8,6 +8,7 @@ use pendulum_runtime::integrate::State;
 use pendulum_runtime::motion::{Linear, Spline};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::{DoubleDouble, Float, Lanes};
+use pendulum_runtime::system::System;
 
 lagrangian! {
     /// A star in a galaxy, whose spring is the parameter: its bits are those of this block.

@@ -3,7 +3,7 @@
 use crate::case::{Guide, Run, Scalar, State, Widened};
 use crate::motions::Drive;
 use pendulum_runtime::integrate::{Failure, Solution};
-use pendulum_runtime::prelude::*;
+use pendulum_runtime::system::System;
 use std::fmt::Debug;
 use std::time::Duration;
 
@@ -99,7 +99,7 @@ macro_rules! with {
 
 macro_rules! over {
     ($trial:ident, $binding:ident, $scalar:ty, $n:literal, $convert:expr, $method:ident, $tolerance:ident, $times:ident, [$($name:ident)*]) => {{
-        let dynamics = bind!($binding, System::map(&$trial.system, $convert), $trial, given);
+        let dynamics = bind!($binding, pendulum_runtime::system::System::map(&$trial.system, $convert), $trial, given);
         let (q, v) = ($trial.q.map($convert), $trial.v.map($convert));
         let problem = solve(&dynamics, (0.0, $trial.end), q, v)
             .rtol($tolerance)
@@ -161,7 +161,7 @@ macro_rules! case {
             }
 
             fn exact(&self, tolerance: f64, max_step: f64, times: &[f64]) -> Result<Vec<State>, String> {
-                let dynamics = bind!($binding, System::map(&self.system, DoubleDouble::from), self, exact);
+                let dynamics = bind!($binding, pendulum_runtime::system::System::map(&self.system, DoubleDouble::from), self, exact);
                 let (q, v) = (self.q.map(DoubleDouble::from), self.v.map(DoubleDouble::from));
                 let stops = self.guide.between(0.0, self.end);
                 let problem = solve(&dynamics, (0.0, self.end), q, v)

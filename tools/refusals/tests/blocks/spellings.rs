@@ -4,6 +4,7 @@
 
 use pendulum_runtime::motion::Sample;
 use pendulum_runtime::prelude::*;
+use pendulum_runtime::system::System;
 
 lagrangian! {
     /// A pendulum whose pivot is moved.
