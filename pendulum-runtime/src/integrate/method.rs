@@ -5,17 +5,15 @@
 
 pub use super::interpolant::{Basis, Interpolant, TERMS};
 pub use super::step::compensated::Compensated;
-pub use super::step::controller::{
-    Controller, ControllerState, StepContext, StepLaw, Trial, Verdict,
-};
 use super::step::diagnose;
 pub use super::step::endpoint::Endpoint;
 pub use super::step::field::{Field, InputsOf};
+use super::step::field::{coordinate, first_in_state};
 pub use super::step::interval::StepInterval;
-use crate::error::Error;
+use crate::error::{Error, Quantity};
 use crate::integrate::interpolant::hermite;
 use crate::real::Float;
-use crate::system::Dynamics;
+use crate::system::{Dynamics, System};
 use crate::time::Time;
 
 /// A method that integrates the dynamics `D`: q̈ = a(t, q, q̇).
@@ -97,7 +95,7 @@ pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fm
         from: &Endpoint<D::Scalar, N>,
         workspace: &Self::Workspace,
     ) -> Option<Error> {
-        diagnose::fault(self, field, interval, from, workspace)
+        fault(self, field, interval, from, workspace)
     }
 
     /// The time and the index of the coordinate where the equations of the step just taken could
@@ -198,4 +196,59 @@ impl<const N: usize> Weights<N> {
         }
         sum
     }
+}
+
+/// The error for a step, with what it has left in `workspace`, that led to a number that is not
+/// finite.
+pub(crate) fn cause<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usize>(
+    method: &M,
+    field: &Field<'_, D, N>,
+    interval: &StepInterval,
+    from: &Endpoint<D::Scalar, N>,
+    workspace: &M::Workspace,
+) -> Error {
+    let coordinate = coordinate(&<D::System as System<N>>::FACTS, 0);
+    method.diagnose(field, interval, from, workspace).unwrap_or_else(|| Error::NotFinite {
+        t: interval.end.to_f64(),
+        what: Quantity::Velocity(coordinate),
+        suspects: Vec::new(),
+    })
+}
+
+/// The first number in the evaluations of a step that is not finite, or where its equations were
+/// not solved, if there is one.
+fn fault<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usize>(
+    method: &M,
+    field: &Field<'_, D, N>,
+    interval: &StepInterval,
+    from: &Endpoint<D::Scalar, N>,
+    workspace: &M::Workspace,
+) -> Option<Error> {
+    let facts = &<D::System as System<N>>::FACTS;
+    let dynamics = field.dynamics;
+    let unsolved = method.unsolved(workspace);
+    let mut watched = field.watched();
+    let mut start = Endpoint { a: None, ..*from };
+    let to = method.attempt(&mut watched, interval, &mut start, &mut method.workspace(dynamics));
+    let findings = watched.findings;
+    if let Some((t, coordinate)) = findings.lost
+        && diagnose::regular(dynamics, from)
+    {
+        return Some(Error::NoVelocity { t: t.to_f64(), coordinate });
+    }
+    // Where an iteration went astray, numbers that are not finite are not the cause but the effect.
+    if let Some((t, index)) = unsolved {
+        let coordinate = coordinate(facts, index);
+        return Some(Error::NoConvergence { t: t.to_f64(), step: interval.h, coordinate });
+    }
+    let at_end = || first_in_state(facts, &to.q.high, &to.v.high).map(|what| (interval.end, what));
+    let (t, what) = findings.first.or_else(at_end)?;
+    if findings.singular {
+        return Some(Error::NotFinite {
+            t: t.to_f64(),
+            what,
+            suspects: diagnose::suspects(dynamics.system()),
+        });
+    }
+    Some(diagnose::not_finite(dynamics.system(), t, what))
 }

@@ -31,6 +31,13 @@
 
 pub mod method;
 
+/// Controllers of steps, for bounds on them.
+pub mod controller {
+    pub use super::step::controller::{
+        Controller, ControllerState, StepContext, StepLaw, Trial, Verdict,
+    };
+}
+
 mod batch;
 pub(crate) mod events;
 mod integrator;
@@ -40,6 +47,7 @@ mod output;
 pub(crate) mod schemes;
 mod solution;
 mod solve;
+mod state;
 pub(crate) mod step;
 
 pub use batch::{Batch, Batched, Outcome, Problem};
@@ -61,8 +69,9 @@ pub use methods::srkn14a::Srkn14a;
 pub use methods::symplectic_euler::SymplecticEuler;
 pub use methods::taylor::Taylor;
 pub use methods::tsit5::Tsit5;
-pub use solution::{Failure, Solution, State, Stats};
+pub use solution::{Failure, Solution, Stats};
 pub use solve::{Solve, solve};
+pub use state::State;
 pub use step::adaptive::AdaptiveStep;
 pub use step::fixed::FixedStep;
 

@@ -3,27 +3,10 @@
 use crate::error::Error;
 use crate::integrate::events::{Occurrence, Status};
 use crate::integrate::interpolant::dense::DenseOutput;
-use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::state::State;
 use crate::motion::Side;
 use crate::real::Float;
 use core::fmt;
-
-/// The state at one time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct State<T, const N: usize> {
-    /// The time in seconds.
-    pub t: f64,
-    /// The coordinates.
-    pub q: [T; N],
-    /// The velocities.
-    pub v: [T; N],
-}
-
-impl<T: Float, const N: usize> From<&Endpoint<T, N>> for State<T, N> {
-    fn from(node: &Endpoint<T, N>) -> Self {
-        Self { t: node.t.to_f64(), q: node.q.high, v: node.v.high }
-    }
-}
 
 /// The motion over an interval, at the times asked for.
 ///

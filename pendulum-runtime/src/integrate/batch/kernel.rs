@@ -9,12 +9,12 @@
 
 use super::{Batch, Batched, Outcome, Problem, W, outcome};
 use crate::error::Error;
-use crate::integrate::method::Method;
+use crate::integrate::method::{self, Method};
 use crate::integrate::methods::taylor::{GAP, LAST_ORDERS, Rule, Taylor, largest, rest};
-use crate::integrate::solution::{State, Stats};
+use crate::integrate::solution::Stats;
+use crate::integrate::state::State;
 use crate::integrate::step::adaptive::resolution;
 use crate::integrate::step::compensated::{Compensated, splitter};
-use crate::integrate::step::diagnose;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::fast_exp2::power;
 use crate::integrate::step::field::Field;
@@ -311,7 +311,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         let system = &self.problems[self.problem[l].unwrap_or(0)].system;
         let prepared = system.prepare();
         let field = Field::new(system, &prepared);
-        diagnose::cause(method, &field, interval, from, &Method::<S, N>::workspace(method, system))
+        method::cause(method, &field, interval, from, &Method::<S, N>::workspace(method, system))
     }
 
     /// The error for a step of a lane that is too short.

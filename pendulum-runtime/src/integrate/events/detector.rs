@@ -6,7 +6,7 @@ use crate::integrate::events::{Condition, Direction, Event, Occurrence};
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::Method;
 use crate::integrate::output::in_order;
-use crate::integrate::solution::State;
+use crate::integrate::state::State;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::integration::Integration;
 use crate::real::Float;

@@ -3,7 +3,7 @@
 pub(crate) mod detector;
 pub(crate) mod root;
 
-use crate::integrate::solution::State;
+use crate::integrate::state::State;
 use crate::real::Float;
 use crate::time::Time;
 use core::fmt;

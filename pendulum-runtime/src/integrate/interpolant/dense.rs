@@ -1,7 +1,7 @@
 //! Dense output over a whole integration.
 
 use crate::integrate::interpolant::{Basis, Interpolant};
-use crate::integrate::solution::State;
+use crate::integrate::state::State;
 use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
 use crate::real::Float;

@@ -5,7 +5,7 @@
 
 use crate::error::{Error, Quantity};
 use crate::integrate::interpolant::{Basis, Interpolant, TERMS};
-use crate::integrate::method::Method;
+use crate::integrate::method::{self, Method};
 use crate::integrate::step::adaptive::{AdaptiveStep, fit, resolution_of};
 use crate::integrate::step::controller::{
     Controller, ControllerState, StepContext, StepLaw, Trial, Verdict,
@@ -353,7 +353,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> StepLaw<Taylor, D, N> for
         }
         let StepContext { method, field, from, to, workspace, .. } = context;
         if !to.is_finite() {
-            return Err(diagnose::cause(*method, field, &workspace.whole, from, workspace));
+            return Err(method::cause(*method, field, &workspace.whole, from, workspace));
         }
         self.resolved(context, trial, |context| {
             let Workspace { path, order, weights, .. } = &*context.workspace;

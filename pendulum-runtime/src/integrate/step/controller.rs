@@ -1,15 +1,15 @@
 //! Controllers: how long the next step is, and whether one is good enough.
 
 use crate::error::{Error, Quantity};
-use crate::integrate::method::Method;
+use crate::integrate::method::{self, Method};
 use crate::integrate::solution::Stats;
-use crate::integrate::step::diagnose;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
-use crate::integrate::step::gap::WITHOUT_INTERVAL;
+use crate::integrate::step::gap;
 use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
 use crate::system::Dynamics;
+use crate::time::Time;
 
 /// A controller of the steps of the method `M` on the dynamics `D`: it chooses lengths and judges
 /// errors, and never steps.
@@ -152,7 +152,49 @@ pub struct ControllerState {
 
 impl Default for ControllerState {
     fn default() -> Self {
-        Self { h: 0.0, left: 0, equal: 0.0, target: 0.0, error: 0.0, unknown: WITHOUT_INTERVAL }
+        Self {
+            h: 0.0,
+            left: 0,
+            equal: 0.0,
+            target: 0.0,
+            error: 0.0,
+            unknown: gap::WITHOUT_INTERVAL,
+        }
+    }
+}
+
+impl ControllerState {
+    /// `wanted`, or less if a step from `t` of a method whose samples lie `width` of a
+    /// step apart
+    /// might miss what time alone does.
+    #[inline]
+    pub(crate) fn within_sight<D, const N: usize>(
+        &mut self,
+        wanted: f64,
+        dynamics: &D,
+        t: Time,
+        width: f64,
+    ) -> Result<f64, Error>
+    where
+        D: Dynamics<N, Scalar: Float>,
+    {
+        let own = gap::longest(dynamics.system(), t, width);
+        let driven = dynamics.longest_step(t.to_f64(), gap::APART / width, self.unknown);
+        if driven <= 0.0 || driven.is_nan() {
+            let required = "positive; it is what a motion or a tuple of motions answers";
+            return Err(Error::Setting { name: "longest_step", value: driven, required });
+        }
+        let least = gap::least(t);
+        let driven = if least < driven { driven } else { least };
+        let longest = if driven < own { driven } else { own };
+        if longest < wanted {
+            if longest < 0.99 * self.equal {
+                // Equal steps were planned before that was known.
+                self.left = 0;
+            }
+            return Ok(longest);
+        }
+        Ok(wanted)
     }
 }
 
@@ -191,7 +233,7 @@ where
             return Ok(a);
         }
         let at_once = StepInterval::by(self.from.t, 0.0);
-        Err(diagnose::cause(self.method, self.field, &at_once, self.from, self.workspace))
+        Err(method::cause(self.method, self.field, &at_once, self.from, self.workspace))
     }
 
     /// Keeps the cause of an attempt whose end is not finite, or gives it at once if no shorter

@@ -1,73 +1,15 @@
-//! The cause of a step that failed.
+//! What may have made a step fail: singular masses, and parameters.
 
 use crate::error::{Error, Quantity, Suspect};
-use crate::integrate::method::Method;
 use crate::integrate::schemes::linear::Factors;
 use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::{Field, coordinate, first_in_state};
-use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
 use crate::real::{Float, Real};
 use crate::system::{Dynamics, Purpose, System, scalar_time};
 use crate::time::Time;
 
-/// The error for a step, with what it has left in `workspace`, that led to a number that is not
-/// finite.
-pub(crate) fn cause<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usize>(
-    method: &M,
-    field: &Field<'_, D, N>,
-    interval: &StepInterval,
-    from: &Endpoint<D::Scalar, N>,
-    workspace: &M::Workspace,
-) -> Error {
-    let coordinate = coordinate(&<D::System as System<N>>::FACTS, 0);
-    method.diagnose(field, interval, from, workspace).unwrap_or_else(|| Error::NotFinite {
-        t: interval.end.to_f64(),
-        what: Quantity::Velocity(coordinate),
-        suspects: Vec::new(),
-    })
-}
-
-/// The first number in the evaluations of a step that is not finite, or where its equations were
-/// not solved, if there is one.
-pub(crate) fn fault<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usize>(
-    method: &M,
-    field: &Field<'_, D, N>,
-    interval: &StepInterval,
-    from: &Endpoint<D::Scalar, N>,
-    workspace: &M::Workspace,
-) -> Option<Error> {
-    let facts = &<D::System as System<N>>::FACTS;
-    let dynamics = field.dynamics;
-    let unsolved = method.unsolved(workspace);
-    let mut watched = field.watched();
-    let mut start = Endpoint { a: None, ..*from };
-    let to = method.attempt(&mut watched, interval, &mut start, &mut method.workspace(dynamics));
-    let findings = watched.findings;
-    if let Some((t, coordinate)) = findings.lost
-        && regular(dynamics, from)
-    {
-        return Some(Error::NoVelocity { t: t.to_f64(), coordinate });
-    }
-    // Where an iteration went astray, numbers that are not finite are not the cause but the effect.
-    if let Some((t, index)) = unsolved {
-        let coordinate = coordinate(facts, index);
-        return Some(Error::NoConvergence { t: t.to_f64(), step: interval.h, coordinate });
-    }
-    let at_end = || first_in_state(facts, &to.q.high, &to.v.high).map(|what| (interval.end, what));
-    let (t, what) = findings.first.or_else(at_end)?;
-    if findings.singular {
-        return Some(Error::NotFinite {
-            t: t.to_f64(),
-            what,
-            suspects: suspects(dynamics.system()),
-        });
-    }
-    Some(not_finite(dynamics.system(), t, what))
-}
-
 /// Whether the mass matrix at the start of a step leads from velocities to momenta and back.
-fn regular<D: Dynamics<N, Scalar: Float>, const N: usize>(
+pub(crate) fn regular<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     from: &Endpoint<D::Scalar, N>,
 ) -> bool {

@@ -1,9 +1,8 @@
 //! Steps of equal length.
 
 use crate::error::Error;
-use crate::integrate::method::Method;
+use crate::integrate::method::{self, Method};
 use crate::integrate::step::controller::{Controller, ControllerState, StepContext};
-use crate::integrate::step::diagnose;
 use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::short::{is_short, straight};
 use crate::real::Float;
@@ -68,7 +67,7 @@ impl<M: Method<D, N>, D: Dynamics<N, Scalar: Float>, const N: usize> Controller<
             method.attempt(field, &interval, from, workspace)
         };
         if !to.is_finite() {
-            return Err(diagnose::cause(method, field, &interval, from, workspace));
+            return Err(method::cause(method, field, &interval, from, workspace));
         }
         *state = plan;
         stats.accepted += 1;

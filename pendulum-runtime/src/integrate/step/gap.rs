@@ -8,11 +8,9 @@
 // What lanes use too has to be compiled for their vectors.
 #![allow(clippy::inline_always)]
 
-use crate::error::Error;
 use crate::integrate::schemes::runge_kutta::Row;
-use crate::integrate::step::controller::ControllerState;
 use crate::real::{Float, Real};
-use crate::system::{Dynamics, System, scalar_time};
+use crate::system::{System, scalar_time};
 use crate::time::Time;
 
 /// The greatest distance of two samples, in widths: exp(−((t − t₀)/w)²) is sampled within ¾ w of
@@ -86,43 +84,9 @@ pub(crate) fn longest<S: System<N, Scalar: Float>, const N: usize>(
 
 /// What is narrower can hardly be told from a moment.
 #[inline(always)]
-fn least(t: Time) -> f64 {
+pub(crate) fn least(t: Time) -> f64 {
     let least = 64.0 * f64::EPSILON * f64::abs(t.to_f64());
     if least < 1e-150 { 1e-150 } else { least }
-}
-
-impl ControllerState {
-    /// `wanted`, or less if a step from `t` of a method whose samples lie `gap` of a step apart
-    /// might miss what time alone does.
-    #[inline]
-    pub(crate) fn within_sight<D, const N: usize>(
-        &mut self,
-        wanted: f64,
-        dynamics: &D,
-        t: Time,
-        gap: f64,
-    ) -> Result<f64, Error>
-    where
-        D: Dynamics<N, Scalar: Float>,
-    {
-        let own = longest(dynamics.system(), t, gap);
-        let driven = dynamics.longest_step(t.to_f64(), APART / gap, self.unknown);
-        if driven <= 0.0 || driven.is_nan() {
-            let required = "positive; it is what a motion or a tuple of motions answers";
-            return Err(Error::Setting { name: "longest_step", value: driven, required });
-        }
-        let least = least(t);
-        let driven = if least < driven { driven } else { least };
-        let longest = if driven < own { driven } else { own };
-        if longest < wanted {
-            if longest < 0.99 * self.equal {
-                // Equal steps were planned before that was known.
-                self.left = 0;
-            }
-            return Ok(longest);
-        }
-        Ok(wanted)
-    }
 }
 
 #[cfg(test)]

@@ -2,10 +2,10 @@
 
 use crate::error::{Error, Part, Quantity};
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::method::Method;
-use crate::integrate::solution::{State, Stats};
+use crate::integrate::method::{self, Method};
+use crate::integrate::solution::Stats;
+use crate::integrate::state::State;
 use crate::integrate::step::controller::{Controller, ControllerState, StepContext};
-use crate::integrate::step::diagnose;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::{
     Field, PreparedOf, coordinate, first_in_inputs, first_in_state,
@@ -317,7 +317,7 @@ where
     let interval = StepInterval::to(from.t, target);
     *to = straight(field, &interval, from);
     if !to.is_finite() {
-        return Err(diagnose::cause(method, field, &interval, from, workspace));
+        return Err(method::cause(method, field, &interval, from, workspace));
     }
     stats.accepted += 1;
     Ok(interval)

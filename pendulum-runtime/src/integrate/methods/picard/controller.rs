@@ -4,11 +4,11 @@ use super::lanes::LaneDynamics;
 use super::tableau::S;
 use super::{Picard, iterate, tableau};
 use crate::error::Error;
+use crate::integrate::method;
 use crate::integrate::step::adaptive::AdaptiveStep;
 use crate::integrate::step::controller::{
     Controller, ControllerState, StepContext, StepLaw, Trial, Verdict,
 };
-use crate::integrate::step::diagnose;
 use crate::integrate::step::fast_exp2::{log2, power};
 use crate::integrate::step::interval::StepInterval;
 use crate::real::Float;
@@ -122,7 +122,7 @@ impl<D: LaneDynamics<N>, const N: usize> StepLaw<Picard, D, N> for AdaptiveStep<
             if factor < 0.2 { 0.2 } else { factor }
         } else if !workspace.start.iter().all(|a| a.is_finite()) {
             let at_once = StepInterval::by(from.t, 0.0);
-            return Err(diagnose::cause(*method, field, &at_once, from, workspace));
+            return Err(method::cause(*method, field, &at_once, from, workspace));
         } else if to.is_finite() {
             trial.fault = None;
             0.5

@@ -1,0 +1,21 @@
+//! The state at one time.
+
+use crate::integrate::step::endpoint::Endpoint;
+use crate::real::Float;
+
+/// The state at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State<T, const N: usize> {
+    /// The time in seconds.
+    pub t: f64,
+    /// The coordinates.
+    pub q: [T; N],
+    /// The velocities.
+    pub v: [T; N],
+}
+
+impl<T: Float, const N: usize> From<&Endpoint<T, N>> for State<T, N> {
+    fn from(end: &Endpoint<T, N>) -> Self {
+        Self { t: end.t.to_f64(), q: end.q.high, v: end.v.high }
+    }
+}
