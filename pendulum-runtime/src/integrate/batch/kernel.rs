@@ -161,8 +161,8 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             work,
         );
         let weights = weights(&from, self.rtol, &self.atol);
-        let told = told(path, &self.rule, &weights);
-        let mut wanted = lengths(told);
+        let log_radii = log_radii(path, &self.rule, &weights);
+        let mut wanted = lengths(log_radii);
         let mut unusual = wanted;
         for l in 0..W {
             unusual.0[l] = if UNTOLD < wanted.0[l] { 1.0 } else { 0.0 };
@@ -170,7 +170,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         }
         let h = fit(&from, wanted, &mut unusual);
         if any(unusual) | self.first | (self.round + 1 == self.deadline) {
-            self.unusual_steps(&from, told, &weights);
+            self.unusual_steps(&from, log_radii, &weights);
         } else if any(self.advance(&from, [h, Wide::from_f64(0.0)])) {
             self.settle(&from, wanted, h);
         }
@@ -234,10 +234,10 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
     fn unusual_steps(
         &mut self,
         from: &Flight<S::Scalar, N>,
-        told: Wide<f64>,
+        log_radii: Wide<f64>,
         weights: &[[Wide<f64>; N]; 2],
     ) {
-        let mut wanted = longer(&self.workspace.path, &self.rule, weights, told);
+        let mut wanted = longer(&self.workspace.path, &self.rule, weights, log_radii);
         for l in 0..W {
             wanted.0[l] = self.limited(from, l, self.begun[l] == self.round, wanted.0[l]);
         }
@@ -449,15 +449,17 @@ const UNTOLD: f64 = 1e300;
 /// What the last terms of the series tell about the lengths of steps: 1023 and their binary
 /// logarithms.
 #[inline(always)]
-fn told<T: Lane + Float, const N: usize>(
+fn log_radii<T: Lane + Float, const N: usize>(
     path: &Path<Wide<T>, N>,
     rule: &Rule,
     weights: &[[Wide<f64>; N]; 2],
 ) -> Wide<f64> {
     let mut least = Wide::from_f64(f64::INFINITY);
     for back in 0..LAST_ORDERS {
-        least =
-            nearest(least, told_by(path, rule, weights, rule.order.saturating_sub(back).max(1)));
+        least = nearest(
+            least,
+            log_radius_of(path, rule, weights, rule.order.saturating_sub(back).max(1)),
+        );
     }
     least
 }
@@ -465,10 +467,10 @@ fn told<T: Lane + Float, const N: usize>(
 /// The lengths of steps at whose ends the last terms of the series are as large as allowed, as
 /// [`Taylor`] finds them.
 #[inline(always)]
-fn lengths(told: Wide<f64>) -> Wide<f64> {
-    let mut wanted = told;
+fn lengths(log_radii: Wide<f64>) -> Wide<f64> {
+    let mut wanted = log_radii;
     for l in 0..W {
-        wanted.0[l] = power(told.0[l]);
+        wanted.0[l] = power(log_radii.0[l]);
     }
     wanted
 }
@@ -478,21 +480,21 @@ fn longer<T: Lane + Float, const N: usize>(
     path: &Path<Wide<T>, N>,
     rule: &Rule,
     weights: &[[Wide<f64>; N]; 2],
-    mut told: Wide<f64>,
+    mut log_radii: Wide<f64>,
 ) -> Wide<f64> {
-    let mut open = told.0.map(|told| told == f64::INFINITY);
+    let mut open = log_radii.0.map(|log_radii| log_radii == f64::INFINITY);
     if !open.contains(&true) {
-        return lengths(told);
+        return lengths(log_radii);
     }
     for k in (1..=rule.order.saturating_sub(LAST_ORDERS)).rev() {
-        let earlier = told_by(path, rule, weights, k);
+        let earlier = log_radius_of(path, rule, weights, k);
         for l in 0..W {
             if open[l] && earlier.0[l] < f64::INFINITY {
-                (told.0[l], open[l]) = (earlier.0[l], false);
+                (log_radii.0[l], open[l]) = (earlier.0[l], false);
             }
         }
     }
-    let mut wanted = lengths(told);
+    let mut wanted = lengths(log_radii);
     for l in 0..W {
         wanted.0[l] = if open[l] { f64::INFINITY } else { wanted.0[l] };
     }
@@ -501,25 +503,26 @@ fn longer<T: Lane + Float, const N: usize>(
 
 /// What the coefficients of one order tell; infinite where all are zero.
 #[inline(always)]
-fn told_by<T: Lane + Float, const N: usize>(
+fn log_radius_of<T: Lane + Float, const N: usize>(
     path: &Path<Wide<T>, N>,
     rule: &Rule,
     weights: &[[Wide<f64>; N]; 2],
     k: usize,
 ) -> Wide<f64> {
-    let mut told = Wide::<f64>::from_f64(0.0);
+    let mut log_radii = Wide::<f64>::from_f64(0.0);
     for i in 0..N {
         for (series, weights) in [(&path.q[i], &weights[0]), (&path.v[i], &weights[1])] {
             for l in 0..W {
                 let coefficient = series[k].0[l].to_f64().abs() * weights[i].0[l];
-                told.0[l] = if told.0[l] < coefficient { coefficient } else { told.0[l] };
+                log_radii.0[l] =
+                    if log_radii.0[l] < coefficient { coefficient } else { log_radii.0[l] };
             }
         }
     }
     for l in 0..W {
-        told.0[l] = rule.told(told.0[l], k);
+        log_radii.0[l] = rule.log_radius(log_radii.0[l], k);
     }
-    told
+    log_radii
 }
 
 /// The lesser number of each lane.

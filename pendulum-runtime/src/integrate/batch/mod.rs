@@ -170,7 +170,8 @@ impl<const N: usize> Batch<N> {
 
     /// What decides about the length of a step.
     fn rule<S: Batched<N>>(&self) -> Rule {
-        Rule::new::<S, N>(self.method, self.control.tolerances::<S::Scalar>().0)
+        let (rtol, _) = self.control.tolerances::<S::Scalar>();
+        Rule::new(self.method.order_for(rtol, S::PER_DIGIT), rtol)
     }
 
     /// Whether a motion can begin; `true` if it ends where it begins.

@@ -1,0 +1,204 @@
+//! The law of adaptive steps.
+
+use super::doubts::{Doubts, MOST_DOUBTS};
+use super::method::{GAP, Taylor, Workspace, WorkspaceOf, expand, side, sum};
+use super::rule::{Rule, largest, length};
+use crate::error::Error;
+use crate::integrate::method;
+use crate::integrate::step::adaptive::{AdaptiveStep, fit, resolution_of};
+use crate::integrate::step::controller::{
+    Controller, ControllerState, StepContext, StepLaw, Trial, Verdict,
+};
+use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::step::field::Field;
+use crate::integrate::step::interval::StepInterval;
+use crate::jet::{JetDynamics, Jets, Path, Series};
+use crate::motion::Side;
+use crate::real::{Float, Real};
+use crate::system::System;
+
+impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Controller<Taylor, D, N>
+    for AdaptiveStep<N>
+{
+    fn check(&self) -> Result<(), Error> {
+        self.positive::<D::Scalar>()
+    }
+
+    fn least_steps(&self, length: f64) -> f64 {
+        self.least_steps_over(length)
+    }
+
+    #[inline]
+    fn step(
+        &self,
+        state: &mut ControllerState,
+        context: StepContext<'_, '_, D, Taylor, N>,
+    ) -> Result<StepInterval, Error> {
+        self.take_step(state, context)
+    }
+}
+
+impl<D: JetDynamics<N, Scalar: Float>, const N: usize> StepLaw<Taylor, D, N> for AdaptiveStep<N> {
+    fn propose(
+        &self,
+        state: &mut ControllerState,
+        context: &mut StepContext<'_, '_, D, Taylor, N>,
+    ) -> Result<Trial, Error> {
+        let StepContext { method, field, from, workspace, target, .. } = context;
+        let (t, target) = (from.t.to_f64(), *target);
+        let backwards = target < t;
+        let target = if backwards {
+            field.dynamics.last_break(t).filter(|time| target < *time).unwrap_or(target)
+        } else {
+            field.dynamics.next_break(t).filter(|time| *time < target).unwrap_or(target)
+        };
+        let (rtol, atol) = self.tolerances::<D::Scalar>();
+        if workspace.rule.tolerance != rtol {
+            workspace.rule = Rule::new(method.order_for(rtol, D::System::PER_DIGIT), rtol);
+        }
+        let side = if backwards { Side::Before } else { Side::After };
+        expand(field, from, side, workspace.rule.order, workspace);
+        workspace.weights = [
+            core::array::from_fn(|i| 1.0 / (atol.0[i] + rtol * from.q.high[i].to_f64().abs())),
+            core::array::from_fn(|i| 1.0 / (atol.1[i] + rtol * from.v.high[i].to_f64().abs())),
+        ];
+        let wanted = length(&workspace.path, &workspace.rule, &workspace.weights);
+        // A uniform motion may go on for ever, but it has to come to an end.
+        let wanted = if wanted == f64::INFINITY && target == wanted { 1.0 } else { wanted };
+        let wanted = self.limited(state.h == 0.0, wanted);
+        let wanted = state.within_sight(wanted, field.dynamics, from.t, GAP)?;
+        if state.h == 0.0 {
+            // At a start nothing is known of jumps.
+            workspace.doubts = Doubts::default();
+        }
+        let resolution = resolution_of::<D::Scalar>(from.t);
+        let wanted = workspace.doubts.begin(from.t, backwards, resolution, wanted);
+        workspace.whole = fit(from.t, wanted, target);
+        Ok(Trial::new(wanted, target))
+    }
+
+    fn interval(
+        &self,
+        _: &mut ControllerState,
+        context: &mut StepContext<'_, '_, D, Taylor, N>,
+        trial: &mut Trial,
+    ) -> Result<StepInterval, Error> {
+        Ok(fit(context.from.t, trial.wanted, trial.target))
+    }
+
+    /// The error is that of the accelerations at the end: zero where it is allowed, and infinite
+    /// where it is not.
+    fn estimate(
+        &self,
+        context: &mut StepContext<'_, '_, D, Taylor, N>,
+        trial: &Trial,
+        interval: &StepInterval,
+    ) -> f64 {
+        let StepContext { field, from, to, workspace, .. } = context;
+        **to = sum(workspace, from, interval);
+        let order = workspace.rule.order;
+        let finite = |series: &Series<D::Scalar>| series[..=order].iter().all(|x| x.is_finite());
+        let Path { q, v, .. } = &workspace.path;
+        let known =
+            0 < trial.rejected || to.is_finite() || (0..N).all(|i| finite(&q[i]) && finite(&v[i]));
+        // At the resolution of times no step can be shorter.
+        let shortest = trial.wanted <= resolution_of::<D::Scalar>(from.t);
+        if !known || shortest || workspace.doubts.trusts {
+            return 0.0;
+        }
+        let strict = 0 < trial.rejected || workspace.doubts.refuted.is_some();
+        let misfit = misfit(field, workspace, interval, to, strict);
+        workspace.doubts.holds &= misfit.allowed;
+        workspace.doubts.rounding = misfit.rounding;
+        if misfit.allowed || MOST_DOUBTS <= workspace.doubts.count { 0.0 } else { f64::INFINITY }
+    }
+
+    fn judge(
+        &self,
+        state: &mut ControllerState,
+        context: &mut StepContext<'_, '_, D, Taylor, N>,
+        trial: &mut Trial,
+        interval: &StepInterval,
+        error: f64,
+    ) -> Result<Verdict, Error> {
+        if 1.0 < error {
+            let whole = context.workspace.whole.h.abs();
+            let doubts = &mut context.workspace.doubts;
+            return Ok(Verdict::Reject { length: doubts.shorten(trial, interval, whole) });
+        }
+        let StepContext { method, field, from, to, workspace, .. } = context;
+        if !to.is_finite() {
+            return Err(method::cause(*method, field, &workspace.whole, from, workspace));
+        }
+        self.resolved(context, trial, |context| {
+            let Workspace { path, order, weights, .. } = &*context.workspace;
+            largest(path, *order, weights).1
+        })?;
+        context.workspace.doubts.accept(0 < trial.rejected, trial.wanted);
+        state.h = trial.wanted;
+        Ok(Verdict::Accept)
+    }
+}
+
+/// The error of a step over the one allowed from which on the series does not hold at its end.
+const MISFIT: f64 = 30.0;
+
+/// How well a series holds at the end of its step.
+struct Misfit {
+    /// The accelerations are those of the series.
+    allowed: bool,
+    /// They differ by no more than a thousand times what rounding is taken for.
+    rounding: bool,
+}
+
+/// How far the accelerations at the end of a step are from those of the series: h |a − Σ k v\[k\]
+/// hᵏ⁻¹|/p in units of the error allowed.
+///
+/// A series knows no more than its centre does: of a wall, a contact or a switch far away its
+/// coefficients tell nothing. Rounding is taken for a thousand ε of velocities, accelerations,
+/// coordinates and time.
+fn misfit<D: JetDynamics<N, Scalar: Float>, const N: usize>(
+    field: &Field<'_, D, N>,
+    workspace: &WorkspaceOf<D, N>,
+    interval: &StepInterval,
+    to: &Endpoint<D::Scalar, N>,
+    strict: bool,
+) -> Misfit {
+    let (h, zero) = (interval.length::<D::Scalar>(), D::Scalar::from_f64(0.0));
+    // Beside the orders of the series, which are what evaluations of this method count.
+    let mut end = Field::new(field.dynamics, field.prepared);
+    let a = end.at(interval.end, side(interval.h).opposite(), &to.q.high, &to.v.high);
+    // Motions have the digits of `f64`.
+    let facts = &<D::System as System<N>>::FACTS;
+    let epsilon = D::Scalar::EPSILON.to_f64();
+    let rounding = 1e3
+        * if facts.inputs.is_empty() || f64::EPSILON < epsilon { epsilon } else { f64::EPSILON };
+    let largest = |values: &dyn Fn(usize) -> D::Scalar| {
+        (0..N).fold(0.0, |largest: f64, i| largest.max(values(i).to_f64().abs()))
+    };
+    let (q, v, weights) = (&workspace.path.q, &workspace.path.v, &workspace.weights[1]);
+    let series: [D::Scalar; N] = core::array::from_fn(|i| {
+        let orders = (1..=workspace.order).rev();
+        orders.fold(zero, |sum, k| sum * h + D::Scalar::from_f64(k as f64) * v[i][k])
+    });
+    // Coordinates and time are rounded too, and the accelerations change with them as they do on
+    // the way: those of the series, where a jump is no slope.
+    let way = largest(&|i| to.q.high[i] - q[i][0]);
+    let turns = [largest(&|i| a[i] - v[i][1]), largest(&|i| series[i] - v[i][1])];
+    let turn = if turns[1] < turns[0] { turns[1] } else { turns[0] };
+    let by_place = if 0.0 < way { largest(&|i| to.q.high[i]) * (turn / way) } else { 0.0 };
+    let by_time = interval.end.to_f64().abs() * (turn / interval.h.abs());
+    let size = largest(&|i| a[i]) + by_place + if facts.autonomous { 0.0 } else { by_time };
+    let (mut allowed, mut is_rounding) = (to.is_finite() && size.is_finite(), true);
+    for i in 0..N {
+        let difference = (a[i] - series[i]).to_f64().abs();
+        // That of a smooth series is gone after a halving; that of a jump is not, and the velocity
+        // is off by all of it.
+        let (share, most) = if strict { (1.0, 1.0) } else { (workspace.order as f64, MISFIT) };
+        let misfit = interval.h.abs() * difference / share;
+        let noise = rounding * (to.v.high[i].to_f64().abs() + interval.h.abs() * size);
+        allowed &= misfit * weights[i] <= most + noise * weights[i];
+        is_rounding &= difference <= 1e3 * rounding * size;
+    }
+    Misfit { allowed, rounding: is_rounding }
+}

@@ -1,0 +1,282 @@
+//! The series of a step: the method.
+
+// Lanes use this too: it is compiled for their vectors.
+#![allow(clippy::inline_always)]
+
+use super::doubts::Doubts;
+use super::rule::Rule;
+use crate::error::{Error, Quantity};
+use crate::integrate::interpolant::{Basis, Interpolant, TERMS};
+use crate::integrate::method::Method;
+use crate::integrate::step::diagnose;
+use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::step::fast_exp2::log2;
+use crate::integrate::step::field::{Field, coordinate, first_in_state};
+use crate::integrate::step::interval::StepInterval;
+use crate::jet::{JetDynamics, Jets, MAX_ORDER, Path, Series, Unrolling};
+use crate::motion::Side;
+use crate::real::{Float, Real};
+use crate::system::{Dynamics, System, scalar_time};
+use crate::time::Time;
+
+/// The Taylor series of the motion: any order up to 30, adaptive, forwards and backwards in time.
+///
+/// It suits every system that `lagrangian!` has made and every motion that is
+/// [`Analytic`](crate::motion::Analytic), and is the choice for the last digits and for the way
+/// back in time. Its steps are long and it rejects few: the coefficients tell the radius of
+/// convergence. It is explicit: a stiff spring or damper shortens its steps.
+///
+/// A series knows nothing of a wall or a contact far from its centre. The accelerations a at the
+/// end of each step are therefore compared with those of the series of order p. A step is halved
+/// where h·|Δa|/p is more than 30 times the error allowed; after a first halving, where h·|Δa| is
+/// more than that error. Differences below a thousand units of rounding are allowed. After forty
+/// halvings the shortest step goes over what must be a jump. If 256 steps are halved, and
+/// none of them is a thousand times as long as one before it, the accelerations are taken to be
+/// inexact, and whole steps are taken until series hold again. Each comparison is one evaluation, which [`Stats`](crate::integrate::Stats) do not count: there each order of the series is
+/// one. A needle or a thin wall goes unseen if a step ends behind it. The method is wrong where the
+/// equations themselves are not smooth: at the zeros of `abs` and `sign`, and where the larger of
+/// two numbers changes.
+///
+/// The order is p = ⌈1 − c ln rtol⌉ with c = 0.8 for a coordinate that swings by itself and 0.7
+/// else, and the step is h = ρ rtol^(1/p) e^(−0.7/(p−1)), where ρ is the least of the radii of
+/// convergence (rtol · max |xᵢ\[k\]|/εᵢ)^(−1/k) that the last four orders k tell, with εᵢ = atolᵢ +
+/// rtol·|xᵢ| over all coordinates and velocities; where they vanish, the orders before tell it.
+/// (With c = ½ the work would be least if it grew with p²; measured, it grows with p^1.4 and less.)
+/// `rtol` may be as small as you like: 1e-18 takes the truncation well below rounding. Fixed steps
+/// have the order for the machine epsilon and c = 0.7, without [`order`](Self::order).
+///
+/// The sum of the series is compensated. Dense output is the series itself and costs nothing.
+///
+/// Source: Jorba and Zou (2005), A software package for the numerical integration of ODEs by means
+/// of high-order Taylor methods, Exp. Math. 14, 99.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Taylor {
+    pub(super) order: Option<usize>,
+}
+
+impl Taylor {
+    /// The method with the order that the tolerance asks for.
+    pub const fn new() -> Self {
+        Self { order: None }
+    }
+
+    /// The order instead, from 2 to 30; what lies beyond becomes the nearest of them.
+    pub const fn order(self, order: usize) -> Self {
+        let order = if order < 2 { 2 } else { order };
+        Self { order: Some(if MAX_ORDER < order { MAX_ORDER } else { order }) }
+    }
+
+    /// The order for a tolerance, `per_digit` for each e-th part.
+    pub(crate) fn order_for(self, tolerance: f64, per_digit: f64) -> usize {
+        let best = (1.0 - per_digit * core::f64::consts::LN_2 * log2(tolerance)).ceil();
+        self.order.unwrap_or(best.clamp(2.0, MAX_ORDER as f64) as usize)
+    }
+
+    /// The order of fixed steps.
+    fn fixed<T: Float>(self) -> usize {
+        self.order_for(T::EPSILON.to_f64(), 0.7)
+    }
+}
+
+/// The jet at the start of a step.
+#[derive(Clone, Debug)]
+pub struct Workspace<T, W, X, const N: usize> {
+    pub(super) path: Path<T, N>,
+    pub(super) drive: X,
+    pub(super) work: W,
+    /// The order of the jet.
+    pub(super) order: usize,
+    /// What the tolerance decides.
+    pub(super) rule: Rule,
+    /// One over the errors allowed of coordinates and velocities at the start.
+    pub(super) weights: [[f64; N]; 2],
+    /// The step as it would be if its series held.
+    pub(super) whole: StepInterval,
+    pub(super) doubts: Doubts,
+}
+
+/// The room for the jets of the dynamics `D`.
+pub(crate) type WorkspaceOf<D, const N: usize> = Workspace<
+    <D as Dynamics<N>>::Scalar,
+    <<D as Dynamics<N>>::System as Jets<N>>::Work,
+    <<D as Dynamics<N>>::System as Jets<N>>::Drive,
+    N,
+>;
+
+impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Taylor {
+    const NAME: &'static str = "Taylor";
+    type Workspace = WorkspaceOf<D, N>;
+
+    fn goes_back(&self, _: &D) -> bool {
+        true
+    }
+
+    fn workspace(&self, dynamics: &D) -> WorkspaceOf<D, N> {
+        Workspace {
+            path: Path::new(),
+            drive: D::System::drive(),
+            work: dynamics.system().work(),
+            order: 0,
+            rule: Rule::default(),
+            weights: [[0.0; N]; 2],
+            whole: StepInterval::by(Time::new(0.0), 0.0),
+            doubts: Doubts::default(),
+        }
+    }
+
+    fn attempt<const W: bool>(
+        &self,
+        field: &mut Field<'_, D, N, W>,
+        interval: &StepInterval,
+        from: &mut Endpoint<D::Scalar, N>,
+        workspace: &mut WorkspaceOf<D, N>,
+    ) -> Endpoint<D::Scalar, N> {
+        let order = self.fixed::<D::Scalar>();
+        expand(field, from, side(interval.h), order, workspace);
+        sum(workspace, from, interval)
+    }
+
+    fn interpolant(
+        &self,
+        _: &mut Field<'_, D, N>,
+        interval: &StepInterval,
+        from: &mut Endpoint<D::Scalar, N>,
+        _: &mut Endpoint<D::Scalar, N>,
+        workspace: &mut WorkspaceOf<D, N>,
+    ) -> Interpolant<D::Scalar, N> {
+        let (h, zero) = (interval.length::<D::Scalar>(), [[D::Scalar::from_f64(0.0); N]; TERMS]);
+        let (q0, v0) = (from.q.high, from.v.high);
+        let mut interpolant = Interpolant {
+            interval: *interval,
+            q0,
+            v0,
+            q: zero,
+            v: zero,
+            terms: workspace.order,
+            basis: Basis::Powers,
+        };
+        let mut power = h;
+        for k in 1..=workspace.order {
+            for i in 0..N {
+                interpolant.q[k - 1][i] = workspace.path.q[i][k] * power;
+                interpolant.v[k - 1][i] = workspace.path.v[i][k] * power;
+            }
+            power *= h;
+        }
+        interpolant
+    }
+
+    fn diagnose(
+        &self,
+        field: &Field<'_, D, N>,
+        interval: &StepInterval,
+        from: &Endpoint<D::Scalar, N>,
+        _: &WorkspaceOf<D, N>,
+    ) -> Option<Error> {
+        let (dynamics, side) = (field.dynamics, side(interval.h));
+        let mut watched = field.watched();
+        watched.at(from.t, side, &from.q.high, &from.v.high);
+        let mut workspace = self.workspace(dynamics);
+        let order = self.fixed::<D::Scalar>();
+        let mut series = Field::new(dynamics, field.prepared);
+        expand(&mut series, from, side, order, &mut workspace);
+        let facts = &<D::System as System<N>>::FACTS;
+        let finite = |series: &Series<D::Scalar>| series.iter().all(|x| x.is_finite());
+        let Path { q, v, .. } = &workspace.path;
+        let infinite = (0..N).find(|&i| !finite(&v[i]) || !finite(&q[i]));
+        let (t, what) = watched
+            .findings
+            .first
+            .or_else(|| {
+                infinite.map(|index| (from.t, Quantity::Acceleration(coordinate(facts, index))))
+            })
+            .or_else(|| {
+                let to = sum(&workspace, from, interval);
+                first_in_state(facts, &to.q.high, &to.v.high).map(|what| (interval.end, what))
+            })?;
+        Some(diagnose::not_finite(dynamics.system(), t, what))
+    }
+
+    fn kink(&self, dynamics: &D, t: f64, backwards: bool) -> Option<f64> {
+        if backwards { dynamics.last_kink(t) } else { dynamics.next_kink(t) }
+    }
+}
+
+/// A series knows the start of its step alone. It tells a bell from two widths away, and the bound
+/// is to leave a sine its steps of 3/ω.
+pub(crate) const GAP: f64 = 0.7;
+
+/// The side from which the start of a step is seen.
+pub(super) fn side(h: f64) -> Side {
+    if h < 0.0 { Side::Before } else { Side::After }
+}
+
+/// The jet at `from`.
+#[inline]
+pub(super) fn expand<D: JetDynamics<N, Scalar: Float>, const N: usize, const W: bool>(
+    field: &mut Field<'_, D, N, W>,
+    from: &Endpoint<D::Scalar, N>,
+    side: Side,
+    order: usize,
+    workspace: &mut WorkspaceOf<D, N>,
+) {
+    if workspace.order != order {
+        // No coefficient of a higher order may stay.
+        workspace.path = Path::new();
+        workspace.order = order;
+    }
+    let Workspace { path, drive, work, .. } = workspace;
+    path.t = scalar_time(from.t);
+    for i in 0..N {
+        path.q[i][0] = from.q.high[i];
+        path.v[i][0] = from.v.high[i];
+    }
+    field.dynamics.drive(from.t, side, order, drive);
+    <D::System as Jets<N>>::Unrolling::run(field.dynamics.system(), order, path, drive, work);
+    field.evaluations += order as u64;
+}
+
+/// The state at the end of a step: the sum of the series, to which the products of the first order
+/// come with both words.
+#[inline]
+pub(super) fn sum<T: Float, W, X, const N: usize>(
+    workspace: &Workspace<T, W, X, N>,
+    from: &Endpoint<T, N>,
+    interval: &StepInterval,
+) -> Endpoint<T, N> {
+    let h = interval.length::<T>();
+    let mut to = Endpoint { t: interval.end, a: None, ..*from };
+    for i in 0..N {
+        to.q.add_product(
+            i,
+            h,
+            workspace.path.q[i][1],
+            rest(&workspace.path.q[i], workspace.order, h),
+        );
+        to.v.add_product(
+            i,
+            h,
+            workspace.path.v[i][1],
+            rest(&workspace.path.v[i], workspace.order, h),
+        );
+    }
+    to
+}
+
+/// Σ x\[k\] hᵏ over 2 ≤ k ≤ `order`, beyond which all are zero: every fourth term after Horner
+/// (1819), the four sums side by side.
+#[inline(always)]
+pub(crate) fn rest<T: Real>(series: &Series<T>, order: usize, h: T) -> T {
+    let (fours, _) = series.as_chunks::<4>();
+    let h2 = h * h;
+    let h4 = h2 * h2;
+    let [mut a, mut b, mut c, mut d] = [T::from_f64(0.0); 4];
+    for four in fours[1..=order / 4].iter().rev() {
+        a = a * h4 + four[0];
+        b = b * h4 + four[1];
+        c = c * h4 + four[2];
+        d = d * h4 + four[3];
+    }
+    let [_, _, second, third] = fours[0];
+    ((second + third * h) + ((a + b * h) + (c + d * h) * h2) * h2) * h2
+}

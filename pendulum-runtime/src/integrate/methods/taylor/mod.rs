@@ -1,0 +1,10 @@
+//! Taylor series of any order.
+
+mod controller;
+mod doubts;
+mod method;
+mod rule;
+
+pub use method::Taylor;
+pub(crate) use method::{GAP, WorkspaceOf, rest};
+pub(crate) use rule::{LAST_ORDERS, Rule, largest};

@@ -1,0 +1,86 @@
+//! The length of a step from the coefficients of its series.
+
+// Lanes use this too: it is compiled for their vectors.
+#![allow(clippy::inline_always)]
+
+use crate::integrate::step::fast_exp2::{digits, log2, power};
+use crate::jet::{LENGTH, Path};
+use crate::real::Float;
+
+/// What the tolerance decides about the length of a step.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Rule {
+    pub(super) tolerance: f64,
+    pub(crate) order: usize,
+    /// For each order k, log₂(step) + 1023 as a function of the digits of the coefficient: its
+    /// intercept, and its slope over 2³², downwards.
+    lines: [(f64, f64); LENGTH],
+}
+
+impl Rule {
+    pub(crate) fn new(order: usize, tolerance: f64) -> Self {
+        let binary = log2(tolerance);
+        let margin = binary / order as f64 - 0.7 * core::f64::consts::LOG2_E / (order as f64 - 1.0);
+        let lines = core::array::from_fn(|k| {
+            let k = k.max(1) as f64;
+            (1023.0 + margin + (1023.0 - binary) / k, 1.0 / (4294967296.0 * k))
+        });
+        Self { tolerance, order, lines }
+    }
+
+    /// log₂(step) + 1023 from the coefficient of order k over the error allowed, where step is
+    /// (coefficient · rtol)^(−1/k) times the margin; infinite where the coefficient is zero.
+    #[inline(always)]
+    pub(crate) fn log_radius(&self, coefficient: f64, k: usize) -> f64 {
+        let (most, slope) = self.lines[k];
+        let radius = most - slope * digits(coefficient);
+        if 0.0 < coefficient { radius } else { f64::INFINITY }
+    }
+}
+
+/// How many of the last coefficients tell the length of a step. A motion from rest in a symmetric
+/// place has one order in four only.
+pub(crate) const LAST_ORDERS: usize = 4;
+
+/// The length of a step at whose end the last term of the series is as large as allowed; infinite
+/// for a uniform motion.
+#[inline]
+pub(super) fn length<T: Float, const N: usize>(
+    path: &Path<T, N>,
+    rule: &Rule,
+    weights: &[[f64; N]; 2],
+) -> f64 {
+    let (mut least, mut seen) = (f64::INFINITY, 0);
+    for k in (1..=rule.order).rev() {
+        let (coefficient, _) = largest(path, k, weights);
+        let longest = rule.log_radius(coefficient, k);
+        least = if longest < least { longest } else { least };
+        seen += 1;
+        if LAST_ORDERS <= seen && least < f64::INFINITY {
+            break;
+        }
+    }
+    if least == f64::INFINITY {
+        return least;
+    }
+    power(least)
+}
+
+/// The largest coefficient of an order over the error allowed, and its coordinate.
+#[inline]
+pub(crate) fn largest<T: Float, const N: usize>(
+    path: &Path<T, N>,
+    k: usize,
+    weights: &[[f64; N]; 2],
+) -> (f64, usize) {
+    let mut largest = (0.0, 0);
+    for i in 0..N {
+        for (series, weights) in [(&path.q[i], &weights[0]), (&path.v[i], &weights[1])] {
+            let coefficient = series[k].to_f64().abs() * weights[i];
+            if largest.0 < coefficient {
+                largest = (coefficient, i);
+            }
+        }
+    }
+    largest
+}
