@@ -8,7 +8,7 @@
 use pendulum_runtime::integrate::Event;
 use pendulum_runtime::integrate::Solution;
 use pendulum_runtime::integrate::method::{
-    Adaptive, Endpoint, Field, Interpolant, Method, Response, StepInterval, Weights,
+    Adaptive, Endpoint, ErrorEstimate, Field, Interpolant, Method, Response, StepInterval, Weights,
 };
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::real::{Float, Real};
@@ -86,11 +86,6 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for BogackiSham
         to
     }
 
-    fn error(&self, stages: &Self::Workspace, h: f64, weights: &Weights<N>) -> f64 {
-        let (q, v) = stages.weighted(&E);
-        h * (weights.square_sum(&q, &v) / (2 * N) as f64).sqrt()
-    }
-
     fn interpolant(
         &self,
         _: &mut Field<'_, D, N>,
@@ -100,6 +95,13 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for BogackiSham
         stages: &mut Self::Workspace,
     ) -> Interpolant<D::Scalar, N> {
         Interpolant::hermite(interval, from, to, &stages.a[0], &stages.a[3])
+    }
+}
+
+impl<D: Dynamics<N, Scalar: Float>, const N: usize> ErrorEstimate<D, N> for BogackiShampine {
+    fn error(&self, stages: &Self::Workspace, h: f64, weights: &Weights<N>) -> f64 {
+        let (q, v) = stages.weighted(&E);
+        h * (weights.square_sum(&q, &v) / (2 * N) as f64).sqrt()
     }
 }
 
@@ -146,4 +148,68 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let times: Vec<f64> = swing.events.iter().map(|event| event.time.to_f64()).collect();
     println!("{} times through θ = 0; the period is {:.6} s.", times.len(), times[2] - times[0]);
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{BogackiShampine, Pendulum};
+    use pendulum_runtime::error::{Error, Suspect};
+    use pendulum_runtime::prelude::*;
+
+    /// A pendulum's angle after 2 s, from steps of `h` and at a relative tolerance.
+    fn end(method: impl Fn(&Pendulum<f64>) -> Solution<f64, 1>) -> f64 {
+        let pendulum = Pendulum::new(0.5);
+        let exact = solve(&pendulum, (0.0, 2.0), [1.3], [0.0]).rtol(1e-13).run().unwrap();
+        (method(&pendulum).end.q[0] - exact.end.q[0]).abs()
+    }
+
+    #[test]
+    fn errors_fall_with_the_third_power_of_the_step() {
+        let error = |h: f64| {
+            end(|pendulum| {
+                let run = solve(pendulum, (0.0, 2.0), [1.3], [0.0]).method(BogackiShampine);
+                run.step(h).run().unwrap()
+            })
+        };
+        let order = (error(0.01) / error(0.005)).log2();
+        assert!((order - 3.0).abs() < 0.2, "{order}");
+    }
+
+    #[test]
+    fn errors_follow_the_tolerance() {
+        for rtol in [1e-4, 1e-6, 1e-8] {
+            let error = end(|pendulum| {
+                let run = solve(pendulum, (0.0, 2.0), [1.3], [0.0]).method(BogackiShampine);
+                run.rtol(rtol).run().unwrap()
+            });
+            assert!((rtol..100.0 * rtol).contains(&error), "{rtol:e}: {error:e}");
+        }
+    }
+
+    #[test]
+    fn the_interpolant_meets_both_ends_of_a_step() {
+        let pendulum = Pendulum::new(0.5);
+        let mut run = Integrator::new(&pendulum, BogackiShampine, 0.0, [1.3], [0.0]).unwrap();
+        run.advance_to(0.3).unwrap();
+        let within = run.interpolant().unwrap();
+        let (q, v) = within.at(1.0);
+        assert!((q[0] - run.q()[0]).abs() < 1e-15 && (v[0] - run.v()[0]).abs() < 1e-15);
+        assert_eq!(within.at(0.0), (within.q0, within.v0));
+    }
+
+    #[test]
+    fn a_step_that_fails_names_the_parameter() {
+        let mut pendulum = Pendulum::new(0.5);
+        pendulum.L = 0.0;
+        let failure = solve(&pendulum, (0.0, 2.0), [1.3], [0.0])
+            .method(BogackiShampine)
+            .step(0.01)
+            .run()
+            .unwrap_err();
+        assert!(
+            matches!(&failure.error, Error::NotFinite { suspects, .. }
+                if suspects == &[Suspect { parameter: "L", value: 0.0 }]),
+            "{failure}"
+        );
+    }
 }

@@ -1,7 +1,7 @@
 //! Methods: the trait that each implements, and what they work with.
 //!
-//! A method outside of this crate implements [`Method`], and [`Adaptive`] if it estimates its error;
-//! the example `own_method` has one.
+//! A method outside of this crate implements [`Method`], and [`ErrorEstimate`] and [`Adaptive`] if it
+//! can choose its steps; the example `own_method` has one.
 
 pub use super::interpolant::{Basis, Interpolant, TERMS};
 pub use super::step::compensated::Compensated;
@@ -62,13 +62,6 @@ pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fm
         workspace: &mut Self::Workspace,
     ) -> Endpoint<D::Scalar, N>;
 
-    /// The error of the step just taken, times `weights`, as a root mean square; a method that is
-    /// [`Adaptive`] estimates it.
-    fn error(&self, workspace: &Self::Workspace, h: f64, weights: &Weights<N>) -> f64 {
-        let _ = (workspace, h, weights);
-        f64::INFINITY
-    }
-
     /// The motion within the step just taken; evaluates what it needs beyond the step itself.
     ///
     /// Without an interpolant of its own a method has the quintic through coordinates, velocities
@@ -124,8 +117,15 @@ pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fm
     }
 }
 
-/// A method whose [`error`](Method::error) is an estimate, which can choose its own steps; others do
-/// not compile without a step size:
+/// A method that estimates the error of its steps.
+pub trait ErrorEstimate<D: Dynamics<N, Scalar: Float>, const N: usize>: Method<D, N> {
+    /// The error of the step just taken, of the length `h` in seconds, times `weights`, as a root
+    /// mean square over coordinates and velocities: the step is good enough up to 1.
+    fn error(&self, workspace: &Self::Workspace, h: f64, weights: &Weights<N>) -> f64;
+}
+
+/// A method with an [`ErrorEstimate`], which can choose its own steps; others do not compile without
+/// a step size:
 ///
 /// ```
 /// # use pendulum_runtime::{integrate::*, system::*};

@@ -1,7 +1,7 @@
 //! The method of Dormand and Prince of order 8, in the form of Hairer.
 
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::method::{Adaptive, Method, Response, Weights};
+use crate::integrate::method::{Adaptive, ErrorEstimate, Method, Response, Weights};
 use crate::integrate::schemes::runge_kutta::{Row, Slopes};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
@@ -99,7 +99,9 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Dop853 {
         interpolant.terms = 7;
         interpolant
     }
+}
 
+impl<D: Dynamics<N, Scalar: Float>, const N: usize> ErrorEstimate<D, N> for Dop853 {
     #[inline]
     fn error(&self, stages: &Stages<D::Scalar, N>, h: f64, weights: &Weights<N>) -> f64 {
         let (dq, dv) = &stages.increment;

@@ -1,7 +1,7 @@
 //! The Nyström pair of Dormand, El-Mikkawy and Prince of order 8.
 
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::method::{Adaptive, Method, Response, Weights};
+use crate::integrate::method::{Adaptive, ErrorEstimate, Method, Response, Weights};
 use crate::integrate::schemes::nystrom::Kicks;
 use crate::integrate::schemes::runge_kutta::Row;
 use crate::integrate::step::endpoint::Endpoint;
@@ -87,7 +87,11 @@ impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize> Met
     ) -> Interpolant<D::Scalar, N> {
         k.dense(interval, from, to, &k.a[8], DQ, DV)
     }
+}
 
+impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize> ErrorEstimate<D, N>
+    for Dprkn8
+{
     #[inline]
     fn error(&self, k: &Kicks<D::Scalar, N, 9>, h: f64, weights: &Weights<N>) -> f64 {
         k.error(h, weights, EQ, EV)

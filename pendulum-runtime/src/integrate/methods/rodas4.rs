@@ -1,7 +1,7 @@
 //! The Rosenbrock method of Hairer and Wanner of order 4, for stiff springs and dampers.
 
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::method::{Adaptive, Method, Response, Weights};
+use crate::integrate::method::{Adaptive, ErrorEstimate, Method, Response, Weights};
 use crate::integrate::schemes::linear::{Factors, Square, times};
 use crate::integrate::schemes::runge_kutta::{Row, Slopes};
 use crate::integrate::step::endpoint::Endpoint;
@@ -91,7 +91,11 @@ impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize> Method
         interpolant.terms = 3;
         interpolant
     }
+}
 
+impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize> ErrorEstimate<D, N>
+    for Rodas4
+{
     #[inline]
     fn error(&self, k: &Slopes<D::Scalar, N, 6>, _: f64, weights: &Weights<N>) -> f64 {
         // The last stage is the difference to the embedded method.

@@ -1,7 +1,7 @@
 //! The method of Tsitouras of order 5.
 
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::method::{Adaptive, Method, Response, Weights};
+use crate::integrate::method::{Adaptive, ErrorEstimate, Method, Response, Weights};
 use crate::integrate::schemes::runge_kutta::{Row, Slopes};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
@@ -78,7 +78,9 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Tsit5 {
         interpolant.terms = 4;
         interpolant
     }
+}
 
+impl<D: Dynamics<N, Scalar: Float>, const N: usize> ErrorEstimate<D, N> for Tsit5 {
     #[inline]
     fn error(&self, k: &Slopes<D::Scalar, N, 7>, h: f64, weights: &Weights<N>) -> f64 {
         let (q, v) = k.weighted(E);

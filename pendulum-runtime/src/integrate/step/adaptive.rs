@@ -4,7 +4,7 @@
 #![allow(clippy::inline_always)]
 
 use crate::error::Error;
-use crate::integrate::method::{Adaptive, Method, Weights};
+use crate::integrate::method::{Adaptive, ErrorEstimate, Method, Weights};
 use crate::integrate::step::controller::{
     Controller, ControllerState, StepContext, StepLaw, Trial, Verdict,
 };
@@ -127,7 +127,7 @@ impl<const N: usize> AdaptiveStep<N> {
 
 impl<M, D, const N: usize> Controller<M, D, N> for AdaptiveStep<N>
 where
-    M: Method<D, N> + Adaptive,
+    M: ErrorEstimate<D, N> + Adaptive,
     D: Dynamics<N, Scalar: Float>,
 {
     fn check(&self) -> Result<(), Error> {
@@ -156,7 +156,7 @@ where
 
 impl<M, D, const N: usize> StepLaw<M, D, N> for AdaptiveStep<N>
 where
-    M: Method<D, N> + Adaptive,
+    M: ErrorEstimate<D, N> + Adaptive,
     D: Dynamics<N, Scalar: Float>,
 {
     #[inline]
@@ -387,7 +387,7 @@ impl<const N: usize> AdaptiveStep<N> {
     }
 
     /// The coordinate with the largest error in the last step tried.
-    fn worst<D: Dynamics<N, Scalar: Float>, M: Method<D, N>>(
+    fn worst<D: Dynamics<N, Scalar: Float>, M: ErrorEstimate<D, N>>(
         &self,
         state: &ControllerState,
         context: &StepContext<'_, '_, D, M, N>,
