@@ -28,6 +28,7 @@ mod rules;
 mod soup;
 mod sparse;
 mod symmetries;
+mod translations;
 
 /// What is wrong with a block.
 fn refusals(source: &str) -> Vec<String> {

@@ -1,0 +1,372 @@
+//! What is asked of scenes: commands, loops, baking, snapshots, threads.
+
+use super::interface::{states, zoo};
+use pendulum_runtime::motion::{Linear, Sinusoid, Still};
+use pendulum_runtime::prelude::*;
+use pendulum_runtime::scene::{Handle, Scene, SceneError, SceneStatus};
+use systems::pendulums::{Double, Hanging, Simple};
+
+#[test]
+fn what_is_refused_changes_nothing() {
+    let mut scene = Scene::<f64>::new(240.0).unwrap();
+    let joint = scene.joint(Still::new([0.0, 0.0]));
+    scene.hang(joint, Hanging::new(0.1, 1.0), [0.1], [0.0]).unwrap();
+    let snapshot = scene.snapshot();
+    assert!(scene.hang((), Simple::new(0.1, 1.0), [f64::NAN], [0.0]).is_err());
+    assert_eq!(scene.snapshot(), snapshot);
+    scene.restore(&snapshot).unwrap();
+}
+
+#[test]
+fn tolerances_are_those_of_the_time_of_hanging() {
+    let swing = |before: bool| {
+        let mut scene = Scene::<f64>::new(60.0).unwrap();
+        if before {
+            scene.hang((), Simple::new(0.1, 0.1), [0.3], [0.0]).unwrap();
+        }
+        scene.set_tolerance(1e-10).unwrap();
+        let handle = scene.hang((), Simple::new(0.1, 0.1), [1.0], [0.0]).unwrap();
+        scene.set_tolerance(1e-2).unwrap();
+        // Steps are chosen anew, with the tolerance that it was hung with.
+        scene.set_parameter(handle, "g", 9.81).unwrap();
+        scene.advance_ticks(600);
+        scene.state(handle)
+    };
+    assert_eq!(swing(true), swing(false));
+}
+
+#[test]
+fn scenes_go_back_to_when_joints_still_moved() {
+    let pose = |last: &[f64]| {
+        let (mut times, mut values) =
+            (vec![-1.0, -0.5, -0.2], vec![[0.0, 0.0], [0.3, 0.0], [0.0, 0.0]]);
+        for &time in last {
+            times.push(time);
+            values.push([0.0, 0.0]);
+        }
+        let mut scene = Scene::<f64>::new(240.0).unwrap();
+        let joint = scene.joint(Linear::new(&times, &values).unwrap());
+        let handle = scene.hang(joint, Hanging::new(0.1, 0.3), [0.0], [0.0]).unwrap();
+        scene.warm_up(2.0).unwrap();
+        scene.state(handle)
+    };
+    assert_eq!(pose(&[]), pose(&[1e6]));
+    assert!(pose(&[]).0[0].abs() > 0.1);
+}
+
+#[test]
+fn failures_stand_in_the_order_of_time() {
+    use pendulum_runtime::motion::Function;
+    let failures = |ticks: u32| {
+        let mut scene = Scene::<f64>::new(240.0).unwrap();
+        let mut bad = |ticks: f64| {
+            let a = move |t| [if ticks / 240.0 < t { f64::NAN } else { 0.0 }, 0.0];
+            scene.joint(Function::new(|_| [0.0, 0.0]).velocity(|_| [0.0, 0.0]).acceleration(a))
+        };
+        let (late, soon) = (bad(5.0), bad(2.0));
+        scene.hang(late, Hanging::new(0.1, 0.3), [0.1], [0.0]).unwrap();
+        scene.hang(soon, Double::new(0.1, 0.3, 0.0), [0.1, 0.0], [0.0, 0.0]).unwrap();
+        for _ in 0..8 / ticks {
+            scene.advance_ticks(ticks);
+        }
+        scene.faults().iter().map(|failure| (failure.kind, failure.t)).collect::<Vec<_>>()
+    };
+    assert_eq!(failures(8), failures(1));
+    assert_eq!(
+        failures(8).iter().map(|(kind, _)| *kind).collect::<Vec<_>>(),
+        ["Double", "Hanging"]
+    );
+}
+
+#[test]
+fn only_the_one_that_is_meant_is_reset() {
+    mod other {
+        pendulum_runtime::lagrangian! {
+            pub struct Simple { m: kg, L: m, g: m/s^2 = 9.81 }
+            coordinate θ: rad;
+            kinetic = m*L^2/2 * θ̇^2;
+            potential = -m*g*L*cos(θ);
+        }
+    }
+    let mut scene = Scene::<f64>::new(240.0).unwrap();
+    let first = scene.hang((), Simple::new(0.1, 0.0), [0.2], [0.0]).unwrap();
+    let second = scene.hang((), other::Simple::new(0.1, 1.0), [0.7], [0.0]).unwrap();
+    // One that has failed swings again.
+    scene.advance_ticks(1);
+    assert_eq!(scene.status(first), SceneStatus::Failed);
+    assert!(scene.reset_to_rest(first).is_err());
+    scene.set_parameter(first, "L", 1.0).unwrap();
+    let before = scene.state(second);
+    scene.reset_to_rest(first).unwrap();
+    assert_eq!((scene.state(second), scene.status(first)), (before, SceneStatus::Awake));
+    assert!(scene.state(first).0[0].abs() < 1e-12);
+}
+
+#[test]
+fn directors_get_what_they_ask_for() {
+    use pendulum_runtime::scene::Preserve;
+    let mut scene = zoo(1e-3);
+    let handle = Handle::<Hanging<f64>, 1>::new(4);
+    let double = Handle::<Double<f64>, 2>::new(3);
+    scene.advance(0.3).unwrap();
+    // Rest.
+    scene.reset_to_rest(handle).unwrap();
+    let (q, v) = scene.state(handle);
+    assert!((q[0] / std::f64::consts::TAU).fract().abs() < 1e-9 && v == [0.0], "{q:?}");
+    scene.reset_all_to_rest().unwrap();
+    let (q, v) = scene.state(double);
+    assert!(q.iter().all(|q| q.sin().abs() < 1e-9 && 0.0 < q.cos()) && v == [0.0, 0.0], "{q:?}");
+    // Mirror.
+    scene.advance(0.3).unwrap();
+    let (q, v) = scene.state(double);
+    scene.mirror(double, [-1.0, -1.0]).unwrap();
+    assert_eq!(scene.state(double), (q.map(|q| -q), v.map(|v| -v)));
+    // Gravity, everywhere and by name; nothing is reset.
+    let before = states(&scene);
+    assert_eq!(scene.set_parameter_everywhere("g", 1.62).unwrap(), 100 + 3 * 34);
+    assert_eq!(states(&scene), before);
+    assert_eq!(scene.system(handle).g, 1.62);
+    assert!(matches!(scene.set_parameter_everywhere("h", 1.0), Err(SceneError::Parameter(_))));
+    scene.set_parameter(handle, "L", 0.25).unwrap();
+    assert_eq!(scene.system(handle).L, 0.25);
+    // Pause.
+    scene.set_paused(true);
+    assert_eq!(scene.advance(5.0).unwrap().ticks, 0);
+    assert_eq!(scene.system(handle).L, 0.25);
+    scene.set_paused(false);
+    // Another motion, felt and unfelt.
+    let mut scene = Scene::<f64>::new(240.0).unwrap();
+    let joint = scene.joint(Still::new([0.0, 0.0]));
+    let handle = scene.hang(joint, Hanging::new(0.1, 0.5), [0.2], [0.1]).unwrap();
+    let away = Linear::new(&[-1.0, 9.0], &[[0.0, 0.0], [20.0, 0.0]]).unwrap();
+    scene.set_motion(joint, away.clone(), Preserve::Swing).unwrap();
+    assert_eq!(scene.state(handle), ([0.2], [0.1]));
+    scene.set_motion(joint, Still::new([7.0, 0.0]), Preserve::Swing).unwrap();
+    scene.set_motion(joint, away, Preserve::Momentum).unwrap();
+    // Δθ̇ = −Δẋ cos θ / L.
+    assert!((scene.state(handle).1[0] - (0.1 - 2.0 * 0.2f64.cos() / 0.5)).abs() < 1e-14);
+    scene.set_motion(joint, Still::new([7.0, 0.0]), Preserve::Nothing).unwrap();
+    assert_eq!(scene.state(handle).1, [0.0]);
+    assert!(scene.state(handle).0[0].abs() < 1e-12);
+}
+
+#[test]
+fn loops_close() {
+    let mut scene = Scene::<f64>::new(240.0).unwrap();
+    let joint = scene.joint(Sinusoid::new([0.05, 0.0], std::f64::consts::TAU * 1.5, [0.0, 0.0]));
+    let handle = scene.hang(joint, Hanging::new(0.1, 0.3), [0.4], [0.0]).unwrap();
+    scene.set_damping(handle, 2.0).unwrap();
+    let closed = scene.close_loop(160, 100, 1e-12).unwrap();
+    assert!(closed.gap <= 1e-12 && closed.turns < 60, "{closed:?}");
+    assert_eq!(scene.tick(), 0);
+    let start = scene.state(handle);
+    scene.advance_ticks(160);
+    let end = scene.state(handle);
+    assert!((end.0[0] - start.0[0]).abs() < 1e-12 && (end.1[0] - start.1[0]).abs() < 1e-11);
+    // Warming up for as long leads there too.
+    scene.set_state(handle, [0.0], [0.0]).unwrap();
+    scene.warm_up(20.0).unwrap();
+    assert_eq!(scene.tick(), 160);
+    assert!((scene.state(handle).0[0] - end.0[0]).abs() < 1e-8);
+}
+
+#[test]
+fn baked_is_live() {
+    let mut scene = zoo(1e-3);
+    scene.advance(0.1).unwrap();
+    let handles: Vec<_> = (0..40).map(Handle::<Hanging<f64>, 1>::new).collect();
+    let exact = scene.bake(&handles, 240, 0.0).unwrap();
+    let near = scene.bake(&handles, 240, 1e-3).unwrap();
+    let (mut all, mut kept) = (0, 0);
+    for tick in 1..=240 {
+        scene.advance_ticks(1);
+        for (index, &handle) in handles.iter().enumerate() {
+            for alpha in [0.1, 0.25, 0.5, 0.8, 1.0] {
+                let pose = scene.pose(handle, alpha)[0];
+                let at = f64::from(tick) - 1.0 + alpha;
+                // Other times have rounding errors of their own.
+                if (4.0 * alpha).fract() == 0.0 {
+                    assert_eq!(exact[index].at(at)[0], pose);
+                }
+                assert!((near[index].at(at)[0] - pose).abs() < 1.0000001e-3, "{index} at {at}");
+            }
+        }
+    }
+    for (exact, near) in exact.iter().zip(&near) {
+        all += exact.keys().count();
+        kept += near.keys().count();
+    }
+    assert_eq!(all, 40 * 241);
+    assert!(4 * kept < all, "{kept} of {all}");
+}
+
+/// A thousand joints with kinks at odd times, and enough pendulums that every thread has some.
+#[cfg(feature = "rayon")]
+fn crowd(seed: u64) -> Scene<f64> {
+    let mut scene = Scene::new(240.0).unwrap();
+    let mut random = systems::random::Random::new(seed);
+    for index in 0..1000 {
+        let times: Vec<f64> = (0..5).map(|key| f64::from(key) * random.uniform(0.1, 0.2)).collect();
+        let mut place = || [random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)];
+        let values: Vec<[f64; 2]> = times.iter().map(|_| place()).collect();
+        let mut sorted = times.clone();
+        sorted.sort_by(f64::total_cmp);
+        let joint = match index % 3 {
+            0 => scene
+                .joint(Linear::new(&sorted, &values).unwrap_or_else(|_| super::interface::keys())),
+            1 => scene.joint(Sinusoid::new(values[0], random.uniform(3.0, 9.0), values[1])),
+            _ => scene.joint(Still::new(values[0])),
+        };
+        for _ in 0..12 {
+            let length = random.uniform(0.05, 1.0);
+            scene
+                .hang(joint, Hanging::new(0.1, length), [random.uniform(-1.0, 1.0)], [0.0])
+                .unwrap();
+        }
+        scene.hang(joint, Double::new(0.1, 0.3, 1e-4), [0.1, 0.2], [0.0, 0.0]).unwrap();
+    }
+    scene
+}
+
+#[test]
+#[cfg(feature = "rayon")]
+fn threads_do_not_show() {
+    let alone = {
+        let mut scene = crowd(7);
+        scene.set_parallel(false);
+        scene.advance(0.5).unwrap();
+        scene.checksum()
+    };
+    for threads in [1, 2, 3, 7] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let many = pool.install(|| {
+            let mut scene = crowd(7);
+            // Otherwise the load of the machine decides whether anything is shared.
+            scene.set_always_fork(true);
+            scene.advance(0.5).unwrap();
+            scene.checksum()
+        });
+        assert_eq!(many, alone, "{threads}");
+    }
+}
+
+#[test]
+#[cfg(feature = "serde")]
+fn snapshots_can_be_written_and_read() {
+    use pendulum_runtime::scene::{Snapshot, Stop};
+    let mut scene = zoo(1e-3);
+    let handle = Handle::<Hanging<f64>, 1>::new(4);
+    // A limit on one side only: JSON knows no infinity.
+    scene.set_limits(handle, [-0.2], [f64::INFINITY], Stop::Hard { restitution: 0.5 }).unwrap();
+    scene.advance(0.71).unwrap();
+    let snapshot = scene.snapshot();
+    let text = serde_json::to_string(&snapshot).unwrap();
+    let read: Snapshot<f64> = serde_json::from_str(&text).unwrap();
+    assert_eq!(read, snapshot);
+    // What a file was damaged to is refused, and the scene goes on as if nothing had been.
+    let clock = serde_json::to_value(&snapshot).unwrap()["clock"].to_string();
+    for (good, bad) in [
+        ("\"Leapfrog\",1", "\"Leapfrog\",0"),
+        ("\"Rk4\",1", "\"Srkn6b\",1"),
+        ("\"Rk4\",1", "\"Rk4\",4000000000"),
+    ] {
+        assert!(text.contains(good));
+        let damaged: Snapshot<f64> = serde_json::from_str(&text.replacen(good, bad, 1)).unwrap();
+        assert!(matches!(scene.restore(&damaged), Err(SceneError::Snapshot(_))), "{bad}");
+    }
+    let damaged = text.replacen(&clock, "[9223372036854775807,0,[0.0,0.0]]", 1);
+    assert!(matches!(
+        scene.restore(&serde_json::from_str(&damaged).unwrap()),
+        Err(SceneError::Snapshot(_))
+    ));
+    scene.advance(0.9).unwrap();
+    let mut other = zoo(1e-3);
+    other.restore(&read).unwrap();
+    other.advance(0.9).unwrap();
+    assert_eq!(other.checksum(), scene.checksum());
+}
+
+#[test]
+fn bits_are_the_same_on_every_machine() {
+    // With and without vectors and threads, whatever their width and number; found once and kept.
+    for (tolerance, expected) in [(1e-3, 0xcb06e6ec8ba8f2dd), (1e-9, 0xf7d4fa07f9ca4d7a)] {
+        let mut scene = zoo(tolerance);
+        scene.advance(3.0).unwrap();
+        assert_eq!(scene.checksum(), expected, "{:#x}", scene.checksum());
+    }
+}
+
+#[test]
+fn a_pause_does_not_show() {
+    let (mut through, mut paused) = (zoo(1e-3), zoo(1e-3));
+    for scene in [&mut through, &mut paused] {
+        scene.advance(0.3).unwrap();
+    }
+    paused.set_paused(true);
+    for _ in 0..1000 {
+        assert_eq!(paused.advance(0.06).unwrap().ticks, 0);
+    }
+    paused.set_paused(false);
+    for scene in [&mut through, &mut paused] {
+        scene.advance(0.3).unwrap();
+    }
+    assert_eq!(paused.checksum(), through.checksum());
+}
+
+#[test]
+fn joints_are_felt_as_much_as_directors_want() {
+    use pendulum_runtime::motion::Attenuated;
+    let mut scene = Scene::<f64>::new(240.0).unwrap();
+    scene.set_tolerance(1e-9).unwrap();
+    let shake = Sinusoid::new([0.1, 0.0], 9.0, [0.0, 0.0]);
+    // A tenth of a shake is what a tenth of the amplitude is, and a speed below the limit is all
+    // felt.
+    let tenth = scene.joint(Attenuated::new(shake, 0.1, f64::INFINITY).unwrap());
+    let small = scene.joint(Sinusoid::new([0.01, 0.0], 9.0, [0.0, 0.0]));
+    let below = scene.joint(Attenuated::new(shake, 1.0, 0.91).unwrap());
+    let whole = scene.joint(shake);
+    let beyond = scene.joint(Attenuated::new(shake, 1.0, 0.3).unwrap());
+    let all = [tenth, small, below, whole, beyond]
+        .map(|joint| scene.hang(joint, Hanging::new(0.1, 0.5), [0.1], [0.0]).unwrap());
+    scene.advance(2.0).unwrap();
+    let [tenth, small, below, whole, beyond] = all.map(|handle| scene.state(handle).0[0]);
+    assert!(
+        (tenth - small).abs() < 1e-12 && (below - whole).abs() < 1e-12,
+        "{tenth} {small} {below} {whole}"
+    );
+    // Cut speeds through the kinks, by an integrator that lands on them.
+    let alone = Hanging::new(0.1, 0.5).driven_by(Attenuated::new(shake, 1.0, 0.3).unwrap());
+    let exact = solve(&alone, (0.0, 2.0), [0.1], [0.0]).rtol(1e-12).atol(1e-13).run().unwrap();
+    assert!((beyond - exact.end.q[0]).abs() < 1e-7, "{beyond} for {}", exact.end.q[0]);
+    assert!((beyond - whole).abs() > 0.01);
+}
+
+#[test]
+fn a_shaken_pendulum_swings_alike_at_all_frame_rates() {
+    let swing = |rate: u32| {
+        let mut scene = Scene::<f64>::new(240.0).unwrap();
+        let joint = scene.joint(Sinusoid::new([0.05, 0.0], 4.0 * std::f64::consts::PI, [0.0, 0.0]));
+        let handle = scene.hang(joint, Hanging::new(0.01, 0.1), [0.0], [0.0]).unwrap();
+        scene.set_damping(handle, 4.0).unwrap();
+        let mut at_common_times = Vec::new();
+        for frame in 1..=20 * rate {
+            scene.advance(1.0 / f64::from(rate)).unwrap();
+            if frame % (rate / 6) == 0 {
+                at_common_times.push(scene.state(handle).0[0]);
+            }
+        }
+        let baked = scene.bake(&[handle], 240, 0.0).unwrap();
+        (at_common_times, baked[0].keys().map(|(_, q, _)| q[0].abs()).fold(0.0, f64::max))
+    };
+    let (reference, peak) = swing(240);
+    assert!((peak.to_degrees() - 44.34).abs() < 0.02, "{peak}");
+    for rate in [24, 30, 60, 120] {
+        let (states, other) = swing(rate);
+        assert!(
+            reference.iter().zip(&states).all(|(a, b)| (a - b).abs() <= 1e-12)
+                && (peak - other).abs() <= 1e-12,
+            "{rate}"
+        );
+        assert_eq!(states.len(), reference.len());
+    }
+}
