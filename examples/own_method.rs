@@ -11,7 +11,7 @@ use pendulum_runtime::integrate::method::{
     Adaptive, Endpoint, ErrorEstimate, Field, Interpolant, Method, Response, StepInterval, Weights,
 };
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::{Float, Real};
+use pendulum_runtime::scalar::{Float, Real};
 
 lagrangian! {
     pub struct Pendulum { L: m, g: m/s^2 = 9.81 }

@@ -5,7 +5,7 @@
 //! position channels take the place of its offset. Rotations are applied in the order of the
 //! channels: `Zrotation Yrotation Xrotation` is `R_z R_y R_x`, in degrees.
 
-use pendulum_runtime::real::Real;
+use pendulum_runtime::scalar::Real;
 use std::fmt;
 
 /// No skeleton has more joints; a file that does is something else.

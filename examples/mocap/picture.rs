@@ -275,7 +275,7 @@ impl Picture<'_> {
             .iter()
             .zip(worn.spline)
             .map(|(&[x, y], &angle)| {
-                let (sin, cos) = pendulum_runtime::real::Real::sin_cos(angle);
+                let (sin, cos) = pendulum_runtime::scalar::Real::sin_cos(angle);
                 frame.at(x + length * sin, y - length * cos)
             })
             .collect();

@@ -1,7 +1,7 @@
 //! The vertical plane in which somebody moves, and the joints from which things hang.
 
 use crate::bvh::{Bvh, Joint};
-use pendulum_runtime::real::Real;
+use pendulum_runtime::scalar::Real;
 
 /// The vertical plane along the main horizontal direction of a path; the second axis of the file
 /// points up.

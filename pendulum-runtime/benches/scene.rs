@@ -23,7 +23,7 @@
 
 use pendulum_runtime::motion::{Linear, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::{Float, Lane};
+use pendulum_runtime::scalar::{Float, Lane};
 use pendulum_runtime::scene::{Handle, Scene};
 use std::fmt::Write;
 use std::hint::black_box;

@@ -12,7 +12,7 @@
 use pendulum_runtime::integrate::{Batch, Batched, Problem};
 use pendulum_runtime::jet::JetDynamics;
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::{DoubleDouble, Float};
+use pendulum_runtime::scalar::{DoubleDouble, Float};
 use std::hint::black_box;
 use std::time::Instant;
 

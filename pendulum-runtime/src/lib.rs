@@ -12,7 +12,7 @@ pub mod integrate;
 pub mod jet;
 
 pub mod motion;
-pub mod real;
+pub mod scalar;
 pub mod scene;
 mod sealed;
 mod simd;
@@ -33,7 +33,7 @@ pub mod prelude {
         Taylor, Tsit5, solve,
     };
     pub use crate::motion::Motion;
-    pub use crate::real::Real;
+    pub use crate::scalar::Real;
     pub use crate::system::{Driven, Dynamics, Jacobians, System as _, VelocityFree};
     pub use crate::{lagrangian, motion};
 }

@@ -3,7 +3,7 @@
 // Loops over lanes have to be compiled for their vectors.
 #![allow(clippy::inline_always)]
 
-use crate::real::exact::{ordered_sum, two_sum};
+use crate::scalar::exact::{ordered_sum, two_sum};
 use core::fmt;
 use core::ops::{Add, AddAssign};
 

@@ -1,7 +1,7 @@
 //! Sine and cosine against correctly rounded values, `tests/data/trig.py`, and against their
 //! identities.
 
-use pendulum_runtime::real::Real;
+use pendulum_runtime::scalar::Real;
 
 const TABLE: &str = include_str!("data/trig.txt");
 

@@ -3,7 +3,7 @@
 
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::{DoubleDouble, Float};
+use pendulum_runtime::scalar::{DoubleDouble, Float};
 
 use systems::problems::{Double, Five, Simple};
 use systems::random::Random;

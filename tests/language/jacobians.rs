@@ -3,7 +3,7 @@
 use pendulum_runtime::body::Body;
 use pendulum_runtime::motion::Sample;
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::Dual;
+use pendulum_runtime::scalar::Dual;
 use pendulum_runtime::system::Jacobians;
 use pendulum_runtime::system::System;
 

@@ -4,7 +4,7 @@
 use pendulum_runtime::error::Error;
 use pendulum_runtime::motion::Linear;
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::{DoubleDouble, Dual, Float, Lanes, Octet, Real};
+use pendulum_runtime::scalar::{DoubleDouble, Dual, Float, Lanes, Octet, Real};
 use pendulum_runtime::system::System;
 
 lagrangian! {

@@ -391,7 +391,7 @@ fn terms_that_cannot_matter_vanish() {
 /// The hand-written systems for the integrators, in the scalars that they need.
 mod hand_systems {
     use pendulum_runtime::motion::Sample;
-    use pendulum_runtime::real::Real;
+    use pendulum_runtime::scalar::Real;
     use pendulum_runtime::system::{Facts, System};
 
     /// Which of the note's equations.

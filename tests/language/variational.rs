@@ -5,7 +5,7 @@ use pendulum_runtime::integrate::AdaptiveStep;
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Linear, Motions};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::{DoubleDouble, Float};
+use pendulum_runtime::scalar::{DoubleDouble, Float};
 use pendulum_runtime::system::Jacobians;
 use pendulum_runtime::system::System;
 
@@ -270,7 +270,7 @@ fn the_energy_has_no_gradient_along_the_flow() {
     let end =
         solve(&system, (0.0, 10.0), q, v).method(Dop853).rtol(1e-13).atol(1e-13).run().unwrap().end;
     let gradient = |q: [f64; 2], v: [f64; 2]| -> [f64; 4] {
-        use pendulum_runtime::real::Dual;
+        use pendulum_runtime::scalar::Dual;
         let lifted = plain.map(Dual::constant);
         core::array::from_fn(|k| {
             let (mut q, mut v) = (q.map(Dual::constant), v.map(Dual::constant));

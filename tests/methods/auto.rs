@@ -8,7 +8,7 @@ use pendulum_runtime::motion::{
     Side, Sinusoid,
 };
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::DoubleDouble;
+use pendulum_runtime::scalar::DoubleDouble;
 use pendulum_runtime::time::Time;
 
 lagrangian! {

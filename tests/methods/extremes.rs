@@ -4,7 +4,7 @@
 use pendulum_runtime::integrate::{Failure, Solution};
 use pendulum_runtime::motion::{Function, Sinusoid};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::{DoubleDouble, Float};
+use pendulum_runtime::scalar::{DoubleDouble, Float};
 use std::time::{Duration, Instant};
 
 lagrangian! {

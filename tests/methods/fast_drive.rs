@@ -6,7 +6,7 @@ use core::f64::consts::TAU;
 use pendulum_runtime::jet::Series;
 use pendulum_runtime::motion::{Analytic, Derivatives, Sample, Side, Sinusoid};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::{DoubleDouble, Float};
+use pendulum_runtime::scalar::{DoubleDouble, Float};
 use pendulum_runtime::time::Time;
 
 lagrangian! {

@@ -112,7 +112,7 @@ fn fast_pendulums_do_not_hurry_slow_ones() {
 /// ẍ = −k x, written by hand to see how often its parameters are looked at.
 mod counted {
     use super::{AtomicUsize, Ordering};
-    use pendulum_runtime::real::{Lanes, Real};
+    use pendulum_runtime::scalar::{Lanes, Real};
     use pendulum_runtime::system::{Facts, Staged, System};
 
     /// The preparations of single systems and of blocks.

@@ -214,7 +214,7 @@ macro_rules! functions {
 
             /// The value over any scalar of the runtime.
             #[cfg(test)]
-            pub(crate) fn of<T: pendulum_runtime::real::Real>(self, x: T) -> T {
+            pub(crate) fn of<T: pendulum_runtime::scalar::Real>(self, x: T) -> T {
                 match self {
                     $(Self::$case $(($order))? => x.$name($($order.into())?),)+
                 }

@@ -6,7 +6,7 @@ use crate::algebra::expr::{Graph, Id, Node, Symbol};
 use crate::algebra::functions::{Function, Kinks, Parity, Row, UnitRule, Word};
 use crate::backend::latex;
 use crate::backend::unicode::{self, Names, Sides};
-use pendulum_runtime::real::Dual;
+use pendulum_runtime::scalar::Dual;
 use std::collections::BTreeSet;
 
 /// Arguments in the domain of a function, a little away from its ends and from a kink at zero.

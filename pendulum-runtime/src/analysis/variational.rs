@@ -1,7 +1,7 @@
 //! Sensitivities: how a motion depends on where it starts and on its parameters.
 
 use crate::integrate::State;
-use crate::real::{Dual, Real};
+use crate::scalar::{Dual, Real};
 use crate::system::{Facts, Jacobians, System, VelocityFree};
 use nalgebra::{DMatrix, SMatrix};
 

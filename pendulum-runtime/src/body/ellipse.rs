@@ -4,7 +4,7 @@ use super::estimate::Estimate;
 use super::monte_carlo::Region;
 use super::slabs::Triangle;
 use super::{Body, BodyError, positive, quadrature};
-use crate::real::Real;
+use crate::scalar::Real;
 
 /// An ellipse anywhere in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -149,7 +149,7 @@ mod tests {
         let (low, high) = slanted().bounds();
         let mut reach = [0.0_f64; 2];
         for k in 0..1000 {
-            let (sin, cos) = crate::real::Real::sin_cos(f64::from(k) * 0.006283185307179587_f64);
+            let (sin, cos) = crate::scalar::Real::sin_cos(f64::from(k) * 0.006283185307179587_f64);
             let point = slanted().point(1.5 * cos, 0.25 * sin);
             assert!(
                 low[0] <= point[0]

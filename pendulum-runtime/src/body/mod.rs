@@ -34,7 +34,7 @@ pub use monte_carlo::Region;
 pub use outline::{FillRule, Outline};
 pub use polygon::Polygon;
 
-use crate::real::Real;
+use crate::scalar::Real;
 use core::ops::Add;
 
 /// What a rigid planar body contributes to the equations of motion: ∫ρ dp, ∫ρ p dp and ∫ρ p pᵀ dp.
@@ -209,7 +209,7 @@ fn positive(what: &'static str, value: f64) -> Result<f64, BodyError> {
 #[cfg(test)]
 mod tests {
     use super::{Body, BodyError};
-    use crate::real::{Dual, Real};
+    use crate::scalar::{Dual, Real};
 
     pub(super) fn close(a: f64, b: f64, relative: f64) {
         assert!((a - b).abs() <= relative * b.abs(), "{a} is not {b}");

@@ -5,7 +5,7 @@ use super::monte_carlo::Region;
 use super::slabs::{Point, Ring, Triangle, triangles};
 use super::sum::Sum;
 use super::{Body, BodyError, positive, quadrature};
-use crate::real::Real;
+use crate::scalar::Real;
 
 /// A simple polygon, convex or not, with any number of holes.
 ///
@@ -225,7 +225,7 @@ mod tests {
     use super::super::{Body, BodyError, Region};
     use super::Polygon;
     use crate::body::random::Random;
-    use crate::real::Real;
+    use crate::scalar::Real;
 
     const SQUARE: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
     const PENTAGON: [[f64; 2]; 5] =

@@ -4,7 +4,7 @@ use super::BodyError;
 use super::estimate::{Estimate, Moments, body, checked};
 use super::slabs::{Point, Triangle};
 use super::sum::Sum;
-use crate::real::Real;
+use crate::scalar::Real;
 
 /// The rule of Radon (1948), exact to degree five: weights, and two barycentric coordinates of the
 /// points.
@@ -267,7 +267,7 @@ mod tests {
     use super::super::tests::{close, same};
     use super::super::{Body, BodyError, Polygon};
     use super::{LIMIT, Triangle, sample};
-    use crate::real::Real;
+    use crate::scalar::Real;
 
     const SQUARE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 

@@ -54,7 +54,7 @@ mod tests {
         close(rod.inertia_about_center(), 3.0 * 4.0 / 12.0, 1e-15);
         assert_eq!(rod.center, [0.0, -1.0]);
         let turned = Body::rod(3.0, [0.0, 0.0], [2.0, 0.0]).unwrap().rotated(-0.4);
-        let (sin, cos) = crate::real::Real::sin_cos(-0.4_f64);
+        let (sin, cos) = crate::scalar::Real::sin_cos(-0.4_f64);
         same(turned, Body::rod(3.0, [0.0, 0.0], [2.0 * cos, 2.0 * sin]).unwrap(), 1e-15);
     }
 

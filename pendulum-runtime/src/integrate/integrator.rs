@@ -10,7 +10,7 @@ use crate::integrate::state::State;
 use crate::integrate::step::adaptive::AdaptiveStep;
 use crate::integrate::step::controller::Controller;
 use crate::integrate::step::integration::Integration;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::Dynamics;
 
 /// An integration that goes on for as long as somebody asks for the next step; no step allocates.

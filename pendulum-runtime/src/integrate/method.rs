@@ -12,7 +12,7 @@ use super::step::field::{coordinate, first_in_state};
 pub use super::step::interval::StepInterval;
 use crate::error::{Error, Quantity};
 use crate::integrate::interpolant::hermite;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::{Dynamics, System};
 use crate::time::Time;
 

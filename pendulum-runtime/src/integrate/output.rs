@@ -8,7 +8,7 @@ use crate::integrate::solution::{Failure, Solution, Stats};
 use crate::integrate::state::State;
 use crate::integrate::step::field::first_in_state;
 use crate::integrate::step::integration::Integration;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::{Dynamics, System};
 
 /// The greatest number of states that an interval between outputs may ask for.

@@ -5,7 +5,7 @@ use crate::integrate::events::{Occurrence, Status};
 use crate::integrate::interpolant::dense::DenseOutput;
 use crate::integrate::state::State;
 use crate::motion::Side;
-use crate::real::Float;
+use crate::scalar::Float;
 use core::fmt;
 
 /// The motion over an interval, at the times asked for.

@@ -13,7 +13,7 @@ use crate::integrate::step::controller::Controller;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::fixed::FixedStep;
 use crate::integrate::step::integration::Integration;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::Dynamics;
 
 /// Integrates `dynamics` over the interval `time = (start, end)` in seconds from the coordinates

@@ -1,7 +1,7 @@
 //! The state at one time.
 
 use crate::integrate::step::endpoint::Endpoint;
-use crate::real::Float;
+use crate::scalar::Float;
 
 /// The state at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]

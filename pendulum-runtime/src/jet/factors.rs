@@ -1,7 +1,7 @@
 //! A block of the mass matrix, factored once for all orders.
 
 use super::Order;
-use crate::real::Real;
+use crate::scalar::Real;
 
 /// M = L D Lᵀ of a symmetric positive definite matrix.
 #[derive(Clone, Copy, Debug)]

@@ -22,7 +22,7 @@ pub use order::{
     Called, Calling, Constant, First, Looped, Order, Running, Second, Unrolled, Unrolling,
 };
 
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::system::System;
 use core::fmt::Debug;
 

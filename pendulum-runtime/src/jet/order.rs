@@ -1,7 +1,7 @@
 //! The order of a coefficient, as a constant or as a number at run time.
 
 use super::{Jets, LENGTH, MAX_ORDER, Pairs, Path, Series, sum};
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::sealed::Sealed;
 
 /// The index k of the coefficient that is computed, and the sums of products up to it.

@@ -6,7 +6,7 @@
 //! Walther (2008), Evaluating Derivatives, table 13.2.
 
 use super::{Order, Pairs, Path, Reciprocals, Series};
-use crate::real::Real;
+use crate::scalar::Real;
 
 /// `value` at order 0 and nothing after it: the series of a constant.
 #[inline(always)]

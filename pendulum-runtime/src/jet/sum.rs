@@ -2,7 +2,7 @@
 //! the newest terms come last.
 
 use super::{Pairs, Series};
-use crate::real::Real;
+use crate::scalar::Real;
 
 /// Σ a\[j\] b\[k−j\] over 0 < j < k, for k > 1.
 #[inline(always)]

@@ -1,7 +1,7 @@
 //! Every recurrence against composition of power series in exact rationals.
 
 use super::{First, Order, Reciprocals, Running, Second, Series, series, zero};
-use crate::real::Real;
+use crate::scalar::Real;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// An exact fraction; functions know their values where those are whole.

@@ -2,7 +2,7 @@
 
 use crate::jet::Series;
 use crate::motion::sample::Side;
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::time::Time;
 
 /// A motion that is analytic but at certain times, and there from both sides: what

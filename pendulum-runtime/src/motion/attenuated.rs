@@ -3,7 +3,7 @@
 use crate::motion::error::MotionError;
 use crate::motion::prescribed::{Motion, earlier};
 use crate::motion::sample::{Derivatives, Sample, Side};
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::time::Time;
 
 /// A motion as pendulums on it shall feel it: its velocity cut to a limit and multiplied by a gain,

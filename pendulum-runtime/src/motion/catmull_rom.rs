@@ -5,7 +5,7 @@ use crate::motion::error::MotionError;
 use crate::motion::piecewise::{Piecewise, analytic_pieces, checked};
 use crate::motion::prescribed::Motion;
 use crate::motion::sample::{Derivatives, Sample, Side};
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::time::Time;
 
 /// A Catmull–Rom curve through keys: the velocity is continuous, the acceleration jumps at every

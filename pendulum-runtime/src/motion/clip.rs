@@ -8,7 +8,7 @@ use crate::motion::piecewise::{Piecewise, analytic_pieces};
 use crate::motion::prescribed::Motion;
 use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::motion::spline::Spline;
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::time::Time;
 
 /// A motion sampled at a frame rate, such as a captured one.

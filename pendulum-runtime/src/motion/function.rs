@@ -3,7 +3,7 @@
 use crate::motion::error::MotionError;
 use crate::motion::prescribed::Motion;
 use crate::motion::sample::{Derivatives, Sample, Side};
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::time::Time;
 use core::fmt;
 

@@ -5,7 +5,7 @@ use crate::motion::error::MotionError;
 use crate::motion::piecewise::{Piecewise, analytic_pieces, checked};
 use crate::motion::prescribed::Motion;
 use crate::motion::sample::{Derivatives, Sample, Side};
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::time::Time;
 
 /// Straight lines between keys: the velocity jumps at every key, the acceleration is zero between

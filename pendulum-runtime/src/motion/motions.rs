@@ -4,7 +4,7 @@ use crate::jet::InputSeries;
 use crate::motion::analytic::Analytic;
 use crate::motion::prescribed::{Motion, earlier};
 use crate::motion::sample::{Derivatives, Sample, Side};
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::system::{Input, Purpose};
 use crate::time::Time;
 

@@ -2,7 +2,7 @@
 
 use crate::motion::error::MotionError;
 use crate::motion::sample::{Derivatives, Sample, Side};
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::time::Time;
 
 /// A curve of cubics between keys; it rests before the first key and after the last, or repeats.
@@ -485,7 +485,7 @@ fn close<const D: usize>(a: &[[f64; D]; 3], b: &[[f64; D]; 3]) -> bool {
 /// Implements [`Analytic`] for a motion that is made of cubic pieces.
 macro_rules! analytic_pieces {
     ($motion:ident) => {
-        impl<T: $crate::real::Real, const D: usize> $crate::motion::analytic::Analytic<T, D>
+        impl<T: $crate::scalar::Real, const D: usize> $crate::motion::analytic::Analytic<T, D>
             for $motion<D>
         {
             fn series(
@@ -523,7 +523,7 @@ pub(super) use analytic_pieces;
 #[cfg(test)]
 mod tests {
     use super::{Piecewise, passed};
-    use crate::real::Real;
+    use crate::scalar::Real;
 
     #[test]
     fn keys_are_found_wherever_they_stand() {

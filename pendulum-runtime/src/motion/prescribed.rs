@@ -2,7 +2,7 @@
 
 use crate::motion::analytic::Analytic;
 use crate::motion::sample::{Derivatives, Sample, Side};
-use crate::real::{Lane, Octet, Real};
+use crate::scalar::{Lane, Octet, Real};
 use crate::time::Time;
 
 /// A prescribed motion in `D` dimensions over the scalar `T`.

@@ -4,7 +4,7 @@ use crate::jet::Series;
 use crate::motion::analytic::Analytic;
 use crate::motion::prescribed::Motion;
 use crate::motion::sample::{Derivatives, Sample, Side};
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::time::Time;
 
 /// A motion in space as it is seen in a plane: P x(t), with velocities and accelerations to match,

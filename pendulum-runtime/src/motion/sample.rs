@@ -1,6 +1,6 @@
 //! Samples of motions and the sets of derivatives in them.
 
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::sealed::Sealed;
 
 /// A set of derivatives: of a motion's position, velocity and acceleration.

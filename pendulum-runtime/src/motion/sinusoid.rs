@@ -7,8 +7,8 @@ use crate::jet::Series;
 use crate::motion::analytic::Analytic;
 use crate::motion::prescribed::Motion;
 use crate::motion::sample::{Derivatives, Sample, Side};
-use crate::real::exact::{two_product, two_sum};
-use crate::real::{Lane, Octet, Real};
+use crate::scalar::exact::{two_product, two_sum};
+use crate::scalar::{Lane, Octet, Real};
 use crate::simd::{Work, widest};
 use crate::time::Time;
 

@@ -4,7 +4,7 @@ use crate::jet::Series;
 use crate::motion::analytic::{Analytic, polynomial};
 use crate::motion::prescribed::Motion;
 use crate::motion::sample::{Derivatives, Sample, Side};
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::time::Time;
 
 /// A point at rest: x(t) = `position`.

@@ -1,7 +1,7 @@
 //! Motions against closed forms, differences and their own limits.
 
 use super::*;
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::time::Time;
 
 const TIMES: [f64; 6] = [0.0, 0.4, 0.7, 1.5, 1.9, 3.0];
@@ -171,7 +171,7 @@ fn sinusoids_have_exact_derivatives() {
 /// bit.
 #[test]
 fn sinusoids_stay_within_their_amplitude() {
-    use crate::real::{DoubleDouble, Float};
+    use crate::scalar::{DoubleDouble, Float};
     let word = DoubleDouble::from;
     for w in [6.3e9, 1.0, 7e4, 1e150, 1e270] {
         let motion = Sinusoid::new([1.0, 1.0], w, [0.3, 1e17]);
@@ -212,7 +212,7 @@ fn sinusoids_stay_within_their_amplitude() {
 /// last bit.
 #[test]
 fn fast_sinusoids_keep_their_phase() {
-    use crate::real::{DoubleDouble, Float};
+    use crate::scalar::{DoubleDouble, Float};
     let (w, phase) = (2000.0 * core::f64::consts::PI, 0.3);
     let motion = Sinusoid::new([1.0], w, [phase]);
     let word = DoubleDouble::from;

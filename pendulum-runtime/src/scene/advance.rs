@@ -1,6 +1,6 @@
 //! Ticks: joints are sampled, then all blocks go through a batch.
 
-use crate::real::{Float, Lane};
+use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::group::sleep::LOOK;
 use crate::scene::lanes::bucket::Failed;

@@ -1,7 +1,7 @@
 //! The joints and pendulums of a scene, and its settings.
 
 use crate::motion::Motion;
-use crate::real::{Float, Lane};
+use crate::scalar::{Float, Lane};
 use crate::scene::error::{SceneError, SceneFault};
 use crate::scene::group::any::AnyGroup;
 use crate::scene::group::joints::{check_joints, check_state};

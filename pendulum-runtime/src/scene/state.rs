@@ -1,7 +1,7 @@
 //! Reading and writing pendulums.
 
 use crate::motion::{Derivatives, Side};
-use crate::real::{Float, Lane, Real};
+use crate::scalar::{Float, Lane, Real};
 use crate::scene::error::SceneError;
 use crate::scene::group::joints::{check_state, inputs_at};
 use crate::scene::group::members::Group;

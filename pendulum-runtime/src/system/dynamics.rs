@@ -1,7 +1,7 @@
 //! Systems together with the motions that drive them.
 
 use crate::motion::{Motions, Side, sufficient};
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::system::equations::System;
 use crate::system::inputs::{NoInputs, Purpose};
 use crate::time::Time;

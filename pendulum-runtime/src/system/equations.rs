@@ -1,6 +1,6 @@
 //! The equations of motion of a system, its Jacobians and what its type says about it.
 
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::system::facts::Facts;
 use crate::system::inputs::Samples;
 use core::fmt::Debug;
@@ -169,7 +169,7 @@ pub trait System<const N: usize> {
 /// the position adds once for all velocities.
 ///
 /// The last stage gives the same bits as [`System::accelerations`]. Generated stages are always
-/// inlined, so that loops over [lanes](crate::real::Lanes) use the vectors of the code around them.
+/// inlined, so that loops over [lanes](crate::scalar::Lanes) use the vectors of the code around them.
 pub trait Staged<const N: usize>: System<N> {
     /// Values that time and driven inputs alone decide.
     type AtTime: Copy + Debug;

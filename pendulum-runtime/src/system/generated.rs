@@ -1,6 +1,6 @@
 //! Names of generated code; no one else may rely on them.
 
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::system::System;
 pub use crate::system::facts::{Known, facts};
 pub use nalgebra::SMatrix;

@@ -1,7 +1,7 @@
 //! Driven inputs of a system and their samples.
 
 use crate::motion::{Derivatives, Sample};
-use crate::real::Real;
+use crate::scalar::Real;
 use core::fmt::Debug;
 
 /// Needs of a system of one of its driven inputs.

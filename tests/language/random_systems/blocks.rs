@@ -3,7 +3,7 @@
 
 use super::{Case, words};
 use pendulum_runtime::body::Body;
-use pendulum_runtime::real::Real;
+use pendulum_runtime::scalar::Real;
 use pendulum_runtime::motion::Sample;
 
 pub(crate) mod seed_0 {

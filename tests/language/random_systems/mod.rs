@@ -6,7 +6,7 @@ mod polynomial;
 
 use pendulum_runtime::jet::{InputSeries, Jets, Path, Unrolling};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::{DoubleDouble, Float};
+use pendulum_runtime::scalar::{DoubleDouble, Float};
 use pendulum_runtime::system::Staged;
 use pendulum_runtime::system::System;
 use polynomial::Driving;

@@ -3,7 +3,7 @@
 
 use super::nilpotent::{Function, Nilpotent};
 use super::tree::{Expr, Index, Kind, Property, Shape, System};
-use pendulum_runtime::real::Float;
+use pendulum_runtime::scalar::Float;
 
 /// Scalar, plane or space vector.
 #[derive(Clone, Debug)]

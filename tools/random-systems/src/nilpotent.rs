@@ -4,7 +4,7 @@
 //! ε₁ε₂ in f(x + ε₁ + ε₂) is f″(x). A function of a + bε is f(a) + f′(a) b ε, where a and b have
 //! the other infinitesimals, so that one slope for each function is enough.
 
-use pendulum_runtime::real::Float;
+use pendulum_runtime::scalar::Float;
 
 /// The coefficients of a number; bit j of their index is set for those of εⱼ.
 #[derive(Clone, Debug)]

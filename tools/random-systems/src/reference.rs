@@ -4,7 +4,7 @@
 use super::evaluate::{Constants, Leaves, indexed, scalar};
 use super::nilpotent::Nilpotent;
 use super::tree::System;
-use pendulum_runtime::real::Float;
+use pendulum_runtime::scalar::Float;
 
 /// A state with the motion of everything around it.
 #[derive(Clone, Debug)]

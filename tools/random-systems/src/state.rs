@@ -42,7 +42,7 @@ pub fn state(system: &System, seed: u64) -> State<f64> {
 }
 
 /// Mass, centre and central moments.
-pub fn moments<T: pendulum_runtime::real::Real>(points: &Points<T>) -> [T; 6] {
+pub fn moments<T: pendulum_runtime::scalar::Real>(points: &Points<T>) -> [T; 6] {
     let zero = T::from_f64(0.0);
     let sum =
         |part: &dyn Fn(T, [T; 2]) -> T| points.0.iter().fold(zero, |sum, &(w, p)| sum + part(w, p));
@@ -55,7 +55,7 @@ pub fn moments<T: pendulum_runtime::real::Real>(points: &Points<T>) -> [T; 6] {
 }
 
 /// The state in more digits: the moments of bodies are computed anew.
-pub fn precise<T: pendulum_runtime::real::Real>(system: &System, state: &State<f64>) -> State<T> {
+pub fn precise<T: pendulum_runtime::scalar::Real>(system: &System, state: &State<f64>) -> State<T> {
     let mut precise = state.map(T::from_f64);
     for (index, body) in precise.constants.bodies.iter().enumerate() {
         if let Some(points) = body {

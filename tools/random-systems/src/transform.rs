@@ -117,7 +117,7 @@ pub fn back(system: &System, [q, v, a]: [&[f64]; 3]) -> [Vec<f64>; 3] {
     let mut old = [q.to_vec(), v.to_vec(), a.to_vec()];
     for index in 0..system.coordinates.len() {
         let next = system.first_coordinate((index + 1) % system.coordinates.len());
-        let (sin, cos) = pendulum_runtime::real::Real::sin_cos(q[next]);
+        let (sin, cos) = pendulum_runtime::scalar::Real::sin_cos(q[next]);
         let first = system.first_coordinate(index);
         for scalar in first..first + system.coordinates[index].length.unwrap_or(1) {
             old[0][scalar] += sin / 3.0;

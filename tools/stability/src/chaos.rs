@@ -7,7 +7,7 @@ use crate::systems::{Double, Simple, Upright};
 use pendulum_runtime::integrate::Event;
 use pendulum_runtime::integrate::{FixedStep, State};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::{DoubleDouble, Real};
+use pendulum_runtime::scalar::{DoubleDouble, Real};
 
 pub(crate) const TESTS: &[Test] = &[
     Test { id: "S8", title: "separatrix", run: separatrix },

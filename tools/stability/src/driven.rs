@@ -11,7 +11,7 @@ use pendulum_runtime::motion::{
     CatmullRom, Derivatives, Function, Linear, Motion, Sample, Side, Sinusoid,
 };
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::{DoubleDouble, Lanes, Real};
+use pendulum_runtime::scalar::{DoubleDouble, Lanes, Real};
 use pendulum_runtime::time::Time;
 use std::sync::Mutex;
 

@@ -3,7 +3,7 @@
 //! Jacobi's amplitude by the descending arithmetic–geometric mean (Abramowitz and Stegun 1964,
 //! 16.4).
 
-use pendulum_runtime::real::{DoubleDouble, Float, Real};
+use pendulum_runtime::scalar::{DoubleDouble, Float, Real};
 
 /// The modulus k, its complement k′, and the means that belong to them.
 pub(crate) struct Elliptic {

@@ -9,7 +9,7 @@ use pendulum_runtime::integrate::controller::Controller;
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::integrate::{FixedStep, State};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::{DoubleDouble, Float};
+use pendulum_runtime::scalar::{DoubleDouble, Float};
 use pendulum_runtime::system::System;
 
 pub(crate) const TESTS: &[Test] = &[

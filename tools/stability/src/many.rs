@@ -10,7 +10,7 @@ use ::systems::random::Random;
 use pendulum_runtime::integrate::FixedStep;
 use pendulum_runtime::motion::{Derivatives, Motion, Side, Spline};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::Lanes;
+use pendulum_runtime::scalar::Lanes;
 use pendulum_runtime::system::System;
 use pendulum_runtime::time::Time;
 use std::time::Instant;

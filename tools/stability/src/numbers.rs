@@ -3,7 +3,7 @@
 use pendulum_runtime::integrate::{Solution, State, solve};
 use pendulum_runtime::jet::JetDynamics;
 use pendulum_runtime::prelude::Taylor;
-use pendulum_runtime::real::{DoubleDouble, Float};
+use pendulum_runtime::scalar::{DoubleDouble, Float};
 
 /// The larger of two numbers; what is not a number wins.
 pub(crate) fn larger(a: f64, b: f64) -> f64 {

@@ -9,7 +9,7 @@ use pendulum_runtime::integrate::Event;
 use pendulum_runtime::integrate::Solution;
 use pendulum_runtime::motion::Side;
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::{DoubleDouble, Float};
+use pendulum_runtime::scalar::{DoubleDouble, Float};
 
 pub(crate) const TESTS: &[Test] = &[
     Test { id: "S16", title: "single precision", run: single },

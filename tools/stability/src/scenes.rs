@@ -7,7 +7,7 @@ use ::systems::random::Random;
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Linear, Sinusoid, Spline, Still};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::Lane;
+use pendulum_runtime::scalar::Lane;
 use pendulum_runtime::scene::{Fixed, Handle, Joint, Preserve, Resume, Scene};
 
 /// Ticks a second whose length is a power of two, so that solvers take the same steps.
@@ -82,7 +82,7 @@ fn alone<M: Fixed<Simple<f64>, 1> + Method<Simple<f64>, 1>>(method: M, seconds: 
 }
 
 /// The same for double pendulums, whose accelerations contain velocities, in any scalar.
-fn doubles<T: Lane + pendulum_runtime::real::Float>(
+fn doubles<T: Lane + pendulum_runtime::scalar::Float>(
     seconds: u32,
     round: impl Fn(f64) -> T,
 ) -> usize {

@@ -7,7 +7,7 @@ use crate::systems::{Arenstorf, Double, Elastic, Kepler};
 use pendulum_runtime::error::{Error, Quantity};
 use pendulum_runtime::integrate::{Failure, Solution};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::{DoubleDouble, Float};
+use pendulum_runtime::scalar::{DoubleDouble, Float};
 use pendulum_runtime::system::System;
 
 pub(crate) const TESTS: &[Test] = &[

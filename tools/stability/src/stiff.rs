@@ -11,7 +11,7 @@ use pendulum_runtime::integrate::controller::Controller;
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::integrate::{AdaptiveStep, State};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::{DoubleDouble, Float};
+use pendulum_runtime::scalar::{DoubleDouble, Float};
 use pendulum_runtime::system::Jacobians;
 
 pub(crate) const TESTS: &[Test] = &[

@@ -1,7 +1,7 @@
 //! A scalar that counts what is done with it.
 
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
-use pendulum_runtime::real::Real;
+use pendulum_runtime::scalar::Real;
 use std::cell::Cell;
 
 /// A number whose operations are counted.

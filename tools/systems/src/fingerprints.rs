@@ -7,7 +7,7 @@ use crate::problems::{Cart, Double, Forced, Hung, Kepler, Simple, Spherical};
 use pendulum_runtime::integrate::State;
 use pendulum_runtime::motion::{Linear, Spline};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::{DoubleDouble, Float, Lanes};
+use pendulum_runtime::scalar::{DoubleDouble, Float, Lanes};
 use pendulum_runtime::system::System;
 
 lagrangian! {

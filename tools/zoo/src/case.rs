@@ -1,7 +1,7 @@
 //! One problem: a system, a start and an interval, whatever their types.
 
 use crate::random::Random;
-use pendulum_runtime::real::{DoubleDouble, Float};
+use pendulum_runtime::scalar::{DoubleDouble, Float};
 use std::time::Duration;
 
 /// What is measured.

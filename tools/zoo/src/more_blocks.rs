@@ -5,7 +5,7 @@
 use crate::case::{Case, Guide, MOST, Method, Run, Scalar, State};
 use crate::trial::{Trial, finished};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::real::DoubleDouble;
+use pendulum_runtime::scalar::DoubleDouble;
 use std::time::{Duration, Instant};
 use systems::problems::{Double, HenonHeiles, Kepler, Simple};
 

@@ -3,7 +3,7 @@
 use pendulum_runtime::motion::{
     Analytic, CatmullRom, Derivatives, Function, Linear, Motion, Sample, Side, Sinusoid, Spline,
 };
-use pendulum_runtime::real::{Lane, Octet, Real};
+use pendulum_runtime::scalar::{Lane, Octet, Real};
 use pendulum_runtime::system::scalar_time;
 use pendulum_runtime::time::Time;
 

@@ -18,14 +18,14 @@ impl Emitter<'_, '_> {
         quote! {
             #[automatically_derived]
             #[allow(non_snake_case, unused_variables, unused_mut, unused_parens, unreachable_code, clippy::all, clippy::pedantic)]
-            impl<#scalar: #krate::real::Real> #krate::system::Jacobians<#count> for #name<#scalar> {
-                type Over<#other: #krate::real::Real> = #name<#other>;
+            impl<#scalar: #krate::scalar::Real> #krate::system::Jacobians<#count> for #name<#scalar> {
+                type Over<#other: #krate::scalar::Real> = #name<#other>;
 
-                fn over<#other: #krate::real::Real>(&self, map: impl ::core::ops::FnMut(#scalar) -> #other) -> #name<#other> {
+                fn over<#other: #krate::scalar::Real>(&self, map: impl ::core::ops::FnMut(#scalar) -> #other) -> #name<#other> {
                     <Self as #krate::system::System<#count>>::map(self, map)
                 }
 
-                fn inputs_over<#other: #krate::real::Real>(
+                fn inputs_over<#other: #krate::scalar::Real>(
                     inputs: &Self::Inputs,
                     map: impl ::core::ops::Fn(#scalar) -> #other,
                 ) -> <Self::Over<#other> as #krate::system::System<#count>>::Inputs {
@@ -74,7 +74,7 @@ impl Emitter<'_, '_> {
     fn dual_jacobians(&self) -> [TokenStream; 3] {
         let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
         let inputs = (0..self.model.inputs.len()).map(Literal::usize_unsuffixed);
-        let (dual, name) = (quote!(#krate::real::Dual::<#scalar>), &self.model.block.name);
+        let (dual, name) = (quote!(#krate::scalar::Dual::<#scalar>), &self.model.block.name);
         let map = quote!(<Self as #krate::system::System<#count>>::map);
         let accelerations = quote!(<#name<#dual> as #krate::system::System<#count>>::accelerations);
         let lifted = quote! {

@@ -28,7 +28,7 @@ impl Emitter<'_, '_> {
         quote! {
             #[automatically_derived]
             #[allow(non_snake_case, unused_variables, unused_parens, unreachable_code, clippy::all, clippy::pedantic)]
-            impl<#scalar: #krate::real::Real> #krate::system::Staged<#count> for #name<#scalar> {
+            impl<#scalar: #krate::scalar::Real> #krate::system::Staged<#count> for #name<#scalar> {
                 type AtTime = [#scalar; #times];
                 type AtPosition = [#scalar; #positions];
 

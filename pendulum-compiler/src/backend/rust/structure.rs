@@ -82,7 +82,7 @@ impl Emitter<'_, '_> {
         quote! {
             #[automatically_derived]
             #[allow(non_snake_case, unreachable_code, clippy::all, clippy::pedantic)]
-            impl<#scalar: #krate::real::Real> #name<#scalar> {
+            impl<#scalar: #krate::scalar::Real> #name<#scalar> {
                 /// The system with the given parameters, in the order of declaration; those with a
                 /// default take it.
                 #[must_use]

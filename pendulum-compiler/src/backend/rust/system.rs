@@ -59,15 +59,15 @@ impl Emitter<'_, '_> {
         quote! {
             #[automatically_derived]
             #[allow(non_snake_case, unused_variables, unused_mut, unused_parens, unreachable_code, clippy::all, clippy::pedantic)]
-            impl<#scalar: #krate::real::Real> #krate::system::System<#count> for #name<#scalar> {
+            impl<#scalar: #krate::scalar::Real> #krate::system::System<#count> for #name<#scalar> {
                 type Scalar = #scalar;
                 type Inputs = (#(#krate::motion::Sample<#scalar, #dimensions>,)*);
-                type With<#other: #krate::real::Real> = #name<#other>;
+                type With<#other: #krate::scalar::Real> = #name<#other>;
                 type Prepared = [#scalar; #prepared];
 
                 const FACTS: #krate::system::Facts = #facts;
 
-                fn map<#other: #krate::real::Real>(&self, mut map: impl ::core::ops::FnMut(#scalar) -> #other) -> #name<#other> {
+                fn map<#other: #krate::scalar::Real>(&self, mut map: impl ::core::ops::FnMut(#scalar) -> #other) -> #name<#other> {
                     Self::With::<#other> { #(#mapped,)* #empty }
                 }
 
@@ -128,7 +128,7 @@ impl Emitter<'_, '_> {
         Some(quote! {
             #[automatically_derived]
             #[allow(unused_variables, unused_parens, unreachable_code, clippy::all, clippy::pedantic)]
-            impl<#scalar: #krate::real::Real> #krate::system::SplitEnergy<#count> for #name<#scalar> {
+            impl<#scalar: #krate::scalar::Real> #krate::system::SplitEnergy<#count> for #name<#scalar> {
                 #[inline]
                 fn kinetic_energy(&self, t: #scalar, #state) -> #scalar { let [value] = #kinetic; value }
 
@@ -146,7 +146,7 @@ impl Emitter<'_, '_> {
             (&self.krate, self.scalar(), self.count(), &self.model.block.name);
         Some(quote! {
             #[automatically_derived]
-            impl<#scalar: #krate::real::Real> #krate::system::VelocityFree<#count> for #name<#scalar> {}
+            impl<#scalar: #krate::scalar::Real> #krate::system::VelocityFree<#count> for #name<#scalar> {}
         })
     }
 

@@ -4,7 +4,7 @@ use super::interpret::Values;
 use crate::algebra::expr::{Graph, Id};
 use crate::mechanics::motion::Motion;
 use crate::model::Model;
-use pendulum_runtime::real::{DoubleDouble, Dual, Float};
+use pendulum_runtime::scalar::{DoubleDouble, Dual, Float};
 use random_systems::reference::{Reference, State, reference};
 use random_systems::state::{precise, state};
 use random_systems::tree::System;

@@ -6,7 +6,7 @@ use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::model::{Model, Quantity};
 use crate::schedule::{self, Op};
-use pendulum_runtime::real::Real;
+use pendulum_runtime::scalar::Real;
 use random_systems::reference::State;
 
 /// Values for all symbols of a block.

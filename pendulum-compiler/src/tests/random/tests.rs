@@ -5,7 +5,7 @@ use super::check::{Derived, PLAIN, PRECISE};
 use super::interpret::Values;
 use super::{Outcome, outcome};
 use crate::compile::derived;
-use pendulum_runtime::real::{DoubleDouble, Float};
+use pendulum_runtime::scalar::{DoubleDouble, Float};
 use random_systems::generate::{self, Manner};
 use random_systems::reference::State;
 use random_systems::state::{precise, state};

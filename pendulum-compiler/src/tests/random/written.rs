@@ -4,7 +4,7 @@
 use super::check::{Derived, compare};
 use super::interpret::Values;
 use crate::compile::derived;
-use pendulum_runtime::real::{DoubleDouble, Dual, Float, Real};
+use pendulum_runtime::scalar::{DoubleDouble, Dual, Float, Real};
 use random_systems::generate::{self, Manner};
 use random_systems::reference::{Reference, State, reference};
 use random_systems::state::{precise, state};
@@ -19,7 +19,7 @@ pub(crate) fn file() -> String {
     let mut text = String::from(
         "//! Random systems and what they do at a random state, in 31 digits. Written by the generator in `tools/random-systems`:\n\
          //! `UPDATE_GOLDEN=1 cargo test -p pendulum-compiler written` writes it anew.\n\n\
-         use super::{Case, words};\nuse pendulum_runtime::body::Body;\nuse pendulum_runtime::real::Real;\nuse pendulum_runtime::motion::Sample;\n",
+         use super::{Case, words};\nuse pendulum_runtime::body::Body;\nuse pendulum_runtime::scalar::Real;\nuse pendulum_runtime::motion::Sample;\n",
     );
     let mut names = Vec::new();
     for seed in 0.. {

@@ -3,7 +3,7 @@
 use super::curve::{CHORDS, Curve};
 use super::{Outline, Point};
 use crate::body::BodyError;
-use crate::real::Real;
+use crate::scalar::Real;
 
 /// Crossings, and pairs of pieces that might cross, are no more than so many.
 pub(super) const CROSSINGS: usize = 1 << 16;

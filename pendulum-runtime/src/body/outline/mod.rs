@@ -8,7 +8,7 @@ mod tests;
 mod winding;
 
 use super::{Body, BodyError, positive};
-use crate::real::Real;
+use crate::scalar::Real;
 use curve::Curve;
 use green::integrals;
 

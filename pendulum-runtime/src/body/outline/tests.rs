@@ -2,7 +2,7 @@ use super::super::random::Random;
 use super::super::tests::{close, same};
 use super::super::{Body, BodyError, Polygon};
 use super::{FillRule, Outline, Point};
-use crate::real::Real;
+use crate::scalar::Real;
 use core::f64::consts::PI;
 
 fn ring(outline: Outline, points: &[Point]) -> Outline {

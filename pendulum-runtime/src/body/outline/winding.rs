@@ -3,7 +3,7 @@
 use super::curve::Curve;
 use super::{Outline, Point};
 use crate::body::BodyError;
-use crate::real::Real;
+use crate::scalar::Real;
 
 impl Outline {
     /// The curves between all crossings with what lies to their left more than to their right: −1,

@@ -1,6 +1,6 @@
 //! Truncated Taylor series in time: what carries velocities and accelerations through a hierarchy.
 
-use crate::real::Real;
+use crate::scalar::Real;
 use core::ops::{Add, Mul, Sub};
 
 /// The first `N` Taylor coefficients of a function of time: value, first derivative, half the

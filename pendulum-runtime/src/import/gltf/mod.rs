@@ -29,7 +29,7 @@ pub use error::GltfError;
 pub use node::NodeMotion;
 
 use crate::motion::piecewise::{Piecewise, checked};
-use crate::real::Real;
+use crate::scalar::Real;
 use accessor::Source;
 use gltf::json::animation::{Channel, Interpolation, Property};
 use gltf::json::validation::Checked;

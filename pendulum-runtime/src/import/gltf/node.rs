@@ -3,7 +3,7 @@
 use super::jet::{Jet, turned};
 use super::track::{Track, Turn};
 use crate::motion::{Derivatives, Motion, MotionError, Sample, Side};
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::time::Time;
 
 /// Position of a node on its parent.

@@ -3,7 +3,7 @@
 use super::jet::Jet;
 use crate::motion::piecewise::Piecewise;
 use crate::motion::{Derivatives, Side};
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::time::Time;
 
 /// A translation or a scale.

@@ -4,7 +4,7 @@ use super::drawing::{Drawing, DrawnJoint, Role, Skipped, Units, Why};
 use super::error::DrawingError;
 use super::size;
 use crate::body::{Body, BodyError, FillRule, Outline};
-use crate::real::Real;
+use crate::scalar::Real;
 use std::collections::{BTreeMap, BTreeSet};
 use usvg::roxmltree::{Document, Node, ParsingOptions};
 use usvg::tiny_skia_path::PathSegment;

@@ -22,7 +22,7 @@ use crate::integrate::step::field::coordinate;
 use crate::integrate::step::gap;
 use crate::integrate::step::interval::StepInterval;
 use crate::jet::{Jets, Path, Unrolling};
-use crate::real::{Float, Lane, Lanes, Real};
+use crate::scalar::{Float, Lane, Lanes, Real};
 use crate::simd::Work;
 use crate::time::Time;
 

@@ -11,7 +11,7 @@ use crate::integrate::step::adaptive::AdaptiveStep;
 use crate::integrate::step::controller::Controller;
 use crate::integrate::step::integration::check_start;
 use crate::jet::Jets;
-use crate::real::{Float, Lane, Lanes};
+use crate::scalar::{Float, Lane, Lanes};
 use crate::simd;
 use crate::system::System;
 use crate::time::Time;

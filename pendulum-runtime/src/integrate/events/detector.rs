@@ -9,7 +9,7 @@ use crate::integrate::output::in_order;
 use crate::integrate::state::State;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::integration::Integration;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::{Dynamics, scalar_time};
 use crate::time::Time;
 

@@ -4,7 +4,7 @@ pub(crate) mod detector;
 pub(crate) mod root;
 
 use crate::integrate::state::State;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::time::Time;
 use core::fmt;
 

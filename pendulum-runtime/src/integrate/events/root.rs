@@ -1,6 +1,6 @@
 //! Roots and dips of a function of one variable.
 
-use crate::real::Float;
+use crate::scalar::Float;
 
 /// A point of a function: the argument and the value.
 pub(crate) type Point<T> = (T, T);
@@ -134,7 +134,7 @@ pub(crate) fn dip<T: Float, E>(
 #[cfg(test)]
 mod tests {
     use super::{Dip, dip, root};
-    use crate::real::{DoubleDouble, Float, Real};
+    use crate::scalar::{DoubleDouble, Float, Real};
 
     fn root_of(f: impl Fn(f64) -> f64, a: f64, b: f64) -> (f64, u32) {
         let mut count = 0;

@@ -4,7 +4,7 @@ use crate::integrate::interpolant::{Basis, Interpolant};
 use crate::integrate::state::State;
 use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
-use crate::real::Float;
+use crate::scalar::Float;
 
 /// The pieces of all steps.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 
 use crate::integrate::interpolant::TERMS;
 use crate::integrate::schemes::linear::Factors;
-use crate::real::Float;
+use crate::scalar::Float;
 
 /// What is given at a place θ.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,7 @@
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::interval::StepInterval;
-use crate::real::Float;
+use crate::scalar::Float;
 
 /// The cubic through coordinates and velocities at both ends, and its derivative.
 ///

@@ -7,7 +7,7 @@ pub(crate) mod hermite;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::interval::StepInterval;
 use crate::jet::MAX_ORDER;
-use crate::real::Float;
+use crate::scalar::Float;
 
 /// The largest number of terms of a [`Interpolant`].
 pub const TERMS: usize = MAX_ORDER;

@@ -14,7 +14,7 @@ use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
 use crate::jet::{Jets, Known, MaybeJets, Unrolling};
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::{Dynamics, System};
 
 /// The method that what is known about the system and the tolerance decide; [`Stats`](crate::integrate::Stats)

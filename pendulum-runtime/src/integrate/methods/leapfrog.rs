@@ -7,7 +7,7 @@ use crate::integrate::schemes::splitting::{Splitting, drift_kick_drift};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::{Dynamics, VelocityFree};
 
 /// The leapfrog (Störmer–Verlet) method in the order drift, kick, drift: order 2, one evaluation a

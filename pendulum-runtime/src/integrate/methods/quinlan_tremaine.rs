@@ -6,7 +6,7 @@ use crate::integrate::schemes::multistep::{History, Scheme, padded};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::{Dynamics, VelocityFree};
 
 /// The explicit symmetric multistep method of Quinlan and Tremaine of order `P` = 8, 10 or 12: one

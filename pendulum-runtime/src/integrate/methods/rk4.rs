@@ -5,7 +5,7 @@ use crate::integrate::schemes::runge_kutta::Slopes;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
-use crate::real::{Float, Real};
+use crate::scalar::{Float, Real};
 use crate::system::Dynamics;
 
 /// The classical Runge–Kutta method: order 4, four evaluations a step, fixed step.

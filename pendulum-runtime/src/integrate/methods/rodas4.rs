@@ -9,7 +9,7 @@ use crate::integrate::step::field::Field;
 use crate::integrate::step::gap::{all, widest};
 use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
-use crate::real::{Float, Real};
+use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Jacobians, System};
 
 /// The linearly implicit (Rosenbrock) method of order 4 with an error estimate of order 3 of Hairer

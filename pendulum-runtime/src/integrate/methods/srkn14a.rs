@@ -5,7 +5,7 @@ use crate::integrate::schemes::splitting::{Splitting, drift_kick_drift_in_two_wo
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::{Dynamics, VelocityFree};
 
 /// The symplectic Runge–Kutta–Nyström splitting with fourteen evaluations of Blanes and Moan: order

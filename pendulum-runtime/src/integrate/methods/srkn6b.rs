@@ -5,7 +5,7 @@ use crate::integrate::schemes::splitting::{Splitting, kick_drift_kick};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::{Dynamics, VelocityFree};
 
 /// The symplectic Runge–Kutta–Nyström splitting with six evaluations of Blanes and Moan: order 4,

@@ -6,7 +6,7 @@ use crate::integrate::method::Method;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::Dynamics;
 
 /// The symplectic (semi-implicit) Euler method: order 1, one evaluation a step, fixed step. A

@@ -7,7 +7,7 @@ use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::gap::widest;
 use crate::integrate::step::interval::StepInterval;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::Dynamics;
 
 /// The explicit Runge–Kutta pair of orders 5 and 4 of Tsitouras: six evaluations a step, adaptive.

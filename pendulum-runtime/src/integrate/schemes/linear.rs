@@ -1,6 +1,6 @@
 //! Linear equations of a size known when compiling.
 
-use crate::real::Float;
+use crate::scalar::Float;
 
 /// An N×N matrix of scalars that need not be more than [`Float`].
 pub(crate) type Square<T, const N: usize> = [[T; N]; N];

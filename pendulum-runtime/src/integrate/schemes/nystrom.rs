@@ -7,7 +7,7 @@ use crate::integrate::schemes::runge_kutta::{Row, weighted};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::Dynamics;
 
 /// The accelerations at `S` stages.

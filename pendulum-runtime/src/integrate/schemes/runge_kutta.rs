@@ -3,7 +3,7 @@
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::Dynamics;
 
 /// One row of a tableau without its zeros: the indices of earlier stages, from 0, and their

@@ -6,7 +6,7 @@
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::Dynamics;
 
 /// A palindromic splitting with `S` evaluations a step.

@@ -14,7 +14,7 @@ use crate::integrate::step::field::coordinate;
 use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::short::shortest;
 use crate::motion::Side;
-use crate::real::{Float, Real};
+use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, System};
 use crate::time::Time;
 

@@ -2,8 +2,8 @@
 
 #![allow(clippy::inline_always)]
 
-use crate::real::exact::{two_product, two_sum};
-use crate::real::{Float, Real};
+use crate::scalar::exact::{two_product, two_sum};
+use crate::scalar::{Float, Real};
 
 /// `N` numbers to which small increments are added without losing their low digits.
 ///

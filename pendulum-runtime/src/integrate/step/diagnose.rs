@@ -4,7 +4,7 @@ use crate::error::{Error, Quantity, Suspect};
 use crate::integrate::schemes::linear::Factors;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::motion::Side;
-use crate::real::{Float, Real};
+use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Purpose, System, scalar_time};
 use crate::time::Time;
 

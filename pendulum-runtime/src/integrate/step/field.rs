@@ -2,7 +2,7 @@
 
 use crate::error::{Coordinate, Quantity};
 use crate::motion::Side;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::{Dynamics, Facts, Jacobians, Purpose, Samples, System, scalar_time};
 use crate::time::Time;
 use nalgebra::SMatrix;

@@ -5,7 +5,7 @@ use crate::integrate::method::{self, Method};
 use crate::integrate::step::controller::{Controller, ControllerState, StepContext};
 use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::short::{is_short, straight};
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::Dynamics;
 use crate::time::Time;
 

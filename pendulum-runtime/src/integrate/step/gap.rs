@@ -9,7 +9,7 @@
 #![allow(clippy::inline_always)]
 
 use crate::integrate::schemes::runge_kutta::Row;
-use crate::real::{Float, Real};
+use crate::scalar::{Float, Real};
 use crate::system::{System, scalar_time};
 use crate::time::Time;
 

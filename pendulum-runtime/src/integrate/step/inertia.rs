@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::integrate::step::diagnose::negative;
 use crate::integrate::step::field::coordinate;
 use crate::motion::Side;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::{Dynamics, Facts, Purpose, System, scalar_time};
 use crate::time::Time;
 use nalgebra::SMatrix;

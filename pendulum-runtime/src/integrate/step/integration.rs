@@ -15,7 +15,7 @@ use crate::integrate::step::inertia::{inertia, is_due, varies};
 use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::short::{is_short, straight};
 use crate::motion::Side;
-use crate::real::{Float, Real};
+use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Purpose, System};
 use crate::time::Time;
 

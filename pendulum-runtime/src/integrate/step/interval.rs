@@ -4,8 +4,8 @@
 #![allow(clippy::inline_always)]
 
 use crate::motion::Side;
-use crate::real::Float;
-use crate::real::exact::two_sum;
+use crate::scalar::Float;
+use crate::scalar::exact::two_sum;
 use crate::time::Time;
 
 /// One step in time, free of kinks inside.
@@ -76,7 +76,7 @@ impl StepInterval {
 mod tests {
     use super::StepInterval;
     use crate::motion::Side;
-    use crate::real::{DoubleDouble, Float, Real};
+    use crate::scalar::{DoubleDouble, Float, Real};
     use crate::time::Time;
 
     #[test]

@@ -3,7 +3,7 @@
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::Dynamics;
 
 /// The least length of a step that the scalar holds with all its digits; 0 where its range is that
@@ -57,7 +57,7 @@ fn times<T: Float>(mut h: f64, mut x: T) -> T {
 #[cfg(test)]
 mod tests {
     use super::{is_short, times};
-    use crate::real::DoubleDouble;
+    use crate::scalar::DoubleDouble;
 
     #[test]
     fn products_need_no_length_in_single_precision() {

@@ -7,7 +7,7 @@ use crate::integrate::{
     SymplecticEuler, Tsit5, solve,
 };
 use crate::motion::Linear;
-use crate::real::{DoubleDouble, Float, Real};
+use crate::scalar::{DoubleDouble, Float, Real};
 use crate::system::Driven;
 use core::f64::consts::PI;
 

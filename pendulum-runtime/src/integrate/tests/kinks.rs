@@ -4,7 +4,7 @@ use super::systems::{LinearKeys, MovingPendulum, moving, pendulum};
 use crate::integrate::method::Method;
 use crate::integrate::{Dop853, Integrator, Leapfrog, Rk4, Srkn6b, Srkn11b, Srkn14a, Tsit5, solve};
 use crate::motion::Side;
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::system::{Driven, Dynamics};
 
 type Keyed = Driven<MovingPendulum<f64>, (LinearKeys,)>;

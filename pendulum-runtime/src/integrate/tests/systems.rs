@@ -1,7 +1,7 @@
 //! Systems written by hand, with the names and numbers of the literature.
 
 use crate::motion::{Derivatives, Motion, Sample, Side};
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::system::{Driven, Facts, Input, System, VelocityFree};
 use crate::time::Time;
 use nalgebra::SMatrix;

@@ -1,6 +1,6 @@
 //! Curves in place of a simulation.
 
-use crate::real::{Float, Lane};
+use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::handle::Handle;
 use crate::scene::lanes::system::SceneSystem;

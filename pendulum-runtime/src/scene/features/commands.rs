@@ -2,7 +2,7 @@
 //! the scene runs.
 
 use crate::motion::Motion;
-use crate::real::{Float, Lane};
+use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::group::change::Preserve;
 use crate::scene::handle::Handle;

@@ -1,6 +1,6 @@
 //! Runs before the beginning: warm-up, and loops that close.
 
-use crate::real::{Float, Lane};
+use crate::scalar::{Float, Lane};
 use crate::scene::advance::Advanced;
 use crate::scene::error::SceneError;
 use crate::scene::scene::Scene;

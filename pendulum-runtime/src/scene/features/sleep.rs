@@ -1,6 +1,6 @@
 //! Settings of sleep.
 
-use crate::real::{Float, Lane};
+use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::scene::Scene;
 

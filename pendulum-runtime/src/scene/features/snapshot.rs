@@ -1,6 +1,6 @@
 //! Everything that changes while a scene runs, as plain numbers.
 
-use crate::real::{Float, Lane, Real};
+use crate::scalar::{Float, Lane, Real};
 use crate::scene::error::{SceneError, SceneFault};
 use crate::scene::features::hash;
 use crate::scene::group::saved::GroupState;

@@ -2,7 +2,7 @@
 
 use crate::integrate::{Dop853, solve};
 use crate::motion::{Side, shorter};
-use crate::real::{Float, Lane};
+use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::group::joints::inputs_at;
 use crate::scene::group::status::SceneStatus;

@@ -1,7 +1,7 @@
 //! The pendulums of a type as the scene sees them.
 
 use crate::motion::Derivatives;
-use crate::real::{Float, Lane};
+use crate::scalar::{Float, Lane};
 use crate::scene::error::{SceneError, SceneFault};
 use crate::scene::group::change::Preserve;
 use crate::scene::group::fault::diagnose;

@@ -1,7 +1,7 @@
 //! Changes of motions and parameters.
 
 use crate::motion::{Derivatives, Side};
-use crate::real::{Float, Lane};
+use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::group::joints::{check_motion, inputs_at};
 use crate::scene::group::members::Group;

@@ -1,7 +1,7 @@
 //! The criterion by which a pendulum may sleep.
 
 use crate::motion::Side;
-use crate::real::{Float, Lane, Real};
+use crate::scalar::{Float, Lane, Real};
 use crate::scene::group::joints::inputs_at;
 use crate::scene::lanes::detached::Detached;
 use crate::scene::lanes::limits::Limits;

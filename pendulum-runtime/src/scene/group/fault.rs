@@ -4,7 +4,7 @@ use crate::error::{Error, Quantity};
 use crate::integrate::step::diagnose::suspects;
 use crate::integrate::step::field::{coordinate, first_in_inputs};
 use crate::motion::Side;
-use crate::real::{Float, Lane};
+use crate::scalar::{Float, Lane};
 use crate::scene::group::joints::inputs_at;
 use crate::scene::lanes::detached::Detached;
 use crate::scene::lanes::system::SceneSystem;

@@ -1,6 +1,6 @@
 //! Frequencies of systems, by which steps are chosen.
 
-use crate::real::{Float, Real};
+use crate::scalar::{Float, Real};
 use crate::system::System;
 
 /// An angular frequency in rad/s that small motions about the neighbourhood of `q` do not exceed by

@@ -2,7 +2,7 @@
 
 use crate::error::Coordinate;
 use crate::motion::{Derivatives, Side, derivatives_of};
-use crate::real::{Float, Lane};
+use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::lanes::system::SceneSystem;
 use crate::scene::sampling::assemble::{Assemble, By};

@@ -1,7 +1,7 @@
 //! All pendulums of one type.
 
 use crate::motion::Side;
-use crate::real::{Float, Lane};
+use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::group::criterion::{Alarms, SleepCriterion};
 use crate::scene::group::joints::inputs_at;

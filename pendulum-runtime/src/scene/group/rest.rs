@@ -1,6 +1,6 @@
 //! States of rest.
 
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::scene::group::frequency::cube_root_of_rounding;
 use crate::scene::lanes::limits::Limits;
 use crate::system::System;

@@ -1,6 +1,6 @@
 //! The pendulums of a type as plain numbers.
 
-use crate::real::{Float, Lane, Real};
+use crate::scalar::{Float, Lane, Real};
 use crate::scene::error::SceneError;
 use crate::scene::group::members::Group;
 use crate::scene::group::status::SceneStatus;

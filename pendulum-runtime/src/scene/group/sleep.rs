@@ -1,7 +1,7 @@
 //! Sleep: pendulums that hardly move, on joints that rest, are not computed until their joints
 //! move.
 
-use crate::real::{Float, Lane, Real};
+use crate::scalar::{Float, Lane, Real};
 use crate::scene::group::criterion::{AtRest, SleepCriterion, barrier};
 use crate::scene::group::frequency;
 use crate::scene::group::members::Group;

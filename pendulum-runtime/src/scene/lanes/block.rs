@@ -1,7 +1,7 @@
 //! A block of lanes: pendulums of one type that are computed together.
 
 use crate::integrate::step::compensated::Compensated;
-use crate::real::{Float, Lane, Real};
+use crate::scalar::{Float, Lane, Real};
 use crate::scene::lanes::limits::LaneLimits;
 use crate::scene::lanes::system::{SceneSystem, W, Wide};
 use crate::system::System;

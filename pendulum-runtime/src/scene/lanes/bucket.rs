@@ -1,7 +1,7 @@
 //! Pendulums of one type that take the same steps: those that are awake first, all in blocks of
 //! lanes.
 
-use crate::real::{Float, Lane};
+use crate::scalar::{Float, Lane};
 use crate::scene::lanes::block::{Block, ColdData};
 use crate::scene::lanes::detached::Detached;
 use crate::scene::lanes::kernel::{Batch, Run};

@@ -1,6 +1,6 @@
 //! Pendulums outside of their lanes.
 
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::scene::lanes::limits::Limits;
 
 /// A pendulum outside of all buckets.

@@ -2,7 +2,7 @@
 
 #![allow(clippy::inline_always)]
 
-use crate::real::{Float, Lane, Real};
+use crate::scalar::{Float, Lane, Real};
 use crate::scene::lanes::system::{SceneSystem, W, Wide};
 use crate::scene::sampling::assemble::{Assemble, Numbers};
 use crate::scene::sampling::layout::Layout;

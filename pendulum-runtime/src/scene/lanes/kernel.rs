@@ -8,7 +8,7 @@
 
 use crate::integrate::methods::{leapfrog, srkn6b};
 use crate::integrate::step::compensated::Compensated;
-use crate::real::{Float, Lane, Real};
+use crate::scalar::{Float, Lane, Real};
 use crate::scene::lanes::block::{Block, ColdData};
 use crate::scene::lanes::inputs::{Followed, Inputs, nothing};
 use crate::scene::lanes::limits::{LaneLimits, half_decay};

@@ -1,6 +1,6 @@
 //! Damping and stops, of one pendulum and of a block of lanes.
 
-use crate::real::{Float, Lane, Real};
+use crate::scalar::{Float, Lane, Real};
 use crate::scene::lanes::system::Wide;
 
 /// Damping and stops of one pendulum, which act beside its equations.

@@ -1,6 +1,6 @@
 //! The types of systems that can hang in a scene.
 
-use crate::real::{Float, Lane, Lanes};
+use crate::scalar::{Float, Lane, Lanes};
 use crate::scene::sampling::assemble::Assemble;
 use crate::scene::sampling::layout::Layout;
 use crate::system::{Purpose, Staged, System};

@@ -3,7 +3,7 @@
 #![allow(clippy::inline_always)]
 
 use crate::motion::Sample;
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::scene::sampling::joint::Joint;
 use crate::sealed::Sealed;
 use crate::system::Samples;

@@ -1,7 +1,7 @@
 //! Joints: motions of any type, each sampled once per time for all that hangs on it.
 
 use crate::motion::{Derivatives, Motion, Sample, Side};
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::scene::sampling::clock::Clock;
 use crate::sealed::Sealed;
 use crate::time::Time;

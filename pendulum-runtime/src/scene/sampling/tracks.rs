@@ -2,7 +2,7 @@
 
 use crate::integrate::step::interval::StepInterval;
 use crate::motion::{Derivatives, Side};
-use crate::real::{Float, Real};
+use crate::scalar::{Float, Real};
 use crate::scene::sampling::clock::Clock;
 use crate::scene::sampling::joint::{Active, JointSlot};
 use crate::scene::sampling::layout::Layout;

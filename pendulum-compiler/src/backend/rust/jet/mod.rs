@@ -112,7 +112,7 @@ impl Emitter<'_, '_> {
         quote! {
             #[automatically_derived]
             #[allow(non_snake_case, unused_variables, unused_mut, unused_parens, unused_imports, unreachable_code, clippy::all, clippy::pedantic)]
-            impl<#scalar: #krate::real::Real> #krate::jet::Jets<#count> for #name<#scalar> {
+            impl<#scalar: #krate::scalar::Real> #krate::jet::Jets<#count> for #name<#scalar> {
                 type Work = #kind;
                 type Drive = [#krate::jet::InputSeries<#scalar>; #components];
                 type Unrolling = #krate::jet::#unrolling;

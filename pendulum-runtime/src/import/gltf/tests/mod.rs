@@ -6,7 +6,7 @@ mod motions;
 mod writer;
 
 use crate::motion::{Derivatives, Motion, Sample, Side};
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::time::Time;
 use writer::Writer;
 

@@ -4,7 +4,7 @@ use super::writer::Writer;
 use super::{at, close, dancer};
 use crate::import::gltf::{Gltf, NodeMotion};
 use crate::motion::{Derivatives, Linear, Motion, Projected, Sample, Side};
-use crate::real::Real;
+use crate::scalar::Real;
 use crate::time::Time;
 use nalgebra::{Matrix4, Quaternion, UnitQuaternion, Vector3};
 

@@ -5,7 +5,7 @@ use crate::integrate::interpolant::fit::{Condition, fit};
 use crate::integrate::interpolant::{Interpolant, TERMS};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::interval::StepInterval;
-use crate::real::Float;
+use crate::scalar::Float;
 
 /// The polynomial of degree S + 1 through the velocities at both ends and at the stages, and its
 /// integral (a cubic if S = 1).

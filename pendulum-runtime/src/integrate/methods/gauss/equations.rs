@@ -7,7 +7,7 @@ use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::{Field, InputsOf};
 use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
-use crate::real::{Float, Real};
+use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Jacobians};
 use crate::time::Time;
 

@@ -11,7 +11,7 @@ use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::system::{Dynamics, Jacobians};
 use crate::time::Time;
 use equations::{Change, Equations, Linearized, Slopes};

@@ -11,7 +11,7 @@ use crate::integrate::step::controller::{
 };
 use crate::integrate::step::fast_exp2::{log2, power};
 use crate::integrate::step::interval::StepInterval;
-use crate::real::Float;
+use crate::scalar::Float;
 use crate::time::Time;
 
 /// The error that a step aims at, and those beyond which the next one becomes longer or shorter.
@@ -170,7 +170,7 @@ mod tests {
     use crate::integrate::step::endpoint::Endpoint;
     use crate::integrate::step::field::Field;
     use crate::integrate::tests::systems::Kepler;
-    use crate::real::Real;
+    use crate::scalar::Real;
     use crate::system::{Staged, System};
     use crate::time::Time;
 

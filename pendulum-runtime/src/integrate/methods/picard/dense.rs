@@ -9,7 +9,7 @@ use crate::integrate::interpolant::{Basis, Interpolant, TERMS};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
-use crate::real::{Octet, Real};
+use crate::scalar::{Octet, Real};
 use crate::simd;
 
 /// The coefficients of the accelerations.

@@ -10,7 +10,7 @@ use super::tableau::{BETWEEN, Columns, EIGHT, Nodes, REFINED, S, SIXTEEN};
 use super::workspace::{Tolerances, WorkspaceOf};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::interval::StepInterval;
-use crate::real::{Float, Lane, Octet};
+use crate::scalar::{Float, Lane, Octet};
 use crate::simd::Work;
 use crate::system::{Staged, System, scalar_time};
 use crate::time::Time;

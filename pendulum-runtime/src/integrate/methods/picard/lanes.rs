@@ -3,7 +3,7 @@
 #![allow(clippy::inline_always)]
 
 use crate::motion::{Derivatives, MaybeAnalytic, Motion, Sample, Side, derivatives_of};
-use crate::real::{Float, Lane, Octet, Real};
+use crate::scalar::{Float, Lane, Octet, Real};
 use crate::system::{Driven, Dynamics, Input, NoInputs, Purpose, Samples, Staged, System};
 use crate::time::Time;
 

@@ -19,7 +19,7 @@ use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::{Field, coordinate, first_in_state};
 use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
-use crate::real::{Float, Octet, Real};
+use crate::scalar::{Float, Octet, Real};
 use crate::simd;
 use crate::system::Dynamics;
 use crate::system::System;

@@ -8,7 +8,7 @@ use super::kernel::{Ends, Progress, Scaled, Stages};
 use super::lanes::LaneDynamics;
 use super::tableau::S;
 use crate::integrate::step::endpoint::Endpoint;
-use crate::real::{Float, Lane};
+use crate::scalar::{Float, Lane};
 use crate::system::{Dynamics, System};
 use crate::time::Time;
 

@@ -14,7 +14,7 @@ use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
 use crate::jet::{JetDynamics, Jets, Path, Series};
 use crate::motion::Side;
-use crate::real::{Float, Real};
+use crate::scalar::{Float, Real};
 use crate::system::System;
 
 impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Controller<Taylor, D, N>

@@ -15,7 +15,7 @@ use crate::integrate::step::field::{Field, coordinate, first_in_state};
 use crate::integrate::step::interval::StepInterval;
 use crate::jet::{JetDynamics, Jets, MAX_ORDER, Path, Series, Unrolling};
 use crate::motion::Side;
-use crate::real::{Float, Real};
+use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, System, scalar_time};
 use crate::time::Time;
 

@@ -5,7 +5,7 @@
 
 use crate::integrate::step::fast_exp2::{digits, log2, power};
 use crate::jet::{LENGTH, Path};
-use crate::real::Float;
+use crate::scalar::Float;
 
 /// What the tolerance decides about the length of a step.
 #[derive(Clone, Debug, Default)]

@@ -35,7 +35,7 @@ pub(crate) fn two_product<T: Real>(
 #[cfg(test)]
 mod tests {
     use super::{ordered_sum, two_product, two_sum};
-    use crate::real::Octet;
+    use crate::scalar::Octet;
 
     #[test]
     fn nothing_is_left_off() {

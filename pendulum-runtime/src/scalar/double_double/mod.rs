@@ -23,13 +23,13 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 /// The range is that of `f64`. Below 1e-291 the low word falls out of it, and with it the digits.
 ///
 /// ```
-/// use pendulum_runtime::real::{DoubleDouble, Real};
+/// use pendulum_runtime::scalar::{DoubleDouble, Real};
 ///
 /// let third = DoubleDouble::ratio(1.0, 3.0);
 /// assert_eq!(format!("{third:.30}"), "0.333333333333333333333333333333");
 /// let g: DoubleDouble = "9.80665".parse()?;
 /// assert_eq!(g.to_string(), "9.80665");
-/// # Ok::<(), pendulum_runtime::real::ParseError>(())
+/// # Ok::<(), pendulum_runtime::scalar::ParseError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub struct DoubleDouble {

@@ -259,7 +259,7 @@ number! { [] Octet<T> }
 #[cfg(test)]
 mod tests {
     use super::{Lanes, Octet};
-    use crate::real::Real;
+    use crate::scalar::Real;
 
     /// What `numbers` gives for lanes from two arrays has the bits of single numbers.
     fn same<const W: usize, L: Real>(
