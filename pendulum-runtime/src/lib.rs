@@ -29,8 +29,8 @@ pub use system::generated as __private;
 pub mod prelude {
     pub use crate::integrate::{
         Auto, Batch, Direction, Dop853, Dprkn8, Dprkn12, Gauss, Integrator, Leapfrog, Picard,
-        QuinlanTremaine, Rk4, Rodas4, Solution, Srkn6b, Srkn11b, Srkn14a, State, SymplecticEuler,
-        Taylor, Tsit5, solve,
+        QuinlanTremaine, Rk4, Rodas4, Solution, Srkn6b, Srkn14a, State, SymplecticEuler, Taylor,
+        Tsit5, solve,
     };
     pub use crate::motion::Motion;
     pub use crate::scalar::Real;

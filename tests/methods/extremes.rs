@@ -183,7 +183,6 @@ macro_rules! over {
                 SymplecticEuler,
                 Leapfrog,
                 Srkn6b,
-                Srkn11b,
                 Srkn14a,
                 QuinlanTremaine::<8>
             );

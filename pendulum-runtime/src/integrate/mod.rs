@@ -8,7 +8,6 @@
 //! | [`SymplecticEuler`] | 1 | 1 | fixed | a baseline |
 //! | [`Leapfrog`] | 2 | 1 | fixed | velocity-free systems, animation |
 //! | [`Srkn6b`] | 4 | 6 | fixed | velocity-free systems |
-//! | [`Srkn11b`] | 6 | 11 | fixed | velocity-free systems, long |
 //! | [`Srkn14a`] | 6 | 14 | fixed | velocity-free systems, long, down to rounding |
 //! | [`QuinlanTremaine<P>`](QuinlanTremaine) | 8, 10, 12 | 1 | fixed | velocity-free systems, long, the fewest evaluations for a given error |
 //! | [`Dprkn8`] | 8 | 8 | adaptive | velocity-free systems, errors 1e-2 … 1e-5 |
@@ -64,7 +63,6 @@ pub use methods::quinlan_tremaine::QuinlanTremaine;
 pub use methods::rk4::Rk4;
 pub use methods::rodas4::Rodas4;
 pub use methods::srkn6b::Srkn6b;
-pub use methods::srkn11b::Srkn11b;
 pub use methods::srkn14a::Srkn14a;
 pub use methods::symplectic_euler::SymplecticEuler;
 pub use methods::taylor::Taylor;

@@ -95,7 +95,6 @@ macro_rules! velocity_free {
         run! { $lines, $system, $dynamics, $q, $v,
             "Leapfrog" Leapfrog => step 0.01;
             "Srkn6b" Srkn6b => step 0.03;
-            "Srkn11b" Srkn11b => step 0.05;
             "Srkn14a" Srkn14a => step 0.05;
             "QuinlanTremaine8" QuinlanTremaine::<8>::new() => step 0.02;
             "QuinlanTremaine10" QuinlanTremaine::<10>::new() => step 0.02;

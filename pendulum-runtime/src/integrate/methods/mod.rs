@@ -10,7 +10,6 @@ pub(crate) mod picard;
 pub(crate) mod quinlan_tremaine;
 pub(crate) mod rk4;
 pub(crate) mod rodas4;
-pub(crate) mod srkn11b;
 pub(crate) mod srkn14a;
 pub(crate) mod srkn6b;
 pub(crate) mod symplectic_euler;

@@ -14,8 +14,8 @@ use crate::system::{Dynamics, VelocityFree};
 /// The most accurate splitting method here, down to rounding: products are summed with both of
 /// their words, so that only accelerations are rounded, and the energy of a pendulum stays within
 /// 3e-15 over 3·10⁶ steps, its phase within 1e-11 s after 10⁵ s. Symplectic and reversible: energy
-/// errors stay bounded, phase errors grow with time. Some of its drifts and kicks go backwards, and
-/// with steps that are too long it fails more abruptly than [`Srkn11b`](crate::integrate::Srkn11b).
+/// errors stay bounded, phase errors grow with time. Some of its drifts and kicks go backwards,
+/// and steps that are too long fail abruptly.
 ///
 /// It is for systems with a constant mass matrix and accelerations without velocities, and compiles
 /// for no others. Dense output is the quintic through coordinates, velocities and accelerations at

@@ -4,7 +4,7 @@ use super::systems::{DoublePendulum, Pendulum, SHAKEN, double_pendulum, pendulum
 use super::{distance, fixed};
 use crate::integrate::method::Method;
 use crate::integrate::{
-    Dop853, Dprkn8, Dprkn12, Leapfrog, Rk4, Srkn6b, Srkn11b, Srkn14a, SymplecticEuler, Tsit5, solve,
+    Dop853, Dprkn8, Dprkn12, Leapfrog, Rk4, Srkn6b, Srkn14a, SymplecticEuler, Tsit5, solve,
 };
 use crate::system::Dynamics;
 
@@ -64,7 +64,6 @@ fn on_the_pendulum() {
     simple(SymplecticEuler, 1, 1000);
     simple(Leapfrog, 2, 200);
     simple(Srkn6b, 4, 40);
-    simple(Srkn11b, 6, 20);
     simple(Srkn14a, 6, 30);
     simple(Rk4, 4, 200);
     simple(Tsit5, 5, 100);
@@ -78,7 +77,6 @@ fn with_a_driven_pivot() {
     driven(&shaken(), SymplecticEuler, 1, 2000);
     driven(&shaken(), Leapfrog, 2, 400);
     driven(&shaken(), Srkn6b, 4, 100);
-    driven(&shaken(), Srkn11b, 6, 40);
     driven(&shaken(), Srkn14a, 6, 40);
     driven(&shaken(), Rk4, 4, 400);
     driven(&shaken(), Tsit5, 5, 200);
@@ -145,7 +143,6 @@ fn of_dense_output() {
     // The velocities are the derivative of a quintic that shares the error of the step.
     assert_dense(Rk4, 30, 4.0, 4.0);
     assert_dense(Srkn6b, 20, 4.0, 4.0);
-    assert_dense(Srkn11b, 20, 5.0, 5.0);
     assert_dense(Srkn14a, 20, 5.0, 5.0);
     assert_dense(Tsit5, 20, 4.0, 5.0);
     assert_dense(Dop853, 10, 7.0, 8.0);
