@@ -19,6 +19,9 @@ mod simd;
 pub mod system;
 pub mod time;
 
+/// The crate of the matrices and vectors that this one gives.
+pub use nalgebra;
+
 #[doc(hidden)]
 pub use system::generated as __private;
 

@@ -38,6 +38,7 @@ pub mod controller {
 }
 
 mod batch;
+mod data;
 pub(crate) mod events;
 mod integrator;
 pub(crate) mod interpolant;
@@ -50,6 +51,7 @@ mod state;
 pub(crate) mod step;
 
 pub use batch::{Batch, Batched, Outcome, Problem};
+pub use data::{ColumnError, LengthError, Table};
 pub use events::{Direction, Event, Occurrence, Status};
 pub use integrator::Integrator;
 pub use methods::auto::Auto;
@@ -67,7 +69,7 @@ pub use methods::srkn14a::Srkn14a;
 pub use methods::symplectic_euler::SymplecticEuler;
 pub use methods::taylor::Taylor;
 pub use methods::tsit5::Tsit5;
-pub use solution::{Failure, Solution, Stats};
+pub use solution::{Failure, Solution, States, Stats};
 pub use solve::{Solve, solve};
 pub use state::State;
 pub use step::adaptive::AdaptiveStep;

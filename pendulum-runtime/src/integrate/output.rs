@@ -1,6 +1,7 @@
 //! Which states are kept.
 
 use crate::error::Error;
+use crate::integrate::data::label::Source;
 use crate::integrate::events::{Occurrence, Status};
 use crate::integrate::interpolant::dense::DenseOutput;
 use crate::integrate::method::Method;
@@ -9,7 +10,7 @@ use crate::integrate::state::State;
 use crate::integrate::step::field::first_in_state;
 use crate::integrate::step::integration::Integration;
 use crate::scalar::Float;
-use crate::system::{Dynamics, System};
+use crate::system::{Dynamics, Facts, System};
 
 /// The greatest number of states that an interval between outputs may ask for.
 const MOST: f64 = 1e7;
@@ -111,10 +112,11 @@ pub(crate) struct Recorder<'a, T, const N: usize> {
     q: Vec<[T; N]>,
     v: Vec<[T; N]>,
     events: Vec<Occurrence<T, N>>,
+    labels: Source,
 }
 
 impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
-    pub(crate) fn new(output: Output<'a>, interval: (f64, f64)) -> Self {
+    pub(crate) fn new(output: Output<'a>, interval: (f64, f64), facts: &'static Facts) -> Self {
         let onwards = direction(interval.0, interval.1);
         Self {
             output,
@@ -127,6 +129,7 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
             q: Vec::new(),
             v: Vec::new(),
             events: Vec::new(),
+            labels: Source::Facts(facts),
         }
     }
 
@@ -237,8 +240,8 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
         if let Output::End = self.output {
             self.push(end);
         }
-        let Self { dense, t, q, v, events, .. } = self;
-        Solution { t, q, v, end, status, events, stats, dense }
+        let Self { dense, t, q, v, events, labels, .. } = self;
+        Solution { t, q, v, end, status, events, stats, dense, labels }
     }
 
     /// The failure that leaves `end` as the last state.

@@ -1,17 +1,49 @@
 //! What an integration gives back.
 
 use crate::error::Error;
+use crate::integrate::data::label::Source;
 use crate::integrate::events::{Occurrence, Status};
 use crate::integrate::interpolant::dense::DenseOutput;
 use crate::integrate::state::State;
 use crate::motion::Side;
 use crate::scalar::Float;
 use core::fmt;
+use core::iter::FusedIterator;
+use core::ops::Range;
 
 /// The motion over an interval, at the times asked for.
 ///
 /// At a kink the velocities have two values; where one is given, it is the one after the kink.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// It iterates over its [`State`]s and gives columns by name; `Display` prints a short table.
+///
+/// ```
+/// use pendulum_runtime::prelude::*;
+///
+/// # mod system {
+/// pendulum_runtime::lagrangian! {
+///     pub struct Pendulum { L: m, g: m/s^2 = 9.81 }
+///     coordinate θ: rad;
+///     let y = L * [sin(θ), -cos(θ)];
+///     kinetic = |ẏ|^2/2;
+///     potential = g*height(y);
+/// }
+/// # }
+/// # use system::Pendulum;
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let pendulum = Pendulum::new(1.0);
+/// let solution = solve(&pendulum, (0.0, 2.0), [0.5], [0.0]).every(0.5).run()?;
+/// for state in &solution {
+///     println!("{:.1} s: {:.4} rad", state.t, state.q[0]);
+/// }
+/// let fastest = solution.column("θ̇")?.into_iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+/// assert!(fastest < 2.0 * 9.81_f64.sqrt() * 0.25_f64.sin());
+/// let energy = solution.energy(&pendulum);
+/// assert!((energy[4] - energy[0]).abs() < 1e-5);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Solution<T, const N: usize> {
     /// The output times; only the last time reached if none were asked for.
@@ -30,6 +62,8 @@ pub struct Solution<T, const N: usize> {
     /// What it took.
     pub stats: Stats,
     pub(crate) dense: Option<DenseOutput<T, N>>,
+    /// The names and units of coordinates and velocities.
+    pub(crate) labels: Source,
 }
 
 impl<T: Float, const N: usize> Solution<T, N> {
@@ -44,6 +78,81 @@ impl<T: Float, const N: usize> Solution<T, N> {
     /// The same, at a kink from the given side.
     pub fn at_side(&self, t: f64, side: Side) -> Option<State<T, N>> {
         self.dense.as_ref()?.at(t, side)
+    }
+}
+
+/// Equal in all numbers, in the names of the columns and in why and how it ended.
+impl<T: PartialEq, const N: usize> PartialEq for Solution<T, N> {
+    fn eq(&self, other: &Self) -> bool {
+        let Self { t, q, v, end, status, events, stats, dense, labels } = self;
+        (t, q, v, end) == (&other.t, &other.q, &other.v, &other.end)
+            && (status, events, stats) == (&other.status, &other.events, &other.stats)
+            && *dense == other.dense
+            && labels.labels(N) == other.labels.labels(N)
+    }
+}
+
+impl<T: Copy, const N: usize> Solution<T, N> {
+    /// The number of output times.
+    pub fn len(&self) -> usize {
+        self.t.len()
+    }
+
+    /// Whether there is no output time, as after an error before the first.
+    pub fn is_empty(&self) -> bool {
+        self.t.is_empty()
+    }
+
+    /// The state at the output time with this index.
+    pub fn get(&self, index: usize) -> Option<State<T, N>> {
+        Some(State { t: *self.t.get(index)?, q: *self.q.get(index)?, v: *self.v.get(index)? })
+    }
+
+    /// The states at the output times, in order.
+    pub fn iter(&self) -> States<'_, T, N> {
+        States { solution: self, indices: 0..self.len() }
+    }
+}
+
+/// The states of a [`Solution`] in order.
+#[derive(Clone, Debug)]
+pub struct States<'a, T, const N: usize> {
+    solution: &'a Solution<T, N>,
+    indices: Range<usize>,
+}
+
+impl<T: Copy, const N: usize> Iterator for States<'_, T, N> {
+    type Item = State<T, N>;
+
+    fn next(&mut self) -> Option<State<T, N>> {
+        self.solution.get(self.indices.next()?)
+    }
+
+    fn nth(&mut self, count: usize) -> Option<State<T, N>> {
+        self.solution.get(self.indices.nth(count)?)
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        self.indices.size_hint()
+    }
+}
+
+impl<T: Copy, const N: usize> DoubleEndedIterator for States<'_, T, N> {
+    fn next_back(&mut self) -> Option<State<T, N>> {
+        self.solution.get(self.indices.next_back()?)
+    }
+}
+
+impl<T: Copy, const N: usize> ExactSizeIterator for States<'_, T, N> {}
+
+impl<T: Copy, const N: usize> FusedIterator for States<'_, T, N> {}
+
+impl<'a, T: Copy, const N: usize> IntoIterator for &'a Solution<T, N> {
+    type Item = State<T, N>;
+    type IntoIter = States<'a, T, N>;
+
+    fn into_iter(self) -> States<'a, T, N> {
+        self.iter()
     }
 }
 

@@ -14,7 +14,7 @@ use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::fixed::FixedStep;
 use crate::integrate::step::integration::Integration;
 use crate::scalar::Float;
-use crate::system::Dynamics;
+use crate::system::{Dynamics, System};
 
 /// Integrates `dynamics` over the interval `time = (start, end)` in seconds from the coordinates
 /// `q` and the velocities `v`.
@@ -186,7 +186,8 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, 
         M: Method<D, N>,
         C: Controller<M, D, N>,
     {
-        let mut recorder = Recorder::new(self.output, self.time);
+        let facts = const { &<D::System as System<N>>::FACTS };
+        let mut recorder = Recorder::new(self.output, self.time, facts);
         let given = State { t: self.time.0, q: self.q, v: self.v };
         match self.check().and_then(|()| {
             let (t, q, v) = (self.time.0, self.q, self.v);

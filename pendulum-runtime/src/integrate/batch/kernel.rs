@@ -282,13 +282,16 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             (stats.accepted, stats.evaluations) = (taken, tried * self.rule.order as u64);
             let time = self.problems[index].time;
             if error.is_some() {
-                self.finish(l, outcome(time, State::from(&from), stats, error));
+                self.finish(l, outcome::<S, N>(time, State::from(&from), stats, error));
             } else if close {
                 (self.lanes.high.0[l], self.lanes.low.0[l]) = (time.1, 0.0);
-                self.finish(l, outcome(time, State::from(&node(&self.lanes, l)), stats, None));
+                self.finish(
+                    l,
+                    outcome::<S, N>(time, State::from(&node(&self.lanes, l)), stats, None),
+                );
             } else if self.batch.max_steps <= steps {
                 let error = Error::MaxSteps { t: to.t.to_f64(), max_steps: self.batch.max_steps };
-                self.finish(l, outcome(time, State::from(&to), stats, Some(error)));
+                self.finish(l, outcome::<S, N>(time, State::from(&to), stats, Some(error)));
             }
         }
         self.fill();
@@ -387,7 +390,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             Err(error) => Some(error),
         };
         let stats = Stats::new(<Taylor as Method<S, N>>::NAME);
-        self.outcomes[self.next] = Some(outcome(problem.time, given, stats, error));
+        self.outcomes[self.next] = Some(outcome::<S, N>(problem.time, given, stats, error));
     }
 
     /// Gives the lanes that stay free what one stands for that is under way, so that no odd number

@@ -195,13 +195,13 @@ impl<const N: usize> Batch<N> {
 pub type Outcome<T, const N: usize> = Result<Solution<T, N>, Failure<T, N>>;
 
 /// The end of a motion over an interval.
-fn outcome<T: Float, const N: usize>(
+fn outcome<S: System<N, Scalar: Float>, const N: usize>(
     time: (f64, f64),
-    end: State<T, N>,
+    end: State<S::Scalar, N>,
     stats: Stats,
     error: Option<Error>,
-) -> Outcome<T, N> {
-    let recorder = Recorder::new(Output::End, time);
+) -> Outcome<S::Scalar, N> {
+    let recorder = Recorder::new(Output::End, time, const { &S::FACTS });
     match error {
         None => Ok(recorder.finish(end, crate::integrate::events::Status::Completed, stats)),
         Some(error) => Err(recorder.fail(error, end, stats)),

@@ -1,0 +1,176 @@
+//! Columns of a solution: coordinates and velocities by name, energies along the motion.
+
+use super::label::Label;
+use super::name::{self, Name};
+use crate::integrate::solution::Solution;
+use crate::integrate::state::State;
+use crate::motion::Side;
+use crate::scalar::Float;
+use crate::system::{Dynamics, Purpose, System, scalar_time};
+use crate::time::Time;
+use core::fmt;
+
+/// Reason for which a solution has no column of a name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ColumnError {
+    /// The name asked for.
+    pub name: String,
+    /// The nearest name, if one is near enough to be meant.
+    pub nearest: Option<String>,
+    /// The names of all columns.
+    pub columns: Vec<String>,
+}
+
+/// The greatest number of names that a message lists.
+const LISTED: usize = 12;
+
+impl ColumnError {
+    pub(super) fn new<'a>(name: &str, columns: impl Iterator<Item = &'a str>) -> Self {
+        let columns: Vec<String> = columns.map(String::from).collect();
+        let wanted = name::read(name);
+        let length = wanted.base.chars().count();
+        let limit = if length < 2 { 2 } else { 2 + length / 4 * 2 };
+        let nearest = columns
+            .iter()
+            .map(|column| (name::distance(&wanted, &name::read(column)), column))
+            .filter(|&(distance, _)| distance <= limit)
+            .min_by_key(|&(distance, _)| distance)
+            .map(|(_, column)| column.clone());
+        Self { name: name.into(), nearest, columns }
+    }
+
+    /// The members of the family that the name is the name of.
+    fn members(&self) -> Vec<&str> {
+        let Name { base, dots } = name::read(&self.name);
+        let member = |column: &&str| {
+            let found = name::read(column);
+            found.dots == dots
+                && found.base.strip_prefix(&base).is_some_and(|index| index.starts_with('['))
+        };
+        self.columns.iter().map(String::as_str).filter(member).collect()
+    }
+}
+
+impl fmt::Display for ColumnError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, nearest, columns } = self;
+        if let [first, .., last] = self.members()[..] {
+            return write!(f, "`{name}` is a family; name a member, `{first}` … `{last}`");
+        }
+        if name::read(name).dots == 2 {
+            return write!(
+                f,
+                "a solution holds no accelerations, so there is no column `{name}`; evaluate them by `Dynamics::accelerations_at`"
+            );
+        }
+        write!(f, "there is no column `{name}`; ")?;
+        if let Some(nearest) = nearest {
+            return write!(f, "did you mean `{nearest}`?");
+        }
+        write!(f, "there are ")?;
+        for (index, column) in columns.iter().take(LISTED).enumerate() {
+            write!(f, "{}`{column}`", if index == 0 { "" } else { ", " })?;
+        }
+        if LISTED < columns.len() { write!(f, ", …") } else { Ok(()) }
+    }
+}
+
+impl core::error::Error for ColumnError {}
+
+impl<T: Float, const N: usize> Solution<T, N> {
+    /// The names of all columns: `t`, the coordinates as written, the velocities with a dot, as
+    /// `θ̇`, or with the suffix `_dot` where the block is in ASCII.
+    pub fn column_names(&self) -> Vec<String> {
+        self.labels.labels(N).names().map(String::from).collect()
+    }
+
+    /// The values of a coordinate, of a velocity or of the time `t` at all output times.
+    ///
+    /// Names are read as in a `lagrangian!` block: `"θ"` or `"theta"`; `"θ̇"`, `"theta_dot"` or
+    /// `"dot(θ)"`; a member of a family as `"θ[2]"`, its velocity as `"θ̇[2]"` or `"theta_dot[2]"`.
+    /// Coordinates without a name are `"q[0]"`, …, their velocities `"v[0]"`, ….
+    ///
+    /// # Errors
+    /// A name that is none of them; the error has the nearest one.
+    pub fn column(&self, name: &str) -> Result<Vec<T>, ColumnError> {
+        let wanted = name::read(name);
+        if wanted == name::read("t") {
+            return Ok(self.t.iter().map(|&t| T::from_f64(t)).collect());
+        }
+        let labels = self.labels.labels(N);
+        let found =
+            |labels: &[Label]| labels.iter().position(|label| name::read(&label.name) == wanted);
+        if let Some(index) = found(&labels.coordinates) {
+            return Ok(self.q.iter().map(|q| q[index]).collect());
+        }
+        if let Some(index) = found(&labels.velocities) {
+            return Ok(self.v.iter().map(|v| v[index]).collect());
+        }
+        Err(ColumnError::new(name, labels.names()))
+    }
+
+    /// The Jacobi integral q̇·∂L/∂q̇ − L at all output times, as
+    /// [`Dynamics::energy_at`] gives it.
+    ///
+    /// Where two states have the same time, as [`every_step`](crate::integrate::Solve::every_step)
+    /// gives them at a kink, driven inputs have their values before it for the first of them.
+    pub fn energy<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<T> {
+        self.evaluate(
+            |t, q, v| dynamics.energy_at(t, q, v),
+            |t, q, v| {
+                let inputs = dynamics.inputs(t, Side::Before, Purpose::Energy);
+                dynamics.system().energy(scalar_time(t), q, v, &inputs)
+            },
+        )
+    }
+
+    /// dE/dt at all output times, as [`Dynamics::power_at`] gives it.
+    ///
+    /// At two states of the same time as [`energy`](Self::energy).
+    pub fn power<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<T> {
+        self.evaluate(
+            |t, q, v| dynamics.power_at(t, q, v),
+            |t, q, v| {
+                let inputs = dynamics.inputs(t, Side::Before, Purpose::Power);
+                dynamics.system().power(scalar_time(t), q, v, &inputs)
+            },
+        )
+    }
+
+    /// The conserved quantities of the system at all output times: a column for each name in
+    /// `FACTS.conserved`, in this order.
+    ///
+    /// At two states of the same time as [`energy`](Self::energy).
+    pub fn conserved<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
+        let count = <D::System as System<N>>::FACTS.conserved.len();
+        let at = |side: Side, t: Time, q: &[T; N], v: &[T; N]| {
+            let inputs = dynamics.inputs(t, side, Purpose::Momenta);
+            let mut values = vec![T::from_f64(0.0); count];
+            dynamics.system().conserved(scalar_time(t), q, v, &inputs, &mut values);
+            values
+        };
+        let rows = self.evaluate(
+            |t, q, v| at(Side::After, Time::new(t), q, v),
+            |t, q, v| at(Side::Before, t, q, v),
+        );
+        (0..count).map(|index| rows.iter().map(|row| row[index]).collect()).collect()
+    }
+
+    /// `after` at all output times but those at which the next state has the same time; `before`
+    /// at these.
+    fn evaluate<U>(
+        &self,
+        after: impl Fn(f64, &[T; N], &[T; N]) -> U,
+        before: impl Fn(Time, &[T; N], &[T; N]) -> U,
+    ) -> Vec<U> {
+        let one = |(index, state): (usize, State<T, N>)| {
+            if self.t.get(index + 1) == Some(&state.t) {
+                before(Time::new(state.t), &state.q, &state.v)
+            } else {
+                after(state.t, &state.q, &state.v)
+            }
+        };
+        self.iter().enumerate().map(one).collect()
+    }
+}

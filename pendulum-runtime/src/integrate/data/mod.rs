@@ -1,0 +1,9 @@
+//! Solutions as data: columns by name, energies along the motion, tables.
+
+mod column;
+pub(crate) mod label;
+mod name;
+mod table;
+
+pub use column::ColumnError;
+pub use table::{LengthError, Table};

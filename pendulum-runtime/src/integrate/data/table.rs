@@ -1,0 +1,230 @@
+//! A table of columns with names and units.
+
+use super::column::ColumnError;
+use super::label::Labels;
+use super::name;
+use crate::integrate::solution::Solution;
+use crate::scalar::Float;
+use core::fmt;
+
+/// Columns of equal length with their names and units: the states of a [`Solution`], and whatever
+/// was put beside them.
+///
+/// `Display` prints the first and the last rows in six digits; a precision gives more (`{:.12}`).
+///
+/// ```
+/// use pendulum_runtime::prelude::*;
+///
+/// # mod system {
+/// pendulum_runtime::lagrangian! {
+///     pub struct Spring { k: N/m, m: kg }
+///     coordinate x: m;
+///     kinetic = m*ẋ^2/2;
+///     potential = k*x^2/2;
+/// }
+/// # }
+/// # use system::Spring;
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let spring = Spring::new(4.0, 1.0);
+/// let solution = solve(&spring, (0.0, 1.0), [1.0], [0.0]).every(0.25).run()?;
+/// let table = solution.table().with("energy", "J", solution.energy(&spring))?;
+/// assert_eq!(table.header().collect::<Vec<_>>(), ["t [s]", "x", "ẋ", "energy [J]"]);
+/// assert!(table.column("energy")?.iter().all(|energy| (energy - 2.0).abs() < 1e-5));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table<T> {
+    columns: Vec<Column<T>>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Column<T> {
+    name: String,
+    unit: String,
+    values: Vec<T>,
+}
+
+/// A column that is not as long as the others of its table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct LengthError {
+    /// The name of the column.
+    pub name: String,
+    /// Its length.
+    pub length: usize,
+    /// The number of rows of the table.
+    pub rows: usize,
+}
+
+impl fmt::Display for LengthError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, length, rows } = self;
+        write!(
+            f,
+            "the column `{name}` has {length} numbers, the table {rows} rows; give one number a row"
+        )
+    }
+}
+
+impl core::error::Error for LengthError {}
+
+impl<T: Float, const N: usize> Solution<T, N> {
+    /// Time, coordinates and velocities at all output times.
+    pub fn table(&self) -> Table<T> {
+        let time = Column {
+            name: "t".into(),
+            unit: "s".into(),
+            values: self.t.iter().map(|&t| T::from_f64(t)).collect(),
+        };
+        let mut columns = vec![time];
+        let Labels { coordinates, velocities } = self.labels.labels(N);
+        for (labels, rows) in [(coordinates, &self.q), (velocities, &self.v)] {
+            columns.extend(labels.into_iter().enumerate().map(|(index, label)| Column {
+                name: label.name,
+                unit: label.unit,
+                values: rows.iter().map(|row| row[index]).collect(),
+            }));
+        }
+        Table { columns }
+    }
+}
+
+impl<T: Float> Table<T> {
+    /// Puts another column beside the others; the unit may be empty.
+    ///
+    /// # Errors
+    /// A column that has not one number for each row.
+    pub fn with(
+        mut self,
+        name: impl Into<String>,
+        unit: impl Into<String>,
+        values: Vec<T>,
+    ) -> Result<Self, LengthError> {
+        let (name, rows) = (name.into(), self.rows());
+        if values.len() != rows {
+            return Err(LengthError { name, length: values.len(), rows });
+        }
+        self.columns.push(Column { name, unit: unit.into(), values });
+        Ok(self)
+    }
+
+    /// The number of rows.
+    pub fn rows(&self) -> usize {
+        self.columns[0].values.len()
+    }
+
+    /// The names of all columns, each with its unit in brackets if it has one: `θ [rad]`.
+    pub fn header(&self) -> impl Iterator<Item = String> {
+        self.columns.iter().map(|Column { name, unit, .. }| {
+            if unit.is_empty() { name.clone() } else { format!("{name} [{unit}]") }
+        })
+    }
+
+    /// The numbers of the column with this name, as [`Solution::column`] reads it.
+    ///
+    /// # Errors
+    /// A name that no column has; the error has the nearest one.
+    pub fn column(&self, name: &str) -> Result<&[T], ColumnError> {
+        let wanted = name::read(name);
+        let found = self.columns.iter().find(|column| name::read(&column.name) == wanted);
+        found.map(|column| column.values.as_slice()).ok_or_else(|| {
+            ColumnError::new(name, self.columns.iter().map(|column| column.name.as_str()))
+        })
+    }
+
+    /// The numbers of a row.
+    ///
+    /// # Panics
+    /// If there is no such row.
+    pub fn row(&self, index: usize) -> impl Iterator<Item = T> {
+        self.columns.iter().map(move |column| column.values[index])
+    }
+}
+
+/// The rows that are printed at each end.
+const ENDS: usize = 5;
+
+/// The columns that are printed.
+const COLUMNS: usize = 9;
+
+impl<T: Float> fmt::Display for Table<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let digits = f.precision().unwrap_or(6).max(1);
+        let shown: Vec<usize> = if self.rows() <= 2 * ENDS {
+            (0..self.rows()).collect()
+        } else {
+            (0..ENDS).chain(self.rows() - ENDS..self.rows()).collect()
+        };
+        let mut lines = vec![self.header().take(COLUMNS).collect::<Vec<_>>()];
+        let text = |value: T| number(value.to_f64(), digits);
+        lines.extend(shown.iter().map(|&row| self.row(row).take(COLUMNS).map(text).collect()));
+        let width = |column: usize| {
+            lines.iter().map(|line| columns(&line[column])).max().unwrap_or_default()
+        };
+        let widths: Vec<usize> = (0..lines[0].len()).map(width).collect();
+        let more = if COLUMNS < self.columns.len() { " …" } else { "" };
+        for (index, line) in lines.iter().enumerate() {
+            if index == ENDS + 1 && shown.len() < self.rows() {
+                writeln!(f, "… {} rows more …", self.rows() - shown.len())?;
+            }
+            for (column, (cell, width)) in line.iter().zip(&widths).enumerate() {
+                let gap = if column == 0 { 0 } else { 2 };
+                write!(f, "{:1$}{cell}", "", gap + width - columns(cell))?;
+            }
+            writeln!(f, "{more}")?;
+        }
+        Ok(())
+    }
+}
+
+/// The columns of a terminal that a text takes: marks above letters take none.
+fn columns(text: &str) -> usize {
+    text.chars().filter(|letter| !('\u{300}'..'\u{370}').contains(letter)).count()
+}
+
+/// A number in so many significant digits, with an exponent if it is very large or very small.
+fn number(value: f64, digits: usize) -> String {
+    let magnitude = value.abs();
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let scientific = format!("{value:.*e}", digits - 1);
+    let exponent: i32 = scientific
+        .split_once('e')
+        .and_then(|(_, exponent)| exponent.parse().ok())
+        .unwrap_or_default();
+    if (1e-4..1e15).contains(&magnitude) && exponent < digits as i32 {
+        let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+        return format!("{value:.decimals$}");
+    }
+    scientific
+}
+
+/// The table of the states, why the integration ended, and what it took.
+impl<T: Float, const N: usize> fmt::Display for Solution<T, N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(&self.table(), f)?;
+        writeln!(f, "{:?} at t = {}", self.status, self.end.t)?;
+        self.stats.fmt(f)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::number;
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!(
+            [0.1, -123.456789, 1e-7, 123456.7, 1234567.0, 0.0, -0.00012345678]
+                .map(|value| number(value, 6)),
+            ["0.100000", "-123.457", "1.00000e-7", "123457", "1.23457e6", "0", "-0.000123457"]
+                .map(String::from)
+        );
+        // Rounding changes the number of digits before the point.
+        assert_eq!(number(999999.7, 6), "1.00000e6");
+        assert_eq!(number(9.9999996, 6), "10.0000");
+        assert_eq!(number(f64::NAN, 6), "NaN");
+    }
+}
