@@ -13,6 +13,7 @@ use core::ops::{Add, AddAssign};
 /// their keys first.
 // The high words decide unless they are the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Time {
     hi: f64,
     lo: f64,

@@ -3,3 +3,7 @@
 #![allow(mixed_script_confusables, missing_docs)]
 
 mod columns;
+#[cfg(feature = "csv")]
+mod csv;
+#[cfg(feature = "serde")]
+mod serde;

@@ -42,6 +42,7 @@ use core::ops::Add;
 /// The second moments are kept about the centre of mass, where they do not depend on the pivot and
 /// cancel nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Body<T = f64> {
     /// The mass m, in kg.
     pub mass: T,

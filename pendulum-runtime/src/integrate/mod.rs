@@ -38,7 +38,7 @@ pub mod controller {
 }
 
 mod batch;
-mod data;
+pub(crate) mod data;
 pub(crate) mod events;
 mod integrator;
 pub(crate) mod interpolant;

@@ -158,6 +158,7 @@ impl<'a, T: Copy, const N: usize> IntoIterator for &'a Solution<T, N> {
 
 /// What an integration took.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Stats {
     /// The name of the method.

@@ -5,6 +5,7 @@ use crate::system::Facts;
 
 /// The name of a column and the unit of its numbers, empty where none was given.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Label {
     pub(crate) name: String,
     pub(crate) unit: String,

@@ -3,6 +3,8 @@
 mod column;
 pub(crate) mod label;
 mod name;
+#[cfg(feature = "serde")]
+pub(crate) mod serial;
 mod table;
 
 pub use column::ColumnError;

@@ -35,6 +35,8 @@ use core::fmt;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table<T> {
+    /// The times, which a short scalar does not hold.
+    t: Vec<f64>,
     columns: Vec<Column<T>>,
 }
 
@@ -86,7 +88,7 @@ impl<T: Float, const N: usize> Solution<T, N> {
                 values: rows.iter().map(|row| row[index]).collect(),
             }));
         }
-        Table { columns }
+        Table { t: self.t.clone(), columns }
     }
 }
 
@@ -111,7 +113,7 @@ impl<T: Float> Table<T> {
 
     /// The number of rows.
     pub fn rows(&self) -> usize {
-        self.columns[0].values.len()
+        self.t.len()
     }
 
     /// The names of all columns, each with its unit in brackets if it has one: `θ [rad]`.
@@ -142,6 +144,45 @@ impl<T: Float> Table<T> {
     }
 }
 
+#[cfg(feature = "csv")]
+impl<T: Float + fmt::Display + fmt::LowerExp> Table<T> {
+    /// Writes the table as comma-separated values in UTF-8: the [header](Self::header) and a line
+    /// for each row, with as many digits as tell the numbers apart.
+    ///
+    /// # Errors
+    /// What the writer reports.
+    pub fn to_csv(&self, writer: impl std::io::Write) -> std::io::Result<()> {
+        fn text<U: Float + fmt::Display + fmt::LowerExp>(value: U) -> String {
+            let magnitude = value.to_f64().abs();
+            let short = magnitude == 0.0 || (1e-5..1e16).contains(&magnitude);
+            if short || !value.is_finite() { format!("{value}") } else { format!("{value:e}") }
+        }
+        let mut csv = csv::Writer::from_writer(writer);
+        csv.write_record(self.header())?;
+        for row in 0..self.rows() {
+            csv.write_field(text(self.t[row]))?;
+            for column in &self.columns[1..] {
+                csv.write_field(text(column.values[row]))?;
+            }
+            csv.write_record(None::<&[u8]>)?;
+        }
+        csv.flush()
+    }
+}
+
+#[cfg(feature = "csv")]
+impl<T: Float + fmt::Display + fmt::LowerExp, const N: usize> Solution<T, N> {
+    /// Writes time, coordinates and velocities as comma-separated values with a header of names and
+    /// units, as [`Table::to_csv`]; further columns come by [`table`](Self::table) and
+    /// [`Table::with`].
+    ///
+    /// # Errors
+    /// What the writer reports.
+    pub fn to_csv(&self, writer: impl std::io::Write) -> std::io::Result<()> {
+        self.table().to_csv(writer)
+    }
+}
+
 /// The rows that are printed at each end.
 const ENDS: usize = 5;
 
@@ -158,7 +199,10 @@ impl<T: Float> fmt::Display for Table<T> {
         };
         let mut lines = vec![self.header().take(COLUMNS).collect::<Vec<_>>()];
         let text = |value: T| number(value.to_f64(), digits);
-        lines.extend(shown.iter().map(|&row| self.row(row).take(COLUMNS).map(text).collect()));
+        lines.extend(shown.iter().map(|&row| {
+            let values = self.row(row).take(COLUMNS).skip(1).map(text);
+            core::iter::once(number(self.t[row], digits)).chain(values).collect()
+        }));
         let width = |column: usize| {
             lines.iter().map(|line| columns(&line[column])).max().unwrap_or_default()
         };

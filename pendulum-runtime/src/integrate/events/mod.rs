@@ -59,6 +59,11 @@ pub enum Direction {
 
 /// An event that has happened.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(serialize = "T: serde::Serialize", deserialize = "T: serde::Deserialize<'de>"))
+)]
 #[non_exhaustive]
 pub struct Occurrence<T, const N: usize> {
     /// The index of the event in the list given.
@@ -71,6 +76,7 @@ pub struct Occurrence<T, const N: usize> {
 
 /// Why an integration ended where it did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Status {
     /// The end of the interval is reached.

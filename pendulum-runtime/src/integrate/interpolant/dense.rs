@@ -8,6 +8,11 @@ use crate::scalar::Float;
 
 /// The pieces of all steps.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(serialize = "T: serde::Serialize", deserialize = "T: serde::Deserialize<'de>"))
+)]
 pub(crate) struct DenseOutput<T, const N: usize> {
     start: State<T, N>,
     /// The direction of time: 1 or −1.
@@ -17,9 +22,24 @@ pub(crate) struct DenseOutput<T, const N: usize> {
     /// For each step where its values end, and what its terms are multiplied by.
     ends: Vec<(usize, Basis)>,
     /// For each step the state at its start and the terms of both polynomials.
+    #[cfg_attr(feature = "serde", serde(with = "crate::integrate::data::serial::rows"))]
     values: Vec<[T; N]>,
     /// The last state.
     end: State<T, N>,
+}
+
+#[cfg(feature = "serde")]
+impl<T, const N: usize> DenseOutput<T, N> {
+    /// Whether each step has its states and terms, as none has that was damaged on the way.
+    pub(crate) fn is_sound(&self) -> bool {
+        let mut begin = 0;
+        let whole = self.ends.iter().all(|&(end, _)| {
+            let sound = end.checked_sub(begin).is_some_and(|count| 2 <= count && count % 2 == 0);
+            begin = end;
+            sound
+        });
+        whole && self.spans.len() == self.ends.len() && begin == self.values.len()
+    }
 }
 
 impl<T: Float, const N: usize> DenseOutput<T, N> {

@@ -33,6 +33,7 @@ pub struct Interpolant<T, const N: usize> {
 
 /// What the terms of a [`Interpolant`] are multiplied by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Basis {
     /// y(θ) = y₀ + θ(F₀ + (1−θ)(F₁ + θ(F₂ + (1−θ)(F₃ + …)))), the form of Hairer, Nørsett and
     /// Wanner (1993), II.6: F₀ is the increment, so that both ends are met exactly, and F₁ and F₂

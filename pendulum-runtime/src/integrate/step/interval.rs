@@ -10,6 +10,7 @@ use crate::time::Time;
 
 /// One step in time, free of kinks inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StepInterval {
     /// Where it starts.
     pub start: Time,

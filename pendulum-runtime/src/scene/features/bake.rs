@@ -10,12 +10,47 @@ use crate::scene::state::hermite;
 /// The motion of a pendulum as keys, joined by the cubics through coordinates and velocities at
 /// both ends (Hermite).
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        try_from = "Keys<T, N>",
+        bound(serialize = "T: serde::Serialize", deserialize = "T: serde::Deserialize<'de>")
+    )
+)]
 pub struct Baked<T, const N: usize> {
     /// The length of a tick in seconds.
     step: f64,
     /// The ticks of the keys since the first.
     ticks: Vec<u32>,
+    #[cfg_attr(feature = "serde", serde(with = "crate::integrate::data::serial::pairs"))]
     states: Vec<([T; N], [T; N])>,
+}
+
+/// What was read, before it was checked.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(bound(deserialize = "T: serde::Deserialize<'de>"))]
+struct Keys<T, const N: usize> {
+    step: f64,
+    ticks: Vec<u32>,
+    #[serde(deserialize_with = "crate::integrate::data::serial::pairs::deserialize")]
+    states: Vec<([T; N], [T; N])>,
+}
+
+#[cfg(feature = "serde")]
+impl<T, const N: usize> TryFrom<Keys<T, N>> for Baked<T, N> {
+    type Error = &'static str;
+
+    fn try_from(Keys { step, ticks, states }: Keys<T, N>) -> Result<Self, Self::Error> {
+        if ticks.is_empty() || ticks.len() != states.len() {
+            return Err("not one state for each key");
+        }
+        if !ticks.is_sorted_by(|a, b| a < b) {
+            return Err("keys that are not in ascending order");
+        }
+        Ok(Self { step, ticks, states })
+    }
 }
 
 impl<T: Lane + Float, const N: usize> Baked<T, N> {

@@ -1,0 +1,192 @@
+//! Writing and reading by `serde` of what holds arrays of any length.
+
+use super::label::{Label, Labels, Source};
+use crate::integrate::events::{Occurrence, Status};
+use crate::integrate::interpolant::dense::DenseOutput;
+use crate::integrate::solution::{Solution, Stats};
+use crate::integrate::state::State;
+use core::fmt;
+use core::marker::PhantomData;
+use serde::de::{Error as _, SeqAccess, Visitor};
+use serde::ser::SerializeTuple;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::sync::{Mutex, PoisonError};
+
+/// An array, which `serde` itself knows up to a length of 32 and of known length only.
+struct Row<A>(A);
+
+impl<T: Serialize, const N: usize> Serialize for Row<&[T; N]> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut tuple = serializer.serialize_tuple(N)?;
+        for value in self.0 {
+            tuple.serialize_element(value)?;
+        }
+        tuple.end()
+    }
+}
+
+impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Row<[T; N]> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Rows<T, const N: usize>(PhantomData<T>);
+
+        impl<'de, T: Deserialize<'de>, const N: usize> Visitor<'de> for Rows<T, N> {
+            type Value = [T; N];
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "{N} numbers")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<[T; N], A::Error> {
+                let mut values = Vec::new();
+                while values.len() < N {
+                    match list.next_element()? {
+                        Some(value) => values.push(value),
+                        None => return Err(A::Error::invalid_length(values.len(), &self)),
+                    }
+                }
+                let length = values.len();
+                values.try_into().map_err(|_| A::Error::invalid_length(length, &self))
+            }
+        }
+
+        deserializer.deserialize_tuple(N, Rows(PhantomData)).map(Row)
+    }
+}
+
+/// For `#[serde(with)]`: an array.
+pub(crate) mod array {
+    use super::{Deserialize, Deserializer, Row, Serialize, Serializer};
+
+    pub(crate) fn serialize<T: Serialize, S: Serializer, const N: usize>(
+        array: &[T; N],
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        Row(array).serialize(serializer)
+    }
+
+    pub(crate) fn deserialize<'de, T: Deserialize<'de>, D: Deserializer<'de>, const N: usize>(
+        deserializer: D,
+    ) -> Result<[T; N], D::Error> {
+        Row::deserialize(deserializer).map(|Row(array)| array)
+    }
+}
+
+/// For `#[serde(with)]`: a list of arrays.
+pub(crate) mod rows {
+    use super::{Deserialize, Deserializer, Row, Serialize, Serializer};
+
+    pub(crate) fn serialize<T: Serialize, S: Serializer, const N: usize>(
+        rows: &[[T; N]],
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(rows.iter().map(Row))
+    }
+
+    pub(crate) fn deserialize<'de, T: Deserialize<'de>, D: Deserializer<'de>, const N: usize>(
+        deserializer: D,
+    ) -> Result<Vec<[T; N]>, D::Error> {
+        let rows = Vec::<Row<[T; N]>>::deserialize(deserializer)?;
+        Ok(rows.into_iter().map(|Row(row)| row).collect())
+    }
+}
+
+/// For `#[serde(with)]`: a list of pairs of arrays.
+pub(crate) mod pairs {
+    use super::{Deserialize, Deserializer, Row, Serialize, Serializer};
+
+    type Pair<T, const N: usize> = ([T; N], [T; N]);
+
+    pub(crate) fn serialize<T: Serialize, S: Serializer, const N: usize>(
+        pairs: &[Pair<T, N>],
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(pairs.iter().map(|(a, b)| (Row(a), Row(b))))
+    }
+
+    pub(crate) fn deserialize<'de, T: Deserialize<'de>, D: Deserializer<'de>, const N: usize>(
+        deserializer: D,
+    ) -> Result<Vec<Pair<T, N>>, D::Error> {
+        let pairs = Vec::<(Row<[T; N]>, Row<[T; N]>)>::deserialize(deserializer)?;
+        Ok(pairs.into_iter().map(|(Row(a), Row(b))| (a, b)).collect())
+    }
+}
+
+/// The names of methods read so far: they live as long as the program, as those in programs do.
+static NAMES: Mutex<Vec<&'static str>> = Mutex::new(Vec::new());
+
+/// Bounds on what files can make live for ever.
+const MOST_NAMES: usize = 256;
+const LONGEST_NAME: usize = 64;
+
+/// Stats as they are read.
+#[derive(Deserialize)]
+struct ReadStats {
+    method: String,
+    evaluations: u64,
+    accepted: u64,
+    rejected: u64,
+    kinks: u64,
+}
+
+impl<'de> Deserialize<'de> for Stats {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let ReadStats { method, evaluations, accepted, rejected, kinks } =
+            ReadStats::deserialize(deserializer)?;
+        let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = names.iter().find(|known| **known == method).copied();
+        if known.is_none() && (LONGEST_NAME < method.len() || MOST_NAMES <= names.len()) {
+            return Err(D::Error::custom("not the name of a method"));
+        }
+        let method = known.unwrap_or_else(|| {
+            let name: &'static str = method.leak();
+            names.push(name);
+            name
+        });
+        Ok(Self { method, evaluations, accepted, rejected, kinks })
+    }
+}
+
+/// A solution as it is written.
+#[derive(Serialize, Deserialize)]
+#[serde(bound(serialize = "T: Serialize + Clone", deserialize = "T: Deserialize<'de>"))]
+struct Parts<T, const N: usize> {
+    coordinates: Vec<Label>,
+    velocities: Vec<Label>,
+    t: Vec<f64>,
+    #[serde(with = "rows")]
+    q: Vec<[T; N]>,
+    #[serde(with = "rows")]
+    v: Vec<[T; N]>,
+    end: State<T, N>,
+    status: Status,
+    events: Vec<Occurrence<T, N>>,
+    stats: Stats,
+    dense: Option<DenseOutput<T, N>>,
+}
+
+impl<T: Serialize + Clone, const N: usize> Serialize for Solution<T, N> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self { t, q, v, end, status, events, stats, dense, labels } = self.clone();
+        let Labels { coordinates, velocities } = labels.labels(N);
+        let parts = Parts { coordinates, velocities, t, q, v, end, status, events, stats, dense };
+        parts.serialize(serializer)
+    }
+}
+
+impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Solution<T, N> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let parts = Parts::deserialize(deserializer)?;
+        let Parts { coordinates, velocities, t, q, v, end, status, events, stats, dense } = parts;
+        if [coordinates.len(), velocities.len()] != [N; 2] {
+            return Err(D::Error::custom(format!("not the names of {N} coordinates")));
+        }
+        if [q.len(), v.len()] != [t.len(); 2] {
+            return Err(D::Error::custom("not as many states as times"));
+        }
+        if dense.as_ref().is_some_and(|dense| !dense.is_sound()) {
+            return Err(D::Error::custom("the dense output is damaged"));
+        }
+        let labels = Source::Read(Labels { coordinates, velocities });
+        Ok(Self { t, q, v, end, status, events, stats, dense, labels })
+    }
+}

@@ -1,0 +1,106 @@
+//! Solutions, states, bodies and baked motions written as text and read again.
+
+use pendulum_runtime::body::Body;
+use pendulum_runtime::integrate::{Event, Stats};
+use pendulum_runtime::motion::Still;
+use pendulum_runtime::prelude::*;
+use pendulum_runtime::scene::{Baked, Scene};
+
+mod blocks {
+    use pendulum_runtime::lagrangian;
+
+    lagrangian! {
+        pub struct Double { g: m/s^2, l: m }
+        coordinate θ[2]: rad;
+        let y[k in 0..2] = sum(j in 0..=k, l*[sin(θ[j]), -cos(θ[j])]);
+        kinetic = |ẏ[0]|^2/2 + |ẏ[1]|^2/2;
+        potential = g*height(y[0]) + g*height(y[1]);
+    }
+
+    lagrangian! {
+        pub struct Bob { m: kg, L: m, g: m/s^2 = 9.81 }
+        coordinate θ: rad;
+        driven x: [m; 2];
+        let y = x + L * [sin(θ), -cos(θ)];
+        kinetic = m/2 * |ẏ|^2;
+        potential = m*g*height(y);
+    }
+}
+
+use blocks::{Bob, Double};
+
+fn solution() -> Solution<f64, 2> {
+    let upright = |_: f64, q: &[f64; 2], _: &[f64; 2]| q[0];
+    let events = [Event::new(&upright)];
+    solve(&Double::new(9.81, 0.5), (0.0, 1.5), [1.0, 0.7], [0.1, 0.0])
+        .every(0.25)
+        .dense()
+        .events(&events)
+        .run()
+        .unwrap()
+}
+
+#[test]
+fn a_solution_comes_back_whole() {
+    let solution = solution();
+    assert!(!solution.events.is_empty());
+    let text = serde_json::to_string(&solution).unwrap();
+    let read: Solution<f64, 2> = serde_json::from_str(&text).unwrap();
+    assert_eq!(read, solution);
+    assert_eq!(read.column("theta_dot[1]"), solution.column("θ̇[1]"));
+    assert_eq!(read.at(0.7321), solution.at(0.7321));
+    assert_eq!(read.to_string(), solution.to_string());
+    assert_eq!(serde_json::to_string(&read).unwrap(), text);
+}
+
+#[test]
+fn a_damaged_solution_is_refused() {
+    let value = serde_json::to_value(solution()).unwrap();
+    let damaged = |change: fn(&mut serde_json::Value)| {
+        let mut value = value.clone();
+        change(&mut value);
+        serde_json::from_value::<Solution<f64, 2>>(value).unwrap_err().to_string()
+    };
+    let message = damaged(|value| value["q"].as_array_mut().unwrap().truncate(2));
+    assert!(message.contains("not as many states as times"), "{message}");
+    let message = damaged(|value| value["velocities"].as_array_mut().unwrap().clear());
+    assert!(message.contains("not the names of 2 coordinates"), "{message}");
+    let message = damaged(|value| value["dense"]["ends"][0][0] = 3.into());
+    assert!(message.contains("dense output"), "{message}");
+    let message = damaged(|value| value["dense"]["values"].as_array_mut().unwrap().truncate(9));
+    assert!(message.contains("dense output"), "{message}");
+    let message = damaged(|value| value["end"]["q"] = vec![1.0].into());
+    assert!(message.contains("invalid length 1, expected 2 numbers"), "{message}");
+    let message = damaged(|value| value["stats"]["method"] = "x".repeat(65).into());
+    assert!(message.contains("not the name of a method"), "{message}");
+    // The state of one coordinate is none of two.
+    assert!(serde_json::from_value::<Solution<f64, 1>>(value).is_err());
+}
+
+#[test]
+fn states_stats_and_bodies_come_back() {
+    let solution = solution();
+    let text = serde_json::to_string(&(solution.end, solution.stats)).unwrap();
+    let read: (State<f64, 2>, Stats) = serde_json::from_str(&text).unwrap();
+    assert_eq!(read, (solution.end, solution.stats));
+
+    let body = Body::point(0.3, [0.1, -0.7]).unwrap() + Body::point(0.2, [0.3, 0.1]).unwrap();
+    let text = serde_json::to_string(&body).unwrap();
+    assert_eq!(serde_json::from_str::<Body>(&text).unwrap(), body);
+}
+
+#[test]
+fn baked_motions_come_back() {
+    let mut scene = Scene::<f64>::new(60.0).unwrap();
+    let hook = scene.joint(Still::new([0.0, 0.0]));
+    let bob = scene.hang(hook, Bob::new(0.1, 0.4), [0.8], [0.0]).unwrap();
+    let baked = scene.bake(&[bob], 60, 1e-3).unwrap();
+    let text = serde_json::to_string(&baked).unwrap();
+    let read: Vec<Baked<f64, 1>> = serde_json::from_str(&text).unwrap();
+    assert_eq!(read, baked);
+
+    let mut value = serde_json::to_value(&baked[0]).unwrap();
+    value["ticks"][1] = 0.into();
+    let message = serde_json::from_value::<Baked<f64, 1>>(value).unwrap_err().to_string();
+    assert!(message.contains("ascending"), "{message}");
+}
