@@ -1,29 +1,42 @@
-//! Dimensions: products of powers of kilograms, metres and seconds.
+//! Dimensions: products of powers of kilograms, metres, seconds, amperes and kelvins.
 
 use super::number::{Rational, superscript};
 use std::fmt;
 
-/// Exponents of kilogram, metre and second; the radian is a pure number.
+/// Exponents of kilogram, metre, second, ampere and kelvin; the radian is a pure number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Dimension(pub(crate) [Rational; 3]);
+pub(crate) struct Dimension(pub(crate) [Rational; 5]);
 
 impl Dimension {
-    pub(crate) const PURE: Self = Self([Rational::ZERO; 3]);
+    pub(crate) const PURE: Self = Self([Rational::ZERO; 5]);
 
     pub(crate) fn of(name: &str) -> Option<Self> {
         #[rustfmt::skip]
         let exponents = match name {
-            "rad" => [0, 0,  0],
-            "kg"  => [1, 0,  0],
-            "m"   => [0, 1,  0],
-            "s"   => [0, 0,  1],
-            "Hz"  => [0, 0, -1],
-            "N"   => [1, 1, -2],
-            "J"   => [1, 2, -2],
-            "W"   => [1, 2, -3],
+            "rad" => [ 0,  0,  0,  0, 0],
+            "kg"  => [ 1,  0,  0,  0, 0],
+            "m"   => [ 0,  1,  0,  0, 0],
+            "s"   => [ 0,  0,  1,  0, 0],
+            "A"   => [ 0,  0,  0,  1, 0],
+            "K"   => [ 0,  0,  0,  0, 1],
+            "Hz"  => [ 0,  0, -1,  0, 0],
+            "N"   => [ 1,  1, -2,  0, 0],
+            "J"   => [ 1,  2, -2,  0, 0],
+            "W"   => [ 1,  2, -3,  0, 0],
+            "C"   => [ 0,  0,  1,  1, 0],
+            "V"   => [ 1,  2, -3, -1, 0],
+            "F"   => [-1, -2,  4,  2, 0],
+            "H"   => [ 1,  2, -2, -2, 0],
+            "ohm" => [ 1,  2, -3, -2, 0],
+            "T"   => [ 1,  0, -2, -1, 0],
             _ => return None,
         };
-        Some(Self(exponents.map(Rational::whole)))
+        Some(Self::whole(exponents))
+    }
+
+    /// The dimension with these exponents.
+    pub(crate) fn whole(exponents: [i64; 5]) -> Self {
+        Self(exponents.map(Rational::whole))
     }
 
     /// `self` · `other`^`power`.
@@ -40,7 +53,7 @@ impl fmt::Display for Dimension {
     /// As one would write it: kg·m/s².
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let named = |sign: bool| {
-            let powers = ["kg", "m", "s"]
+            let powers = ["kg", "m", "s", "A", "K"]
                 .into_iter()
                 .zip(self.0)
                 .filter(move |(_, power)| !power.is_zero() && power.is_negative() == sign);

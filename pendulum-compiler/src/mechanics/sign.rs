@@ -244,16 +244,21 @@ fn signs(model: &Model, graph: &Graph, roots: &[Id]) -> BTreeMap<Id, Option<Sign
     signs
 }
 
-/// Whether a scalar is a mass, a moment of inertia or a density; a first moment may have any sign.
+/// Whether a scalar is a mass, a moment of inertia, a density or an inductance; a first moment may
+/// have any sign.
 fn is_mass(model: &Model, scalar: usize) -> bool {
     let own = |quantity: &&Quantity| {
         (quantity.first..quantity.first + quantity.count()).contains(&scalar)
     };
     let one = Rational::ONE;
-    let massive = |Dimension([mass, length, time])| mass == one && time.is_zero() && length != one;
+    let massive = |Dimension([mass, length, others @ ..])| {
+        mass == one && length != one && others.iter().all(|exponent| exponent.is_zero())
+    };
     match model.parameters.iter().find(own) {
         Some(quantity) if quantity.body => scalar == quantity.first,
-        Some(quantity) => quantity.dimension.is_some_and(massive),
+        Some(quantity) => {
+            quantity.dimension.is_some_and(|own| massive(own) || Dimension::of("H") == Some(own))
+        }
         None => false,
     }
 }

@@ -43,6 +43,51 @@ fn a_vector_may_have_no_unit() {
     );
 }
 
+/// Each electrical unit in terms of the others.
+#[test]
+fn electrical_units_agree() {
+    for (unit, other) in [
+        ("C", "A*s"),
+        ("V", "W/A"),
+        ("F", "C/V"),
+        ("H", "V*s/A"),
+        ("ohm", "V/A"),
+        ("T", "V*s/m^2"),
+        ("J", "C*V"),
+        ("N*m/A", "V*s/rad"),
+        ("J/K", "W*s/K"),
+    ] {
+        let source = |other: &str| {
+            format!(
+                "struct P {{ a: {unit}, b: {other} }} coordinate q: 1; lagrangian = (a + b)*q̇^2/2;"
+            )
+        };
+        assert!(refusals(&source(other)).is_empty(), "{unit} {other}");
+        let wrong = format!("{other}*K");
+        assert_eq!(refusals(&source(&wrong)).len(), 1, "{unit} {other}");
+    }
+}
+
+/// A direct-current motor: its inductance is the mass of the charge, its constant couples both
+/// circuits.
+#[test]
+fn a_motor_is_checked() {
+    let source = |constant: &str| {
+        format!(
+            "struct Motor {{ L: H, R: ohm, C: F, k: {constant}, J: kg*m^2 }}
+             coordinate q: C; coordinate θ: rad;
+             kinetic = L/2*q̇^2 + J/2*θ̇^2; potential = q^2/(2*C); dissipation = R/2*q̇^2;
+             force q = -k*θ̇; force θ = k*q̇;"
+        )
+    };
+    assert!(refusals(&source("V*s")).is_empty());
+    assert!(refusals(&source("N*m/A")).is_empty());
+    assert_eq!(
+        refusals(&source("T*m^3"))[0],
+        "`-k*θ̇` is kg·m³/(s³·A), but a force on `q` is kg·m²/(s³·A), an energy per unit of the coordinate"
+    );
+}
+
 /// Units, each mistake at the smallest expression that is wrong.
 #[rustfmt::skip]
 const UNITS: &[(&str, &str)] = &[
@@ -100,7 +145,7 @@ const BODIES: &[(&str, &str)] = &[
     ("potential = B;",                                  "`B` is a body; write `B.mass`, `B.center`, `B.inertia` or `integral(p in B, …)`"),
     ("potential = B.weight;",                           "unknown component `weight`; there are `.mass`, `.center`, `.inertia`"),
     ("potential = integral(p in g, height(p));",        "`g` is no body; declare it as `g: body` in the struct"),
-    ("potential = integral(p in C, height(p));",        "unknown name `C`; declare it as a parameter, a coordinate, a driven input or with `let`"),
+    ("potential = integral(p in D, height(p));",        "unknown name `D`; declare it as a parameter, a coordinate, an input or with `let`"),
     ("potential = integral(p in B, |p|^3);",            "`|p|^3` is no polynomial in `p`, and a body knows its moments up to the second; write a polynomial of degree two or less"),
     ("potential = integral(p in B, p.x*|p|^2);",        "`p.x*|p|^2` is of higher degree than two in `p`, and a body knows its moments up to the second; write a polynomial of degree two or less"),
     ("potential = integral(p in B, sin(p.x));",         "`sin(p.x)` is no polynomial in `p`, and a body knows its moments up to the second; write a polynomial of degree two or less"),

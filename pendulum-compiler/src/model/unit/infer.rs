@@ -312,11 +312,11 @@ impl Units<'_, '_, '_> {
             }
             ExprKind::Component(inner, component) if self.body(inner) => {
                 let exponents = match component.to_string().as_str() {
-                    "mass" => [1, 0, 0],
-                    "center" => [0, 1, 0],
-                    _ => [1, 2, 0],
+                    "mass" => [1, 0, 0, 0, 0],
+                    "center" => [0, 1, 0, 0, 0],
+                    _ => [1, 2, 0, 0, 0],
                 };
-                Some(Unit::of(Dimension(exponents.map(Rational::whole))))
+                Some(Unit::of(Dimension::whole(exponents)))
             }
             ExprKind::Negative(inner)
             | ExprKind::Magnitude(inner)
@@ -339,8 +339,8 @@ impl Units<'_, '_, '_> {
                 found
             }
             ExprKind::Integral { point, integrand, .. } => {
-                let length = Dimension([Rational::ZERO, Rational::ONE, Rational::ZERO]);
-                let mass = Dimension([Rational::ONE, Rational::ZERO, Rational::ZERO]);
+                let length = Dimension::whole([0, 1, 0, 0, 0]);
+                let mass = Dimension::whole([1, 0, 0, 0, 0]);
                 self.scope.push((name::read(&point.to_string()).base, Some(Unit::of(length))));
                 let found = self.expr(integrand);
                 self.scope.pop();
@@ -435,5 +435,5 @@ impl Units<'_, '_, '_> {
 }
 
 fn second() -> Dimension {
-    Dimension([Rational::ZERO, Rational::ZERO, Rational::ONE])
+    Dimension::whole([0, 0, 1, 0, 0])
 }

@@ -1,4 +1,4 @@
-//! Dimensions: what a unit expression means in kilograms, metres and seconds.
+//! Dimensions: what a unit expression means in kilograms, metres, seconds, amperes and kelvins.
 
 pub(crate) mod infer;
 
@@ -14,7 +14,7 @@ pub(crate) fn dimension(expr: &Expr, errors: &mut Errors) -> Option<Dimension> {
         errors.once(
             expr.source,
             expr.range,
-            format!("{what}; a unit is a product, quotient or power of `kg`, `m`, `s`, `rad`, `N`, `J`, `W`, `Hz` and `1`"),
+            format!("{what}; a unit is a product, quotient or power of `kg`, `m`, `s`, `rad`, `N`, `J`, `W`, `Hz`, `A`, `V`, `C`, `F`, `H`, `ohm`, `T`, `K` and `1`"),
         );
         None
     };
