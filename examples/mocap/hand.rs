@@ -45,10 +45,12 @@ impl<T: Real> System<1> for Hand<T> {
         facts.inputs = &[Input {
             name: "x",
             components: 2,
+            control: false,
             accelerations: Derivatives::ACCELERATION,
             momenta: Derivatives::VELOCITY,
             energy: Derivatives::POSITION.union(Derivatives::VELOCITY),
             power: Derivatives::VELOCITY.union(Derivatives::ACCELERATION),
+            outputs: Derivatives::NONE,
         }];
         facts.constant_mass_matrix = true;
         facts

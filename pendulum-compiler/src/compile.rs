@@ -157,6 +157,10 @@ pub struct Compiled {
     pub coordinates: Vec<Declaration>,
     /// The driven inputs.
     pub inputs: Vec<Declaration>,
+    /// The control inputs.
+    pub controls: Vec<Declaration>,
+    /// The outputs.
+    pub outputs: Vec<Output>,
     /// The equations of motion, θ̈ = …; the right side of a very long one is left out, and says so.
     pub equations: Vec<String>,
     /// The same equations in LaTeX, for a line of mathematics: without delimiters.
@@ -173,7 +177,7 @@ pub struct Compiled {
     pub operations: Operations,
 }
 
-/// A declared parameter, coordinate or driven input.
+/// A declared parameter, coordinate or input.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Declaration {
@@ -185,6 +189,22 @@ pub struct Declaration {
     pub length: Option<usize>,
     /// Whether it is a rigid body.
     pub body: bool,
+}
+
+/// An output: its declaration and its value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Output {
+    /// The name.
+    pub name: String,
+    /// The unit, as written; empty without one.
+    pub unit: String,
+    /// The number of members of a family.
+    pub members: Option<usize>,
+    /// The number of components of a vector, that of each member of a family.
+    pub components: Option<usize>,
+    /// The value of each component of the first member, of the second and so on.
+    pub expressions: Vec<String>,
 }
 
 /// A mistake in a block.
@@ -248,7 +268,20 @@ impl Compiled {
             name: model.block.name.to_string(),
             parameters: declared(&model.parameters),
             coordinates: declared(&model.coordinates),
-            inputs: declared(&model.inputs),
+            inputs: declared(&model.inputs[..model.driven]),
+            controls: declared(&model.inputs[model.driven..]),
+            outputs: model
+                .outputs
+                .iter()
+                .zip(&energies.outputs)
+                .map(|(output, lowered)| Output {
+                    name: output.declared.name.to_string(),
+                    unit: output.declared.unit.clone(),
+                    members: lowered.members,
+                    components: lowered.components,
+                    expressions: lowered.scalars.iter().copied().map(text).collect(),
+                })
+                .collect(),
             energy: text(motion.energy),
             power: text(motion.power),
             momenta: motion.momenta.iter().copied().map(text).collect(),

@@ -98,6 +98,37 @@ pub(crate) fn acceleration(what: impl Display) -> String {
     )
 }
 
+/// A third derivative of what has two; `what` as written.
+pub(crate) fn jerk(what: impl Display) -> String {
+    format!("{what} is a third derivative; coordinates have two, in outputs")
+}
+
+/// The derivative of a control input.
+pub(crate) fn no_derivative(input: impl Display) -> String {
+    format!("`{input}` has no derivative; declare it `driven`")
+}
+
+/// A control input of which the equations would need the derivative.
+pub(crate) fn control_in_momenta(input: impl Display) -> String {
+    format!(
+        "the momenta contain the control input `{input}`, so the equations would contain its \
+         derivative; declare it `driven`, or write what it does as a `force`"
+    )
+}
+
+/// A control input where the potential energy at zero may be no number.
+pub(crate) fn control_in_divisor(input: impl Display) -> String {
+    format!(
+        "the control input `{input}` stands in a divisor, a power or a function of an energy, \
+         which may be no number where the input is zero; write what it does as a `force`"
+    )
+}
+
+/// A unit as it is written between the brackets of a vector.
+pub(crate) fn unit_of(unit: &str) -> &str {
+    if unit.is_empty() { "_" } else { unit }
+}
+
 /// A definition that needs its own value.
 pub(crate) fn circular(name: impl Display) -> String {
     format!("`{name}` is defined by itself; break the circle")

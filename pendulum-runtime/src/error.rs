@@ -50,6 +50,11 @@ pub enum Error {
         /// acceleration, or of a velocity that belongs to a finite momentum, that is not finite.
         suspects: Vec<Suspect>,
     },
+    /// A sampled controller serves another integration, which began later.
+    Controller {
+        /// The time at which a sample was due.
+        t: f64,
+    },
     /// No velocity was found that gives a finite momentum, at a kink or within an implicit step.
     NoVelocity {
         /// The time.
@@ -141,6 +146,13 @@ pub enum Quantity {
         /// 0 for the position, 1 for the velocity, 2 for the acceleration.
         derivative: usize,
     },
+    /// A component of the value that a controller gives.
+    Control {
+        /// The control input as written.
+        name: &'static str,
+        /// The index of the component.
+        component: usize,
+    },
     /// A generalized acceleration.
     Acceleration(Coordinate),
     /// A coordinate.
@@ -208,6 +220,9 @@ impl fmt::Display for Error {
                     (Quantity::Input { .. }, None) => {
                         write!(f, "check the motion that drives it at this time")
                     }
+                    (Quantity::Control { .. }, None) => {
+                        write!(f, "check the controller at this time and in the state before")
+                    }
                     (Quantity::Acceleration(_), None) => {
                         write!(
                             f,
@@ -256,6 +271,11 @@ impl fmt::Display for Error {
                 f,
                 "at t = {t:?} the function of event {event} gives something that is not a number; it has to be defined wherever the motion goes"
             ),
+            Self::Controller { t } => write!(
+                f,
+                "at t = {t:?} the sampled controller serves an integration that began later; clone the system, and give each \
+                 integration a controller of its own"
+            ),
             Self::Kink { t, kink } => {
                 write!(
                     f,
@@ -290,6 +310,9 @@ impl fmt::Display for Quantity {
             Self::Input { name, component, derivative } => {
                 let derivative = ["position", "velocity", "acceleration"][derivative.min(2)];
                 write!(f, "{derivative} of the driven input `{name}` (component {component})")
+            }
+            Self::Control { name, component } => {
+                write!(f, "control input `{name}` (component {component})")
             }
             Self::Acceleration(coordinate) => write!(f, "acceleration of {coordinate}"),
             Self::Position(coordinate) => write!(f, "position of {coordinate}"),

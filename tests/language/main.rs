@@ -12,6 +12,7 @@ pub mod kinks;
 pub mod modes;
 pub mod momenta;
 pub mod note;
+pub mod outputs;
 pub mod random_systems;
 pub mod singular;
 pub mod stages;

@@ -4,6 +4,7 @@
 
 pub mod auto;
 pub mod batch;
+pub mod control;
 pub mod extremes;
 pub mod fast_drive;
 pub mod gauss;

@@ -167,7 +167,7 @@ pub(crate) enum Sign {
 }
 
 /// All numbers.
-const REAL: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+pub(crate) const REAL: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 const POSITIVE: [f64; 2] = [0.0, f64::INFINITY];
 const UNIT: [f64; 2] = [-1.0, 1.0];
 const ZERO: Option<Rational> = Some(Rational::ZERO);

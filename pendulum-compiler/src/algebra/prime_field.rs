@@ -300,6 +300,8 @@ impl Point {
             Symbol::Moment(first, moment) => [6, first as u64, moment as u64, 0],
             Symbol::Point(level, component) => [7, level as u64, component as u64, 0],
             Symbol::Auxiliary(index) => [8, index as u64, 0, 0],
+            Symbol::Control { input, component } => [9, input as u64, component as u64, 0],
+            Symbol::Acceleration(index) => [10, index as u64, 0, 0],
         };
         self.random(&[key[0], key[1], key[2], key[3], salt])
     }

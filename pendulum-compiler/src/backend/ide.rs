@@ -37,16 +37,24 @@ impl<'a> Mirror<'a> {
     fn statements(&mut self) {
         for statement in &self.block.statements {
             match statement {
-                Statement::Coordinate { name, .. } | Statement::Driven { name, .. } => {
-                    self.declare(name);
-                }
+                Statement::Coordinate { name, .. }
+                | Statement::Driven { name, .. }
+                | Statement::Input { name, .. } => self.declare(name),
                 Statement::Let(definition) => self.declare(&definition.name),
-                Statement::Energy { .. } | Statement::Force { .. } => {}
+                Statement::Energy { .. } | Statement::Force { .. } | Statement::Output(_) => {}
             }
         }
         for statement in &self.block.statements {
             match statement {
-                Statement::Coordinate { .. } | Statement::Driven { .. } => {}
+                Statement::Coordinate { .. }
+                | Statement::Driven { .. }
+                | Statement::Input { .. } => {}
+                Statement::Output(output) => {
+                    if let Some(binder) = &output.index {
+                        self.binder(binder);
+                    }
+                    self.expr(&output.expr);
+                }
                 Statement::Let(definition) => {
                     if let Some(binder) = &definition.index {
                         self.binder(binder);

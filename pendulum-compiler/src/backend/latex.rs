@@ -191,18 +191,22 @@ impl Writer<'_> {
         dotted(&self.names.coordinates[index], dots)
     }
 
+    fn input(&self, input: usize, component: usize, dots: u8) -> String {
+        let (name, vector) = self.names.input(input);
+        let component = if vector { [".x", ".y", ".z"][component.min(2)] } else { "" };
+        dotted(&format!("{name}{component}"), dots)
+    }
+
     fn symbol(&self, symbol: Symbol) -> String {
         match symbol {
             Symbol::Parameter(index) => dotted(&self.names.parameters[index], 0),
             Symbol::Coordinate(index) => self.coordinate(index, 0),
             Symbol::Velocity(index) => self.coordinate(index, 1),
             Symbol::Auxiliary(index) => format!("u_{{{index}}}"),
+            Symbol::Acceleration(index) => self.coordinate(index, 2),
             Symbol::Momentum(index) => format!("p_{{{}}}", self.coordinate(index, 0)),
-            Symbol::Input { input, component, order } => {
-                let (name, vector) = self.names.input(input);
-                let component = if vector { [".x", ".y", ".z"][component.min(2)] } else { "" };
-                dotted(&format!("{name}{component}"), order)
-            }
+            Symbol::Input { input, component, order } => self.input(input, component, order),
+            Symbol::Control { input, component } => self.input(input, component, 0),
             Symbol::Moment(first, moment) => {
                 let body = self.names.parameters[first].trim_end_matches(".mass");
                 let body = dotted(body, 0);

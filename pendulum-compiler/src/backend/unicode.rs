@@ -75,6 +75,7 @@ impl Names {
             Symbol::Time => "t".into(),
             Symbol::Coordinate(index) => self.coordinates[index].clone(),
             Symbol::Velocity(index) => self.dotted(&self.coordinates[index], 1),
+            Symbol::Acceleration(index) => self.acceleration(index),
             Symbol::Momentum(index) => format!("p_{}", self.coordinates[index]),
             Symbol::Auxiliary(index) => format!("u[{index}]"),
             Symbol::Point(_, component) => ["p.x", "p.y"][component.min(1)].into(),
@@ -86,15 +87,19 @@ impl Names {
                     Moment::Product => format!("{body}.xy"),
                 }
             }
-            Symbol::Input { input, component, order } => {
-                let (name, vector) = &self.inputs[input];
-                let name = self.dotted(name, order);
-                if *vector { format!("{name}.{}", ["x", "y", "z"][component.min(2)]) } else { name }
-            }
+            Symbol::Input { input, component, order } => self.of_input(input, component, order),
+            Symbol::Control { input, component } => self.of_input(input, component, 0),
         }
     }
 
-    /// The name of a driven input, and whether it is a vector.
+    /// The name of a component of an input with its dots.
+    fn of_input(&self, input: usize, component: usize, order: u8) -> String {
+        let (name, vector) = &self.inputs[input];
+        let name = self.dotted(name, order);
+        if *vector { format!("{name}.{}", ["x", "y", "z"][component.min(2)]) } else { name }
+    }
+
+    /// The name of an input, and whether it is a vector.
     pub(crate) fn input(&self, index: usize) -> (&str, bool) {
         let (name, vector) = &self.inputs[index];
         (name, *vector)

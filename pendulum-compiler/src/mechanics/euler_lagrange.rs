@@ -4,7 +4,7 @@
 //! d/dt ∂L/∂q̇ − ∂L/∂q = Q − ∂R/∂q̇, where d/dt runs through the coordinates, the driven inputs and
 //! the time.
 
-use crate::algebra::diff::derivative;
+use crate::algebra::diff::{derivative, substitute};
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::Kinks;
 use crate::algebra::number::Rational;
@@ -19,7 +19,7 @@ use crate::mechanics::motion::Motion;
 use crate::mechanics::sign;
 use crate::mechanics::solve;
 use crate::mechanics::symmetry;
-use crate::messages::Errors;
+use crate::messages::{self, Errors};
 use crate::model::{Model, Quantity};
 use crate::schedule;
 
@@ -51,10 +51,25 @@ pub(crate) fn derive(
     if !errors.is_empty() {
         return None;
     }
+    put_accelerations(graph, &motion, energies);
     let mut roots = motion.roots();
     roots.extend(energies.roots());
     *graph = order::canonicalize(graph, &mut roots);
     Some(motion)
+}
+
+/// Puts the accelerations into the outputs that contain them.
+fn put_accelerations(graph: &mut Graph, motion: &Motion, energies: &mut Energies) {
+    let accelerations: Vec<Id> = motion.accelerations.iter().map(|&id| graph.closed(id)).collect();
+    let value = |symbol| match symbol {
+        Symbol::Acceleration(index) => accelerations.get(index).copied(),
+        _ => None,
+    };
+    for scalar in energies.outputs.iter_mut().flat_map(|output| &mut output.scalars) {
+        if graph.dependencies(*scalar).any(Dependencies::ACCELERATION) {
+            *scalar = substitute(graph, *scalar, value);
+        }
+    }
 }
 
 /// The equations of motion; reports directions without kinetic energy.
@@ -82,12 +97,16 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
         }
     }
     let mut motion = Motion { mass_matrix, ..Motion::default() };
-    let jerk = has_jerk(model, graph, lagrangian, &momenta, errors);
+    let jerk = has_jerk(model, graph, lagrangian, &momenta, errors)
+        || has_control(model, graph, &momenta, errors);
     let regular = solve::regular(model, graph, &motion.mass_matrix, errors);
     if !regular || !sign::positive(model, graph, energies, &motion.mass_matrix, errors) || jerk {
         return motion;
     }
 
+    // What control inputs add to the Lagrangian does work as a force does: their rates are unknown.
+    let own = at_rest_controls(graph, lagrangian);
+    let controlled = if own == lagrangian { Graph::ZERO } else { graph.sub(lagrangian, own) };
     let mut power = Vec::new();
     let mut externals = Vec::new();
     for i in 0..count {
@@ -98,7 +117,9 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
         let friction = derivative(graph, dissipation, Symbol::Velocity(i));
         let external = graph.sub(energies.forces[i], friction);
         externals.push(external);
-        power.push((graph.mul(velocity[i], external), Rational::ONE));
+        let control = derivative(graph, controlled, Symbol::Coordinate(i));
+        let working = graph.add(external, control);
+        power.push((graph.mul(velocity[i], working), Rational::ONE));
         let rate = graph.add(slope, external);
         motion.momentum_rates.push(rate);
         // dp/dt along the motion at constant velocities: the acceleration stands in M q̈.
@@ -113,16 +134,20 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     let actions: Vec<(Id, Rational)> =
         (0..count).map(|i| (graph.mul(velocity[i], momenta[i]), Rational::ONE)).collect();
     let action = graph.sum(&actions);
-    let energy = graph.sub(action, lagrangian);
+    let energy = graph.sub(action, own);
     motion.energy = collected(graph, energy);
-    let explicit = explicit_rate(graph, lagrangian);
+    let explicit = explicit_rate(graph, own);
     power.push((explicit, Rational::MINUS_ONE));
     motion.power = graph.sum(&power);
 
     motion.kinetic = energies.kinetic.map(|_| kinetic.unwrap_or_default());
-    motion.potential = energies.lagrangian.is_none().then(|| potential.unwrap_or_default());
+    motion.potential = energies
+        .lagrangian
+        .is_none()
+        .then(|| at_rest_controls(graph, potential.unwrap_or_default()));
     motion.kinetic = motion.kinetic.or(motion.potential.map(|_| Graph::ZERO));
-    motion.nonconservative = energies.dissipation.is_some() || !model.forces.is_empty();
+    motion.nonconservative =
+        energies.dissipation.is_some() || !model.forces.is_empty() || controlled != Graph::ZERO;
     motion.conserved = symmetry::conserved(graph, lagrangian, &momenta, &externals);
     motion.momenta = momenta;
     facts(graph, &mut motion);
@@ -205,17 +230,22 @@ fn shorten(graph: &Graph, own: &mut [Id], other: &[Id], share: f64) {
 }
 
 /// The Jacobians, if they are short: each column costs about as much as the accelerations.
-fn jacobians(model: &Model, graph: &mut Graph, motion: &Motion) -> Option<[Vec<Vec<Id>>; 3]> {
+fn jacobians(model: &Model, graph: &mut Graph, motion: &Motion) -> Option<[Vec<Vec<Id>>; 4]> {
     let count = motion.accelerations.len();
     let parameters: usize = model.parameters.iter().map(Quantity::count).sum();
     let operations = schedule::program(graph, &motion.accelerations).ops.len();
     if LONGEST_JACOBIAN < operations * (2 * count + parameters) {
         return None;
     }
-    let symbols: [Vec<Symbol>; 3] = [
+    let controls =
+        model.inputs.iter().enumerate().skip(model.driven).flat_map(|(input, quantity)| {
+            (0..quantity.count()).map(move |component| Symbol::Control { input, component })
+        });
+    let symbols: [Vec<Symbol>; 4] = [
         (0..count).map(Symbol::Coordinate).collect(),
         (0..count).map(Symbol::Velocity).collect(),
         (0..parameters).map(Symbol::Parameter).collect(),
+        controls.collect(),
     ];
     Some(symbols.map(|symbols| jacobian::columns(graph, motion, &symbols)))
 }
@@ -283,6 +313,26 @@ fn has_jerk(
     false
 }
 
+/// Refuses momenta in which a control input stands: its derivative would be a force.
+fn has_control(model: &Model, graph: &Graph, momenta: &[Id], errors: &mut Errors) -> bool {
+    let input = graph.symbols(momenta).into_iter().find_map(|symbol| match symbol {
+        Symbol::Control { input, .. } => Some(model.inputs[input].name),
+        _ => None,
+    });
+    if let Some(name) = input {
+        errors.at(name.span(), messages::control_in_momenta(name));
+    }
+    input.is_some()
+}
+
+/// An expression with all control inputs set to zero.
+fn at_rest_controls(graph: &mut Graph, id: Id) -> Id {
+    if !graph.dependencies(id).any(Dependencies::CONTROL) {
+        return id;
+    }
+    substitute(graph, id, |symbol| matches!(symbol, Symbol::Control { .. }).then_some(Graph::ZERO))
+}
+
 /// q̇ = M⁻¹(p − b) for momenta M q̇ + b that are linear in the velocities.
 pub(crate) fn invert(
     graph: &mut Graph,
@@ -335,9 +385,7 @@ fn jumps(graph: &Graph, id: Id) -> bool {
 
 /// An expression with all velocities of coordinates set to zero.
 fn at_rest(graph: &mut Graph, id: Id) -> Id {
-    crate::algebra::diff::substitute(graph, id, |symbol| {
-        matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO)
-    })
+    substitute(graph, id, |symbol| matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO))
 }
 
 fn facts(graph: &mut Graph, motion: &mut Motion) {
@@ -353,7 +401,9 @@ fn facts(graph: &mut Graph, motion: &mut Motion) {
     let time = Dependencies::TIME.or(Dependencies::INPUT);
     let forces = all(&motion.forces);
     motion.constant_mass_matrix = !masses.any(state.or(time));
-    motion.velocity_free = motion.constant_mass_matrix && !forces.any(Dependencies::VELOCITY);
+    // A control input may follow the velocities.
+    let moving = Dependencies::VELOCITY.or(Dependencies::CONTROL);
+    motion.velocity_free = motion.constant_mass_matrix && !forces.any(moving);
     motion.linear = motion.constant_mass_matrix && graph.linear(&motion.forces);
     let dependencies = forces.or(all(&motion.momenta)).or(masses);
     motion.autonomous = !dependencies.any(time);

@@ -21,9 +21,9 @@ pub(crate) struct Motion {
     pub(crate) power: Id,
     pub(crate) kinetic: Option<Id>,
     pub(crate) potential: Option<Id>,
-    /// ∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂parameters, column by column; `None` where they would be too long
-    /// to write out.
-    pub(crate) jacobians: Option<[Vec<Vec<Id>>; 3]>,
+    /// ∂q̈/∂q, ∂q̈/∂q̇, ∂q̈/∂parameters and ∂q̈/∂u of the control inputs, column by column; `None`
+    /// where they would be too long to write out.
+    pub(crate) jacobians: Option<[Vec<Vec<Id>>; 4]>,
     pub(crate) cyclic: Vec<usize>,
     pub(crate) conserved: Vec<Conserved>,
     pub(crate) autonomous: bool,

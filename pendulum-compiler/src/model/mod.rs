@@ -1,13 +1,14 @@
 //! Names to symbols: what every name of a block means, and every name that means nothing.
 
 mod declare;
+mod reach;
 pub(crate) mod unit;
 mod walk;
 
 use crate::algebra::dimension::Dimension;
 use crate::algebra::number::Rational;
 use crate::messages::{Errors, Range};
-use crate::syntax::ast::{Block, Expr, ExprKind, ForceIndex, Let, Role, Statement};
+use crate::syntax::ast::{self, Block, Expr, ExprKind, ForceIndex, Let, Role, Statement};
 use crate::syntax::name::{self, Name};
 use declare::{Declared, Shape, quantity, twice};
 use proc_macro2::Ident;
@@ -19,16 +20,29 @@ pub(crate) struct Model<'a> {
     pub(crate) block: &'a Block,
     pub(crate) parameters: Vec<Quantity<'a>>,
     pub(crate) coordinates: Vec<Quantity<'a>>,
+    /// The driven inputs, and after them the control inputs.
     pub(crate) inputs: Vec<Quantity<'a>>,
+    /// The number of driven inputs.
+    pub(crate) driven: usize,
+    pub(crate) outputs: Vec<Output<'a>>,
     pub(crate) lets: Vec<&'a Let>,
     pub(crate) energies: Vec<(Role, &'a Expr)>,
     pub(crate) forces: Vec<Force<'a>>,
     pub(crate) names: BTreeMap<String, Meaning>,
     /// The parameters that no statement mentions.
     pub(crate) unmentioned: BTreeSet<usize>,
+    /// The definitions that outputs alone need: accelerations may stand in them.
+    pub(crate) of_outputs: BTreeSet<usize>,
 }
 
-/// A declared parameter, coordinate or driven input.
+impl Model<'_> {
+    /// Whether an input is a control input.
+    pub(crate) fn is_control(&self, input: usize) -> bool {
+        self.driven <= input
+    }
+}
+
+/// A declared parameter, coordinate, input or output.
 pub(crate) struct Quantity<'a> {
     pub(crate) name: &'a Ident,
     /// `None` for a scalar, the length of a vector or family otherwise.
@@ -47,6 +61,13 @@ impl Quantity<'_> {
     pub(crate) fn count(&self) -> usize {
         if self.body { 6 } else { self.length.unwrap_or(1) }
     }
+}
+
+/// An `output` statement.
+pub(crate) struct Output<'a> {
+    /// Its name, its unit and its length as declared.
+    pub(crate) declared: Quantity<'a>,
+    pub(crate) statement: &'a ast::Output,
 }
 
 /// A `force` statement.
@@ -73,14 +94,23 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         parameters: Vec::new(),
         coordinates: Vec::new(),
         inputs: Vec::new(),
+        driven: 0,
+        outputs: Vec::new(),
         lets: Vec::new(),
         energies: Vec::new(),
         forces: Vec::new(),
         names: BTreeMap::new(),
         unmentioned: BTreeSet::new(),
+        of_outputs: BTreeSet::new(),
     };
+    model.driven = block
+        .statements
+        .iter()
+        .filter(|statement| matches!(statement, Statement::Driven { .. }))
+        .count();
     let mut declared = Declared::default();
-    let (mut parameters, mut coordinates, mut inputs) = (0, 0, 0);
+    let (mut parameters, mut coordinates) = (0, 0);
+    let mut controls = Vec::new();
     for field in &block.fields {
         let meaning = Meaning::Parameter(model.parameters.len());
         declared.declare(&mut model.names, &field.name, meaning, errors);
@@ -113,22 +143,23 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
                 coordinates += quantity.count();
                 model.coordinates.push(quantity);
             }
-            Statement::Driven { name, kind } => {
-                declared.declare(
-                    &mut model.names,
-                    name,
-                    Meaning::Input(model.inputs.len()),
-                    errors,
-                );
-                let quantity = quantity(name, Shape::Kind(kind), inputs, None, errors);
+            Statement::Driven { name, kind } | Statement::Input { name, kind } => {
+                let control = matches!(statement, Statement::Input { .. });
+                let (list, before, what) = if control {
+                    (&mut controls, model.driven, "a control input")
+                } else {
+                    (&mut model.inputs, 0, "a driven input")
+                };
+                let meaning = Meaning::Input(before + list.len());
+                declared.declare(&mut model.names, name, meaning, errors);
+                let quantity = quantity(name, Shape::Kind(kind), 0, None, errors);
                 if quantity.length.is_some_and(|length| !(2..=3).contains(&length)) {
                     errors.at(
                         name.span(),
-                        "a driven input is a scalar or a vector; write `[m; 2]` or `[m; 3]`",
+                        format!("{what} is a scalar or a vector; write `[m; 2]` or `[m; 3]`"),
                     );
                 }
-                inputs += quantity.count();
-                model.inputs.push(quantity);
+                list.push(quantity);
             }
             Statement::Let(definition) => {
                 declared.declare(
@@ -141,25 +172,41 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
                 model.lets.push(definition);
             }
             Statement::Energy { role, expr, .. } => model.energies.push((*role, expr)),
-            Statement::Force { .. } => {}
+            Statement::Force { .. } | Statement::Output(_) => {}
         }
     }
-    if model.inputs.len() > 8 {
-        errors.at(
-            model.inputs[8].name.span(),
-            "more than eight driven inputs; join some of them into vectors",
-        );
+    model.inputs.append(&mut controls);
+    let mut inputs = 0;
+    for quantity in &mut model.inputs {
+        quantity.first = inputs;
+        inputs += quantity.count();
+    }
+    if let Some(ninth) = model.inputs.get(8) {
+        let what = if model.driven == model.inputs.len() { "driven inputs" } else { "inputs" };
+        let message = format!("more than eight {what}; join some of them into vectors");
+        errors.at(ninth.name.span(), message);
     }
     for statement in &block.statements {
-        if let Statement::Force { name, index, expr, .. } = statement {
-            force(&mut model, name, index.as_ref(), expr, errors);
+        match statement {
+            Statement::Force { name, index, expr, .. } => {
+                force(&mut model, name, index.as_ref(), expr, errors);
+            }
+            Statement::Output(statement) => output(&mut model, statement, errors),
+            _ => {}
         }
     }
+    model.of_outputs = reach::of_outputs(&model);
     roles(block, errors);
     if model.coordinates.is_empty() && !block.recovery.declarations {
         errors.at(block.name.span(), "no coordinate; write `coordinate θ: rad;` below the struct");
     }
-    let mut walk = Walk { model: &model, errors, scope: Vec::new(), mentioned: BTreeSet::new() };
+    let mut walk = Walk {
+        model: &model,
+        errors,
+        scope: Vec::new(),
+        mentioned: BTreeSet::new(),
+        accelerations: false,
+    };
     walk.block();
     let mentioned = walk.mentioned;
     model.unmentioned =
@@ -170,6 +217,40 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
 /// A dotted name without its dots, as the user would write it.
 fn plain(ident: &Ident) -> String {
     name::read(&ident.to_string()).base
+}
+
+/// The methods of systems, which an output would hide.
+#[rustfmt::skip]
+const METHODS: &[&str] = &[
+    "accelerations", "accelerations_at", "accelerations_prepared", "accelerations_staged", "accelerations_with", "across_kink", "at_position",
+    "at_time", "begin", "clone", "conserved", "control", "control_jacobian", "controlled_by", "driven_by", "energy", "energy_at", "fmt", "forces",
+    "hamilton", "inputs", "inputs_over", "inputs_with", "kinetic_energy", "longest_step", "map", "mass_matrix", "momenta", "momentum_rates", "new",
+    "next_kink", "output", "over", "parameter_jacobian", "position_jacobian", "potential_energy", "power", "power_at", "prepare", "sample",
+    "sampled", "system", "velocities", "velocity_jacobian",
+];
+
+fn output<'a>(model: &mut Model<'a>, statement: &'a ast::Output, errors: &mut Errors) {
+    let name = &statement.name;
+    let Name { base, dots } = name::read(&name.to_string());
+    let twice = model.outputs.iter().any(|other| plain(other.declared.name) == base);
+    let refusal = match model.names.get(&base) {
+        _ if 0 < dots => Some(format!(
+            "`{name}` is a time derivative; give the output a name without dots, as `rate`"
+        )),
+        _ if twice => Some(format!("two outputs are called `{name}`; rename one of the two")),
+        _ if METHODS.contains(&name.to_string().as_str()) => {
+            Some(format!("`{name}` is a method of every system; choose another name"))
+        }
+        Some(Meaning::Parameter(_) | Meaning::Coordinate(_) | Meaning::Input(_)) => {
+            Some(format!("`{name}` is declared already; choose another name for the output"))
+        }
+        Some(Meaning::Let(_)) | None => None,
+    };
+    if let Some(message) = refusal {
+        errors.at(name.span(), message);
+    }
+    let declared = quantity(name, Shape::Kind(&statement.kind), 0, None, errors);
+    model.outputs.push(Output { declared, statement });
 }
 
 fn force<'a>(
@@ -266,7 +347,7 @@ fn unknown<'b>(name: &str, known: impl Iterator<Item = &'b str>) -> String {
     match name::nearest(name, known) {
         Some(near) => format!("unknown name `{name}`; did you mean `{near}`?"),
         None => format!(
-            "unknown name `{name}`; declare it as a parameter, a coordinate, a driven input or with `let`"
+            "unknown name `{name}`; declare it as a parameter, a coordinate, an input or with `let`"
         ),
     }
 }

@@ -18,6 +18,8 @@ pub(super) struct Walk<'m, 'a, 'e> {
     pub(super) scope: Vec<String>,
     /// The parameters that have been met.
     pub(super) mentioned: BTreeSet<usize>,
+    /// Whether accelerations of coordinates may stand here.
+    pub(super) accelerations: bool,
 }
 
 impl Walk<'_, '_, '_> {
@@ -30,7 +32,8 @@ impl Walk<'_, '_, '_> {
                 self.constant(default);
             }
         }
-        for definition in &model.lets {
+        for (index, definition) in model.lets.iter().enumerate() {
+            self.accelerations = model.of_outputs.contains(&index);
             let depth = self.scope.len();
             if let Some(binder) = &definition.index {
                 self.bind(binder);
@@ -41,6 +44,7 @@ impl Walk<'_, '_, '_> {
             self.expr(&definition.expr);
             self.scope.truncate(depth);
         }
+        self.accelerations = false;
         for (_, expr) in &model.energies {
             self.expr(expr);
         }
@@ -52,6 +56,15 @@ impl Walk<'_, '_, '_> {
                 None => {}
             }
             self.expr(force.expr);
+            self.scope.truncate(depth);
+        }
+        self.accelerations = true;
+        for output in &model.outputs {
+            let depth = self.scope.len();
+            if let Some(binder) = &output.statement.index {
+                self.bind(binder);
+            }
+            self.expr(&output.statement.expr);
             self.scope.truncate(depth);
         }
     }
@@ -103,7 +116,10 @@ impl Walk<'_, '_, '_> {
             "i" if what != "an index" => Some(format!("`{ident}` is the imaginary unit")),
             _ => match self.model.names.get(&base) {
                 Some(Meaning::Coordinate(_)) => Some(format!("`{ident}` is a coordinate")),
-                Some(Meaning::Input(_)) => Some(format!("`{ident}` is a driven input")),
+                Some(&Meaning::Input(index)) => {
+                    let what = if self.model.is_control(index) { "control" } else { "driven" };
+                    Some(format!("`{ident}` is a {what} input"))
+                }
                 _ => None,
             },
         };
@@ -221,8 +237,14 @@ impl Walk<'_, '_, '_> {
                     plain(ident)
                 ),
             ),
-            (_, Some(Meaning::Coordinate(_))) if 1 < dots => {
+            (_, Some(Meaning::Coordinate(_))) if 2 < dots && self.accelerations => {
+                self.errors.at(ident.span(), messages::jerk(format!("`{ident}`")));
+            }
+            (_, Some(Meaning::Coordinate(_))) if 1 < dots && !self.accelerations => {
                 self.errors.at(ident.span(), messages::acceleration(format!("`{ident}`")));
+            }
+            (_, Some(&Meaning::Input(index))) if 0 < dots && self.model.is_control(index) => {
+                self.errors.at(ident.span(), messages::no_derivative(plain(ident)));
             }
             (_, Some(Meaning::Input(_))) if 2 < dots => {
                 self.errors.at(ident.span(), format!("`{ident}` is a third derivative; driven inputs have two"));
@@ -261,7 +283,7 @@ impl Walk<'_, '_, '_> {
                 && let Some(meaning) = moving(stem)
             {
                 return match meaning {
-                    Meaning::Coordinate(_) if suffix == "ddot" => {
+                    Meaning::Coordinate(_) if suffix == "ddot" && !self.accelerations => {
                         messages::acceleration(format!("`{text}`"))
                     }
                     _ => format!("unknown name `{text}`; did you mean `{stem}_{suffix}`?"),

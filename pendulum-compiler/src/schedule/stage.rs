@@ -40,7 +40,10 @@ impl Program {
                     Symbol::Parameter(_) | Symbol::Moment(..) => Stage::Parameters,
                     Symbol::Time | Symbol::Input { .. } => Stage::Time,
                     Symbol::Coordinate(_) => Stage::Position,
+                    // A control input may follow the state.
                     Symbol::Velocity(_)
+                    | Symbol::Control { .. }
+                    | Symbol::Acceleration(_)
                     | Symbol::Momentum(_)
                     | Symbol::Auxiliary(_)
                     | Symbol::Point(..) => Stage::Velocity,

@@ -2,7 +2,7 @@
 
 use crate::algebra::number::Literal;
 use crate::messages::Range;
-use proc_macro2::Ident;
+use proc_macro2::{Ident, TokenStream};
 use syn::{Attribute, Visibility};
 
 /// A whole `lagrangian!` block.
@@ -56,9 +56,22 @@ pub(crate) enum Kind {
 pub(crate) enum Statement {
     Coordinate { name: Ident, length: Option<Expr>, unit: Option<Expr> },
     Driven { name: Ident, kind: Kind },
+    Input { name: Ident, kind: Kind },
     Let(Let),
     Energy { role: Role, keyword: Range, expr: Expr },
     Force { name: Ident, index: Option<ForceIndex>, expr: Expr },
+    Output(Box<Output>),
+}
+
+/// `output tip: [m; 2] = …` or `output tip[k in 0..5]: [m; 2] = …`.
+#[derive(Debug)]
+pub(crate) struct Output {
+    /// Its `doc` attributes.
+    pub(crate) documentation: TokenStream,
+    pub(crate) name: Ident,
+    pub(crate) index: Option<Binder>,
+    pub(crate) kind: Kind,
+    pub(crate) expr: Expr,
 }
 
 /// `let y = …`, `let y[k in 0..5] = …` or `let r(p) = …`.

@@ -14,6 +14,8 @@ const SYSTEMS: &[&str] = &[
      kinetic = m/2*|ẏ|^2; potential = m*g*height(y) + k/2*r^2; dissipation = c/2*(ṙ^2 + r^2*θ̇^2); force θ = m*l*g*sin(3*w*t)*θ̇/w;",
     "struct S { m, R, w } coordinate θ; coordinate φ; let r = R*[sin(θ)*cos(φ + w*t), sin(θ)*sin(φ + w*t), -cos(θ)]; kinetic = m/2*|ṙ|^2; potential = m*height(r);",
     "struct S { c } coordinate x; coordinate y; lagrangian = exp(c*t)*(ẋ^2 + ẏ^2 + ẋ*ẏ*x)/2 + (x*ẏ - y*ẋ)*t - 1/|[x, y]|;",
+    "struct S { m, L, k } coordinate x; coordinate θ; driven h; input u; input f: [_; 2]; let y = [x, h] + L*[sin(θ), -cos(θ)];
+     kinetic = m/2*(ẋ^2 + |ẏ|^2); potential = k/2*(θ - u)^2 - inner(f, y) + m*height(y); dissipation = k*u^2*ẋ^2; force x = u*θ̇;",
     "struct S { c } coordinate x; coordinate y; lagrangian = -c^2*sqrt(1 - (ẋ^2 + ẏ^2)/(100*c^2)) - (x^2 + y^4)/2;",
 ];
 
@@ -69,6 +71,8 @@ fn energy_changes_by_the_power() {
                         graph.symbol(Symbol::Input { input, component, order: order + 1 })
                     }
                     Symbol::Parameter(_)
+                    | Symbol::Control { .. }
+                    | Symbol::Acceleration(_)
                     | Symbol::Momentum(_)
                     | Symbol::Auxiliary(_)
                     | Symbol::Moment(..)

@@ -20,6 +20,8 @@ mod functions;
 mod golden;
 mod growth;
 mod identities;
+mod inputs;
+mod outputs;
 mod printed;
 mod quantities;
 mod random;

@@ -14,7 +14,7 @@ const ENERGY: &str = "kinetic = m/2*L^2*θ̇^2; potential = -m*g*L*cos(θ);";
 #[rustfmt::skip]
 const CASES: &[(&str, &str)] = &[
     ("kinetic = m*L^2*θ̇^2; potential = M*g;",                  "unknown name `M`; did you mean `m`?"),
-    ("kinetic = m*L^2*θ̇^2; potential = velocity;",             "unknown name `velocity`; declare it as a parameter, a coordinate, a driven input or with `let`"),
+    ("kinetic = m*L^2*θ̇^2; potential = velocity;",             "unknown name `velocity`; declare it as a parameter, a coordinate, an input or with `let`"),
     ("kinetic = m*L^2*θ̇^2; potential = sinn(θ);",              "unknown function `sinn`; did you mean `sin`?"),
     ("kinetic = m*L^2*θ̇^2; potential = θ̈;",                    "`θ̈` is an acceleration, and a Lagrangian has none; only driven inputs have a second derivative"),
     ("kinetic = m*L^2*θ̇^2; potential = dot(θ̇);",               "the derivative of a velocity in `θ̇` is an acceleration, and a Lagrangian has none; only driven inputs have a second derivative"),
@@ -57,7 +57,7 @@ const CASES: &[(&str, &str)] = &[
     ("let z = sum(k in 1..20, sqrt(k + θ^2)*sin(k*θ)); coordinate φ; kinetic = m*L^2*(z*θ̇ + z^2*φ̇)^2;", "the mass matrix is singular in the direction of `θ`: its kinetic energy is that of other coordinates; leave the redundant coordinate out"),
     ("potential = m*g*θ;",                                     "`θ` has no kinetic energy, so its acceleration is undetermined; add the square of its velocity to `kinetic`"),
     ("",                                                       "no energy; write `kinetic = …;` and `potential = …;` below the struct"),
-    ("kinetic = m*L^2*θ̇^2; coordinate φ: furlong;",            "unknown unit `furlong`; a unit is a product, quotient or power of `kg`, `m`, `s`, `rad`, `N`, `J`, `W`, `Hz` and `1`"),
+    ("kinetic = m*L^2*θ̇^2; coordinate φ: furlong;",            "unknown unit `furlong`; a unit is a product, quotient or power of `kg`, `m`, `s`, `rad`, `N`, `J`, `W`, `Hz`, `A`, `V`, `C`, `F`, `H`, `ohm`, `T`, `K` and `1`"),
     ("kinetic = m*L^2*θ̇^2; coordinate t;",                     "`t` is the time; choose another name"),
     ("kinetic = m*L^2*θ̇^2; driven ẏ: [m; 2];",                 "`ẏ` is a time derivative; declare the name without dots, `y`"),
     ("kinetic = m*L^2*θ̇^2; driven r: [m; 5];",                 "a driven input is a scalar or a vector; write `[m; 2]` or `[m; 3]`"),

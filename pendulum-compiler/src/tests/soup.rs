@@ -46,7 +46,7 @@ fn the_items_survive_a_mistake() {
     let bad = expand(BLOCKS[0].replace("height(y)", "hight(y)").parse().unwrap()).to_string();
     for item in [
         "pub struct M <",
-        "impl < T : :: p :: real :: Real > M <",
+        "impl < T : :: p :: scalar :: Real > M <",
         "System < 1usize > for M",
         "SplitEnergy < 1usize > for M",
         "fn driven_by",

@@ -26,7 +26,7 @@ const NOTATIONS: &[(&str, &str)] = &[
     ("potential = 2 kg;",                      "a number in a formula has no unit; units stand in declarations only, as in `g: m/s^2 = 9.81`"),
     ("potential = m*9.81*m/s^2;",              "unknown name `s`; declare it as a parameter; units stand in declarations only, as in `g: m/s^2 = 9.81`"),
     ("potential = N*θ;",                    "unknown name `N`; declare it as a parameter; units stand in declarations only, as in `g: m/s^2 = 9.81`"),
-    ("potential = E*θ;",                    "unknown name `E`; declare it as a parameter, a coordinate, a driven input or with `let`"),
+    ("potential = E*θ;",                    "unknown name `E`; declare it as a parameter, a coordinate, an input or with `let`"),
     ("potential = 2 m;",                       "there is no implicit multiplication; write `*` before `m`"),
     ("potential = 2m/L;",                      "there is no implicit multiplication; write `2*m`"),
     ("potential = log(θ + 2);",                "unknown function `log`; write `ln(θ + 2)`"),
@@ -115,8 +115,6 @@ const DECLARATIONS: &[(&str, &str)] = &[
     ("coordinate a: [m/s; 3];",                "a coordinate is one number; write `coordinate a[3]: m/s;` for several"),
     ("constraint loop: θ = 0;",                "constraints, as closed loops need them, are not supported yet; choose coordinates in which they hold by themselves"),
     ("redundant constraint loop: θ = 0;",      "constraints, as closed loops need them, are not supported yet; choose coordinates in which they hold by themselves"),
-    ("output tip: [m; 2] = x;",                "outputs are not supported yet; compute the value in the program, from the coordinates and the velocities"),
-    ("input u: N;",                            "inputs are not supported yet; declare it `driven` and bind a motion to it"),
     ("limit rail: L - θ >= 0;",                "limits are not supported yet; write a soft stop, as in `potential = k/2*max(0, θ - w)^2;`, or let the program stop at an event"),
 ];
 

@@ -1,7 +1,7 @@
 //! Small motions about a state: mass, damping and stiffness, and the normal modes.
 
 use crate::motion::Side;
-use crate::system::{Dynamics, Jacobians, Purpose, System, scalar_time};
+use crate::system::{Dynamics, Jacobians, Purpose, System, feedback_jacobians, scalar_time};
 use crate::time::Time;
 use core::fmt;
 use nalgebra::{DMatrix, DVector, SMatrix};
@@ -57,8 +57,8 @@ impl core::error::Error for ModeError {}
 /// M is the mass matrix, C = −M ∂q̈/∂q̇ and K = −M ∂q̈/∂q. At an equilibrium (v = 0 and no
 /// acceleration) they describe small motions.
 ///
-/// Driven inputs stay as they are. For the influence of one, as a controller needs it, declare it
-/// as a parameter: [`parameter_jacobian`](Jacobians::parameter_jacobian) is ∂q̈ by it.
+/// Driven inputs stay as they are. A feedback law is linearized along with the system;
+/// [`control_jacobian`](Jacobians::control_jacobian) is ∂q̈ by the control inputs.
 pub fn linearize<D, const N: usize>(
     dynamics: &D,
     t: f64,
@@ -72,11 +72,17 @@ where
     let time = Time::new(t);
     let t = scalar_time(time);
     let system = dynamics.system();
-    let inputs = dynamics.inputs(time, Side::After, Purpose::Accelerations);
+    let inputs = dynamics.inputs_with(time, Side::After, Purpose::Accelerations, q, v);
     let momenta = dynamics.inputs(time, Side::After, Purpose::Momenta);
     let mass = system.mass_matrix(t, q, v, &momenta);
-    let damping = -mass * system.velocity_jacobian(t, q, v, &inputs);
-    let stiffness = -mass * system.position_jacobian(t, q, v, &inputs);
+    let mut by_q = system.position_jacobian(t, q, v, &inputs);
+    let mut by_v = system.velocity_jacobian(t, q, v, &inputs);
+    if D::FEEDBACK {
+        let [law_by_q, law_by_v] = feedback_jacobians(dynamics, time, q, v, &inputs);
+        by_q += law_by_q;
+        by_v += law_by_v;
+    }
+    let (damping, stiffness) = (-mass * by_v, -mass * by_q);
     Linearization { mass, damping, stiffness }
 }
 

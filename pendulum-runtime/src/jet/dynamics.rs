@@ -3,7 +3,9 @@
 
 use super::{InputSeries, Jets};
 use crate::motion::{AnalyticMotions, MaybeAnalytic, Side};
-use crate::system::{Driven, Dynamics, NoInputs, Purpose, System};
+use crate::system::{
+    Controlled, Driven, Dynamics, MOST_CONTROLS, NoInputs, Purpose, Sampled, System,
+};
 use crate::time::Time;
 
 /// Dynamics of which [`Taylor`](crate::integrate::Taylor) can compute the jets.
@@ -131,6 +133,45 @@ impl<const N: usize, S: Jets<N>, M: MaybeAnalytic<S::Inputs, S::Scalar>> MaybeJe
     of_motions!(next_break last_break last_kink);
 }
 
+/// The methods of dynamics without jets.
+macro_rules! without_jets {
+    () => {
+        fn is_analytic(&self) -> bool {
+            false
+        }
+
+        fn drive(&self, _: Time, _: Side, _: usize, _: &mut S::Drive) {}
+
+        fn next_break(&self, t: f64) -> Option<f64> {
+            self.next_kink(t)
+        }
+
+        fn last_break(&self, _: f64) -> Option<f64> {
+            None
+        }
+
+        fn last_kink(&self, _: f64) -> Option<f64> {
+            None
+        }
+    };
+}
+
+impl<const N: usize, S, M, F, U> MaybeJets<N> for Controlled<S, M, F, U>
+where
+    S: Jets<N>,
+    Self: Dynamics<N, System = S, Scalar = S::Scalar>,
+{
+    without_jets!();
+}
+
+impl<const N: usize, S, M, C, U> MaybeJets<N> for Sampled<S, M, C, U>
+where
+    S: Jets<N>,
+    Self: Dynamics<N, System = S, Scalar = S::Scalar>,
+{
+    without_jets!();
+}
+
 /// Dynamics whose motions have turned out to be analytic.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Known<'a, D>(pub(crate) &'a D);
@@ -159,6 +200,27 @@ impl<const N: usize, D: Dynamics<N>> Dynamics<N> for Known<'_, D> {
     #[inline]
     fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
         self.0.longest_step(t, widths, unknown)
+    }
+
+    const FEEDBACK: bool = D::FEEDBACK;
+
+    fn control(
+        &self,
+        t: Time,
+        q: &[D::Scalar; N],
+        v: &[D::Scalar; N],
+        inputs: &mut <D::System as System<N>>::Inputs,
+    ) {
+        self.0.control(t, q, v, inputs);
+    }
+
+    fn controls(
+        &self,
+        t: Time,
+        q: &[D::Scalar; N],
+        v: &[D::Scalar; N],
+    ) -> [D::Scalar; MOST_CONTROLS] {
+        self.0.controls(t, q, v)
     }
 
     #[inline]

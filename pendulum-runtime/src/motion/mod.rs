@@ -32,6 +32,7 @@ pub use linear::Linear;
 pub use motions::{AnalyticMotions, MaybeAnalytic, Motions};
 pub(crate) use motions::{derivatives_of, shorter, sufficient};
 pub use prescribed::Motion;
+pub(crate) use prescribed::earlier;
 pub use projected::Projected;
 pub use sample::{Derivatives, Sample, Side};
 pub use sinusoid::Sinusoid;

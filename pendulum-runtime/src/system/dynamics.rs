@@ -1,10 +1,14 @@
 //! Systems together with the motions that drive them.
 
+use crate::error::Error;
 use crate::motion::{Motions, Side, sufficient};
 use crate::scalar::Real;
 use crate::system::equations::System;
 use crate::system::inputs::{NoInputs, Purpose};
 use crate::time::Time;
+
+/// The greatest number of components that the inputs of a system have together.
+pub const MOST_CONTROLS: usize = 24;
 
 /// A system with a motion for each of its driven inputs: what an integrator takes.
 ///
@@ -24,8 +28,11 @@ pub trait Dynamics<const N: usize> {
     /// The system.
     fn system(&self) -> &Self::System;
 
-    /// The samples of all driven inputs at `t`, seen from `side`, with the derivatives that
-    /// `purpose` needs.
+    /// Control inputs follow the state: [`inputs`](Self::inputs) alone does not give them.
+    const FEEDBACK: bool = false;
+
+    /// The samples of all inputs at `t`, seen from `side`, with the derivatives that `purpose`
+    /// needs; control inputs that follow the state are left out.
     fn inputs(&self, t: Time, side: Side, purpose: Purpose) -> <Self::System as System<N>>::Inputs;
 
     /// The first time after `t` at which a derivative of a driven input jumps.
@@ -38,6 +45,71 @@ pub trait Dynamics<const N: usize> {
     fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
         let _ = (t, widths);
         if <Self::System as System<N>>::FACTS.inputs.is_empty() { f64::INFINITY } else { unknown }
+    }
+
+    /// Puts the values of control inputs that follow the state into `inputs`.
+    #[inline]
+    fn control(
+        &self,
+        t: Time,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &mut <Self::System as System<N>>::Inputs,
+    ) {
+        let _ = (t, q, v, inputs);
+    }
+
+    /// The samples of all inputs at `t`, seen from `side`, in the state `q`, `v`, with the
+    /// derivatives that `purpose` needs.
+    #[inline]
+    fn inputs_with(
+        &self,
+        t: Time,
+        side: Side,
+        purpose: Purpose,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+    ) -> <Self::System as System<N>>::Inputs {
+        let mut inputs = self.inputs(t, side, purpose);
+        if Self::FEEDBACK {
+            self.control(t, q, v, &mut inputs);
+        }
+        inputs
+    }
+
+    /// The values of control inputs that follow the state, component by component.
+    #[inline]
+    fn controls(
+        &self,
+        t: Time,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+    ) -> [Self::Scalar; MOST_CONTROLS] {
+        let _ = (t, q, v);
+        [Self::Scalar::from_f64(0.0); MOST_CONTROLS]
+    }
+
+    /// Begins an integration at `t`: controllers that are sampled start anew. Returns a number by
+    /// which the integration is known to [`sample`](Self::sample).
+    fn begin(&self, t: f64) -> u64 {
+        let _ = t;
+        0
+    }
+
+    /// Asks a sampled controller for its values if they are due at the start of a step; returns
+    /// true if they have changed.
+    ///
+    /// # Errors
+    /// A value that is not finite, a controller that serves another integration by now.
+    fn sample(
+        &self,
+        run: u64,
+        t: Time,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+    ) -> Result<bool, Error> {
+        let _ = (run, t, q, v);
+        Ok(false)
     }
 
     /// The accelerations at `t`, seen from `side`.
@@ -63,21 +135,21 @@ pub trait Dynamics<const N: usize> {
         q: &[Self::Scalar; N],
         v: &[Self::Scalar; N],
     ) -> [Self::Scalar; N] {
-        let inputs = self.inputs(t, side, Purpose::Accelerations);
+        let inputs = self.inputs_with(t, side, Purpose::Accelerations, q, v);
         self.system().accelerations_prepared(prepared, scalar_time(t), q, v, &inputs)
     }
 
     /// The Jacobi integral at `t`.
     fn energy_at(&self, t: f64, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> Self::Scalar {
         let t = Time::new(t);
-        let inputs = self.inputs(t, Side::After, Purpose::Energy);
+        let inputs = self.inputs_with(t, Side::After, Purpose::Energy, q, v);
         self.system().energy(scalar_time(t), q, v, &inputs)
     }
 
     /// dE/dt at `t`.
     fn power_at(&self, t: f64, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> Self::Scalar {
         let t = Time::new(t);
-        let inputs = self.inputs(t, Side::After, Purpose::Power);
+        let inputs = self.inputs_with(t, Side::After, Purpose::Power, q, v);
         self.system().power(scalar_time(t), q, v, &inputs)
     }
 

@@ -124,6 +124,22 @@ pub trait System<const N: usize> {
         let _ = (t, q, v, inputs, values);
     }
 
+    /// The scalars of the output with this index in `FACTS.outputs`, as far as `values` reaches:
+    /// those of the first member of a family, of the second and so on.
+    ///
+    /// Each output is a method of its own, too, named as it is.
+    fn output(
+        &self,
+        index: usize,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+        values: &mut [Self::Scalar],
+    ) {
+        let _ = (index, t, q, v, inputs, values);
+    }
+
     /// dp/dt = ∂L/∂q − ∂R/∂q̇ + Q: the other half of the momentum form, which needs one derivative
     /// of the inputs less than the accelerations.
     fn momentum_rates(
@@ -265,6 +281,19 @@ pub trait Jacobians<const N: usize>: System<N> {
         inputs: &Self::Inputs,
         columns: &mut [[Self::Scalar; N]],
     );
+
+    /// ∂q̈/∂u for each component u of the control inputs in the order of declaration, as far as
+    /// `columns` reaches.
+    fn control_jacobian(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+        columns: &mut [[Self::Scalar; N]],
+    ) {
+        let _ = (t, q, v, inputs, columns);
+    }
 }
 
 /// The marker of systems with a constant mass matrix whose accelerations contain no velocity.

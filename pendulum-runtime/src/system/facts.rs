@@ -1,6 +1,6 @@
 //! Facts about a system that are known before it runs.
 
-use crate::system::inputs::Input;
+use crate::system::inputs::{Input, Output};
 
 /// Defines [`Facts`] from the list of all facts, each with its value where nothing is known.
 macro_rules! facts {
@@ -42,9 +42,11 @@ facts! {
     pub parameters: &'static [&'static str] = &[],
     /// The units of the parameters as written, empty where none was given.
     pub units: &'static [&'static str] = &[],
-    /// The driven inputs in the order of declaration.
+    /// The driven inputs in the order of declaration, and after them the control inputs.
     pub inputs: &'static [Input] = &[],
-    /// Neither time nor a driven input stands in the equations.
+    /// The outputs in the order of declaration.
+    pub outputs: &'static [Output] = &[],
+    /// Neither time nor an input stands in the equations.
     pub autonomous: bool = false,
     /// The time itself stands in the equations, beside driven inputs.
     pub explicit_time: bool = true,
@@ -81,6 +83,15 @@ impl Facts {
     /// The facts of a system about which nothing is known but its names.
     pub const fn new(name: &'static str, coordinates: &'static [&'static str]) -> Self {
         Self { name, coordinates, ..Self::UNKNOWN }
+    }
+
+    /// The number of driven inputs: the control inputs come after them.
+    pub(crate) const fn driven(&self) -> usize {
+        let mut index = 0;
+        while index < self.inputs.len() && !self.inputs[index].control {
+            index += 1;
+        }
+        index
     }
 
     /// The equations of motion in LaTeX, one line a coordinate.

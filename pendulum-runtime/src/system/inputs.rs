@@ -1,16 +1,18 @@
-//! Driven inputs of a system and their samples.
+//! Inputs of a system, driven and controlled, and their samples; its outputs.
 
 use crate::motion::{Derivatives, Sample};
 use crate::scalar::Real;
 use core::fmt::Debug;
 
-/// Needs of a system of one of its driven inputs.
+/// Needs of a system of one of its inputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Input {
     /// The name as written.
     pub name: &'static str,
     /// The number of components.
     pub components: usize,
+    /// It is a control input, which has a position alone: the value that the controller gives.
+    pub control: bool,
     /// Derivatives that accelerations and forces need.
     pub accelerations: Derivatives,
     /// Derivatives that momenta, velocities and momentum rates need.
@@ -19,9 +21,50 @@ pub struct Input {
     pub energy: Derivatives,
     /// Derivatives that the power needs.
     pub power: Derivatives,
+    /// Derivatives that the outputs need.
+    pub outputs: Derivatives,
 }
 
-/// The samples of all driven inputs of a system: `()` or a tuple of [`Sample`]s.
+/// An output of a system: its name, its unit and its shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Output {
+    /// The name as written.
+    pub name: &'static str,
+    /// The unit as written, empty where none was given.
+    pub unit: &'static str,
+    /// The number of members of a family.
+    pub members: Option<usize>,
+    /// The number of components of a vector, that of each member of a family.
+    pub components: Option<usize>,
+}
+
+impl Output {
+    /// The number of scalars: components times members.
+    pub const fn count(&self) -> usize {
+        let members = if let Some(members) = self.members { members } else { 1 };
+        let components = if let Some(components) = self.components { components } else { 1 };
+        members * components
+    }
+
+    /// The name of each scalar, in the order of
+    /// [`System::output`](crate::system::System::output): `tip.x`, `tip[3].y`, `load`.
+    pub fn names(&self) -> Vec<String> {
+        let component = |k: usize| match self.components {
+            None => String::new(),
+            Some(1..=3) => format!(".{}", ["x", "y", "z"][k]),
+            Some(_) => format!("[{k}]"),
+        };
+        let member = |k: usize| self.members.map_or_else(String::new, |_| format!("[{k}]"));
+        let components = self.components.unwrap_or(1);
+        (0..self.count())
+            .map(|k| {
+                format!("{}{}{}", self.name, member(k / components), component(k % components))
+            })
+            .collect()
+    }
+}
+
+/// The samples of all inputs of a system: `()` or a tuple of [`Sample`]s.
 pub trait Samples: Copy + Debug + PartialEq {
     /// The first number that is not finite: the input, the derivative (0 for the position) and the
     /// component, by index.
@@ -48,6 +91,35 @@ macro_rules! samples {
 }
 
 for_tuples_of_motions!(samples);
+
+/// Samples of inputs over the scalar `T` into which the values of control inputs are put.
+pub trait ControlSamples<T>: Samples {
+    /// Puts `values` into the positions of the inputs from the one with the index `first` on.
+    fn set_controls(&mut self, first: usize, values: &[T]);
+}
+
+impl<T> ControlSamples<T> for () {
+    #[inline]
+    fn set_controls(&mut self, _: usize, _: &[T]) {}
+}
+
+macro_rules! control_samples {
+    ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
+        impl<T: Real, $(const $dim: usize),+> ControlSamples<T> for ($(Sample<T, $dim>,)+) {
+            #[inline]
+            fn set_controls(&mut self, first: usize, values: &[T]) {
+                let mut values = values.iter();
+                $(if first <= $index {
+                    for (position, value) in self.$index.position.iter_mut().zip(values.by_ref()) {
+                        *position = *value;
+                    }
+                })+
+            }
+        }
+    )+};
+}
+
+for_tuples_of_motions!(control_samples);
 
 /// The derivative and the component of the first number in `sample` that is not finite.
 fn first_in_sample<T: Real, const D: usize>(sample: &Sample<T, D>) -> Option<(usize, usize)> {
@@ -78,6 +150,8 @@ pub enum Purpose {
     Energy,
     /// [`System::power`](crate::system::System::power).
     Power,
+    /// [`System::output`](crate::system::System::output).
+    Outputs,
 }
 
 impl Input {
@@ -88,15 +162,16 @@ impl Input {
             Purpose::Momenta => self.momenta,
             Purpose::Energy => self.energy,
             Purpose::Power => self.power,
+            Purpose::Outputs => self.outputs,
         }
     }
 }
 
 /// The samples of the driven inputs of a system `S` that has none: `()`.
 #[diagnostic::on_unimplemented(
-    message = "`{S}` has driven inputs; give their motions by `.driven_by(…)`",
-    label = "the motions of its driven inputs are missing",
-    note = "`driven_by` takes one motion for each driven input, in the order of declaration"
+    message = "`{S}` has inputs; give their motions by `.driven_by(…)`, their controllers by `.controlled_by(…)`",
+    label = "the motions or the controllers of its inputs are missing",
+    note = "`driven_by` takes one motion for each driven input, in the order of declaration; `controlled_by` and `sampled` take a controller for all control inputs"
 )]
 pub trait NoInputs<S>: Samples {
     /// No samples.

@@ -1,13 +1,18 @@
-//! Systems as `lagrangian!` generates them, and together with the motions that drive them.
+//! Systems as `lagrangian!` generates them, and together with the motions that drive them and with
+//! their controllers.
 
+mod control;
 mod dynamics;
 mod equations;
 mod facts;
+mod feedback;
 #[doc(hidden)]
 pub mod generated;
 mod inputs;
 
-pub use dynamics::{Driven, Dynamics, scalar_time};
+pub use control::{ControlSlot, ControlValues, Controlled, Sampled, Uncontrolled};
+pub use dynamics::{Driven, Dynamics, MOST_CONTROLS, scalar_time};
 pub use equations::{Jacobians, SplitEnergy, Staged, System, VelocityFree};
 pub use facts::Facts;
-pub use inputs::{Input, NoInputs, Purpose, Samples};
+pub(crate) use feedback::feedback_jacobians;
+pub use inputs::{ControlSamples, Input, NoInputs, Output, Purpose, Samples};

@@ -17,7 +17,10 @@ impl Dependencies {
     pub(crate) const MOMENTUM: Self = Self(128);
     pub(crate) const POINT: Self = Self(256);
     pub(crate) const AUXILIARY: Self = Self(512);
-    pub(crate) const INPUT: Self = Self(16 | 32 | 64);
+    pub(crate) const ACCELERATION: Self = Self(1024);
+    pub(crate) const CONTROL: Self = Self(2048);
+    /// Driven and control inputs.
+    pub(crate) const INPUT: Self = Self(16 | 32 | 64 | 2048);
     /// Everything but parameters.
     pub(crate) const STATE: Self = Self(!1);
 
@@ -40,6 +43,8 @@ impl Dependencies {
             Symbol::Input { order: 0, .. } => Self::POSITION_INPUT,
             Symbol::Input { order: 1, .. } => Self::VELOCITY_INPUT,
             Symbol::Input { .. } => Self::ACCELERATION_INPUT,
+            Symbol::Control { .. } => Self::CONTROL,
+            Symbol::Acceleration(_) => Self::ACCELERATION,
             Symbol::Momentum(_) => Self::MOMENTUM,
             Symbol::Auxiliary(_) => Self::AUXILIARY,
         }

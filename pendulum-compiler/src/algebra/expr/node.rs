@@ -46,6 +46,13 @@ pub(crate) enum Symbol {
         component: usize,
         order: u8,
     },
+    /// A control input, by the index and the component of the input; it has no derivatives.
+    Control {
+        input: usize,
+        component: usize,
+    },
+    /// The second derivative of a coordinate, in outputs.
+    Acceleration(usize),
     /// A generalized momentum, in the function that inverts them.
     Momentum(usize),
     /// A second moment about its pivot of the body whose scalars begin with this parameter.

@@ -46,6 +46,14 @@ impl Emitter<'_, '_> {
             let list = unused.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
             let _ = write!(text, " The equations do not need {list}.");
         }
+        if !self.model.outputs.is_empty() {
+            text.push_str("\n\n# Outputs\n\n");
+            for output in &self.model.outputs {
+                let (name, unit) = (output.declared.name, &output.declared.unit);
+                let unit = if unit.is_empty() { String::new() } else { format!(" in {unit}") };
+                let _ = writeln!(text, "- `{name}`{unit}");
+            }
+        }
         quote!(#[doc = #text])
     }
 }

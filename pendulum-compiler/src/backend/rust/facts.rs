@@ -19,10 +19,10 @@ impl Emitter<'_, '_> {
             }
             vec![quantity.unit.clone(); quantity.count()]
         });
-        let inputs = self.inputs();
+        let (inputs, outputs) = (self.inputs(), self.output_facts());
         let Some(motion) = &self.motion else {
             return quote!(#krate::__private::facts(#krate::__private::Known {
-                name: #name, coordinates: &[#(#coordinates),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*],
+                name: #name, coordinates: &[#(#coordinates),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*],
                 autonomous: false, explicit_time: false, separable: false, velocity_free: false, constant_mass_matrix: false, nonconservative: false,
                 smooth: false, linear: false, cyclic: &[], conserved: &[], unused: &[], equations: "", latex: "",
             }));
@@ -53,7 +53,7 @@ impl Emitter<'_, '_> {
         let unused = self.unused(&names);
         let [equations, latex] = self.equations.each_ref().map(|lines| lines.join("\n"));
         quote!(#krate::__private::facts(#krate::__private::Known {
-            name: #name, coordinates: &[#(#coordinates),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*],
+            name: #name, coordinates: &[#(#coordinates),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*],
             autonomous: #autonomous, explicit_time: #explicit_time, separable: #separable, velocity_free: #velocity_free, constant_mass_matrix: #constant_mass_matrix,
             nonconservative: #nonconservative, smooth: #smooth, linear: #linear, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], equations: #equations, latex: #latex,
         }))
@@ -82,10 +82,16 @@ impl Emitter<'_, '_> {
     /// driven input.
     pub(super) fn needed(&self) -> Vec<Vec<[bool; 3]>> {
         let purposes: Vec<Vec<Symbol>> = match &self.motion {
-            None => vec![Vec::new(); 4],
+            None => vec![Vec::new(); 5],
             Some(motion) => {
                 let of =
                     |lists: &[&[Id]]| self.graph.symbols(&lists.concat()).into_iter().collect();
+                let outputs: Vec<Id> = self
+                    .energies
+                    .outputs
+                    .iter()
+                    .flat_map(|output| output.scalars.clone())
+                    .collect();
                 let masses = motion.mass_matrix.concat();
                 let energies: Vec<Id> = [Some(motion.energy), motion.kinetic, motion.potential]
                     .into_iter()
@@ -101,14 +107,17 @@ impl Emitter<'_, '_> {
                     ]),
                     of(&[&energies]),
                     of(&[&[motion.power]]),
+                    of(&[&outputs]),
                 ]
             }
         };
         let of = |symbols: &Vec<Symbol>| {
             let mut needed = vec![[false; 3]; self.model.inputs.len()];
             for symbol in symbols {
-                if let Symbol::Input { input, order, .. } = *symbol {
-                    needed[input][usize::from(order)] = true;
+                match *symbol {
+                    Symbol::Input { input, order, .. } => needed[input][usize::from(order)] = true,
+                    Symbol::Control { input, .. } => needed[input][0] = true,
+                    _ => {}
                 }
             }
             needed
@@ -129,9 +138,10 @@ impl Emitter<'_, '_> {
                     .map(|(part, _)| format_ident!("{part}"));
                 quote!(#krate::motion::Derivatives::NONE #(.union(#krate::motion::Derivatives::#parts))*)
             });
-            let purposes = ["accelerations", "momenta", "energy", "power"]
+            let control = self.model.is_control(index);
+            let purposes = ["accelerations", "momenta", "energy", "power", "outputs"]
                 .map(|purpose| format_ident!("{purpose}"));
-            quote!(#krate::system::Input { name: #name, components: #components, #(#purposes: #orders),* })
+            quote!(#krate::system::Input { name: #name, components: #components, control: #control, #(#purposes: #orders),* })
         };
         self.model.inputs.iter().enumerate().map(describe).collect()
     }

@@ -11,10 +11,13 @@ impl Emitter<'_, '_> {
             (self.krate.clone(), self.scalar(), self.other_scalar(), self.count());
         let name = &self.model.block.name;
         let written = self.motion.as_ref().is_none_or(|motion| motion.jacobians.is_some());
-        let [positions, velocities, parameters] =
+        let [positions, velocities, parameters, controls] =
             if written { self.written_jacobians() } else { self.dual_jacobians() };
         let state = quote!(q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs);
         let inputs = (0..self.model.inputs.len()).map(Literal::usize_unsuffixed);
+        let controls = (self.model.driven < self.model.inputs.len()).then(|| quote! {
+            fn control_jacobian(&self, t: #scalar, #state, columns: &mut [[#scalar; #count]]) { #controls }
+        });
         quote! {
             #[automatically_derived]
             #[allow(non_snake_case, unused_variables, unused_mut, unused_parens, unreachable_code, clippy::all, clippy::pedantic)]
@@ -37,19 +40,26 @@ impl Emitter<'_, '_> {
                 fn velocity_jacobian(&self, t: #scalar, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #velocities }
 
                 fn parameter_jacobian(&self, t: #scalar, #state, columns: &mut [[#scalar; #count]]) { #parameters }
+
+                #controls
             }
         }
     }
 
     /// The Jacobians as expressions.
-    fn written_jacobians(&mut self) -> [TokenStream; 3] {
+    fn written_jacobians(&mut self) -> [TokenStream; 4] {
         let (krate, scalar, count) = (self.krate.clone(), self.scalar(), self.count());
         let size = count * count;
-        let flat = [0, 1, 2]
+        let flat = [0, 1, 2, 3]
             .map(|which| self.output(|motion| Some(motion.jacobians.as_ref()?[which].concat())));
-        let [positions, velocities, parameters] = flat;
+        let [positions, velocities, parameters, controls] = flat;
         if self.motion.is_none() {
-            return [quote!(#positions), quote!(#velocities), quote!(#parameters)];
+            return [
+                quote!(#positions),
+                quote!(#velocities),
+                quote!(#parameters),
+                quote!(#controls),
+            ];
         }
         let matrix = |entries: Option<TokenStream>| {
             quote! {
@@ -57,21 +67,25 @@ impl Emitter<'_, '_> {
                 #krate::__private::SMatrix::<#scalar, #count, #count>::from_column_slice(&entries)
             }
         };
-        let length = count * self.model.parameters.iter().map(Quantity::count).sum::<usize>();
-        let parameters = quote! {
-            let entries: [#scalar; #length] = #parameters;
-            let all = #krate::__private::columns::<#scalar, #count>(&entries);
-            for k in 0..all.len() {
-                if k < columns.len() {
-                    columns[k] = all[k];
+        let listed = |entries: Option<TokenStream>, quantities: &[Quantity]| {
+            let length = count * quantities.iter().map(Quantity::count).sum::<usize>();
+            quote! {
+                let entries: [#scalar; #length] = #entries;
+                let all = #krate::__private::columns::<#scalar, #count>(&entries);
+                for k in 0..all.len() {
+                    if k < columns.len() {
+                        columns[k] = all[k];
+                    }
                 }
             }
         };
-        [matrix(positions), matrix(velocities), parameters]
+        let parameters = listed(parameters, &self.model.parameters);
+        let controls = listed(controls, &self.model.inputs[self.model.driven..]);
+        [matrix(positions), matrix(velocities), parameters, controls]
     }
 
     /// The Jacobians by dual numbers: one evaluation of the accelerations for each column.
-    fn dual_jacobians(&self) -> [TokenStream; 3] {
+    fn dual_jacobians(&self) -> [TokenStream; 4] {
         let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
         let inputs = (0..self.model.inputs.len()).map(Literal::usize_unsuffixed);
         let (dual, name) = (quote!(#krate::scalar::Dual::<#scalar>), &self.model.block.name);
@@ -107,6 +121,26 @@ impl Emitter<'_, '_> {
                 columns[k] = #accelerations(&system, t, &q, &v, &inputs).map(|acceleration| acceleration.derivative);
             }
         };
-        [matrix(quote!(q)), matrix(quote!(v)), parameters]
+        let inputs = self.model.inputs.iter().enumerate().skip(self.model.driven);
+        let components = inputs.flat_map(|(input, quantity)| {
+            (0..quantity.count())
+                .map(move |component| (Literal::usize_unsuffixed(input), component))
+        });
+        let components = components.enumerate().map(|(k, (input, component))| {
+            quote! {
+                if #k < columns.len() {
+                    inputs.#input.position[#component].derivative = #scalar::from_f64(1.0);
+                    columns[#k] = #accelerations(&system, t, &q, &v, &inputs).map(|acceleration| acceleration.derivative);
+                    inputs.#input.position[#component].derivative = #scalar::from_f64(0.0);
+                }
+            }
+        });
+        let controls = quote! {
+            let system = #map(self, #dual::constant);
+            #lifted
+            let mut inputs = inputs;
+            #(#components)*
+        };
+        [matrix(quote!(q)), matrix(quote!(v)), parameters, controls]
     }
 }

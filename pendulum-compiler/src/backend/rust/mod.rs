@@ -7,6 +7,7 @@ mod facts;
 mod jacobian;
 pub(crate) mod jet;
 mod operation;
+mod outputs;
 mod program;
 mod staged;
 mod structure;
@@ -28,8 +29,9 @@ use std::collections::BTreeMap;
 /// with `__`.
 #[rustfmt::skip]
 const OWN: &[&str] = &[
-    "acceleration", "all", "at_position", "at_time", "both", "column", "columns", "drive", "entries", "index", "inputs", "k", "lifted",
-    "map", "order", "p", "parameter", "path", "prepared", "q", "row", "system", "t", "v", "value", "values", "widths", "work",
+    "acceleration", "all", "at_position", "at_time", "both", "column", "columns", "controller", "drive", "entries", "index", "inputs",
+    "k", "law", "lifted", "map", "order", "p", "parameter", "path", "period", "prepared", "q", "row", "scalar", "system", "t", "time", "v", "value",
+    "values", "widths", "work",
 ];
 
 /// What the emitter writes about and with.
@@ -67,6 +69,8 @@ impl Emitter<'_, '_> {
         let mirror = ide::function(self.model.block);
         let open = self.open_names();
         let unmentioned = self.unmentioned();
+        let outputs = self.output_methods();
+        let (output_trait, sampled_outputs) = self.output_trait();
         let conditions = self.model.block.conditions();
         quote! {
             #structure
@@ -74,8 +78,9 @@ impl Emitter<'_, '_> {
             #[allow(deprecated)]
             const _: () = {
                 #open
-                #constructor #system #split #staged #marker #jacobians #jets #unmentioned
+                #constructor #outputs #sampled_outputs #system #split #staged #marker #jacobians #jets #unmentioned
             };
+            #output_trait
             #mirror
         }
     }

@@ -96,12 +96,18 @@ impl Emitter<'_, '_> {
                 }
             }
             // Points of integration are gone when the integral is done, velocities of positions
-            // when the equations are solved.
-            Symbol::Point(..) | Symbol::Auxiliary(_) => quote!(::core::unreachable!()),
+            // when the equations are solved; accelerations have been put in.
+            Symbol::Point(..) | Symbol::Auxiliary(_) | Symbol::Acceleration(_) => {
+                quote!(::core::unreachable!())
+            }
             Symbol::Time => quote!(t),
             Symbol::Coordinate(index) => quote!(q[#index]),
             Symbol::Velocity(index) => quote!(v[#index]),
             Symbol::Momentum(index) => quote!(p[#index]),
+            Symbol::Control { input, component } => {
+                let input = Literal::usize_unsuffixed(input);
+                quote!(inputs.#input.position[#component])
+            }
             Symbol::Input { input, component, order } => {
                 let input = Literal::usize_unsuffixed(input);
                 let order = format_ident!(

@@ -77,7 +77,8 @@ impl Emitter<'_, '_> {
         if self.model.parameters.is_empty() {
             values.push(quote!(__scalar: ::core::marker::PhantomData));
         }
-        let driven = self.driven_by();
+        let (driven, controlled) = (self.driven_by(), self.controlled_by());
+        let facts = self.inherent_facts();
         let visibility = &self.model.block.visibility;
         quote! {
             #[automatically_derived]
@@ -91,32 +92,120 @@ impl Emitter<'_, '_> {
                 }
 
                 #driven
+
+                #controlled
+            }
+
+            #facts
+        }
+    }
+
+    /// The facts without the name of a trait.
+    fn inherent_facts(&self) -> TokenStream {
+        let (krate, name, count) = (&self.krate, &self.model.block.name, self.count());
+        let visibility = &self.model.block.visibility;
+        quote! {
+            #[automatically_derived]
+            #[allow(dead_code)]
+            impl #name<::core::primitive::f64> {
+                /// Facts about the system that are known before it runs.
+                #visibility const FACTS: #krate::system::Facts = <Self as #krate::system::System<#count>>::FACTS;
             }
         }
     }
 
+    /// The methods that bind a law to the control inputs of a system without driven ones.
+    fn controlled_by(&self) -> Option<TokenStream> {
+        if self.model.driven == self.model.inputs.len() || 0 < self.model.driven {
+            return None;
+        }
+        let slots = self.slots();
+        let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
+        let visibility = &self.model.block.visibility;
+        let kinds: Vec<TokenStream> = self
+            .model
+            .inputs
+            .iter()
+            .map(|input| match input.length {
+                None => quote!(#scalar),
+                Some(length) => quote!([#scalar; #length]),
+            })
+            .collect();
+        let kind = if let [kind] = kinds.as_slice() { kind.clone() } else { quote!((#(#kinds),*)) };
+        let state =
+            quote!((::core::primitive::f64, &[#scalar; #count], &[#scalar; #count]) -> #kind);
+        let names: Vec<String> =
+            self.model.inputs.iter().map(|input| format!("`{}`", input.name)).collect();
+        let names = names.join(", ");
+        let (continuous, held) = (
+            format!(
+                "The system under a feedback law: {names} from the time in seconds, the coordinates and the velocities."
+            ),
+            format!(
+                "The system under a controller that is asked every `period` seconds for {names}, which keep their values in between."
+            ),
+        );
+        Some(quote! {
+            #[doc = #continuous]
+            #visibility fn controlled_by<__F>(self, law: __F) -> #krate::system::Controlled<Self, (#slots), __F, #kind>
+            where
+                __F: ::core::ops::Fn #state,
+            {
+                let driven = #krate::system::Driven { system: self, motions: (#slots) };
+                #krate::system::Uncontrolled { driven }.controlled_by(law)
+            }
+
+            #[doc = #held]
+            #visibility fn sampled<__F>(self, period: ::core::primitive::f64, controller: __F) -> #krate::system::Sampled<Self, (#slots), __F, #kind>
+            where
+                __F: ::core::ops::FnMut #state + ::core::clone::Clone,
+            {
+                let driven = #krate::system::Driven { system: self, motions: (#slots) };
+                #krate::system::Uncontrolled { driven }.sampled(period, controller)
+            }
+        })
+    }
+
+    /// The places of the control inputs among the motions, each with a comma.
+    fn slots(&self) -> TokenStream {
+        let krate = &self.krate;
+        let slots = (self.model.driven..self.model.inputs.len())
+            .map(|_| quote!(#krate::system::ControlSlot,));
+        quote!(#(#slots)*)
+    }
+
     /// The method that binds a motion to each driven input.
     fn driven_by(&self) -> Option<TokenStream> {
-        if self.model.inputs.is_empty() {
+        let inputs = &self.model.inputs[..self.model.driven];
+        if inputs.is_empty() {
             return None;
         }
         let (krate, scalar, visibility) =
             (&self.krate, self.scalar(), &self.model.block.visibility);
-        let names: Vec<&Ident> = self.model.inputs.iter().map(|input| input.name).collect();
+        let names: Vec<&Ident> = inputs.iter().map(|input| input.name).collect();
         let types: Vec<Ident> = (0..names.len()).map(|index| format_ident!("M{index}")).collect();
-        let bounds = self.model.inputs.iter().zip(&types).map(|(input, motion)| {
+        let bounds = inputs.iter().zip(&types).map(|(input, motion)| {
             let dimension = input.count();
             quote!(#motion: #krate::motion::Motion<#scalar, #dimension>)
         });
-        let sufficient = self.sufficient();
+        let (sufficient, slots) = (self.sufficient(), self.slots());
+        let driven = quote!(#krate::system::Driven { system: self, motions: (#(#names,)* #slots) });
+        let kind = quote!(#krate::system::Driven<Self, (#(#types,)* #slots)>);
+        let (kind, value) = if self.model.driven == self.model.inputs.len() {
+            (kind, driven)
+        } else {
+            let kind = quote!(#krate::system::Uncontrolled<Self, (#(#types,)* #slots)>);
+            (kind, quote!(#krate::system::Uncontrolled { driven: #driven }))
+        };
         Some(quote! {
             /// The system driven by a motion for each of its driven inputs, in the order of
             /// declaration.
             ///
-            /// Does not compile if a motion lacks a derivative that the equations need.
-            #visibility fn driven_by<#(#bounds),*>(self, #(#names: #types),*) -> #krate::system::Driven<Self, (#(#types,)*)> {
+            /// Does not compile if a motion lacks a derivative that the equations or the outputs
+            /// need.
+            #visibility fn driven_by<#(#bounds),*>(self, #(#names: #types),*) -> #kind {
                 #sufficient
-                #krate::system::Driven { system: self, motions: (#(#names,)*) }
+                #value
             }
         })
     }
@@ -129,7 +218,8 @@ impl Emitter<'_, '_> {
     fn sufficient(&self) -> TokenStream {
         let (krate, scalar, system) = (&self.krate, self.scalar(), &self.model.block.name);
         let purposes = self.needed();
-        let assertions = self.model.inputs.iter().enumerate().filter_map(|(index, quantity)| {
+        let driven = &self.model.inputs[..self.model.driven];
+        let assertions = driven.iter().enumerate().filter_map(|(index, quantity)| {
             let needs = |order: usize| purposes.iter().any(|inputs| inputs[index][order]);
             let (name, motion, dimension) = (quantity.name, format_ident!("M{index}"), quantity.count());
             let has = |constant: &str| {

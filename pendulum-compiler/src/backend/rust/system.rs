@@ -37,6 +37,7 @@ impl Emitter<'_, '_> {
         let energy = vector(self, |motion| vec![motion.energy]);
         let power = vector(self, |motion| vec![motion.power]);
         let (hamilton, longest_step) = (self.hamilton(), self.longest_step());
+        let output = self.output_by_index();
         let velocities = self.output(|motion| motion.velocities.clone());
         let velocities = velocities.unwrap_or_else(
             || quote!(#krate::__private::newton::<#count, Self>(self, t, q, p, inputs)),
@@ -112,6 +113,8 @@ impl Emitter<'_, '_> {
                 #hamilton
 
                 #longest_step
+
+                #output
             }
         }
     }

@@ -6,17 +6,20 @@
 
 mod body;
 pub(crate) mod constant;
+mod output;
 mod term;
 mod value;
 
 use crate::algebra::diff;
-use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
+use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
+use crate::algebra::functions::REAL;
 use crate::algebra::number::Rational;
 use crate::messages::{self, Errors, Range};
 use crate::model::{self, Model};
 use crate::syntax::ast::{Binder, Expr, ForceIndex, Role};
 use crate::syntax::name;
 use crate::syntax::text::text;
+pub(crate) use output::Output;
 use std::collections::{BTreeMap, BTreeSet};
 use value::Value;
 
@@ -50,6 +53,7 @@ pub(crate) struct Energies {
     /// The parameters of two or three components that are used by their indices alone: families,
     /// not vectors.
     pub(crate) families: BTreeSet<usize>,
+    pub(crate) outputs: Vec<Output>,
     /// The same with the velocities of positions as symbols of their own; `None` where no position
     /// is written with `let`.
     pub(crate) extended: Option<Extended>,
@@ -84,6 +88,7 @@ impl Energies {
         single
             .chain(&mut self.forces)
             .chain(self.defaults.iter_mut().flatten())
+            .chain(self.outputs.iter_mut().flat_map(|output| &mut output.scalars))
             .chain(extended)
             .collect()
     }
@@ -130,15 +135,13 @@ struct PositionTracker {
 impl PositionTracker {
     /// Notes the scalars of a value that move with the coordinates.
     fn note(&mut self, graph: &Graph, value: &Value) {
-        let parts = match value {
-            Value::Bad => return,
-            Value::Scalar(id) => vec![*id],
-            Value::Plane { parts, .. } => parts.to_vec(),
-            Value::Space(parts) => parts.to_vec(),
-            Value::Family(members) => {
-                return members.iter().for_each(|member| self.note(graph, member));
-            }
-        };
+        if let Value::Family(members) = value {
+            return members.iter().for_each(|member| self.note(graph, member));
+        }
+        let parts = value.scalars();
+        if parts.is_empty() {
+            return;
+        }
         let other = Dependencies::VELOCITY
             .or(Dependencies::AUXILIARY)
             .or(Dependencies::POINT)
@@ -181,6 +184,7 @@ fn lower(
         integrals: 0,
         positions,
         constants: BTreeMap::new(),
+        accelerations: false,
     };
     let energies = lower.block();
     (energies, lower.positions)
@@ -200,6 +204,19 @@ pub(crate) fn total_derivative(graph: &mut Graph, id: Id) -> Id {
         };
         let partial = diff::derivative(graph, id, symbol);
         terms.push((graph.mul(partial, rate), Rational::ONE));
+    }
+    graph.sum(&terms)
+}
+
+/// dx/dt along the motion itself, where velocities have derivatives.
+fn second_derivative(graph: &mut Graph, id: Id) -> Id {
+    let mut terms = vec![(total_derivative(graph, id), Rational::ONE)];
+    for symbol in graph.symbols(&[id]) {
+        if let Symbol::Velocity(index) = symbol {
+            let partial = diff::derivative(graph, id, symbol);
+            let acceleration = graph.symbol(Symbol::Acceleration(index));
+            terms.push((graph.mul(partial, acceleration), Rational::ONE));
+        }
     }
     graph.sum(&terms)
 }
@@ -234,6 +251,8 @@ struct Lower<'m, 'a, 'g, 'e> {
     positions: Option<PositionTracker>,
     /// The values of expressions without symbols.
     constants: BTreeMap<Id, f64>,
+    /// Whether velocities have derivatives: in outputs.
+    accelerations: bool,
 }
 
 impl Lower<'_, '_, '_, '_> {
@@ -247,7 +266,7 @@ impl Lower<'_, '_, '_, '_> {
             energies.defaults.push(default);
         }
         for (index, definition) in self.model.lets.iter().enumerate() {
-            if definition.arguments.is_some() {
+            if definition.arguments.is_some() || self.model.of_outputs.contains(&index) {
                 continue;
             }
             match &definition.index {
@@ -263,6 +282,9 @@ impl Lower<'_, '_, '_, '_> {
         }
         for &(role, expr) in &self.model.energies {
             let Some(value) = self.outcome(expr) else { continue };
+            if role != Role::Dissipation && self.has_enclosed_control(expr, value) {
+                continue;
+            }
             let slot = match role {
                 Role::Kinetic => &mut energies.kinetic,
                 Role::Potential => &mut energies.potential,
@@ -275,8 +297,39 @@ impl Lower<'_, '_, '_, '_> {
             });
         }
         self.forces(&mut energies);
+        if self.positions.is_none() {
+            energies.outputs = self.outputs();
+        }
         energies.families = self.indexed.difference(&self.whole).copied().collect();
         energies
+    }
+
+    /// Reports an energy in which a control input stands elsewhere than in products and whole
+    /// powers: forces that it exerts count from its value zero on.
+    fn has_enclosed_control(&mut self, expr: &Expr, value: Id) -> bool {
+        let controlled = |id: Id| self.graph.dependencies(id).any(Dependencies::CONTROL);
+        let enclosed = |&id: &Id| match self.graph.node(id) {
+            Node::Product(_, factors) => factors.iter().find_map(|&(base, exponent)| {
+                let whole = exponent.integer().is_some_and(|exponent| 0 < exponent);
+                (!whole && controlled(base)).then_some(base)
+            }),
+            Node::Call(function, argument) => {
+                (function.row().domain != REAL && controlled(*argument)).then_some(*argument)
+            }
+            Node::Atan2(..) => controlled(id).then_some(id),
+            _ => None,
+        };
+        let Some(inner) = self.graph.reachable(&[value]).iter().find_map(enclosed) else {
+            return false;
+        };
+        for symbol in self.graph.symbols(&[inner]) {
+            if let Symbol::Control { input, .. } = symbol {
+                let message = messages::control_in_divisor(self.model.inputs[input].name);
+                self.errors.once(expr.source, expr.range, message);
+                return true;
+            }
+        }
+        false
     }
 
     fn forces(&mut self, energies: &mut Energies) {
@@ -338,13 +391,18 @@ impl Lower<'_, '_, '_, '_> {
     /// An energy or a force, unless it is too long.
     fn outcome(&mut self, expr: &Expr) -> Option<Id> {
         let value = self.scalar(expr)?;
+        self.within_bounds(expr, value).then_some(value)
+    }
+
+    /// Reports a value that is too long.
+    fn within_bounds(&mut self, expr: &Expr, value: Id) -> bool {
         let nodes = self.graph.reachable(&[value]);
         if LARGEST < nodes.len() {
             let message = format!(
                 "this unfolds to more than {LARGEST} different expressions; write a shorter sum"
             );
             self.errors.once(expr.source, expr.range, message);
-            return None;
+            return false;
         }
         let mut depths: BTreeMap<Id, usize> = BTreeMap::new();
         for id in nodes {
@@ -357,9 +415,9 @@ impl Lower<'_, '_, '_, '_> {
                 "this unfolds to more than {DEEPEST_NODE} functions and operations within one another; write a shorter chain"
             );
             self.errors.once(expr.source, expr.range, message);
-            return None;
+            return false;
         }
-        Some(value)
+        true
     }
 
     /// One instance of a definition.

@@ -135,7 +135,15 @@ impl Lower<'_, '_, '_, '_> {
             }
             Some(&Meaning::Coordinate(index)) if dots == 0 => self.quantity(&self.model.coordinates[index], Symbol::Coordinate),
             Some(&Meaning::Coordinate(index)) if dots == 1 => self.quantity(&self.model.coordinates[index], Symbol::Velocity),
-            Some(&Meaning::Input(input)) if dots <= 2 => {
+            Some(&Meaning::Coordinate(index)) if dots == 2 && self.accelerations => {
+                self.quantity(&self.model.coordinates[index], Symbol::Acceleration)
+            }
+            Some(&Meaning::Input(input)) if dots == 0 && self.model.is_control(input) => {
+                let quantity = &self.model.inputs[input];
+                let first = quantity.first;
+                self.quantity(quantity, |scalar| Symbol::Control { input, component: scalar - first })
+            }
+            Some(&Meaning::Input(input)) if dots <= 2 && !self.model.is_control(input) => {
                 let quantity = &self.model.inputs[input];
                 let first = quantity.first;
                 self.quantity(quantity, |scalar| Symbol::Input { input, component: scalar - first, order: dots })
@@ -163,8 +171,10 @@ impl Lower<'_, '_, '_, '_> {
         symbol: impl Fn(usize) -> Symbol,
     ) -> Value {
         let mut scalar = |offset: usize| self.graph.symbol(symbol(quantity.first + offset));
-        let coordinate =
-            matches!(symbol(quantity.first), Symbol::Coordinate(_) | Symbol::Velocity(_));
+        let coordinate = matches!(
+            symbol(quantity.first),
+            Symbol::Coordinate(_) | Symbol::Velocity(_) | Symbol::Acceleration(_)
+        );
         match quantity.length {
             None => Value::Scalar(scalar(0)),
             Some(2) if !coordinate => {

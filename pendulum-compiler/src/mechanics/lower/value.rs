@@ -1,6 +1,6 @@
 //! Arithmetic of scalars, vectors and complex numbers.
 
-use super::{Lower, total_derivative};
+use super::{Lower, second_derivative, total_derivative};
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::Function;
 use crate::algebra::number::Rational;
@@ -35,6 +35,17 @@ impl Value {
         }
     }
 
+    /// Its components, those of all members of a family.
+    pub(super) fn scalars(&self) -> Vec<Id> {
+        match self {
+            Value::Bad => Vec::new(),
+            Value::Scalar(id) => vec![*id],
+            Value::Plane { parts, .. } => parts.to_vec(),
+            Value::Space(parts) => parts.to_vec(),
+            Value::Family(members) => members.iter().flat_map(Self::scalars).collect(),
+        }
+    }
+
     pub(super) fn kind_plural(&self) -> &'static str {
         match self {
             Value::Bad => "unknown",
@@ -59,7 +70,14 @@ impl Lower<'_, '_, '_, '_> {
         if value == Value::Bad {
             return value;
         }
-        if dependencies.any(Dependencies::VELOCITY) {
+        if dependencies.any(Dependencies::CONTROL) {
+            return self.control_rate(&value, expr);
+        }
+        if dependencies.any(Dependencies::ACCELERATION) {
+            let what = format!("the derivative of an acceleration in `{what}`");
+            return self.wrong(expr, &messages::jerk(what));
+        }
+        if dependencies.any(Dependencies::VELOCITY) && !self.accelerations {
             return self.wrong(
                 expr,
                 &messages::acceleration(format!("the derivative of a velocity in `{what}`")),
@@ -78,16 +96,31 @@ impl Lower<'_, '_, '_, '_> {
             );
         }
         let positions = self.positions.take();
+        let accelerations = self.accelerations;
         let rate = |graph: &mut Graph, id: Id| match positions
             .as_ref()
             .and_then(|positions| positions.places.get(&id))
         {
             Some(&scalar) => graph.symbol(Symbol::Auxiliary(scalar)),
+            None if accelerations => second_derivative(graph, id),
             None => total_derivative(graph, id),
         };
         let value = self.map(value, rate);
         self.positions = positions;
         value
+    }
+
+    /// Refuses the derivative of a value in which a control input stands.
+    fn control_rate(&mut self, value: &Value, expr: &Expr) -> Value {
+        let symbols = self.graph.symbols(&value.scalars());
+        let input = symbols.into_iter().find_map(|symbol| match symbol {
+            Symbol::Control { input, .. } => Some(self.model.inputs[input].name),
+            _ => None,
+        });
+        match input {
+            Some(name) => self.wrong(expr, &messages::no_derivative(name)),
+            None => Value::Bad,
+        }
     }
 
     pub(super) fn dependencies(&self, value: &Value) -> Dependencies {

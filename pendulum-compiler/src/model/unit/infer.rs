@@ -22,7 +22,8 @@ const DEEPEST: usize = 200;
 /// Checks a block, if any of its quantities has a unit.
 pub(crate) fn check(model: &Model, errors: &mut Errors) {
     let quantities = || model.parameters.iter().chain(&model.coordinates).chain(&model.inputs);
-    if quantities().all(|quantity| quantity.unit.is_empty() && !quantity.body) {
+    let outputs = model.outputs.iter().map(|output| &output.declared);
+    if quantities().chain(outputs).all(|quantity| quantity.unit.is_empty() && !quantity.body) {
         return;
     }
     let mut units = Units {
@@ -121,6 +122,7 @@ impl Units<'_, '_, '_> {
                 }
             }
         }
+        self.outputs();
         let Some((energy, _)) = energy else { return };
         for force in &model.forces {
             let depth = self.scope.len();
@@ -144,6 +146,30 @@ impl Units<'_, '_, '_> {
                     force.name
                 );
                 self.errors.once(force.expr.source, force.expr.range, message);
+            }
+        }
+    }
+
+    fn outputs(&mut self) {
+        for output in &self.model.outputs {
+            let depth = self.scope.len();
+            if let Some(binder) = &output.statement.index {
+                self.scope.push((name::read(&binder.name.to_string()).base, Some(Unit::pure())));
+            }
+            let expr = &output.statement.expr;
+            let found = self.expr(expr);
+            self.scope.truncate(depth);
+            if let (Some(found), Some(declared)) = (found, output.declared.dimension)
+                && !self.unify(&found, &Unit::of(declared))
+            {
+                let found = self.shown(&found);
+                let message = format!(
+                    "`{}` is {found}, but `{}` is declared in {}",
+                    text(expr),
+                    output.declared.name,
+                    output.declared.unit
+                );
+                self.errors.once(expr.source, expr.range, message);
             }
         }
     }

@@ -59,6 +59,7 @@ impl Parser<'_> {
                         "kinetic" | "potential" | "lagrangian" | "dissipation" | "force" => {
                             self.recovery.energies = true;
                         }
+                        "output" => {}
                         _ => self.recovery = Recovery { declarations: true, energies: true },
                     }
                     skip(input, ';');

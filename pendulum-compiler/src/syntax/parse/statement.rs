@@ -3,18 +3,20 @@
 use super::Parser;
 use super::token::{end, equals, fragment, identifier, unexpected};
 use crate::messages::Range;
-use crate::syntax::ast::{Binder, Expr, ForceIndex, Kind, Let, Role, Statement};
+use crate::syntax::ast::{Binder, Expr, ForceIndex, Kind, Let, Output, Role, Statement};
 use crate::syntax::name;
 use crate::syntax::text::text;
 use proc_macro2::{Ident, Spacing, TokenStream, TokenTree};
+use quote::quote;
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Result};
 use syn::spanned::Spanned;
 use syn::{Attribute, Token, bracketed, parenthesized};
 
 /// The words with which statements begin.
-pub(super) const STATEMENTS: [&str; 8] =
-    ["coordinate", "driven", "let", "kinetic", "potential", "lagrangian", "dissipation", "force"];
+#[rustfmt::skip]
+pub(super) const STATEMENTS: [&str; 10] =
+    ["coordinate", "driven", "input", "let", "kinetic", "potential", "lagrangian", "dissipation", "force", "output"];
 
 /// What to do instead of a constraint.
 const CONSTRAINTS: &str = "constraints, as closed loops need them, are not supported yet; choose \
@@ -25,8 +27,6 @@ const CONSTRAINTS: &str = "constraints, as closed loops need them, are not suppo
 const UNSUPPORTED: &[(&str, &str)] = &[
     ("constraint", CONSTRAINTS),
     ("redundant", CONSTRAINTS),
-    ("output", "outputs are not supported yet; compute the value in the program, from the coordinates and the velocities"),
-    ("input", "inputs are not supported yet; declare it `driven` and bind a motion to it"),
     ("limit", "limits are not supported yet; write a soft stop, as in `potential = k/2*max(0, θ - w)^2;`, or let the program stop at an event"),
 ];
 
@@ -46,6 +46,8 @@ impl Parser<'_> {
         let statement = match word.as_str() {
             "coordinate" => self.coordinate(input)?,
             "driven" => self.driven(input)?,
+            "input" => self.control(input)?,
+            "output" => self.output(input, quote!(#(#attributes)*))?,
             "let" => self.definition(input)?,
             "force" => self.force(input)?,
             "kinetic" => self.energy(input, Role::Kinetic)?,
@@ -84,7 +86,7 @@ impl Parser<'_> {
         {
             let statement = match word {
                 "coordinate" => self.named_coordinate(input),
-                "driven" => self.named_input(input),
+                "driven" | "input" => self.named_input(input, word == "input"),
                 "let" => {
                     example = Some(format!("let {name} = …;"));
                     break;
@@ -154,18 +156,48 @@ impl Parser<'_> {
 
     fn driven(&mut self, input: ParseStream) -> Result<Statement> {
         input.call(Ident::parse_any)?;
-        self.named_input(input)
+        self.named_input(input, false)
     }
 
-    fn named_input(&mut self, input: ParseStream) -> Result<Statement> {
-        let name = self.declared(input, "the name of a driven input")?;
+    fn control(&mut self, input: ParseStream) -> Result<Statement> {
+        input.call(Ident::parse_any)?;
+        self.named_input(input, true)
+    }
+
+    fn named_input(&mut self, input: ParseStream, control: bool) -> Result<Statement> {
+        let what =
+            if control { "the name of a control input" } else { "the name of a driven input" };
+        let name = self.declared(input, what)?;
         let kind = self.declared_kind(input, &name)?;
         if let Kind::Body(range) = kind {
-            return Err(
-                range.error("a driven input has a unit; write `[m; 2]` for a motion in the plane")
-            );
+            return Err(range.error(if control {
+                "a control input has a unit; write `N` or `[N; 2]`"
+            } else {
+                "a driven input has a unit; write `[m; 2]` for a motion in the plane"
+            }));
         }
-        Ok(Statement::Driven { name, kind })
+        Ok(if control { Statement::Input { name, kind } } else { Statement::Driven { name, kind } })
+    }
+
+    fn output(&mut self, input: ParseStream, documentation: TokenStream) -> Result<Statement> {
+        input.call(Ident::parse_any)?;
+        // Its name is no name of the block: it may be that of a definition.
+        let name = identifier(input, "the name of an output")?;
+        let mut index = None;
+        if input.peek(syn::token::Bracket) {
+            let content;
+            bracketed!(content in input);
+            index = Some(self.binder(&content)?);
+            end(&content)?;
+        }
+        let kind = self.declared_kind(input, &name)?;
+        if let Kind::Body(range) = kind {
+            return Err(range.error("an output has a unit; write `m` or `[m; 2]`"));
+        }
+        equals(input)?;
+        let expr = self.expr(input)?;
+        let output = Output { documentation, name, index, kind, expr };
+        Ok(Statement::Output(Box::new(output)))
     }
 
     fn definition(&mut self, input: ParseStream) -> Result<Statement> {
@@ -267,14 +299,23 @@ fn written(statement: &Statement) -> String {
         Statement::Coordinate { name, length: Some(length), unit: own } => {
             format!("coordinate {name}[{}]{};", text(length), unit(own))
         }
-        Statement::Driven { name, kind: Kind::Scalar(own) } => {
-            format!("driven {name}{};", unit(own))
-        }
-        Statement::Driven { name, kind: Kind::Array { unit, length } } => {
-            let unit = unit.as_ref().map_or_else(|| "_".to_owned(), text);
-            format!("driven {name}: [{unit}; {}];", text(length))
-        }
+        Statement::Driven { name, kind } => format!("driven {name}{};", kind_written(kind)),
+        Statement::Input { name, kind } => format!("input {name}{};", kind_written(kind)),
         _ => "…".to_owned(),
+    }
+}
+
+/// A unit behind its colon, with the length of a vector.
+fn kind_written(kind: &Kind) -> String {
+    match kind {
+        Kind::Scalar(unit) => {
+            unit.as_ref().map_or_else(String::new, |unit| format!(": {}", text(unit)))
+        }
+        Kind::Array { unit, length } => {
+            let unit = unit.as_ref().map_or_else(|| "_".to_owned(), text);
+            format!(": [{unit}; {}]", text(length))
+        }
+        Kind::Body(_) => ": body".to_owned(),
     }
 }
 
@@ -293,7 +334,7 @@ fn unknown_statement(input: ParseStream, word: &str) -> syn::Error {
     }
     let hint = match name::nearest(word, STATEMENTS.into_iter()) {
         Some(near) => format!("did you mean `{near}`?"),
-        None => "a statement begins with `coordinate`, `driven`, `let`, `kinetic`, `potential`, `lagrangian`, `dissipation` or `force`".into(),
+        None => "a statement begins with `coordinate`, `driven`, `input`, `let`, `kinetic`, `potential`, `lagrangian`, `dissipation`, `force` or `output`".into(),
     };
     Range::from(input.span()).error(format!("unknown statement `{word}`; {hint}"))
 }

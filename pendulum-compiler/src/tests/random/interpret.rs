@@ -59,7 +59,10 @@ impl<T: Real> Values<T> {
                     Moment::Product => xy,
                 }
             }
-            Symbol::Auxiliary(_) | Symbol::Point(..) => panic!("{symbol:?} is left over"),
+            Symbol::Control { input, component } => self.inputs[input][component][0],
+            Symbol::Auxiliary(_) | Symbol::Point(..) | Symbol::Acceleration(_) => {
+                panic!("{symbol:?} is left over")
+            }
         }
     }
 

@@ -3,7 +3,9 @@
 use crate::error::{Coordinate, Quantity};
 use crate::motion::Side;
 use crate::scalar::Float;
-use crate::system::{Dynamics, Facts, Jacobians, Purpose, Samples, System, scalar_time};
+use crate::system::{
+    Dynamics, Facts, Jacobians, Purpose, Samples, System, feedback_jacobians, scalar_time,
+};
 use crate::time::Time;
 use nalgebra::SMatrix;
 
@@ -77,7 +79,8 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         a
     }
 
-    /// The samples of the driven inputs that the momentum form needs at `t`, seen from `side`.
+    /// The samples of the inputs that the momentum form needs at `t`, seen from `side`; control
+    /// inputs that follow the state are put in by the momentum rates.
     #[inline]
     pub fn inputs(&mut self, t: Time, side: Side) -> InputsOf<D, N> {
         let inputs = self.dynamics.inputs(t, side, Purpose::Momenta);
@@ -124,7 +127,12 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         inputs: &InputsOf<D, N>,
     ) -> [D::Scalar; N] {
         self.evaluations += 1;
-        let rates = self.dynamics.system().momentum_rates(scalar_time(t), q, v, inputs);
+        let mut inputs = *inputs;
+        if D::FEEDBACK {
+            self.dynamics.control(t, q, v, &mut inputs);
+            self.look(t, || first_in_inputs(Self::facts(), &inputs));
+        }
+        let rates = self.dynamics.system().momentum_rates(scalar_time(t), q, v, &inputs);
         self.look(t, || {
             let index = first_in(&rates)?;
             Some(Quantity::Acceleration(coordinate(Self::facts(), index)))
@@ -155,11 +163,16 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         D::System: Jacobians<N>,
     {
         let (system, time) = (self.dynamics.system(), scalar_time(t));
-        let inputs = self.dynamics.inputs(t, side, Purpose::Accelerations);
-        let jacobians = [
+        let inputs = self.dynamics.inputs_with(t, side, Purpose::Accelerations, q, v);
+        let mut jacobians = [
             system.position_jacobian(time, q, v, &inputs),
             system.velocity_jacobian(time, q, v, &inputs),
         ];
+        if D::FEEDBACK {
+            let [by_q, by_v] = feedback_jacobians(self.dynamics, t, q, v, &inputs);
+            jacobians[0] += by_q;
+            jacobians[1] += by_v;
+        }
         self.look(t, || {
             let entries = |matrix: &SMatrix<D::Scalar, N, N>| {
                 (0..N).find(|&i| matrix.row(i).iter().any(|x| !x.is_finite()))
@@ -191,7 +204,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         v: &[D::Scalar; N],
         a: &[D::Scalar; N],
     ) {
-        let inputs = self.dynamics.inputs(t, side, Purpose::Accelerations);
+        let inputs = self.dynamics.inputs_with(t, side, Purpose::Accelerations, q, v);
         self.look(t, || {
             let facts = Self::facts();
             let state = first_in_state(facts, q, v).or_else(|| first_in_inputs(facts, &inputs));
@@ -241,8 +254,13 @@ pub(crate) fn first_in_state<T: Float, const N: usize>(
 /// The first component of a driven input that is not finite.
 pub(crate) fn first_in_inputs(facts: &Facts, inputs: &impl Samples) -> Option<Quantity> {
     let (input, derivative, component) = inputs.first_not_finite()?;
-    let name = facts.inputs.get(input).map_or("", |input| input.name);
-    Some(Quantity::Input { name, component, derivative })
+    let (name, control) =
+        facts.inputs.get(input).map_or(("", false), |input| (input.name, input.control));
+    Some(if control {
+        Quantity::Control { name, component }
+    } else {
+        Quantity::Input { name, component, derivative }
+    })
 }
 
 fn first_in<T: Float, const N: usize>(values: &[T; N]) -> Option<usize> {

@@ -46,6 +46,8 @@ where
     backwards: bool,
     /// The next kink in that direction, infinite if there is none.
     kink: f64,
+    /// The number by which sampled controllers know the integration.
+    run: u64,
 }
 
 impl<'a, const N: usize, D, M, C> Integration<'a, N, D, M, C>
@@ -64,6 +66,7 @@ where
     ) -> Result<Self, Error> {
         check_start(dynamics, Time::new(t), &q, &v)?;
         let end = Endpoint::new(Time::new(t), q, v);
+        let run = dynamics.begin(t);
         let kink = next_kink(&method, dynamics, t, false)?;
         Ok(Self {
             dynamics,
@@ -80,6 +83,7 @@ where
             state: ControllerState::default(),
             backwards: false,
             kink,
+            run,
         })
     }
 
@@ -131,6 +135,7 @@ where
             state: ControllerState { unknown: self.state.unknown, ..ControllerState::default() },
             backwards: self.backwards,
             kink: self.kink,
+            run: self.run,
         }
     }
 
@@ -154,6 +159,7 @@ where
         if backwards != self.backwards {
             self.turn(backwards)?;
         }
+        self.sample()?;
         let kink_comes_first = if backwards { target < self.kink } else { self.kink < target };
         let target = if kink_comes_first { self.kink } else { target };
         let mut field = Field::new(self.dynamics, &self.prepared);
@@ -190,6 +196,16 @@ where
         } else {
             Ok(())
         }
+    }
+
+    /// Asks a sampled controller for its values if they are due.
+    #[inline]
+    fn sample(&mut self) -> Result<(), Error> {
+        let Endpoint { t, q, v, .. } = &self.end;
+        if self.dynamics.sample(self.run, *t, &q.high, &v.high)? {
+            self.end.a = None;
+        }
+        Ok(())
     }
 
     /// Carries the state over the kink if a step over `interval` has ended on it.
@@ -257,6 +273,8 @@ where
 
     /// The accelerations at the state reached; the next step begins with them.
     pub(crate) fn accelerations(&mut self) -> [D::Scalar; N] {
+        // The next step meets the same error, and returns it.
+        let _ = self.sample();
         let mut field = Field::new(self.dynamics, &self.prepared);
         let a = self.end.start_acceleration(&mut field);
         self.stats.evaluations += field.evaluations;

@@ -122,10 +122,12 @@ system! {
 const X: Input = Input {
     name: "x",
     components: 2,
+    control: false,
     accelerations: Derivatives::ACCELERATION,
     momenta: Derivatives::VELOCITY,
     energy: Derivatives::ALL,
     power: Derivatives::ALL,
+    outputs: Derivatives::NONE,
 };
 
 impl<T: Real> VelocityFree<1> for MovingPendulum<T> {}

@@ -440,6 +440,9 @@ impl Writer<'_, '_, '_> {
         Some(match symbol {
             Symbol::Coordinate(index) => quote!(path.q[#index]),
             Symbol::Velocity(index) => quote!(path.v[#index]),
+            Symbol::Control { input, component } => {
+                return self.series_of(Symbol::Input { input, component, order: 0 });
+            }
             Symbol::Input { input, component, order } => {
                 let before: usize =
                     self.emitter.model.inputs[..input].iter().map(Quantity::count).sum();

@@ -298,16 +298,16 @@ fn at_nodes<D: LaneDynamics<N>, const N: usize>(
     interval: &StepInterval,
     nodes: &Nodes,
     last: Option<Time>,
-) -> (Wide<D::Scalar>, <D::Wide as System<N>>::Inputs) {
+) -> ([Time; S], Wide<D::Scalar>, <D::Wide as System<N>>::Inputs) {
     let (mut times, mut lanes) = ([interval.start; S], Wide::splat(scalar_time(interval.start)));
     // Otherwise nobody looks at them.
-    if !<D::System as System<N>>::FACTS.autonomous {
+    if D::FEEDBACK || !<D::System as System<N>>::FACTS.autonomous {
         for k in 0..S {
             times[k] = interval.start + nodes[k] * interval.h;
             lanes.0[k] = scalar_time(times[k]);
         }
     }
-    (lanes, dynamics.inputs_at(&times, last))
+    (times, lanes, dynamics.inputs_at(&times, last))
 }
 
 /// Evaluates the accelerations where the last ones lead, again and again, until that changes
@@ -334,8 +334,9 @@ fn sweeps<
     let (h, prepared) = (Wide::splat(equations.interval.length()), equations.prepared);
     // Where the motion is without accelerations.
     let mut straight = [[zero; N]; H];
-    let (t, inputs) = at_nodes(equations.dynamics, equations.interval, points[0], None);
+    let (times, t, inputs) = at_nodes(equations.dynamics, equations.interval, points[0], None);
     let mut known = [(t, inputs, Of::<D, N>::at_time(t, &inputs)); H];
+    let mut node_times = [times; H];
     let all = if G == H || equations.closing { H } else { G };
     for g in 0..all {
         let elapsed = Wide::<T>::known(points[g]) * h;
@@ -348,8 +349,10 @@ fn sweeps<
             // may have a kink.
             let end = equations.interval.end;
             let last = if G < H && g + 1 == H && end.low() == 0.0 { Some(end) } else { None };
-            let (t, inputs) = at_nodes(equations.dynamics, equations.interval, points[g], last);
+            let (times, t, inputs) =
+                at_nodes(equations.dynamics, equations.interval, points[g], last);
             known[g] = (t, inputs, Of::<D, N>::at_time(t, &inputs));
+            node_times[g] = times;
         }
     }
     // In memory as vectors: the compiler would mix the lanes of different coordinates.
@@ -380,6 +383,13 @@ fn sweeps<
                 v[i] += v0[i];
             }
             let (t, inputs, at_time) = &known[g];
+            let mut controlled = *inputs;
+            let inputs = if D::FEEDBACK {
+                equations.dynamics.control_lanes(&node_times[g], &q, &v, &mut controlled);
+                &controlled
+            } else {
+                inputs
+            };
             let at_position = system.at_position(prepared, at_time, *t, &q, inputs);
             let new =
                 system.accelerations_staged(prepared, at_time, &at_position, *t, &q, &v, inputs);

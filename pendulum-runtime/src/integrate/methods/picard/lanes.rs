@@ -2,9 +2,12 @@
 
 #![allow(clippy::inline_always)]
 
-use crate::motion::{Derivatives, MaybeAnalytic, Motion, Sample, Side, derivatives_of};
+use crate::motion::{Derivatives, MaybeAnalytic, Motion, Sample, Side, derivatives_of, earlier};
 use crate::scalar::{Float, Lane, Octet, Real};
-use crate::system::{Driven, Dynamics, Input, NoInputs, Purpose, Samples, Staged, System};
+use crate::system::{
+    ControlSamples, ControlValues, Controlled, Driven, Dynamics, Input, MOST_CONTROLS, NoInputs,
+    Purpose, Sampled, Samples, Staged, System,
+};
 use crate::time::Time;
 
 use super::tableau::S;
@@ -29,6 +32,19 @@ pub trait LaneDynamics<const N: usize>: Dynamics<N, Scalar: Lane + Float> {
     #[doc(hidden)]
     fn inputs_at(&self, times: &[Time; 8], last: Option<Time>)
     -> <Self::Wide as System<N>>::Inputs;
+
+    /// Puts the control inputs that follow the state in each lane into `inputs`.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn control_lanes(
+        &self,
+        times: &[Time; 8],
+        q: &[Octet<Self::Scalar>; N],
+        v: &[Octet<Self::Scalar>; N],
+        inputs: &mut <Self::Wide as System<N>>::Inputs,
+    ) {
+        let _ = (times, q, v, inputs);
+    }
 
     /// The first time after `t` at which a motion is known to stop having all derivatives.
     #[doc(hidden)]
@@ -79,6 +95,92 @@ where
     #[inline]
     fn next_break(&self, t: f64) -> Option<f64> {
         self.motions.next_break(t)
+    }
+}
+
+impl<S0, M, F, U, const N: usize> LaneDynamics<N> for Controlled<S0, M, F, U>
+where
+    S0: System<N, Scalar: Lane + Float, Inputs: ControlSamples<S0::Scalar>>,
+    M: LaneMotions<S0::Inputs, S0::Scalar> + MaybeAnalytic<S0::Inputs, S0::Scalar>,
+    M::Wide: ControlSamples<Octet<S0::Scalar>>,
+    S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = M::Wide>,
+    F: Fn(f64, &[S0::Scalar; N], &[S0::Scalar; N]) -> U,
+    U: ControlValues<S0::Scalar>,
+{
+    type Wide = S0::With<Octet<S0::Scalar>>;
+
+    #[inline(always)]
+    fn widened(&self) -> Self::Wide {
+        self.driven.system.map(Octet::splat)
+    }
+
+    #[inline(always)]
+    fn inputs_at(&self, times: &[Time; S], last: Option<Time>) -> M::Wide {
+        self.driven.motions.sample_all(times, last, S0::FACTS.inputs)
+    }
+
+    #[inline(always)]
+    fn control_lanes(
+        &self,
+        times: &[Time; S],
+        q: &[Octet<S0::Scalar>; N],
+        v: &[Octet<S0::Scalar>; N],
+        inputs: &mut M::Wide,
+    ) {
+        let mut values = [Octet::splat(S0::Scalar::from_f64(0.0)); MOST_CONTROLS];
+        for k in 0..S {
+            let (q, v) = (q.map(|q| q.0[k]), v.map(|v| v.0[k]));
+            let own = self.controls(times[k], &q, &v);
+            for (value, own) in values.iter_mut().zip(own).take(U::COUNT) {
+                value.0[k] = own;
+            }
+        }
+        inputs.set_controls(const { S0::FACTS.driven() }, &values[..U::COUNT]);
+    }
+
+    #[inline]
+    fn next_break(&self, t: f64) -> Option<f64> {
+        self.driven.motions.next_break(t)
+    }
+}
+
+impl<S0, M, C, U, const N: usize> LaneDynamics<N> for Sampled<S0, M, C, U>
+where
+    S0: System<N, Scalar: Lane + Float, Inputs: ControlSamples<S0::Scalar>>,
+    M: LaneMotions<S0::Inputs, S0::Scalar> + MaybeAnalytic<S0::Inputs, S0::Scalar>,
+    M::Wide: ControlSamples<Octet<S0::Scalar>>,
+    S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = M::Wide>,
+    C: FnMut(f64, &[S0::Scalar; N], &[S0::Scalar; N]) -> U + Clone,
+    U: ControlValues<S0::Scalar>,
+{
+    type Wide = S0::With<Octet<S0::Scalar>>;
+
+    #[inline(always)]
+    fn widened(&self) -> Self::Wide {
+        self.driven.system.map(Octet::splat)
+    }
+
+    #[inline(always)]
+    fn inputs_at(&self, times: &[Time; S], last: Option<Time>) -> M::Wide {
+        let mut inputs = self.driven.motions.sample_all(times, last, S0::FACTS.inputs);
+        let mut values = [Octet::splat(S0::Scalar::from_f64(0.0)); MOST_CONTROLS];
+        for k in 0..S {
+            let (t, side) = match last {
+                Some(last) if k + 1 == S => (last, Side::Before),
+                _ => (times[k], Side::After),
+            };
+            let own = self.held(t, side);
+            for (value, own) in values.iter_mut().zip(own).take(U::COUNT) {
+                value.0[k] = own;
+            }
+        }
+        inputs.set_controls(const { S0::FACTS.driven() }, &values[..U::COUNT]);
+        inputs
+    }
+
+    #[inline]
+    fn next_break(&self, t: f64) -> Option<f64> {
+        earlier(self.driven.motions.next_break(t), self.next_kink(t))
     }
 }
 

@@ -1,0 +1,114 @@
+//! Outputs to their scalars.
+
+use super::{Lower, Value};
+use crate::algebra::expr::Id;
+use crate::messages;
+use crate::model;
+use crate::syntax::ast::{Expr, Kind};
+use crate::syntax::text::text;
+
+/// The scalars of an output.
+#[derive(Debug, Default)]
+pub(crate) struct Output {
+    /// The length of a family.
+    pub(crate) members: Option<usize>,
+    /// The length of a vector: that of each member of a family.
+    pub(crate) components: Option<usize>,
+    /// The components of the first member, of the second and so on.
+    pub(crate) scalars: Vec<Id>,
+}
+
+impl Lower<'_, '_, '_, '_> {
+    /// The outputs in the order of declaration; one with a mistake has no scalars.
+    pub(super) fn outputs(&mut self) -> Vec<Output> {
+        self.accelerations = true;
+        let outputs = self.model.outputs.iter().map(|output| self.output(output)).collect();
+        self.accelerations = false;
+        outputs
+    }
+
+    fn output(&mut self, output: &model::Output) -> Output {
+        let (statement, name) = (output.statement, output.declared.name);
+        let Some(binder) = &statement.index else {
+            let (components, scalars) = self.output_member(output).unwrap_or_default();
+            return Output { members: None, components, scalars };
+        };
+        let range = self.range(binder);
+        if range.is_empty() {
+            self.errors.once(
+                binder.high.source,
+                binder.high.range,
+                format!("`{name}` has no members; write a range such as `0..5`"),
+            );
+        }
+        if range.start != 0 && !range.is_empty() {
+            let message =
+                format!("the members of `{name}` are counted from 0; begin the range there");
+            self.errors.once(binder.low.source, binder.low.range, message);
+        }
+        let mut result = Output { members: Some(range.clone().count()), ..Output::default() };
+        for k in range {
+            self.bind(binder, k);
+            let member = self.output_member(output);
+            self.unbind();
+            let Some((components, scalars)) = member else { break };
+            result.components = components;
+            result.scalars.extend(scalars);
+        }
+        result
+    }
+
+    /// The length of a vector, and its scalars.
+    fn output_member(&mut self, output: &model::Output) -> Option<(Option<usize>, Vec<Id>)> {
+        let expr = &output.statement.expr;
+        let value = self.expr(expr);
+        let declared = output.declared.length;
+        let own = match &value {
+            Value::Bad => return None,
+            Value::Scalar(_) => None,
+            Value::Plane { .. } => Some(2),
+            Value::Space(_) => Some(3),
+            Value::Family(members) => {
+                if members.iter().any(|member| !matches!(member, Value::Scalar(_))) {
+                    let (name, count) = (output.declared.name, members.len());
+                    let (text, unit) = (text(expr), messages::unit_of(&output.declared.unit));
+                    let message = format!(
+                        "`{text}` is a family of vectors; write `output {name}[k in 0..{count}]: [{unit}; 2] = {text}[k];`"
+                    );
+                    self.wrong(expr, &message);
+                    return None;
+                }
+                Some(members.len())
+            }
+        };
+        // Without a unit the output has the shape of its value.
+        let open = matches!(output.statement.kind, Kind::Scalar(None));
+        if own != declared && !open {
+            self.shape(output, &value, own, expr);
+            return None;
+        }
+        let scalars = value.scalars();
+        let checked = scalars.iter().all(|&scalar| self.within_bounds(expr, scalar));
+        checked.then_some((own, scalars))
+    }
+
+    /// Reports an output that is declared in another shape than it has.
+    fn shape(&mut self, output: &model::Output, value: &Value, own: Option<usize>, expr: &Expr) {
+        let declared = match output.declared.length {
+            None => "as a scalar".to_owned(),
+            Some(length) => format!("with {length} components"),
+        };
+        let unit = messages::unit_of(&output.declared.unit);
+        let instead = match own {
+            None => unit.to_owned(),
+            Some(length) => format!("[{unit}; {length}]"),
+        };
+        let message = format!(
+            "`{}` is {}, but `{}` is declared {declared}; write `{instead}`",
+            text(expr),
+            value.kind(),
+            output.declared.name
+        );
+        self.wrong(expr, &message);
+    }
+}
