@@ -143,8 +143,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("\nSteps of 1 ms: {difference:.1e} rad at the end.");
 
     // Events are found on the interpolant.
-    let hanging = [Event::new(&|_, θ: &[f64; 1], _: &[f64; 1]| θ[0])];
-    let swing = run().method(BogackiShampine).rtol(1e-8).events(&hanging).run()?;
+    let hanging = Event::new(|_, θ, _| θ[0]);
+    let swing = run().method(BogackiShampine).rtol(1e-8).events([hanging]).run()?;
     let times: Vec<f64> = swing.events.iter().map(|event| event.time.to_f64()).collect();
     println!("{} times through θ = 0; the period is {:.6} s.", times.len(), times[2] - times[0]);
     Ok(())

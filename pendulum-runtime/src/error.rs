@@ -106,6 +106,29 @@ pub enum Error {
         /// The index of the event in the list given.
         event: usize,
     },
+    /// The action of an event gives a number that is not finite; the state is the one before it.
+    Action {
+        /// The time of the event.
+        t: f64,
+        /// The index of the event in the list given.
+        event: usize,
+        /// The coordinate or velocity.
+        what: Quantity,
+    },
+    /// An event acts again and again, each time sooner, towards a time that it never passes.
+    Accumulation {
+        /// That time, extrapolated.
+        t: f64,
+        /// The index of the event in the list given.
+        event: usize,
+    },
+    /// The action of an event leaves the motion where the function of the event is zero.
+    EventStays {
+        /// The time of the event.
+        t: f64,
+        /// The index of the event in the list given.
+        event: usize,
+    },
     /// A motion says that its next kink after a time is not after it.
     Kink {
         /// The time asked about.
@@ -275,6 +298,20 @@ impl fmt::Display for Error {
                 f,
                 "at t = {t:?} the sampled controller serves an integration that began later; clone the system, and give each \
                  integration a controller of its own"
+            ),
+            Self::Action { t, event, what } => write!(
+                f,
+                "at t = {t:?} the action of event {event} gives a {what} that is not finite; check what `then` does to the state there"
+            ),
+            Self::Accumulation { t, event } => write!(
+                f,
+                "event {event} acts again and again, each time sooner, and never passes t = {t:?}; \
+                 let it come to rest by `.rest_below(speed)`, make it terminal, or end before that time"
+            ),
+            Self::EventStays { t, event } => write!(
+                f,
+                "at t = {t:?} event {event} acts and the motion stays where its function is zero; \
+                 let the action give a velocity that leads away, or end there by `.terminal()` or `.rest_below(speed)`"
             ),
             Self::Kink { t, kink } => {
                 write!(

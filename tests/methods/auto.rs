@@ -325,7 +325,7 @@ lagrangian! {
 #[test]
 fn a_ball_that_is_put_back_bounces_as_if_it_began_there() {
     let ball = Ball::new(1.0);
-    let floor = [Event::new(&|_, y: &[f64; 1], _| y[0]).direction(Direction::Falling).terminal()];
+    let floor = [Event::new(|_, y, _| y[0]).falling().terminal()];
     macro_rules! bounces {
         ($($method:expr),+) => {$({
             let mut run = Integrator::new(&ball, $method, 0.0, [1.0], [0.0]).unwrap().events(&floor).unwrap();

@@ -2,6 +2,7 @@
 
 #![allow(mixed_script_confusables, missing_docs)]
 
+pub mod acts;
 pub mod auto;
 pub mod batch;
 pub mod control;

@@ -179,7 +179,7 @@ fn an_integration_by_hand_is_the_same() {
 fn other_velocities_begin_a_new_grid() {
     let system = Simple { g: 9.8 };
     let never = |_: f64, _: &[f64; 1], _: &[f64; 1]| 1.0;
-    let events = [Event::new(&never)];
+    let events = [Event::new(never)];
     let integrator =
         Integrator::new(&system, QuinlanTremaine::<8>::new(), 0.0, [0.0], [0.0]).unwrap();
     let mut integrator =

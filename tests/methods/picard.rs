@@ -212,7 +212,7 @@ fn dense_output_is_exact() {
 fn events_are_located() {
     let double = Double::new([1.0; 2], [1.0; 2], 1.0);
     let over = |_: f64, q: &[f64; 2], _: &[f64; 2]| q[1].abs() - 3.0 * core::f64::consts::PI;
-    let events = [pendulum_runtime::integrate::Event::new(&over).terminal()];
+    let events = [pendulum_runtime::integrate::Event::new(over).terminal()];
     let flip = |method: &str| {
         let problem = solve(&double, (0.0, 30.0), [2.0, 2.5], [0.0; 2]);
         let solution = match method {

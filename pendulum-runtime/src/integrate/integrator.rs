@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::integrate::events::detector::EventDetector;
-use crate::integrate::events::{Event, Occurrence};
+use crate::integrate::events::{Event, Occurrence, Status};
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::Method;
 use crate::integrate::solution::Stats;
@@ -29,7 +29,7 @@ where
     detector: EventDetector<'a, D::Scalar, N>,
     /// What happened in the last call.
     found: Vec<Occurrence<D::Scalar, N>>,
-    terminal: Option<usize>,
+    ended: Option<Status>,
     max_steps: u64,
 }
 
@@ -53,7 +53,7 @@ where
             integration: Integration::new(dynamics, method, AdaptiveStep::new(), t, q, v)?,
             detector: EventDetector::new(&[]),
             found: Vec::new(),
-            terminal: None,
+            ended: None,
             max_steps: 10_000_000,
         })
     }
@@ -70,17 +70,17 @@ where
         control: B,
     ) -> Result<Integrator<'a, N, D, M, B>, Error> {
         control.check()?;
-        let Self { integration, detector, found, terminal, max_steps } = self;
+        let Self { integration, detector, found, ended, max_steps } = self;
         let integration = integration.controlled(control);
-        Ok(Integrator { integration, detector, found, terminal, max_steps })
+        Ok(Integrator { integration, detector, found, ended, max_steps })
     }
 
     /// Looks for events from here on, forwards in time.
     ///
     /// A terminal one ends the step and the call that leads to it, with the state at the event; the
     /// next call goes on from there, or from where [`reset`](Self::reset) has put the state.
-    pub fn events(mut self, events: &'a [Event<'a, D::Scalar, N>]) -> Result<Self, Error> {
-        self.detector = EventDetector::new(events);
+    pub fn events(mut self, events: impl AsRef<[Event<'a, D::Scalar, N>]>) -> Result<Self, Error> {
+        self.detector = EventDetector::new(events.as_ref());
         self.detector.begin(&mut self.integration)?;
         Ok(self)
     }
@@ -99,7 +99,7 @@ where
         C: Controller<M, D, N>,
     {
         self.found.clear();
-        self.terminal = None;
+        self.ended = None;
         self.step_towards(f64::INFINITY)
     }
 
@@ -110,8 +110,9 @@ where
     {
         let event = self.detector.next_time();
         self.integration.step(if event < target { event } else { target })?;
-        self.terminal = self.detector.observe(&mut self.integration)?;
+        let ended = self.detector.observe(&mut self.integration);
         self.found.extend_from_slice(self.detector.found());
+        self.ended = ended?;
         Ok(())
     }
 
@@ -122,7 +123,7 @@ where
         C: Controller<M, D, N>,
     {
         self.found.clear();
-        self.terminal = None;
+        self.ended = None;
         if !((self.t() <= t
             || self.integration.method.goes_back(self.integration.dynamics)
                 && self.detector.is_idle())
@@ -132,7 +133,7 @@ where
         }
         let steps = |stats: &Stats| stats.accepted + stats.rejected;
         let before = steps(&self.integration.stats);
-        while self.t() != t && self.terminal.is_none() {
+        while self.t() != t && self.ended.is_none() {
             if self.max_steps <= steps(&self.integration.stats) - before {
                 return Err(Error::MaxSteps { t: self.t(), max_steps: self.max_steps });
             }
@@ -176,9 +177,12 @@ where
         &self.found
     }
 
-    /// The index of the terminal event that has ended that call.
+    /// The index of the terminal event that has ended that call, or of the one that has come to rest.
     pub fn terminal_event(&self) -> Option<usize> {
-        self.terminal
+        match self.ended {
+            Some(Status::Event(event) | Status::Rest(event)) => Some(event),
+            _ => None,
+        }
     }
 
     /// The motion within the last step; `None` before the first and after one that failed.

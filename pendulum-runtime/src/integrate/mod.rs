@@ -52,6 +52,7 @@ pub(crate) mod step;
 
 pub use batch::{Batch, Batched, Outcome, Problem};
 pub use data::{ColumnError, LengthError, Table};
+pub use events::impact::impact;
 pub use events::{Direction, Event, Occurrence, Status};
 pub use integrator::Integrator;
 pub use methods::auto::Auto;

@@ -42,7 +42,7 @@ pub fn solve<const N: usize, D: Dynamics<N>>(
         output: Output::End,
         dense: false,
         stops: &[],
-        events: &[],
+        events: Vec::new(),
         max_steps: 10_000_000,
     }
 }
@@ -60,7 +60,7 @@ pub struct Solve<'a, const N: usize, D: Dynamics<N>, M, C> {
     output: Output<'a>,
     dense: bool,
     stops: &'a [f64],
-    events: &'a [Event<'a, D::Scalar, N>],
+    events: Vec<Event<'a, D::Scalar, N>>,
     max_steps: u64,
 }
 
@@ -119,9 +119,10 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
     }
 
     /// Looks for events; a terminal one ends the integration. They are found in
-    /// [`Solution::events`], and change no step except for known times, at which steps end.
-    pub fn events(mut self, events: &'a [Event<'a, D::Scalar, N>]) -> Self {
-        self.events = events;
+    /// [`Solution::events`], and change no step except for known times and events that act, at which
+    /// steps end.
+    pub fn events(mut self, events: impl AsRef<[Event<'a, D::Scalar, N>]>) -> Self {
+        self.events = events.as_ref().to_vec();
         self
     }
 
@@ -219,7 +220,7 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, 
         let onwards = direction(self.time.0, end);
         let ahead = |at: &Endpoint<D::Scalar, N>, t| onwards * at.t.since(t) < 0.0;
         let mut stops = self.stops.iter().copied().peekable();
-        let mut detector = EventDetector::new(self.events);
+        let mut detector = EventDetector::new(&self.events);
         recorder.begin(State::from(&integration.end), self.dense);
         detector.begin(integration)?;
         while ahead(&integration.end, end) {
@@ -233,11 +234,12 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, 
             if !ahead(&integration.end, end) {
                 integration.look()?;
             }
-            let terminal = detector.observe(integration)?;
-            recorder.step(integration)?;
+            let ended = detector.observe(integration);
             recorder.events(detector.found());
-            if let Some(event) = terminal {
-                return Ok(Status::Event(event));
+            let ended = ended?;
+            recorder.step(integration)?;
+            if let Some(status) = ended {
+                return Ok(status);
             }
         }
         Ok(Status::Completed)

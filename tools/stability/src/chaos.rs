@@ -50,11 +50,11 @@ fn separatrix(_: Scale, report: &mut Report) {
     );
 
     let fall = |q: f64| {
-        let over = Event::new(&|_, q: &[f64; 1], _: &[f64; 1]| q[0].abs() - 1.0).terminal();
+        let over = Event::new(|_, q, _| q[0].abs() - 1.0).terminal();
         let solution = solve(&system, (0.0, 100.0), [q], [0.0])
             .method(Taylor::new())
             .rtol(1e-18)
-            .events(&[over])
+            .events([over])
             .run()
             .unwrap();
         (solution.events[0].state.t, solution.end)

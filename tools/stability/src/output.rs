@@ -113,12 +113,12 @@ fn dense(_: Scale, report: &mut Report) {
 
 fn events(_: Scale, report: &mut Report) {
     let double = Double::new([1.0; 2], [1.0; 2], 1.0);
-    let up = Event::new(&|_, q: &[f64; 2], _: &[f64; 2]| q[0] - core::f64::consts::PI).terminal();
+    let up = [Event::new(|_, q, _| q[0] - core::f64::consts::PI).terminal()];
     let flip = |rtol: f64| {
         let solution = solve(&double, (0.0, 20.0), [2.0, 2.5], [0.0; 2])
             .method(Taylor::new())
             .rtol(rtol)
-            .events(&[up])
+            .events(&up)
             .run()
             .unwrap();
         (solution.events[0].state.t - reference::FLIP).abs()
@@ -128,7 +128,7 @@ fn events(_: Scale, report: &mut Report) {
         .method(Dop853::new())
         .rtol(1e-13)
         .atol(1e-13)
-        .events(&[up])
+        .events(&up)
         .run()
         .unwrap();
     // 5e3 is what a start error has grown to by then.
@@ -142,15 +142,14 @@ fn events(_: Scale, report: &mut Report) {
     let period = Swing::from(1.3).period().to_f64();
     let every = |k: f64| k * period;
     // The angle touches 1.3 rad once a period; the start itself is none.
-    let touch = Event::new(&|_, q: &[f64; 1], _: &[f64; 1]| q[0] - 1.3);
-    let rest = Event::new(&|_, _: &[f64; 1], v: &[f64; 1]| v[0]).direction(Direction::Falling);
+    let touch = Event::new(|_, q, _| q[0] - 1.3);
+    let rest = Event::new(|_, _, v| v[0]).falling();
     // Through 1.299 rad twice around each extreme, 0.1 s apart and within one step.
-    let twice = Event::new(&|_, q: &[f64; 1], _: &[f64; 1]| q[0] - 1.299);
-    let all = [touch, rest, twice];
+    let twice = Event::new(|_, q, _| q[0] - 1.299);
     let solution = solve(&simple, (0.0, 10.5 * period), [1.3], [0.0])
         .method(Taylor::new())
         .rtol(1e-18)
-        .events(&all)
+        .events([touch, rest, twice])
         .run()
         .unwrap();
     let times = |event: usize| -> Vec<f64> {

@@ -2,21 +2,22 @@
 
 use crate::error::Error;
 use crate::integrate::events::root::{Dip, Point, dip, root};
-use crate::integrate::events::{Condition, Direction, Event, Occurrence};
+use crate::integrate::events::{Condition, Direction, Event, Occurrence, Status};
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::Method;
 use crate::integrate::output::in_order;
 use crate::integrate::state::State;
 use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::step::field::first_in_state;
 use crate::integrate::step::integration::Integration;
 use crate::scalar::Float;
-use crate::system::{Dynamics, scalar_time};
+use crate::system::{Dynamics, System, scalar_time};
 use crate::time::Time;
 
 /// The events of an integration and what is known of each.
 #[derive(Clone, Debug)]
 pub(crate) struct EventDetector<'a, T, const N: usize> {
-    events: &'a [Event<'a, T, N>],
+    events: Vec<Event<'a, T, N>>,
     tracks: Vec<Track<T>>,
     /// Whether the next step is the first of a smooth stretch, before which there is nothing.
     fresh: bool,
@@ -37,6 +38,25 @@ struct Track<T> {
     last: Option<Time>,
     /// The index of the next known time.
     next: usize,
+    /// The side that it shows after an act that has turned it round; 0 if nothing is known.
+    expected: i8,
+    acts: Acts,
+}
+
+/// The times between the acts of an event.
+#[derive(Clone, Copy, Debug, Default)]
+struct Acts {
+    /// The last act.
+    last: Option<Time>,
+    /// The time between the last two, and how many in a row have been shorter than the one before.
+    gap: f64,
+    shorter: u32,
+    /// The last such time over the one before it.
+    ratio: f64,
+    /// The time between two acts from which they have grown shorter.
+    longest: f64,
+    /// How many acts in a row came at the same time.
+    still: u32,
 }
 
 /// How near to its ends, in parts of a step, the function is looked at to see whether it falls or
@@ -44,15 +64,33 @@ struct Track<T> {
 const NEAR: f64 = 1e-4;
 /// How soon after a root a function shows its sign, in parts of a step.
 const SHORTLY: f64 = 1e-7;
+/// The time over which rates are taken, in parts of a step.
+const MOMENT: f64 = 1.0 / 4096.0;
+/// The part of a rate below which what an act leaves of it counts as none.
+const NONE: f64 = 1e-9;
+/// Times between acts that have grown shorter so often, and by this factor, accumulate.
+const SHORTER: u32 = 5;
+const ACCUMULATED: f64 = 1e-6;
+/// So many acts in a row, each within this part of the time reached, stay where they are.
+const ACTS: u32 = 1000;
+const STILL: f64 = 1e-12;
 /// The points at which it is looked at.
 const POINTS: [f64; 11] =
     [-NEAR, 0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0 - NEAR, 1.0];
 
 impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
-    pub(crate) fn new(events: &'a [Event<'a, T, N>]) -> Self {
-        let track = Track { value: T::from_f64(0.0), side: 0, count: 0, last: None, next: 0 };
+    pub(crate) fn new(events: &[Event<'a, T, N>]) -> Self {
+        let track = Track {
+            value: T::from_f64(0.0),
+            side: 0,
+            count: 0,
+            last: None,
+            next: 0,
+            expected: 0,
+            acts: Acts::default(),
+        };
         Self {
-            events,
+            events: events.to_vec(),
             tracks: vec![track; events.len()],
             fresh: true,
             found: Vec::with_capacity(events.len()),
@@ -84,17 +122,21 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         }
         let a = integration.accelerations();
         self.found.clear();
+        for track in &mut self.tracks {
+            (track.expected, track.acts) = (0, Acts::default());
+        }
         self.look(&integration.end, &a)
     }
 
-    /// Finds what happened in the step that `integration` has just taken; if a terminal event did, puts
-    /// it back there and gives the index.
+    /// Finds what happened in the step that `integration` has just taken. If an event did that acts
+    /// or is terminal, puts it back there, lets it act, and gives the status if the integration
+    /// ends with it.
     ///
-    /// On failure it is put back to the start of the step.
+    /// If a function fails, it is put back to the start of the step; if an action does, to the event.
     pub(crate) fn observe<D, M, C>(
         &mut self,
         integration: &mut Integration<'_, N, D, M, C>,
-    ) -> Result<Option<usize>, Error>
+    ) -> Result<Option<Status>, Error>
     where
         D: Dynamics<N, Scalar = T>,
         M: Method<D, N>,
@@ -105,44 +147,223 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         let rooted = self.events.iter().any(|event| matches!(event.condition, Condition::Root(_)));
         let interpolant = if rooted { integration.interpolant() } else { None };
         let (end, beyond) = integration.ends();
-        match self.step(interpolant.as_ref(), &end, beyond.as_ref()) {
-            Err(error) => {
-                integration.retreat();
-                let a = integration.accelerations();
-                self.found.clear();
-                // It has looked there before.
-                self.look(&integration.end, &a).ok();
-                Err(error)
-            }
-            Ok(None) => Ok(None),
-            Ok(Some(last)) => {
-                if last.time != end.t {
-                    integration.cut(last.time, &last.state);
-                    let a = integration.accelerations();
-                    self.look(&integration.end, &a)?;
-                    for occurrence in
-                        self.found.iter().filter(|occurrence| occurrence.time == last.time)
-                    {
-                        self.tracks[occurrence.event].side = 0;
-                    }
-                }
-                Ok(Some(last.event))
+        if let Err(error) = self.step(interpolant.as_ref(), &end, beyond.as_ref()) {
+            integration.retreat();
+            let a = integration.accelerations();
+            self.found.clear();
+            // It has looked there before.
+            self.look(&integration.end, &a).ok();
+            return Err(error);
+        }
+        let Some(stop) = self.count() else { return Ok(None) };
+        let Occurrence { event, time, state, .. } = self.found[stop];
+        let cut = time != end.t;
+        if cut {
+            // A jump has to have a time that outputs can name, unless the scalar sees the rest.
+            let one_word =
+                self.events[event].action.is_some() && f64::EPSILON <= T::EPSILON.to_f64();
+            integration.cut(if one_word { Time::new(state.t) } else { time }, &state);
+        }
+        self.gather(integration, stop);
+        self.happen(integration, stop, cut)
+    }
+
+    /// Counts what was found, up to the first event that stops the step; gives its index in the list
+    /// of what was found.
+    fn count(&mut self) -> Option<usize> {
+        for (index, occurrence) in self.found.iter().enumerate() {
+            let track = &mut self.tracks[occurrence.event];
+            track.count += 1;
+            track.last = Some(occurrence.time);
+            let event = &self.events[occurrence.event];
+            let ends = event.terminal.is_some_and(|count| count <= track.count);
+            if ends || event.action.is_some() {
+                return Some(index);
             }
         }
+        None
+    }
+
+    /// Drops what was found after the event that stops the step, except what happens at the same
+    /// time: a function that is zero there to rounding would not be found on the way from there.
+    fn gather<D, M, C>(&mut self, integration: &mut Integration<'_, N, D, M, C>, stop: usize)
+    where
+        D: Dynamics<N, Scalar = T>,
+        M: Method<D, N>,
+    {
+        let Occurrence { time, state, .. } = self.found[stop];
+        let mut kept = stop + 1;
+        for index in stop + 1..self.found.len() {
+            let found = self.found[index];
+            let simultaneous = found.time == time || {
+                let a = integration.accelerations();
+                let place = Place::of(&integration.end);
+                self.value(found.event, &place)
+                    .is_ok_and(|value| value.abs() <= self.rounding(found.event, &place, value, &a))
+            };
+            if simultaneous {
+                let track = &mut self.tracks[found.event];
+                track.count += 1;
+                track.last = Some(time);
+                self.found[kept] = Occurrence { time, state, after: state, ..found };
+                kept += 1;
+            }
+        }
+        self.found.truncate(kept);
+        self.found[stop..].sort_unstable_by_key(|occurrence| occurrence.event);
+    }
+
+    /// Lets the events from `first` on act, one after the other, and gives the status if the
+    /// integration ends with one of them; `cut` if the step was put back.
+    fn happen<D, M, C>(
+        &mut self,
+        integration: &mut Integration<'_, N, D, M, C>,
+        first: usize,
+        cut: bool,
+    ) -> Result<Option<Status>, Error>
+    where
+        D: Dynamics<N, Scalar = T>,
+        M: Method<D, N>,
+    {
+        let (mut status, mut acted) = (None, false);
+        for index in first..self.found.len() {
+            let Occurrence { event, time, .. } = self.found[index];
+            if let Some(action) = self.events[event].action.clone() {
+                acted = true;
+                let before = self.rate(integration, event);
+                let mut state = State::from(&integration.end);
+                action(&mut state);
+                state.t = integration.t();
+                let facts = &<D::System as System<N>>::FACTS;
+                if let Some(what) = first_in_state(facts, &state.q, &state.v) {
+                    self.found.truncate(index);
+                    return Err(Error::Action { t: time.to_f64(), event, what });
+                }
+                let same_place = state.q == integration.end.q.high;
+                integration.jump(&state)?;
+                self.found[index].after = state;
+                let after = self.rate(integration, event);
+                status =
+                    status.or(self.acted(integration, event, time, same_place, before, after)?);
+            }
+            let Event { terminal, .. } = self.events[event];
+            if terminal.is_some_and(|count| count <= self.tracks[event].count) {
+                status = status.or(Some(Status::Event(event)));
+            }
+        }
+        if cut || acted {
+            let a = integration.accelerations();
+            self.look(&integration.end, &a)?;
+            let place = Place::of(&integration.end);
+            for index in first..self.found.len() {
+                let Occurrence { event, state, .. } = self.found[index];
+                let there = Place { t: place.t, q: state.q, v: state.v };
+                // An action may have taken the function away from zero.
+                if !acted || self.value(event, &there).ok() == self.value(event, &place).ok() {
+                    self.tracks[event].side = 0;
+                }
+            }
+        }
+        Ok(status)
+    }
+
+    /// Takes note of an act, with the rates of the function before and after it; gives the status if
+    /// the event has come to rest.
+    fn acted<D, M, C>(
+        &mut self,
+        integration: &mut Integration<'_, N, D, M, C>,
+        event: usize,
+        time: Time,
+        same_place: bool,
+        before: Rate<T>,
+        after: Rate<T>,
+    ) -> Result<Option<Status>, Error>
+    where
+        D: Dynamics<N, Scalar = T>,
+        M: Method<D, N>,
+    {
+        let Condition::Root(_) = self.events[event].condition else { return Ok(None) };
+        let t = time.to_f64();
+        let slow = |speed: f64| before.value.abs().to_f64() < speed;
+        if self.events[event].rest_below.is_some_and(slow) {
+            return Ok(Some(Status::Rest(event)));
+        }
+        let number = T::from_f64;
+        let through = side(before.value);
+        let none = after.noise + before.noise + number(NONE) * before.value.abs();
+        let changed = (after.value - before.value).abs();
+        let stopped = after.value.abs() <= none && number(0.5) * before.value.abs() < changed;
+        let next = self.tracks[event].acts.next(time);
+        if same_place && through != 0 && stopped && self.shortly(integration, event) == through {
+            // Where the digits of the state end, a series of bounces stops too.
+            let limit = self.tracks[event].acts.limit(time);
+            return match (self.events[event].rest_below, limit) {
+                (Some(_), _) => Ok(Some(Status::Rest(event))),
+                (None, Some(t)) => Err(Error::Accumulation { t, event }),
+                (None, None) => Err(Error::EventStays { t, event }),
+            };
+        }
+        let turned = same_place && side(after.value) == -through && after.noise < after.value.abs();
+        let track = &mut self.tracks[event];
+        track.expected = if turned { side(after.value) } else { 0 };
+        match next {
+            Next::Usual => Ok(None),
+            Next::Still => Err(Error::EventStays { t, event }),
+            Next::Accumulated(t) => Err(Error::Accumulation { t, event }),
+        }
+    }
+
+    /// The rate of the function of an event at the state of `integration`, in units a second.
+    fn rate<D, M, C>(&self, integration: &mut Integration<'_, N, D, M, C>, event: usize) -> Rate<T>
+    where
+        D: Dynamics<N, Scalar = T>,
+        M: Method<D, N>,
+    {
+        let zero = T::from_f64(0.0);
+        let a = integration.accelerations();
+        let moment = T::from_f64(MOMENT * integration.last_length().abs());
+        let (Condition::Root(_), true) = (&self.events[event].condition, zero < moment) else {
+            return Rate { value: zero, noise: zero };
+        };
+        let place = Place::of(&integration.end);
+        // A function may end where it is zero.
+        let [before, here, after] =
+            [-moment, zero, moment].map(|dt| self.value(event, &place.after(dt, &a)).ok());
+        let (rise, length) = match (before, here, after) {
+            (Some(before), _, Some(after)) => (after - before, moment + moment),
+            (None, Some(here), Some(after)) => (after - here, moment),
+            (Some(before), Some(here), None) => (here - before, moment),
+            _ => (zero, moment),
+        };
+        let noise = here.map_or(zero, |here| self.rounding(event, &place, here, &a));
+        Rate { value: rise / length, noise: noise / length }
+    }
+
+    /// The side to which the function goes from the state of `integration`, without a rate.
+    fn shortly<D, M, C>(&self, integration: &mut Integration<'_, N, D, M, C>, event: usize) -> i8
+    where
+        D: Dynamics<N, Scalar = T>,
+        M: Method<D, N>,
+    {
+        let a = integration.accelerations();
+        let place = Place::of(&integration.end);
+        let dt = T::from_f64(0.125 * integration.last_length().abs());
+        let rise = |place: &Place<T, N>| self.value(event, place).unwrap_or(T::from_f64(0.0));
+        side(rise(&place.after(dt, &a)) - rise(&place))
     }
 
     /// Looks at the state from which the next step goes; `a` are the accelerations there.
     fn look(&mut self, node: &Endpoint<T, N>, a: &[T; N]) -> Result<(), Error> {
         self.fresh = true;
         for index in 0..self.events.len() {
-            match self.events[index].condition {
+            match &self.events[index].condition {
                 Condition::Times(times) => {
                     in_order("events", times, f64::NEG_INFINITY, f64::INFINITY)?;
                     self.tracks[index].next =
                         times.partition_point(|time| *time <= node.t.to_f64());
                 }
                 Condition::Root(_) => {
-                    let place = Place { t: scalar_time(node.t), q: node.q.high, v: node.v.high };
+                    let place = Place::of(node);
                     let value = self.value(index, &place)?;
                     let track = &mut self.tracks[index];
                     (track.value, track.side) = (value, side(value));
@@ -157,40 +378,34 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
 
     /// The next known time, infinite if there is none.
     pub(crate) fn next_time(&self) -> f64 {
-        let times = self.events.iter().zip(&self.tracks).filter_map(|(event, track)| {
-            match event.condition {
-                Condition::Times(times) => times.get(track.next).copied(),
-                Condition::Root(_) => None,
-            }
+        let times = self.events.iter().zip(&self.tracks).filter_map(|(event, track)| match &event
+            .condition
+        {
+            Condition::Times(times) => times.get(track.next).copied(),
+            Condition::Root(_) => None,
         });
         times.fold(f64::INFINITY, |first, time| if time < first { time } else { first })
     }
 
     /// Finds what happened in the step of `interpolant` that ended in `end`, and then, over a kink, in
     /// `beyond`.
-    ///
-    /// Gives the terminal event, if there was one.
     fn step(
         &mut self,
         interpolant: Option<&Interpolant<T, N>>,
         end: &Endpoint<T, N>,
         beyond: Option<&Endpoint<T, N>>,
-    ) -> Result<Option<Occurrence<T, N>>, Error> {
+    ) -> Result<(), Error> {
         self.found.clear();
         let fresh = self.fresh;
         for index in 0..self.events.len() {
-            match self.events[index].condition {
+            match &self.events[index].condition {
                 Condition::Times(times) => {
                     while times
                         .get(self.tracks[index].next)
                         .is_some_and(|time| *time <= end.t.to_f64())
                     {
                         self.tracks[index].next += 1;
-                        self.found.push(Occurrence {
-                            event: index,
-                            time: end.t,
-                            state: State::from(end),
-                        });
+                        self.found.push(occurrence(index, end));
                     }
                 }
                 Condition::Root(_) => {
@@ -207,7 +422,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         if let Some(beyond) = beyond {
             for occurrence in self.found.iter_mut().filter(|occurrence| occurrence.time == beyond.t)
             {
-                occurrence.state = State::from(beyond);
+                (occurrence.state, occurrence.after) = (beyond.into(), beyond.into());
             }
         }
         let start = end.t.to_f64();
@@ -215,28 +430,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         self.found.sort_unstable_by(|a, b| {
             before(a).partial_cmp(&before(b)).unwrap_or(core::cmp::Ordering::Equal)
         });
-        Ok(self.count())
-    }
-
-    /// Counts what was found, up to the first terminal event.
-    fn count(&mut self) -> Option<Occurrence<T, N>> {
-        let mut terminal: Option<Occurrence<T, N>> = None;
-        let mut kept = 0;
-        for occurrence in &self.found {
-            // What happens at the very time of a terminal event happens too.
-            if terminal.is_some_and(|terminal| terminal.time != occurrence.time) {
-                break;
-            }
-            let track = &mut self.tracks[occurrence.event];
-            track.count += 1;
-            track.last = Some(occurrence.time);
-            if self.events[occurrence.event].terminal.is_some_and(|count| count <= track.count) {
-                terminal = terminal.or(Some(*occurrence));
-            }
-            kept += 1;
-        }
-        self.found.truncate(kept);
-        terminal
+        Ok(())
     }
 
     /// Searches one step for the roots of one function.
@@ -259,8 +453,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
                     _ => continue,
                 },
                 1 => self.tracks[index].value,
-                10 => self
-                    .value(index, &Place { t: scalar_time(end.t), q: end.q.high, v: end.v.high })?,
+                10 => self.value(index, &Place::of(end))?,
                 _ => self.at(index, interpolant, theta)?,
             };
             let mut point = (theta, value);
@@ -273,12 +466,16 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
                     && least < value.abs()
                 {
                     (point, side_before) = ((soon, value), side(value));
+                    self.show(index, interpolant, end, point)?;
                 }
             }
             let side_here = side(value);
             if 1 < i {
                 match (side_before, before) {
-                    (0, _) => side_before = side_here,
+                    (0, _) => {
+                        side_before = side_here;
+                        self.show(index, interpolant, end, point)?;
+                    }
                     (_, [_, Some(last)]) if side_here == -side_before => {
                         let theta = self.root(index, interpolant, last, point)?;
                         self.push(index, interpolant, end, theta, side_here);
@@ -319,19 +516,47 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         Ok(())
     }
 
+    /// Compares the first side that the function shows after an act, at `point`, with the one that
+    /// was expected, and finds the root between if it is the other.
+    fn show(
+        &mut self,
+        index: usize,
+        interpolant: &Interpolant<T, N>,
+        end: &Endpoint<T, N>,
+        mut point: Point<T>,
+    ) -> Result<(), Error> {
+        let (expected, here) = (self.tracks[index].expected, side(point.1));
+        if here == 0 {
+            return Ok(());
+        }
+        self.tracks[index].expected = 0;
+        if expected != -here {
+            return Ok(());
+        }
+        // It has come back within less than the distance of two points.
+        for _ in 0..60 {
+            let theta = T::from_f64(0.5) * point.0;
+            let value = self.at(index, interpolant, theta)?;
+            if side(value) == expected {
+                let theta = self.root(index, interpolant, (theta, value), point)?;
+                self.push(index, interpolant, end, theta, here);
+                return Ok(());
+            }
+            point = if side(value) == here { (theta, value) } else { point };
+            if side(value) == 0 {
+                break;
+            }
+        }
+        let t = interpolant.interval.start.to_f64();
+        Err(Error::Accumulation { t, event: index })
+    }
+
     /// Looks whether a function jumped over zero at a kink.
     fn jump(&mut self, index: usize, beyond: &Endpoint<T, N>) -> Result<(), Error> {
-        let value = self.value(
-            index,
-            &Place { t: scalar_time(beyond.t), q: beyond.q.high, v: beyond.v.high },
-        )?;
+        let value = self.value(index, &Place::of(beyond))?;
         let (before, here) = (self.tracks[index].side, side(value));
         if before != 0 && here == -before && self.counts(index, here) {
-            self.found.push(Occurrence {
-                event: index,
-                time: beyond.t,
-                state: State::from(beyond),
-            });
+            self.found.push(occurrence(index, beyond));
         }
         (self.tracks[index].value, self.tracks[index].side) = (value, here);
         Ok(())
@@ -405,16 +630,16 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         // A dip around the start of a step may have its root before it, where the integration can
         // no longer end.
         let zero = T::from_f64(0.0);
-        let theta =
-            if theta < zero && self.events[index].terminal.is_some() { zero } else { theta };
+        let theta = if theta < zero && self.events[index].stops() { zero } else { theta };
         let occurrence = if theta == T::from_f64(1.0) {
-            Occurrence { event: index, time: end.t, state: State::from(end) }
+            occurrence(index, end)
         } else {
             let passed = theta * interpolant.interval.length();
             let high = passed.to_f64();
             let time = interpolant.interval.start + high + (passed - T::from_f64(high)).to_f64();
             let (q, v) = interpolant.at(theta);
-            Occurrence { event: index, time, state: State { t: time.to_f64(), q, v } }
+            let state = State { t: time.to_f64(), q, v };
+            Occurrence { event: index, time, state, after: state }
         };
         self.found.push(occurrence);
     }
@@ -434,7 +659,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
 
     /// The function at a state.
     fn value(&self, index: usize, place: &Place<T, N>) -> Result<T, Error> {
-        let Condition::Root(function) = self.events[index].condition else {
+        let Condition::Root(function) = &self.events[index].condition else {
             return Ok(T::from_f64(0.0));
         };
         let value = function(place.t, &place.q, &place.v);
@@ -485,6 +710,55 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
     }
 }
 
+/// The rate of a function, and what rounding may add to it.
+#[derive(Clone, Copy)]
+struct Rate<T> {
+    value: T,
+    noise: T,
+}
+
+/// What the times between the acts of an event say.
+enum Next {
+    Usual,
+    /// They come at the same time.
+    Still,
+    /// They accumulate at this time.
+    Accumulated(f64),
+}
+
+impl Acts {
+    /// Takes note of an act at `time`.
+    fn next(&mut self, time: Time) -> Next {
+        let t = time.to_f64();
+        let Some(last) = self.last.replace(time) else { return Next::Usual };
+        let (gap, before) = ((time.since(last.to_f64()) - last.low()).abs(), self.gap);
+        self.gap = gap;
+        self.still = if gap <= STILL * t.abs() { self.still + 1 } else { 0 };
+        if gap < before {
+            (self.shorter, self.ratio) = (self.shorter + 1, gap / before);
+        } else {
+            (self.shorter, self.longest) = (0, gap);
+        }
+        match self.limit(time) {
+            Some(limit) if gap < ACCUMULATED * self.longest => Next::Accumulated(limit),
+            _ if ACTS <= self.still => Next::Still,
+            _ => Next::Usual,
+        }
+    }
+
+    /// The time at which acts accumulate, the last of them at `time`, if they have grown shorter
+    /// often enough: the sum of a geometric series.
+    fn limit(&self, time: Time) -> Option<f64> {
+        let rest = self.gap * self.ratio / (1.0 - self.ratio);
+        (SHORTER <= self.shorter).then(|| time.to_f64() + rest)
+    }
+}
+
+/// An event at an endpoint, before it has acted.
+fn occurrence<T: Float, const N: usize>(event: usize, end: &Endpoint<T, N>) -> Occurrence<T, N> {
+    Occurrence { event, time: end.t, state: end.into(), after: end.into() }
+}
+
 /// A time and the state there.
 #[derive(Clone, Copy)]
 struct Place<T, const N: usize> {
@@ -494,6 +768,21 @@ struct Place<T, const N: usize> {
 }
 
 impl<T: Float, const N: usize> Place<T, N> {
+    /// At an endpoint.
+    fn of(end: &Endpoint<T, N>) -> Self {
+        Self { t: scalar_time(end.t), q: end.q.high, v: end.v.high }
+    }
+
+    /// A short time later, with constant accelerations.
+    fn after(&self, dt: T, a: &[T; N]) -> Self {
+        let half = T::from_f64(0.5) * dt;
+        Self {
+            t: self.t + dt,
+            q: core::array::from_fn(|i| self.q[i] + dt * (self.v[i] + half * a[i])),
+            v: core::array::from_fn(|i| self.v[i] + dt * a[i]),
+        }
+    }
+
     /// On the dense output.
     fn on(interpolant: &Interpolant<T, N>, theta: T) -> Self {
         let (q, v) = interpolant.at(theta);

@@ -1,15 +1,20 @@
-//! What to look for on the way: roots of functions of the state, and known times.
+//! Functions of the state and known times to look for on the way, and what happens there.
 
 pub(crate) mod detector;
+pub(crate) mod impact;
 pub(crate) mod root;
 
 use crate::integrate::state::State;
 use crate::scalar::Float;
 use crate::time::Time;
 use core::fmt;
+use std::sync::Arc;
 
 /// A function of time, coordinates and velocities whose roots are events.
-type Function<'a, T, const N: usize> = dyn Fn(T, &[T; N], &[T; N]) -> T + Sync + 'a;
+type Function<'a, T, const N: usize> = dyn Fn(T, &[T; N], &[T; N]) -> T + Send + Sync + 'a;
+
+/// A change of the state at an event.
+type Action<'a, T, const N: usize> = dyn Fn(&mut State<T, N>) + Send + Sync + 'a;
 
 /// Something that happens on the way: a function of time and state passes through zero, or a known
 /// time comes.
@@ -23,26 +28,42 @@ type Function<'a, T, const N: usize> = dyn Fn(T, &[T; N], &[T; N]) -> T + Sync +
 /// ```
 /// # use pendulum_runtime::{integrate::*, system::*};
 /// fn first_turn<S: System<1, Scalar = f64, Inputs = ()>>(system: &S) -> Result<Option<f64>, Failure<f64, 1>> {
-///     let turns = Event::new(&|_t, _q: &[f64; 1], v: &[f64; 1]| v[0]).direction(Direction::Rising).terminal();
-///     let solution = solve(system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).rtol(1e-10).events(&[turns]).run()?;
+///     let turn = Event::new(|_t, _q, v| v[0]).rising().terminal();
+///     let solution = solve(system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).rtol(1e-10).events([turn]).run()?;
 ///     Ok(solution.events.first().map(|turn| turn.state.t))
 /// }
 /// ```
-#[derive(Clone, Copy)]
+///
+/// An event [`then`](Self::then) changes the state, and the integration goes on from there:
+///
+/// ```
+/// # use pendulum_runtime::{integrate::*, system::*};
+/// fn bounces<S: System<1, Scalar = f64, Inputs = ()>>(ball: &S, height: f64) -> Result<usize, Failure<f64, 1>> {
+///     let floor = Event::new(move |_t, y, _v| y[0] - height).falling().then(|ball| ball.v[0] *= -0.8);
+///     let motion = solve(ball, (0.0, 3.0), [1.0], [0.0]).method(Dop853).events([floor]).run()?;
+///     Ok(motion.events.len())
+/// }
+/// ```
+///
+/// Events that happen at the same time (to the digits that the state has) act in the order of the
+/// list, each on the state that the one before it has left.
+#[derive(Clone)]
 pub struct Event<'a, T, const N: usize> {
     pub(crate) condition: Condition<'a, T, N>,
     pub(crate) direction: Direction,
     pub(crate) terminal: Option<u64>,
     pub(crate) tolerance: Option<f64>,
+    pub(crate) action: Option<Arc<Action<'a, T, N>>>,
+    pub(crate) rest_below: Option<f64>,
 }
 
 /// When an event happens.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(crate) enum Condition<'a, T, const N: usize> {
     /// At roots of a function.
-    Root(&'a Function<'a, T, N>),
+    Root(Arc<Function<'a, T, N>>),
     /// At these times.
-    Times(&'a [f64]),
+    Times(Arc<[f64]>),
 }
 
 /// The sign changes that count.
@@ -70,8 +91,10 @@ pub struct Occurrence<T, const N: usize> {
     pub event: usize,
     /// When, in two words.
     pub time: Time,
-    /// The state there; at a kink the one after it.
+    /// The state there, before the event has acted; at a kink the one after it.
     pub state: State<T, N>,
+    /// The state after the event has acted; the same as `state` if it does not act.
+    pub after: State<T, N>,
 }
 
 /// Why an integration ended where it did.
@@ -83,48 +106,103 @@ pub enum Status {
     Completed,
     /// The terminal event with this index has happened.
     Event(usize),
+    /// The event with this index has come to [rest](Event::rest_below).
+    Rest(usize),
     /// There was an error.
     Failed,
 }
 
-impl<'a, T: Float, const N: usize> Event<'a, T, N> {
-    /// The roots of `function`, a continuous function of time, coordinates and velocities.
+impl<'a, const N: usize> Event<'a, f64, N> {
+    /// The roots of `function`, a continuous function of time, coordinates and velocities; it may
+    /// own what it captures, by `move`.
     ///
-    /// If it gives something that is not a number, the integration ends with an error.
-    pub const fn new(function: &'a Function<'a, T, N>) -> Self {
-        Self {
-            condition: Condition::Root(function),
-            direction: Direction::Both,
-            terminal: None,
-            tolerance: None,
-        }
+    /// If it gives something that is not a number, the integration ends with an error. Scalars other
+    /// than `f64` have [`of`](Self::of).
+    pub fn new(function: impl Fn(f64, &[f64; N], &[f64; N]) -> f64 + Send + Sync + 'a) -> Self {
+        Self::of(function)
+    }
+}
+
+impl<'a, T: Float, const N: usize> Event<'a, T, N> {
+    /// The roots of `function`, as [`new`](Event::new), over any scalar.
+    pub fn of(function: impl Fn(T, &[T; N], &[T; N]) -> T + Send + Sync + 'a) -> Self {
+        Self::from(Condition::Root(Arc::new(function)))
     }
 
     /// Known times in ascending order: a step ends exactly at each of them, and nothing is
     /// searched.
-    pub const fn at(times: &'a [f64]) -> Self {
+    pub fn at(times: impl AsRef<[f64]>) -> Self {
+        Self::from(Condition::Times(Arc::from(times.as_ref())))
+    }
+
+    fn from(condition: Condition<'a, T, N>) -> Self {
         Self {
-            condition: Condition::Times(times),
+            condition,
             direction: Direction::Both,
             terminal: None,
             tolerance: None,
+            action: None,
+            rest_below: None,
         }
     }
 
     /// Counts sign changes in one direction only.
-    pub const fn direction(mut self, direction: Direction) -> Self {
+    pub fn direction(mut self, direction: Direction) -> Self {
         self.direction = direction;
         self
     }
 
-    /// Ends the integration at the event.
-    pub const fn terminal(self) -> Self {
+    /// Counts changes from negative to positive only.
+    pub fn rising(self) -> Self {
+        self.direction(Direction::Rising)
+    }
+
+    /// Counts changes from positive to negative only.
+    pub fn falling(self) -> Self {
+        self.direction(Direction::Falling)
+    }
+
+    /// Ends the integration at the event, after it has acted.
+    pub fn terminal(self) -> Self {
         self.terminal_after(1)
     }
 
     /// Ends the integration when the event happens for the `count`-th time.
-    pub const fn terminal_after(mut self, count: u64) -> Self {
+    pub fn terminal_after(mut self, count: u64) -> Self {
         self.terminal = Some(count);
+        self
+    }
+
+    /// Changes the state at the event, from which the integration goes on; a step ends there. The
+    /// dense output has both states, on the two sides of the time; [`impact`](super::impact) and
+    /// [`State::bounce`] give the velocities after an impact.
+    ///
+    /// The time of the state is for reading: the integration stays at the time of the event.
+    ///
+    /// Errors of the integration that it may lead to:
+    ///
+    /// - [`Error::Action`](crate::error::Error::Action): it gives a number that is not finite.
+    /// - [`Error::Accumulation`](crate::error::Error::Accumulation): the event acts again and again,
+    ///   each time sooner, towards a time that it never passes, as a ball that bounces with four
+    ///   fifths of its speed. That is so if the times between acts have grown shorter at least five
+    ///   times in a row, down to a millionth of the first of them, or below the digits of the state.
+    /// - [`Error::EventStays`](crate::error::Error::EventStays): it stops the motion just where the
+    ///   function is zero, and the motion would go on through, or it acts a thousand times in a row
+    ///   within 1e-12 of the time reached.
+    pub fn then(mut self, action: impl Fn(&mut State<T, N>) + Send + Sync + 'a) -> Self {
+        self.action = Some(Arc::new(action));
+        self
+    }
+
+    /// Ends the integration with [`Status::Rest`] at the first act whose impact speed is below
+    /// `speed`, instead of an error where acts accumulate.
+    ///
+    /// The impact speed is |ġ|, the rate of the event's function just before it acts: for a distance
+    /// from a wall the speed towards it, in the units of the function over seconds. The last act
+    /// still changes the state. What follows, a motion along the wall or none, has other equations:
+    /// a system without that coordinate goes on from [`Solution::end`](super::Solution::end).
+    pub fn rest_below(mut self, speed: f64) -> Self {
+        self.rest_below = Some(speed);
         self
     }
 
@@ -134,20 +212,26 @@ impl<'a, T: Float, const N: usize> Event<'a, T, N> {
     /// by 1e-9·(1 + |y|) (for `f64`; √ε/16 in general), because the solution itself is no more
     /// exact as a rule. A dip through zero by less than this is one root too, not two. Zero finds
     /// only what crosses, and so does an event with a direction.
-    pub const fn touching(mut self, tolerance: f64) -> Self {
+    pub fn touching(mut self, tolerance: f64) -> Self {
         self.tolerance = Some(tolerance);
         self
+    }
+
+    /// Whether a step ends at the event.
+    pub(crate) fn stops(&self) -> bool {
+        self.terminal.is_some() || self.action.is_some()
     }
 }
 
 impl<T, const N: usize> fmt::Debug for Event<'_, T, N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { condition, direction, terminal, tolerance } = self;
+        let Self { condition, direction, terminal, tolerance, action, rest_below } = self;
         let mut event = f.debug_struct("Event");
         match condition {
             Condition::Root(_) => event.field("direction", direction).field("tolerance", tolerance),
             Condition::Times(times) => event.field("times", times),
         };
-        event.field("terminal", terminal).finish()
+        event.field("terminal", terminal).field("acts", &action.is_some());
+        event.field("rest_below", rest_below).finish()
     }
 }

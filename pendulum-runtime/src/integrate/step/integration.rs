@@ -5,6 +5,7 @@ use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{self, Method};
 use crate::integrate::solution::Stats;
 use crate::integrate::state::State;
+use crate::integrate::step::compensated::Compensated;
 use crate::integrate::step::controller::{Controller, ControllerState, StepContext};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::{
@@ -290,6 +291,32 @@ where
     pub(crate) fn cut(&mut self, t: Time, state: &State<D::Scalar, N>) {
         self.uncross();
         self.end = Endpoint::new(t, state.q, state.v);
+    }
+
+    /// Puts the state elsewhere at the same time: a jump at which the last step ends. The next steps
+    /// are chosen as at a start.
+    pub(crate) fn jump(&mut self, state: &State<D::Scalar, N>) -> Result<(), Error> {
+        let (before, backwards) = (self.end, self.backwards);
+        inertia(self.dynamics, before.t, onwards(backwards), &state.q, &state.v)?;
+        // Where nothing jumps, the low words stay.
+        let put = |sum: &mut Compensated<D::Scalar, N>, high: &[D::Scalar; N]| {
+            for i in 0..N {
+                if high[i] != sum.high[i] {
+                    (sum.high[i], sum.low[i]) = (high[i], D::Scalar::from_f64(0.0));
+                }
+            }
+        };
+        put(&mut self.end.q, &state.q);
+        put(&mut self.end.v, &state.v);
+        self.end.a = None;
+        self.before_kink.get_or_insert(before);
+        self.state = ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
+        Ok(())
+    }
+
+    /// The length of the last step, before it was cut; 0 without one.
+    pub(crate) fn last_length(&self) -> f64 {
+        self.last.map_or(0.0, |interval| interval.h)
     }
 
     /// Takes the last step back.

@@ -3,7 +3,7 @@
 use super::systems::{DoublePendulum, MovingPendulum, Pendulum, double_pendulum, pendulum};
 use crate::error::Error;
 use crate::integrate::{
-    Direction, Dop853, Event, FixedStep, Integrator, Leapfrog, Occurrence, Rk4, Srkn14a, Status,
+    Dop853, Event, FixedStep, Integrator, Leapfrog, Occurrence, Rk4, Srkn14a, Status,
     SymplecticEuler, Tsit5, solve,
 };
 use crate::motion::Linear;
@@ -32,7 +32,7 @@ fn assert_times(found: &[f64], expected: &[f64], within: f64) {
 #[test]
 fn the_first_flip_of_the_chaotic_double_pendulum() {
     let flip = |_: f64, q: &[f64; 2], _: &[f64; 2]| q[0] - PI;
-    let events = [Event::new(&flip).direction(Direction::Rising).terminal()];
+    let events = [Event::new(flip).rising().terminal()];
     let run = |tolerance| {
         solve(&double_pendulum(), (0.0, 20.0), [2.0, 2.5], [0.0; 2])
             .method(Dop853)
@@ -55,12 +55,8 @@ fn the_first_flip_of_the_chaotic_double_pendulum() {
 fn zeros_and_turns_of_the_pendulum_follow_its_period() {
     let zero = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0];
     let turn = |_: f64, _: &[f64; 1], v: &[f64; 1]| v[0];
-    let events = [
-        Event::new(&zero),
-        Event::new(&zero).direction(Direction::Rising),
-        Event::new(&turn),
-        Event::new(&turn).direction(Direction::Falling),
-    ];
+    let events =
+        [Event::new(zero), Event::new(zero).rising(), Event::new(turn), Event::new(turn).falling()];
     let quarters = |first: usize, step: usize| -> Vec<f64> {
         (first..).step_by(step).map(|k| k as f64 * PERIOD / 4.0).take_while(|t| *t < 50.0).collect()
     };
@@ -83,7 +79,7 @@ fn zeros_and_turns_of_the_pendulum_follow_its_period() {
 #[test]
 fn every_method_finds_them() {
     let zero = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0];
-    let events = [Event::new(&zero)];
+    let events = [Event::new(zero)];
     let expected: Vec<f64> = (0..5).map(|k| f64::from(2 * k + 1) * PERIOD / 4.0).collect();
     let system = pendulum();
     let problem = || solve(&system, (0.0, 18.0), [1.3], [0.0]).method(Dop853).events(&events);
@@ -108,7 +104,7 @@ fn several_in_one_step_come_in_order() {
         move |_: f64, q: &[f64; 1], _: &[f64; 1]| (q[0] - first) * (q[0] - second) * (q[0] - third);
     let g = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0] - 1.5;
     let h = |t: f64, _: &[f64; 1], _: &[f64; 1]| t - 0.75005;
-    let events = [Event::new(&f), Event::new(&g), Event::new(&h).direction(Direction::Rising)];
+    let events = [Event::new(f), Event::new(g), Event::new(h).rising()];
     let free = Pendulum { length: 1.0, g: 0.0 };
     let solution =
         solve(&free, (0.0, 3.0), [0.0], [1.0]).method(Rk4).steps(1).events(&events).run().unwrap();
@@ -130,11 +126,11 @@ fn roots_that_only_touch_are_found() {
     let miss = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0] + 1.3 + 1e-6;
     let cross = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0] + 1.3 - 1e-8;
     let events = [
-        Event::new(&touch),
-        Event::new(&touch).direction(Direction::Falling).touching(0.0),
-        Event::new(&miss),
-        Event::new(&cross).touching(0.0),
-        Event::new(&miss).touching(1e-5),
+        Event::new(touch),
+        Event::new(touch).falling().touching(0.0),
+        Event::new(miss),
+        Event::new(cross).touching(0.0),
+        Event::new(miss).touching(1e-5),
     ];
     let expected: Vec<f64> =
         (0..14).map(|k| f64::from(2 * k + 1) * PERIOD / 2.0).take_while(|t| *t < 50.0).collect();
@@ -172,7 +168,7 @@ fn roots_that_only_touch_are_found() {
 fn what_ends_at_an_event_goes_on_without_finding_it_again() {
     let zero = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0];
     let turn = |_: f64, _: &[f64; 1], v: &[f64; 1]| v[0];
-    let events = [Event::new(&zero).terminal(), Event::new(&turn).terminal()];
+    let events = [Event::new(zero).terminal(), Event::new(turn).terminal()];
     let system = pendulum();
     let (mut t, mut q, mut v) = (0.0, [1.3], [0.0]);
     for k in 1..=40 {
@@ -200,7 +196,7 @@ fn a_pendulum_bounces_off_a_wall() {
         state.t
     }
     let wall = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0];
-    let events = [Event::new(&wall).terminal()];
+    let events = [Event::new(wall).terminal()];
     let system = pendulum();
     let mut integrator = Integrator::new(&system, Dop853, 0.0, [1.3], [0.0]).unwrap();
     integrator = integrator
@@ -217,7 +213,7 @@ fn a_pendulum_bounces_off_a_wall() {
 #[test]
 fn an_integrator_stops_and_goes_on() {
     let zero = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0];
-    let events = [Event::new(&zero).terminal_after(2), Event::at(&[1.0, 3.0])];
+    let events = [Event::new(zero).terminal_after(2), Event::at([1.0, 3.0])];
     let system = pendulum();
     let integrator = Integrator::new(&system, Rk4, 0.0, [1.3], [0.0]).unwrap();
     let mut integrator = integrator.control(FixedStep::new(0.01)).unwrap().events(&events).unwrap();
@@ -245,7 +241,7 @@ fn known_times_are_met_exactly() {
     let when = [0.1, 0.3, 0.7];
     let system = pendulum();
     let problem = || solve(&system, (0.1, 1.0), [1.3], [0.0]).method(Dop853).every_step();
-    for events in [[Event::at(&when)], [Event::at(&when).terminal_after(2)]] {
+    for events in [[Event::at(when)], [Event::at(when).terminal_after(2)]] {
         for solution in [
             problem().events(&events).run(),
             problem().events(&events).method(Leapfrog).step(0.09).run(),
@@ -259,7 +255,7 @@ fn known_times_are_met_exactly() {
     }
     let failure = solve(&system, (0.0, 1.0), [1.3], [0.0])
         .method(Dop853)
-        .events(&[Event::at(&[0.5, 0.4])])
+        .events([Event::at([0.5, 0.4])])
         .run()
         .unwrap_err();
     assert!(matches!(failure.error, Error::Times { name: "events", index: 1, .. }), "{failure}");
@@ -268,7 +264,7 @@ fn known_times_are_met_exactly() {
 #[test]
 fn output_ends_at_a_terminal_event() {
     let zero = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0];
-    let events = [Event::new(&zero).terminal()];
+    let events = [Event::new(zero).terminal()];
     let system = pendulum();
     let problem = || {
         solve(&system, (0.0, 10.0), [1.3], [0.0])
@@ -300,7 +296,7 @@ fn output_ends_at_a_terminal_event() {
 #[test]
 fn events_change_no_step() {
     let zero = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0];
-    let events = [Event::new(&zero)];
+    let events = [Event::new(zero)];
     let system = pendulum();
     let plain =
         solve(&system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).every_step().run().unwrap();
@@ -323,7 +319,7 @@ fn a_velocity_that_jumps_over_zero_is_an_event_at_the_kink() {
     let turn = |_: f64, _: &[f64; 1], v: &[f64; 1]| v[0] + 0.5;
     let before = |t: f64, _: &[f64; 1], _: &[f64; 1]| t - 0.96875;
     for (step, count) in [(0.25, 1), (0.125, 1)] {
-        let events = [Event::new(&turn), Event::new(&before)];
+        let events = [Event::new(turn), Event::new(before)];
         let solution = solve(&system, (0.0, 1.5), [0.0], [0.2])
             .method(Rk4)
             .step(step)
@@ -333,7 +329,7 @@ fn a_velocity_that_jumps_over_zero_is_an_event_at_the_kink() {
         assert_eq!(times(&solution.events, 0), vec![1.0; count]);
         assert!(solution.events[1].state.v[0] < -0.5);
         // An event within the step before the kink ends before it, and the kink is still to come.
-        let events = [Event::new(&before).terminal()];
+        let events = [Event::new(before).terminal()];
         let mut integrator = Integrator::new(&system, Rk4, 0.0, [0.0], [0.2])
             .unwrap()
             .control(FixedStep::new(step))
@@ -353,7 +349,7 @@ fn a_velocity_that_jumps_over_zero_is_an_event_at_the_kink() {
 fn a_function_that_gives_no_number_is_an_error() {
     let root = |_: f64, q: &[f64; 1], _: &[f64; 1]| (q[0] - 0.5).sqrt();
     let fine = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0];
-    let events = [Event::new(&fine), Event::new(&root)];
+    let events = [Event::new(fine), Event::new(root)];
     let system = pendulum();
     let failure =
         solve(&system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).events(&events).run().unwrap_err();
@@ -362,7 +358,7 @@ fn a_function_that_gives_no_number_is_an_error() {
     assert_eq!(failure.partial.status, Status::Failed);
     // Nor did anything in a step that failed.
     let late = |t: f64, _: &[f64; 1], _: &[f64; 1]| (1.75 - t).sqrt() + 1.0;
-    let events = [Event::at(&[1.75]).terminal(), Event::new(&late)];
+    let events = [Event::at([1.75]).terminal(), Event::new(late)];
     let integrator = Integrator::new(&system, Rk4, 0.0, [1.3], [0.0]).unwrap();
     let mut integrator = integrator.control(FixedStep::new(0.25)).unwrap().events(&events).unwrap();
     integrator.advance_to(10.0).unwrap();
@@ -374,7 +370,7 @@ fn a_function_that_gives_no_number_is_an_error() {
     let start = |_: f64, _: &[f64; 1], _: &[f64; 1]| f64::NAN;
     let failure = solve(&system, (0.0, 10.0), [1.3], [0.0])
         .method(Dop853)
-        .events(&[Event::new(&start)])
+        .events([Event::new(start)])
         .run()
         .unwrap_err();
     assert_eq!(failure.error, Error::Event { t: 0.0, event: 0 });
@@ -383,7 +379,7 @@ fn a_function_that_gives_no_number_is_an_error() {
         .method(Dop853)
         .rtol(1e-12)
         .atol(1e-12)
-        .events(&[Event::new(&poles)])
+        .events([Event::new(poles)])
         .run()
         .unwrap();
     assert_times(&times(&solution.events, 0), &[PERIOD / 4.0], 1e-10);
@@ -398,7 +394,7 @@ fn events_in_two_words() {
     let solution = solve(&free, (0.0, 1.0), [0.0.into()], [1.0.into()])
         .method(Rk4)
         .steps(3)
-        .events(&[Event::new(&f)])
+        .events([Event::of(f)])
         .run()
         .unwrap();
     let found = solution.events[0];
@@ -417,7 +413,7 @@ fn a_loose_tolerance_finds_what_its_own_motion_does() {
         .method(Dop853)
         .rtol(1e-5)
         .dense()
-        .events(&[Event::new(&f)])
+        .events([Event::new(f)])
         .run()
         .unwrap();
     let g = |t: f64| solution.at(t).map(|state| f(t, &state.q, &state.v)).unwrap();

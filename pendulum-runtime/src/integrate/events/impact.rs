@@ -1,0 +1,99 @@
+//! Impacts of generalized velocities.
+
+use crate::integrate::state::State;
+use crate::motion::Side;
+use crate::scalar::{Float, Real};
+use crate::system::{Dynamics, Purpose, System, scalar_time};
+use crate::time::Time;
+use nalgebra::SMatrix;
+
+/// The change of the velocities in a frictionless impact with the coefficient of restitution e:
+/// Δq̇ = −(1 + e) M⁻¹n (n·q̇)/(nᵀM⁻¹n).
+///
+/// The wall is g(q) = 0, at rest in these coordinates, and `normal` n = ∂g/∂q, of any length: the
+/// impulse, a change of momenta, has its direction, and n·q̇ becomes −e times what it was. M is the
+/// mass matrix at `t` and `q`. The kinetic energy falls by (1 − e²)(n·q̇)²/(2 nᵀM⁻¹n).
+///
+/// What comes out is not finite if n is zero or the mass matrix singular.
+///
+/// Source: F. Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral Contacts (1996),
+/// chapter 8, for a single contact with Newton's law of restitution.
+pub fn impact<const N: usize, D: Dynamics<N, Scalar: Float>>(
+    dynamics: &D,
+    t: f64,
+    q: &[D::Scalar; N],
+    v: &[D::Scalar; N],
+    normal: &[D::Scalar; N],
+    restitution: f64,
+) -> [D::Scalar; N] {
+    let time = Time::new(t);
+    let inputs = dynamics.inputs(time, Side::After, Purpose::Momenta);
+    let matrix = dynamics.system().mass_matrix(scalar_time(time), q, v, &inputs);
+    let direction = solved(matrix, *normal);
+    let speed = product(normal, v);
+    let factor = -D::Scalar::from_f64(1.0 + restitution) * speed / product(normal, &direction);
+    direction.map(|component| factor * component)
+}
+
+impl<T: Float, const N: usize> State<T, N> {
+    /// Adds the change of the velocities by which [`impact`] reflects them from a wall with the
+    /// normal ∂g/∂q:
+    ///
+    /// ```
+    /// # use pendulum_runtime::{integrate::*, system::*};
+    /// fn stop<S: System<2, Scalar = f64, Inputs = ()> + Sync>(arm: &S) -> Event<'_, f64, 2> {
+    ///     Event::new(|_t, q, _v| q[1] - q[0]).falling().then(|state| state.bounce(arm, &[-1.0, 1.0], 0.5))
+    /// }
+    /// ```
+    pub fn bounce<D: Dynamics<N, Scalar = T>>(
+        &mut self,
+        dynamics: &D,
+        normal: &[T; N],
+        restitution: f64,
+    ) {
+        let change = impact(dynamics, self.t, &self.q, &self.v, normal, restitution);
+        for i in 0..N {
+            self.v[i] += change[i];
+        }
+    }
+}
+
+fn product<T: Float, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
+    a.iter().zip(b).fold(T::from_f64(0.0), |sum, (a, b)| sum + *a * *b)
+}
+
+/// M⁻¹ b for a symmetric positive definite M, by elimination without exchanges.
+fn solved<T: Float, const N: usize>(mut matrix: SMatrix<T, N, N>, mut b: [T; N]) -> [T; N] {
+    for j in 0..N {
+        for i in j + 1..N {
+            let factor = matrix[(i, j)] / matrix[(j, j)];
+            for k in j..N {
+                let part = factor * matrix[(j, k)];
+                matrix[(i, k)] -= part;
+            }
+            let part = factor * b[j];
+            b[i] -= part;
+        }
+    }
+    for i in (0..N).rev() {
+        let rest = (i + 1..N).fold(b[i], |rest, k| rest - matrix[(i, k)] * b[k]);
+        b[i] = rest / matrix[(i, i)];
+    }
+    b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::solved;
+    use nalgebra::{Matrix3, Vector3};
+
+    #[test]
+    fn elimination_agrees_with_cholesky() {
+        let root = Matrix3::new(2.0_f64, 0.0, 0.0, -1.0, 1.5, 0.0, 0.3, 0.7, 0.9);
+        let (matrix, b) = (root * root.transpose(), [1.0, -2.0, 0.5]);
+        let trusted = matrix.cholesky().unwrap().solve(&Vector3::from(b));
+        for (found, expected) in solved(matrix, b).iter().zip(trusted.iter()) {
+            assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+        }
+    }
+}
