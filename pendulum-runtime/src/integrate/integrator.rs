@@ -5,18 +5,44 @@ use crate::integrate::events::detector::EventDetector;
 use crate::integrate::events::{Event, Occurrence, Status};
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::Method;
+use crate::integrate::observe::within;
+use crate::integrate::output::direction;
 use crate::integrate::solution::Stats;
 use crate::integrate::state::State;
 use crate::integrate::step::adaptive::AdaptiveStep;
 use crate::integrate::step::controller::Controller;
+use crate::integrate::step::field::first_in_state;
+use crate::integrate::step::held::Held;
 use crate::integrate::step::integration::Integration;
 use crate::scalar::Float;
-use crate::system::Dynamics;
+use crate::system::{Dynamics, System};
 
 /// An integration that goes on for as long as somebody asks for the next step; no step allocates.
 ///
-/// It knows no interval: an adaptive step over a [`Function`](crate::motion::Function) without a
+/// [`new`](Self::new) borrows the system, [`owning`](Self::owning) keeps it, and
+/// [`Solve::start`](crate::integrate::Solve::start) has the settings of a `solve`. Without the
+/// interval of the latter, an adaptive step over a [`Function`](crate::motion::Function) without a
 /// resolution is at most one second long.
+///
+/// ```
+/// # use pendulum_runtime::{error::Error, integrate::*, system::*};
+/// struct Bell<S: System<1, Scalar = f64, Inputs = ()>> {
+///     run: Integrator<'static, 1, S, Dop853>,
+/// }
+///
+/// impl<S: System<1, Scalar = f64, Inputs = ()>> Bell<S> {
+///     fn new(system: S) -> Result<Self, Error> {
+///         let strike = Event::new(|_t, q, _v| q[0] - 0.5).rising().then(|state| state.v[0] *= -0.3);
+///         Ok(Self { run: Integrator::owning(system, Dop853, 0.0, [0.3], [0.0])?.events([strike])? })
+///     }
+///
+///     /// The angles after each sixtieth of a second.
+///     fn angles(&mut self) -> impl Iterator<Item = Result<f64, Error>> {
+///         let times = (1..).map(|tick| f64::from(tick) / 60.0);
+///         self.run.states_at(times).map(|state| Ok(state?.q[0]))
+///     }
+/// }
+/// ```
 ///
 /// After an error the state is the one before the failed step.
 #[derive(Clone, Debug)]
@@ -31,6 +57,18 @@ where
     found: Vec<Occurrence<D::Scalar, N>>,
     ended: Option<Status>,
     max_steps: u64,
+    goal: Goal,
+}
+
+/// Times at which steps end.
+#[derive(Clone, Debug)]
+struct Goal {
+    /// The stops in ascending order.
+    stops: Vec<f64>,
+    /// The end of the interval; infinite without one.
+    end: f64,
+    /// The direction of time: 1 or −1.
+    onwards: f64,
 }
 
 impl<'a, const N: usize, D, M> Integrator<'a, N, D, M>
@@ -49,13 +87,30 @@ where
         q: [D::Scalar; N],
         v: [D::Scalar; N],
     ) -> Result<Self, Error> {
-        Ok(Self {
-            integration: Integration::new(dynamics, method, AdaptiveStep::new(), t, q, v)?,
-            detector: EventDetector::new(&[]),
-            found: Vec::new(),
-            ended: None,
-            max_steps: 10_000_000,
-        })
+        Self::holding(Held::Borrowed(dynamics), method, t, q, v)
+    }
+
+    /// The same with a system that it keeps, so that a struct can hold both; it is `'static` unless
+    /// the events borrow.
+    pub fn owning(
+        dynamics: D,
+        method: M,
+        t: f64,
+        q: [D::Scalar; N],
+        v: [D::Scalar; N],
+    ) -> Result<Self, Error> {
+        Self::holding(Held::Owned(dynamics), method, t, q, v)
+    }
+
+    fn holding(
+        dynamics: Held<'a, D>,
+        method: M,
+        t: f64,
+        q: [D::Scalar; N],
+        v: [D::Scalar; N],
+    ) -> Result<Self, Error> {
+        let integration = Integration::new(dynamics, method, AdaptiveStep::new(), t, q, v)?;
+        Self::over(integration, &[], &[], f64::INFINITY, 10_000_000)
     }
 }
 
@@ -64,15 +119,37 @@ where
     D: Dynamics<N, Scalar: Float>,
     M: Method<D, N>,
 {
+    /// An integration towards `end`.
+    pub(crate) fn over(
+        mut integration: Integration<'a, N, D, M, C>,
+        events: &[Event<'a, D::Scalar, N>],
+        stops: &[f64],
+        end: f64,
+        max_steps: u64,
+    ) -> Result<Self, Error> {
+        let mut detector = EventDetector::new(events);
+        detector.begin(&mut integration)?;
+        let mut stops = stops.to_vec();
+        stops.sort_unstable_by(f64::total_cmp);
+        let onwards = direction(integration.t(), end);
+        let goal = Goal { stops, end, onwards };
+        Ok(Self { integration, detector, found: Vec::new(), ended: None, max_steps, goal })
+    }
+
+    /// The dynamics that it integrates.
+    pub fn dynamics(&self) -> &D {
+        &self.integration.dynamics
+    }
+
     /// Chooses the steps otherwise: with a [`FixedStep`](crate::integrate::FixedStep) or an [`AdaptiveStep`].
     pub fn control<B: Controller<M, D, N>>(
         self,
         control: B,
     ) -> Result<Integrator<'a, N, D, M, B>, Error> {
         control.check()?;
-        let Self { integration, detector, found, ended, max_steps } = self;
+        let Self { integration, detector, found, ended, max_steps, goal } = self;
         let integration = integration.controlled(control);
-        Ok(Integrator { integration, detector, found, ended, max_steps })
+        Ok(Integrator { integration, detector, found, ended, max_steps, goal })
     }
 
     /// Looks for events from here on, forwards in time.
@@ -92,7 +169,8 @@ where
         self
     }
 
-    /// Takes one step: the longest that the control allows, but not over a kink.
+    /// Takes one step: the longest that the control allows, but not over a kink, a stop, and the end
+    /// of the interval, if it was [started](crate::integrate::Solve::start) with them.
     #[inline]
     pub fn step(&mut self) -> Result<(), Error>
     where
@@ -100,7 +178,38 @@ where
     {
         self.found.clear();
         self.ended = None;
-        self.step_towards(f64::INFINITY)
+        self.step_onwards()
+    }
+
+    /// Takes one step towards the end of the interval, or beyond it.
+    #[inline]
+    fn step_onwards(&mut self) -> Result<(), Error>
+    where
+        C: Controller<M, D, N>,
+    {
+        let Goal { end, onwards, .. } = self.goal;
+        let target = if self.is_at_end() { onwards * f64::INFINITY } else { end };
+        self.step_towards(target)
+    }
+
+    /// Whether the end of the interval is reached.
+    fn is_at_end(&self) -> bool {
+        0.0 <= self.goal.onwards * self.integration.end.t.since(self.goal.end)
+    }
+
+    /// The next stop on the way to `target`, or `target`.
+    #[inline]
+    fn next_stop(&self, target: f64) -> f64 {
+        let (stops, t) = (&self.goal.stops, self.integration.end.t);
+        if stops.is_empty() {
+            return target;
+        }
+        if 0.0 < t.since(target) {
+            let below = stops.partition_point(|stop| 0.0 < t.since(*stop));
+            return stops[..below].last().map_or(target, |stop| f64::max(*stop, target));
+        }
+        let passed = stops.partition_point(|stop| 0.0 <= t.since(*stop));
+        stops.get(passed).map_or(target, |stop| f64::min(*stop, target))
     }
 
     #[inline]
@@ -108,6 +217,7 @@ where
     where
         C: Controller<M, D, N>,
     {
+        let target = self.next_stop(target);
         let event = self.detector.next_time();
         self.integration.step(if event < target { event } else { target })?;
         let ended = self.detector.observe(&mut self.integration);
@@ -125,7 +235,7 @@ where
         self.found.clear();
         self.ended = None;
         if !((self.t() <= t
-            || self.integration.method.goes_back(self.integration.dynamics)
+            || self.integration.method.goes_back(&self.integration.dynamics)
                 && self.detector.is_idle())
             && t.is_finite())
         {
@@ -140,6 +250,35 @@ where
             self.step_towards(t)?;
         }
         Ok(())
+    }
+
+    /// The steps from here on, each taken when it is asked for: the states at their ends.
+    ///
+    /// They end with the interval, if it was [started](crate::integrate::Solve::start) with one,
+    /// with a terminal event, and with an error.
+    pub fn steps(&mut self) -> Steps<'_, 'a, N, D, M, C> {
+        Steps { run: self, over: false }
+    }
+
+    /// The states at `times`, in the order of the motion, each computed when it is asked for; the
+    /// times may go on for ever, and change no step.
+    ///
+    /// They end with a terminal event that comes before the next time, and with an error: that of a
+    /// step, or [`Error::Times`] for a time before the last step or beyond the end of the interval.
+    pub fn states_at<I: IntoIterator<Item = f64>>(
+        &mut self,
+        times: I,
+    ) -> StatesAt<'_, 'a, N, D, M, C, I::IntoIter> {
+        StatesAt { run: self, times: times.into_iter(), index: 0, ended: false, over: false }
+    }
+
+    /// The state at a time in seconds within the last step; `None` outside, before the first step
+    /// and after one that failed.
+    ///
+    /// Methods that need further evaluations for it take them now.
+    pub fn at(&mut self, t: f64) -> Option<State<D::Scalar, N>> {
+        let (start, end) = (self.integration.last_start().t, self.state());
+        within(start, end, t, || self.integration.interpolant())
     }
 
     /// Puts the state elsewhere, or the same state to another time; what follows is as if the
@@ -215,5 +354,101 @@ where
     /// What it took so far.
     pub fn stats(&self) -> Stats {
         self.integration.stats()
+    }
+}
+
+/// The steps of an [`Integrator`], taken one by one.
+#[derive(Debug)]
+pub struct Steps<'r, 'a, const N: usize, D, M, C>
+where
+    D: Dynamics<N, Scalar: Float>,
+    M: Method<D, N>,
+{
+    run: &'r mut Integrator<'a, N, D, M, C>,
+    over: bool,
+}
+
+impl<const N: usize, D, M, C> Iterator for Steps<'_, '_, N, D, M, C>
+where
+    D: Dynamics<N, Scalar: Float>,
+    M: Method<D, N>,
+    C: Controller<M, D, N>,
+{
+    type Item = Result<State<D::Scalar, N>, Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.over || self.run.is_at_end() {
+            return None;
+        }
+        let step = self.run.step();
+        self.over = step.is_err() || self.run.ended.is_some();
+        Some(step.map(|()| self.run.state()))
+    }
+}
+
+/// The states of an [`Integrator`] at given times, computed one by one.
+#[derive(Debug)]
+pub struct StatesAt<'r, 'a, const N: usize, D, M, C, I>
+where
+    D: Dynamics<N, Scalar: Float>,
+    M: Method<D, N>,
+{
+    run: &'r mut Integrator<'a, N, D, M, C>,
+    times: I,
+    index: usize,
+    /// A terminal event has happened in the last step.
+    ended: bool,
+    over: bool,
+}
+
+impl<const N: usize, D, M, C, I> StatesAt<'_, '_, N, D, M, C, I>
+where
+    D: Dynamics<N, Scalar: Float>,
+    M: Method<D, N>,
+    C: Controller<M, D, N>,
+{
+    /// The state at `t`; nothing if a terminal event comes before.
+    fn state(&mut self, t: f64) -> Result<Option<State<D::Scalar, N>>, Error> {
+        let (run, index) = (&mut *self.run, self.index);
+        let onwards = run.goal.onwards;
+        let refused = Error::Times { name: "states_at", index, time: t };
+        if !(t.is_finite() && onwards * t <= onwards * run.goal.end) {
+            return Err(refused);
+        }
+        while onwards * run.integration.end.t.since(t) < 0.0 {
+            if self.ended {
+                return Ok(None);
+            }
+            run.step()?;
+            self.ended = run.ended.is_some();
+        }
+        let state = if run.t() == t { Some(run.state()) } else { run.at(t) };
+        let facts = &<D::System as System<N>>::FACTS;
+        let state = state.ok_or(refused)?;
+        match first_in_state(facts, &state.q, &state.v) {
+            Some(what) => Err(Error::NotFinite { t, what, suspects: Vec::new() }),
+            None => Ok(Some(state)),
+        }
+    }
+}
+
+impl<const N: usize, D, M, C, I> Iterator for StatesAt<'_, '_, N, D, M, C, I>
+where
+    D: Dynamics<N, Scalar: Float>,
+    M: Method<D, N>,
+    C: Controller<M, D, N>,
+    I: Iterator<Item = f64>,
+{
+    type Item = Result<State<D::Scalar, N>, Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.over {
+            return None;
+        }
+        let t = self.times.next()?;
+        let state = self.state(t);
+        self.index += 1;
+        self.over = !matches!(state, Ok(Some(_)));
+        state.transpose()
     }
 }

@@ -5,6 +5,7 @@ use crate::integrate::data::label::Source;
 use crate::integrate::events::{Occurrence, Status};
 use crate::integrate::interpolant::dense::DenseOutput;
 use crate::integrate::method::Method;
+use crate::integrate::observe::OfStates;
 use crate::integrate::solution::{Failure, Solution, Stats};
 use crate::integrate::state::State;
 use crate::integrate::step::field::first_in_state;
@@ -14,6 +15,8 @@ use crate::system::{Dynamics, Facts, System};
 
 /// The greatest number of states that an interval between outputs may ask for.
 const MOST: f64 = 1e7;
+/// The same where they are not kept: a count that one word holds.
+const MOST_STREAMED: f64 = 1e15;
 
 /// The states asked for, besides the last one.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +32,8 @@ pub(crate) enum Output<'a> {
 }
 
 impl Output<'_> {
-    pub(crate) fn check(&self, start: f64, end: f64) -> Result<(), Error> {
+    /// Whether the times make sense; `streamed` if the states are not kept.
+    pub(crate) fn check(&self, start: f64, end: f64, streamed: bool) -> Result<(), Error> {
         match *self {
             Output::Times(times) => in_order("t_eval", times, start, end),
             Output::Every(interval) => {
@@ -37,8 +41,9 @@ impl Output<'_> {
                 // it.
                 let fine = 0.0 < interval
                     && interval < f64::INFINITY
-                    && (end - start).abs() / interval <= MOST;
-                let required = "positive, finite and give ten million states at most; lengthen it, or take the steps with an `Integrator` and keep what you need";
+                    && (end - start).abs() / interval
+                        <= if streamed { MOST_STREAMED } else { MOST };
+                let required = "positive, finite and give ten million states at most; lengthen it, or take them one by one with `on_output`";
                 if fine {
                     Ok(())
                 } else {
@@ -97,8 +102,7 @@ pub(crate) fn precedes(a: f64, b: f64, (start, end): (f64, f64)) -> bool {
 }
 
 /// Keeps what is asked for while the integration goes on.
-#[derive(Debug)]
-pub(crate) struct Recorder<'a, T, const N: usize> {
+pub(crate) struct Recorder<'a, 'f, T, const N: usize> {
     output: Output<'a>,
     interval: (f64, f64),
     /// The direction of time: 1 or −1.
@@ -113,10 +117,19 @@ pub(crate) struct Recorder<'a, T, const N: usize> {
     v: Vec<[T; N]>,
     events: Vec<Occurrence<T, N>>,
     labels: Source,
+    /// Takes the states instead.
+    stream: Option<&'f mut OfStates<'a, T, N>>,
+    /// It has asked for the end.
+    pub(crate) cancelled: bool,
 }
 
-impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
-    pub(crate) fn new(output: Output<'a>, interval: (f64, f64), facts: &'static Facts) -> Self {
+impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
+    pub(crate) fn new(
+        output: Output<'a>,
+        interval: (f64, f64),
+        facts: &'static Facts,
+        stream: Option<&'f mut OfStates<'a, T, N>>,
+    ) -> Self {
         let onwards = direction(interval.0, interval.1);
         Self {
             output,
@@ -130,7 +143,14 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
             v: Vec::new(),
             events: Vec::new(),
             labels: Source::Facts(facts),
+            stream,
+            cancelled: false,
         }
+    }
+
+    /// Whether states are not kept.
+    pub(crate) fn streams(&self) -> bool {
+        self.stream.is_some()
     }
 
     /// Begins with the state at the start.
@@ -219,7 +239,15 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
         }
     }
 
-    fn push(&mut self, State { t, q, v }: State<T, N>) {
+    fn push(&mut self, state: State<T, N>) {
+        if let Some(stream) = &mut self.stream {
+            self.cancelled = self.cancelled || stream(state).is_break();
+            return;
+        }
+        self.keep(state);
+    }
+
+    fn keep(&mut self, State { t, q, v }: State<T, N>) {
         self.t.push(t);
         self.q.push(q);
         self.v.push(v);
@@ -239,6 +267,9 @@ impl<'a, T: Float, const N: usize> Recorder<'a, T, N> {
     ) -> Solution<T, N> {
         if let Output::End = self.output {
             self.push(end);
+        }
+        if self.stream.is_some() {
+            self.keep(end);
         }
         let Self { dense, t, q, v, events, labels, .. } = self;
         Solution { t, q, v, end, status, events, stats, dense, labels }

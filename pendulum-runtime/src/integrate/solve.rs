@@ -2,9 +2,11 @@
 
 use crate::error::Error;
 use crate::integrate::events::detector::EventDetector;
-use crate::integrate::events::{Event, Status};
+use crate::integrate::events::{Event, Occurrence, Status};
+use crate::integrate::integrator::Integrator;
 use crate::integrate::method::Method;
 use crate::integrate::methods::auto::Auto;
+use crate::integrate::observe::{Observers, OfSteps, Step};
 use crate::integrate::output::{Output, Recorder, direction, in_order};
 use crate::integrate::solution::{Failure, Solution, Stats};
 use crate::integrate::state::State;
@@ -12,9 +14,12 @@ use crate::integrate::step::adaptive::AdaptiveStep;
 use crate::integrate::step::controller::Controller;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::fixed::FixedStep;
+use crate::integrate::step::held::Held;
 use crate::integrate::step::integration::Integration;
 use crate::scalar::Float;
 use crate::system::{Dynamics, System};
+use core::mem;
+use core::ops::ControlFlow;
 
 /// Integrates `dynamics` over the interval `time = (start, end)` in seconds from the coordinates
 /// `q` and the velocities `v`.
@@ -44,12 +49,13 @@ pub fn solve<const N: usize, D: Dynamics<N>>(
         stops: &[],
         events: Vec::new(),
         max_steps: 10_000_000,
+        observers: Observers::none(),
     }
 }
 
 /// An integration about to run; [`solve`] makes it.
 #[must_use = "nothing is integrated before `run`"]
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Solve<'a, const N: usize, D: Dynamics<N>, M, C> {
     dynamics: &'a D,
     time: (f64, f64),
@@ -62,6 +68,7 @@ pub struct Solve<'a, const N: usize, D: Dynamics<N>, M, C> {
     stops: &'a [f64],
     events: Vec<Event<'a, D::Scalar, N>>,
     max_steps: u64,
+    observers: Observers<'a, D::Scalar, N>,
 }
 
 impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M, C> {
@@ -70,9 +77,22 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
     where
         D: Dynamics<N, Scalar: Float>,
     {
-        let controller = self.controller;
-        let Self { dynamics, time, q, v, output, dense, stops, events, max_steps, .. } = self;
-        Solve { dynamics, time, q, v, method, controller, output, dense, stops, events, max_steps }
+        let Self { dynamics, time, q, v, controller, output, dense, stops, .. } = self;
+        let Self { events, max_steps, observers, .. } = self;
+        Solve {
+            dynamics,
+            time,
+            q,
+            v,
+            method,
+            controller,
+            output,
+            dense,
+            stops,
+            events,
+            max_steps,
+            observers,
+        }
     }
 
     /// Takes equal steps of at most `step` seconds, as [`FixedStep`] describes.
@@ -133,10 +153,60 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
         self
     }
 
+    /// Looks at every step once it is taken: for progress, for logging, and to cancel. On
+    /// [`ControlFlow::Break`] the integration ends with [`Status::Cancelled`] and all that it has
+    /// reached.
+    ///
+    /// ```
+    /// # use core::ops::ControlFlow;
+    /// # use pendulum_runtime::{integrate::*, system::*};
+    /// fn shown<S: System<1, Scalar = f64, Inputs = ()>>(system: &S) -> Result<(), Failure<f64, 1>> {
+    ///     let run = solve(system, (0.0, 10.0), [1.3], [0.0]).method(Dop853).on_step(|step| {
+    ///         println!("{:3.0} %, {} steps", 100.0 * step.progress(), step.stats.accepted);
+    ///         if step.stats.accepted < 5 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    ///     });
+    ///     let solution = run.run()?;
+    ///     println!("{:?} at {} s", solution.status, solution.end.t);
+    ///     Ok(())
+    /// }
+    /// ```
+    pub fn on_step(
+        mut self,
+        look: impl FnMut(&mut Step<'_, D::Scalar, N>) -> ControlFlow<()> + 'a,
+    ) -> Self {
+        self.observers.steps = Some(Box::new(look));
+        self
+    }
+
+    /// Gives the states at the output times to `take`, one by one, instead of keeping them: the
+    /// solution has the last one only, and there may be more of them than fit into the memory. On
+    /// [`ControlFlow::Break`] the integration ends at the end of the step, with
+    /// [`Status::Cancelled`].
+    pub fn on_output(
+        mut self,
+        take: impl FnMut(State<D::Scalar, N>) -> ControlFlow<()> + 'a,
+    ) -> Self {
+        self.observers.states = Some(Box::new(take));
+        self
+    }
+
     fn control<B>(self, controller: B) -> Solve<'a, N, D, M, B> {
-        let Self { dynamics, time, q, v, method, output, dense, stops, events, max_steps, .. } =
-            self;
-        Solve { dynamics, time, q, v, method, controller, output, dense, stops, events, max_steps }
+        let Self { dynamics, time, q, v, method, output, dense, stops, .. } = self;
+        let Self { events, max_steps, observers, .. } = self;
+        Solve {
+            dynamics,
+            time,
+            q,
+            v,
+            method,
+            controller,
+            output,
+            dense,
+            stops,
+            events,
+            max_steps,
+            observers,
+        }
     }
 }
 
@@ -177,27 +247,25 @@ impl<const N: usize, D: Dynamics<N>, M> Solve<'_, N, D, M, AdaptiveStep<N>> {
     }
 }
 
-impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, M, C> {
+impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N, D, M, C> {
     /// Integrates.
     ///
     /// On failure the error comes with everything reached until then. A method that is wrong for
     /// the system or lacks a step size does not compile.
-    pub fn run(self) -> Result<Solution<D::Scalar, N>, Failure<D::Scalar, N>>
+    pub fn run(mut self) -> Result<Solution<D::Scalar, N>, Failure<D::Scalar, N>>
     where
         M: Method<D, N>,
         C: Controller<M, D, N>,
     {
         let facts = const { &<D::System as System<N>>::FACTS };
-        let mut recorder = Recorder::new(self.output, self.time, facts);
+        let Observers { mut steps, mut states } =
+            mem::replace(&mut self.observers, Observers::none());
+        let mut recorder = Recorder::new(self.output, self.time, facts, states.as_deref_mut());
         let given = State { t: self.time.0, q: self.q, v: self.v };
-        match self.check().and_then(|()| {
-            let (t, q, v) = (self.time.0, self.q, self.v);
-            Integration::new(self.dynamics, self.method, self.controller, t, q, v)
-        }) {
+        match self.check(recorder.streams()).and_then(|()| self.begin()) {
             Err(error) => Err(recorder.fail(error, given, Stats::new(M::NAME))),
-            Ok(integration) => {
-                let mut integration = integration.over((self.time.1 - self.time.0).abs());
-                let ended = self.integrate(&mut integration, &mut recorder);
+            Ok(mut integration) => {
+                let ended = self.integrate(&mut integration, &mut recorder, steps.as_deref_mut());
                 let (end, stats) = (State::from(&integration.end), integration.stats());
                 match ended {
                     Err(error) => Err(recorder.fail(error, end, stats)),
@@ -207,10 +275,34 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, 
         }
     }
 
+    /// An [`Integrator`] at the start, with the same system, method, steps, events and stops: for a
+    /// loop of one's own, which goes on where this one would end and takes the same steps until
+    /// there. What was asked for as output is left to it.
+    pub fn start(self) -> Result<Integrator<'a, N, D, M, C>, Error>
+    where
+        M: Method<D, N>,
+        C: Controller<M, D, N>,
+    {
+        self.check(true)?;
+        let integration = self.begin()?;
+        Integrator::over(integration, &self.events, self.stops, self.time.1, self.max_steps)
+    }
+
+    fn begin(&self) -> Result<Integration<'a, N, D, M, C>, Error>
+    where
+        M: Method<D, N>,
+    {
+        let (dynamics, (start, end)) = (Held::Borrowed(self.dynamics), self.time);
+        let (method, controller) = (self.method, self.controller);
+        let integration = Integration::new(dynamics, method, controller, start, self.q, self.v)?;
+        Ok(integration.over((end - start).abs()))
+    }
+
     fn integrate(
         &self,
         integration: &mut Integration<'_, N, D, M, C>,
-        recorder: &mut Recorder<'_, D::Scalar, N>,
+        recorder: &mut Recorder<'_, '_, D::Scalar, N>,
+        mut look: Option<&mut OfSteps<'_, D::Scalar, N>>,
     ) -> Result<Status, Error>
     where
         M: Method<D, N>,
@@ -238,14 +330,23 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, 
             recorder.events(detector.found());
             let ended = ended?;
             recorder.step(integration)?;
+            if let Some(look) = &mut look
+                && show(&mut **look, integration, detector.found(), self.time).is_break()
+            {
+                return Ok(ended.unwrap_or(Status::Cancelled));
+            }
             if let Some(status) = ended {
                 return Ok(status);
+            }
+            if recorder.cancelled {
+                return Ok(Status::Cancelled);
             }
         }
         Ok(Status::Completed)
     }
 
-    fn check(&self) -> Result<(), Error>
+    /// Whether the settings make sense; `streamed` if states are not kept.
+    fn check(&self, streamed: bool) -> Result<(), Error>
     where
         M: Method<D, N>,
         C: Controller<M, D, N>,
@@ -257,11 +358,29 @@ impl<const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'_, N, D, 
             return Err(Error::Interval { start, end });
         }
         self.controller.check()?;
-        self.output.check(start, end)?;
+        self.output.check(start, end, streamed)?;
         in_order("t_stops", self.stops, start, end)?;
         if (self.max_steps as f64) < self.controller.least_steps((end - start).abs()) {
             return Err(Error::MaxSteps { t: start, max_steps: self.max_steps });
         }
         Ok(())
     }
+}
+
+/// Shows the step that `integration` has just taken to a function that looks on.
+#[cold]
+fn show<D, M, C, const N: usize>(
+    look: &mut OfSteps<'_, D::Scalar, N>,
+    integration: &mut Integration<'_, N, D, M, C>,
+    events: &[Occurrence<D::Scalar, N>],
+    interval: (f64, f64),
+) -> ControlFlow<()>
+where
+    D: Dynamics<N, Scalar: Float>,
+    M: Method<D, N>,
+{
+    let (start, end) = (integration.last_start(), State::from(&integration.end));
+    let stats = integration.stats();
+    let interpolant = &mut || integration.interpolant();
+    look(&mut Step { start, end, stats, events, interval, interpolant })
 }

@@ -201,7 +201,7 @@ fn outcome<S: System<N, Scalar: Float>, const N: usize>(
     stats: Stats,
     error: Option<Error>,
 ) -> Outcome<S::Scalar, N> {
-    let recorder = Recorder::new(Output::End, time, const { &S::FACTS });
+    let recorder = Recorder::new(Output::End, time, const { &S::FACTS }, None);
     match error {
         None => Ok(recorder.finish(end, crate::integrate::events::Status::Completed, stats)),
         Some(error) => Err(recorder.fail(error, end, stats)),

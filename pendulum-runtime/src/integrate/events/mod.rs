@@ -108,6 +108,9 @@ pub enum Status {
     Event(usize),
     /// The event with this index has come to [rest](Event::rest_below).
     Rest(usize),
+    /// A function that looked on, given by [`on_step`](super::Solve::on_step) or
+    /// [`on_output`](super::Solve::on_output), has asked for it.
+    Cancelled,
     /// There was an error.
     Failed,
 }

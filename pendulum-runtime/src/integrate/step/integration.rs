@@ -12,6 +12,7 @@ use crate::integrate::step::field::{
     Field, PreparedOf, coordinate, first_in_inputs, first_in_state,
 };
 use crate::integrate::step::gap::PART;
+use crate::integrate::step::held::Held;
 use crate::integrate::step::inertia::{inertia, is_due, varies};
 use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::short::{is_short, straight};
@@ -27,7 +28,7 @@ where
     D: Dynamics<N, Scalar: Float>,
     M: Method<D, N>,
 {
-    pub(crate) dynamics: &'a D,
+    pub(crate) dynamics: Held<'a, D>,
     prepared: PreparedOf<D, N>,
     pub(crate) method: M,
     controller: C,
@@ -58,21 +59,21 @@ where
 {
     /// At `q`, `v` and `t`, if they are finite and the mass matrix is positive there.
     pub(crate) fn new(
-        dynamics: &'a D,
+        dynamics: Held<'a, D>,
         method: M,
         controller: C,
         t: f64,
         q: [D::Scalar; N],
         v: [D::Scalar; N],
     ) -> Result<Self, Error> {
-        check_start(dynamics, Time::new(t), &q, &v)?;
+        check_start(&*dynamics, Time::new(t), &q, &v)?;
         let end = Endpoint::new(Time::new(t), q, v);
         let run = dynamics.begin(t);
-        let kink = next_kink(&method, dynamics, t, false)?;
+        let kink = next_kink(&method, &*dynamics, t, false)?;
         Ok(Self {
-            dynamics,
             prepared: dynamics.system().prepare(),
-            workspace: method.workspace(dynamics),
+            workspace: method.workspace(&dynamics),
+            dynamics,
             method,
             controller,
             end,
@@ -95,8 +96,8 @@ where
         q: [D::Scalar; N],
         v: [D::Scalar; N],
     ) -> Result<(), Error> {
-        check_start(self.dynamics, Time::new(t), &q, &v)?;
-        self.kink = next_kink(&self.method, self.dynamics, t, false)?;
+        check_start(&*self.dynamics, Time::new(t), &q, &v)?;
+        self.kink = next_kink(&self.method, &*self.dynamics, t, false)?;
         self.backwards = false;
         // A long step from a state that it was not chosen for may go over events.
         self.state = ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
@@ -113,7 +114,7 @@ where
     ) -> Result<(), Error> {
         let mut q = self.end.q;
         q.add_both(D::Scalar::from_f64(1.0), high, low);
-        check_start(self.dynamics, self.end.t, &q.high, &self.end.v.high)?;
+        check_start(&*self.dynamics, self.end.t, &q.high, &self.end.v.high)?;
         (self.end.q, self.end.a) = (q, None);
         (self.last, self.interpolant, self.before_kink) = (None, None, None);
         Ok(())
@@ -163,7 +164,7 @@ where
         self.sample()?;
         let kink_comes_first = if backwards { target < self.kink } else { self.kink < target };
         let target = if kink_comes_first { self.kink } else { target };
-        let mut field = Field::new(self.dynamics, &self.prepared);
+        let mut field = Field::new(&*self.dynamics, &self.prepared);
         let mut from = self.end;
         let context = StepContext {
             method: &self.method,
@@ -214,8 +215,8 @@ where
     fn arrive(&mut self, interval: &StepInterval) -> Result<(), Error> {
         if interval.end == Time::new(self.kink) {
             let before = self.end;
-            cross(self.dynamics, &mut self.end, self.backwards)?;
-            self.kink = next_kink(&self.method, self.dynamics, self.kink, self.backwards)?;
+            cross(&*self.dynamics, &mut self.end, self.backwards)?;
+            self.kink = next_kink(&self.method, &*self.dynamics, self.kink, self.backwards)?;
             self.stats.kinks += 1;
             self.before_kink = Some(before);
         } else if self.before_kink.is_some() {
@@ -234,7 +235,7 @@ where
             return Ok(());
         }
         let Endpoint { t, q, v, .. } = &self.end;
-        let checked = inertia(self.dynamics, *t, onwards(self.backwards), &q.high, &v.high);
+        let checked = inertia(&*self.dynamics, *t, onwards(self.backwards), &q.high, &v.high);
         if checked.is_err() {
             self.retreat();
             self.stats.accepted -= 1;
@@ -245,7 +246,7 @@ where
     /// Goes on in the other direction.
     #[cold]
     fn turn(&mut self, backwards: bool) -> Result<(), Error> {
-        self.kink = next_kink(&self.method, self.dynamics, self.t(), backwards)?;
+        self.kink = next_kink(&self.method, &*self.dynamics, self.t(), backwards)?;
         self.backwards = backwards;
         if let Some(before) = self.before_kink.take() {
             self.end = before;
@@ -264,7 +265,7 @@ where
             self.interpolant = Some(Interpolant::linear(interval, &self.from, to));
             return self.interpolant;
         }
-        let mut field = Field::new(self.dynamics, &self.prepared);
+        let mut field = Field::new(&*self.dynamics, &self.prepared);
         let interpolant =
             self.method.interpolant(&mut field, interval, &mut self.from, to, &mut self.workspace);
         self.stats.evaluations += field.evaluations;
@@ -276,7 +277,7 @@ where
     pub(crate) fn accelerations(&mut self) -> [D::Scalar; N] {
         // The next step meets the same error, and returns it.
         let _ = self.sample();
-        let mut field = Field::new(self.dynamics, &self.prepared);
+        let mut field = Field::new(&*self.dynamics, &self.prepared);
         let a = self.end.start_acceleration(&mut field);
         self.stats.evaluations += field.evaluations;
         a
@@ -297,7 +298,7 @@ where
     /// are chosen as at a start.
     pub(crate) fn jump(&mut self, state: &State<D::Scalar, N>) -> Result<(), Error> {
         let (before, backwards) = (self.end, self.backwards);
-        inertia(self.dynamics, before.t, onwards(backwards), &state.q, &state.v)?;
+        inertia(&*self.dynamics, before.t, onwards(backwards), &state.q, &state.v)?;
         // Where nothing jumps, the low words stay.
         let put = |sum: &mut Compensated<D::Scalar, N>, high: &[D::Scalar; N]| {
             for i in 0..N {
@@ -312,6 +313,11 @@ where
         self.before_kink.get_or_insert(before);
         self.state = ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
         Ok(())
+    }
+
+    /// The state at the start of the last step.
+    pub(crate) fn last_start(&self) -> State<D::Scalar, N> {
+        State::from(&self.from)
     }
 
     /// The length of the last step, before it was cut; 0 without one.

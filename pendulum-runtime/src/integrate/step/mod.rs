@@ -9,6 +9,7 @@ pub(crate) mod fast_exp2;
 pub(crate) mod field;
 pub(crate) mod fixed;
 pub(crate) mod gap;
+pub(crate) mod held;
 pub(crate) mod inertia;
 pub(crate) mod integration;
 pub(crate) mod interval;

@@ -1,0 +1,97 @@
+//! Functions that look on while an integration goes.
+
+use crate::integrate::events::Occurrence;
+use crate::integrate::interpolant::Interpolant;
+use crate::integrate::solution::Stats;
+use crate::integrate::state::State;
+use crate::scalar::Float;
+use core::fmt;
+use core::ops::ControlFlow;
+
+/// A step that `solve` has just taken, for a function given by
+/// [`on_step`](crate::integrate::Solve::on_step).
+pub struct Step<'s, T, const N: usize> {
+    /// The state at its start.
+    pub start: State<T, N>,
+    /// The state at its end: beyond a kink and after events have acted there.
+    pub end: State<T, N>,
+    /// What the integration took so far.
+    pub stats: Stats,
+    /// The events that happened in it, in order.
+    pub events: &'s [Occurrence<T, N>],
+    /// The interval of the whole integration.
+    pub interval: (f64, f64),
+    pub(crate) interpolant: &'s mut dyn FnMut() -> Option<Interpolant<T, N>>,
+}
+
+impl<T: Float, const N: usize> Step<'_, T, N> {
+    /// The part of the interval that lies behind: from 0 to 1.
+    pub fn progress(&self) -> f64 {
+        let (start, end) = self.interval;
+        if start == end { 1.0 } else { (self.end.t - start) / (end - start) }
+    }
+
+    /// The state at a time in seconds within the step; `None` outside.
+    ///
+    /// Methods that need further evaluations for it take them at the first call.
+    pub fn at(&mut self, t: f64) -> Option<State<T, N>> {
+        within(self.start.t, self.end, t, &mut *self.interpolant)
+    }
+}
+
+/// The state at `t` within a step from the time `start` to the state `end`.
+pub(crate) fn within<T: Float, const N: usize>(
+    start: f64,
+    end: State<T, N>,
+    t: f64,
+    interpolant: impl FnOnce() -> Option<Interpolant<T, N>>,
+) -> Option<State<T, N>> {
+    if t == end.t {
+        return Some(end);
+    }
+    if !(start <= t && t < end.t || end.t < t && t <= start) {
+        return None;
+    }
+    let interpolant = interpolant()?;
+    let (zero, one, theta) =
+        (T::from_f64(0.0), T::from_f64(1.0), interpolant.interval.fraction::<T>(t));
+    let theta = if theta < zero { zero } else { theta };
+    let (q, v) = interpolant.at(if theta < one { theta } else { one });
+    Some(State { t, q, v })
+}
+
+impl<T: fmt::Debug, const N: usize> fmt::Debug for Step<'_, T, N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { start, end, stats, events, interval, .. } = self;
+        let mut step = f.debug_struct("Step");
+        step.field("start", start).field("end", end).field("stats", stats);
+        step.field("events", events).field("interval", interval).finish_non_exhaustive()
+    }
+}
+
+/// A function of steps.
+pub(crate) type OfSteps<'a, T, const N: usize> =
+    dyn FnMut(&mut Step<'_, T, N>) -> ControlFlow<()> + 'a;
+
+/// A function of states.
+pub(crate) type OfStates<'a, T, const N: usize> = dyn FnMut(State<T, N>) -> ControlFlow<()> + 'a;
+
+/// The functions that look on; none as a rule.
+pub(crate) struct Observers<'a, T, const N: usize> {
+    pub(crate) steps: Option<Box<OfSteps<'a, T, N>>>,
+    pub(crate) states: Option<Box<OfStates<'a, T, N>>>,
+}
+
+impl<T, const N: usize> Observers<'_, T, N> {
+    pub(crate) fn none() -> Self {
+        Self { steps: None, states: None }
+    }
+}
+
+impl<T, const N: usize> fmt::Debug for Observers<'_, T, N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut observers = f.debug_struct("Observers");
+        observers.field("steps", &self.steps.is_some());
+        observers.field("states", &self.states.is_some()).finish()
+    }
+}
