@@ -7,3 +7,4 @@ mod columns;
 mod csv;
 #[cfg(feature = "serde")]
 mod serde;
+mod state_space;

@@ -2,7 +2,7 @@
 //! the kinks.
 
 use pendulum_runtime::integrate::method::Method;
-use pendulum_runtime::motion::{Linear, Sinusoid, Spline, Still};
+use pendulum_runtime::motion::{Function, Linear, Sinusoid, Spline, Still};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scene::{Fixed, Handle, Scene, SceneError, SceneStatus};
 
@@ -291,7 +291,7 @@ fn bad_input_is_refused() {
     let missing = scene.hang(vague, Hanging::new(0.1, 1.0), [0.0], [0.0]).unwrap_err();
     assert_eq!(
         missing.to_string(),
-        "the motion that drives `x` has no velocity, which the equations need; give one that has"
+        "the motion that drives `x` has no velocity, which the equations or outputs need; give one that has"
     );
 }
 
@@ -368,4 +368,65 @@ fn stops_throw_back_and_hold() {
             assert!(scene.state(handle).0[0].abs() <= gap);
         }
     }
+}
+
+lagrangian! {
+    pub struct Lamp { m: kg, L: m, g: m/s^2 = 9.81 }
+    coordinate θ: rad;
+    driven x: [m; 2];
+    let y = x + L * [sin(θ), -cos(θ)];
+    kinetic = m/2 * |ẏ|^2;
+    potential = m*g*height(y);
+    output bulb: [m; 2] = y;
+    output speed: [m/s; 2] = ẏ;
+    output felt: [m/s^2; 2] = dot(dot(y)) + [0, g];
+}
+
+/// Outputs of a pendulum in a scene are those of its pose, and `speed` the derivative of `bulb`.
+#[test]
+fn outputs_follow_the_pose() {
+    let mut scene = Scene::<f64>::new(1000.0).unwrap();
+    let hook = scene.joint(Sinusoid::new([0.1, 0.2], 3.0, [0.0, 0.5]));
+    let lamp = scene.hang(hook, Lamp::new(1.0, 2.0), [0.3], [0.0]).unwrap();
+    let mut before: Option<[f64; 2]> = None;
+    for _ in 0..20 {
+        scene.advance(0.0505).unwrap();
+        let alpha = scene.alpha();
+        let seen = scene.observe(lamp, alpha);
+        assert_eq!(seen.q, scene.pose(lamp, alpha));
+        let [x, y] = scene.joint_pose(hook, alpha);
+        let bulb = seen.system.bulb(seen.t, &seen.q, &seen.v, &seen.inputs);
+        assert!((bulb[0] - x - 2.0 * seen.q[0].sin()).abs() < 1e-14);
+        assert!((bulb[1] - y + 2.0 * seen.q[0].cos()).abs() < 1e-14);
+        let speed = seen.system.speed(seen.t, &seen.q, &seen.v, &seen.inputs);
+        let beside = scene.observe(lamp, alpha + 1e-3);
+        let next = beside.system.bulb(beside.t, &beside.q, &beside.v, &beside.inputs);
+        for axis in 0..2 {
+            let slope = (next[axis] - bulb[axis]) / 1e-6;
+            assert!((slope - speed[axis]).abs() < 1e-4, "{slope} {speed:?}");
+        }
+        // The rod pulls along itself alone.
+        let [a, b] = seen.system.felt(seen.t, &seen.q, &seen.v, &seen.inputs);
+        assert!(
+            (a * seen.q[0].cos() + b * seen.q[0].sin()).abs() < 1e-12 * (1.0 + a.abs() + b.abs())
+        );
+        assert_ne!(Some(bulb), before.replace(bulb));
+    }
+}
+
+/// A joint without the derivative that an output needs is refused as one that an equation needs.
+#[test]
+fn joints_have_what_outputs_need() {
+    lagrangian! {
+        pub struct Far { m: kg, L: m, g: m/s^2 }
+        coordinate θ: rad;
+        driven x: m;
+        kinetic = m/2*L^2*θ̇^2;
+        potential = m*g*x*cos(θ);
+        output pace: m/s = ẋ;
+    }
+    let mut scene = Scene::<f64>::new(100.0).unwrap();
+    let joint = scene.joint(Function::new(|t: f64| [t]));
+    let error = scene.hang(joint, Far::new(1.0, 1.0, 9.81), [0.0], [0.0]).unwrap_err();
+    assert!(error.to_string().contains("`x` has no velocity"), "{error}");
 }

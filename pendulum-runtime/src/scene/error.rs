@@ -85,7 +85,7 @@ impl fmt::Display for SceneError {
                     .unwrap_or(&"derivative");
                 write!(
                     f,
-                    "the motion that drives `{input}` has no {name}, which the equations need; give one that has"
+                    "the motion that drives `{input}` has no {name}, which the equations or outputs need; give one that has"
                 )
             }
             Self::Restless { kind, index } => {

@@ -72,3 +72,4 @@ pub use sampling::assemble::{Anchor, Assemble, Numbers};
 pub use sampling::joint::Joint;
 pub use sampling::scheme::{Fixed, Scheme};
 pub use scene::Scene;
+pub use state::Observation;

@@ -11,7 +11,7 @@ use crate::scene::lanes::detached::Detached;
 use crate::scene::lanes::system::SceneSystem;
 use crate::scene::sampling::joint::Joint;
 use crate::scene::scene::Scene;
-use crate::system::{Purpose, scalar_time};
+use crate::system::{Purpose, System, scalar_time};
 use crate::time::Time;
 
 impl<T: Lane + Float> Scene<T> {
@@ -41,6 +41,60 @@ impl<T: Lane + Float> Scene<T> {
     ) -> [T; N] {
         let states = self.known(pendulum).states(pendulum.index());
         hermite(self.clock.step(), alpha, &states)
+    }
+
+    /// A pendulum at the time of [`pose`](Self::pose), for its outputs.
+    ///
+    /// The velocities are the derivative of the cubic.
+    ///
+    /// ```
+    /// # #![allow(mixed_script_confusables)]
+    /// # use pendulum_runtime::{motion::Still, prelude::*, scene::Scene};
+    /// lagrangian! {
+    ///     pub struct Lamp { m: kg, L: m, g: m/s^2 = 9.81 }
+    ///     coordinate θ: rad;
+    ///     driven x: [m; 2];
+    ///     let y = x + L * [sin(θ), -cos(θ)];
+    ///     kinetic = m/2 * |ẏ|^2;
+    ///     potential = m*g*height(y);
+    ///     output bulb: [m; 2] = y;
+    /// }
+    ///
+    /// let mut scene = Scene::<f64>::new(240.0)?;
+    /// let hook = scene.joint(Still::new([1.0, 3.0]));
+    /// let lamp = scene.hang(hook, Lamp::new(1.0, 2.0), [0.0], [0.0])?;
+    /// scene.advance(0.5)?;
+    /// let seen = scene.observe(lamp, scene.alpha());
+    /// assert_eq!(seen.system.bulb(seen.t, &seen.q, &seen.v, &seen.inputs), [1.0, 1.0]);
+    /// # Ok::<(), pendulum_runtime::scene::SceneError>(())
+    /// ```
+    ///
+    /// # Panics
+    /// If the pendulum is not in this scene, as indexing does.
+    pub fn observe<S: SceneSystem<T, N>, const N: usize>(
+        &self,
+        pendulum: Handle<S, N>,
+        alpha: f64,
+    ) -> Observation<S, N> {
+        let group = self.known(pendulum);
+        let states = group.states(pendulum.index());
+        let h = self.clock.step();
+        let time = self.clock.within(self.clock.tick() - 1, alpha);
+        let inputs = inputs_at::<S, T, N>(
+            &self.joint_slots,
+            &group.read(pendulum.index()).joints,
+            time,
+            Side::After,
+            Purpose::Outputs,
+            false,
+        );
+        Observation {
+            system: self.system(pendulum),
+            t: scalar_time(time),
+            q: hermite(h, alpha, &states),
+            v: hermite_rate(h, alpha, &states),
+            inputs,
+        }
     }
 
     /// The poses of all pendulums of a type in the order of hanging; `poses` keeps its memory.
@@ -189,6 +243,22 @@ fn unknown<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     SceneError::Pendulum { kind: S::FACTS.name, index: pendulum.index() }
 }
 
+/// A pendulum of a scene at one time: everything that its outputs are made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Observation<S: System<N>, const N: usize> {
+    /// The system with its parameters.
+    pub system: S,
+    /// The time in seconds.
+    pub t: S::Scalar,
+    /// The coordinates.
+    pub q: [S::Scalar; N],
+    /// The velocities.
+    pub v: [S::Scalar; N],
+    /// The samples of the driven inputs.
+    pub inputs: S::Inputs,
+}
+
 /// The cubic through coordinates and velocities at both ends of a step `h`.
 pub(crate) fn hermite<T: Real, const N: usize>(
     h: f64,
@@ -203,5 +273,23 @@ pub(crate) fn hermite<T: Real, const N: usize>(
         let (d, m0, m1) = (q1[i] - q0[i], h * v0[i], h * v1[i]);
         let three_d = d + d + d;
         q0[i] + a * (m0 + a * ((three_d - m0 - m0 - m1) + a * (m0 + m1 - d - d)))
+    })
+}
+
+/// The derivative of that cubic by time.
+fn hermite_rate<T: Real, const N: usize>(
+    h: f64,
+    alpha: f64,
+    [(q0, v0), (q1, v1)]: &[([T; N], [T; N]); 2],
+) -> [T; N] {
+    if alpha == 1.0 {
+        return *v1;
+    }
+    let (a, over) = (T::from_f64(alpha), T::from_f64(1.0 / h));
+    core::array::from_fn(|i| {
+        let slope = over * (q1[i] - q0[i]);
+        let three = slope + slope + slope - v0[i] - v0[i] - v1[i];
+        let cubic = v0[i] + v1[i] - slope - slope;
+        v0[i] + a * (three + three + a * (cubic + cubic + cubic))
     })
 }

@@ -59,7 +59,7 @@ pub(crate) fn check_state<T: Float, const N: usize>(
 }
 
 /// Refuses joints that do not exist, move in another number of dimensions than their inputs or lack
-/// a derivative that the equations need.
+/// a derivative that the equations or the outputs need.
 pub(crate) fn check_joints<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     joint_slots: &[JointSlot<T>],
     joints: &[u32],
@@ -75,13 +75,13 @@ pub(crate) fn check_joints<S: SceneSystem<T, N>, T: Lane + Float, const N: usize
     Ok(())
 }
 
-/// Refuses a motion that lacks a derivative which the equations need of an input.
+/// Refuses a motion that lacks a derivative which the equations or the outputs need of an input.
 pub(crate) fn check_motion(
     facts: &Facts,
     input: usize,
     has: Derivatives,
 ) -> Result<(), SceneError> {
-    let needed = [Purpose::Accelerations, Purpose::Momenta]
+    let needed = [Purpose::Accelerations, Purpose::Momenta, Purpose::Outputs]
         .map(|purpose| derivatives_of(facts.inputs, input, purpose));
     for derivative in 0..3 {
         let order = Derivatives::of(derivative);

@@ -1,0 +1,116 @@
+//! The linear model of a system from its control inputs to its outputs.
+
+use crate::motion::Side;
+use crate::scalar::Dual;
+use crate::system::{
+    ControlSamples, Dynamics, Jacobians, MOST_CONTROLS, Purpose, System, scalar_time,
+};
+use crate::time::Time;
+use nalgebra::DMatrix;
+
+/// Small changes x = (δq, δq̇) of a state, u of the control inputs and y of the outputs:
+/// ẋ = A x + B u, y = C x + D u.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct StateSpace {
+    /// A, 2n × 2n for n coordinates.
+    pub a: DMatrix<f64>,
+    /// B, a column for each component of the control inputs in the order of declaration.
+    pub b: DMatrix<f64>,
+    /// C, a row for each scalar of the outputs in the order of declaration.
+    pub c: DMatrix<f64>,
+    /// D.
+    pub d: DMatrix<f64>,
+}
+
+/// The linear model about the state `q`, `v` at time `t`, with all derivatives exact.
+///
+/// The control inputs have the values there that the controller of `dynamics` gives; its law is no
+/// part of the model, which is that of the open loop. Driven inputs stay as they are.
+///
+/// Source: K. J. Åström and R. M. Murray (2008), Feedback Systems, eq. 5.33.
+pub fn state_space<D, const N: usize>(
+    dynamics: &D,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+) -> StateSpace
+where
+    D: Dynamics<N, Scalar = f64, System: Jacobians<N>>,
+    <<D::System as Jacobians<N>>::Over<Dual<f64>> as System<N>>::Inputs: ControlSamples<Dual<f64>>,
+{
+    let (time, system) = (Time::new(t), dynamics.system());
+    let facts = &<D::System as System<N>>::FACTS;
+    let controls: usize = facts.inputs[facts.driven()..].iter().map(|own| own.components).sum();
+    let inputs = dynamics.inputs_with(time, Side::After, Purpose::Accelerations, q, v);
+    let t = scalar_time(time);
+    let mut model = StateSpace {
+        a: DMatrix::zeros(2 * N, 2 * N),
+        b: DMatrix::zeros(2 * N, controls),
+        c: DMatrix::zeros(facts.outputs.iter().map(|output| output.count()).sum(), 2 * N),
+        d: DMatrix::zeros(facts.outputs.iter().map(|output| output.count()).sum(), controls),
+    };
+    let by_q = system.position_jacobian(t, q, v, &inputs);
+    let by_v = system.velocity_jacobian(t, q, v, &inputs);
+    let mut by_u = [[0.0; N]; MOST_CONTROLS];
+    system.control_jacobian(t, q, v, &inputs, &mut by_u);
+    for i in 0..N {
+        model.a[(i, N + i)] = 1.0;
+        for j in 0..N {
+            (model.a[(N + i, j)], model.a[(N + i, N + j)]) = (by_q[(i, j)], by_v[(i, j)]);
+        }
+        for k in 0..controls {
+            model.b[(N + i, k)] = by_u[k][i];
+        }
+    }
+    outputs(dynamics, time, q, v, &mut model);
+    model
+}
+
+/// C and D, a column for each evaluation over dual numbers.
+fn outputs<D, const N: usize>(
+    dynamics: &D,
+    time: Time,
+    q: &[f64; N],
+    v: &[f64; N],
+    model: &mut StateSpace,
+) where
+    D: Dynamics<N, Scalar = f64, System: Jacobians<N>>,
+    <<D::System as Jacobians<N>>::Over<Dual<f64>> as System<N>>::Inputs: ControlSamples<Dual<f64>>,
+{
+    type Number = Dual<f64>;
+    let facts = &<D::System as System<N>>::FACTS;
+    let system = dynamics.system().over(Number::constant);
+    let inputs = dynamics.inputs_with(time, Side::After, Purpose::Outputs, q, v);
+    let lifted = <D::System as Jacobians<N>>::inputs_over(&inputs, Number::constant);
+    let values = dynamics.controls(time, q, v);
+    let (t, controls) = (Number::constant(scalar_time(time)), model.d.ncols());
+    for column in 0..2 * N + controls {
+        let (mut q, mut v) = (q.map(Number::constant), v.map(Number::constant));
+        let (mut inputs, mut u) = (lifted, values.map(Number::constant));
+        let own = if column < N {
+            &mut q[column]
+        } else if column < 2 * N {
+            &mut v[column - N]
+        } else {
+            &mut u[column - 2 * N]
+        };
+        own.derivative = 1.0;
+        if 2 * N <= column {
+            inputs.set_controls(facts.driven(), &u[..controls]);
+        }
+        let mut row = 0;
+        for (index, output) in facts.outputs.iter().enumerate() {
+            let mut scalars = vec![Number::constant(0.0); output.count()];
+            system.output(index, t, &q, &v, &inputs, &mut scalars);
+            for scalar in scalars {
+                if column < 2 * N {
+                    model.c[(row, column)] = scalar.derivative;
+                } else {
+                    model.d[(row, column - 2 * N)] = scalar.derivative;
+                }
+                row += 1;
+            }
+        }
+    }
+}
