@@ -5,6 +5,7 @@
 mod columns;
 #[cfg(feature = "csv")]
 mod csv;
+mod outputs;
 #[cfg(feature = "serde")]
 mod serde;
 mod state_space;

@@ -186,6 +186,12 @@ fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
         writeln!(text, "accelerations: {}", operations(graph, &motion.accelerations)).unwrap();
         if whole {
             outputs(&mut text, graph, &names, motion);
+            for (output, lowered) in model.outputs.iter().zip(&energies.outputs) {
+                for (index, &scalar) in lowered.scalars.iter().enumerate() {
+                    let value = unicode::expression(graph, &names, scalar);
+                    writeln!(text, "output {}, {index} = {value}", output.declared.name).unwrap();
+                }
+            }
         }
         for conserved in &motion.conserved {
             writeln!(text, "conserved: {}", unicode::conserved(&names, conserved)).unwrap();
@@ -203,7 +209,7 @@ fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
             let inputs = graph
                 .symbols(roots)
                 .into_iter()
-                .filter(|symbol| matches!(symbol, Symbol::Input { .. }));
+                .filter(|symbol| matches!(symbol, Symbol::Input { .. } | Symbol::Control { .. }));
             inputs.map(|symbol| names.symbol(symbol)).collect::<Vec<_>>().join(", ")
         };
         if !model.inputs.is_empty() {

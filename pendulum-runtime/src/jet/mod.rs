@@ -42,7 +42,7 @@ pub type Pairs<T> = [[T; 2]; LENGTH];
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no Taylor recurrences",
     label = "`Taylor` needs the jets that `lagrangian!` emits",
-    note = "systems written by hand can use `Dop853`"
+    note = "systems written by hand can use `Dop853`, those under a controller `Picard` too"
 )]
 pub trait Jets<const N: usize>: System<N> {
     /// The series of the values between the state and the accelerations.

@@ -34,6 +34,8 @@ const WORDS: &[&str] = &[
     "lagrangian",
     "dissipation",
     "force",
+    "input",
+    "output",
     "body",
     "rad",
     "kg",
@@ -87,6 +89,7 @@ pub const BLOCKS: &[&str] = &[
     "::p; pub struct M { m: kg, L: m, g: m/s^2 = 9.81, } coordinate θ: rad; driven x: [m; 2]; let y = L * [sin(θ), -cos(θ)]; kinetic = m/2 * |ẋ + ẏ|^2; potential = m*g * (height(x) + height(y));",
     "::p; struct C { m: [kg; 3], l: [m; 3], g } coordinate θ[3]: rad; let y[k in 0..3] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]); kinetic = sum(k in 0..3, m[k]/2*|ẏ[k]|^2); potential = sum(k in 0..3, m[k]*g*height(y[k])); dissipation = θ̇[0]^2; force θ[1] = sin(t);",
     "::p; struct C { c: [m; 2], I: kg*m^2 } coordinate θ; let r(p) = cis(θ)*p; lagrangian = I/2*θ̇^2 - height(r(c)) + max(0, θ - 1)^2 - exp(i*θ).x;",
+    "::p; struct A { m: kg, L: m, C: F } coordinate θ[2]: rad; driven x: [m; 2]; input u: N; input f: [N; 2]; let y = x + L*cis(θ[0]); let a = dot(ẏ); kinetic = m/2*|ẏ|^2 + m/2*L^2*θ̇[1]^2; potential = -inner(f, y); dissipation = m/2*θ̇[0]^2*L^2/(1 + t); force θ[1] = u*L; output tip: [m; 2] = y; output load[k in 0..2]: N = k*m*|a| + u*θ̈[k]/|θ̈[0]|; output open = f;",
 ];
 
 /// Any tokens at all.

@@ -119,7 +119,7 @@ impl<T: Float, const N: usize> Solution<T, N> {
         self.evaluate(
             |t, q, v| dynamics.energy_at(t, q, v),
             |t, q, v| {
-                let inputs = dynamics.inputs(t, Side::Before, Purpose::Energy);
+                let inputs = dynamics.inputs_with(t, Side::Before, Purpose::Energy, q, v);
                 dynamics.system().energy(scalar_time(t), q, v, &inputs)
             },
         )
@@ -132,7 +132,7 @@ impl<T: Float, const N: usize> Solution<T, N> {
         self.evaluate(
             |t, q, v| dynamics.power_at(t, q, v),
             |t, q, v| {
-                let inputs = dynamics.inputs(t, Side::Before, Purpose::Power);
+                let inputs = dynamics.inputs_with(t, Side::Before, Purpose::Power, q, v);
                 dynamics.system().power(scalar_time(t), q, v, &inputs)
             },
         )
@@ -155,6 +155,50 @@ impl<T: Float, const N: usize> Solution<T, N> {
             |t, q, v| at(Side::Before, t, q, v),
         );
         (0..count).map(|index| rows.iter().map(|row| row[index]).collect()).collect()
+    }
+
+    /// One scalar of an output of the system at all output times: `"load"`, `"tip.x"`,
+    /// `"tips[2].y"`.
+    ///
+    /// At two states of the same time as [`energy`](Self::energy).
+    ///
+    /// # Errors
+    /// A name that no output has; the error has the nearest one.
+    pub fn output<D: Dynamics<N, Scalar = T>>(
+        &self,
+        dynamics: &D,
+        name: &str,
+    ) -> Result<Vec<T>, ColumnError> {
+        let outputs = <D::System as System<N>>::FACTS.outputs;
+        let (wanted, mut names) = (name::read(name), Vec::new());
+        for (index, output) in outputs.iter().enumerate() {
+            let own = output.names();
+            if let Some(scalar) = own.iter().position(|own| name::read(own) == wanted) {
+                return Ok(self.scalars(dynamics, index).swap_remove(scalar));
+            }
+            names.extend(own);
+        }
+        Err(ColumnError::new(name, names.iter().map(String::as_str)))
+    }
+
+    /// The scalars of the output with this index at all output times, a column for each.
+    pub(super) fn scalars<D: Dynamics<N, Scalar = T>>(
+        &self,
+        dynamics: &D,
+        index: usize,
+    ) -> Vec<Vec<T>> {
+        let count = <D::System as System<N>>::FACTS.outputs[index].count();
+        let at = |side: Side, t: Time, q: &[T; N], v: &[T; N]| {
+            let inputs = dynamics.inputs_with(t, side, Purpose::Outputs, q, v);
+            let mut values = vec![T::from_f64(0.0); count];
+            dynamics.system().output(index, scalar_time(t), q, v, &inputs, &mut values);
+            values
+        };
+        let rows = self.evaluate(
+            |t, q, v| at(Side::After, Time::new(t), q, v),
+            |t, q, v| at(Side::Before, t, q, v),
+        );
+        (0..count).map(|scalar| rows.iter().map(|row| row[scalar]).collect()).collect()
     }
 
     /// `after` at all output times but those at which the next state has the same time; `before`

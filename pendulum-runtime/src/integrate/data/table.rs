@@ -5,6 +5,7 @@ use super::label::Labels;
 use super::name;
 use crate::integrate::solution::Solution;
 use crate::scalar::Float;
+use crate::system::{Dynamics, System};
 use core::fmt;
 
 /// Columns of equal length with their names and units: the states of a [`Solution`], and whatever
@@ -89,6 +90,24 @@ impl<T: Float, const N: usize> Solution<T, N> {
             }));
         }
         Table { t: self.t.clone(), columns }
+    }
+}
+
+impl<T: Float, const N: usize> Solution<T, N> {
+    /// Time, coordinates, velocities and the outputs of the system at all output times.
+    ///
+    /// Outputs at a kink are those after it, as [`energy`](Self::energy) is.
+    pub fn table_with_outputs<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Table<T> {
+        let mut table = self.table();
+        for (index, output) in <D::System as System<N>>::FACTS.outputs.iter().enumerate() {
+            let named = output.names().into_iter().zip(self.scalars(dynamics, index));
+            table.columns.extend(named.map(|(name, values)| Column {
+                name,
+                unit: output.unit.into(),
+                values,
+            }));
+        }
+        table
     }
 }
 
