@@ -3,7 +3,7 @@
 use crate::motion::Side;
 use crate::scalar::Dual;
 use crate::system::{
-    ControlSamples, Dynamics, Jacobians, MOST_CONTROLS, Purpose, System, scalar_time,
+    ControlSamples, Dynamics, Jacobians, MOST_CONTROLS, Output, Purpose, System, scalar_time,
 };
 use crate::time::Time;
 use nalgebra::DMatrix;
@@ -47,8 +47,8 @@ where
     let mut model = StateSpace {
         a: DMatrix::zeros(2 * N, 2 * N),
         b: DMatrix::zeros(2 * N, controls),
-        c: DMatrix::zeros(facts.outputs.iter().map(|output| output.count()).sum(), 2 * N),
-        d: DMatrix::zeros(facts.outputs.iter().map(|output| output.count()).sum(), controls),
+        c: DMatrix::zeros(facts.outputs.iter().map(Output::count).sum(), 2 * N),
+        d: DMatrix::zeros(facts.outputs.iter().map(Output::count).sum(), controls),
     };
     let by_q = system.position_jacobian(t, q, v, &inputs);
     let by_v = system.velocity_jacobian(t, q, v, &inputs);
