@@ -173,7 +173,7 @@ fn the_first_of_two_states_at_a_kink_has_the_energy_before_it() {
 fn tables_have_headers_units_and_further_columns() {
     let (arm, solution) = arm();
     let header: Vec<String> = solution.table().header().collect();
-    assert_eq!(header, ["t [s]", "φ", "r", "angle", "φ̇", "ṙ", "angle_dot"]);
+    assert_eq!(header, ["t [s]", "φ [rad]", "r [m]", "angle", "φ̇ [rad/s]", "ṙ [m/s]", "angle_dot"]);
     let table = solution.table().with("energy", "J", solution.energy(&arm)).unwrap();
     assert_eq!(table.rows(), 21);
     assert_eq!(table.column("energy").unwrap(), solution.energy(&arm));

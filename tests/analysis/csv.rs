@@ -27,7 +27,7 @@ fn every_bit_comes_back() {
     table.to_csv(&mut text).unwrap();
     let text = String::from_utf8(text).unwrap();
     let mut lines = text.lines();
-    assert_eq!(lines.next(), Some("t [s],x,ẋ,\"energy, total [J]\""));
+    assert_eq!(lines.next(), Some("t [s],x [m],ẋ [m/s],\"energy, total [J]\""));
     for (state, energy) in solution.iter().zip(energy) {
         let line = lines.next().unwrap();
         let numbers: Vec<f64> = line.split(',').map(|text| text.parse().unwrap()).collect();

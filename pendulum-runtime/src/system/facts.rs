@@ -37,6 +37,8 @@ facts! {
     pub name: &'static str = "",
     /// The coordinates as written, a family as `θ[0]`, `θ[1]`, ….
     pub coordinates: &'static [&'static str] = &[],
+    /// The units of the coordinates as written, empty where none was given.
+    pub coordinate_units: &'static [&'static str] = &[],
     /// The parameters in the order of [`System::map`](crate::system::System::map), a vector as
     /// `c.x`, `c.y`, a family as `m[0]`, ….
     pub parameters: &'static [&'static str] = &[],

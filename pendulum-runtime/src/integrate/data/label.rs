@@ -49,7 +49,7 @@ impl Labels {
                 Some(name) => ((*name).into(), name::velocity(name, ascii)),
                 None => (format!("q[{index}]"), format!("v[{index}]")),
             };
-            let unit = "";
+            let unit = facts.coordinate_units.get(index).copied().unwrap_or_default();
             labels.coordinates.push(Label { name: coordinate, unit: unit.into() });
             labels.velocities.push(Label { name: velocity, unit: per_second(unit) });
         }

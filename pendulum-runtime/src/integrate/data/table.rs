@@ -29,7 +29,7 @@ use core::fmt;
 /// let spring = Spring::new(4.0, 1.0);
 /// let solution = solve(&spring, (0.0, 1.0), [1.0], [0.0]).every(0.25).run()?;
 /// let table = solution.table().with("energy", "J", solution.energy(&spring))?;
-/// assert_eq!(table.header().collect::<Vec<_>>(), ["t [s]", "x", "ẋ", "energy [J]"]);
+/// assert_eq!(table.header().collect::<Vec<_>>(), ["t [s]", "x [m]", "ẋ [m/s]", "energy [J]"]);
 /// assert!(table.column("energy")?.iter().all(|energy| (energy - 2.0).abs() < 1e-5));
 /// # Ok(())
 /// # }
