@@ -1,11 +1,13 @@
 //! Solutions as data, and what is computed from systems and motions beside the motion itself.
 
-#![allow(mixed_script_confusables, missing_docs)]
+#![allow(confusable_idents, mixed_script_confusables, missing_docs)]
 
 mod columns;
 #[cfg(feature = "csv")]
 mod csv;
 mod outputs;
+mod equilibrium;
+mod modes;
 #[cfg(feature = "serde")]
 mod serde;
 mod state_space;

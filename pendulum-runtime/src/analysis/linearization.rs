@@ -37,6 +37,8 @@ pub enum ModeError {
     Mass,
     /// A mass, damping or stiffness is infinite or no number.
     NotFinite,
+    /// The algorithm for the eigenvalues did not end.
+    NoConvergence,
 }
 
 impl fmt::Display for ModeError {
@@ -46,6 +48,9 @@ impl fmt::Display for ModeError {
                 "the mass matrix is not positive definite; linearize about a state at which every direction has inertia"
             }
             Self::NotFinite => "the linearization is not finite; check parameters and state",
+            Self::NoConvergence => {
+                "the eigenvalues did not converge; choose units in which masses, dampings and stiffnesses differ less"
+            }
         })
     }
 }

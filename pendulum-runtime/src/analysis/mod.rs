@@ -1,9 +1,14 @@
-//! Analysis of systems: small motions about a state, and sensitivities of a motion.
+//! Analysis of systems: states of rest, small motions about a state, from inputs to outputs,
+//! sensitivities of a motion.
 
+mod equilibrium;
 mod linearization;
+mod modes;
 mod state_space;
 mod variational;
 
+pub use equilibrium::{EquilibriumError, EquilibriumFailure, equilibrium};
 pub use linearization::{Linearization, ModeError, NormalModes, linearize};
+pub use modes::DampedMode;
 pub use state_space::{StateSpace, state_space};
 pub use variational::{Variational, variational_size};

@@ -1,0 +1,234 @@
+//! States of rest, by Newton's method on the generated Jacobians.
+
+use crate::analysis::linearization::linearize;
+use crate::error::Coordinate;
+use crate::motion::Side;
+use crate::system::{Dynamics, Jacobians, System};
+use crate::time::Time;
+use core::fmt;
+use nalgebra::{DMatrix, DVector, SVector};
+
+/// Reason for which no equilibrium was found, with the place where the search ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct EquilibriumError<const N: usize> {
+    /// What went wrong.
+    pub reason: EquilibriumFailure,
+    /// The time asked for.
+    pub t: f64,
+    /// The coordinates at which the search began.
+    pub guess: [f64; N],
+    /// The coordinates at which it ended.
+    pub q: [f64; N],
+    /// The coordinate that is accelerated most there, or whose acceleration is not finite.
+    pub coordinate: Coordinate,
+    /// Its acceleration there.
+    pub acceleration: f64,
+}
+
+/// What can go wrong in the search for an equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum EquilibriumFailure {
+    /// The guess or an acceleration or Jacobian there is not finite.
+    NotFinite,
+    /// No coordinate changes the acceleration that is left.
+    NoRestoringForce,
+    /// No step along Newton's direction brings the accelerations nearer to zero.
+    Stalled,
+    /// The accelerations fall so slowly that the steps ran out.
+    Slow,
+}
+
+impl<const N: usize> fmt::Display for EquilibriumError<N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { reason, t, guess, q, coordinate, acceleration } = self;
+        match reason {
+            EquilibriumFailure::NotFinite => write!(
+                f,
+                "at t = {t} and the guess {guess:?} the acceleration of {coordinate} or its derivatives are not finite; check guess, parameters and driven inputs"
+            ),
+            EquilibriumFailure::NoRestoringForce => write!(
+                f,
+                "at t = {t} nothing balances the acceleration {acceleration:e} of {coordinate} near {q:?}: no coordinate changes it; add the force that holds it, or guess elsewhere than {guess:?}"
+            ),
+            EquilibriumFailure::Stalled => write!(
+                f,
+                "at t = {t} the search from {guess:?} ended at {q:?}, where {coordinate} is still accelerated by {acceleration:e} and no step makes that less; guess elsewhere"
+            ),
+            EquilibriumFailure::Slow => write!(
+                f,
+                "at t = {t} the search from {guess:?} came to {q:?} in {STEPS} steps, where {coordinate} is still accelerated by {acceleration:e}; guess nearer to the equilibrium"
+            ),
+        }
+    }
+}
+
+impl<const N: usize> core::error::Error for EquilibriumError<N> {}
+
+/// The greatest number of steps.
+const STEPS: u32 = 200;
+
+/// The number of times that a step is halved.
+const HALVES: u32 = 40;
+
+/// Singular values below this part of the largest count as zero.
+const RANK: f64 = 1e-11;
+
+/// The coordinates near `guess` at which the system stays at rest: q̈(t, q, 0) = 0 with the driven
+/// inputs as they are at `t`, whether the equilibrium is stable or not.
+///
+/// A step of Newton's method solves K δ = M q̈ with the stiffness matrix K = −M ∂q̈/∂q of
+/// [`linearize`]. It is halved until it makes what the same K gives for the next step shorter, a
+/// test that does not depend on units (Deuflhard 2004, Newton Methods for Nonlinear Problems,
+/// section 3.2), and changes no coordinate q by more than 1 + |q|. Where K is singular, as for a
+/// cart that may stand anywhere, δ is the shortest of all solutions, by singular values.
+///
+/// ```
+/// use pendulum_runtime::prelude::*;
+/// use pendulum_runtime::analysis::equilibrium;
+///
+/// # mod system {
+/// pendulum_runtime::lagrangian! {
+///     /// A bead on a hoop that turns about its vertical diameter.
+///     pub struct Hoop { R: m, Ω: 1/s, g: m/s^2 = 9.81 }
+///     coordinate θ: rad;
+///     kinetic = R^2/2*(θ̇^2 + Ω^2*sin(θ)^2);
+///     potential = -g*R*cos(θ);
+/// }
+/// # }
+/// # use system::Hoop;
+/// let q = equilibrium(&Hoop::new(0.5, 6.0), 0.0, [1.0])?;
+/// // cos θ = g/(R Ω²).
+/// assert!((q[0].cos() - 9.81 / 18.0).abs() < 1e-15);
+/// # Ok::<(), pendulum_runtime::analysis::EquilibriumError<1>>(())
+/// ```
+///
+/// # Errors
+/// Numbers that are not finite, accelerations that no coordinate changes, a search that stalls. The
+/// error keeps the guess and says where the search ended and what is accelerated there.
+pub fn equilibrium<D, const N: usize>(
+    dynamics: &D,
+    t: f64,
+    guess: [f64; N],
+) -> Result<[f64; N], EquilibriumError<N>>
+where
+    D: Dynamics<N, Scalar = f64>,
+    D::System: Jacobians<N>,
+{
+    let accelerations =
+        |q: &[f64; N]| dynamics.accelerations_at(Time::new(t), Side::After, q, &[0.0; N]);
+    let failure = |reason, q: [f64; N]| {
+        let a = accelerations(&q);
+        let size = |i: usize| if a[i].is_finite() { a[i].abs() } else { f64::INFINITY };
+        let index = (0..N).fold(0, |most, i| if size(most) < size(i) { i } else { most });
+        let names = <D::System as System<N>>::FACTS.coordinates;
+        EquilibriumError {
+            reason,
+            t,
+            guess,
+            q,
+            coordinate: Coordinate { index, name: names.get(index).copied().unwrap_or_default() },
+            acceleration: a.get(index).copied().unwrap_or_default(),
+        }
+    };
+    let finite = |values: &[f64; N]| values.iter().all(|value| value.is_finite());
+    let mut q = guess;
+    let mut a = accelerations(&q);
+    if !(finite(&q) && finite(&a) && t.is_finite()) {
+        return Err(failure(EquilibriumFailure::NotFinite, q));
+    }
+    for _ in 0..STEPS {
+        if a == [0.0; N] {
+            return Ok(q);
+        }
+        let Some(newton) = Newton::new(dynamics, t, &q) else {
+            return Err(failure(EquilibriumFailure::NotFinite, q));
+        };
+        let (step, lost) = newton.step(&a);
+        let within = |bound: f64| (0..N).all(|i| step[i].abs() <= bound * (1.0 + q[i].abs()));
+        if lost && within(1e-6) {
+            return Err(failure(EquilibriumFailure::NoRestoringForce, q));
+        }
+        let trial = |share: f64| -> [f64; N] { core::array::from_fn(|i| q[i] + share * step[i]) };
+        if within(8.0 * f64::EPSILON) {
+            // The last step, if it does not make things worse.
+            let end = trial(1.0);
+            let sum = |a: [f64; N]| a.iter().map(|a| a.abs()).sum::<f64>();
+            return Ok(if sum(accelerations(&end)) <= sum(a) { end } else { q });
+        }
+        let longest = (0..N).fold(1.0, |share: f64, i| {
+            let most = (1.0 + q[i].abs()) / step[i].abs();
+            if most < share { most } else { share }
+        });
+        let mut share = longest;
+        let taken = (0..HALVES).find_map(|_| {
+            let (end, part) = (trial(share), share);
+            share *= 0.5;
+            let then = accelerations(&end);
+            if !finite(&then) {
+                return None;
+            }
+            let (next, _) = newton.step(&then);
+            (next.norm() <= (1.0 - 0.5 * part) * step.norm()).then_some((end, then))
+        });
+        match taken {
+            Some(taken) => (q, a) = taken,
+            // Rounding is larger than the step.
+            None if !lost && within(1e-8) => return Ok(q),
+            None if lost => return Err(failure(EquilibriumFailure::NoRestoringForce, q)),
+            None => return Err(failure(EquilibriumFailure::Stalled, q)),
+        }
+    }
+    Err(failure(EquilibriumFailure::Slow, q))
+}
+
+/// The matrices of a step: K by its singular values, and M.
+struct Newton<const N: usize> {
+    mass: DMatrix<f64>,
+    u: DMatrix<f64>,
+    values: DVector<f64>,
+    v_t: DMatrix<f64>,
+    /// Forces below are rounding.
+    floor: f64,
+}
+
+impl<const N: usize> Newton<N> {
+    /// `None` if they are not finite.
+    fn new<D>(dynamics: &D, t: f64, q: &[f64; N]) -> Option<Self>
+    where
+        D: Dynamics<N, Scalar = f64>,
+        D::System: Jacobians<N>,
+    {
+        let small = linearize(dynamics, t, q, &[0.0; N]);
+        let dense = |matrix: &nalgebra::SMatrix<f64, N, N>| {
+            DMatrix::from_fn(N, N, |row, column| matrix[(row, column)])
+        };
+        let (mass, stiffness) = (dense(&small.mass), dense(&small.stiffness));
+        if mass.iter().chain(stiffness.iter()).any(|entry| !entry.is_finite()) {
+            return None;
+        }
+        let svd = stiffness.try_svd(true, true, f64::EPSILON, 300 * N)?;
+        let size = q.iter().fold(1.0, |sum, q| sum + q.abs());
+        let floor = 1e3 * f64::EPSILON * size * svd.singular_values.amax();
+        Some(Self { mass, u: svd.u?, values: svd.singular_values, v_t: svd.v_t?, floor })
+    }
+
+    /// The shortest δ that brings K δ nearest to M q̈, and whether much of M q̈ is left, as in
+    /// directions in which nothing acts.
+    fn step(&self, a: &[f64; N]) -> (SVector<f64, N>, bool) {
+        let force = &self.mass * DVector::from_column_slice(a);
+        let parts = self.u.tr_mul(&force);
+        let rank = RANK * self.values.amax();
+        let (mut kept, mut lost) = (DVector::zeros(N), 0.0f64);
+        for i in 0..N {
+            if rank < self.values[i] {
+                kept[i] = parts[i] / self.values[i];
+            } else {
+                lost = lost.max(parts[i].abs());
+            }
+        }
+        let step = self.v_t.tr_mul(&kept);
+        (SVector::from_fn(|i, _| step[i]), (1e-3 * force.amax()).max(self.floor) < lost)
+    }
+}

@@ -1,0 +1,211 @@
+//! Modes with damping: eigenvalues and shapes of small motions.
+
+use crate::analysis::linearization::{Linearization, ModeError};
+use core::fmt;
+use nalgebra::linalg::{SVD, Schur, balancing};
+use nalgebra::{Complex, DMatrix, SVector};
+
+/// A solution δ = Re(c φ exp(λ t)) of M δ̈ + C δ̇ + K δ = 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct DampedMode<const N: usize> {
+    /// The eigenvalue λ in 1/s; of a conjugate pair the one with positive imaginary part.
+    pub eigenvalue: Complex<f64>,
+    /// The shape φ with φᴴ M φ = 1, whose largest component is real and positive.
+    pub shape: SVector<Complex<f64>, N>,
+}
+
+impl<const N: usize> DampedMode<N> {
+    /// The natural angular frequency |λ| in rad/s.
+    pub fn frequency(&self) -> f64 {
+        let Complex { re, im } = self.eigenvalue;
+        let scale = re.abs().max(im.abs());
+        if scale == 0.0 {
+            return 0.0;
+        }
+        scale * ((re / scale) * (re / scale) + (im / scale) * (im / scale)).sqrt()
+    }
+
+    /// The angular frequency Im λ of the damped vibration in rad/s; zero if it does not vibrate.
+    pub fn damped_frequency(&self) -> f64 {
+        self.eigenvalue.im
+    }
+
+    /// The damping ratio ζ = −Re λ/|λ|: 1 or −1 without a vibration, negative if the motion grows,
+    /// zero for λ = 0.
+    pub fn damping_ratio(&self) -> f64 {
+        let frequency = self.frequency();
+        if frequency == 0.0 { 0.0 } else { -self.eigenvalue.re / frequency }
+    }
+
+    /// Whether the motion grows.
+    pub fn is_unstable(&self) -> bool {
+        0.0 < self.eigenvalue.re
+    }
+}
+
+/// Frequency, damping ratio and eigenvalue.
+impl<const N: usize> fmt::Display for DampedMode<N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let digits = f.precision().unwrap_or(4);
+        let Complex { re, im } = self.eigenvalue;
+        write!(
+            f,
+            "{:.digits$} rad/s, damping ratio {:.digits$}, λ = {re:.digits$}",
+            self.frequency(),
+            self.damping_ratio()
+        )?;
+        if im == 0.0 { Ok(()) } else { write!(f, " ± {im:.digits$}i") }
+    }
+}
+
+/// The greatest number of sweeps of the QR algorithm for an eigenvalue.
+const SWEEPS: usize = 300;
+
+/// Eigenvalues as near as this, relative to their size, share their space of shapes.
+const SAME: f64 = 1e-6;
+
+impl<const N: usize> Linearization<N> {
+    /// The modes of M δ̈ + C δ̇ + K δ = 0 in the order of their frequencies |λ|: one for each
+    /// conjugate pair of eigenvalues, one for each real one.
+    ///
+    /// The λ are the eigenvalues of the first-order form
+    ///
+    /// ```text
+    /// d/dt (δ, δ̇) = [0 I; −M⁻¹K −M⁻¹C] (δ, δ̇)
+    /// ```
+    ///
+    /// with coordinates scaled by Cholesky's factors of M, after balancing, by the QR algorithm; a
+    /// shape φ spans the kernel of λ²M + λC + K, by singular values. Where eigenvalues coincide, as
+    /// at critical damping, they have half of their digits, and their shapes may coincide too.
+    ///
+    /// Source: Tisseur and Meerbergen (2001), The Quadratic Eigenvalue Problem, SIAM Review 43,
+    /// sections 1.1 and 3.4.
+    ///
+    /// ```
+    /// use pendulum_runtime::prelude::*;
+    /// use pendulum_runtime::analysis::linearize;
+    ///
+    /// # mod system {
+    /// pendulum_runtime::lagrangian! {
+    ///     pub struct Damped { m: kg, c: N*s/m, k: N/m }
+    ///     coordinate x: m;
+    ///     kinetic = m/2*ẋ^2;
+    ///     potential = k/2*x^2;
+    ///     dissipation = c/2*ẋ^2;
+    /// }
+    /// # }
+    /// # use system::Damped;
+    /// let modes = linearize(&Damped::new(1.0, 0.4, 4.0), 0.0, &[0.0], &[0.0]).damped_modes()?;
+    /// // ω = √(k/m), ζ = c/(2 m ω).
+    /// assert!((modes[0].frequency() - 2.0).abs() < 1e-14);
+    /// assert!((modes[0].damping_ratio() - 0.1).abs() < 1e-14);
+    /// # Ok::<(), pendulum_runtime::analysis::ModeError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A mass matrix that is not positive definite, numbers that are not finite.
+    pub fn damped_modes(&self) -> Result<Vec<DampedMode<N>>, ModeError> {
+        let [mass, damping, stiffness] = [&self.mass, &self.damping, &self.stiffness]
+            .map(|matrix| DMatrix::from_fn(N, N, |row, column| matrix[(row, column)]));
+        if [&mass, &damping, &stiffness].iter().any(|m| m.iter().any(|entry| !entry.is_finite())) {
+            return Err(ModeError::NotFinite);
+        }
+        let factor = mass.cholesky().ok_or(ModeError::Mass)?.l();
+        // L⁻¹ X L⁻ᵀ.
+        let scaled = |matrix: &DMatrix<f64>| {
+            let half = factor.solve_lower_triangular(matrix)?;
+            Some(factor.solve_lower_triangular(&half.transpose())?.transpose())
+        };
+        let damping = scaled(&damping).ok_or(ModeError::Mass)?;
+        let stiffness = scaled(&stiffness).ok_or(ModeError::Mass)?;
+        let mut eigenvalues = eigenvalues(&damping, &stiffness)?;
+        let size = |z: &Complex<f64>| z.re * z.re + z.im * z.im;
+        eigenvalues.sort_by(|a, b| {
+            size(a).total_cmp(&size(b)).then(b.im.total_cmp(&a.im)).then(b.re.total_cmp(&a.re))
+        });
+        let mut modes = Vec::with_capacity(eigenvalues.len());
+        for (index, &eigenvalue) in eigenvalues.iter().enumerate() {
+            let near = |other: &&Complex<f64>| {
+                size(&(*other - eigenvalue)) <= SAME * SAME * size(&eigenvalue)
+            };
+            let before = eigenvalues[..index].iter().filter(near).count();
+            let scaled =
+                kernel(&damping, &stiffness, eigenvalue, before).ok_or(ModeError::NoConvergence)?;
+            modes.push(DampedMode { eigenvalue, shape: unscaled(&factor, &scaled) });
+        }
+        Ok(modes)
+    }
+}
+
+/// The eigenvalues of [0 I; −K −C] that are real or have a positive imaginary part.
+fn eigenvalues(
+    damping: &DMatrix<f64>,
+    stiffness: &DMatrix<f64>,
+) -> Result<Vec<Complex<f64>>, ModeError> {
+    let n = damping.nrows();
+    if n == 0 {
+        return Ok(Vec::new());
+    }
+    let mut first_order = DMatrix::zeros(2 * n, 2 * n);
+    first_order.view_mut((0, n), (n, n)).fill_with_identity();
+    first_order.view_mut((n, 0), (n, n)).copy_from(&-stiffness);
+    first_order.view_mut((n, n), (n, n)).copy_from(&-damping);
+    let _ = balancing::balance_parlett_reinsch(&mut first_order);
+    let schur = Schur::try_new(first_order, f64::EPSILON, SWEEPS * 2 * n)
+        .ok_or(ModeError::NoConvergence)?;
+    Ok(schur.complex_eigenvalues().iter().copied().filter(|value| 0.0 <= value.im).collect())
+}
+
+/// The vector of norm 1 that λ² + λC + K makes shortest, after those that are orthogonal to it and
+/// were taken before.
+fn kernel(
+    damping: &DMatrix<f64>,
+    stiffness: &DMatrix<f64>,
+    eigenvalue: Complex<f64>,
+    before: usize,
+) -> Option<Vec<Complex<f64>>> {
+    let n = damping.nrows();
+    let square = eigenvalue * eigenvalue;
+    let pencil = DMatrix::from_fn(n, n, |row, column| {
+        let own = if row == column { square } else { Complex::new(0.0, 0.0) };
+        own + eigenvalue * damping[(row, column)] + stiffness[(row, column)]
+    });
+    let size = square.re.abs()
+        + square.im.abs()
+        + (eigenvalue.re.abs() + eigenvalue.im.abs()) * damping.amax()
+        + stiffness.amax();
+    if size == 0.0 {
+        // Every vector is in the kernel.
+        let unit = |row| Complex::new(if row == before % n { 1.0 } else { 0.0 }, 0.0);
+        return Some((0..n).map(unit).collect());
+    }
+    let pencil = pencil.unscale(size);
+    let svd = SVD::try_new(pencil, false, true, f64::EPSILON, SWEEPS * n)?;
+    let rows = svd.v_t.as_ref()?;
+    let mut order: Vec<usize> = (0..n).collect();
+    order.sort_by(|&a, &b| svd.singular_values[a].total_cmp(&svd.singular_values[b]));
+    // A defective eigenvalue has fewer shapes than its multiplicity.
+    let shapes = order.iter().filter(|&&row| svd.singular_values[row] <= SAME).count().max(1);
+    let row = order[before % shapes];
+    Some((0..n).map(|column| rows[(row, column)].conj()).collect())
+}
+
+/// L⁻ᵀ φ, with a real and positive largest component.
+fn unscaled<const N: usize>(
+    factor: &DMatrix<f64>,
+    scaled: &[Complex<f64>],
+) -> SVector<Complex<f64>, N> {
+    let mut shape = SVector::<Complex<f64>, N>::zeros();
+    for i in (0..N).rev() {
+        let sum = (i + 1..N).fold(scaled[i], |sum, k| sum - shape[k] * factor[(k, i)]);
+        shape[i] = sum / factor[(i, i)];
+    }
+    let size = |z: &Complex<f64>| z.re * z.re + z.im * z.im;
+    // The first of those that differ by rounding only.
+    let largest = shape.iter().map(size).fold(0.0, f64::max);
+    let first = shape.iter().find(|component| 0.999_999 * largest <= size(component));
+    let Some(&first) = first.filter(|_| 0.0 < largest) else { return shape };
+    let turn = first.conj() / size(&first).sqrt();
+    shape.map(|component| component * turn)
+}
