@@ -7,7 +7,9 @@ mod columns;
 mod csv;
 mod outputs;
 mod equilibrium;
+mod exponents;
 mod modes;
+mod sensitivities;
 #[cfg(feature = "serde")]
 mod serde;
 mod state_space;

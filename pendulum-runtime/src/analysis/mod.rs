@@ -3,12 +3,14 @@
 
 mod equilibrium;
 mod linearization;
+mod lyapunov;
 mod modes;
 mod state_space;
 mod variational;
 
 pub use equilibrium::{EquilibriumError, EquilibriumFailure, equilibrium};
 pub use linearization::{Linearization, ModeError, NormalModes, linearize};
+pub use lyapunov::{Lyapunov, LyapunovError, LyapunovSpectrum, lyapunov};
 pub use modes::DampedMode;
 pub use state_space::{StateSpace, state_space};
 pub use variational::{Variational, variational_size};

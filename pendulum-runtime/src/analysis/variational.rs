@@ -2,11 +2,11 @@
 
 use crate::integrate::State;
 use crate::scalar::{Dual, Real};
-use crate::system::{Facts, Jacobians, System, VelocityFree};
+use crate::system::{Facts, Jacobians, Staged, System, VelocityFree};
 use nalgebra::{DMatrix, SMatrix};
 
-/// A system together with the variational equations along its motion: a system itself, for every
-/// method that takes equations written by hand (name one: `Dop853`, `Tsit5`, `Gauss`, …).
+/// A system together with the variational equations along its motion: a system itself, for `Picard`
+/// and every method that takes equations written by hand (name one: `Picard`, `Dop853`, `Gauss`, …).
 ///
 /// Its `M` coordinates are the `N` of the system and after them columns of `N`: ∂q/∂q₀ for each
 /// coordinate at the start, ∂q/∂q̇₀ for each velocity there, and ∂q/∂p for as many parameters as
@@ -409,6 +409,40 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
     ) -> [S::Scalar; M] {
         let own = self.system.momentum_rates(t, &column(q, 0), &column(v, 0), inputs);
         self.derivatives(own, (t, q, v, inputs), System::momentum_rates)
+    }
+}
+
+/// All in one stage: what [`Picard`](crate::integrate::Picard) evaluates at eight times at once.
+impl<S: Jacobians<N>, const N: usize, const M: usize> Staged<M> for Variational<S, N, M> {
+    type AtTime = ();
+    type AtPosition = ();
+
+    #[inline]
+    fn at_time(_: S::Scalar, _: &S::Inputs) {}
+
+    #[inline]
+    fn at_position(
+        &self,
+        _: &S::Prepared,
+        (): &(),
+        _: S::Scalar,
+        _: &[S::Scalar; M],
+        _: &S::Inputs,
+    ) {
+    }
+
+    #[inline]
+    fn accelerations_staged(
+        &self,
+        prepared: &S::Prepared,
+        (): &(),
+        (): &(),
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+    ) -> [S::Scalar; M] {
+        self.accelerations_prepared(prepared, t, q, v, inputs)
     }
 }
 
