@@ -5,10 +5,11 @@
 mod columns;
 #[cfg(feature = "csv")]
 mod csv;
-mod outputs;
 mod equilibrium;
 mod exponents;
 mod modes;
+mod outputs;
+mod sections;
 mod sensitivities;
 #[cfg(feature = "serde")]
 mod serde;

@@ -1,10 +1,11 @@
 //! Analysis of systems: states of rest, small motions about a state, from inputs to outputs,
-//! sensitivities of a motion.
+//! sensitivities of a motion, Lyapunov exponents, Poincaré sections.
 
 mod equilibrium;
 mod linearization;
 mod lyapunov;
 mod modes;
+mod poincare;
 mod state_space;
 mod variational;
 
@@ -12,5 +13,6 @@ pub use equilibrium::{EquilibriumError, EquilibriumFailure, equilibrium};
 pub use linearization::{Linearization, ModeError, NormalModes, linearize};
 pub use lyapunov::{Lyapunov, LyapunovError, LyapunovSpectrum, lyapunov};
 pub use modes::DampedMode;
+pub use poincare::{Crossings, Section, poincare};
 pub use state_space::{StateSpace, state_space};
 pub use variational::{Variational, variational_size};
