@@ -129,6 +129,13 @@ pub enum Error {
         /// The index of the event in the list given.
         event: usize,
     },
+    /// What was saved is no integration like the one that is to go on from it.
+    Saved {
+        /// The system that was integrated.
+        system: String,
+        /// The method.
+        method: String,
+    },
     /// A motion says that its next kink after a time is not after it.
     Kink {
         /// The time asked about.
@@ -312,6 +319,11 @@ impl fmt::Display for Error {
                 f,
                 "at t = {t:?} event {event} acts and the motion stays where its function is zero; \
                  let the action give a velocity that leads away, or end there by `.terminal()` or `.rest_below(speed)`"
+            ),
+            Self::Saved { ref system, ref method } => write!(
+                f,
+                "what was saved is an integration of `{system}` by `{method}` that does not fit; \
+                 build the integrator with the same system, method, steps and events, and restore what `save` gave"
             ),
             Self::Kink { t, kink } => {
                 write!(

@@ -14,6 +14,7 @@ pub mod kicks;
 pub mod multistep;
 pub mod picard;
 pub mod problems;
+pub mod saved;
 pub mod stiff;
 pub mod taylor;
 pub mod tolerances;

@@ -7,6 +7,7 @@ use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::Method;
 use crate::integrate::observe::within;
 use crate::integrate::output::direction;
+use crate::integrate::saved::{Memory, Saved};
 use crate::integrate::solution::Stats;
 use crate::integrate::state::State;
 use crate::integrate::step::adaptive::AdaptiveStep;
@@ -25,15 +26,23 @@ use crate::system::{Dynamics, System};
 /// resolution is at most one second long.
 ///
 /// ```
-/// # use pendulum_runtime::{error::Error, integrate::*, system::*};
-/// struct Bell<S: System<1, Scalar = f64, Inputs = ()>> {
-///     run: Integrator<'static, 1, S, Dop853>,
+/// # use pendulum_runtime::{error::Error, integrate::Event, prelude::*};
+/// lagrangian! {
+///     pub struct Clapper { L: m, g: m/s^2 = 9.81 }
+///     coordinate q: rad;
+///     kinetic = L^2 * q̇^2 / 2;
+///     potential = -g * L * cos(q);
 /// }
 ///
-/// impl<S: System<1, Scalar = f64, Inputs = ()>> Bell<S> {
-///     fn new(system: S) -> Result<Self, Error> {
-///         let strike = Event::new(|_t, q, _v| q[0] - 0.5).rising().then(|state| state.v[0] *= -0.3);
-///         Ok(Self { run: Integrator::owning(system, Dop853, 0.0, [0.3], [0.0])?.events([strike])? })
+/// struct Bell {
+///     run: Integrator<'static, 1, Clapper<f64>, Dop853>,
+/// }
+///
+/// impl Bell {
+///     fn new(length: f64, edge: f64) -> Result<Self, Error> {
+///         let strike = Event::new(move |_t, q, _v| q[0] - edge).rising().then(|state| state.v[0] *= -0.3);
+///         let run = Integrator::owning(Clapper::new(length), Dop853, 0.0, [-0.8], [0.0])?;
+///         Ok(Self { run: run.events([strike])? })
 ///     }
 ///
 ///     /// The angles after each sixtieth of a second.
@@ -42,6 +51,8 @@ use crate::system::{Dynamics, System};
 ///         self.run.states_at(times).map(|state| Ok(state?.q[0]))
 ///     }
 /// }
+///
+/// assert!(Bell::new(0.4, 0.5).unwrap().angles().take(120).all(|angle| angle.unwrap() < 0.5 + 1e-6));
 /// ```
 ///
 /// After an error the state is the one before the failed step.
@@ -279,6 +290,46 @@ where
     pub fn at(&mut self, t: f64) -> Option<State<D::Scalar, N>> {
         let (start, end) = (self.integration.last_start().t, self.state());
         within(start, end, t, || self.integration.interpolant())
+    }
+
+    /// Everything that the next steps need, with all bits: to go on later, or elsewhere, by
+    /// [`restore`](Self::restore).
+    ///
+    /// The last step itself is no part of it, so that [`at`](Self::at) knows no step after
+    /// `restore`. Neither is what lies outside of the integration: settings, and whatever events or
+    /// controllers keep for themselves.
+    pub fn save(&mut self) -> Saved {
+        let mut memory = Memory::writer();
+        self.remember(&mut memory);
+        let system = <D::System as System<N>>::FACTS.name.to_owned();
+        Saved { system, method: M::NAME.to_owned(), words: memory.into_words() }
+    }
+
+    /// Goes on from `saved`: the steps from there on have the bits that they would have had without
+    /// the interruption.
+    ///
+    /// The integrator has to be built as the other was: with the same system, method, steps, events
+    /// and stops. [`Error::Saved`] says if it obviously is not, and leaves it as it is.
+    pub fn restore(&mut self, saved: &Saved) -> Result<(), Error> {
+        if saved.system != <D::System as System<N>>::FACTS.name || saved.method != M::NAME {
+            let Saved { system, method, .. } = saved.clone();
+            return Err(Error::Saved { system, method });
+        }
+        let own = self.save();
+        let mut memory = Memory::reader(saved.words.clone());
+        self.remember(&mut memory);
+        if !(memory.is_complete() && self.integration.end.is_finite()) {
+            self.remember(&mut Memory::reader(own.words));
+            let Saved { system, method, .. } = saved.clone();
+            return Err(Error::Saved { system, method });
+        }
+        (self.ended, self.found) = (None, Vec::new());
+        Ok(())
+    }
+
+    fn remember(&mut self, memory: &mut Memory) {
+        self.integration.remember(memory);
+        self.detector.remember(memory);
     }
 
     /// Puts the state elsewhere, or the same state to another time; what follows is as if the

@@ -12,6 +12,7 @@ use super::step::field::{coordinate, first_in_state};
 pub use super::step::interval::StepInterval;
 use crate::error::{Error, Quantity};
 use crate::integrate::interpolant::hermite;
+pub use crate::integrate::saved::Memory;
 use crate::scalar::Float;
 use crate::system::{Dynamics, System};
 use crate::time::Time;
@@ -102,6 +103,13 @@ pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fm
     fn name(&self, workspace: &Self::Workspace) -> &'static str {
         let _ = workspace;
         Self::NAME
+    }
+
+    /// Visits everything in the workspace that one step leaves to the next, in an order of its own:
+    /// a saved integration goes on with the same bits. Methods whose steps begin with the state alone
+    /// have nothing to visit.
+    fn remember(&self, workspace: &mut Self::Workspace, memory: &mut Memory) {
+        let _ = (workspace, memory);
     }
 
     /// Whether the method goes back in time too.

@@ -6,6 +6,7 @@ use crate::integrate::events::{Condition, Direction, Event, Occurrence, Status};
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::Method;
 use crate::integrate::output::in_order;
+use crate::integrate::saved::Memory;
 use crate::integrate::state::State;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::first_in_state;
@@ -166,6 +167,40 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         }
         self.gather(integration, stop);
         self.happen(integration, stop, cut)
+    }
+
+    /// Visits what is known of each event.
+    pub(crate) fn remember(&mut self, memory: &mut Memory) {
+        // A list of another length does not fit; what it has left over or lacks shows it.
+        memory.flag(&mut self.fresh);
+        if memory.reads() {
+            self.found.clear();
+        }
+        for (track, event) in self.tracks.iter_mut().zip(&self.events) {
+            let times = match &event.condition {
+                Condition::Times(times) => times.len(),
+                Condition::Root(_) => 0,
+            };
+            let Track { value, side, count, last, next, expected, acts } = track;
+            memory.scalar(value);
+            for side in [side, expected] {
+                let mut index = (*side + 1) as usize;
+                memory.count(&mut index, 2);
+                *side = index as i8 - 1;
+            }
+            memory.word(count);
+            memory.maybe(last, || Time::new(0.0), Memory::time);
+            memory.count(next, times);
+            memory.maybe(&mut acts.last, || Time::new(0.0), Memory::time);
+            for number in [&mut acts.gap, &mut acts.ratio, &mut acts.longest] {
+                memory.number(number);
+            }
+            for count in [&mut acts.shorter, &mut acts.still] {
+                let mut number = *count as usize;
+                memory.count(&mut number, u32::MAX as usize);
+                *count = number as u32;
+            }
+        }
     }
 
     /// Counts what was found, up to the first event that stops the step; gives its index in the list

@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::method::Method;
+use crate::integrate::method::{Memory, Method};
 use crate::integrate::methods::dop853::Dop853;
 use crate::integrate::methods::picard::{LaneDynamics, Picard};
 use crate::integrate::methods::srkn14a;
@@ -192,6 +192,23 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Method<D, N> for Auto {
             Some(Choice::Srkn14a) => <Symplectic as Method<D, N>>::NAME,
             Some(Choice::Taylor) => <Taylor as Method<Known<'_, D>, N>>::NAME,
         }
+    }
+
+    fn remember(&self, workspace: &mut AnyWorkspace<D, N>, memory: &mut Memory) {
+        const CHOICES: [Option<Choice>; 5] = [
+            None,
+            Some(Choice::Dop853),
+            Some(Choice::Picard),
+            Some(Choice::Srkn14a),
+            Some(Choice::Taylor),
+        ];
+        let Workspace { choice, chosen_for, picard, taylor, .. } = workspace;
+        let mut index = CHOICES.iter().position(|other| other == choice).unwrap_or(0);
+        memory.count(&mut index, CHOICES.len() - 1);
+        *choice = CHOICES[index];
+        memory.maybe(chosen_for, || 0.0, Memory::number);
+        Method::<D, N>::remember(&Picard, picard, memory);
+        Method::<Known<'_, D>, N>::remember(&Taylor::new(), taylor, memory);
     }
 
     fn goes_back(&self, dynamics: &D) -> bool {

@@ -1,7 +1,7 @@
 //! The symmetric multistep methods of Quinlan and Tremaine.
 
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::method::Method;
+use crate::integrate::method::{Memory, Method};
 use crate::integrate::schemes::multistep::{History, Scheme, padded};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
@@ -100,6 +100,10 @@ impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize, con
         history: &mut History<D::Scalar, N, P>,
     ) -> Interpolant<D::Scalar, N> {
         history.interpolant(field, interval, from, to)
+    }
+
+    fn remember(&self, history: &mut Self::Workspace, memory: &mut Memory) {
+        history.remember(memory);
     }
 }
 

@@ -7,7 +7,7 @@
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::interpolant::fit::{Condition, fit};
 use crate::integrate::interpolant::hermite;
-use crate::integrate::method::Method;
+use crate::integrate::method::{Memory, Method};
 use crate::integrate::methods::dop853::{self, Dop853};
 use crate::integrate::step::compensated::Compensated;
 use crate::integrate::step::endpoint::Endpoint;
@@ -160,6 +160,20 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
         to
     }
 
+    /// Visits all that the next step needs.
+    pub(crate) fn remember(&mut self, memory: &mut Memory) {
+        memory.scalars(&mut self.newest);
+        self.f.remember(memory);
+        self.d.remember(memory);
+        memory.sums(&mut self.w);
+        memory.number(&mut self.h);
+        memory.count(&mut self.points, P);
+        let (t, q, v) = &mut self.end;
+        memory.time(t);
+        memory.sums(q);
+        memory.scalars(v);
+    }
+
     /// The motion within the last step, from both ends and the accelerations before it.
     pub(crate) fn interpolant<D: Dynamics<N, Scalar = T>>(
         &self,
@@ -238,6 +252,17 @@ struct Window<T, const N: usize, const P: usize> {
 impl<T: Float, const N: usize, const P: usize> Window<T, N, P> {
     fn new() -> Self {
         Self { buffer: [[[T::from_f64(0.0); N]; P]; 4], start: 0 }
+    }
+
+    /// Visits the values; where they stand in the buffer is of no interest.
+    fn remember(&mut self, memory: &mut Memory) {
+        let mut values = *self.values();
+        for value in &mut values {
+            memory.scalars(value);
+        }
+        if memory.reads() {
+            (self.buffer[0], self.start) = (values, 0);
+        }
     }
 
     /// The values, the newest last.

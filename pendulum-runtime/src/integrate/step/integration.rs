@@ -3,6 +3,7 @@
 use crate::error::{Error, Part, Quantity};
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{self, Method};
+use crate::integrate::saved::Memory;
 use crate::integrate::solution::Stats;
 use crate::integrate::state::State;
 use crate::integrate::step::compensated::Compensated;
@@ -318,6 +319,28 @@ where
     /// The state at the start of the last step.
     pub(crate) fn last_start(&self) -> State<D::Scalar, N> {
         State::from(&self.from)
+    }
+
+    /// Visits everything that goes from one step to the next. The last step itself is no part of
+    /// it: its interpolant is gone when numbers are put back.
+    pub(crate) fn remember(&mut self, memory: &mut Memory) {
+        memory.endpoint(&mut self.end);
+        let end = self.end;
+        memory.maybe(&mut self.before_kink, || end, Memory::endpoint);
+        let Stats { evaluations, accepted, rejected, kinks, .. } = &mut self.stats;
+        for count in [evaluations, accepted, rejected, kinks] {
+            memory.word(count);
+        }
+        let ControllerState { h, left, equal, target, error, unknown } = &mut self.state;
+        memory.word(left);
+        for number in [h, equal, target, error, unknown, &mut self.kink] {
+            memory.number(number);
+        }
+        memory.flag(&mut self.backwards);
+        self.method.remember(&mut self.workspace, memory);
+        if memory.reads() {
+            (self.last, self.interpolant, self.from) = (None, None, self.end);
+        }
     }
 
     /// The length of the last step, before it was cut; 0 without one.

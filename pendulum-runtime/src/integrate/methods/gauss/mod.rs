@@ -5,7 +5,7 @@ mod equations;
 mod tableau;
 
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::method::Method;
+use crate::integrate::method::{Memory, Method};
 use crate::integrate::step::compensated::Compensated;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
@@ -132,6 +132,10 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Method<D, N>
         dense::interpolant(interval, from, to, &stages.slopes.v)
     }
 
+    fn remember(&self, stages: &mut Self::Workspace, memory: &mut Memory) {
+        stages.remember(memory);
+    }
+
     fn unsolved(&self, stages: &Self::Workspace) -> Option<(Time, usize)> {
         stages.unsolved
     }
@@ -172,6 +176,10 @@ impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize, const 
         dense::interpolant(interval, from, to, &stages.slopes.v)
     }
 
+    fn remember(&self, stages: &mut Self::Workspace, memory: &mut Memory) {
+        stages.remember(memory);
+    }
+
     fn unsolved(&self, stages: &Self::Workspace) -> Option<(Time, usize)> {
         stages.unsolved
     }
@@ -197,6 +205,16 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
             h: 0.0,
             unsolved: None,
         }
+    }
+
+    /// Visits all that the next step needs.
+    fn remember(&mut self, memory: &mut Memory) {
+        let Slopes { v, f } = &mut self.slopes;
+        v.iter_mut().chain(f).for_each(|slopes| memory.scalars(slopes));
+        memory.sums(&mut self.p);
+        let empty = || Endpoint::new(Time::new(0.0), self.p.high, self.p.high);
+        memory.maybe(&mut self.end, empty, Memory::endpoint);
+        memory.number(&mut self.h);
     }
 
     /// The equations of the next step, with a first guess in `slopes`.

@@ -7,7 +7,8 @@
 
 use super::lanes::LaneDynamics;
 use super::tableau::{BETWEEN, Columns, EIGHT, Nodes, REFINED, S, SIXTEEN};
-use super::workspace::{Tolerances, WorkspaceOf};
+use super::workspace::{Tolerances, Workspace, WorkspaceOf};
+use crate::integrate::saved::Memory;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::interval::StepInterval;
 use crate::scalar::{Float, Lane, Octet};
@@ -70,6 +71,39 @@ impl<T: Lane + Float, const G: usize> Scaled<T, G> {
                 self.once[g][j][0] = Wide::<T>::known(once) * h;
                 self.twice[g][j][0] = Wide::<T>::known(twice) * square;
             }
+        }
+    }
+}
+
+impl<T: Lane + Float, const G: usize> Scaled<T, G> {
+    /// Visits the length for which they were made, and makes them again when it is put back: one
+    /// that differs by rounding would give other digits.
+    fn remember<const H: usize>(
+        &mut self,
+        memory: &mut Memory,
+        columns: [&'static Columns<G, H>; 2],
+        to: usize,
+    ) {
+        let mut h = self.h;
+        memory.scalar(&mut h);
+        if memory.reads() {
+            *self = Self::new();
+            if h != self.h {
+                self.scale(h, columns, to);
+            }
+        }
+    }
+}
+
+impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
+    /// Visits the lengths of the sums.
+    pub(super) fn remember_sums(&mut self, memory: &mut Memory) {
+        let [scaled, ahead, between] = &mut self.scaled;
+        scaled.remember(memory, [&EIGHT.once, &EIGHT.twice], 0);
+        ahead.remember(memory, [&EIGHT.once_ahead, &EIGHT.twice_ahead], 0);
+        between.remember(memory, [&BETWEEN.once, &BETWEEN.twice], 0);
+        for (to, within) in self.within.iter_mut().enumerate() {
+            within.remember(memory, [&SIXTEEN.once, &SIXTEEN.twice], to);
         }
     }
 }

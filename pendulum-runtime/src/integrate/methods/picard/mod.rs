@@ -13,7 +13,7 @@ mod workspace;
 
 use crate::error::Error;
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::method::Method;
+use crate::integrate::method::{Memory, Method};
 use crate::integrate::step::diagnose;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::{Field, coordinate, first_in_state};
@@ -192,6 +192,10 @@ impl<D: LaneDynamics<N>, const N: usize> Method<D, N> for Picard {
         workspace: &mut WorkspaceOf<D, N>,
     ) -> Interpolant<D::Scalar, N> {
         dense::interpolant(field, interval, from, to, workspace)
+    }
+
+    fn remember(&self, workspace: &mut WorkspaceOf<D, N>, memory: &mut Memory) {
+        workspace.remember(memory);
     }
 
     fn diagnose(

@@ -7,6 +7,7 @@ use super::controller::AIM;
 use super::kernel::{Ends, Progress, Scaled, Stages};
 use super::lanes::LaneDynamics;
 use super::tableau::S;
+use crate::integrate::saved::Memory;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::scalar::{Float, Lane};
 use crate::system::{Dynamics, System};
@@ -150,6 +151,27 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
         let part =
             |i: usize| self.weights[i].to_f64() * self.weights[i].to_f64() * self.ends.square[i];
         (1..N).fold(0, |worst, i| if part(worst) < part(i) { i } else { worst })
+    }
+
+    /// Visits all that the next step needs.
+    pub(super) fn remember(&mut self, memory: &mut Memory) {
+        memory.count(&mut self.last, 1);
+        self.a[self.last].iter_mut().flatten().for_each(|lanes| memory.scalars(&mut lanes.0));
+        let zero = [T::from_f64(0.0); N];
+        let empty = || (Time::new(0.0), zero, zero);
+        memory.maybe(&mut self.end, empty, |memory, (t, q, v)| {
+            memory.time(t);
+            memory.scalars(q);
+            memory.scalars(v);
+        });
+        memory.number(&mut self.h);
+        self.square.iter_mut().for_each(|square| memory.number(square));
+        memory.scalars(&mut self.start);
+        memory.flag(&mut self.start_known);
+        let mut sweeps = self.sweeps as usize;
+        memory.count(&mut sweeps, 8);
+        self.sweeps = sweeps as u32;
+        self.remember_sums(memory);
     }
 
     /// The step under way becomes the last one.

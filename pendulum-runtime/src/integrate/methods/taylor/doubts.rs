@@ -1,5 +1,6 @@
 //! Doubts about series that did not hold at the end of a step.
 
+use crate::integrate::saved::Memory;
 use crate::integrate::step::controller::Trial;
 use crate::integrate::step::interval::StepInterval;
 use crate::time::Time;
@@ -62,6 +63,18 @@ impl Doubts {
         (self.holds, self.crosses, self.trusts) = (self.refuted.is_none(), false, false);
         let left = self.refuted.map_or(f64::INFINITY, |refuted| left(refuted).abs());
         if left < wanted { left } else { wanted }
+    }
+
+    /// Visits all that the next step needs.
+    pub(super) fn remember(&mut self, memory: &mut Memory) {
+        let Self { refuted, crossed, count, shortest, .. } = self;
+        memory.maybe(refuted, || Time::new(0.0), Memory::time);
+        for count in [crossed, count] {
+            let mut number = *count as usize;
+            memory.count(&mut number, u32::MAX as usize);
+            *count = number as u32;
+        }
+        memory.number(shortest);
     }
 
     /// The length of the next attempt after one whose series does not hold at its end.

@@ -7,7 +7,7 @@ use super::doubts::Doubts;
 use super::rule::Rule;
 use crate::error::{Error, Quantity};
 use crate::integrate::interpolant::{Basis, Interpolant, TERMS};
-use crate::integrate::method::Method;
+use crate::integrate::method::{Memory, Method};
 use crate::integrate::step::diagnose;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::fast_exp2::log2;
@@ -195,6 +195,10 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Taylor {
                 first_in_state(facts, &to.q.high, &to.v.high).map(|what| (interval.end, what))
             })?;
         Some(diagnose::not_finite(dynamics.system(), t, what))
+    }
+
+    fn remember(&self, workspace: &mut WorkspaceOf<D, N>, memory: &mut Memory) {
+        workspace.doubts.remember(memory);
     }
 
     fn kink(&self, dynamics: &D, t: f64, backwards: bool) -> Option<f64> {
