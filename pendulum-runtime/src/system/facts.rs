@@ -77,8 +77,8 @@ facts! {
     pub unused: &'static [&'static str] = &[],
     /// The equations of motion, one line a coordinate.
     pub equations: &'static str = "",
-    /// The same in LaTeX.
-    pub(crate) latex: &'static str = "",
+    /// The equations of motion in LaTeX, one line a coordinate.
+    pub latex: &'static str = "",
 }
 
 impl Facts {
@@ -94,10 +94,5 @@ impl Facts {
             index += 1;
         }
         index
-    }
-
-    /// The equations of motion in LaTeX, one line a coordinate.
-    pub const fn latex(&self) -> &'static str {
-        self.latex
     }
 }

@@ -5,7 +5,7 @@
 //! use pendulum_runtime::import::gltf::Gltf;
 //!
 //! let file = Gltf::open("fox.glb")?;
-//! let (walk, tail) = (file.animation("Walk").unwrap(), file.node("b_Tail03_014").unwrap());
+//! let (walk, tail) = (file.animation("Walk")?, file.node("b_Tail03_014")?);
 //! // The tip of the tail, seen from the side, in metres: this fox is drawn in centimetres.
 //! let tip = Projected::new(file.motion(walk, tail)?.looped()?, [[0.0, 0.0, 0.01], [0.0, 0.01, 0.0]]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -51,6 +51,31 @@ pub struct Gltf {
     root: Root,
     buffers: Vec<Vec<u8>>,
     parents: Vec<Option<usize>>,
+}
+
+/// Names that an error lists at most.
+const LISTED: usize = 12;
+
+/// The number of a name.
+fn number<'a>(
+    place: &str,
+    name: &str,
+    names: impl Iterator<Item = &'a str> + Clone,
+) -> Result<usize, GltfError> {
+    if let Some(number) = names.clone().position(|own| own == name) {
+        return Ok(number);
+    }
+    let known: Vec<&str> = names.filter(|own| !own.is_empty()).collect();
+    let mut what = format!("none is called `{name}`; there are ");
+    for (index, own) in known.iter().take(LISTED).enumerate() {
+        what += &format!("{}`{own}`", if index == 0 { "" } else { ", " });
+    }
+    match known.len() {
+        0 => what = format!("none is called `{name}`, and none has a name"),
+        count if LISTED < count => what += &format!(" and {} more", count - LISTED),
+        _ => {}
+    }
+    Err(GltfError::new(place, what, "give one of these names, or a number"))
 }
 
 impl Gltf {
@@ -112,23 +137,29 @@ impl Gltf {
     }
 
     /// The names of all nodes by number; those without one are empty.
-    pub fn nodes(&self) -> impl Iterator<Item = &str> {
+    pub fn nodes(&self) -> impl Iterator<Item = &str> + Clone {
         self.root.nodes.iter().map(|node| node.name.as_deref().unwrap_or(""))
     }
 
     /// The names of all animations by number; those without one are empty.
-    pub fn animations(&self) -> impl Iterator<Item = &str> {
+    pub fn animations(&self) -> impl Iterator<Item = &str> + Clone {
         self.root.animations.iter().map(|animation| animation.name.as_deref().unwrap_or(""))
     }
 
     /// The number of the first node with a name.
-    pub fn node(&self, name: &str) -> Option<usize> {
-        self.nodes().position(|node| node == name)
+    ///
+    /// # Errors
+    /// A name that no node has; the error has the names that there are.
+    pub fn node(&self, name: &str) -> Result<usize, GltfError> {
+        number("nodes", name, self.nodes())
     }
 
     /// The number of the first animation with a name.
-    pub fn animation(&self, name: &str) -> Option<usize> {
-        self.animations().position(|animation| animation == name)
+    ///
+    /// # Errors
+    /// A name that no animation has; the error has the names that there are.
+    pub fn animation(&self, name: &str) -> Result<usize, GltfError> {
+        number("animations", name, self.animations())
     }
 
     /// How a node moves in the world while an animation plays.

@@ -219,3 +219,17 @@ fn wrong_bytes_never_panic() {
     }
     assert!(1000 < refused && 1000 < taken, "{refused} {taken}");
 }
+
+#[test]
+fn names_that_there_are_are_listed() {
+    let (file, nodes) = dancer();
+    let read = Gltf::read(&file.binary(nodes)).unwrap();
+    let names: Vec<&str> = read.nodes().filter(|name| !name.is_empty()).collect();
+    let message = read.node("nobody").unwrap_err().to_string();
+    assert!(message.starts_with("nodes: none is called `nobody`"), "{message}");
+    for name in &names {
+        assert!(message.contains(&format!("`{name}`")), "{message}");
+        assert!(read.node(name).is_ok());
+    }
+    assert!(read.animation("nothing").unwrap_err().to_string().contains("animations: none"));
+}
