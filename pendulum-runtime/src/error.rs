@@ -50,6 +50,8 @@ pub enum Error {
         /// acceleration, or of a velocity that belongs to a finite momentum, that is not finite.
         suspects: Vec<Suspect>,
     },
+    /// The state of a sampled controller is no part of what was saved.
+    SavedController,
     /// A sampled controller serves another integration, which began later.
     Controller {
         /// The time at which a sample was due.
@@ -300,6 +302,10 @@ impl fmt::Display for Error {
             Self::Event { t, event } => write!(
                 f,
                 "at t = {t:?} the function of event {event} gives something that is not a number; it has to be defined wherever the motion goes"
+            ),
+            Self::SavedController => write!(
+                f,
+                "the state of a sampled controller is no part of what was saved; begin the run anew, or give the feedback by `controlled_by`"
             ),
             Self::Controller { t } => write!(
                 f,

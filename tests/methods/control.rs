@@ -299,3 +299,25 @@ fn the_closed_loop_is_linearized() {
     assert!((closed.stiffness[(0, 0)] - open.stiffness[(0, 0)] - 7.0).abs() < 1e-8);
     assert!((closed.damping[(0, 0)] - open.damping[(0, 0)] - 3.0).abs() < 1e-8);
 }
+
+/// The state of a closure cannot be saved, and a run that goes on without it would be another.
+#[test]
+fn a_sampled_run_cannot_be_taken_up_again() {
+    let arm = Arm::new(1.0, 0.5, 0.1).sampled(0.1, |_, q, v| -q[0] - v[0]);
+    let mut run = Integrator::new(&arm, Dop853, 0.0, [0.3], [0.0]).unwrap();
+    run.advance_to(0.45).unwrap();
+    let saved = run.save();
+    let before = run.state();
+    assert_eq!(run.restore(&saved), Err(Error::SavedController));
+    assert_eq!(run.state(), before);
+    // A law without a state goes on.
+    let arm = Arm::new(1.0, 0.5, 0.1).controlled_by(|_, q, v| -q[0] - v[0]);
+    let mut run = Integrator::new(&arm, Picard, 0.0, [0.3], [0.0]).unwrap();
+    run.advance_to(0.45).unwrap();
+    let saved = run.save();
+    run.advance_to(1.0).unwrap();
+    let mut other = Integrator::new(&arm, Picard, 0.0, [0.1], [0.7]).unwrap();
+    other.restore(&saved).unwrap();
+    other.advance_to(1.0).unwrap();
+    assert_eq!(run.state(), other.state());
+}

@@ -309,8 +309,13 @@ where
     /// the interruption.
     ///
     /// The integrator has to be built as the other was: with the same system, method, steps, events
-    /// and stops. [`Error::Saved`] says if it obviously is not, and leaves it as it is.
+    /// and stops. [`Error::Saved`] says if it obviously is not, and leaves it as it is. A controller
+    /// that is [sampled](crate::system::Sampled) has a state that nobody can save:
+    /// [`Error::SavedController`].
     pub fn restore(&mut self, saved: &Saved) -> Result<(), Error> {
+        if D::SAMPLED {
+            return Err(Error::SavedController);
+        }
         if saved.system != <D::System as System<N>>::FACTS.name || saved.method != M::NAME {
             let Saved { system, method, .. } = saved.clone();
             return Err(Error::Saved { system, method });

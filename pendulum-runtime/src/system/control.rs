@@ -267,6 +267,8 @@ where
     type System = S;
     type Scalar = S::Scalar;
 
+    const SAMPLED: bool = true;
+
     fn system(&self) -> &S {
         &self.driven.system
     }
