@@ -164,7 +164,7 @@ fn the_first_of_two_states_at_a_kink_has_the_energy_before_it() {
     let energy = solution.energy(&system);
     for index in [kink, kink + 1] {
         let (x, v) = (solution.q[index][0], solution.v[index][0]);
-        assert!((energy[index] - (v * v - 1.0 + x * x) / 2.0).abs() < 1e-14);
+        assert!((energy[index] - 0.5 * (v * v - 1.0 + x * x)).abs() < 1e-14);
     }
     assert!((solution.v[kink + 1][0] - solution.v[kink][0] - 2.0).abs() < 1e-12);
 }

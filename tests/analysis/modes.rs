@@ -67,7 +67,7 @@ fn residual<const N: usize>(system: &Linearization<N>, mode: &DampedMode<N>) -> 
     };
     let terms =
         [complex(system.mass) * λ * λ, complex(system.damping) * λ, complex(system.stiffness)];
-    let size: f64 = terms.iter().map(|term| term.norm()).sum();
+    let size: f64 = terms[0].norm() + terms[1].norm() + terms[2].norm();
     (terms[0] + terms[1] + terms[2]).norm() / size
 }
 

@@ -31,7 +31,7 @@ use blocks::{Bob, Double};
 
 fn solution() -> Solution<f64, 2> {
     let upright = |_: f64, q: &[f64; 2], _: &[f64; 2]| q[0];
-    let events = [Event::new(&upright)];
+    let events = [Event::new(upright)];
     solve(&Double::new(9.81, 0.5), (0.0, 1.5), [1.0, 0.7], [0.1, 0.0])
         .every(0.25)
         .dense()

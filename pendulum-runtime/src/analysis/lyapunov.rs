@@ -112,7 +112,7 @@ pub struct LyapunovError {
     /// The time of the last frame.
     pub t: f64,
     /// The spectrum over the intervals until then, if there are two at least.
-    pub partial: Option<LyapunovSpectrum>,
+    pub partial: Option<Box<LyapunovSpectrum>>,
 }
 
 impl fmt::Display for LyapunovError {
@@ -263,7 +263,8 @@ impl<'a, const N: usize, D, Me> Lyapunov<'a, N, D, Me> {
             let at = |index: u64| self.t + index as f64 * self.interval;
             let failed = |error, growths: Vec<f64>| {
                 let enough = 2 * size <= growths.len();
-                let partial = enough.then(|| LyapunovSpectrum::new(size, self.interval, growths));
+                let partial =
+                    enough.then(|| Box::new(LyapunovSpectrum::new(size, self.interval, growths)));
                 LyapunovError { error, t: at(index), partial }
             };
             let (q0, mut v0) = assemble::<N, M>(&frame, &q, &v);
@@ -297,6 +298,7 @@ impl<'a, const N: usize, D, Me> Lyapunov<'a, N, D, Me> {
 }
 
 /// What deviations become.
+#[derive(Clone, Copy)]
 enum Back {
     Momenta,
     Velocities,
