@@ -1,7 +1,7 @@
 //! A feather that hangs from a joint, and its swing through the clip.
 
-use crate::Tag;
 use crate::hand::Hand;
+use crate::{Tag, TagOutputs};
 use indicatif::ProgressBar;
 use pendulum_runtime::body::Polygon;
 use pendulum_runtime::motion::{Clip, Derivatives, Interpolation, Side};
@@ -53,6 +53,8 @@ pub(crate) struct Hung {
     pub(crate) mass: f64,
     /// The joint on its spline.
     pub(crate) pivot: Vec<[f64; 2]>,
+    /// The tip on the spline.
+    pub(crate) tips: Vec<[f64; 2]>,
     pub(crate) spline: Swing,
     pub(crate) linear: Swing,
     /// On the spline, by the hand-written equation.
@@ -88,14 +90,17 @@ impl Hung {
         let curve = Clip::new(rate, keys, 1, Interpolation::Spline)?;
         let lines = Clip::new(rate, keys, 1, Interpolation::Linear)?;
 
-        let generated = Tag::new(body, damping).driven_by(curve.clone());
+        let tag = || Tag::new(body, [0.0, -place.length], damping);
+        let generated = tag().driven_by(curve.clone());
         let by_hand = Driven::new(Hand { body, damping, g: 9.81 }, (curve.clone(),));
         let spline = Swing::run(&generated, times, bar)?;
-        let linear = Swing::run(&Tag::new(body, damping).driven_by(lines), times, bar)?;
+        let linear = Swing::run(&tag().driven_by(lines), times, bar)?;
         let hand = Swing::run(&by_hand, times, bar)?;
 
         let (mut difference, mut acceleration) = (0.0f64, 0.0f64);
+        let mut tips = Vec::new();
         for ((&t, &q), &v) in times.iter().zip(&spline.angles).zip(&spline.speeds) {
+            tips.push(generated.tip(t, &[q], &[v]));
             let [ours] = generated.accelerations_at(Time::new(t), Side::Before, &[q], &[v]);
             let [theirs] = by_hand.accelerations_at(Time::new(t), Side::Before, &[q], &[v]);
             difference = difference.max((ours - theirs).abs());
@@ -112,6 +117,7 @@ impl Hung {
             outline,
             mass: body.mass,
             pivot,
+            tips,
             spline,
             linear,
             hand,
@@ -185,7 +191,7 @@ mod tests {
     #[test]
     fn the_hand_written_equations_are_the_generated_ones() {
         let body = body().rotated(0.7);
-        let (tag, hand) = (Tag::new(body, 3e-4), Hand { body, damping: 3e-4, g: 9.81 });
+        let (tag, hand) = (Tag::new(body, [0.0; 2], 3e-4), Hand { body, damping: 3e-4, g: 9.81 });
         for k in 0..50 {
             let k = f64::from(k);
             let (t, q, v) = (0.1 * k, [0.37 * k - 9.0], [11.0 - 0.45 * k]);

@@ -31,6 +31,8 @@ lagrangian! {
     pub struct Tag {
         /// The body as seen from its pivot.
         B: body,
+        /// Its tip as seen from the pivot.
+        end: [m; 2],
         /// The friction at the pivot.
         c: N*m*s,
         /// The gravitational acceleration.
@@ -44,6 +46,8 @@ lagrangian! {
     kinetic     = integral(p in B, |dot(r(p))|^2 / 2);
     potential   = integral(p in B, g*height(r(p)));
     dissipation = c/2 * θ̇^2;
+
+    output tip: [m; 2] = r(end);
 }
 
 /// Both hands, the head and the hips.
@@ -172,6 +176,7 @@ fn swing() -> Result<(), Box<dyn Error>> {
         joint: hung.joint,
         outline: &hung.outline,
         pivot: &hung.pivot,
+        tips: &hung.tips,
         spline: &hung.spline.angles,
         linear: &hung.linear.angles,
     });

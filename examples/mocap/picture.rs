@@ -40,6 +40,8 @@ pub(crate) struct Worn<'a> {
     /// In metres from the pivot, at rest.
     pub(crate) outline: &'a [[f64; 2]],
     pub(crate) pivot: &'a [[f64; 2]],
+    /// The way of the tip, in metres.
+    pub(crate) tips: &'a [[f64; 2]],
     /// The angle on the spline and on the linear keys, in radians.
     pub(crate) spline: &'a [f64],
     pub(crate) linear: &'a [f64],
@@ -269,16 +271,7 @@ impl Picture<'_> {
 
     /// The way of a tip: all of it faintly, and the last moments.
     fn trail(&self, svg: &mut String, frame: Frame, worn: &Worn<'_>) -> fmt::Result {
-        let length = -lowest(worn.outline);
-        let tips: Vec<[f64; 2]> = worn
-            .pivot
-            .iter()
-            .zip(worn.spline)
-            .map(|(&[x, y], &angle)| {
-                let (sin, cos) = pendulum_runtime::scalar::Real::sin_cos(angle);
-                frame.at(x + length * sin, y - length * cos)
-            })
-            .collect();
+        let tips: Vec<[f64; 2]> = worn.tips.iter().map(|&[x, y]| frame.at(x, y)).collect();
         let mut reached = vec![0.0];
         let mut path = String::new();
         for (index, [x, y]) in tips.iter().enumerate() {
@@ -506,6 +499,7 @@ mod tests {
             joint: 1,
             outline: &[[0.02, 0.0], [0.0, -0.2], [-0.02, 0.0]],
             pivot: &pivot,
+            tips: &pivot,
             spline: &angles,
             linear: &angles,
         };
