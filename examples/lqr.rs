@@ -1,9 +1,7 @@
-//! A cart swings its pole up and balances it: `cargo run --release --example lqr` draws
-//! `target/lqr.svg`.
+//! A cart swings its pole up and balances it: drawn in `target/lqr.svg`.
 //!
 //! Far from the top the force pumps energy into the pole (Åström and Furuta 2000); near it a linear
-//! quadratic regulator takes over, whose gain is the fixed point of Riccati's equation in discrete
-//! time.
+//! quadratic regulator takes over, whose gain comes from Riccati's equation in discrete time.
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -14,7 +12,6 @@ use std::f64::consts::PI;
 use std::fmt::Write;
 
 lagrangian! {
-    /// A cart with a pole.
     #[derive(Clone)]
     pub struct CartPole { M: kg, m: kg, L: m, b: N*s/m, g: m/s^2 = 9.81 }
     coordinate s: m;
@@ -31,7 +28,7 @@ lagrangian! {
 /// The gain of the regulator about the top, for a period in seconds.
 fn gain(cart: &CartPole, period: f64) -> Result<RowVector4<f64>, &'static str> {
     let model = state_space(&cart.clone().controlled_by(|_, _, _| 0.0), 0.0, &[0.0; 2], &[0.0; 2]);
-    // Over a period with a constant force: the exponential of A and B together.
+    // Over a period: the exponential of A and B together.
     let mut both = SMatrix::<f64, 5, 5>::zeros();
     both.view_mut((0, 0), (4, 4)).copy_from(&model.a);
     both.view_mut((0, 4), (4, 1)).copy_from(&model.b);
@@ -62,29 +59,21 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let lacks = own.m * own.L * (own.L * v[1] * v[1] / 2.0 + own.g * (θ.cos() - 1.0));
         (25.0 * lacks * v[1] * θ.cos()).clamp(-4.0, 4.0) - 2.0 * q[0] - v[0]
     });
-    let run = solve(&robot, (0.0, 9.0), [0.0, PI], [0.0, 0.05]).rtol(1e-9).every(0.03).run()?;
-    let mut svg =
-        String::from("<svg xmlns='http://www.w3.org/2000/svg' viewBox='-110 -62 220 124'>");
-    svg += "<rect x='-110' y='-62' width='220' height='124' fill='#fbfaf7'/><path d='M-110 0H110' stroke='#c9c4b8'/>";
+    let run = solve(&robot, (0.0, 9.0), [0.0, PI], [0.0, 0.05]).rtol(1e-9).every(0.02).run()?;
+    let mut svg = String::from(
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='-110 -62 220 124' stroke-width='.6'><g transform='scale(1 -1)'>\
+         <rect x='-110' y='-62' width='220' height='124' fill='#fbfaf7'/><path d='M-110 0H110' stroke='#c9c4b8'/>",
+    );
     let mut way = String::new();
     for (k, state) in run.iter().enumerate() {
         let [x, y] = robot.tip(state.t, &state.q, &state.v).map(|x| 100.0 * x);
         let (s, shade) = (100.0 * state.q[0], 0.1 + 0.6 * (k as f64 / run.len() as f64).powi(2));
-        writeln!(
-            svg,
-            "<path d='M{s:.1} 0L{x:.1} {:.1}' stroke='#345' stroke-width='.5' opacity='{shade:.2}'/>",
-            -y
-        )?;
-        write!(way, " {x:.1},{:.1}", -y)?;
+        write!(svg, "<path d='M{s:.1} 0L{x:.1} {y:.1}' stroke='#345' opacity='{shade:.2}'/>")?;
+        write!(way, " {x:.1},{y:.1}")?;
     }
-    write!(svg, "<polyline points='{way}' fill='none' stroke='#c2410c' stroke-width='.8'/></svg>")?;
+    write!(svg, "<polyline points='{way}' fill='none' stroke='#c2410c'/></g></svg>")?;
     std::fs::write("target/lqr.svg", svg)?;
-    println!("{}", run.stats);
-    println!(
-        "the pole stands off by {:.0e} rad, the cart by {:.0e} m",
-        run.end.q[1].sin(),
-        run.end.q[0]
-    );
-    println!("drawn: target/lqr.svg");
-    if run.end.q[1].cos() < 0.9999 { Err("the pole has fallen".into()) } else { Ok(()) }
+    let [s, θ] = run.end.q;
+    println!("{}\npole off by {:.0e} rad, cart by {s:.0e} m: target/lqr.svg", run.stats, θ.sin());
+    if θ.cos() < 0.9999 { Err("the pole has fallen".into()) } else { Ok(()) }
 }
