@@ -67,6 +67,18 @@ mod blocks {
     }
 
     lagrangian! {
+        /// An arm with a motor in its joint.
+        #[derive(Clone)]
+        pub struct Arm { m: kg, L: m, g: m/s^2 = 9.81 }
+        coordinate θ: rad;
+        input τ: N*m;
+        let y = L*[sin(θ), -cos(θ)];
+        kinetic = m/2*|ẏ|^2;
+        potential = m*g*height(y);
+        force θ = τ;
+    }
+
+    lagrangian! {
         /// Masses in a line, on springs that pull against a weight each.
         pub struct Line { k: N/m, m: kg, g: m/s^2 = 9.81 }
         coordinate x[4]: m;
@@ -120,6 +132,19 @@ fn a_pendulum_leans_on_an_accelerated_pivot() {
     let bob = Bob::new(0.4).driven_by(pivot);
     let q = equilibrium(&bob, 3.0, [0.1]).unwrap();
     assert!((q[0] - (4.0_f64 / 9.81).atan()).abs() < 1e-15, "{q:?}");
+}
+
+#[test]
+fn a_motor_holds_an_arm_where_its_torque_balances_the_weight() {
+    let arm = Arm::new(2.0, 0.5);
+    let weight = 2.0 * 9.81 * 0.5;
+    let held = arm.clone().controlled_by(|_, _, _| 3.0);
+    let q = equilibrium(&held, 0.0, [0.1]).unwrap();
+    assert!((q[0].sin() - 3.0 / weight).abs() < 1e-15, "{q:?}");
+    // A spring by feedback: m g L sin θ = 8 (1 − θ), whose derivative is part of Newton's step.
+    let sprung = arm.controlled_by(|_, q: &[f64; 1], v: &[f64; 1]| 8.0 * (1.0 - q[0]) - v[0]);
+    let q = equilibrium(&sprung, 0.0, [0.1]).unwrap();
+    assert!((weight * q[0].sin() - 8.0 * (1.0 - q[0])).abs() < 1e-14, "{q:?}");
 }
 
 #[test]
