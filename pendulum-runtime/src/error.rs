@@ -131,6 +131,13 @@ pub enum Error {
         /// The index of the event in the list given.
         event: usize,
     },
+    /// An event acts, and an integration back in time would have to undo what it does.
+    Backwards {
+        /// The time at which the way back was to begin.
+        t: f64,
+        /// The index of the event in the list given.
+        event: usize,
+    },
     /// What was saved is no integration like the one that is to go on from it.
     Saved {
         /// The system that was integrated.
@@ -216,8 +223,8 @@ impl fmt::Display for Error {
             Self::Interval { start, end } if start.is_finite() && end.is_finite() => {
                 write!(
                     f,
-                    "the end {end:?} lies before the start {start:?}; swap them, or go back in time with `Taylor` and without events, \
-                     which are looked for forwards only"
+                    "the end {end:?} lies before the start {start:?}; swap them, or let every motion say by `kink_before` \
+                     which kinks come back in time; sampled controllers go forwards only"
                 )
             }
             Self::Interval { start, end } => {
@@ -326,6 +333,10 @@ impl fmt::Display for Error {
                 "at t = {t:?} event {event} acts and the motion stays where its function is zero; \
                  let the action give a velocity that leads away, or end there by `.terminal()` or `.rest_below(speed)`"
             ),
+            Self::Backwards { t, event } => write!(
+                f,
+                "event {event} acts, and there is no way back in time from t = {t:?}; leave out `then`, or go forwards"
+            ),
             Self::Saved { ref system, ref method } => write!(
                 f,
                 "what was saved is an integration of `{system}` by `{method}` that does not fit; \
@@ -422,10 +433,7 @@ mod tests {
     #[test]
     fn intervals_that_are_reversed_and_infinite_differ() {
         let message = Error::Interval { start: 1.0, end: 0.0 }.to_string();
-        assert!(
-            message.contains("before") && message.contains("`Taylor` and without events"),
-            "{message}"
-        );
+        assert!(message.contains("before") && message.contains("`kink_before`"), "{message}");
         assert!(
             Error::Interval { start: -1e308, end: 1e308 }.to_string().contains("beyond the range")
         );

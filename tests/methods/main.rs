@@ -5,6 +5,7 @@
 pub mod acts;
 pub mod around;
 pub mod auto;
+pub mod back;
 pub mod batch;
 pub mod control;
 pub mod extremes;

@@ -163,7 +163,7 @@ where
         Ok(Integrator { integration, detector, found, ended, max_steps, goal })
     }
 
-    /// Looks for events from here on, forwards in time.
+    /// Looks for events from here on, forwards and back in time; those that act have no way back.
     ///
     /// A terminal one ends the step and the call that leads to it, with the state at the event; the
     /// next call goes on from there, or from where [`reset`](Self::reset) has put the state.
@@ -203,6 +203,18 @@ where
         self.step_towards(target)
     }
 
+    /// Whether there is a way back in time.
+    #[cold]
+    fn check_back(&self, t: f64) -> Result<(), Error> {
+        if !self.integration.method.goes_back(&self.integration.dynamics) {
+            return Err(Error::Interval { start: self.t(), end: t });
+        }
+        match self.detector.acting() {
+            Some(event) => Err(Error::Backwards { t: self.t(), event }),
+            None => Ok(()),
+        }
+    }
+
     /// Whether the end of the interval is reached.
     fn is_at_end(&self) -> bool {
         0.0 <= self.goal.onwards * self.integration.end.t.since(self.goal.end)
@@ -229,8 +241,11 @@ where
         C: Controller<M, D, N>,
     {
         let target = self.next_stop(target);
-        let event = self.detector.next_time();
-        self.integration.step(if event < target { event } else { target })?;
+        let target = self.detector.next_time(self.t(), target);
+        if target < self.t() {
+            self.check_back(target)?;
+        }
+        self.integration.step(target)?;
         let ended = self.detector.observe(&mut self.integration);
         self.found.extend_from_slice(self.detector.found());
         self.ended = ended?;
@@ -238,19 +253,18 @@ where
     }
 
     /// Takes steps until the time is exactly `t`, or a terminal event has happened; methods that
-    /// can go back in time do so for an earlier time, if there are no events to look for.
+    /// can go back in time do so for an earlier time, unless an event acts.
     pub fn advance_to(&mut self, t: f64) -> Result<(), Error>
     where
         C: Controller<M, D, N>,
     {
         self.found.clear();
         self.ended = None;
-        if !((self.t() <= t
-            || self.integration.method.goes_back(&self.integration.dynamics)
-                && self.detector.is_idle())
-            && t.is_finite())
-        {
+        if !t.is_finite() {
             return Err(Error::Interval { start: self.t(), end: t });
+        }
+        if t < self.t() {
+            self.check_back(t)?;
         }
         let steps = |stats: &Stats| stats.accepted + stats.rejected;
         let before = steps(&self.integration.stats);

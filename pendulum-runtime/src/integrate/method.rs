@@ -112,16 +112,18 @@ pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fm
         let _ = (workspace, memory);
     }
 
-    /// Whether the method goes back in time too.
+    /// Whether the method goes back in time too; by default if the kinks that come there are known.
     fn goes_back(&self, dynamics: &D) -> bool {
-        let _ = dynamics;
-        false
+        dynamics.kink_before(0.0).is_some()
     }
 
     /// The next kink after `t`, or the last one before it.
     fn kink(&self, dynamics: &D, t: f64, backwards: bool) -> Option<f64> {
-        let _ = backwards;
-        dynamics.next_kink(t)
+        if backwards {
+            dynamics.kink_before(t).filter(|kink| f64::NEG_INFINITY < *kink)
+        } else {
+            dynamics.next_kink(t)
+        }
     }
 }
 

@@ -18,7 +18,7 @@
 //! | [`Tsit5`] | 5 | 6 | adaptive | any system, errors 1e-2 … 1e-6 |
 //! | [`Dop853`] | 8 | 12 | adaptive | any system, errors 1e-6 … 1e-13 |
 //! | [`Picard`] | 16 | eight in one go, four to seven times | adaptive | any generated system, errors 1e-2 … 1e-13: the fastest of all for most |
-//! | [`Taylor`] | 2 … 30 | its order | adaptive, back in time too | any generated system, errors 1e-5 … rounding |
+//! | [`Taylor`] | 2 … 30 | its order | adaptive | any generated system, errors 1e-5 … rounding |
 //!
 //! [`Batch`] takes many motions of one system through `Taylor` side by side.
 //!

@@ -26,8 +26,8 @@ use core::ops::ControlFlow;
 ///
 /// Without further calls it uses the method that [`Auto`] chooses, with `rtol` and `atol` 1e-6, and
 /// gives the end state; [`Stats`] say which method it was. If motions have a kink at the start, `v`
-/// is the velocity after it. An interval that ends before it starts leads back in time; of the
-/// methods here only [`Taylor`](crate::integrate::Taylor) does that.
+/// is the velocity after it. An interval that ends before it starts leads back in time, by every
+/// method, if the motions say their [kinks](crate::motion::Motion::kink_before) and no event acts.
 ///
 /// Steps over a [`Function`](crate::motion::Function) without a resolution are at most a fiftieth
 /// of the interval long, as [`AdaptiveStep`] describes.
@@ -321,8 +321,8 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
                 return Err(Error::MaxSteps { t: integration.t(), max_steps: self.max_steps });
             }
             while stops.next_if(|stop| !ahead(&integration.end, *stop)).is_some() {}
-            let (stop, event) = (stops.peek().copied().unwrap_or(end), detector.next_time());
-            integration.step(if event < stop { event } else { stop })?;
+            let stop = stops.peek().copied().unwrap_or(end);
+            integration.step(detector.next_time(integration.t(), stop))?;
             if !ahead(&integration.end, end) {
                 integration.look()?;
             }
@@ -352,10 +352,13 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         C: Controller<M, D, N>,
     {
         let (start, end) = self.time;
-        if !((end - start).is_finite()
-            && (start <= end || self.method.goes_back(self.dynamics) && self.events.is_empty()))
-        {
+        if !((end - start).is_finite() && (start <= end || self.method.goes_back(self.dynamics))) {
             return Err(Error::Interval { start, end });
+        }
+        if end < start
+            && let Some(event) = self.events.iter().position(|event| event.action.is_some())
+        {
+            return Err(Error::Backwards { t: start, event });
         }
         self.controller.check()?;
         self.output.check(start, end, streamed)?;

@@ -197,6 +197,10 @@ impl<const N: usize, D: Dynamics<N>> Dynamics<N> for Known<'_, D> {
         self.0.next_kink(t)
     }
 
+    fn kink_before(&self, t: f64) -> Option<f64> {
+        self.0.kink_before(t)
+    }
+
     #[inline]
     fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
         self.0.longest_step(t, widths, unknown)

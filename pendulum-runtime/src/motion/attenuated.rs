@@ -155,6 +155,15 @@ impl<T: Real, const D: usize, M: Motion<T, D> + Motion<f64, D>> Motion<T, D> for
         earlier(own, self.crossing(t, own.unwrap_or(f64::INFINITY)))
     }
 
+    /// Unknown where the speed passes the limit.
+    fn kink_before(&self, t: f64) -> Option<f64> {
+        if self.limit == f64::INFINITY {
+            Motion::<f64, D>::kink_before(&self.motion, t)
+        } else {
+            None
+        }
+    }
+
     fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
         Motion::<f64, D>::longest_step(&self.motion, t, widths)
     }

@@ -77,6 +77,10 @@ impl<T: Real, const D: usize> Motion<T, D> for CatmullRom<D> {
         self.0.next_kink(t)
     }
 
+    fn kink_before(&self, t: f64) -> Option<f64> {
+        Some(self.0.last_kink(t).unwrap_or(f64::NEG_INFINITY))
+    }
+
     // No bound: steps end at all keys but those at which the acceleration does not jump.
     fn longest_step(&self, _: f64, _: f64) -> Option<f64> {
         Some(f64::INFINITY)

@@ -119,6 +119,10 @@ impl<T: Real, const D: usize> Motion<T, D> for Clip<D> {
         }
     }
 
+    fn kink_before(&self, t: f64) -> Option<f64> {
+        Some(self.pieces().last_kink(t).unwrap_or(f64::NEG_INFINITY))
+    }
+
     fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
         match &self.curve {
             Curve::Linear(curve) => Motion::<T, D>::longest_step(curve, t, widths),

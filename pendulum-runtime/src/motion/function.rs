@@ -180,6 +180,11 @@ impl<T: Real, const D: usize, X: MaybeFunction<D>, V: MaybeFunction<D>, A: Maybe
         self.kinks.get(index).copied()
     }
 
+    fn kink_before(&self, t: f64) -> Option<f64> {
+        let index = self.kinks.partition_point(|&kink| kink < t);
+        Some(self.kinks[..index].last().copied().unwrap_or(f64::NEG_INFINITY))
+    }
+
     fn longest_step(&self, _: f64, widths: f64) -> Option<f64> {
         self.resolution.map(|resolution| widths * resolution)
     }

@@ -19,6 +19,13 @@ pub trait Motions<Inputs> {
     /// The first kink of any of them after `t`.
     fn next_kink(&self, t: f64) -> Option<f64>;
 
+    /// The last kink of any of them before `t`, as [`Motion::kink_before`]; `None` if one of them does
+    /// not know.
+    fn kink_before(&self, t: f64) -> Option<f64> {
+        let _ = t;
+        None
+    }
+
     /// The least of the answers of [`Motion::longest_step`], with `unknown` for those that do not
     /// know.
     fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
@@ -49,6 +56,10 @@ impl Motions<()> for () {
 
     fn next_kink(&self, _: f64) -> Option<f64> {
         None
+    }
+
+    fn kink_before(&self, _: f64) -> Option<f64> {
+        Some(f64::NEG_INFINITY)
     }
 
     #[inline]
@@ -86,6 +97,12 @@ macro_rules! tuples {
                 let mut next = None;
                 $(next = earlier(next, self.$index.next_kink(t));)+
                 next
+            }
+
+            fn kink_before(&self, t: f64) -> Option<f64> {
+                let mut last = f64::NEG_INFINITY;
+                $(last = f64::max(last, self.$index.kink_before(t)?);)+
+                Some(last)
             }
 
             #[inline]

@@ -46,6 +46,14 @@ pub trait Motion<T: Real, const D: usize> {
     /// acceleration jumps.
     fn next_kink(&self, t: f64) -> Option<f64>;
 
+    /// The last time before `t` (never `t` itself) at which the position, the velocity or the
+    /// acceleration jumps; −∞ if there is none, and `None` if that is not known: integrations do not
+    /// go back in time then.
+    fn kink_before(&self, t: f64) -> Option<f64> {
+        let _ = t;
+        None
+    }
+
     /// The longest step from `t` that cannot go unseen over anything that the motion does, in
     /// seconds, where a step may be `widths` times as long as the narrowest of it; infinite if
     /// nothing is too narrow for any step, and `None` if that is not known.

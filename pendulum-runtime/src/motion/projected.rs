@@ -54,6 +54,10 @@ impl<T: Real, M: Motion<T, 3>> Motion<T, 2> for Projected<M> {
         self.0.motion.next_kink(t)
     }
 
+    fn kink_before(&self, t: f64) -> Option<f64> {
+        self.0.motion.kink_before(t)
+    }
+
     fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
         self.0.motion.longest_step(t, widths)
     }

@@ -128,6 +128,10 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
         lanes
     }
 
+    fn kink_before(&self, _: f64) -> Option<f64> {
+        Some(f64::NEG_INFINITY)
+    }
+
     fn next_kink(&self, _: f64) -> Option<f64> {
         None
     }

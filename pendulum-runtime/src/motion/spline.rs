@@ -198,6 +198,10 @@ impl<T: Real, const D: usize> Motion<T, D> for Spline<D> {
         self.0.next_kink(t)
     }
 
+    fn kink_before(&self, t: f64) -> Option<f64> {
+        Some(self.0.last_kink(t).unwrap_or(f64::NEG_INFINITY))
+    }
+
     // Only some methods end their steps at keys without a kink.
     fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
         Some(self.0.longest_step(t, widths))

@@ -33,6 +33,10 @@ impl<T: Real, const D: usize> Motion<T, D> for Still<D> {
         sample
     }
 
+    fn kink_before(&self, _: f64) -> Option<f64> {
+        Some(f64::NEG_INFINITY)
+    }
+
     fn next_kink(&self, _: f64) -> Option<f64> {
         None
     }

@@ -25,6 +25,10 @@ impl<T: Real, const D: usize> Motion<T, D> for ControlSlot {
         Sample::zero()
     }
 
+    fn kink_before(&self, _: f64) -> Option<f64> {
+        Some(f64::NEG_INFINITY)
+    }
+
     fn next_kink(&self, _: f64) -> Option<f64> {
         None
     }
@@ -202,6 +206,10 @@ where
 
     fn next_kink(&self, t: f64) -> Option<f64> {
         self.driven.motions.next_kink(t)
+    }
+
+    fn kink_before(&self, t: f64) -> Option<f64> {
+        self.driven.motions.kink_before(t)
     }
 
     #[inline]

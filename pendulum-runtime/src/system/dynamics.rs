@@ -42,6 +42,13 @@ pub trait Dynamics<const N: usize> {
     /// The first time after `t` at which a derivative of a driven input jumps.
     fn next_kink(&self, t: f64) -> Option<f64>;
 
+    /// The last such time before `t`; −∞ if there is none, and `None` if that is not known:
+    /// integrations do not go back in time then.
+    fn kink_before(&self, t: f64) -> Option<f64> {
+        let _ = t;
+        None
+    }
+
     /// The longest step from `t` over the motions, as
     /// [`Motion::longest_step`](crate::motion::Motion::longest_step); `unknown` stands for the
     /// answer of those that do not know, and of dynamics with inputs that do not say it.
@@ -200,6 +207,10 @@ impl<const N: usize, S: System<N, Inputs: NoInputs<S>>> Dynamics<N> for S {
     fn next_kink(&self, _: f64) -> Option<f64> {
         None
     }
+
+    fn kink_before(&self, _: f64) -> Option<f64> {
+        Some(f64::NEG_INFINITY)
+    }
 }
 
 /// A system and the motions of its driven inputs.
@@ -244,6 +255,10 @@ impl<const N: usize, S: System<N>, M: Motions<S::Inputs>> Dynamics<N> for Driven
 
     fn next_kink(&self, t: f64) -> Option<f64> {
         self.motions.next_kink(t)
+    }
+
+    fn kink_before(&self, t: f64) -> Option<f64> {
+        self.motions.kink_before(t)
     }
 
     #[inline]

@@ -370,7 +370,6 @@ fn intervals(_: Scale, report: &mut Report) {
         [matches!(here, Ok((t, q, v)) if t == 3.0 && q == 1.3 && v == 0.0)],
     );
     let bad = [
-        (1.0, 0.0),
         (0.0, f64::INFINITY),
         (f64::NEG_INFINITY, 0.0),
         (f64::NAN, 1.0),
@@ -378,7 +377,7 @@ fn intervals(_: Scale, report: &mut Report) {
         (-1e308, 1e308),
     ];
     report.failures(
-        "backwards, infinite and undefined intervals are refused",
+        "infinite and undefined intervals are refused",
         bad.map(|(start, end)| {
             matches!(run(start, end), Err(Failure { error: Error::Interval { .. }, .. }))
         }),

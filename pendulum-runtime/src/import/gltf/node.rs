@@ -182,6 +182,25 @@ impl<T: Real> Motion<T, 3> for NodeMotion {
         sample
     }
 
+    fn kink_before(&self, t: f64) -> Option<f64> {
+        let none = f64::NEG_INFINITY;
+        if !self.looped {
+            let index = self.kinks.partition_point(|&kink| kink < t);
+            return Some(self.kinks[..index].last().copied().unwrap_or(none));
+        }
+        if self.kinks.is_empty() || !t.is_finite() {
+            return Some(none);
+        }
+        let period = self.duration;
+        let turns = (t / period).floor();
+        let slack = 4.0 * f64::EPSILON * (t.abs() + period);
+        let found = [turns + 1.0, turns, turns - 1.0, turns - 2.0].into_iter().find_map(|turn| {
+            let kinks = self.kinks.iter().rev();
+            kinks.map(|&kink| kink + turn * period).find(|&kink| kink < t - slack)
+        });
+        Some(found.unwrap_or(none))
+    }
+
     fn next_kink(&self, t: f64) -> Option<f64> {
         if !self.looped {
             let index = self.kinks.partition_point(|&kink| kink <= t);

@@ -20,6 +20,8 @@ use crate::time::Time;
 pub(crate) struct EventDetector<'a, T, const N: usize> {
     events: Vec<Event<'a, T, N>>,
     tracks: Vec<Track<T>>,
+    /// The last step went back in time.
+    backwards: bool,
     /// Whether the next step is the first of a smooth stretch, before which there is nothing.
     fresh: bool,
     /// What happened in the last step, in order.
@@ -93,6 +95,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         Self {
             events: events.to_vec(),
             tracks: vec![track; events.len()],
+            backwards: false,
             fresh: true,
             found: Vec::with_capacity(events.len()),
         }
@@ -102,6 +105,11 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
     #[inline]
     pub(crate) fn is_idle(&self) -> bool {
         self.events.is_empty()
+    }
+
+    /// Returns the index of the first event that acts.
+    pub(crate) fn acting(&self) -> Option<usize> {
+        self.events.iter().position(|event| event.action.is_some())
     }
 
     /// What happened in the last step.
@@ -145,6 +153,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         if self.is_idle() {
             return Ok(None);
         }
+        self.backwards = integration.goes_back();
         let rooted = self.events.iter().any(|event| matches!(event.condition, Condition::Root(_)));
         let interpolant = if rooted { integration.interpolant() } else { None };
         let (end, beyond) = integration.ends();
@@ -411,15 +420,24 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         Ok(())
     }
 
-    /// The next known time, infinite if there is none.
-    pub(crate) fn next_time(&self) -> f64 {
+    /// The first known time between the time `t` and `target`, or `target`.
+    pub(crate) fn next_time(&self, t: f64, target: f64) -> f64 {
+        if target < t {
+            let times = self.events.iter().filter_map(|event| match &event.condition {
+                Condition::Times(times) => {
+                    times[..times.partition_point(|time| *time < t)].last().copied()
+                }
+                Condition::Root(_) => None,
+            });
+            return times.fold(target, |first, time| if first < time { time } else { first });
+        }
         let times = self.events.iter().zip(&self.tracks).filter_map(|(event, track)| match &event
             .condition
         {
             Condition::Times(times) => times.get(track.next).copied(),
             Condition::Root(_) => None,
         });
-        times.fold(f64::INFINITY, |first, time| if time < first { time } else { first })
+        times.fold(target, |first, time| if time < first { time } else { first })
     }
 
     /// Finds what happened in the step of `interpolant` that ended in `end`, and then, over a kink, in
@@ -434,6 +452,14 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         let fresh = self.fresh;
         for index in 0..self.events.len() {
             match &self.events[index].condition {
+                Condition::Times(times) if self.backwards => {
+                    let at = end.t.to_f64();
+                    // Those ahead when it goes forwards again.
+                    self.tracks[index].next = times.partition_point(|time| *time <= at);
+                    if times.binary_search_by(|time| time.total_cmp(&at)).is_ok() {
+                        self.found.push(occurrence(index, end));
+                    }
+                }
                 Condition::Times(times) => {
                     while times
                         .get(self.tracks[index].next)
@@ -460,8 +486,8 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
                 (occurrence.state, occurrence.after) = (beyond.into(), beyond.into());
             }
         }
-        let start = end.t.to_f64();
-        let before = |a: &Occurrence<T, N>| (a.time.since(start), a.event);
+        let (start, onwards) = (end.t.to_f64(), if self.backwards { -1.0 } else { 1.0 });
+        let before = |a: &Occurrence<T, N>| (onwards * a.time.since(start), a.event);
         self.found.sort_unstable_by(|a, b| {
             before(a).partial_cmp(&before(b)).unwrap_or(core::cmp::Ordering::Equal)
         });
@@ -680,6 +706,8 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
     }
 
     fn counts(&self, index: usize, here: i8) -> bool {
+        // Directions are those of time.
+        let here = if self.backwards { -here } else { here };
         match self.events[index].direction {
             Direction::Both => true,
             Direction::Rising => here == 1,

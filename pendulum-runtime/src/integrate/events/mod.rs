@@ -149,7 +149,7 @@ impl<'a, T: Float, const N: usize> Event<'a, T, N> {
         }
     }
 
-    /// Counts sign changes in one direction only.
+    /// Counts sign changes in one direction only: that of time, also where an integration goes back.
     pub fn direction(mut self, direction: Direction) -> Self {
         self.direction = direction;
         self

@@ -26,7 +26,7 @@ use crate::system::{Dynamics, System};
 /// | | [`Taylor`] for linear systems without time and driven inputs, whose series converge everywhere |
 /// | | [`Taylor`] back in time, where there are series: every motion is [`Analytic`](crate::motion::Analytic) and the accelerations contain no `abs`, `sign`, `min` or `max` of something that moves |
 /// | fixed | [`Srkn14a`](crate::integrate::Srkn14a), which is symplectic, for velocity-free systems, [`Dop853`] for others |
-/// | | [`Taylor`] back in time |
+/// | | [`Taylor`] back in time, where there are series |
 ///
 /// Scalars of two words stand in no lanes. `Taylor` takes the place of `Picard` there, for every
 /// tolerance if the equations are short, as for one pendulum, below 2e-7 if they are longer, as for
@@ -125,8 +125,7 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Method<D, N> for Auto {
         workspace: &mut AnyWorkspace<D, N>,
     ) -> Endpoint<D::Scalar, N> {
         workspace.chosen_for = None;
-        if interval.h < 0.0 {
-            // The stages of the others would see a kink at the start from the wrong side.
+        if interval.h < 0.0 && goes_by_series(field.dynamics) {
             workspace.choice = Some(Choice::Taylor);
             let known = Known(field.dynamics);
             let mut series = Field::new(&known, field.prepared);
@@ -212,11 +211,17 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Method<D, N> for Auto {
     }
 
     fn goes_back(&self, dynamics: &D) -> bool {
-        goes_by_series(dynamics)
+        goes_by_series(dynamics) || dynamics.kink_before(0.0).is_some()
     }
 
     fn kink(&self, dynamics: &D, t: f64, backwards: bool) -> Option<f64> {
-        if backwards { dynamics.last_kink(t) } else { dynamics.next_kink(t) }
+        if !backwards {
+            return dynamics.next_kink(t);
+        }
+        if goes_by_series(dynamics) {
+            return dynamics.last_kink(t);
+        }
+        dynamics.kink_before(t).filter(|kink| f64::NEG_INFINITY < *kink)
     }
 }
 
@@ -240,7 +245,7 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Controller<Auto, D, N> f
         let backwards = target < from.t.to_f64();
         let (rtol, _) = self.tolerances::<D::Scalar>();
         if workspace.chosen_for != Some(rtol)
-            || backwards && workspace.choice != Some(Choice::Taylor)
+            || backwards && workspace.choice != Some(Choice::Taylor) && goes_by_series(dynamics)
         {
             let choice = Auto::adaptive(dynamics, rtol, backwards);
             (workspace.choice, workspace.chosen_for) = (Some(choice), Some(rtol));

@@ -8,7 +8,6 @@ use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::gap::{all, widest};
 use crate::integrate::step::interval::StepInterval;
-use crate::motion::Side;
 use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Jacobians, System};
 
@@ -130,7 +129,7 @@ impl<T: Float, const N: usize> Linear<T, N> {
         a: &[T; N],
     ) -> Self {
         let (q, v) = (&from.q.high, &from.v.high);
-        let [by_q, by_v] = field.jacobians(from.t, Side::After, q, v);
+        let [by_q, by_v] = field.jacobians(from.t, interval.side(), q, v);
         let scale = T::from_f64(GAMMA * interval.h);
         let stiffness: Square<T, N> =
             core::array::from_fn(|i| core::array::from_fn(|j| by_q[(i, j)]));
@@ -149,7 +148,7 @@ impl<T: Float, const N: usize> Linear<T, N> {
             // the method, and not so close that rounding is seen.
             let part = T::EPSILON.sqrt().sqrt().to_f64();
             let [once, twice] = [part, 2.0 * part]
-                .map(|part| field.at(from.t + part * interval.h, Side::After, q, v));
+                .map(|part| field.at(from.t + part * interval.h, interval.side(), q, v));
             let (four, three, two) = (T::from_f64(4.0), T::from_f64(3.0), T::from_f64(2.0 * part));
             core::array::from_fn(|i| (four * once[i] - twice[i] - three * a[i]) / two)
         };

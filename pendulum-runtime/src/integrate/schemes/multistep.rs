@@ -13,7 +13,6 @@ use crate::integrate::step::compensated::Compensated;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
-use crate::motion::Side;
 use crate::scalar::Float;
 use crate::system::Dynamics;
 use crate::time::Time;
@@ -79,7 +78,7 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
         interval: &StepInterval,
         from: &mut Endpoint<T, N>,
     ) -> Endpoint<T, N> {
-        let same_step = (interval.h - self.h).abs() <= 1e-10 * self.h;
+        let same_step = (interval.h - self.h).abs() <= 1e-10 * self.h.abs();
         let same_state = self.end == (from.t, from.q, from.v.high);
         let goes_on = self.points != 0 && same_step && from.a.is_some() && same_state;
         if goes_on && self.points == P {
@@ -114,7 +113,7 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
         let kick = T::from_f64(C::BETA[0]);
         let (weight, rest) = (last * h * kick, older.map(|older| last * h * older));
         q.add(T::from_f64(1.0), &core::array::from_fn(|i| weight * newest[i] + rest[i]));
-        let a = field.at(interval.end, Side::Before, &q.high, &from.v.high);
+        let a = field.at(interval.end, interval.side().opposite(), &q.high, &from.v.high);
         let d = core::array::from_fn(|i| kick * newest[i] + older[i]);
         self.w.add(h, &d);
         // v = w + h ∫ u f(t + u h) du over [0, 1].

@@ -13,7 +13,6 @@ use crate::integrate::step::fast_exp2::{exp2, log2};
 use crate::integrate::step::field::coordinate;
 use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::short::shortest;
-use crate::motion::Side;
 use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, System};
 use crate::time::Time;
@@ -202,7 +201,7 @@ where
             return f64::NAN;
         }
         let weights = self.in_one_word::<D::Scalar>().weights(from, to);
-        method.error(workspace, interval.h, &weights)
+        method.error(workspace, interval.h.abs(), &weights)
     }
 
     #[inline]
@@ -214,7 +213,7 @@ where
         interval: &StepInterval,
         error: f64,
     ) -> Result<Verdict, Error> {
-        let (response, h, wanted) = (M::RESPONSE, interval.h, trial.wanted);
+        let (response, h, wanted) = (M::RESPONSE, interval.h.abs(), trial.wanted);
         let retried = 0 < trial.rejected;
         if error <= 1.0 {
             let error = log2(error);
@@ -353,7 +352,8 @@ impl<const N: usize> AdaptiveStep<N> {
     {
         let a0 = context.started()?;
         let StepContext { field, from, target, .. } = context;
-        let limit = -from.t.since(*target);
+        let (limit, backwards) = (from.t.since(*target).abs(), *target < from.t.to_f64());
+        let towards = if backwards { -1.0 } else { 1.0 };
         let weights = self.weights(from, from);
         let norm = |q: &[D::Scalar; N], v: &[D::Scalar; N]| {
             (weights.square_sum(q, v) / (2 * N) as f64).sqrt()
@@ -364,10 +364,10 @@ impl<const N: usize> AdaptiveStep<N> {
         // An overflow in the norms leaves nothing to go by.
         let guess = if 1e-100 < guess { guess } else { 1e-6 };
         let h = if limit < guess { limit } else { guess };
-        let step = D::Scalar::from_f64(h);
+        let step = D::Scalar::from_f64(towards * h);
         let q1 = core::array::from_fn(|i| q0[i] + step * v0[i]);
         let v1 = core::array::from_fn(|i| v0[i] + step * a0[i]);
-        let a1 = field.at(from.t + h, Side::Before, &q1, &v1);
+        let a1 = field.at(from.t + towards * h, field.side().opposite(), &q1, &v1);
         let change = norm(
             &core::array::from_fn(|i| v1[i] - v0[i]),
             &core::array::from_fn(|i| a1[i] - a0[i]),

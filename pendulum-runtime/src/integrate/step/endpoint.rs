@@ -39,7 +39,8 @@ impl<T: Float, const N: usize> Endpoint<T, N> {
         &mut self,
         field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
     ) -> [T; N] {
-        self.acceleration(field, Side::After)
+        let side = field.side();
+        self.acceleration(field, side)
     }
 
     /// The accelerations at the end of a step.
@@ -48,7 +49,8 @@ impl<T: Float, const N: usize> Endpoint<T, N> {
         &mut self,
         field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
     ) -> [T; N] {
-        self.acceleration(field, Side::Before)
+        let side = field.side().opposite();
+        self.acceleration(field, side)
     }
 
     #[inline]

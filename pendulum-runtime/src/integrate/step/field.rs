@@ -25,6 +25,8 @@ pub struct Field<'a, D: Dynamics<N>, const N: usize, const WATCHED: bool = false
     pub(crate) prepared: &'a PreparedOf<D, N>,
     /// The number of evaluations.
     pub(crate) evaluations: u64,
+    /// The steps go back in time.
+    pub(crate) backwards: bool,
     /// The first number that is not finite.
     pub(crate) findings: Findings,
 }
@@ -44,19 +46,25 @@ impl<'a, D: Dynamics<N>, const N: usize> Field<'a, D, N> {
     /// No evaluation yet.
     #[inline]
     pub(crate) fn new(dynamics: &'a D, prepared: &'a PreparedOf<D, N>) -> Self {
-        Self { dynamics, prepared, evaluations: 0, findings: Findings::default() }
+        Self { dynamics, prepared, evaluations: 0, backwards: false, findings: Findings::default() }
     }
 
     /// The same dynamics, watched.
     pub(crate) fn watched(&self) -> Field<'a, D, N, true> {
-        let Self { dynamics, prepared, .. } = *self;
-        Field { dynamics, prepared, evaluations: 0, findings: Findings::default() }
+        let Self { dynamics, prepared, backwards, .. } = *self;
+        Field { dynamics, prepared, evaluations: 0, backwards, findings: Findings::default() }
     }
 }
 
 impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
     Field<'a, D, N, WATCHED>
 {
+    /// The side from which the start of a step is seen, whose opposite is that of its end.
+    #[inline]
+    pub fn side(&self) -> Side {
+        if self.backwards { Side::Before } else { Side::After }
+    }
+
     /// The dynamics.
     pub fn dynamics(&self) -> &'a D {
         self.dynamics

@@ -79,9 +79,9 @@ impl FixedStep {
     /// The next step from `t` on the way to `target`.
     #[inline]
     fn next(&self, plan: &mut ControllerState, t: Time, target: f64) -> StepInterval {
-        if target == f64::INFINITY {
+        if target.is_infinite() {
             plan.left = 0;
-            return StepInterval::by(t, self.step);
+            return StepInterval::by(t, self.step.copysign(target));
         }
         if plan.left == 0 || plan.target != target {
             let length = -t.since(target);

@@ -166,6 +166,7 @@ where
         let kink_comes_first = if backwards { target < self.kink } else { self.kink < target };
         let target = if kink_comes_first { self.kink } else { target };
         let mut field = Field::new(&*self.dynamics, &self.prepared);
+        field.backwards = self.backwards;
         let mut from = self.end;
         let context = StepContext {
             method: &self.method,
@@ -267,6 +268,7 @@ where
             return self.interpolant;
         }
         let mut field = Field::new(&*self.dynamics, &self.prepared);
+        field.backwards = self.backwards;
         let interpolant =
             self.method.interpolant(&mut field, interval, &mut self.from, to, &mut self.workspace);
         self.stats.evaluations += field.evaluations;
@@ -279,6 +281,7 @@ where
         // The next step meets the same error, and returns it.
         let _ = self.sample();
         let mut field = Field::new(&*self.dynamics, &self.prepared);
+        field.backwards = self.backwards;
         let a = self.end.start_acceleration(&mut field);
         self.stats.evaluations += field.evaluations;
         a
@@ -314,6 +317,11 @@ where
         self.before_kink.get_or_insert(before);
         self.state = ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
         Ok(())
+    }
+
+    /// Whether the last step went back in time.
+    pub(crate) fn goes_back(&self) -> bool {
+        self.backwards
     }
 
     /// The state at the start of the last step.

@@ -59,17 +59,19 @@ impl StepInterval {
             / (number(self.h) + number(self.low))
     }
 
+    /// The side from which its start is seen: that of the step.
+    #[inline]
+    pub fn side(&self) -> Side {
+        if self.h < 0.0 { Side::Before } else { Side::After }
+    }
+
     /// The time `start + c h` and the side from which a kink there is seen: a stage looks into the
     /// step.
     #[inline]
     pub fn at(&self, c: f64) -> (Time, Side) {
-        if c < 0.5 {
-            (self.start + c * self.h, Side::After)
-        } else if c < 1.0 {
-            (self.start + c * self.h, Side::Before)
-        } else {
-            (self.end, Side::Before)
-        }
+        // Back in time the start of the step is its later end.
+        let side = if (c < 0.5) == (self.h < 0.0) { Side::Before } else { Side::After };
+        (if c < 1.0 { self.start + c * self.h } else { self.end }, side)
     }
 }
 
@@ -87,6 +89,11 @@ mod tests {
         assert_eq!(interval.at(0.4).1, Side::After);
         assert_eq!(interval.at(0.6).1, Side::Before);
         assert_eq!(interval.at(1.0), (Time::new(0.3), Side::Before));
+        let back = StepInterval::to(Time::new(0.3), 0.1);
+        assert_eq!(back.at(0.0), (Time::new(0.3), Side::Before));
+        assert_eq!(back.at(0.4).1, Side::Before);
+        assert_eq!(back.at(0.6).1, Side::After);
+        assert_eq!(back.at(1.0), (Time::new(0.1), Side::After));
     }
 
     #[test]

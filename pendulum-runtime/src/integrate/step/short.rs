@@ -30,11 +30,7 @@ pub(crate) fn straight<T: Float, const N: usize, const W: bool>(
     interval: &StepInterval,
     from: &mut Endpoint<T, N>,
 ) -> Endpoint<T, N> {
-    let a = if interval.h < 0.0 {
-        from.end_acceleration(field)
-    } else {
-        from.start_acceleration(field)
-    };
+    let a = from.start_acceleration(field);
     let mut to = Endpoint { t: interval.end, a: None, ..*from };
     for i in 0..N {
         let gain = times(interval.h, a[i]);

@@ -120,10 +120,10 @@ fn a_reset_ends_the_plan_of_equal_steps() {
 }
 
 #[test]
-fn going_back_is_refused_and_changes_nothing() {
+fn times_that_are_none_are_refused_and_change_nothing() {
     let pendulum = pendulum();
     let mut integrator = Integrator::new(&pendulum, Dop853, 1.0, [1.3], [0.0]).unwrap();
-    for t in [0.5, f64::NAN, f64::INFINITY] {
+    for t in [f64::NAN, f64::INFINITY] {
         assert!(matches!(integrator.advance_to(t), Err(Error::Interval { .. })));
     }
     assert_eq!((integrator.t(), integrator.q()), (1.0, &[1.3]));

@@ -6,7 +6,6 @@ use crate::integrate::step::compensated::Compensated;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::{Field, InputsOf};
 use crate::integrate::step::interval::StepInterval;
-use crate::motion::Side;
 use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Jacobians};
 use crate::time::Time;
@@ -232,10 +231,11 @@ impl<T: Float, const N: usize, const S: usize> Linearized<T, N, S> {
         let square = |matrix: &dyn Fn(usize, usize) -> T| -> Square<T, N> {
             core::array::from_fn(|i| core::array::from_fn(|j| matrix(i, j)))
         };
-        let inputs = field.inputs(from.t, Side::After);
+        let inputs = field.inputs(from.t, interval.side());
         let mass = field.mass_matrix(from.t, &from.q.high, &from.v.high, &inputs);
         let mass_matrix = square(&|i, j| mass[(i, j)]);
-        let [stiffness, damping] = field.jacobians(from.t, Side::After, &from.q.high, &from.v.high);
+        let [stiffness, damping] =
+            field.jacobians(from.t, interval.side(), &from.q.high, &from.v.high);
         let a = |i: usize, j: usize| tableau.ratios[i][j] * tableau.weights[j];
         let factors = Factors::new(|i, j| {
             let first = T::from_f64(interval.h * a(i, j));

@@ -10,7 +10,6 @@ use crate::integrate::step::compensated::Compensated;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
-use crate::motion::Side;
 use crate::scalar::Float;
 use crate::system::{Dynamics, Jacobians};
 use crate::time::Time;
@@ -228,13 +227,13 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
             self.end.is_some_and(|end| end.t == from.t && end.q == from.q && end.v == from.v);
         if !goes_on {
             // The state comes from outside or from beyond a kink.
-            let inputs = field.inputs(from.t, Side::After);
+            let inputs = field.inputs(from.t, interval.side());
             self.p = Compensated::new(field.momenta(from.t, &from.q.high, &from.v.high, &inputs));
         }
-        if goes_on && (interval.h - self.h).abs() <= 1e-3 * self.h {
+        if goes_on && (interval.h - self.h).abs() <= 1e-3 * self.h.abs() {
             self.slopes = self.slopes.ahead(&Tableau::<S>::GAUSS.ahead);
         } else {
-            let inputs = field.inputs(from.t, Side::After);
+            let inputs = field.inputs(from.t, interval.side());
             let f = field.momentum_rates(from.t, &from.q.high, &from.v.high, &inputs);
             self.slopes = Slopes { v: [from.v.high; S], f: [f; S] };
         }
@@ -258,7 +257,7 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
                 let one = T::from_f64(1.0);
                 to.q.add(one, &dq);
                 self.p.add(one, &dp);
-                let inputs = field.inputs(interval.end, Side::Before);
+                let inputs = field.inputs(interval.end, interval.side().opposite());
                 to.v = Compensated::new(field.velocities(
                     interval.end,
                     &to.q.high,

@@ -51,7 +51,13 @@ impl<D: LaneDynamics<N>, const N: usize> StepLaw<Picard, D, N> for AdaptiveStep<
         context: &mut StepContext<'_, '_, D, Picard, N>,
     ) -> Result<Trial, Error> {
         let (dynamics, t) = (context.field.dynamics, context.from.t);
-        if let Some(time) = dynamics.next_break(t.to_f64())
+        if context.target < t.to_f64() {
+            if let Some(time) = dynamics.break_before(t.to_f64())
+                && context.target < time
+            {
+                context.target = time;
+            }
+        } else if let Some(time) = dynamics.next_break(t.to_f64())
             && time < context.target
         {
             context.target = time;
@@ -96,9 +102,9 @@ impl<D: LaneDynamics<N>, const N: usize> StepLaw<Picard, D, N> for AdaptiveStep<
         error: f64,
     ) -> Result<Verdict, Error> {
         let StepContext { method, field, from, to, workspace, .. } = context;
-        let (h, wanted) = (interval.h, trial.wanted);
+        let (h, wanted) = (interval.h.abs(), trial.wanted);
         if error <= 1.0 {
-            workspace.accept(to, h);
+            workspace.accept(to, interval.h);
             let sweeps = workspace.ends.progress.sweeps;
             let mut next = wanted;
             // A step that was cut short says little about longer ones.
@@ -138,7 +144,7 @@ impl<D: LaneDynamics<N>, const N: usize> StepLaw<Picard, D, N> for AdaptiveStep<
 /// long as the one before.
 #[inline]
 fn planned(plan: &mut ControllerState, t: Time, wanted: f64, target: f64) -> StepInterval {
-    let left = -t.since(target);
+    let left = t.since(target).abs();
     let goes_on = |plan: &ControllerState| {
         f64::abs(left - plan.left as f64 * plan.equal) <= 1e-9 * plan.equal
     };
@@ -151,7 +157,12 @@ fn planned(plan: &mut ControllerState, t: Time, wanted: f64, target: f64) -> Ste
         };
         (plan.left, plan.equal, plan.target) = (count as u64, equal, target);
     }
-    if plan.left == 1 { StepInterval::to(t, target) } else { StepInterval::by(t, plan.equal) }
+    let towards = if target < t.to_f64() { -1.0 } else { 1.0 };
+    if plan.left == 1 {
+        StepInterval::to(t, target)
+    } else {
+        StepInterval::by(t, towards * plan.equal)
+    }
 }
 
 /// The factor by which a step would be longer whose error is the one aimed at.

@@ -11,6 +11,7 @@ use super::workspace::{Tolerances, Workspace, WorkspaceOf};
 use crate::integrate::saved::Memory;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::interval::StepInterval;
+use crate::motion::Side;
 use crate::scalar::{Float, Lane, Octet};
 use crate::simd::Work;
 use crate::system::{Staged, System, scalar_time};
@@ -59,7 +60,7 @@ impl<T: Lane + Float, const G: usize> Scaled<T, G> {
         [once, twice]: [&'static Columns<G, H>; 2],
         to: usize,
     ) {
-        if f64::abs(self.h.to_f64() - h.to_f64()) <= 1e-15 * self.h.to_f64() {
+        if f64::abs(self.h.to_f64() - h.to_f64()) <= 1e-15 * f64::abs(self.h.to_f64()) {
             return;
         }
         self.h = h;
@@ -233,7 +234,7 @@ impl<D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> Work
         let Self { dynamics, interval, from, to, workspace, ratio, tolerances, most, adaptive } =
             self;
         let (half, h, number) = (black_box(S / 2), interval.length::<T>(), T::from_f64);
-        workspace.weigh(interval.h, from, tolerances);
+        workspace.weigh(interval.h.abs(), from, tolerances);
         let [scaled, ahead, between] = &mut workspace.scaled;
         scaled.scale(h, [&EIGHT.once, &EIGHT.twice], 0);
         if adaptive {
@@ -331,7 +332,7 @@ fn at_nodes<D: LaneDynamics<N>, const N: usize>(
     dynamics: &D,
     interval: &StepInterval,
     nodes: &Nodes,
-    last: Option<Time>,
+    last: Option<(Time, Side)>,
 ) -> ([Time; S], Wide<D::Scalar>, <D::Wide as System<N>>::Inputs) {
     let (mut times, mut lanes) = ([interval.start; S], Wide::splat(scalar_time(interval.start)));
     // Otherwise nobody looks at them.
@@ -382,7 +383,11 @@ fn sweeps<
             // The last of the points between the nodes is just before the end, at which a motion
             // may have a kink.
             let end = equations.interval.end;
-            let last = if G < H && g + 1 == H && end.low() == 0.0 { Some(end) } else { None };
+            let last = if G < H && g + 1 == H && end.low() == 0.0 {
+                Some((end, equations.interval.side().opposite()))
+            } else {
+                None
+            };
             let (times, t, inputs) =
                 at_nodes(equations.dynamics, equations.interval, points[g], last);
             known[g] = (t, inputs, Of::<D, N>::at_time(t, &inputs));

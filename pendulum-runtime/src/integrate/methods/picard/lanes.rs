@@ -28,10 +28,13 @@ pub trait LaneDynamics<const N: usize>: Dynamics<N, Scalar: Lane + Float> {
     fn widened(&self) -> Self::Wide;
 
     /// The samples of all driven inputs at eight times without a kink among them; in the last lane
-    /// those before a kink at `last`, if it is given.
+    /// those at `last`, seen from its side, if it is given.
     #[doc(hidden)]
-    fn inputs_at(&self, times: &[Time; 8], last: Option<Time>)
-    -> <Self::Wide as System<N>>::Inputs;
+    fn inputs_at(
+        &self,
+        times: &[Time; 8],
+        last: Option<(Time, Side)>,
+    ) -> <Self::Wide as System<N>>::Inputs;
 
     /// Puts the control inputs that follow the state in each lane into `inputs`.
     #[doc(hidden)]
@@ -49,6 +52,10 @@ pub trait LaneDynamics<const N: usize>: Dynamics<N, Scalar: Lane + Float> {
     /// The first time after `t` at which a motion is known to stop having all derivatives.
     #[doc(hidden)]
     fn next_break(&self, t: f64) -> Option<f64>;
+
+    /// The last such time before `t`.
+    #[doc(hidden)]
+    fn break_before(&self, t: f64) -> Option<f64>;
 }
 
 impl<S0, const N: usize> LaneDynamics<N> for S0
@@ -64,12 +71,21 @@ where
     }
 
     #[inline(always)]
-    fn inputs_at(&self, _: &[Time; S], _: Option<Time>) -> <Self::Wide as System<N>>::Inputs {
+    fn inputs_at(
+        &self,
+        _: &[Time; S],
+        _: Option<(Time, Side)>,
+    ) -> <Self::Wide as System<N>>::Inputs {
         NoInputs::none()
     }
 
     #[inline]
     fn next_break(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    #[inline]
+    fn break_before(&self, _: f64) -> Option<f64> {
         None
     }
 }
@@ -88,13 +104,17 @@ where
     }
 
     #[inline(always)]
-    fn inputs_at(&self, times: &[Time; S], last: Option<Time>) -> M::Wide {
+    fn inputs_at(&self, times: &[Time; S], last: Option<(Time, Side)>) -> M::Wide {
         self.motions.sample_all(times, last, S0::FACTS.inputs)
     }
 
     #[inline]
     fn next_break(&self, t: f64) -> Option<f64> {
         self.motions.next_break(t)
+    }
+
+    fn break_before(&self, t: f64) -> Option<f64> {
+        self.motions.last_break(t)
     }
 }
 
@@ -115,7 +135,7 @@ where
     }
 
     #[inline(always)]
-    fn inputs_at(&self, times: &[Time; S], last: Option<Time>) -> M::Wide {
+    fn inputs_at(&self, times: &[Time; S], last: Option<(Time, Side)>) -> M::Wide {
         self.driven.motions.sample_all(times, last, S0::FACTS.inputs)
     }
 
@@ -142,6 +162,10 @@ where
     fn next_break(&self, t: f64) -> Option<f64> {
         self.driven.motions.next_break(t)
     }
+
+    fn break_before(&self, t: f64) -> Option<f64> {
+        self.driven.motions.last_break(t)
+    }
 }
 
 impl<S0, M, C, U, const N: usize> LaneDynamics<N> for Sampled<S0, M, C, U>
@@ -161,12 +185,12 @@ where
     }
 
     #[inline(always)]
-    fn inputs_at(&self, times: &[Time; S], last: Option<Time>) -> M::Wide {
+    fn inputs_at(&self, times: &[Time; S], last: Option<(Time, Side)>) -> M::Wide {
         let mut inputs = self.driven.motions.sample_all(times, last, S0::FACTS.inputs);
         let mut values = [Octet::splat(S0::Scalar::from_f64(0.0)); MOST_CONTROLS];
         for k in 0..S {
             let (t, side) = match last {
-                Some(last) if k + 1 == S => (last, Side::Before),
+                Some(last) if k + 1 == S => last,
                 _ => (times[k], Side::After),
             };
             let own = self.held(t, side);
@@ -182,6 +206,10 @@ where
     fn next_break(&self, t: f64) -> Option<f64> {
         earlier(self.driven.motions.next_break(t), self.next_kink(t))
     }
+
+    fn break_before(&self, t: f64) -> Option<f64> {
+        self.driven.motions.last_break(t)
+    }
 }
 
 /// A tuple of motions, sampled at several times at once.
@@ -191,15 +219,20 @@ pub trait LaneMotions<Inputs, T>: crate::motion::Motions<Inputs> {
     type Wide: Samples;
 
     /// The samples at `times`, with the derivatives that each motion is asked for; in the last lane
-    /// those before a kink at `last`, if it is given.
-    fn sample_all(&self, times: &[Time; 8], last: Option<Time>, inputs: &[Input]) -> Self::Wide;
+    /// those at `last`, seen from its side, if it is given.
+    fn sample_all(
+        &self,
+        times: &[Time; 8],
+        last: Option<(Time, Side)>,
+        inputs: &[Input],
+    ) -> Self::Wide;
 }
 
 impl<T: Real> LaneMotions<(), T> for () {
     type Wide = ();
 
     #[inline(always)]
-    fn sample_all(&self, _: &[Time; S], _: Option<Time>, _: &[Input]) {}
+    fn sample_all(&self, _: &[Time; S], _: Option<(Time, Side)>, _: &[Input]) {}
 }
 
 /// The samples of one motion.
@@ -207,12 +240,12 @@ impl<T: Real> LaneMotions<(), T> for () {
 fn sampled<T: Lane, M: Motion<T, DIM>, const DIM: usize>(
     motion: &M,
     times: &[Time; S],
-    last: Option<Time>,
+    last: Option<(Time, Side)>,
     wanted: Derivatives,
 ) -> Sample<Octet<T>, DIM> {
     let mut lanes = motion.sample_lanes(times, wanted);
-    if let Some(last) = last {
-        let sample = motion.sample(last, Side::Before, wanted);
+    if let Some((last, side)) = last {
+        let sample = motion.sample(last, side, wanted);
         for d in 0..DIM {
             lanes.position[d].0[S - 1] = sample.position[d];
             lanes.velocity[d].0[S - 1] = sample.velocity[d];
@@ -228,7 +261,7 @@ macro_rules! tuples {
             type Wide = ($(Sample<Octet<T>, $dim>,)+);
 
             #[inline(always)]
-            fn sample_all(&self, times: &[Time; S], last: Option<Time>, inputs: &[Input]) -> Self::Wide {
+            fn sample_all(&self, times: &[Time; S], last: Option<(Time, Side)>, inputs: &[Input]) -> Self::Wide {
                 ($(sampled(&self.$index, times, last, derivatives_of(inputs, $index, Purpose::Accelerations)),)+)
             }
         }

@@ -18,7 +18,6 @@ use crate::integrate::step::diagnose;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::{Field, coordinate, first_in_state};
 use crate::integrate::step::interval::StepInterval;
-use crate::motion::Side;
 use crate::scalar::{Float, Octet, Real};
 use crate::simd;
 use crate::system::Dynamics;
@@ -105,8 +104,8 @@ fn iterate<D: LaneDynamics<N>, const N: usize, const W: bool>(
         .end
         .as_ref()
         .is_some_and(|(t, q, v)| *t == from.t && *q == from.q.high && *v == from.v.high);
-    let ratio =
-        if goes_on && interval.h <= 2.0 * workspace.h { interval.h / workspace.h } else { 0.0 };
+    let ratio = interval.h / workspace.h;
+    let ratio = if goes_on && 0.0 < ratio && ratio <= 2.0 { ratio } else { 0.0 };
     // Equal but for rounding: it leads only to the first sweep.
     let ratio = if f64::abs(ratio - 1.0) <= 1e-12 { 1.0 } else { ratio };
     if ratio == 0.0 {
@@ -229,8 +228,10 @@ fn one_by_one<T: Float, const N: usize, const W: bool>(
     interval: &StepInterval,
     from: &Endpoint<T, N>,
 ) -> Endpoint<T, N> {
-    let (h, start) =
-        (interval.length::<T>(), field.at(interval.start, Side::After, &from.q.high, &from.v.high));
+    let (h, start) = (
+        interval.length::<T>(),
+        field.at(interval.start, interval.side(), &from.q.high, &from.v.high),
+    );
     let sum = |columns: &dyn Fn(usize) -> f64, a: &[[T; N]; S], i: usize| {
         (0..S).fold(T::from_f64(0.0), |sum, j| sum + T::from_f64(columns(j)) * a[j][i])
     };

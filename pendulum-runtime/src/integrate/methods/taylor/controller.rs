@@ -64,7 +64,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> StepLaw<Taylor, D, N> for
         ];
         let wanted = length(&workspace.path, &workspace.rule, &workspace.weights);
         // A uniform motion may go on for ever, but it has to come to an end.
-        let wanted = if wanted == f64::INFINITY && target == wanted { 1.0 } else { wanted };
+        let wanted = if wanted == f64::INFINITY && target.is_infinite() { 1.0 } else { wanted };
         let wanted = self.limited(state.h == 0.0, wanted);
         let wanted = state.within_sight(wanted, field.dynamics, from.t, GAP)?;
         if state.h == 0.0 {
