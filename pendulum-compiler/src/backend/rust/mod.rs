@@ -30,7 +30,7 @@ use std::collections::BTreeMap;
 #[rustfmt::skip]
 const OWN: &[&str] = &[
     "acceleration", "all", "at_position", "at_time", "both", "column", "columns", "controller", "drive", "entries", "index", "inputs",
-    "k", "law", "lifted", "map", "order", "p", "parameter", "path", "period", "prepared", "q", "row", "scalar", "system", "t", "time", "v", "value",
+    "k", "law", "lifted", "map", "order", "p", "parameter", "path", "period", "prepared", "q", "row", "system", "t", "time", "v", "value",
     "values", "widths", "work",
 ];
 

@@ -108,11 +108,21 @@ impl Emitter<'_, '_> {
         let (scalar, count) = (self.scalar(), self.count());
         let arms = self.all_outputs().enumerate().map(|(index, (_, lowered))| {
             let all = self.output_scalars(lowered);
-            quote!(#index => for (value, scalar) in values.iter_mut().zip(#all) { *value = scalar; },)
+            let length = lowered.map_or(1, |output| output.scalars.len());
+            quote! {
+                #index => {
+                    let all: [#scalar; #length] = #all;
+                    for k in 0..#length {
+                        if k < values.len() {
+                            values[k] = all[k];
+                        }
+                    }
+                }
+            }
         });
         Some(quote! {
             fn output(
-                &self, index: usize, t: #scalar, q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs, values: &mut [#scalar],
+                &self, index: ::core::primitive::usize, t: #scalar, q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs, values: &mut [#scalar],
             ) {
                 match index { #(#arms)* _ => {} }
             }
