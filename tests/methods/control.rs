@@ -321,3 +321,15 @@ fn a_sampled_run_cannot_be_taken_up_again() {
     other.advance_to(1.0).unwrap();
     assert_eq!(run.state(), other.state());
 }
+
+/// Periods that no floating-point time resolves are refused at once.
+#[test]
+fn a_period_moves_the_time_on() {
+    let arm = Arm::new(1.0, 0.5, 0.1);
+    for (start, period) in [(1.0, 1e-20), (1.0, 1e-300), (1e9, 1e-8), (1e300, 0.1), (-1.0, 1e-17)] {
+        let sampled = arm.clone().sampled(period, |_, _, _| 0.0);
+        let mut run = Integrator::new(&sampled, Dop853, start, [0.3], [0.0]).unwrap();
+        let error = run.step().unwrap_err();
+        assert!(matches!(error, Error::Setting { name: "period", .. }), "{error}");
+    }
+}

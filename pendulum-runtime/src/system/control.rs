@@ -243,11 +243,10 @@ struct Record<C, U> {
 impl<C, U: Copy> Record<C, U> {
     /// The first sample that is due after `t`.
     fn next(&self, t: f64, period: f64) -> f64 {
-        let mut k = ((t - self.start) / period).floor();
-        while self.start + k * period <= t {
-            k += 1.0;
-        }
-        self.start + k * period
+        let k = ((t - self.start) / period).floor();
+        // Rounding is off by one or two, unless the period is too short for the time.
+        let due = (0..4).map(|more| self.start + (k + f64::from(more)) * period);
+        due.into_iter().find(|&due| t < due).unwrap_or(t.next_up())
     }
 
     /// The values at `t`: those of the last sample before it, and at a sample that of the side.
@@ -305,8 +304,8 @@ where
     ) -> Result<bool, Error> {
         let record = &mut *self.record.borrow_mut();
         let now = t.to_f64();
-        if !(0.0 < self.period && self.period.is_finite()) {
-            let required = "positive and finite";
+        if !(now < now + self.period && self.period.is_finite()) {
+            let required = "positive, finite and so long that it moves the time on";
             return Err(Error::Setting { name: "period", value: self.period, required });
         }
         if run != record.run {
