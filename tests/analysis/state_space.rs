@@ -79,3 +79,21 @@ fn the_model_tells_the_next_moment() {
         assert!((by_angle - model.a[(i, 1)]).abs() < 0.05, "{by_angle} {}", model.a);
     }
 }
+
+lagrangian! {
+    pub struct Heater { m: kg, R: ohm }
+    coordinate s: m;
+    input I: A;
+    kinetic = m/2*ṡ^2;
+    potential = 0;
+    output heat: W = R*I^2;
+}
+
+/// d(R I²)/dI at the current that is held.
+#[test]
+fn a_sampled_controller_gives_the_point() {
+    let heater = Heater::new(1.0, 0.5).sampled(0.1, |_, _, _| 3.0);
+    solve(&heater, (0.0, 0.35), [0.0], [0.0]).run().unwrap();
+    let model = state_space(&heater, 0.3, &[0.0], &[0.0]);
+    assert_eq!(model.d[(0, 0)], 3.0);
+}

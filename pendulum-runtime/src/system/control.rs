@@ -331,6 +331,15 @@ where
         Ok(true)
     }
 
+    fn controls(
+        &self,
+        t: Time,
+        _: &[S::Scalar; N],
+        _: &[S::Scalar; N],
+    ) -> [S::Scalar; MOST_CONTROLS] {
+        self.held(t, Side::After)
+    }
+
     fn next_kink(&self, t: f64) -> Option<f64> {
         let motions = self.driven.motions.next_kink(t);
         if !(0.0 < self.period && self.period.is_finite()) {

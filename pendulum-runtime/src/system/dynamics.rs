@@ -88,7 +88,7 @@ pub trait Dynamics<const N: usize> {
         inputs
     }
 
-    /// The values of control inputs that follow the state, component by component.
+    /// The values that a controller gives the control inputs, component by component.
     #[inline]
     fn controls(
         &self,
