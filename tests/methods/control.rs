@@ -322,6 +322,45 @@ fn a_sampled_run_cannot_be_taken_up_again() {
     assert_eq!(run.state(), other.state());
 }
 
+/// A sum of what it has seen: its state tells how often it was asked.
+fn summing() -> impl FnMut(f64, &[f64; 1], &[f64; 1]) -> f64 + Clone {
+    let mut sum = 0.0;
+    move |_, q, v| {
+        sum += q[0];
+        -sum - v[0]
+    }
+}
+
+#[test]
+fn a_reset_begins_the_controller_anew() {
+    let arm = Arm::new(1.0, 0.5, 0.1).sampled(0.1, summing());
+    let mut run = Integrator::new(&arm, Dop853, 0.0, [0.3], [0.0]).unwrap();
+    run.advance_to(0.45).unwrap();
+    let first = run.state();
+    for _ in 0..2 {
+        run.reset(0.0, [0.3], [0.0]).unwrap();
+        run.advance_to(0.45).unwrap();
+        assert_eq!(run.state(), first);
+    }
+}
+
+/// The copy of an integration has the same controller, unless it owns it.
+#[test]
+fn a_clone_does_not_share_a_sampled_controller() {
+    let arm = Arm::new(1.0, 0.5, 0.1).sampled(0.1, summing());
+    let mut run = Integrator::new(&arm, Dop853, 0.0, [0.3], [0.0]).unwrap();
+    run.advance_to(0.45).unwrap();
+    let mut copy = run.clone();
+    assert!(matches!(copy.advance_to(1.0), Err(Error::Controller { .. })));
+    run.advance_to(1.0).unwrap();
+    let mut own = Integrator::owning(arm.clone(), Dop853, 0.0, [0.3], [0.0]).unwrap();
+    own.advance_to(0.45).unwrap();
+    let mut copy = own.clone();
+    own.advance_to(1.0).unwrap();
+    copy.advance_to(1.0).unwrap();
+    assert_eq!((own.state(), copy.state()), (run.state(), run.state()));
+}
+
 /// Periods that no floating-point time resolves are refused at once.
 #[test]
 fn a_period_moves_the_time_on() {

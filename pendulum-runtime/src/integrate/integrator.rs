@@ -98,7 +98,7 @@ where
         q: [D::Scalar; N],
         v: [D::Scalar; N],
     ) -> Result<Self, Error> {
-        Self::holding(Held::Borrowed(dynamics), method, t, q, v)
+        Self::holding(Held::borrowed(dynamics), method, t, q, v)
     }
 
     /// The same with a system that it keeps, so that a struct can hold both; it is `'static` unless
@@ -110,7 +110,7 @@ where
         q: [D::Scalar; N],
         v: [D::Scalar; N],
     ) -> Result<Self, Error> {
-        Self::holding(Held::Owned(dynamics), method, t, q, v)
+        Self::holding(Held::owned(dynamics), method, t, q, v)
     }
 
     fn holding(
@@ -352,7 +352,7 @@ where
     }
 
     /// Puts the state elsewhere, or the same state to another time; what follows is as if the
-    /// integration began there.
+    /// integration began there, with the first sample of a controller that is sampled.
     pub fn reset(&mut self, t: f64, q: [D::Scalar; N], v: [D::Scalar; N]) -> Result<(), Error> {
         self.integration.reset(t, q, v)?;
         self.detector.begin(&mut self.integration)

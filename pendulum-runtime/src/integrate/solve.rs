@@ -292,7 +292,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
     where
         M: Method<D, N>,
     {
-        let (dynamics, (start, end)) = (Held::Borrowed(self.dynamics), self.time);
+        let (dynamics, (start, end)) = (Held::borrowed(self.dynamics), self.time);
         let (method, controller) = (self.method, self.controller);
         let integration = Integration::new(dynamics, method, controller, start, self.q, self.v)?;
         Ok(integration.over((end - start).abs()))

@@ -1,12 +1,64 @@
 //! The dynamics of an integration: borrowed or its own.
 
+use crate::error::Error;
+use crate::scalar::Float;
+use crate::system::Dynamics;
+use crate::time::Time;
 use core::ops::Deref;
 
 /// Dynamics that an integration borrows or owns.
+#[derive(Debug)]
+pub(crate) struct Held<'a, D> {
+    place: Place<'a, D>,
+    /// The number by which sampled controllers know the integration; none of them knows 0.
+    run: u64,
+}
+
 #[derive(Clone, Debug)]
-pub(crate) enum Held<'a, D> {
+enum Place<'a, D> {
     Borrowed(&'a D),
     Owned(D),
+}
+
+impl<'a, D> Held<'a, D> {
+    pub(crate) fn borrowed(dynamics: &'a D) -> Self {
+        Self { place: Place::Borrowed(dynamics), run: 0 }
+    }
+
+    pub(crate) fn owned(dynamics: D) -> Self {
+        Self { place: Place::Owned(dynamics), run: 0 }
+    }
+
+    /// Begins an integration at `t`: controllers that are sampled start anew.
+    pub(crate) fn begin<const N: usize>(&mut self, t: f64)
+    where
+        D: Dynamics<N>,
+    {
+        self.run = Dynamics::begin(&**self, t);
+    }
+
+    /// Asks a sampled controller for its values if they are due.
+    #[inline]
+    pub(crate) fn sample<const N: usize>(
+        &self,
+        t: Time,
+        q: &[D::Scalar; N],
+        v: &[D::Scalar; N],
+    ) -> Result<bool, Error>
+    where
+        D: Dynamics<N, Scalar: Float>,
+    {
+        Dynamics::sample(&**self, self.run, t, q, v)
+    }
+}
+
+/// The copy of a borrowed controller that is sampled would be the same one, in the middle of another
+/// integration: it knows the copy of the integration no more.
+impl<D: Clone> Clone for Held<'_, D> {
+    fn clone(&self) -> Self {
+        let run = if let Place::Owned(_) = self.place { self.run } else { 0 };
+        Self { place: self.place.clone(), run }
+    }
 }
 
 impl<D> Deref for Held<'_, D> {
@@ -14,9 +66,9 @@ impl<D> Deref for Held<'_, D> {
 
     #[inline]
     fn deref(&self) -> &D {
-        match self {
-            Self::Borrowed(dynamics) => dynamics,
-            Self::Owned(dynamics) => dynamics,
+        match &self.place {
+            Place::Borrowed(dynamics) => dynamics,
+            Place::Owned(dynamics) => dynamics,
         }
     }
 }

@@ -49,8 +49,6 @@ where
     backwards: bool,
     /// The next kink in that direction, infinite if there is none.
     kink: f64,
-    /// The number by which sampled controllers know the integration.
-    run: u64,
 }
 
 impl<'a, const N: usize, D, M, C> Integration<'a, N, D, M, C>
@@ -60,7 +58,7 @@ where
 {
     /// At `q`, `v` and `t`, if they are finite and the mass matrix is positive there.
     pub(crate) fn new(
-        dynamics: Held<'a, D>,
+        mut dynamics: Held<'a, D>,
         method: M,
         controller: C,
         t: f64,
@@ -69,7 +67,7 @@ where
     ) -> Result<Self, Error> {
         check_start(&*dynamics, Time::new(t), &q, &v)?;
         let end = Endpoint::new(Time::new(t), q, v);
-        let run = dynamics.begin(t);
+        dynamics.begin(t);
         let kink = next_kink(&method, &*dynamics, t, false)?;
         Ok(Self {
             prepared: dynamics.system().prepare(),
@@ -86,7 +84,6 @@ where
             state: ControllerState::default(),
             backwards: false,
             kink,
-            run,
         })
     }
 
@@ -98,6 +95,7 @@ where
         v: [D::Scalar; N],
     ) -> Result<(), Error> {
         check_start(&*self.dynamics, Time::new(t), &q, &v)?;
+        self.dynamics.begin(t);
         self.kink = next_kink(&self.method, &*self.dynamics, t, false)?;
         self.backwards = false;
         // A long step from a state that it was not chosen for may go over events.
@@ -138,7 +136,6 @@ where
             state: ControllerState { unknown: self.state.unknown, ..ControllerState::default() },
             backwards: self.backwards,
             kink: self.kink,
-            run: self.run,
         }
     }
 
@@ -206,7 +203,7 @@ where
     #[inline]
     fn sample(&mut self) -> Result<(), Error> {
         let Endpoint { t, q, v, .. } = &self.end;
-        if self.dynamics.sample(self.run, *t, &q.high, &v.high)? {
+        if self.dynamics.sample(*t, &q.high, &v.high)? {
             self.end.a = None;
         }
         Ok(())
