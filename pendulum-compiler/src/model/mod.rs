@@ -223,8 +223,8 @@ fn plain(ident: &Ident) -> String {
 #[rustfmt::skip]
 const METHODS: &[&str] = &[
     "accelerations", "accelerations_at", "accelerations_prepared", "accelerations_staged", "accelerations_with", "across_kink", "at_position",
-    "at_time", "begin", "clone", "conserved", "control", "control_jacobian", "controlled_by", "driven_by", "energy", "energy_at", "fmt", "forces",
-    "hamilton", "inputs", "inputs_over", "inputs_with", "kinetic_energy", "longest_step", "map", "mass_matrix", "momenta", "momentum_rates", "new",
+    "at_time", "begin", "clone", "conserved", "control", "control_jacobian", "controlled_by", "controls", "driven_by", "energy", "energy_at", "fmt",
+    "forces", "hamilton", "inputs", "inputs_over", "inputs_with", "kinetic_energy", "kink_before", "longest_step", "map", "mass_matrix", "momenta", "momentum_rates", "new",
     "next_kink", "output", "over", "parameter_jacobian", "position_jacobian", "potential_energy", "power", "power_at", "prepare", "sample",
     "sampled", "system", "velocities", "velocity_jacobian",
 ];
@@ -241,6 +241,9 @@ fn output<'a>(model: &mut Model<'a>, statement: &'a ast::Output, errors: &mut Er
         _ if METHODS.contains(&name.to_string().as_str()) => {
             Some(format!("`{name}` is a method of every system; choose another name"))
         }
+        _ if base == "FACTS" => {
+            Some(format!("`{name}` is a constant of every system; choose another name"))
+        }
         Some(Meaning::Parameter(_) | Meaning::Coordinate(_) | Meaning::Input(_)) => {
             Some(format!("`{name}` is declared already; choose another name for the output"))
         }
@@ -248,6 +251,8 @@ fn output<'a>(model: &mut Model<'a>, statement: &'a ast::Output, errors: &mut Er
     };
     if let Some(message) = refusal {
         errors.at(name.span(), message);
+        // A second method of the name would be an error of rustc, too.
+        return;
     }
     let declared = quantity(name, Shape::Kind(&statement.kind), 0, None, errors);
     model.outputs.push(Output { declared, statement });

@@ -43,6 +43,8 @@ const REFUSED: &[(&str, &str)] = &[
     ("output θ: rad = θ;",                       "`θ` is declared already; choose another name for the output"),
     ("output tip: m = L; output tip: m = L;",    "two outputs are called `tip`; rename one of the two"),
     ("output energy: J = m*g*L;",                "`energy` is a method of every system; choose another name"),
+    ("output controls: J = m*g*L;",              "`controls` is a method of every system; choose another name"),
+    ("output FACTS: J = m*g*L;",                 "`FACTS` is a constant of every system; choose another name"),
     ("output ẏ: [m/s; 2] = ẏ;",                  "`ẏ` is a time derivative; give the output a name without dots, as `rate`"),
     ("output tip: m/s^3 = dot(dot(dot(height(y))));", "the derivative of an acceleration in `dot(dot(height(y)))` is a third derivative; coordinates have two, in outputs"),
     ("output tip: m/s^3 = height(dot(ẍ));",      "`ẍ` contains a third derivative of a driven input; they have two"),
@@ -70,4 +72,22 @@ fn equations_stay_as_they_are() {
     assert_eq!(with.outputs[0].expressions, ["x.x + L·sin θ", "x.y − L·cos θ"]);
     with.outputs.clear();
     assert_eq!(plain, with);
+}
+
+/// rustc would refuse two methods of one name as well.
+#[test]
+fn what_is_refused_is_no_method() {
+    let count = |statements: &str, method: &str| {
+        // The macro of the runtime puts its path in front of a block.
+        let source = format!("::pendulum_runtime; {}", block(statements));
+        let text = crate::expand(source.parse().unwrap()).to_string();
+        text.matches(&format!("fn {method} ")).count()
+    };
+    let once = count("output tip: m = L;", "tip");
+    assert!(0 < once);
+    assert_eq!(count("output tip: m = L; output tip: m = L;", "tip"), once);
+    for method in ["new", "driven_by", "controls"] {
+        let refused = format!("output {method}: m = L;");
+        assert_eq!(count(&refused, method), count("", method), "{method}");
+    }
 }
