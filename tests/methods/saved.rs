@@ -21,6 +21,7 @@ lagrangian! {
 
 /// What `serde` makes of it, if it is there.
 #[cfg(feature = "serde")]
+#[allow(clippy::needless_pass_by_value)]
 fn stored(saved: Saved) -> Saved {
     serde_json::from_str(&serde_json::to_string(&saved).unwrap()).unwrap()
 }

@@ -14,6 +14,8 @@ use nalgebra::{DMatrix, SMatrix};
 /// Every column δq obeys δq̈ = A δq + B δq̇ + c with the generated Jacobians A = ∂q̈/∂q, B =
 /// ∂q̈/∂q̇ and, for a parameter, c = ∂q̈/∂p. [`variational_size`] gives `M`.
 ///
+/// Inputs stay as they are: a law of control inputs has no part in the columns.
+///
 /// Step control watches the columns as it watches the motion. Over a kink the derivatives of the
 /// momenta go on, as the momenta do.
 ///

@@ -65,16 +65,16 @@ fn number<'a>(
     if let Some(number) = names.clone().position(|own| own == name) {
         return Ok(number);
     }
-    let known: Vec<&str> = names.filter(|own| !own.is_empty()).collect();
-    let mut what = format!("none is called `{name}`; there are ");
-    for (index, own) in known.iter().take(LISTED).enumerate() {
-        what += &format!("{}`{own}`", if index == 0 { "" } else { ", " });
-    }
-    match known.len() {
-        0 => what = format!("none is called `{name}`, and none has a name"),
-        count if LISTED < count => what += &format!(" and {} more", count - LISTED),
-        _ => {}
-    }
+    let known: Vec<String> =
+        names.filter(|own| !own.is_empty()).map(|own| format!("`{own}`")).collect();
+    let listed = known[..known.len().min(LISTED)].join(", ");
+    let what = match known.len() {
+        0 => format!("none is called `{name}`, and none has a name"),
+        count if LISTED < count => {
+            format!("none is called `{name}`; there are {listed} and {} more", count - LISTED)
+        }
+        _ => format!("none is called `{name}`; there are {listed}"),
+    };
     Err(GltfError::new(place, what, "give one of these names, or a number"))
 }
 
