@@ -106,7 +106,7 @@ type Matrix = [[f64; 3]; 3];
 
 const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// Where a joint is and how it is turned.
+/// The place of a joint and its turn.
 struct Place {
     turn: Matrix,
     at: [f64; 3],
@@ -505,7 +505,7 @@ fn channel(name: &str) -> Option<Channel> {
     }
 }
 
-/// What follows the words and a colon, if the line starts so.
+/// The rest of a line behind the words and a colon, if it starts with them.
 fn after<'a>(text: &'a str, words: &[&str]) -> Option<&'a str> {
     let (label, value) = text.split_once(':')?;
     let same = label

@@ -1,4 +1,4 @@
-//! What the reader gives and what it refuses.
+//! The reader's results and refusals.
 
 use super::{Bvh, LARGEST};
 

@@ -32,7 +32,7 @@ const FEATHER: [[f64; 2]; 9] = [
     [0.0, -1.0],
 ];
 
-/// What hangs where.
+/// A pendulum's place on the body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     pub(crate) label: &'static str,

@@ -9,14 +9,14 @@ const SIZE: [f64; 2] = [1200.0, 700.0];
 const STAGE: [f64; 4] = [50.0, 1150.0, 490.0, 72.0];
 /// The chart of the angles: left, right, bottom, top.
 const CHART: [f64; 4] = [76.0, 1150.0, 668.0, 556.0];
-/// How long the trails last, in seconds, from the faintest on.
+/// The lengths of the trails in seconds, from the faintest on.
 const TRAILS: [f64; 3] = [0.9, 0.5, 0.22];
 /// The distance between the faint figures along the way, in metres.
 const GHOSTS: f64 = 0.45;
 /// The thickness of a limb, of what is shorter than a quarter metre, and of the trunk, in metres.
 const THICK: [f64; 3] = [0.075, 0.03, 0.16];
 
-/// What is drawn.
+/// The contents of the picture.
 pub(crate) struct Picture<'a> {
     /// The limbs, as joints from the trunk out.
     pub(crate) limbs: Vec<Vec<usize>>,
@@ -24,7 +24,7 @@ pub(crate) struct Picture<'a> {
     pub(crate) head: Option<usize>,
     /// The joints at the keys: along, up and towards the eye, in metres.
     pub(crate) poses: &'a [Vec<[f64; 3]>],
-    /// What hangs there.
+    /// The pendulums.
     pub(crate) worn: Vec<Worn<'a>>,
     /// The time of the last key.
     pub(crate) seconds: f64,

@@ -22,8 +22,8 @@ pub(crate) fn swings(pendulums: &[Hung]) -> String {
     text
 }
 
-/// How far the generated equations are from the hand-written ones: accelerations along the swing
-/// and angles at its end.
+/// The distance of the generated equations from the hand-written ones: accelerations along the
+/// swing and angles at its end.
 pub(crate) fn difference(pendulums: &[Hung]) -> String {
     let largest = |value: &dyn Fn(&Hung) -> f64| pendulums.iter().map(value).fold(0.0, f64::max);
     let acceleration = largest(&|hung| hung.difference);

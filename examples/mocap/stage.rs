@@ -9,7 +9,7 @@ use pendulum_runtime::scalar::Real;
 pub(crate) struct Plane {
     /// The unit vector along the plane, in x and z.
     along: [f64; 2],
-    /// What becomes the origin, in x and z.
+    /// The point that becomes the origin, in x and z.
     origin: [f64; 2],
     /// Metres in a unit of the file.
     scale: f64,

@@ -19,7 +19,7 @@ const CLOSED: f64 = 1e-9;
 /// Feathers that do not close within so many loops are shown as they are; the gap is printed.
 const LONGEST: u32 = 60;
 
-/// What the page's sliders set.
+/// The settings of the page's sliders.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Settings {
     /// In m/s².
@@ -33,7 +33,7 @@ pub(crate) struct Settings {
 #[derive(Clone, Debug)]
 pub(crate) struct Course(Vec<f64>);
 
-/// What came out.
+/// The result.
 #[derive(Clone, Debug)]
 pub(crate) struct Baked {
     /// By settings, then by feathers.

@@ -92,7 +92,7 @@ const TURNS: [(&str, Keys); 7] = [
     ),
 ];
 
-/// Where the owl is, in pixels to the right and up.
+/// The place of the owl, in pixels to the right and up.
 const ALONG: Keys =
     &[(0.0, 0.0), (0.55, 0.0), (1.2, -16.0), (1.95, 16.0), (2.65, 1.0), (2.8, 0.0), (3.3, 0.0)];
 const UP: Keys = &[
@@ -111,7 +111,7 @@ const UP: Keys = &[
     (3.5, 0.0),
 ];
 
-/// How a joint turns on its parent, in radians; a joint that is not in the dance rests.
+/// The turn of a joint on its parent, in radians; a joint that is not in the dance rests.
 pub(crate) fn turn(name: &str) -> Result<Spline<1>, MotionError> {
     let of = |name: &str| TURNS.iter().find(|(joint, _)| *joint == name).map(|&(_, keys)| keys);
     let mirror =

@@ -16,7 +16,8 @@ lagrangian! {
         k: N*m,
         /// The friction in the skin.
         c: N*m*s,
-        /// How far beyond the drawn angle the skin pulls, so that the feather hangs as it is drawn.
+        /// The angle by which the skin pulls beyond the drawn one, so that the feather hangs as
+        /// drawn.
         δ: rad,
         /// The gravitational acceleration.
         g: m/s^2,
@@ -35,7 +36,7 @@ lagrangian! {
 /// The gravity under which feathers hang as they are drawn, in m/s².
 const DRAWN: f64 = 9.81;
 
-/// How many times a second feathers swing on their skin alone, by the beginnings of their names.
+/// The frequencies in Hz of feathers on their skin alone, by the beginnings of their names.
 const FREQUENCIES: [(&str, f64); 7] = [
     ("primary", 3.4),
     ("secondary", 3.4),

@@ -28,7 +28,7 @@ use std::time::Instant;
 /// A millimetre a pixel makes an owl of half a metre; vanes weigh 200 g/m².
 const UNITS: Units = Units { pixel: 1e-3, density: 0.2 };
 
-/// What the page offers: five accelerations of gravity, in m/s², and five damping ratios.
+/// The choices of the page: five accelerations of gravity, in m/s², and five damping ratios.
 const GRAVITIES: [f64; 5] = [0.0, 4.905, 9.81, 14.715, 19.62];
 const DAMPINGS: [f64; 5] = [0.04, 0.08, 0.16, 0.32, 0.64];
 

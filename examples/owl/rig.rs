@@ -22,7 +22,7 @@ pub(crate) struct Keyed<'a> {
     pub(crate) joint: &'a DrawnJoint,
     /// On its parent.
     pub(crate) turn: Arc<Spline<1>>,
-    /// How far it goes itself, which only a root does.
+    /// Its own way, which only a root has.
     pub(crate) way: Arc<Spline<2>>,
     /// The whole angle.
     pub(crate) angle: Angle,

@@ -187,7 +187,7 @@ pub struct Declaration {
     pub unit: String,
     /// The length of a vector or family; `None` for a scalar and for a body.
     pub length: Option<usize>,
-    /// Whether it is a rigid body.
+    /// True if it is a rigid body.
     pub body: bool,
 }
 

@@ -84,10 +84,10 @@ impl IntoIterator for Errors {
     }
 }
 
-/// What to do about a unit in a formula.
+/// Advice about a unit in a formula.
 pub(crate) const UNITS: &str = "units stand in declarations only, as in `g: m/s^2 = 9.81`";
 
-/// What to do instead of a comparison.
+/// Advice instead of a comparison.
 pub(crate) const TELL_CASES_APART: &str = "write `max`, `min`, `abs` or `sign` to tell cases apart";
 
 /// A second derivative of what has only one; `what` as written.

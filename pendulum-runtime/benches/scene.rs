@@ -1,4 +1,4 @@
-//! What a pendulum costs in a scene: `cargo bench -p pendulum-runtime --bench scene [--features
+//! The cost of a pendulum in a scene: `cargo bench -p pendulum-runtime --bench scene [--features
 //! rayon] [-- --quick] [CASE…]`, written to `target/scene.csv`.
 //!
 //! With `--threads`, `driven` at 10² to 10⁶ pendulums alternately on one thread and on all:

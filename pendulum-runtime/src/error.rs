@@ -1,4 +1,4 @@
-//! What goes wrong while integrating: each error says what, where and what to try.
+//! Errors of integrations: each names the time, the quantity and a remedy.
 
 use core::fmt;
 
@@ -15,7 +15,7 @@ pub enum Error {
     },
     /// A coordinate or velocity of the initial state is infinite or not a number.
     InitialState {
-        /// Which of the two arrays.
+        /// The array that contains it.
         part: Part,
         /// The coordinate.
         coordinate: Coordinate,
@@ -28,7 +28,7 @@ pub enum Error {
         name: &'static str,
         /// The value given.
         value: f64,
-        /// What it has to be.
+        /// The requirement.
         required: &'static str,
     },
     /// An entry of a list of times is not a number, outside the interval or not in its direction.
@@ -44,7 +44,7 @@ pub enum Error {
     NotFinite {
         /// The time at which it was evaluated.
         t: f64,
-        /// What it is.
+        /// The quantity.
         what: Quantity,
         /// The parameters that are zero, infinite or not a number, and so may be the cause of an
         /// acceleration, or of a velocity that belongs to a finite momentum, that is not finite.
@@ -119,7 +119,7 @@ pub enum Error {
     },
     /// An event acts again and again, each time sooner, towards a time that it never passes.
     Accumulation {
-        /// That time, extrapolated.
+        /// The time towards which they accumulate, extrapolated.
         t: f64,
         /// The index of the event in the list given.
         event: usize,
@@ -138,7 +138,7 @@ pub enum Error {
         /// The index of the event in the list given.
         event: usize,
     },
-    /// What was saved is no integration like the one that is to go on from it.
+    /// A saved integration that is unlike the one that is to go on from it.
     Saved {
         /// The system that was integrated.
         system: String,

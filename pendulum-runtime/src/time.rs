@@ -25,7 +25,7 @@ impl Time {
         Self { hi, lo: 0.0 }
     }
 
-    /// What [`to_f64`](Self::to_f64) and [`low`](Self::low) gave.
+    /// The time of the words that [`to_f64`](Self::to_f64) and [`low`](Self::low) gave.
     pub(crate) const fn from_words(hi: f64, lo: f64) -> Self {
         Self { hi, lo }
     }
@@ -36,7 +36,7 @@ impl Time {
         self.hi
     }
 
-    /// What `to_f64` leaves off.
+    /// The rest that `to_f64` leaves off.
     #[inline(always)]
     pub const fn low(self) -> f64 {
         self.lo

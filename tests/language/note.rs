@@ -394,7 +394,7 @@ mod hand_systems {
     use pendulum_runtime::scalar::Real;
     use pendulum_runtime::system::{Facts, System};
 
-    /// Which of the note's equations.
+    /// The equations of the note.
     #[derive(Clone, Copy, Debug)]
     pub(crate) enum Equation {
         Moving,

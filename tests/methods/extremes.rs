@@ -70,7 +70,7 @@ fn cases() -> Vec<Case> {
     cases
 }
 
-/// What a scalar allows.
+/// The bounds of a scalar.
 trait Tried: Float {
     const NAME: &'static str;
 }
@@ -87,7 +87,7 @@ impl Tried for DoubleDouble {
     const NAME: &'static str = "DoubleDouble";
 }
 
-/// What went wrong, by kind and place.
+/// The complaints, by kind and place.
 #[derive(Default)]
 struct Complaints(Vec<String>);
 

@@ -19,7 +19,7 @@ lagrangian! {
     potential = g*height(y);
 }
 
-/// What `serde` makes of it, if it is there.
+/// The value after `serde` has written and read it, if it is there.
 #[cfg(feature = "serde")]
 #[allow(clippy::needless_pass_by_value)]
 fn stored(saved: Saved) -> Saved {

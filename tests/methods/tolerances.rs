@@ -1,4 +1,4 @@
-//! What the absolute tolerance is without a call, and what that does to work and error.
+//! The absolute tolerance without a call, and its effect on work and error.
 
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::System;

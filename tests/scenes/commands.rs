@@ -1,4 +1,4 @@
-//! What is asked of scenes: commands, loops, baking, snapshots, threads.
+//! Requests to scenes: commands, loops, baking, snapshots, threads.
 
 use super::interface::{states, zoo};
 use pendulum_runtime::motion::{Linear, Sinusoid, Still};

@@ -18,11 +18,11 @@ use Parity::{Even, Neither, Odd};
 use Recurrence::{Circular, Constant, Exponential, Family, Hyperbolic, Linear, Quotient, Riccati};
 use Scale::{Bell, Bump, Oscillation};
 
-/// What the compiler knows of a function f of one argument.
+/// Everything that the compiler knows of a function f of one argument.
 pub(crate) struct Row {
     /// The name in the language, and of the method of `Real`.
     pub(crate) name: &'static str,
-    /// Whether the language has it: other functions stand in derivatives alone.
+    /// True if the language has it: other functions stand in derivatives alone.
     pub(crate) word: bool,
     /// The units of argument and value.
     pub(crate) units: UnitRule,
@@ -35,13 +35,13 @@ pub(crate) struct Row {
     pub(crate) at_zero: Option<Rational>,
     /// f(−u) in terms of f(u).
     pub(crate) parity: Parity,
-    /// What f or a derivative of it does at zero.
+    /// The kink of f, or of a derivative of it, at zero.
     pub(crate) kinks: Kinks,
     /// The width of f(u(t)).
     pub(crate) scale: Scale,
     /// The cost of a call, in multiplications.
     pub(crate) cost: usize,
-    /// How equations show it.
+    /// Its form in equations.
     pub(crate) notation: Notation,
     /// The text in ASCII, from the order in a family and the text of u, where it is no call.
     pub(crate) ascii: Option<fn(u8, &str) -> String>,
@@ -85,7 +85,7 @@ pub(crate) enum Parity {
     Neither,
 }
 
-/// What happens at zero.
+/// The kinds of kinks at zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kinks {
     /// Nothing: all derivatives exist.
@@ -99,7 +99,7 @@ pub(crate) enum Kinks {
 /// The width of f(u(t)).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Scale {
-    /// That of a crest of a sine.
+    /// The width of a crest of a sine.
     Oscillation,
     /// f changes where u is of the order of one.
     Bell,
@@ -109,7 +109,7 @@ pub(crate) enum Scale {
     Kink,
 }
 
-/// How equations show f(u).
+/// The form of f(u) in equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Notation {
     /// The name before u, or this command in LaTeX.
@@ -148,7 +148,7 @@ pub(crate) enum Recurrence {
     Family,
 }
 
-/// What the rate of an argument is divided by.
+/// The divisor of the rate of an argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Divisor {
     /// u.
@@ -187,7 +187,7 @@ macro_rules! functions {
             /// Every function; of a family the function itself.
             pub(crate) const ALL: &[Self] = &[$(Self::$case $((<$kind>::MIN))?,)+];
 
-            /// What the compiler knows of it.
+            /// Its row in the table of functions.
             pub(crate) fn row(self) -> Row {
                 match self {
                     $(Self::$case $(($order))? => Row { name: stringify!($name), $($column)* },)+
@@ -397,7 +397,7 @@ pub(crate) struct Word {
     pub(crate) lowering: Lowering,
 }
 
-/// What a function of the language becomes when energies are lowered, by its number of arguments.
+/// The lowering of a function of the language, by its number of arguments.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Lowering {
     One(One),
@@ -465,7 +465,7 @@ impl Word {
         }
     }
 
-    /// Whether it takes scalars to a scalar.
+    /// Returns true if it takes scalars to a scalar.
     pub(crate) fn is_scalar(self) -> bool {
         matches!(
             self.lowering,

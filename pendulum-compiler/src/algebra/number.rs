@@ -156,7 +156,7 @@ impl Rational {
         }
     }
 
-    /// Whether numerator and denominator are exact in `f64`.
+    /// Returns true if numerator and denominator are exact in `f64`.
     pub(crate) fn fits_double(self) -> bool {
         let exact = |value: i128| value.unsigned_abs() >> value.trailing_zeros().min(127) < 1 << 53;
         self.numerator == 0 || exact(self.numerator) && exact(self.denominator)

@@ -38,7 +38,8 @@ pub(crate) fn canonicalize(old: &Graph, roots: &mut [&mut Id]) -> Graph {
     graph
 }
 
-/// What sorts the nodes of one level: what moves, then the kind of node, then its parts up to sign.
+/// The key that sorts the nodes of one level: dependencies, then the kind of node, then its parts
+/// up to sign.
 type Key = (u8, Node, Vec<(Id, Rational)>);
 
 fn key(old: &Graph, id: Id, graph: &mut Graph, known: &BTreeMap<Id, Id>) -> Key {

@@ -154,7 +154,7 @@ pub(crate) struct Point {
     roots: Roots,
 }
 
-/// What square roots are.
+/// The meaning of square roots in the field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Roots {
     /// Roots in the prime field, as far as they exist there.

@@ -67,9 +67,9 @@ pub(crate) fn shorter(
     (length(&own, found) < whole).then_some((own, found))
 }
 
-/// What is known of the expansions of expressions in one graph.
+/// The known expansions of expressions in one graph.
 struct Expansions {
-    /// Whether sums of parameters alone are expanded too.
+    /// True if sums of parameters alone are expanded too.
     parameters: bool,
     known: BTreeMap<Id, Option<Expansion>>,
 }
@@ -78,7 +78,7 @@ struct Expansions {
 #[derive(Clone)]
 struct Expansion {
     terms: Terms,
-    /// Whether two terms have met.
+    /// True if two terms have met.
     met: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What an editor sees: every name of a block in plain Rust, for hover, completion and go to
+//! The editor's view: every name of a block in plain Rust, for hover, completion and go to
 //! definition.
 //!
 //! The items are there for rust-analyzer alone; rustc never reads them. Names of parameters lead to

@@ -49,7 +49,7 @@ impl Names {
         if self.ascii { "-" } else { "−" }
     }
 
-    /// What stands between factors.
+    /// The sign between factors.
     fn times(&self) -> &'static str {
         if self.ascii { "*" } else { "·" }
     }
@@ -145,7 +145,7 @@ fn dotted(name: &str, dots: u8, ascii: bool) -> String {
     format!("{composed}{}{index}", letters.as_str())
 }
 
-/// How tightly an expression must hold together.
+/// The tightness with which an expression must hold together.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
     Sum,
@@ -180,7 +180,7 @@ fn right(motion: &Motion, row: usize) -> Id {
     if alone(motion, row) { motion.accelerations[row] } else { motion.forces[row] }
 }
 
-/// Whether a row of the mass matrix has one entry.
+/// Returns true if a row of the mass matrix has one entry.
 fn alone(motion: &Motion, row: usize) -> bool {
     motion.mass_matrix[row].iter().filter(|&&entry| entry != Graph::ZERO).count() == 1
 }
@@ -250,7 +250,7 @@ fn spelled(function: Function) -> String {
     format!("{}{}", function.row().name, function.primes())
 }
 
-/// What a function is applied to, with what stands before it.
+/// The argument of a function, with the space or bracket before it.
 fn operand(graph: &Graph, names: &Names, argument: Id) -> String {
     if names.ascii {
         return format!("({})", write(graph, names, argument, Level::Sum));
@@ -325,7 +325,8 @@ fn product(
     (format!("{sign}{top}/{bottom}"), if sign.is_empty() { Level::Product } else { Level::Sum })
 }
 
-/// Whether a space stands outside all brackets: a function's argument would swallow what follows.
+/// Returns true if a space stands outside all brackets: a function's argument would swallow what
+/// follows.
 fn open(text: &str) -> bool {
     let mut depth = 0;
     text.chars().any(|letter| {
@@ -400,8 +401,8 @@ pub(crate) fn conserved(names: &Names, conserved: &Conserved) -> String {
 /// it is used in a text.
 const LONGEST: usize = 1000;
 
-/// Whether the equation in a row, solved where its coordinate stands alone, is too long to be
-/// written out.
+/// Returns true if the equation in a row, solved where its coordinate stands alone, is too long to
+/// be written out.
 pub(crate) fn too_long(graph: &Graph, motion: &Motion, row: usize) -> bool {
     let mut roots = vec![right(motion, row)];
     if !alone(motion, row) {

@@ -53,7 +53,7 @@ const HIGHEST: i64 = 8;
 /// and that of the pairs.
 const CORNERS: usize = 8;
 
-/// What may vary beside the time.
+/// Everything that may vary beside the time.
 const BESIDE_TIME: Dependencies = Dependencies::COORDINATE
     .or(Dependencies::VELOCITY)
     .or(Dependencies::INPUT)
@@ -280,7 +280,7 @@ impl Search {
         }
     }
 
-    /// What is known of those terms of an expression that are a polynomial in time; `None` without
+    /// The polynomial in time that some terms of an expression are; `None` without
     /// any, or if its leading coefficient moves.
     fn polynomial(&mut self, id: Id) -> Option<Polynomial> {
         if let Some(known) = self.polynomials.get(&id) {

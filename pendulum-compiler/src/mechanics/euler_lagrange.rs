@@ -371,8 +371,8 @@ pub(crate) fn invert(
     Some(solve::solve(graph, mass_matrix, &right))
 }
 
-/// Whether an expression jumps where a function of the velocities changes sign: its derivative does
-/// not show that it contains them.
+/// Returns true if an expression jumps where a function of the velocities changes sign: its
+/// derivative does not show that it contains them.
 fn jumps(graph: &Graph, id: Id) -> bool {
     let jumps = |id: &Id| match graph.node(*id) {
         Node::Call(function, argument) if function.row().kinks == Kinks::Jump => {

@@ -73,7 +73,7 @@ fn guilty<'a>(model: &Model<'a>, coordinate: &str) -> Option<(bool, &'a Expr)> {
 /// Expressions as written, with the definitions that they use; each is followed once.
 struct Source<'m, 'a> {
     model: &'m Model<'a>,
-    /// Whether definitions begin with a minus.
+    /// True for each definition that begins with a minus.
     negative: BTreeMap<usize, bool>,
     /// The definitions that a search has been through.
     followed: BTreeSet<usize>,
@@ -126,7 +126,7 @@ impl<'a> Source<'_, 'a> {
         }
     }
 
-    /// Whether an odd number of signs stands before the factors of an expression.
+    /// Returns true if an odd number of signs stands before the factors of an expression.
     fn begins_negative(&mut self, expr: &Expr) -> bool {
         match &expr.kind {
             ExprKind::Negative(inner) => !self.begins_negative(inner),
@@ -147,8 +147,8 @@ impl<'a> Source<'_, 'a> {
         }
     }
 
-    /// Whether a name stands in an expression or in a definition that it uses, with or without
-    /// dots.
+    /// Returns true if a name stands in an expression or in a definition that it uses, with or
+    /// without dots.
     fn mention(&mut self, expr: &Expr, base: &str) -> bool {
         self.followed.clear();
         self.mentions(expr, base)
@@ -178,7 +178,7 @@ impl<'a> Source<'_, 'a> {
         }
     }
 
-    /// Whether a name is that of a definition in which another stands.
+    /// Returns true if a name is that of a definition in which another stands.
     fn defined_with(&mut self, name: &Ident, base: &str) -> bool {
         match self.named(name).filter(|&index| self.followed.insert(index)) {
             Some(index) => self.mentions(&self.model.lets[index].expr, base),
@@ -244,8 +244,8 @@ fn signs(model: &Model, graph: &Graph, roots: &[Id]) -> BTreeMap<Id, Option<Sign
     signs
 }
 
-/// Whether a scalar is a mass, a moment of inertia, a density or an inductance; a first moment may
-/// have any sign.
+/// Returns true if a scalar is a mass, a moment of inertia, a density or an inductance; a first
+/// moment may have any sign.
 fn is_mass(model: &Model, scalar: usize) -> bool {
     let own = |quantity: &&Quantity| {
         (quantity.first..quantity.first + quantity.count()).contains(&scalar)

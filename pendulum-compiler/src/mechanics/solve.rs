@@ -8,8 +8,8 @@ use crate::algebra::velocity_polynomial;
 use crate::messages::Errors;
 use crate::model::{Model, Quantity};
 
-/// Whether every direction has kinetic energy at a random state; reports the coordinates that have
-/// none.
+/// Returns true if every direction has kinetic energy at a random state; reports the coordinates
+/// that have none.
 pub(crate) fn regular(
     model: &Model,
     graph: &mut Graph,

@@ -15,14 +15,14 @@ use crate::algebra::prime_field::{Point, Residue, null_space};
 /// With more coordinates than this only displacements q → q + εa are looked for.
 const MOST_LINEAR: usize = 8;
 
-/// So many points of the prime field show whether there are enough of them: more than an eighth has
+/// The number of points of the prime field that show if there are enough: more than an eighth has
 /// to have all roots.
 const SAMPLE: usize = 32;
 
 /// A conserved quantity.
 #[derive(Clone, Debug)]
 pub(crate) struct Conserved {
-    /// What it is, in the names of the momenta: `p_φ`, `x·p_y − y·p_x`.
+    /// Its terms in the names of the momenta: `p_φ`, `x·p_y − y·p_x`.
     pub(crate) terms: Vec<(Rational, Option<usize>, usize)>,
     pub(crate) value: Id,
 }

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 /// A family longer than this is refused: its equations would not compile within a day.
 const LONGEST: i64 = 1024;
 
-/// Where each name was first declared.
+/// The place at which each name was first declared.
 #[derive(Default)]
 pub(super) struct Declared<'a> {
     places: BTreeMap<String, &'a Ident>,

@@ -36,7 +36,7 @@ pub(crate) struct Model<'a> {
 }
 
 impl Model<'_> {
-    /// Whether an input is a control input.
+    /// Returns true if an input is a control input.
     pub(crate) fn is_control(&self, input: usize) -> bool {
         self.driven <= input
     }
@@ -78,7 +78,7 @@ pub(crate) struct Force<'a> {
     pub(crate) expr: &'a Expr,
 }
 
-/// What a name stands for.
+/// The meaning of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Meaning {
     Parameter(usize),

@@ -18,7 +18,7 @@ pub(super) struct Walk<'m, 'a, 'e> {
     pub(super) scope: Vec<String>,
     /// The parameters that have been met.
     pub(super) mentioned: BTreeSet<usize>,
-    /// Whether accelerations of coordinates may stand here.
+    /// True if accelerations of coordinates may stand here.
     pub(super) accelerations: bool,
 }
 
@@ -208,7 +208,7 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    /// Whether an expression is the name of a body.
+    /// Returns true if an expression is the name of a body.
     fn body(&self, expr: &Expr) -> bool {
         let ExprKind::Name(ident) = &expr.kind else { return false };
         let Name { base, dots } = name::read(&ident.to_string());
@@ -261,7 +261,7 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    /// What is wrong with a name that nobody declared.
+    /// The mistake in a name that nobody declared.
     fn unknown(&self, text: &str) -> String {
         let moving = |stem: &str| {
             let Name { base, dots } = name::read(stem);

@@ -1,4 +1,4 @@
-//! What a program costs: its operations of each kind.
+//! The cost of a program: its operations of each kind.
 
 use super::{Op, Program};
 use crate::algebra::functions::Function;

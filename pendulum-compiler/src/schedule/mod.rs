@@ -190,7 +190,7 @@ impl Schedule<'_> {
         self.program.push(Op::Call(function, argument))
     }
 
-    /// Whether an expression is made of parameters and numbers alone.
+    /// Returns true if an expression is made of parameters and numbers alone.
     fn parameter_only(&self, id: Id) -> bool {
         let dependencies = self.graph.dependencies(id);
         !dependencies.any(Dependencies::STATE)

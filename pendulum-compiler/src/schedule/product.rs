@@ -110,7 +110,7 @@ impl Schedule<'_> {
         product
     }
 
-    /// What changes least comes first in a product.
+    /// The rank of a factor in a product: the factor that changes least comes first.
     fn rank(&self, base: Id) -> u8 {
         let dependencies = self.graph.dependencies(base);
         if dependencies.any(Dependencies::VELOCITY.or(Dependencies::MOMENTUM)) {

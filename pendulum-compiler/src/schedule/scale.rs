@@ -35,8 +35,8 @@ impl Schedule<'_> {
         done
     }
 
-    /// Whether a sum is the better for taking in a constant: every term has a constant of its own,
-    /// or a sum that takes it in.
+    /// Returns true if a sum is the better for taking in a constant: every term has a constant of
+    /// its own, or a sum that takes it in.
     ///
     /// A sum that stands in more than `most` places is left alone: it would be computed twice.
     pub(super) fn takes_in(&self, id: Id, most: usize) -> bool {

@@ -4,7 +4,7 @@
 use super::{Op, Place, Program, operands};
 use crate::algebra::expr::Symbol;
 
-/// What has to be known before an operation can be done.
+/// The values that an operation needs before it can be done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Stage {
     Numbers,
@@ -26,7 +26,7 @@ impl Stage {
 }
 
 impl Program {
-    /// Whether each operation is made of parameters and numbers alone.
+    /// True for each operation that is made of parameters and numbers alone.
     pub(crate) fn parameter_only(&self) -> Vec<bool> {
         self.stages().into_iter().map(|stage| stage <= Stage::Parameters).collect()
     }
@@ -58,7 +58,7 @@ impl Program {
         stages
     }
 
-    /// What can be done up to a stage and is read after it: the places that are worth keeping.
+    /// The places that are computed up to a stage and read after it: those worth keeping.
     pub(crate) fn kept(&self, stage: Stage) -> Vec<Place> {
         let stages = self.stages();
         let before = |own: Stage| own == Stage::Numbers || own == stage;

@@ -25,7 +25,7 @@ impl Block {
     }
 }
 
-/// What could not be parsed: its absence is no second mistake.
+/// The parts that could not be parsed: their absence is no second mistake.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Recovery {
     pub(crate) declarations: bool,
@@ -40,7 +40,7 @@ pub(crate) struct Field {
     pub(crate) default: Option<Expr>,
 }
 
-/// What stands after the colon of a declaration.
+/// The kind of a declaration, after its colon.
 #[derive(Debug)]
 pub(crate) enum Kind {
     /// A scalar with or without a unit.
@@ -99,7 +99,7 @@ pub(crate) enum ForceIndex {
     Each(Binder),
 }
 
-/// What an expression contributes to.
+/// The energy or function to which an expression contributes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
     Kinetic,

@@ -8,7 +8,7 @@ use syn::punctuated::Punctuated;
 use syn::spanned::Spanned;
 use syn::{Attribute, Path, Token};
 
-/// What cannot be derived over floating-point numbers, and what takes its place.
+/// Traits that cannot be derived over floating-point numbers, with their substitutes.
 const EXACT: &[(&str, &str)] = &[
     ("Eq", "leave it out, `PartialEq` compares them"),
     ("Ord", "leave it out, `PartialOrd` compares them"),

@@ -1,4 +1,4 @@
-//! What other languages call constants and functions, and what to write here.
+//! Names of constants and functions in other languages, with their translations.
 
 use super::text::{closed, operand, text};
 use crate::syntax::ast::Expr;

@@ -64,7 +64,7 @@ pub(crate) fn dotted(text: &str) -> String {
     }
 }
 
-/// Whether a word is the English name of a Greek letter that LaTeX knows by it.
+/// Returns true if a word is the English name of a Greek letter that LaTeX knows by it.
 pub(crate) fn is_greek(word: &str) -> bool {
     GREEK.iter().any(|row| row.1 == word) && word != "omicron"
 }

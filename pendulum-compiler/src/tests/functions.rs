@@ -25,7 +25,7 @@ fn call(graph: &mut Graph, function: Function) -> Id {
     graph.call(function, a)
 }
 
-/// Whether two numbers agree to `tolerance` of the larger one, or of one.
+/// Returns true if two numbers agree to `tolerance` of the larger one, or of one.
 fn close(a: f64, b: f64, tolerance: f64) -> bool {
     (a - b).abs() <= tolerance * 1f64.max(a.abs()).max(b.abs())
 }

@@ -74,7 +74,7 @@ fn ours(every: usize) -> Vec<Row> {
     rows
 }
 
-/// What is asked for on the command line.
+/// The options on the command line.
 struct Options {
     quick: bool,
     rounds: usize,
@@ -116,7 +116,7 @@ impl Options {
     }
 }
 
-/// Where an entry comes from.
+/// The source of an entry.
 #[derive(Clone, Copy)]
 enum Source {
     Row(usize),

@@ -10,7 +10,7 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 /// Another process that offers rows.
 pub struct Peer {
-    /// What it says about itself.
+    /// Its own words about its versions.
     pub versions: String,
     /// Its rows: system, method, setting.
     pub rows: Vec<[String; 3]>,

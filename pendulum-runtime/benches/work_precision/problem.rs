@@ -1,8 +1,8 @@
-//! What is to be computed for each system.
+//! The problem of each system.
 
 use std::sync::LazyLock;
 
-/// What is to be computed: the states at `times` from the state at 0.
+/// A problem: the states at `times` from the state at 0.
 #[derive(Clone, Debug)]
 pub struct Problem<const N: usize> {
     /// The name of the system.

@@ -1,4 +1,4 @@
-//! What the states should be, in two words each.
+//! The exact states, in two words each.
 
 use crate::problem::lines;
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-/// What is known about one row.
+/// An entry of the table.
 #[derive(Clone, Debug)]
 pub struct Entry {
     /// The name of the system.

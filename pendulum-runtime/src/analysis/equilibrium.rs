@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector, SVector};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct EquilibriumError<const N: usize> {
-    /// What went wrong.
+    /// The reason.
     pub reason: EquilibriumFailure,
     /// The time asked for.
     pub t: f64,
@@ -26,7 +26,7 @@ pub struct EquilibriumError<const N: usize> {
     pub acceleration: f64,
 }
 
-/// What can go wrong in the search for an equilibrium.
+/// Reasons for which the search for an equilibrium fails.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum EquilibriumFailure {

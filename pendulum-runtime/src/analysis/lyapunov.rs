@@ -297,7 +297,7 @@ impl<'a, const N: usize, D, Me> Lyapunov<'a, N, D, Me> {
     }
 }
 
-/// What deviations become.
+/// The way back of deviations.
 #[derive(Clone, Copy)]
 enum Back {
     Momenta,

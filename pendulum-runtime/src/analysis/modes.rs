@@ -38,7 +38,7 @@ impl<const N: usize> DampedMode<N> {
         if frequency == 0.0 { 0.0 } else { -self.eigenvalue.re / frequency }
     }
 
-    /// Whether the motion grows.
+    /// Returns true if the motion grows.
     pub fn is_unstable(&self) -> bool {
         0.0 < self.eigenvalue.re
     }

@@ -9,7 +9,7 @@ use core::fmt::{Display, Formatter, Result};
 pub enum BodyError {
     /// A mass, density or length that is zero, negative, infinite or NaN.
     NotPositive {
-        /// Which one.
+        /// Its name.
         what: &'static str,
         /// Its value.
         value: f64,

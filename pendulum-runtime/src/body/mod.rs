@@ -37,7 +37,7 @@ pub use polygon::Polygon;
 use crate::scalar::Real;
 use core::ops::Add;
 
-/// What a rigid planar body contributes to the equations of motion: ∫ρ dp, ∫ρ p dp and ∫ρ p pᵀ dp.
+/// The moments of a rigid planar body in the equations of motion: ∫ρ dp, ∫ρ p dp and ∫ρ p pᵀ dp.
 ///
 /// The second moments are kept about the centre of mass, where they do not depend on the pivot and
 /// cancel nothing.

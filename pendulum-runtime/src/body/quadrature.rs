@@ -157,8 +157,8 @@ impl Cell {
     }
 }
 
-/// How far f is from a linear function, squared, in units of its mean square: of order h⁴ in the
-/// size h of the triangle where f is smooth, so that its power 3/2 falls like the error of the
+/// The squared distance of f from a linear function, in units of its mean square: of order h⁴ in
+/// the size h of the triangle where f is smooth, so that its power 3/2 falls like the error of the
 /// rule, and independent of h at a jump.
 fn roughness(
     triangle: &Triangle,

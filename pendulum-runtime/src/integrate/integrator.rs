@@ -64,7 +64,7 @@ where
 {
     integration: Integration<'a, N, D, M, C>,
     detector: EventDetector<'a, D::Scalar, N>,
-    /// What happened in the last call.
+    /// The events of the last call.
     found: Vec<Occurrence<D::Scalar, N>>,
     ended: Option<Status>,
     max_steps: u64,
@@ -203,7 +203,7 @@ where
         self.step_towards(target)
     }
 
-    /// Whether there is a way back in time.
+    /// Checks that there is a way back in time.
     #[cold]
     fn check_back(&self, t: f64) -> Result<(), Error> {
         if !self.integration.method.goes_back(&self.integration.dynamics) {
@@ -215,7 +215,7 @@ where
         }
     }
 
-    /// Whether the end of the interval is reached.
+    /// Returns true if the end of the interval is reached.
     fn is_at_end(&self) -> bool {
         0.0 <= self.goal.onwards * self.integration.end.t.since(self.goal.end)
     }
@@ -421,7 +421,7 @@ where
         State::from(&self.integration.end)
     }
 
-    /// What it took so far.
+    /// The counters so far.
     pub fn stats(&self) -> Stats {
         self.integration.stats()
     }

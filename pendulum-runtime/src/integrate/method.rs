@@ -112,7 +112,8 @@ pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fm
         let _ = (workspace, memory);
     }
 
-    /// Whether the method goes back in time too; by default if the kinks that come there are known.
+    /// Returns true if the method goes back in time too; by default if the kinks that come there
+    /// are known.
     fn goes_back(&self, dynamics: &D) -> bool {
         dynamics.kink_before(0.0).is_some()
     }

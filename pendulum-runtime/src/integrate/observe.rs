@@ -15,7 +15,7 @@ pub struct Step<'s, T, const N: usize> {
     pub start: State<T, N>,
     /// The state at its end: beyond a kink and after events have acted there.
     pub end: State<T, N>,
-    /// What the integration took so far.
+    /// The counters of the integration so far.
     pub stats: Stats,
     /// The events that happened in it, in order.
     pub events: &'s [Occurrence<T, N>],

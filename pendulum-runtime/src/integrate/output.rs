@@ -1,4 +1,4 @@
-//! Which states are kept.
+//! The states that a solution keeps.
 
 use crate::error::Error;
 use crate::integrate::data::label::Source;
@@ -23,16 +23,16 @@ const MOST_STREAMED: f64 = 1e15;
 pub(crate) enum Output<'a> {
     /// None.
     End,
-    /// Those at these times.
+    /// The states at these times.
     Times(&'a [f64]),
-    /// Those at multiples of an interval.
+    /// The states at multiples of an interval.
     Every(f64),
-    /// Those at both ends of each step.
+    /// The states at both ends of each step.
     Steps,
 }
 
 impl Output<'_> {
-    /// Whether the times make sense; `streamed` if the states are not kept.
+    /// Checks the times; `streamed` if the states are not kept.
     pub(crate) fn check(&self, start: f64, end: f64, streamed: bool) -> Result<(), Error> {
         match *self {
             Output::Times(times) => in_order("t_eval", times, start, end),
@@ -73,7 +73,7 @@ impl Output<'_> {
     }
 }
 
-/// Whether `times` are finite, within the interval and in its direction.
+/// Checks that `times` are finite, within the interval and in its direction.
 pub(crate) fn in_order(
     name: &'static str,
     times: &[f64],
@@ -96,7 +96,7 @@ pub(crate) fn direction(start: f64, end: f64) -> f64 {
     if end < start { -1.0 } else { 1.0 }
 }
 
-/// Whether an integration over `interval` comes to `a` before it comes to `b`.
+/// Returns true if an integration over `interval` comes to `a` before it comes to `b`.
 pub(crate) fn precedes(a: f64, b: f64, (start, end): (f64, f64)) -> bool {
     if end < start { b < a } else { a < b }
 }
@@ -148,7 +148,7 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
         }
     }
 
-    /// Whether states are not kept.
+    /// Returns true if states are not kept.
     pub(crate) fn streams(&self) -> bool {
         self.stream.is_some()
     }

@@ -1,4 +1,4 @@
-//! What goes from one step to the next, written down with all its bits.
+//! Everything that goes from one step to the next, written down with all its bits.
 
 use crate::integrate::step::compensated::Compensated;
 use crate::integrate::step::endpoint::Endpoint;
@@ -48,7 +48,7 @@ impl Memory {
         !self.failed && self.next == Some(self.words.len())
     }
 
-    /// Whether numbers are put back.
+    /// Returns true if numbers are put back.
     pub fn reads(&self) -> bool {
         self.next.is_some()
     }

@@ -1,4 +1,4 @@
-//! What an integration gives back.
+//! The result of an integration.
 
 use crate::error::Error;
 use crate::integrate::data::label::Source;
@@ -59,7 +59,7 @@ pub struct Solution<T, const N: usize> {
     pub status: Status,
     /// The events that have happened, in order.
     pub events: Vec<Occurrence<T, N>>,
-    /// What it took.
+    /// The counters.
     pub stats: Stats,
     pub(crate) dense: Option<DenseOutput<T, N>>,
     /// The names and units of coordinates and velocities.
@@ -98,7 +98,7 @@ impl<T: Copy, const N: usize> Solution<T, N> {
         self.t.len()
     }
 
-    /// Whether there is no output time, as after an error before the first.
+    /// Returns true if there is no output time, as after an error before the first.
     pub fn is_empty(&self) -> bool {
         self.t.is_empty()
     }
@@ -156,7 +156,7 @@ impl<'a, T: Copy, const N: usize> IntoIterator for &'a Solution<T, N> {
     }
 }
 
-/// What an integration took.
+/// The counters of an integration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]

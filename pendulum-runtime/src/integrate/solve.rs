@@ -345,7 +345,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         Ok(Status::Completed)
     }
 
-    /// Whether the settings make sense; `streamed` if states are not kept.
+    /// Checks the settings; `streamed` if states are not kept.
     fn check(&self, streamed: bool) -> Result<(), Error>
     where
         M: Method<D, N>,

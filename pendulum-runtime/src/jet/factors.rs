@@ -21,7 +21,7 @@ impl<T: Real, const B: usize> Factors<T, B> {
         Self { lower: [[zero; B]; B], reciprocal: [zero; B], inverse: [[zero; B]; B] }
     }
 
-    /// Those of the matrix with this lower triangle; what stands above its diagonal does not
+    /// The factors of the matrix with this lower triangle; the entries above its diagonal do not
     /// matter.
     #[inline]
     pub fn new(mut matrix: [[T; B]; B]) -> Self {

@@ -181,8 +181,9 @@ pub fn zero<T: Real>() -> Series<T> {
     [T::from_f64(0.0); LENGTH]
 }
 
-/// What generated code works in: `W` series, `Q` pairs of series, `P` numbers that parameters alone
-/// decide, `L` numbers that each step finds once, and the factors of the blocks of the mass matrix.
+/// The workspace of generated code: `W` series, `Q` pairs of series, `P` numbers that parameters
+/// alone decide, `L` numbers that each step finds once, and the factors of the blocks of the mass
+/// matrix.
 #[derive(Clone, Debug)]
 pub struct Work<T, F, const W: usize, const Q: usize, const P: usize, const L: usize> {
     /// The series of values that products and functions read.

@@ -234,7 +234,7 @@ macro_rules! there_and_back {
     }};
 }
 
-/// Whether Taylor series are right for a system.
+/// Returns true if Taylor series are right for a system.
 fn smooth<S: System<N>, const N: usize>(_: &S) -> bool {
     S::FACTS.smooth
 }

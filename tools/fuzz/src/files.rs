@@ -2,7 +2,7 @@
 
 use random_systems::Random;
 
-/// What readers of numbers and of lengths trip over.
+/// Fragments over which readers of numbers and of lengths trip.
 const SPLINTERS: [&[u8]; 16] = [
     b"-1",
     b"0",

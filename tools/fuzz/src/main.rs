@@ -30,7 +30,7 @@ const LARGEST: u64 = 1 << 30;
 /// The time that each target gets in its turn.
 const SLICE: Duration = Duration::from_millis(100);
 
-/// What to do.
+/// The plan of a run.
 struct Plan {
     seconds: f64,
     seed: u64,
@@ -38,7 +38,7 @@ struct Plan {
     only: Option<String>,
 }
 
-/// What a target has been through.
+/// The counts of a target.
 #[derive(Default)]
 struct Tally {
     cases: u64,

@@ -1,4 +1,4 @@
-//! What is fed with random input.
+//! The targets of random input.
 
 use crate::bvh::Bvh;
 use crate::files::mutated;
@@ -10,7 +10,7 @@ use random_systems::Random;
 use random_systems::generate::{self, Manner};
 use random_systems::tokens::{BLOCKS, mutate, soup, transplant};
 
-/// What became of a case.
+/// The outcome of a case.
 pub(crate) enum Verdict {
     Taken,
     Refused,

@@ -1,4 +1,4 @@
-//! What the macro makes of a system: operations of the accelerations at one state (after
+//! The operations that the macro makes of a system: those of the accelerations at one state (after
 //! preparation), tokens of the whole expansion, and the time that the expansion takes.
 //!
 //! `cargo run --release -p operations` prints one line a system: `name coordinates sincos

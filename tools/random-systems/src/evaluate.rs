@@ -17,7 +17,7 @@ pub enum Value<T> {
 #[derive(Clone, Debug)]
 pub struct Points<T>(pub Vec<(T, [T; 2])>);
 
-/// What never moves.
+/// The constants.
 #[derive(Clone, Debug)]
 pub struct Constants<T> {
     /// All scalars of the parameters in order.
@@ -26,7 +26,7 @@ pub struct Constants<T> {
     pub bodies: Vec<Option<Points<T>>>,
 }
 
-/// What moves, with its rates and all with the same infinitesimals.
+/// The variables, with their rates and all with the same infinitesimals.
 #[derive(Clone, Debug)]
 pub struct Leaves<T> {
     pub time: Nilpotent<T>,

@@ -17,7 +17,7 @@ pub struct State<T> {
     pub inputs: Vec<Vec<[T; 4]>>,
 }
 
-/// What the source says at a state: M q̈ = f and what goes with it.
+/// The values of the source at a state: M q̈ = f and the functions beside it.
 #[derive(Clone, Debug)]
 pub struct Reference<T> {
     pub lagrangian: T,

@@ -4,7 +4,7 @@
 use super::tree::{Expr, INDICES, Index, Kind, Property, Shape, System};
 use std::fmt::Write;
 
-/// What binds how tight.
+/// The tightness of operators.
 const SUM: u8 = 1;
 const PRODUCT: u8 = 2;
 const UNARY: u8 = 3;

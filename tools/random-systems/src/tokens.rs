@@ -3,7 +3,7 @@
 use super::split_mix::Random;
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
-/// What formulas and their mistakes are made of.
+/// The words of formulas and of their mistakes.
 const WORDS: &[&str] = &[
     "θ",
     "θ̇",

@@ -8,7 +8,7 @@ use super::nilpotent::Function;
 pub struct System {
     /// The seed it was made from.
     pub seed: u64,
-    /// Whether everything is a pure number, velocities are divided by a rate, and units are
+    /// True if everything is a pure number, velocities are divided by a rate, and units are
     /// written.
     pub units: bool,
     pub parameters: Vec<Parameter>,
@@ -108,7 +108,7 @@ pub const INDICES: [&str; 3] = ["k", "j", "n"];
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Index {
     Number(usize),
-    /// What an index is bound to.
+    /// The value of an index.
     Bound(usize),
     /// One less than what an index is bound to counts from the end: `count - 1 - k`.
     Reversed(usize, usize),

@@ -112,8 +112,8 @@ fn hung() -> Hung<f64> {
     Hung::new(0.5, 9.81)
 }
 
-/// Whether the failure names the input and a time in this range, and keeps a finite state before
-/// it.
+/// Returns true if the failure names the input and a time in this range, and keeps a finite state
+/// before it.
 fn blames(failure: Result<(), Failure<f64, 1>>, (from, to): (f64, f64)) -> bool {
     let Err(Failure {
         error: Error::NotFinite { t, what: Quantity::Input { name, .. }, .. },

@@ -66,7 +66,7 @@ impl Swing {
         [two * (k * sn).asin(), -(two * k * cn)]
     }
 
-    /// How far in time a state lies ahead of the motion, and how far beside it.
+    /// The time by which a state lies ahead of the motion, and its distance from it.
     pub(crate) fn phase(&self, t: f64, q: f64, v: f64) -> f64 {
         let [exact, speed] = self.at(t);
         let force = -exact.sin().to_f64();

@@ -272,7 +272,7 @@ fn growth(scale: Scale, report: &mut Report) {
     );
 }
 
-/// What the double next to 2π leaves off.
+/// The rest that the double next to 2π leaves off.
 const TAU_LOW: f64 = 2.4492935982947064e-16;
 
 fn momenta(scale: Scale, report: &mut Report) {

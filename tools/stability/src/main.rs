@@ -100,11 +100,11 @@ fn table() -> Result<bool, Box<dyn Error>> {
     Ok(failed == 0)
 }
 
-/// What the command line asks for.
+/// The choice on the command line.
 struct Choice {
     scale: Scale,
     tests: Vec<Test>,
-    /// Whether misses with a known reason count as failures.
+    /// True if misses with a known reason count as failures.
     known: bool,
 }
 

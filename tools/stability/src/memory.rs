@@ -1,4 +1,4 @@
-//! How much memory there is in use.
+//! The memory in use.
 
 /// The bytes of memory that belong to this program, where the system tells.
 pub(crate) fn memory() -> Option<f64> {

@@ -1,4 +1,4 @@
-//! What stands between steps: dense output and events; and single precision.
+//! Values between steps: dense output and events; and single precision.
 
 use crate::elliptic::Swing;
 use crate::numbers::{apart, error, larger, truth};

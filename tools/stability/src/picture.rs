@@ -12,14 +12,14 @@ const SIZE: (u32, u32) = (960, 560);
 const LEGEND: u32 = 250;
 const FONT: &str = "sans-serif";
 
-/// What a picture says besides its curves.
+/// The texts of a picture.
 struct Page {
     figure: Figure,
     file: &'static str,
     title: &'static str,
     x: &'static str,
     y: &'static str,
-    /// Whether time or step runs logarithmically.
+    /// True if time or step runs logarithmically.
     logarithmic: bool,
     /// Straight lines for comparison: a name, a factor and a power of x; or, on a linear axis, a
     /// rate of growth.

@@ -1,4 +1,4 @@
-//! What a test measures and what it must reach.
+//! The measurements of a test and their bars.
 
 /// A row of the stress table.
 #[derive(Clone, Copy)]
@@ -8,7 +8,7 @@ pub(crate) struct Test {
     pub(crate) run: fn(Scale, &mut Report),
 }
 
-/// How much is run.
+/// The length of the runs.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Scale {
     /// Less than a minute in all.
@@ -30,7 +30,7 @@ impl Scale {
     }
 }
 
-/// What a measured number must fulfil.
+/// The condition on a measured number.
 #[derive(Clone, Copy)]
 pub(crate) enum Bar {
     AtMost(f64),
@@ -72,7 +72,7 @@ impl Check {
         self.bar.met(self.measured)
     }
 
-    /// Whether a miss has a reason that is known.
+    /// Returns true if a miss has a reason that is known.
     pub(crate) fn is_explained(&self) -> bool {
         !self.why.is_empty()
     }
@@ -128,7 +128,7 @@ pub(crate) struct Curve {
     pub(crate) points: Vec<(f64, f64)>,
 }
 
-/// What a test has found.
+/// The findings of a test.
 #[derive(Default)]
 pub(crate) struct Report {
     pub(crate) id: &'static str,
@@ -168,7 +168,7 @@ impl Report {
         self.check(what, measured, Bar::Between(least, greatest))
     }
 
-    /// How many of the cases fail what each must fulfil; none may.
+    /// The number of cases that fail their condition; none may.
     pub(crate) fn failures(
         &mut self,
         what: impl Into<String>,
@@ -189,7 +189,7 @@ impl Report {
 }
 
 impl Check {
-    /// What stands in the line if the bar is missed.
+    /// Sets the text of the line if the bar is missed.
     pub(crate) fn because(&mut self, why: &'static str) {
         self.why = why;
     }

@@ -56,7 +56,7 @@ pub(crate) fn bits(scale: Scale, report: &mut Report) {
     );
 }
 
-/// How many of fifty pendulums end elsewhere in a scene than by `solve`.
+/// The number among fifty pendulums that end elsewhere in a scene than by `solve`.
 fn alone<M: Fixed<Simple<f64>, 1> + Method<Simple<f64>, 1>>(method: M, seconds: u32) -> usize {
     let mut scene = Scene::<f64>::new(BINARY).unwrap();
     scene.set_tolerance(1e-2).unwrap();
@@ -264,7 +264,7 @@ impl Crowd {
         ticks
     }
 
-    /// Whether all states are finite and nobody has failed.
+    /// Returns true if all states are finite and nobody has failed.
     fn is_well(&self) -> bool {
         let finite = |x: &f64| x.is_finite();
         let one = |pendulum: &Pendulum| match *pendulum {

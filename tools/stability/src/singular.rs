@@ -85,8 +85,8 @@ fn near_singular(_: Scale, report: &mut Report) {
     report.between("the determinant with cos² for comparison, in ε/Δ", cosine, 1e3, f64::INFINITY);
 }
 
-/// Whether an integration ended with an error about an acceleration, a coordinate that has a name,
-/// and a state that is finite.
+/// Returns true if an integration ended with an error about an acceleration, a coordinate that has
+/// a name, and a state that is finite.
 fn refused(result: Result<Solution<f64, 2>, Failure<f64, 2>>) -> bool {
     let Err(failure) = result else { return false };
     let finite = failure.partial.end.q.iter().chain(&failure.partial.end.v).all(|x| x.is_finite());
@@ -141,8 +141,8 @@ fn singular(_: Scale, report: &mut Report) {
     );
 }
 
-/// Whether an integration ended at once with an error about negative inertia, a coordinate that has
-/// a name, and the state at the start.
+/// Returns true if an integration ended at once with an error about negative inertia, a coordinate
+/// that has a name, and the state at the start.
 fn unbounded(result: Result<Solution<f64, 2>, Failure<f64, 2>>) -> bool {
     let Err(failure) = result else { return false };
     let kept = (failure.partial.end.t, failure.partial.end.q) == (0.0, [0.5, 0.625]);

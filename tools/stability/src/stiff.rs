@@ -146,7 +146,7 @@ struct Spread {
     /// The largest error over the tolerance, for tolerances below and above 1e-3.
     worst: [f64; 2],
     failed: usize,
-    /// How often a hundredth of the tolerance gives a larger error.
+    /// The number of times that a hundredth of the tolerance gives a larger error.
     turned: usize,
 }
 

@@ -8,7 +8,7 @@ use std::cell::Cell;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Counted(pub(crate) f64);
 
-/// What has been done.
+/// The work done so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tally {
     pub(crate) mul: f64,

@@ -1,4 +1,4 @@
-//! How far a state is from the exact one.
+//! The distance of a state from the exact one.
 
 /// The largest difference from the exact state; not a number if a component is not.
 pub fn distance<const N: usize>((q, v): ([f64; N], [f64; N]), exact: &[f64]) -> f64 {

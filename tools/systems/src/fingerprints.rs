@@ -89,7 +89,7 @@ macro_rules! others {
     };
 }
 
-/// Those for velocity-free systems.
+/// The methods for velocity-free systems.
 macro_rules! velocity_free {
     ($lines:ident, $system:literal, $dynamics:expr, $q:expr, $v:expr) => {
         run! { $lines, $system, $dynamics, $q, $v,

@@ -4,10 +4,10 @@ use crate::random::Random;
 use pendulum_runtime::scalar::{DoubleDouble, Float};
 use std::time::Duration;
 
-/// What is measured.
+/// The subject of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// What `solve` chooses.
+    /// The method that `solve` chooses.
     Default,
     /// `Picard`.
     Picard,
@@ -128,7 +128,7 @@ impl Widened for DoubleDouble {
 /// A state, coordinates before velocities.
 pub(crate) type State = Vec<DoubleDouble>;
 
-/// What one integration gives.
+/// The result of one integration.
 #[derive(Clone, Debug)]
 pub(crate) struct Run {
     /// The states at the output times, the last one at the end; that alone if no others were asked
@@ -139,7 +139,7 @@ pub(crate) struct Run {
     pub(crate) stats: String,
 }
 
-/// What helps a reference along, and no method that is measured: it knows what is to come.
+/// Help for a reference, and for no method that is measured: it knows the future.
 #[derive(Clone, Debug)]
 pub(crate) struct Guide {
     /// The longest step.
@@ -192,7 +192,7 @@ pub(crate) trait Case {
     /// The states at `times` in two words.
     fn exact(&self, tolerance: f64, max_step: f64, times: &[f64]) -> Result<Vec<State>, String>;
 
-    /// Whether the reference is a Taylor series.
+    /// Returns true if the reference is a Taylor series.
     fn by_series(&self) -> bool;
 
     /// The flow in `f64` with nearly all its digits: the state at the end from one at `t`; every
@@ -205,7 +205,7 @@ pub(crate) trait Case {
         tolerance: f64,
     ) -> Option<Vec<(f64, Vec<f64>)>>;
 
-    /// What bounds the reference.
+    /// The bounds of the reference.
     fn guide(&self) -> &Guide;
 }
 
@@ -223,7 +223,7 @@ pub(crate) fn distance(state: &State, exact: &State) -> f64 {
 const INSTANTS: usize = 8;
 const DIRECTIONS: usize = 2;
 
-/// How much a disturbance is larger at the end, at most; at least one.
+/// The greatest factor by which a disturbance grows until the end; at least one.
 ///
 /// The instants divide the steps of a run into equal parts, so that they crowd where the motion
 /// changes fast: there most local errors arise.

@@ -30,7 +30,7 @@ pub(crate) const fn double(name: &'static str, make: fn(&mut Random, Scalar) -> 
     Family { name, scalar: Scalar::F64, make }
 }
 
-/// What the short test knows too.
+/// The families of the short test.
 const SHORT: &[Family] = &[
     double("moving", moving),
     double("closure gentle", |r, s| {
@@ -178,7 +178,7 @@ pub(crate) fn moving(r: &mut Random, scalar: Scalar) -> Problem {
     })
 }
 
-/// What runs through keys.
+/// The curves through keys.
 pub(crate) enum Keys {
     Spline,
     Linear,

@@ -26,7 +26,7 @@ use report::Row;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// What is asked for.
+/// The options.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// The starts of each family.
@@ -41,13 +41,13 @@ pub struct Options {
     pub methods: Vec<String>,
     /// Threads.
     pub threads: usize,
-    /// Whether times are measured.
+    /// True if times are measured.
     pub clock: bool,
-    /// Whether every run is printed.
+    /// True if every run is printed.
     pub verbose: bool,
-    /// Where the table goes.
+    /// The file of the table.
     pub markdown: Option<std::path::PathBuf>,
-    /// Where a line for each measurement goes.
+    /// The file with a line for each measurement.
     pub csv: Option<std::path::PathBuf>,
 }
 
@@ -189,7 +189,7 @@ pub struct Finding {
     pub merit: Result<f64, String>,
 }
 
-/// What is asked for, without a word. Runs without a reference are left out.
+/// The measurements, without a word. Runs without a reference are left out.
 pub fn findings(options: &Options) -> Vec<Finding> {
     let rows = measured(options);
     let finding = |family, run: &Measured, m: &Measurement| {

@@ -4,7 +4,7 @@ use crate::case::{Case, Method, Scalar, amplification, distance};
 use crate::families::Family;
 use crate::random::Random;
 
-/// What one method has made of one run.
+/// The result of one method in one run.
 #[derive(Clone, Debug)]
 pub(crate) struct Measurement {
     pub(crate) method: Method,
@@ -25,7 +25,7 @@ pub(crate) struct Measured {
     pub(crate) run: usize,
     pub(crate) tolerance: f64,
     pub(crate) amplification: f64,
-    /// How far two references are from each other.
+    /// The distance of two references from each other.
     pub(crate) doubt: f64,
     pub(crate) start: String,
     pub(crate) measurements: Vec<Measurement>,

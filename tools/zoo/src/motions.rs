@@ -95,7 +95,7 @@ impl Shape {
     }
 }
 
-/// How a motion is given.
+/// The form in which a motion is given.
 #[derive(Clone, Debug)]
 pub(crate) enum Drive {
     /// Closures that declare nothing.

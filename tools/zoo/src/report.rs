@@ -165,7 +165,7 @@ pub(crate) fn lost(rows: &[Row<'_>]) -> (usize, usize) {
     (lost, lost + rows.iter().map(|row| row.runs.len()).sum::<usize>())
 }
 
-/// What the references are worth, a line a family.
+/// The worth of the references, a line a family.
 pub(crate) fn references(rows: &[Row<'_>]) -> String {
     let mut text = String::new();
     for row in rows {

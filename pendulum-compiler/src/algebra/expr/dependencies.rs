@@ -1,8 +1,8 @@
-//! What stands in an expression: parameters, time, coordinates, inputs.
+//! Dependencies of an expression: parameters, time, coordinates, inputs.
 
 use super::Symbol;
 
-/// What stands in an expression, anywhere.
+/// The kinds of symbols that stand anywhere in an expression.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Dependencies(u16);
 
@@ -28,7 +28,7 @@ impl Dependencies {
         Self(self.0 | other.0)
     }
 
-    /// Whether anything of `other` is in `self`.
+    /// Returns true if anything of `other` is in `self`.
     pub(crate) const fn any(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }

@@ -1,4 +1,4 @@
-//! What the graph is made of: nodes and their leaves.
+//! The nodes of the graph and their leaves.
 
 use crate::algebra::functions::Function;
 use crate::algebra::number::Literal;
@@ -14,7 +14,7 @@ impl Id {
     }
 }
 
-/// What a node is made of.
+/// The contents of a node.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Node {
     Number(Rational),

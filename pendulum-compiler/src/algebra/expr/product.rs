@@ -74,7 +74,7 @@ impl Graph {
         }
     }
 
-    /// Whether an expression is a quotient by something that moves.
+    /// Returns true if an expression is a quotient by something that moves.
     pub(crate) fn moving_quotient(&self, id: Id) -> bool {
         let factors = self.factors(id);
         factors.iter().any(|&(base, exponent)| {

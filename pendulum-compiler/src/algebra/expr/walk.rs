@@ -55,7 +55,7 @@ impl Graph {
         (0..).zip(found).filter(|&(_, found)| found).map(|(index, _)| Id(index)).collect()
     }
 
-    /// Whether nothing that moves goes through a function that has a corner or jumps.
+    /// Returns true if nothing that moves goes through a function that has a corner or jumps.
     pub(crate) fn smooth(&self, roots: &[Id]) -> bool {
         let cornered = |&id: &Id| match self.node(id) {
             Node::Max(..) => true,
@@ -69,8 +69,8 @@ impl Graph {
             .any(|&id| self.dependencies(id).any(Dependencies::STATE))
     }
 
-    /// Whether `roots` are written as sums of coordinates and velocities with coefficients that
-    /// parameters alone decide, and of what contains neither.
+    /// Returns true if `roots` are written as sums of coordinates and velocities with coefficients
+    /// that parameters alone decide, and of what contains neither.
     pub(crate) fn linear(&self, roots: &[Id]) -> bool {
         let moving = Dependencies::COORDINATE
             .or(Dependencies::VELOCITY)

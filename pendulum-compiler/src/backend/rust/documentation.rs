@@ -1,4 +1,4 @@
-//! What hover and rustdoc say about a struct: its equations and what they cost.
+//! The documentation of a struct for hover and rustdoc: its equations and their cost.
 
 use super::Emitter;
 use crate::algebra::expr::Graph;

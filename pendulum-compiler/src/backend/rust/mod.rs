@@ -34,7 +34,7 @@ const OWN: &[&str] = &[
     "values", "widths", "work",
 ];
 
-/// What the emitter writes about and with.
+/// Everything that the emitter writes about and with.
 pub(crate) struct Emitter<'m, 'a> {
     pub(crate) krate: TokenStream,
     pub(crate) model: &'m Model<'a>,

@@ -44,7 +44,7 @@ impl Emitter<'_, '_> {
     }
 }
 
-/// Whether an attribute is `#[expect(unused_variables)]` or `#[expect(unused)]`.
+/// Returns true if an attribute is `#[expect(unused_variables)]` or `#[expect(unused)]`.
 fn expects_unused(attribute: &Attribute) -> bool {
     let syn::Meta::List(list) = &attribute.meta else { return false };
     let unused =

@@ -7,7 +7,7 @@ use crate::algebra::expr::{Dependencies, Graph, Id};
 use crate::algebra::number::Rational;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// How an unknown comes from those that are found before it.
+/// The equation that gives an unknown from the ones found before it.
 #[derive(Debug)]
 struct Step {
     unknown: usize,

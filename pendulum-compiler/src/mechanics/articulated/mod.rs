@@ -22,7 +22,7 @@ use crate::mechanics::lower::{Extended, total_derivative};
 use joint::Joint;
 use std::collections::BTreeMap;
 
-/// What the sparse form gives; the same functions as those of the dense form.
+/// The results of the sparse form; the same functions as those of the dense form.
 #[derive(Debug)]
 pub(crate) struct Sparse {
     pub(crate) accelerations: Vec<Id>,
@@ -39,8 +39,8 @@ pub(crate) struct Sparse {
 pub(crate) struct Unsolved {
     /// The momenta of the coordinates and of the positions, in q and q̇.
     pub(crate) carried: Vec<Id>,
-    /// What vanishes along the motion, one for each coordinate; the symbol `Auxiliary(k)` is the
-    /// rate of `carried[k]`.
+    /// Expressions that vanish along the motion, one for each coordinate; the symbol `Auxiliary(k)`
+    /// is the rate of `carried[k]`.
     pub(crate) equations: Vec<Id>,
 }
 

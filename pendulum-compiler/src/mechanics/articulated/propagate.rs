@@ -1,4 +1,4 @@
-//! What goes along the tree: velocities from the root to the leaves, momenta and their rates from
+//! Propagation along the tree: velocities from the root to the leaves, momenta and their rates from
 //! the leaves to the root.
 
 use super::{Tree, Unsolved};

@@ -1,4 +1,4 @@
-//! What is known while compiling: constants that are no real number are refused where they are
+//! Constants known while compiling: those that are no real number are refused where they are
 //! written.
 
 use super::Lower;

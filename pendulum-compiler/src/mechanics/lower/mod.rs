@@ -69,7 +69,7 @@ pub(crate) struct Extended {
     pub(crate) forces: Vec<Id>,
     /// The scalars of each position.
     pub(crate) positions: Vec<Vec<usize>>,
-    /// What each scalar is.
+    /// The value of each scalar.
     pub(crate) scalars: Vec<Id>,
 }
 
@@ -221,7 +221,7 @@ fn second_derivative(graph: &mut Graph, id: Id) -> Id {
     graph.sum(&terms)
 }
 
-/// What a name that holds in one expression stands for.
+/// The meaning of a name that holds in one expression.
 enum Local {
     /// An argument of a function or a point of integration.
     Value(Value),
@@ -251,7 +251,7 @@ struct Lower<'m, 'a, 'g, 'e> {
     positions: Option<PositionTracker>,
     /// The values of expressions without symbols.
     constants: BTreeMap<Id, f64>,
-    /// Whether velocities have derivatives: in outputs.
+    /// True if velocities have derivatives: in outputs.
     accelerations: bool,
 }
 
@@ -514,7 +514,7 @@ impl Lower<'_, '_, '_, '_> {
         }
     }
 
-    /// What a name that holds in one expression stands for.
+    /// The meaning of a name that holds in one expression.
     fn local(&self, name: &str) -> Option<&Local> {
         self.scope.iter().rev().find(|(own, _)| own == name).map(|(_, local)| local)
     }

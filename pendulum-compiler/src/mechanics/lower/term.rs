@@ -429,7 +429,7 @@ impl Lower<'_, '_, '_, '_> {
         }
     }
 
-    /// What an index is put to.
+    /// The value to which an index is applied.
     pub(super) fn indexed(&mut self, base: &Expr) -> Value {
         if let ExprKind::Name(ident) = &base.kind {
             let Name { base: text, dots: 0 } = name::read(&ident.to_string()) else {
@@ -473,7 +473,7 @@ impl Lower<'_, '_, '_, '_> {
     }
 }
 
-/// Whether an index stands in an expression: one member of a family may be at rest.
+/// Returns true if an index stands in an expression: one member of a family may be at rest.
 fn has_index(expr: &Expr) -> bool {
     match &expr.kind {
         ExprKind::Number(_) | ExprKind::Name(_) | ExprKind::Integral { .. } => false,

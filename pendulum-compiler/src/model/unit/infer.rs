@@ -15,8 +15,8 @@ use crate::syntax::name::{self, Name};
 use crate::syntax::text::text;
 use std::collections::BTreeMap;
 
-/// What is nested deeper is left alone: it would overflow the compiler's stack. Every definition is
-/// checked for itself as well.
+/// The deepest nesting that is looked at: more would overflow the compiler's stack. Every
+/// definition is checked for itself as well.
 const DEEPEST: usize = 200;
 
 /// Checks a block, if any of its quantities has a unit.
@@ -71,7 +71,7 @@ impl Unit {
     }
 }
 
-/// What an expression has: a unit, or any, or one that has been reported.
+/// The unit of an expression, or none if it has any or a mistake that has been reported.
 type Found = Option<Unit>;
 
 struct Units<'m, 'a, 'e> {
@@ -375,7 +375,7 @@ impl Units<'_, '_, '_> {
         }
     }
 
-    /// Whether an expression is the name of a body.
+    /// Returns true if an expression is the name of a body.
     fn body(&self, expr: &Expr) -> bool {
         let ExprKind::Name(ident) = &expr.kind else { return false };
         let base = name::read(&ident.to_string()).base;

@@ -104,7 +104,7 @@ impl Parser<'_> {
         Ok(Field { attributes, name, kind, default })
     }
 
-    /// What stands after the name of a parameter or of a driven input: a colon and a kind, or
+    /// The kind after the name of a parameter, an input or an output: a colon and a kind, or
     /// nothing.
     pub(super) fn declared_kind(&mut self, input: ParseStream, name: &Ident) -> Result<Kind> {
         if input.peek(syn::token::Bracket) {
@@ -164,7 +164,7 @@ impl Parser<'_> {
     }
 }
 
-/// What is wrong between brackets that hold a unit without a length, or a length without a unit.
+/// The mistake between brackets that hold a unit without a length, or a length without a unit.
 fn no_length(content: ParseStream, unit: Option<&Expr>) -> syn::Error {
     match unit {
         Some(Expr { kind: ExprKind::Number(Literal::Exact(length)), range, .. })

@@ -193,7 +193,7 @@ impl Parser<'_> {
         Err(unexpected(input, "a number, a name, `(`, `[` or `|`"))
     }
 
-    /// What stands in a fragment, up to its end.
+    /// The contents of a fragment, up to its end.
     pub(super) fn inside<R>(
         &mut self,
         tokens: TokenStream,

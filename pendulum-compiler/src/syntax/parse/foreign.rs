@@ -1,4 +1,4 @@
-//! What has no place in a formula, and what to write instead.
+//! Notations that have no place in a formula, with their translations.
 
 use super::Parser;
 use super::statement::STATEMENTS;
@@ -28,7 +28,7 @@ pub(super) const FOREIGN: &[(&str, &str)] = &[
     ("move", "leave it out"),
 ];
 
-/// What is wrong with a number that has a unit.
+/// The mistake in a number that has a unit.
 pub(super) fn no_unit() -> String {
     format!("a number in a formula has no unit; {UNITS}")
 }
@@ -127,8 +127,8 @@ impl Parser<'_> {
         Err(base.range.to(last.into()).error(message))
     }
 
-    /// Whether a unit begins behind a number, with a `suffix` or at the next token: one of its
-    /// names at least is nothing else.
+    /// Returns true if a unit begins behind a number, with a `suffix` or at the next token: one of
+    /// its names at least is nothing else.
     pub(super) fn is_unit(&self, suffix: Option<&str>, input: ParseStream) -> bool {
         let ahead = input.fork();
         let mut name = suffix.map(str::to_owned);
@@ -185,7 +185,7 @@ impl Parser<'_> {
     }
 }
 
-/// Whether a function takes that many arguments.
+/// Returns true if a function takes that many arguments.
 fn takes(name: &str, count: usize) -> bool {
     Word::named(name).is_some_and(|word| word.arity() == count)
 }

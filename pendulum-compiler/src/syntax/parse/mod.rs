@@ -54,7 +54,7 @@ pub(crate) fn all(input: TokenStream, errors: &mut Errors) -> Option<(TokenStrea
     parsed
 }
 
-/// Whether no name has a letter beyond ASCII; comments and other literals may.
+/// Returns true if no name has a letter beyond ASCII; comments and other literals may.
 fn is_ascii(tokens: TokenStream) -> bool {
     tokens.into_iter().all(|tree| match tree {
         TokenTree::Ident(name) => name.to_string().is_ascii(),
@@ -95,14 +95,14 @@ struct Parser<'a> {
     errors: &'a mut Errors,
     sources: usize,
     depth: usize,
-    /// Whether a `|` closes what stands here.
+    /// True if a `|` closes what stands here.
     barred: bool,
     recovery: Recovery,
     /// The coordinates of a statement that ends in a mistake, as far as they could be read.
     begun: Vec<Statement>,
     /// The names that have been declared so far.
     declared: BTreeSet<String>,
-    /// Whether no name of the block has a letter beyond ASCII.
+    /// True if no name of the block has a letter beyond ASCII.
     ascii: bool,
 }
 

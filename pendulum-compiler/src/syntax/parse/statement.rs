@@ -18,7 +18,7 @@ use syn::{Attribute, Token, bracketed, parenthesized};
 pub(super) const STATEMENTS: [&str; 10] =
     ["coordinate", "driven", "input", "let", "kinetic", "potential", "lagrangian", "dissipation", "force", "output"];
 
-/// What to do instead of a constraint.
+/// Advice instead of a constraint.
 const CONSTRAINTS: &str = "constraints, as closed loops need them, are not supported yet; choose \
                            coordinates in which they hold by themselves";
 
@@ -319,7 +319,7 @@ fn kind_written(kind: &Kind) -> String {
     }
 }
 
-/// Whether a fragment is a range and not its lower end.
+/// Returns true if a fragment is a range and not its lower end.
 fn whole_range(tokens: &TokenStream) -> bool {
     let dots = |tree| matches!(tree, TokenTree::Punct(dot) if dot.as_char() == '.' && dot.spacing() == Spacing::Joint);
     tokens.clone().into_iter().any(dots)

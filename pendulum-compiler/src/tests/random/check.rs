@@ -28,7 +28,7 @@ impl Findings {
         }
     }
 
-    /// Whether the source itself has a value at the state that plain arithmetic can find.
+    /// Returns true if the source itself has a value at the state that plain arithmetic can find.
     pub(crate) fn sound(&self) -> bool {
         self.own < 1e-13
     }

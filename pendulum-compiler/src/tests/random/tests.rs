@@ -1,4 +1,4 @@
-//! What must hold for every random system. `RANDOM_SEED=17 RANDOM_COUNT=1` looks at one,
+//! Laws that hold for every random system. `RANDOM_SEED=17 RANDOM_COUNT=1` looks at one,
 //! `RANDOM_COUNT=100000` at more.
 
 use super::check::{Derived, PLAIN, PRECISE};

@@ -57,7 +57,7 @@ impl Outline {
     }
 }
 
-/// How often curves wind around what lies to the right of the middle of chord `number`: their
+/// The winding number of curves around the right side of the middle of chord `number`: their
 /// crossings with a ray, for which the strips across y and across x are asked; what is nearer than
 /// `slack` coincides.
 fn winding_to_the_right(number: usize, own: [Point; 2], strips: &[Strips; 2], slack: f64) -> i32 {
@@ -85,7 +85,7 @@ fn winding_to_the_right(number: usize, own: [Point; 2], strips: &[Strips; 2], sl
     if up { winding } else { winding - 1 }
 }
 
-/// Which chords a line along the other axis may meet: by strips across one axis.
+/// The chords that a line along the other axis may meet: by strips across one axis.
 struct Strips {
     low: f64,
     /// Strips a metre.

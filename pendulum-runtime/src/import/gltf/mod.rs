@@ -162,7 +162,7 @@ impl Gltf {
         number("animations", name, self.animations())
     }
 
-    /// How a node moves in the world while an animation plays.
+    /// The motion of a node in the world while an animation plays.
     ///
     /// # Errors
     /// Numbers that name nothing, and channels that contradict themselves.

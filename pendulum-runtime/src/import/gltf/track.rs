@@ -191,8 +191,8 @@ impl Arcs {
     }
 }
 
-/// Whether a curve of quaternions comes near zero, where it is no rotation: the first piece that
-/// does.
+/// Finds the piece of a curve of quaternions that comes near zero, where it is no rotation: the
+/// first that does.
 pub(super) fn vanishing(curve: &Piecewise<4>) -> Option<usize> {
     curve.pieces().position(|(piece, h)| {
         // Far below what a rotation of less than half a turn leaves, and high enough to be decided
@@ -205,8 +205,8 @@ pub(super) fn vanishing(curve: &Piecewise<4>) -> Option<usize> {
     })
 }
 
-/// Whether |c(u)| stays above `least` for u from 0 to h: by the value in the middle of spans and a
-/// bound on |ċ|, halving.
+/// Returns true if |c(u)| stays above `least` for u from 0 to h: by the value in the middle of
+/// spans and a bound on |ċ|, halving.
 fn away(piece: &[[f64; 4]; 4], h: f64, least: f64) -> bool {
     let [a, b, c, d] = piece;
     let mut spans = vec![[0.0, h]];

@@ -18,7 +18,7 @@ pub enum DrawingError {
     },
     /// A unit is not a positive number.
     Unit {
-        /// Which one.
+        /// Its name.
         what: &'static str,
         /// Its value.
         value: f64,

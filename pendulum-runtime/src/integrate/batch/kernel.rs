@@ -53,7 +53,7 @@ pub(super) struct Run<'a, S: Batched<N>, const N: usize> {
     round: u64,
     /// The round after which a motion has taken all steps allowed.
     deadline: u64,
-    /// Whether some lane takes its first step, of limited length.
+    /// True if some lane takes its first step, of limited length.
     first: bool,
 }
 
@@ -72,7 +72,7 @@ struct Flight<T, const N: usize> {
     /// The words of the time.
     high: Wide<f64>,
     low: Wide<f64>,
-    /// Where the motion ends.
+    /// The time at which the motion ends.
     end: Wide<f64>,
     /// 1 where a motion is under way, else 0.
     live: Wide<f64>,
@@ -449,7 +449,7 @@ fn weights<T: Lane + Float, const N: usize>(
 /// A length that stands for one that the last terms do not tell.
 const UNTOLD: f64 = 1e300;
 
-/// What the last terms of the series tell about the lengths of steps: 1023 and their binary
+/// The lengths of steps that the last terms of the series tell: 1023 and their binary
 /// logarithms.
 #[inline(always)]
 fn log_radii<T: Lane + Float, const N: usize>(
@@ -504,7 +504,7 @@ fn longer<T: Lane + Float, const N: usize>(
     wanted
 }
 
-/// What the coefficients of one order tell; infinite where all are zero.
+/// The length that the coefficients of one order tell; infinite if all are zero.
 #[inline(always)]
 fn log_radius_of<T: Lane + Float, const N: usize>(
     path: &Path<Wide<T>, N>,
@@ -560,19 +560,19 @@ fn fit<T, const N: usize>(
     h
 }
 
-/// Whether a step of this length would reach the end.
+/// Returns true if a step of this length would reach the end.
 #[inline(always)]
 fn reaches(t: Time, end: f64, wanted: f64) -> bool {
     t.since(end).abs() <= 1.01 * wanted
 }
 
-/// Whether a step of this length would be too short before the end.
+/// Returns true if a step of this length would be too short before the end.
 #[inline(always)]
 fn is_short(t: Time, end: f64, wanted: f64) -> bool {
     (wanted <= resolution(t)) & (wanted < t.since(end).abs())
 }
 
-/// Whether some lane is not zero.
+/// Returns true if some lane is not zero.
 #[inline(always)]
 fn any(lanes: Wide<f64>) -> bool {
     let mut all_zero = true;

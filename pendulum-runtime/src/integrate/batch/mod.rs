@@ -168,13 +168,13 @@ impl<const N: usize> Batch<N> {
         Ok(run.outcomes())
     }
 
-    /// What decides about the length of a step.
+    /// The rule that decides about the length of a step.
     fn rule<S: Batched<N>>(&self) -> Rule {
         let (rtol, _) = self.control.tolerances::<S::Scalar>();
         Rule::new(self.method.order_for(rtol, S::PER_DIGIT), rtol)
     }
 
-    /// Whether a motion can begin; `true` if it ends where it begins.
+    /// Checks that a motion can begin; `true` if it ends where it begins.
     fn begin<S: Batched<N>>(&self, problem: &Problem<S, N>) -> Result<bool, Error> {
         let (start, end) = problem.time;
         if !(end - start).is_finite() {
@@ -191,7 +191,7 @@ impl<const N: usize> Batch<N> {
     }
 }
 
-/// What one motion of a batch comes to.
+/// The result of one motion of a batch.
 pub type Outcome<T, const N: usize> = Result<Solution<T, N>, Failure<T, N>>;
 
 /// The end of a motion over an interval.

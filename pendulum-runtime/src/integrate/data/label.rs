@@ -18,12 +18,12 @@ pub(crate) struct Labels {
     pub(crate) velocities: Vec<Label>,
 }
 
-/// Where the labels of a solution come from: a solution without a reader makes none.
+/// The source of the labels of a solution: a solution without a reader makes none.
 #[derive(Clone, Debug)]
 pub(crate) enum Source {
     /// The facts of the system.
     Facts(&'static Facts),
-    /// What was read from a file.
+    /// The labels that were read from a file.
     #[cfg_attr(not(feature = "serde"), allow(dead_code))]
     Read(Labels),
 }

@@ -22,20 +22,20 @@ pub(crate) struct EventDetector<'a, T, const N: usize> {
     tracks: Vec<Track<T>>,
     /// The last step went back in time.
     backwards: bool,
-    /// Whether the next step is the first of a smooth stretch, before which there is nothing.
+    /// True if the next step is the first of a smooth stretch, before which there is nothing.
     fresh: bool,
-    /// What happened in the last step, in order.
+    /// The events of the last step, in order.
     found: Vec<Occurrence<T, N>>,
 }
 
-/// What is known of an event at the state reached.
+/// The history of an event up to the state reached.
 #[derive(Clone, Copy, Debug)]
 struct Track<T> {
     /// The value of the function.
     value: T,
     /// On which side of zero it is: its sign, or 0 where a root has just been passed.
     side: i8,
-    /// How often it has happened.
+    /// The number of times that it has happened.
     count: u64,
     /// When it has happened last.
     last: Option<Time>,
@@ -58,14 +58,14 @@ struct Acts {
     ratio: f64,
     /// The time between two acts from which they have grown shorter.
     longest: f64,
-    /// How many acts in a row came at the same time.
+    /// The number of acts in a row at the same time.
     still: u32,
 }
 
-/// How near to its ends, in parts of a step, the function is looked at to see whether it falls or
+/// The distance from its ends, in parts of a step, at which the function shows if it falls or
 /// rises there.
 const NEAR: f64 = 1e-4;
-/// How soon after a root a function shows its sign, in parts of a step.
+/// The time after a root at which a function shows its sign, in parts of a step.
 const SHORTLY: f64 = 1e-7;
 /// The time over which rates are taken, in parts of a step.
 const MOMENT: f64 = 1.0 / 4096.0;
@@ -74,7 +74,8 @@ const NONE: f64 = 1e-9;
 /// Times between acts that have grown shorter so often, and by this factor, accumulate.
 const SHORTER: u32 = 5;
 const ACCUMULATED: f64 = 1e-6;
-/// So many acts in a row, each within this part of the time reached, stay where they are.
+/// The number of acts in a row, each within this part of the time reached, that stay where they
+/// are.
 const ACTS: u32 = 1000;
 const STILL: f64 = 1e-12;
 /// The points at which it is looked at.
@@ -101,7 +102,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         }
     }
 
-    /// Whether there is nothing to look for.
+    /// Returns true if there is nothing to look for.
     #[inline]
     pub(crate) fn is_idle(&self) -> bool {
         self.events.is_empty()
@@ -112,7 +113,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         self.events.iter().position(|event| event.action.is_some())
     }
 
-    /// What happened in the last step.
+    /// The events of the last step.
     pub(crate) fn found(&self) -> &[Occurrence<T, N>] {
         &self.found
     }
@@ -623,8 +624,8 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         Ok(())
     }
 
-    /// Whether the event has happened so shortly before the step that a dip around its start is the
-    /// same one.
+    /// Returns true if the event has happened so shortly before the step that a dip around its
+    /// start is the same one.
     fn recent(&self, index: usize, interpolant: &Interpolant<T, N>) -> bool {
         let start = interpolant.interval.start;
         let since = |last: Time| (last.since(start.to_f64()) - start.low()).abs();
@@ -733,7 +734,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         }
     }
 
-    /// What rounding the state and the time by a few units changes in the function.
+    /// The change of the function by rounding the state and the time by a few units.
     fn rounding(&self, index: usize, place: &Place<T, N>, value: T, a: &[T; N]) -> T {
         let unit = T::from_f64(4.0) * T::EPSILON;
         let dt = unit * place.t.abs();
@@ -751,7 +752,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         drift + self.changes(index, place, value, |y| unit * y.abs())
     }
 
-    /// What the usual errors of a solution change in the function.
+    /// The change of the function by the usual errors of a solution.
     fn allowance(&self, index: usize, place: &Place<T, N>) -> Result<T, Error> {
         let unit = T::EPSILON.sqrt() / T::from_f64(16.0);
         let value = self.value(index, place)?;
@@ -780,7 +781,7 @@ struct Rate<T> {
     noise: T,
 }
 
-/// What the times between the acts of an event say.
+/// The verdict on the times between the acts of an event.
 enum Next {
     Usual,
     /// They come at the same time.

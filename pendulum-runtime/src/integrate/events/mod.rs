@@ -209,7 +209,7 @@ impl<'a, T: Float, const N: usize> Event<'a, T, N> {
         self
     }
 
-    /// How near to zero an extremum of the function counts as a root at which it touches zero.
+    /// Sets the distance from zero within which an extremum of the function counts as a root.
     ///
     /// Without this call it is what the function changes if each coordinate and velocity y changes
     /// by 1e-9·(1 + |y|) (for `f64`; √ε/16 in general), because the solution itself is no more
@@ -220,7 +220,7 @@ impl<'a, T: Float, const N: usize> Event<'a, T, N> {
         self
     }
 
-    /// Whether a step ends at the event.
+    /// Returns true if a step ends at the event.
     pub(crate) fn stops(&self) -> bool {
         self.terminal.is_some() || self.action.is_some()
     }

@@ -60,7 +60,7 @@ pub(crate) fn root<T: Float, E>(
     Ok(near.0)
 }
 
-/// What a function that is positive around does in a dip.
+/// The behaviour in a dip of a function that is positive around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Dip<T> {
     /// It stays away from zero.

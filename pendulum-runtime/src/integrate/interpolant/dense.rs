@@ -30,7 +30,7 @@ pub(crate) struct DenseOutput<T, const N: usize> {
 
 #[cfg(feature = "serde")]
 impl<T, const N: usize> DenseOutput<T, N> {
-    /// Whether each step has its states and terms, as none has that was damaged on the way.
+    /// Returns true if each step has its states and terms, as none has that was damaged on the way.
     pub(crate) fn is_sound(&self) -> bool {
         let mut begin = 0;
         let whole = self.ends.iter().all(|&(end, _)| {

@@ -5,7 +5,7 @@ use crate::integrate::interpolant::TERMS;
 use crate::integrate::schemes::linear::Factors;
 use crate::scalar::Float;
 
-/// What is given at a place θ.
+/// A condition at a place θ.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Condition {
     /// y − y₀.

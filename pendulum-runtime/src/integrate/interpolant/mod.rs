@@ -25,13 +25,13 @@ pub struct Interpolant<T, const N: usize> {
     pub q: [[T; N]; TERMS],
     /// The terms of the velocities.
     pub v: [[T; N]; TERMS],
-    /// How many of them are not zero.
+    /// The number of terms that are not zero.
     pub terms: usize,
-    /// What the terms are multiplied by.
+    /// The functions that multiply the terms.
     pub basis: Basis,
 }
 
-/// What the terms of a [`Interpolant`] are multiplied by.
+/// The functions that multiply the terms of an [`Interpolant`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Basis {

@@ -46,7 +46,7 @@ use crate::system::{Dynamics, System};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Auto;
 
-/// What may be chosen.
+/// The methods that may be chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Choice {
     Dop853,
@@ -97,7 +97,7 @@ impl Auto {
     }
 }
 
-/// Whether Taylor series are right.
+/// Returns true if Taylor series are right.
 fn goes_by_series<D: MaybeJets<N>, const N: usize>(dynamics: &D) -> bool {
     <D::System as System<N>>::FACTS.smooth && dynamics.is_analytic()
 }

@@ -134,7 +134,7 @@ impl Adaptive for Dop853 {
 /// eccentricity 0.3 end 240 tolerances off.
 const STRICTNESS: f64 = 2.0;
 
-/// What a step leaves behind: the slopes and the increments divided by h.
+/// The remains of a step: the slopes and the increments divided by h.
 #[derive(Clone, Copy, Debug)]
 pub struct Stages<T, const N: usize> {
     k: Slopes<T, N, 16>,

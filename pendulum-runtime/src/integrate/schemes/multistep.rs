@@ -29,12 +29,12 @@ pub(crate) trait Scheme<const P: usize> {
     const VELOCITIES: [f64; P] = velocities();
 }
 
-/// What a multistep method remembers: the last `P` points of a grid of equal steps.
+/// The memory of a multistep method: the last `P` points of a grid of equal steps.
 #[derive(Clone, Copy, Debug)]
 pub struct History<T, const N: usize, const P: usize> {
     /// The accelerations at the last point.
     newest: [T; N],
-    /// Those at the points before, in order.
+    /// The accelerations at the points before, in order.
     f: Window<T, N, P>,
     /// The second differences, divided by h².
     d: Window<T, N, P>,

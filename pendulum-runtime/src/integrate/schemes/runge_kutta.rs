@@ -83,7 +83,7 @@ pub(crate) fn weighted<T: Float, const N: usize, const S: usize, const K: usize>
     sum
 }
 
-/// What the tests of the tableaux ask of them.
+/// The conditions that the tests ask of the tableaux.
 #[cfg(test)]
 pub(crate) mod conditions {
     use super::Row;

@@ -294,7 +294,7 @@ impl<const N: usize> AdaptiveStep<N> {
         length / self.max_step
     }
 
-    /// Whether the length of the first step has a limit of its own.
+    /// Returns true if the length of the first step has a limit of its own.
     pub(crate) fn limits_first(&self) -> bool {
         self.first_step.is_some()
     }
@@ -317,7 +317,7 @@ impl<const N: usize> AdaptiveStep<N> {
         Some(Error::Setting { name: "first_step", value, required })
     }
 
-    /// Whether all settings are positive.
+    /// Checks that all settings are positive.
     pub(crate) fn positive<T: Float>(&self) -> Result<(), Error> {
         let positive = |name, value: f64| {
             let fine = (f64::MIN_POSITIVE..f64::INFINITY).contains(&value);

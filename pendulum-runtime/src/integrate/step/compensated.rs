@@ -14,7 +14,7 @@ use crate::scalar::{Float, Real};
 pub struct Compensated<T, const N: usize> {
     /// The numbers as everybody else sees them.
     pub high: [T; N],
-    /// What rounding has left off.
+    /// The rest that rounding has left off.
     pub low: [T; N],
 }
 
@@ -73,7 +73,7 @@ impl<T: Float, const N: usize> Compensated<T, N> {
         }
     }
 
-    /// Whether all numbers are finite.
+    /// Returns true if all numbers are finite.
     #[inline(always)]
     pub fn is_finite(&self) -> bool {
         self.high.iter().all(|x| x.is_finite())

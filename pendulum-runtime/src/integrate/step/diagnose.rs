@@ -1,4 +1,4 @@
-//! What may have made a step fail: singular masses, and parameters.
+//! Suspected causes of a failed step: singular masses, and parameters.
 
 use crate::error::{Error, Quantity, Suspect};
 use crate::integrate::schemes::linear::Factors;
@@ -8,7 +8,8 @@ use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Purpose, System, scalar_time};
 use crate::time::Time;
 
-/// Whether the mass matrix at the start of a step leads from velocities to momenta and back.
+/// Returns true if the mass matrix at the start of a step leads from velocities to momenta and
+/// back.
 pub(crate) fn regular<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     from: &Endpoint<D::Scalar, N>,

@@ -74,7 +74,7 @@ impl<T: Float, const N: usize> Endpoint<T, N> {
         next
     }
 
-    /// Whether the whole state is finite.
+    /// Returns true if the whole state is finite.
     #[inline(always)]
     pub fn is_finite(&self) -> bool {
         self.q.is_finite() && self.v.is_finite()

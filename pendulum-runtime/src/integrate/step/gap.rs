@@ -82,7 +82,7 @@ pub(crate) fn longest<S: System<N, Scalar: Float>, const N: usize>(
     }
 }
 
-/// What is narrower can hardly be told from a moment.
+/// The least width that can be told from a moment.
 #[inline(always)]
 pub(crate) fn least(t: Time) -> f64 {
     let least = 64.0 * f64::EPSILON * f64::abs(t.to_f64());

@@ -1,5 +1,5 @@
-//! Whether the mass matrix is positive definite, as the kinetic energy of everything that has mass
-//! is.
+//! A check that the mass matrix is positive definite, as the kinetic energy of everything that has
+//! mass is.
 
 use crate::error::Error;
 use crate::integrate::step::diagnose::negative;
@@ -10,8 +10,9 @@ use crate::system::{Dynamics, Facts, Purpose, System, scalar_time};
 use crate::time::Time;
 use nalgebra::SMatrix;
 
-/// Whether a step is due for [`inertia`] that is the `accepted`-th: one that ends on a kink, and
-/// every 64th, of more than sixteen coordinates every N²/4-th, so that it costs next to nothing.
+/// Returns true if a step is due for [`inertia`] that is the `accepted`-th: one that ends on a
+/// kink, and every 64th, of more than sixteen coordinates every N²/4-th, so that it costs next to
+/// nothing.
 ///
 /// Pivots change their sign only where the mass matrix is singular, which methods with step control
 /// do not pass.
@@ -21,7 +22,7 @@ pub(crate) fn is_due<S: System<N>, const N: usize>(accepted: u64, on_kink: bool)
     varies(&S::FACTS) && (on_kink || accepted.is_multiple_of(every))
 }
 
-/// Whether pivots may change their sign on the way.
+/// Returns true if pivots may change their sign on the way.
 pub(crate) fn varies(facts: &Facts) -> bool {
     facts.derived && !facts.constant_mass_matrix
 }

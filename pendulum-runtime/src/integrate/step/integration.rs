@@ -316,7 +316,7 @@ where
         Ok(())
     }
 
-    /// Whether the last step went back in time.
+    /// Returns true if the last step went back in time.
     pub(crate) fn goes_back(&self) -> bool {
         self.backwards
     }
@@ -407,7 +407,7 @@ fn onwards(backwards: bool) -> Side {
     if backwards { Side::Before } else { Side::After }
 }
 
-/// Whether an integration can begin there.
+/// Checks that an integration can begin there.
 pub(crate) fn check_start<D: Dynamics<N, Scalar = T>, T: Float, const N: usize>(
     dynamics: &D,
     time: Time,

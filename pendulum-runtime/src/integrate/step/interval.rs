@@ -12,13 +12,13 @@ use crate::time::Time;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StepInterval {
-    /// Where it starts.
+    /// The time at which it starts.
     pub start: Time,
-    /// Where it ends.
+    /// The time at which it ends.
     pub end: Time,
     /// Its length.
     pub h: f64,
-    /// What rounding has left off `h`.
+    /// The rest that rounding has left off `h`.
     pub low: f64,
 }
 

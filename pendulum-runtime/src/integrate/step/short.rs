@@ -13,7 +13,7 @@ pub(crate) fn shortest<T: Float>() -> f64 {
     if T::from_f64(1e300).is_finite() { 0.0 } else { f64::from(f32::MIN_POSITIVE) }
 }
 
-/// Whether the scalar cannot hold a step of the length `h`.
+/// Returns true if the scalar cannot hold a step of the length `h`.
 #[inline]
 pub(crate) fn is_short<T: Float>(h: f64) -> bool {
     h.abs() < shortest::<T>()

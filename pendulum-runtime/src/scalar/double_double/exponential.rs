@@ -16,7 +16,7 @@ const FACTORIALS: [DoubleDouble; 6] = [
     DoubleDouble::words(0.001388888888888889, -5.300543954373577e-20),
     DoubleDouble::words(0.0001984126984126984, 1.7209558293420705e-22),
 ];
-/// How they go on.
+/// The coefficients after these.
 const TAIL: [f64; 8] = [
     2.48015873015873e-05,
     2.7557319223985893e-06,

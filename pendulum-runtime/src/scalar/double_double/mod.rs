@@ -61,7 +61,7 @@ impl DoubleDouble {
         self.high
     }
 
-    /// What [`high`](Self::high) leaves off.
+    /// The rest that [`high`](Self::high) leaves off.
     pub const fn low(self) -> f64 {
         self.low
     }

@@ -27,7 +27,7 @@ pub struct Baked<T, const N: usize> {
     states: Vec<([T; N], [T; N])>,
 }
 
-/// What was read, before it was checked.
+/// The keys as read, before they are checked.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(bound(deserialize = "T: serde::Deserialize<'de>"))]

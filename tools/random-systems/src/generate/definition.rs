@@ -68,7 +68,7 @@ impl Generator {
     }
 }
 
-/// Whether a coordinate stands openly in an expression that is never simplified away.
+/// Returns true if a coordinate stands openly in an expression that is never simplified away.
 fn moves(expr: &Expr) -> bool {
     match expr {
         Expr::Coordinate(..) => true,

@@ -10,7 +10,7 @@ mod vector;
 use super::split_mix::Random;
 use super::tree::{Expr, Kind, System, Type, number, power, product, quotient, sum};
 
-/// What a system is for.
+/// The purpose of a system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Manner {
     /// Every function has an argument for which it is real and smooth, kinetic energies are
@@ -20,7 +20,7 @@ pub enum Manner {
     Wild,
 }
 
-/// What may stand in an expression.
+/// The quantities that may stand in an expression.
 #[derive(Clone, Copy, Debug)]
 struct May {
     /// Velocities of coordinates.

@@ -36,7 +36,7 @@ impl Generator {
         }
     }
 
-    /// What is a vector as declared.
+    /// A quantity that is declared as a vector.
     fn whole(&mut self, components: usize, may: May) -> Option<Expr> {
         let argument = may.arguments.iter().position(|&kind| kind == Type::Plane);
         if let Some(index) = argument

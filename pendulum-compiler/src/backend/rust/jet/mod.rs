@@ -50,7 +50,7 @@ pub(crate) enum Block {
     Coupled { rows: Vec<usize>, masses: Vec<Vec<Option<Place>>>, forces: Vec<Place> },
 }
 
-/// What the jets of a motion compute.
+/// The equations that the jets of a motion compute.
 pub(crate) fn equations(graph: &Graph, motion: &Motion) -> Equations {
     let blocks = solve::blocks(&motion.mass_matrix);
     let moving = |rows: &[usize]| {
@@ -232,13 +232,13 @@ struct Recurrences {
 struct Writer<'e, 'm, 'a> {
     emitter: &'e Emitter<'m, 'a>,
     program: &'e Program,
-    /// Whether each place is decided by parameters alone.
+    /// True for each place that parameters alone decide.
     parameter_only: Vec<bool>,
     prepared: &'e [Place],
     lines: TokenStream,
     /// The coefficients of the places that move.
     values: Vec<TokenStream>,
-    /// Where the series of a place is, if it is kept.
+    /// The series of each place that is kept.
     series: BTreeMap<Place, TokenStream>,
     slots: usize,
     pairs: usize,
@@ -276,7 +276,7 @@ impl<'e, 'm, 'a> Writer<'e, 'm, 'a> {
         }
     }
 
-    /// What has been written, with matrices of these sizes to factor.
+    /// The recurrences written so far, with matrices of these sizes to factor.
     fn finish(self, factors: &[usize]) -> Recurrences {
         let Self { emitter, program, prepared, lines, slots, pairs, leading, halves, .. } = self;
         let (krate, scalar, length) = (&emitter.krate, emitter.scalar(), prepared.len());
@@ -291,7 +291,7 @@ impl<'e, 'm, 'a> Writer<'e, 'm, 'a> {
 }
 
 impl Writer<'_, '_, '_> {
-    /// What parameters alone decide.
+    /// A number that parameters alone decide.
     fn constant(&self, place: Place) -> TokenStream {
         match self.prepared.iter().position(|prepared| *prepared == place) {
             Some(index) => quote!(work.still[#index]),

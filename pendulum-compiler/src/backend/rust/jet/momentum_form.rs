@@ -35,7 +35,7 @@ struct Dot {
     factors: [Place; 2],
 }
 
-/// What each operation belongs to.
+/// The part of the equations to which each operation belongs.
 pub(super) struct Plan<'p> {
     program: &'p Program,
     parameter_only: &'p [bool],
@@ -264,7 +264,7 @@ impl Writer<'_, '_, '_> {
         (std::mem::take(&mut self.lines), products)
     }
 
-    /// What the equations leave at q̈ = 0.
+    /// The remainders of the equations at q̈ = 0.
     fn remainders(&mut self, plan: &Plan<'_>) {
         for (index, op) in plan.program.ops.iter().enumerate() {
             if plan.ahead[index] || plan.parameter_only[index] || plan.inside[index] {
@@ -372,7 +372,7 @@ impl Writer<'_, '_, '_> {
         quote!(#lines let masses = [#(#rows),*];)
     }
 
-    /// What the accelerations add to the newest coefficients.
+    /// The contribution of the accelerations to the newest coefficients.
     fn gains(&mut self, plan: &Plan<'_>, turns: &BTreeMap<Place, TokenStream>) {
         let mut gains: Vec<Option<TokenStream>> = vec![None; plan.program.ops.len()];
         let mut turned: Vec<Place> = Vec::new();

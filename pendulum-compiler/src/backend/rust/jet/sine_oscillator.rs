@@ -86,8 +86,8 @@ impl Writer<'_, '_, '_> {
     }
 }
 
-/// Whether a place is a sum of multiples of the sine and the cosine of the coordinate; collects
-/// what moves on the way there.
+/// Returns true if a place is a sum of multiples of the sine and the cosine of the coordinate;
+/// collects what moves on the way there.
 fn combines(
     program: &Program,
     parameter_only: &[bool],

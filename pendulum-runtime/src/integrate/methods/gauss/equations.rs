@@ -34,7 +34,7 @@ impl<T: Float, const N: usize, const S: usize> Slopes<T, N, S> {
     }
 }
 
-/// How much an iteration has changed.
+/// The change by an iteration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Change {
     /// The largest change of a slope, times h and in units of the coordinate or momentum.
@@ -209,7 +209,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
     }
 }
 
-/// What Newton's method knows about the system.
+/// The linearized system in Newton's method.
 #[derive(Debug)]
 pub(super) struct Linearized<T, const N: usize, const S: usize> {
     mass_matrix: Square<T, N>,

@@ -184,7 +184,7 @@ impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize, const 
     }
 }
 
-/// What a step leaves behind: the slopes at its stages, and the momenta at its end.
+/// The remains of a step: the slopes at its stages, and the momenta at its end.
 #[derive(Clone, Copy, Debug)]
 pub struct Stages<T, const N: usize, const S: usize> {
     slopes: Slopes<T, N, S>,

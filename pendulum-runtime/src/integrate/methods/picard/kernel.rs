@@ -142,14 +142,14 @@ pub(super) struct Equations<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float,
     /// the least number is right.
     pub(super) least: u32,
     pub(super) most: u32,
-    /// Whether the change made by the first sweep means anything.
+    /// True if the change made by the first sweep means anything.
     pub(super) guessed: bool,
-    /// Whether the last sweeps look between the nodes too, and the very last one has to change
+    /// True if the last sweeps look between the nodes too, and the very last one has to change
     /// little.
     pub(super) closing: bool,
 }
 
-/// How the iteration has ended.
+/// The end of the iteration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Progress<T> {
     /// The number of sweeps, and of the vectors evaluated in them.
@@ -157,7 +157,7 @@ pub(super) struct Progress<T> {
     pub(super) vectors: u32,
     /// The square of the last change, over the error allowed.
     pub(super) change: T,
-    /// What is left is negligible.
+    /// The rest is negligible.
     pub(super) done: bool,
     /// It was after one sweep less.
     pub(super) spare: bool,
@@ -168,7 +168,7 @@ pub(super) struct Progress<T> {
 /// The number of coefficients by which the error of a step is judged.
 pub(super) const TAIL: usize = 5;
 
-/// What a step comes to.
+/// The result of a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ends<T, const N: usize> {
     /// The coefficients α₁₅, α₁₄, α₁₃, α₁₂ and α₁₆ of the accelerations after Legendre.
@@ -179,7 +179,7 @@ pub(super) struct Ends<T, const N: usize> {
     /// numbers.
     pub(super) square: [f64; N],
     pub(super) progress: Progress<T>,
-    /// Whether the equations are solved.
+    /// True if the equations are solved.
     pub(super) solved: bool,
     /// The error of the step over the one allowed.
     pub(super) error: f64,
@@ -213,16 +213,16 @@ pub(super) struct Onwards<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float, c
     pub(super) interval: &'a StepInterval,
     /// The state at its start.
     pub(super) from: &'a Endpoint<T, N>,
-    /// Where the one at its end goes.
+    /// The place of the state at its end.
     pub(super) to: &'a mut Endpoint<T, N>,
-    /// What the step before left behind, or a first guess of the accelerations.
+    /// The remains of the step before, or a first guess of the accelerations.
     pub(super) workspace: &'a mut WorkspaceOf<D, N>,
     /// The length of this step over that of the step before; 0 with a first guess.
     pub(super) ratio: f64,
     pub(super) tolerances: &'a Tolerances<N>,
     /// The most sweeps.
     pub(super) most: u32,
-    /// Whether the error is asked for.
+    /// True if the error is asked for.
     pub(super) adaptive: bool,
 }
 
@@ -301,11 +301,11 @@ pub(super) struct Within<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float, co
     pub(super) equations: Equations<'a, D, T, N>,
     /// The accelerations of the step.
     pub(super) a: &'a Stages<T, N, 1>,
-    /// Where the coefficients of the accelerations after Legendre go.
+    /// The place of the coefficients of the accelerations after Legendre.
     pub(super) series: &'a mut Stages<T, N, 2>,
     /// The sums of a sweep, by vector.
     pub(super) scaled: &'a mut [Scaled<T, 2>; 2],
-    /// Where the number of sweeps goes.
+    /// The place of the number of sweeps.
     pub(super) count: &'a mut u32,
 }
 

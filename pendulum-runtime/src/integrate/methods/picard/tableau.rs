@@ -12,7 +12,7 @@ pub(super) type Nodes = [f64; S];
 /// For each node, by vector and lane, what its value adds at each of the nodes of `H` vectors.
 pub(super) type Columns<const G: usize, const H: usize> = [[[Nodes; H]; S]; G];
 
-/// What the values of a polynomial at 8 `G` nodes say of its integrals and its coefficients.
+/// Integrals and coefficients of a polynomial from its values at 8 `G` nodes.
 #[derive(Debug)]
 #[repr(C, align(64))]
 pub(super) struct Collocation<const G: usize> {
@@ -220,7 +220,7 @@ const fn collocation<const G: usize>((nodes, weights): ([Nodes; G], [Nodes; G]))
     tableau
 }
 
-/// What comes of first taking the sums of `first`, and then those of `second` of these.
+/// The columns that take the sums of `first`, and then those of `second` of these.
 const fn product<const G: usize>(second: &Columns<G, G>, first: &Columns<G, G>) -> Columns<G, G> {
     let mut product = [[[[0.0; S]; G]; S]; G];
     let all = S * G;
@@ -253,7 +253,7 @@ const fn legendre(k: usize, theta: f64) -> f64 {
     now
 }
 
-/// What the value at node j adds to the coefficient of P_k: (2k + 1) b_j P_k(2 c_j − 1).
+/// The contribution of the value at node j to the coefficient of P_k: (2k + 1) b_j P_k(2 c_j − 1).
 const fn coefficient<const G: usize>(
     (nodes, weights): &([Nodes; G], [Nodes; G]),
     k: usize,
@@ -355,7 +355,7 @@ mod tests {
         legendre,
     };
 
-    /// What the columns make of the values of θᵖ at the nodes.
+    /// The sums that the columns make of the values of θᵖ at the nodes.
     fn sums<const G: usize, const W: usize, const H: usize>(
         nodes: &[Nodes; G],
         columns: &[[[[f64; W]; H]; S]; G],

@@ -1,4 +1,4 @@
-//! What a step of Picard's iteration leaves behind, and how it is judged.
+//! The remains of a step of Picard's iteration, and its judgement.
 
 // What a step needs is inlined into what is compiled for several instruction sets.
 #![allow(clippy::inline_always)]
@@ -13,14 +13,14 @@ use crate::scalar::{Float, Lane};
 use crate::system::{Dynamics, System};
 use crate::time::Time;
 
-/// What a step leaves behind.
+/// The remains of a step.
 #[derive(Clone, Debug)]
 pub struct Workspace<T: Lane, P, const N: usize> {
-    /// What the parameters alone decide, over lanes.
+    /// The values that parameters alone decide, over lanes.
     pub(super) prepared: P,
     /// The accelerations at the nodes, of the last step and of the one under way.
     pub(super) a: [Stages<T, N, 1>; 2],
-    /// Which of the two is the last step.
+    /// The index of the last step among the two.
     pub(super) last: usize,
     /// Time, coordinates and velocities at its end, and its length; nothing before the first step.
     pub(super) end: Option<(Time, [T; N], [T; N])>,
@@ -30,7 +30,7 @@ pub struct Workspace<T: Lane, P, const N: usize> {
     /// end.
     pub(super) square: [f64; N],
     pub(super) start: [T; N],
-    /// Whether `start` is known: fixed steps do not look there.
+    /// True if `start` is known: fixed steps do not look there.
     pub(super) start_known: bool,
     /// Sums for steps of the last length: of a sweep, of the first one after an equal step, of the
     /// points between the nodes, and of a sweep at sixteen nodes.
@@ -38,10 +38,10 @@ pub struct Workspace<T: Lane, P, const N: usize> {
     pub(super) within: [Scaled<T, 2>; 2],
     /// The number of sweeps that is likely to suffice.
     pub(super) sweeps: u32,
-    /// How exactly the equations were solved.
+    /// The accuracy with which the equations were solved.
     pub(super) weights: [T; N],
-    /// Where the equations of the step were not solved: its end and the coordinate that is
-    /// accelerated most.
+    /// The place at which the equations of the step were not solved: its end and the coordinate
+    /// that is accelerated most.
     pub(super) unsolved: Option<(Time, usize)>,
 }
 
@@ -89,7 +89,7 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
         }
     }
 
-    /// Whether the equations are solved: the iteration has come to its end, or to rounding.
+    /// Returns true if the equations are solved: the iteration has come to its end, or to rounding.
     #[inline(always)]
     pub(super) fn is_solved(&self) -> bool {
         let Ends { square, progress, .. } = &self.ends;

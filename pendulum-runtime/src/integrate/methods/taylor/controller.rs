@@ -143,7 +143,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> StepLaw<Taylor, D, N> for
 /// The error of a step over the one allowed from which on the series does not hold at its end.
 const MISFIT: f64 = 30.0;
 
-/// How well a series holds at the end of its step.
+/// The misfit of a series at the end of its step.
 struct Misfit {
     /// The accelerations are those of the series.
     allowed: bool,
@@ -151,8 +151,8 @@ struct Misfit {
     rounding: bool,
 }
 
-/// How far the accelerations at the end of a step are from those of the series: h |a − Σ k v\[k\]
-/// hᵏ⁻¹|/p in units of the error allowed.
+/// The distance of the accelerations at the end of a step from those of the series: h |a − Σ k
+/// v\[k\] hᵏ⁻¹|/p in units of the error allowed.
 ///
 /// A series knows no more than its centre does: of a wall, a contact or a switch far away its
 /// coefficients tell nothing. Rounding is taken for a thousand ε of velocities, accelerations,

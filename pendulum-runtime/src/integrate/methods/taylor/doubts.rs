@@ -12,7 +12,7 @@ pub(super) const MOST_DOUBTS: u32 = 256;
 /// A step is long again if it is so many times as long as the shortest before it.
 const FOUND: f64 = 1e3;
 
-/// How often a step is halved at most.
+/// The greatest number of times that a step is halved.
 const MOST_HALVED: u32 = 40;
 
 /// Doubts about series, from step to step.
@@ -20,7 +20,7 @@ const MOST_HALVED: u32 = 40;
 pub(super) struct Doubts {
     /// The last time at which a series did not hold.
     pub(super) refuted: Option<Time>,
-    /// How many steps in a row went over a jump, or over something like one.
+    /// The number of steps in a row that went over a jump, or over something like one.
     crossed: u32,
     /// One more for each step that was halved, two less for each whole step whose series holds, and
     /// none where steps are long again.

@@ -86,7 +86,7 @@ pub struct Workspace<T, W, X, const N: usize> {
     pub(super) work: W,
     /// The order of the jet.
     pub(super) order: usize,
-    /// What the tolerance decides.
+    /// The rule for the length of steps, from the tolerance.
     pub(super) rule: Rule,
     /// One over the errors allowed of coordinates and velocities at the start.
     pub(super) weights: [[f64; N]; 2],

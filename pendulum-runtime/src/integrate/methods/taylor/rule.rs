@@ -7,7 +7,7 @@ use crate::integrate::step::fast_exp2::{digits, log2, power};
 use crate::jet::{LENGTH, Path};
 use crate::scalar::Float;
 
-/// What the tolerance decides about the length of a step.
+/// The rule by which the tolerance decides about the length of a step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Rule {
     pub(super) tolerance: f64,
@@ -38,8 +38,8 @@ impl Rule {
     }
 }
 
-/// How many of the last coefficients tell the length of a step. A motion from rest in a symmetric
-/// place has one order in four only.
+/// The number of last coefficients that tell the length of a step. A motion from rest in a
+/// symmetric place has one order in four only.
 pub(crate) const LAST_ORDERS: usize = 4;
 
 /// The length of a step at whose end the last term of the series is as large as allowed; infinite
