@@ -339,7 +339,7 @@ impl fmt::Display for Error {
             ),
             Self::Saved { ref system, ref method } => write!(
                 f,
-                "what was saved is an integration of `{system}` by `{method}` that does not fit; \
+                "the saved integration, of `{system}` by `{method}`, does not fit; \
                  build the integrator with the same system, method, steps and events, and restore what `save` gave"
             ),
             Self::Kink { t, kink } => {

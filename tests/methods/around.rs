@@ -115,7 +115,7 @@ fn states_at_output_times_go_by_without_being_kept() {
 
 /// More of them than a solution keeps.
 #[test]
-#[ignore = "takes ten seconds"]
+#[ignore = "takes ten seconds: `.ci/run` runs it"]
 fn eleven_million_output_times() {
     let simple = Simple { g: 9.81 };
     let problem = || solve(&simple, (0.0, 11.0), [1.3], [0.0]).rtol(1e-9).every(1e-6);

@@ -107,7 +107,7 @@ impl fmt::Display for LyapunovSpectrum {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LyapunovError {
-    /// Why.
+    /// The error of the integration, or of a setting.
     pub error: Error,
     /// The time of the last frame.
     pub t: f64,

@@ -1,4 +1,4 @@
-//! Poincaré sections: where a motion crosses a surface.
+//! Poincaré sections: the crossings of a surface by a motion.
 
 use crate::error::Error;
 use crate::integrate::controller::Controller;

@@ -77,22 +77,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
     where
         D: Dynamics<N, Scalar: Float>,
     {
-        let Self { dynamics, time, q, v, controller, output, dense, stops, .. } = self;
-        let Self { events, max_steps, observers, .. } = self;
-        Solve {
-            dynamics,
-            time,
-            q,
-            v,
-            method,
-            controller,
-            output,
-            dense,
-            stops,
-            events,
-            max_steps,
-            observers,
-        }
+        self.with(|_, controller| (method, controller))
     }
 
     /// Takes equal steps of at most `step` seconds, as [`FixedStep`] describes.
@@ -191,8 +176,15 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
     }
 
     fn control<B>(self, controller: B) -> Solve<'a, N, D, M, B> {
-        let Self { dynamics, time, q, v, method, output, dense, stops, .. } = self;
-        let Self { events, max_steps, observers, .. } = self;
+        self.with(|method, _| (method, controller))
+    }
+
+    /// The same problem with another method or controller.
+    fn with<B, E>(self, change: impl FnOnce(M, C) -> (B, E)) -> Solve<'a, N, D, B, E> {
+        let Self {
+            dynamics, time, q, v, output, dense, stops, events, max_steps, observers, ..
+        } = self;
+        let (method, controller) = change(self.method, self.controller);
         Solve {
             dynamics,
             time,

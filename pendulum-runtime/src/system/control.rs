@@ -110,7 +110,8 @@ pub struct Uncontrolled<S, M> {
 
 impl<S, M> Uncontrolled<S, M> {
     /// The system under a feedback law: the control inputs u(t, q, q̇) from the time in seconds, the
-    /// coordinates and the velocities.
+    /// coordinates and the velocities. A number or an array for one input, a tuple for several, in
+    /// the units and in the order of their declarations.
     ///
     /// Does not compile if the law gives more or fewer numbers than the control inputs have
     /// components.
@@ -133,9 +134,14 @@ impl<S, M> Uncontrolled<S, M> {
     /// they keep their values in between (zero-order hold).
     ///
     /// Steps end at every sample. The controller may have a state of its own: the closure is
-    /// cloned at the start of each integration. What it gave stays, so that energies and outputs
-    /// along a solution are those of the last integration; one that began earlier ends with
-    /// [`Error::Controller`].
+    /// cloned at the start of each integration. The values of the last integration are recorded, one
+    /// entry a period, so that energies and outputs along its solution have them.
+    ///
+    /// # Errors
+    /// Integrations end with [`Error::Setting`](crate::error::Error::Setting) for a period that is
+    /// not positive or too short for the time, with
+    /// [`Error::NotFinite`](crate::error::Error::NotFinite) for a value that is not finite, and with
+    /// [`Error::Controller`](crate::error::Error::Controller) if another one has begun since.
     pub fn sampled<U, C, const N: usize>(self, period: f64, controller: C) -> Sampled<S, M, C, U>
     where
         S: System<N>,

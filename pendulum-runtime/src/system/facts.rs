@@ -59,7 +59,7 @@ facts! {
     pub velocity_free: bool = false,
     /// The mass matrix contains neither coordinates, velocities nor time.
     pub constant_mass_matrix: bool = false,
-    /// There is a `dissipation` or `force` statement.
+    /// There is a `dissipation` or `force` statement, or a control input in an energy.
     pub nonconservative: bool = true,
     /// No `abs`, `sign`, `min` or `max` of something that moves stands in the accelerations.
     pub smooth: bool = false,

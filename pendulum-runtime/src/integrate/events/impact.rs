@@ -14,7 +14,7 @@ use nalgebra::SMatrix;
 /// impulse, a change of momenta, has its direction, and n·q̇ becomes −e times what it was. M is the
 /// mass matrix at `t` and `q`. The kinetic energy falls by (1 − e²)(n·q̇)²/(2 nᵀM⁻¹n).
 ///
-/// What comes out is not finite if n is zero or the mass matrix singular.
+/// The result is not finite if n is zero or the mass matrix singular.
 ///
 /// Source: F. Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral Contacts (1996),
 /// chapter 8, for a single contact with Newton's law of restitution.

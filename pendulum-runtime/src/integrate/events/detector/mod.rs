@@ -1,5 +1,7 @@
 //! Finds the events within each step.
 
+mod acts;
+
 use crate::error::Error;
 use crate::integrate::events::root::{Dip, Point, dip, root};
 use crate::integrate::events::{Condition, Direction, Event, Occurrence, Status};
@@ -9,11 +11,11 @@ use crate::integrate::output::in_order;
 use crate::integrate::saved::Memory;
 use crate::integrate::state::State;
 use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::first_in_state;
 use crate::integrate::step::integration::Integration;
 use crate::scalar::Float;
-use crate::system::{Dynamics, System, scalar_time};
+use crate::system::{Dynamics, scalar_time};
 use crate::time::Time;
+use acts::Acts;
 
 /// The events of an integration and what is known of each.
 #[derive(Clone, Debug)]
@@ -46,38 +48,11 @@ struct Track<T> {
     acts: Acts,
 }
 
-/// The times between the acts of an event.
-#[derive(Clone, Copy, Debug, Default)]
-struct Acts {
-    /// The last act.
-    last: Option<Time>,
-    /// The time between the last two, and how many in a row have been shorter than the one before.
-    gap: f64,
-    shorter: u32,
-    /// The last such time over the one before it.
-    ratio: f64,
-    /// The time between two acts from which they have grown shorter.
-    longest: f64,
-    /// The number of acts in a row at the same time.
-    still: u32,
-}
-
 /// The distance from its ends, in parts of a step, at which the function shows if it falls or
 /// rises there.
 const NEAR: f64 = 1e-4;
 /// The time after a root at which a function shows its sign, in parts of a step.
 const SHORTLY: f64 = 1e-7;
-/// The time over which rates are taken, in parts of a step.
-const MOMENT: f64 = 1.0 / 4096.0;
-/// The part of a rate below which what an act leaves of it counts as none.
-const NONE: f64 = 1e-9;
-/// Times between acts that have grown shorter so often, and by this factor, accumulate.
-const SHORTER: u32 = 5;
-const ACCUMULATED: f64 = 1e-6;
-/// The number of acts in a row, each within this part of the time reached, that stay where they
-/// are.
-const ACTS: u32 = 1000;
-const STILL: f64 = 1e-12;
 /// The points at which it is looked at.
 const POINTS: [f64; 11] =
     [-NEAR, 0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0 - NEAR, 1.0];
@@ -201,15 +176,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
             memory.word(count);
             memory.maybe(last, || Time::new(0.0), Memory::time);
             memory.count(next, times);
-            memory.maybe(&mut acts.last, || Time::new(0.0), Memory::time);
-            for number in [&mut acts.gap, &mut acts.ratio, &mut acts.longest] {
-                memory.number(number);
-            }
-            for count in [&mut acts.shorter, &mut acts.still] {
-                let mut number = *count as usize;
-                memory.count(&mut number, u32::MAX as usize);
-                *count = number as u32;
-            }
+            acts.remember(memory);
         }
     }
 
@@ -227,174 +194,6 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
             }
         }
         None
-    }
-
-    /// Drops what was found after the event that stops the step, except what happens at the same
-    /// time: a function that is zero there to rounding would not be found on the way from there.
-    fn gather<D, M, C>(&mut self, integration: &mut Integration<'_, N, D, M, C>, stop: usize)
-    where
-        D: Dynamics<N, Scalar = T>,
-        M: Method<D, N>,
-    {
-        let Occurrence { time, state, .. } = self.found[stop];
-        let mut kept = stop + 1;
-        for index in stop + 1..self.found.len() {
-            let found = self.found[index];
-            let simultaneous = found.time == time || {
-                let a = integration.accelerations();
-                let place = Place::of(&integration.end);
-                self.value(found.event, &place)
-                    .is_ok_and(|value| value.abs() <= self.rounding(found.event, &place, value, &a))
-            };
-            if simultaneous {
-                let track = &mut self.tracks[found.event];
-                track.count += 1;
-                track.last = Some(time);
-                self.found[kept] = Occurrence { time, state, after: state, ..found };
-                kept += 1;
-            }
-        }
-        self.found.truncate(kept);
-        self.found[stop..].sort_unstable_by_key(|occurrence| occurrence.event);
-    }
-
-    /// Lets the events from `first` on act, one after the other, and gives the status if the
-    /// integration ends with one of them; `cut` if the step was put back.
-    fn happen<D, M, C>(
-        &mut self,
-        integration: &mut Integration<'_, N, D, M, C>,
-        first: usize,
-        cut: bool,
-    ) -> Result<Option<Status>, Error>
-    where
-        D: Dynamics<N, Scalar = T>,
-        M: Method<D, N>,
-    {
-        let (mut status, mut acted) = (None, false);
-        for index in first..self.found.len() {
-            let Occurrence { event, time, .. } = self.found[index];
-            if let Some(action) = self.events[event].action.clone() {
-                acted = true;
-                let before = self.rate(integration, event);
-                let mut state = State::from(&integration.end);
-                action(&mut state);
-                state.t = integration.t();
-                let facts = &<D::System as System<N>>::FACTS;
-                if let Some(what) = first_in_state(facts, &state.q, &state.v) {
-                    self.found.truncate(index);
-                    return Err(Error::Action { t: time.to_f64(), event, what });
-                }
-                let same_place = state.q == integration.end.q.high;
-                integration.jump(&state)?;
-                self.found[index].after = state;
-                let after = self.rate(integration, event);
-                status =
-                    status.or(self.acted(integration, event, time, same_place, before, after)?);
-            }
-            let Event { terminal, .. } = self.events[event];
-            if terminal.is_some_and(|count| count <= self.tracks[event].count) {
-                status = status.or(Some(Status::Event(event)));
-            }
-        }
-        if cut || acted {
-            let a = integration.accelerations();
-            self.look(&integration.end, &a)?;
-            let place = Place::of(&integration.end);
-            for index in first..self.found.len() {
-                let Occurrence { event, state, .. } = self.found[index];
-                let there = Place { t: place.t, q: state.q, v: state.v };
-                // An action may have taken the function away from zero.
-                if !acted || self.value(event, &there).ok() == self.value(event, &place).ok() {
-                    self.tracks[event].side = 0;
-                }
-            }
-        }
-        Ok(status)
-    }
-
-    /// Takes note of an act, with the rates of the function before and after it; gives the status if
-    /// the event has come to rest.
-    fn acted<D, M, C>(
-        &mut self,
-        integration: &mut Integration<'_, N, D, M, C>,
-        event: usize,
-        time: Time,
-        same_place: bool,
-        before: Rate<T>,
-        after: Rate<T>,
-    ) -> Result<Option<Status>, Error>
-    where
-        D: Dynamics<N, Scalar = T>,
-        M: Method<D, N>,
-    {
-        let Condition::Root(_) = self.events[event].condition else { return Ok(None) };
-        let t = time.to_f64();
-        let slow = |speed: f64| before.value.abs().to_f64() < speed;
-        if self.events[event].rest_below.is_some_and(slow) {
-            return Ok(Some(Status::Rest(event)));
-        }
-        let number = T::from_f64;
-        let through = side(before.value);
-        let none = after.noise + before.noise + number(NONE) * before.value.abs();
-        let changed = (after.value - before.value).abs();
-        let stopped = after.value.abs() <= none && number(0.5) * before.value.abs() < changed;
-        let next = self.tracks[event].acts.next(time);
-        if same_place && through != 0 && stopped && self.shortly(integration, event) == through {
-            // Where the digits of the state end, a series of bounces stops too.
-            let limit = self.tracks[event].acts.limit(time);
-            return match (self.events[event].rest_below, limit) {
-                (Some(_), _) => Ok(Some(Status::Rest(event))),
-                (None, Some(t)) => Err(Error::Accumulation { t, event }),
-                (None, None) => Err(Error::EventStays { t, event }),
-            };
-        }
-        let turned = same_place && side(after.value) == -through && after.noise < after.value.abs();
-        let track = &mut self.tracks[event];
-        track.expected = if turned { side(after.value) } else { 0 };
-        match next {
-            Next::Usual => Ok(None),
-            Next::Still => Err(Error::EventStays { t, event }),
-            Next::Accumulated(t) => Err(Error::Accumulation { t, event }),
-        }
-    }
-
-    /// The rate of the function of an event at the state of `integration`, in units a second.
-    fn rate<D, M, C>(&self, integration: &mut Integration<'_, N, D, M, C>, event: usize) -> Rate<T>
-    where
-        D: Dynamics<N, Scalar = T>,
-        M: Method<D, N>,
-    {
-        let zero = T::from_f64(0.0);
-        let a = integration.accelerations();
-        let moment = T::from_f64(MOMENT * integration.last_length().abs());
-        let (Condition::Root(_), true) = (&self.events[event].condition, zero < moment) else {
-            return Rate { value: zero, noise: zero };
-        };
-        let place = Place::of(&integration.end);
-        // A function may end where it is zero.
-        let [before, here, after] =
-            [-moment, zero, moment].map(|dt| self.value(event, &place.after(dt, &a)).ok());
-        let (rise, length) = match (before, here, after) {
-            (Some(before), _, Some(after)) => (after - before, moment + moment),
-            (None, Some(here), Some(after)) => (after - here, moment),
-            (Some(before), Some(here), None) => (here - before, moment),
-            _ => (zero, moment),
-        };
-        let noise = here.map_or(zero, |here| self.rounding(event, &place, here, &a));
-        Rate { value: rise / length, noise: noise / length }
-    }
-
-    /// The side to which the function goes from the state of `integration`, without a rate.
-    fn shortly<D, M, C>(&self, integration: &mut Integration<'_, N, D, M, C>, event: usize) -> i8
-    where
-        D: Dynamics<N, Scalar = T>,
-        M: Method<D, N>,
-    {
-        let a = integration.accelerations();
-        let place = Place::of(&integration.end);
-        let dt = T::from_f64(0.125 * integration.last_length().abs());
-        let rise = |place: &Place<T, N>| self.value(event, place).unwrap_or(T::from_f64(0.0));
-        side(rise(&place.after(dt, &a)) - rise(&place))
     }
 
     /// Looks at the state from which the next step goes; `a` are the accelerations there.
@@ -771,50 +570,6 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
                 .map_or(T::from_f64(0.0), |changed| (changed - value).abs());
         }
         sum
-    }
-}
-
-/// The rate of a function, and what rounding may add to it.
-#[derive(Clone, Copy)]
-struct Rate<T> {
-    value: T,
-    noise: T,
-}
-
-/// The verdict on the times between the acts of an event.
-enum Next {
-    Usual,
-    /// They come at the same time.
-    Still,
-    /// They accumulate at this time.
-    Accumulated(f64),
-}
-
-impl Acts {
-    /// Takes note of an act at `time`.
-    fn next(&mut self, time: Time) -> Next {
-        let t = time.to_f64();
-        let Some(last) = self.last.replace(time) else { return Next::Usual };
-        let (gap, before) = ((time.since(last.to_f64()) - last.low()).abs(), self.gap);
-        self.gap = gap;
-        self.still = if gap <= STILL * t.abs() { self.still + 1 } else { 0 };
-        if gap < before {
-            (self.shorter, self.ratio) = (self.shorter + 1, gap / before);
-        } else {
-            (self.shorter, self.longest) = (0, gap);
-        }
-        match self.limit(time) {
-            Some(limit) if gap < ACCUMULATED * self.longest => Next::Accumulated(limit),
-            _ if ACTS <= self.still => Next::Still,
-            _ => Next::Usual,
-        }
-    }
-
-    /// The time at which acts accumulate, the last of them at `time`, if they have grown shorter
-    /// often enough: the sum of a geometric series.
-    fn limit(&self, time: Time) -> Option<f64> {
-        let rest = self.gap * self.ratio / (1.0 - self.ratio);
-        (SHORTER <= self.shorter).then(|| time.to_f64() + rest)
     }
 }
 
