@@ -14,3 +14,4 @@ mod sensitivities;
 #[cfg(feature = "serde")]
 mod serde;
 mod state_space;
+mod variational;

@@ -5,33 +5,7 @@ use pendulum_runtime::motion::{Linear, Sinusoid};
 use pendulum_runtime::nalgebra::DMatrix;
 use pendulum_runtime::prelude::*;
 
-mod blocks {
-    use pendulum_runtime::lagrangian;
-
-    lagrangian! {
-        /// v̇ = cos t − p v − sin x.
-        #[derive(Clone)]
-        pub struct Forced { p }
-        coordinate x;
-        kinetic = ẋ^2/2;
-        potential = -cos(x);
-        dissipation = p*ẋ^2/2;
-        force x = cos(t);
-    }
-
-    lagrangian! {
-        #[derive(Clone)]
-        pub struct Hung { g, m, l, c }
-        coordinate θ[2];
-        driven x: [1; 2];
-        let y[k in 0..2] = x + sum(j in 0..=k, l*[sin(θ[j]), -cos(θ[j])]);
-        kinetic = |ẏ[0]|^2/2 + m*|ẏ[1]|^2/2;
-        potential = g*height(y[0]) + m*g*height(y[1]);
-        dissipation = c*θ̇[0]^2/2;
-    }
-}
-
-use blocks::*;
+use crate::variational::blocks::{Forced, Hung};
 
 #[test]
 fn picard_has_the_published_sensitivities() {

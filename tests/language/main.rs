@@ -16,4 +16,3 @@ pub mod outputs;
 pub mod random_systems;
 pub mod singular;
 pub mod stages;
-pub mod variational;

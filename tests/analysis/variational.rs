@@ -9,7 +9,7 @@ use pendulum_runtime::scalar::{DoubleDouble, Float};
 use pendulum_runtime::system::Jacobians;
 use pendulum_runtime::system::System;
 
-mod blocks {
+pub(crate) mod blocks {
     use pendulum_runtime::lagrangian;
 
     lagrangian! {
