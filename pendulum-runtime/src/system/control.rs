@@ -138,10 +138,9 @@ impl<S, M> Uncontrolled<S, M> {
     /// entry a period, so that energies and outputs along its solution have them.
     ///
     /// # Errors
-    /// Integrations end with [`Error::Setting`](crate::error::Error::Setting) for a period that is
-    /// not positive or too short for the time, with
-    /// [`Error::NotFinite`](crate::error::Error::NotFinite) for a value that is not finite, and with
-    /// [`Error::Controller`](crate::error::Error::Controller) if another one has begun since.
+    /// Integrations end with [`Error::Setting`] for a period that is not positive or too short for
+    /// the time, with [`Error::NotFinite`] for a value that is not finite, and with
+    /// [`Error::Controller`] if another one has begun since.
     pub fn sampled<U, C, const N: usize>(self, period: f64, controller: C) -> Sampled<S, M, C, U>
     where
         S: System<N>,
