@@ -65,7 +65,8 @@ pub trait System<const N: usize> {
         inputs: &Self::Inputs,
     ) -> Self::Scalar;
 
-    /// dE/dt along the motion: −∂L/∂t − q̇·∂R/∂q̇ + Q·q̇, where ∂/∂t takes in the driven inputs.
+    /// dE/dt along the motion: −∂L/∂t − q̇·∂R/∂q̇ + Q·q̇ − λ·b, where ∂/∂t takes in the driven inputs
+    /// and b is the rate of the constraints at q̇ = 0.
     fn power(
         &self,
         t: Self::Scalar,
@@ -101,7 +102,7 @@ pub trait System<const N: usize> {
         inputs: &Self::Inputs,
     ) -> SMatrix<Self::Scalar, N, N>;
 
-    /// The right-hand side f of M q̈ = f.
+    /// The right-hand side f of M q̈ = f; with constraints, of M q̈ = f + Cᵀλ.
     fn forces(
         &self,
         t: Self::Scalar,
@@ -140,8 +141,8 @@ pub trait System<const N: usize> {
         let _ = (index, t, q, v, inputs, values);
     }
 
-    /// dp/dt = ∂L/∂q − ∂R/∂q̇ + Q: the other half of the momentum form, which needs one derivative
-    /// of the inputs less than the accelerations.
+    /// dp/dt = ∂L/∂q − ∂R/∂q̇ + Q + Cᵀλ: the other half of the momentum form, which without
+    /// constraints needs one derivative of the inputs less than the accelerations.
     fn momentum_rates(
         &self,
         t: Self::Scalar,
@@ -161,6 +162,137 @@ pub trait System<const N: usize> {
     fn longest_step(&self, t: Self::Scalar, widths: Self::Scalar) -> Self::Scalar {
         let _ = (t, widths);
         Self::Scalar::from_f64(f64::INFINITY)
+    }
+
+    /// The misfits of the constraints that the equations hold, in the order of
+    /// `FACTS.constraints`: g, zero for those of velocities, and the rates C q̇ + b.
+    ///
+    /// There are always fewer of them than coordinates; the rest is zero. Driven inputs are sampled
+    /// for [`Purpose::Momenta`](crate::system::Purpose::Momenta).
+    fn misfits(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> [[Self::Scalar; N]; 2] {
+        let _ = (t, q, v, inputs);
+        [[Self::Scalar::from_f64(0.0); N]; 2]
+    }
+
+    /// The same of the redundant constraints, of which there are no more than coordinates.
+    fn redundant_misfits(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> [[Self::Scalar; N]; 2] {
+        let _ = (t, q, v, inputs);
+        [[Self::Scalar::from_f64(0.0); N]; 2]
+    }
+
+    /// The change of the coordinates, or of the velocities, that is the shortest in the metric of
+    /// the mass matrix and changes the constraints by `target`: M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹ `target`.
+    ///
+    /// Driven inputs are sampled for [`Purpose::Momenta`](crate::system::Purpose::Momenta).
+    fn correction(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+        target: &[Self::Scalar; N],
+    ) -> [Self::Scalar; N] {
+        let _ = (t, q, v, inputs, target);
+        [Self::Scalar::from_f64(0.0); N]
+    }
+
+    /// The gradients C of the constraints that the equations hold, one in a row; the rest is zero.
+    ///
+    /// Driven inputs are sampled for [`Purpose::Momenta`](crate::system::Purpose::Momenta).
+    fn constraint_jacobian(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> SMatrix<Self::Scalar, N, N> {
+        let _ = (t, q, v, inputs);
+        SMatrix::from_element(Self::Scalar::from_f64(0.0))
+    }
+
+    /// The multipliers λ of M q̈ = f + Cᵀλ, in the order of `FACTS.constraints`; the rest is zero.
+    ///
+    /// Driven inputs are sampled for
+    /// [`Purpose::Accelerations`](crate::system::Purpose::Accelerations).
+    fn reactions(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> [Self::Scalar; N] {
+        let _ = (t, q, v, inputs);
+        [Self::Scalar::from_f64(0.0); N]
+    }
+
+    /// The independence of each constraint of those before it, from 0 to 1; the rest is one.
+    ///
+    /// It is the pivot of its multiplier, as elimination meets it, over the part of the pivot that
+    /// other multipliers have not reduced: sin² of the angle between gradients in the metric of the
+    /// mass matrix, where the coordinates are eliminated first. At zero the accelerations are
+    /// undetermined. Driven inputs are sampled for
+    /// [`Purpose::Momenta`](crate::system::Purpose::Momenta).
+    fn independence(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> [Self::Scalar; N] {
+        let _ = (t, q, v, inputs);
+        [Self::Scalar::from_f64(1.0); N]
+    }
+
+    /// The gaps h of the limits in the order of `FACTS.limits`, of which there are no more than
+    /// coordinates, their rates along the motion, and the second rates at q̈ = 0; the rest is zero.
+    ///
+    /// Driven inputs are sampled for
+    /// [`Purpose::Accelerations`](crate::system::Purpose::Accelerations).
+    fn gaps(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> [[Self::Scalar; N]; 3] {
+        let _ = (t, q, v, inputs);
+        [[Self::Scalar::from_f64(0.0); N]; 3]
+    }
+
+    /// The gradients ∂h/∂q of the limits, one in a row; the rest is zero.
+    fn gap_jacobian(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> SMatrix<Self::Scalar, N, N> {
+        let _ = (t, q, v, inputs);
+        SMatrix::from_element(Self::Scalar::from_f64(0.0))
+    }
+
+    /// The coefficient of restitution of each limit, from 0 (no rebound) to 1; the rest is zero.
+    fn restitutions(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> [Self::Scalar; N] {
+        let _ = (t, q, v, inputs);
+        [Self::Scalar::from_f64(0.0); N]
     }
 
     /// Hamilton's equations: the velocities q̇ = ∂H/∂p that give the momenta `p`, and dp/dt there.

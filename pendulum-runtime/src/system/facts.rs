@@ -1,5 +1,6 @@
 //! Facts about a system that are known before it runs.
 
+use crate::system::constraints::{Constraint, Limit};
 use crate::system::inputs::{Input, Output};
 
 /// Defines [`Facts`] from the list of all facts, each with its value where nothing is known.
@@ -48,6 +49,11 @@ facts! {
     pub inputs: &'static [Input] = &[],
     /// The outputs in the order of declaration.
     pub outputs: &'static [Output] = &[],
+    /// The scalar constraints: those that the equations hold, in the order of declaration, and
+    /// after them the redundant ones.
+    pub constraints: &'static [Constraint] = &[],
+    /// The scalar limits in the order of declaration.
+    pub limits: &'static [Limit] = &[],
     /// Neither time nor an input stands in the equations.
     pub autonomous: bool = false,
     /// The time itself stands in the equations, beside driven inputs.
@@ -85,6 +91,15 @@ impl Facts {
     /// The facts of a system about which nothing is known but its names.
     pub const fn new(name: &'static str, coordinates: &'static [&'static str]) -> Self {
         Self { name, coordinates, ..Self::UNKNOWN }
+    }
+
+    /// The number of constraints that the equations hold: redundant ones come after them.
+    pub const fn held_constraints(&self) -> usize {
+        let mut index = 0;
+        while index < self.constraints.len() && !self.constraints[index].redundant {
+            index += 1;
+        }
+        index
     }
 
     /// The number of driven inputs: the control inputs come after them.

@@ -1,6 +1,7 @@
 //! Systems as `lagrangian!` generates them, and together with the motions that drive them and with
 //! their controllers.
 
+mod constraints;
 mod control;
 mod dynamics;
 mod equations;
@@ -10,6 +11,7 @@ mod feedback;
 pub mod generated;
 mod inputs;
 
+pub use constraints::{Constraint, Limit};
 pub use control::{ControlSlot, ControlValues, Controlled, Sampled, Uncontrolled};
 pub use dynamics::{Driven, Dynamics, MOST_CONTROLS, scalar_time};
 pub use equations::{Jacobians, SplitEnergy, Staged, System, VelocityFree};

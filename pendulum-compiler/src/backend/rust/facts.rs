@@ -26,9 +26,10 @@ impl Emitter<'_, '_> {
             .flat_map(|quantity| vec![quantity.unit.clone(); quantity.count()]);
         let coordinate_units = quote!(&[#(#coordinate_units),*]);
         let (inputs, outputs) = (self.inputs(), self.output_facts());
+        let (constraints, limits): (Vec<TokenStream>, Vec<TokenStream>) = (Vec::new(), Vec::new());
         let Some(motion) = &self.motion else {
             return quote!(#krate::__private::facts(#krate::__private::Known {
-                name: #name, coordinates: &[#(#coordinates),*], coordinate_units: #coordinate_units, parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*],
+                name: #name, coordinates: &[#(#coordinates),*], coordinate_units: #coordinate_units, parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*], constraints: &[#(#constraints),*], limits: &[#(#limits),*],
                 autonomous: false, explicit_time: false, separable: false, velocity_free: false, constant_mass_matrix: false, nonconservative: false,
                 smooth: false, linear: false, cyclic: &[], conserved: &[], unused: &[], equations: "", latex: "",
             }));
@@ -59,7 +60,7 @@ impl Emitter<'_, '_> {
         let unused = self.unused(&names);
         let [equations, latex] = self.equations.each_ref().map(|lines| lines.join("\n"));
         quote!(#krate::__private::facts(#krate::__private::Known {
-            name: #name, coordinates: &[#(#coordinates),*], coordinate_units: #coordinate_units, parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*],
+            name: #name, coordinates: &[#(#coordinates),*], coordinate_units: #coordinate_units, parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*], constraints: &[#(#constraints),*], limits: &[#(#limits),*],
             autonomous: #autonomous, explicit_time: #explicit_time, separable: #separable, velocity_free: #velocity_free, constant_mass_matrix: #constant_mass_matrix,
             nonconservative: #nonconservative, smooth: #smooth, linear: #linear, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], equations: #equations, latex: #latex,
         }))
