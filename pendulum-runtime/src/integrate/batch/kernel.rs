@@ -7,7 +7,7 @@
 // A branch in a loop over lanes would take the lanes apart.
 #![allow(clippy::needless_bitwise_bool)]
 
-use super::{Batch, Batched, Outcome, Problem, W, outcome};
+use super::{Batch, Batched, Outcome, Posed, W, outcome};
 use crate::error::Error;
 use crate::integrate::method::{self, Method};
 use crate::integrate::methods::taylor::{GAP, LAST_ORDERS, Rule, Taylor, largest, rest};
@@ -29,13 +29,22 @@ use crate::time::Time;
 /// A number of each lane.
 type Wide<T> = Lanes<T, W>;
 
+/// A source of problems and their indices.
+pub(crate) type Problems<'a, S, const N: usize> =
+    dyn FnMut() -> Option<(usize, Posed<'a, S, N>)> + 'a;
+
+/// A receiver of outcomes and their indices.
+pub(crate) type Outcomes<'a, T, const N: usize> = dyn FnMut(usize, Outcome<T, N>) + 'a;
+
 /// A batch under way.
 pub(super) struct Run<'a, S: Batched<N>, const N: usize> {
     batch: &'a Batch<N>,
-    problems: &'a [Problem<S, N>],
-    /// The problem that the next free lane takes.
-    next: usize,
-    outcomes: Vec<Option<Outcome<S::Scalar, N>>>,
+    /// Gives the next problem and its index, until there are no more.
+    problems: &'a mut Problems<'a, S, N>,
+    /// Takes the outcomes as motions end.
+    outcomes: &'a mut Outcomes<'a, S::Scalar, N>,
+    /// The last problem was given.
+    exhausted: bool,
     rule: Rule,
     /// The absolute tolerances of coordinates and velocities, and the relative one.
     atol: [[f64; N]; 2],
@@ -45,8 +54,8 @@ pub(super) struct Run<'a, S: Batched<N>, const N: usize> {
     system: S::Wide,
     workspace: Box<Workspace<S, N>>,
     lanes: Flight<S::Scalar, N>,
-    /// The problem in each lane; none where it is idle.
-    problem: [Option<usize>; W],
+    /// The problem in each lane and its index; none where it is idle.
+    problem: [Option<(usize, Posed<'a, S, N>)>; W],
     /// The round in which the motion in each lane began.
     begun: [u64; W],
     /// The rounds so far: each takes one step in every lane.
@@ -92,11 +101,15 @@ impl<S: Batched<N>, const N: usize> Work for Steps<'_, '_, S, N> {
 
 impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
     /// The first motions in their lanes; `None` without problems.
-    pub(super) fn new(batch: &'a Batch<N>, problems: &'a [Problem<S, N>]) -> Option<Self> {
+    pub(super) fn new(
+        batch: &'a Batch<N>,
+        problems: &'a mut Problems<'a, S, N>,
+        outcomes: &'a mut Outcomes<'a, S::Scalar, N>,
+    ) -> Option<Self> {
         let zero = Wide::from_f64(0.0);
-        let template = &problems.first()?.system;
+        let first = problems()?;
         let mut parameters = Vec::new();
-        let system = template.widen(|parameter| {
+        let system = first.1.system.widen(|parameter| {
             parameters.push(Wide::splat(parameter));
             Wide::splat(parameter)
         });
@@ -106,8 +119,8 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         let mut run = Self {
             batch,
             problems,
-            next: 0,
-            outcomes: problems.iter().map(|_| None).collect(),
+            outcomes,
+            exhausted: false,
             rule: batch.rule::<S>(),
             atol: [atol.0, atol.1],
             rtol,
@@ -126,19 +139,15 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
                 end: number,
                 live: number,
             },
-            problem: [None; W],
+            problem: [const { None }; W],
             begun: [0; W],
             round: 0,
             deadline: 0,
             first: true,
         };
+        run.begin(0, first);
         run.fill();
         Some(run)
-    }
-
-    /// The outcomes of all problems.
-    pub(super) fn outcomes(self) -> Vec<Outcome<S::Scalar, N>> {
-        self.outcomes.into_iter().flatten().collect()
     }
 
     /// One step in every lane.
@@ -184,12 +193,9 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         if !S::FACTS.explicit_time {
             return wanted;
         }
-        let Some(index) = self.problem[l] else { return wanted };
-        let longest = gap::longest(
-            &self.problems[index].system,
-            Time::from_words(from.high.0[l], from.low.0[l]),
-            GAP,
-        );
+        let Some((_, problem)) = &self.problem[l] else { return wanted };
+        let longest =
+            gap::longest(&problem.system, Time::from_words(from.high.0[l], from.low.0[l]), GAP);
         if longest < wanted { longest } else { wanted }
     }
 
@@ -259,7 +265,8 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
     #[inline(never)]
     fn settle(&mut self, before: &Flight<S::Scalar, N>, wanted: Wide<f64>, h: Wide<f64>) {
         for l in 0..W {
-            let Some(index) = self.problem[l] else { continue };
+            let Some((_, problem)) = &self.problem[l] else { continue };
+            let time = problem.time;
             let steps = self.round - self.begun[l];
             let (from, to) = (node(before, l), node(&self.lanes, l));
             let end = self.lanes.end.0[l];
@@ -270,7 +277,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
                 } else {
                     StepInterval::by(from.t, h.0[l])
                 };
-                Some(self.not_finite(&from, &interval, l))
+                Some(Self::not_finite(&self.batch.method, &problem.system, &from, &interval))
             } else if is_short(from.t, end, wanted.0[l]) {
                 let unresolved = self.batch.control.unresolved(steps == 1, wanted.0[l]);
                 Some(unresolved.unwrap_or_else(|| self.underflow(before, &from, wanted.0[l], l)))
@@ -280,7 +287,6 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             let (taken, tried) = if error.is_some() { (steps - 1, steps) } else { (steps, steps) };
             let mut stats = Stats::new(<Taylor as Method<S, N>>::NAME);
             (stats.accepted, stats.evaluations) = (taken, tried * self.rule.order as u64);
-            let time = self.problems[index].time;
             if error.is_some() {
                 self.finish(l, outcome::<S, N>(time, State::from(&from), stats, error));
             } else if close {
@@ -298,20 +304,18 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
     }
 
     fn finish(&mut self, l: usize, outcome: Outcome<S::Scalar, N>) {
-        if let Some(index) = self.problem[l].take() {
-            self.outcomes[index] = Some(outcome);
+        if let Some((index, _)) = self.problem[l].take() {
+            (self.outcomes)(index, outcome);
         }
     }
 
     /// The error for a step of a lane that led to a number that is not finite.
     fn not_finite(
-        &self,
+        method: &Taylor,
+        system: &S,
         from: &Endpoint<S::Scalar, N>,
         interval: &StepInterval,
-        l: usize,
     ) -> Error {
-        let method = &self.batch.method;
-        let system = &self.problems[self.problem[l].unwrap_or(0)].system;
         let prepared = system.prepare();
         let field = Field::new(system, &prepared);
         method::cause(method, &field, interval, from, &Method::<S, N>::workspace(method, system))
@@ -340,24 +344,20 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
 
     /// Begins motions in all free lanes.
     fn fill(&mut self) {
-        let mut changed = false;
         for l in 0..W {
-            if self.problem[l].is_some() {
-                continue;
-            }
-            changed = true;
-            while self.problem[l].is_none() && self.next < self.problems.len() {
-                self.begin(l);
-                self.next += 1;
+            while self.problem[l].is_none() && !self.exhausted {
+                match (self.problems)() {
+                    Some(next) => self.begin(l, next),
+                    None => self.exhausted = true,
+                }
             }
         }
-        if changed {
-            self.idle();
-            let (mut parameters, mut index) = (self.parameters.iter(), 0);
-            self.system = self.problems[0].system.widen(|parameter| {
-                index += 1;
-                parameters.next().copied().unwrap_or(Wide::splat(parameter))
-            });
+        self.idle();
+        if let Some((_, problem)) = self.problem.iter().flatten().next() {
+            let mut parameters = self.parameters.iter();
+            self.system = problem
+                .system
+                .widen(|parameter| parameters.next().copied().unwrap_or(Wide::splat(parameter)));
             self.workspace.work = self.system.work();
         }
         self.deadline = (0..W)
@@ -367,11 +367,10 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             .unwrap_or(self.round);
     }
 
-    /// Begins the next motion in a lane, unless it fails at once or ends where it begins.
-    fn begin(&mut self, l: usize) {
-        let problem = &self.problems[self.next];
+    /// Begins a motion in a lane, unless it fails at once or ends where it begins.
+    fn begin(&mut self, l: usize, (index, problem): (usize, Posed<'a, S, N>)) {
         let given = State { t: problem.time.0, q: problem.q, v: problem.v };
-        let error = match self.batch.begin(problem) {
+        let error = match self.batch.begin(&problem) {
             Ok(false) => {
                 let mut parameters = self.parameters.iter_mut();
                 problem.system.map(|parameter| {
@@ -382,7 +381,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
                 });
                 self.put(l, &Endpoint::new(Time::new(problem.time.0), problem.q, problem.v));
                 (self.lanes.end.0[l], self.lanes.live.0[l]) = (problem.time.1, 1.0);
-                (self.problem[l], self.begun[l]) = (Some(self.next), self.round);
+                (self.problem[l], self.begun[l]) = (Some((index, problem)), self.round);
                 self.first = self.batch.control.limits_first();
                 return;
             }
@@ -390,7 +389,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             Err(error) => Some(error),
         };
         let stats = Stats::new(<Taylor as Method<S, N>>::NAME);
-        self.outcomes[self.next] = Some(outcome::<S, N>(problem.time, given, stats, error));
+        (self.outcomes)(index, outcome::<S, N>(problem.time, given, stats, error));
     }
 
     /// Gives the lanes that stay free what one stands for that is under way, so that no odd number

@@ -1,10 +1,11 @@
 //! Taylor series of many motions at once.
 
-mod kernel;
+pub(crate) mod kernel;
 
 use crate::error::Error;
 use crate::integrate::methods::taylor::{Rule, Taylor};
 use crate::integrate::output::{Output, Recorder};
+use crate::integrate::settings::Settings;
 use crate::integrate::solution::{Failure, Solution, Stats};
 use crate::integrate::state::State;
 use crate::integrate::step::adaptive::AdaptiveStep;
@@ -13,8 +14,10 @@ use crate::integrate::step::integration::check_start;
 use crate::jet::Jets;
 use crate::scalar::{Float, Lane, Lanes};
 use crate::simd;
-use crate::system::System;
+use crate::system::{Dynamics, System};
 use crate::time::Time;
+use core::ops::Deref;
+use kernel::{Outcomes, Problems};
 
 /// The motions that are under way at the same time: a vector of 64 bytes for `f64`.
 const W: usize = 8;
@@ -58,9 +61,9 @@ pub struct Batch<const N: usize> {
     max_steps: u64,
 }
 
-/// An initial value problem: a system at the start of its motion.
+/// An initial value problem: a system, with what drives it, at the start of its motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Problem<S: System<N>, const N: usize> {
+pub struct Problem<S: Dynamics<N>, const N: usize> {
     /// The system with its parameters.
     pub system: S,
     /// Start and end in seconds; an end before the start leads back in time.
@@ -69,6 +72,24 @@ pub struct Problem<S: System<N>, const N: usize> {
     pub q: [S::Scalar; N],
     /// The velocities at the start.
     pub v: [S::Scalar; N],
+}
+
+/// A problem of a caller, or one that was made for the purpose.
+#[derive(Debug)]
+pub(crate) enum Posed<'a, S: Dynamics<N>, const N: usize> {
+    Borrowed(&'a Problem<S, N>),
+    Owned(Problem<S, N>),
+}
+
+impl<S: Dynamics<N>, const N: usize> Deref for Posed<'_, S, N> {
+    type Target = Problem<S, N>;
+
+    fn deref(&self) -> &Problem<S, N> {
+        match self {
+            Self::Borrowed(problem) => problem,
+            Self::Owned(problem) => problem,
+        }
+    }
 }
 
 /// A system that can stand in lanes: every one that `lagrangian!` generates without driven inputs,
@@ -163,9 +184,34 @@ impl<const N: usize> Batch<N> {
         problems: &[Problem<S, N>],
     ) -> Result<Vec<Outcome<S::Scalar, N>>, Error> {
         <AdaptiveStep<N> as Controller<Taylor, S, N>>::check(&self.control)?;
-        let Some(mut run) = kernel::Run::new(self, problems) else { return Ok(Vec::new()) };
-        simd::widest(kernel::Steps(&mut run));
-        Ok(run.outcomes())
+        let mut outcomes: Vec<_> = problems.iter().map(|_| None).collect();
+        let mut next = problems.iter().map(Posed::Borrowed).enumerate();
+        self.run_each(&mut || next.next(), &mut |index, outcome| outcomes[index] = Some(outcome));
+        Ok(outcomes.into_iter().flatten().collect())
+    }
+
+    /// The settings that an ensemble has.
+    pub(crate) fn of<T>(settings: &Settings<'_, T, N, AdaptiveStep<N>>) -> Self {
+        let Settings { controller, max_steps, .. } = *settings;
+        Self { method: Taylor::new(), control: controller, max_steps }
+    }
+
+    /// Returns true if lanes can keep what these settings ask for.
+    pub(crate) fn can_keep<T>(settings: &Settings<'_, T, N, AdaptiveStep<N>>) -> bool {
+        let Settings { output, dense, stops, events, .. } = settings;
+        matches!(output, Output::End) && !dense && stops.is_empty() && events.is_empty()
+    }
+
+    /// Integrates each problem that `problems` gives, and gives the outcomes to `outcomes` in the
+    /// order in which motions end.
+    pub(crate) fn run_each<'a, S: Batched<N>>(
+        &'a self,
+        problems: &'a mut Problems<'a, S, N>,
+        outcomes: &'a mut Outcomes<'a, S::Scalar, N>,
+    ) {
+        if let Some(mut run) = kernel::Run::new(self, problems, outcomes) {
+            simd::widest(kernel::Steps(&mut run));
+        }
     }
 
     /// The rule that decides about the length of a step.
