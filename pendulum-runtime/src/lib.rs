@@ -5,6 +5,7 @@ mod macros;
 
 pub mod analysis;
 pub mod body;
+pub mod ensemble;
 pub mod error;
 #[cfg(any(feature = "gltf", feature = "svg"))]
 pub mod import;
@@ -30,10 +31,11 @@ pub use system::generated as __private;
 /// The methods of [`System`](crate::system::System) come along, its name does not: engines have a
 /// `System` and an [`Event`](crate::integrate::Event) of their own.
 pub mod prelude {
+    pub use crate::ensemble::Ensemble;
     pub use crate::integrate::{
         Auto, Batch, Direction, Dop853, Dprkn8, Dprkn12, Gauss, Integrator, Leapfrog, Picard,
-        QuinlanTremaine, Rk4, Rodas4, Solution, Srkn6b, Srkn14a, State, SymplecticEuler, Taylor,
-        Tsit5, solve,
+        Problem, QuinlanTremaine, Rk4, Rodas4, Solution, Srkn6b, Srkn14a, State, SymplecticEuler,
+        Taylor, Tsit5, solve,
     };
     pub use crate::motion::Motion;
     pub use crate::scalar::Real;

@@ -37,16 +37,17 @@ pub mod controller {
     };
 }
 
-mod batch;
+pub(crate) mod batch;
 pub(crate) mod data;
 pub(crate) mod events;
 mod integrator;
 pub(crate) mod interpolant;
 pub(crate) mod methods;
 mod observe;
-mod output;
+pub(crate) mod output;
 mod saved;
 pub(crate) mod schemes;
+pub(crate) mod settings;
 mod solution;
 mod solve;
 mod state;

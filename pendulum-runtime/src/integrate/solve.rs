@@ -8,6 +8,7 @@ use crate::integrate::method::Method;
 use crate::integrate::methods::auto::Auto;
 use crate::integrate::observe::{Observers, OfSteps, Step};
 use crate::integrate::output::{Output, Recorder, direction, in_order};
+use crate::integrate::settings::Settings;
 use crate::integrate::solution::{Failure, Solution, Stats};
 use crate::integrate::state::State;
 use crate::integrate::step::adaptive::AdaptiveStep;
@@ -173,6 +174,16 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
     ) -> Self {
         self.observers.states = Some(Box::new(take));
         self
+    }
+
+    /// Takes over settings that many integrations share.
+    pub(crate) fn with_settings<B: Copy>(
+        self,
+        settings: &Settings<'a, D::Scalar, N, B>,
+    ) -> Solve<'a, N, D, M, B> {
+        let Settings { controller, output, dense, stops, ref events, max_steps } = *settings;
+        let run = self.control(controller);
+        Solve { output, dense, stops, events: events.clone(), max_steps, ..run }
     }
 
     fn control<B>(self, controller: B) -> Solve<'a, N, D, M, B> {

@@ -1,0 +1,6 @@
+//! Ensembles: the bits of single members, and the same bits whoever solves them.
+
+#![allow(mixed_script_confusables, missing_docs)]
+
+pub mod reductions;
+pub mod ways;
