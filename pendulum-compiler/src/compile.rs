@@ -13,6 +13,7 @@ use crate::mechanics::motion::Motion;
 use crate::messages::Errors;
 use crate::model;
 use crate::model::unit;
+use crate::model::unit::infer::RowUnits;
 use crate::model::{Model, Quantity};
 use crate::schedule::{self, Operations};
 use crate::syntax::derive;
@@ -89,9 +90,11 @@ fn passes<R>(
     let model = model::resolve(&block, errors);
     let mut graph = Graph::new();
     let mut energies = lower::energies(&model, &mut graph, errors);
-    if errors.is_empty() {
-        unit::infer::check(&model, errors);
-    }
+    let units = if errors.is_empty() {
+        unit::infer::check(&model, &energies.velocity_constraints(&graph), errors)
+    } else {
+        RowUnits::default()
+    };
     let motion = if errors.is_empty() {
         euler_lagrange::derive(&model, &mut graph, &mut energies, errors)
     } else {
@@ -111,6 +114,7 @@ fn passes<R>(
         motion,
         equations,
         accelerations,
+        units,
     }))
 }
 
@@ -121,7 +125,7 @@ fn printed(
     energies: &Energies,
     motion: &Motion,
 ) -> [Vec<String>; 2] {
-    let names = Names::new(model, &energies.families);
+    let names = Names::new(model, energies);
     let sides = unicode::sides(graph, &names, motion);
     let latex = latex::equations(graph, &names, motion, &sides);
     [unicode::equations(graph, &names, motion, &sides), latex]
@@ -253,7 +257,7 @@ impl Compiled {
             ..
         } = analysis;
         let (motion, accelerations) = (motion?, accelerations?);
-        let names = Names::new(model, &energies.families);
+        let names = Names::new(model, &energies);
         let text = |id| unicode::expression(&graph, &names, id);
         let declared = |quantities: &[Quantity<'_>]| {
             let declaration = |quantity: &Quantity<'_>| Declaration {
@@ -283,7 +287,7 @@ impl Compiled {
                 })
                 .collect(),
             energy: text(motion.energy),
-            power: text(motion.power),
+            power: text(motion.constraints.power.unwrap_or(motion.power)),
             momenta: motion.momenta.iter().copied().map(text).collect(),
             conserved: motion
                 .conserved

@@ -98,6 +98,11 @@ pub(crate) fn acceleration(what: impl Display) -> String {
     )
 }
 
+/// An acceleration in a constraint or a limit; `what` as written.
+pub(crate) fn constrained_acceleration(what: impl Display) -> String {
+    format!("{what} is an acceleration; a constraint holds positions or velocities")
+}
+
 /// A third derivative of what has two; `what` as written.
 pub(crate) fn jerk(what: impl Display) -> String {
     format!("{what} is a third derivative; coordinates have two, in outputs")

@@ -302,6 +302,8 @@ impl Point {
             Symbol::Auxiliary(index) => [8, index as u64, 0, 0],
             Symbol::Control { input, component } => [9, input as u64, component as u64, 0],
             Symbol::Acceleration(index) => [10, index as u64, 0, 0],
+            Symbol::Multiplier(index) => [11, index as u64, 0, 0],
+            Symbol::Target(index) => [12, index as u64, 0, 0],
         };
         self.random(&[key[0], key[1], key[2], key[3], salt])
     }

@@ -41,7 +41,11 @@ impl<'a> Mirror<'a> {
                 | Statement::Driven { name, .. }
                 | Statement::Input { name, .. } => self.declare(name),
                 Statement::Let(definition) => self.declare(&definition.name),
-                Statement::Energy { .. } | Statement::Force { .. } | Statement::Output(_) => {}
+                Statement::Energy { .. }
+                | Statement::Force { .. }
+                | Statement::Output(_)
+                | Statement::Constraint(_)
+                | Statement::Limit(_) => {}
             }
         }
         for statement in &self.block.statements {
@@ -54,6 +58,19 @@ impl<'a> Mirror<'a> {
                         self.binder(binder);
                     }
                     self.expr(&output.expr);
+                }
+                Statement::Constraint(constraint) => {
+                    if let Some(binder) = &constraint.index {
+                        self.binder(binder);
+                    }
+                    self.expr(&constraint.difference);
+                }
+                Statement::Limit(limit) => {
+                    if let Some(binder) = &limit.index {
+                        self.binder(binder);
+                    }
+                    self.expr(&limit.difference);
+                    self.expr(&limit.restitution);
                 }
                 Statement::Let(definition) => {
                     if let Some(binder) = &definition.index {
@@ -97,39 +114,13 @@ impl<'a> Mirror<'a> {
 
     fn expr(&mut self, expr: &Expr) {
         match &expr.kind {
-            ExprKind::Number(_) => {}
-            ExprKind::Name(name) => self.name(name),
-            ExprKind::Sum(items) | ExprKind::Product(items) => {
-                for (_, item) in items {
-                    self.expr(item);
-                }
-            }
-            ExprKind::Negative(a) | ExprKind::Magnitude(a) | ExprKind::Component(a, _) => {
-                self.expr(a);
-            }
-            ExprKind::Power(a, b) | ExprKind::Index(a, b) => {
-                self.expr(a);
-                self.expr(b);
-            }
-            ExprKind::Call(name, items) => {
-                self.name(name);
-                for item in items {
-                    self.expr(item);
-                }
-            }
-            ExprKind::Vector(items) => {
-                for item in items {
-                    self.expr(item);
-                }
-            }
-            ExprKind::SumOver(binder, term) => {
-                self.binder(binder);
-                self.expr(term);
-            }
-            ExprKind::Integral { body, integrand, .. } => {
-                self.name(body);
-                self.expr(integrand);
-            }
+            ExprKind::Name(name) | ExprKind::Call(name, _) => self.name(name),
+            ExprKind::Integral { body, .. } => self.name(body),
+            ExprKind::SumOver(binder, _) => self.binder(binder),
+            _ => {}
+        }
+        for part in expr.parts() {
+            self.expr(part);
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::syntax::name;
 
 /// The equations of motion, one line a coordinate, as `unicode::equations` gives them in Unicode.
 pub(crate) fn equations(
-    graph: &Graph,
+    graph: &mut Graph,
     names: &Names,
     motion: &Motion,
     sides: &Sides,
@@ -33,7 +33,7 @@ pub(crate) fn equations(
         }
         let (own, id) = unicode::side(graph, motion, sides, row);
         let side = Writer { graph: own, names }.sum(id);
-        if coupled.len() == 1 {
+        if unicode::alone(motion, row) {
             lines.push(format!("{} = {side}", writer.coordinate(row, 2)));
             continue;
         }
@@ -49,6 +49,13 @@ pub(crate) fn equations(
             })
             .collect();
         lines.push(format!("{} = {side}", terms.join(" + ")));
+    }
+    for value in motion.constraints.values(graph) {
+        if unicode::long(graph, &[value]) {
+            lines.push("\\ldots\\text{ (too long to write out)} = 0".into());
+        } else {
+            lines.push(format!("{} = 0", Writer { graph, names }.sum(value)));
+        }
     }
     lines
 }
@@ -204,6 +211,13 @@ impl Writer<'_> {
             Symbol::Velocity(index) => self.coordinate(index, 1),
             Symbol::Auxiliary(index) => format!("u_{{{index}}}"),
             Symbol::Acceleration(index) => self.coordinate(index, 2),
+            Symbol::Multiplier(index) => {
+                format!(
+                    "\\lambda_{{\\mathrm{{{}}}}}",
+                    self.names.constraints[index].replace('_', "\\_")
+                )
+            }
+            Symbol::Target(index) => format!("\\tau_{{{index}}}"),
             Symbol::Momentum(index) => format!("p_{{{}}}", self.coordinate(index, 0)),
             Symbol::Input { input, component, order } => self.input(input, component, order),
             Symbol::Control { input, component } => self.input(input, component, 0),

@@ -10,6 +10,7 @@ use crate::algebra::expr::Graph;
 use crate::mechanics::lower::Energies;
 use crate::mechanics::motion::Motion;
 use crate::model::Model;
+use crate::model::unit::infer::RowUnits;
 use crate::schedule::Program;
 use proc_macro2::TokenStream;
 
@@ -26,4 +27,6 @@ pub(crate) struct Analysis<'m, 'a> {
     pub(crate) equations: [Vec<String>; 2],
     /// The program of the accelerations.
     pub(crate) accelerations: Option<Program>,
+    /// The units of constraints and limits.
+    pub(crate) units: RowUnits,
 }

@@ -7,24 +7,29 @@ use crate::algebra::expr::{Graph, Id, Moment, Node, Symbol};
 use crate::algebra::functions::{Function, Notation};
 use crate::algebra::number::{Literal, Rational, superscript};
 use crate::backend::cancel;
+use crate::mechanics::lower::Energies;
 use crate::mechanics::motion::Motion;
 use crate::mechanics::symmetry::Conserved;
 use crate::model::{Model, Quantity};
 use crate::syntax::name;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// The names of all symbols of a block, as the user writes them.
 pub(crate) struct Names {
     pub(crate) parameters: Vec<String>,
     pub(crate) coordinates: Vec<String>,
     inputs: Vec<(String, bool)>,
+    /// The scalar constraints: `loop.x`, `rod[2]`.
+    pub(crate) constraints: Vec<String>,
     /// The signs and spellings of the language in ASCII.
     ascii: bool,
 }
 
 impl Names {
-    /// `families` are the parameters of two or three components that are no vectors.
-    pub(crate) fn new(model: &Model, families: &BTreeSet<usize>) -> Self {
+    /// The names of a block; `energies` know its constraints, and the parameters of two or three
+    /// components that are no vectors.
+    pub(crate) fn new(model: &Model, energies: &Energies) -> Self {
+        let families = &energies.families;
         let parameters = model.parameters.iter().enumerate();
         Self {
             parameters: parameters
@@ -40,6 +45,7 @@ impl Names {
                 .iter()
                 .map(|quantity| (quantity.name.to_string(), quantity.length.is_some()))
                 .collect(),
+            constraints: energies.constraints.iter().map(|row| row.name.clone()).collect(),
             ascii: model.block.ascii,
         }
     }
@@ -77,6 +83,11 @@ impl Names {
             Symbol::Velocity(index) => self.dotted(&self.coordinates[index], 1),
             Symbol::Acceleration(index) => self.acceleration(index),
             Symbol::Momentum(index) => format!("p_{}", self.coordinates[index]),
+            Symbol::Multiplier(index) => {
+                let letter = if self.ascii { "lambda" } else { "λ" };
+                format!("{letter}_{}", self.constraints[index])
+            }
+            Symbol::Target(index) => format!("target[{index}]"),
             Symbol::Auxiliary(index) => format!("u[{index}]"),
             Symbol::Point(_, component) => ["p.x", "p.y"][component.min(1)].into(),
             Symbol::Moment(body, moment) => {
@@ -177,12 +188,17 @@ pub(crate) fn sides(graph: &Graph, names: &Names, motion: &Motion) -> Sides {
 /// The right-hand side of the equation in a row: the acceleration where its coordinate stands
 /// alone, the force otherwise.
 fn right(motion: &Motion, row: usize) -> Id {
-    if alone(motion, row) { motion.accelerations[row] } else { motion.forces[row] }
+    match motion.constraints.sides.get(row) {
+        Some(&side) if motion.constraints.bound(row) => side,
+        _ if alone(motion, row) => motion.accelerations[row],
+        _ => motion.forces[row],
+    }
 }
 
-/// Returns true if a row of the mass matrix has one entry.
-fn alone(motion: &Motion, row: usize) -> bool {
-    motion.mass_matrix[row].iter().filter(|&&entry| entry != Graph::ZERO).count() == 1
+/// Returns true if a row of the mass matrix has one entry, and no constraint acts there.
+pub(crate) fn alone(motion: &Motion, row: usize) -> bool {
+    let entries = motion.mass_matrix[row].iter().filter(|&&entry| entry != Graph::ZERO);
+    entries.count() == 1 && !motion.constraints.bound(row)
 }
 
 /// The right-hand side of the equation in a row, with the graph in which it is written.
@@ -408,8 +424,13 @@ pub(crate) fn too_long(graph: &Graph, motion: &Motion, row: usize) -> bool {
     if !alone(motion, row) {
         roots.extend(motion.mass_matrix[row].iter().filter(|&&entry| entry != Graph::ZERO));
     }
+    long(graph, &roots)
+}
+
+/// Returns true if expressions are too long to be written out.
+pub(crate) fn long(graph: &Graph, roots: &[Id]) -> bool {
     let mut lengths: BTreeMap<Id, usize> = BTreeMap::new();
-    for id in graph.reachable(&roots) {
+    for id in graph.reachable(roots) {
         let length = graph
             .children(id)
             .iter()
@@ -420,7 +441,7 @@ pub(crate) fn too_long(graph: &Graph, motion: &Motion, row: usize) -> bool {
 }
 
 /// The equations of motion, one line a coordinate: solved where a coordinate stands alone, a row of
-/// M q̈ = f where several are coupled.
+/// M q̈ = f + Cᵀλ where several are coupled or constraints act; and one line a constraint.
 pub(crate) fn equations(
     graph: &mut Graph,
     names: &Names,
@@ -464,6 +485,18 @@ pub(crate) fn equations(
             left.push_str(&part);
         }
         lines.push(format!("{left} = {side}"));
+    }
+    for (row, value) in motion.constraints.values(graph).into_iter().enumerate() {
+        let left = if long(graph, &[value]) {
+            format!("{} (too long to write out)", if names.ascii { "..." } else { "…" })
+        } else {
+            let count = |graph: &Graph, id| expression(graph, names, id).chars().count();
+            match cancel::shorter(graph, value, count) {
+                Some((own, id)) => expression(&own, names, id),
+                None => expression(graph, names, value),
+            }
+        };
+        lines.push(format!("{left} = 0 ({})", names.constraints[row]));
     }
     lines
 }

@@ -59,6 +59,8 @@ const BESIDE_TIME: Dependencies = Dependencies::COORDINATE
     .or(Dependencies::INPUT)
     .or(Dependencies::MOMENTUM)
     .or(Dependencies::POINT)
+    .or(Dependencies::MULTIPLIER)
+    .or(Dependencies::TARGET)
     .or(Dependencies::AUXILIARY);
 
 struct Search {

@@ -13,6 +13,7 @@ use crate::algebra::rule;
 use crate::algebra::value_numbering;
 use crate::algebra::velocity_polynomial;
 use crate::mechanics::articulated::{self, Sparse};
+use crate::mechanics::constraint;
 use crate::mechanics::jacobian;
 use crate::mechanics::lower::{Energies, total_derivative};
 use crate::mechanics::motion::Motion;
@@ -58,15 +59,19 @@ pub(crate) fn derive(
     Some(motion)
 }
 
-/// Puts the accelerations into the outputs that contain them.
+/// Puts the accelerations and the multipliers into the outputs that contain them.
 fn put_accelerations(graph: &mut Graph, motion: &Motion, energies: &mut Energies) {
     let accelerations: Vec<Id> = motion.accelerations.iter().map(|&id| graph.closed(id)).collect();
+    let multipliers = &motion.constraints.multipliers;
+    let multipliers: Vec<Id> = multipliers.iter().map(|&id| graph.closed(id)).collect();
+    let unknown = Dependencies::ACCELERATION.or(Dependencies::MULTIPLIER);
     let value = |symbol| match symbol {
         Symbol::Acceleration(index) => accelerations.get(index).copied(),
+        Symbol::Multiplier(index) => multipliers.get(index).copied(),
         _ => None,
     };
     for scalar in energies.outputs.iter_mut().flat_map(|output| &mut output.scalars) {
-        if graph.dependencies(*scalar).any(Dependencies::ACCELERATION) {
+        if graph.dependencies(*scalar).any(unknown) {
             *scalar = substitute(graph, *scalar, value);
         }
     }
@@ -104,6 +109,12 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
         return motion;
     }
 
+    let constraints = constraint::derive(model, graph, energies, errors);
+    if !errors.is_empty() {
+        return motion;
+    }
+    motion.constraints = constraints;
+
     // What control inputs add to the Lagrangian does work as a force does: their rates are unknown.
     let own = at_rest_controls(graph, lagrangian);
     let controlled = if own == lagrangian { Graph::ZERO } else { graph.sub(lagrangian, own) };
@@ -111,7 +122,7 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     let mut externals = Vec::new();
     for i in 0..count {
         let slope = derivative(graph, lagrangian, Symbol::Coordinate(i));
-        if slope == Graph::ZERO {
+        if slope == Graph::ZERO && !motion.constraints.bound(i) {
             motion.cyclic.push(i);
         }
         let friction = derivative(graph, dissipation, Symbol::Velocity(i));
@@ -130,6 +141,7 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     let sparse =
         energies.extended.as_ref().and_then(|extended| articulated::sparse(graph, extended, count));
     solved(graph, &mut motion, &momenta, sparse.as_ref());
+    constrained(graph, &mut motion);
 
     let actions: Vec<(Id, Rational)> =
         (0..count).map(|i| (graph.mul(velocity[i], momenta[i]), Rational::ONE)).collect();
@@ -138,6 +150,13 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     motion.energy = collected(graph, energy);
     let explicit = explicit_rate(graph, own);
     power.push((explicit, Rational::MINUS_ONE));
+    if !motion.constraints.held.is_empty() {
+        let symbols: Vec<Id> = motion.constraints.symbols(graph);
+        let printed = [&power[..], &motion.constraints.power_terms(graph, &symbols)].concat();
+        motion.constraints.power = Some(graph.sum(&printed));
+        let multipliers = motion.constraints.multipliers.clone();
+        power.extend(motion.constraints.power_terms(graph, &multipliers));
+    }
     motion.power = graph.sum(&power);
 
     motion.kinetic = energies.kinetic.map(|_| kinetic.unwrap_or_default());
@@ -148,18 +167,26 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     motion.kinetic = motion.kinetic.or(motion.potential.map(|_| Graph::ZERO));
     motion.nonconservative =
         energies.dissipation.is_some() || !model.forces.is_empty() || controlled != Graph::ZERO;
-    motion.conserved = symmetry::conserved(graph, lagrangian, &momenta, &externals);
+    motion.conserved = symmetry::conserved(
+        graph,
+        lagrangian,
+        &momenta,
+        &externals,
+        &motion.constraints.gradients(),
+    );
     motion.momenta = momenta;
     facts(graph, &mut motion);
     motion.jacobians = jacobians(model, graph, &motion);
     if let Some(sparse) = sparse {
         shorten(graph, &mut motion.momenta, &sparse.momenta, CLEARLY);
-        shorten(graph, &mut motion.momentum_rates, &sparse.momentum_rates, CLEARLY);
+        if motion.constraints.held.is_empty() {
+            shorten(graph, &mut motion.momentum_rates, &sparse.momentum_rates, CLEARLY);
+            motion.unsolved = Some(sparse.unsolved);
+        }
         shorten(graph, std::slice::from_mut(&mut motion.energy), &[sparse.energy], CLEARLY);
         if let (Some(kinetic), Some(short)) = (&mut motion.kinetic, sparse.kinetic) {
             shorten(graph, std::slice::from_mut(kinetic), &[short], CLEARLY);
         }
-        motion.unsolved = Some(sparse.unsolved);
     }
     number(graph, &mut motion);
     for energy in
@@ -173,6 +200,25 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     motion
 }
 
+/// Solves for accelerations and multipliers together, and adds the forces of the constraints to the
+/// rates of the momenta.
+fn constrained(graph: &mut Graph, motion: &mut Motion) {
+    let constraints = &mut motion.constraints;
+    if constraints.held.is_empty() {
+        return;
+    }
+    motion.accelerations = constraints.solve(graph, &motion.mass_matrix, &motion.forces);
+    let multipliers: Vec<Id> = constraints.multipliers.iter().map(|&id| graph.closed(id)).collect();
+    let forces = constraints.forces(graph, &multipliers);
+    for (rate, force) in motion.momentum_rates.iter_mut().zip(forces) {
+        *rate = graph.add(*rate, force);
+    }
+    let symbols = constraints.symbols(graph);
+    let forces = constraints.forces(graph, &symbols);
+    constraints.sides =
+        motion.forces.iter().zip(forces).map(|(&own, force)| graph.add(own, force)).collect();
+}
+
 /// Makes equal expressions one in each output, where that is cheaper.
 fn number(graph: &mut Graph, motion: &mut Motion) {
     let lists = [
@@ -180,6 +226,9 @@ fn number(graph: &mut Graph, motion: &mut Motion) {
         &mut motion.momenta,
         &mut motion.forces,
         &mut motion.momentum_rates,
+        &mut motion.constraints.multipliers,
+        &mut motion.constraints.correction,
+        &mut motion.constraints.independence,
     ];
     let single = [&mut motion.energy, &mut motion.power]
         .into_iter()
@@ -403,8 +452,11 @@ fn facts(graph: &mut Graph, motion: &mut Motion) {
     motion.constant_mass_matrix = !masses.any(state.or(time));
     // A control input may follow the velocities.
     let moving = Dependencies::VELOCITY.or(Dependencies::CONTROL);
-    motion.velocity_free = motion.constant_mass_matrix && !forces.any(moving);
-    motion.linear = motion.constant_mass_matrix && graph.linear(&motion.forces);
+    let free = motion.constraints.held.is_empty();
+    let rows = motion.constraints.held.iter().flat_map(|row| [row.value, row.rate, row.drift]);
+    let forces = forces.or(all(&rows.collect::<Vec<Id>>()));
+    motion.velocity_free = free && motion.constant_mass_matrix && !forces.any(moving);
+    motion.linear = free && motion.constant_mass_matrix && graph.linear(&motion.forces);
     let dependencies = forces.or(all(&motion.momenta)).or(masses);
     motion.autonomous = !dependencies.any(time);
     motion.explicit_time = dependencies.any(Dependencies::TIME);
@@ -414,5 +466,5 @@ fn facts(graph: &mut Graph, motion: &mut Motion) {
         .flatten()
         .fold(Dependencies::default(), |all, &id| all.or(graph.dependencies(id)));
     let explicit = motion.velocities.is_some() && !moving.any(Dependencies::COORDINATE);
-    motion.separable = motion.constant_mass_matrix && explicit && !motion.nonconservative;
+    motion.separable = free && motion.constant_mass_matrix && explicit && !motion.nonconservative;
 }

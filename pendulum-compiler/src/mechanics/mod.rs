@@ -2,6 +2,7 @@
 
 pub(crate) mod articulated;
 pub(crate) mod clock;
+pub(crate) mod constraint;
 pub(crate) mod euler_lagrange;
 pub(crate) mod jacobian;
 pub(crate) mod lower;

@@ -2,6 +2,7 @@
 
 use crate::algebra::expr::Id;
 use crate::mechanics::articulated::Unsolved;
+use crate::mechanics::constraint::Constraints;
 use crate::mechanics::symmetry::Conserved;
 
 /// The equations of motion and what goes with them: roots in one graph.
@@ -26,6 +27,7 @@ pub(crate) struct Motion {
     pub(crate) jacobians: Option<[Vec<Vec<Id>>; 4]>,
     pub(crate) cyclic: Vec<usize>,
     pub(crate) conserved: Vec<Conserved>,
+    pub(crate) constraints: Constraints,
     pub(crate) autonomous: bool,
     pub(crate) explicit_time: bool,
     pub(crate) separable: bool,
@@ -66,6 +68,7 @@ impl Motion {
             .chain(conserved)
             .chain(jacobians)
             .chain(unsolved)
+            .chain(self.constraints.roots())
             .chain(single.into_iter().flatten())
             .collect()
     }

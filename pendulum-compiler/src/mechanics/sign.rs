@@ -155,27 +155,14 @@ impl<'a> Source<'_, 'a> {
     }
 
     fn mentions(&mut self, expr: &Expr, base: &str) -> bool {
-        match &expr.kind {
-            ExprKind::Number(_) => false,
+        let own = match &expr.kind {
             ExprKind::Name(ident) => {
                 name::read(&ident.to_string()).base == base || self.defined_with(ident, base)
             }
-            ExprKind::Sum(items) | ExprKind::Product(items) => {
-                items.iter().any(|(_, item)| self.mentions(item, base))
-            }
-            ExprKind::Negative(a) | ExprKind::Magnitude(a) | ExprKind::Component(a, _) => {
-                self.mentions(a, base)
-            }
-            ExprKind::Power(a, b) | ExprKind::Index(a, b) => {
-                self.mentions(a, base) || self.mentions(b, base)
-            }
-            ExprKind::Call(ident, items) => {
-                items.iter().any(|item| self.mentions(item, base)) || self.defined_with(ident, base)
-            }
-            ExprKind::Vector(items) => items.iter().any(|item| self.mentions(item, base)),
-            ExprKind::SumOver(_, term) => self.mentions(term, base),
-            ExprKind::Integral { integrand, .. } => self.mentions(integrand, base),
-        }
+            ExprKind::Call(ident, _) => self.defined_with(ident, base),
+            _ => false,
+        };
+        own || expr.parts().into_iter().any(|part| self.mentions(part, base))
     }
 
     /// Returns true if a name is that of a definition in which another stands.

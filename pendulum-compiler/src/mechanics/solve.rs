@@ -7,6 +7,7 @@ use crate::algebra::prime_field::{Point, Residue};
 use crate::algebra::velocity_polynomial;
 use crate::messages::Errors;
 use crate::model::{Model, Quantity};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Returns true if every direction has kinetic energy at a random state; reports the coordinates
 /// that have none.
@@ -70,7 +71,7 @@ fn named(coordinate: &Quantity, row: usize) -> String {
 /// The entries of a matrix at a random point of a prime field. Half of all numbers have a root:
 /// where there are too many to meet a point at which all exist, roots are unknown functions, and
 /// what vanishes then vanishes too.
-fn at_random(graph: &Graph, matrix: &[Vec<Id>]) -> Option<Vec<Vec<Residue>>> {
+pub(crate) fn at_random(graph: &Graph, matrix: &[Vec<Id>]) -> Option<Vec<Vec<Residue>>> {
     let roots: Vec<Id> = matrix.iter().flatten().copied().collect();
     let exact = (0..64).find_map(|seed| Point::new(graph, &roots, seed).values(graph, &roots));
     let formal =
@@ -104,48 +105,132 @@ fn zero_pivot(values: &[Vec<Residue>], block: &[usize]) -> Option<(usize, bool)>
 pub(crate) fn solve(graph: &mut Graph, matrix: &[Vec<Id>], right: &[Id]) -> Vec<Id> {
     let mut solution = vec![Graph::ZERO; right.len()];
     for block in blocks(matrix) {
-        if let [row] = block[..] {
-            solution[row] = graph.div(right[row], matrix[row][row]);
-            continue;
-        }
-        let scales = scales(graph, matrix, &block);
-        let pivot = graph.product(
-            Rational::ONE,
-            &[(matrix[block[0]][block[0]], Rational::ONE), (scales[0], Rational::whole(-2))],
-        );
-        // The first pivot becomes one where parameters alone decide it.
-        let unit =
-            if graph.dependencies(pivot).any(Dependencies::STATE) { Graph::ONE } else { pivot };
-        let scaled: Vec<Vec<Id>> = (0..block.len())
-            .map(|i| {
-                let entry = |j: usize| {
-                    let entry =
-                        over(graph, matrix[block[i]][block[j]], &[scales[i], scales[j], unit]);
-                    // Multiplied out, a constant shows what cancels against squares: 1 − cos² is
-                    // sin².
-                    if graph.dependencies(entry).any(Dependencies::STATE) {
-                        entry
-                    } else {
-                        velocity_polynomial::expanded(graph, entry)
-                    }
-                };
-                (0..block.len()).map(entry).collect()
-            })
-            .collect();
-        let order: Vec<usize> = (0..block.len()).collect();
-        let Ok(factors) = factor(graph, &scaled, &order) else { continue };
-        let right: Vec<Id> = block
-            .iter()
-            .zip(&scales)
-            .map(|(&row, &scale)| over(graph, right[row], &[scale, unit]))
-            .collect();
-        for ((value, &row), &scale) in
-            substitute(graph, &factors, right).into_iter().zip(&block).zip(&scales)
-        {
-            solution[row] = over(graph, value, &[scale]);
-        }
+        solve_block(graph, matrix, &block, right.len(), right, &mut solution);
     }
     solution
+}
+
+/// The solutions of equations with multipliers.
+pub(crate) struct Augmented {
+    /// One for each right side.
+    pub(crate) solutions: Vec<Vec<Id>>,
+    /// For each multiplier, its pivot over the part that other multipliers have not reduced.
+    pub(crate) independence: Vec<Id>,
+}
+
+/// Solves equations whose first `count` unknowns are coordinates and whose others are multipliers,
+/// for each of several right sides.
+pub(crate) fn augmented(
+    graph: &mut Graph,
+    matrix: &[Vec<Id>],
+    count: usize,
+    rights: &[Vec<Id>],
+) -> Augmented {
+    let mut solutions = vec![vec![Graph::ZERO; matrix.len()]; rights.len()];
+    let mut independence = vec![Graph::ONE; matrix.len() - count];
+    for block in blocks(matrix) {
+        let order = elimination_order(matrix, &block, count);
+        for (right, solution) in rights.iter().zip(&mut solutions) {
+            let ratios = solve_block(graph, matrix, &order, count, right, solution);
+            for (&row, ratio) in order.iter().zip(ratios) {
+                if count <= row {
+                    independence[row - count] = ratio;
+                }
+            }
+        }
+    }
+    Augmented { solutions, independence }
+}
+
+/// The rows of a block in an order of little fill-in: those with the fewest neighbours first, of
+/// equals the last one; a multiplier behind all coordinates of its row, where its pivot has a known
+/// sign.
+fn elimination_order(matrix: &[Vec<Id>], block: &[usize], count: usize) -> Vec<usize> {
+    let neighbours = |row: usize| {
+        let entries = matrix[row].iter().enumerate();
+        let others = entries.filter(move |&(other, &entry)| other != row && entry != Graph::ZERO);
+        others.map(|(other, _)| other).collect::<BTreeSet<usize>>()
+    };
+    let mut open: BTreeMap<usize, BTreeSet<usize>> =
+        block.iter().map(|&row| (row, neighbours(row))).collect();
+    let mut order = Vec::with_capacity(block.len());
+    while !open.is_empty() {
+        let ready = |row: usize| {
+            row < count
+                || neighbours(row).iter().all(|other| count <= *other || !open.contains_key(other))
+        };
+        let next = open
+            .iter()
+            .filter(|&(&row, _)| ready(row))
+            .min_by_key(|&(&row, others)| (others.len(), std::cmp::Reverse(row)))
+            .map(|(&row, _)| row);
+        let Some(next) = next else { break };
+        let others = open.remove(&next).unwrap_or_default();
+        for &other in &others {
+            if let Some(own) = open.get_mut(&other) {
+                own.extend(others.iter().copied().filter(|&third| third != other));
+                own.remove(&next);
+            }
+        }
+        order.push(next);
+    }
+    order
+}
+
+/// Puts the solution of one block of rows, eliminated in this order, into `solution`. For each row
+/// the pivot over the part of it that multipliers, the rows from `count` on, have not reduced.
+fn solve_block(
+    graph: &mut Graph,
+    matrix: &[Vec<Id>],
+    block: &[usize],
+    count: usize,
+    right: &[Id],
+    solution: &mut [Id],
+) -> Vec<Id> {
+    if let [row] = *block {
+        solution[row] = graph.div(right[row], matrix[row][row]);
+        return vec![Graph::ONE];
+    }
+    let mut scales = scales(graph, matrix, block);
+    let pivot = graph.product(
+        Rational::ONE,
+        &[(matrix[block[0]][block[0]], Rational::ONE), (scales[0], Rational::whole(-2))],
+    );
+    // The first pivot becomes one where parameters alone decide it.
+    let unit = if graph.dependencies(pivot).any(Dependencies::STATE) { Graph::ONE } else { pivot };
+    for (scale, _) in scales.iter_mut().zip(block).filter(|&(_, &row)| count <= row) {
+        // The gradients of constraints stay as they are.
+        *scale = graph.power(unit, Rational::MINUS_ONE);
+    }
+    let scaled: Vec<Vec<Id>> = (0..block.len())
+        .map(|i| {
+            let entry = |j: usize| {
+                let entry = over(graph, matrix[block[i]][block[j]], &[scales[i], scales[j], unit]);
+                // Multiplied out, a constant shows what cancels against squares: 1 − cos² is
+                // sin².
+                if graph.dependencies(entry).any(Dependencies::STATE) {
+                    entry
+                } else {
+                    velocity_polynomial::expanded(graph, entry)
+                }
+            };
+            (0..block.len()).map(entry).collect()
+        })
+        .collect();
+    let order: Vec<usize> = (0..block.len()).collect();
+    let multiplier: Vec<bool> = block.iter().map(|&row| count <= row).collect();
+    let Ok(factors) = factor(graph, &scaled, &order, &multiplier) else { return Vec::new() };
+    let right: Vec<Id> = block
+        .iter()
+        .zip(&scales)
+        .map(|(&row, &scale)| over(graph, right[row], &[scale, unit]))
+        .collect();
+    for ((value, &row), &scale) in
+        substitute(graph, &factors, right).into_iter().zip(block).zip(&scales)
+    {
+        solution[row] = over(graph, value, &[scale]);
+    }
+    factors.independence
 }
 
 /// The coordinates that no other is coupled to.
@@ -161,6 +246,10 @@ pub(crate) fn alone(matrix: &[Vec<Id>]) -> Vec<bool> {
 fn scales(graph: &mut Graph, matrix: &[Vec<Id>], block: &[usize]) -> Vec<Id> {
     let mut scales = Vec::new();
     for &row in block {
+        if matrix[row][row] == Graph::ZERO {
+            scales.push(Graph::ONE);
+            continue;
+        }
         let diagonal = graph.factors(matrix[row][row]);
         let common: Vec<(Id, Rational)> = diagonal
             .into_iter()
@@ -195,6 +284,8 @@ fn over(graph: &mut Graph, id: Id, divisors: &[Id]) -> Id {
 struct Factors {
     lower: Vec<Vec<Id>>,
     reciprocal: Vec<Id>,
+    /// For each multiplier, its pivot over the part that other multipliers have not reduced.
+    independence: Vec<Id>,
 }
 
 /// The rows of a block, last first: chains eliminate from the leaf to the root.
@@ -224,12 +315,18 @@ pub(crate) fn blocks(matrix: &[Vec<Id>]) -> Vec<Vec<usize>> {
 }
 
 /// M = L D Lᵀ on atoms; the row whose pivot is structurally zero otherwise.
-fn factor(graph: &mut Graph, matrix: &[Vec<Id>], block: &[usize]) -> Result<Factors, usize> {
+fn factor(
+    graph: &mut Graph,
+    matrix: &[Vec<Id>],
+    block: &[usize],
+    multiplier: &[bool],
+) -> Result<Factors, usize> {
     let size = block.len();
     let mut lower = vec![vec![Graph::ZERO; size]; size];
     // What stands left of the pivot before it is divided by it.
     let mut scaled = vec![vec![Graph::ZERO; size]; size];
     let mut reciprocal: Vec<Id> = Vec::with_capacity(size);
+    let mut independence: Vec<Id> = Vec::with_capacity(size);
     for j in 0..size {
         for i in j..size {
             let entry = graph.atom(matrix[block[i]][block[j]]);
@@ -260,8 +357,20 @@ fn factor(graph: &mut Graph, matrix: &[Vec<Id>], block: &[usize]) -> Result<Fact
             }
         }
         reciprocal.push(inverse);
+        let reduced = |k: usize| multiplier[k] && scaled[j][k] != Graph::ZERO;
+        independence.push(if multiplier[j] && (0..j).any(reduced) {
+            let mut terms = Vec::new();
+            for k in (0..j).filter(|&k| !multiplier[k] && scaled[j][k] != Graph::ZERO) {
+                terms.push((graph.mul(scaled[j][k], lower[j][k]), Rational::MINUS_ONE));
+            }
+            let whole = graph.sum(&terms);
+            let whole = graph.atom(whole);
+            graph.div(pivot, whole)
+        } else {
+            Graph::ONE
+        });
     }
-    Ok(Factors { lower, reciprocal })
+    Ok(Factors { lower, reciprocal, independence })
 }
 
 fn substitute(graph: &mut Graph, factors: &Factors, mut right: Vec<Id>) -> Vec<Id> {

@@ -27,12 +27,14 @@ pub(crate) struct Conserved {
     pub(crate) value: Id,
 }
 
-/// The momenta of all symmetries of `lagrangian` along which `external` forces do nothing.
+/// The momenta of all symmetries of `lagrangian` along which neither `external` forces nor those of
+/// constraints, along their `gradients`, do anything.
 pub(crate) fn conserved(
     graph: &mut Graph,
     lagrangian: Id,
     momenta: &[Id],
     external: &[Id],
+    gradients: &[Vec<Id>],
 ) -> Vec<Conserved> {
     let count = momenta.len();
     let coordinates: Vec<Id> = (0..count).map(|i| graph.symbol(Symbol::Coordinate(i))).collect();
@@ -44,7 +46,8 @@ pub(crate) fn conserved(
     if count <= MOST_LINEAR {
         unknowns.extend((0..count).flat_map(|i| (0..count).map(move |j| (i, Some(j)))));
     }
-    let roots: Vec<Id> = [&slopes[..], momenta, external, &coordinates, &velocities].concat();
+    let mut roots: Vec<Id> = [&slopes[..], momenta, external, &coordinates, &velocities].concat();
+    roots.extend(gradients.iter().flatten());
     // Each point adds to the rank until it is full, but for a chance of D/2⁶¹, D the degree of a
     // minor's norm: the product over the signs of all k roots has at most 2^k times the degree of
     // one factor. Nine points more than there are unknowns must all fail for a displacement that is
@@ -61,15 +64,20 @@ pub(crate) fn conserved(
                 at(slopes[i]).mul(at(coordinates[j])).add(at(momenta[i]).mul(at(velocities[j])))
             }
         });
-        let work = unknowns.iter().map(|&(i, j)| match j {
-            None => at(external[i]),
-            Some(j) => at(external[i]).mul(at(coordinates[j])),
-        });
-        Some([change.collect::<Vec<Residue>>(), work.collect()])
+        let work = |forces: &[Id]| {
+            let work = unknowns.iter().map(|&(i, j)| match j {
+                None => at(forces[i]),
+                Some(j) => at(forces[i]).mul(at(coordinates[j])),
+            });
+            work.collect::<Vec<Residue>>()
+        };
+        let mut demands = vec![change.collect(), work(external)];
+        demands.extend(gradients.iter().map(|gradient| work(gradient)));
+        Some(demands)
     };
     let prime = Point::new(graph, &roots, 0);
     let mut tried = 0..8 * unknowns.len() as u64 + 64;
-    let mut points: Vec<[Vec<Residue>; 2]> =
+    let mut points: Vec<Vec<Vec<Residue>>> =
         tried.by_ref().take(SAMPLE).filter_map(|seed| demands(&prime, seed)).collect();
     if SAMPLE < 8 * points.len() {
         let missing = wanted.saturating_sub(points.len());

@@ -28,6 +28,9 @@ pub(crate) struct Model<'a> {
     pub(crate) lets: Vec<&'a Let>,
     pub(crate) energies: Vec<(Role, &'a Expr)>,
     pub(crate) forces: Vec<Force<'a>>,
+    /// The constraints that are solved, and after them the redundant ones.
+    pub(crate) constraints: Vec<&'a ast::Constraint>,
+    pub(crate) limits: Vec<&'a ast::Limit>,
     pub(crate) names: BTreeMap<String, Meaning>,
     /// The parameters that no statement mentions.
     pub(crate) unmentioned: BTreeSet<usize>,
@@ -99,6 +102,8 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         lets: Vec::new(),
         energies: Vec::new(),
         forces: Vec::new(),
+        constraints: Vec::new(),
+        limits: Vec::new(),
         names: BTreeMap::new(),
         unmentioned: BTreeSet::new(),
         of_outputs: BTreeSet::new(),
@@ -172,7 +177,10 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
                 model.lets.push(definition);
             }
             Statement::Energy { role, expr, .. } => model.energies.push((*role, expr)),
-            Statement::Force { .. } | Statement::Output(_) => {}
+            Statement::Force { .. }
+            | Statement::Output(_)
+            | Statement::Constraint(_)
+            | Statement::Limit(_) => {}
         }
     }
     model.inputs.append(&mut controls);
@@ -192,9 +200,16 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
                 force(&mut model, name, index.as_ref(), expr, errors);
             }
             Statement::Output(statement) => output(&mut model, statement, errors),
+            Statement::Constraint(statement) if named_apart(&model, &statement.name, errors) => {
+                model.constraints.push(statement);
+            }
+            Statement::Limit(statement) if named_apart(&model, &statement.name, errors) => {
+                model.limits.push(statement);
+            }
             _ => {}
         }
     }
+    model.constraints.sort_by_key(|constraint| constraint.redundant);
     model.of_outputs = reach::of_outputs(&model);
     roles(block, errors);
     if model.coordinates.is_empty() && !block.recovery.declarations {
@@ -206,6 +221,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         scope: Vec::new(),
         mentioned: BTreeSet::new(),
         accelerations: false,
+        constraint: false,
     };
     walk.block();
     let mentioned = walk.mentioned;
@@ -258,6 +274,30 @@ fn output<'a>(model: &mut Model<'a>, statement: &'a ast::Output, errors: &mut Er
     }
     let declared = quantity(name, Shape::Kind(&statement.kind), 0, None, errors);
     model.outputs.push(Output { declared, statement });
+}
+
+/// Returns true if the name of a constraint or a limit is free; reports it otherwise.
+fn named_apart(model: &Model, name: &Ident, errors: &mut Errors) -> bool {
+    let Name { base, dots } = name::read(&name.to_string());
+    let others = model.constraints.iter().map(|constraint| &constraint.name);
+    let mut others = others.chain(model.limits.iter().map(|limit| &limit.name));
+    let refusal = match model.names.get(&base) {
+        _ if 0 < dots => {
+            Some(format!("`{name}` is a time derivative; write the name without dots"))
+        }
+        _ if others.any(|other| plain(other) == base) => {
+            Some(format!("two constraints or limits are called `{name}`; rename one of the two"))
+        }
+        Some(Meaning::Parameter(_) | Meaning::Coordinate(_) | Meaning::Input(_)) => {
+            Some(format!("`{name}` is declared already; choose another name"))
+        }
+        Some(Meaning::Let(_)) | None => None,
+    };
+    match refusal {
+        Some(message) => errors.at(name.span(), message),
+        None => return true,
+    }
+    false
 }
 
 fn force<'a>(

@@ -6,7 +6,7 @@ use crate::syntax::name;
 use proc_macro2::Ident;
 use std::collections::BTreeSet;
 
-/// The definitions that outputs need, and neither an energy nor a force.
+/// The definitions that outputs need, and neither an energy, a force, a constraint nor a limit.
 pub(super) fn of_outputs(model: &Model) -> BTreeSet<usize> {
     let mut equations = Reach { model, found: BTreeSet::new() };
     for (_, expr) in &model.energies {
@@ -17,6 +17,13 @@ pub(super) fn of_outputs(model: &Model) -> BTreeSet<usize> {
             equations.expr(index);
         }
         equations.expr(force.expr);
+    }
+    for constraint in &model.constraints {
+        equations.expr(&constraint.difference);
+    }
+    for limit in &model.limits {
+        equations.expr(&limit.difference);
+        equations.expr(&limit.restitution);
     }
     let mut outputs = Reach { model, found: BTreeSet::new() };
     for output in &model.outputs {
@@ -43,34 +50,11 @@ impl Reach<'_, '_> {
     }
 
     fn expr(&mut self, expr: &Expr) {
-        match &expr.kind {
-            ExprKind::Number(_) => {}
-            ExprKind::Name(name) => self.name(name),
-            ExprKind::Sum(items) | ExprKind::Product(items) => {
-                for (_, item) in items {
-                    self.expr(item);
-                }
-            }
-            ExprKind::Negative(a) | ExprKind::Magnitude(a) | ExprKind::Component(a, _) => {
-                self.expr(a);
-            }
-            ExprKind::Power(a, b) | ExprKind::Index(a, b) => {
-                self.expr(a);
-                self.expr(b);
-            }
-            ExprKind::Call(name, items) => {
-                self.name(name);
-                for item in items {
-                    self.expr(item);
-                }
-            }
-            ExprKind::Vector(items) => {
-                for item in items {
-                    self.expr(item);
-                }
-            }
-            ExprKind::SumOver(_, term) => self.expr(term),
-            ExprKind::Integral { integrand, .. } => self.expr(integrand),
+        if let ExprKind::Name(name) | ExprKind::Call(name, _) = &expr.kind {
+            self.name(name);
+        }
+        for part in expr.parts() {
+            self.expr(part);
         }
     }
 }

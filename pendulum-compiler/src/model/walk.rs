@@ -20,6 +20,8 @@ pub(super) struct Walk<'m, 'a, 'e> {
     pub(super) mentioned: BTreeSet<usize>,
     /// True if accelerations of coordinates may stand here.
     pub(super) accelerations: bool,
+    /// True in a constraint or a limit.
+    pub(super) constraint: bool,
 }
 
 impl Walk<'_, '_, '_> {
@@ -58,6 +60,22 @@ impl Walk<'_, '_, '_> {
             self.expr(force.expr);
             self.scope.truncate(depth);
         }
+        self.constraint = true;
+        let constraints = model.constraints.iter();
+        let constraints = constraints.map(|own| (&own.index, [Some(&own.difference), None]));
+        let limits = model.limits.iter();
+        let limits = limits.map(|own| (&own.index, [&own.difference, &own.restitution].map(Some)));
+        for (index, exprs) in constraints.chain(limits) {
+            let depth = self.scope.len();
+            if let Some(binder) = index {
+                self.bind(binder);
+            }
+            for expr in exprs.into_iter().flatten() {
+                self.expr(expr);
+            }
+            self.scope.truncate(depth);
+        }
+        self.constraint = false;
         self.accelerations = true;
         for output in &model.outputs {
             let depth = self.scope.len();
@@ -183,6 +201,12 @@ impl Walk<'_, '_, '_> {
                 self.expr(term);
                 self.scope.truncate(depth);
             }
+            ExprKind::Reaction(name, index) => {
+                self.reaction(name, expr.range);
+                if let Some(index) = index {
+                    self.expr(index);
+                }
+            }
             ExprKind::Integral { point, body, integrand } => {
                 let Name { base, dots } = name::read(&body.to_string());
                 match self.model.names.get(&base) {
@@ -206,6 +230,42 @@ impl Walk<'_, '_, '_> {
                 self.scope.pop();
             }
         }
+    }
+
+    /// A reaction is that of a constraint, and stands in outputs only.
+    fn reaction(&mut self, ident: &Ident, range: Range) {
+        if !self.accelerations {
+            self.errors.at(
+                range,
+                format!(
+                    "the reaction of `{ident}` is known only after the forces; it stands in outputs"
+                ),
+            );
+            return;
+        }
+        let base = plain(ident);
+        let found = self.model.constraints.iter().find(|own| plain(&own.name) == base);
+        let message = match found {
+            Some(constraint) if constraint.redundant => {
+                format!("`{ident}` is redundant, and its reaction is not unique; leave it out")
+            }
+            Some(_) => return,
+            None if self.model.block.recovery.declarations => return,
+            None if self.model.limits.iter().any(|own| plain(&own.name) == base) => {
+                format!("`{ident}` is a limit; `reaction` is that of a constraint")
+            }
+            None => {
+                let known = self.model.constraints.iter().map(|own| own.name.to_string());
+                let known: Vec<String> = known.collect();
+                match name::nearest(&ident.to_string(), known.iter().map(String::as_str)) {
+                    Some(near) => format!("unknown constraint `{ident}`; did you mean `{near}`?"),
+                    None => format!(
+                        "unknown constraint `{ident}`; declare it, as in `constraint {ident}: a = b;`"
+                    ),
+                }
+            }
+        };
+        self.errors.at(ident.span(), message);
     }
 
     /// Returns true if an expression is the name of a body.
@@ -239,6 +299,9 @@ impl Walk<'_, '_, '_> {
             ),
             (_, Some(Meaning::Coordinate(_))) if 2 < dots && self.accelerations => {
                 self.errors.at(ident.span(), messages::jerk(format!("`{ident}`")));
+            }
+            (_, Some(Meaning::Coordinate(_))) if 1 < dots && self.constraint => {
+                self.errors.at(ident.span(), messages::constrained_acceleration(format!("`{ident}`")));
             }
             (_, Some(Meaning::Coordinate(_))) if 1 < dots && !self.accelerations => {
                 self.errors.at(ident.span(), messages::acceleration(format!("`{ident}`")));

@@ -113,7 +113,9 @@ impl Schedule<'_> {
     /// The rank of a factor in a product: the factor that changes least comes first.
     fn rank(&self, base: Id) -> u8 {
         let dependencies = self.graph.dependencies(base);
-        if dependencies.any(Dependencies::VELOCITY.or(Dependencies::MOMENTUM)) {
+        if dependencies
+            .any(Dependencies::VELOCITY.or(Dependencies::MOMENTUM).or(Dependencies::TARGET))
+        {
             3
         } else if dependencies.any(Dependencies::COORDINATE) {
             2

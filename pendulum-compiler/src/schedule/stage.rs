@@ -44,6 +44,8 @@ impl Program {
                     Symbol::Velocity(_)
                     | Symbol::Control { .. }
                     | Symbol::Acceleration(_)
+                    | Symbol::Multiplier(_)
+                    | Symbol::Target(_)
                     | Symbol::Momentum(_)
                     | Symbol::Auxiliary(_)
                     | Symbol::Point(..) => Stage::Velocity,

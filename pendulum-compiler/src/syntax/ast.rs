@@ -61,6 +61,8 @@ pub(crate) enum Statement {
     Energy { role: Role, keyword: Range, expr: Expr },
     Force { name: Ident, index: Option<ForceIndex>, expr: Expr },
     Output(Box<Output>),
+    Constraint(Box<Constraint>),
+    Limit(Box<Limit>),
 }
 
 /// `output tip: [m; 2] = …` or `output tip[k in 0..5]: [m; 2] = …`.
@@ -72,6 +74,26 @@ pub(crate) struct Output {
     pub(crate) index: Option<Binder>,
     pub(crate) kind: Kind,
     pub(crate) expr: Expr,
+}
+
+/// `constraint loop: a = b` or `redundant constraint rod[k in 0..5]: a = b`.
+#[derive(Debug)]
+pub(crate) struct Constraint {
+    pub(crate) redundant: bool,
+    pub(crate) name: Ident,
+    pub(crate) index: Option<Binder>,
+    /// `a - b`, a sum of two terms.
+    pub(crate) difference: Expr,
+}
+
+/// `limit rail: a >= b, restitution = e`.
+#[derive(Debug)]
+pub(crate) struct Limit {
+    pub(crate) name: Ident,
+    pub(crate) index: Option<Binder>,
+    /// `a - b`, a sum of two terms.
+    pub(crate) difference: Expr,
+    pub(crate) restitution: Expr,
 }
 
 /// `let y = …`, `let y[k in 0..5] = …` or `let r(p) = …`.
@@ -137,4 +159,32 @@ pub(crate) enum ExprKind {
         body: Ident,
         integrand: Box<Expr>,
     },
+    /// `reaction(loop)` or `reaction(rod[2])`.
+    Reaction(Ident, Option<Box<Expr>>),
+}
+
+impl Expr {
+    /// The two terms of a sum: the sides of a constraint or a limit.
+    pub(crate) fn sides(&self) -> [&Expr; 2] {
+        match self.parts()[..] {
+            [left, right] => [left, right],
+            _ => [self, self],
+        }
+    }
+
+    /// The expressions of which it is made, without the ends of ranges.
+    pub(crate) fn parts(&self) -> Vec<&Expr> {
+        match &self.kind {
+            ExprKind::Number(_) | ExprKind::Name(_) => Vec::new(),
+            ExprKind::Sum(items) | ExprKind::Product(items) => {
+                items.iter().map(|(_, item)| item).collect()
+            }
+            ExprKind::Negative(a) | ExprKind::Magnitude(a) | ExprKind::Component(a, _) => vec![a],
+            ExprKind::Power(a, b) | ExprKind::Index(a, b) => vec![a, b],
+            ExprKind::Call(_, items) | ExprKind::Vector(items) => items.iter().collect(),
+            ExprKind::SumOver(_, term) => vec![term],
+            ExprKind::Integral { integrand, .. } => vec![integrand],
+            ExprKind::Reaction(_, index) => index.iter().map(|index| &**index).collect(),
+        }
+    }
 }

@@ -24,6 +24,8 @@ pub(crate) fn text(expr: &Expr) -> String {
         ExprKind::Magnitude(inner) => format!("|{}|", text(inner)),
         ExprKind::SumOver(binder, term) => format!("sum({} in …, {})", binder.name, text(term)),
         ExprKind::Integral { point, body, .. } => format!("integral({point} in {body}, …)"),
+        ExprKind::Reaction(name, None) => format!("reaction({name})"),
+        ExprKind::Reaction(name, Some(index)) => format!("reaction({name}[{}])", text(index)),
     }
 }
 

@@ -164,7 +164,7 @@ fn equations_show_every_function() {
                 "struct S {{ b }} coordinate {x}; kinetic = {dot}^2/2; let a = {x}/3; force {x} = {call};"
             );
             let [lines, latex] = derive(&source, |model, graph, motion| {
-                let names = Names::new(model, &BTreeSet::new());
+                let names = Names::new(model, &crate::mechanics::lower::Energies::default());
                 let sides: Sides = vec![None];
                 [
                     unicode::equations(graph, &names, motion, &sides),
@@ -197,7 +197,13 @@ fn equations_in_ascii_are_read_back() {
         for order in 0..3 {
             let text = derive(
                 "struct S { a } coordinate q; kinetic = q_dot^2/2; potential = 0;",
-                |model, _, _| unicode::expression(&graph, &Names::new(model, &BTreeSet::new()), id),
+                |model, _, _| {
+                    unicode::expression(
+                        &graph,
+                        &Names::new(model, &crate::mechanics::lower::Energies::default()),
+                        id,
+                    )
+                },
             );
             let mut own = Graph::new();
             let read = lowered(&mut own, &text);

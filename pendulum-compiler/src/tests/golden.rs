@@ -171,7 +171,7 @@ fn report(source: &str) -> String {
 /// the block is refused.
 fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
     derived(source, errors, |model, graph, motion, energies| {
-        let names = unicode::Names::new(model, &energies.families);
+        let names = unicode::Names::new(model, energies);
         let mut text = String::new();
         let sides = unicode::sides(graph, &names, motion);
         for line in unicode::equations(graph, &names, motion, &sides) {
@@ -191,6 +191,14 @@ fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
                     let value = unicode::expression(graph, &names, scalar);
                     writeln!(text, "output {}, {index} = {value}", output.declared.name).unwrap();
                 }
+            }
+        }
+        let constraints = &motion.constraints;
+        if !constraints.held.is_empty() {
+            for (what, roots) in
+                [("multipliers", &constraints.multipliers), ("correction", &constraints.correction)]
+            {
+                writeln!(text, "{what}: {}", operations(graph, roots)).unwrap();
             }
         }
         for conserved in &motion.conserved {
@@ -223,7 +231,12 @@ fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
 
 fn outputs(text: &mut String, graph: &Graph, names: &unicode::Names, motion: &Motion) {
     writeln!(text, "energy = {}", unicode::expression(graph, names, motion.energy)).unwrap();
-    writeln!(text, "power = {}", unicode::expression(graph, names, motion.power)).unwrap();
+    writeln!(
+        text,
+        "power = {}",
+        unicode::expression(graph, names, motion.constraints.power.unwrap_or(motion.power))
+    )
+    .unwrap();
     for (index, &momentum) in motion.momenta.iter().enumerate() {
         writeln!(
             text,

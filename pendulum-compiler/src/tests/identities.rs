@@ -73,6 +73,8 @@ fn energy_changes_by_the_power() {
                     Symbol::Parameter(_)
                     | Symbol::Control { .. }
                     | Symbol::Acceleration(_)
+                    | Symbol::Multiplier(_)
+                    | Symbol::Target(_)
                     | Symbol::Momentum(_)
                     | Symbol::Auxiliary(_)
                     | Symbol::Moment(..)

@@ -14,6 +14,7 @@ use std::collections::BTreeMap;
 
 mod absolute;
 mod clock;
+mod constraints;
 mod derivatives;
 mod fragments;
 mod functions;

@@ -3,12 +3,11 @@
 use super::derive;
 use crate::backend::latex;
 use crate::backend::unicode;
-use std::collections::BTreeSet;
 
 /// The equations of a block in Unicode and in LaTeX.
 fn printed(source: &str) -> [Vec<String>; 2] {
     derive(source, |model, graph, motion| {
-        let names = unicode::Names::new(model, &BTreeSet::new());
+        let names = unicode::Names::new(model, &crate::mechanics::lower::Energies::default());
         let sides = unicode::sides(graph, &names, motion);
         let latex = latex::equations(graph, &names, motion, &sides);
         [unicode::equations(graph, &names, motion, &sides), latex]

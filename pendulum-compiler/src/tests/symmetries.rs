@@ -6,7 +6,7 @@ use crate::backend::unicode;
 /// The conserved quantities of a block, as printed.
 fn conserved(source: &str) -> Vec<String> {
     derive(source, |model, _, motion| {
-        let names = unicode::Names::new(model, &std::collections::BTreeSet::default());
+        let names = unicode::Names::new(model, &crate::mechanics::lower::Energies::default());
         motion.conserved.iter().map(|conserved| unicode::conserved(&names, conserved)).collect()
     })
 }

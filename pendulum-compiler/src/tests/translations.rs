@@ -113,9 +113,6 @@ const DECLARATIONS: &[(&str, &str)] = &[
     ("driven a: [m];",                         "a length is missing; write `[m; 2]` for a vector, `[kg; 5]` for a family"),
     ("coordinate a: [_; 2];",                  "a coordinate is one number; write `coordinate a[2];` for several"),
     ("coordinate a: [m/s; 3];",                "a coordinate is one number; write `coordinate a[3]: m/s;` for several"),
-    ("constraint loop: θ = 0;",                "constraints, as closed loops need them, are not supported yet; choose coordinates in which they hold by themselves"),
-    ("redundant constraint loop: θ = 0;",      "constraints, as closed loops need them, are not supported yet; choose coordinates in which they hold by themselves"),
-    ("limit rail: L - θ >= 0;",                "limits are not supported yet; write a soft stop, as in `potential = k/2*max(0, θ - w)^2;`, or let the program stop at an event"),
 ];
 
 #[test]

@@ -12,8 +12,8 @@ pub struct Constraint {
     pub name: &'static str,
     /// The unit of the two sides, empty where none is known.
     pub unit: &'static str,
-    /// The unit of the multiplier λ, an energy per unit of the constraint; empty where none is
-    /// known.
+    /// The unit of the multiplier λ, an energy per unit of a holonomic constraint and a power per
+    /// unit of one of velocities; empty where none is known.
     pub reaction_unit: &'static str,
     /// It holds positions, and not velocities alone.
     pub holonomic: bool,

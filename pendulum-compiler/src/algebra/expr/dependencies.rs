@@ -19,6 +19,8 @@ impl Dependencies {
     pub(crate) const AUXILIARY: Self = Self(512);
     pub(crate) const ACCELERATION: Self = Self(1024);
     pub(crate) const CONTROL: Self = Self(2048);
+    pub(crate) const MULTIPLIER: Self = Self(4096);
+    pub(crate) const TARGET: Self = Self(8192);
     /// Driven and control inputs.
     pub(crate) const INPUT: Self = Self(16 | 32 | 64 | 2048);
     /// Everything but parameters.
@@ -45,6 +47,8 @@ impl Dependencies {
             Symbol::Input { .. } => Self::ACCELERATION_INPUT,
             Symbol::Control { .. } => Self::CONTROL,
             Symbol::Acceleration(_) => Self::ACCELERATION,
+            Symbol::Multiplier(_) => Self::MULTIPLIER,
+            Symbol::Target(_) => Self::TARGET,
             Symbol::Momentum(_) => Self::MOMENTUM,
             Symbol::Auxiliary(_) => Self::AUXILIARY,
         }

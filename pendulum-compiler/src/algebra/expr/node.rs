@@ -53,6 +53,10 @@ pub(crate) enum Symbol {
     },
     /// The second derivative of a coordinate, in outputs.
     Acceleration(usize),
+    /// The multiplier of a constraint, in outputs and where equations are printed.
+    Multiplier(usize),
+    /// The change of a constraint that is wanted, in the function that corrects misfits.
+    Target(usize),
     /// A generalized momentum, in the function that inverts them.
     Momentum(usize),
     /// A second moment about its pivot of the body whose scalars begin with this parameter.

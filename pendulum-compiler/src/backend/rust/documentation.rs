@@ -11,7 +11,7 @@ use std::fmt::Write;
 impl Emitter<'_, '_> {
     /// The equations, their cost and what they leave out, for hover and rustdoc.
     pub(super) fn documentation(&self) -> TokenStream {
-        let names = Names::new(self.model, &self.energies.families);
+        let names = Names::new(self.model, &self.energies);
         let (Some(motion), Some(accelerations)) = (&self.motion, &self.accelerations) else {
             return TokenStream::new();
         };
@@ -46,6 +46,7 @@ impl Emitter<'_, '_> {
             let list = unused.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
             let _ = write!(text, " The equations do not need {list}.");
         }
+        text.push_str(&self.constraint_documentation());
         if !self.model.outputs.is_empty() {
             text.push_str("\n\n# Outputs\n\n");
             for output in &self.model.outputs {

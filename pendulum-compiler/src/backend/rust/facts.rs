@@ -3,6 +3,7 @@
 use super::Emitter;
 use crate::algebra::expr::{Id, Symbol};
 use crate::backend::unicode::{self, Names};
+use crate::mechanics::constraint::Constraint;
 use crate::model::Quantity;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -10,7 +11,7 @@ use quote::{format_ident, quote};
 impl Emitter<'_, '_> {
     pub(super) fn facts(&self) -> TokenStream {
         let krate = self.krate.clone();
-        let names = Names::new(self.model, &self.energies.families);
+        let names = Names::new(self.model, &self.energies);
         let name = self.model.block.name.to_string();
         let (coordinates, parameters) = (&names.coordinates, &names.parameters);
         let units = self.model.parameters.iter().flat_map(|quantity| {
@@ -26,7 +27,7 @@ impl Emitter<'_, '_> {
             .flat_map(|quantity| vec![quantity.unit.clone(); quantity.count()]);
         let coordinate_units = quote!(&[#(#coordinate_units),*]);
         let (inputs, outputs) = (self.inputs(), self.output_facts());
-        let (constraints, limits): (Vec<TokenStream>, Vec<TokenStream>) = (Vec::new(), Vec::new());
+        let [constraints, limits] = self.constraint_facts();
         let Some(motion) = &self.motion else {
             return quote!(#krate::__private::facts(#krate::__private::Known {
                 name: #name, coordinates: &[#(#coordinates),*], coordinate_units: #coordinate_units, parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*], constraints: &[#(#constraints),*], limits: &[#(#limits),*],
@@ -100,17 +101,34 @@ impl Emitter<'_, '_> {
                     .flat_map(|output| output.scalars.clone())
                     .collect();
                 let masses = motion.mass_matrix.concat();
+                let rows = |rows: &[Constraint]| {
+                    let roots =
+                        |row: &Constraint| [&[row.value, row.rate], &row.gradient[..]].concat();
+                    rows.iter().flat_map(roots).collect::<Vec<Id>>()
+                };
+                let drifts: Vec<Id> =
+                    motion.constraints.limits.iter().map(|limit| limit.drift).collect();
                 let energies: Vec<Id> = [Some(motion.energy), motion.kinetic, motion.potential]
                     .into_iter()
                     .flatten()
                     .collect();
                 vec![
-                    of(&[&motion.accelerations, &motion.forces]),
+                    of(&[
+                        &motion.accelerations,
+                        &motion.forces,
+                        &motion.constraints.multipliers,
+                        &rows(&motion.constraints.limits),
+                        &drifts,
+                    ]),
                     of(&[
                         &motion.momenta,
                         &motion.momentum_rates,
                         motion.velocities.as_deref().unwrap_or_default(),
                         &masses,
+                        &rows(&motion.constraints.held),
+                        &rows(&motion.constraints.redundant),
+                        &motion.constraints.correction,
+                        &motion.constraints.independence,
                     ]),
                     of(&[&energies]),
                     of(&[&[motion.power]]),

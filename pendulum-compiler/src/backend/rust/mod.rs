@@ -2,6 +2,7 @@
 //! traits.
 
 mod clock;
+mod constraints;
 pub(crate) mod documentation;
 mod facts;
 mod jacobian;
@@ -19,6 +20,7 @@ use crate::backend::Analysis;
 use crate::backend::ide;
 use crate::mechanics::lower::Energies;
 use crate::mechanics::motion::Motion;
+use crate::model::unit::infer::RowUnits;
 use crate::model::{Model, Quantity};
 use crate::schedule::Program;
 use proc_macro2::{Ident, Span, TokenStream};
@@ -30,7 +32,7 @@ use std::collections::BTreeMap;
 #[rustfmt::skip]
 const OWN: &[&str] = &[
     "acceleration", "all", "at_position", "at_time", "both", "column", "columns", "controller", "drive", "entries", "index", "inputs",
-    "k", "law", "lifted", "map", "order", "p", "parameter", "path", "period", "prepared", "q", "row", "system", "t", "time", "v", "value",
+    "k", "law", "lifted", "map", "order", "p", "parameter", "path", "period", "prepared", "q", "row", "system", "t", "target", "time", "v", "value",
     "values", "widths", "work",
 ];
 
@@ -46,12 +48,14 @@ pub(crate) struct Emitter<'m, 'a> {
     pub(crate) energies: Energies,
     /// The equations of motion in Unicode and in LaTeX.
     equations: [Vec<String>; 2],
+    units: RowUnits,
 }
 
 impl<'m, 'a> Emitter<'m, 'a> {
     pub(crate) fn new(analysis: Analysis<'m, 'a>) -> Self {
-        let Analysis { krate, model, graph, energies, motion, equations, accelerations } = analysis;
-        Self { krate, model, graph, motion, accelerations, energies, equations }
+        let Analysis { krate, model, graph, energies, motion, equations, accelerations, units } =
+            analysis;
+        Self { krate, model, graph, motion, accelerations, energies, equations, units }
     }
 }
 

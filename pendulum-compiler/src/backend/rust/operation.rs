@@ -96,14 +96,18 @@ impl Emitter<'_, '_> {
                 }
             }
             // Points of integration are gone when the integral is done, velocities of positions
-            // when the equations are solved; accelerations have been put in.
-            Symbol::Point(..) | Symbol::Auxiliary(_) | Symbol::Acceleration(_) => {
+            // when the equations are solved; accelerations and multipliers have been put in.
+            Symbol::Point(..)
+            | Symbol::Auxiliary(_)
+            | Symbol::Acceleration(_)
+            | Symbol::Multiplier(_) => {
                 quote!(::core::unreachable!())
             }
             Symbol::Time => quote!(t),
             Symbol::Coordinate(index) => quote!(q[#index]),
             Symbol::Velocity(index) => quote!(v[#index]),
             Symbol::Momentum(index) => quote!(p[#index]),
+            Symbol::Target(index) => quote!(target[#index]),
             Symbol::Control { input, component } => {
                 let input = Literal::usize_unsuffixed(input);
                 quote!(inputs.#input.position[#component])

@@ -23,6 +23,11 @@ impl Emitter<'_, '_> {
         }
     }
 
+    /// A block that computes an array of these roots.
+    pub(super) fn roots(&self, roots: &[Id]) -> TokenStream {
+        self.body(&schedule::program(&self.graph, roots))
+    }
+
     /// The statements of a program: an operation that is read once stands where it is read.
     pub(super) fn body(&self, program: &Program) -> TokenStream {
         self.body_after(program, &program.results, &[])

@@ -37,7 +37,7 @@ impl Emitter<'_, '_> {
         let energy = vector(self, |motion| vec![motion.energy]);
         let power = vector(self, |motion| vec![motion.power]);
         let (hamilton, longest_step) = (self.hamilton(), self.longest_step());
-        let output = self.output_by_index();
+        let (output, constraints) = (self.output_by_index(), self.constraint_methods());
         let velocities = self.output(|motion| motion.velocities.clone());
         let velocities = velocities.unwrap_or_else(
             || quote!(#krate::__private::newton::<#count, Self>(self, t, q, p, inputs)),
@@ -115,6 +115,8 @@ impl Emitter<'_, '_> {
                 #longest_step
 
                 #output
+
+                #constraints
             }
         }
     }

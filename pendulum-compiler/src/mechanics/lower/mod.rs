@@ -6,6 +6,7 @@
 
 mod body;
 pub(crate) mod constant;
+mod constraint;
 mod output;
 mod term;
 mod value;
@@ -19,6 +20,7 @@ use crate::model::{self, Model};
 use crate::syntax::ast::{Binder, Expr, ForceIndex, Role};
 use crate::syntax::name;
 use crate::syntax::text::text;
+pub(crate) use constraint::Row;
 pub(crate) use output::Output;
 use std::collections::{BTreeMap, BTreeSet};
 use value::Value;
@@ -54,6 +56,10 @@ pub(crate) struct Energies {
     /// not vectors.
     pub(crate) families: BTreeSet<usize>,
     pub(crate) outputs: Vec<Output>,
+    /// The scalar constraints that are solved, and after them the redundant ones.
+    pub(crate) constraints: Vec<Row>,
+    /// The scalar limits.
+    pub(crate) limits: Vec<Row>,
     /// The same with the velocities of positions as symbols of their own; `None` where no position
     /// is written with `let`.
     pub(crate) extended: Option<Extended>,
@@ -74,6 +80,12 @@ pub(crate) struct Extended {
 }
 
 impl Energies {
+    /// The constraints that hold velocities, by the indices of their statements.
+    pub(crate) fn velocity_constraints(&self, graph: &Graph) -> BTreeSet<usize> {
+        let velocity = |row: &&Row| graph.dependencies(row.value).any(Dependencies::VELOCITY);
+        self.constraints.iter().filter(velocity).map(|row| row.statement).collect()
+    }
+
     /// Every expression in it.
     pub(crate) fn roots(&mut self) -> Vec<&mut Id> {
         let single =
@@ -85,10 +97,13 @@ impl Energies {
                 .chain(extended.kinetic.as_mut());
             single.chain(&mut extended.forces).chain(&mut extended.scalars)
         });
+        let rows = self.constraints.iter_mut().chain(&mut self.limits);
+        let rows = rows.flat_map(|row| [&mut row.value, &mut row.restitution]);
         single
             .chain(&mut self.forces)
             .chain(self.defaults.iter_mut().flatten())
             .chain(self.outputs.iter_mut().flat_map(|output| &mut output.scalars))
+            .chain(rows)
             .chain(extended)
             .collect()
     }
@@ -185,6 +200,8 @@ fn lower(
         positions,
         constants: BTreeMap::new(),
         accelerations: false,
+        constrained: false,
+        shapes: Vec::new(),
     };
     let energies = lower.block();
     (energies, lower.positions)
@@ -253,6 +270,10 @@ struct Lower<'m, 'a, 'g, 'e> {
     constants: BTreeMap<Id, f64>,
     /// True if velocities have derivatives: in outputs.
     accelerations: bool,
+    /// True in a constraint or a limit.
+    constrained: bool,
+    /// The shapes of the constraints.
+    shapes: Vec<constraint::Shape>,
 }
 
 impl Lower<'_, '_, '_, '_> {
@@ -298,6 +319,8 @@ impl Lower<'_, '_, '_, '_> {
         }
         self.forces(&mut energies);
         if self.positions.is_none() {
+            energies.constraints = self.constraints();
+            energies.limits = self.limits();
             energies.outputs = self.outputs();
         }
         energies.families = self.indexed.difference(&self.whole).copied().collect();

@@ -98,6 +98,7 @@ impl Lower<'_, '_, '_, '_> {
             ExprKind::Vector(items) => self.vector(items, expr),
             ExprKind::Magnitude(inner) => self.magnitude(inner),
             ExprKind::SumOver(binder, term) => self.sum_over(binder, term),
+            ExprKind::Reaction(name, index) => self.reaction(name, index.as_deref(), expr),
             ExprKind::Integral { point, body, integrand } => {
                 self.integral(&point.to_string(), &body.to_string(), integrand)
             }
@@ -475,15 +476,7 @@ impl Lower<'_, '_, '_, '_> {
 
 /// Returns true if an index stands in an expression: one member of a family may be at rest.
 fn has_index(expr: &Expr) -> bool {
-    match &expr.kind {
-        ExprKind::Number(_) | ExprKind::Name(_) | ExprKind::Integral { .. } => false,
-        ExprKind::Index(..) => true,
-        ExprKind::Sum(items) | ExprKind::Product(items) => {
-            items.iter().any(|(_, item)| has_index(item))
-        }
-        ExprKind::Negative(a) | ExprKind::Magnitude(a) | ExprKind::Component(a, _) => has_index(a),
-        ExprKind::Power(a, b) => has_index(a) || has_index(b),
-        ExprKind::Call(_, items) | ExprKind::Vector(items) => items.iter().any(has_index),
-        ExprKind::SumOver(_, term) => has_index(term),
-    }
+    let own = matches!(expr.kind, ExprKind::Index(..));
+    own || !matches!(expr.kind, ExprKind::Integral { .. })
+        && expr.parts().into_iter().any(has_index)
 }

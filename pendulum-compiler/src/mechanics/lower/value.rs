@@ -77,6 +77,10 @@ impl Lower<'_, '_, '_, '_> {
             let what = format!("the derivative of an acceleration in `{what}`");
             return self.wrong(expr, &messages::jerk(what));
         }
+        if dependencies.any(Dependencies::VELOCITY) && self.constrained {
+            let what = format!("the derivative of a velocity in `{what}`");
+            return self.wrong(expr, &messages::constrained_acceleration(what));
+        }
         if dependencies.any(Dependencies::VELOCITY) && !self.accelerations {
             return self.wrong(
                 expr,

@@ -10,21 +10,37 @@ use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::messages::Errors;
 use crate::model::{self, Meaning, Model};
-use crate::syntax::ast::{Expr, ExprKind, ForceIndex, Role};
+use crate::syntax::ast::{self, Binder, Expr, ExprKind, ForceIndex, Role};
 use crate::syntax::name::{self, Name};
 use crate::syntax::text::text;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The deepest nesting that is looked at: more would overflow the compiler's stack. Every
 /// definition is checked for itself as well.
 const DEEPEST: usize = 200;
 
-/// Checks a block, if any of its quantities has a unit.
-pub(crate) fn check(model: &Model, errors: &mut Errors) {
+/// The units of constraints and limits as text, empty where they are not known.
+#[derive(Debug, Default)]
+pub(crate) struct RowUnits {
+    /// For each constraint its own unit and that of its multiplier.
+    pub(crate) constraints: Vec<[String; 2]>,
+    pub(crate) limits: Vec<String>,
+}
+
+/// Checks a block, if any of its quantities has a unit, and gives the units of its constraints and
+/// limits.
+///
+/// `velocities` are the constraints that hold velocities: the power of a multiplier is λ times the
+/// rate of a position, but λ times a velocity itself.
+pub(crate) fn check(model: &Model, velocities: &BTreeSet<usize>, errors: &mut Errors) -> RowUnits {
     let quantities = || model.parameters.iter().chain(&model.coordinates).chain(&model.inputs);
     let outputs = model.outputs.iter().map(|output| &output.declared);
     if quantities().chain(outputs).all(|quantity| quantity.unit.is_empty() && !quantity.body) {
-        return;
+        let unknown = String::new;
+        return RowUnits {
+            constraints: vec![[unknown(), unknown()]; model.constraints.len()],
+            limits: vec![unknown(); model.limits.len()],
+        };
     }
     let mut units = Units {
         model,
@@ -35,8 +51,12 @@ pub(crate) fn check(model: &Model, errors: &mut Errors) {
         open: Vec::new(),
         depth: 0,
         unknowns: 0,
+        energy: None,
+        velocities,
+        constraints: Vec::new(),
     };
     units.block();
+    units.rows()
 }
 
 /// A known dimension times powers of unknowns.
@@ -85,6 +105,11 @@ struct Units<'m, 'a, 'e> {
     /// The number of expressions that are being evaluated.
     depth: usize,
     unknowns: usize,
+    /// The unit of the energies, and those of the constraints.
+    energy: Found,
+    constraints: Vec<Found>,
+    /// The constraints that hold velocities.
+    velocities: &'m BTreeSet<usize>,
 }
 
 impl Units<'_, '_, '_> {
@@ -93,7 +118,9 @@ impl Units<'_, '_, '_> {
         // One unknown for each quantity, whether it has a unit or not.
         self.unknowns = model.parameters.len() + model.coordinates.len() + model.inputs.len();
         for index in 0..model.lets.len() {
-            if model.lets[index].arguments.is_none() {
+            // Reactions stand in the definitions of outputs, and need the units of energies.
+            let late = model.of_outputs.contains(&index);
+            if model.lets[index].arguments.is_none() && !late {
                 self.definition(index);
             }
         }
@@ -122,6 +149,14 @@ impl Units<'_, '_, '_> {
                 }
             }
         }
+        self.energy = energy.as_ref().map(|(unit, _)| unit.clone());
+        self.constraints();
+        self.limits();
+        for &index in &model.of_outputs {
+            if model.lets[index].arguments.is_none() {
+                self.definition(index);
+            }
+        }
         self.outputs();
         let Some((energy, _)) = energy else { return };
         for force in &model.forces {
@@ -148,6 +183,75 @@ impl Units<'_, '_, '_> {
                 self.errors.once(force.expr.source, force.expr.range, message);
             }
         }
+    }
+
+    fn constraints(&mut self) {
+        for constraint in &self.model.constraints {
+            let found = self.sides(constraint.index.as_ref(), &constraint.difference, "constraint");
+            self.constraints.push(found);
+        }
+    }
+
+    fn limits(&mut self) {
+        for limit in &self.model.limits {
+            self.sides(limit.index.as_ref(), &limit.difference, "limit");
+            let depth = self.scope.len();
+            if let Some(binder) = &limit.index {
+                self.scope.push((name::read(&binder.name.to_string()).base, Some(Unit::pure())));
+            }
+            self.pure(&limit.restitution, "a restitution");
+            self.scope.truncate(depth);
+        }
+    }
+
+    /// The common unit of the two sides of a constraint or a limit.
+    fn sides(&mut self, index: Option<&Binder>, difference: &Expr, what: &str) -> Found {
+        let depth = self.scope.len();
+        if let Some(binder) = index {
+            self.scope.push((name::read(&binder.name.to_string()).base, Some(Unit::pure())));
+        }
+        let found = self.common(difference.sides().into_iter(), &format!("a {what}"));
+        self.scope.truncate(depth);
+        found
+    }
+
+    /// The unit of the multiplier of a constraint: an energy per unit of a position, a power per unit
+    /// of a velocity.
+    fn reaction(&self, constraint: usize) -> Found {
+        let own = self.constraints.get(constraint)?.clone()?;
+        let unit = self.energy.as_ref()?.times(&own, Rational::MINUS_ONE)?;
+        if self.velocities.contains(&constraint) {
+            unit.times(&Unit::of(second()), Rational::MINUS_ONE)
+        } else {
+            Some(unit)
+        }
+    }
+
+    /// The units of constraints and limits, as far as they are decided.
+    fn rows(&mut self) -> RowUnits {
+        let shown = |units: &Self, found: &Found| {
+            let unit = units.resolved(found.as_ref()?);
+            if !unit.unknown.is_empty() {
+                return None;
+            }
+            let pure = unit.known == Dimension::PURE;
+            Some(if pure { "1".to_owned() } else { unit.known.to_string() })
+        };
+        let constraints = self.constraints.iter().enumerate().map(|(index, own)| {
+            let reaction = self.reaction(index);
+            [shown(self, own), shown(self, &reaction)].map(Option::unwrap_or_default)
+        });
+        let constraints = constraints.collect();
+        let limits: Vec<_> = self
+            .model
+            .limits
+            .iter()
+            .map(|limit| {
+                let found = self.sides(limit.index.as_ref(), &limit.difference, "limit");
+                shown(self, &found).unwrap_or_default()
+            })
+            .collect();
+        RowUnits { constraints, limits }
     }
 
     fn outputs(&mut self) {
@@ -363,6 +467,12 @@ impl Units<'_, '_, '_> {
                 let found = self.expr(term);
                 self.scope.pop();
                 found
+            }
+            ExprKind::Reaction(name, _) => {
+                let base = name::read(&name.to_string()).base;
+                let same = |own: &&ast::Constraint| name::read(&own.name.to_string()).base == base;
+                let index = self.model.constraints.iter().position(same)?;
+                self.reaction(index)
             }
             ExprKind::Integral { point, integrand, .. } => {
                 let length = Dimension::whole([0, 1, 0, 0, 0]);

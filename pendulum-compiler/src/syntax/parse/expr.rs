@@ -1,7 +1,7 @@
 //! Expressions: operators by descending precedence, then names, calls and numbers.
 
 use super::foreign::{FOREIGN, no_condition, no_unit, path};
-use super::token::{checked, comma, end, fragment, identifier, unexpected};
+use super::token::{checked, comma, constraint_name, end, fragment, identifier, unexpected};
 use super::{Parser, to_the_last};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
@@ -210,6 +210,9 @@ impl Parser<'_> {
     fn named(&mut self, input: ParseStream) -> Result<Expr> {
         let name = input.call(Ident::parse_any)?;
         checked(&name)?;
+        if name == "reaction" && input.peek(syn::token::Paren) {
+            return self.reaction(input, name.span().into());
+        }
         if let Some(row) = FOREIGN.iter().find(|row| name == row.0) {
             return Err(Range::from(name.span()).error(messages::rust(&name, row.1)));
         }
@@ -245,6 +248,42 @@ impl Parser<'_> {
             ExprKind::Call(name, self.list(&content)?)
         };
         Ok(self.node(kind, range))
+    }
+
+    /// `(loop)`, `(loop.x)` or `(rod[2])` behind `reaction`; `loop` is a fine name for a loop.
+    fn reaction(&mut self, input: ParseStream, start: Range) -> Result<Expr> {
+        let content;
+        let parens = parenthesized!(content in input);
+        let name = constraint_name(&content)?;
+        let mut index = None;
+        if content.peek(syn::token::Bracket) {
+            let brackets;
+            bracketed!(brackets in content);
+            index = Some(Box::new(self.expr(&brackets)?));
+            end(&brackets)?;
+        }
+        let range = start.to(parens.span.close().into());
+        let mut expr = self.node(ExprKind::Reaction(name, index), range);
+        if content.peek(Token![.]) {
+            content.parse::<Token![.]>()?;
+            let component = identifier(&content, "a component, `x`, `y` or `z`")?;
+            expr = self.node(ExprKind::Component(Box::new(expr), component), range);
+        }
+        end(&content)?;
+        Ok(expr)
+    }
+
+    /// Two sides with `sign` between them, as the left one less the right one.
+    pub(super) fn difference(
+        &mut self,
+        input: ParseStream,
+        sign: impl FnOnce(ParseStream) -> Result<()>,
+    ) -> Result<Expr> {
+        let left = self.expr_in(input, false)?;
+        sign(input)?;
+        let right = self.expr(input)?;
+        let range = left.range.to(right.range);
+        Ok(self.node(ExprKind::Sum(vec![(false, left), (true, right)]), range))
     }
 
     pub(super) fn list(&mut self, content: ParseStream) -> Result<Vec<Expr>> {

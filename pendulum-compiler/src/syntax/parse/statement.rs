@@ -1,9 +1,11 @@
-//! Statements: coordinates, driven inputs, definitions, energies and forces.
+//! Statements: coordinates, inputs, definitions, energies, forces, outputs, constraints, limits.
 
 use super::Parser;
-use super::token::{end, equals, fragment, identifier, unexpected};
+use super::token::{constraint_name, end, equals, fragment, identifier, unexpected};
 use crate::messages::Range;
-use crate::syntax::ast::{Binder, Expr, ForceIndex, Kind, Let, Output, Role, Statement};
+use crate::syntax::ast::{
+    Binder, Constraint, Expr, ForceIndex, Kind, Let, Limit, Output, Role, Statement,
+};
 use crate::syntax::name;
 use crate::syntax::text::text;
 use proc_macro2::{Ident, Spacing, TokenStream, TokenTree};
@@ -15,20 +17,8 @@ use syn::{Attribute, Token, bracketed, parenthesized};
 
 /// The words with which statements begin.
 #[rustfmt::skip]
-pub(super) const STATEMENTS: [&str; 10] =
-    ["coordinate", "driven", "input", "let", "kinetic", "potential", "lagrangian", "dissipation", "force", "output"];
-
-/// Advice instead of a constraint.
-const CONSTRAINTS: &str = "constraints, as closed loops need them, are not supported yet; choose \
-                           coordinates in which they hold by themselves";
-
-/// Statements that there are not yet, and what to write instead.
-#[rustfmt::skip]
-const UNSUPPORTED: &[(&str, &str)] = &[
-    ("constraint", CONSTRAINTS),
-    ("redundant", CONSTRAINTS),
-    ("limit", "limits are not supported yet; write a soft stop, as in `potential = k/2*max(0, θ - w)^2;`, or let the program stop at an event"),
-];
+pub(super) const STATEMENTS: [&str; 13] =
+    ["coordinate", "driven", "input", "let", "kinetic", "potential", "lagrangian", "dissipation", "force", "output", "constraint", "redundant", "limit"];
 
 impl Parser<'_> {
     pub(super) fn statement(&mut self, input: ParseStream) -> Result<Statement> {
@@ -48,6 +38,15 @@ impl Parser<'_> {
             "driven" => self.driven(input)?,
             "input" => self.control(input)?,
             "output" => self.output(input, quote!(#(#attributes)*))?,
+            "constraint" => self.constraint(input, false)?,
+            "redundant" => {
+                input.call(Ident::parse_any)?;
+                if !input.fork().call(Ident::parse_any).is_ok_and(|word| word == "constraint") {
+                    return Err(unexpected(input, "`constraint`, as in `redundant constraint`"));
+                }
+                self.constraint(input, true)?
+            }
+            "limit" => self.limit(input)?,
             "let" => self.definition(input)?,
             "force" => self.force(input)?,
             "kinetic" => self.energy(input, Role::Kinetic)?,
@@ -200,6 +199,83 @@ impl Parser<'_> {
         Ok(Statement::Output(Box::new(output)))
     }
 
+    fn constraint(&mut self, input: ParseStream, redundant: bool) -> Result<Statement> {
+        input.call(Ident::parse_any)?;
+        let (name, index) = self.named_row(input, "constraint")?;
+        let difference = self.difference(input, |input| {
+            if input.peek(Token![<]) || input.peek(Token![>]) {
+                let sign = input.fork().parse::<TokenTree>()?;
+                let message = format!(
+                    "a constraint holds with `=`; write `limit {name}: a >= b, restitution = 0;` \
+                     for one side"
+                );
+                return Err(Range::from(sign.span()).error(message));
+            }
+            if input.peek(Token![==]) {
+                let sign = input.fork().parse::<TokenTree>()?;
+                let message = "the two sides of a constraint stand beside one `=`; write `a = b`";
+                return Err(Range::from(sign.span()).error(message));
+            }
+            equals(input)
+        })?;
+        let constraint = Constraint { redundant, name, index, difference };
+        Ok(Statement::Constraint(Box::new(constraint)))
+    }
+
+    fn limit(&mut self, input: ParseStream) -> Result<Statement> {
+        input.call(Ident::parse_any)?;
+        let (name, index) = self.named_row(input, "limit")?;
+        let difference = self.difference(input, |input| {
+            if input.peek(Token![>=]) {
+                input.parse::<Token![>=]>()?;
+                return Ok(());
+            }
+            if input.peek(Token![<]) || input.peek(Token![>]) || input.peek(Token![=]) {
+                let sign = input.fork().parse::<TokenTree>()?;
+                let message = format!(
+                    "a limit is a smallest value; write `limit {name}: a >= b, restitution = 0;`"
+                );
+                return Err(Range::from(sign.span()).error(message));
+            }
+            Err(unexpected(input, "`>=`"))
+        })?;
+        let missing = || {
+            format!(
+                "the restitution is missing; write `, restitution = 0` behind the limit `{name}`, or a number up to 1"
+            )
+        };
+        if !input.peek(Token![,]) {
+            return Err(Range::from(difference.range.last).error(missing()));
+        }
+        input.parse::<Token![,]>()?;
+        if !input.fork().call(Ident::parse_any).is_ok_and(|word| word == "restitution") {
+            return Err(Range::from(input.span()).error(missing()));
+        }
+        input.call(Ident::parse_any)?;
+        equals(input)?;
+        let restitution = self.expr(input)?;
+        let limit = Limit { name, index, difference, restitution };
+        Ok(Statement::Limit(Box::new(limit)))
+    }
+
+    /// The name of a constraint or limit, its index if it is a family, and the colon.
+    fn named_row(&mut self, input: ParseStream, what: &str) -> Result<(Ident, Option<Binder>)> {
+        let name = constraint_name(input)?;
+        let mut index = None;
+        if input.peek(syn::token::Bracket) {
+            let content;
+            bracketed!(content in input);
+            index = Some(self.binder(&content)?);
+            end(&content)?;
+        }
+        if !input.peek(Token![:]) {
+            let message = format!("a {what} has a name; write `{what} {name}: …`");
+            return Err(Range::from(name.span()).error(message));
+        }
+        input.parse::<Token![:]>()?;
+        Ok((name, index))
+    }
+
     fn definition(&mut self, input: ParseStream) -> Result<Statement> {
         input.parse::<Token![let]>()?;
         let name = self.declared(input, "the name of a definition")?;
@@ -329,12 +405,9 @@ fn unknown_statement(input: ParseStream, word: &str) -> syn::Error {
     if word.is_empty() {
         return unexpected(input, "a statement such as `coordinate θ: rad;`");
     }
-    if let Some((_, message)) = UNSUPPORTED.iter().find(|row| row.0 == word) {
-        return Range::from(input.span()).error(message);
-    }
     let hint = match name::nearest(word, STATEMENTS.into_iter()) {
         Some(near) => format!("did you mean `{near}`?"),
-        None => "a statement begins with `coordinate`, `driven`, `input`, `let`, `kinetic`, `potential`, `lagrangian`, `dissipation`, `force` or `output`".into(),
+        None => "a statement begins with `coordinate`, `driven`, `input`, `let`, `kinetic`, `potential`, `lagrangian`, `dissipation`, `force`, `output`, `constraint` or `limit`".into(),
     };
     Range::from(input.span()).error(format!("unknown statement `{word}`; {hint}"))
 }

@@ -21,6 +21,16 @@ pub(super) fn identifier(input: ParseStream, what: &str) -> Result<Ident> {
     Ok(name)
 }
 
+/// The name of a constraint or limit, which may be a word of Rust: it is no name of any code.
+pub(super) fn constraint_name(input: ParseStream) -> Result<Ident> {
+    if !input.peek(Ident::peek_any) {
+        return Err(unexpected(input, "the name of a constraint"));
+    }
+    let name = input.call(Ident::parse_any)?;
+    checked(&name)?;
+    Ok(name)
+}
+
 pub(super) fn checked(name: &Ident) -> Result<()> {
     let text = name.to_string();
     if text.contains('\u{b7}') {

@@ -60,7 +60,11 @@ impl<T: Real> Values<T> {
                 }
             }
             Symbol::Control { input, component } => self.inputs[input][component][0],
-            Symbol::Auxiliary(_) | Symbol::Point(..) | Symbol::Acceleration(_) => {
+            Symbol::Target(index) => self.p[index],
+            Symbol::Auxiliary(_)
+            | Symbol::Point(..)
+            | Symbol::Acceleration(_)
+            | Symbol::Multiplier(_) => {
                 panic!("{symbol:?} is left over")
             }
         }

@@ -53,11 +53,13 @@ pub(crate) enum Block {
 /// The equations that the jets of a motion compute.
 pub(crate) fn equations(graph: &Graph, motion: &Motion) -> Equations {
     let blocks = solve::blocks(&motion.mass_matrix);
+    let constrained = !motion.constraints.held.is_empty();
     let moving = |rows: &[usize]| {
         let dependencies = |&row: &usize| {
             rows.iter().map(move |&column| graph.dependencies(motion.mass_matrix[row][column]))
         };
-        1 < rows.len()
+        !constrained
+            && 1 < rows.len()
             && rows
                 .iter()
                 .flat_map(dependencies)

@@ -1,0 +1,185 @@
+//! Constraints and limits: the methods of `System` that keep them, and their facts.
+
+use super::Emitter;
+use crate::algebra::expr::{Graph, Id};
+use crate::mechanics::constraint::{Constraint, Constraints};
+use proc_macro2::TokenStream;
+use quote::quote;
+use std::fmt::Write;
+
+impl Emitter<'_, '_> {
+    /// The methods of constraints and limits, of those that there are.
+    pub(super) fn constraint_methods(&self) -> TokenStream {
+        let Some(motion) = &self.motion else { return TokenStream::new() };
+        let Constraints { held, redundant, limits, .. } = &motion.constraints;
+        let constraints = (!held.is_empty()).then(|| self.held_methods(&motion.constraints));
+        let redundant = (!redundant.is_empty()).then(|| {
+            let misfits = self.misfits(redundant);
+            let state = self.state();
+            let (scalar, count) = (self.scalar(), self.count());
+            quote! {
+                fn redundant_misfits(&self, #state) -> [[#scalar; #count]; 2] { #misfits }
+            }
+        });
+        let limits = (!limits.is_empty()).then(|| self.limit_methods(limits));
+        quote!(#constraints #redundant #limits)
+    }
+
+    fn held_methods(&self, constraints: &Constraints) -> TokenStream {
+        let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
+        let state = self.state();
+        let misfits = self.misfits(&constraints.held);
+        let correction = self.padded(&constraints.correction, Graph::ZERO);
+        let jacobian = self.gradients(&constraints.held);
+        let reactions = self.padded(&constraints.multipliers, Graph::ZERO);
+        let independence = self.padded(&constraints.independence, Graph::ONE);
+        quote! {
+            #[inline]
+            fn misfits(&self, #state) -> [[#scalar; #count]; 2] { #misfits }
+
+            #[inline]
+            fn correction(&self, #state, target: &[#scalar; #count]) -> [#scalar; #count] { #correction }
+
+            fn constraint_jacobian(&self, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #jacobian }
+
+            fn reactions(&self, #state) -> [#scalar; #count] { #reactions }
+
+            #[inline]
+            fn independence(&self, #state) -> [#scalar; #count] { #independence }
+        }
+    }
+
+    fn limit_methods(&self, limits: &[Constraint]) -> TokenStream {
+        let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
+        let state = self.state();
+        let gaps = self.matrix(&[
+            column(limits, |limit| limit.value),
+            column(limits, |limit| limit.rate),
+            column(limits, |limit| limit.drift),
+        ]);
+        let jacobian = self.gradients(limits);
+        let restitutions: Vec<Id> =
+            self.energies.limits.iter().map(|limit| limit.restitution).collect();
+        let restitutions = self.padded(&restitutions, Graph::ZERO);
+        quote! {
+            #[inline]
+            fn gaps(&self, #state) -> [[#scalar; #count]; 3] { #gaps }
+
+            fn gap_jacobian(&self, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #jacobian }
+
+            fn restitutions(&self, #state) -> [#scalar; #count] { #restitutions }
+        }
+    }
+
+    /// The arguments of a function of the state.
+    fn state(&self) -> TokenStream {
+        let (scalar, count) = (self.scalar(), self.count());
+        quote!(t: #scalar, q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs)
+    }
+
+    /// An array with an entry for each coordinate, `rest` beyond `roots`.
+    fn padded(&self, roots: &[Id], rest: Id) -> TokenStream {
+        let mut roots = roots.to_vec();
+        roots.resize(self.count(), rest);
+        self.roots(&roots)
+    }
+
+    /// Rows with an entry for each coordinate.
+    fn matrix(&self, rows: &[Vec<Id>]) -> TokenStream {
+        let (scalar, count) = (self.scalar(), self.count());
+        let mut all = Vec::new();
+        for row in rows {
+            let mut row = row.clone();
+            row.resize(count, Graph::ZERO);
+            all.extend(row);
+        }
+        let size = all.len();
+        let flat = self.roots(&all);
+        let rows = (0..rows.len()).map(|row| {
+            let places = row * count..(row + 1) * count;
+            quote!([#(all[#places]),*])
+        });
+        quote! {
+            let all: [#scalar; #size] = #flat;
+            [#(#rows),*]
+        }
+    }
+
+    /// Values and rates of constraints.
+    fn misfits(&self, rows: &[Constraint]) -> TokenStream {
+        let value = |row: &Constraint| if row.holonomic { row.value } else { Graph::ZERO };
+        self.matrix(&[column(rows, value), column(rows, |row| row.rate)])
+    }
+
+    /// The gradients, a row each.
+    fn gradients(&self, rows: &[Constraint]) -> TokenStream {
+        let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
+        let mut all: Vec<Id> = rows.iter().flat_map(|row| row.gradient.clone()).collect();
+        all.resize(count * count, Graph::ZERO);
+        let (flat, size) = (self.roots(&all), count * count);
+        quote! {
+            let entries: [#scalar; #size] = #flat;
+            #krate::__private::SMatrix::<#scalar, #count, #count>::from_row_slice(&entries)
+        }
+    }
+
+    /// The constraints and the limits as facts.
+    pub(super) fn constraint_facts(&self) -> [Vec<TokenStream>; 2] {
+        let krate = &self.krate;
+        let Some(motion) = &self.motion else { return [Vec::new(), Vec::new()] };
+        let rows = motion.constraints.held.iter().chain(&motion.constraints.redundant);
+        let constraints = rows.zip(&self.energies.constraints).map(|(constraint, row)| {
+            let [unit, reaction] = &self.units.constraints[row.statement];
+            let (name, holonomic) = (&row.name, constraint.holonomic);
+            let redundant =
+                self.model.constraints[row.statement].redundant.then(|| quote!(.redundant()));
+            quote! {
+                #krate::system::Constraint::new(#name, #unit, #holonomic)
+                    .with_reaction_unit(#reaction) #redundant
+            }
+        });
+        let limits = self.energies.limits.iter().map(|row| {
+            let (name, unit) = (&row.name, &self.units.limits[row.statement]);
+            quote!(#krate::system::Limit::new(#name, #unit))
+        });
+        [constraints.collect(), limits.collect()]
+    }
+
+    /// The lines about constraints and limits for the documentation of the struct.
+    pub(super) fn constraint_documentation(&self) -> String {
+        let mut text = String::new();
+        let unit = |unit: &str| match unit {
+            "" => String::new(),
+            unit => format!(" in {unit}"),
+        };
+        let Some(motion) = &self.motion else { return text };
+        if !self.energies.constraints.is_empty() {
+            text.push_str("\n\n# Constraints\n\n");
+            let rows = motion.constraints.held.iter().chain(&motion.constraints.redundant);
+            for (constraint, row) in rows.zip(&self.energies.constraints) {
+                let own = self.model.constraints[row.statement];
+                let kind = if constraint.holonomic { "positions" } else { "velocities" };
+                let [of_row, of_reaction] = &self.units.constraints[row.statement];
+                let reaction = if own.redundant {
+                    "redundant: checked, not solved".to_owned()
+                } else {
+                    format!("its multiplier{}", unit(of_reaction))
+                };
+                let (name, of_row) = (&row.name, unit(of_row));
+                let _ = writeln!(text, "- `{name}` holds {kind}{of_row}; {reaction}");
+            }
+        }
+        if !self.energies.limits.is_empty() {
+            text.push_str("\n\n# Limits\n\n");
+            for row in &self.energies.limits {
+                let of_row = unit(&self.units.limits[row.statement]);
+                let _ = writeln!(text, "- `{}`{of_row}", row.name);
+            }
+        }
+        text
+    }
+}
+
+fn column(rows: &[Constraint], pick: impl Fn(&Constraint) -> Id) -> Vec<Id> {
+    rows.iter().map(pick).collect()
+}

@@ -1,0 +1,372 @@
+//! Constraints and limits: gradients, rates, multipliers.
+//!
+//! Rows are holonomic, g(q, t) = 0, or hold velocities, A(q, t) q̇ + b(q, t) = 0. With c the rate
+//! of the row's velocity form, C = ∂c/∂q̈ and γ = −c at q̈ = 0 the motion fulfils M q̈ = f + Cᵀλ and
+//! C q̈ = γ. One elimination gives accelerations and multipliers: each multiplier is eliminated
+//! behind the coordinates of its row, so that all pivots have a known sign.
+
+use crate::algebra::diff::{derivative, substitute};
+use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
+use crate::algebra::functions::Kinks;
+use crate::algebra::number::Rational;
+use crate::algebra::prime_field::Residue;
+use crate::mechanics::lower::{Energies, Row, total_derivative};
+use crate::mechanics::solve::{self, Augmented};
+use crate::messages::{self, Errors};
+use crate::model::Model;
+use crate::syntax::ast::Expr;
+use crate::syntax::text::text;
+use std::collections::BTreeSet;
+
+/// The constraints and limits of a motion.
+#[derive(Debug, Default)]
+pub(crate) struct Constraints {
+    /// Those that are solved.
+    pub(crate) held: Vec<Constraint>,
+    pub(crate) redundant: Vec<Constraint>,
+    pub(crate) limits: Vec<Constraint>,
+    /// λ in the order of `held`.
+    pub(crate) multipliers: Vec<Id>,
+    /// The part of each pivot that the constraints before it have left, from 0 to 1.
+    pub(crate) independence: Vec<Id>,
+    /// M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹ applied to the symbols `Target`.
+    pub(crate) correction: Vec<Id>,
+    /// f + Cᵀλ with λ as symbols, to be printed; empty without constraints.
+    pub(crate) sides: Vec<Id>,
+    /// The power with λ as symbols, to be printed; none without constraints.
+    pub(crate) power: Option<Id>,
+}
+
+/// A scalar constraint, or a limit.
+#[derive(Debug)]
+pub(crate) struct Constraint {
+    pub(crate) holonomic: bool,
+    /// g or A q̇ + b.
+    pub(crate) value: Id,
+    /// A row of C.
+    pub(crate) gradient: Vec<Id>,
+    /// ġ or A q̇ + b.
+    pub(crate) rate: Id,
+    /// The same at q̇ = 0.
+    pub(crate) drive: Id,
+    /// The rate of that at q̈ = 0: −γ.
+    pub(crate) drift: Id,
+}
+
+impl Constraints {
+    /// Every expression in it.
+    pub(crate) fn roots(&mut self) -> impl Iterator<Item = &mut Id> {
+        let rows = self.held.iter_mut().chain(&mut self.redundant).chain(&mut self.limits);
+        let rows = rows.flat_map(|row| {
+            let single = [&mut row.value, &mut row.rate, &mut row.drive, &mut row.drift];
+            single.into_iter().chain(&mut row.gradient)
+        });
+        let lists =
+            [&mut self.multipliers, &mut self.independence, &mut self.correction, &mut self.sides];
+        rows.chain(lists.into_iter().flatten()).chain(&mut self.power)
+    }
+
+    /// Returns true if a constraint that is solved acts on a coordinate.
+    pub(crate) fn bound(&self, coordinate: usize) -> bool {
+        self.held.iter().any(|row| row.gradient[coordinate] != Graph::ZERO)
+    }
+
+    /// The left sides of all constraints, g or A q̇ + b, with a positive sign in front.
+    pub(crate) fn values(&self, graph: &mut Graph) -> Vec<Id> {
+        let rows = self.held.iter().chain(&self.redundant);
+        rows.map(|row| {
+            let negative = graph.split(row.value).0.is_negative();
+            if negative { graph.negative(row.value) } else { row.value }
+        })
+        .collect()
+    }
+
+    /// The rows of C.
+    pub(crate) fn gradients(&self) -> Vec<Vec<Id>> {
+        self.held.iter().map(|row| row.gradient.clone()).collect()
+    }
+
+    /// The matrix of M q̈ − Cᵀλ = f and −C q̈ = −γ.
+    pub(crate) fn matrix(&self, graph: &mut Graph, masses: &[Vec<Id>]) -> Vec<Vec<Id>> {
+        let count = masses.len();
+        let size = count + self.held.len();
+        let mut matrix = vec![vec![Graph::ZERO; size]; size];
+        for (row, masses) in matrix.iter_mut().zip(masses) {
+            row[..count].copy_from_slice(masses);
+        }
+        for (k, row) in self.held.iter().enumerate() {
+            for (j, &entry) in row.gradient.iter().enumerate() {
+                let entry = graph.negative(entry);
+                matrix[count + k][j] = entry;
+                matrix[j][count + k] = entry;
+            }
+        }
+        matrix
+    }
+
+    /// The right side that belongs to it.
+    pub(crate) fn right(&self, forces: &[Id]) -> Vec<Id> {
+        forces.iter().copied().chain(self.held.iter().map(|row| row.drift)).collect()
+    }
+
+    /// The accelerations, with multipliers, independence and the correction of misfits.
+    pub(crate) fn solve(
+        &mut self,
+        graph: &mut Graph,
+        masses: &[Vec<Id>],
+        forces: &[Id],
+    ) -> Vec<Id> {
+        let count = forces.len();
+        let matrix = self.matrix(graph, masses);
+        let right = self.right(forces);
+        let mut targets = vec![Graph::ZERO; count];
+        for k in 0..self.held.len() {
+            let target = graph.symbol(Symbol::Target(k));
+            targets.push(graph.negative(target));
+        }
+        let Augmented { solutions, independence } =
+            solve::augmented(graph, &matrix, count, &[right, targets]);
+        self.independence = independence;
+        let [mut accelerations, mut correction] = <[Vec<Id>; 2]>::try_from(solutions)
+            .unwrap_or_else(|_| [vec![Graph::ZERO; matrix.len()], vec![Graph::ZERO; matrix.len()]]);
+        self.multipliers = accelerations.split_off(count);
+        correction.truncate(count);
+        self.correction = correction;
+        accelerations
+    }
+
+    /// The multipliers as symbols.
+    pub(crate) fn symbols(&self, graph: &mut Graph) -> Vec<Id> {
+        (0..self.held.len()).map(|k| graph.symbol(Symbol::Multiplier(k))).collect()
+    }
+
+    /// The terms −λ b of the power.
+    pub(crate) fn power_terms(&self, graph: &mut Graph, multipliers: &[Id]) -> Vec<(Id, Rational)> {
+        let rows = self.held.iter().zip(multipliers);
+        rows.map(|(row, &multiplier)| (graph.mul(row.drive, multiplier), Rational::MINUS_ONE))
+            .collect()
+    }
+
+    /// Σ C_kj λ_k for each coordinate, with the multipliers as they are given.
+    pub(crate) fn forces(&self, graph: &mut Graph, multipliers: &[Id]) -> Vec<Id> {
+        let count = self.held.first().map_or(0, |row| row.gradient.len());
+        (0..count)
+            .map(|j| {
+                let mut terms = Vec::new();
+                for (row, &multiplier) in self.held.iter().zip(multipliers) {
+                    terms.push((graph.mul(row.gradient[j], multiplier), Rational::ONE));
+                }
+                graph.sum(&terms)
+            })
+            .collect()
+    }
+}
+
+/// The constraints and limits of a block; mistakes in them are reported.
+pub(crate) fn derive(
+    model: &Model,
+    graph: &mut Graph,
+    energies: &Energies,
+    errors: &mut Errors,
+) -> Constraints {
+    let count = energies.forces.len();
+    let mut constraints = Constraints::default();
+    let before = errors.len();
+    for row in &energies.constraints {
+        let own = model.constraints[row.statement];
+        let Some(constraint) = constraint(model, graph, row, &own.difference, count, errors) else {
+            continue;
+        };
+        let list = if own.redundant { &mut constraints.redundant } else { &mut constraints.held };
+        list.push(constraint);
+    }
+    for row in &energies.limits {
+        let own = model.limits[row.statement];
+        let limit = constraint(model, graph, row, &own.difference, count, errors);
+        match limit {
+            Some(limit) if !limit.holonomic => {
+                let expr = &own.difference;
+                let message = "a limit holds positions; leave the velocities out";
+                errors.once(expr.source, expr.range, message);
+            }
+            limit => constraints.limits.extend(limit),
+        }
+    }
+    if errors.len() == before {
+        independent(model, graph, energies, &constraints, errors);
+    }
+    if errors.len() == before {
+        few(model, energies, count, &constraints, errors);
+    }
+    constraints
+}
+
+/// One row; nothing if it is refused.
+fn constraint(
+    model: &Model,
+    graph: &mut Graph,
+    row: &Row,
+    difference: &Expr,
+    count: usize,
+    errors: &mut Errors,
+) -> Option<Constraint> {
+    let mut refuse = |message: String| {
+        errors.once(difference.source, difference.range, message);
+        None
+    };
+    let dependencies = graph.dependencies(row.value);
+    let name = |order: u8| {
+        graph.symbols(&[row.value]).into_iter().find_map(|symbol| match symbol {
+            Symbol::Control { input, .. } if order == 0 => Some(model.inputs[input].name),
+            Symbol::Input { input, order: own, .. } if own == order => {
+                Some(model.inputs[input].name)
+            }
+            _ => None,
+        })
+    };
+    if dependencies.any(Dependencies::CONTROL) {
+        return refuse(name(0).map_or_else(String::new, messages::no_derivative));
+    }
+    let holonomic = !dependencies.any(Dependencies::VELOCITY);
+    if dependencies.any(Dependencies::ACCELERATION_INPUT)
+        || holonomic && dependencies.any(Dependencies::VELOCITY_INPUT)
+    {
+        let order = if dependencies.any(Dependencies::ACCELERATION_INPUT) { 2 } else { 1 };
+        let input = name(order).map_or_else(String::new, ToString::to_string);
+        return refuse(format!(
+            "the second derivative of this constraint contains the third one of `{input}`, and \
+             driven inputs have two; leave its derivative out"
+        ));
+    }
+    let cornered = |&id: &Id| match graph.node(id) {
+        Node::Max(..) => graph.dependencies(id).any(Dependencies::STATE),
+        Node::Call(function, argument) => {
+            function.row().kinks != Kinks::Smooth
+                && graph.dependencies(*argument).any(Dependencies::STATE)
+        }
+        _ => false,
+    };
+    if graph.reachable(&[row.value]).iter().any(cornered) {
+        return refuse(
+            "a constraint needs two derivatives, and `abs`, `sign`, `min` and `max` of what moves \
+             have a corner; write both sides without them"
+                .into(),
+        );
+    }
+    let rate = if holonomic { total_derivative(graph, row.value) } else { row.value };
+    let gradient: Vec<Id> =
+        (0..count).map(|j| derivative(graph, rate, Symbol::Velocity(j))).collect();
+    if gradient.iter().any(|&entry| graph.dependencies(entry).any(Dependencies::VELOCITY)) {
+        return refuse(
+            "velocities enter a constraint to the first power only; solve it for a velocity, or \
+             write a `force`"
+                .into(),
+        );
+    }
+    if gradient.iter().all(|&entry| entry == Graph::ZERO) {
+        let [left, right] = difference.sides();
+        return refuse(format!(
+            "no coordinate stands in `{} = {}`: nothing here can move to fulfil it; leave it out",
+            text(left),
+            text(right)
+        ));
+    }
+    let resting = |symbol| matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO);
+    let drive = substitute(graph, rate, resting);
+    let drift = total_derivative(graph, rate);
+    Some(Constraint { holonomic, value: row.value, gradient, rate, drive, drift })
+}
+
+/// A number of things.
+fn several_of(number: usize, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
+}
+
+/// Reports as many constraints as coordinates, and more redundant ones or limits than coordinates.
+fn few(
+    model: &Model,
+    energies: &Energies,
+    count: usize,
+    constraints: &Constraints,
+    errors: &mut Errors,
+) {
+    let held = constraints.held.len();
+    if count <= held {
+        let last = model.constraints[energies.constraints[count - 1].statement];
+        errors.at(
+            last.name.span(),
+            format!(
+                "{} for {}: nothing is left to move; leave a constraint out",
+                several_of(held, "scalar constraint"),
+                several_of(count, "coordinate")
+            ),
+        );
+    }
+    let several = [
+        (constraints.redundant.len(), "redundant constraints"),
+        (constraints.limits.len(), "limits"),
+    ];
+    for ((number, what), row) in several.into_iter().zip([
+        energies.constraints.last().map(|row| &model.constraints[row.statement].name),
+        energies.limits.last().map(|row| &model.limits[row.statement].name),
+    ]) {
+        if let Some(name) = row.filter(|_| count < number) {
+            let message = format!(
+                "there are {number} scalar {what} for {count} coordinates; leave out those that \
+                 follow from others"
+            );
+            errors.at(name.span(), message);
+        }
+    }
+}
+
+/// Reports the constraints whose gradients depend on those before them at a random state.
+fn independent(
+    model: &Model,
+    graph: &Graph,
+    energies: &Energies,
+    constraints: &Constraints,
+    errors: &mut Errors,
+) {
+    let Some(values) = solve::at_random(graph, &constraints.gradients()) else { return };
+    // Reduced rows, each with the rows that stand in it.
+    let mut reduced: Vec<(Vec<Residue>, BTreeSet<usize>)> = Vec::new();
+    let mut reported = BTreeSet::new();
+    for (k, row) in values.into_iter().enumerate() {
+        let (mut row, mut parts) = (row, BTreeSet::new());
+        for (other, theirs) in &reduced {
+            let pivot = other.iter().position(|&entry| entry != Residue::ZERO);
+            let Some(pivot) = pivot.filter(|&pivot| row[pivot] != Residue::ZERO) else { continue };
+            let Some(inverse) = other[pivot].reciprocal() else { continue };
+            let factor = row[pivot].mul(inverse).negative();
+            for (entry, &other) in row.iter_mut().zip(other) {
+                *entry = entry.add(other.mul(factor));
+            }
+            parts.extend(theirs.iter().copied());
+        }
+        if row.iter().any(|&entry| entry != Residue::ZERO) {
+            parts.insert(k);
+            reduced.push((row, parts));
+            continue;
+        }
+        let own = &energies.constraints[k];
+        if !reported.insert(own.statement) {
+            continue;
+        }
+        let names: Vec<String> =
+            parts.iter().map(|&part| format!("`{}`", energies.constraints[part].name)).collect();
+        let from = match names.split_last() {
+            Some((last, [])) => last.clone(),
+            Some((last, others)) => format!("{} and {last}", others.join(", ")),
+            None => continue,
+        };
+        errors.at(
+            model.constraints[own.statement].name.span(),
+            format!(
+                "`{}` follows from {from}: leave it out, or write `redundant constraint` to have \
+                 it checked",
+                own.name
+            ),
+        );
+    }
+}

@@ -1,0 +1,210 @@
+//! Constraints and limits to their scalars.
+
+use super::{Lower, Value};
+use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
+use crate::syntax::ast::{Binder, Expr};
+use crate::syntax::name;
+use crate::syntax::text::text;
+use proc_macro2::Ident;
+
+/// A scalar constraint or limit.
+#[derive(Debug)]
+pub(crate) struct Row {
+    /// The index of its statement among the constraints, or among the limits.
+    pub(crate) statement: usize,
+    /// Its name with its component and its index: `loop.x`, `rod[2]`.
+    pub(crate) name: String,
+    /// The left side less the right one.
+    pub(crate) value: Id,
+    /// The restitution of a limit.
+    pub(crate) restitution: Id,
+}
+
+/// The shape of a constraint, and the number of scalars before it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Shape {
+    first: usize,
+    members: Option<usize>,
+    /// 0 for a scalar.
+    components: usize,
+}
+
+impl Lower<'_, '_, '_, '_> {
+    /// The scalars of all constraints: those that are solved come first.
+    pub(super) fn constraints(&mut self) -> Vec<Row> {
+        self.constrained = true;
+        let mut rows = Vec::new();
+        for (statement, constraint) in self.model.constraints.iter().enumerate() {
+            let (name, index) = (&constraint.name, constraint.index.as_ref());
+            let shape = self.rows(&mut rows, statement, name, index, &constraint.difference, None);
+            self.shapes.push(shape);
+        }
+        self.constrained = false;
+        rows
+    }
+
+    /// The scalars of all limits.
+    pub(super) fn limits(&mut self) -> Vec<Row> {
+        self.constrained = true;
+        let mut rows = Vec::new();
+        for (statement, limit) in self.model.limits.iter().enumerate() {
+            let (name, index) = (&limit.name, limit.index.as_ref());
+            let restitution = Some(&limit.restitution);
+            self.rows(&mut rows, statement, name, index, &limit.difference, restitution);
+        }
+        self.constrained = false;
+        rows
+    }
+
+    fn rows(
+        &mut self,
+        rows: &mut Vec<Row>,
+        statement: usize,
+        name: &Ident,
+        index: Option<&Binder>,
+        difference: &Expr,
+        restitution: Option<&Expr>,
+    ) -> Shape {
+        let first = rows.len();
+        let own = name.to_string();
+        let Some(binder) = index else {
+            let components = self.member_rows(rows, statement, &own, difference, restitution);
+            return Shape { first, members: None, components };
+        };
+        let range = self.range(binder);
+        let (mut members, mut width) = (0, 0);
+        for k in range.clone() {
+            self.bind(binder, k);
+            let name = format!("{own}[{}]", k - range.start);
+            let before = rows.len();
+            let components = self.member_rows(rows, statement, &name, difference, restitution);
+            self.unbind();
+            if rows.len() == before {
+                break;
+            }
+            members += 1;
+            width = components;
+        }
+        Shape { first, members: Some(members), components: width }
+    }
+
+    /// Adds the scalars of one member; the number of components, 0 for a scalar.
+    fn member_rows(
+        &mut self,
+        rows: &mut Vec<Row>,
+        statement: usize,
+        name: &str,
+        difference: &Expr,
+        restitution: Option<&Expr>,
+    ) -> usize {
+        let [left, right] = difference.sides().map(|side| (side, self.expr(side)));
+        if left.1 == Value::Bad || right.1 == Value::Bad {
+            return 0;
+        }
+        for (side, value) in [&left, &right] {
+            if let Value::Family(members) = value {
+                let (side, count) = (text(side), members.len());
+                let message = format!(
+                    "`{side}` is a family; write it for one member, as `{name}[k in 0..{count}]: …` \
+                     with `{side}[k]`"
+                );
+                self.wrong(difference, &message);
+                return 0;
+            }
+        }
+        let zero = |value: &Value| *value == Value::Scalar(Graph::ZERO);
+        let complex = |value: &Value| matches!(value, Value::Plane { complex: true, .. });
+        let alike = left.1.scalars().len() == right.1.scalars().len()
+            || [&left.1, &right.1].into_iter().any(|value| zero(value) || complex(value));
+        if !alike {
+            let message = format!(
+                "`{}` is {}, but `{}` is {}; both sides have one shape",
+                text(left.0),
+                left.1.kind(),
+                text(right.0),
+                right.1.kind()
+            );
+            self.wrong(difference, &message);
+            return 0;
+        }
+        let value = self.expr(difference);
+        let scalars = value.scalars();
+        if !scalars.iter().all(|&scalar| self.within_bounds(difference, scalar)) {
+            return 0;
+        }
+        let vector = !matches!(value, Value::Scalar(_));
+        let bound = match restitution {
+            Some(_) if vector => {
+                let message = format!(
+                    "`{}` is {}, and a limit is one number; write a component",
+                    text(difference),
+                    value.kind()
+                );
+                self.wrong(difference, &message);
+                None
+            }
+            Some(restitution) => self.restitution(restitution),
+            None => Some(Graph::ZERO),
+        };
+        let Some(restitution) = bound else { return 0 };
+        for (k, &value) in scalars.iter().enumerate() {
+            let name =
+                if vector { format!("{name}.{}", ["x", "y", "z"][k.min(2)]) } else { name.into() };
+            rows.push(Row { statement, name, value, restitution });
+        }
+        if vector { scalars.len() } else { 0 }
+    }
+
+    /// A restitution, which parameters and numbers decide.
+    fn restitution(&mut self, expr: &Expr) -> Option<Id> {
+        let value = self.scalar(expr)?;
+        if self.graph.dependencies(value).any(Dependencies::STATE) {
+            let message = format!(
+                "`{}` moves, and a restitution is made of parameters and numbers",
+                text(expr)
+            );
+            self.wrong(expr, &message);
+            return None;
+        }
+        Some(value)
+    }
+
+    /// The multipliers of a constraint.
+    pub(super) fn reaction(&mut self, ident: &Ident, index: Option<&Expr>, expr: &Expr) -> Value {
+        let base = name::read(&ident.to_string()).base;
+        let found = self
+            .model
+            .constraints
+            .iter()
+            .position(|own| name::read(&own.name.to_string()).base == base);
+        let Some(shape) = found.and_then(|found| self.shapes.get(found).copied()) else {
+            return Value::Bad;
+        };
+        let width = shape.components.max(1);
+        let member = |graph: &mut Graph, k: usize| {
+            let mut scalar =
+                |offset| graph.symbol(Symbol::Multiplier(shape.first + k * width + offset));
+            match shape.components {
+                2 => Value::Plane { parts: [scalar(0), scalar(1)], complex: false },
+                3 => Value::Space([scalar(0), scalar(1), scalar(2)]),
+                _ => Value::Scalar(scalar(0)),
+            }
+        };
+        match (shape.members, index) {
+            (None, None) => member(self.graph, 0),
+            (None, Some(_)) => {
+                let message = format!("`{ident}` is no family; write `reaction({ident})`");
+                self.wrong(expr, &message)
+            }
+            (Some(members), None) => {
+                Value::Family((0..members).map(|k| member(self.graph, k)).collect())
+            }
+            // The constraint has no members because of a mistake that has been told.
+            (Some(0), Some(_)) => Value::Bad,
+            (Some(members), Some(index)) => match self.index(index, members, &ident.to_string()) {
+                Some(k) => member(self.graph, usize::try_from(k).unwrap_or(0)),
+                None => Value::Bad,
+            },
+        }
+    }
+}

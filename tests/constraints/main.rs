@@ -1,0 +1,8 @@
+//! Constraints: generated functions against dual numbers and dense algebra, problems with known
+//! digits and closed forms, limits.
+
+#![allow(mixed_script_confusables, confusable_idents, missing_docs, uncommon_codepoints)]
+
+pub mod generated;
+pub mod problems;
+pub mod systems;
