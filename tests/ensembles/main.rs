@@ -2,5 +2,6 @@
 
 #![allow(mixed_script_confusables, missing_docs)]
 
+pub mod lanes;
 pub mod reductions;
 pub mod ways;

@@ -1,7 +1,7 @@
 //! Ways in which the members of an ensemble are solved.
 
 use crate::error::Error;
-use crate::integrate::batch::kernel::Outcomes;
+use crate::integrate::batch::kernel::{Outcomes, Watch};
 use crate::integrate::batch::{Batch, Batched, Posed};
 use crate::integrate::controller::Controller;
 use crate::integrate::method::Method;
@@ -176,7 +176,9 @@ where
     ) {
         let batch = Batch::of(settings);
         let mut problems = || members().map(|(index, problem)| (index, Posed::Owned(problem)));
-        batch.run_each(&mut problems, outcomes);
+        let Settings { output, dense, ref events, .. } = *settings;
+        let watch = Watch { output, dense, events };
+        batch.run_each::<S, true>(watch, &mut problems, outcomes);
     }
 }
 

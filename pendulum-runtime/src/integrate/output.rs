@@ -4,14 +4,13 @@ use crate::error::Error;
 use crate::integrate::data::label::Source;
 use crate::integrate::events::{Occurrence, Status};
 use crate::integrate::interpolant::dense::DenseOutput;
-use crate::integrate::method::Method;
 use crate::integrate::observe::OfStates;
 use crate::integrate::solution::{Failure, Solution, Stats};
 use crate::integrate::state::State;
 use crate::integrate::step::field::first_in_state;
-use crate::integrate::step::integration::Integration;
+use crate::integrate::step::observed::Observed;
 use crate::scalar::Float;
-use crate::system::{Dynamics, Facts, System};
+use crate::system::Facts;
 
 /// The greatest number of states that an interval between outputs may ask for.
 const MOST: f64 = 1e7;
@@ -148,6 +147,11 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
         }
     }
 
+    /// The next output time, infinite if there is none.
+    pub(crate) fn next_time(&self) -> f64 {
+        self.next
+    }
+
     /// Returns true if states are not kept.
     pub(crate) fn streams(&self) -> bool {
         self.stream.is_some()
@@ -170,22 +174,17 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
 
     /// Takes in the step that `integration` has just taken.
     #[inline]
-    pub(crate) fn step<D, M, C>(
-        &mut self,
-        integration: &mut Integration<'_, N, D, M, C>,
-    ) -> Result<(), Error>
-    where
-        D: Dynamics<N, Scalar = T>,
-        M: Method<D, N>,
-    {
-        if self.dense.is_some() || self.onwards * self.next <= self.onwards * integration.t() {
+    pub(crate) fn step(&mut self, integration: &mut impl Observed<T, N>) -> Result<(), Error> {
+        if self.dense.is_some()
+            || self.onwards * self.next <= self.onwards * integration.end().t.to_f64()
+        {
             self.within(integration)?;
         }
         if let Output::Steps = self.output {
             if let Some(before) = integration.before_kink() {
                 self.push(before.into());
             }
-            self.push((&integration.end).into());
+            self.push((integration.end()).into());
         }
         Ok(())
     }
@@ -199,19 +198,12 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
     ///
     /// Between two ends that are finite a polynomial need not be: over a long step h² is beyond the
     /// range before h is.
-    fn within<D, M, C>(
-        &mut self,
-        integration: &mut Integration<'_, N, D, M, C>,
-    ) -> Result<(), Error>
-    where
-        D: Dynamics<N, Scalar = T>,
-        M: Method<D, N>,
-    {
-        let (end, state) = (integration.end.t, State::from(&integration.end));
+    fn within<O: Observed<T, N>>(&mut self, integration: &mut O) -> Result<(), Error> {
+        let (end, state) = (integration.end().t, State::from(integration.end()));
         if self.dense.is_some() || 0.0 < self.onwards * end.since(self.next) {
             let Some(interpolant) = integration.interpolant() else { return Ok(()) };
             let not_finite = |t: f64, q: &[T; N], v: &[T; N]| {
-                let what = first_in_state(&<D::System as System<N>>::FACTS, q, v);
+                let what = first_in_state(O::FACTS, q, v);
                 what.map_or(Ok(()), |what| Err(Error::NotFinite { t, what, suspects: Vec::new() }))
             };
             if self.dense.is_some() {

@@ -7,10 +7,16 @@
 // A branch in a loop over lanes would take the lanes apart.
 #![allow(clippy::needless_bitwise_bool)]
 
-use super::{Batch, Batched, Outcome, Posed, W, outcome};
+use super::{Batch, Batched, Outcome, Posed, W};
 use crate::error::Error;
+use crate::integrate::events::detector::{EventDetector, POINTS, Place};
+use crate::integrate::events::{Event, Status};
+use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{self, Method};
-use crate::integrate::methods::taylor::{GAP, LAST_ORDERS, Rule, Taylor, largest, rest};
+use crate::integrate::methods::taylor::{
+    GAP, LAST_ORDERS, Rule, Taylor, largest, rest, series_interpolant,
+};
+use crate::integrate::output::{Output, Recorder, direction};
 use crate::integrate::solution::Stats;
 use crate::integrate::state::State;
 use crate::integrate::step::adaptive::resolution;
@@ -21,9 +27,11 @@ use crate::integrate::step::field::Field;
 use crate::integrate::step::field::coordinate;
 use crate::integrate::step::gap;
 use crate::integrate::step::interval::StepInterval;
-use crate::jet::{Jets, Path, Unrolling};
+use crate::integrate::step::observed::Observed;
+use crate::jet::{Jets, LENGTH, Path, Unrolling};
 use crate::scalar::{Float, Lane, Lanes, Real};
 use crate::simd::Work;
+use crate::system::{Facts, scalar_time};
 use crate::time::Time;
 
 /// A number of each lane.
@@ -36,9 +44,32 @@ pub(crate) type Problems<'a, S, const N: usize> =
 /// A receiver of outcomes and their indices.
 pub(crate) type Outcomes<'a, T, const N: usize> = dyn FnMut(usize, Outcome<T, N>) + 'a;
 
+/// What is kept of each motion of a batch beside its end.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Watch<'a, T, const N: usize> {
+    pub(crate) output: Output<'a>,
+    pub(crate) dense: bool,
+    /// Events with functions that do not act.
+    pub(crate) events: &'a [Event<'a, T, N>],
+}
+
+/// A motion in a lane.
+struct Member<'a, S: Batched<N>, const N: usize> {
+    index: usize,
+    problem: Posed<'a, S, N>,
+    recorder: Recorder<'a, 'a, S::Scalar, N>,
+    detector: EventDetector<'a, S::Scalar, N>,
+    /// The accelerations at the start, where somebody has asked for them.
+    a: Option<[S::Scalar; N]>,
+    /// Evaluations beside those of the series.
+    evaluations: u64,
+}
+
 /// A batch under way.
-pub(super) struct Run<'a, S: Batched<N>, const N: usize> {
+pub(super) struct Run<'a, S: Batched<N>, const N: usize, const WATCHED: bool> {
     batch: &'a Batch<N>,
+    /// What is kept of each motion beside its end.
+    watch: Watch<'a, S::Scalar, N>,
     /// Gives the next problem and its index, until there are no more.
     problems: &'a mut Problems<'a, S, N>,
     /// Takes the outcomes as motions end.
@@ -54,8 +85,11 @@ pub(super) struct Run<'a, S: Batched<N>, const N: usize> {
     system: S::Wide,
     workspace: Box<Workspace<S, N>>,
     lanes: Flight<S::Scalar, N>,
-    /// The problem in each lane and its index; none where it is idle.
-    problem: [Option<(usize, Posed<'a, S, N>)>; W],
+    /// The motion in each lane; none where it is idle.
+    members: [Option<Member<'a, S, N>>; W],
+    /// The next output time of each lane, and the direction of its time.
+    output: Wide<f64>,
+    onwards: Wide<f64>,
     /// The round in which the motion in each lane began.
     begun: [u64; W],
     /// The rounds so far: each takes one step in every lane.
@@ -88,9 +122,11 @@ struct Flight<T, const N: usize> {
 }
 
 /// All steps of a batch.
-pub(super) struct Steps<'r, 'a, S: Batched<N>, const N: usize>(pub(super) &'r mut Run<'a, S, N>);
+pub(super) struct Steps<'r, 'a, S: Batched<N>, const N: usize, const WATCHED: bool>(
+    pub(super) &'r mut Run<'a, S, N, WATCHED>,
+);
 
-impl<S: Batched<N>, const N: usize> Work for Steps<'_, '_, S, N> {
+impl<S: Batched<N>, const N: usize, const WATCHED: bool> Work for Steps<'_, '_, S, N, WATCHED> {
     #[inline(always)]
     fn run(self) {
         while self.0.round < self.0.deadline {
@@ -99,10 +135,11 @@ impl<S: Batched<N>, const N: usize> Work for Steps<'_, '_, S, N> {
     }
 }
 
-impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
+impl<'a, S: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, S, N, WATCHED> {
     /// The first motions in their lanes; `None` without problems.
     pub(super) fn new(
         batch: &'a Batch<N>,
+        watch: Watch<'a, S::Scalar, N>,
         problems: &'a mut Problems<'a, S, N>,
         outcomes: &'a mut Outcomes<'a, S::Scalar, N>,
     ) -> Option<Self> {
@@ -118,6 +155,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         let number = Wide::from_f64(0.0);
         let mut run = Self {
             batch,
+            watch,
             problems,
             outcomes,
             exhausted: false,
@@ -139,7 +177,9 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
                 end: number,
                 live: number,
             },
-            problem: [const { None }; W],
+            members: [const { None }; W],
+            output: number,
+            onwards: number,
             begun: [0; W],
             round: 0,
             deadline: 0,
@@ -180,8 +220,19 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         let h = fit(&from, wanted, &mut unusual);
         if any(unusual) | self.first | (self.round + 1 == self.deadline) {
             self.unusual_steps(&from, log_radii, &weights);
-        } else if any(self.advance(&from, [h, Wide::from_f64(0.0)])) {
-            self.settle(&from, wanted, h);
+        } else {
+            let h = [h, Wide::from_f64(0.0)];
+            let mut not_finite = self.advance(&from, h);
+            let mut seen = Wide::from_f64(0.0);
+            if WATCHED {
+                seen = self.watch(&from, h);
+                for l in 0..W {
+                    not_finite.0[l] += seen.0[l];
+                }
+            }
+            if any(not_finite) {
+                self.settle(&from, wanted, h, seen);
+            }
         }
     }
 
@@ -193,7 +244,7 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         if !S::FACTS.explicit_time {
             return wanted;
         }
-        let Some((_, problem)) = &self.problem[l] else { return wanted };
+        let Some(Member { problem, .. }) = &self.members[l] else { return wanted };
         let longest =
             gap::longest(&problem.system, Time::from_words(from.high.0[l], from.low.0[l]), GAP);
         if longest < wanted { longest } else { wanted }
@@ -257,56 +308,199 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         }
         self.first = false;
         self.advance(from, h);
-        self.settle(from, wanted, h[0]);
+        for l in 0..W {
+            let t = Time::from_words(from.high.0[l], from.low.0[l]);
+            if 0.0 < from.live.0[l] && reaches(t, from.end.0[l], wanted.0[l]) {
+                (self.lanes.high.0[l], self.lanes.low.0[l]) = (from.end.0[l], 0.0);
+            }
+        }
+        let seen = if WATCHED { self.watch(from, h) } else { Wide::from_f64(0.0) };
+        self.settle(from, wanted, h, seen);
     }
 
-    /// Ends the motions that have come to an end, and begins others in their lanes.
+    /// Finds the lanes in whose steps something is to be kept: an output time, an event. They are
+    /// not zero.
+    #[inline(always)]
+    fn watch(&mut self, from: &Flight<S::Scalar, N>, h: [Wide<f64>; 2]) -> Wide<f64> {
+        let mut seen = Wide::from_f64(0.0);
+        let always = self.watch.dense | matches!(self.watch.output, Output::Steps);
+        for l in 0..W {
+            let ahead = self.onwards.0[l] * (self.output.0[l] - self.lanes.high.0[l]);
+            seen.0[l] = if (ahead <= 0.0) | always { from.live.0[l] } else { 0.0 };
+        }
+        if self.watch.events.is_empty() {
+            return seen;
+        }
+        let places = self.places(h);
+        for l in 0..W {
+            if 0.0 < from.live.0[l] {
+                seen.0[l] = if self.is_quiet(l, from, h, &places) { seen.0[l] } else { 1.0 };
+            }
+        }
+        seen
+    }
+
+    /// The coordinates and velocities at [`POINTS`] but the two that are known.
+    #[inline(always)]
+    fn places(&self, h: [Wide<f64>; 2]) -> Places<S::Scalar, N> {
+        let zero = Wide::from_f64(0.0);
+        let mut places = [[[zero; N]; 2]; POINTS.len()];
+        let mut length = Wide::from_f64(0.0);
+        for l in 0..W {
+            length.0[l] = S::Scalar::from_f64(h[0].0[l]) + S::Scalar::from_f64(h[1].0[l]);
+        }
+        let (path, order) = (&self.workspace.path, self.rule.order);
+        for i in 0..N {
+            for (part, series) in [&path.q[i], &path.v[i]].into_iter().enumerate() {
+                let mut terms = [zero; LENGTH];
+                let mut power = length;
+                for k in 1..=order {
+                    terms[k] = series[k] * power;
+                    power *= length;
+                }
+                for (point, place) in places.iter_mut().enumerate() {
+                    if point == 1 || point + 1 == POINTS.len() {
+                        continue;
+                    }
+                    let theta = Wide::from_f64(POINTS[point]);
+                    let mut sum = zero;
+                    for k in (1..=order).rev() {
+                        sum = (sum + terms[k]) * theta;
+                    }
+                    place[part][i] = series[0] + sum;
+                }
+            }
+        }
+        places
+    }
+
+    /// Returns true if no event happens in the step of a lane.
+    fn is_quiet(
+        &mut self,
+        l: usize,
+        from: &Flight<S::Scalar, N>,
+        h: [Wide<f64>; 2],
+        places: &Places<S::Scalar, N>,
+    ) -> bool {
+        let Some(member) = &mut self.members[l] else { return true };
+        let interval = interval_of(from, &self.lanes, h, l);
+        let (t, length) =
+            (scalar_time::<S::Scalar>(interval.start), interval.length::<S::Scalar>());
+        let last = POINTS.len() - 1;
+        let places: [Place<S::Scalar, N>; POINTS.len()] = core::array::from_fn(|point| {
+            if point == 1 {
+                return Place::of(&node(from, l));
+            }
+            if point == last {
+                return Place::of(&node(&self.lanes, l));
+            }
+            let [q, v] = places[point].map(|numbers| numbers.map(|number| number.0[l]));
+            Place { t: t + S::Scalar::from_f64(POINTS[point]) * length, q, v }
+        });
+        member.detector.is_quiet(&interval, &places)
+    }
+
+    /// Ends the motions that have come to an end, and begins others in their lanes; looks at what is
+    /// to be kept in the lanes `seen`.
     #[cold]
     #[inline(never)]
-    fn settle(&mut self, before: &Flight<S::Scalar, N>, wanted: Wide<f64>, h: Wide<f64>) {
+    fn settle(
+        &mut self,
+        before: &Flight<S::Scalar, N>,
+        wanted: Wide<f64>,
+        h: [Wide<f64>; 2],
+        seen: Wide<f64>,
+    ) {
+        let mut ended = false;
         for l in 0..W {
-            let Some((_, problem)) = &self.problem[l] else { continue };
-            let time = problem.time;
+            let Some(member) = &mut self.members[l] else { continue };
             let steps = self.round - self.begun[l];
             let (from, to) = (node(before, l), node(&self.lanes, l));
             let end = self.lanes.end.0[l];
             let close = reaches(from.t, end, wanted.0[l]);
-            let error = if !to.is_finite() {
-                let interval = if close {
-                    StepInterval::to(from.t, end)
-                } else {
-                    StepInterval::by(from.t, h.0[l])
-                };
-                Some(Self::not_finite(&self.batch.method, &problem.system, &from, &interval))
+            let interval = interval_of(before, &self.lanes, h, l);
+            let mut error = if !to.is_finite() {
+                Some(Self::not_finite(&self.batch.method, &member.problem.system, &from, &interval))
             } else if is_short(from.t, end, wanted.0[l]) {
                 let unresolved = self.batch.control.unresolved(steps == 1, wanted.0[l]);
-                Some(unresolved.unwrap_or_else(|| self.underflow(before, &from, wanted.0[l], l)))
+                Some(unresolved.unwrap_or_else(|| {
+                    let weights = weights(before, self.rtol, &self.atol);
+                    underflow::<S, N>(
+                        &self.workspace.path,
+                        self.rule.order,
+                        &weights,
+                        &from,
+                        wanted.0[l],
+                        l,
+                    )
+                }))
             } else {
                 None
             };
-            let (taken, tried) = if error.is_some() { (steps - 1, steps) } else { (steps, steps) };
-            let mut stats = Stats::new(<Taylor as Method<S, N>>::NAME);
-            (stats.accepted, stats.evaluations) = (taken, tried * self.rule.order as u64);
-            if error.is_some() {
-                self.finish(l, outcome::<S, N>(time, State::from(&from), stats, error));
-            } else if close {
-                (self.lanes.high.0[l], self.lanes.low.0[l]) = (time.1, 0.0);
-                self.finish(
-                    l,
-                    outcome::<S, N>(time, State::from(&node(&self.lanes, l)), stats, None),
-                );
-            } else if self.batch.max_steps <= steps {
-                let error = Error::MaxSteps { t: to.t.to_f64(), max_steps: self.batch.max_steps };
-                self.finish(l, outcome::<S, N>(time, State::from(&to), stats, Some(error)));
+            let failed_step = error.is_some();
+            let (mut end, mut status) = (if failed_step { from } else { to }, None);
+            if WATCHED && !failed_step && 0.0 < seen.0[l] {
+                let mut view = InLane::<S, N> {
+                    system: &member.problem.system,
+                    path: &self.workspace.path,
+                    order: self.rule.order,
+                    lane: l,
+                    from: Endpoint { a: if steps == 1 { member.a } else { None }, ..from },
+                    end,
+                    interval,
+                    interpolant: None,
+                    evaluations: &mut member.evaluations,
+                };
+                let looked = member.detector.observe(&mut view);
+                member.recorder.events(member.detector.found());
+                let looked = looked.and_then(|status| {
+                    member.recorder.step(&mut view)?;
+                    Ok(status)
+                });
+                end = view.end;
+                match looked {
+                    Ok(ended) => status = ended,
+                    Err(failure) => error = Some(failure),
+                }
+                self.output.0[l] = member.recorder.next_time();
             }
+            if error.is_none() && status.is_none() {
+                if close {
+                    status = Some(Status::Completed);
+                } else if self.batch.max_steps <= steps {
+                    let max_steps = self.batch.max_steps;
+                    error = Some(Error::MaxSteps { t: to.t.to_f64(), max_steps });
+                } else {
+                    continue;
+                }
+            }
+            ended = true;
+            let (taken, tried) = if failed_step { (steps - 1, steps) } else { (steps, steps) };
+            let evaluations = tried * self.rule.order as u64;
+            self.finish(l, State::from(&end), status, error, (taken, evaluations));
         }
-        self.fill();
+        if ended {
+            self.fill();
+        }
     }
 
-    fn finish(&mut self, l: usize, outcome: Outcome<S::Scalar, N>) {
-        if let Some((index, _)) = self.problem[l].take() {
-            (self.outcomes)(index, outcome);
-        }
+    /// Gives the outcome of the motion in a lane, which is free then.
+    fn finish(
+        &mut self,
+        l: usize,
+        end: State<S::Scalar, N>,
+        status: Option<Status>,
+        error: Option<Error>,
+        (accepted, evaluations): (u64, u64),
+    ) {
+        let Some(member) = self.members[l].take() else { return };
+        let mut stats = Stats::new(<Taylor as Method<S, N>>::NAME);
+        (stats.accepted, stats.evaluations) = (accepted, evaluations + member.evaluations);
+        let outcome = match error {
+            Some(error) => Err(member.recorder.fail(error, end, stats)),
+            None => Ok(member.recorder.finish(end, status.unwrap_or(Status::Completed), stats)),
+        };
+        (self.outcomes)(member.index, outcome);
     }
 
     /// The error for a step of a lane that led to a number that is not finite.
@@ -321,31 +515,10 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
         method::cause(method, &field, interval, from, &Method::<S, N>::workspace(method, system))
     }
 
-    /// The error for a step of a lane that is too short.
-    fn underflow(
-        &self,
-        before: &Flight<S::Scalar, N>,
-        from: &Endpoint<S::Scalar, N>,
-        wanted: f64,
-        l: usize,
-    ) -> Error {
-        let all = weights(before, self.rtol, &self.atol);
-        let one = all.map(|weights| weights.map(|weights| weights.0[l]));
-        let mut path = Path::new();
-        let k = self.rule.order;
-        for i in 0..N {
-            path.q[i][k] = self.workspace.path.q[i][k].0[l];
-            path.v[i][k] = self.workspace.path.v[i][k].0[l];
-        }
-        let (_, index) = largest(&path, k, &one);
-        let coordinate = coordinate(&S::FACTS, index);
-        Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate }
-    }
-
     /// Begins motions in all free lanes.
     fn fill(&mut self) {
         for l in 0..W {
-            while self.problem[l].is_none() && !self.exhausted {
+            while self.members[l].is_none() && !self.exhausted {
                 match (self.problems)() {
                     Some(next) => self.begin(l, next),
                     None => self.exhausted = true,
@@ -353,15 +526,16 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             }
         }
         self.idle();
-        if let Some((_, problem)) = self.problem.iter().flatten().next() {
+        if let Some(member) = self.members.iter().flatten().next() {
             let mut parameters = self.parameters.iter();
-            self.system = problem
+            self.system = member
+                .problem
                 .system
                 .widen(|parameter| parameters.next().copied().unwrap_or(Wide::splat(parameter)));
             self.workspace.work = self.system.work();
         }
         self.deadline = (0..W)
-            .filter(|&l| self.problem[l].is_some())
+            .filter(|&l| self.members[l].is_some())
             .map(|l| self.begun[l].saturating_add(self.batch.max_steps))
             .min()
             .unwrap_or(self.round);
@@ -369,35 +543,62 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
 
     /// Begins a motion in a lane, unless it fails at once or ends where it begins.
     fn begin(&mut self, l: usize, (index, problem): (usize, Posed<'a, S, N>)) {
-        let given = State { t: problem.time.0, q: problem.q, v: problem.v };
-        let error = match self.batch.begin(&problem) {
-            Ok(false) => {
-                let mut parameters = self.parameters.iter_mut();
-                problem.system.map(|parameter| {
-                    if let Some(lanes) = parameters.next() {
-                        lanes.0[l] = parameter;
-                    }
-                    parameter
-                });
-                self.put(l, &Endpoint::new(Time::new(problem.time.0), problem.q, problem.v));
-                (self.lanes.end.0[l], self.lanes.live.0[l]) = (problem.time.1, 1.0);
-                (self.problem[l], self.begun[l]) = (Some((index, problem)), self.round);
-                self.first = self.batch.control.limits_first();
-                return;
-            }
-            Ok(true) => None,
-            Err(error) => Some(error),
+        let Watch { output, dense, events } = self.watch;
+        let (time, start) =
+            (problem.time, Endpoint::new(Time::new(problem.time.0), problem.q, problem.v));
+        let mut member = Member {
+            index,
+            recorder: Recorder::new(output, time, const { &S::FACTS }, None),
+            detector: EventDetector::new(events),
+            problem,
+            a: None,
+            evaluations: 0,
         };
-        let stats = Stats::new(<Taylor as Method<S, N>>::NAME);
-        (self.outcomes)(index, outcome::<S, N>(problem.time, given, stats, error));
+        let begun = self.batch.begin(&member.problem, &output).and_then(|ends| {
+            if WATCHED {
+                member.recorder.begin(State::from(&start), dense);
+                let mut view = InLane::<S, N> {
+                    system: &member.problem.system,
+                    path: &self.workspace.path,
+                    order: self.rule.order,
+                    lane: l,
+                    from: start,
+                    end: start,
+                    interval: StepInterval::by(start.t, if time.1 < time.0 { -0.0 } else { 0.0 }),
+                    interpolant: None,
+                    evaluations: &mut member.evaluations,
+                };
+                member.detector.begin(&mut view)?;
+                member.a = view.end.a;
+            }
+            Ok(ends)
+        });
+        if let Ok(false) = begun {
+            let mut parameters = self.parameters.iter_mut();
+            member.problem.system.map(|parameter| {
+                if let Some(lanes) = parameters.next() {
+                    lanes.0[l] = parameter;
+                }
+                parameter
+            });
+            self.put(l, &start);
+            (self.lanes.end.0[l], self.lanes.live.0[l]) = (time.1, 1.0);
+            (self.output.0[l], self.onwards.0[l]) =
+                (member.recorder.next_time(), direction(time.0, time.1));
+            (self.members[l], self.begun[l]) = (Some(member), self.round);
+            self.first = self.batch.control.limits_first();
+        } else {
+            self.members[l] = Some(member);
+            self.finish(l, State::from(&start), None, begun.err(), (0, 0));
+        }
     }
 
     /// Gives the lanes that stay free what one stands for that is under way, so that no odd number
     /// slows the others down.
     fn idle(&mut self) {
-        let Some(model) = self.problem.iter().position(Option::is_some) else { return };
+        let Some(model) = self.members.iter().position(Option::is_some) else { return };
         for l in 0..W {
-            if self.problem[l].is_none() {
+            if self.members[l].is_none() {
                 self.put(l, &node(&self.lanes, model));
                 self.lanes.live.0[l] = 0.0;
                 self.lanes.end.0[l] = self.lanes.end.0[model];
@@ -414,6 +615,107 @@ impl<'a, S: Batched<N>, const N: usize> Run<'a, S, N> {
             (self.lanes.q.high[i].0[l], self.lanes.q.low[i].0[l]) = (node.q.high[i], node.q.low[i]);
             (self.lanes.v.high[i].0[l], self.lanes.v.low[i].0[l]) = (node.v.high[i], node.v.low[i]);
         }
+    }
+}
+
+/// The coordinates and velocities of all lanes at several points of their steps.
+type Places<T, const N: usize> = [[[Wide<T>; N]; 2]; POINTS.len()];
+
+/// The error for a step of a lane that is too short.
+fn underflow<S: Batched<N>, const N: usize>(
+    lanes: &Path<Wide<S::Scalar>, N>,
+    k: usize,
+    weights: &[[Wide<f64>; N]; 2],
+    from: &Endpoint<S::Scalar, N>,
+    wanted: f64,
+    l: usize,
+) -> Error {
+    let one = weights.map(|weights| weights.map(|weights| weights.0[l]));
+    let mut path = Path::new();
+    for i in 0..N {
+        path.q[i][k] = lanes.q[i][k].0[l];
+        path.v[i][k] = lanes.v[i][k].0[l];
+    }
+    let (_, index) = largest(&path, k, &one);
+    let coordinate = coordinate(&S::FACTS, index);
+    Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate }
+}
+
+/// The step that a lane has taken.
+fn interval_of<T: Lane + Float, const N: usize>(
+    from: &Flight<T, N>,
+    to: &Flight<T, N>,
+    h: [Wide<f64>; 2],
+    l: usize,
+) -> StepInterval {
+    let [start, end] = [from, to].map(|lanes| Time::from_words(lanes.high.0[l], lanes.low.0[l]));
+    StepInterval { start, end, h: h[0].0[l], low: h[1].0[l] }
+}
+
+/// A motion in a lane, after a step.
+struct InLane<'v, S: Batched<N>, const N: usize> {
+    system: &'v S,
+    path: &'v Path<Wide<S::Scalar>, N>,
+    order: usize,
+    lane: usize,
+    from: Endpoint<S::Scalar, N>,
+    end: Endpoint<S::Scalar, N>,
+    interval: StepInterval,
+    interpolant: Option<Interpolant<S::Scalar, N>>,
+    evaluations: &'v mut u64,
+}
+
+impl<S: Batched<N>, const N: usize> Observed<S::Scalar, N> for InLane<'_, S, N> {
+    const FACTS: &'static Facts = &S::FACTS;
+
+    fn end(&self) -> &Endpoint<S::Scalar, N> {
+        &self.end
+    }
+
+    fn before_kink(&self) -> Option<&Endpoint<S::Scalar, N>> {
+        None
+    }
+
+    fn interpolant(&mut self) -> Option<Interpolant<S::Scalar, N>> {
+        let Self { path, order, lane: l, from, interval, .. } = *self;
+        let (path, order, l) = (path, order, l);
+        let interpolant = self.interpolant.get_or_insert_with(|| {
+            series_interpolant(interval, &from, order, |i, k| {
+                [path.q[i][k].0[l], path.v[i][k].0[l]]
+            })
+        });
+        Some(*interpolant)
+    }
+
+    fn accelerations(&mut self) -> [S::Scalar; N] {
+        let prepared = self.system.prepare();
+        let mut field = Field::new(self.system, &prepared);
+        field.backwards = self.goes_back();
+        let a = self.end.start_acceleration(&mut field);
+        *self.evaluations += field.evaluations;
+        a
+    }
+
+    fn goes_back(&self) -> bool {
+        self.interval.h.is_sign_negative()
+    }
+
+    fn last_length(&self) -> f64 {
+        self.interval.h
+    }
+
+    fn cut(&mut self, t: Time, state: &State<S::Scalar, N>) {
+        self.end = Endpoint::new(t, state.q, state.v);
+    }
+
+    // Events that act do not go through lanes.
+    fn jump(&mut self, state: &State<S::Scalar, N>) -> Result<(), Error> {
+        self.end = Endpoint::new(self.end.t, state.q, state.v);
+        Ok(())
+    }
+
+    fn retreat(&mut self) {
+        self.end = self.from;
     }
 }
 

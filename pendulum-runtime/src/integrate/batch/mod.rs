@@ -3,21 +3,21 @@
 pub(crate) mod kernel;
 
 use crate::error::Error;
+use crate::integrate::events::Event;
 use crate::integrate::methods::taylor::{Rule, Taylor};
-use crate::integrate::output::{Output, Recorder};
+use crate::integrate::output::Output;
 use crate::integrate::settings::Settings;
-use crate::integrate::solution::{Failure, Solution, Stats};
-use crate::integrate::state::State;
+use crate::integrate::solution::{Failure, Solution};
 use crate::integrate::step::adaptive::AdaptiveStep;
 use crate::integrate::step::controller::Controller;
 use crate::integrate::step::integration::check_start;
 use crate::jet::Jets;
 use crate::scalar::{Float, Lane, Lanes};
 use crate::simd;
-use crate::system::{Dynamics, System};
+use crate::system::Dynamics;
 use crate::time::Time;
 use core::ops::Deref;
-use kernel::{Outcomes, Problems};
+use kernel::{Outcomes, Problems, Watch};
 
 /// The motions that are under way at the same time: a vector of 64 bytes for `f64`.
 const W: usize = 8;
@@ -186,7 +186,11 @@ impl<const N: usize> Batch<N> {
         <AdaptiveStep<N> as Controller<Taylor, S, N>>::check(&self.control)?;
         let mut outcomes: Vec<_> = problems.iter().map(|_| None).collect();
         let mut next = problems.iter().map(Posed::Borrowed).enumerate();
-        self.run_each(&mut || next.next(), &mut |index, outcome| outcomes[index] = Some(outcome));
+        self.run_each::<S, false>(
+            Watch { output: Output::End, dense: false, events: &[] },
+            &mut || next.next(),
+            &mut |index, outcome| outcomes[index] = Some(outcome),
+        );
         Ok(outcomes.into_iter().flatten().collect())
     }
 
@@ -197,19 +201,20 @@ impl<const N: usize> Batch<N> {
     }
 
     /// Returns true if lanes can keep what these settings ask for.
-    pub(crate) fn can_keep<T>(settings: &Settings<'_, T, N, AdaptiveStep<N>>) -> bool {
-        let Settings { output, dense, stops, events, .. } = settings;
-        matches!(output, Output::End) && !dense && stops.is_empty() && events.is_empty()
+    pub(crate) fn can_keep<T: Float>(settings: &Settings<'_, T, N, AdaptiveStep<N>>) -> bool {
+        let Settings { stops, events, .. } = settings;
+        stops.is_empty() && events.iter().all(Event::is_only_seen)
     }
 
     /// Integrates each problem that `problems` gives, and gives the outcomes to `outcomes` in the
-    /// order in which motions end.
-    pub(crate) fn run_each<'a, S: Batched<N>>(
+    /// order in which motions end; `watch` is for those that are `WATCHED`.
+    pub(crate) fn run_each<'a, S: Batched<N>, const WATCHED: bool>(
         &'a self,
+        watch: Watch<'a, S::Scalar, N>,
         problems: &'a mut Problems<'a, S, N>,
         outcomes: &'a mut Outcomes<'a, S::Scalar, N>,
     ) {
-        if let Some(mut run) = kernel::Run::new(self, problems, outcomes) {
+        if let Some(mut run) = kernel::Run::<_, _, WATCHED>::new(self, watch, problems, outcomes) {
             simd::widest(kernel::Steps(&mut run));
         }
     }
@@ -221,11 +226,16 @@ impl<const N: usize> Batch<N> {
     }
 
     /// Checks that a motion can begin; `true` if it ends where it begins.
-    fn begin<S: Batched<N>>(&self, problem: &Problem<S, N>) -> Result<bool, Error> {
+    fn begin<S: Batched<N>>(
+        &self,
+        problem: &Problem<S, N>,
+        output: &Output<'_>,
+    ) -> Result<bool, Error> {
         let (start, end) = problem.time;
         if !(end - start).is_finite() {
             return Err(Error::Interval { start, end });
         }
+        output.check(start, end, false)?;
         let length = (end - start).abs();
         if (self.max_steps as f64) < self.control.least_steps_over(length)
             || self.max_steps == 0 && start != end
@@ -239,17 +249,3 @@ impl<const N: usize> Batch<N> {
 
 /// The result of one motion of a batch.
 pub type Outcome<T, const N: usize> = Result<Solution<T, N>, Failure<T, N>>;
-
-/// The end of a motion over an interval.
-fn outcome<S: System<N, Scalar: Float>, const N: usize>(
-    time: (f64, f64),
-    end: State<S::Scalar, N>,
-    stats: Stats,
-    error: Option<Error>,
-) -> Outcome<S::Scalar, N> {
-    let recorder = Recorder::new(Output::End, time, const { &S::FACTS }, None);
-    match error {
-        None => Ok(recorder.finish(end, crate::integrate::events::Status::Completed, stats)),
-        Some(error) => Err(recorder.fail(error, end, stats)),
-    }
-}

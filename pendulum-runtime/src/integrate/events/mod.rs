@@ -220,6 +220,11 @@ impl<'a, T: Float, const N: usize> Event<'a, T, N> {
         self
     }
 
+    /// Returns true if the event is a root that leaves the motion as it is.
+    pub(crate) fn is_only_seen(&self) -> bool {
+        matches!(self.condition, Condition::Root(_)) && self.action.is_none()
+    }
+
     /// Returns true if a step ends at the event.
     pub(crate) fn stops(&self) -> bool {
         self.terminal.is_some() || self.action.is_some()

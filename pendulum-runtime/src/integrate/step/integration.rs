@@ -16,10 +16,11 @@ use crate::integrate::step::gap::PART;
 use crate::integrate::step::held::Held;
 use crate::integrate::step::inertia::{inertia, is_due, varies};
 use crate::integrate::step::interval::StepInterval;
+use crate::integrate::step::observed::Observed;
 use crate::integrate::step::short::{is_short, straight};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, Purpose, System};
+use crate::system::{Dynamics, Facts, Purpose, System};
 use crate::time::Time;
 
 /// An integration under way.
@@ -284,11 +285,6 @@ where
         a
     }
 
-    /// The end of the last step; if that was on a kink, the states on both sides.
-    pub(crate) fn ends(&self) -> (Endpoint<D::Scalar, N>, Option<Endpoint<D::Scalar, N>>) {
-        self.before_kink.map_or((self.end, None), |before| (before, Some(self.end)))
-    }
-
     /// Ends the last step at a state within.
     pub(crate) fn cut(&mut self, t: Time, state: &State<D::Scalar, N>) {
         self.uncross();
@@ -314,11 +310,6 @@ where
         self.before_kink.get_or_insert(before);
         self.state = ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
         Ok(())
-    }
-
-    /// Returns true if the last step went back in time.
-    pub(crate) fn goes_back(&self) -> bool {
-        self.backwards
     }
 
     /// The state at the start of the last step.
@@ -348,11 +339,6 @@ where
         }
     }
 
-    /// The length of the last step, before it was cut; 0 without one.
-    pub(crate) fn last_length(&self) -> f64 {
-        self.last.map_or(0.0, |interval| interval.h)
-    }
-
     /// Takes the last step back.
     pub(crate) fn retreat(&mut self) {
         self.uncross();
@@ -369,11 +355,6 @@ where
         }
     }
 
-    /// The state on this side of a kink, if the last step has ended on one.
-    pub(crate) fn before_kink(&self) -> Option<&Endpoint<D::Scalar, N>> {
-        self.before_kink.as_ref()
-    }
-
     /// The counters so far, and the method that has taken the steps.
     pub(crate) fn stats(&self) -> Stats {
         Stats { method: self.method.name(&self.workspace), ..self.stats }
@@ -382,6 +363,50 @@ where
     /// The time reached.
     pub(crate) fn t(&self) -> f64 {
         self.end.t.to_f64()
+    }
+}
+
+impl<const N: usize, D, M, C> Observed<D::Scalar, N> for Integration<'_, N, D, M, C>
+where
+    D: Dynamics<N, Scalar: Float>,
+    M: Method<D, N>,
+{
+    const FACTS: &'static Facts = &<D::System as System<N>>::FACTS;
+
+    fn end(&self) -> &Endpoint<D::Scalar, N> {
+        &self.end
+    }
+
+    fn before_kink(&self) -> Option<&Endpoint<D::Scalar, N>> {
+        self.before_kink.as_ref()
+    }
+
+    fn interpolant(&mut self) -> Option<Interpolant<D::Scalar, N>> {
+        Integration::interpolant(self)
+    }
+
+    fn accelerations(&mut self) -> [D::Scalar; N] {
+        Integration::accelerations(self)
+    }
+
+    fn goes_back(&self) -> bool {
+        self.backwards
+    }
+
+    fn last_length(&self) -> f64 {
+        self.last.map_or(0.0, |interval| interval.h)
+    }
+
+    fn cut(&mut self, t: Time, state: &State<D::Scalar, N>) {
+        Integration::cut(self, t, state);
+    }
+
+    fn jump(&mut self, state: &State<D::Scalar, N>) -> Result<(), Error> {
+        Integration::jump(self, state)
+    }
+
+    fn retreat(&mut self) {
+        Integration::retreat(self);
     }
 }
 

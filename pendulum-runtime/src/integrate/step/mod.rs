@@ -13,4 +13,5 @@ pub(crate) mod held;
 pub(crate) mod inertia;
 pub(crate) mod integration;
 pub(crate) mod interval;
+pub(crate) mod observed;
 pub(crate) mod short;

@@ -3,13 +3,11 @@
 use super::{EventDetector, Place, side};
 use crate::error::Error;
 use crate::integrate::events::{Condition, Event, Occurrence, Status};
-use crate::integrate::method::Method;
 use crate::integrate::saved::Memory;
 use crate::integrate::state::State;
 use crate::integrate::step::field::first_in_state;
-use crate::integrate::step::integration::Integration;
+use crate::integrate::step::observed::Observed;
 use crate::scalar::Float;
-use crate::system::{Dynamics, System};
 use crate::time::Time;
 
 /// The time over which rates are taken, in parts of a step.
@@ -43,21 +41,14 @@ pub(super) struct Acts {
 impl<T: Float, const N: usize> EventDetector<'_, T, N> {
     /// Drops what was found after the event that stops the step, except what happens at the same
     /// time: a function that is zero there to rounding would not be found on the way from there.
-    pub(super) fn gather<D, M, C>(
-        &mut self,
-        integration: &mut Integration<'_, N, D, M, C>,
-        stop: usize,
-    ) where
-        D: Dynamics<N, Scalar = T>,
-        M: Method<D, N>,
-    {
+    pub(super) fn gather(&mut self, integration: &mut impl Observed<T, N>, stop: usize) {
         let Occurrence { time, state, .. } = self.found[stop];
         let mut kept = stop + 1;
         for index in stop + 1..self.found.len() {
             let found = self.found[index];
             let simultaneous = found.time == time || {
                 let a = integration.accelerations();
-                let place = Place::of(&integration.end);
+                let place = Place::of(integration.end());
                 self.value(found.event, &place)
                     .is_ok_and(|value| value.abs() <= self.rounding(found.event, &place, value, &a))
             };
@@ -75,31 +66,26 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
 
     /// Lets the events from `first` on act, one after the other, and gives the status if the
     /// integration ends with one of them; `cut` if the step was put back.
-    pub(super) fn happen<D, M, C>(
+    pub(super) fn happen<O: Observed<T, N>>(
         &mut self,
-        integration: &mut Integration<'_, N, D, M, C>,
+        integration: &mut O,
         first: usize,
         cut: bool,
-    ) -> Result<Option<Status>, Error>
-    where
-        D: Dynamics<N, Scalar = T>,
-        M: Method<D, N>,
-    {
+    ) -> Result<Option<Status>, Error> {
         let (mut status, mut acted) = (None, false);
         for index in first..self.found.len() {
             let Occurrence { event, time, .. } = self.found[index];
             if let Some(action) = self.events[event].action.clone() {
                 acted = true;
                 let before = self.rate(integration, event);
-                let mut state = State::from(&integration.end);
+                let mut state = State::from(integration.end());
                 action(&mut state);
-                state.t = integration.t();
-                let facts = &<D::System as System<N>>::FACTS;
-                if let Some(what) = first_in_state(facts, &state.q, &state.v) {
+                state.t = integration.end().t.to_f64();
+                if let Some(what) = first_in_state(O::FACTS, &state.q, &state.v) {
                     self.found.truncate(index);
                     return Err(Error::Action { t: time.to_f64(), event, what });
                 }
-                let same_place = state.q == integration.end.q.high;
+                let same_place = state.q == integration.end().q.high;
                 integration.jump(&state)?;
                 self.found[index].after = state;
                 let after = self.rate(integration, event);
@@ -113,8 +99,8 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
         }
         if cut || acted {
             let a = integration.accelerations();
-            self.look(&integration.end, &a)?;
-            let place = Place::of(&integration.end);
+            self.look(integration.end(), &a)?;
+            let place = Place::of(integration.end());
             for index in first..self.found.len() {
                 let Occurrence { event, state, .. } = self.found[index];
                 let there = Place { t: place.t, q: state.q, v: state.v };
@@ -129,19 +115,15 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
 
     /// Takes note of an act, with the rates of the function before and after it; gives the status if
     /// the event has come to rest.
-    fn acted<D, M, C>(
+    fn acted(
         &mut self,
-        integration: &mut Integration<'_, N, D, M, C>,
+        integration: &mut impl Observed<T, N>,
         event: usize,
         time: Time,
         same_place: bool,
         before: Rate<T>,
         after: Rate<T>,
-    ) -> Result<Option<Status>, Error>
-    where
-        D: Dynamics<N, Scalar = T>,
-        M: Method<D, N>,
-    {
+    ) -> Result<Option<Status>, Error> {
         let Condition::Root(_) = self.events[event].condition else { return Ok(None) };
         let t = time.to_f64();
         let slow = |speed: f64| before.value.abs().to_f64() < speed;
@@ -174,18 +156,14 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
     }
 
     /// The rate of the function of an event at the state of `integration`, in units a second.
-    fn rate<D, M, C>(&self, integration: &mut Integration<'_, N, D, M, C>, event: usize) -> Rate<T>
-    where
-        D: Dynamics<N, Scalar = T>,
-        M: Method<D, N>,
-    {
+    fn rate(&self, integration: &mut impl Observed<T, N>, event: usize) -> Rate<T> {
         let zero = T::from_f64(0.0);
         let a = integration.accelerations();
         let moment = T::from_f64(MOMENT * integration.last_length().abs());
         let (Condition::Root(_), true) = (&self.events[event].condition, zero < moment) else {
             return Rate { value: zero, noise: zero };
         };
-        let place = Place::of(&integration.end);
+        let place = Place::of(integration.end());
         // A function may end where it is zero.
         let [before, here, after] =
             [-moment, zero, moment].map(|dt| self.value(event, &place.after(dt, &a)).ok());
@@ -200,13 +178,9 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
     }
 
     /// The side to which the function goes from the state of `integration`, without a rate.
-    fn shortly<D, M, C>(&self, integration: &mut Integration<'_, N, D, M, C>, event: usize) -> i8
-    where
-        D: Dynamics<N, Scalar = T>,
-        M: Method<D, N>,
-    {
+    fn shortly(&self, integration: &mut impl Observed<T, N>, event: usize) -> i8 {
         let a = integration.accelerations();
-        let place = Place::of(&integration.end);
+        let place = Place::of(integration.end());
         let dt = T::from_f64(0.125 * integration.last_length().abs());
         let rise = |place: &Place<T, N>| self.value(event, place).unwrap_or(T::from_f64(0.0));
         side(rise(&place.after(dt, &a)) - rise(&place))

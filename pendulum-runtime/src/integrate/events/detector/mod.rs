@@ -1,21 +1,23 @@
 //! Finds the events within each step.
 
 mod acts;
+mod quiet;
 
 use crate::error::Error;
 use crate::integrate::events::root::{Dip, Point, dip, root};
 use crate::integrate::events::{Condition, Direction, Event, Occurrence, Status};
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::method::Method;
 use crate::integrate::output::in_order;
 use crate::integrate::saved::Memory;
 use crate::integrate::state::State;
 use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::integration::Integration;
+use crate::integrate::step::interval::StepInterval;
+use crate::integrate::step::observed::Observed;
 use crate::scalar::Float;
-use crate::system::{Dynamics, scalar_time};
+use crate::system::scalar_time;
 use crate::time::Time;
 use acts::Acts;
+use quiet::stays_away;
 
 /// The events of an integration and what is known of each.
 #[derive(Clone, Debug)]
@@ -54,7 +56,7 @@ const NEAR: f64 = 1e-4;
 /// The time after a root at which a function shows its sign, in parts of a step.
 const SHORTLY: f64 = 1e-7;
 /// The points at which it is looked at.
-const POINTS: [f64; 11] =
+pub(crate) const POINTS: [f64; 11] =
     [-NEAR, 0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0 - NEAR, 1.0];
 
 impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
@@ -94,14 +96,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
     }
 
     /// Begins at the state of `integration`.
-    pub(crate) fn begin<D, M, C>(
-        &mut self,
-        integration: &mut Integration<'_, N, D, M, C>,
-    ) -> Result<(), Error>
-    where
-        D: Dynamics<N, Scalar = T>,
-        M: Method<D, N>,
-    {
+    pub(crate) fn begin(&mut self, integration: &mut impl Observed<T, N>) -> Result<(), Error> {
         if self.is_idle() {
             return Ok(());
         }
@@ -110,7 +105,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         for track in &mut self.tracks {
             (track.expected, track.acts) = (0, Acts::default());
         }
-        self.look(&integration.end, &a)
+        self.look(integration.end(), &a)
     }
 
     /// Finds what happened in the step that `integration` has just taken. If an event did that acts
@@ -118,27 +113,26 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
     /// ends with it.
     ///
     /// If a function fails, it is put back to the start of the step; if an action does, to the event.
-    pub(crate) fn observe<D, M, C>(
+    pub(crate) fn observe(
         &mut self,
-        integration: &mut Integration<'_, N, D, M, C>,
-    ) -> Result<Option<Status>, Error>
-    where
-        D: Dynamics<N, Scalar = T>,
-        M: Method<D, N>,
-    {
+        integration: &mut impl Observed<T, N>,
+    ) -> Result<Option<Status>, Error> {
         if self.is_idle() {
             return Ok(None);
         }
         self.backwards = integration.goes_back();
         let rooted = self.events.iter().any(|event| matches!(event.condition, Condition::Root(_)));
         let interpolant = if rooted { integration.interpolant() } else { None };
-        let (end, beyond) = integration.ends();
+        let (end, beyond) = match integration.before_kink() {
+            Some(before) => (*before, Some(*integration.end())),
+            None => (*integration.end(), None),
+        };
         if let Err(error) = self.step(interpolant.as_ref(), &end, beyond.as_ref()) {
             integration.retreat();
             let a = integration.accelerations();
             self.found.clear();
             // It has looked there before.
-            self.look(&integration.end, &a).ok();
+            self.look(integration.end(), &a).ok();
             return Err(error);
         }
         let Some(stop) = self.count() else { return Ok(None) };
@@ -362,7 +356,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
                         if side(first.1) == side_here && side(middle.1) == side_here =>
                     {
                         let lower = middle.1.abs() <= value.abs() && middle.1.abs() < first.1.abs();
-                        if lower && !(i == 2 && self.recent(index, interpolant)) {
+                        if lower && !(i == 2 && self.recent(index, &interpolant.interval)) {
                             self.dip(index, interpolant, end, [first, middle, point])?;
                         }
                     }
@@ -425,12 +419,19 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
 
     /// Returns true if the event has happened so shortly before the step that a dip around its
     /// start is the same one.
-    fn recent(&self, index: usize, interpolant: &Interpolant<T, N>) -> bool {
-        let start = interpolant.interval.start;
+    fn recent(&self, index: usize, interval: &StepInterval) -> bool {
+        let start = interval.start;
         let since = |last: Time| (last.since(start.to_f64()) - start.low()).abs();
-        self.tracks[index]
-            .last
-            .is_some_and(|last| since(last) <= 4.0 * NEAR * interpolant.interval.h.abs())
+        self.tracks[index].last.is_some_and(|last| since(last) <= 4.0 * NEAR * interval.h.abs())
+    }
+
+    /// The distance from zero within which an extremum around `place` counts as a root.
+    fn tolerance(&self, index: usize, place: &Place<T, N>) -> Result<T, Error> {
+        match self.events[index] {
+            Event { direction: Direction::Rising | Direction::Falling, .. } => Ok(T::from_f64(0.0)),
+            Event { tolerance: Some(tolerance), .. } => Ok(T::from_f64(tolerance)),
+            _ => self.allowance(index, place),
+        }
     }
 
     /// Looks for a root, or a pair of them, in a dip of |g|.
@@ -442,12 +443,11 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         points: [Point<T>; 3],
     ) -> Result<(), Error> {
         let sign = T::from_f64(f64::from(side(points[0].1)));
-        let tolerance = match self.events[index] {
-            Event { direction: Direction::Rising | Direction::Falling, .. } => T::from_f64(0.0),
-            Event { tolerance: Some(tolerance), .. } => T::from_f64(tolerance),
-            _ => self.allowance(index, &Place::on(interpolant, points[1].0))?,
-        };
+        let tolerance = self.tolerance(index, &Place::on(interpolant, points[1].0))?;
         let positive = points.map(|(theta, value)| (theta, sign * value));
+        if stays_away(&positive, tolerance) {
+            return Ok(());
+        }
         match dip(&mut |theta| Ok(sign * self.at(index, interpolant, theta)?), positive, tolerance)?
         {
             Dip::Away => {}
@@ -580,15 +580,15 @@ fn occurrence<T: Float, const N: usize>(event: usize, end: &Endpoint<T, N>) -> O
 
 /// A time and the state there.
 #[derive(Clone, Copy)]
-struct Place<T, const N: usize> {
-    t: T,
-    q: [T; N],
-    v: [T; N],
+pub(crate) struct Place<T, const N: usize> {
+    pub(crate) t: T,
+    pub(crate) q: [T; N],
+    pub(crate) v: [T; N],
 }
 
 impl<T: Float, const N: usize> Place<T, N> {
     /// At an endpoint.
-    fn of(end: &Endpoint<T, N>) -> Self {
+    pub(crate) fn of(end: &Endpoint<T, N>) -> Self {
         Self { t: scalar_time(end.t), q: end.q.high, v: end.v.high }
     }
 

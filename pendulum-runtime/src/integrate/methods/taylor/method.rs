@@ -144,26 +144,8 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Taylor {
         _: &mut Endpoint<D::Scalar, N>,
         workspace: &mut WorkspaceOf<D, N>,
     ) -> Interpolant<D::Scalar, N> {
-        let (h, zero) = (interval.length::<D::Scalar>(), [[D::Scalar::from_f64(0.0); N]; TERMS]);
-        let (q0, v0) = (from.q.high, from.v.high);
-        let mut interpolant = Interpolant {
-            interval: *interval,
-            q0,
-            v0,
-            q: zero,
-            v: zero,
-            terms: workspace.order,
-            basis: Basis::Powers,
-        };
-        let mut power = h;
-        for k in 1..=workspace.order {
-            for i in 0..N {
-                interpolant.q[k - 1][i] = workspace.path.q[i][k] * power;
-                interpolant.v[k - 1][i] = workspace.path.v[i][k] * power;
-            }
-            power *= h;
-        }
-        interpolant
+        let path = &workspace.path;
+        series_interpolant(*interval, from, workspace.order, |i, k| [path.q[i][k], path.v[i][k]])
     }
 
     fn diagnose(
@@ -265,6 +247,28 @@ pub(super) fn sum<T: Float, W, X, const N: usize>(
         );
     }
     to
+}
+
+/// The motion within a step, from the coefficients of a coordinate and its velocity.
+pub(crate) fn series_interpolant<T: Float, const N: usize>(
+    interval: StepInterval,
+    from: &Endpoint<T, N>,
+    order: usize,
+    coefficients: impl Fn(usize, usize) -> [T; 2],
+) -> Interpolant<T, N> {
+    let (h, zero) = (interval.length::<T>(), [[T::from_f64(0.0); N]; TERMS]);
+    let (q0, v0) = (from.q.high, from.v.high);
+    let basis = Basis::Powers;
+    let mut interpolant = Interpolant { interval, q0, v0, q: zero, v: zero, terms: order, basis };
+    let mut power = h;
+    for k in 1..=order {
+        for i in 0..N {
+            let [q, v] = coefficients(i, k);
+            (interpolant.q[k - 1][i], interpolant.v[k - 1][i]) = (q * power, v * power);
+        }
+        power *= h;
+    }
+    interpolant
 }
 
 /// Σ x\[k\] hᵏ over 2 ≤ k ≤ `order`, beyond which all are zero: every fourth term after Horner

@@ -6,5 +6,5 @@ mod method;
 mod rule;
 
 pub use method::Taylor;
-pub(crate) use method::{GAP, WorkspaceOf, rest};
+pub(crate) use method::{GAP, WorkspaceOf, rest, series_interpolant};
 pub(crate) use rule::{LAST_ORDERS, Rule, largest};

@@ -1,0 +1,87 @@
+//! Steps in which nothing happens, as most do.
+
+use super::{EventDetector, POINTS, Place, side};
+use crate::integrate::events::Condition;
+use crate::integrate::events::root::Point;
+use crate::integrate::step::interval::StepInterval;
+use crate::scalar::Float;
+
+impl<T: Float, const N: usize> EventDetector<'_, T, N> {
+    /// Returns true if nothing happens in a step over `interval` without a kink, of which `places`
+    /// are the states at [`POINTS`]; takes note of its end then, as a search that finds nothing.
+    ///
+    /// All events have functions.
+    pub(crate) fn is_quiet(
+        &mut self,
+        interval: &StepInterval,
+        places: &[Place<T, N>; POINTS.len()],
+    ) -> bool {
+        // The values at the ends; those of few events stand in a row.
+        let mut last = [T::from_f64(0.0); 8];
+        if last.len() < self.events.len() {
+            return false;
+        }
+        for index in 0..self.events.len() {
+            match self.quiet_end(index, interval, places) {
+                Some(value) => last[index] = value,
+                None => return false,
+            }
+        }
+        self.found.clear();
+        self.fresh = false;
+        for (track, value) in self.tracks.iter_mut().zip(last) {
+            track.value = value;
+        }
+        true
+    }
+
+    /// The value of a function at the end of a step in which it neither changes its sign nor dips
+    /// towards zero.
+    fn quiet_end(
+        &self,
+        index: usize,
+        interval: &StepInterval,
+        places: &[Place<T, N>; POINTS.len()],
+    ) -> Option<T> {
+        let Condition::Root(function) = &self.events[index].condition else { return None };
+        let of = |place: &Place<T, N>| function(place.t, &place.q, &place.v);
+        let track = &self.tracks[index];
+        let start = (T::from_f64(POINTS[1]), track.value);
+        let before = (T::from_f64(POINTS[0]), if self.fresh { start.1 } else { of(&places[0]) });
+        if track.side == 0 || track.expected != 0 || side(before.1) == 0 {
+            return None;
+        }
+        let mut points = [before, start];
+        for i in 2..POINTS.len() {
+            let point = (T::from_f64(POINTS[i]), of(&places[i]));
+            if side(point.1) != track.side {
+                return None;
+            }
+            let [first, middle] = points.map(|(theta, value)| (theta, value.abs()));
+            let here = (point.0, point.1.abs());
+            let lower = middle.1 <= here.1 && middle.1 < first.1;
+            // The function may have been on the other side before the step.
+            if lower
+                && side(points[0].1) == track.side
+                && !(i == 2 && (self.fresh || self.recent(index, interval)))
+            {
+                let tolerance = self.tolerance(index, &places[i - 1]).ok()?;
+                if !stays_away(&[first, middle, here], tolerance) {
+                    return None;
+                }
+            }
+            points = [points[1], point];
+        }
+        Some(points[1].1)
+    }
+}
+
+/// Returns true if a positive function with a lower point between two others is known not to come
+/// down to zero there, unless it wiggles: where it is convex, the lines through two of the points
+/// lie below it beyond, and it may fall twice as far.
+pub(super) fn stays_away<T: Float>([a, b, c]: &[Point<T>; 3], tolerance: T) -> bool {
+    let (before, after) = (b.0 - a.0, c.0 - b.0);
+    let falls = [(a.1 - b.1) * (after / before), (c.1 - b.1) * (before / after)];
+    let fall = if falls[0] < falls[1] { falls[1] } else { falls[0] };
+    tolerance < b.1 - (fall + fall)
+}

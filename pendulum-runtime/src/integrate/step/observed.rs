@@ -1,0 +1,41 @@
+//! Integrations as event detectors and recorders see them.
+
+use crate::error::Error;
+use crate::integrate::interpolant::Interpolant;
+use crate::integrate::state::State;
+use crate::integrate::step::endpoint::Endpoint;
+use crate::system::Facts;
+use crate::time::Time;
+
+/// An integration after a step, alone or in a lane of a batch.
+pub(crate) trait Observed<T, const N: usize> {
+    /// The facts about its system.
+    const FACTS: &'static Facts;
+
+    /// The state reached; at a kink the one beyond it.
+    fn end(&self) -> &Endpoint<T, N>;
+
+    /// The state on this side of a kink, if the last step has ended on one.
+    fn before_kink(&self) -> Option<&Endpoint<T, N>>;
+
+    /// The motion within the last step, if there was one.
+    fn interpolant(&mut self) -> Option<Interpolant<T, N>>;
+
+    /// The accelerations at the state reached.
+    fn accelerations(&mut self) -> [T; N];
+
+    /// Returns true if the last step went back in time.
+    fn goes_back(&self) -> bool;
+
+    /// The length of the last step, before it was cut; 0 without one.
+    fn last_length(&self) -> f64;
+
+    /// Ends the last step at a state within.
+    fn cut(&mut self, t: Time, state: &State<T, N>);
+
+    /// Puts the state elsewhere at the same time.
+    fn jump(&mut self, state: &State<T, N>) -> Result<(), Error>;
+
+    /// Takes the last step back.
+    fn retreat(&mut self);
+}
