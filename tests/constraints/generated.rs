@@ -1,7 +1,8 @@
 //! What is generated for constraints against dual numbers and dense algebra.
 
 use crate::systems::{
-    ANDREWS_START, Andrews, Ball, Bob, Disc, Loops2, Loops10, Sleigh, andrews, car_axis, four_bar,
+    ANDREWS_START, Andrews, Arms, Ball, Bob, Disc, Garland, Loops2, Loops10, Sleigh, andrews,
+    car_axis, four_bar,
 };
 use nalgebra::{DMatrix, DVector};
 use pendulum_runtime::scalar::Dual;
@@ -148,6 +149,8 @@ fn equations_agree_with_dense_algebra() {
     one("disc", worst(&Disc::new(1.2, 0.5, 0.1, 0.2), 300, 5));
     one("ball", worst(&Ball::new(1.2, 0.5, 0.1, 0.7), 300, 6));
     one("two loops", worst(&Loops2::new(1.2, 0.5), 300, 7));
+    one("garland", worst(&Garland::new(1.2, 0.5, 2.0), 40, 9));
+    one("arms", worst(&Arms::new(1.2, 0.5, 2.0, 7.0), 40, 10));
     one("ten loops", worst(&Loops10::new(1.2, 0.5), 20, 8));
 }
 

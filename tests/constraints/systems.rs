@@ -149,6 +149,33 @@ macro_rules! loops {
     };
 }
 
+lagrangian! {
+    /// A chain with both ends held.
+    #[derive(Clone, Debug)]
+    pub struct Garland { m: kg, L: m, d: m, g: m/s^2 = 9.81 }
+    coordinate θ[16]: rad;
+    let y[k in 0..16] = sum(j in 0..=k, L*cis(θ[j]));
+    kinetic = sum(k in 0..16, m/2*|ẏ[k]|^2);
+    potential = sum(k in 0..16, m*g*height(y[k]));
+    constraint end: y[15] = [d, d*t*t*g/d];
+}
+
+lagrangian! {
+    /// Two arms of seven links on one root, whose ends a rod ties together, and whose middle moves.
+    #[derive(Clone, Debug)]
+    pub struct Arms { m: kg, L: m, d: m, k: N/m, g: m/s^2 = 9.81 }
+    coordinate x: m;
+    coordinate α[7]: rad;
+    coordinate β[7]: rad;
+    let root = [x, 0];
+    let a[k in 0..7] = root + sum(j in 0..=k, L*cis(α[j]));
+    let b[k in 0..7] = root + sum(j in 0..=k, L*cis(β[j]));
+    kinetic = m/2*ẋ^2 + sum(k in 0..7, m/2*(|ȧ[k]|^2 + |ḃ[k]|^2));
+    potential = k/2*x^2 + sum(k in 0..7, m*g*(height(a[k]) + height(b[k])));
+    constraint rod: |a[6] - b[6]|^2 = d^2;
+    constraint guide: height(a[3]) + height(b[3])^2/L = x;
+}
+
 loops!(Loops2, 2, 3);
 loops!(Loops10, 10, 11);
 

@@ -59,20 +59,20 @@ macro_rules! same {
 
 #[test]
 fn outputs() {
-    assert!(500 < same!(50, simple, rtol (1e-9), every (0.3)).1);
-    assert!(500 < same!(50, simple, rtol (1e-6), every_step ()).1);
-    assert!(300 < same!(60, double, rtol (1e-12), every (0.21)).1);
+    assert!(500 < same!(50, simple, rtol(1e-9), every(0.3)).1);
+    assert!(500 < same!(50, simple, rtol(1e-6), every_step()).1);
+    assert!(300 < same!(60, double, rtol(1e-12), every(0.21)).1);
     let times = [0.0, 0.2, 0.2, 0.5, 0.99];
-    assert_eq!(same!(60, double, t_eval (&times)).1, 300);
+    assert_eq!(same!(60, double, t_eval(&times)).1, 300);
     // Outside of the interval of some.
     let times = [0.0, 1.05, 1.3];
-    assert!(0 < same!(60, double, t_eval (&times)).1);
+    assert!(0 < same!(60, double, t_eval(&times)).1);
 }
 
 #[test]
 fn dense_output() {
-    same!(30, simple, rtol (1e-9), dense ());
-    same!(30, double, dense (), every (0.1));
+    same!(30, simple, rtol(1e-9), dense());
+    same!(30, double, dense(), every(0.1));
 }
 
 /// The events of a pendulum: both directions, one direction, dips that touch and dips that do not.
@@ -90,36 +90,36 @@ fn events() -> Vec<Event<'static, f64, 1>> {
 #[test]
 fn events_are_found() {
     for rtol in [1e-3, 1e-6, 1e-9, 1e-13] {
-        assert!(200 < same!(60, simple, rtol (rtol), events (events())).0);
+        assert!(200 < same!(60, simple, rtol(rtol), events(events())).0);
     }
-    assert!(200 < same!(60, simple, every (0.5), events (events()), max_step (0.4)).0);
+    assert!(200 < same!(60, simple, every(0.5), events(events()), max_step(0.4)).0);
     // More of them than are looked at together.
     let many: Vec<_> =
         (0..12).map(|k| Event::new(move |_, q: &[f64; 1], _| q[0] - 0.1 * k as f64)).collect();
-    assert!(500 < same!(20, simple, events (&many)).0);
+    assert!(500 < same!(20, simple, events(&many)).0);
 }
 
 #[test]
 fn terminal_events_end_a_lane() {
     let over = Event::new(|_, q: &[f64; 1], _| q[0] * q[0] - PI * PI).rising().terminal();
-    assert!(10 < same!(100, simple, rtol (1e-9), events ([over.clone(), events().swap_remove(0)])).0);
+    assert!(10 < same!(100, simple, rtol(1e-9), events([over.clone(), events().swap_remove(0)])).0);
     let third = Event::new(|_, q: &[f64; 1], _| q[0]).terminal_after(3);
-    assert!(50 < same!(60, simple, dense (), every (0.4), events ([third.clone()])).0);
+    assert!(50 < same!(60, simple, dense(), every(0.4), events([third.clone()])).0);
     // From exactly zero on, and together with others.
     let start = |k: usize| Problem { q: [0.0], ..simple(k) };
-    same!(60, start, events ([third.clone(), events().swap_remove(2)]));
+    same!(60, start, events([third.clone(), events().swap_remove(2)]));
     let twice = [Event::new(|_, q: &[f64; 1], _| q[0]), Event::new(|_, q, _| 2.0 * q[0])];
-    same!(60, simple, events (twice.clone().map(Event::terminal)));
+    same!(60, simple, events(twice.clone().map(Event::terminal)));
     let [first, second] = twice;
-    same!(60, simple, events ([first.clone(), second.clone().terminal()]));
+    same!(60, simple, events([first.clone(), second.clone().terminal()]));
 }
 
 #[test]
 fn functions_that_fail_end_a_lane() {
     let root = Event::new(|_, q: &[f64; 1], _| (2.5 - q[0]).sqrt() - 0.1);
-    same!(60, simple, events ([root.clone()]));
+    same!(60, simple, events([root.clone()]));
     let near = Event::new(|_, q: &[f64; 1], _| q[0]).touching(1e-3);
-    same!(60, simple, events ([near.clone()]), max_steps (9));
+    same!(60, simple, events([near.clone()]), max_steps(9));
 }
 
 #[test]
@@ -135,5 +135,5 @@ fn flips_of_double_pendulums() {
     let statuses = statuses.map(|_, solution| solution.status).collect().unwrap().value;
     let flipped = statuses.iter().filter(|status| **status == Some(Status::Event(0))).count();
     assert!(8 < flipped && flipped <= 32, "{flipped}");
-    assert!(8 < same!(32, start, rtol (1e-9), events ([flip.clone()])).0);
+    assert!(8 < same!(32, start, rtol(1e-9), events([flip.clone()])).0);
 }

@@ -218,6 +218,7 @@ impl Writer<'_> {
                 )
             }
             Symbol::Target(index) => format!("\\tau_{{{index}}}"),
+            Symbol::Position(index) => format!("z_{{{index}}}"),
             Symbol::Momentum(index) => format!("p_{{{}}}", self.coordinate(index, 0)),
             Symbol::Input { input, component, order } => self.input(input, component, order),
             Symbol::Control { input, component } => self.input(input, component, 0),

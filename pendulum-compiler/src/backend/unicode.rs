@@ -89,6 +89,7 @@ impl Names {
             }
             Symbol::Target(index) => format!("target[{index}]"),
             Symbol::Auxiliary(index) => format!("u[{index}]"),
+            Symbol::Position(index) => format!("z[{index}]"),
             Symbol::Point(_, component) => ["p.x", "p.y"][component.min(1)].into(),
             Symbol::Moment(body, moment) => {
                 let body = self.parameters[body].trim_end_matches(".mass");

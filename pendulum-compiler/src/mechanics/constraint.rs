@@ -109,7 +109,8 @@ impl Constraints {
         forces.iter().copied().chain(self.held.iter().map(|row| row.drift)).collect()
     }
 
-    /// The accelerations, with multipliers, independence and the correction of misfits.
+    /// The accelerations, with multipliers, independence and the correction of misfits, in dense
+    /// form.
     pub(crate) fn solve(
         &mut self,
         graph: &mut Graph,

@@ -12,7 +12,7 @@ use crate::algebra::order;
 use crate::algebra::rule;
 use crate::algebra::value_numbering;
 use crate::algebra::velocity_polynomial;
-use crate::mechanics::articulated::{self, Sparse};
+use crate::mechanics::articulated::{self, Held, Sparse};
 use crate::mechanics::constraint;
 use crate::mechanics::jacobian;
 use crate::mechanics::lower::{Energies, total_derivative};
@@ -30,6 +30,9 @@ const LONGEST_JACOBIAN: usize = 4000;
 /// Mass matrices of more rows than this are only solved in dense form if there is no cheaper sparse
 /// one.
 const LARGEST_DENSE: usize = 12;
+
+/// The same for the products of an elimination with multipliers.
+const LARGEST_FILLED: usize = LARGEST_DENSE.pow(3) / 3;
 
 /// The sparse form must save almost half: its operations wait for each other from the leaves to the
 /// root and back. Chains of nine links and more are faster in it (`cargo bench -p
@@ -141,7 +144,7 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     let sparse =
         energies.extended.as_ref().and_then(|extended| articulated::sparse(graph, extended, count));
     solved(graph, &mut motion, &momenta, sparse.as_ref());
-    constrained(graph, &mut motion);
+    constrained(graph, &mut motion, sparse.as_ref());
 
     let actions: Vec<(Id, Rational)> =
         (0..count).map(|i| (graph.mul(velocity[i], momenta[i]), Rational::ONE)).collect();
@@ -202,12 +205,31 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
 
 /// Solves for accelerations and multipliers together, and adds the forces of the constraints to the
 /// rates of the momenta.
-fn constrained(graph: &mut Graph, motion: &mut Motion) {
+fn constrained(graph: &mut Graph, motion: &mut Motion, sparse: Option<&Sparse>) {
     let constraints = &mut motion.constraints;
     if constraints.held.is_empty() {
         return;
     }
-    motion.accelerations = constraints.solve(graph, &motion.mass_matrix, &motion.forces);
+    let held = sparse.and_then(|sparse| sparse.held.as_ref());
+    let matrix = constraints.matrix(graph, &motion.mass_matrix);
+    let filled = solve::products(&matrix, motion.forces.len());
+    let known = held.filter(|held| {
+        // Elimination without structure would take as long to write down.
+        LARGEST_FILLED < filled && schedule::program(graph, &held.accelerations).cost() < filled
+    });
+    if known.is_none() {
+        motion.accelerations = constraints.solve(graph, &motion.mass_matrix, &motion.forces);
+    }
+    let cheaper = |graph: &Graph, held: &&Held| {
+        let cost = |roots: &[Id]| schedule::program(graph, roots).cost() as f64;
+        cost(&held.accelerations) < CLEARLY * cost(&motion.accelerations)
+    };
+    if let Some(held) = known.or_else(|| held.filter(|held| cheaper(graph, held))) {
+        motion.accelerations.clone_from(&held.accelerations);
+        constraints.multipliers.clone_from(&held.multipliers);
+        constraints.correction.clone_from(&held.correction);
+        constraints.independence.clone_from(&held.independence);
+    }
     let multipliers: Vec<Id> = constraints.multipliers.iter().map(|&id| graph.closed(id)).collect();
     let forces = constraints.forces(graph, &multipliers);
     for (rate, force) in motion.momentum_rates.iter_mut().zip(forces) {

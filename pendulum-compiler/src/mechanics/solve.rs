@@ -142,10 +142,24 @@ pub(crate) fn augmented(
     Augmented { solutions, independence }
 }
 
+/// The products of an elimination with multipliers, counted by the entries that are not zero.
+pub(crate) fn products(matrix: &[Vec<Id>], count: usize) -> usize {
+    let block = |block: Vec<usize>| {
+        let degrees = elimination(matrix, &block, count).into_iter().map(|(_, degree)| degree);
+        degrees.map(|degree| degree * (degree + 3) / 2).sum::<usize>()
+    };
+    blocks(matrix).into_iter().map(block).sum()
+}
+
 /// The rows of a block in an order of little fill-in: those with the fewest neighbours first, of
 /// equals the last one; a multiplier behind all coordinates of its row, where its pivot has a known
 /// sign.
 fn elimination_order(matrix: &[Vec<Id>], block: &[usize], count: usize) -> Vec<usize> {
+    elimination(matrix, block, count).into_iter().map(|(row, _)| row).collect()
+}
+
+/// The same, each row with the number of those that it is coupled to when its turn comes.
+fn elimination(matrix: &[Vec<Id>], block: &[usize], count: usize) -> Vec<(usize, usize)> {
     let neighbours = |row: usize| {
         let entries = matrix[row].iter().enumerate();
         let others = entries.filter(move |&(other, &entry)| other != row && entry != Graph::ZERO);
@@ -172,7 +186,7 @@ fn elimination_order(matrix: &[Vec<Id>], block: &[usize], count: usize) -> Vec<u
                 own.remove(&next);
             }
         }
-        order.push(next);
+        order.push((next, others.len()));
     }
     order
 }

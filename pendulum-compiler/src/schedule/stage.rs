@@ -48,6 +48,7 @@ impl Program {
                     | Symbol::Target(_)
                     | Symbol::Momentum(_)
                     | Symbol::Auxiliary(_)
+                    | Symbol::Position(_)
                     | Symbol::Point(..) => Stage::Velocity,
                 },
                 _ => operands(op)

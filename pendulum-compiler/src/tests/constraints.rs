@@ -123,3 +123,45 @@ fn conserved_momenta_are_those_that_constraints_leave() {
     assert_eq!(planar("constraint blade: ẋ*sin(θ) = ẏ*cos(θ);"), ["p_θ"]);
     assert_eq!(planar("constraint wheel: ẋ = L*θ̇;"), ["p_y"]);
 }
+
+/// The operations of N loops in a row, and of a chain with both ends held.
+#[test]
+fn operations_grow_with_the_number_of_loops() {
+    let total = |source: &str| {
+        let count = compiled(source).operations;
+        count.mul + count.add + 4 * count.div + 10 * count.sincos + 10 * count.functions
+    };
+    let loops = |n: usize| {
+        total(&format!(
+            "struct Loops {{ m: kg, L: m, g: m/s^2 }} coordinate φ[{}]: rad; coordinate ψ[{n}]: rad;
+             let a[k in 0..{}] = L*[k, 0] + L*cis(φ[k]);
+             kinetic = sum(k in 0..={n}, m*L^2/6*φ̇[k]^2) + sum(k in 0..{n}, m/2*|dot(a[k] + L/2*cis(ψ[k]))|^2 + m*L^2/24*ψ̇[k]^2);
+             potential = sum(k in 0..={n}, m*g*L/2*sin(φ[k])) + sum(k in 0..{n}, m*g*height(a[k] + L/2*cis(ψ[k])));
+             constraint loop[k in 0..{n}]: a[k] + L*cis(ψ[k]) = a[k + 1];",
+            n + 1,
+            n + 1
+        ))
+    };
+    let chain = |n: usize| {
+        total(&format!(
+            "struct Chain {{ m: kg, L: m, d: m, g: m/s^2 }} coordinate θ[{n}]: rad;
+             let y[k in 0..{n}] = sum(j in 0..=k, L*[cos(θ[j]), sin(θ[j])]);
+             kinetic = sum(k in 0..{n}, m/2*|ẏ[k]|^2); potential = sum(k in 0..{n}, m*g*height(y[k]));
+             constraint end: y[{}] = [d, 0];",
+            n - 1
+        ))
+    };
+    let beads = |n: usize| {
+        total(&format!(
+            "struct Beads {{ m: kg, L: m, g: m/s^2 }} coordinate x[{n}]: m; coordinate y[{n}]: m;
+             kinetic = sum(k in 0..{n}, m/2*(ẋ[k]^2 + ẏ[k]^2)); potential = sum(k in 0..{n}, m*g*y[k]);
+             constraint first: x[0]^2 + y[0]^2 = L^2;
+             constraint rod[k in 1..{n}]: (x[k] - x[k - 1])^2 + (y[k] - y[k - 1])^2 = L^2;"
+        ))
+    };
+    // A loop, a link or a bead more costs the same, wherever it is.
+    assert_eq!(loops(16) - loops(8), 2 * (loops(8) - loops(4)));
+    assert_eq!(beads(32) - beads(16), 2 * (beads(16) - beads(8)));
+    let links = chain(48) - chain(32);
+    assert!(10 * links < 11 * (chain(32) - chain(16)), "{:?}", [16, 32, 48].map(chain));
+}

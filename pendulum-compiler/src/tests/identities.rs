@@ -77,6 +77,7 @@ fn energy_changes_by_the_power() {
                     | Symbol::Target(_)
                     | Symbol::Momentum(_)
                     | Symbol::Auxiliary(_)
+                    | Symbol::Position(_)
                     | Symbol::Moment(..)
                     | Symbol::Point(..) => continue,
                 };

@@ -63,6 +63,8 @@ pub(crate) enum Symbol {
     Moment(usize, Moment),
     /// The velocity of a scalar of a `let` position, as an unknown of its own.
     Auxiliary(usize),
+    /// A scalar of a `let` position, where constraints are told what they hold.
+    Position(usize),
     /// A component of the point of integration; the first number tells nested integrals apart.
     Point(usize, usize),
 }

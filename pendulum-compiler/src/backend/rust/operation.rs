@@ -99,6 +99,7 @@ impl Emitter<'_, '_> {
             // when the equations are solved; accelerations and multipliers have been put in.
             Symbol::Point(..)
             | Symbol::Auxiliary(_)
+            | Symbol::Position(_)
             | Symbol::Acceleration(_)
             | Symbol::Multiplier(_) => {
                 quote!(::core::unreachable!())

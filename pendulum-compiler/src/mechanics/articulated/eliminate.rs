@@ -15,6 +15,27 @@ struct Step {
     terms: Vec<(usize, Id)>,
 }
 
+/// A solution with multipliers.
+#[derive(Debug)]
+pub(super) struct Solution {
+    pub(super) unknowns: Vec<Id>,
+    pub(super) multipliers: Vec<Id>,
+    /// For each multiplier, its pivot over the part that other multipliers have not reduced.
+    pub(super) independence: Vec<Id>,
+}
+
+/// The pivots of multipliers under way.
+#[derive(Debug, Default)]
+struct Pivots {
+    /// The places of all multipliers.
+    multipliers: BTreeSet<usize>,
+    /// The part of each pivot that comes from coordinates.
+    whole: BTreeMap<usize, Vec<(Id, Rational)>>,
+    /// Those that others have reduced.
+    reduced: BTreeSet<usize>,
+    independence: BTreeMap<usize, Id>,
+}
+
 impl Tree<'_> {
     /// The unknowns of the coordinates, from masses, right sides and what each joint adds by
     /// itself.
@@ -24,6 +45,22 @@ impl Tree<'_> {
         right: BTreeMap<usize, Id>,
         drift: &[Vec<Id>],
     ) -> Option<Vec<Id>> {
+        let solution = self.solve_with(masses, right, drift, &[])?;
+        Some(solution.unknowns)
+    }
+
+    /// The same with multipliers, each of which is known by its place and the coordinates of its
+    /// row.
+    pub(super) fn solve_with(
+        &mut self,
+        masses: &BTreeMap<(usize, usize), Id>,
+        right: BTreeMap<usize, Id>,
+        drift: &[Vec<Id>],
+        multipliers: &[(usize, BTreeSet<usize>)],
+    ) -> Option<Solution> {
+        let mut waiting: Vec<(usize, BTreeSet<usize>)> = multipliers.to_vec();
+        let places: BTreeSet<usize> = multipliers.iter().map(|&(place, _)| place).collect();
+        let mut pivots = Pivots { multipliers: places, ..Pivots::default() };
         let mut system = Quadratic { entries: masses.clone(), right };
         let mut steps: Vec<Step> = Vec::new();
         let mut open: Vec<usize> = (0..self.count).rev().collect();
@@ -41,7 +78,17 @@ impl Tree<'_> {
             });
             open.extend(later);
             for j in now {
-                self.eliminate(&mut system, j, &mut steps)?;
+                self.eliminate(&mut system, j, &mut steps, &mut pivots)?;
+                waiting.iter_mut().for_each(|(_, row)| {
+                    row.remove(&j);
+                });
+                let done: Vec<usize> = waiting
+                    .extract_if(.., |(_, row)| row.is_empty())
+                    .map(|(place, _)| place)
+                    .collect();
+                for place in done {
+                    self.eliminate(&mut system, place, &mut steps, &mut pivots)?;
+                }
             }
         }
         self.joints = joints;
@@ -54,7 +101,13 @@ impl Tree<'_> {
             let value = self.graph.sum(&terms);
             found.insert(step.unknown, self.graph.atom(value));
         }
-        Some((0..self.count).map(|j| self.graph.div(found[&j], self.units[j])).collect())
+        let unknowns = (0..self.count).map(|j| self.graph.div(found[&j], self.units[j])).collect();
+        let of = |places: &BTreeMap<usize, Id>, rest: Id| {
+            let value = |(place, _): &(usize, _)| places.get(place).copied().unwrap_or(rest);
+            multipliers.iter().map(value).collect()
+        };
+        let independence = of(&pivots.independence, Graph::ONE);
+        Some(Solution { unknowns, multipliers: of(&found, Graph::ZERO), independence })
     }
 
     /// Puts u̇ = u̇ₚ + J q̈ + γ in for the scalars of a joint.
@@ -175,10 +228,17 @@ impl Tree<'_> {
         system: &mut Quadratic,
         unknown: usize,
         steps: &mut Vec<Step>,
+        pivots: &mut Pivots,
     ) -> Option<()> {
         let pivot = system.entry(unknown, unknown);
         if pivot == Graph::ZERO {
             return None;
+        }
+        let multiplier = pivots.multipliers.contains(&unknown);
+        if multiplier && pivots.reduced.contains(&unknown) {
+            let whole = self.graph.sum(&pivots.whole[&unknown]);
+            let whole = self.graph.atom(whole);
+            pivots.independence.insert(unknown, self.graph.div(pivot, whole));
         }
         let inverse = self.graph.power(pivot, Rational::MINUS_ONE);
         // A moving reciprocal is taken once; one of parameters stays open and cancels.
@@ -202,6 +262,14 @@ impl Tree<'_> {
         for &(other, entry) in &row {
             let factor = times(self.graph, entry);
             terms.push((other, self.graph.negative(factor)));
+            if pivots.multipliers.contains(&other) {
+                if multiplier {
+                    pivots.reduced.insert(other);
+                } else {
+                    let part = self.graph.mul(entry, factor);
+                    pivots.whole.entry(other).or_default().push((part, Rational::MINUS_ONE));
+                }
+            }
             for &(next, own) in row.iter().filter(|&&(next, _)| next <= other) {
                 let old = system.entry(next, other);
                 let product = self.graph.mul(own, factor);

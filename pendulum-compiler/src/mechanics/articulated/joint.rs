@@ -139,7 +139,7 @@ impl Tree<'_> {
     }
 
     /// The coordinates in some expressions.
-    fn coordinates(&self, roots: &[Id]) -> BTreeSet<usize> {
+    pub(super) fn coordinates(&self, roots: &[Id]) -> BTreeSet<usize> {
         let index = |symbol| match symbol {
             Symbol::Coordinate(index) => Some(index),
             _ => None,

@@ -9,6 +9,7 @@
 //! them is the articulated-body recursion (Featherstone 1983): the cost grows with the number of
 //! joints, and trees branch without fill-in.
 
+mod constraint;
 mod eliminate;
 mod joint;
 mod propagate;
@@ -32,6 +33,17 @@ pub(crate) struct Sparse {
     pub(crate) energy: Id,
     pub(crate) kinetic: Option<Id>,
     pub(crate) unsolved: Unsolved,
+    /// Accelerations under constraints; none without them, or if they have no such form.
+    pub(crate) held: Option<Held>,
+}
+
+/// The accelerations under constraints, and what goes with them.
+#[derive(Debug)]
+pub(crate) struct Held {
+    pub(crate) accelerations: Vec<Id>,
+    pub(crate) multipliers: Vec<Id>,
+    pub(crate) correction: Vec<Id>,
+    pub(crate) independence: Vec<Id>,
 }
 
 /// The equations of motion before they are solved.
@@ -48,7 +60,12 @@ pub(crate) struct Unsolved {
 /// none, or if it has none.
 pub(crate) fn sparse(graph: &mut Graph, extended: &Extended, count: usize) -> Option<Sparse> {
     let lagrangian = velocity_polynomial::by_velocities(graph, extended.lagrangian)?;
-    let used = graph.symbols(&[lagrangian, extended.dissipation]);
+    let mut used = graph.symbols(&[lagrangian, extended.dissipation]);
+    let held = extended.constraints.as_deref().unwrap_or_default();
+    used.extend(graph.symbols(held).into_iter().filter_map(|symbol| match symbol {
+        Symbol::Position(scalar) => Some(Symbol::Auxiliary(scalar)),
+        _ => None,
+    }));
     if !used.iter().any(|symbol| matches!(symbol, Symbol::Auxiliary(_))) {
         return None;
     }
@@ -120,6 +137,7 @@ impl Tree<'_> {
             forces.insert(place, force);
         }
         let drifts: Vec<Vec<Id>> = self.joints.iter().map(|joint| joint.drift.clone()).collect();
+        let held = self.held(extended, &masses, &forces, &drifts, &velocities);
         let accelerations = self.solve(&masses, forces, &drifts)?;
 
         // Velocities from momenta: the same unknowns, with the drive in place of the drift.
@@ -167,6 +185,7 @@ impl Tree<'_> {
             energy,
             kinetic,
             unsolved,
+            held,
         })
     }
 

@@ -77,6 +77,9 @@ pub(crate) struct Extended {
     pub(crate) positions: Vec<Vec<usize>>,
     /// The value of each scalar.
     pub(crate) scalars: Vec<Id>,
+    /// The holonomic constraints that are solved, in terms of positions where those stand in them;
+    /// none if there is one of velocities.
+    pub(crate) constraints: Option<Vec<Id>>,
 }
 
 impl Energies {
@@ -95,7 +98,8 @@ impl Energies {
             let single = [&mut extended.lagrangian, &mut extended.dissipation]
                 .into_iter()
                 .chain(extended.kinetic.as_mut());
-            single.chain(&mut extended.forces).chain(&mut extended.scalars)
+            let constraints = extended.constraints.iter_mut().flatten();
+            single.chain(&mut extended.forces).chain(&mut extended.scalars).chain(constraints)
         });
         let rows = self.constraints.iter_mut().chain(&mut self.limits);
         let rows = rows.flat_map(|row| [&mut row.value, &mut row.restitution]);
@@ -122,6 +126,11 @@ pub(crate) fn energies(model: &Model, graph: &mut Graph, errors: &mut Errors) ->
 fn extended(model: &Model, graph: &mut Graph, errors: &mut Errors) -> Option<Extended> {
     let (energies, positions) = lower(model, graph, errors, Some(PositionTracker::default()));
     let PositionTracker { scalars, positions, .. } = positions?;
+    let velocity = |row: &Row| graph.dependencies(row.value).any(Dependencies::VELOCITY);
+    let constraints = energies.constraints.iter();
+    let held = constraints.filter(|row| !model.constraints[row.statement].redundant);
+    let holonomic = !energies.constraints.iter().any(velocity);
+    let constraints = holonomic.then(|| held.map(|row| row.value).collect());
     let lagrangian = match energies.lagrangian {
         Some(lagrangian) => lagrangian,
         None => {
@@ -136,6 +145,7 @@ fn extended(model: &Model, graph: &mut Graph, errors: &mut Errors) -> Option<Ext
         forces: energies.forces,
         positions,
         scalars,
+        constraints,
     })
 }
 
@@ -201,6 +211,7 @@ fn lower(
         constants: BTreeMap::new(),
         accelerations: false,
         constrained: false,
+        known: None,
         shapes: Vec::new(),
     };
     let energies = lower.block();
@@ -272,6 +283,8 @@ struct Lower<'m, 'a, 'g, 'e> {
     accelerations: bool,
     /// True in a constraint or a limit.
     constrained: bool,
+    /// The definitions whose positions stand for themselves from now on.
+    known: Option<BTreeMap<(usize, Option<i64>), Value>>,
     /// The shapes of the constraints.
     shapes: Vec<constraint::Shape>,
 }
@@ -322,6 +335,9 @@ impl Lower<'_, '_, '_, '_> {
             energies.constraints = self.constraints();
             energies.limits = self.limits();
             energies.outputs = self.outputs();
+        } else {
+            self.known = Some(std::mem::take(&mut self.instances));
+            energies.constraints = self.constraints();
         }
         energies.families = self.indexed.difference(&self.whole).copied().collect();
         energies
@@ -448,6 +464,9 @@ impl Lower<'_, '_, '_, '_> {
         if let Some(value) = self.instances.get(&(index, k)) {
             return value.clone();
         }
+        if let Some(value) = self.position(index, k) {
+            return value;
+        }
         let definition = self.model.lets[index];
         if self.open.contains(&(index, k)) {
             self.errors.once(definition.expr.source, range, messages::circular(&definition.name));
@@ -466,6 +485,20 @@ impl Lower<'_, '_, '_, '_> {
         }
         self.instances.insert((index, k), value.clone());
         value
+    }
+
+    /// A definition as symbols of its positions, where they stand for themselves.
+    fn position(&mut self, index: usize, k: Option<i64>) -> Option<Value> {
+        let value = self.known.as_ref()?.get(&(index, k))?.clone();
+        let positions = self.positions.as_ref()?;
+        let places = positions.places.clone();
+        let all = !value.scalars().is_empty()
+            && value.scalars().iter().all(|scalar| places.contains_key(scalar));
+        let symbol = |graph: &mut Graph, id: Id| match places.get(&id) {
+            Some(&place) => graph.symbol(Symbol::Position(place)),
+            None => id,
+        };
+        all.then(|| self.map(value, symbol))
     }
 
     /// A function defined by `let`, applied.

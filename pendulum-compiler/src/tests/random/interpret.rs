@@ -62,6 +62,7 @@ impl<T: Real> Values<T> {
             Symbol::Control { input, component } => self.inputs[input][component][0],
             Symbol::Target(index) => self.p[index],
             Symbol::Auxiliary(_)
+            | Symbol::Position(_)
             | Symbol::Point(..)
             | Symbol::Acceleration(_)
             | Symbol::Multiplier(_) => {

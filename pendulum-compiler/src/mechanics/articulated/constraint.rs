@@ -1,0 +1,94 @@
+//! Constraints between positions: multipliers among the unknowns of the tree.
+//!
+//! A holonomic constraint g(z, q, t) of positions z and coordinates has the gradients ∂g/∂z and
+//! ∂g/∂q on the accelerations u̇ and q̈. Its multiplier goes along as the leaves are put into their
+//! parents, and is eliminated behind the coordinates of its row: a chain that is closed into a loop
+//! costs as much for each link as an open one.
+
+use super::{Held, Tree};
+use crate::algebra::diff::{derivative, substitute};
+use crate::algebra::expr::{Graph, Id, Symbol};
+use crate::algebra::number::Rational;
+use crate::mechanics::lower::{Extended, total_derivative};
+use std::collections::{BTreeMap, BTreeSet};
+
+impl Tree<'_> {
+    /// The accelerations under the constraints, the multipliers and the correction of misfits.
+    pub(super) fn held(
+        &mut self,
+        extended: &Extended,
+        masses: &BTreeMap<(usize, usize), Id>,
+        forces: &BTreeMap<usize, Id>,
+        drifts: &[Vec<Id>],
+        velocities: &BTreeMap<usize, Id>,
+    ) -> Option<Held> {
+        let values = extended.constraints.as_ref()?;
+        if values.is_empty() {
+            return None;
+        }
+        let first = self.count + extended.scalars.len();
+        let (mut masses, mut forces) = (masses.clone(), forces.clone());
+        let mut targets = BTreeMap::new();
+        let mut multipliers = Vec::new();
+        for (k, &value) in values.iter().enumerate() {
+            let place = first + k;
+            let rate = rate_of(self.graph, value);
+            // At constant velocities.
+            let drift = rate_of(self.graph, rate);
+            let mut row = BTreeSet::new();
+            for symbol in self.graph.symbols(&[rate]) {
+                let other = match symbol {
+                    Symbol::Velocity(j) => j,
+                    Symbol::Auxiliary(scalar) => self.count + scalar,
+                    _ => continue,
+                };
+                let slope = derivative(self.graph, rate, symbol);
+                let slope = self.positioned(slope, extended, velocities);
+                let entry = self.graph.negative(slope);
+                let entry = self.scaled(entry, &[other]);
+                if entry != Graph::ZERO {
+                    masses.insert((other, place), entry);
+                }
+            }
+            let whole = self.positioned(value, extended, velocities);
+            row.extend(self.coordinates(&[whole]));
+            let drift = self.positioned(drift, extended, velocities);
+            forces.insert(place, drift);
+            let target = self.graph.symbol(Symbol::Target(k));
+            targets.insert(place, self.graph.negative(target));
+            multipliers.push((place, row));
+        }
+        let solution = self.solve_with(&masses, forces, drifts, &multipliers)?;
+        let still: Vec<Vec<Id>> =
+            drifts.iter().map(|drift| vec![Graph::ZERO; drift.len()]).collect();
+        let correction = self.solve_with(&masses, targets, &still, &multipliers)?;
+        Some(Held {
+            accelerations: solution.unknowns,
+            multipliers: solution.multipliers,
+            correction: correction.unknowns,
+            independence: solution.independence,
+        })
+    }
+
+    /// An expression with the values of positions and of their velocities put in.
+    fn positioned(&mut self, id: Id, extended: &Extended, velocities: &BTreeMap<usize, Id>) -> Id {
+        substitute(self.graph, id, |symbol| match symbol {
+            Symbol::Position(scalar) => extended.scalars.get(scalar).copied(),
+            Symbol::Auxiliary(scalar) => velocities.get(&scalar).copied(),
+            _ => None,
+        })
+    }
+}
+
+/// d/dt of an expression of positions and coordinates; `Auxiliary` is the velocity of a position.
+fn rate_of(graph: &mut Graph, id: Id) -> Id {
+    let mut terms = vec![(total_derivative(graph, id), Rational::ONE)];
+    for symbol in graph.symbols(&[id]) {
+        if let Symbol::Position(scalar) = symbol {
+            let partial = derivative(graph, id, symbol);
+            let velocity = graph.symbol(Symbol::Auxiliary(scalar));
+            terms.push((graph.mul(partial, velocity), Rational::ONE));
+        }
+    }
+    graph.sum(&terms)
+}
