@@ -79,9 +79,9 @@ impl Tree<'_> {
             open.extend(later);
             for j in now {
                 self.eliminate(&mut system, j, &mut steps, &mut pivots)?;
-                waiting.iter_mut().for_each(|(_, row)| {
+                for (_, row) in &mut waiting {
                     row.remove(&j);
-                });
+                }
                 let done: Vec<usize> = waiting
                     .extract_if(.., |(_, row)| row.is_empty())
                     .map(|(place, _)| place)

@@ -117,19 +117,31 @@ impl Energies {
 pub(crate) fn energies(model: &Model, graph: &mut Graph, errors: &mut Errors) -> Energies {
     let mut energies = lower(model, graph, errors, None).0;
     if errors.is_empty() && 1 < energies.forces.len() && !model.lets.is_empty() {
-        energies.extended = extended(model, graph, errors);
+        let holonomic = energies.velocity_constraints(graph).is_empty();
+        energies.extended = extended(model, graph, holonomic, errors);
     }
     energies
 }
 
 /// Lowers a block once more, with the velocities of its positions as unknowns.
-fn extended(model: &Model, graph: &mut Graph, errors: &mut Errors) -> Option<Extended> {
-    let (energies, positions) = lower(model, graph, errors, Some(PositionTracker::default()));
+///
+/// Constraints are lowered in terms of positions, whose rates are no expressions: only where all
+/// are `holonomic`.
+fn extended(
+    model: &Model,
+    graph: &mut Graph,
+    holonomic: bool,
+    errors: &mut Errors,
+) -> Option<Extended> {
+    let (energies, positions) = lower(
+        model,
+        graph,
+        errors,
+        Some(PositionTracker { constrained: holonomic, ..PositionTracker::default() }),
+    );
     let PositionTracker { scalars, positions, .. } = positions?;
-    let velocity = |row: &Row| graph.dependencies(row.value).any(Dependencies::VELOCITY);
     let constraints = energies.constraints.iter();
     let held = constraints.filter(|row| !model.constraints[row.statement].redundant);
-    let holonomic = !energies.constraints.iter().any(velocity);
     let constraints = holonomic.then(|| held.map(|row| row.value).collect());
     let lagrangian = match energies.lagrangian {
         Some(lagrangian) => lagrangian,
@@ -155,6 +167,8 @@ struct PositionTracker {
     scalars: Vec<Id>,
     positions: Vec<Vec<usize>>,
     places: BTreeMap<Id, usize>,
+    /// Constraints are told in terms of them.
+    constrained: bool,
 }
 
 impl PositionTracker {
@@ -335,7 +349,7 @@ impl Lower<'_, '_, '_, '_> {
             energies.constraints = self.constraints();
             energies.limits = self.limits();
             energies.outputs = self.outputs();
-        } else {
+        } else if self.positions.as_ref().is_some_and(|positions| positions.constrained) {
             self.known = Some(std::mem::take(&mut self.instances));
             energies.constraints = self.constraints();
         }

@@ -4,6 +4,7 @@
 //! `f64` and in double-double.
 
 mod check;
+mod constrained;
 mod interpret;
 mod tests;
 mod written;
