@@ -76,6 +76,30 @@ pub enum Error {
         /// The parameters that are negative, and so may be the cause.
         suspects: Vec<Suspect>,
     },
+    /// A constraint does not hold.
+    Inconsistent {
+        /// The time.
+        t: f64,
+        /// The half of the state that does not fulfil it: with velocities its rate is off.
+        part: Part,
+        /// The constraint.
+        constraint: &'static str,
+        /// The misfit of the constraint or of its rate.
+        residual: f64,
+        /// The unit of the constraint, empty where none is known.
+        unit: &'static str,
+        /// It is a redundant one, which does not follow from the others.
+        redundant: bool,
+    },
+    /// A constraint depends on those before it, so that their forces are undetermined.
+    DependentConstraints {
+        /// The time.
+        t: f64,
+        /// The constraint.
+        constraint: &'static str,
+        /// Its independence, from 0 to 1.
+        independence: f64,
+    },
     /// Step control asked for a step below the resolution of time.
     StepSizeUnderflow {
         /// The time reached.
@@ -292,6 +316,30 @@ impl fmt::Display for Error {
                     ),
                 }
             }
+            Self::Inconsistent { t, part, constraint, residual, unit, redundant } => {
+                let what = if part == Part::Velocity { "the rate of " } else { "" };
+                let kind = if redundant { "redundant constraint" } else { "constraint" };
+                write!(f, "at t = {t:?} {what}the {kind} {constraint} is off by {residual:?}")?;
+                if !unit.is_empty() {
+                    write!(f, " {unit}")?;
+                }
+                if part == Part::Velocity {
+                    write!(f, " per second")?;
+                }
+                if redundant {
+                    write!(
+                        f,
+                        "; it does not follow from the others, declare it without `redundant`"
+                    )
+                } else {
+                    write!(f, "; begin with a state that fulfils it, as `assemble` finds one")
+                }
+            }
+            Self::DependentConstraints { t, constraint, independence } => write!(
+                f,
+                "at t = {t:?} the constraint {constraint} depends on those before it, {independence:.1e} of it is left; \
+                 leave it out, declare it `redundant`, or stop before that state"
+            ),
             Self::StepSizeUnderflow { t, step, coordinate } => write!(
                 f,
                 "at t = {t:?} the step size fell to {step:?} for the sake of {coordinate}; the motion may be singular there: \

@@ -5,7 +5,7 @@ use crate::integrate::events::detector::EventDetector;
 use crate::integrate::events::{Event, Occurrence, Status};
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::Method;
-use crate::integrate::observe::within;
+
 use crate::integrate::output::direction;
 use crate::integrate::saved::{Memory, Saved};
 use crate::integrate::solution::Stats;
@@ -302,8 +302,7 @@ where
     ///
     /// Methods that need further evaluations for it take them now.
     pub fn at(&mut self, t: f64) -> Option<State<D::Scalar, N>> {
-        let (start, end) = (self.integration.last_start().t, self.state());
-        within(start, end, t, || self.integration.interpolant())
+        self.integration.within(t)
     }
 
     /// Everything that the next steps need, with all bits: to go on later, or elsewhere, by

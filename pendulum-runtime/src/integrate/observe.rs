@@ -21,7 +21,7 @@ pub struct Step<'s, T, const N: usize> {
     pub events: &'s [Occurrence<T, N>],
     /// The interval of the whole integration.
     pub interval: (f64, f64),
-    pub(crate) interpolant: &'s mut dyn FnMut() -> Option<Interpolant<T, N>>,
+    pub(crate) within: &'s mut dyn FnMut(f64) -> Option<State<T, N>>,
 }
 
 impl<T: Float, const N: usize> Step<'_, T, N> {
@@ -35,7 +35,7 @@ impl<T: Float, const N: usize> Step<'_, T, N> {
     ///
     /// Methods that need further evaluations for it take them at the first call.
     pub fn at(&mut self, t: f64) -> Option<State<T, N>> {
-        within(self.start.t, self.end, t, &mut *self.interpolant)
+        (self.within)(t)
     }
 }
 

@@ -11,6 +11,7 @@ use crate::integrate::step::field::first_in_state;
 use crate::integrate::step::observed::Observed;
 use crate::scalar::Float;
 use crate::system::Facts;
+use crate::time::Time;
 
 /// The greatest number of states that an interval between outputs may ask for.
 const MOST: f64 = 1e7;
@@ -213,7 +214,9 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
             while 0.0 < self.onwards * end.since(self.next) {
                 let (q, v) = interpolant.at(interpolant.interval.fraction(self.next));
                 not_finite(self.next, &q, &v)?;
-                self.push(State { t: self.next, q, v });
+                let mut state = State { t: self.next, q, v };
+                integration.deliver(Time::new(self.next), &mut state);
+                self.push(state);
                 self.advance();
             }
             if let Some(dense) = &mut self.dense {

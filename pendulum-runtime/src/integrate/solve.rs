@@ -387,6 +387,6 @@ where
 {
     let (start, end) = (integration.last_start(), State::from(&integration.end));
     let stats = integration.stats();
-    let interpolant = &mut || integration.interpolant();
-    look(&mut Step { start, end, stats, events, interval, interpolant })
+    let within = &mut |t| integration.within(t);
+    look(&mut Step { start, end, stats, events, interval, within })
 }

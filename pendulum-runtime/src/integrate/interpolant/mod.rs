@@ -128,12 +128,52 @@ impl<T: Float, const N: usize> Interpolant<T, N> {
         clamp(&mut self.q, h, v0, v1);
     }
 
+    /// Bends both polynomials by cubics so that they end in the state `to`, without a change of their
+    /// starts and of the slopes at both ends; that of the coordinates at the end changes as the
+    /// velocities do.
+    pub(crate) fn end_at(&mut self, to: &Endpoint<T, N>) {
+        let number = T::from_f64;
+        let (q, v) = self.at(number(1.0));
+        let h = self.interval.length::<T>();
+        for i in 0..N {
+            let (by_q, by_v) = (to.q.high[i] - q[i], to.v.high[i] - v[i]);
+            bend(&mut self.q, self.basis, i, by_q, h * by_v);
+            bend(&mut self.v, self.basis, i, by_v, number(0.0));
+        }
+        self.terms = self.terms.max(3);
+    }
+
     /// Coordinates and velocities at θ.
     pub fn at(&self, theta: T) -> ([T; N], [T; N]) {
         (
             self.basis.at(&self.q0, &self.q[..self.terms], theta),
             self.basis.at(&self.v0, &self.v[..self.terms], theta),
         )
+    }
+}
+
+/// Adds d(3θ² − 2θ³) + s(θ³ − θ²) to one polynomial: d at the end, with the slope s there.
+fn bend<T: Float, const N: usize>(
+    terms: &mut [[T; N]; TERMS],
+    basis: Basis,
+    index: usize,
+    d: T,
+    s: T,
+) {
+    let number = T::from_f64;
+    // The coefficients of θ² and θ³.
+    let (square, cube) = (number(3.0) * d - s, s - number(2.0) * d);
+    let added = match basis {
+        Basis::Nested => [d, -d, number(2.0) * d - s],
+        Basis::Powers => [number(0.0), square, cube],
+        Basis::Legendre => [
+            T::ratio(1.0, 2.0) * square + T::ratio(9.0, 20.0) * cube,
+            T::ratio(1.0, 6.0) * square + T::ratio(1.0, 4.0) * cube,
+            T::ratio(1.0, 20.0) * cube,
+        ],
+    };
+    for (term, added) in terms.iter_mut().zip(added) {
+        term[index] += added;
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::error::{Error, Part, Quantity};
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{self, Method};
+use crate::integrate::observe::within;
 use crate::integrate::saved::Memory;
 use crate::integrate::solution::Stats;
 use crate::integrate::state::State;
@@ -17,6 +18,7 @@ use crate::integrate::step::held::Held;
 use crate::integrate::step::inertia::{inertia, is_due, varies};
 use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::observed::Observed;
+use crate::integrate::step::projection::{self, is_constrained};
 use crate::integrate::step::short::{is_short, straight};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
@@ -67,7 +69,7 @@ where
         v: [D::Scalar; N],
     ) -> Result<Self, Error> {
         check_start(&*dynamics, Time::new(t), &q, &v)?;
-        let end = Endpoint::new(Time::new(t), q, v);
+        let end = projection::start(&*dynamics, Time::new(t), Side::After, q, v)?;
         dynamics.begin(t);
         let kink = next_kink(&method, &*dynamics, t, false)?;
         Ok(Self {
@@ -96,12 +98,13 @@ where
         v: [D::Scalar; N],
     ) -> Result<(), Error> {
         check_start(&*self.dynamics, Time::new(t), &q, &v)?;
+        let end = projection::start(&*self.dynamics, Time::new(t), Side::After, q, v)?;
         self.dynamics.begin(t);
         self.kink = next_kink(&self.method, &*self.dynamics, t, false)?;
         self.backwards = false;
         // A long step from a state that it was not chosen for may go over events.
         self.state = ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
-        self.end = Endpoint::new(Time::new(t), q, v);
+        self.end = end;
         (self.last, self.interpolant, self.before_kink) = (None, None, None);
         Ok(())
     }
@@ -115,6 +118,7 @@ where
         let mut q = self.end.q;
         q.add_both(D::Scalar::from_f64(1.0), high, low);
         check_start(&*self.dynamics, self.end.t, &q.high, &self.end.v.high)?;
+        projection::start(&*self.dynamics, self.end.t, Side::After, q.high, self.end.v.high)?;
         (self.end.q, self.end.a) = (q, None);
         (self.last, self.interpolant, self.before_kink) = (None, None, None);
         Ok(())
@@ -182,7 +186,8 @@ where
             self.controller.step(&mut self.state, context)
         };
         self.stats.evaluations += field.evaluations;
-        match taken.and_then(|interval| self.arrive(&interval).map(|()| interval)) {
+        let kept = taken.and_then(|interval| self.hold().map(|()| interval));
+        match kept.and_then(|interval| self.arrive(&interval).map(|()| interval)) {
             Ok(interval) => {
                 (self.last, self.interpolant, self.from) = (Some(interval), None, from);
             }
@@ -206,6 +211,21 @@ where
         let Endpoint { t, q, v, .. } = &self.end;
         if self.dynamics.sample(*t, &q.high, &v.high)? {
             self.end.a = None;
+        }
+        Ok(())
+    }
+
+    /// Brings the end of a step onto the constraints.
+    #[inline]
+    fn hold(&mut self) -> Result<(), Error> {
+        if const { is_constrained::<D, N>() } {
+            let side = onwards(self.backwards).opposite();
+            return projection::project_end(
+                &*self.dynamics,
+                &mut self.end,
+                side,
+                &mut self.stats.constraints,
+            );
         }
         Ok(())
     }
@@ -267,11 +287,24 @@ where
         }
         let mut field = Field::new(&*self.dynamics, &self.prepared);
         field.backwards = self.backwards;
-        let interpolant =
+        let mut interpolant =
             self.method.interpolant(&mut field, interval, &mut self.from, to, &mut self.workspace);
         self.stats.evaluations += field.evaluations;
+        if const { is_constrained::<D, N>() } {
+            interpolant.end_at(to);
+        }
         self.interpolant = Some(interpolant);
         self.interpolant
+    }
+
+    /// The state at `t` within the last step, on the constraints.
+    pub(crate) fn within(&mut self, t: f64) -> Option<State<D::Scalar, N>> {
+        let (start, end) = (self.last_start().t, State::from(&self.end));
+        let mut state = within(start, end, t, || self.interpolant())?;
+        if t != end.t {
+            Observed::deliver(self, Time::new(t), &mut state);
+        }
+        Some(state)
     }
 
     /// The accelerations at the state reached; the next step begins with them.
@@ -295,7 +328,9 @@ where
     /// are chosen as at a start.
     pub(crate) fn jump(&mut self, state: &State<D::Scalar, N>) -> Result<(), Error> {
         let (before, backwards) = (self.end, self.backwards);
-        inertia(&*self.dynamics, before.t, onwards(backwards), &state.q, &state.v)?;
+        let side = onwards(backwards);
+        inertia(&*self.dynamics, before.t, side, &state.q, &state.v)?;
+        let state = &projection::landed(&*self.dynamics, before.t, side, state)?;
         // Where nothing jumps, the low words stay.
         let put = |sum: &mut Compensated<D::Scalar, N>, high: &[D::Scalar; N]| {
             for i in 0..N {
@@ -387,6 +422,12 @@ where
 
     fn accelerations(&mut self) -> [D::Scalar; N] {
         Integration::accelerations(self)
+    }
+
+    fn deliver(&self, t: Time, state: &mut State<D::Scalar, N>) {
+        if const { is_constrained::<D, N>() } {
+            projection::deliver(&*self.dynamics, t, onwards(self.backwards), state);
+        }
     }
 
     fn goes_back(&self) -> bool {
@@ -500,5 +541,17 @@ where
         }
     }
     node.a = None;
+    if const { is_constrained::<D, N>() } {
+        // A constraint that moves with a jump pushes as it jumps.
+        let far = from.opposite();
+        let state = projection::landed(dynamics, node.t, far, &State::from(&*node))?;
+        for i in 0..N {
+            for (sum, value) in [(&mut node.q, state.q[i]), (&mut node.v, state.v[i])] {
+                if sum.high[i] != value {
+                    (sum.high[i], sum.low[i]) = (value, T::from_f64(0.0));
+                }
+            }
+        }
+    }
     Ok(())
 }

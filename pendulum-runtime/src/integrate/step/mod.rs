@@ -14,4 +14,5 @@ pub(crate) mod inertia;
 pub(crate) mod integration;
 pub(crate) mod interval;
 pub(crate) mod observed;
+pub(crate) mod projection;
 pub(crate) mod short;

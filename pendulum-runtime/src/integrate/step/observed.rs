@@ -36,6 +36,11 @@ pub(crate) trait Observed<T, const N: usize> {
     /// Puts the state elsewhere at the same time.
     fn jump(&mut self, state: &State<T, N>) -> Result<(), Error>;
 
+    /// Brings a state within the last step, at `t`, onto the constraints.
+    fn deliver(&self, t: Time, state: &mut State<T, N>) {
+        let _ = (t, state);
+    }
+
     /// Takes the last step back.
     fn retreat(&mut self);
 }

@@ -135,6 +135,12 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
             self.look(integration.end(), &a).ok();
             return Err(error);
         }
+        for occurrence in &mut self.found {
+            if occurrence.time != end.t {
+                integration.deliver(occurrence.time, &mut occurrence.state);
+                occurrence.after = occurrence.state;
+            }
+        }
         let Some(stop) = self.count() else { return Ok(None) };
         let Occurrence { event, time, state, .. } = self.found[stop];
         let cut = time != end.t;

@@ -1,0 +1,338 @@
+//! Projection onto the constraints, in the metric of the mass matrix.
+//!
+//! The accelerations keep the constraints as long as a state fulfils them; what a step leaves off
+//! grows with the square of the time. Each step therefore ends on the nearest state that fulfils
+//! them: q − M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹g, repeated, and v − M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹(C v + b). The corrections are
+//! impulses of the constraint forces, so that momenta that those conserve survive, and the energy
+//! changes in second order only.
+//!
+//! E. Eich, SIAM J. Numer. Anal. 30 (1993) 1467; E. Hairer, C. Lubich, G. Wanner, Geometric
+//! Numerical Integration (2006), IV.4.
+
+use crate::error::{Error, Part};
+use crate::integrate::solution::{ConstraintStats, Extreme};
+use crate::integrate::state::State;
+use crate::integrate::step::compensated::Compensated;
+use crate::integrate::step::endpoint::Endpoint;
+use crate::motion::Side;
+use crate::scalar::{Float, Real};
+use crate::system::{Dynamics, Facts, Purpose, System, scalar_time};
+use crate::time::Time;
+
+/// Newton iterations at most: from the end of a step one or two suffice.
+const MOST: usize = 8;
+
+/// The facts about the system of the dynamics `D`.
+const fn facts<D: Dynamics<N>, const N: usize>() -> &'static Facts {
+    &<D::System as System<N>>::FACTS
+}
+
+/// Returns true if a system has constraints that its equations hold.
+#[inline]
+pub(crate) const fn is_constrained<D: Dynamics<N>, const N: usize>() -> bool {
+    0 < facts::<D, N>().held_constraints()
+}
+
+/// A state between the two halves of a projection.
+struct Projection<'d, D: Dynamics<N>, const N: usize> {
+    dynamics: &'d D,
+    time: D::Scalar,
+    inputs: <D::System as System<N>>::Inputs,
+}
+
+impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Projection<'d, D, N> {
+    fn new(dynamics: &'d D, t: Time, side: Side) -> Self {
+        let inputs = dynamics.inputs(t, side, Purpose::Momenta);
+        Self { dynamics, time: scalar_time(t), inputs }
+    }
+
+    fn misfits(&self, q: &[D::Scalar; N], v: &[D::Scalar; N]) -> [[D::Scalar; N]; 2] {
+        self.dynamics.system().misfits(self.time, q, v, &self.inputs)
+    }
+
+    /// Takes the correction for `misfit` off `values`, in units of their rounding; `None` if it is
+    /// below that, or no number.
+    fn correct(
+        &self,
+        q: &[D::Scalar; N],
+        v: &[D::Scalar; N],
+        misfit: &[D::Scalar; N],
+    ) -> [D::Scalar; N] {
+        let system = self.dynamics.system();
+        system.correction(self.time, q, v, &self.inputs, misfit)
+    }
+}
+
+/// The length of a correction in units of the rounding of what it corrects; coordinates that are
+/// almost zero are measured by the largest.
+fn rounding<T: Float, const N: usize>(change: &[T; N], values: &[T; N]) -> f64 {
+    let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.to_f64().abs()));
+    let mut most = 0.0f64;
+    for (change, value) in change.iter().zip(values) {
+        let scale = value.to_f64().abs().max(1e-3 * largest).max(f64::MIN_POSITIVE);
+        let own = change.to_f64().abs() / (T::EPSILON.to_f64() * scale);
+        most = if own.is_nan() { f64::INFINITY } else { most.max(own) };
+    }
+    most
+}
+
+fn taken<T: Float, const N: usize>(values: &mut Compensated<T, N>, change: &[T; N]) {
+    values.add(T::from_f64(-1.0), change);
+}
+
+/// What a projection has found and done.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found {
+    /// The largest misfits of positions and of velocities before it, with their constraints.
+    pub(crate) misfits: [(f64, usize); 2],
+    /// The first corrections of both, in units of rounding.
+    pub(crate) first: [f64; 2],
+    /// The last ones: large if the iteration has not converged.
+    pub(crate) last: [f64; 2],
+    /// The state is another one now.
+    pub(crate) moved: bool,
+}
+
+fn largest<T: Float, const N: usize>(values: &[T; N]) -> (f64, usize) {
+    let mut most = (0.0, 0);
+    for (index, value) in values.iter().enumerate() {
+        let value = value.to_f64().abs();
+        if most.0 < value || value.is_nan() {
+            most = (value, index);
+        }
+    }
+    most
+}
+
+/// Brings `q` and `v` at `t`, seen from `side`, onto the constraints.
+pub(crate) fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    t: Time,
+    side: Side,
+    q: &mut Compensated<D::Scalar, N>,
+    v: &mut Compensated<D::Scalar, N>,
+) -> Found {
+    let projection = Projection::new(dynamics, t, side);
+    let none = (0.0, 0);
+    let mut found = Found { misfits: [none; 2], first: [0.0; 2], last: [0.0; 2], moved: false };
+    let zero = [D::Scalar::from_f64(0.0); N];
+    // A correction this long, in units of rounding, leaves one below rounding behind.
+    let quadratic = 0.25 / D::Scalar::EPSILON.to_f64().sqrt();
+    for part in 0..2 {
+        let mut before = f64::INFINITY;
+        for iteration in 0..MOST {
+            let misfit = projection.misfits(&q.high, &v.high)[part];
+            if iteration == 0 {
+                found.misfits[part] = largest(&misfit);
+            }
+            if misfit == zero {
+                found.last[part] = 0.0;
+                break;
+            }
+            let change = projection.correct(&q.high, &v.high, &misfit);
+            let values = if part == 0 { &mut *q } else { &mut *v };
+            let length = rounding(&change, &values.high);
+            if iteration == 0 {
+                found.first[part] = length;
+            }
+            // What rounding leaves, and what no longer shrinks.
+            if length <= 0.5 || !(length < 0.5 * before) {
+                break;
+            }
+            found.last[part] = length;
+            taken(values, &change);
+            found.moved = true;
+            if length < if part == 0 { quadratic } else { 4.0 } {
+                break;
+            }
+            before = length;
+        }
+    }
+    found
+}
+
+/// Brings the end of a step onto the constraints, seen from `side`; returns true if that has moved
+/// it.
+///
+/// # Errors
+/// A constraint that depends on those before it there, one that the step has left too far, and a
+/// redundant one that does not hold.
+pub(crate) fn project_end<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    node: &mut Endpoint<D::Scalar, N>,
+    side: Side,
+    stats: &mut Option<ConstraintStats>,
+) -> Result<(), Error> {
+    let t = node.t.to_f64();
+    independent(dynamics, node.t, side, &node.q.high, &node.v.high, stats)?;
+    let found = project(dynamics, node.t, side, &mut node.q, &mut node.v);
+    let constraints = facts::<D, N>().constraints;
+    let (misfit, index) = found.misfits[0];
+    if let Some(stats) = stats
+        && stats.misfit.value <= misfit
+    {
+        stats.misfit = Extreme { value: misfit, t, constraint: constraints[index].name };
+    }
+    for (part, last) in [Part::Position, Part::Velocity].into_iter().zip(found.last) {
+        if !(last < allowed::<D::Scalar>()) {
+            return Err(off::<D, N>(t, part, &found));
+        }
+    }
+    if found.moved {
+        node.a = None;
+    }
+    redundant(dynamics, node.t, side, &node.q.high, &node.v.high)
+}
+
+/// The longest last correction in units of rounding: from there another one would be below it.
+fn allowed<T: Float>() -> f64 {
+    T::EPSILON.to_f64().powf(-0.5)
+}
+
+/// The longest correction of a start in units of rounding: ε^(2/3) of the state.
+fn rounded<T: Float>() -> f64 {
+    T::EPSILON.to_f64().cbrt().recip()
+}
+
+/// A constraint that does not hold.
+fn off<D: Dynamics<N>, const N: usize>(t: f64, part: Part, found: &Found) -> Error {
+    let (residual, index) = found.misfits[usize::from(part == Part::Velocity)];
+    let constraint = &facts::<D, N>().constraints[index];
+    let (constraint, unit) = (constraint.name, constraint.unit);
+    Error::Inconsistent { t, part, constraint, residual, unit, redundant: false }
+}
+
+/// Checks the state at a start, and brings it onto the constraints if only rounding has put it off.
+///
+/// # Errors
+/// [`Error::Inconsistent`] and [`Error::DependentConstraints`].
+pub(crate) fn start<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    t: Time,
+    side: Side,
+    q: [D::Scalar; N],
+    v: [D::Scalar; N],
+) -> Result<Endpoint<D::Scalar, N>, Error> {
+    let mut node = Endpoint::new(t, q, v);
+    if const { is_constrained::<D, N>() } {
+        let found = project(dynamics, t, side, &mut node.q, &mut node.v);
+        let parts = [Part::Position, Part::Velocity].into_iter().zip(found.first);
+        for (part, first) in parts {
+            if !(first < rounded::<D::Scalar>()) {
+                return Err(off::<D, N>(t.to_f64(), part, &found));
+            }
+        }
+        independent(dynamics, t, side, &node.q.high, &node.v.high, &mut None)?;
+    }
+    redundant(dynamics, t, side, &node.q.high, &node.v.high)?;
+    Ok(node)
+}
+
+/// Brings the state after a jump onto the constraints: the velocities by an impulse of their forces,
+/// the coordinates by no more than rounding has put them off.
+///
+/// # Errors
+/// [`Error::Inconsistent`] for coordinates that do not fulfil the constraints.
+pub(crate) fn landed<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    t: Time,
+    side: Side,
+    state: &State<D::Scalar, N>,
+) -> Result<State<D::Scalar, N>, Error> {
+    let mut state = *state;
+    if const { is_constrained::<D, N>() } {
+        let (mut q, mut v) = (Compensated::new(state.q), Compensated::new(state.v));
+        let found = project(dynamics, t, side, &mut q, &mut v);
+        if !(found.first[0] < rounded::<D::Scalar>()) {
+            return Err(off::<D, N>(t.to_f64(), Part::Position, &found));
+        }
+        (state.q, state.v) = (q.high, v.high);
+    }
+    Ok(state)
+}
+
+/// Brings a state that is delivered within a step onto the constraints.
+pub(crate) fn deliver<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    t: Time,
+    side: Side,
+    state: &mut State<D::Scalar, N>,
+) {
+    let (mut q, mut v) = (Compensated::new(state.q), Compensated::new(state.v));
+    project(dynamics, t, side, &mut q, &mut v);
+    (state.q, state.v) = (q.high, v.high);
+}
+
+/// Checks that no constraint depends on those before it.
+fn independent<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    time: Time,
+    side: Side,
+    q: &[D::Scalar; N],
+    v: &[D::Scalar; N],
+    stats: &mut Option<ConstraintStats>,
+) -> Result<(), Error> {
+    let inputs = dynamics.inputs(time, side, Purpose::Momenta);
+    let all = dynamics.system().independence(scalar_time(time), q, v, &inputs);
+    let constraints = facts::<D, N>().constraints;
+    let mut least = (f64::INFINITY, 0);
+    for (index, own) in all.iter().enumerate().take(facts::<D, N>().held_constraints()) {
+        let own = own.to_f64();
+        if own < least.0 || own.is_nan() {
+            least = (own, index);
+        }
+    }
+    let (value, index) = least;
+    let (t, constraint) = (time.to_f64(), constraints[index].name);
+    // Half of the digits that a pivot has, and some more.
+    let bound = D::Scalar::EPSILON.to_f64().powf(40.0 / 52.0);
+    if !(bound < value) {
+        return Err(Error::DependentConstraints { t, constraint, independence: value });
+    }
+    let extreme = Extreme { value, t, constraint };
+    let kept = stats.get_or_insert(ConstraintStats {
+        independence: extreme,
+        misfit: Extreme { value: 0.0, t, constraint },
+    });
+    if value < kept.independence.value {
+        kept.independence = extreme;
+    }
+    Ok(())
+}
+
+/// Checks that the redundant constraints hold, to the roots of rounding.
+fn redundant<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    time: Time,
+    side: Side,
+    q: &[D::Scalar; N],
+    v: &[D::Scalar; N],
+) -> Result<(), Error> {
+    let held = facts::<D, N>().held_constraints();
+    let redundant = &facts::<D, N>().constraints[held..];
+    if redundant.is_empty() {
+        return Ok(());
+    }
+    let inputs = dynamics.inputs(time, side, Purpose::Momenta);
+    let misfits = dynamics.system().redundant_misfits(scalar_time(time), q, v, &inputs);
+    let allowed = D::Scalar::EPSILON.to_f64().powf(0.6);
+    for (part, misfits, values) in
+        [(Part::Position, misfits[0], q), (Part::Velocity, misfits[1], v)]
+    {
+        let scale = largest(values).0.max(1.0);
+        let (residual, index) = largest(&misfits);
+        if !(residual <= allowed * scale * scale) {
+            let (t, own) = (time.to_f64(), &redundant[index]);
+            let (constraint, unit) = (own.name, own.unit);
+            return Err(Error::Inconsistent {
+                t,
+                part,
+                constraint,
+                residual,
+                unit,
+                redundant: true,
+            });
+        }
+    }
+    Ok(())
+}
