@@ -112,6 +112,12 @@ pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fm
         let _ = (workspace, memory);
     }
 
+    /// Takes note that the end of the last step has been moved to `to`, by no more than its error:
+    /// onto the constraints. Methods that know a step by its end go on from there.
+    fn moved(&self, dynamics: &D, workspace: &mut Self::Workspace, to: &Endpoint<D::Scalar, N>) {
+        let _ = (dynamics, workspace, to);
+    }
+
     /// Returns true if the method goes back in time too; by default if the kinks that come there
     /// are known.
     fn goes_back(&self, dynamics: &D) -> bool {

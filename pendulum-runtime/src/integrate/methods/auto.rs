@@ -193,6 +193,10 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Method<D, N> for Auto {
         }
     }
 
+    fn moved(&self, dynamics: &D, workspace: &mut AnyWorkspace<D, N>, to: &Endpoint<D::Scalar, N>) {
+        Method::<D, N>::moved(&Picard, dynamics, &mut workspace.picard, to);
+    }
+
     fn remember(&self, workspace: &mut AnyWorkspace<D, N>, memory: &mut Memory) {
         const CHOICES: [Option<Choice>; 5] = [
             None,

@@ -220,12 +220,10 @@ where
     fn hold(&mut self) -> Result<(), Error> {
         if const { is_constrained::<D, N>() } {
             let side = onwards(self.backwards).opposite();
-            return projection::project_end(
-                &*self.dynamics,
-                &mut self.end,
-                side,
-                &mut self.stats.constraints,
-            );
+            let Self { dynamics, end, stats, .. } = self;
+            if projection::project_end(&**dynamics, end, side, &mut stats.constraints)? {
+                self.method.moved(&self.dynamics, &mut self.workspace, &self.end);
+            }
         }
         Ok(())
     }

@@ -162,7 +162,7 @@ pub(crate) fn project_end<D: Dynamics<N, Scalar: Float>, const N: usize>(
     node: &mut Endpoint<D::Scalar, N>,
     side: Side,
     stats: &mut Option<ConstraintStats>,
-) -> Result<(), Error> {
+) -> Result<bool, Error> {
     let t = node.t.to_f64();
     independent(dynamics, node.t, side, &node.q.high, &node.v.high, stats)?;
     let found = project(dynamics, node.t, side, &mut node.q, &mut node.v);
@@ -181,7 +181,8 @@ pub(crate) fn project_end<D: Dynamics<N, Scalar: Float>, const N: usize>(
     if found.moved {
         node.a = None;
     }
-    redundant(dynamics, node.t, side, &node.q.high, &node.v.high)
+    redundant(dynamics, node.t, side, &node.q.high, &node.v.high)?;
+    Ok(found.moved)
 }
 
 /// The longest last correction in units of rounding: from there another one would be below it.

@@ -10,8 +10,9 @@ use crate::integrate::step::compensated::Compensated;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
+use crate::motion::Side;
 use crate::scalar::Float;
-use crate::system::{Dynamics, Jacobians};
+use crate::system::{Dynamics, Jacobians, Purpose, System, scalar_time};
 use crate::time::Time;
 use equations::{Change, Equations, Linearized, Slopes};
 pub(super) use tableau::Tableau;
@@ -131,6 +132,10 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Method<D, N>
         dense::interpolant(interval, from, to, &stages.slopes.v)
     }
 
+    fn moved(&self, dynamics: &D, stages: &mut Self::Workspace, to: &Endpoint<D::Scalar, N>) {
+        stages.moved(dynamics, to);
+    }
+
     fn remember(&self, stages: &mut Self::Workspace, memory: &mut Memory) {
         stages.remember(memory);
     }
@@ -175,6 +180,10 @@ impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize, const 
         dense::interpolant(interval, from, to, &stages.slopes.v)
     }
 
+    fn moved(&self, dynamics: &D, stages: &mut Self::Workspace, to: &Endpoint<D::Scalar, N>) {
+        stages.moved(dynamics, to);
+    }
+
     fn remember(&self, stages: &mut Self::Workspace, memory: &mut Memory) {
         stages.remember(memory);
     }
@@ -214,6 +223,16 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
         let empty = || Endpoint::new(Time::new(0.0), self.p.high, self.p.high);
         memory.maybe(&mut self.end, empty, Memory::endpoint);
         memory.number(&mut self.h);
+    }
+
+    /// Goes on from `to`, where the end of the last step has been moved.
+    fn moved<D: Dynamics<N, Scalar = T>>(&mut self, dynamics: &D, to: &Endpoint<T, N>) {
+        if self.end.is_some_and(|end| end.t == to.t) {
+            let inputs = dynamics.inputs(to.t, Side::After, Purpose::Momenta);
+            let (t, q, v) = (scalar_time(to.t), &to.q.high, &to.v.high);
+            self.p = Compensated::new(dynamics.system().momenta(t, q, v, &inputs));
+            self.end = Some(*to);
+        }
     }
 
     /// The equations of the next step, with a first guess in `slopes`.

@@ -193,6 +193,12 @@ impl<D: LaneDynamics<N>, const N: usize> Method<D, N> for Picard {
         dense::interpolant(field, interval, from, to, workspace)
     }
 
+    fn moved(&self, _: &D, workspace: &mut WorkspaceOf<D, N>, to: &Endpoint<D::Scalar, N>) {
+        if workspace.end.is_some_and(|(t, ..)| t == to.t) {
+            workspace.end = Some((to.t, to.q.high, to.v.high));
+        }
+    }
+
     fn remember(&self, workspace: &mut WorkspaceOf<D, N>, memory: &mut Memory) {
         workspace.remember(memory);
     }
