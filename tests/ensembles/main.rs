@@ -2,6 +2,7 @@
 
 #![allow(mixed_script_confusables, missing_docs)]
 
+pub mod checkpoints;
 pub mod lanes;
 pub mod reductions;
 pub mod ways;

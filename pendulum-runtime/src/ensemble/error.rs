@@ -2,6 +2,8 @@
 
 use crate::error::Error;
 use core::fmt;
+use std::io;
+use std::path::PathBuf;
 
 /// Why an ensemble did not run to its end; members that fail are no reason.
 #[derive(Debug)]
@@ -9,12 +11,57 @@ use core::fmt;
 pub enum EnsembleError {
     /// A setting is out of its range.
     Setting(Error),
+    /// A part of no parts, or one beyond the last.
+    Part {
+        /// The index given.
+        index: usize,
+        /// The number of parts given.
+        parts: usize,
+    },
+    /// The folder of the checkpoint holds shards of a run with other settings.
+    Refused {
+        /// The folder.
+        folder: PathBuf,
+        /// The hash of the settings there.
+        found: u64,
+        /// The hash of the settings of this run.
+        hash: u64,
+        /// The first difference, empty if it is not known.
+        difference: String,
+    },
+    /// The checkpoint could not be read or written; finished shards stay.
+    Io {
+        /// The folder.
+        folder: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
 }
 
 impl fmt::Display for EnsembleError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Setting(error) => error.fmt(f),
+            Self::Part { index, parts } => write!(
+                f,
+                "there is no part {index} of {parts}; parts are numbered from 0 on, below their number"
+            ),
+            Self::Refused { folder, found, hash, difference } => {
+                write!(
+                    f,
+                    "`{}` holds shards of a run whose settings have the hash {found:016x}, those of this run have {hash:016x}",
+                    folder.display()
+                )?;
+                if !difference.is_empty() {
+                    write!(f, " ({difference})")?;
+                }
+                write!(f, "; give another folder, or remove it if nobody needs it")
+            }
+            Self::Io { folder, error } => write!(
+                f,
+                "the checkpoint in `{}` fails: {error}; what is finished stays there, and the next run goes on from it",
+                folder.display()
+            ),
         }
     }
 }
@@ -23,6 +70,8 @@ impl std::error::Error for EnsembleError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::Setting(error) => Some(error),
+            Self::Io { error, .. } => Some(error),
+            Self::Part { .. } | Self::Refused { .. } => None,
         }
     }
 }

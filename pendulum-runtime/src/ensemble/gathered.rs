@@ -20,6 +20,8 @@ pub struct Gathered<R> {
     pub cancelled: bool,
     /// The number of shards that were read from a checkpoint.
     pub resumed: usize,
+    /// The number of shards of other [parts](super::Mapped::part) that were not there.
+    pub missing: usize,
 }
 
 /// The counters of an ensemble, or of a part of it.

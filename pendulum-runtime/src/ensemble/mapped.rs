@@ -1,7 +1,9 @@
 //! A mapped ensemble, and the loop through its shards.
 
+use super::checkpoint::{Checkpoint, Folder, Keep, Nowhere};
 use super::error::EnsembleError;
 use super::gathered::{Gathered, Progress, Tally};
+use super::record::{Record, hash};
 use super::shards::Shards;
 use super::sink::{Each, Fold, List, Sink};
 use super::threads;
@@ -9,14 +11,16 @@ use super::tree::Tree;
 use super::way::Way;
 use crate::integrate::settings::Settings;
 use crate::integrate::{Outcome, Problem, Solution};
-use crate::scalar::Float;
-use crate::system::Dynamics;
+use crate::scalar::{Float, Real};
+use crate::system::{Dynamics, System};
+use core::any::type_name;
 use core::cell::RefCell;
 use core::fmt;
 use core::marker::PhantomData;
 use core::ops::{ControlFlow, Range};
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::collections::{BTreeMap, VecDeque};
+use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 /// A function that looks on.
@@ -24,9 +28,13 @@ type Look<'a> = dyn FnMut(&Progress) -> ControlFlow<()> + Send + 'a;
 
 /// An [`Ensemble`](super::Ensemble) and what is wanted of each solution.
 #[must_use = "nothing is integrated before `reduce`, `fold`, `collect` or `for_each`"]
-pub struct Mapped<'a, const N: usize, D: Dynamics<N>, G, W, C, F> {
+pub struct Mapped<'a, const N: usize, D: Dynamics<N>, G, W, C, F, K = Nowhere> {
     work: Work<'a, N, D, G, W, C, F>,
     look: Option<Box<Look<'a>>>,
+    keep: K,
+    tag: String,
+    /// Of so many parts the one that is solved.
+    part: (usize, usize),
 }
 
 /// What all threads share of it.
@@ -38,6 +46,9 @@ struct Work<'a, const N: usize, D: Dynamics<N>, G, W, C, F> {
     map: F,
     dynamics: PhantomData<fn() -> D>,
 }
+
+/// The number of problems that stand for all.
+const PROBES: usize = 64;
 
 /// A finished shard, or several that are joined.
 pub(super) struct Done<P> {
@@ -61,11 +72,15 @@ struct Open<R, P> {
 struct Shared<'a> {
     next: AtomicUsize,
     shards: usize,
+    part: (usize, usize),
+    resumed: AtomicUsize,
+    missing: AtomicUsize,
+    error: Mutex<Option<EnsembleError>>,
     cancelled: AtomicBool,
     progress: Mutex<(Progress, Option<Box<Look<'a>>>)>,
 }
 
-impl<'a, const N: usize, D: Dynamics<N>, G, W, C, F> Mapped<'a, N, D, G, W, C, F> {
+impl<'a, const N: usize, D: Dynamics<N>, G, W, C, F> Mapped<'a, N, D, G, W, C, F, Nowhere> {
     pub(super) fn new(
         shards: Shards,
         problem: G,
@@ -74,9 +89,44 @@ impl<'a, const N: usize, D: Dynamics<N>, G, W, C, F> Mapped<'a, N, D, G, W, C, F
         map: F,
     ) -> Self {
         let work = Work { shards, problem, way, settings, map, dynamics: PhantomData };
-        Self { work, look: None }
+        Self { work, look: None, keep: Nowhere, tag: String::new(), part: (0, 1) }
     }
 
+    /// Keeps every finished shard in a file of `folder`, which is made if need be. A run that is
+    /// interrupted, in whatever way, loses the shards under way and nothing else: the next one with
+    /// the same settings reads what is there and goes on, with the same bits at the end.
+    ///
+    /// A file is written under another name, brought to the disk and then renamed; it has a
+    /// checksum, and one that is damaged counts as missing. A run with other settings is refused.
+    /// The settings are those of the ensemble, the system, the type that is reduced, and 64 of the
+    /// problems; functions are not among them, and neither are motions and controllers: a
+    /// [`tag`](Self::tag) stands for those.
+    ///
+    /// Values have to be [`Record`](super::Record)s.
+    pub fn checkpoint(self, folder: impl Into<PathBuf>) -> Mapped<'a, N, D, G, W, C, F, Folder> {
+        let Self { work, look, tag, part, .. } = self;
+        Mapped { work, look, keep: Folder(folder.into()), tag, part }
+    }
+}
+
+impl<const N: usize, D: Dynamics<N>, G, W, C, F> Mapped<'_, N, D, G, W, C, F, Folder> {
+    /// A text that belongs to the settings of the checkpoint: a version of what is mapped, for
+    /// example.
+    pub fn tag(mut self, tag: impl Into<String>) -> Self {
+        self.tag = tag.into();
+        self
+    }
+
+    /// Solves the shards `index`, `index + of`, `index + 2 of`, … only, for several processes that
+    /// share a folder: jobs of a cluster, for example. Shards of other parts that are there are
+    /// read, others are [`missing`](Gathered::missing); a last run without this call joins them all.
+    pub fn part(mut self, index: usize, of: usize) -> Self {
+        self.part = (index, of);
+        self
+    }
+}
+
+impl<'a, const N: usize, D: Dynamics<N>, G, W, C, F, K> Mapped<'a, N, D, G, W, C, F, K> {
     /// Looks on whenever a shard is finished: for progress, and to cancel. On
     /// [`ControlFlow::Break`] no further member is begun.
     pub fn on_progress(
@@ -88,12 +138,12 @@ impl<'a, const N: usize, D: Dynamics<N>, G, W, C, F> Mapped<'a, N, D, G, W, C, F
     }
 }
 
-impl<const N: usize, D, G, W, C, F, R> Mapped<'_, N, D, G, W, C, F>
+impl<const N: usize, D, G, W, C, F, K, R> Mapped<'_, N, D, G, W, C, F, K>
 where
     D: Dynamics<N, Scalar: Float>,
     G: Fn(usize) -> Problem<D, N> + Sync,
     W: Way<D, C, N>,
-    C: Sync,
+    C: Sync + fmt::Debug,
     F: Fn(usize, &Solution<D::Scalar, N>) -> R + Sync,
     R: Send,
 {
@@ -101,12 +151,16 @@ where
     /// depends on the number of members alone; `identity` gives the value of no member.
     ///
     /// # Errors
-    /// A setting that is out of its range.
+    /// A setting that is out of its range; with a checkpoint that it fails, or is that of other
+    /// settings.
     pub fn reduce(
         self,
         identity: impl Fn() -> R + Sync,
         merge: impl Fn(R, R) -> R + Sync,
-    ) -> Result<Gathered<R>, EnsembleError> {
+    ) -> Result<Gathered<R>, EnsembleError>
+    where
+        K: Keep<R>,
+    {
         self.gather(&Fold { identity, add: &merge, merge: &merge })
     }
 
@@ -120,7 +174,10 @@ where
         identity: impl Fn() -> P + Sync,
         add: impl Fn(P, R) -> P + Sync,
         merge: impl Fn(P, P) -> P + Sync,
-    ) -> Result<Gathered<P>, EnsembleError> {
+    ) -> Result<Gathered<P>, EnsembleError>
+    where
+        K: Keep<P>,
+    {
         self.gather(&Fold { identity, add, merge })
     }
 
@@ -130,15 +187,18 @@ where
     ///
     /// # Errors
     /// As [`reduce`](Self::reduce).
-    pub fn collect(self) -> Result<Gathered<Vec<Option<R>>>, EnsembleError> {
+    pub fn collect(self) -> Result<Gathered<Vec<Option<R>>>, EnsembleError>
+    where
+        K: Keep<Vec<(usize, R)>>,
+    {
         let range = self.work.shards.range();
-        let Gathered { value, tally, cancelled, resumed } = self.gather(&List)?;
+        let Gathered { value, tally, cancelled, resumed, missing } = self.gather(&List)?;
         let mut list = Vec::new();
         list.resize_with(range.len(), || None);
         for (index, member) in value {
             list[index - range.start] = Some(member);
         }
-        Ok(Gathered { value: list, tally, cancelled, resumed })
+        Ok(Gathered { value: list, tally, cancelled, resumed, missing })
     }
 
     /// Solves all members and gives what they are mapped to, with their indices, to `take`: shard
@@ -149,36 +209,75 @@ where
     ///
     /// # Errors
     /// As [`reduce`](Self::reduce).
-    pub fn for_each(
-        self,
-        take: impl FnMut(usize, R) + Send,
-    ) -> Result<Gathered<()>, EnsembleError> {
+    pub fn for_each(self, take: impl FnMut(usize, R) + Send) -> Result<Gathered<()>, EnsembleError>
+    where
+        K: Keep<Vec<(usize, R)>>,
+    {
         let take = Mutex::new(take);
         self.gather(&Each { take })
     }
 
     /// Solves and reduces all members.
-    fn gather<S: Sink<R>>(self, sink: &S) -> Result<Gathered<S::Whole>, EnsembleError> {
-        let Self { work, look } = self;
+    fn gather<S: Sink<R>>(self, sink: &S) -> Result<Gathered<S::Whole>, EnsembleError>
+    where
+        K: Keep<S::Part>,
+    {
+        let Self { work, look, keep, tag, part } = self;
         let shards = work.shards;
         work.way.check(&work.settings)?;
-        let shared = Shared::new(&shards, look);
+        if part.1 <= part.0 {
+            return Err(EnsembleError::Part { index: part.0, parts: part.1 });
+        }
+        let checkpoint = Checkpoint::open(&keep, || work.describe::<S::Part>(&tag))?;
+        let shared = Shared::new(&shards, look, part);
         let tree = Tree::new(shards.count());
         let join = |first: Done<_>, second: Done<_>| Done::join(sink, first, second);
+        let give = |shard: usize, Done { part, tally }: Done<S::Part>| {
+            shared.advance(&tally);
+            tree.add(shard, Done { part: sink.settle(part), tally }, join);
+        };
         threads::on_all(shards.count(), || {
-            work.solve(sink, &shared, &mut |shard, done| {
-                let Done { part, tally } = done;
-                shared.advance(&tally);
-                let done = Done { part: sink.settle(part), tally };
-                tree.add(shard, done, join);
-            });
+            let mut take = || {
+                loop {
+                    let shard = shared.take()?;
+                    match checkpoint.read(shard) {
+                        Ok(Some(done)) => {
+                            shared.resumed.fetch_add(1, Ordering::Relaxed);
+                            give(shard, done);
+                        }
+                        Ok(None) if shared.owns(shard) => return Some(shard),
+                        Ok(None) => {
+                            shared.missing.fetch_add(1, Ordering::Relaxed);
+                        }
+                        Err(error) => shared.fail(error),
+                    }
+                }
+            };
+            let mut write =
+                |shard, done: Done<S::Part>| match checkpoint.write(shard, &done.part, &done.tally)
+                {
+                    Ok(()) => give(shard, done),
+                    Err(error) => shared.fail(error),
+                };
+            let stop = || shared.is_cancelled();
+            work.solve(sink, &mut take, &stop, &mut write);
         });
         let done = tree.finish(join);
         let (value, tally) = done.map_or_else(
             || (sink.settle(sink.empty()), Tally::default()),
             |done| (done.part, done.tally),
         );
-        Ok(Gathered { value, tally, cancelled: shared.is_cancelled(), resumed: 0 })
+        let Shared { error, progress, resumed, missing, cancelled, .. } = shared;
+        if let Some(error) = error.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            return Err(error);
+        }
+        let (progress, _) = progress.into_inner().unwrap_or_else(PoisonError::into_inner);
+        if progress.shards == shards.count() {
+            checkpoint.tidy();
+        }
+        let (resumed, missing) = (resumed.into_inner(), missing.into_inner());
+        let cancelled = cancelled.into_inner() && progress.shards < shards.count();
+        Ok(Gathered { value, tally, cancelled, resumed, missing })
     }
 }
 
@@ -189,24 +288,72 @@ where
     W: Way<D, C, N>,
     F: Fn(usize, &Solution<D::Scalar, N>) -> R + Sync,
 {
-    /// Solves shards until there are no more, and gives each to `give` when it is finished: the work
-    /// of one thread.
+    /// The settings that the bits depend on, a line each.
+    fn describe<P>(&self, tag: &str) -> String
+    where
+        C: fmt::Debug,
+    {
+        let facts = &<D::System as System<N>>::FACTS;
+        let Settings { controller, output, dense, stops, events, max_steps } = &self.settings;
+        let range = self.shards.range();
+        let mut bytes = Vec::new();
+        let problems = range.len().min(PROBES);
+        for probe in 0..problems {
+            // Spread over all members, the first and the last one among them.
+            let place = if probe == 0 { 0 } else { probe * (range.len() - 1) / (problems - 1) };
+            let Problem { system, time, q, v } = (self.problem)(range.start + place);
+            let mut add = |number: D::Scalar| {
+                let high = number.to_f64();
+                (high, (number - D::Scalar::from_f64(high)).to_f64()).write(&mut bytes);
+                number
+            };
+            system.system().map(&mut add);
+            q.into_iter().chain(v).for_each(|number| {
+                add(number);
+            });
+            time.write(&mut bytes);
+        }
+        [
+            format!("version = {}", env!("CARGO_PKG_VERSION")),
+            format!("tag = {tag:?}"),
+            format!(
+                "system = {} with {N} coordinates over {}",
+                facts.name,
+                type_name::<D::Scalar>()
+            ),
+            format!("equations = {:016x}", hash(facts.equations.as_bytes())),
+            format!("members = {range:?}"),
+            format!("shard = {}", self.shards.size()),
+            format!("problems = {:016x}", hash(&bytes)),
+            format!("method = {}", self.way.name(&self.settings)),
+            format!("steps = {controller:?}, at most {max_steps}"),
+            format!("output = {output:?}, dense {dense}, stops {stops:?}"),
+            format!("events = {events:?}"),
+            format!("value = {}", type_name::<P>()),
+        ]
+        .map(|line| line + "\n")
+        .concat()
+    }
+
+    /// Solves the shards that `take` gives, and gives each to `give` when it is finished: the work of
+    /// one thread. Begins no further member when it is to `stop`.
     fn solve<S: Sink<R>>(
         &self,
         sink: &S,
-        shared: &Shared<'_>,
+        take: &mut dyn FnMut() -> Option<usize>,
+        stop: &dyn Fn() -> bool,
         give: &mut dyn FnMut(usize, Done<S::Part>),
     ) {
         let open: RefCell<VecDeque<Open<R, S::Part>>> = RefCell::new(VecDeque::new());
         let mut members = 0..0;
         let mut next = || {
             if members.is_empty() {
-                let shard = shared.take()?;
+                let shard = take()?;
                 members = self.shards.members_of(shard);
                 let open_shard = Open::new(shard, members.clone(), sink.empty());
                 open.borrow_mut().push_back(open_shard);
             }
-            let index = if shared.is_cancelled() { None } else { members.next() };
+            let index = if stop() { None } else { members.next() };
             index.map(|index| (index, (self.problem)(index)))
         };
         let mut ended = |index: usize, outcome: Outcome<D::Scalar, N>| {
@@ -260,7 +407,7 @@ impl<R, P> Open<R, P> {
 }
 
 impl<'a> Shared<'a> {
-    fn new(shards: &Shards, look: Option<Box<Look<'a>>>) -> Self {
+    fn new(shards: &Shards, look: Option<Box<Look<'a>>>, part: (usize, usize)) -> Self {
         let progress = Progress {
             members: 0,
             failed: 0,
@@ -271,6 +418,10 @@ impl<'a> Shared<'a> {
         Self {
             next: AtomicUsize::new(0),
             shards: shards.count(),
+            part,
+            resumed: AtomicUsize::new(0),
+            missing: AtomicUsize::new(0),
+            error: Mutex::new(None),
             cancelled: AtomicBool::new(false),
             progress: Mutex::new((progress, look)),
         }
@@ -280,6 +431,18 @@ impl<'a> Shared<'a> {
     fn take(&self) -> Option<usize> {
         let shard = self.next.fetch_add(1, Ordering::Relaxed);
         (shard < self.shards && !self.is_cancelled()).then_some(shard)
+    }
+
+    /// Returns true if the shard is of the part that is solved.
+    fn owns(&self, shard: usize) -> bool {
+        shard % self.part.1 == self.part.0
+    }
+
+    /// Begins nothing further, for this reason.
+    fn fail(&self, error: EnsembleError) {
+        let mut first = self.error.lock().unwrap_or_else(PoisonError::into_inner);
+        first.get_or_insert(error);
+        self.cancelled.store(true, Ordering::Relaxed);
     }
 
     fn is_cancelled(&self) -> bool {
@@ -301,7 +464,7 @@ impl<'a> Shared<'a> {
     }
 }
 
-impl<const N: usize, D, G, W, C, F> fmt::Debug for Mapped<'_, N, D, G, W, C, F>
+impl<const N: usize, D, G, W, C, F, K> fmt::Debug for Mapped<'_, N, D, G, W, C, F, K>
 where
     D: Dynamics<N>,
     W: fmt::Debug,

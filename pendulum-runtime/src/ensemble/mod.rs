@@ -32,9 +32,11 @@
 //! `ThreadPool::install` chooses another pool. Without the feature there is one thread.
 
 mod builder;
+mod checkpoint;
 mod error;
 mod gathered;
 mod mapped;
+mod record;
 mod shards;
 mod sink;
 mod threads;
@@ -42,7 +44,9 @@ mod tree;
 mod way;
 
 pub use builder::Ensemble;
+pub use checkpoint::{Folder, Keep, Nowhere};
 pub use error::EnsembleError;
 pub use gathered::{FailedMember, Gathered, Progress, Tally};
 pub use mapped::Mapped;
+pub use record::Record;
 pub use way::{Chosen, OneByOne, Way, WayDynamics};

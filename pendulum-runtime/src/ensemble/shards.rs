@@ -31,7 +31,6 @@ impl Shards {
     }
 
     /// The number of members of all shards but the last.
-    #[cfg(test)]
     pub(super) fn size(&self) -> usize {
         self.size
     }

@@ -358,16 +358,16 @@ impl<'a, S: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, S, N, WATCH
                     terms[k] = series[k] * power;
                     power *= length;
                 }
-                for (point, place) in places.iter_mut().enumerate() {
-                    if point == 1 || point + 1 == POINTS.len() {
-                        continue;
+                // Side by side: each sum waits for its own last product only.
+                let mut sums = [zero; POINTS.len()];
+                for k in (1..=order).rev() {
+                    for point in INNER {
+                        sums[point] =
+                            (sums[point] + terms[k]) * Wide::<S::Scalar>::from_f64(POINTS[point]);
                     }
-                    let theta = Wide::from_f64(POINTS[point]);
-                    let mut sum = zero;
-                    for k in (1..=order).rev() {
-                        sum = (sum + terms[k]) * theta;
-                    }
-                    place[part][i] = series[0] + sum;
+                }
+                for point in INNER {
+                    places[point][part][i] = series[0] + sums[point];
                 }
             }
         }
@@ -387,17 +387,21 @@ impl<'a, S: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, S, N, WATCH
         let (t, length) =
             (scalar_time::<S::Scalar>(interval.start), interval.length::<S::Scalar>());
         let last = POINTS.len() - 1;
-        let places: [Place<S::Scalar, N>; POINTS.len()] = core::array::from_fn(|point| {
-            if point == 1 {
-                return Place::of(&node(from, l));
+        // Number by number into the same place: the next load of a copy would wait.
+        let put = |point: usize, place: &mut Place<S::Scalar, N>| {
+            place.t = t + S::Scalar::from_f64(POINTS[point]) * length;
+            let ends = [(1, from), (last, &self.lanes)];
+            if let Some((_, end)) = ends.into_iter().find(|end| end.0 == point) {
+                *place = Place::of(&node(end, l));
+                return;
             }
-            if point == last {
-                return Place::of(&node(&self.lanes, l));
+            let [q, v] = &places[point];
+            for i in 0..N {
+                (place.q[i], place.v[i]) = (q[i].0[l], v[i].0[l]);
             }
-            let [q, v] = places[point].map(|numbers| numbers.map(|number| number.0[l]));
-            Place { t: t + S::Scalar::from_f64(POINTS[point]) * length, q, v }
-        });
-        member.detector.is_quiet(&interval, &places)
+        };
+        let room = Place { t, q: [t; N], v: [t; N] };
+        member.detector.is_quiet(&interval, room, put)
     }
 
     /// Ends the motions that have come to an end, and begins others in their lanes; looks at what is
@@ -617,6 +621,9 @@ impl<'a, S: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, S, N, WATCH
         }
     }
 }
+
+/// The indices of those of [`POINTS`] that are no ends of a step.
+const INNER: [usize; POINTS.len() - 2] = [0, 2, 3, 4, 5, 6, 7, 8, 9];
 
 /// The coordinates and velocities of all lanes at several points of their steps.
 type Places<T, const N: usize> = [[[Wide<T>; N]; 2]; POINTS.len()];

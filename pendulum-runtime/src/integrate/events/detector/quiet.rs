@@ -7,14 +7,15 @@ use crate::integrate::step::interval::StepInterval;
 use crate::scalar::Float;
 
 impl<T: Float, const N: usize> EventDetector<'_, T, N> {
-    /// Returns true if nothing happens in a step over `interval` without a kink, of which `places`
-    /// are the states at [`POINTS`]; takes note of its end then, as a search that finds nothing.
+    /// Returns true if nothing happens in a step over `interval` without a kink, of which `put`
+    /// puts the states at [`POINTS`] into a place; takes note of its end then, as a search that finds nothing.
     ///
     /// All events have functions.
     pub(crate) fn is_quiet(
         &mut self,
         interval: &StepInterval,
-        places: &[Place<T, N>; POINTS.len()],
+        mut room: Place<T, N>,
+        put: impl Fn(usize, &mut Place<T, N>),
     ) -> bool {
         // The values at the ends; those of few events stand in a row.
         let mut last = [T::from_f64(0.0); 8];
@@ -22,7 +23,7 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
             return false;
         }
         for index in 0..self.events.len() {
-            match self.quiet_end(index, interval, places) {
+            match self.quiet_end(index, interval, &mut room, &put) {
                 Some(value) => last[index] = value,
                 None => return false,
             }
@@ -41,19 +42,23 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
         &self,
         index: usize,
         interval: &StepInterval,
-        places: &[Place<T, N>; POINTS.len()],
+        room: &mut Place<T, N>,
+        put: impl Fn(usize, &mut Place<T, N>),
     ) -> Option<T> {
         let Condition::Root(function) = &self.events[index].condition else { return None };
-        let of = |place: &Place<T, N>| function(place.t, &place.q, &place.v);
+        let at = |point: usize, room: &mut Place<T, N>| {
+            put(point, room);
+            function(room.t, &room.q, &room.v)
+        };
         let track = &self.tracks[index];
         let start = (T::from_f64(POINTS[1]), track.value);
-        let before = (T::from_f64(POINTS[0]), if self.fresh { start.1 } else { of(&places[0]) });
+        let before = (T::from_f64(POINTS[0]), if self.fresh { start.1 } else { at(0, room) });
         if track.side == 0 || track.expected != 0 || side(before.1) == 0 {
             return None;
         }
         let mut points = [before, start];
         for i in 2..POINTS.len() {
-            let point = (T::from_f64(POINTS[i]), of(&places[i]));
+            let point = (T::from_f64(POINTS[i]), at(i, room));
             if side(point.1) != track.side {
                 return None;
             }
@@ -65,7 +70,8 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
                 && side(points[0].1) == track.side
                 && !(i == 2 && (self.fresh || self.recent(index, interval)))
             {
-                let tolerance = self.tolerance(index, &places[i - 1]).ok()?;
+                put(i - 1, room);
+                let tolerance = self.tolerance(index, room).ok()?;
                 if !stays_away(&[first, middle, here], tolerance) {
                     return None;
                 }

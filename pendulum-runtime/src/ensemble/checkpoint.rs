@@ -1,0 +1,279 @@
+//! Finished shards in files: each is written once, whole or not at all.
+
+use super::error::EnsembleError;
+use super::gathered::{FailedMember, Tally};
+use super::mapped::Done;
+use super::record::{Record, hash};
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// What a shard's file begins with; the last byte is the version of the format.
+const MAGIC: [u8; 8] = *b"pendul\x00\x01";
+
+/// A place for finished shards that reduce to `P`: none, or a folder.
+pub trait Keep<P>: Sync + crate::sealed::Sealed {
+    /// The folder, if there is one.
+    #[doc(hidden)]
+    fn folder(&self) -> Option<&Path>;
+
+    /// A part as bytes.
+    #[doc(hidden)]
+    fn write(&self, part: &P, bytes: &mut Vec<u8>);
+
+    /// The part that such bytes hold.
+    #[doc(hidden)]
+    fn read(&self, bytes: &mut &[u8]) -> Option<P>;
+}
+
+/// Finished shards are not kept.
+#[derive(Clone, Copy, Debug)]
+pub struct Nowhere;
+
+/// Finished shards are kept in a folder.
+#[derive(Clone, Debug)]
+pub struct Folder(pub(super) PathBuf);
+
+impl crate::sealed::Sealed for Nowhere {}
+
+impl crate::sealed::Sealed for Folder {}
+
+impl<P> Keep<P> for Nowhere {
+    fn folder(&self) -> Option<&Path> {
+        None
+    }
+
+    fn write(&self, _: &P, _: &mut Vec<u8>) {}
+
+    fn read(&self, _: &mut &[u8]) -> Option<P> {
+        None
+    }
+}
+
+impl<P: Record> Keep<P> for Folder {
+    fn folder(&self) -> Option<&Path> {
+        Some(&self.0)
+    }
+
+    fn write(&self, part: &P, bytes: &mut Vec<u8>) {
+        part.write(bytes);
+    }
+
+    fn read(&self, bytes: &mut &[u8]) -> Option<P> {
+        P::read(bytes)
+    }
+}
+
+/// A folder with shards of one run.
+pub(super) struct Checkpoint<'k, K> {
+    keep: &'k K,
+    folder: Option<&'k Path>,
+    hash: u64,
+}
+
+impl<'k, K> Checkpoint<'k, K> {
+    /// The folder for a run with these settings, a line each; refused if it is that of another.
+    pub(super) fn open<P>(
+        keep: &'k K,
+        settings: impl FnOnce() -> String,
+    ) -> Result<Self, EnsembleError>
+    where
+        K: Keep<P>,
+    {
+        let folder = keep.folder();
+        let Some(path) = folder else { return Ok(Self { keep, folder, hash: 0 }) };
+        let settings = settings();
+        let hash = hash(settings.as_bytes());
+        let failed = |error| failed(path, error);
+        fs::create_dir_all(path).map_err(failed)?;
+        let file = path.join("settings.txt");
+        match fs::read_to_string(&file) {
+            Ok(text) => match whole(&text) {
+                Some((found, _)) if found == hash => {}
+                Some((found, other)) => {
+                    let difference = difference(other, &settings);
+                    let folder = path.to_owned();
+                    return Err(EnsembleError::Refused { folder, found, hash, difference });
+                }
+                // Torn: the shards have the hash, too.
+                None => write(&file, titled(hash, &settings).as_bytes()).map_err(failed)?,
+            },
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                write(&file, titled(hash, &settings).as_bytes()).map_err(failed)?;
+            }
+            Err(error) => return Err(failed(error)),
+        }
+        Ok(Self { keep, folder, hash })
+    }
+
+    fn file(&self, shard: usize) -> Option<(&'k Path, PathBuf)> {
+        Some((self.folder?, self.folder?.join(format!("shard-{shard:09}.bin"))))
+    }
+
+    /// The shard, if it is there and whole.
+    pub(super) fn read<P>(&self, shard: usize) -> Result<Option<Done<P>>, EnsembleError>
+    where
+        K: Keep<P>,
+    {
+        let Some((folder, file)) = self.file(shard) else { return Ok(None) };
+        let bytes = match fs::read(&file) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(failed(folder, error)),
+        };
+        let Some((found, index, mut payload)) = opened(&bytes) else { return Ok(None) };
+        if found != self.hash {
+            let (folder, hash, difference) = (folder.to_owned(), self.hash, String::new());
+            return Err(EnsembleError::Refused { folder, found, hash, difference });
+        }
+        if index != shard {
+            return Ok(None);
+        }
+        let tally = Tally::read(&mut payload);
+        let part = self.keep.read(&mut payload);
+        Ok(match (tally, part) {
+            (Some(tally), Some(part)) if payload.is_empty() => Some(Done { part, tally }),
+            _ => None,
+        })
+    }
+
+    /// Writes a shard.
+    pub(super) fn write<P>(
+        &self,
+        shard: usize,
+        part: &P,
+        tally: &Tally,
+    ) -> Result<(), EnsembleError>
+    where
+        K: Keep<P>,
+    {
+        let Some((folder, file)) = self.file(shard) else { return Ok(()) };
+        let mut payload = Vec::new();
+        tally.write(&mut payload);
+        self.keep.write(part, &mut payload);
+        write(&file, &closed(self.hash, shard, &payload)).map_err(|error| failed(folder, error))
+    }
+
+    /// Removes what killed runs have left, when all shards are there.
+    pub(super) fn tidy(&self) {
+        let Some(Ok(entries)) = self.folder.map(fs::read_dir) else { return };
+        for entry in entries.flatten() {
+            if entry.path().extension().is_some_and(|extension| extension == "tmp") {
+                // What is left lies about, and does no harm.
+                let _ = fs::remove_file(entry.path());
+            }
+        }
+    }
+}
+
+/// A shard's file: magic, hash of the settings, index, length, payload, checksum of all that.
+fn closed(hash_of_settings: u64, shard: usize, payload: &[u8]) -> Vec<u8> {
+    let mut bytes = MAGIC.to_vec();
+    (hash_of_settings, shard, payload.len()).write(&mut bytes);
+    bytes.extend(payload);
+    hash(&bytes).write(&mut bytes);
+    bytes
+}
+
+/// The hash of the settings, the index and the payload of a shard's file that is whole.
+fn opened(bytes: &[u8]) -> Option<(u64, usize, &[u8])> {
+    let (content, checksum) = bytes.split_last_chunk::<8>()?;
+    let mut rest = content.strip_prefix(&MAGIC)?;
+    let (settings, shard, length) = <(u64, usize, usize)>::read(&mut rest)?;
+    let whole = u64::from_le_bytes(*checksum) == hash(content) && rest.len() == length;
+    whole.then_some((settings, shard, rest))
+}
+
+/// Writes a file at once: what is there under its name is whole.
+fn write(file: &Path, bytes: &[u8]) -> io::Result<()> {
+    let temporary = file.with_extension(format!("{}.tmp", std::process::id()));
+    let written = File::create(&temporary).and_then(|mut open| {
+        open.write_all(bytes)?;
+        open.sync_all()
+    });
+    let renamed = written.and_then(|()| fs::rename(&temporary, file));
+    if let Err(error) = renamed {
+        // A full disk has the room again.
+        let _ = fs::remove_file(&temporary);
+        return Err(error);
+    }
+    // The name has to be on the disk, too; some systems cannot open folders.
+    if let Some(Ok(folder)) = file.parent().map(File::open) {
+        let _ = folder.sync_all();
+    }
+    Ok(())
+}
+
+fn failed(folder: &Path, error: io::Error) -> EnsembleError {
+    EnsembleError::Io { folder: folder.to_owned(), error }
+}
+
+fn titled(hash: u64, settings: &str) -> String {
+    format!("hash = {hash:016x}\n{settings}")
+}
+
+/// The hash and the settings of a file that is whole.
+fn whole(text: &str) -> Option<(u64, &str)> {
+    let (title, settings) = text.split_once('\n')?;
+    let found = u64::from_str_radix(title.strip_prefix("hash = ")?, 16).ok()?;
+    (found == hash(settings.as_bytes())).then_some((found, settings))
+}
+
+/// The first line of two settings that differs.
+fn difference(found: &str, own: &str) -> String {
+    let pair = found.lines().zip(own.lines()).find(|(found, own)| found != own);
+    pair.map_or(String::new(), |(found, own)| format!("there `{found}`, here `{own}`"))
+}
+
+impl Record for Tally {
+    fn write(&self, bytes: &mut Vec<u8>) {
+        let Self { members, failed, failures, evaluations, accepted, rejected } = self;
+        (*members, *failed, *evaluations, *accepted, *rejected).write(bytes);
+        failures.write(bytes);
+    }
+
+    fn read(bytes: &mut &[u8]) -> Option<Self> {
+        let (members, failed, evaluations, accepted, rejected) = Record::read(bytes)?;
+        let failures = Record::read(bytes)?;
+        Some(Self { members, failed, failures, evaluations, accepted, rejected })
+    }
+}
+
+impl Record for FailedMember {
+    fn write(&self, bytes: &mut Vec<u8>) {
+        (self.index, self.t).write(bytes);
+        self.message.write(bytes);
+    }
+
+    fn read(bytes: &mut &[u8]) -> Option<Self> {
+        let (index, t, message) = Record::read(bytes)?;
+        Some(Self { index, t, error: None, message })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{closed, hash, opened, titled, whole};
+
+    #[test]
+    fn torn_and_damaged_files_are_no_shards() {
+        let bytes = closed(7, 3, b"payload");
+        assert_eq!(opened(&bytes), Some((7, 3, &b"payload"[..])));
+        for length in 0..bytes.len() {
+            assert_eq!(opened(&bytes[..length]), None);
+        }
+        for place in 0..bytes.len() {
+            let mut damaged = bytes.clone();
+            damaged[place] ^= 0x10;
+            assert_eq!(opened(&damaged), None);
+        }
+    }
+
+    #[test]
+    fn settings_know_if_they_are_whole() {
+        let text = titled(hash(b"a = 1\n"), "a = 1\n");
+        assert_eq!(whole(&text), Some((hash(b"a = 1\n"), "a = 1\n")));
+        assert_eq!(whole(&text[..text.len() - 1]), None);
+        assert_eq!(whole("hash = 12"), None);
+    }
+}
