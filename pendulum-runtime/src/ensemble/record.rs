@@ -86,7 +86,9 @@ impl<T: Record> Record for Option<T> {
 impl<T: Record> Record for Vec<T> {
     fn write(&self, bytes: &mut Vec<u8>) {
         self.len().write(bytes);
-        self.iter().for_each(|value| value.write(bytes));
+        for value in self {
+            value.write(bytes);
+        }
     }
 
     fn read(bytes: &mut &[u8]) -> Option<Self> {
@@ -115,7 +117,9 @@ impl Record for String {
 
 impl<T: Record, const K: usize> Record for [T; K] {
     fn write(&self, bytes: &mut Vec<u8>) {
-        self.iter().for_each(|value| value.write(bytes));
+        for value in self {
+            value.write(bytes);
+        }
     }
 
     fn read(bytes: &mut &[u8]) -> Option<Self> {
