@@ -103,7 +103,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A disc that rolls: heading ψ, lean θ from upright, spin φ.
+    /// A disc that rolls: heading ψ, lean θ from upright to the right, spin φ.
     #[derive(Clone, Debug)]
     pub struct Disc { m: kg, r: m, A: kg*m^2, C: kg*m^2, g: m/s^2 = 9.81 }
     coordinate X: m;
@@ -111,7 +111,7 @@ lagrangian! {
     coordinate ψ: rad;
     coordinate θ: rad;
     coordinate φ: rad;
-    let center = [X - r*sin(θ)*sin(ψ), Y + r*sin(θ)*cos(ψ), r*cos(θ)];
+    let center = [X + r*sin(θ)*sin(ψ), Y - r*sin(θ)*cos(ψ), r*cos(θ)];
     kinetic = m/2*|dot(center)|^2 + A/2*(θ̇^2 + ψ̇^2*cos(θ)^2) + C/2*(φ̇ + ψ̇*sin(θ))^2;
     potential = m*g*height(center);
     constraint along: Ẋ = r*φ̇*cos(ψ);

@@ -7,7 +7,7 @@
 
 use crate::algebra::diff::{derivative, substitute};
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
-use crate::algebra::functions::Kinks;
+use crate::algebra::functions::{Function, Kinks};
 use crate::algebra::number::Rational;
 use crate::algebra::prime_field::Residue;
 use crate::mechanics::lower::{Energies, Row, total_derivative};
@@ -51,6 +51,8 @@ pub(crate) struct Constraint {
     pub(crate) drive: Id,
     /// The rate of that at q̈ = 0: −γ.
     pub(crate) drift: Id,
+    /// The sums of the magnitudes of the terms of value and rate.
+    pub(crate) scales: [Id; 2],
 }
 
 impl Constraints {
@@ -59,7 +61,7 @@ impl Constraints {
         let rows = self.held.iter_mut().chain(&mut self.redundant).chain(&mut self.limits);
         let rows = rows.flat_map(|row| {
             let single = [&mut row.value, &mut row.rate, &mut row.drive, &mut row.drift];
-            single.into_iter().chain(&mut row.gradient)
+            single.into_iter().chain(&mut row.gradient).chain(&mut row.scales)
         });
         let lists =
             [&mut self.multipliers, &mut self.independence, &mut self.correction, &mut self.sides];
@@ -275,7 +277,37 @@ fn constraint(
     let resting = |symbol| matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO);
     let drive = substitute(graph, rate, resting);
     let drift = total_derivative(graph, rate);
-    Some(Constraint { holonomic, value: row.value, gradient, rate, drive, drift })
+    let scales = [row.value, rate].map(|id| magnitude(graph, id));
+    Some(Constraint { holonomic, value: row.value, gradient, rate, drive, drift, scales })
+}
+
+/// The sum of the magnitudes of the terms of an expression.
+fn magnitude(graph: &mut Graph, id: Id) -> Id {
+    match graph.node(id).clone() {
+        Node::Atom(inner) => magnitude(graph, inner),
+        Node::Sum(terms) => {
+            let mut all = Vec::new();
+            for (term, coefficient) in terms {
+                all.push((magnitude(graph, term), coefficient.abs()));
+            }
+            graph.sum(&all)
+        }
+        Node::Product(coefficient, factors)
+            if factors.iter().any(|&(base, exponent)| {
+                exponent == Rational::ONE && matches!(graph.node(base), Node::Sum(_))
+            }) =>
+        {
+            let mut all = Vec::new();
+            for (base, exponent) in factors {
+                let open = exponent == Rational::ONE;
+                let size =
+                    if open { magnitude(graph, base) } else { graph.call(Function::Abs, base) };
+                all.push((size, exponent));
+            }
+            graph.product(coefficient.abs(), &all)
+        }
+        _ => graph.call(Function::Abs, id),
+    }
 }
 
 /// A number of things.

@@ -180,7 +180,20 @@ pub trait System<const N: usize> {
         [[Self::Scalar::from_f64(0.0); N]; 2]
     }
 
-    /// The same of the redundant constraints, of which there are no more than coordinates.
+    /// The sums of the magnitudes of the terms of [`misfits`](Self::misfits): what its rounding is
+    /// measured by.
+    fn misfit_scales(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+    ) -> [[Self::Scalar; N]; 2] {
+        let _ = (t, q, v, inputs);
+        [[Self::Scalar::from_f64(0.0); N]; 2]
+    }
+
+    /// The same as [`misfits`](Self::misfits) of the redundant constraints, of which there are no more than coordinates.
     fn redundant_misfits(
         &self,
         t: Self::Scalar,

@@ -29,6 +29,10 @@ impl Emitter<'_, '_> {
         let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
         let state = self.state();
         let misfits = self.misfits(&constraints.held);
+        let scales = self.matrix(&[
+            column(&constraints.held, |row| row.scales[0]),
+            column(&constraints.held, |row| row.scales[1]),
+        ]);
         let correction = self.padded(&constraints.correction, Graph::ZERO);
         let jacobian = self.gradients(&constraints.held);
         let reactions = self.padded(&constraints.multipliers, Graph::ZERO);
@@ -36,6 +40,9 @@ impl Emitter<'_, '_> {
         quote! {
             #[inline]
             fn misfits(&self, #state) -> [[#scalar; #count]; 2] { #misfits }
+
+            #[inline]
+            fn misfit_scales(&self, #state) -> [[#scalar; #count]; 2] { #scales }
 
             #[inline]
             fn correction(&self, #state, target: &[#scalar; #count]) -> [#scalar; #count] { #correction }

@@ -102,8 +102,9 @@ impl Emitter<'_, '_> {
                     .collect();
                 let masses = motion.mass_matrix.concat();
                 let rows = |rows: &[Constraint]| {
-                    let roots =
-                        |row: &Constraint| [&[row.value, row.rate], &row.gradient[..]].concat();
+                    let roots = |row: &Constraint| {
+                        [&[row.value, row.rate], &row.gradient[..], &row.scales].concat()
+                    };
                     rows.iter().flat_map(roots).collect::<Vec<Id>>()
                 };
                 let drifts: Vec<Id> =

@@ -50,16 +50,18 @@ impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Projection<'d, D, N> {
         self.dynamics.system().misfits(self.time, q, v, &self.inputs)
     }
 
-    /// Takes the correction for `misfit` off `values`, in units of their rounding; `None` if it is
-    /// below that, or no number.
-    fn correct(
+    fn scales(&self, q: &[D::Scalar; N], v: &[D::Scalar; N]) -> [[D::Scalar; N]; 2] {
+        self.dynamics.system().misfit_scales(self.time, q, v, &self.inputs)
+    }
+
+    /// The change that takes `misfit` away, to first order.
+    fn correction(
         &self,
         q: &[D::Scalar; N],
         v: &[D::Scalar; N],
         misfit: &[D::Scalar; N],
     ) -> [D::Scalar; N] {
-        let system = self.dynamics.system();
-        system.correction(self.time, q, v, &self.inputs, misfit)
+        self.dynamics.system().correction(self.time, q, v, &self.inputs, misfit)
     }
 }
 
@@ -76,10 +78,6 @@ fn rounding<T: Float, const N: usize>(change: &[T; N], values: &[T; N]) -> f64 {
     most
 }
 
-fn taken<T: Float, const N: usize>(values: &mut Compensated<T, N>, change: &[T; N]) {
-    values.add(T::from_f64(-1.0), change);
-}
-
 /// What a projection has found and done.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Found {
@@ -87,8 +85,9 @@ pub(crate) struct Found {
     pub(crate) misfits: [(f64, usize); 2],
     /// The first corrections of both, in units of rounding.
     pub(crate) first: [f64; 2],
-    /// The last ones: large if the iteration has not converged.
-    pub(crate) last: [f64; 2],
+    /// What is left of both misfits in units of the rounding of their terms, and the constraints
+    /// that are off most.
+    pub(crate) left: [(f64, usize); 2],
     /// The state is another one now.
     pub(crate) moved: bool,
 }
@@ -104,6 +103,26 @@ fn largest<T: Float, const N: usize>(values: &[T; N]) -> (f64, usize) {
     most
 }
 
+/// The largest misfit in units of the rounding of its terms.
+fn in_rounding<T: Float, const N: usize>(misfit: &[T; N], scales: &[T; N]) -> (f64, usize) {
+    let mut most = (0.0, 0);
+    for index in 0..N {
+        let own = misfit[index].to_f64().abs();
+        let own = if own == 0.0 {
+            0.0
+        } else {
+            own / (T::EPSILON.to_f64() * scales[index].to_f64()).max(f64::MIN_POSITIVE)
+        };
+        if most.0 < own || own.is_nan() {
+            most = (if own.is_nan() { f64::INFINITY } else { own }, index);
+        }
+    }
+    most
+}
+
+/// A misfit this large, in units of the rounding of its terms, is left.
+const ROUNDED: f64 = 2.0;
+
 /// Brings `q` and `v` at `t`, seen from `side`, onto the constraints.
 pub(crate) fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
@@ -114,38 +133,45 @@ pub(crate) fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
 ) -> Found {
     let projection = Projection::new(dynamics, t, side);
     let none = (0.0, 0);
-    let mut found = Found { misfits: [none; 2], first: [0.0; 2], last: [0.0; 2], moved: false };
-    let zero = [D::Scalar::from_f64(0.0); N];
+    let mut found = Found { misfits: [none; 2], first: [0.0; 2], left: [none; 2], moved: false };
     // A correction this long, in units of rounding, leaves one below rounding behind.
     let quadratic = 0.25 / D::Scalar::EPSILON.to_f64().sqrt();
     for part in 0..2 {
-        let mut before = f64::INFINITY;
-        for iteration in 0..MOST {
+        // What is left and where, before the last correction.
+        let mut before = None;
+        let scales = projection.scales(&q.high, &v.high)[part];
+        for iteration in 0..=MOST {
             let misfit = projection.misfits(&q.high, &v.high)[part];
+            let left = in_rounding(&misfit, &scales);
             if iteration == 0 {
                 found.misfits[part] = largest(&misfit);
             }
-            if misfit == zero {
-                found.last[part] = 0.0;
+            let values = if part == 0 { &mut *q } else { &mut *v };
+            if let Some((best, own)) = before
+                && !(left.0 < best)
+            {
+                // Almost dependent constraints amplify what rounding leaves.
+                *values = own;
                 break;
             }
-            let change = projection.correct(&q.high, &v.high, &misfit);
+            let shrinks = before.is_none_or(|(best, _)| left.0 < 0.5 * best);
+            found.left[part] = left;
+            if left.0 <= ROUNDED || !shrinks || iteration == MOST {
+                break;
+            }
+            before = Some((left.0, *values));
+            let change = projection.correction(&q.high, &v.high, &misfit);
             let values = if part == 0 { &mut *q } else { &mut *v };
             let length = rounding(&change, &values.high);
             if iteration == 0 {
                 found.first[part] = length;
             }
-            // What rounding leaves, and what no longer shrinks.
-            if length <= 0.5 || !(length < 0.5 * before) {
-                break;
-            }
-            found.last[part] = length;
-            taken(values, &change);
+            values.add(D::Scalar::from_f64(-1.0), &change);
             found.moved = true;
             if length < if part == 0 { quadratic } else { 4.0 } {
+                found.left[part].0 = 0.0;
                 break;
             }
-            before = length;
         }
     }
     found
@@ -173,8 +199,8 @@ pub(crate) fn project_end<D: Dynamics<N, Scalar: Float>, const N: usize>(
     {
         stats.misfit = Extreme { value: misfit, t, constraint: constraints[index].name };
     }
-    for (part, last) in [Part::Position, Part::Velocity].into_iter().zip(found.last) {
-        if !(last < allowed::<D::Scalar>()) {
+    for (part, (left, _)) in [Part::Position, Part::Velocity].into_iter().zip(found.left) {
+        if !(left < allowed::<D::Scalar>()) {
             return Err(off::<D, N>(t, part, &found));
         }
     }
@@ -185,7 +211,7 @@ pub(crate) fn project_end<D: Dynamics<N, Scalar: Float>, const N: usize>(
     Ok(found.moved)
 }
 
-/// The longest last correction in units of rounding: from there another one would be below it.
+/// The largest misfit that may be left, in units of the rounding of its terms: √ε of them.
 fn allowed<T: Float>() -> f64 {
     T::EPSILON.to_f64().powf(-0.5)
 }
