@@ -5,4 +5,5 @@
 pub mod checkpoints;
 pub mod lanes;
 pub mod reductions;
+pub mod teams;
 pub mod ways;

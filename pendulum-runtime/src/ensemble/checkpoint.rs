@@ -7,6 +7,7 @@ use super::record::{Record, hash};
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 /// What a shard's file begins with; the last byte is the version of the format.
 const MAGIC: [u8; 8] = *b"pendul\x00\x01";
@@ -186,7 +187,9 @@ fn opened(bytes: &[u8]) -> Option<(u64, usize, &[u8])> {
 
 /// Writes a file at once: what is there under its name is whole.
 fn write(file: &Path, bytes: &[u8]) -> io::Result<()> {
-    let temporary = file.with_extension(format!("{}.tmp", std::process::id()));
+    // Processes of several machines may have the same number.
+    let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |now| now.as_nanos());
+    let temporary = file.with_extension(format!("{}-{now}.tmp", std::process::id()));
     let written = File::create(&temporary).and_then(|mut open| {
         open.write_all(bytes)?;
         open.sync_all()

@@ -6,6 +6,7 @@ use super::gathered::{Gathered, Progress, Tally};
 use super::record::{Record, hash};
 use super::shards::Shards;
 use super::sink::{Each, Fold, List, Sink};
+use super::team::{Desk, Team};
 use super::threads;
 use super::tree::Tree;
 use super::way::Way;
@@ -217,6 +218,95 @@ where
         self.gather(&Each { take })
     }
 
+    /// The same as [`fold`](Self::fold) with the other processes of a [`Team`]: each calls it with the
+    /// same ensemble, and the root gets the value, with the same bits as alone.
+    ///
+    /// With a checkpoint all of them share its folder.
+    ///
+    /// # Errors
+    /// As [`fold`](Self::fold), in the process that meets them; the value is that of the shards that
+    /// were finished.
+    pub fn fold_in<P: Record + Send>(
+        self,
+        team: &impl Team,
+        identity: impl Fn() -> P + Sync,
+        add: impl Fn(P, R) -> P + Sync,
+        merge: impl Fn(P, P) -> P + Sync,
+    ) -> Result<Option<Gathered<P>>, EnsembleError>
+    where
+        K: Keep<P>,
+    {
+        let sink = &Fold { identity, add, merge };
+        let Self { work, look, keep, tag, part } = self;
+        let shards = work.shards;
+        work.way.check(&work.settings)?;
+        let checkpoint = Checkpoint::open(&keep, || work.describe::<P>(&tag))?;
+        let shared = Shared::new(&shards, look, part);
+        let tree = Tree::new(shards.count());
+        let join = |first: Done<P>, second: Done<P>| Done::join(sink, first, second);
+        let keep_here = |shard: usize, done: Done<P>| {
+            shared.advance(&done.tally);
+            tree.add(shard, done, join);
+        };
+        let (desk, is_root) = (team.desk(), team.is_root());
+        let give = |shard: usize, done: Done<P>| {
+            if is_root {
+                keep_here(shard, done);
+            } else {
+                desk.send(shard, done.to_bytes());
+            }
+        };
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                let _finish = Finish(desk);
+                threads::on_all(shards.count(), || {
+                    let mut take = || {
+                        while !shared.is_cancelled() {
+                            let shard = desk.take().filter(|shard| *shard < shards.count())?;
+                            match checkpoint.read(shard) {
+                                Ok(Some(done)) => {
+                                    shared.resumed.fetch_add(1, Ordering::Relaxed);
+                                    give(shard, done);
+                                }
+                                Ok(None) => return Some(shard),
+                                Err(error) => shared.fail(error),
+                            }
+                        }
+                        None
+                    };
+                    let mut write = |shard, done: Done<P>| match checkpoint.write(
+                        shard,
+                        &done.part,
+                        &done.tally,
+                    ) {
+                        Ok(()) => give(shard, done),
+                        Err(error) => shared.fail(error),
+                    };
+                    work.solve(sink, &mut take, &|| shared.is_cancelled(), &mut write);
+                });
+            });
+            team.serve(&mut |shard, bytes| {
+                if let Some(done) = Done::of_bytes(bytes) {
+                    keep_here(shard, done);
+                }
+            });
+        });
+        let done = tree.finish(join);
+        let Shared { error, progress, resumed, .. } = shared;
+        if let Some(error) = error.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            return Err(error);
+        }
+        if !is_root {
+            return Ok(None);
+        }
+        let (progress, _) = progress.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let missing = shards.count() - progress.shards;
+        let Done { part: value, tally } =
+            done.unwrap_or_else(|| Done { part: sink.empty(), tally: Tally::default() });
+        let (resumed, cancelled) = (resumed.into_inner(), 0 < missing);
+        Ok(Some(Gathered { value, tally, cancelled, resumed, missing }))
+    }
+
     /// Solves and reduces all members.
     fn gather<S: Sink<R>>(self, sink: &S) -> Result<Gathered<S::Whole>, EnsembleError>
     where
@@ -379,6 +469,29 @@ impl<P> Done<P> {
         let Self { part, mut tally } = first;
         tally.join(second.tally);
         Self { part: sink.join(part, second.part), tally }
+    }
+}
+
+/// Tells a team that this process is through, also after a panic.
+struct Finish<'t, T: Desk>(&'t T);
+
+impl<T: Desk> Drop for Finish<'_, T> {
+    fn drop(&mut self) {
+        self.0.finish();
+    }
+}
+
+impl<P: Record> Done<P> {
+    fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        self.tally.write(&mut bytes);
+        self.part.write(&mut bytes);
+        bytes
+    }
+
+    fn of_bytes(mut bytes: &[u8]) -> Option<Self> {
+        let (tally, part) = (Tally::read(&mut bytes)?, P::read(&mut bytes)?);
+        bytes.is_empty().then_some(Self { part, tally })
     }
 }
 
