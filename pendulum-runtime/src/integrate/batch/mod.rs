@@ -29,9 +29,10 @@ const W: usize = 8;
 /// steps: its solution has the same bits whatever its neighbours do. Where one ends, the next one
 /// takes its lane. The steps are those that `Taylor` chooses before it looks at their ends:
 /// `Taylor` compares the accelerations there with its series and halves a step that leads through a
-/// wall; a batch does neither. State and counters have the bits of [`solve`](crate::integrate::solve)`(&system,
-/// time, q, v).method(Taylor::new())` wherever the [`Stats`] of that run count no rejected step. At
-/// walls, contacts and narrow kicks take `solve`.
+/// wall; a batch does neither. State and counters have the bits of
+/// [`solve`](crate::integrate::solve)`(&system, time, q, v).method(Taylor::new())` wherever the
+/// [`Stats`](crate::integrate::Stats) of that run count no rejected step. At walls, contacts and
+/// narrow kicks take `solve`.
 /// Worth it from about four motions on; it suits every system that `lagrangian!` has made without
 /// driven inputs.
 ///
