@@ -91,6 +91,26 @@ pub enum Error {
         /// It is a redundant one, which does not follow from the others.
         redundant: bool,
     },
+    /// No state was found near a guess that fulfils the constraints.
+    NotAssembled {
+        /// The time.
+        t: f64,
+        /// The half of the state that was searched for.
+        part: Part,
+        /// The constraint that was off most where the search ended.
+        constraint: &'static str,
+        /// Its misfit there, or that of its rate.
+        residual: f64,
+        /// The unit of the constraint, empty where none is known.
+        unit: &'static str,
+    },
+    /// A coordinate that was to be held does not exist.
+    NoCoordinate {
+        /// The name given.
+        name: String,
+        /// The coordinates of the system.
+        coordinates: &'static [&'static str],
+    },
     /// A constraint depends on those before it, so that their forces are undetermined.
     DependentConstraints {
         /// The time.
@@ -334,6 +354,25 @@ impl fmt::Display for Error {
                 } else {
                     write!(f, "; begin with a state that fulfils it, as `assemble` finds one")
                 }
+            }
+            Self::NotAssembled { t, part, constraint, residual, unit } => {
+                let (what, per) = match part {
+                    Part::Position => ("", ""),
+                    Part::Velocity => ("the rate of ", " per second"),
+                };
+                let space = if unit.is_empty() { "" } else { " " };
+                write!(
+                    f,
+                    "at t = {t:?} no state near the guess fulfils the constraints: {what}{constraint} stays off by \
+                     {residual:?}{space}{unit}{per}; guess elsewhere, hold fewer coordinates, or check the parameters"
+                )
+            }
+            Self::NoCoordinate { ref name, coordinates } => {
+                write!(f, "there is no coordinate `{name}` to hold; there are ")?;
+                for (index, own) in coordinates.iter().enumerate() {
+                    write!(f, "{}`{own}`", if index == 0 { "" } else { ", " })?;
+                }
+                Ok(())
             }
             Self::DependentConstraints { t, constraint, independence } => write!(
                 f,

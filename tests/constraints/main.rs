@@ -3,6 +3,7 @@
 
 #![allow(mixed_script_confusables, confusable_idents, missing_docs, uncommon_codepoints)]
 
+pub mod assembly;
 pub mod generated;
 pub mod problems;
 pub mod systems;

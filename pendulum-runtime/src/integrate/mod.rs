@@ -37,6 +37,7 @@ pub mod controller {
     };
 }
 
+mod assemble;
 pub(crate) mod batch;
 pub(crate) mod data;
 pub(crate) mod events;
@@ -53,6 +54,7 @@ mod solve;
 mod state;
 pub(crate) mod step;
 
+pub use assemble::{Assemble, assemble};
 pub use batch::{Batch, Batched, Outcome, Problem};
 pub use data::{ColumnError, LengthError, Table};
 pub use events::impact::impact;

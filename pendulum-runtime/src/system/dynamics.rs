@@ -164,6 +164,21 @@ pub trait Dynamics<const N: usize> {
         self.system().power(scalar_time(t), q, v, &inputs)
     }
 
+    /// The multipliers λ of M q̈ = f + Cᵀλ at `t`, in the order of `FACTS.constraints`; the rest is
+    /// zero.
+    ///
+    /// Each has the unit that [`Constraint::reaction_unit`](crate::system::Constraint) names.
+    fn reactions_at(
+        &self,
+        t: f64,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+    ) -> [Self::Scalar; N] {
+        let t = Time::new(t);
+        let inputs = self.inputs_with(t, Side::After, Purpose::Accelerations, q, v);
+        self.system().reactions(scalar_time(t), q, v, &inputs)
+    }
+
     /// The velocities beyond a kink at `t` from those on the side `from`: the momenta are the same
     /// on both sides.
     ///

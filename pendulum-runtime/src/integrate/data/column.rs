@@ -157,6 +157,23 @@ impl<T: Float, const N: usize> Solution<T, N> {
         (0..count).map(|index| rows.iter().map(|row| row[index]).collect()).collect()
     }
 
+    /// The multipliers λ of the constraints at all output times, as
+    /// [`Dynamics::reactions_at`] gives them: a column for each constraint that the equations hold,
+    /// in the order of `FACTS.constraints`.
+    ///
+    /// At two states of the same time as [`energy`](Self::energy).
+    pub fn reactions<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
+        let rows = self.evaluate(
+            |t, q, v| dynamics.reactions_at(t, q, v),
+            |t, q, v| {
+                let inputs = dynamics.inputs_with(t, Side::Before, Purpose::Accelerations, q, v);
+                dynamics.system().reactions(scalar_time(t), q, v, &inputs)
+            },
+        );
+        let count = <D::System as System<N>>::FACTS.held_constraints();
+        (0..count).map(|index| rows.iter().map(|row| row[index]).collect()).collect()
+    }
+
     /// One scalar of an output of the system at all output times: `"load"`, `"tip.x"`,
     /// `"tips[2].y"`.
     ///

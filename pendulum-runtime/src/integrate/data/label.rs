@@ -56,6 +56,12 @@ impl Labels {
         labels
     }
 
+    /// The index of the coordinate with this name, as [`name::read`] reads it.
+    pub(crate) fn coordinate(&self, name: &str) -> Option<usize> {
+        let wanted = name::read(name);
+        self.coordinates.iter().position(|label| name::read(&label.name) == wanted)
+    }
+
     /// The names of all columns: `t`, the coordinates, the velocities.
     pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
         let labels = self.coordinates.iter().chain(&self.velocities);

@@ -109,6 +109,22 @@ impl<T: Float, const N: usize> Solution<T, N> {
         }
         table
     }
+
+    /// Time, coordinates, velocities and the multipliers of the constraints at all output times:
+    /// `λ_rod`, `λ_loop.x`, with their units.
+    ///
+    /// Multipliers at a kink are those after it, as [`energy`](Self::energy) is.
+    pub fn table_with_reactions<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Table<T> {
+        let mut table = self.table();
+        let constraints = <D::System as System<N>>::FACTS.constraints;
+        let named = constraints.iter().zip(self.reactions(dynamics));
+        table.columns.extend(named.map(|(constraint, values)| Column {
+            name: format!("λ_{}", constraint.name),
+            unit: constraint.reaction_unit.into(),
+            values,
+        }));
+        table
+    }
 }
 
 impl<T: Float> Table<T> {
