@@ -120,6 +120,42 @@ pub enum Error {
         /// Its independence, from 0 to 1.
         independence: f64,
     },
+    /// A state beyond a limit.
+    Penetration {
+        /// The time.
+        t: f64,
+        /// The limit.
+        limit: &'static str,
+        /// Its gap, which is below zero.
+        gap: f64,
+        /// The unit of the limit, empty where none is known.
+        unit: &'static str,
+    },
+    /// A coefficient of restitution that is none.
+    Restitution {
+        /// The time of the impact.
+        t: f64,
+        /// The limit.
+        limit: &'static str,
+        /// The coefficient.
+        value: f64,
+    },
+    /// A limit stays in contact, whose force the method does not know.
+    Contact {
+        /// The time at which it does.
+        t: f64,
+        /// The limit.
+        limit: &'static str,
+        /// The method.
+        method: &'static str,
+    },
+    /// A system with limits was to go back in time.
+    NoWayBack {
+        /// The time reached.
+        t: f64,
+        /// The first limit.
+        limit: &'static str,
+    },
     /// Step control asked for a step below the resolution of time.
     StepSizeUnderflow {
         /// The time reached.
@@ -378,6 +414,26 @@ impl fmt::Display for Error {
                 f,
                 "at t = {t:?} the constraint {constraint} depends on those before it, {independence:.1e} of it is left; \
                  leave it out, declare it `redundant`, or stop before that state"
+            ),
+            Self::Penetration { t, limit, gap, unit } => {
+                let space = if unit.is_empty() { "" } else { " " };
+                write!(
+                    f,
+                    "at t = {t:?} the gap of the limit {limit} is {gap:?}{space}{unit}; begin with a state in which it is not negative"
+                )
+            }
+            Self::Restitution { t, limit, value } => write!(
+                f,
+                "at t = {t:?} the restitution of the limit {limit} is {value:?}; it has to be from 0 (no rebound) to 1"
+            ),
+            Self::Contact { t, limit, method } => write!(
+                f,
+                "at t = {t:?} the limit {limit} stays in contact, and {method} does not know its force; \
+                 use `Dop853`, `Tsit5`, `Rk4` or, for adaptive steps, `Auto`"
+            ),
+            Self::NoWayBack { t, limit } => write!(
+                f,
+                "at t = {t:?} there is no way back over the impacts on the limit {limit}; integrate forwards in time"
             ),
             Self::StepSizeUnderflow { t, step, coordinate } => write!(
                 f,

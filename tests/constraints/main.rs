@@ -5,5 +5,6 @@
 
 pub mod assembly;
 pub mod generated;
+pub mod limits;
 pub mod problems;
 pub mod systems;

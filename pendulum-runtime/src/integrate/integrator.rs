@@ -8,7 +8,7 @@ use crate::integrate::method::Method;
 
 use crate::integrate::output::direction;
 use crate::integrate::saved::{Memory, Saved};
-use crate::integrate::solution::Stats;
+use crate::integrate::solution::{Impact, Stats};
 use crate::integrate::state::State;
 use crate::integrate::step::adaptive::AdaptiveStep;
 use crate::integrate::step::controller::Controller;
@@ -383,6 +383,11 @@ where
     /// [`advance_to`](Self::advance_to), in order.
     pub fn occurrences(&self) -> &[Occurrence<D::Scalar, N>] {
         &self.found
+    }
+
+    /// The impacts on the limits of the system in the last step.
+    pub fn impacts(&self) -> &[Impact<D::Scalar, N>] {
+        self.integration.impacts()
     }
 
     /// The index of the terminal event that has ended that call, or of the one that has come to rest.

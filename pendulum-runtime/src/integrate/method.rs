@@ -118,6 +118,12 @@ pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fm
         let _ = (dynamics, workspace, to);
     }
 
+    /// Returns true if all accelerations of a step come from [`Field::at`], which adds the forces of
+    /// limits in contact. Others end in [`Error::Contact`] where a contact begins.
+    fn keeps_contacts(&self) -> bool {
+        false
+    }
+
     /// Returns true if the method goes back in time too; by default if the kinks that come there
     /// are known.
     fn goes_back(&self, dynamics: &D) -> bool {

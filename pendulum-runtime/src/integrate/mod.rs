@@ -77,7 +77,7 @@ pub use methods::taylor::Taylor;
 pub use methods::tsit5::Tsit5;
 pub use observe::Step;
 pub use saved::Saved;
-pub use solution::{Failure, Solution, States, Stats};
+pub use solution::{Failure, Impact, Solution, States, Stats};
 pub use solve::{Solve, solve};
 pub use state::State;
 pub use step::adaptive::AdaptiveStep;

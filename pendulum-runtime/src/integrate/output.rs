@@ -5,7 +5,7 @@ use crate::integrate::data::label::Source;
 use crate::integrate::events::{Occurrence, Status};
 use crate::integrate::interpolant::dense::DenseOutput;
 use crate::integrate::observe::OfStates;
-use crate::integrate::solution::{Failure, Solution, Stats};
+use crate::integrate::solution::{Failure, Impact, Solution, Stats};
 use crate::integrate::state::State;
 use crate::integrate::step::field::first_in_state;
 use crate::integrate::step::observed::Observed;
@@ -116,6 +116,7 @@ pub(crate) struct Recorder<'a, 'f, T, const N: usize> {
     q: Vec<[T; N]>,
     v: Vec<[T; N]>,
     events: Vec<Occurrence<T, N>>,
+    impacts: Vec<Impact<T, N>>,
     labels: Source,
     /// Takes the states instead.
     stream: Option<&'f mut OfStates<'a, T, N>>,
@@ -142,6 +143,7 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
             q: Vec::new(),
             v: Vec::new(),
             events: Vec::new(),
+            impacts: Vec::new(),
             labels: Source::Facts(facts),
             stream,
             cancelled: false,
@@ -193,6 +195,12 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
     /// Takes in what happened in it.
     pub(crate) fn events(&mut self, found: &[Occurrence<T, N>]) {
         self.events.extend_from_slice(found);
+    }
+
+    /// Takes in the impacts in it.
+    #[inline]
+    pub(crate) fn impacts(&mut self, found: &[Impact<T, N>]) {
+        self.impacts.extend_from_slice(found);
     }
 
     /// The states within the step and at its end.
@@ -266,8 +274,8 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
         if self.stream.is_some() {
             self.keep(end);
         }
-        let Self { dense, t, q, v, events, labels, .. } = self;
-        Solution { t, q, v, end, status, events, stats, dense, labels }
+        let Self { dense, t, q, v, events, impacts, labels, .. } = self;
+        Solution { t, q, v, end, status, events, impacts, stats, dense, labels }
     }
 
     /// The failure that leaves `end` as the last state.

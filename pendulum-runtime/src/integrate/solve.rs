@@ -317,6 +317,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         let mut stops = self.stops.iter().copied().peekable();
         let mut detector = EventDetector::new(&self.events);
         recorder.begin(State::from(&integration.end), self.dense);
+        recorder.impacts(integration.impacts());
         detector.begin(integration)?;
         while ahead(&integration.end, end) {
             let Stats { accepted, rejected, .. } = integration.stats;
@@ -331,6 +332,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
             }
             let ended = detector.observe(integration);
             recorder.events(detector.found());
+            recorder.impacts(integration.impacts());
             let ended = ended?;
             recorder.step(integration)?;
             if let Some(look) = &mut look

@@ -1,6 +1,7 @@
 //! Impacts of generalized velocities.
 
 use crate::integrate::state::State;
+use crate::integrate::step::projection::is_constrained;
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Purpose, System, scalar_time};
@@ -14,6 +15,9 @@ use nalgebra::SMatrix;
 /// impulse, a change of momenta, has its direction, and n·q̇ becomes −e times what it was. M is the
 /// mass matrix at `t` and `q`. The kinetic energy falls by (1 − e²)(n·q̇)²/(2 nᵀM⁻¹n).
 ///
+/// With constraints their forces act too: M Δq̇ = nμ + Cᵀν with C Δq̇ = 0, so that M⁻¹n becomes the
+/// part of it that keeps them.
+///
 /// The result is not finite if n is zero or the mass matrix singular.
 ///
 /// Source: F. Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral Contacts (1996),
@@ -26,10 +30,7 @@ pub fn impact<const N: usize, D: Dynamics<N, Scalar: Float>>(
     normal: &[D::Scalar; N],
     restitution: f64,
 ) -> [D::Scalar; N] {
-    let time = Time::new(t);
-    let inputs = dynamics.inputs(time, Side::After, Purpose::Momenta);
-    let matrix = dynamics.system().mass_matrix(scalar_time(time), q, v, &inputs);
-    let direction = solved(matrix, *normal);
+    let direction = response(dynamics, Time::new(t), Side::After, q, v, normal);
     let speed = product(normal, v);
     let factor = -D::Scalar::from_f64(1.0 + restitution) * speed / product(normal, &direction);
     direction.map(|component| factor * component)
@@ -58,7 +59,33 @@ impl<T: Float, const N: usize> State<T, N> {
     }
 }
 
-fn product<T: Float, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
+/// The change of the velocities by the impulse `normal` while the constraints hold: K n, which is
+/// M⁻¹n without constraints, else M⁻¹n − M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹C M⁻¹n.
+pub(crate) fn response<const N: usize, D: Dynamics<N, Scalar: Float>>(
+    dynamics: &D,
+    time: Time,
+    side: Side,
+    q: &[D::Scalar; N],
+    v: &[D::Scalar; N],
+    normal: &[D::Scalar; N],
+) -> [D::Scalar; N] {
+    let (system, t) = (dynamics.system(), scalar_time(time));
+    let inputs = dynamics.inputs(time, side, Purpose::Momenta);
+    let mut change = solved(system.mass_matrix(t, q, v, &inputs), *normal);
+    if const { is_constrained::<D, N>() } {
+        let jacobian = system.constraint_jacobian(t, q, v, &inputs);
+        let rates = core::array::from_fn(|k| {
+            (0..N).fold(D::Scalar::from_f64(0.0), |sum, j| sum + jacobian[(k, j)] * change[j])
+        });
+        let back = system.correction(t, q, v, &inputs, &rates);
+        for i in 0..N {
+            change[i] -= back[i];
+        }
+    }
+    change
+}
+
+pub(crate) fn product<T: Float, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
     a.iter().zip(b).fold(T::from_f64(0.0), |sum, (a, b)| sum + *a * *b)
 }
 

@@ -9,6 +9,7 @@ use crate::integrate::methods::srkn14a;
 use crate::integrate::methods::taylor::{Taylor, WorkspaceOf};
 use crate::integrate::schemes::splitting::drift_kick_drift_in_two_words;
 use crate::integrate::step::adaptive::AdaptiveStep;
+use crate::integrate::step::contacts::has_limits;
 use crate::integrate::step::controller::{Controller, ControllerState, StepContext, StepLaw};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::Field;
@@ -116,6 +117,10 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Method<D, N> for Auto {
         }
     }
 
+    fn keeps_contacts(&self) -> bool {
+        true
+    }
+
     #[inline]
     fn attempt<const W: bool>(
         &self,
@@ -132,7 +137,7 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Method<D, N> for Auto {
             let to = Taylor::new().attempt(&mut series, interval, from, &mut workspace.taylor);
             field.evaluations += series.evaluations;
             to
-        } else if <D::System as System<N>>::FACTS.velocity_free {
+        } else if <D::System as System<N>>::FACTS.velocity_free && !field.contacts.any() {
             workspace.choice = Some(Choice::Srkn14a);
             Symplectic.attempt(field, interval, from, &mut ())
         } else {
@@ -238,6 +243,11 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Controller<Auto, D, N> f
         self.least_steps_over(length)
     }
 
+    fn accuracy(&self) -> Option<(f64, [[f64; N]; 2])> {
+        let (relative, (q, v)) = self.tolerances::<D::Scalar>();
+        Some((relative, [q, v]))
+    }
+
     /// Leaves the step to the method chosen.
     fn step(
         &self,
@@ -248,7 +258,9 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Controller<Auto, D, N> f
         let dynamics = field.dynamics;
         let backwards = target < from.t.to_f64();
         let (rtol, _) = self.tolerances::<D::Scalar>();
-        if workspace.chosen_for != Some(rtol)
+        if const { has_limits::<D, N>() } && field.contacts.any() {
+            (workspace.choice, workspace.chosen_for) = (Some(Choice::Dop853), None);
+        } else if workspace.chosen_for != Some(rtol)
             || backwards && workspace.choice != Some(Choice::Taylor) && goes_by_series(dynamics)
         {
             let choice = Auto::adaptive(dynamics, rtol, backwards);

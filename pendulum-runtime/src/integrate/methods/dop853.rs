@@ -49,6 +49,10 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Dop853 {
         Stages::zero()
     }
 
+    fn keeps_contacts(&self) -> bool {
+        true
+    }
+
     #[inline]
     fn attempt<const W: bool>(
         &self,

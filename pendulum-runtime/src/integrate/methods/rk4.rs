@@ -37,6 +37,10 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Rk4 {
         Slopes::zero()
     }
 
+    fn keeps_contacts(&self) -> bool {
+        true
+    }
+
     #[inline]
     fn attempt<const W: bool>(
         &self,

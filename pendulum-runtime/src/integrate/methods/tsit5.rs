@@ -41,6 +41,10 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Tsit5 {
         Slopes::zero()
     }
 
+    fn keeps_contacts(&self) -> bool {
+        true
+    }
+
     #[inline]
     fn attempt<const W: bool>(
         &self,

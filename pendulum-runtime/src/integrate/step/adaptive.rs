@@ -139,6 +139,11 @@ where
         Ok(())
     }
 
+    fn accuracy(&self) -> Option<(f64, [[f64; N]; 2])> {
+        let (relative, (q, v)) = self.tolerances::<D::Scalar>();
+        Some((relative, [q, v]))
+    }
+
     fn least_steps(&self, length: f64) -> f64 {
         self.least_steps_over(length)
     }

@@ -24,6 +24,12 @@ where
     /// A lower bound of the number of steps over an interval.
     fn least_steps(&self, length: f64) -> f64;
 
+    /// The relative tolerance, and the absolute ones of coordinates and of velocities; `None` for
+    /// steps that no tolerance decides. Rebounds below them count as none.
+    fn accuracy(&self) -> Option<(f64, [[f64; N]; 2])> {
+        None
+    }
+
     /// Takes one step from `context.from` towards `context.target`, not beyond it, and puts its end
     /// into `context.to`; steps of fixed length are taken as they are, others by
     /// [`StepLaw::take_step`].

@@ -1,6 +1,7 @@
 //! The accelerations as the methods see them: counted, and watched after a step that failed.
 
 use crate::error::{Coordinate, Quantity};
+use crate::integrate::step::contacts::{self, Contacts, has_limits};
 use crate::motion::Side;
 use crate::scalar::Float;
 use crate::system::{
@@ -27,6 +28,8 @@ pub struct Field<'a, D: Dynamics<N>, const N: usize, const WATCHED: bool = false
     pub(crate) evaluations: u64,
     /// The steps go back in time.
     pub(crate) backwards: bool,
+    /// The limits in contact, which push.
+    pub(crate) contacts: Contacts<N>,
     /// The first number that is not finite.
     pub(crate) findings: Findings,
 }
@@ -46,13 +49,21 @@ impl<'a, D: Dynamics<N>, const N: usize> Field<'a, D, N> {
     /// No evaluation yet.
     #[inline]
     pub(crate) fn new(dynamics: &'a D, prepared: &'a PreparedOf<D, N>) -> Self {
-        Self { dynamics, prepared, evaluations: 0, backwards: false, findings: Findings::default() }
+        Self {
+            dynamics,
+            prepared,
+            evaluations: 0,
+            backwards: false,
+            contacts: Contacts::NONE,
+            findings: Findings::default(),
+        }
     }
 
     /// The same dynamics, watched.
     pub(crate) fn watched(&self) -> Field<'a, D, N, true> {
-        let Self { dynamics, prepared, backwards, .. } = *self;
-        Field { dynamics, prepared, evaluations: 0, backwards, findings: Findings::default() }
+        let Self { dynamics, prepared, backwards, contacts, .. } = *self;
+        let findings = Findings::default();
+        Field { dynamics, prepared, evaluations: 0, backwards, contacts, findings }
     }
 }
 
@@ -80,7 +91,10 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         v: &[D::Scalar; N],
     ) -> [D::Scalar; N] {
         self.evaluations += 1;
-        let a = self.dynamics.accelerations_with(self.prepared, t, side, q, v);
+        let mut a = self.dynamics.accelerations_with(self.prepared, t, side, q, v);
+        if const { has_limits::<D, N>() } && self.contacts.any() {
+            a = contacts::pushed(self.dynamics, t, side, q, v, &a, &self.contacts).accelerations;
+        }
         if WATCHED {
             self.look_at(t, side, q, v, &a);
         }

@@ -5,9 +5,10 @@ use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{self, Method};
 use crate::integrate::observe::within;
 use crate::integrate::saved::Memory;
-use crate::integrate::solution::Stats;
+use crate::integrate::solution::{Impact, Stats};
 use crate::integrate::state::State;
 use crate::integrate::step::compensated::Compensated;
+use crate::integrate::step::contacts::{self, has_limits};
 use crate::integrate::step::controller::{Controller, ControllerState, StepContext};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::{
@@ -17,6 +18,7 @@ use crate::integrate::step::gap::PART;
 use crate::integrate::step::held::Held;
 use crate::integrate::step::inertia::{inertia, is_due, varies};
 use crate::integrate::step::interval::StepInterval;
+use crate::integrate::step::limits::{self, Accuracy, Limits, Meeting};
 use crate::integrate::step::observed::Observed;
 use crate::integrate::step::projection::{self, is_constrained};
 use crate::integrate::step::short::{is_short, straight};
@@ -52,6 +54,10 @@ where
     backwards: bool,
     /// The next kink in that direction, infinite if there is none.
     kink: f64,
+    /// The last step ended on a kink.
+    crossed: bool,
+    /// What is known of the limits.
+    limits: Limits<D::Scalar, N>,
 }
 
 impl<'a, const N: usize, D, M, C> Integration<'a, N, D, M, C>
@@ -72,7 +78,7 @@ where
         let end = projection::start(&*dynamics, Time::new(t), Side::After, q, v)?;
         dynamics.begin(t);
         let kink = next_kink(&method, &*dynamics, t, false)?;
-        Ok(Self {
+        let mut integration = Self {
             prepared: dynamics.system().prepare(),
             workspace: method.workspace(&dynamics),
             dynamics,
@@ -87,7 +93,11 @@ where
             state: ControllerState::default(),
             backwards: false,
             kink,
-        })
+            crossed: false,
+            limits: Limits::<D::Scalar, N>::new(contacts::limits::<D, N>()),
+        };
+        integration.touch()?;
+        Ok(integration)
     }
 
     /// Puts the state elsewhere; counters stay, steps are chosen as at a start.
@@ -106,7 +116,8 @@ where
         self.state = ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
         self.end = end;
         (self.last, self.interpolant, self.before_kink) = (None, None, None);
-        Ok(())
+        self.crossed = false;
+        self.touch()
     }
 
     /// Moves the coordinates by `high + low`; what rounding has left off stays.
@@ -121,7 +132,8 @@ where
         projection::start(&*self.dynamics, self.end.t, Side::After, q.high, self.end.v.high)?;
         (self.end.q, self.end.a) = (q, None);
         (self.last, self.interpolant, self.before_kink) = (None, None, None);
-        Ok(())
+        self.crossed = false;
+        self.touch()
     }
 
     /// The same integration under another controller.
@@ -141,6 +153,8 @@ where
             state: ControllerState { unknown: self.state.unknown, ..ControllerState::default() },
             backwards: self.backwards,
             kink: self.kink,
+            crossed: self.crossed,
+            limits: self.limits,
         }
     }
 
@@ -167,13 +181,58 @@ where
         self.sample()?;
         let kink_comes_first = if backwards { target < self.kink } else { self.kink < target };
         let target = if kink_comes_first { self.kink } else { target };
+        let mut from = self.end;
+        let mut met = None;
+        let taken = if const { has_limits::<D, N>() } {
+            self.meet(&mut from, target, &mut met)
+        } else {
+            self.take(&mut from, target)
+        };
+        match taken.and_then(|interval| self.arrive(&interval).map(|()| interval)) {
+            Ok(interval) => {
+                (self.last, self.interpolant, self.from) = (Some(interval), None, from);
+            }
+            Err(error) => {
+                self.end = from;
+                // The workspace is that of the step that failed.
+                (self.last, self.interpolant) = (None, None);
+                if const { has_limits::<D, N>() } {
+                    self.limits.undo();
+                }
+                return Err(error);
+            }
+        }
+        if const { has_limits::<D, N>() }
+            && (met.is_some() || self.crossed && self.limits.is_close())
+        {
+            self.settle(met)?;
+        }
+        if is_due::<D::System, N>(self.stats.accepted, self.before_kink.is_some()) {
+            self.look()
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Takes one step from `from` towards `target`, and brings its end onto the constraints.
+    #[inline]
+    fn take(
+        &mut self,
+        from: &mut Endpoint<D::Scalar, N>,
+        target: f64,
+    ) -> Result<StepInterval, Error>
+    where
+        C: Controller<M, D, N>,
+    {
         let mut field = Field::new(&*self.dynamics, &self.prepared);
         field.backwards = self.backwards;
-        let mut from = self.end;
+        if const { has_limits::<D, N>() } {
+            field.contacts = self.limits.contacts();
+        }
         let context = StepContext {
             method: &self.method,
             field: &mut field,
-            from: &mut from,
+            from,
             to: &mut self.end,
             workspace: &mut self.workspace,
             target,
@@ -186,23 +245,124 @@ where
             self.controller.step(&mut self.state, context)
         };
         self.stats.evaluations += field.evaluations;
-        let kept = taken.and_then(|interval| self.hold().map(|()| interval));
-        match kept.and_then(|interval| self.arrive(&interval).map(|()| interval)) {
-            Ok(interval) => {
-                (self.last, self.interpolant, self.from) = (Some(interval), None, from);
-            }
-            Err(error) => {
-                self.end = from;
-                // The workspace is that of the step that failed.
-                (self.last, self.interpolant) = (None, None);
-                return Err(error);
+        taken.and_then(|interval| self.hold().map(|()| interval))
+    }
+
+    /// Takes one step, or the part of it until a limit is met: the end then lies where its gap
+    /// closes, which repeated steps find to rounding, or where its contact lets go.
+    #[inline(never)]
+    fn meet(
+        &mut self,
+        from: &mut Endpoint<D::Scalar, N>,
+        target: f64,
+        met: &mut Option<Meeting>,
+    ) -> Result<StepInterval, Error>
+    where
+        C: Controller<M, D, N>,
+    {
+        const ATTEMPTS: usize = 6;
+        const REPEATED: usize = 3;
+        if self.backwards {
+            let limit = <D::System as System<N>>::FACTS.limits[0].name;
+            return Err(Error::NoWayBack { t: from.t.to_f64(), limit });
+        }
+        let accuracy = self.controller.accuracy();
+        self.limits.accuracy = accuracy.map(|(relative, absolute)| Accuracy { relative, absolute });
+        self.limits.begin();
+        let (plan, accepted) = (self.state, self.stats.accepted);
+        let mut interval = self.take(from, target)?;
+        for _ in 0..ATTEMPTS {
+            let mut end = self.end;
+            let interpolant = self.motion(&interval, from, &mut end);
+            self.end.a = end.a;
+            let Self { dynamics, prepared, limits, end, .. } = self;
+            let (dynamics, prepared) = (&**dynamics, &*prepared);
+            let free = |t, q: &[D::Scalar; N], v: &[D::Scalar; N]| {
+                dynamics.accelerations_with(prepared, t, Side::Before, q, v)
+            };
+            let Some(meeting) = limits.watch(dynamics, &interpolant, end, Side::Before, free)
+            else {
+                return Ok(interval);
+            };
+            let mut t = interval.start + meeting.theta * interval.h;
+            for repeated in 1..=REPEATED {
+                let time = t.to_f64();
+                if from.t.since(time) == 0.0 {
+                    // Time does not resolve the way there.
+                    self.end = Endpoint { a: None, ..*from };
+                    *met = Some(meeting);
+                    return Ok(StepInterval::by(from.t, 0.0));
+                }
+                if self.end.t != Time::new(time) {
+                    (self.end, self.state, self.stats.accepted) = (*from, plan, accepted);
+                    interval = self.take(from, time)?;
+                }
+                if self.end.t != Time::new(time) {
+                    // The tolerances ask for a shorter step.
+                    break;
+                }
+                let (q, v) = (&self.end.q.high, &self.end.v.high);
+                let [gaps, rates, _] =
+                    contacts::gaps(&*self.dynamics, self.end.t, Side::Before, q, v);
+                let late = (gaps[meeting.limit] / rates[meeting.limit]).to_f64();
+                let next = self.end.t + -late;
+                if meeting.release
+                    || repeated == REPEATED
+                    || late.is_nan()
+                    || 0.1 * interval.h <= late.abs()
+                    || next.to_f64() == time
+                {
+                    *met = Some(meeting);
+                    return Ok(interval);
+                }
+                t = next;
             }
         }
-        if is_due::<D::System, N>(self.stats.accepted, self.before_kink.is_some()) {
-            self.look()
-        } else {
-            Ok(())
+        Ok(interval)
+    }
+
+    /// Lets the state reached fulfil the limits, after a step that has met one, or over a kink.
+    #[cold]
+    #[inline(never)]
+    fn settle(&mut self, met: Option<Meeting>) -> Result<(), Error> {
+        let before = self.end;
+        let Self { dynamics, prepared, limits, end, .. } = self;
+        let (dynamics, prepared) = (&**dynamics, &*prepared);
+        let free = |node: &Endpoint<D::Scalar, N>| {
+            dynamics.accelerations_with(prepared, node.t, Side::After, &node.q.high, &node.v.high)
+        };
+        let changed = limits.settle(dynamics, end, Side::After, met, free)?;
+        let contacts = self.limits.contacts();
+        if contacts.any() && !self.method.keeps_contacts() {
+            let all = <D::System as System<N>>::FACTS.limits;
+            let first = (0..all.len()).find(|i| contacts.has(*i)).unwrap_or(0);
+            let (t, method) = (before.t.to_f64(), M::NAME);
+            return Err(Error::Contact { t, limit: all[first].name, method });
         }
+        if changed {
+            self.before_kink.get_or_insert(before);
+            self.state =
+                ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
+        }
+        Ok(())
+    }
+
+    /// Looks at the limits where the state has been put.
+    fn touch(&mut self) -> Result<(), Error> {
+        if const { has_limits::<D, N>() } {
+            let Endpoint { t, q, v, .. } = &self.end;
+            Limits::<D::Scalar, N>::check(&*self.dynamics, *t, Side::After, &q.high, &v.high)?;
+            self.limits.forget();
+            let kept = self.before_kink;
+            self.settle(None)?;
+            self.before_kink = kept;
+        }
+        Ok(())
+    }
+
+    /// The impacts at the end of the last step, or at the start.
+    pub(crate) fn impacts(&self) -> &[Impact<D::Scalar, N>] {
+        self.limits.found()
     }
 
     /// Asks a sampled controller for its values if they are due.
@@ -218,12 +378,21 @@ where
     /// Brings the end of a step onto the constraints.
     #[inline]
     fn hold(&mut self) -> Result<(), Error> {
+        let mut moved = false;
+        let side = onwards(self.backwards).opposite();
         if const { is_constrained::<D, N>() } {
-            let side = onwards(self.backwards).opposite();
             let Self { dynamics, end, stats, .. } = self;
-            if projection::project_end(&**dynamics, end, side, &mut stats.constraints)? {
-                self.method.moved(&self.dynamics, &mut self.workspace, &self.end);
+            moved = projection::project_end(&**dynamics, end, side, &mut stats.constraints)?;
+        }
+        if const { has_limits::<D, N>() } {
+            let contacts = self.limits.contacts();
+            if contacts.any() {
+                limits::hold(&*self.dynamics, &mut self.end, side, &contacts);
+                moved = true;
             }
+        }
+        if moved {
+            self.method.moved(&self.dynamics, &mut self.workspace, &self.end);
         }
         Ok(())
     }
@@ -237,7 +406,11 @@ where
             self.kink = next_kink(&self.method, &*self.dynamics, self.kink, self.backwards)?;
             self.stats.kinks += 1;
             self.before_kink = Some(before);
-        } else if self.before_kink.is_some() {
+            self.crossed = true;
+            return Ok(());
+        }
+        self.crossed = false;
+        if self.before_kink.is_some() {
             self.before_kink = None;
         }
         Ok(())
@@ -278,21 +451,37 @@ where
         if self.interpolant.is_some() {
             return self.interpolant;
         }
-        let to = self.before_kink.as_mut().unwrap_or(&mut self.end);
-        if is_short::<D::Scalar>(interval.h) {
-            self.interpolant = Some(Interpolant::linear(interval, &self.from, to));
-            return self.interpolant;
+        let interval = *interval;
+        let (mut from, mut to) = (self.from, self.before_kink.unwrap_or(self.end));
+        let interpolant = self.motion(&interval, &mut from, &mut to);
+        self.from = from;
+        *self.before_kink.as_mut().unwrap_or(&mut self.end) = to;
+        self.interpolant = Some(interpolant);
+        self.interpolant
+    }
+
+    /// The motion within the step just taken.
+    fn motion(
+        &mut self,
+        interval: &StepInterval,
+        from: &mut Endpoint<D::Scalar, N>,
+        to: &mut Endpoint<D::Scalar, N>,
+    ) -> Interpolant<D::Scalar, N> {
+        if is_short::<D::Scalar>(interval.h) || interval.h == 0.0 {
+            return Interpolant::linear(interval, from, to);
         }
         let mut field = Field::new(&*self.dynamics, &self.prepared);
         field.backwards = self.backwards;
+        if const { has_limits::<D, N>() } {
+            field.contacts = self.limits.began();
+        }
         let mut interpolant =
-            self.method.interpolant(&mut field, interval, &mut self.from, to, &mut self.workspace);
+            self.method.interpolant(&mut field, interval, from, to, &mut self.workspace);
         self.stats.evaluations += field.evaluations;
-        if const { is_constrained::<D, N>() } {
+        if const { is_constrained::<D, N>() || has_limits::<D, N>() } {
             interpolant.end_at(to);
         }
-        self.interpolant = Some(interpolant);
-        self.interpolant
+        interpolant
     }
 
     /// The state at `t` within the last step, on the constraints.
@@ -311,6 +500,9 @@ where
         let _ = self.sample();
         let mut field = Field::new(&*self.dynamics, &self.prepared);
         field.backwards = self.backwards;
+        if const { has_limits::<D, N>() } {
+            field.contacts = self.limits.contacts();
+        }
         let a = self.end.start_acceleration(&mut field);
         self.stats.evaluations += field.evaluations;
         a
@@ -342,7 +534,7 @@ where
         self.end.a = None;
         self.before_kink.get_or_insert(before);
         self.state = ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
-        Ok(())
+        self.touch()
     }
 
     /// The state at the start of the last step.
@@ -366,6 +558,10 @@ where
             memory.number(number);
         }
         memory.flag(&mut self.backwards);
+        if const { has_limits::<D, N>() } {
+            memory.flag(&mut self.crossed);
+            self.limits.remember(memory);
+        }
         self.method.remember(&mut self.workspace, memory);
         if memory.reads() {
             (self.last, self.interpolant, self.from) = (None, None, self.end);
@@ -382,9 +578,15 @@ where
     /// Forgets that the last step ended on a kink, and the plan that led there.
     fn uncross(&mut self) {
         self.state.left = 0;
-        if let Some(before) = self.before_kink.take() {
+        if let Some(before) = self.before_kink.take()
+            && (self.crossed || const { !has_limits::<D, N>() })
+        {
             self.kink = before.t.to_f64();
             self.stats.kinks -= 1;
+        }
+        if const { has_limits::<D, N>() } {
+            self.crossed = false;
+            self.limits.undo();
         }
     }
 
@@ -423,8 +625,15 @@ where
     }
 
     fn deliver(&self, t: Time, state: &mut State<D::Scalar, N>) {
+        let side = onwards(self.backwards);
         if const { is_constrained::<D, N>() } {
-            projection::deliver(&*self.dynamics, t, onwards(self.backwards), state);
+            projection::deliver(&*self.dynamics, t, side, state);
+        }
+        if const { has_limits::<D, N>() } {
+            let contacts = self.limits.began();
+            if contacts.any() {
+                limits::deliver(&*self.dynamics, t, side, &contacts, state);
+            }
         }
     }
 

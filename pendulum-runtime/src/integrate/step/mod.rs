@@ -2,6 +2,7 @@
 
 pub(crate) mod adaptive;
 pub(crate) mod compensated;
+pub(crate) mod contacts;
 pub(crate) mod controller;
 pub(crate) mod diagnose;
 pub(crate) mod endpoint;
@@ -13,6 +14,7 @@ pub(crate) mod held;
 pub(crate) mod inertia;
 pub(crate) mod integration;
 pub(crate) mod interval;
+pub(crate) mod limits;
 pub(crate) mod observed;
 pub(crate) mod projection;
 pub(crate) mod short;

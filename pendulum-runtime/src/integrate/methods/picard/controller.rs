@@ -29,6 +29,11 @@ impl<D: LaneDynamics<N>, const N: usize> Controller<Picard, D, N> for AdaptiveSt
         self.positive::<D::Scalar>()
     }
 
+    fn accuracy(&self) -> Option<(f64, [[f64; N]; 2])> {
+        let (relative, (q, v)) = self.tolerances::<D::Scalar>();
+        Some((relative, [q, v]))
+    }
+
     fn least_steps(&self, length: f64) -> f64 {
         self.least_steps_over(length)
     }

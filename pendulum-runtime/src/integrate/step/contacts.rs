@@ -1,0 +1,263 @@
+//! Limits in contact: what they push with, and how a state is kept on them.
+//!
+//! With the gaps h of the limits in contact, N = ∂h/∂q, the accelerations q̈₀ without them and the
+//! response K = M⁻¹ − M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹C M⁻¹ to forces, q̈ = q̈₀ + K Nᵀμ, where the multipliers μ
+//! solve N K Nᵀ μ = −ḧ(q̈₀). Contacts are few, so that dense elimination at run time does.
+
+use crate::integrate::events::impact::{product, response};
+use crate::integrate::step::endpoint::Endpoint;
+use crate::motion::Side;
+use crate::scalar::{Float, Real};
+use crate::system::{Dynamics, Purpose, System, scalar_time};
+use crate::time::Time;
+use nalgebra::SMatrix;
+
+/// The number of limits of the dynamics `D`.
+pub(crate) const fn limits<D: Dynamics<N>, const N: usize>() -> usize {
+    <D::System as System<N>>::FACTS.limits.len()
+}
+
+/// Returns true if a system has limits.
+#[inline]
+pub(crate) const fn has_limits<D: Dynamics<N>, const N: usize>() -> bool {
+    0 < limits::<D, N>()
+}
+
+/// The limits in contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Contacts<const N: usize> {
+    on: [bool; N],
+    any: bool,
+}
+
+impl<const N: usize> Contacts<N> {
+    pub(crate) const NONE: Self = Self { on: [false; N], any: false };
+
+    pub(crate) fn new(on: [bool; N]) -> Self {
+        Self { any: on.contains(&true), on }
+    }
+
+    /// Returns true if there is one.
+    #[inline]
+    pub(crate) fn any(&self) -> bool {
+        self.any
+    }
+
+    pub(crate) fn has(&self, limit: usize) -> bool {
+        self.on[limit]
+    }
+
+    /// Puts a limit in or out.
+    pub(crate) fn set(&mut self, limit: usize, on: bool) {
+        self.on[limit] = on;
+        self.any = self.on.contains(&true);
+    }
+}
+
+/// The gaps h, their rates, and the second rates at q̈ = 0, seen from `side`.
+pub(crate) fn gaps<D: Dynamics<N>, const N: usize>(
+    dynamics: &D,
+    t: Time,
+    side: Side,
+    q: &[D::Scalar; N],
+    v: &[D::Scalar; N],
+) -> [[D::Scalar; N]; 3] {
+    let inputs = dynamics.inputs_with(t, side, Purpose::Accelerations, q, v);
+    dynamics.system().gaps(scalar_time(t), q, v, &inputs)
+}
+
+/// The gradients of the gaps, one in a row.
+pub(crate) fn normals<D: Dynamics<N>, const N: usize>(
+    dynamics: &D,
+    t: Time,
+    side: Side,
+    q: &[D::Scalar; N],
+    v: &[D::Scalar; N],
+) -> SMatrix<D::Scalar, N, N> {
+    let inputs = dynamics.inputs(t, side, Purpose::Momenta);
+    dynamics.system().gap_jacobian(scalar_time(t), q, v, &inputs)
+}
+
+/// A row of the gradients.
+pub(crate) fn row<T: Float, const N: usize>(matrix: &SMatrix<T, N, N>, index: usize) -> [T; N] {
+    core::array::from_fn(|j| matrix[(index, j)])
+}
+
+/// What limits in contact do to the accelerations.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Push<T, const N: usize> {
+    /// The accelerations with the contacts.
+    pub(crate) accelerations: [T; N],
+    /// The multipliers μ: forces that push where they are positive.
+    pub(crate) multipliers: [T; N],
+    /// The accelerations ḧ of all gaps with them.
+    pub(crate) gaps: [T; N],
+    /// The rounding of those.
+    pub(crate) noise: [T; N],
+}
+
+/// The responses K nᵢ of the limits in contact, and N K Nᵀ among them.
+struct Responses<T, const N: usize> {
+    changes: [[T; N]; N],
+    matrix: SMatrix<T, N, N>,
+}
+
+impl<T: Float, const N: usize> Responses<T, N> {
+    fn new<D: Dynamics<N, Scalar = T>>(
+        dynamics: &D,
+        t: Time,
+        side: Side,
+        q: &[T; N],
+        v: &[T; N],
+        normals: &SMatrix<T, N, N>,
+        contacts: &Contacts<N>,
+    ) -> Self {
+        let zero = T::from_f64(0.0);
+        let mut changes = [[zero; N]; N];
+        let mut matrix = SMatrix::from_element(zero);
+        for i in (0..limits::<D, N>()).filter(|i| contacts.has(*i)) {
+            changes[i] = response(dynamics, t, side, q, v, &row(normals, i));
+        }
+        for i in 0..N {
+            for j in 0..N {
+                if contacts.has(i) && contacts.has(j) {
+                    matrix[(i, j)] = product(&row(normals, i), &changes[j]);
+                }
+            }
+        }
+        Self { changes, matrix }
+    }
+
+    /// The multipliers that change the rates of the contacts by `target`; one whose contact depends
+    /// on those before it is zero.
+    fn multipliers(&self, contacts: &Contacts<N>, target: &[T; N]) -> [T; N] {
+        let zero = T::from_f64(0.0);
+        let (mut matrix, mut rest) = (self.matrix, *target);
+        let mut kept = [false; N];
+        for j in 0..N {
+            let least = T::EPSILON.sqrt() * self.matrix[(j, j)];
+            if !(contacts.has(j) && least < matrix[(j, j)]) {
+                continue;
+            }
+            kept[j] = true;
+            for i in j + 1..N {
+                let factor = matrix[(i, j)] / matrix[(j, j)];
+                for k in j..N {
+                    let part = factor * matrix[(j, k)];
+                    matrix[(i, k)] -= part;
+                }
+                let part = factor * rest[j];
+                rest[i] -= part;
+            }
+        }
+        let mut multipliers = [zero; N];
+        for i in (0..N).rev().filter(|i| kept[*i]) {
+            let known = (i + 1..N).fold(rest[i], |sum, k| sum - matrix[(i, k)] * multipliers[k]);
+            multipliers[i] = known / matrix[(i, i)];
+        }
+        multipliers
+    }
+
+    /// K Nᵀμ.
+    fn change(&self, multipliers: &[T; N]) -> [T; N] {
+        core::array::from_fn(|j| {
+            (0..N).fold(T::from_f64(0.0), |sum, i| sum + self.changes[i][j] * multipliers[i])
+        })
+    }
+}
+
+/// The accelerations with contacts, from those without.
+pub(crate) fn pushed<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    t: Time,
+    side: Side,
+    q: &[D::Scalar; N],
+    v: &[D::Scalar; N],
+    free: &[D::Scalar; N],
+    contacts: &Contacts<N>,
+) -> Push<D::Scalar, N> {
+    let number = D::Scalar::from_f64;
+    let [_, _, rates] = gaps(dynamics, t, side, q, v);
+    let normals = normals(dynamics, t, side, q, v);
+    let along = |a: &[D::Scalar; N]| -> [D::Scalar; N] {
+        core::array::from_fn(|i| rates[i] + product(&row(&normals, i), a))
+    };
+    let responses = Responses::new(dynamics, t, side, q, v, &normals, contacts);
+    let target = along(free).map(|rate| -rate);
+    let multipliers = responses.multipliers(contacts, &target);
+    let change = responses.change(&multipliers);
+    let accelerations = core::array::from_fn(|i| free[i] + change[i]);
+    let noise = core::array::from_fn(|i| {
+        let sizes = (0..N).fold(rates[i].abs(), |sum, j| {
+            sum + normals[(i, j)].abs() * (free[j].abs() + change[j].abs())
+        });
+        number(64.0) * D::Scalar::EPSILON * sizes
+    });
+    Push { accelerations, multipliers, gaps: along(&accelerations), noise }
+}
+
+/// The change of the velocities by impulses of the contacts that changes their rates by `target`,
+/// or of the coordinates that changes their gaps, and the multipliers.
+pub(crate) fn shift<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    t: Time,
+    side: Side,
+    q: &[D::Scalar; N],
+    v: &[D::Scalar; N],
+    contacts: &Contacts<N>,
+    target: &[D::Scalar; N],
+) -> ([D::Scalar; N], [D::Scalar; N]) {
+    let normals = normals(dynamics, t, side, q, v);
+    let responses = Responses::new(dynamics, t, side, q, v, &normals, contacts);
+    let multipliers = responses.multipliers(contacts, target);
+    (responses.change(&multipliers), multipliers)
+}
+
+/// The rounding of each gap and of its rate: what one unit in the last place of every coordinate
+/// and velocity changes.
+pub(crate) fn rounding<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    t: Time,
+    side: Side,
+    q: &[D::Scalar; N],
+    v: &[D::Scalar; N],
+) -> [[D::Scalar; N]; 2] {
+    let zero = D::Scalar::from_f64(0.0);
+    let normals = normals(dynamics, t, side, q, v);
+    let sizes = |i: usize, values: &[D::Scalar; N]| {
+        (0..N).fold(zero, |sum, j| sum + normals[(i, j)].abs() * values[j].abs())
+    };
+    let eps = D::Scalar::EPSILON;
+    let time = D::Scalar::from_f64(f64::EPSILON * t.to_f64().abs());
+    [
+        core::array::from_fn(|i| eps * sizes(i, q) + time * sizes(i, v)),
+        core::array::from_fn(|i| eps * sizes(i, v)),
+    ]
+}
+
+/// Brings the coordinates of `node` onto the limits in contact, and with `rates` their rates to zero.
+pub(crate) fn hold<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    node: &mut Endpoint<D::Scalar, N>,
+    side: Side,
+    contacts: &Contacts<N>,
+    rates: bool,
+) {
+    let minus = D::Scalar::from_f64(-1.0);
+    for part in 0..if rates { 2 } else { 1 } {
+        // From the end of a step Newton's method is at rounding after two.
+        for _ in 0..3 {
+            let (q, v) = (&node.q.high, &node.v.high);
+            let values = gaps(dynamics, node.t, side, q, v)[part];
+            let least = rounding(dynamics, node.t, side, q, v)[part];
+            let off = |i: usize| contacts.has(i) && least[i] < values[i].abs();
+            if !(0..limits::<D, N>()).any(off) {
+                break;
+            }
+            let (change, _) = shift(dynamics, node.t, side, q, v, contacts, &values);
+            let sums = if part == 0 { &mut node.q } else { &mut node.v };
+            sums.add(minus, &change);
+            node.a = None;
+        }
+    }
+}

@@ -1,0 +1,495 @@
+//! Limits on the way: gaps that close, contacts that let go, and what becomes of the velocities.
+
+use crate::error::Error;
+use crate::integrate::events::impact::{product, response};
+use crate::integrate::interpolant::Interpolant;
+use crate::integrate::saved::Memory;
+use crate::integrate::solution::Impact;
+use crate::integrate::state::State;
+use crate::integrate::step::compensated::Compensated;
+use crate::integrate::step::contacts::{self, Contacts, limits};
+use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::step::projection::{self, is_constrained};
+use crate::motion::Side;
+use crate::scalar::Float;
+use crate::system::{Dynamics, Limit, System, scalar_time};
+use crate::time::Time;
+
+/// The number of parts of a step at whose ends gaps and reactions are looked at.
+const PARTS: usize = 8;
+/// Halvings of an interval until a root is known to the digits of a step.
+const HALVINGS: usize = 60;
+/// Impacts at one time with the limits' own restitutions, and all in all; those between are plastic.
+const ELASTIC: usize = 100;
+const IMPACTS: usize = 1000;
+
+/// What is known of the gap of a limit at the state reached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Standing {
+    /// It is open.
+    Clear,
+    /// It is zero and opens: its sign counts once it has been positive.
+    Rising,
+    /// It is zero to the tolerances, and nobody pushes.
+    Resting,
+    /// It is held at zero.
+    Contact,
+}
+
+use Standing::{Clear, Contact, Resting, Rising};
+
+/// The absolute and relative tolerances of the steps, coordinates before velocities.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Accuracy<const N: usize> {
+    pub(crate) relative: f64,
+    pub(crate) absolute: [[f64; N]; 2],
+}
+
+/// The limits of an integration.
+#[derive(Clone, Debug)]
+pub(crate) struct Limits<T, const N: usize> {
+    standing: [Standing; N],
+    /// The same at the start of the last step.
+    before: [Standing; N],
+    /// What the tolerances are; nothing with steps of fixed length.
+    pub(crate) accuracy: Option<Accuracy<N>>,
+    /// The impacts at the end of the last step.
+    found: Vec<Impact<T, N>>,
+}
+
+/// Something that a step meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Meeting {
+    /// The part of the step until then.
+    pub(crate) theta: f64,
+    pub(crate) limit: usize,
+    /// It is a contact that lets go.
+    pub(crate) release: bool,
+}
+
+fn facts<D: Dynamics<N>, const N: usize>(limit: usize) -> Limit {
+    <D::System as System<N>>::FACTS.limits[limit]
+}
+
+impl<T: Float, const N: usize> Limits<T, N> {
+    pub(crate) fn new(limits: usize) -> Self {
+        let (standing, found) = ([Clear; N], Vec::with_capacity(limits));
+        Self { standing, before: standing, accuracy: None, found }
+    }
+
+    /// The limits in contact.
+    pub(crate) fn contacts(&self) -> Contacts<N> {
+        Contacts::new(self.standing.map(|standing| standing == Contact))
+    }
+
+    /// The limits that were in contact during the last step.
+    pub(crate) fn began(&self) -> Contacts<N> {
+        Contacts::new(self.before.map(|standing| standing == Contact))
+    }
+
+    /// The impacts at the end of the last step.
+    pub(crate) fn found(&self) -> &[Impact<T, N>] {
+        &self.found
+    }
+
+    /// Returns true if a limit is not open.
+    pub(crate) fn is_close(&self) -> bool {
+        self.standing.iter().any(|standing| *standing != Clear)
+    }
+
+    /// Begins a step.
+    pub(crate) fn begin(&mut self) {
+        self.before = self.standing;
+        self.found.clear();
+    }
+
+    /// Goes back to what was known at the start of the step.
+    pub(crate) fn undo(&mut self) {
+        self.standing = self.before;
+        self.found.clear();
+    }
+
+    /// Forgets what was known: the state has been put elsewhere.
+    pub(crate) fn forget(&mut self) {
+        self.standing = [Clear; N];
+    }
+
+    /// Visits what goes from step to step.
+    pub(crate) fn remember(&mut self, memory: &mut Memory) {
+        const ALL: [Standing; 4] = [Clear, Rising, Resting, Contact];
+        for standing in &mut self.standing {
+            let mut index = ALL.iter().position(|other| other == standing).unwrap_or(0);
+            memory.count(&mut index, ALL.len() - 1);
+            *standing = ALL[index];
+        }
+        if memory.reads() {
+            self.before = self.standing;
+            self.found.clear();
+        }
+    }
+
+    /// The change of each gap, or of its rate, that the tolerances allow.
+    fn allowed<D: Dynamics<N, Scalar = T>>(
+        &self,
+        dynamics: &D,
+        t: Time,
+        side: Side,
+        q: &[T; N],
+        v: &[T; N],
+    ) -> [[T; N]; 2] {
+        let least = contacts::rounding(dynamics, t, side, q, v);
+        let least = least.map(|part| part.map(|least| T::from_f64(16.0) * least));
+        let Some(Accuracy { relative, absolute }) = self.accuracy else { return least };
+        let normals = contacts::normals(dynamics, t, side, q, v);
+        core::array::from_fn(|part| {
+            let values = if part == 0 { q } else { v };
+            core::array::from_fn(|i| {
+                let sum = (0..N).fold(0.0, |sum, j| {
+                    let allowed = absolute[part][j] + relative * values[j].to_f64().abs();
+                    sum + normals[(i, j)].to_f64().abs() * allowed
+                });
+                let (sum, least) = (T::from_f64(sum), least[part][i]);
+                if sum < least { least } else { sum }
+            })
+        })
+    }
+
+    /// The first limit that the step of `interpolant` meets.
+    pub(crate) fn watch<D: Dynamics<N, Scalar = T>>(
+        &mut self,
+        dynamics: &D,
+        interpolant: &Interpolant<T, N>,
+        end: &Endpoint<T, N>,
+        side: Side,
+        mut free: impl FnMut(Time, &[T; N], &[T; N]) -> [T; N],
+    ) -> Option<Meeting> {
+        let zero = T::from_f64(0.0);
+        let interval = &interpolant.interval;
+        let place = |theta: f64| {
+            if theta == 1.0 {
+                return (end.t, end.q.high, end.v.high);
+            }
+            let (q, v) = interpolant.at(T::from_f64(theta));
+            (interval.start + theta * interval.h, q, v)
+        };
+        let at = |theta: f64| {
+            let (t, q, v) = place(theta);
+            contacts::gaps(dynamics, t, side, &q, &v)
+        };
+        let (t, q, v) = place(0.0);
+        let allowed = self.allowed(dynamics, t, side, &q, &v)[0];
+        let held = self.contacts();
+        let mut push = |theta: f64| {
+            let (t, q, v) = place(theta);
+            contacts::pushed(dynamics, t, side, &q, &v, &free(t, &q, &v), &held)
+        };
+        let mut standing = self.standing;
+        let mut last = (0.0, at(0.0));
+        let mut first: Option<Meeting> = None;
+        for k in 1..=PARTS {
+            let theta = k as f64 / PARTS as f64;
+            let here = (theta, at(theta));
+            let mut meet = |theta: f64, limit: usize, release: bool| {
+                if first.is_none_or(|first| theta < first.theta) {
+                    first = Some(Meeting { theta, limit, release });
+                }
+            };
+            let pushed = held.any().then(|| push(theta));
+            for i in 0..limits::<D, N>() {
+                let gap = |theta: f64| at(theta)[0][i];
+                let (before, after) = (last.1[0][i], here.1[0][i]);
+                match standing[i] {
+                    Contact => {
+                        let Some(pushed) = &pushed else { continue };
+                        if pushed.multipliers[i] < zero {
+                            let root =
+                                falling(|theta| push(theta).multipliers[i], last.0, theta, zero);
+                            meet(root, i, true);
+                        }
+                    }
+                    Clear if after < zero => meet(falling(gap, last.0, theta, zero), i, false),
+                    Clear => {
+                        // A dip between the two.
+                        let [_, rates, _] = last.1;
+                        if rates[i] < zero && zero < here.1[1][i] {
+                            let lowest = falling(|theta| -at(theta)[1][i], last.0, theta, zero);
+                            if gap(lowest) < zero {
+                                meet(falling(gap, last.0, lowest, zero), i, false);
+                            }
+                        }
+                    }
+                    Rising if zero < after => standing[i] = Clear,
+                    Rising => {
+                        let mut up = theta;
+                        for _ in 0..HALVINGS {
+                            up = last.0 + 0.5 * (up - last.0);
+                            if zero < gap(up) {
+                                break;
+                            }
+                        }
+                        if zero < gap(up) {
+                            meet(falling(gap, up, theta, zero), i, false);
+                        } else {
+                            // No flight that the digits hold.
+                            standing[i] = Resting;
+                        }
+                    }
+                    Resting => {}
+                }
+                if standing[i] == Resting {
+                    let least = -allowed[i];
+                    if allowed[i] < after {
+                        standing[i] = Clear;
+                    } else if after < least {
+                        let from = if before < least { 0.5 * (last.0 + theta) } else { last.0 };
+                        meet(falling(gap, from, theta, least), i, false);
+                    }
+                }
+            }
+            if let Some(first) = first {
+                return Some(first);
+            }
+            last = here;
+        }
+        self.standing = standing;
+        None
+    }
+
+    /// Lets the state `node` fulfil the limits: impacts of all that are closed and closing, in the
+    /// order of declaration, again and again until none is; then those that stay become contacts.
+    ///
+    /// `met` has been found on the way. Returns true if the motion goes on otherwise than before.
+    ///
+    /// # Errors
+    /// [`Error::Restitution`].
+    pub(crate) fn settle<D: Dynamics<N, Scalar = T>>(
+        &mut self,
+        dynamics: &D,
+        node: &mut Endpoint<T, N>,
+        side: Side,
+        met: Option<Meeting>,
+        free: impl FnOnce(&Endpoint<T, N>) -> [T; N],
+    ) -> Result<bool, Error> {
+        let zero = T::from_f64(0.0);
+        let count = limits::<D, N>();
+        let (held, before) = (self.contacts(), State::from(&*node));
+        let [allowed, slow] = self.allowed(dynamics, node.t, side, &before.q, &before.v);
+        let [gaps, ..] = contacts::gaps(dynamics, node.t, side, &before.q, &before.v);
+        let rounding = contacts::rounding(dynamics, node.t, side, &before.q, &before.v);
+        let met = |i: usize| met.is_some_and(|met| met.limit == i);
+        let released = |i: usize| met(i) && held.has(i);
+        let few = T::from_f64(64.0);
+        let mut closed = Contacts::<N>::NONE;
+        for i in 0..count {
+            let near = if self.standing[i] == Clear { few * rounding[0][i] } else { allowed[i] };
+            closed.set(i, met(i) || held.has(i) || gaps[i] <= near);
+        }
+        if !closed.any() {
+            return Ok(false);
+        }
+        // What lies below zero, and what was met, is put where it touches.
+        let mut off = Contacts::<N>::NONE;
+        for i in 0..count {
+            off.set(i, met(i) && !held.has(i) || closed.has(i) && gaps[i] < zero);
+        }
+        if off.any() {
+            contacts::hold(dynamics, node, side, &off, false);
+            project(dynamics, node, side);
+        }
+        let inputs = dynamics.inputs(node.t, side, crate::system::Purpose::Momenta);
+        let restitutions = dynamics.system().restitutions(
+            scalar_time(node.t),
+            &node.q.high,
+            &node.v.high,
+            &inputs,
+        );
+        let mut struck = false;
+        let noise = |i: usize| T::from_f64(8.0) * rounding[1][i];
+        for round in 0..IMPACTS {
+            let mut quiet = true;
+            for i in (0..count).filter(|i| closed.has(*i)) {
+                let (q, v) = (&node.q.high, &node.v.high);
+                let rate = contacts::gaps(dynamics, node.t, side, q, v)[1][i];
+                if -noise(i) <= rate || released(i) && -slow[i] <= rate {
+                    continue;
+                }
+                let limit = facts::<D, N>(i);
+                let value = restitutions[i].to_f64();
+                if !(0.0..=1.0).contains(&value) {
+                    let t = node.t.to_f64();
+                    return Err(Error::Restitution { t, limit: limit.name, value });
+                }
+                let normals = contacts::normals(dynamics, node.t, side, q, v);
+                let normal = contacts::row(&normals, i);
+                let change = response(dynamics, node.t, side, q, v, &normal);
+                let one = T::from_f64(1.0);
+                let e = if round < ELASTIC { restitutions[i] } else { zero };
+                let impulse = -(one + e) * rate / product(&normal, &change);
+                let earlier = State::from(&*node);
+                node.v.add(impulse, &change);
+                node.a = None;
+                (struck, quiet) = (true, false);
+                let after = State::from(&*node);
+                let found = self.found.iter_mut().find(|found| found.limit == i);
+                if let Some(found) = found {
+                    found.impulse += impulse;
+                    found.after = after;
+                } else {
+                    let (name, time, state) = (limit.name, node.t, earlier);
+                    self.found.push(Impact { limit: i, name, time, state, after, impulse });
+                }
+            }
+            if quiet {
+                break;
+            }
+        }
+        project(dynamics, node, side);
+        // Who stays: those that open too slowly for a flight, and are pushed.
+        let free = free(node);
+        let (q, v) = (node.q.high, node.v.high);
+        let [_, rates, _] = contacts::gaps(dynamics, node.t, side, &q, &v);
+        let mut staying = Contacts::<N>::NONE;
+        for i in 0..count {
+            staying.set(i, closed.has(i) && !released(i) && rates[i] <= slow[i]);
+        }
+        for _ in 0..=count {
+            let push = contacts::pushed(dynamics, node.t, side, &q, &v, &free, &staying);
+            let mut worst: Option<(usize, T)> = None;
+            for i in 0..count {
+                if staying.has(i) {
+                    let force = push.multipliers[i];
+                    if force < zero && worst.is_none_or(|(_, least)| force < least) {
+                        worst = Some((i, force));
+                    }
+                }
+            }
+            if let Some((loose, _)) = worst {
+                staying.set(loose, false);
+                continue;
+            }
+            // Flights that the digits of the coordinates do not hold.
+            let mut more = false;
+            for i in (0..count).filter(|i| closed.has(*i) && !released(*i)) {
+                let fall = -push.gaps[i];
+                let height = T::from_f64(128.0) * rounding[0][i] * fall;
+                if !staying.has(i) && push.noise[i] < fall && rates[i] * rates[i] < height {
+                    staying.set(i, true);
+                    more = true;
+                }
+            }
+            if !more {
+                break;
+            }
+        }
+        if staying.any() {
+            contacts::hold(dynamics, node, side, &staying, true);
+            project(dynamics, node, side);
+            contacts::hold(dynamics, node, side, &staying, true);
+        }
+        let (q, v) = (node.q.high, node.v.high);
+        let [gaps, rates, _] = contacts::gaps(dynamics, node.t, side, &q, &v);
+        for i in 0..count {
+            self.standing[i] = match closed.has(i) {
+                false => Clear,
+                true if staying.has(i) => Contact,
+                true if slow[i] < rates[i] => Rising,
+                true if allowed[i] < gaps[i] => Clear,
+                true => Resting,
+            };
+        }
+        let after = State::from(&*node);
+        for found in &mut self.found {
+            if staying.has(found.limit) {
+                found.after = after;
+            }
+        }
+        let changed = struck || staying != held || before.v != after.v || before.q != after.q;
+        if changed {
+            node.a = None;
+        }
+        Ok(changed)
+    }
+
+    /// Checks that no gap is below zero at a start.
+    ///
+    /// # Errors
+    /// [`Error::Penetration`].
+    pub(crate) fn check<D: Dynamics<N, Scalar = T>>(
+        dynamics: &D,
+        t: Time,
+        side: Side,
+        q: &[T; N],
+        v: &[T; N],
+    ) -> Result<(), Error> {
+        let [gaps, ..] = contacts::gaps(dynamics, t, side, q, v);
+        let [least, _] = contacts::rounding(dynamics, t, side, q, v);
+        // As much of the digits as a start may lack of a constraint.
+        let part = T::from_f64(T::EPSILON.to_f64().cbrt().recip());
+        for i in 0..limits::<D, N>() {
+            if gaps[i] < -(part * least[i]) || gaps[i].to_f64().is_nan() {
+                let Limit { name, unit, .. } = facts::<D, N>(i);
+                let (t, gap) = (t.to_f64(), gaps[i].to_f64());
+                return Err(Error::Penetration { t, limit: name, gap, unit });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Brings a state back onto the constraints.
+fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    node: &mut Endpoint<D::Scalar, N>,
+    side: Side,
+) {
+    if const { is_constrained::<D, N>() } {
+        projection::project(dynamics, node.t, side, &mut node.q, &mut node.v);
+        node.a = None;
+    }
+}
+
+/// Brings the end of a step onto limits in contact and constraints.
+pub(crate) fn hold<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    node: &mut Endpoint<D::Scalar, N>,
+    side: Side,
+    contacts: &Contacts<N>,
+) {
+    contacts::hold(dynamics, node, side, contacts, true);
+    if const { is_constrained::<D, N>() } {
+        project(dynamics, node, side);
+        contacts::hold(dynamics, node, side, contacts, true);
+    }
+}
+
+/// The same for a state that is delivered.
+pub(crate) fn deliver<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    t: Time,
+    side: Side,
+    contacts: &Contacts<N>,
+    state: &mut State<D::Scalar, N>,
+) {
+    let (q, v) = (Compensated::new(state.q), Compensated::new(state.v));
+    let mut node = Endpoint { t, q, v, a: None };
+    hold(dynamics, &mut node, side, contacts);
+    (state.q, state.v) = (node.q.high, node.v.high);
+}
+
+/// The last place between `from` and `to` at which `function`, which falls, is not below `level`, to
+/// rounding.
+fn falling<T: Float>(mut function: impl FnMut(f64) -> T, from: f64, to: f64, level: T) -> f64 {
+    let (mut above, mut below) = (from, to);
+    for _ in 0..HALVINGS {
+        let middle = above + 0.5 * (below - above);
+        if middle <= above || below <= middle {
+            break;
+        }
+        if function(middle) < level {
+            below = middle;
+        } else {
+            above = middle;
+        }
+    }
+    below
+}

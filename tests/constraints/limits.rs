@@ -1,0 +1,366 @@
+//! Limits on the way: impacts, contacts, and what lets go.
+
+use pendulum_runtime::error::Error;
+use pendulum_runtime::integrate::{Event, Integrator, Rk4, Tsit5};
+use pendulum_runtime::prelude::*;
+use pendulum_runtime::system::System;
+
+lagrangian! {
+    /// A ball over a floor.
+    #[derive(Clone, Debug)]
+    pub struct Ball { e: 1, g: m/s^2 = 9.81 }
+    coordinate y: m;
+    kinetic = ẏ^2/2;
+    potential = g*y;
+    limit floor: y >= 0, restitution = e;
+}
+
+lagrangian! {
+    /// A ball on a floor that is driven up and down.
+    #[derive(Clone, Debug)]
+    pub struct Shaken { a: m, ω: Hz, g: m/s^2 = 9.81 }
+    coordinate y: m;
+    kinetic = ẏ^2/2;
+    potential = g*y;
+    limit floor: y >= a*sin(ω*t), restitution = 0;
+}
+
+lagrangian! {
+    /// A double pendulum whose second link cannot fold back.
+    #[derive(Clone, Debug)]
+    pub struct Knee { e: 1, g: 1/s^2 = 9.81 }
+    coordinate α: rad;
+    coordinate β: rad;
+    let a = [sin(α), -cos(α)];
+    let b = a + [sin(β), -cos(β)];
+    kinetic = (|ȧ|^2 + |ḃ|^2)/2;
+    potential = g*(height(a) + height(b));
+    limit stop: β - α >= -0.1, restitution = e;
+}
+
+lagrangian! {
+    /// A cart between two walls, on a spring, which drifts along them.
+    #[derive(Clone, Debug)]
+    pub struct Cart { k: 1/s^2, L: m }
+    coordinate x: m;
+    coordinate y: m;
+    kinetic = (ẋ^2 + ẏ^2)/2;
+    potential = k*x^2/2;
+    limit left: x + L >= 0, restitution = 1;
+    limit right: L >= x, restitution = 1;
+}
+
+lagrangian! {
+    /// A bead on a circle over a floor.
+    #[derive(Clone, Debug)]
+    pub struct Bead { r: m, h: m, e: 1, g: m/s^2 = 9.81 }
+    coordinate x: m;
+    coordinate y: m;
+    kinetic = (ẋ^2 + ẏ^2)/2;
+    potential = g*y;
+    constraint circle: x^2 + y^2 = r^2;
+    limit floor: y + h >= 0, restitution = e;
+}
+
+lagrangian! {
+    /// The same bead in one angle from below.
+    #[derive(Clone, Debug)]
+    pub struct BeadAngle { r: m, h: m, e: 1, g: m/s^2 = 9.81 }
+    coordinate θ: rad;
+    kinetic = r^2*θ̇^2/2;
+    potential = -g*r*cos(θ);
+    limit floor: h - r*cos(θ) >= 0, restitution = e;
+}
+
+lagrangian! {
+    /// A block on a dome: it slides down and leaves it.
+    #[derive(Clone, Debug)]
+    pub struct Dome { r: m, g: m/s^2 = 9.81 }
+    coordinate x: m;
+    coordinate y: m;
+    kinetic = (ẋ^2 + ẏ^2)/2;
+    potential = g*y;
+    limit dome: x^2 + y^2 >= r^2, restitution = 0;
+}
+
+lagrangian! {
+    /// A ball in a corner.
+    #[derive(Clone, Debug)]
+    pub struct Corner { e: 1, g: m/s^2 = 9.81 }
+    coordinate x: m;
+    coordinate y: m;
+    kinetic = (ẋ^2 + ẏ^2)/2;
+    potential = g*(y + x/2);
+    limit wall: x >= 0, restitution = e;
+    limit floor: y >= 0, restitution = e;
+}
+
+#[test]
+fn a_ball_comes_to_rest() {
+    let ball = Ball { e: 0.8, g: 9.81 };
+    let times: Vec<f64> = (0..100).map(|k| 0.06 * f64::from(k)).collect();
+    let rest = 4.063712769;
+    let run = |solution: Solution<f64, 1>| {
+        let last = solution.impacts.last().unwrap();
+        assert!((last.time.to_f64() - rest).abs() < 2e-9, "{:?}", last.time);
+        assert_eq!(last.after.v[0], 0.0);
+        for state in &solution {
+            assert!(-1e-15 < state.q[0]);
+            if rest < state.t {
+                assert_eq!((state.q[0], state.v[0]), (0.0, 0.0));
+            }
+        }
+        // The k-th impact falls from 0.8^(2k) m.
+        let first = (2.0f64 / 9.81).sqrt();
+        for (k, impact) in solution.impacts.iter().enumerate().take(40) {
+            let speed = (2.0f64 * 9.81).sqrt() * 0.8f64.powi(k as i32);
+            let time = first * (1.0 + 2.0 * (0.8 - 0.8f64.powi(k as i32 + 1)) / 0.2);
+            assert!(
+                (impact.time.to_f64() - time).abs() < 1e-12,
+                "{k} {}",
+                impact.time.to_f64() - time
+            );
+            assert!((impact.state.v[0] + speed).abs() < 1e-11, "{k}");
+            assert!((impact.impulse - 1.8 * speed).abs() < 1e-11, "{k}");
+            assert_eq!((impact.limit, impact.name), (0, "floor"));
+        }
+        assert!(solution.events.is_empty());
+    };
+    run(solve(&ball, (0.0, 6.0), [1.0], [0.0])
+        .method(Dop853)
+        .rtol(1e-10)
+        .t_eval(&times)
+        .run()
+        .unwrap());
+    run(solve(&ball, (0.0, 6.0), [1.0], [0.0])
+        .method(Tsit5)
+        .rtol(1e-10)
+        .t_eval(&times)
+        .run()
+        .unwrap());
+    run(solve(&ball, (0.0, 6.0), [1.0], [0.0]).rtol(1e-10).t_eval(&times).run().unwrap());
+    run(solve(&ball, (0.0, 6.0), [1.0], [0.0])
+        .method(Rk4)
+        .step(0.01)
+        .t_eval(&times)
+        .run()
+        .unwrap());
+}
+
+#[test]
+fn methods_without_contacts_say_so() {
+    let ball = Ball { e: 0.5, g: 9.81 };
+    let failure = solve(&ball, (0.0, 6.0), [1.0], [0.0]).method(Picard).run().unwrap_err();
+    assert!(matches!(failure.error, Error::Contact { limit: "floor", method: "Picard", .. }));
+    let failure = solve(&ball, (0.0, 6.0), [1.0], [0.0]).method(Taylor::new()).run().unwrap_err();
+    assert!(matches!(failure.error, Error::Contact { limit: "floor", method: "Taylor", .. }));
+    // They bounce as well as others.
+    let bounces = solve(&ball, (0.0, 1.2), [1.0], [0.0]).method(Picard).run().unwrap();
+    let other = solve(&ball, (0.0, 1.2), [1.0], [0.0]).method(Taylor::new()).run().unwrap();
+    assert_eq!((bounces.impacts.len(), other.impacts.len()), (3, 3));
+    assert!((bounces.end.q[0] - other.end.q[0]).abs() < 1e-9);
+}
+
+#[test]
+fn a_shaken_floor_throws_the_ball() {
+    // It leaves where the floor falls faster than the ball: a ω² sin ωt = g.
+    let (a, ω) = (0.5, 6.0);
+    let ball = Shaken { a, ω, g: 9.81 };
+    let go = (9.81 / (a * ω * ω)).asin() / ω;
+    let up =
+        solve(&ball, (0.0, 0.3), [0.0], [a * ω]).method(Dop853).rtol(1e-11).dense().run().unwrap();
+    let before = up.at(0.5 * go).unwrap();
+    assert!((before.q[0] - a * (ω * 0.5 * go).sin()).abs() < 1e-11);
+    let (y, v) = (a * (ω * go).sin(), a * ω * (ω * go).cos());
+    let s = 0.3 - go;
+    let end = up.end;
+    assert!((end.q[0] - (y + v * s - 0.5 * 9.81 * s * s)).abs() < 1e-9, "{end:?}");
+    // And lands again, without a rebound.
+    let later = solve(&ball, (0.0, 3.0), [0.0], [a * ω])
+        .method(Dop853)
+        .rtol(1e-10)
+        .every(0.01)
+        .run()
+        .unwrap();
+    assert!(!later.impacts.is_empty());
+    for state in &later {
+        assert!(-1e-9 < state.q[0] - a * (ω * state.t).sin(), "{state:?}");
+    }
+}
+
+#[test]
+fn a_stop_takes_the_energy_that_its_restitution_says() {
+    let e = 0.6;
+    let knee = Knee { e, g: 9.81 };
+    let run =
+        solve(&knee, (0.0, 3.0), [1.0, 1.3], [0.0, 0.0]).method(Dop853).rtol(1e-12).run().unwrap();
+    assert!(3 < run.impacts.len());
+    for impact in &run.impacts {
+        let (q, v) = (impact.state.q, impact.state.v);
+        let energy = |v: &[f64; 2]| knee.energy(0.0, &q, v, &());
+        let inverse = knee.mass_matrix(0.0, &q, &v, &()).try_inverse().unwrap();
+        let effective = inverse[(0, 0)] - 2.0 * inverse[(0, 1)] + inverse[(1, 1)];
+        let speed = v[1] - v[0];
+        let lost = (1.0 - e * e) * speed * speed / (2.0 * effective);
+        let found = energy(&v) - energy(&impact.after.v);
+        assert!((found - lost).abs() < 1e-12 * (1.0 + lost), "{found} {lost}");
+        assert!((q[1] - q[0] + 0.1).abs() < 1e-14);
+        assert!((impact.after.v[1] - impact.after.v[0] + e * speed).abs() < 1e-13);
+    }
+    // Energy changes there alone.
+    let energy = |state: &State<f64, 2>| knee.energy(0.0, &state.q, &state.v, &());
+    let lost: f64 = run.impacts.iter().map(|i| energy(&i.state) - energy(&i.after)).sum();
+    let start = knee.energy(0.0, &[1.0, 1.3], &[0.0; 2], &());
+    assert!((start - lost - energy(&run.end)).abs() < 1e-9);
+}
+
+#[test]
+fn a_cart_in_a_box_keeps_its_energy_over_a_thousand_bounces() {
+    let cart = Cart { k: 2.0, L: 0.3 };
+    let start = 0.5 * 9.25;
+    let run = solve(&cart, (0.0, 205.0), [0.0, 0.0], [3.0, 0.5])
+        .method(Dop853)
+        .rtol(1e-12)
+        .run()
+        .unwrap();
+    assert!(1000 < run.impacts.len(), "{}", run.impacts.len());
+    for (k, impact) in run.impacts.iter().enumerate() {
+        assert_eq!(impact.limit, 1 - k % 2);
+    }
+    let energy = cart.energy(0.0, &run.end.q, &run.end.v, &());
+    assert!((energy - start).abs() < 1e-10 * start, "{}", energy - start);
+    // Half a period between walls, by the sine.
+    let k = 2.0f64.sqrt();
+    let half = 2.0 * (0.3 * k / 3.0).asin() / k;
+    let last = run.impacts.last().unwrap().time.to_f64();
+    let expected = half * (run.impacts.len() as f64 - 0.5);
+    assert!((last - expected).abs() < 1e-10, "{}", last - expected);
+}
+
+#[test]
+fn a_bead_on_a_constraint_bounces_as_in_one_angle() {
+    let (r, h, e) = (1.0, 0.8, 0.7);
+    let bead = Bead { r, h, e, g: 9.81 };
+    let angle = BeadAngle { r, h, e, g: 9.81 };
+    let start = 2.0f64;
+    let run = solve(&bead, (0.0, 8.0), [start.sin(), -start.cos()], [0.0; 2])
+        .method(Dop853)
+        .rtol(1e-12)
+        .run()
+        .unwrap();
+    let other = solve(&angle, (0.0, 8.0), [start], [0.0]).method(Dop853).rtol(1e-12).run().unwrap();
+    assert!(10 < run.impacts.len());
+    for (a, b) in run.impacts.iter().zip(&other.impacts).take(20) {
+        assert!((a.time.to_f64() - b.time.to_f64()).abs() < 1e-9);
+        let (x, y) = (b.after.q[0].sin(), -b.after.q[0].cos());
+        let (vx, vy) = (b.after.v[0] * -y, b.after.v[0] * x);
+        assert!((a.after.q[0] - x).abs() < 1e-9 && (a.after.q[1] - y).abs() < 1e-9);
+        assert!((a.after.v[0] - vx).abs() < 1e-8 && (a.after.v[1] - vy).abs() < 1e-8);
+        // The impulse kept the constraint.
+        let rate = 2.0 * (a.after.q[0] * a.after.v[0] + a.after.q[1] * a.after.v[1]);
+        assert!(rate.abs() < 1e-13);
+    }
+    // Both end at rest on the floor.
+    assert!((run.end.q[1] + h).abs() < 1e-14 && run.end.v[0].abs() < 1e-12, "{:?}", run.end);
+    assert!((other.end.q[0] - (0.8f64).acos()).abs() < 1e-13);
+}
+
+#[test]
+fn a_block_leaves_a_dome_at_two_thirds_of_its_height() {
+    let dome = Dome { r: 2.0, g: 9.81 };
+    let (angle, speed) = (0.1f64, 0.3);
+    let (q, v) =
+        ([2.0 * angle.sin(), 2.0 * angle.cos()], [speed * angle.cos(), -speed * angle.sin()]);
+    let run = solve(&dome, (0.0, 2.0), q, v).method(Dop853).rtol(1e-11).dense().run().unwrap();
+    // Energy, and cos θ = v²/(g r) where the reaction ends.
+    let height = (0.5 * speed * speed / 9.81 + q[1]) / 1.5;
+    let mut run_on = Integrator::new(&dome, Dop853, 0.0, q, v).unwrap();
+    let mut last = run_on.state();
+    while run_on.t() < 2.0 {
+        run_on.step().unwrap();
+        assert!(run_on.impacts().is_empty());
+        let state = run_on.state();
+        let radius = state.q[0].hypot(state.q[1]);
+        if 2.0 + 1e-12 < radius {
+            break;
+        }
+        last = state;
+    }
+    assert!((last.q[1] - height).abs() < 1e-5, "{} {height}", last.q[1]);
+    // Its time by the free flight that follows: the highest accuracy of the end.
+    let end = run.end;
+    let energy = |state: &State<f64, 2>| dome.energy(0.0, &state.q, &state.v, &());
+    let start = State { t: 0.0, q, v };
+    assert!((energy(&end) - energy(&start)).abs() < 1e-8);
+    // The horizontal speed stays what it was there.
+    let there = (height * 9.81f64).sqrt();
+    assert!((end.v[0] - there * height / 2.0).abs() < 1e-8, "{}", end.v[0] - there * height / 2.0);
+    assert!(2.0 < end.q[0].hypot(end.q[1]) && run.impacts.is_empty());
+}
+
+#[test]
+fn several_limits_act_in_order() {
+    let corner = Corner { e: 0.5, g: 9.81 };
+    // Both at once: they are orthogonal, so that both rates turn round.
+    let run = solve(&corner, (0.0, 0.15), [0.1, 0.1], [-1.0, -1.0]).method(Dop853);
+    let run = run.rtol(1e-10).run().unwrap();
+    assert_eq!(run.impacts[0].name, "floor");
+    let rest = solve(&corner, (0.0, 9.0), [0.1, 0.1], [-1.0, -1.0]).rtol(1e-9).run().unwrap();
+    assert_eq!((rest.end.q, rest.end.v), ([0.0; 2], [0.0; 2]));
+    let struck = Integrator::new(&corner, Dop853, 0.0, [0.0, 0.0], [-1.0, -2.0]).unwrap();
+    assert_eq!(struck.v(), &[0.5, 1.0]);
+}
+
+#[test]
+fn contact_is_saved_and_resumed() {
+    let dome = Dome { r: 2.0, g: 9.81 };
+    let (q, v) = ([0.0, 2.0], [0.4, 0.0]);
+    let mut whole = Integrator::new(&dome, Dop853, 0.0, q, v).unwrap();
+    whole.advance_to(0.3).unwrap();
+    let saved = whole.save();
+    let mut other = Integrator::new(&dome, Dop853, 0.0, q, v).unwrap();
+    other.restore(&saved).unwrap();
+    whole.advance_to(1.5).unwrap();
+    other.advance_to(1.5).unwrap();
+    assert_eq!(whole.state(), other.state());
+    assert_eq!(whole.stats(), other.stats());
+}
+
+#[test]
+fn limits_in_single_precision() {
+    let ball = Ball { e: 0.8f32, g: 9.81 };
+    let run = solve(&ball, (0.0, 6.0), [1.0f32], [0.0]).method(Dop853).run().unwrap();
+    assert_eq!((run.end.q[0], run.end.v[0]), (0.0, 0.0));
+    let last = run.impacts.last().unwrap().time.to_f64();
+    assert!((last - 4.063712769).abs() < 1e-3, "{last}");
+}
+
+#[test]
+fn events_look_on() {
+    let ball = Ball { e: 0.8, g: 9.81 };
+    let top = Event::new(|_t, _q, v: &[f64; 1]| v[0]).falling();
+    let run = solve(&ball, (0.0, 3.0), [1.0], [0.0]).method(Dop853).rtol(1e-10).events([top]).run();
+    let run = run.unwrap();
+    let first = (2.0f64 / 9.81).sqrt();
+    assert!((run.events[0].time.to_f64() - first * 1.8).abs() < 1e-9);
+    let half = Event::new(|_t, q: &[f64; 1], _v| q[0] - 0.5).rising().terminal();
+    let run =
+        solve(&ball, (0.0, 3.0), [1.0], [0.0]).method(Dop853).rtol(1e-10).events([half]).run();
+    let run = run.unwrap();
+    assert_eq!((run.impacts.len(), run.events.len()), (1, 1));
+    assert!((run.end.q[0] - 0.5).abs() < 1e-12 && 0.0 < run.end.v[0]);
+}
+
+#[test]
+fn what_is_wrong_is_named() {
+    let error =
+        solve(&Ball { e: 0.8, g: 9.81 }, (0.0, 1.0), [-1.0], [0.0]).run().unwrap_err().error;
+    assert_eq!(
+        error.to_string(),
+        "at t = 0.0 the gap of the limit floor is -1.0 m; begin with a state in which it is not negative"
+    );
+    for e in [1.5, -0.1, f64::NAN] {
+        let error = solve(&Ball { e, g: 9.81 }, (0.0, 1.0), [1.0], [0.0]).run().unwrap_err().error;
+        assert!(matches!(error, Error::Restitution { limit: "floor", .. }), "{error}");
+    }
+}
