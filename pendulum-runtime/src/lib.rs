@@ -47,5 +47,6 @@ pub mod prelude {
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/scenes.md")]
 #[doc = include_str!("../../docs/control.md")]
+#[doc = include_str!("../../docs/constraints.md")]
 #[doc = include_str!("../../docs/ensembles.md")]
 struct Guides;

@@ -97,6 +97,12 @@ impl<T: Lane + Float> Scene<T> {
         q: [T; N],
         v: [T; N],
     ) -> Result<Handle<S, N>, SceneError> {
+        const {
+            assert!(
+                S::FACTS.constraints.is_empty() && S::FACTS.limits.is_empty(),
+                "scenes keep no constraints and no limits: integrate such a system by `solve`, or choose coordinates that fulfil them"
+            );
+        };
         check_state(&S::FACTS, &q)?;
         check_state(&S::FACTS, &v)?;
         let joints = anchor.joints();

@@ -184,6 +184,12 @@ impl<const N: usize> Batch<N> {
         &self,
         problems: &[Problem<S, N>],
     ) -> Result<Vec<Outcome<S::Scalar, N>>, Error> {
+        const {
+            assert!(
+                S::FACTS.constraints.is_empty() && S::FACTS.limits.is_empty(),
+                "a batch keeps no constraints and no limits: use `Ensemble`, which integrates such systems one by one"
+            );
+        };
         <AdaptiveStep<N> as Controller<Taylor, S, N>>::check(&self.control)?;
         let mut outcomes: Vec<_> = problems.iter().map(|_| None).collect();
         let mut next = problems.iter().map(Posed::Borrowed).enumerate();

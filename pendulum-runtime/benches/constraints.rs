@@ -1,0 +1,122 @@
+//! Constrained systems: `cargo bench -p pendulum-runtime --bench constraints`.
+//!
+//! A bob on a rod in Cartesian coordinates beside the same in its angle, and Andrews' squeezing
+//! mechanism: error and time. `-- --radau Rscript` compiles `benches/peers/andrews` and runs RADAU5
+//! through R's deSolve on it, with the same errors.
+
+#![allow(mixed_script_confusables, confusable_idents, missing_docs)]
+
+use pendulum_runtime::prelude::*;
+use std::hint::black_box;
+use std::process::Command;
+use std::time::Instant;
+
+#[path = "../../tests/constraints/systems.rs"]
+#[allow(dead_code, unused, unreachable_pub, clippy::all, clippy::pedantic)]
+mod systems;
+
+use systems::{ANDREWS_START, Bob, Simple, andrews};
+
+/// β, Θ, γ, Φ, δ, Ω, ε at 0.03 s.
+const END: [f64; 7] = [
+    15.810771195153707097119387,
+    -15.756371058411839469727753,
+    0.040822240119645804854828,
+    -0.53473011634207957937702,
+    0.52440996587995406937167,
+    0.53473011634207957937702,
+    1.0480807410419378730685,
+];
+
+fn median(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
+macro_rules! bob {
+    ($name:literal, $method:expr, $rtol:expr) => {{
+        let (bob, simple) = (Bob::new(1.0, 1.0), Simple::new(1.0));
+        let start = [1f64.sin(), -1f64.cos()];
+        let (mut times, mut errors) = ([Vec::new(), Vec::new()], [0.0; 2]);
+        let exact = solve(&simple, (0.0, 50.0), [1.0], [0.0]).rtol(1e-14).atol(1e-14).run();
+        let exact = exact.unwrap().end.q[0];
+        for _ in 0..21 {
+            let clock = Instant::now();
+            let run = solve(black_box(&bob), (0.0, 50.0), start, [0.0; 2]);
+            let end = run.method($method).rtol($rtol).atol($rtol).run().unwrap().end;
+            times[0].push(clock.elapsed().as_secs_f64());
+            errors[0] = (end.q[0].atan2(-end.q[1]) - exact).abs();
+            let clock = Instant::now();
+            let run = solve(black_box(&simple), (0.0, 50.0), [1.0], [0.0]);
+            let end = run.method($method).rtol($rtol).atol($rtol).run().unwrap().end;
+            times[1].push(clock.elapsed().as_secs_f64());
+            errors[1] = (end.q[0] - exact).abs();
+        }
+        let [cartesian, angle] = times.map(median);
+        println!(
+            "bob, {:7} {:.0e}: Cartesian {:8.1} µs with error {:.0e}, angle {:8.1} µs with {:.0e}, ratio {:.2}",
+            $name,
+            $rtol,
+            1e6 * cartesian,
+            errors[0],
+            1e6 * angle,
+            errors[1],
+            cartesian / angle
+        );
+    }};
+}
+
+macro_rules! andrews {
+    ($name:literal, $method:expr, $rtol:expr) => {{
+        let own = andrews();
+        let (mut times, mut error) = (Vec::new(), 0.0f64);
+        for _ in 0..41 {
+            let clock = Instant::now();
+            let run = solve(black_box(&own), (0.0, 0.03), ANDREWS_START, [0.0; 7]);
+            let end = run.method($method).rtol($rtol).atol($rtol).run().unwrap().end;
+            times.push(clock.elapsed().as_secs_f64());
+            error = (0..7).fold(0.0, |worst, k| worst.max(((end.q[k] - END[k]) / END[k]).abs()));
+        }
+        println!(
+            "Andrews, {:7} {:.0e}: error {error:.1e} in {:7.1} µs",
+            $name,
+            $rtol,
+            1e6 * median(times)
+        );
+    }};
+}
+
+fn main() {
+    for rtol in [1e-6, 1e-9, 1e-12] {
+        bob!("Picard", Picard, rtol);
+        bob!("Dop853", Dop853, rtol);
+        bob!("Taylor", Taylor::new(), rtol);
+    }
+    for digits in 4..=12 {
+        let rtol = 10f64.powi(-digits);
+        andrews!("Picard", Picard, rtol);
+        andrews!("Dop853", Dop853, rtol);
+        andrews!("Taylor", Taylor::new(), rtol);
+    }
+    let mut arguments = std::env::args();
+    if let (Some(_), Some(program)) = (arguments.find(|word| word == "--radau"), arguments.next()) {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../benches/peers/andrews");
+        let library = std::env::temp_dir().join("andrews.so");
+        let built = Command::new("cc")
+            .args(["-O2", "-shared", "-fPIC", "-o"])
+            .arg(&library)
+            .arg(format!("{folder}/andrews.c"))
+            .arg("-lm")
+            .status();
+        let run = Command::new(program).arg(format!("{folder}/andrews.R")).arg(&library).output();
+        match (built, run) {
+            (Ok(built), Ok(run)) if built.success() => {
+                println!(
+                    "RADAU5: tolerance, error, seconds\n{}",
+                    String::from_utf8_lossy(&run.stdout)
+                );
+            }
+            (built, run) => println!("RADAU5 cannot be run: {built:?}, {run:?}"),
+        }
+    }
+}
