@@ -18,11 +18,11 @@ lagrangian! {
 lagrangian! {
     /// A ball on a floor that is driven up and down.
     #[derive(Clone, Debug)]
-    pub struct Shaken { a: m, ω: Hz, g: m/s^2 = 9.81 }
+    pub struct Shaken { a: m, ω: Hz, e: 1, g: m/s^2 = 9.81 }
     coordinate y: m;
     kinetic = ẏ^2/2;
     potential = g*y;
-    limit floor: y >= a*sin(ω*t), restitution = 0;
+    limit floor: y >= a*sin(ω*t), restitution = e;
 }
 
 lagrangian! {
@@ -75,12 +75,12 @@ lagrangian! {
 lagrangian! {
     /// A block on a dome: it slides down and leaves it.
     #[derive(Clone, Debug)]
-    pub struct Dome { r: m, g: m/s^2 = 9.81 }
+    pub struct Dome { r: m, e: 1, g: m/s^2 = 9.81 }
     coordinate x: m;
     coordinate y: m;
     kinetic = (ẋ^2 + ẏ^2)/2;
     potential = g*y;
-    limit dome: x^2 + y^2 >= r^2, restitution = 0;
+    limit dome: x^2 + y^2 >= r^2, restitution = e;
 }
 
 lagrangian! {
@@ -165,7 +165,7 @@ fn methods_without_contacts_say_so() {
 fn a_shaken_floor_throws_the_ball() {
     // It leaves where the floor falls faster than the ball: a ω² sin ωt = g.
     let (a, ω) = (0.5, 6.0);
-    let ball = Shaken { a, ω, g: 9.81 };
+    let ball = Shaken { a, ω, e: 0.0, g: 9.81 };
     let go = (9.81 / (a * ω * ω)).asin() / ω;
     let up =
         solve(&ball, (0.0, 0.3), [0.0], [a * ω]).method(Dop853).rtol(1e-11).dense().run().unwrap();
@@ -238,6 +238,46 @@ fn a_cart_in_a_box_keeps_its_energy_over_a_thousand_bounces() {
 }
 
 #[test]
+fn every_method_bounces() {
+    let cart = Cart { k: 2.0, L: 0.3 };
+    let start = ([0.1, 0.0], [1.0, 0.5]);
+    let trusted = solve(&cart, (0.0, 5.1), start.0, start.1).method(Dop853).rtol(1e-13);
+    let trusted = trusted.run().unwrap();
+    assert!(7 < trusted.impacts.len(), "{}", trusted.impacts.len());
+    let check = |name: &str, run: Solution<f64, 2>, allowed: f64| {
+        assert_eq!(run.impacts.len(), trusted.impacts.len(), "{name}");
+        for (a, b) in run.impacts.iter().zip(&trusted.impacts) {
+            let late = a.time.to_f64() - b.time.to_f64();
+            assert!(late.abs() < allowed, "{name}: {late:e} at {:?}", b.time);
+        }
+        for i in 0..2 {
+            assert!((run.end.q[i] - trusted.end.q[i]).abs() < allowed, "{name}");
+            assert!((run.end.v[i] - trusted.end.v[i]).abs() < allowed, "{name}");
+        }
+    };
+    macro_rules! adaptive {
+        ($($method:expr),*) => {$(
+            let run = solve(&cart, (0.0, 5.1), start.0, start.1).method($method).rtol(1e-10);
+            check(stringify!($method), run.run().unwrap(), 1e-7);
+        )*};
+    }
+    macro_rules! fixed {
+        ($($method:expr, $allowed:expr;)*) => {$(
+            let run = solve(&cart, (0.0, 5.1), start.0, start.1).method($method).step(0.01);
+            check(stringify!($method), run.run().unwrap(), $allowed);
+        )*};
+    }
+    adaptive!(Auto, Picard, Taylor::new(), Tsit5, Dprkn12, Rodas4);
+    fixed! {
+        Leapfrog, 1e-4;
+        Rk4, 1e-7;
+        Srkn14a, 1e-11;
+        QuinlanTremaine::<8>, 1e-8;
+        Gauss::<3>::new(), 1e-10;
+    }
+}
+
+#[test]
 fn a_bead_on_a_constraint_bounces_as_in_one_angle() {
     let (r, h, e) = (1.0, 0.8, 0.7);
     let bead = Bead { r, h, e, g: 9.81 };
@@ -267,7 +307,7 @@ fn a_bead_on_a_constraint_bounces_as_in_one_angle() {
 
 #[test]
 fn a_block_leaves_a_dome_at_two_thirds_of_its_height() {
-    let dome = Dome { r: 2.0, g: 9.81 };
+    let dome = Dome { r: 2.0, e: 0.0, g: 9.81 };
     let (angle, speed) = (0.1f64, 0.3);
     let (q, v) =
         ([2.0 * angle.sin(), 2.0 * angle.cos()], [speed * angle.cos(), -speed * angle.sin()]);
@@ -312,8 +352,60 @@ fn several_limits_act_in_order() {
 }
 
 #[test]
+fn bounces_slide_on_and_fall() {
+    // Dropped on a dome a little aside: it bounces, slides and leaves.
+    for (e, aside) in [(0.0, 0.01), (0.2, 0.02), (0.5, 0.01), (0.7, 0.001), (0.3, 0.3)] {
+        let dome = Dome { r: 2.0, e, g: 9.81 };
+        let start = State { t: 0.0, q: [aside, 2.2], v: [0.0, 0.0] };
+        let run = solve(&dome, (0.0, 6.0), start.q, start.v).rtol(1e-9).every(0.001).run();
+        let run = run.unwrap_or_else(|failure| panic!("{e}: {failure}"));
+        let energy = |state: &State<f64, 2>| dome.energy(0.0, &state.q, &state.v, &());
+        let lost: f64 = run.impacts.iter().map(|i| energy(&i.state) - energy(&i.after)).sum();
+        assert!(0.0 < lost || e == 1.0);
+        let off = energy(&start) - lost - energy(&run.end);
+        assert!(off.abs() < 1e-5, "{e}: {off}");
+        for state in &run {
+            assert!(2.0 - 1e-8 < state.q[0].hypot(state.q[1]), "{e}: {state:?}");
+        }
+        assert!(run.end.q[1] < 0.0);
+        assert!(run.stats.accepted < 2000, "{}", run.stats.accepted);
+    }
+}
+
+#[test]
+fn a_ball_chatters_on_a_shaken_floor() {
+    for (e, a) in [(0.0, 0.1), (0.3, 0.1), (0.5, 0.2), (0.8, 0.1), (0.5, 0.01)] {
+        let ball = Shaken { a, ω: 12.0, e, g: 9.81 };
+        let run = solve(&ball, (0.0, 20.0), [1.0], [0.0]).rtol(1e-8).every(0.001).run();
+        let run = run.unwrap_or_else(|failure| panic!("{e} {a}: {failure}"));
+        for state in &run {
+            assert!(-1e-7 < state.q[0] - a * (12.0 * state.t).sin(), "{e} {a}: {state:?}");
+        }
+        for impact in &run.impacts {
+            let floor = a * 12.0 * (12.0 * impact.time.to_f64()).cos();
+            assert!(impact.state.v[0] < floor && 0.0 <= impact.impulse);
+        }
+        if a == 0.01 {
+            // A floor that never falls faster than the ball keeps it.
+            let t = run.end.t;
+            assert!((run.end.q[0] - a * (12.0 * t).sin()).abs() < 1e-15, "{:?}", run.end);
+        }
+    }
+}
+
+#[test]
+fn nothing_pushes_where_nothing_pulls() {
+    // Without weight a plastic impact ends beside the wall, and stays there.
+    let ball = Ball { e: 0.0, g: 0.0 };
+    let run = solve(&ball, (0.0, 9.0), [1.0], [-0.5]).run().unwrap();
+    assert_eq!((run.end.q, run.end.v, run.impacts.len()), ([0.0], [0.0], 1));
+    let run = solve(&Ball { e: 1.0, g: 0.0 }, (0.0, 9.0), [1.0], [-0.5]).run().unwrap();
+    assert!((run.end.q[0] - 3.5).abs() < 1e-12 && run.impacts.len() == 1);
+}
+
+#[test]
 fn contact_is_saved_and_resumed() {
-    let dome = Dome { r: 2.0, g: 9.81 };
+    let dome = Dome { r: 2.0, e: 0.0, g: 9.81 };
     let (q, v) = ([0.0, 2.0], [0.4, 0.0]);
     let mut whole = Integrator::new(&dome, Dop853, 0.0, q, v).unwrap();
     whole.advance_to(0.3).unwrap();
