@@ -1,7 +1,7 @@
 //! Limits on the way: impacts, contacts, and what lets go.
 
 use pendulum_runtime::error::Error;
-use pendulum_runtime::integrate::{Event, Integrator, Rk4, Tsit5};
+use pendulum_runtime::integrate::{Event, Integrator, impact};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::System;
 
@@ -303,6 +303,18 @@ fn a_bead_on_a_constraint_bounces_as_in_one_angle() {
     // Both end at rest on the floor.
     assert!((run.end.q[1] + h).abs() < 1e-14 && run.end.v[0].abs() < 1e-12, "{:?}", run.end);
     assert!((other.end.q[0] - (0.8f64).acos()).abs() < 1e-13);
+}
+
+#[test]
+fn impacts_by_hand_keep_constraints() {
+    let bead = Bead { r: 1.0, h: 0.8, e: 0.7, g: 9.81 };
+    let (q, v) = ([0.6, -0.8], [-0.8, -0.6]);
+    let change = impact(&bead, 0.0, &q, &v, &[0.0, 1.0], 0.7);
+    // Along the circle alone: the speed of 1 turns round.
+    assert!((change[0] - 1.7 * 0.8).abs() < 1e-14 && (change[1] - 1.7 * 0.6).abs() < 1e-14);
+    let mut state = State { t: 0.0, q, v };
+    state.bounce(&bead, &[0.0, 3.0], 0.7);
+    assert!((state.v[0] - 0.7 * 0.8).abs() < 1e-14 && (state.v[1] - 0.7 * 0.6).abs() < 1e-14);
 }
 
 #[test]

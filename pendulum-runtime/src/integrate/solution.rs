@@ -91,6 +91,12 @@ impl<T: Float, const N: usize> Solution<T, N> {
 /// declaration, each on the velocities that the one before it has left, and again until none of them
 /// closes; after a hundred rounds without rebound.
 ///
+/// A limit whose rebound ḣ⁺ is below what the tolerances allow its rate (below rounding, with fixed
+/// steps), while ḧ < 0 without it, stays in contact: then q̈ = q̈₀ + K nμ, where q̈₀ are the
+/// accelerations without it, K n = M⁻¹(n + Cᵀν) keeps the constraints and μ keeps ḧ = 0; each step
+/// ends on h = ḣ = 0. It lets go where μ falls below zero, which is no impact. Methods that do not
+/// know the force end with [`Error::Contact`] where a contact begins.
+///
 /// Source: F. Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral Contacts (1996), chapter
 /// 8.
 #[derive(Clone, Copy, Debug, PartialEq)]
