@@ -2,6 +2,7 @@
 
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::{Event, Integrator, impact};
+use pendulum_runtime::motion::Linear;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::System;
 
@@ -23,6 +24,17 @@ lagrangian! {
     kinetic = ẏ^2/2;
     potential = g*y;
     limit floor: y >= a*sin(ω*t), restitution = e;
+}
+
+lagrangian! {
+    /// A ball on a floor that somebody moves.
+    #[derive(Clone, Debug)]
+    pub struct Lifted { e: 1, g: m/s^2 = 9.81 }
+    coordinate y: m;
+    driven floor: m;
+    kinetic = ẏ^2/2;
+    potential = g*y;
+    limit ground: y >= floor, restitution = e;
 }
 
 lagrangian! {
@@ -401,6 +413,27 @@ fn a_ball_chatters_on_a_shaken_floor() {
             // A floor that never falls faster than the ball keeps it.
             let t = run.end.t;
             assert!((run.end.q[0] - a * (12.0 * t).sin()).abs() < 1e-15, "{:?}", run.end);
+        }
+    }
+}
+
+#[test]
+fn a_floor_that_jerks_throws() {
+    // At rest until the floor goes up at 2 m/s, on and on; then it stops.
+    for e in [0.0, 0.5] {
+        let floor = Linear::new(&[0.0, 1.0, 1.5, 2.0], &[[0.0], [0.0], [1.0], [1.0]]).unwrap();
+        let ball = Lifted { e, g: 9.81 }.driven_by(floor);
+        let run = solve(&ball, (0.0, 2.0), [0.0], [0.0]).rtol(1e-10).dense().run().unwrap();
+        let thrown = run.impacts[0];
+        assert_eq!((thrown.time.to_f64(), thrown.state.v[0]), (1.0, 0.0));
+        assert!((thrown.after.v[0] - 2.0 * (1.0 + e)).abs() < 1e-14);
+        assert_eq!(run.at(0.9).unwrap().q, [0.0]);
+        if e == 0.0 {
+            // It rides on the floor, and flies on from where that stops.
+            assert!((run.at(1.4).unwrap().q[0] - 0.8).abs() < 1e-14);
+            let s = 0.3;
+            let flight = 1.0 + 2.0 * s - 0.5 * 9.81 * s * s;
+            assert!((run.at(1.5 + s).unwrap().q[0] - flight).abs() < 1e-12);
         }
     }
 }
