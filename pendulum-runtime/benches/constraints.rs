@@ -11,11 +11,7 @@ use std::hint::black_box;
 use std::process::Command;
 use std::time::Instant;
 
-#[path = "../../tests/constraints/systems.rs"]
-#[allow(dead_code, unused, unreachable_pub, clippy::all, clippy::pedantic)]
-mod systems;
-
-use systems::{ANDREWS_START, Bob, Simple, andrews};
+use systems::constrained::{ANDREWS_START, Bob, Simple, andrews};
 
 /// β, Θ, γ, Φ, δ, Ω, ε at 0.03 s.
 const END: [f64; 7] = [

@@ -1,10 +1,12 @@
 //! States that fulfil constraints near a guess, and multipliers along a solution.
 
-use crate::systems::{ANDREWS_START, Bob, CarAxis, FourBar, Sleigh, andrews, car_axis, four_bar};
 use pendulum_runtime::error::{Error, Part};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::Float as _;
 use pendulum_runtime::system::System;
+use systems::constrained::{
+    ANDREWS_START, Bob, CarAxis, FourBar, Sleigh, andrews, car_axis, four_bar,
+};
 
 const BOB: Bob = Bob { m: 2.0, L: 1.0, g: 9.81 };
 
@@ -112,7 +114,7 @@ fn a_sleigh_keeps_its_place_and_loses_its_skid() {
 
 #[test]
 fn without_constraints_the_guess_stays() {
-    let simple = crate::systems::Simple { L: 1.0, g: 9.81 };
+    let simple = systems::constrained::Simple { L: 1.0, g: 9.81 };
     let state = assemble(&simple, 2.0, [0.3], [0.4]).run().unwrap();
     assert_eq!((state.t, state.q, state.v), (2.0, [0.3], [0.4]));
 }

@@ -1,12 +1,12 @@
 //! What is generated for constraints against dual numbers and dense algebra.
 
-use crate::systems::{
-    ANDREWS_START, Andrews, Arms, Ball, Bob, Disc, Garland, Loops2, Loops10, Sleigh, andrews,
-    car_axis, four_bar,
-};
 use nalgebra::{DMatrix, DVector};
 use pendulum_runtime::scalar::Dual;
 use pendulum_runtime::system::{Jacobians, System};
+use systems::constrained::{
+    ANDREWS_START, Andrews, Arms, Ball, Bob, Disc, Garland, Loops2, Loops10, Sleigh, andrews,
+    car_axis, four_bar,
+};
 use systems::random::Random;
 
 /// Compares accelerations, multipliers, correction, power and Jacobians with a dense solution of

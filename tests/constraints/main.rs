@@ -7,4 +7,3 @@ pub mod assembly;
 pub mod generated;
 pub mod limits;
 pub mod problems;
-pub mod systems;

@@ -1,12 +1,12 @@
 //! Problems with known digits and closed forms.
 
-use crate::systems::{
-    ANDREWS_START, Ball, Bob, CAR_AXIS_START, Disc, Loops2, Simple, Sleigh, andrews, car_axis,
-};
 use core::f64::consts::FRAC_PI_2;
 use pendulum_runtime::integrate::Event;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::System;
+use systems::constrained::{
+    ANDREWS_START, Ball, Bob, CAR_AXIS_START, Disc, Loops2, Simple, Sleigh, andrews, car_axis,
+};
 
 /// Andrews' mechanism at t = 0.03, recomputed to 28 digits: the published ones are off from the
 /// tenth on.

@@ -95,7 +95,7 @@ fn events_are_found() {
     assert!(200 < same!(60, simple, every(0.5), events(events()), max_step(0.4)).0);
     // More of them than are looked at together.
     let many: Vec<_> =
-        (0..12).map(|k| Event::new(move |_, q: &[f64; 1], _| q[0] - 0.1 * k as f64)).collect();
+        (0..12).map(|k| Event::new(move |_, q: &[f64; 1], _| q[0] - 0.1 * f64::from(k))).collect();
     assert!(500 < same!(20, simple, events(&many)).0);
 }
 

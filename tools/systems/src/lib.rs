@@ -1,9 +1,10 @@
 //! What tests, benchmarks and tools share: systems with a few helpers, and the final states of every
 //! method as hashes.
 
-#![allow(mixed_script_confusables)]
+#![allow(mixed_script_confusables, confusable_idents)]
 
 pub mod colors;
+pub mod constrained;
 pub mod distance;
 pub mod fingerprints;
 pub mod keys;

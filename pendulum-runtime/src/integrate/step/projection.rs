@@ -148,7 +148,7 @@ pub(crate) fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
             }
             let values = if part == 0 { &mut *q } else { &mut *v };
             if let Some((best, own)) = before
-                && !(left.0 < best)
+                && best <= left.0
             {
                 // Almost dependent constraints amplify what rounding leaves.
                 *values = own;
@@ -200,7 +200,7 @@ pub(crate) fn project_end<D: Dynamics<N, Scalar: Float>, const N: usize>(
         stats.misfit = Extreme { value: misfit, t, constraint: constraints[index].name };
     }
     for (part, (left, _)) in [Part::Position, Part::Velocity].into_iter().zip(found.left) {
-        if !(left < allowed::<D::Scalar>()) {
+        if allowed::<D::Scalar>() <= left {
             return Err(off::<D, N>(t, part, &found));
         }
     }
@@ -245,7 +245,7 @@ pub(crate) fn start<D: Dynamics<N, Scalar: Float>, const N: usize>(
         let found = project(dynamics, t, side, &mut node.q, &mut node.v);
         let parts = [Part::Position, Part::Velocity].into_iter().zip(found.first);
         for (part, first) in parts {
-            if !(first < rounded::<D::Scalar>()) {
+            if rounded::<D::Scalar>() <= first {
                 return Err(off::<D, N>(t.to_f64(), part, &found));
             }
         }
@@ -270,7 +270,7 @@ pub(crate) fn landed<D: Dynamics<N, Scalar: Float>, const N: usize>(
     if const { is_constrained::<D, N>() } {
         let (mut q, mut v) = (Compensated::new(state.q), Compensated::new(state.v));
         let found = project(dynamics, t, side, &mut q, &mut v);
-        if !(found.first[0] < rounded::<D::Scalar>()) {
+        if rounded::<D::Scalar>() <= found.first[0] {
             return Err(off::<D, N>(t.to_f64(), Part::Position, &found));
         }
         (state.q, state.v) = (q.high, v.high);
@@ -313,7 +313,7 @@ fn independent<D: Dynamics<N, Scalar: Float>, const N: usize>(
     let (t, constraint) = (time.to_f64(), constraints[index].name);
     // Half of the digits that a pivot has, and some more.
     let bound = D::Scalar::EPSILON.to_f64().powf(40.0 / 52.0);
-    if !(bound < value) {
+    if value <= bound || value.is_nan() {
         return Err(Error::DependentConstraints { t, constraint, independence: value });
     }
     let extreme = Extreme { value, t, constraint };
@@ -348,7 +348,7 @@ fn redundant<D: Dynamics<N, Scalar: Float>, const N: usize>(
     {
         let scale = largest(values).0.max(1.0);
         let (residual, index) = largest(&misfits);
-        if !(residual <= allowed * scale * scale) {
+        if allowed * scale * scale < residual || residual.is_nan() {
             let (t, own) = (time.to_f64(), &redundant[index]);
             let (constraint, unit) = (own.name, own.unit);
             return Err(Error::Inconsistent {

@@ -1,4 +1,4 @@
-//! The constrained systems of the tests.
+//! Constrained systems of tests and benchmarks.
 
 use pendulum_runtime::prelude::*;
 
