@@ -104,3 +104,14 @@ fn baked_motions_come_back() {
     let message = serde_json::from_value::<Baked<f64, 1>>(value).unwrap_err().to_string();
     assert!(message.contains("ascending"), "{message}");
 }
+
+/// What is known of constraints comes back with the names.
+#[test]
+fn stats_of_constraints_are_read_as_they_were_written() {
+    let bob = systems::constrained::Bob::new(1.0, 1.0);
+    let solution = solve(&bob, (0.0, 1.0), [1.0, 0.0], [0.0; 2]).every(0.5).run().unwrap();
+    let text = serde_json::to_string(&solution).unwrap();
+    let back: Solution<f64, 2> = serde_json::from_str(&text).unwrap();
+    assert_eq!(back, solution);
+    assert_eq!(back.stats.constraints.unwrap().independence.constraint, "rod");
+}

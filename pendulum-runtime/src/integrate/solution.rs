@@ -100,6 +100,8 @@ impl<T: Float, const N: usize> Solution<T, N> {
 /// Source: F. Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral Contacts (1996), chapter
 /// 8.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "T: serde::Serialize")))]
 #[non_exhaustive]
 pub struct Impact<T, const N: usize> {
     /// The index of the limit in the order of declaration.
@@ -215,7 +217,7 @@ pub struct Stats {
 
 /// How well the constraints of a system were kept at the ends of steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct ConstraintStats {
     /// The least independence of a constraint of those before it, from 0 to 1, as

@@ -86,7 +86,7 @@ impl Tree {
         let n = self.links.len();
         let mut text = String::new();
         let mut left = n - 1;
-        for index in 0..1 + random.below(3) {
+        for index in 0..=random.below(3) {
             let (a, b) = (random.below(n), random.below(n));
             let (kind, rows) = random.of(&[
                 ("point", 2),

@@ -3,11 +3,12 @@
 use super::label::{Label, Labels, Source};
 use crate::integrate::events::{Occurrence, Status};
 use crate::integrate::interpolant::dense::DenseOutput;
-use crate::integrate::solution::{Solution, Stats};
+use crate::integrate::solution::{ConstraintStats, Extreme, Impact, Solution, Stats};
 use crate::integrate::state::State;
+use crate::time::Time;
 use core::fmt;
 use core::marker::PhantomData;
-use serde::de::{Error as _, SeqAccess, Visitor};
+use serde::de::{Error, SeqAccess, Visitor};
 use serde::ser::SerializeTuple;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::sync::{Mutex, PoisonError};
@@ -111,16 +112,67 @@ pub(crate) mod pairs {
     }
 }
 
-/// The names of methods read so far: they live as long as the program, as those in programs do.
+/// The names of methods, constraints and limits read so far: they live as long as the program, as those in programs do.
 static NAMES: Mutex<Vec<&'static str>> = Mutex::new(Vec::new());
 
 /// Bounds on what files can make live for ever.
 const MOST_NAMES: usize = 256;
 const LONGEST_NAME: usize = 64;
 
+/// A name that lives as long as the program.
+fn name<E: Error>(text: String) -> Result<&'static str, E> {
+    let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = names.iter().find(|known| **known == text) {
+        return Ok(known);
+    }
+    if LONGEST_NAME < text.len() || MOST_NAMES <= names.len() {
+        return Err(E::custom("not the name of a method, a constraint or a limit"));
+    }
+    let name: &'static str = text.leak();
+    names.push(name);
+    Ok(name)
+}
+
+/// An extreme value as it is read.
+#[derive(Deserialize)]
+struct ReadExtreme {
+    value: f64,
+    t: f64,
+    constraint: String,
+}
+
+impl<'de> Deserialize<'de> for Extreme {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let ReadExtreme { value, t, constraint } = ReadExtreme::deserialize(deserializer)?;
+        Ok(Self { value, t, constraint: name(constraint)? })
+    }
+}
+
+/// An impact as it is read.
+#[derive(Deserialize)]
+#[serde(bound(deserialize = "T: Deserialize<'de>"))]
+struct ReadImpact<T, const N: usize> {
+    limit: usize,
+    name: String,
+    time: Time,
+    state: State<T, N>,
+    after: State<T, N>,
+    impulse: T,
+}
+
+impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Impact<T, N> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let impact = ReadImpact::deserialize(deserializer)?;
+        let ReadImpact { limit, name: text, time, state, after, impulse } = impact;
+        Ok(Self { limit, name: name(text)?, time, state, after, impulse })
+    }
+}
+
 /// Stats as they are read.
 #[derive(Deserialize)]
 struct ReadStats {
+    #[serde(default)]
+    constraints: Option<ConstraintStats>,
     method: String,
     evaluations: u64,
     accepted: u64,
@@ -130,19 +182,10 @@ struct ReadStats {
 
 impl<'de> Deserialize<'de> for Stats {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let ReadStats { method, evaluations, accepted, rejected, kinks } =
+        let ReadStats { constraints, method, evaluations, accepted, rejected, kinks } =
             ReadStats::deserialize(deserializer)?;
-        let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = names.iter().find(|known| **known == method).copied();
-        if known.is_none() && (LONGEST_NAME < method.len() || MOST_NAMES <= names.len()) {
-            return Err(D::Error::custom("not the name of a method"));
-        }
-        let method = known.unwrap_or_else(|| {
-            let name: &'static str = method.leak();
-            names.push(name);
-            name
-        });
-        Ok(Self { method, evaluations, accepted, rejected, kinks })
+        let method = name(method)?;
+        Ok(Self { method, evaluations, accepted, rejected, kinks, constraints })
     }
 }
 
@@ -160,15 +203,17 @@ struct Parts<T, const N: usize> {
     end: State<T, N>,
     status: Status,
     events: Vec<Occurrence<T, N>>,
+    impacts: Vec<Impact<T, N>>,
     stats: Stats,
     dense: Option<DenseOutput<T, N>>,
 }
 
 impl<T: Serialize + Clone, const N: usize> Serialize for Solution<T, N> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let Self { t, q, v, end, status, events, stats, dense, labels } = self.clone();
+        let Self { t, q, v, end, status, events, impacts, stats, dense, labels } = self.clone();
         let Labels { coordinates, velocities } = labels.labels(N);
-        let parts = Parts { coordinates, velocities, t, q, v, end, status, events, stats, dense };
+        let parts =
+            Parts { coordinates, velocities, t, q, v, end, status, events, impacts, stats, dense };
         parts.serialize(serializer)
     }
 }
@@ -176,7 +221,8 @@ impl<T: Serialize + Clone, const N: usize> Serialize for Solution<T, N> {
 impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Solution<T, N> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let parts = Parts::deserialize(deserializer)?;
-        let Parts { coordinates, velocities, t, q, v, end, status, events, stats, dense } = parts;
+        let Parts { coordinates, velocities, t, q, v, end, status, events, impacts, stats, dense } =
+            parts;
         if [coordinates.len(), velocities.len()] != [N; 2] {
             return Err(D::Error::custom(format!("not the names of {N} coordinates")));
         }
@@ -187,6 +233,6 @@ impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Solution<T, 
             return Err(D::Error::custom("the dense output is damaged"));
         }
         let labels = Source::Read(Labels { coordinates, velocities });
-        Ok(Self { t, q, v, end, status, events, stats, dense, labels })
+        Ok(Self { t, q, v, end, status, events, impacts, stats, dense, labels })
     }
 }
