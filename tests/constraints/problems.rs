@@ -1,11 +1,13 @@
 //! Problems with known digits and closed forms.
 
 use core::f64::consts::FRAC_PI_2;
+use pendulum_runtime::analysis::equilibrium;
 use pendulum_runtime::integrate::Event;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::System;
 use systems::constrained::{
     ANDREWS_START, Ball, Bob, CAR_AXIS_START, Disc, Loops2, Simple, Sleigh, andrews, car_axis,
+    four_bar,
 };
 
 /// Andrews' mechanism at t = 0.03, recomputed to 28 digits: the published ones are off from the
@@ -360,4 +362,46 @@ fn states_within_steps_are_on_the_constraints() {
             assert!((q[i] - end.q[i]).abs() < 1e-14 && (v[i] - end.v[i]).abs() < 1e-13);
         }
     }
+}
+
+/// An equilibrium fulfils the constraints.
+#[test]
+fn equilibria_are_on_the_constraints() {
+    let bob = Bob::new(1.3, 0.7);
+    let rest = equilibrium(&bob, 0.0, [0.3, -0.9]).unwrap();
+    assert!(rest[0].abs() < 1e-14 && (rest[1] + 0.7).abs() < 1e-14, "{rest:?}");
+    let above = equilibrium(&bob, 0.0, [0.05, 0.8]).unwrap();
+    assert!(above[0].abs() < 1e-14 && (above[1] - 0.7).abs() < 1e-14, "{above:?}");
+    let bars = four_bar();
+    let rest = equilibrium(&bars, 0.0, [-1.5, 0.2, -1.2]).unwrap();
+    let [g, _] = bars.misfits(0.0, &rest, &[0.0; 3], &());
+    let a = bars.accelerations(0.0, &rest, &[0.0; 3], &());
+    assert!(g.iter().all(|g| g.abs() < 1e-14) && a.iter().all(|a| a.abs() < 1e-11), "{a:?}");
+}
+
+/// A run that is saved and resumed has the same bits, and knows the same extremes.
+#[test]
+fn runs_are_saved_and_resumed() {
+    let system = car_axis();
+    let [q, v] = CAR_AXIS_START;
+    macro_rules! resumed {
+        ($($method:expr),*) => {$({
+            let start = || Integrator::new(&system, $method, 0.0, q, v).unwrap();
+            let (mut whole, mut first) = (start(), start());
+            whole.advance_to(2.0).unwrap();
+            for _ in 0..7 {
+                first.step().unwrap();
+            }
+            let saved = first.save();
+            let mut second = start();
+            second.restore(&saved).unwrap();
+            assert_eq!(second.stats(), first.stats());
+            for _ in 0..5 {
+                (first.step().unwrap(), second.step().unwrap());
+                assert_eq!((first.q(), first.v()), (second.q(), second.v()));
+            }
+            assert_eq!(first.stats(), second.stats());
+        })*};
+    }
+    resumed!(Picard, Dop853, Taylor::new(), Auto);
 }

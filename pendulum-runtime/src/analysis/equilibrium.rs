@@ -1,9 +1,9 @@
 //! States of rest, by Newton's method on the generated Jacobians.
 
-use crate::analysis::linearization::linearize;
+use crate::analysis::linearization::in_all_coordinates;
 use crate::error::Coordinate;
 use crate::motion::Side;
-use crate::system::{Dynamics, Jacobians, System};
+use crate::system::{Dynamics, Jacobians, Purpose, System};
 use crate::time::Time;
 use core::fmt;
 use nalgebra::{DMatrix, DVector, SVector};
@@ -104,6 +104,8 @@ const RANK: f64 = 1e-11;
 /// # Ok::<(), pendulum_runtime::analysis::EquilibriumError<1>>(())
 /// ```
 ///
+/// Constraints of positions are fulfilled along with that.
+///
 /// # Errors
 /// Numbers that are not finite, accelerations that no coordinate changes, a search that stalls. The
 /// error keeps the guess and says where the search ended and what is accelerated there.
@@ -118,6 +120,8 @@ where
 {
     let accelerations =
         |q: &[f64; N]| dynamics.accelerations_at(Time::new(t), Side::After, q, &[0.0; N]);
+    let inputs = dynamics.inputs(Time::new(t), Side::After, Purpose::Momenta);
+    let misfits = |q: &[f64; N]| dynamics.system().misfits(t, q, &[0.0; N], &inputs)[0];
     let failure = |reason, q: [f64; N]| {
         let a = accelerations(&q);
         let size = |i: usize| if a[i].is_finite() { a[i].abs() } else { f64::INFINITY };
@@ -139,13 +143,14 @@ where
         return Err(failure(EquilibriumFailure::NotFinite, q));
     }
     for _ in 0..STEPS {
-        if a == [0.0; N] {
+        let g = misfits(&q);
+        if a == [0.0; N] && g == [0.0; N] {
             return Ok(q);
         }
         let Some(newton) = Newton::new(dynamics, t, &q) else {
             return Err(failure(EquilibriumFailure::NotFinite, q));
         };
-        let (step, lost) = newton.step(&a);
+        let (step, lost) = newton.step(&a, &g);
         let within = |bound: f64| (0..N).all(|i| step[i].abs() <= bound * (1.0 + q[i].abs()));
         if lost && within(1e-6) {
             return Err(failure(EquilibriumFailure::NoRestoringForce, q));
@@ -155,7 +160,8 @@ where
             // The last step, if it does not make things worse.
             let end = trial(1.0);
             let sum = |a: [f64; N]| a.iter().map(|a| a.abs()).sum::<f64>();
-            return Ok(if sum(accelerations(&end)) <= sum(a) { end } else { q });
+            let better = sum(accelerations(&end)) <= sum(a) && sum(misfits(&end)) <= sum(g);
+            return Ok(if better { end } else { q });
         }
         let longest = (0..N).fold(1.0, |share: f64, i| {
             let most = (1.0 + q[i].abs()) / step[i].abs();
@@ -169,7 +175,7 @@ where
             if !finite(&then) {
                 return None;
             }
-            let (next, _) = newton.step(&then);
+            let (next, _) = newton.step(&then, &misfits(&end));
             (next.norm() <= (1.0 - 0.5 * part) * step.norm()).then_some((end, then))
         });
         match taken {
@@ -183,9 +189,11 @@ where
     Err(failure(EquilibriumFailure::Slow, q))
 }
 
-/// The matrices of a step: K by its singular values, and M.
+/// The matrices of a step: K, and below it the gradients of constraints, by singular values; and M.
 struct Newton<const N: usize> {
     mass: DMatrix<f64>,
+    /// The weight of constraints among forces.
+    weight: f64,
     u: DMatrix<f64>,
     values: DVector<f64>,
     v_t: DMatrix<f64>,
@@ -200,7 +208,7 @@ impl<const N: usize> Newton<N> {
         D: Dynamics<N, Scalar = f64>,
         D::System: Jacobians<N>,
     {
-        let small = linearize(dynamics, t, q, &[0.0; N]);
+        let small = in_all_coordinates(dynamics, t, q, &[0.0; N]);
         let dense = |matrix: &nalgebra::SMatrix<f64, N, N>| {
             DMatrix::from_fn(N, N, |row, column| matrix[(row, column)])
         };
@@ -208,16 +216,33 @@ impl<const N: usize> Newton<N> {
         if mass.iter().chain(stiffness.iter()).any(|entry| !entry.is_finite()) {
             return None;
         }
-        let svd = stiffness.try_svd(true, true, f64::EPSILON, 300 * N)?;
+        let time = Time::new(t);
+        let inputs = dynamics.inputs(time, Side::After, Purpose::Momenta);
+        let constrained = !<D::System as System<N>>::FACTS.constraints.is_empty();
+        let gradients = dynamics.system().constraint_jacobian(t, q, &[0.0; N], &inputs);
+        // Constraints count as much as forces do.
+        let weight = match (stiffness.amax(), gradients.amax()) {
+            (stiffness, gradient) if 0.0 < stiffness && 0.0 < gradient => stiffness / gradient,
+            _ => 1.0,
+        };
+        let rows = if constrained { 2 * N } else { N };
+        let equations = DMatrix::from_fn(rows, N, |row, column| {
+            if row < N { stiffness[(row, column)] } else { weight * gradients[(row - N, column)] }
+        });
+        let svd = equations.try_svd(true, true, f64::EPSILON, 300 * N)?;
         let size = q.iter().fold(1.0, |sum, q| sum + q.abs());
         let floor = 1e3 * f64::EPSILON * size * svd.singular_values.amax();
-        Some(Self { mass, u: svd.u?, values: svd.singular_values, v_t: svd.v_t?, floor })
+        Some(Self { mass, weight, u: svd.u?, values: svd.singular_values, v_t: svd.v_t?, floor })
     }
 
     /// The shortest δ that brings K δ nearest to M q̈, and whether much of M q̈ is left, as in
     /// directions in which nothing acts.
-    fn step(&self, a: &[f64; N]) -> (SVector<f64, N>, bool) {
+    fn step(&self, a: &[f64; N], misfits: &[f64; N]) -> (SVector<f64, N>, bool) {
         let force = &self.mass * DVector::from_column_slice(a);
+        let rows = self.u.nrows();
+        let force = DVector::from_fn(rows, |row, _| {
+            if row < N { force[row] } else { -self.weight * misfits[row - N] }
+        });
         let parts = self.u.tr_mul(&force);
         let rank = RANK * self.values.amax();
         let (mut kept, mut lost) = (DVector::zeros(N), 0.0f64);

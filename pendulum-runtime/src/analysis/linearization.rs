@@ -63,8 +63,33 @@ impl core::error::Error for ModeError {}
 /// acceleration) they describe small motions.
 ///
 /// Driven inputs stay as they are. A feedback law is linearized along with the system;
-/// [`control_jacobian`](Jacobians::control_jacobian) is ∂q̈ by the control inputs.
+/// [`control_jacobian`](Jacobians::control_jacobian) is ∂q̈ by the control inputs. A system with
+/// constraints has fewer motions than coordinates, and is refused when it is compiled.
 pub fn linearize<D, const N: usize>(
+    dynamics: &D,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+) -> Linearization<N>
+where
+    D: Dynamics<N, Scalar = f64>,
+    D::System: Jacobians<N>,
+{
+    const { without_constraints::<D::System, N>() };
+    in_all_coordinates(dynamics, t, q, v)
+}
+
+/// Refuses systems with constraints: their small motions have fewer modes than coordinates.
+pub(crate) const fn without_constraints<S: System<N>, const N: usize>() {
+    assert!(
+        S::FACTS.constraints.is_empty(),
+        "the small motions of a system with constraints have fewer modes than it has coordinates: \
+         write it in coordinates that fulfil the constraints"
+    );
+}
+
+/// The linearization in all coordinates, also of a system with constraints.
+pub(crate) fn in_all_coordinates<D, const N: usize>(
     dynamics: &D,
     t: f64,
     q: &[f64; N],

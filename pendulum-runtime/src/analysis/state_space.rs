@@ -1,5 +1,6 @@
 //! The linear model of a system from its control inputs to its outputs.
 
+use crate::analysis::linearization::without_constraints;
 use crate::motion::Side;
 use crate::scalar::Dual;
 use crate::system::{
@@ -39,6 +40,7 @@ where
     D: Dynamics<N, Scalar = f64, System: Jacobians<N>>,
     <<D::System as Jacobians<N>>::Over<Dual<f64>> as System<N>>::Inputs: ControlSamples<Dual<f64>>,
 {
+    const { without_constraints::<D::System, N>() };
     let (time, system) = (Time::new(t), dynamics.system());
     let facts = &<D::System as System<N>>::FACTS;
     let controls: usize = facts.inputs[facts.driven()..].iter().map(|own| own.components).sum();

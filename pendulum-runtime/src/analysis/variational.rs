@@ -1,5 +1,6 @@
 //! Sensitivities: how a motion depends on where it starts and on its parameters.
 
+use crate::analysis::linearization::without_constraints;
 use crate::integrate::State;
 use crate::scalar::{Dual, Real};
 use crate::system::{Facts, Jacobians, Staged, System, VelocityFree};
@@ -78,6 +79,7 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
     /// Adds the variational equations to a system.
     pub const fn new(system: S) -> Self {
         const { assert!(Self::PARAMETERS <= M) };
+        const { without_constraints::<S, N>() };
         Self { system }
     }
 

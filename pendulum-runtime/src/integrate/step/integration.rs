@@ -5,7 +5,7 @@ use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{self, Method};
 use crate::integrate::observe::within;
 use crate::integrate::saved::Memory;
-use crate::integrate::solution::{Impact, Stats};
+use crate::integrate::solution::{ConstraintStats, Extreme, Impact, Stats};
 use crate::integrate::state::State;
 use crate::integrate::step::compensated::Compensated;
 use crate::integrate::step::contacts::{self, has_limits};
@@ -24,7 +24,7 @@ use crate::integrate::step::projection::{self, is_constrained};
 use crate::integrate::step::short::{is_short, straight};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, Facts, Purpose, System};
+use crate::system::{Constraint, Dynamics, Facts, Purpose, System};
 use crate::time::Time;
 
 /// An integration under way.
@@ -552,6 +552,7 @@ where
         for count in [evaluations, accepted, rejected, kinks] {
             memory.word(count);
         }
+        self.remember_constraints(memory);
         let ControllerState { h, left, equal, target, error, unknown } = &mut self.state;
         memory.word(left);
         for number in [h, equal, target, error, unknown, &mut self.kink] {
@@ -573,6 +574,24 @@ where
         self.uncross();
         self.end = self.from;
         (self.last, self.interpolant) = (None, None);
+    }
+
+    /// Visits what is known of the constraints.
+    fn remember_constraints(&mut self, memory: &mut Memory) {
+        let constraints = <D::System as System<N>>::FACTS.constraints;
+        let Some(first) = constraints.first() else { return };
+        let none = Extreme { value: 0.0, t: 0.0, constraint: first.name };
+        let empty = || ConstraintStats { independence: none, misfit: none };
+        memory.maybe(&mut self.stats.constraints, empty, |memory, stats| {
+            for extreme in [&mut stats.independence, &mut stats.misfit] {
+                memory.number(&mut extreme.value);
+                memory.number(&mut extreme.t);
+                let named = |own: &Constraint| own.name == extreme.constraint;
+                let mut index = constraints.iter().position(named).unwrap_or(0);
+                memory.count(&mut index, constraints.len() - 1);
+                extreme.constraint = constraints[index].name;
+            }
+        });
     }
 
     /// Forgets that the last step ended on a kink, and the plan that led there.
