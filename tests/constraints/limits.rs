@@ -7,6 +7,16 @@ use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::System;
 
 lagrangian! {
+    /// A shuttle between two walls.
+    #[derive(Clone, Debug)]
+    pub struct Shuttle { m: kg, w: m, e: 1 }
+    coordinate x: m;
+    kinetic = m/2*ẋ^2;
+    limit left: x + w >= 0, restitution = e;
+    limit right: w >= x, restitution = e;
+}
+
+lagrangian! {
     /// A ball over a floor.
     #[derive(Clone, Debug)]
     pub struct Ball { e: 1, g: m/s^2 = 9.81 }
@@ -500,4 +510,21 @@ fn what_is_wrong_is_named() {
         let error = solve(&Ball { e, g: 9.81 }, (0.0, 1.0), [1.0], [0.0]).run().unwrap_err().error;
         assert!(matches!(error, Error::Restitution { limit: "floor", .. }), "{error}");
     }
+}
+
+/// A coordinate may have more limits than one.
+#[test]
+fn a_shuttle_goes_between_two_walls() {
+    let shuttle = Shuttle::new(1.3, 1.0, 1.0);
+    let solution = solve(&shuttle, (0.0, 10.5), [0.0], [1.0]).run().unwrap();
+    let times: Vec<f64> = solution.impacts.iter().map(|impact| impact.time.to_f64()).collect();
+    assert_eq!(times.len(), 5);
+    for (k, (time, impact)) in times.iter().zip(&solution.impacts).enumerate() {
+        assert!((time - (1.0 + 2.0 * k as f64)).abs() < 1e-12, "{time}");
+        assert_eq!(impact.name, ["right", "left"][k % 2]);
+    }
+    assert!((solution.end.q[0] + 0.5).abs() < 1e-12 && (solution.end.v[0] + 1.0).abs() < 1e-15);
+    let plastic = Shuttle::new(1.3, 1.0, 0.0);
+    let end = solve(&plastic, (0.0, 3.0), [0.0], [1.0]).run().unwrap().end;
+    assert!((end.q[0] - 1.0).abs() < 1e-12 && end.v[0].abs() < 1e-15);
 }

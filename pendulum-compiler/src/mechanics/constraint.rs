@@ -18,6 +18,9 @@ use crate::syntax::ast::Expr;
 use crate::syntax::text::text;
 use std::collections::BTreeSet;
 
+/// More scalar limits are refused: the runtime keeps no more.
+pub(crate) const MOST_LIMITS: usize = 16;
+
 /// The constraints and limits of a motion.
 #[derive(Debug, Default)]
 pub(crate) struct Constraints {
@@ -335,21 +338,21 @@ fn few(
             ),
         );
     }
-    let several = [
-        (constraints.redundant.len(), "redundant constraints"),
-        (constraints.limits.len(), "limits"),
-    ];
-    for ((number, what), row) in several.into_iter().zip([
-        energies.constraints.last().map(|row| &model.constraints[row.statement].name),
-        energies.limits.last().map(|row| &model.limits[row.statement].name),
-    ]) {
-        if let Some(name) = row.filter(|_| count < number) {
-            let message = format!(
-                "there are {number} scalar {what} for {count} coordinates; leave out those that \
-                 follow from others"
-            );
-            errors.at(name.span(), message);
-        }
+    let redundant = constraints.redundant.len();
+    if let Some(row) = energies.constraints.last().filter(|_| count < redundant) {
+        let message = format!(
+            "there are {redundant} scalar redundant constraints for {count} coordinates; leave out \
+             those that follow from others"
+        );
+        errors.at(model.constraints[row.statement].name.span(), message);
+    }
+    let limits = constraints.limits.len();
+    if let Some(row) = energies.limits.last().filter(|_| MOST_LIMITS < limits) {
+        let message = format!(
+            "there are {limits} scalar limits, and at most {MOST_LIMITS} are kept; leave some out, \
+             or join two of one coordinate, as in `w^2 - x^2 >= 0`"
+        );
+        errors.at(model.limits[row.statement].name.span(), message);
     }
 }
 

@@ -1,5 +1,8 @@
 //! Constraints and limits of a system: their names, kinds and units.
 
+/// The greatest number of scalar limits of a system.
+pub const MOST_LIMITS: usize = 16;
+
 /// A scalar constraint g(q, t) = 0 or A(q, t) q̇ + b(q, t) = 0.
 ///
 /// The forces Cᵀλ of its multiplier λ stand in the equations M q̈ = f + Cᵀλ, with C = ∂g/∂q or A;

@@ -1,6 +1,7 @@
 //! The equations of motion of a system, its Jacobians and what its type says about it.
 
 use crate::scalar::Real;
+use crate::system::constraints::MOST_LIMITS;
 use crate::system::facts::Facts;
 use crate::system::inputs::Samples;
 use core::fmt::Debug;
@@ -268,8 +269,7 @@ pub trait System<const N: usize> {
         [Self::Scalar::from_f64(1.0); N]
     }
 
-    /// The gaps h of the limits in the order of `FACTS.limits`, of which there are no more than
-    /// coordinates, their rates along the motion, and the second rates at q̈ = 0; the rest is zero.
+    /// The gaps h of the limits in the order of `FACTS.limits`, their rates along the motion, and the second rates at q̈ = 0; the rest is zero.
     ///
     /// Driven inputs are sampled for
     /// [`Purpose::Accelerations`](crate::system::Purpose::Accelerations).
@@ -279,9 +279,9 @@ pub trait System<const N: usize> {
         q: &[Self::Scalar; N],
         v: &[Self::Scalar; N],
         inputs: &Self::Inputs,
-    ) -> [[Self::Scalar; N]; 3] {
+    ) -> [[Self::Scalar; MOST_LIMITS]; 3] {
         let _ = (t, q, v, inputs);
-        [[Self::Scalar::from_f64(0.0); N]; 3]
+        [[Self::Scalar::from_f64(0.0); MOST_LIMITS]; 3]
     }
 
     /// The gradients ∂h/∂q of the limits, one in a row; the rest is zero.
@@ -291,7 +291,7 @@ pub trait System<const N: usize> {
         q: &[Self::Scalar; N],
         v: &[Self::Scalar; N],
         inputs: &Self::Inputs,
-    ) -> SMatrix<Self::Scalar, N, N> {
+    ) -> SMatrix<Self::Scalar, MOST_LIMITS, N> {
         let _ = (t, q, v, inputs);
         SMatrix::from_element(Self::Scalar::from_f64(0.0))
     }
@@ -303,9 +303,9 @@ pub trait System<const N: usize> {
         q: &[Self::Scalar; N],
         v: &[Self::Scalar; N],
         inputs: &Self::Inputs,
-    ) -> [Self::Scalar; N] {
+    ) -> [Self::Scalar; MOST_LIMITS] {
         let _ = (t, q, v, inputs);
-        [Self::Scalar::from_f64(0.0); N]
+        [Self::Scalar::from_f64(0.0); MOST_LIMITS]
     }
 
     /// Hamilton's equations: the velocities q̇ = ∂H/∂p that give the momenta `p`, and dp/dt there.

@@ -11,7 +11,7 @@ mod feedback;
 pub mod generated;
 mod inputs;
 
-pub use constraints::{Constraint, Limit};
+pub use constraints::{Constraint, Limit, MOST_LIMITS};
 pub use control::{ControlSlot, ControlValues, Controlled, Sampled, Uncontrolled};
 pub use dynamics::{Driven, Dynamics, MOST_CONTROLS, scalar_time};
 pub use equations::{Jacobians, SplitEnergy, Staged, System, VelocityFree};

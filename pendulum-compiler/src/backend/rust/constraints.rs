@@ -2,7 +2,7 @@
 
 use super::Emitter;
 use crate::algebra::expr::{Graph, Id};
-use crate::mechanics::constraint::{Constraint, Constraints};
+use crate::mechanics::constraint::{Constraint, Constraints, MOST_LIMITS};
 use proc_macro2::TokenStream;
 use quote::quote;
 use std::fmt::Write;
@@ -29,14 +29,17 @@ impl Emitter<'_, '_> {
         let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
         let state = self.state();
         let misfits = self.misfits(&constraints.held);
-        let scales = self.matrix(&[
-            column(&constraints.held, |row| row.scales[0]),
-            column(&constraints.held, |row| row.scales[1]),
-        ]);
-        let correction = self.padded(&constraints.correction, Graph::ZERO);
-        let jacobian = self.gradients(&constraints.held);
-        let reactions = self.padded(&constraints.multipliers, Graph::ZERO);
-        let independence = self.padded(&constraints.independence, Graph::ONE);
+        let scales = self.matrix(
+            &[
+                column(&constraints.held, |row| row.scales[0]),
+                column(&constraints.held, |row| row.scales[1]),
+            ],
+            count,
+        );
+        let correction = self.padded(&constraints.correction, Graph::ZERO, count);
+        let jacobian = self.gradients(&constraints.held, count);
+        let reactions = self.padded(&constraints.multipliers, Graph::ZERO, count);
+        let independence = self.padded(&constraints.independence, Graph::ONE, count);
         quote! {
             #[inline]
             fn misfits(&self, #state) -> [[#scalar; #count]; 2] { #misfits }
@@ -59,22 +62,23 @@ impl Emitter<'_, '_> {
     fn limit_methods(&self, limits: &[Constraint]) -> TokenStream {
         let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
         let state = self.state();
-        let gaps = self.matrix(&[
+        let rows = [
             column(limits, |limit| limit.value),
             column(limits, |limit| limit.rate),
             column(limits, |limit| limit.drift),
-        ]);
-        let jacobian = self.gradients(limits);
+        ];
+        let gaps = self.matrix(&rows, MOST_LIMITS);
+        let jacobian = self.gradients(limits, MOST_LIMITS);
         let restitutions: Vec<Id> =
             self.energies.limits.iter().map(|limit| limit.restitution).collect();
-        let restitutions = self.padded(&restitutions, Graph::ZERO);
+        let restitutions = self.padded(&restitutions, Graph::ZERO, MOST_LIMITS);
         quote! {
             #[inline]
-            fn gaps(&self, #state) -> [[#scalar; #count]; 3] { #gaps }
+            fn gaps(&self, #state) -> [[#scalar; #MOST_LIMITS]; 3] { #gaps }
 
-            fn gap_jacobian(&self, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #jacobian }
+            fn gap_jacobian(&self, #state) -> #krate::__private::SMatrix<#scalar, #MOST_LIMITS, #count> { #jacobian }
 
-            fn restitutions(&self, #state) -> [#scalar; #count] { #restitutions }
+            fn restitutions(&self, #state) -> [#scalar; #MOST_LIMITS] { #restitutions }
         }
     }
 
@@ -84,16 +88,16 @@ impl Emitter<'_, '_> {
         quote!(t: #scalar, q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs)
     }
 
-    /// An array with an entry for each coordinate, `rest` beyond `roots`.
-    fn padded(&self, roots: &[Id], rest: Id) -> TokenStream {
+    /// An array of `length` entries, `rest` beyond `roots`.
+    fn padded(&self, roots: &[Id], rest: Id, length: usize) -> TokenStream {
         let mut roots = roots.to_vec();
-        roots.resize(self.count(), rest);
+        roots.resize(length, rest);
         self.roots(&roots)
     }
 
-    /// Rows with an entry for each coordinate.
-    fn matrix(&self, rows: &[Vec<Id>]) -> TokenStream {
-        let (scalar, count) = (self.scalar(), self.count());
+    /// Rows of `count` entries.
+    fn matrix(&self, rows: &[Vec<Id>], count: usize) -> TokenStream {
+        let scalar = self.scalar();
         let mut all = Vec::new();
         for row in rows {
             let mut row = row.clone();
@@ -115,18 +119,18 @@ impl Emitter<'_, '_> {
     /// Values and rates of constraints.
     fn misfits(&self, rows: &[Constraint]) -> TokenStream {
         let value = |row: &Constraint| if row.holonomic { row.value } else { Graph::ZERO };
-        self.matrix(&[column(rows, value), column(rows, |row| row.rate)])
+        self.matrix(&[column(rows, value), column(rows, |row| row.rate)], self.count())
     }
 
-    /// The gradients, a row each.
-    fn gradients(&self, rows: &[Constraint]) -> TokenStream {
+    /// The gradients, each a row of `height`.
+    fn gradients(&self, rows: &[Constraint], height: usize) -> TokenStream {
         let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
         let mut all: Vec<Id> = rows.iter().flat_map(|row| row.gradient.clone()).collect();
-        all.resize(count * count, Graph::ZERO);
-        let (flat, size) = (self.roots(&all), count * count);
+        all.resize(height * count, Graph::ZERO);
+        let (flat, size) = (self.roots(&all), height * count);
         quote! {
             let entries: [#scalar; #size] = #flat;
-            #krate::__private::SMatrix::<#scalar, #count, #count>::from_row_slice(&entries)
+            #krate::__private::SMatrix::<#scalar, #height, #count>::from_row_slice(&entries)
         }
     }
 

@@ -8,7 +8,7 @@ use crate::integrate::events::impact::{product, response};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, Purpose, System, scalar_time};
+use crate::system::{Dynamics, MOST_LIMITS as L, Purpose, System, scalar_time};
 use crate::time::Time;
 use nalgebra::SMatrix;
 
@@ -25,15 +25,15 @@ pub(crate) const fn has_limits<D: Dynamics<N>, const N: usize>() -> bool {
 
 /// The limits in contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Contacts<const N: usize> {
-    on: [bool; N],
+pub(crate) struct Contacts {
+    on: [bool; L],
     any: bool,
 }
 
-impl<const N: usize> Contacts<N> {
-    pub(crate) const NONE: Self = Self { on: [false; N], any: false };
+impl Contacts {
+    pub(crate) const NONE: Self = Self { on: [false; L], any: false };
 
-    pub(crate) fn new(on: [bool; N]) -> Self {
+    pub(crate) fn new(on: [bool; L]) -> Self {
         Self { any: on.contains(&true), on }
     }
 
@@ -61,7 +61,7 @@ pub(crate) fn gaps<D: Dynamics<N>, const N: usize>(
     side: Side,
     q: &[D::Scalar; N],
     v: &[D::Scalar; N],
-) -> [[D::Scalar; N]; 3] {
+) -> [[D::Scalar; L]; 3] {
     let inputs = dynamics.inputs_with(t, side, Purpose::Accelerations, q, v);
     dynamics.system().gaps(scalar_time(t), q, v, &inputs)
 }
@@ -73,13 +73,13 @@ pub(crate) fn normals<D: Dynamics<N>, const N: usize>(
     side: Side,
     q: &[D::Scalar; N],
     v: &[D::Scalar; N],
-) -> SMatrix<D::Scalar, N, N> {
+) -> SMatrix<D::Scalar, L, N> {
     let inputs = dynamics.inputs(t, side, Purpose::Momenta);
     dynamics.system().gap_jacobian(scalar_time(t), q, v, &inputs)
 }
 
 /// A row of the gradients.
-pub(crate) fn row<T: Float, const N: usize>(matrix: &SMatrix<T, N, N>, index: usize) -> [T; N] {
+pub(crate) fn row<T: Float, const N: usize>(matrix: &SMatrix<T, L, N>, index: usize) -> [T; N] {
     core::array::from_fn(|j| matrix[(index, j)])
 }
 
@@ -89,17 +89,17 @@ pub(crate) struct Push<T, const N: usize> {
     /// The accelerations with the contacts.
     pub(crate) accelerations: [T; N],
     /// The multipliers μ: forces that push where they are positive.
-    pub(crate) multipliers: [T; N],
+    pub(crate) multipliers: [T; L],
     /// The accelerations ḧ of all gaps with them.
-    pub(crate) gaps: [T; N],
+    pub(crate) gaps: [T; L],
     /// The rounding of those.
-    pub(crate) noise: [T; N],
+    pub(crate) noise: [T; L],
 }
 
 /// The responses K nᵢ of the limits in contact, and N K Nᵀ among them.
 struct Responses<T, const N: usize> {
-    changes: [[T; N]; N],
-    matrix: SMatrix<T, N, N>,
+    changes: [[T; N]; L],
+    matrix: SMatrix<T, L, L>,
 }
 
 impl<T: Float, const N: usize> Responses<T, N> {
@@ -109,17 +109,17 @@ impl<T: Float, const N: usize> Responses<T, N> {
         side: Side,
         q: &[T; N],
         v: &[T; N],
-        normals: &SMatrix<T, N, N>,
-        contacts: &Contacts<N>,
+        normals: &SMatrix<T, L, N>,
+        contacts: &Contacts,
     ) -> Self {
         let zero = T::from_f64(0.0);
-        let mut changes = [[zero; N]; N];
+        let mut changes = [[zero; N]; L];
         let mut matrix = SMatrix::from_element(zero);
         for i in (0..limits::<D, N>()).filter(|i| contacts.has(*i)) {
             changes[i] = response(dynamics, t, side, q, v, &row(normals, i));
         }
-        for i in 0..N {
-            for j in 0..N {
+        for i in 0..L {
+            for j in 0..L {
                 if contacts.has(i) && contacts.has(j) {
                     matrix[(i, j)] = product(&row(normals, i), &changes[j]);
                 }
@@ -130,19 +130,19 @@ impl<T: Float, const N: usize> Responses<T, N> {
 
     /// The multipliers that change the rates of the contacts by `target`; one whose contact depends
     /// on those before it is zero.
-    fn multipliers(&self, contacts: &Contacts<N>, target: &[T; N]) -> [T; N] {
+    fn multipliers(&self, contacts: &Contacts, target: &[T; L]) -> [T; L] {
         let zero = T::from_f64(0.0);
         let (mut matrix, mut rest) = (self.matrix, *target);
-        let mut kept = [false; N];
-        for j in 0..N {
+        let mut kept = [false; L];
+        for j in 0..L {
             let least = T::EPSILON.sqrt() * self.matrix[(j, j)];
             if !(contacts.has(j) && least < matrix[(j, j)]) {
                 continue;
             }
             kept[j] = true;
-            for i in j + 1..N {
+            for i in j + 1..L {
                 let factor = matrix[(i, j)] / matrix[(j, j)];
-                for k in j..N {
+                for k in j..L {
                     let part = factor * matrix[(j, k)];
                     matrix[(i, k)] -= part;
                 }
@@ -150,18 +150,18 @@ impl<T: Float, const N: usize> Responses<T, N> {
                 rest[i] -= part;
             }
         }
-        let mut multipliers = [zero; N];
-        for i in (0..N).rev().filter(|i| kept[*i]) {
-            let known = (i + 1..N).fold(rest[i], |sum, k| sum - matrix[(i, k)] * multipliers[k]);
+        let mut multipliers = [zero; L];
+        for i in (0..L).rev().filter(|i| kept[*i]) {
+            let known = (i + 1..L).fold(rest[i], |sum, k| sum - matrix[(i, k)] * multipliers[k]);
             multipliers[i] = known / matrix[(i, i)];
         }
         multipliers
     }
 
     /// K Nᵀμ.
-    fn change(&self, multipliers: &[T; N]) -> [T; N] {
+    fn change(&self, multipliers: &[T; L]) -> [T; N] {
         core::array::from_fn(|j| {
-            (0..N).fold(T::from_f64(0.0), |sum, i| sum + self.changes[i][j] * multipliers[i])
+            (0..L).fold(T::from_f64(0.0), |sum, i| sum + self.changes[i][j] * multipliers[i])
         })
     }
 }
@@ -174,12 +174,12 @@ pub(crate) fn pushed<D: Dynamics<N, Scalar: Float>, const N: usize>(
     q: &[D::Scalar; N],
     v: &[D::Scalar; N],
     free: &[D::Scalar; N],
-    contacts: &Contacts<N>,
+    contacts: &Contacts,
 ) -> Push<D::Scalar, N> {
     let number = D::Scalar::from_f64;
     let [_, _, rates] = gaps(dynamics, t, side, q, v);
     let normals = normals(dynamics, t, side, q, v);
-    let along = |a: &[D::Scalar; N]| -> [D::Scalar; N] {
+    let along = |a: &[D::Scalar; N]| -> [D::Scalar; L] {
         core::array::from_fn(|i| rates[i] + product(&row(&normals, i), a))
     };
     let responses = Responses::new(dynamics, t, side, q, v, &normals, contacts);
@@ -204,9 +204,9 @@ pub(crate) fn shift<D: Dynamics<N, Scalar: Float>, const N: usize>(
     side: Side,
     q: &[D::Scalar; N],
     v: &[D::Scalar; N],
-    contacts: &Contacts<N>,
-    target: &[D::Scalar; N],
-) -> ([D::Scalar; N], [D::Scalar; N]) {
+    contacts: &Contacts,
+    target: &[D::Scalar; L],
+) -> ([D::Scalar; N], [D::Scalar; L]) {
     let normals = normals(dynamics, t, side, q, v);
     let responses = Responses::new(dynamics, t, side, q, v, &normals, contacts);
     let multipliers = responses.multipliers(contacts, target);
@@ -221,7 +221,7 @@ pub(crate) fn rounding<D: Dynamics<N, Scalar: Float>, const N: usize>(
     side: Side,
     q: &[D::Scalar; N],
     v: &[D::Scalar; N],
-) -> [[D::Scalar; N]; 2] {
+) -> [[D::Scalar; L]; 2] {
     let zero = D::Scalar::from_f64(0.0);
     let normals = normals(dynamics, t, side, q, v);
     let sizes = |i: usize, values: &[D::Scalar; N]| {
@@ -240,7 +240,7 @@ pub(crate) fn hold<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     node: &mut Endpoint<D::Scalar, N>,
     side: Side,
-    contacts: &Contacts<N>,
+    contacts: &Contacts,
     rates: bool,
 ) {
     let minus = D::Scalar::from_f64(-1.0);

@@ -29,7 +29,7 @@ pub struct Field<'a, D: Dynamics<N>, const N: usize, const WATCHED: bool = false
     /// The steps go back in time.
     pub(crate) backwards: bool,
     /// The limits in contact, which push.
-    pub(crate) contacts: Contacts<N>,
+    pub(crate) contacts: Contacts,
     /// The first number that is not finite.
     pub(crate) findings: Findings,
 }

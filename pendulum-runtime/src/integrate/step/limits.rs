@@ -12,7 +12,7 @@ use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::projection::{self, is_constrained};
 use crate::motion::Side;
 use crate::scalar::Float;
-use crate::system::{Dynamics, Limit, System, scalar_time};
+use crate::system::{Dynamics, Limit, MOST_LIMITS as L, System, scalar_time};
 use crate::time::Time;
 
 /// The number of parts of a step at whose ends gaps and reactions are looked at.
@@ -48,9 +48,9 @@ pub(crate) struct Accuracy<const N: usize> {
 /// The limits of an integration.
 #[derive(Clone, Debug)]
 pub(crate) struct Limits<T, const N: usize> {
-    standing: [Standing; N],
+    standing: [Standing; L],
     /// The same at the start of the last step.
-    before: [Standing; N],
+    before: [Standing; L],
     /// What the tolerances are; nothing with steps of fixed length.
     pub(crate) accuracy: Option<Accuracy<N>>,
     /// The impacts at the end of the last step.
@@ -73,17 +73,17 @@ fn facts<D: Dynamics<N>, const N: usize>(limit: usize) -> Limit {
 
 impl<T: Float, const N: usize> Limits<T, N> {
     pub(crate) fn new(limits: usize) -> Self {
-        let (standing, found) = ([Clear; N], Vec::with_capacity(limits));
+        let (standing, found) = ([Clear; L], Vec::with_capacity(limits));
         Self { standing, before: standing, accuracy: None, found }
     }
 
     /// The limits in contact.
-    pub(crate) fn contacts(&self) -> Contacts<N> {
+    pub(crate) fn contacts(&self) -> Contacts {
         Contacts::new(self.standing.map(|standing| standing == Contact))
     }
 
     /// The limits that were in contact during the last step.
-    pub(crate) fn began(&self) -> Contacts<N> {
+    pub(crate) fn began(&self) -> Contacts {
         Contacts::new(self.before.map(|standing| standing == Contact))
     }
 
@@ -111,7 +111,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
 
     /// Forgets what was known: the state has been put elsewhere.
     pub(crate) fn forget(&mut self) {
-        self.standing = [Clear; N];
+        self.standing = [Clear; L];
     }
 
     /// Visits what goes from step to step.
@@ -136,7 +136,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
         side: Side,
         q: &[T; N],
         v: &[T; N],
-    ) -> [[T; N]; 2] {
+    ) -> [[T; L]; 2] {
         let least = contacts::rounding(dynamics, t, side, q, v);
         let least = least.map(|part| part.map(|least| T::from_f64(16.0) * least));
         let Some(Accuracy { relative, absolute }) = self.accuracy else { return least };
@@ -279,7 +279,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
         let met = |i: usize| met.is_some_and(|met| met.limit == i);
         let released = |i: usize| met(i) && held.has(i);
         let few = T::from_f64(64.0);
-        let mut closed = Contacts::<N>::NONE;
+        let mut closed = Contacts::NONE;
         for i in 0..count {
             let near = if self.standing[i] == Clear { few * rounding[0][i] } else { allowed[i] };
             closed.set(i, met(i) || held.has(i) || gaps[i] <= near);
@@ -288,7 +288,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
             return Ok(false);
         }
         // What lies below zero, and what was met, is put where it touches.
-        let mut off = Contacts::<N>::NONE;
+        let mut off = Contacts::NONE;
         for i in 0..count {
             off.set(i, met(i) && !held.has(i) || closed.has(i) && gaps[i] < zero);
         }
@@ -348,7 +348,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
         let free = free(node);
         let (q, v) = (node.q.high, node.v.high);
         let [_, rates, _] = contacts::gaps(dynamics, node.t, side, &q, &v);
-        let mut staying = Contacts::<N>::NONE;
+        let mut staying = Contacts::NONE;
         for i in 0..count {
             staying.set(i, closed.has(i) && !released(i) && rates[i] <= slow[i]);
         }
@@ -453,7 +453,7 @@ pub(crate) fn hold<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     node: &mut Endpoint<D::Scalar, N>,
     side: Side,
-    contacts: &Contacts<N>,
+    contacts: &Contacts,
 ) {
     contacts::hold(dynamics, node, side, contacts, true);
     if const { is_constrained::<D, N>() } {
@@ -467,7 +467,7 @@ pub(crate) fn deliver<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     t: Time,
     side: Side,
-    contacts: &Contacts<N>,
+    contacts: &Contacts,
     state: &mut State<D::Scalar, N>,
 ) {
     let (q, v) = (Compensated::new(state.q), Compensated::new(state.v));
