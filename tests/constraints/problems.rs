@@ -405,3 +405,22 @@ fn runs_are_saved_and_resumed() {
     }
     resumed!(Picard, Dop853, Taylor::new(), Auto);
 }
+
+lagrangian! {
+    /// A bead that is carried along, and another one that is free.
+    pub struct Carried { a: m, w: Hz }
+    coordinate x: m;
+    coordinate y: m;
+    kinetic = (ẋ^2 + ẏ^2)/2;
+    constraint ride: x = a*cos(w*t);
+}
+
+/// Where only the time has a size, its rounding is allowed for.
+#[test]
+fn starts_may_be_as_far_off_as_time_is_rounded() {
+    let carried = Carried::new(1.0, 2.0);
+    solve(&carried, (FRAC_PI_2, 2.0), [-1.0, 0.0], [0.0; 2]).run().unwrap();
+    solve(&carried, (FRAC_PI_2 / 2.0, 2.0), [0.0; 2], [-2.0, 0.0]).run().unwrap();
+    let error = solve(&carried, (FRAC_PI_2, 2.0), [-1.0, 0.0], [1e-9, 0.0]).run().unwrap_err();
+    assert!(error.to_string().contains("the rate of the constraint ride"), "{error}");
+}

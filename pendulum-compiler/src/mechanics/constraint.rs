@@ -341,8 +341,9 @@ fn few(
     let redundant = constraints.redundant.len();
     if let Some(row) = energies.constraints.last().filter(|_| count < redundant) {
         let message = format!(
-            "there are {redundant} scalar redundant constraints for {count} coordinates; leave out \
-             those that follow from others"
+            "{} for {}; leave out those that follow from others",
+            several_of(redundant, "scalar redundant constraint"),
+            several_of(count, "coordinate")
         );
         errors.at(model.constraints[row.statement].name.span(), message);
     }

@@ -104,7 +104,7 @@ const RANK: f64 = 1e-11;
 /// # Ok::<(), pendulum_runtime::analysis::EquilibriumError<1>>(())
 /// ```
 ///
-/// Constraints of positions are fulfilled along with that.
+/// Constraints of positions are fulfilled along with that; limits have no part in it.
 ///
 /// # Errors
 /// Numbers that are not finite, accelerations that no coordinate changes, a search that stalls. The

@@ -64,7 +64,8 @@ impl core::error::Error for ModeError {}
 ///
 /// Driven inputs stay as they are. A feedback law is linearized along with the system;
 /// [`control_jacobian`](Jacobians::control_jacobian) is ∂q̈ by the control inputs. A system with
-/// constraints has fewer motions than coordinates, and is refused when it is compiled.
+/// constraints has fewer motions than coordinates, and is refused when it is compiled. Limits have no
+/// part in it: it describes the motion away from them.
 pub fn linearize<D, const N: usize>(
     dynamics: &D,
     t: f64,

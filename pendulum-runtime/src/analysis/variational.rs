@@ -80,6 +80,12 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
     pub const fn new(system: S) -> Self {
         const { assert!(Self::PARAMETERS <= M) };
         const { without_constraints::<S, N>() };
+        const {
+            assert!(
+                S::FACTS.limits.is_empty(),
+                "variations jump where a limit strikes, which is not written yet: leave the limits out"
+            );
+        };
         Self { system }
     }
 

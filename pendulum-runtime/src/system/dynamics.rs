@@ -168,6 +168,8 @@ pub trait Dynamics<const N: usize> {
     /// zero.
     ///
     /// Each has the unit that [`Constraint::reaction_unit`](crate::system::Constraint) names.
+    ///
+    /// Limits in contact have no part in them.
     fn reactions_at(
         &self,
         t: f64,

@@ -1,7 +1,8 @@
 //! Constraints and limits to their scalars.
 
 use super::{Lower, Value};
-use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
+use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
+use crate::algebra::number::Rational;
 use crate::syntax::ast::{Binder, Expr};
 use crate::syntax::name;
 use crate::syntax::text::text;
@@ -72,6 +73,13 @@ impl Lower<'_, '_, '_, '_> {
             return Shape { first, members: None, components };
         };
         let range = self.range(binder);
+        if range.is_empty() {
+            self.errors.once(
+                binder.high.source,
+                binder.high.range,
+                format!("`{own}` has no members; write a range such as `0..5`"),
+            );
+        }
         let (mut members, mut width) = (0, 0);
         for k in range.clone() {
             self.bind(binder, k);
@@ -161,6 +169,17 @@ impl Lower<'_, '_, '_, '_> {
         if self.graph.dependencies(value).any(Dependencies::STATE) {
             let message = format!(
                 "`{}` moves, and a restitution is made of parameters and numbers",
+                text(expr)
+            );
+            self.wrong(expr, &message);
+            return None;
+        }
+        if let Node::Number(number) = self.graph.node(value)
+            && (number.is_negative()
+                || Rational::ONE.add(number.negative()).is_none_or(Rational::is_negative))
+        {
+            let message = format!(
+                "`{}` is no restitution; write a number from 0, no rebound, to 1, no loss",
                 text(expr)
             );
             self.wrong(expr, &message);

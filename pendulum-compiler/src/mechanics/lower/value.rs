@@ -73,6 +73,12 @@ impl Lower<'_, '_, '_, '_> {
         if dependencies.any(Dependencies::CONTROL) {
             return self.control_rate(&value, expr);
         }
+        if dependencies.any(Dependencies::MULTIPLIER) {
+            let message = format!(
+                "the derivative of a reaction in `{what}` is not known; leave the reaction out of it"
+            );
+            return self.wrong(expr, &message);
+        }
         if dependencies.any(Dependencies::ACCELERATION) {
             let what = format!("the derivative of an acceleration in `{what}`");
             return self.wrong(expr, &messages::jerk(what));

@@ -245,7 +245,7 @@ pub(crate) fn start<D: Dynamics<N, Scalar: Float>, const N: usize>(
         let found = project(dynamics, t, side, &mut node.q, &mut node.v);
         let parts = [Part::Position, Part::Velocity].into_iter().zip(found.first);
         for (part, first) in parts {
-            if rounded::<D::Scalar>() <= first {
+            if rounded::<D::Scalar>() <= first && !by_time(dynamics, t, side, &q, &v, part) {
                 return Err(off::<D, N>(t.to_f64(), part, &found));
             }
         }
@@ -253,6 +253,22 @@ pub(crate) fn start<D: Dynamics<N, Scalar: Float>, const N: usize>(
     }
     redundant(dynamics, t, side, &node.q.high, &node.v.high)?;
     Ok(node)
+}
+
+/// Returns true if misfits are no larger than what the rounding of the time does to them: of a driven
+/// constraint at a state in which nothing else has a size.
+fn by_time<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    t: Time,
+    side: Side,
+    q: &[D::Scalar; N],
+    v: &[D::Scalar; N],
+    part: Part,
+) -> bool {
+    let later = t + 64.0 * D::Scalar::EPSILON.to_f64() * t.to_f64().abs();
+    let [now, then] =
+        [t, later].map(|t| Projection::new(dynamics, t, side).misfits(q, v)[part as usize]);
+    now.iter().zip(&then).all(|(now, then)| now.abs() <= (*then - *now).abs())
 }
 
 /// Brings the state after a jump onto the constraints: the velocities by an impulse of their forces,
@@ -270,7 +286,9 @@ pub(crate) fn landed<D: Dynamics<N, Scalar: Float>, const N: usize>(
     if const { is_constrained::<D, N>() } {
         let (mut q, mut v) = (Compensated::new(state.q), Compensated::new(state.v));
         let found = project(dynamics, t, side, &mut q, &mut v);
-        if rounded::<D::Scalar>() <= found.first[0] {
+        if rounded::<D::Scalar>() <= found.first[0]
+            && !by_time(dynamics, t, side, &state.q, &state.v, Part::Position)
+        {
             return Err(off::<D, N>(t.to_f64(), Part::Position, &found));
         }
         (state.q, state.v) = (q.high, v.high);
