@@ -7,35 +7,31 @@
 // A branch in a loop over lanes would take the lanes apart.
 #![allow(clippy::needless_bitwise_bool)]
 
+use super::lengths::{UNTOLD, any, fit, is_short, lengths, log_radii, longer, reaches, weights};
+use super::member::InLane;
 use super::{Batch, Batched, Outcome, Posed, W};
 use crate::error::Error;
 use crate::integrate::events::detector::{EventDetector, POINTS, Place};
 use crate::integrate::events::{Event, Status};
-use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{self, Method};
-use crate::integrate::methods::taylor::{
-    GAP, LAST_ORDERS, Rule, Taylor, largest, rest, series_interpolant,
-};
+use crate::integrate::methods::taylor::{GAP, Rule, Taylor, largest, rest};
 use crate::integrate::output::{Output, Recorder, direction};
 use crate::integrate::solution::Stats;
 use crate::integrate::state::State;
-use crate::integrate::step::adaptive::resolution;
 use crate::integrate::step::compensated::{Compensated, splitter};
 use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::fast_exp2::power;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::field::coordinate;
 use crate::integrate::step::gap;
 use crate::integrate::step::interval::StepInterval;
-use crate::integrate::step::observed::Observed;
 use crate::jet::{Jets, LENGTH, Path, Unrolling};
 use crate::scalar::{Float, Lane, Lanes, Real};
 use crate::simd::Work;
-use crate::system::{Facts, scalar_time};
+use crate::system::scalar_time;
 use crate::time::Time;
 
 /// A number of each lane.
-type Wide<T> = Lanes<T, W>;
+pub(super) type Wide<T> = Lanes<T, W>;
 
 /// A source of problems and their indices.
 pub(crate) type Problems<'a, S, const N: usize> =
@@ -109,16 +105,16 @@ struct Workspace<S: Batched<N>, const N: usize> {
 
 /// The states of all lanes.
 #[derive(Clone, Copy)]
-struct Flight<T, const N: usize> {
-    q: Compensated<Wide<T>, N>,
-    v: Compensated<Wide<T>, N>,
+pub(super) struct Flight<T, const N: usize> {
+    pub(super) q: Compensated<Wide<T>, N>,
+    pub(super) v: Compensated<Wide<T>, N>,
     /// The words of the time.
-    high: Wide<f64>,
-    low: Wide<f64>,
+    pub(super) high: Wide<f64>,
+    pub(super) low: Wide<f64>,
     /// The time at which the motion ends.
-    end: Wide<f64>,
+    pub(super) end: Wide<f64>,
     /// 1 where a motion is under way, else 0.
-    live: Wide<f64>,
+    pub(super) live: Wide<f64>,
 }
 
 /// All steps of a batch.
@@ -659,73 +655,6 @@ fn interval_of<T: Lane + Float, const N: usize>(
     StepInterval { start, end, h: h[0].0[l], low: h[1].0[l] }
 }
 
-/// A motion in a lane, after a step.
-struct InLane<'v, S: Batched<N>, const N: usize> {
-    system: &'v S,
-    path: &'v Path<Wide<S::Scalar>, N>,
-    order: usize,
-    lane: usize,
-    from: Endpoint<S::Scalar, N>,
-    end: Endpoint<S::Scalar, N>,
-    interval: StepInterval,
-    interpolant: Option<Interpolant<S::Scalar, N>>,
-    evaluations: &'v mut u64,
-}
-
-impl<S: Batched<N>, const N: usize> Observed<S::Scalar, N> for InLane<'_, S, N> {
-    const FACTS: &'static Facts = &S::FACTS;
-
-    fn end(&self) -> &Endpoint<S::Scalar, N> {
-        &self.end
-    }
-
-    fn before_kink(&self) -> Option<&Endpoint<S::Scalar, N>> {
-        None
-    }
-
-    fn interpolant(&mut self) -> Option<Interpolant<S::Scalar, N>> {
-        let Self { path, order, lane: l, from, interval, .. } = *self;
-        let (path, order, l) = (path, order, l);
-        let interpolant = self.interpolant.get_or_insert_with(|| {
-            series_interpolant(interval, &from, order, |i, k| {
-                [path.q[i][k].0[l], path.v[i][k].0[l]]
-            })
-        });
-        Some(*interpolant)
-    }
-
-    fn accelerations(&mut self) -> [S::Scalar; N] {
-        let prepared = self.system.prepare();
-        let mut field = Field::new(self.system, &prepared);
-        field.backwards = self.goes_back();
-        let a = self.end.start_acceleration(&mut field);
-        *self.evaluations += field.evaluations;
-        a
-    }
-
-    fn goes_back(&self) -> bool {
-        self.interval.h.is_sign_negative()
-    }
-
-    fn last_length(&self) -> f64 {
-        self.interval.h
-    }
-
-    fn cut(&mut self, t: Time, state: &State<S::Scalar, N>) {
-        self.end = Endpoint::new(t, state.q, state.v);
-    }
-
-    // Events that act do not go through lanes.
-    fn jump(&mut self, state: &State<S::Scalar, N>) -> Result<(), Error> {
-        self.end = Endpoint::new(self.end.t, state.q, state.v);
-        Ok(())
-    }
-
-    fn retreat(&mut self) {
-        self.end = self.from;
-    }
-}
-
 /// The state in a lane.
 fn node<T: Lane + Float, const N: usize>(lanes: &Flight<T, N>, l: usize) -> Endpoint<T, N> {
     let sum = |sum: &Compensated<Wide<T>, N>| Compensated {
@@ -734,158 +663,4 @@ fn node<T: Lane + Float, const N: usize>(lanes: &Flight<T, N>, l: usize) -> Endp
     };
     let t = Time::from_words(lanes.high.0[l], lanes.low.0[l]);
     Endpoint { t, q: sum(&lanes.q), v: sum(&lanes.v), a: None }
-}
-
-/// One over the error allowed.
-#[inline(always)]
-fn weights<T: Lane + Float, const N: usize>(
-    from: &Flight<T, N>,
-    rtol: f64,
-    atol: &[[f64; N]; 2],
-) -> [[Wide<f64>; N]; 2] {
-    let mut weights = [[Wide::from_f64(0.0); N]; 2];
-    for (part, state) in [&from.q.high, &from.v.high].into_iter().enumerate() {
-        for i in 0..N {
-            for l in 0..W {
-                weights[part][i].0[l] = 1.0 / (atol[part][i] + rtol * state[i].0[l].to_f64().abs());
-            }
-        }
-    }
-    weights
-}
-
-/// A length that stands for one that the last terms do not tell.
-const UNTOLD: f64 = 1e300;
-
-/// The lengths of steps that the last terms of the series tell: 1023 and their binary
-/// logarithms.
-#[inline(always)]
-fn log_radii<T: Lane + Float, const N: usize>(
-    path: &Path<Wide<T>, N>,
-    rule: &Rule,
-    weights: &[[Wide<f64>; N]; 2],
-) -> Wide<f64> {
-    let mut least = Wide::from_f64(f64::INFINITY);
-    for back in 0..LAST_ORDERS {
-        least = nearest(
-            least,
-            log_radius_of(path, rule, weights, rule.order.saturating_sub(back).max(1)),
-        );
-    }
-    least
-}
-
-/// The lengths of steps at whose ends the last terms of the series are as large as allowed, as
-/// [`Taylor`] finds them.
-#[inline(always)]
-fn lengths(log_radii: Wide<f64>) -> Wide<f64> {
-    let mut wanted = log_radii;
-    for l in 0..W {
-        wanted.0[l] = power(log_radii.0[l]);
-    }
-    wanted
-}
-
-/// The same where the last terms may tell nothing: those lanes listen to the terms before.
-fn longer<T: Lane + Float, const N: usize>(
-    path: &Path<Wide<T>, N>,
-    rule: &Rule,
-    weights: &[[Wide<f64>; N]; 2],
-    mut log_radii: Wide<f64>,
-) -> Wide<f64> {
-    let mut open = log_radii.0.map(|log_radii| log_radii == f64::INFINITY);
-    if !open.contains(&true) {
-        return lengths(log_radii);
-    }
-    for k in (1..=rule.order.saturating_sub(LAST_ORDERS)).rev() {
-        let earlier = log_radius_of(path, rule, weights, k);
-        for l in 0..W {
-            if open[l] && earlier.0[l] < f64::INFINITY {
-                (log_radii.0[l], open[l]) = (earlier.0[l], false);
-            }
-        }
-    }
-    let mut wanted = lengths(log_radii);
-    for l in 0..W {
-        wanted.0[l] = if open[l] { f64::INFINITY } else { wanted.0[l] };
-    }
-    wanted
-}
-
-/// The length that the coefficients of one order tell; infinite if all are zero.
-#[inline(always)]
-fn log_radius_of<T: Lane + Float, const N: usize>(
-    path: &Path<Wide<T>, N>,
-    rule: &Rule,
-    weights: &[[Wide<f64>; N]; 2],
-    k: usize,
-) -> Wide<f64> {
-    let mut log_radii = Wide::<f64>::from_f64(0.0);
-    for i in 0..N {
-        for (series, weights) in [(&path.q[i], &weights[0]), (&path.v[i], &weights[1])] {
-            for l in 0..W {
-                let coefficient = series[k].0[l].to_f64().abs() * weights[i].0[l];
-                log_radii.0[l] =
-                    if log_radii.0[l] < coefficient { coefficient } else { log_radii.0[l] };
-            }
-        }
-    }
-    for l in 0..W {
-        log_radii.0[l] = rule.log_radius(log_radii.0[l], k);
-    }
-    log_radii
-}
-
-/// The lesser number of each lane.
-#[inline(always)]
-fn nearest(a: Wide<f64>, b: Wide<f64>) -> Wide<f64> {
-    let mut least = a;
-    for l in 0..W {
-        least.0[l] = if b.0[l] < a.0[l] { b.0[l] } else { a.0[l] };
-    }
-    least
-}
-
-/// The steps of these lengths, or what avoids leaving a sliver before the end, as for a single
-/// motion; none in idle lanes. Steps that would reach the end or are too short are marked.
-#[inline(always)]
-fn fit<T, const N: usize>(
-    from: &Flight<T, N>,
-    wanted: Wide<f64>,
-    unusual: &mut Wide<f64>,
-) -> Wide<f64> {
-    let mut h = wanted;
-    for l in 0..W {
-        let (t, wanted) = (Time::from_words(from.high.0[l], from.low.0[l]), wanted.0[l]);
-        let left = -t.since(from.end.0[l]);
-        let step = if left.abs() < 2.0 * wanted { 0.5 * left } else { wanted.copysign(left) };
-        h.0[l] = if 0.0 < from.live.0[l] { step } else { 0.0 };
-        unusual.0[l] =
-            if reaches(t, from.end.0[l], wanted) { from.live.0[l] } else { unusual.0[l] };
-        unusual.0[l] =
-            if is_short(t, from.end.0[l], wanted) { from.live.0[l] } else { unusual.0[l] };
-    }
-    h
-}
-
-/// Returns true if a step of this length would reach the end.
-#[inline(always)]
-fn reaches(t: Time, end: f64, wanted: f64) -> bool {
-    t.since(end).abs() <= 1.01 * wanted
-}
-
-/// Returns true if a step of this length would be too short before the end.
-#[inline(always)]
-fn is_short(t: Time, end: f64, wanted: f64) -> bool {
-    (wanted <= resolution(t)) & (wanted < t.since(end).abs())
-}
-
-/// Returns true if some lane is not zero.
-#[inline(always)]
-fn any(lanes: Wide<f64>) -> bool {
-    let mut all_zero = true;
-    for l in 0..W {
-        all_zero &= lanes.0[l] == 0.0;
-    }
-    !all_zero
 }

@@ -1,6 +1,8 @@
 //! Taylor series of many motions at once.
 
 pub(crate) mod kernel;
+mod lengths;
+mod member;
 
 use crate::error::Error;
 use crate::integrate::events::Event;

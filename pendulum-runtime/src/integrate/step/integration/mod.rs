@@ -1,11 +1,14 @@
 //! The loop that all ways of integrating share: one step at a time, onto kinks and over them.
 
+mod impacts;
+mod memory;
+mod observed;
+
 use crate::error::{Error, Part, Quantity};
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{self, Method};
 use crate::integrate::observe::within;
-use crate::integrate::saved::Memory;
-use crate::integrate::solution::{ConstraintStats, Extreme, Impact, Stats};
+use crate::integrate::solution::Stats;
 use crate::integrate::state::State;
 use crate::integrate::step::compensated::Compensated;
 use crate::integrate::step::contacts::{self, has_limits};
@@ -18,13 +21,13 @@ use crate::integrate::step::gap::PART;
 use crate::integrate::step::held::Held;
 use crate::integrate::step::inertia::{inertia, is_due, varies};
 use crate::integrate::step::interval::StepInterval;
-use crate::integrate::step::limits::{self, Accuracy, Limits, Meeting};
+use crate::integrate::step::limits::{self, Limits};
 use crate::integrate::step::observed::Observed;
 use crate::integrate::step::projection::{self, is_constrained};
 use crate::integrate::step::short::{is_short, straight};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
-use crate::system::{Constraint, Dynamics, Facts, Purpose, System};
+use crate::system::{Dynamics, Purpose, System};
 use crate::time::Time;
 
 /// An integration under way.
@@ -248,123 +251,6 @@ where
         taken.and_then(|interval| self.hold().map(|()| interval))
     }
 
-    /// Takes one step, or the part of it until a limit is met: the end then lies where its gap
-    /// closes, which repeated steps find to rounding, or where its contact lets go.
-    #[inline(never)]
-    fn meet(
-        &mut self,
-        from: &mut Endpoint<D::Scalar, N>,
-        target: f64,
-        met: &mut Option<Meeting>,
-    ) -> Result<StepInterval, Error>
-    where
-        C: Controller<M, D, N>,
-    {
-        const ATTEMPTS: usize = 6;
-        const REPEATED: usize = 3;
-        if self.backwards {
-            let limit = <D::System as System<N>>::FACTS.limits[0].name;
-            return Err(Error::NoWayBack { t: from.t.to_f64(), limit });
-        }
-        let accuracy = self.controller.accuracy();
-        self.limits.accuracy = accuracy.map(|(relative, absolute)| Accuracy { relative, absolute });
-        self.limits.begin();
-        let (plan, accepted) = (self.state, self.stats.accepted);
-        let mut interval = self.take(from, target)?;
-        for _ in 0..ATTEMPTS {
-            let mut end = self.end;
-            let interpolant = self.motion(&interval, from, &mut end);
-            self.end.a = end.a;
-            let Self { dynamics, prepared, limits, end, .. } = self;
-            let (dynamics, prepared) = (&**dynamics, &*prepared);
-            let free = |t, q: &[D::Scalar; N], v: &[D::Scalar; N]| {
-                dynamics.accelerations_with(prepared, t, Side::Before, q, v)
-            };
-            let Some(meeting) = limits.watch(dynamics, &interpolant, end, Side::Before, free)
-            else {
-                return Ok(interval);
-            };
-            let mut t = interval.start + meeting.theta * interval.h;
-            for repeated in 1..=REPEATED {
-                let time = t.to_f64();
-                if from.t.since(time) == 0.0 {
-                    // Time does not resolve the way there.
-                    self.end = Endpoint { a: None, ..*from };
-                    *met = Some(meeting);
-                    return Ok(StepInterval::by(from.t, 0.0));
-                }
-                if self.end.t != Time::new(time) {
-                    (self.end, self.state, self.stats.accepted) = (*from, plan, accepted);
-                    interval = self.take(from, time)?;
-                }
-                if self.end.t != Time::new(time) {
-                    // The tolerances ask for a shorter step.
-                    break;
-                }
-                let (q, v) = (&self.end.q.high, &self.end.v.high);
-                let [gaps, rates, _] =
-                    contacts::gaps(&*self.dynamics, self.end.t, Side::Before, q, v);
-                let late = (gaps[meeting.limit] / rates[meeting.limit]).to_f64();
-                let next = self.end.t + -late;
-                if meeting.release
-                    || repeated == REPEATED
-                    || late.is_nan()
-                    || 0.1 * interval.h <= late.abs()
-                    || next.to_f64() == time
-                {
-                    *met = Some(meeting);
-                    return Ok(interval);
-                }
-                t = next;
-            }
-        }
-        Ok(interval)
-    }
-
-    /// Lets the state reached fulfil the limits, after a step that has met one, or over a kink.
-    #[cold]
-    #[inline(never)]
-    fn settle(&mut self, met: Option<Meeting>) -> Result<(), Error> {
-        let before = self.end;
-        let Self { dynamics, prepared, limits, end, .. } = self;
-        let (dynamics, prepared) = (&**dynamics, &*prepared);
-        let free = |node: &Endpoint<D::Scalar, N>| {
-            dynamics.accelerations_with(prepared, node.t, Side::After, &node.q.high, &node.v.high)
-        };
-        let changed = limits.settle(dynamics, end, Side::After, met, free)?;
-        let contacts = self.limits.contacts();
-        if contacts.any() && !self.method.keeps_contacts() {
-            let all = <D::System as System<N>>::FACTS.limits;
-            let first = (0..all.len()).find(|i| contacts.has(*i)).unwrap_or(0);
-            let (t, method) = (before.t.to_f64(), M::NAME);
-            return Err(Error::Contact { t, limit: all[first].name, method });
-        }
-        if changed {
-            self.before_kink.get_or_insert(before);
-            self.state =
-                ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
-        }
-        Ok(())
-    }
-
-    /// Looks at the limits where the state has been put.
-    fn touch(&mut self) -> Result<(), Error> {
-        if const { has_limits::<D, N>() } {
-            let Endpoint { t, q, v, .. } = &self.end;
-            Limits::<D::Scalar, N>::check(&*self.dynamics, *t, Side::After, &q.high, &v.high)?;
-            self.limits.forget();
-            let kept = self.before_kink;
-            self.settle(None)?;
-            self.before_kink = kept;
-        }
-        Ok(())
-    }
-
-    /// The impacts at the end of the last step, or at the start.
-    pub(crate) fn impacts(&self) -> &[Impact<D::Scalar, N>] {
-        self.limits.found()
-    }
-
     /// Asks a sampled controller for its values if they are due.
     #[inline]
     fn sample(&mut self) -> Result<(), Error> {
@@ -542,56 +428,11 @@ where
         State::from(&self.from)
     }
 
-    /// Visits everything that goes from one step to the next. The last step itself is no part of
-    /// it: its interpolant is gone when numbers are put back.
-    pub(crate) fn remember(&mut self, memory: &mut Memory) {
-        memory.endpoint(&mut self.end);
-        let end = self.end;
-        memory.maybe(&mut self.before_kink, || end, Memory::endpoint);
-        let Stats { evaluations, accepted, rejected, kinks, .. } = &mut self.stats;
-        for count in [evaluations, accepted, rejected, kinks] {
-            memory.word(count);
-        }
-        self.remember_constraints(memory);
-        let ControllerState { h, left, equal, target, error, unknown } = &mut self.state;
-        memory.word(left);
-        for number in [h, equal, target, error, unknown, &mut self.kink] {
-            memory.number(number);
-        }
-        memory.flag(&mut self.backwards);
-        if const { has_limits::<D, N>() } {
-            memory.flag(&mut self.crossed);
-            self.limits.remember(memory);
-        }
-        self.method.remember(&mut self.workspace, memory);
-        if memory.reads() {
-            (self.last, self.interpolant, self.from) = (None, None, self.end);
-        }
-    }
-
     /// Takes the last step back.
     pub(crate) fn retreat(&mut self) {
         self.uncross();
         self.end = self.from;
         (self.last, self.interpolant) = (None, None);
-    }
-
-    /// Visits what is known of the constraints.
-    fn remember_constraints(&mut self, memory: &mut Memory) {
-        let constraints = <D::System as System<N>>::FACTS.constraints;
-        let Some(first) = constraints.first() else { return };
-        let none = Extreme { value: 0.0, t: 0.0, constraint: first.name };
-        let empty = || ConstraintStats { independence: none, misfit: none };
-        memory.maybe(&mut self.stats.constraints, empty, |memory, stats| {
-            for extreme in [&mut stats.independence, &mut stats.misfit] {
-                memory.number(&mut extreme.value);
-                memory.number(&mut extreme.t);
-                let named = |own: &Constraint| own.name == extreme.constraint;
-                let mut index = constraints.iter().position(named).unwrap_or(0);
-                memory.count(&mut index, constraints.len() - 1);
-                extreme.constraint = constraints[index].name;
-            }
-        });
     }
 
     /// Forgets that the last step ended on a kink, and the plan that led there.
@@ -617,63 +458,6 @@ where
     /// The time reached.
     pub(crate) fn t(&self) -> f64 {
         self.end.t.to_f64()
-    }
-}
-
-impl<const N: usize, D, M, C> Observed<D::Scalar, N> for Integration<'_, N, D, M, C>
-where
-    D: Dynamics<N, Scalar: Float>,
-    M: Method<D, N>,
-{
-    const FACTS: &'static Facts = &<D::System as System<N>>::FACTS;
-
-    fn end(&self) -> &Endpoint<D::Scalar, N> {
-        &self.end
-    }
-
-    fn before_kink(&self) -> Option<&Endpoint<D::Scalar, N>> {
-        self.before_kink.as_ref()
-    }
-
-    fn interpolant(&mut self) -> Option<Interpolant<D::Scalar, N>> {
-        Integration::interpolant(self)
-    }
-
-    fn accelerations(&mut self) -> [D::Scalar; N] {
-        Integration::accelerations(self)
-    }
-
-    fn deliver(&self, t: Time, state: &mut State<D::Scalar, N>) {
-        let side = onwards(self.backwards);
-        if const { is_constrained::<D, N>() } {
-            projection::deliver(&*self.dynamics, t, side, state);
-        }
-        if const { has_limits::<D, N>() } {
-            let contacts = self.limits.began();
-            if contacts.any() {
-                limits::deliver(&*self.dynamics, t, side, &contacts, state);
-            }
-        }
-    }
-
-    fn goes_back(&self) -> bool {
-        self.backwards
-    }
-
-    fn last_length(&self) -> f64 {
-        self.last.map_or(0.0, |interval| interval.h)
-    }
-
-    fn cut(&mut self, t: Time, state: &State<D::Scalar, N>) {
-        Integration::cut(self, t, state);
-    }
-
-    fn jump(&mut self, state: &State<D::Scalar, N>) -> Result<(), Error> {
-        Integration::jump(self, state)
-    }
-
-    fn retreat(&mut self) {
-        Integration::retreat(self);
     }
 }
 

@@ -1,0 +1,82 @@
+//! A motion in a lane as event detectors and recorders see it.
+
+use super::Batched;
+use super::kernel::Wide;
+use crate::error::Error;
+use crate::integrate::interpolant::Interpolant;
+use crate::integrate::methods::taylor::series_interpolant;
+use crate::integrate::state::State;
+use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::step::field::Field;
+use crate::integrate::step::interval::StepInterval;
+use crate::integrate::step::observed::Observed;
+use crate::jet::Path;
+use crate::system::Facts;
+use crate::time::Time;
+
+/// A motion in a lane, after a step.
+pub(super) struct InLane<'v, S: Batched<N>, const N: usize> {
+    pub(super) system: &'v S,
+    pub(super) path: &'v Path<Wide<S::Scalar>, N>,
+    pub(super) order: usize,
+    pub(super) lane: usize,
+    pub(super) from: Endpoint<S::Scalar, N>,
+    pub(super) end: Endpoint<S::Scalar, N>,
+    pub(super) interval: StepInterval,
+    pub(super) interpolant: Option<Interpolant<S::Scalar, N>>,
+    pub(super) evaluations: &'v mut u64,
+}
+
+impl<S: Batched<N>, const N: usize> Observed<S::Scalar, N> for InLane<'_, S, N> {
+    const FACTS: &'static Facts = &S::FACTS;
+
+    fn end(&self) -> &Endpoint<S::Scalar, N> {
+        &self.end
+    }
+
+    fn before_kink(&self) -> Option<&Endpoint<S::Scalar, N>> {
+        None
+    }
+
+    fn interpolant(&mut self) -> Option<Interpolant<S::Scalar, N>> {
+        let Self { path, order, lane: l, from, interval, .. } = *self;
+        let (path, order, l) = (path, order, l);
+        let interpolant = self.interpolant.get_or_insert_with(|| {
+            series_interpolant(interval, &from, order, |i, k| {
+                [path.q[i][k].0[l], path.v[i][k].0[l]]
+            })
+        });
+        Some(*interpolant)
+    }
+
+    fn accelerations(&mut self) -> [S::Scalar; N] {
+        let prepared = self.system.prepare();
+        let mut field = Field::new(self.system, &prepared);
+        field.backwards = self.goes_back();
+        let a = self.end.start_acceleration(&mut field);
+        *self.evaluations += field.evaluations;
+        a
+    }
+
+    fn goes_back(&self) -> bool {
+        self.interval.h.is_sign_negative()
+    }
+
+    fn last_length(&self) -> f64 {
+        self.interval.h
+    }
+
+    fn cut(&mut self, t: Time, state: &State<S::Scalar, N>) {
+        self.end = Endpoint::new(t, state.q, state.v);
+    }
+
+    // Events that act do not go through lanes.
+    fn jump(&mut self, state: &State<S::Scalar, N>) -> Result<(), Error> {
+        self.end = Endpoint::new(self.end.t, state.q, state.v);
+        Ok(())
+    }
+
+    fn retreat(&mut self) {
+        self.end = self.from;
+    }
+}

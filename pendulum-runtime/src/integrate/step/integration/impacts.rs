@@ -1,0 +1,138 @@
+//! Steps of a system with limits: they end where one is met, and begin anew from there.
+
+use super::Integration;
+use crate::error::Error;
+use crate::integrate::method::Method;
+use crate::integrate::solution::Impact;
+use crate::integrate::step::contacts::{self, has_limits};
+use crate::integrate::step::controller::{Controller, ControllerState};
+use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::step::interval::StepInterval;
+use crate::integrate::step::limits::{Accuracy, Limits, Meeting};
+use crate::motion::Side;
+use crate::scalar::Float;
+use crate::system::{Dynamics, System};
+use crate::time::Time;
+
+impl<const N: usize, D, M, C> Integration<'_, N, D, M, C>
+where
+    D: Dynamics<N, Scalar: Float>,
+    M: Method<D, N>,
+{
+    /// Takes one step, or the part of it until a limit is met: the end then lies where its gap
+    /// closes, which repeated steps find to rounding, or where its contact lets go.
+    #[inline(never)]
+    pub(super) fn meet(
+        &mut self,
+        from: &mut Endpoint<D::Scalar, N>,
+        target: f64,
+        met: &mut Option<Meeting>,
+    ) -> Result<StepInterval, Error>
+    where
+        C: Controller<M, D, N>,
+    {
+        const ATTEMPTS: usize = 6;
+        const REPEATED: usize = 3;
+        if self.backwards {
+            let limit = <D::System as System<N>>::FACTS.limits[0].name;
+            return Err(Error::NoWayBack { t: from.t.to_f64(), limit });
+        }
+        let accuracy = self.controller.accuracy();
+        self.limits.accuracy = accuracy.map(|(relative, absolute)| Accuracy { relative, absolute });
+        self.limits.begin();
+        let (plan, accepted) = (self.state, self.stats.accepted);
+        let mut interval = self.take(from, target)?;
+        for _ in 0..ATTEMPTS {
+            let mut end = self.end;
+            let interpolant = self.motion(&interval, from, &mut end);
+            self.end.a = end.a;
+            let Self { dynamics, prepared, limits, end, .. } = self;
+            let (dynamics, prepared) = (&**dynamics, &*prepared);
+            let free = |t, q: &[D::Scalar; N], v: &[D::Scalar; N]| {
+                dynamics.accelerations_with(prepared, t, Side::Before, q, v)
+            };
+            let Some(meeting) = limits.watch(dynamics, &interpolant, end, Side::Before, free)
+            else {
+                return Ok(interval);
+            };
+            let mut t = interval.start + meeting.theta * interval.h;
+            for repeated in 1..=REPEATED {
+                let time = t.to_f64();
+                if from.t.since(time) == 0.0 {
+                    // Time does not resolve the way there.
+                    self.end = Endpoint { a: None, ..*from };
+                    *met = Some(meeting);
+                    return Ok(StepInterval::by(from.t, 0.0));
+                }
+                if self.end.t != Time::new(time) {
+                    (self.end, self.state, self.stats.accepted) = (*from, plan, accepted);
+                    interval = self.take(from, time)?;
+                }
+                if self.end.t != Time::new(time) {
+                    // The tolerances ask for a shorter step.
+                    break;
+                }
+                let (q, v) = (&self.end.q.high, &self.end.v.high);
+                let [gaps, rates, _] =
+                    contacts::gaps(&*self.dynamics, self.end.t, Side::Before, q, v);
+                let late = (gaps[meeting.limit] / rates[meeting.limit]).to_f64();
+                let next = self.end.t + -late;
+                if meeting.release
+                    || repeated == REPEATED
+                    || late.is_nan()
+                    || 0.1 * interval.h <= late.abs()
+                    || next.to_f64() == time
+                {
+                    *met = Some(meeting);
+                    return Ok(interval);
+                }
+                t = next;
+            }
+        }
+        Ok(interval)
+    }
+
+    /// Lets the state reached fulfil the limits, after a step that has met one, or over a kink.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn settle(&mut self, met: Option<Meeting>) -> Result<(), Error> {
+        let before = self.end;
+        let Self { dynamics, prepared, limits, end, .. } = self;
+        let (dynamics, prepared) = (&**dynamics, &*prepared);
+        let free = |node: &Endpoint<D::Scalar, N>| {
+            dynamics.accelerations_with(prepared, node.t, Side::After, &node.q.high, &node.v.high)
+        };
+        let changed = limits.settle(dynamics, end, Side::After, met, free)?;
+        let contacts = self.limits.contacts();
+        if contacts.any() && !self.method.keeps_contacts() {
+            let all = <D::System as System<N>>::FACTS.limits;
+            let first = (0..all.len()).find(|i| contacts.has(*i)).unwrap_or(0);
+            let (t, method) = (before.t.to_f64(), M::NAME);
+            return Err(Error::Contact { t, limit: all[first].name, method });
+        }
+        if changed {
+            self.before_kink.get_or_insert(before);
+            self.state =
+                ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
+        }
+        Ok(())
+    }
+
+    /// Looks at the limits where the state has been put.
+    pub(super) fn touch(&mut self) -> Result<(), Error> {
+        if const { has_limits::<D, N>() } {
+            let Endpoint { t, q, v, .. } = &self.end;
+            Limits::<D::Scalar, N>::check(&*self.dynamics, *t, Side::After, &q.high, &v.high)?;
+            self.limits.forget();
+            let kept = self.before_kink;
+            self.settle(None)?;
+            self.before_kink = kept;
+        }
+        Ok(())
+    }
+
+    /// The impacts at the end of the last step, or at the start.
+    pub(crate) fn impacts(&self) -> &[Impact<D::Scalar, N>] {
+        self.limits.found()
+    }
+}

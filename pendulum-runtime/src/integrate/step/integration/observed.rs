@@ -1,0 +1,72 @@
+//! An integration as event detectors and recorders see it.
+
+use super::{Integration, onwards};
+use crate::error::Error;
+use crate::integrate::interpolant::Interpolant;
+use crate::integrate::method::Method;
+use crate::integrate::state::State;
+use crate::integrate::step::contacts::has_limits;
+use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::step::limits;
+use crate::integrate::step::observed::Observed;
+use crate::integrate::step::projection::{self, is_constrained};
+use crate::scalar::Float;
+use crate::system::{Dynamics, Facts, System};
+use crate::time::Time;
+
+impl<const N: usize, D, M, C> Observed<D::Scalar, N> for Integration<'_, N, D, M, C>
+where
+    D: Dynamics<N, Scalar: Float>,
+    M: Method<D, N>,
+{
+    const FACTS: &'static Facts = &<D::System as System<N>>::FACTS;
+
+    fn end(&self) -> &Endpoint<D::Scalar, N> {
+        &self.end
+    }
+
+    fn before_kink(&self) -> Option<&Endpoint<D::Scalar, N>> {
+        self.before_kink.as_ref()
+    }
+
+    fn interpolant(&mut self) -> Option<Interpolant<D::Scalar, N>> {
+        Integration::interpolant(self)
+    }
+
+    fn accelerations(&mut self) -> [D::Scalar; N] {
+        Integration::accelerations(self)
+    }
+
+    fn deliver(&self, t: Time, state: &mut State<D::Scalar, N>) {
+        let side = onwards(self.backwards);
+        if const { is_constrained::<D, N>() } {
+            projection::deliver(&*self.dynamics, t, side, state);
+        }
+        if const { has_limits::<D, N>() } {
+            let contacts = self.limits.began();
+            if contacts.any() {
+                limits::deliver(&*self.dynamics, t, side, &contacts, state);
+            }
+        }
+    }
+
+    fn goes_back(&self) -> bool {
+        self.backwards
+    }
+
+    fn last_length(&self) -> f64 {
+        self.last.map_or(0.0, |interval| interval.h)
+    }
+
+    fn cut(&mut self, t: Time, state: &State<D::Scalar, N>) {
+        Integration::cut(self, t, state);
+    }
+
+    fn jump(&mut self, state: &State<D::Scalar, N>) -> Result<(), Error> {
+        Integration::jump(self, state)
+    }
+
+    fn retreat(&mut self) {
+        Integration::retreat(self);
+    }
+}
