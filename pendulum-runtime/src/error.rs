@@ -80,8 +80,10 @@ pub enum Error {
     Inconsistent {
         /// The time.
         t: f64,
-        /// The half of the state that does not fulfil it: with velocities its rate is off.
+        /// The half of the state that does not fulfil it.
         part: Part,
+        /// The rate of a constraint of positions is off, which the velocities do not fulfil.
+        rate: bool,
         /// The constraint.
         constraint: &'static str,
         /// The misfit of the constraint or of its rate.
@@ -97,6 +99,8 @@ pub enum Error {
         t: f64,
         /// The half of the state that was searched for.
         part: Part,
+        /// The rate of a constraint of positions is off.
+        rate: bool,
         /// The constraint that was off most where the search ended.
         constraint: &'static str,
         /// Its misfit there, or that of its rate.
@@ -289,6 +293,19 @@ pub struct Suspect {
     pub value: f64,
 }
 
+/// The misfit of a constraint or of its rate, with its unit.
+fn misfit(
+    f: &mut fmt::Formatter<'_>,
+    kind: &str,
+    constraint: &str,
+    verb: &str,
+    (rate, residual, unit): (bool, f64, &str),
+) -> fmt::Result {
+    let (what, per) = if rate { ("the rate of the ", " per second") } else { ("the ", "") };
+    let space = if unit.is_empty() { "" } else { " " };
+    write!(f, "{what}{kind} {constraint} {verb} off by {residual:?}{space}{unit}{per}")
+}
+
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
@@ -372,36 +389,20 @@ impl fmt::Display for Error {
                     ),
                 }
             }
-            Self::Inconsistent { t, part, constraint, residual, unit, redundant } => {
-                let what = if part == Part::Velocity { "the rate of " } else { "" };
+            Self::Inconsistent { t, rate, constraint, residual, unit, redundant, .. } => {
                 let kind = if redundant { "redundant constraint" } else { "constraint" };
-                write!(f, "at t = {t:?} {what}the {kind} {constraint} is off by {residual:?}")?;
-                if !unit.is_empty() {
-                    write!(f, " {unit}")?;
-                }
-                if part == Part::Velocity {
-                    write!(f, " per second")?;
-                }
-                if redundant {
-                    write!(
-                        f,
-                        "; it does not follow from the others, declare it without `redundant`"
-                    )
+                write!(f, "at t = {t:?} ")?;
+                misfit(f, kind, constraint, "is", (rate, residual, unit))?;
+                f.write_str(if redundant {
+                    "; it does not follow from the others, declare it without `redundant`"
                 } else {
-                    write!(f, "; begin with a state that fulfils it, as `assemble` finds one")
-                }
+                    "; begin with a state that fulfils it, as `assemble` finds one, or take shorter steps"
+                })
             }
-            Self::NotAssembled { t, part, constraint, residual, unit } => {
-                let (what, per) = match part {
-                    Part::Position => ("", ""),
-                    Part::Velocity => ("the rate of ", " per second"),
-                };
-                let space = if unit.is_empty() { "" } else { " " };
-                write!(
-                    f,
-                    "at t = {t:?} no state near the guess fulfils the constraints: {what}{constraint} stays off by \
-                     {residual:?}{space}{unit}{per}; guess elsewhere, hold fewer coordinates, or check the parameters"
-                )
+            Self::NotAssembled { t, rate, constraint, residual, unit, .. } => {
+                write!(f, "at t = {t:?} no state near the guess fulfils the constraints: ")?;
+                misfit(f, "constraint", constraint, "stays", (rate, residual, unit))?;
+                f.write_str("; guess elsewhere, hold fewer coordinates, or check the parameters")
             }
             Self::NoCoordinate { ref name, coordinates } => {
                 write!(f, "there is no coordinate `{name}` to hold; there are ")?;

@@ -6,32 +6,9 @@ use pendulum_runtime::integrate::Event;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::System;
 use systems::constrained::{
-    ANDREWS_START, Ball, Bob, CAR_AXIS_START, Disc, Loops2, Simple, Sleigh, andrews, car_axis,
-    four_bar,
+    ANDREWS_END, ANDREWS_START, Ball, Bob, CAR_AXIS_START, Disc, Loops2, Simple, Sleigh, andrews,
+    car_axis, four_bar,
 };
-
-/// Andrews' mechanism at t = 0.03, recomputed to 28 digits: the published ones are off from the
-/// tenth on.
-const ANDREWS_END: [[f64; 7]; 2] = [
-    [
-        15.810771195153707097119387,
-        -15.756371058411839469727753,
-        0.040822240119645804854828,
-        -0.53473011634207957937702,
-        0.52440996587995406937167,
-        0.53473011634207957937702,
-        1.0480807410419378730685,
-    ],
-    [
-        1139.9203022591060641980968,
-        -1424.3792951775400731960264,
-        11.032911910618593745327,
-        19.293374105032040831628,
-        0.57356991482950245381769,
-        -19.293374105032040831628,
-        0.32317914924913087499075,
-    ],
-];
 
 /// The multipliers there, with our sign.
 const ANDREWS_REACTIONS: [f64; 6] = [
@@ -313,6 +290,10 @@ fn starts_have_to_fulfil_the_constraints() {
     let error = run([1.0, 0.0], [0.5, 0.0]).unwrap_err().to_string();
     assert!(error.contains("rate of the constraint rod is off by 1.0"), "{error}");
     run([1.0 + 1e-13, 0.0], [0.0, 1.0]).unwrap();
+    // A constraint of velocities is off itself, in its own unit.
+    let sleigh = Sleigh::new(1.0, 0.4, 0.25);
+    let error = solve(&sleigh, (0.0, 1.0), [0.0; 3], [0.0, 0.5, 0.0]).run().unwrap_err();
+    assert!(error.to_string().contains("the constraint blade is off by 0.5 m/s; begin"), "{error}");
 }
 
 /// In `f32` as well, at every step of every kind of method.

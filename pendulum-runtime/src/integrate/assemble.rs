@@ -258,8 +258,9 @@ impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Search<'d, D, N> {
         let size = |k: usize| if misfit[k].is_nan() { f64::INFINITY } else { misfit[k].abs() };
         let most = (0..self.count).fold(0, |most, k| if size(most) < size(k) { k } else { most });
         let own = &<D::System as System<N>>::FACTS.constraints[most];
+        let rate = part == Part::Velocity && own.holonomic;
         let (constraint, unit) = (own.name, own.unit);
-        Error::NotAssembled { t: self.t, part, constraint, residual: size(most), unit }
+        Error::NotAssembled { t: self.t, part, rate, constraint, residual: size(most), unit }
     }
 }
 

@@ -194,7 +194,8 @@ pub trait System<const N: usize> {
         [[Self::Scalar::from_f64(0.0); N]; 2]
     }
 
-    /// The same as [`misfits`](Self::misfits) of the redundant constraints, of which there are no more than coordinates.
+    /// The same as [`misfits`](Self::misfits) of the redundant constraints, of which there are no
+    /// more than coordinates.
     fn redundant_misfits(
         &self,
         t: Self::Scalar,
@@ -269,7 +270,8 @@ pub trait System<const N: usize> {
         [Self::Scalar::from_f64(1.0); N]
     }
 
-    /// The gaps h of the limits in the order of `FACTS.limits`, their rates along the motion, and the second rates at q̈ = 0; the rest is zero.
+    /// The gaps h of the limits in the order of `FACTS.limits`, their rates along the motion, and
+    /// the second rates at q̈ = 0; the rest is zero.
     ///
     /// Driven inputs are sampled for
     /// [`Purpose::Accelerations`](crate::system::Purpose::Accelerations).

@@ -225,8 +225,9 @@ fn rounded<T: Float>() -> f64 {
 fn off<D: Dynamics<N>, const N: usize>(t: f64, part: Part, found: &Found) -> Error {
     let (residual, index) = found.misfits[usize::from(part == Part::Velocity)];
     let constraint = &facts::<D, N>().constraints[index];
+    let rate = part == Part::Velocity && constraint.holonomic;
     let (constraint, unit) = (constraint.name, constraint.unit);
-    Error::Inconsistent { t, part, constraint, residual, unit, redundant: false }
+    Error::Inconsistent { t, part, rate, constraint, residual, unit, redundant: false }
 }
 
 /// Checks the state at a start, and brings it onto the constraints if only rounding has put it off.
@@ -368,10 +369,12 @@ fn redundant<D: Dynamics<N, Scalar: Float>, const N: usize>(
         let (residual, index) = largest(&misfits);
         if allowed * scale * scale < residual || residual.is_nan() {
             let (t, own) = (time.to_f64(), &redundant[index]);
+            let rate = part == Part::Velocity && own.holonomic;
             let (constraint, unit) = (own.name, own.unit);
             return Err(Error::Inconsistent {
                 t,
                 part,
+                rate,
                 constraint,
                 residual,
                 unit,
