@@ -104,7 +104,7 @@ fn an_unknown_column_is_an_error_with_the_nearest_name() {
     );
     assert_eq!(
         message("φ̈"),
-        "a solution holds no accelerations, so there is no column `φ̈`; evaluate them by `Dynamics::accelerations_at`"
+        "a solution holds no accelerations, so there is no column `φ̈`; evaluate them by `solution.accelerations(&system)`"
     );
     let ColumnError { nearest, .. } = solution.column("Φ_dot").unwrap_err();
     assert_eq!(nearest.as_deref(), Some("φ̇"));

@@ -7,3 +7,4 @@ pub mod assembly;
 pub mod generated;
 pub mod limits;
 pub mod problems;
+pub mod pushed;

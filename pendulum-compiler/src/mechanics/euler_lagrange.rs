@@ -73,8 +73,15 @@ fn put_accelerations(graph: &mut Graph, motion: &Motion, energies: &mut Energies
         Symbol::Multiplier(index) => multipliers.get(index).copied(),
         _ => None,
     };
-    for scalar in energies.outputs.iter_mut().flat_map(|output| &mut output.scalars) {
-        if graph.dependencies(*scalar).any(unknown) {
+    let limited = !motion.constraints.limits.is_empty();
+    for output in &mut energies.outputs {
+        if !output.scalars.iter().any(|&scalar| graph.dependencies(scalar).any(unknown)) {
+            continue;
+        }
+        if limited {
+            output.open.clone_from(&output.scalars);
+        }
+        for scalar in &mut output.scalars {
             *scalar = substitute(graph, *scalar, value);
         }
     }

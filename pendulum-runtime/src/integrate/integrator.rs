@@ -11,12 +11,14 @@ use crate::integrate::saved::{Memory, Saved};
 use crate::integrate::solution::{Impact, Stats};
 use crate::integrate::state::State;
 use crate::integrate::step::adaptive::AdaptiveStep;
+use crate::integrate::step::contacts::Contacts;
 use crate::integrate::step::controller::Controller;
 use crate::integrate::step::field::first_in_state;
 use crate::integrate::step::held::Held;
 use crate::integrate::step::integration::Integration;
+use crate::integrate::step::observed::Observed;
 use crate::scalar::Float;
-use crate::system::{Dynamics, System};
+use crate::system::{Dynamics, MOST_LIMITS, System};
 
 /// An integration that goes on for as long as somebody asks for the next step; no step allocates.
 ///
@@ -388,6 +390,13 @@ where
     /// The impacts on the limits of the system in the last step.
     pub fn impacts(&self) -> &[Impact<D::Scalar, N>] {
         self.integration.impacts()
+    }
+
+    /// Returns true if the limit with this index in `FACTS.limits` is in contact at the state
+    /// reached.
+    pub fn in_contact(&self, limit: usize) -> bool {
+        let [_, contacts] = Observed::contacts(&self.integration);
+        limit < MOST_LIMITS && Contacts::from_bits(contacts).has(limit)
     }
 
     /// The index of the terminal event that has ended that call, or of the one that has come to rest.

@@ -115,6 +115,9 @@ pub(crate) struct Recorder<'a, 'f, T, const N: usize> {
     t: Vec<f64>,
     q: Vec<[T; N]>,
     v: Vec<[T; N]>,
+    /// The limits in contact at each of these states; empty for systems without limits.
+    contacts: Vec<u16>,
+    limited: bool,
     events: Vec<Occurrence<T, N>>,
     impacts: Vec<Impact<T, N>>,
     labels: Source,
@@ -142,6 +145,8 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
             t: Vec::new(),
             q: Vec::new(),
             v: Vec::new(),
+            contacts: Vec::new(),
+            limited: !facts.limits.is_empty(),
             events: Vec::new(),
             impacts: Vec::new(),
             labels: Source::Facts(facts),
@@ -161,12 +166,12 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
     }
 
     /// Begins with the state at the start.
-    pub(crate) fn begin(&mut self, start: State<T, N>, dense: bool) {
+    pub(crate) fn begin(&mut self, start: State<T, N>, contacts: u16, dense: bool) {
         self.dense = dense.then(|| DenseOutput::new(start, self.onwards));
         self.next = self.time(0);
         match self.output {
-            Output::Steps => self.push(start),
-            _ => self.push_while_next_is(start),
+            Output::Steps => self.push(start, contacts),
+            _ => self.push_while_next_is(start, contacts),
         }
     }
 
@@ -184,10 +189,11 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
             self.within(integration)?;
         }
         if let Output::Steps = self.output {
+            let [during, after] = integration.contacts();
             if let Some(before) = integration.before_kink() {
-                self.push(before.into());
+                self.push(before.into(), during);
             }
-            self.push((integration.end()).into());
+            self.push((integration.end()).into(), after);
         }
         Ok(())
     }
@@ -209,6 +215,7 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
     /// range before h is.
     fn within<O: Observed<T, N>>(&mut self, integration: &mut O) -> Result<(), Error> {
         let (end, state) = (integration.end().t, State::from(integration.end()));
+        let [during, after] = integration.contacts();
         if self.dense.is_some() || 0.0 < self.onwards * end.since(self.next) {
             let Some(interpolant) = integration.interpolant() else { return Ok(()) };
             let not_finite = |t: f64, q: &[T; N], v: &[T; N]| {
@@ -224,33 +231,36 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
                 not_finite(self.next, &q, &v)?;
                 let mut state = State { t: self.next, q, v };
                 integration.deliver(Time::new(self.next), &mut state);
-                self.push(state);
+                self.push(state, during);
                 self.advance();
             }
             if let Some(dense) = &mut self.dense {
                 dense.push(&interpolant, state);
             }
         }
-        self.push_while_next_is(state);
+        self.push_while_next_is(state, after);
         Ok(())
     }
 
-    fn push_while_next_is(&mut self, state: State<T, N>) {
+    fn push_while_next_is(&mut self, state: State<T, N>, contacts: u16) {
         while self.next == state.t {
-            self.push(state);
+            self.push(state, contacts);
             self.advance();
         }
     }
 
-    fn push(&mut self, state: State<T, N>) {
+    fn push(&mut self, state: State<T, N>, contacts: u16) {
         if let Some(stream) = &mut self.stream {
             self.cancelled = self.cancelled || stream(state).is_break();
             return;
         }
-        self.keep(state);
+        self.keep(state, contacts);
     }
 
-    fn keep(&mut self, State { t, q, v }: State<T, N>) {
+    fn keep(&mut self, State { t, q, v }: State<T, N>, contacts: u16) {
+        if self.limited {
+            self.contacts.push(contacts);
+        }
         self.t.push(t);
         self.q.push(q);
         self.v.push(v);
@@ -265,21 +275,28 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
     pub(crate) fn finish(
         mut self,
         end: State<T, N>,
+        touching: u16,
         status: Status,
         stats: Stats,
     ) -> Solution<T, N> {
         if let Output::End = self.output {
-            self.push(end);
+            self.push(end, touching);
         }
         if self.stream.is_some() {
-            self.keep(end);
+            self.keep(end, touching);
         }
-        let Self { dense, t, q, v, events, impacts, labels, .. } = self;
-        Solution { t, q, v, end, status, events, impacts, stats, dense, labels }
+        let Self { dense, t, q, v, contacts, events, impacts, labels, .. } = self;
+        Solution { t, q, v, end, status, events, impacts, stats, dense, contacts, labels }
     }
 
     /// The failure that leaves `end` as the last state.
-    pub(crate) fn fail(self, error: Error, end: State<T, N>, stats: Stats) -> Failure<T, N> {
-        Failure { error, partial: Box::new(self.finish(end, Status::Failed, stats)) }
+    pub(crate) fn fail(
+        self,
+        error: Error,
+        end: State<T, N>,
+        touching: u16,
+        stats: Stats,
+    ) -> Failure<T, N> {
+        Failure { error, partial: Box::new(self.finish(end, touching, Status::Failed, stats)) }
     }
 }

@@ -65,6 +65,8 @@ pub struct Solution<T, const N: usize> {
     /// The counters.
     pub stats: Stats,
     pub(crate) dense: Option<DenseOutput<T, N>>,
+    /// The limits in contact at each output time, a bit for each; empty for systems without limits.
+    pub(crate) contacts: Vec<u16>,
     /// The names and units of coordinates and velocities.
     pub(crate) labels: Source,
 }
@@ -121,10 +123,10 @@ pub struct Impact<T, const N: usize> {
 /// Equal in all numbers, in the names of the columns and in why and how it ended.
 impl<T: PartialEq, const N: usize> PartialEq for Solution<T, N> {
     fn eq(&self, other: &Self) -> bool {
-        let Self { t, q, v, end, status, events, impacts, stats, dense, labels } = self;
+        let Self { t, q, v, end, status, events, impacts, stats, dense, contacts, labels } = self;
         (t, q, v, end) == (&other.t, &other.q, &other.v, &other.end)
             && (status, events, stats) == (&other.status, &other.events, &other.stats)
-            && *impacts == other.impacts
+            && (impacts, contacts) == (&other.impacts, &other.contacts)
             && *dense == other.dense
             && labels.labels(N) == other.labels.labels(N)
     }

@@ -17,6 +17,7 @@ use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::fixed::FixedStep;
 use crate::integrate::step::held::Held;
 use crate::integrate::step::integration::Integration;
+use crate::integrate::step::observed::Observed;
 use crate::scalar::Float;
 use crate::system::{Dynamics, System};
 use core::mem;
@@ -266,13 +267,14 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         let mut recorder = Recorder::new(self.output, self.time, facts, states.as_deref_mut());
         let given = State { t: self.time.0, q: self.q, v: self.v };
         match self.check(recorder.streams()).and_then(|()| self.begin()) {
-            Err(error) => Err(recorder.fail(error, given, Stats::new(M::NAME))),
+            Err(error) => Err(recorder.fail(error, given, 0, Stats::new(M::NAME))),
             Ok(mut integration) => {
                 let ended = self.integrate(&mut integration, &mut recorder, steps.as_deref_mut());
                 let (end, stats) = (State::from(&integration.end), integration.stats());
+                let [_, touching] = integration.contacts();
                 match ended {
-                    Err(error) => Err(recorder.fail(error, end, stats)),
-                    Ok(status) => Ok(recorder.finish(end, status, stats)),
+                    Err(error) => Err(recorder.fail(error, end, touching, stats)),
+                    Ok(status) => Ok(recorder.finish(end, touching, status, stats)),
                 }
             }
         }
@@ -316,7 +318,8 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         let ahead = |at: &Endpoint<D::Scalar, N>, t| onwards * at.t.since(t) < 0.0;
         let mut stops = self.stops.iter().copied().peekable();
         let mut detector = EventDetector::new(&self.events);
-        recorder.begin(State::from(&integration.end), self.dense);
+        let [_, touching] = integration.contacts();
+        recorder.begin(State::from(&integration.end), touching, self.dense);
         recorder.impacts(integration.impacts());
         detector.begin(integration)?;
         while ahead(&integration.end, end) {

@@ -158,6 +158,9 @@ pub trait Dynamics<const N: usize> {
     }
 
     /// dE/dt at `t`.
+    ///
+    /// Limits in contact have no part in it; [`Solution::power`](crate::integrate::Solution::power)
+    /// knows them.
     fn power_at(&self, t: f64, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> Self::Scalar {
         let t = Time::new(t);
         let inputs = self.inputs_with(t, Side::After, Purpose::Power, q, v);
@@ -169,7 +172,8 @@ pub trait Dynamics<const N: usize> {
     ///
     /// Each has the unit that [`Constraint::reaction_unit`](crate::system::Constraint) names.
     ///
-    /// Limits in contact have no part in them.
+    /// Limits in contact have no part in them;
+    /// [`Solution::reactions`](crate::integrate::Solution::reactions) knows them.
     fn reactions_at(
         &self,
         t: f64,

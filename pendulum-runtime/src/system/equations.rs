@@ -142,6 +142,26 @@ pub trait System<const N: usize> {
         let _ = (index, t, q, v, inputs, values);
     }
 
+    /// The same at accelerations q̈ and multipliers λ that are given, instead of those of the
+    /// equations: limits in contact change both.
+    ///
+    /// Generated code has it where there are limits; elsewhere it is [`output`](Self::output).
+    #[allow(clippy::too_many_arguments)]
+    fn output_of(
+        &self,
+        index: usize,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        accelerations: &[Self::Scalar; N],
+        multipliers: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+        values: &mut [Self::Scalar],
+    ) {
+        let _ = (accelerations, multipliers);
+        self.output(index, t, q, v, inputs, values);
+    }
+
     /// dp/dt = ∂L/∂q − ∂R/∂q̇ + Q + Cᵀλ: the other half of the momentum form, which without
     /// constraints needs one derivative of the inputs less than the accelerations.
     fn momentum_rates(

@@ -98,7 +98,7 @@ impl Emitter<'_, '_> {
                     .energies
                     .outputs
                     .iter()
-                    .flat_map(|output| output.scalars.clone())
+                    .flat_map(|output| output.scalars.iter().chain(&output.open).copied())
                     .collect();
                 let masses = motion.mass_matrix.concat();
                 let rows = |rows: &[Constraint]| {

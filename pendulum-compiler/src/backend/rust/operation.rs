@@ -96,14 +96,13 @@ impl Emitter<'_, '_> {
                 }
             }
             // Points of integration are gone when the integral is done, velocities of positions
-            // when the equations are solved; accelerations and multipliers have been put in.
-            Symbol::Point(..)
-            | Symbol::Auxiliary(_)
-            | Symbol::Position(_)
-            | Symbol::Acceleration(_)
-            | Symbol::Multiplier(_) => {
+            // when the equations are solved.
+            Symbol::Point(..) | Symbol::Auxiliary(_) | Symbol::Position(_) => {
                 quote!(::core::unreachable!())
             }
+            // Those of the equations have been put in; here they are given.
+            Symbol::Acceleration(index) => quote!(accelerations[#index]),
+            Symbol::Multiplier(index) => quote!(multipliers[#index]),
             Symbol::Time => quote!(t),
             Symbol::Coordinate(index) => quote!(q[#index]),
             Symbol::Velocity(index) => quote!(v[#index]),

@@ -106,9 +106,7 @@ impl Emitter<'_, '_> {
             return None;
         }
         let (scalar, count) = (self.scalar(), self.count());
-        let arms = self.all_outputs().enumerate().map(|(index, (_, lowered))| {
-            let all = self.output_scalars(lowered);
-            let length = lowered.map_or(1, |output| output.scalars.len());
+        let arm = |index: usize, length: usize, all: TokenStream| {
             quote! {
                 #index => {
                     let all: [#scalar; #length] = #all;
@@ -119,6 +117,31 @@ impl Emitter<'_, '_> {
                     }
                 }
             }
+        };
+        let arms = self.all_outputs().enumerate().map(|(index, (_, lowered))| {
+            let length = lowered.map_or(1, |output| output.scalars.len());
+            arm(index, length, self.output_scalars(lowered))
+        });
+        let open: Vec<TokenStream> = self
+            .all_outputs()
+            .enumerate()
+            .filter_map(|(index, (_, lowered))| {
+                let open = &lowered?.open;
+                (!open.is_empty()).then(|| arm(index, open.len(), self.roots(open)))
+            })
+            .collect();
+        let open = (!open.is_empty()).then(|| {
+            quote! {
+                fn output_of(
+                    &self, index: ::core::primitive::usize, t: #scalar, q: &[#scalar; #count], v: &[#scalar; #count],
+                    accelerations: &[#scalar; #count], multipliers: &[#scalar; #count], inputs: &Self::Inputs, values: &mut [#scalar],
+                ) {
+                    match index {
+                        #(#open)*
+                        _ => Self::output(self, index, t, q, v, inputs, values),
+                    }
+                }
+            }
         });
         Some(quote! {
             fn output(
@@ -126,6 +149,8 @@ impl Emitter<'_, '_> {
             ) {
                 match index { #(#arms)* _ => {} }
             }
+
+            #open
         })
     }
 

@@ -106,7 +106,11 @@ impl Energies {
         single
             .chain(&mut self.forces)
             .chain(self.defaults.iter_mut().flatten())
-            .chain(self.outputs.iter_mut().flat_map(|output| &mut output.scalars))
+            .chain(
+                self.outputs
+                    .iter_mut()
+                    .flat_map(|output| output.scalars.iter_mut().chain(&mut output.open)),
+            )
             .chain(rows)
             .chain(extended)
             .collect()

@@ -16,6 +16,9 @@ pub(crate) struct Output {
     pub(crate) components: Option<usize>,
     /// The components of the first member, of the second and so on.
     pub(crate) scalars: Vec<Id>,
+    /// The same with accelerations and multipliers as symbols, where limits in contact change them;
+    /// else empty.
+    pub(crate) open: Vec<Id>,
 }
 
 impl Lower<'_, '_, '_, '_> {
@@ -31,7 +34,7 @@ impl Lower<'_, '_, '_, '_> {
         let (statement, name) = (output.statement, output.declared.name);
         let Some(binder) = &statement.index else {
             let (components, scalars) = self.output_member(output).unwrap_or_default();
-            return Output { members: None, components, scalars };
+            return Output { components, scalars, ..Output::default() };
         };
         let range = self.range(binder);
         if range.is_empty() {

@@ -497,8 +497,8 @@ impl<'a, S: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, S, N, WATCH
         let mut stats = Stats::new(<Taylor as Method<S, N>>::NAME);
         (stats.accepted, stats.evaluations) = (accepted, evaluations + member.evaluations);
         let outcome = match error {
-            Some(error) => Err(member.recorder.fail(error, end, stats)),
-            None => Ok(member.recorder.finish(end, status.unwrap_or(Status::Completed), stats)),
+            Some(error) => Err(member.recorder.fail(error, end, 0, stats)),
+            None => Ok(member.recorder.finish(end, 0, status.unwrap_or(Status::Completed), stats)),
         };
         (self.outcomes)(member.index, outcome);
     }
@@ -556,7 +556,7 @@ impl<'a, S: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, S, N, WATCH
         };
         let begun = self.batch.begin(&member.problem, &output).and_then(|ends| {
             if WATCHED {
-                member.recorder.begin(State::from(&start), dense);
+                member.recorder.begin(State::from(&start), 0, dense);
                 let mut view = InLane::<S, N> {
                     system: &member.problem.system,
                     path: &self.workspace.path,

@@ -2,8 +2,10 @@
 
 use super::label::Label;
 use super::name::{self, Name};
+use super::pushed::Pushed;
 use crate::integrate::solution::Solution;
 use crate::integrate::state::State;
+use crate::integrate::step::contacts::Contacts;
 use crate::motion::Side;
 use crate::scalar::Float;
 use crate::system::{Dynamics, Purpose, System, scalar_time};
@@ -61,7 +63,7 @@ impl fmt::Display for ColumnError {
         if name::read(name).dots == 2 {
             return write!(
                 f,
-                "a solution holds no accelerations, so there is no column `{name}`; evaluate them by `Dynamics::accelerations_at`"
+                "a solution holds no accelerations, so there is no column `{name}`; evaluate them by `solution.accelerations(&system)`"
             );
         }
         write!(f, "there is no column `{name}`; ")?;
@@ -110,32 +112,39 @@ impl<T: Float, const N: usize> Solution<T, N> {
         Err(ColumnError::new(name, labels.names()))
     }
 
+    /// The accelerations q̈ at all output times, limits in contact included.
+    ///
+    /// At two states of the same time as [`energy`](Self::energy).
+    pub fn accelerations<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<[T; N]> {
+        self.evaluate(|t, side, q, v, contacts| {
+            Pushed::new(dynamics, t, side, q, v, &contacts).accelerations
+        })
+    }
+
     /// The Jacobi integral q̇·∂L/∂q̇ − L at all output times, as
     /// [`Dynamics::energy_at`] gives it.
     ///
     /// Where two states have the same time, as [`every_step`](crate::integrate::Solve::every_step)
     /// gives them at a kink, driven inputs have their values before it for the first of them.
     pub fn energy<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<T> {
-        self.evaluate(
-            |t, q, v| dynamics.energy_at(t, q, v),
-            |t, q, v| {
-                let inputs = dynamics.inputs_with(t, Side::Before, Purpose::Energy, q, v);
-                dynamics.system().energy(scalar_time(t), q, v, &inputs)
-            },
-        )
+        self.evaluate(|t, side, q, v, _| {
+            let inputs = dynamics.inputs_with(t, side, Purpose::Energy, q, v);
+            dynamics.system().energy(scalar_time(t), q, v, &inputs)
+        })
     }
 
-    /// dE/dt at all output times, as [`Dynamics::power_at`] gives it.
+    /// dE/dt at all output times: [`Dynamics::power_at`], less μ·∂h/∂t of the limits in contact.
     ///
     /// At two states of the same time as [`energy`](Self::energy).
     pub fn power<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<T> {
-        self.evaluate(
-            |t, q, v| dynamics.power_at(t, q, v),
-            |t, q, v| {
-                let inputs = dynamics.inputs_with(t, Side::Before, Purpose::Power, q, v);
-                dynamics.system().power(scalar_time(t), q, v, &inputs)
-            },
-        )
+        self.evaluate(|t, side, q, v, contacts| {
+            let inputs = dynamics.inputs_with(t, side, Purpose::Power, q, v);
+            let power = dynamics.system().power(scalar_time(t), q, v, &inputs);
+            if !contacts.any() {
+                return power;
+            }
+            power + Pushed::new(dynamics, t, side, q, v, &contacts).power(dynamics, t, side, q)
+        })
     }
 
     /// The conserved quantities of the system at all output times: a column for each name in
@@ -144,34 +153,38 @@ impl<T: Float, const N: usize> Solution<T, N> {
     /// At two states of the same time as [`energy`](Self::energy).
     pub fn conserved<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
         let count = <D::System as System<N>>::FACTS.conserved.len();
-        let at = |side: Side, t: Time, q: &[T; N], v: &[T; N]| {
+        let rows = self.evaluate(|t, side, q, v, _| {
             let inputs = dynamics.inputs(t, side, Purpose::Momenta);
             let mut values = vec![T::from_f64(0.0); count];
             dynamics.system().conserved(scalar_time(t), q, v, &inputs, &mut values);
             values
-        };
-        let rows = self.evaluate(
-            |t, q, v| at(Side::After, Time::new(t), q, v),
-            |t, q, v| at(Side::Before, t, q, v),
-        );
-        (0..count).map(|index| rows.iter().map(|row| row[index]).collect()).collect()
+        });
+        columns(&rows, count)
     }
 
-    /// The multipliers λ of the constraints at all output times, as
-    /// [`Dynamics::reactions_at`] gives them: a column for each constraint that the equations hold,
-    /// in the order of `FACTS.constraints`.
+    /// The multipliers λ of the constraints at all output times, limits in contact included: a
+    /// column for each constraint that the equations hold, in the order of `FACTS.constraints`.
     ///
     /// At two states of the same time as [`energy`](Self::energy).
     pub fn reactions<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
-        let rows = self.evaluate(
-            |t, q, v| dynamics.reactions_at(t, q, v),
-            |t, q, v| {
-                let inputs = dynamics.inputs_with(t, Side::Before, Purpose::Accelerations, q, v);
-                dynamics.system().reactions(scalar_time(t), q, v, &inputs)
-            },
-        );
-        let count = <D::System as System<N>>::FACTS.held_constraints();
-        (0..count).map(|index| rows.iter().map(|row| row[index]).collect()).collect()
+        let rows = self.evaluate(|t, side, q, v, contacts| {
+            Pushed::new(dynamics, t, side, q, v, &contacts).multipliers
+        });
+        columns(&rows, <D::System as System<N>>::FACTS.held_constraints())
+    }
+
+    /// The multipliers μ ≥ 0 with which limits push at all output times, zero for those out of
+    /// contact: a column for each limit h, in the order of `FACTS.limits`.
+    ///
+    /// The generalized force of a limit is μ ∂h/∂q: μ is an energy per unit of h. The impulses of
+    /// impacts stand in [`impacts`](Self::impacts).
+    ///
+    /// At two states of the same time as [`energy`](Self::energy).
+    pub fn contact_forces<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
+        let rows = self.evaluate(|t, side, q, v, contacts| {
+            Pushed::new(dynamics, t, side, q, v, &contacts).forces
+        });
+        columns(&rows, <D::System as System<N>>::FACTS.limits.len())
     }
 
     /// One scalar of an output of the system at all output times: `"load"`, `"tip.x"`,
@@ -205,33 +218,38 @@ impl<T: Float, const N: usize> Solution<T, N> {
         index: usize,
     ) -> Vec<Vec<T>> {
         let count = <D::System as System<N>>::FACTS.outputs[index].count();
-        let at = |side: Side, t: Time, q: &[T; N], v: &[T; N]| {
+        let rows = self.evaluate(|t, side, q, v, contacts| {
             let inputs = dynamics.inputs_with(t, side, Purpose::Outputs, q, v);
             let mut values = vec![T::from_f64(0.0); count];
-            dynamics.system().output(index, scalar_time(t), q, v, &inputs, &mut values);
+            let (system, time) = (dynamics.system(), scalar_time(t));
+            if contacts.any() {
+                let Pushed { accelerations: a, multipliers: λ, .. } =
+                    Pushed::new(dynamics, t, side, q, v, &contacts);
+                system.output_of(index, time, q, v, &a, &λ, &inputs, &mut values);
+            } else {
+                system.output(index, time, q, v, &inputs, &mut values);
+            }
             values
-        };
-        let rows = self.evaluate(
-            |t, q, v| at(Side::After, Time::new(t), q, v),
-            |t, q, v| at(Side::Before, t, q, v),
-        );
-        (0..count).map(|scalar| rows.iter().map(|row| row[scalar]).collect()).collect()
+        });
+        columns(&rows, count)
     }
 
-    /// `after` at all output times but those at which the next state has the same time; `before`
-    /// at these.
-    fn evaluate<U>(
-        &self,
-        after: impl Fn(f64, &[T; N], &[T; N]) -> U,
-        before: impl Fn(Time, &[T; N], &[T; N]) -> U,
-    ) -> Vec<U> {
+    /// A value for each output time, from the time, its side, the state and the limits in contact.
+    ///
+    /// The side is `Before` where the next state has the same time.
+    fn evaluate<U>(&self, value: impl Fn(Time, Side, &[T; N], &[T; N], Contacts) -> U) -> Vec<U> {
         let one = |(index, state): (usize, State<T, N>)| {
-            if self.t.get(index + 1) == Some(&state.t) {
-                before(Time::new(state.t), &state.q, &state.v)
-            } else {
-                after(state.t, &state.q, &state.v)
-            }
+            let kink = self.t.get(index + 1) == Some(&state.t);
+            let side = if kink { Side::Before } else { Side::After };
+            let contacts = self.contacts.get(index).copied().unwrap_or_default();
+            let contacts = Contacts::from_bits(contacts);
+            value(Time::new(state.t), side, &state.q, &state.v, contacts)
         };
         self.iter().enumerate().map(one).collect()
     }
+}
+
+/// The first `count` columns of a list of rows.
+fn columns<T: Copy>(rows: &[impl AsRef<[T]>], count: usize) -> Vec<Vec<T>> {
+    (0..count).map(|index| rows.iter().map(|row| row.as_ref()[index]).collect()).collect()
 }

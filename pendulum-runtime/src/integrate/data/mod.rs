@@ -3,6 +3,7 @@
 mod column;
 pub(crate) mod label;
 mod name;
+mod pushed;
 #[cfg(feature = "serde")]
 pub(crate) mod serial;
 mod table;

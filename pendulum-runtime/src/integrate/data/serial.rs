@@ -206,14 +206,29 @@ struct Parts<T, const N: usize> {
     impacts: Vec<Impact<T, N>>,
     stats: Stats,
     dense: Option<DenseOutput<T, N>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    contacts: Vec<u16>,
 }
 
 impl<T: Serialize + Clone, const N: usize> Serialize for Solution<T, N> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let Self { t, q, v, end, status, events, impacts, stats, dense, labels } = self.clone();
+        let own = self.clone();
+        let Self { t, q, v, end, status, events, impacts, stats, dense, contacts, labels } = own;
         let Labels { coordinates, velocities } = labels.labels(N);
-        let parts =
-            Parts { coordinates, velocities, t, q, v, end, status, events, impacts, stats, dense };
+        let parts = Parts {
+            coordinates,
+            velocities,
+            t,
+            q,
+            v,
+            end,
+            status,
+            events,
+            impacts,
+            stats,
+            dense,
+            contacts,
+        };
         parts.serialize(serializer)
     }
 }
@@ -221,18 +236,33 @@ impl<T: Serialize + Clone, const N: usize> Serialize for Solution<T, N> {
 impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Solution<T, N> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let parts = Parts::deserialize(deserializer)?;
-        let Parts { coordinates, velocities, t, q, v, end, status, events, impacts, stats, dense } =
-            parts;
+        let Parts {
+            coordinates,
+            velocities,
+            t,
+            q,
+            v,
+            end,
+            status,
+            events,
+            impacts,
+            stats,
+            dense,
+            contacts,
+        } = parts;
         if [coordinates.len(), velocities.len()] != [N; 2] {
             return Err(D::Error::custom(format!("not the names of {N} coordinates")));
         }
         if [q.len(), v.len()] != [t.len(); 2] {
             return Err(D::Error::custom("not as many states as times"));
         }
+        if ![0, t.len()].contains(&contacts.len()) {
+            return Err(D::Error::custom("not as many contacts as times"));
+        }
         if dense.as_ref().is_some_and(|dense| !dense.is_sound()) {
             return Err(D::Error::custom("the dense output is damaged"));
         }
         let labels = Source::Read(Labels { coordinates, velocities });
-        Ok(Self { t, q, v, end, status, events, impacts, stats, dense, labels })
+        Ok(Self { t, q, v, end, status, events, impacts, stats, dense, contacts, labels })
     }
 }

@@ -90,7 +90,10 @@ pub(crate) fn product<T: Float, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
 }
 
 /// M⁻¹ b for a symmetric positive definite M, by elimination without exchanges.
-fn solved<T: Float, const N: usize>(mut matrix: SMatrix<T, N, N>, mut b: [T; N]) -> [T; N] {
+pub(crate) fn solved<T: Float, const N: usize>(
+    mut matrix: SMatrix<T, N, N>,
+    mut b: [T; N],
+) -> [T; N] {
     for j in 0..N {
         for i in j + 1..N {
             let factor = matrix[(i, j)] / matrix[(j, j)];

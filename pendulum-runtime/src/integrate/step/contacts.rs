@@ -47,6 +47,16 @@ impl Contacts {
         self.on[limit]
     }
 
+    /// A bit for each limit.
+    pub(crate) fn bits(&self) -> u16 {
+        (0..L).fold(0, |bits, limit| bits | u16::from(self.on[limit]) << limit)
+    }
+
+    /// The limits whose bits are set.
+    pub(crate) fn from_bits(bits: u16) -> Self {
+        Self::new(core::array::from_fn(|limit| bits >> limit & 1 == 1))
+    }
+
     /// Puts a limit in or out.
     pub(crate) fn set(&mut self, limit: usize, on: bool) {
         self.on[limit] = on;

@@ -41,6 +41,11 @@ pub(crate) trait Observed<T, const N: usize> {
         let _ = (t, state);
     }
 
+    /// The limits in contact during the last step, and at its end; a bit for each.
+    fn contacts(&self) -> [u16; 2] {
+        [0; 2]
+    }
+
     /// Takes the last step back.
     fn retreat(&mut self);
 }

@@ -50,6 +50,13 @@ where
         }
     }
 
+    fn contacts(&self) -> [u16; 2] {
+        if const { has_limits::<D, N>() } {
+            return [self.limits.began(), self.limits.contacts()].map(|contacts| contacts.bits());
+        }
+        [0; 2]
+    }
+
     fn goes_back(&self) -> bool {
         self.backwards
     }

@@ -1,0 +1,100 @@
+//! Accelerations and multipliers where limits are in contact.
+
+use crate::integrate::events::impact::{product, solved};
+use crate::integrate::step::contacts::{self, Contacts};
+use crate::motion::Side;
+use crate::scalar::Float;
+use crate::system::{Dynamics, MOST_LIMITS as L, Purpose, System, scalar_time};
+use crate::time::Time;
+use nalgebra::SMatrix;
+
+/// The motion at a state, with the forces of the limits in contact there.
+pub(super) struct Pushed<T, const N: usize> {
+    /// The accelerations q̈.
+    pub(super) accelerations: [T; N],
+    /// The multipliers λ of the constraints.
+    pub(super) multipliers: [T; N],
+    /// The multipliers μ of the limits, zero for those out of contact.
+    pub(super) forces: [T; L],
+    /// The part of the multipliers λ that the contacts add.
+    change: [T; N],
+}
+
+impl<T: Float, const N: usize> Pushed<T, N> {
+    /// M q̈ = f + Cᵀλ + Nᵀμ, where C q̈ = γ, and ḧ = 0 for the limits in contact.
+    ///
+    /// With μ known the multipliers change by Δλ = −(C M⁻¹Cᵀ)⁻¹ C M⁻¹Nᵀμ.
+    pub(super) fn new<D: Dynamics<N, Scalar = T>>(
+        dynamics: &D,
+        t: Time,
+        side: Side,
+        q: &[T; N],
+        v: &[T; N],
+        contacts: &Contacts,
+    ) -> Self {
+        let (zero, system, time) = (T::from_f64(0.0), dynamics.system(), scalar_time::<T>(t));
+        let prepared = system.prepare();
+        let free = dynamics.accelerations_with(&prepared, t, side, q, v);
+        let inputs = dynamics.inputs_with(t, side, Purpose::Accelerations, q, v);
+        let multipliers = system.reactions(time, q, v, &inputs);
+        let none = Self { accelerations: free, multipliers, forces: [zero; L], change: [zero; N] };
+        if !contacts.any() {
+            return none;
+        }
+        let push = contacts::pushed(dynamics, t, side, q, v, &free, contacts);
+        let held = <D::System as System<N>>::FACTS.held_constraints();
+        let mut change = [zero; N];
+        if 0 < held {
+            let inputs = dynamics.inputs(t, side, Purpose::Momenta);
+            let masses = system.mass_matrix(time, q, v, &inputs);
+            let gradients = system.constraint_jacobian(time, q, v, &inputs);
+            let row = |k: usize| -> [T; N] { core::array::from_fn(|j| gradients[(k, j)]) };
+            let mut matrix = SMatrix::<T, N, N>::from_element(zero);
+            for k in 0..N {
+                if held <= k {
+                    matrix[(k, k)] = T::from_f64(1.0);
+                    continue;
+                }
+                let response = solved(masses, row(k));
+                for i in 0..held {
+                    matrix[(i, k)] = product(&row(i), &response);
+                }
+            }
+            let normals = contacts::normals(dynamics, t, side, q, v);
+            let force: [T; N] = core::array::from_fn(|j| {
+                (0..L).fold(zero, |sum, i| sum + normals[(i, j)] * push.multipliers[i])
+            });
+            let response = solved(masses, force);
+            let target =
+                core::array::from_fn(
+                    |k| {
+                        if k < held { -product(&row(k), &response) } else { zero }
+                    },
+                );
+            change = solved(matrix, target);
+        }
+        Self {
+            accelerations: push.accelerations,
+            multipliers: core::array::from_fn(|k| multipliers[k] + change[k]),
+            forces: push.multipliers,
+            change,
+        }
+    }
+
+    /// The part of dE/dt that the contacts add: −μ·∂h/∂t − Δλ·b, where b is the rate of the
+    /// constraints at q̇ = 0.
+    pub(super) fn power<D: Dynamics<N, Scalar = T>>(
+        &self,
+        dynamics: &D,
+        t: Time,
+        side: Side,
+        q: &[T; N],
+    ) -> T {
+        let (zero, time) = (T::from_f64(0.0), scalar_time::<T>(t));
+        let rest = [zero; N];
+        let [_, limits, _] = contacts::gaps(dynamics, t, side, q, &rest);
+        let inputs = dynamics.inputs(t, side, Purpose::Momenta);
+        let [_, constraints] = dynamics.system().misfits(time, q, &rest, &inputs);
+        -(product(&self.forces, &limits) + product(&self.change, &constraints))
+    }
+}
