@@ -34,8 +34,8 @@ pub mod prelude {
     pub use crate::ensemble::Ensemble;
     pub use crate::integrate::{
         Auto, Batch, Direction, Dop853, Dprkn8, Dprkn12, Gauss, Integrator, Leapfrog, Picard,
-        Problem, QuinlanTremaine, Rk4, Rodas4, Solution, Srkn6b, Srkn14a, State, SymplecticEuler,
-        Taylor, Tsit5, assemble, solve,
+        Problem, QuinlanTremaine, Rattle, Rk4, Rodas4, Solution, Srkn6b, Srkn14a, State,
+        SymplecticEuler, Taylor, Tsit5, assemble, solve,
     };
     pub use crate::motion::Motion;
     pub use crate::scalar::Real;

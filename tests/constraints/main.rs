@@ -8,3 +8,4 @@ pub mod generated;
 pub mod limits;
 pub mod problems;
 pub mod pushed;
+pub mod rattle;

@@ -483,6 +483,10 @@ fn facts(graph: &mut Graph, motion: &mut Motion) {
     let moving = Dependencies::VELOCITY.or(Dependencies::CONTROL);
     let free = motion.constraints.held.is_empty();
     let rows = motion.constraints.held.iter().flat_map(|row| [row.value, row.rate, row.drift]);
+    motion.holonomic = !free
+        && motion.constraints.held.iter().all(|row| row.holonomic)
+        && motion.constant_mass_matrix
+        && !forces.any(moving);
     let forces = forces.or(all(&rows.collect::<Vec<Id>>()));
     motion.velocity_free = free && motion.constant_mass_matrix && !forces.any(moving);
     motion.linear = free && motion.constant_mass_matrix && graph.linear(&motion.forces);

@@ -32,6 +32,8 @@ pub(crate) struct Motion {
     pub(crate) explicit_time: bool,
     pub(crate) separable: bool,
     pub(crate) velocity_free: bool,
+    /// Constraints of positions alone, a constant mass matrix and forces without velocities.
+    pub(crate) holonomic: bool,
     pub(crate) linear: bool,
     pub(crate) constant_mass_matrix: bool,
     pub(crate) nonconservative: bool,

@@ -68,6 +68,7 @@ pub use methods::gauss::{Gauss, Newton, Sweeps};
 pub use methods::leapfrog::Leapfrog;
 pub use methods::picard::{LaneDynamics, Picard};
 pub use methods::quinlan_tremaine::QuinlanTremaine;
+pub use methods::rattle::Rattle;
 pub use methods::rk4::Rk4;
 pub use methods::rodas4::Rodas4;
 pub use methods::srkn6b::Srkn6b;

@@ -472,3 +472,14 @@ pub trait Jacobians<const N: usize>: System<N> {
     note = "use `Rk4`, `Tsit5` or `Dop853`"
 )]
 pub trait VelocityFree<const N: usize>: System<N> {}
+
+/// The marker of systems with constraints, all of positions, a constant mass matrix and forces
+/// without velocities.
+///
+/// [`Rattle`](crate::integrate::Rattle) is wrong for all others, so it asks for it.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no system with constraints of positions alone, a constant mass matrix and forces without velocities",
+    label = "RATTLE would be wrong here",
+    note = "use `Picard` or `Dop853`; without constraints `Srkn14a` or `Gauss` for long runs"
+)]
+pub trait Holonomic<const N: usize>: System<N> {}

@@ -14,7 +14,7 @@ mod inputs;
 pub use constraints::{Constraint, Limit, MOST_LIMITS};
 pub use control::{ControlSlot, ControlValues, Controlled, Sampled, Uncontrolled};
 pub use dynamics::{Driven, Dynamics, MOST_CONTROLS, scalar_time};
-pub use equations::{Jacobians, SplitEnergy, Staged, System, VelocityFree};
+pub use equations::{Holonomic, Jacobians, SplitEnergy, Staged, System, VelocityFree};
 pub use facts::Facts;
 pub(crate) use feedback::feedback_jacobians;
 pub use inputs::{ControlSamples, Input, NoInputs, Output, Purpose, Samples};

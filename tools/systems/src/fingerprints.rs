@@ -1,8 +1,9 @@
-//! The final states of every method and of ten kinds of systems as hashes: what must be the same in
+//! The final states of every method and of eleven kinds of systems as hashes: what must be the same in
 //! every build on every machine.
 
 #![allow(missing_docs)]
 
+use crate::constrained::Bob;
 use crate::problems::{Cart, Double, Forced, Hung, Kepler, Simple, Spherical};
 use pendulum_runtime::integrate::State;
 use pendulum_runtime::motion::{Linear, Spline};
@@ -149,6 +150,13 @@ pub fn all() -> Vec<String> {
         "Rk4" Rk4 => step 0.01;
         "Dop853" Dop853::new() => rtol 1e-9;
         "Picard" Picard => rtol 1e-9;
+    }
+    let bob = Bob::new(0.7, 1.3);
+    let bob_at = ([1.3 * 0.96, -1.3 * 0.28], [0.28, 0.96]);
+    kinds!(lines, "bob", &bob, bob_at.0, bob_at.1);
+    run! { lines, "bob", &bob, bob_at.0, bob_at.1,
+        "Rattle2" Rattle::<2>::new() => step 0.01;
+        "Rattle8" Rattle::<8>::new() => step 0.05;
     }
     kinds!(lines, "functions", &Functions::new(0.3), [0.4, -0.7], [0.5, 0.2]);
 

@@ -144,14 +144,16 @@ impl Emitter<'_, '_> {
     }
 
     pub(super) fn marker(&self) -> Option<TokenStream> {
-        if self.motion.as_ref().is_some_and(|motion| !motion.velocity_free) {
-            return None;
-        }
         let (krate, scalar, count, name) =
             (&self.krate, self.scalar(), self.count(), &self.model.block.name);
+        let marker = match &self.motion {
+            Some(motion) if motion.holonomic => quote!(Holonomic),
+            Some(motion) if !motion.velocity_free => return None,
+            _ => quote!(VelocityFree),
+        };
         Some(quote! {
             #[automatically_derived]
-            impl<#scalar: #krate::scalar::Real> #krate::system::VelocityFree<#count> for #name<#scalar> {}
+            impl<#scalar: #krate::scalar::Real> #krate::system::#marker<#count> for #name<#scalar> {}
         })
     }
 

@@ -8,6 +8,7 @@ pub(crate) mod gauss;
 pub(crate) mod leapfrog;
 pub(crate) mod picard;
 pub(crate) mod quinlan_tremaine;
+pub(crate) mod rattle;
 pub(crate) mod rk4;
 pub(crate) mod rodas4;
 pub(crate) mod srkn14a;

@@ -104,7 +104,10 @@ fn largest<T: Float, const N: usize>(values: &[T; N]) -> (f64, usize) {
 }
 
 /// The largest misfit in units of the rounding of its terms.
-fn in_rounding<T: Float, const N: usize>(misfit: &[T; N], scales: &[T; N]) -> (f64, usize) {
+pub(crate) fn in_rounding<T: Float, const N: usize>(
+    misfit: &[T; N],
+    scales: &[T; N],
+) -> (f64, usize) {
     let mut most = (0.0, 0);
     for index in 0..N {
         let own = misfit[index].to_f64().abs();
