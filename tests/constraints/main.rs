@@ -9,3 +9,4 @@ pub mod limits;
 pub mod problems;
 pub mod pushed;
 pub mod rattle;
+pub mod small_motions;

@@ -1,6 +1,6 @@
 //! States of rest, by Newton's method on the generated Jacobians.
 
-use crate::analysis::linearization::in_all_coordinates;
+use crate::analysis::linearization::linearize;
 use crate::error::Coordinate;
 use crate::motion::Side;
 use crate::system::{Dynamics, Jacobians, Purpose, System};
@@ -208,7 +208,7 @@ impl<const N: usize> Newton<N> {
         D: Dynamics<N, Scalar = f64>,
         D::System: Jacobians<N>,
     {
-        let small = in_all_coordinates(dynamics, t, q, &[0.0; N]);
+        let small = linearize(dynamics, t, q, &[0.0; N]);
         let dense = |matrix: &nalgebra::SMatrix<f64, N, N>| {
             DMatrix::from_fn(N, N, |row, column| matrix[(row, column)])
         };

@@ -1,5 +1,6 @@
 //! Small motions about a state: mass, damping and stiffness, and the normal modes.
 
+use crate::analysis::reduction::free_directions;
 use crate::motion::Side;
 use crate::system::{Dynamics, Jacobians, Purpose, System, feedback_jacobians, scalar_time};
 use crate::time::Time;
@@ -16,6 +17,9 @@ pub struct Linearization<const N: usize> {
     pub damping: SMatrix<f64, N, N>,
     /// The stiffness matrix K = −M ∂q̈/∂q.
     pub stiffness: SMatrix<f64, N, N>,
+    /// The gradients of the constraints that the equations hold, one in a row; the rest is zero. A
+    /// small motion δ keeps them: its product with each is zero.
+    pub constraints: SMatrix<f64, N, N>,
 }
 
 /// The undamped vibrations about an equilibrium.
@@ -63,34 +67,39 @@ impl core::error::Error for ModeError {}
 /// acceleration) they describe small motions.
 ///
 /// Driven inputs stay as they are. A feedback law is linearized along with the system;
-/// [`control_jacobian`](Jacobians::control_jacobian) is ∂q̈ by the control inputs. A system with
-/// constraints has fewer motions than coordinates, and is refused when it is compiled. Limits have no
-/// part in it: it describes the motion away from them.
+/// [`control_jacobian`](Jacobians::control_jacobian) is ∂q̈ by the control inputs. Limits have no part
+/// in it: it describes the motion away from them.
+///
+/// With constraints δ lies in the plane that they leave, and there are as many modes as it has
+/// dimensions. For a state that moves [`state_space`](crate::analysis::state_space) has the model in
+/// independent coordinates.
+///
+/// ```
+/// use pendulum_runtime::prelude::*;
+/// use pendulum_runtime::analysis::{equilibrium, linearize};
+///
+/// # mod system {
+/// pendulum_runtime::lagrangian! {
+///     pub struct Bob { m: kg, L: m, g: m/s^2 = 9.81 }
+///     coordinate x: m;
+///     coordinate y: m;
+///     kinetic = m/2*(ẋ^2 + ẏ^2);
+///     potential = m*g*y;
+///     constraint rod: |[x, y]| = L;
+/// }
+/// # }
+/// # use system::Bob;
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let bob = Bob::new(0.3, 2.0);
+/// let q = equilibrium(&bob, 0.0, [0.1, -1.9])?;
+/// let modes = linearize(&bob, 0.0, &q, &[0.0; 2]).normal_modes()?;
+/// // One mode, ω² = g/L.
+/// assert_eq!(modes.squared_frequencies.len(), 1);
+/// assert!((modes.squared_frequencies[0] - 9.81 / 2.0).abs() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
 pub fn linearize<D, const N: usize>(
-    dynamics: &D,
-    t: f64,
-    q: &[f64; N],
-    v: &[f64; N],
-) -> Linearization<N>
-where
-    D: Dynamics<N, Scalar = f64>,
-    D::System: Jacobians<N>,
-{
-    const { without_constraints::<D::System, N>() };
-    in_all_coordinates(dynamics, t, q, v)
-}
-
-/// Refuses systems with constraints: their small motions have fewer modes than coordinates.
-pub(crate) const fn without_constraints<S: System<N>, const N: usize>() {
-    assert!(
-        S::FACTS.constraints.is_empty(),
-        "the small motions of a system with constraints have fewer modes than it has coordinates: \
-         write it in coordinates that fulfil the constraints"
-    );
-}
-
-/// The linearization in all coordinates, also of a system with constraints.
-pub(crate) fn in_all_coordinates<D, const N: usize>(
     dynamics: &D,
     t: f64,
     q: &[f64; N],
@@ -114,12 +123,13 @@ where
         by_v += law_by_v;
     }
     let (damping, stiffness) = (-mass * by_v, -mass * by_q);
-    Linearization { mass, damping, stiffness }
+    let constraints = system.constraint_jacobian(t, q, v, &momenta);
+    Linearization { mass, damping, stiffness, constraints }
 }
 
 impl<const N: usize> Linearization<N> {
-    /// The vibrations that M δ̈ + K δ = 0 has, by Cholesky's factors of M and the eigenvalues of a
-    /// symmetric matrix.
+    /// The vibrations that M δ̈ + K δ = 0 has on the constraints, by Cholesky's factors of M and the
+    /// eigenvalues of a symmetric matrix.
     ///
     /// # Errors
     /// A mass matrix that is not positive definite, numbers that are not finite.
@@ -135,17 +145,43 @@ impl<const N: usize> Linearization<N> {
         // L⁻¹ K L⁻ᵀ has the eigenvalues ω² and the eigenvectors Lᵀ δ.
         let half = factor.solve_lower_triangular(&stiffness).ok_or(ModeError::Mass)?;
         let scaled = factor.solve_lower_triangular(&half.transpose()).ok_or(ModeError::Mass)?;
-        let symmetric = 0.5 * (&scaled + scaled.transpose());
+        let mut symmetric = 0.5 * (&scaled + scaled.transpose());
+        let free = self.free_directions(&factor)?;
+        if let Some(free) = &free {
+            let own = free.transpose() * symmetric * free;
+            symmetric = 0.5 * (&own + own.transpose());
+        }
+        let count = symmetric.nrows();
+        if count == 0 {
+            let (squared_frequencies, shapes) = (Vec::new(), DMatrix::zeros(N, 0));
+            return Ok(NormalModes { squared_frequencies, shapes });
+        }
         let eigen = symmetric.symmetric_eigen();
-        let mut order: Vec<usize> = (0..N).collect();
+        let mut order: Vec<usize> = (0..count).collect();
         order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
-        let shapes = factor
-            .transpose()
-            .solve_upper_triangular(&eigen.eigenvectors)
-            .ok_or(ModeError::Mass)?;
+        let vectors = match free {
+            Some(free) => free * eigen.eigenvectors,
+            None => eigen.eigenvectors,
+        };
+        let shapes = factor.transpose().solve_upper_triangular(&vectors).ok_or(ModeError::Mass)?;
         let columns: Vec<DVector<f64>> =
             order.iter().map(|&mode| shapes.column(mode).into_owned()).collect();
         let squared_frequencies = order.iter().map(|&mode| eigen.eigenvalues[mode]).collect();
         Ok(NormalModes { squared_frequencies, shapes: DMatrix::from_columns(&columns) })
+    }
+
+    /// The directions that the constraints leave, in coordinates scaled by the factor of the mass
+    /// matrix; `None` without constraints.
+    pub(super) fn free_directions(
+        &self,
+        factor: &DMatrix<f64>,
+    ) -> Result<Option<DMatrix<f64>>, ModeError> {
+        if self.constraints.iter().any(|entry| !entry.is_finite()) {
+            return Err(ModeError::NotFinite);
+        }
+        if self.constraints.iter().all(|&entry| entry == 0.0) {
+            return Ok(None);
+        }
+        free_directions(&self.constraints, factor).map(Some).ok_or(ModeError::Mass)
     }
 }

@@ -6,6 +6,7 @@ mod linearization;
 mod lyapunov;
 mod modes;
 mod poincare;
+mod reduction;
 mod state_space;
 mod variational;
 

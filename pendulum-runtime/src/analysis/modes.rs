@@ -66,7 +66,7 @@ const SWEEPS: usize = 300;
 const SAME: f64 = 1e-6;
 
 impl<const N: usize> Linearization<N> {
-    /// The modes of M δ̈ + C δ̇ + K δ = 0 in the order of their frequencies |λ|: one for each
+    /// The modes of M δ̈ + C δ̇ + K δ = 0 on the constraints, in the order of their frequencies |λ|: one for each
     /// conjugate pair of eigenvalues, one for each real one.
     ///
     /// The λ are the eigenvalues of the first-order form
@@ -117,8 +117,13 @@ impl<const N: usize> Linearization<N> {
             let half = factor.solve_lower_triangular(matrix)?;
             Some(factor.solve_lower_triangular(&half.transpose())?.transpose())
         };
-        let damping = scaled(&damping).ok_or(ModeError::Mass)?;
-        let stiffness = scaled(&stiffness).ok_or(ModeError::Mass)?;
+        let mut damping = scaled(&damping).ok_or(ModeError::Mass)?;
+        let mut stiffness = scaled(&stiffness).ok_or(ModeError::Mass)?;
+        let free = self.free_directions(&factor)?;
+        if let Some(free) = &free {
+            damping = free.transpose() * damping * free;
+            stiffness = free.transpose() * stiffness * free;
+        }
         let mut eigenvalues = eigenvalues(&damping, &stiffness)?;
         let size = |z: &Complex<f64>| z.re * z.re + z.im * z.im;
         eigenvalues.sort_by(|a, b| {
@@ -132,6 +137,10 @@ impl<const N: usize> Linearization<N> {
             let before = eigenvalues[..index].iter().filter(near).count();
             let scaled =
                 kernel(&damping, &stiffness, eigenvalue, before).ok_or(ModeError::NoConvergence)?;
+            let scaled = match &free {
+                None => scaled,
+                Some(free) => combined(free, &scaled),
+            };
             modes.push(DampedMode { eigenvalue, shape: unscaled(&factor, &scaled) });
         }
         Ok(modes)
@@ -189,6 +198,15 @@ fn kernel(
     let shapes = order.iter().filter(|&&row| svd.singular_values[row] <= SAME).count().max(1);
     let row = order[before % shapes];
     Some((0..n).map(|column| rows[(row, column)].conj()).collect())
+}
+
+/// The sum of the columns of a matrix with these factors.
+fn combined(columns: &DMatrix<f64>, factors: &[Complex<f64>]) -> Vec<Complex<f64>> {
+    let zero = Complex::new(0.0, 0.0);
+    let entry = |row: usize| {
+        factors.iter().enumerate().fold(zero, |sum, (k, factor)| sum + factor * columns[(row, k)])
+    };
+    (0..columns.nrows()).map(entry).collect()
 }
 
 /// L⁻ᵀ φ, with a real and positive largest component.

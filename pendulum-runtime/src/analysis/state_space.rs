@@ -1,6 +1,6 @@
 //! The linear model of a system from its control inputs to its outputs.
 
-use crate::analysis::linearization::without_constraints;
+use crate::analysis::reduction::Reduction;
 use crate::motion::Side;
 use crate::scalar::Dual;
 use crate::system::{
@@ -14,7 +14,13 @@ use nalgebra::DMatrix;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct StateSpace {
-    /// A, 2n × 2n for n coordinates.
+    /// The coordinates whose changes δq stand in x, by their indices: all of them without
+    /// constraints.
+    pub coordinates: Vec<usize>,
+    /// The velocities whose changes δq̇ stand in x behind those: with constraints of velocities there
+    /// are fewer.
+    pub velocities: Vec<usize>,
+    /// A, 2n × 2n for n coordinates without constraints.
     pub a: DMatrix<f64>,
     /// B, a column for each component of the control inputs in the order of declaration.
     pub b: DMatrix<f64>,
@@ -29,6 +35,10 @@ pub struct StateSpace {
 /// The control inputs have the values there that the controller of `dynamics` gives; its law is no
 /// part of the model, which is that of the open loop. Driven inputs stay as they are.
 ///
+/// With constraints x holds independent coordinates and velocities: those of the others follow from
+/// C δq = 0 for constraints of positions and C δq̇ + ∂(C q̇ + b)/∂q δq = 0 for all. The state may move,
+/// and has to fulfil the constraints; where they depend on each other, the entries are not finite.
+///
 /// Source: K. J. Åström and R. M. Murray (2008), Feedback Systems, eq. 5.33.
 pub fn state_space<D, const N: usize>(
     dynamics: &D,
@@ -40,13 +50,15 @@ where
     D: Dynamics<N, Scalar = f64, System: Jacobians<N>>,
     <<D::System as Jacobians<N>>::Over<Dual<f64>> as System<N>>::Inputs: ControlSamples<Dual<f64>>,
 {
-    const { without_constraints::<D::System, N>() };
     let (time, system) = (Time::new(t), dynamics.system());
     let facts = &<D::System as System<N>>::FACTS;
     let controls: usize = facts.inputs[facts.driven()..].iter().map(|own| own.components).sum();
     let inputs = dynamics.inputs_with(time, Side::After, Purpose::Accelerations, q, v);
     let t = scalar_time(time);
+    let reduction = Reduction::new(dynamics, time, q, v);
     let mut model = StateSpace {
+        coordinates: reduction.coordinates.clone(),
+        velocities: reduction.velocities.clone(),
         a: DMatrix::zeros(2 * N, 2 * N),
         b: DMatrix::zeros(2 * N, controls),
         c: DMatrix::zeros(facts.outputs.iter().map(Output::count).sum(), 2 * N),
@@ -66,6 +78,12 @@ where
         }
     }
     outputs(dynamics, time, q, v, &mut model);
+    if facts.held_constraints() == 0 {
+        return model;
+    }
+    model.a = reduction.rows(&(&model.a * &reduction.all));
+    model.b = reduction.rows(&model.b);
+    model.c *= &reduction.all;
     model
 }
 

@@ -1,0 +1,186 @@
+//! Small motions of constrained systems beside minimal coordinates and closed forms.
+
+use pendulum_runtime::analysis::{StateSpace, equilibrium, linearize, state_space};
+use pendulum_runtime::integrate::{Event, assemble};
+use pendulum_runtime::motion::Side;
+use pendulum_runtime::nalgebra::DVector;
+use pendulum_runtime::prelude::*;
+use pendulum_runtime::time::Time;
+use systems::constrained::{Disc, FourBar};
+
+lagrangian! {
+    /// Two bobs on rods in Cartesian coordinates, damped by the air.
+    #[derive(Clone, Debug)]
+    pub struct Rods { m: [kg; 2], L: [m; 2], c: kg/s, g: m/s^2 = 9.81 }
+    coordinate x[2]: m;
+    coordinate y[2]: m;
+    input push: N;
+    kinetic = sum(k in 0..2, m[k]/2*(ẋ[k]^2 + ẏ[k]^2));
+    potential = g*(m[0]*y[0] + m[1]*y[1]);
+    dissipation = c/2*sum(k in 0..2, ẋ[k]^2 + ẏ[k]^2);
+    force x[1] = push;
+    constraint upper: |[x[0], y[0]]| = L[0];
+    constraint lower: |[x[1] - x[0], y[1] - y[0]]| = L[1];
+    output tip: m = x[1];
+    output tension: N = -reaction(upper);
+}
+
+lagrangian! {
+    /// The same in angles.
+    #[derive(Clone, Debug)]
+    pub struct Angles { m: [kg; 2], L: [m; 2], c: kg/s, g: m/s^2 = 9.81 }
+    coordinate θ[2]: rad;
+    input push: N;
+    let a = L[0]*[sin(θ[0]), -cos(θ[0])];
+    let b = a + L[1]*[sin(θ[1]), -cos(θ[1])];
+    kinetic = m[0]/2*|ȧ|^2 + m[1]/2*|ḃ|^2;
+    potential = g*(m[0]*height(a) + m[1]*height(b));
+    dissipation = c/2*(|ȧ|^2 + |ḃ|^2);
+    force θ[0] = push*L[0]*cos(θ[0]);
+    force θ[1] = push*L[1]*cos(θ[1]);
+    output tip: m = L[0]*sin(θ[0]) + L[1]*sin(θ[1]);
+}
+
+const M: [f64; 2] = [0.7, 1.2];
+const L: [f64; 2] = [0.9, 0.5];
+
+/// The eigenvalues of A, by real and imaginary parts.
+fn spectrum(model: &StateSpace) -> Vec<(f64, f64)> {
+    let values = model.a.clone().schur().complex_eigenvalues();
+    let mut values: Vec<(f64, f64)> = values.iter().map(|value| (value.re, value.im)).collect();
+    values.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.total_cmp(&b.0)));
+    values
+}
+
+fn assert_close(a: &[(f64, f64)], b: &[(f64, f64)], bound: f64) {
+    assert_eq!(a.len(), b.len());
+    for (a, b) in a.iter().zip(b) {
+        assert!((a.0 - b.0).abs() < bound && (a.1 - b.1).abs() < bound, "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn modes_are_those_of_the_angles() {
+    let rods = Rods::new(M, L, 0.3).controlled_by(|_, _, _| 0.0);
+    let angles = Angles::new(M, L, 0.3).controlled_by(|_, _, _| 0.0);
+    let rest = equilibrium(&rods, 0.0, [0.05, 0.02, -0.85, -1.45]).unwrap();
+    let small = linearize(&rods, 0.0, &rest, &[0.0; 4]);
+    let expected = linearize(&angles, 0.0, &[0.0; 2], &[0.0; 2]);
+    let (own, other) = (small.normal_modes().unwrap(), expected.normal_modes().unwrap());
+    assert_eq!(own.squared_frequencies.len(), 2);
+    for (a, b) in own.squared_frequencies.iter().zip(&other.squared_frequencies) {
+        assert!((a - b).abs() < 1e-9 * b, "{a} {b}");
+    }
+    // Shapes keep the rods, and have the norm 1 in the metric of the masses.
+    for mode in 0..2 {
+        let shape: Vec<f64> = (0..4).map(|row| own.shapes[(row, mode)]).collect();
+        assert!(shape[2].abs() < 1e-9 && shape[3].abs() < 1e-9);
+        let norm = M[0] * shape[0] * shape[0] + M[1] * shape[1] * shape[1];
+        assert!((norm - 1.0).abs() < 1e-9);
+    }
+    let (own, other) = (small.damped_modes().unwrap(), expected.damped_modes().unwrap());
+    assert_eq!(own.len(), other.len());
+    for (a, b) in own.iter().zip(&other) {
+        assert!((a.eigenvalue - b.eigenvalue).norm_sqr() < 1e-18, "{a} {b}");
+    }
+}
+
+#[test]
+fn a_state_that_moves_has_independent_coordinates() {
+    // Along every change of the angles and their rates, by differences.
+    let push = 0.8;
+    let rods = Rods::new(M, L, 0.3).controlled_by(move |_, _, _| push);
+    let at = |[α, β, u, w]: [f64; 4]| {
+        let [(s0, c0), (s1, c1)] = [α, β].map(f64::sin_cos);
+        let (a, b) = (L[0] * u, L[1] * w);
+        let q = [L[0] * s0, L[0] * s0 + L[1] * s1, -L[0] * c0, -L[0] * c0 - L[1] * c1];
+        (q, [a * c0, a * c0 + b * c1, a * s0, a * s0 + b * s1])
+    };
+    let here = [0.6, -0.4, 1.1, -0.7];
+    let (q, v) = at(here);
+    let model = state_space(&rods, 0.0, &q, &v);
+    assert_eq!((model.coordinates.len(), model.velocities.len(), model.a.nrows()), (2, 2, 4));
+    // States, their rates and the outputs.
+    let values = |x: [f64; 4]| {
+        let (q, v) = at(x);
+        let a = rods.accelerations_at(Time::new(0.0), Side::After, &q, &v);
+        let own =
+            |of: [f64; 4], which: &[usize]| which.iter().map(|i| of[*i]).collect::<Vec<f64>>();
+        let states = [own(q, &model.coordinates), own(v, &model.velocities)].concat();
+        let rates = [own(v, &model.coordinates), own(a, &model.velocities)].concat();
+        let outputs = vec![rods.tip(0.0, &q, &v), rods.tension(0.0, &q, &v)];
+        [states, rates, outputs].map(DVector::from_vec)
+    };
+    for direction in 0..4 {
+        let d = 1e-5;
+        let (mut up, mut down) = (here, here);
+        (up[direction], down[direction]) = (here[direction] + d, here[direction] - d);
+        let (up, down) = (values(up), values(down));
+        let [states, rates, outputs] =
+            core::array::from_fn(|part| (&up[part] - &down[part]) / (2.0 * d));
+        let off = [(&model.a * &states - rates).amax(), (&model.c * states - outputs).amax()];
+        assert!(off[0] < 1e-7 && off[1] < 1e-7, "{direction}: {off:?}");
+    }
+    // The tension answers to the force at once, the position does not.
+    assert!(model.d[(1, 0)].abs() > 1e-3 && model.d[(0, 0)] == 0.0);
+}
+
+#[test]
+fn a_four_bar_has_one_mode() {
+    let bars = FourBar::new([0.4, 1.1, 0.8], 1.0, [0.5, 1.2, 0.7]);
+    let guess = assemble(&bars, 0.0, [-1.5, 0.2, -1.2], [0.0; 3]).run().unwrap();
+    let rest = equilibrium(&bars, 0.0, guess.q).unwrap();
+    let modes = linearize(&bars, 0.0, &rest, &[0.0; 3]).normal_modes().unwrap();
+    let [squared] = modes.squared_frequencies[..] else { panic!("{modes:?}") };
+    assert!(squared > 1.0, "{squared}");
+    // A small swing of it, timed over many periods.
+    let shape: [f64; 3] = core::array::from_fn(|i| rest[i] + 1e-5 * modes.shapes[(i, 0)]);
+    let start = assemble(&bars, 0.0, shape, [0.0; 3]).run().unwrap();
+    let crossings = Event::new(move |_, q, _| q[0] - rest[0]).rising();
+    let run = solve(&bars, (0.0, 8.0), start.q, start.v)
+        .rtol(1e-10)
+        .atol(1e-15)
+        .events(&[crossings])
+        .run()
+        .unwrap();
+    let times: Vec<f64> = run.events.iter().map(|event| event.time.to_f64()).collect();
+    let period = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
+    let found = (core::f64::consts::TAU / period).powi(2);
+    assert!((found - squared).abs() < 1e-6 * squared, "{found} {squared}");
+}
+
+#[test]
+fn a_disc_that_rolls_upright_is_stable_when_it_is_fast() {
+    // A thin disc: Ω² = 12/5 ω² − 4/5 g/r, stable from ω² = g/(3r) on.
+    let (m, r, g) = (0.8, 0.3, 9.81);
+    let disc = Disc::new(m, r, m * r * r / 4.0, m * r * r / 2.0);
+    for ω in [2.0, 6.0] {
+        let speed = r * ω;
+        let model = state_space(&disc, 0.0, &[0.0; 5], &[speed, 0.0, 0.0, 0.0, ω]);
+        // Two constraints of velocities: five coordinates, three velocities.
+        assert_eq!((model.coordinates.len(), model.velocities.len()), (5, 3));
+        let squared = 2.4 * ω * ω - 0.8 * g / r;
+        let root = squared.abs().sqrt();
+        let pair =
+            if squared < 0.0 { [(-root, 0.0), (root, 0.0)] } else { [(0.0, -root), (0.0, root)] };
+        let all = spectrum(&model);
+        for (re, im) in pair {
+            let near = |&(a, b): &(f64, f64)| (a - re).abs() < 1e-9 && (b - im).abs() < 1e-9;
+            assert!(all.iter().any(near), "{re} {im} {all:?}");
+        }
+        // All others are neutral; defective zeros have the root of rounding.
+        let moving = all.iter().filter(|(a, b)| 1e-3 < a.abs() + b.abs());
+        assert_eq!(moving.count(), 2, "{all:?}");
+    }
+}
+
+#[test]
+fn minimal_coordinates_are_left_as_they_are() {
+    let angles = Angles::new(M, L, 0.3).controlled_by(|_, _, _| 0.0);
+    let model = state_space(&angles, 0.0, &[0.1, 0.2], &[0.0; 2]);
+    assert_eq!((model.coordinates, model.velocities), (vec![0, 1], vec![0, 1]));
+    let rest = state_space(&angles, 0.0, &[0.0; 2], &[0.0; 2]);
+    let rods = Rods::new(M, L, 0.3).controlled_by(|_, _, _| 0.0);
+    let model = state_space(&rods, 0.0, &[0.0, 0.0, -0.9, -1.4], &[0.0; 4]);
+    assert_close(&spectrum(&model), &spectrum(&rest), 1e-9);
+}
