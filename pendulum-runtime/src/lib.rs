@@ -7,6 +7,9 @@ pub mod analysis;
 pub mod body;
 pub mod ensemble;
 pub mod error;
+// Text alone, which programs need not carry.
+#[cfg(any(doc, doctest))]
+pub mod guide;
 #[cfg(any(feature = "gltf", feature = "svg"))]
 pub mod import;
 pub mod integrate;
@@ -42,11 +45,3 @@ pub mod prelude {
     pub use crate::system::{Driven, Dynamics, Jacobians, System as _, VelocityFree};
     pub use crate::{lagrangian, motion};
 }
-
-/// The blocks of the guides are tests.
-#[cfg(doctest)]
-#[doc = include_str!("../../docs/scenes.md")]
-#[doc = include_str!("../../docs/control.md")]
-#[doc = include_str!("../../docs/constraints.md")]
-#[doc = include_str!("../../docs/ensembles.md")]
-struct Guides;

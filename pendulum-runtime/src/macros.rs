@@ -4,7 +4,7 @@
 /// Takes a Lagrangian, differentiates it while the crate compiles and emits a type that implements
 /// [`System`](crate::system::System).
 ///
-/// The language is described at [`pendulum_macros::lagrangian`].
+#[doc = include_str!("guide/language.md")]
 #[macro_export]
 macro_rules! lagrangian {
     ($($token:tt)*) => { $crate::__private::lagrangian! { $crate; $($token)* } };

@@ -1,6 +1,6 @@
 //! A pendulum whose pivot shakes a thousand times a second: what is left of a tolerance. `cargo
 //! test --test methods fast_drive -- --ignored --nocapture` prints the figures of
-//! `docs/accuracy.md`.
+//! `pendulum-runtime/src/guide/accuracy.md`.
 
 use core::f64::consts::TAU;
 use pendulum_runtime::jet::Series;

@@ -58,8 +58,8 @@ fn work<S: System<N, Scalar = f64, Inputs = ()>, const N: usize>(
     (found.stats.evaluations, pairs.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs())))
 }
 
-/// The figures of `docs/accuracy.md`: with an absolute tolerance of 1e-9, and with one that
-/// follows.
+/// The figures of `pendulum-runtime/src/guide/accuracy.md`: with an absolute tolerance of 1e-9, and
+/// with one that follows.
 #[test]
 fn a_tolerance_that_follows_keeps_the_error_at_it() {
     for rtol in [1e-3, 1e-6, 1e-9, 1e-12] {

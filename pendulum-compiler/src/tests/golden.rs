@@ -100,7 +100,7 @@ fn every_system_in_the_repository() {
 
 /// The files in which systems may stand.
 fn sources(root: &Path) -> Vec<PathBuf> {
-    let mut pending: Vec<PathBuf> = [
+    let mut pending = [
         "README.md",
         "tests",
         "examples",
@@ -112,7 +112,6 @@ fn sources(root: &Path) -> Vec<PathBuf> {
     ]
     .map(|part| root.join(part))
     .to_vec();
-    pending.push(root.join("pendulum-macros/language.md"));
     let mut files = Vec::new();
     while let Some(path) = pending.pop() {
         if path.is_dir() {
@@ -150,7 +149,8 @@ fn blocks(text: &str) -> Vec<String> {
                     // What the documentation hides.
                     line.trim_start().strip_prefix("# ").unwrap_or(line)
                 }
-                None => line,
+                // The same in a guide.
+                None => line.strip_prefix("# ").unwrap_or(line),
             });
             let block = bare.collect::<Vec<_>>().join("\n");
             // Prose about the macro is no block.

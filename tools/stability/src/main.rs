@@ -4,7 +4,8 @@
 //! `cargo run --release -p stability` prints a line a measurement, writes
 //! `target/stability.csv` and the pictures `target/stability-*.svg`, and fails if a bar is missed.
 //! `--quick` takes less than a minute, `--long` an hour; `--only S7,S9` selects. With `--known` the
-//! misses whose reason is known, which `docs/accuracy.md` explains, do not count as failures.
+//! misses whose reason is known, which `pendulum-runtime/src/guide/accuracy.md` explains, do not
+//! count as failures.
 //!
 //! What is compared with comes from closed forms, from published or arbitrary-precision digits, or
 //! from the same equations in numbers of two words, never from the run itself.

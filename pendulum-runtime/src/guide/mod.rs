@@ -1,0 +1,36 @@
+//! Guides, a page for each subject; every program in them is a test.
+//!
+//! | page | answers |
+//! |---|---|
+//! | [`language`] | How is a system written down? |
+//! | [`choosing_a_method`] | Which integrator, which tolerance, which step? |
+//! | [`control`] | How does a program steer a motion, and how do bodies bounce? |
+//! | [`constraints`] | How are closed loops, rolling and end stops written? |
+//! | [`scenes`] | How do many pendulums move in every frame of an animation? |
+//! | [`ensembles`] | How are thousands of motions computed, on all cores? |
+//! | [`accuracy`] | How large are the errors, and how long does it take? |
+//! | [`reliability`] | What happens with bad input? |
+
+#[doc = include_str!("language.md")]
+pub mod language {}
+
+#[doc = include_str!("choosing_a_method.md")]
+pub mod choosing_a_method {}
+
+#[doc = include_str!("control.md")]
+pub mod control {}
+
+#[doc = include_str!("constraints.md")]
+pub mod constraints {}
+
+#[doc = include_str!("scenes.md")]
+pub mod scenes {}
+
+#[doc = include_str!("ensembles.md")]
+pub mod ensembles {}
+
+#[doc = include_str!("accuracy.md")]
+pub mod accuracy {}
+
+#[doc = include_str!("reliability.md")]
+pub mod reliability {}
