@@ -14,5 +14,6 @@ pub mod momenta;
 pub mod note;
 pub mod outputs;
 pub mod random_systems;
+pub mod readme;
 pub mod singular;
 pub mod stages;
