@@ -1,8 +1,9 @@
 //! Scenes: many pendulums on joints.
 
-#![allow(mixed_script_confusables, missing_docs)]
+#![allow(confusable_idents, mixed_script_confusables, missing_docs)]
 
 pub mod commands;
+pub mod constrained;
 pub mod interface;
 pub mod skipping;
 pub mod sleep;

@@ -48,6 +48,8 @@ pub enum SceneError {
         /// Its number among those of its type.
         index: u32,
     },
+    /// A state does not fulfil the constraints of its system, or cannot be brought onto them.
+    Constraint(Error),
     /// No system of the type has a parameter of that name.
     Parameter(String),
     /// A snapshot was taken of another scene, or damaged since; what does not fit.
@@ -104,6 +106,10 @@ impl fmt::Display for SceneError {
                 f,
                 "the snapshot is not one of this scene: {what}; restore it where it was taken"
             ),
+            Self::Constraint(_) => write!(
+                f,
+                "the state does not fulfil the constraints; start from one that `assemble` has found"
+            ),
             Self::Integration(_) => write!(
                 f,
                 "the time in which the pendulum was hidden could not be made up for; show it in another way"
@@ -115,7 +121,7 @@ impl fmt::Display for SceneError {
 impl core::error::Error for SceneError {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
         match self {
-            Self::Integration(error) => Some(error),
+            Self::Integration(error) | Self::Constraint(error) => Some(error),
             _ => None,
         }
     }

@@ -43,6 +43,11 @@
 //! Velocity-free systems take leapfrog or SRKN6b, all others RK4, in as many equal steps a tick as
 //! the [tolerance](Scene::set_tolerance) asks for: the method that needs fewer evaluations. Steps
 //! are cut at the kinks of the motions, and there the momenta carry the state over.
+//!
+//! Constraints hold at the ends of all steps to rounding; [poses](Scene::pose) between ticks keep
+//! them to the error of the cubic. A pendulum whose parameters or joints change goes to the nearest
+//! state that fulfils them, one that a tick has thrown off them is frozen as a fault. Constrained
+//! pendulums do not fall asleep.
 
 mod advance;
 mod error;

@@ -4,6 +4,7 @@ use crate::motion::Motion;
 use crate::scalar::{Float, Lane};
 use crate::scene::error::{SceneError, SceneFault};
 use crate::scene::group::any::AnyGroup;
+use crate::scene::group::constraints::OnJoints;
 use crate::scene::group::joints::{check_joints, check_state};
 use crate::scene::group::members::Group;
 use crate::scene::handle::Handle;
@@ -86,8 +87,8 @@ impl<T: Lane + Float> Scene<T> {
     /// coordinates `q` and velocities `v`.
     ///
     /// # Errors
-    /// A state that is not finite, a joint of another scene, a motion without a derivative that the
-    /// equations need.
+    /// A state that is not finite or does not fulfil the constraints, a joint of another scene, a
+    /// motion without a derivative that the equations need.
     // Taken by value, so that both can be made in the call.
     #[allow(clippy::needless_pass_by_value)]
     pub fn hang<S: SceneSystem<T, N>, const N: usize>(
@@ -99,14 +100,16 @@ impl<T: Lane + Float> Scene<T> {
     ) -> Result<Handle<S, N>, SceneError> {
         const {
             assert!(
-                S::FACTS.constraints.is_empty() && S::FACTS.limits.is_empty(),
-                "scenes keep no constraints and no limits: integrate such a system by `solve`, or choose coordinates that fulfil them"
+                S::FACTS.limits.is_empty(),
+                "scenes keep no limits of a system: integrate it by `solve`, or give coordinates limits by `Scene::set_limits`"
             );
         };
         check_state(&S::FACTS, &q)?;
         check_state(&S::FACTS, &v)?;
         let joints = anchor.joints();
         check_joints::<S, T, N>(&self.joint_slots, &joints)?;
+        let (q, v) = OnJoints { system: &system, joint_slots: &self.joint_slots, joints: &joints }
+            .start(self.time(), q, v)?;
         // Nothing is refused from here on, so that no empty group stays behind.
         let index = self.index_of::<S, N>().unwrap_or_else(|| {
             let group = Group::<S, T, N>::new(system.mapped(|parameter| parameter));

@@ -3,6 +3,7 @@
 use crate::motion::{Derivatives, Side};
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::error::SceneError;
+use crate::scene::group::constraints::OnJoints;
 use crate::scene::group::joints::{check_state, inputs_at};
 use crate::scene::group::members::Group;
 use crate::scene::group::status::SceneStatus;
@@ -127,7 +128,7 @@ impl<T: Lane + Float> Scene<T> {
     /// Puts a pendulum elsewhere, awake; what lies beyond a hard limit is put on it.
     ///
     /// # Errors
-    /// A state that is not finite, a pendulum of another scene.
+    /// A state that is not finite or does not fulfil the constraints, a pendulum of another scene.
     pub fn set_state<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -136,6 +137,14 @@ impl<T: Lane + Float> Scene<T> {
     ) -> Result<(), SceneError> {
         check_state(&S::FACTS, &q)?;
         check_state(&S::FACTS, &v)?;
+        self.checked(pendulum)?;
+        let (system, joints) =
+            (self.system(pendulum), self.known(pendulum).joints(pendulum.index()));
+        let (q, v) = OnJoints { system: &system, joint_slots: &self.joint_slots, joints }.start(
+            self.time(),
+            q,
+            v,
+        )?;
         self.change(pendulum, |detached| {
             let zero = [T::from_f64(0.0); N];
             detached.state = [q, zero, v, zero, q, v];

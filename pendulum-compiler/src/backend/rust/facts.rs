@@ -118,6 +118,8 @@ impl Emitter<'_, '_> {
                         &motion.accelerations,
                         &motion.forces,
                         &motion.constraints.multipliers,
+                        // Ends of steps are brought onto them.
+                        &rows(&motion.constraints.held),
                         &rows(&motion.constraints.limits),
                         &drifts,
                     ]),

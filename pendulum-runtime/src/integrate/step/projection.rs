@@ -14,6 +14,7 @@ use crate::integrate::solution::{ConstraintStats, Extreme};
 use crate::integrate::state::State;
 use crate::integrate::step::compensated::Compensated;
 use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::step::field::first_in_state;
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Facts, Purpose, System, scalar_time};
@@ -298,6 +299,36 @@ pub(crate) fn landed<D: Dynamics<N, Scalar: Float>, const N: usize>(
         (state.q, state.v) = (q.high, v.high);
     }
     Ok(state)
+}
+
+/// The error that names the constraint of positions that is off most at a state.
+pub(crate) fn misfit<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    state: &State<D::Scalar, N>,
+) -> Error {
+    let projection = Projection::new(dynamics, Time::new(state.t), Side::After);
+    let misfits = projection.misfits(&state.q, &state.v).map(|part| largest(&part));
+    let none = (0.0, 0);
+    let found = Found { misfits, first: [0.0; 2], left: [none; 2], moved: false };
+    let part = if misfits[0].0 == 0.0 { Part::Velocity } else { Part::Position };
+    off::<D, N>(state.t, part, &found)
+}
+
+/// The state near another one, however far off the constraints, that fulfils them.
+///
+/// # Errors
+/// A search that ends off them, constraints that depend on each other there.
+pub(crate) fn nearest<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    state: &State<D::Scalar, N>,
+) -> Result<State<D::Scalar, N>, Error> {
+    let mut node = Endpoint::new(Time::new(state.t), state.q, state.v);
+    project_end(dynamics, &mut node, Side::After, &mut None)?;
+    independent(dynamics, node.t, Side::After, &node.q.high, &node.v.high, &mut None)?;
+    if let Some(what) = first_in_state(facts::<D, N>(), &node.q.high, &node.v.high) {
+        return Err(Error::NotFinite { t: state.t, what, suspects: Vec::new() });
+    }
+    Ok(State::from(&node))
 }
 
 /// Brings a state that is delivered within a step onto the constraints.

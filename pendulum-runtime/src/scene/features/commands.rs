@@ -5,6 +5,7 @@ use crate::motion::Motion;
 use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::group::change::Preserve;
+use crate::scene::group::constraints::OnJoints;
 use crate::scene::handle::Handle;
 use crate::scene::lanes::limits::Limits;
 use crate::scene::lanes::system::SceneSystem;
@@ -59,7 +60,8 @@ impl<T: Lane + Float> Scene<T> {
     /// angles are when a drawing is flipped.
     ///
     /// # Errors
-    /// A pendulum of another scene, a sign that is neither 1 nor −1.
+    /// A pendulum of another scene, a sign that is neither 1 nor −1, a mirror image that does not
+    /// fulfil the constraints.
     pub fn mirror<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -68,6 +70,15 @@ impl<T: Lane + Float> Scene<T> {
         if let Some(&value) = signs.iter().find(|sign| sign.abs() != 1.0) {
             return Err(SceneError::Setting { name: "signs", value, required: "1 or -1" });
         }
+        self.checked(pendulum)?;
+        let (system, (q, v)) = (self.system(pendulum), self.state(pendulum));
+        let turned = |x: [T; N]| core::array::from_fn(|i| T::from_f64(signs[i]) * x[i]);
+        let joints = self.known(pendulum).joints(pendulum.index());
+        OnJoints { system: &system, joint_slots: &self.joint_slots, joints }.start(
+            self.time(),
+            turned(q),
+            turned(v),
+        )?;
         self.change(pendulum, |detached| {
             for (i, &sign) in signs.iter().enumerate() {
                 for numbers in &mut detached.state {
@@ -85,7 +96,8 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// A joint of another scene, a motion that lacks what the equations of a pendulum on it need;
-    /// with [`Preserve::Nothing`] a pendulum that comes to rest nowhere.
+    /// with [`Preserve::Nothing`] a pendulum that comes to rest nowhere, one that cannot be brought
+    /// onto its constraints.
     pub fn set_motion<M, const D: usize>(
         &mut self,
         joint: Joint<D>,
@@ -103,7 +115,8 @@ impl<T: Lane + Float> Scene<T> {
         for (_, group) in &self.groups {
             group.accepts_motion(joint.0, M::HAS)?;
         }
-        let snapshot = (preserve == Preserve::Nothing).then(|| self.snapshot());
+        let held = self.groups.iter().any(|(_, group)| group.is_constrained());
+        let snapshot = (held || preserve == Preserve::Nothing).then(|| self.snapshot());
         let before = self.joint_slots.clone();
         self.joint_slots[joint.0 as usize] = JointSlot::new(erase::<T, M, D>(motion));
         self.dirty = true;
@@ -162,6 +175,12 @@ impl<T: Lane + Float> Scene<T> {
         high: [T; N],
         stop: Stop,
     ) -> Result<(), SceneError> {
+        const {
+            assert!(
+                S::FACTS.constraints.is_empty(),
+                "stops act on single coordinates, which constraints tie together: write springs into the potential"
+            );
+        };
         for i in 0..N {
             let ordered = low[i] <= high[i];
             if !ordered || low[i].to_f64() == f64::INFINITY {
@@ -210,11 +229,12 @@ impl<T: Lane + Float> Scene<T> {
         Ok(())
     }
 
-    /// Sets a parameter of a pendulum by its name, as in `FACTS.parameters`; the state stays, its
-    /// steps are chosen anew and it wakes.
+    /// Sets a parameter of a pendulum by its name, as in `FACTS.parameters`; the state stays, or goes to
+    /// the nearest that fulfils the constraints, its steps are chosen anew and it wakes.
     ///
     /// # Errors
-    /// A pendulum of another scene, a name that it does not have, a value that is not finite.
+    /// A pendulum of another scene, a name that it does not have, a value that is not finite or with
+    /// which its constraints cannot be fulfilled.
     pub fn set_parameter<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -228,6 +248,7 @@ impl<T: Lane + Float> Scene<T> {
         let (group, clock, joint_slots) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
         let mut detached = group.read(pendulum.index());
         detached.parameters[index] = value;
+        group.constrain(clock, joint_slots, &mut detached)?;
         group.rewrite(clock, joint_slots, &detached);
         group.wake(pendulum.index());
         group.forget_criterion(pendulum.index());
@@ -240,11 +261,15 @@ impl<T: Lane + Float> Scene<T> {
     /// Gives the number of pendulums.
     ///
     /// # Errors
-    /// A name that no type here has, a value that is not finite.
+    /// A name that no type here has, a value that is not finite or with which the constraints of a
+    /// pendulum cannot be fulfilled.
     pub fn set_parameter_everywhere(&mut self, name: &str, value: T) -> Result<usize, SceneError> {
         finite(value)?;
         self.dirty = true;
         let Self { clock, joint_slots, groups, .. } = self;
+        for (_, group) in &*groups {
+            group.accepts_parameter(clock, joint_slots, name, value)?;
+        }
         let changed: Vec<usize> = groups
             .iter_mut()
             .filter_map(|(_, group)| group.set_parameter(clock, joint_slots, name, value))

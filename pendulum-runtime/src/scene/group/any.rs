@@ -9,7 +9,7 @@ use crate::scene::group::members::Group;
 use crate::scene::group::saved::GroupState;
 use crate::scene::group::status::SceneStatus;
 use crate::scene::lanes::bucket::Failed;
-use crate::scene::lanes::system::SceneSystem;
+use crate::scene::lanes::system::{Layouts, SceneSystem};
 use crate::scene::sampling::clock::Clock;
 use crate::scene::sampling::joint::JointSlot;
 use crate::scene::sampling::scheme::Grid;
@@ -55,6 +55,16 @@ pub(crate) trait AnyGroup<T>: Send + Sync {
         joint_slots: &[JointSlot<T>],
         joint: u32,
         preserve: Preserve,
+    ) -> Result<(), SceneError>;
+    /// Returns true if its pendulums have constraints.
+    fn is_constrained(&self) -> bool;
+    /// Refuses a value of a parameter with which constraints cannot be fulfilled.
+    fn accepts_parameter(
+        &self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        name: &str,
+        value: T,
     ) -> Result<(), SceneError>;
     /// Sets a parameter of all pendulums, if they have it; returns their number.
     fn set_parameter(
@@ -118,7 +128,13 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
         self.status[id as usize] = SceneStatus::Failed;
         let detached = self.read(id);
         let t = clock.time(tick);
-        let error = diagnose(&self.system_of(&detached.parameters), joint_slots, &detached, t);
+        let error = diagnose(
+            &self.system_of(&detached.parameters),
+            joint_slots,
+            &detached,
+            t,
+            clock.step(),
+        );
         SceneFault { kind: S::FACTS.name, index: id, t, error }
     }
 
@@ -171,6 +187,20 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
         preserve: Preserve,
     ) -> Result<(), SceneError> {
         Group::moved(self, clock, before, joint_slots, joint, preserve)
+    }
+
+    fn is_constrained(&self) -> bool {
+        Layouts::<S, N>::HELD
+    }
+
+    fn accepts_parameter(
+        &self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        name: &str,
+        value: T,
+    ) -> Result<(), SceneError> {
+        Group::accepts_parameter(self, clock, joint_slots, name, value)
     }
 
     fn set_parameter(

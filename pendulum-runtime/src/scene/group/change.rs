@@ -3,9 +3,11 @@
 use crate::motion::{Derivatives, Side};
 use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
+use crate::scene::group::constraints::OnJoints;
 use crate::scene::group::joints::{check_motion, inputs_at};
 use crate::scene::group::members::Group;
-use crate::scene::lanes::system::SceneSystem;
+use crate::scene::lanes::detached::Detached;
+use crate::scene::lanes::system::{Layouts, SceneSystem};
 use crate::scene::sampling::clock::Clock;
 use crate::scene::sampling::joint::JointSlot;
 use crate::system::{Purpose, scalar_time};
@@ -85,6 +87,9 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                     }
                 }
             }
+            if preserve != Preserve::Nothing {
+                self.constrain(clock, joint_slots, &mut detached)?;
+            }
             self.rewrite(clock, joint_slots, &detached);
             if preserve == Preserve::Nothing {
                 self.rest(clock, joint_slots, id)?;
@@ -95,7 +100,41 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         Ok(())
     }
 
+    /// Brings a pendulum onto its constraints after a change of its parameters or joints.
+    ///
+    /// # Errors
+    /// Constraints that cannot be fulfilled.
+    pub(in crate::scene) fn constrain(
+        &self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        detached: &mut Detached<T, N>,
+    ) -> Result<(), SceneError> {
+        let (system, joints) = (self.system_of(&detached.parameters), detached.joints.clone());
+        OnJoints { system: &system, joint_slots, joints: &joints }
+            .constrain(clock.time(clock.tick()), detached)
+    }
+
+    /// Refuses a value of a parameter with which the constraints of a pendulum cannot be fulfilled.
+    pub(super) fn accepts_parameter(
+        &self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        name: &str,
+        value: T,
+    ) -> Result<(), SceneError> {
+        let index = S::FACTS.parameters.iter().position(|parameter| *parameter == name);
+        let Some(index) = index.filter(|_| const { Layouts::<S, N>::HELD }) else { return Ok(()) };
+        (0..self.table.len() as u32).try_for_each(|id| {
+            let mut detached = self.read(id);
+            detached.parameters[index] = value;
+            self.constrain(clock, joint_slots, &mut detached)
+        })
+    }
+
     /// Sets a parameter of all pendulums, if they have it; returns their number.
+    ///
+    /// The value has been accepted.
     pub(super) fn set_parameter(
         &mut self,
         clock: &Clock,
@@ -107,6 +146,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         for id in 0..self.table.len() as u32 {
             let mut detached = self.read(id);
             detached.parameters[index] = value;
+            let _ = self.constrain(clock, joint_slots, &mut detached);
             self.rewrite(clock, joint_slots, &detached);
             self.wake(id);
         }

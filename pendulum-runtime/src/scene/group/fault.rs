@@ -5,6 +5,7 @@ use crate::integrate::step::diagnose::suspects;
 use crate::integrate::step::field::{coordinate, first_in_inputs};
 use crate::motion::Side;
 use crate::scalar::{Float, Lane};
+use crate::scene::group::constraints::OnJoints;
 use crate::scene::group::joints::inputs_at;
 use crate::scene::lanes::detached::Detached;
 use crate::scene::lanes::system::SceneSystem;
@@ -12,14 +13,20 @@ use crate::scene::sampling::joint::JointSlot;
 use crate::system::{Purpose, scalar_time};
 use crate::time::Time;
 
-/// Error that names the value which is not finite in the tick that begins at `t` with the state of
-/// `detached`.
+/// Error that names the value which is not finite, or the constraint that is lost in the tick of the length
+/// `step` that begins at `t` with the state of `detached`.
 pub(super) fn diagnose<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     system: &S,
     joint_slots: &[JointSlot<T>],
     detached: &Detached<T, N>,
     t: f64,
+    step: f64,
 ) -> Error {
+    let [q, _, v, ..] = &detached.state;
+    let on_joints = OnJoints { system, joint_slots, joints: &detached.joints };
+    if let Some(lost) = on_joints.lost(t, q, v, step) {
+        return lost;
+    }
     let time = Time::new(t);
     let inputs = inputs_at::<S, T, N>(
         joint_slots,
@@ -29,7 +36,6 @@ pub(super) fn diagnose<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
         Purpose::Accelerations,
         false,
     );
-    let [q, _, v, ..] = &detached.state;
     let mut what = first_in_inputs(&S::FACTS, &inputs);
     if what.is_none() {
         let a = system.accelerations(scalar_time(time), q, v, &inputs);

@@ -2,6 +2,7 @@
 
 pub(super) mod any;
 pub(super) mod change;
+pub(super) mod constraints;
 pub(super) mod criterion;
 pub(super) mod fault;
 pub(super) mod frequency;

@@ -28,11 +28,28 @@ pub(crate) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
     };
     let size = |a: &[f64; N]| a.iter().fold(0.0f64, |size, a| size.max(a.abs()));
     let held = |q: [T; N]| if limits.is_hard() { limits.inside(&q) } else { q };
+    let constrained = 0 < S::FACTS.held_constraints();
+    // Back onto the constraints after a move along them.
+    let held = |mut q: [T; N]| {
+        if constrained {
+            for _ in 0..3 {
+                let [misfits, _] = system.misfits(t, &q, &zero, inputs);
+                let change = system.correction(t, &q, &zero, inputs, &misfits);
+                q = core::array::from_fn(|i| q[i] - change[i]);
+            }
+        }
+        held(q)
+    };
     let moved = |q: &[T; N], by: &[f64]| -> [T; N] {
         held(core::array::from_fn(|i| q[i] + T::from_f64(by[i])))
     };
     let (mut q, step) = (held(*q), cube_root_of_rounding::<T>());
-    let enough = 4.0 * T::EPSILON.to_f64() * (omega * omega).max(1e-12);
+    // Corrections leave some rounding.
+    let digits = if constrained { 64.0 } else { 4.0 };
+    let enough = digits * T::EPSILON.to_f64() * (omega * omega).max(1e-12);
+    // Off the constraints the frequency is hardly known: who overshoots slows down.
+    let mut pace = 0.5 / (omega * omega).max(1e-12);
+    let mut before = [0.0; N];
     for _ in 0..10_000 {
         let mut here = a(&q);
         if !here.iter().all(|a| a.is_finite()) {
@@ -49,8 +66,9 @@ pub(crate) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
             return Some(q);
         }
         let jacobian = jacobian(step, &q, a);
-        // Near a saddle Newton's method would end there.
-        let stable = !presses && jacobian.complex_eigenvalues().iter().all(|value| value.re < 0.0);
+        // Near a saddle Newton's method would end there; off the constraints it knows nothing.
+        let stable = !(presses || constrained)
+            && jacobian.complex_eigenvalues().iter().all(|value| value.re < 0.0);
         let newton =
             if stable { jacobian.lu().solve(&DVector::from_fn(N, |i, _| -here[i])) } else { None };
         let newton = newton.filter(|by| by.amax() < 0.5);
@@ -68,8 +86,16 @@ pub(crate) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
                 return Some(q);
             }
         }
+        if constrained && here.iter().zip(&before).map(|(a, b)| a * b).sum::<f64>() < 0.0 {
+            pace *= 0.5;
+        }
+        before = here;
         // The frequency is known from below.
-        let down = here.map(|a| 0.5 * a / (omega * omega).max(1e-12));
+        let down = if constrained {
+            here.map(|a| pace * a)
+        } else {
+            here.map(|a| 0.5 * a / (omega * omega).max(1e-12))
+        };
         q = moved(&q, &down.map(|by| by.clamp(-0.5, 0.5)));
     }
     None

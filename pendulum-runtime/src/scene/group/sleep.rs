@@ -6,7 +6,7 @@ use crate::scene::group::criterion::{AtRest, SleepCriterion, barrier};
 use crate::scene::group::frequency;
 use crate::scene::group::members::Group;
 use crate::scene::group::status::SceneStatus;
-use crate::scene::lanes::system::{SceneSystem, W};
+use crate::scene::lanes::system::{Layouts, SceneSystem, W};
 use crate::scene::sampling::clock::Clock;
 use crate::scene::sampling::joint::JointSlot;
 use core::cmp::Reverse;
@@ -46,7 +46,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         joint_slots: &[JointSlot<T>],
         tolerance: f64,
     ) -> bool {
-        if S::FACTS.explicit_time {
+        // What constrained pendulums gain on the way from their rest is not known.
+        if S::FACTS.explicit_time || const { Layouts::<S, N>::HELD } {
             return false;
         }
         let (tick, now) = (clock.tick(), clock.time(clock.tick()));

@@ -61,5 +61,7 @@ impl<S: System<N, Inputs: Assemble<S::Scalar>>, const N: usize> Layouts<S, N> {
         <S::Inputs as Assemble<S::Scalar>>::COMPONENTS,
         Purpose::Momenta,
     );
+    /// It has constraints.
+    pub(crate) const HELD: bool = 0 < S::FACTS.held_constraints();
     pub(crate) const SPLITS: bool = S::FACTS.velocity_free && S::FACTS.constant_mass_matrix;
 }

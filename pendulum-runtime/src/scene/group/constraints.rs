@@ -1,0 +1,99 @@
+//! Constraints of pendulums whose state, parameters or joints somebody has changed.
+
+use crate::error::Error;
+use crate::integrate::State;
+use crate::integrate::step::projection;
+use crate::motion::Side;
+use crate::scalar::{Float, Lane};
+use crate::scene::error::SceneError;
+use crate::scene::group::joints::inputs_at;
+use crate::scene::lanes::detached::Detached;
+use crate::scene::lanes::system::{Layouts, SceneSystem};
+use crate::scene::sampling::joint::JointSlot;
+use crate::system::{Dynamics, Purpose};
+use crate::time::Time;
+
+/// A system on the joints of a scene.
+pub(crate) struct OnJoints<'a, S, T, const N: usize> {
+    pub(crate) system: &'a S,
+    pub(crate) joint_slots: &'a [JointSlot<T>],
+    pub(crate) joints: &'a [u32],
+}
+
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Dynamics<N> for OnJoints<'_, S, T, N> {
+    type System = S;
+    type Scalar = T;
+
+    fn system(&self) -> &S {
+        self.system
+    }
+
+    fn inputs(&self, t: Time, side: Side, purpose: Purpose) -> S::Inputs {
+        inputs_at::<S, T, N>(self.joint_slots, self.joints, t, side, purpose, false)
+    }
+
+    fn next_kink(&self, _: f64) -> Option<f64> {
+        None
+    }
+}
+
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> OnJoints<'_, S, T, N> {
+    /// A state at `t` that was given, where only rounding may have put it off the constraints.
+    ///
+    /// # Errors
+    /// A state that does not fulfil them.
+    pub(crate) fn start(
+        &self,
+        t: f64,
+        q: [T; N],
+        v: [T; N],
+    ) -> Result<([T; N], [T; N]), SceneError> {
+        if const { !Layouts::<S, N>::HELD } {
+            return Ok((q, v));
+        }
+        let start = projection::start(self, Time::new(t), Side::After, q, v);
+        let start = start.map_err(SceneError::Constraint)?;
+        Ok((start.q.high, start.v.high))
+    }
+
+    /// Puts a pendulum whose parameters or joints have changed on the nearest state that fulfils the
+    /// constraints.
+    ///
+    /// # Errors
+    /// A search that ends off them.
+    pub(crate) fn constrain(
+        &self,
+        t: f64,
+        detached: &mut Detached<T, N>,
+    ) -> Result<(), SceneError> {
+        if const { !Layouts::<S, N>::HELD } {
+            return Ok(());
+        }
+        let [q, _, v, ..] = detached.state;
+        let near = projection::nearest(self, &State { t, q, v }).map_err(SceneError::Constraint)?;
+        if (near.q, near.v) != (q, v) {
+            let zero = [T::from_f64(0.0); N];
+            (detached.state[0], detached.state[1]) = (near.q, zero);
+            (detached.state[2], detached.state[3]) = (near.v, zero);
+        }
+        Ok(())
+    }
+
+    /// The constraint that a tick of the length `h` from this state was not brought back onto, by how
+    /// much it is off at its end; `None` if the accelerations are to blame.
+    pub(crate) fn lost(&self, t: f64, q: &[T; N], v: &[T; N], h: f64) -> Option<Error> {
+        if const { !Layouts::<S, N>::HELD } {
+            return None;
+        }
+        let a = self.accelerations_at(Time::new(t), Side::After, q, v);
+        let (h, half) = (T::from_f64(h), T::from_f64(0.5));
+        let ahead = |x: T, rate: T, more: T| x + h * rate + half * h * h * more;
+        let later = State {
+            t: t + h.to_f64(),
+            q: core::array::from_fn(|i| ahead(q[i], v[i], a[i])),
+            v: core::array::from_fn(|i| v[i] + h * a[i]),
+        };
+        let finite = a.iter().all(|a| a.is_finite());
+        finite.then(|| projection::misfit(self, &later))
+    }
+}
