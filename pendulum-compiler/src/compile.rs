@@ -3,6 +3,7 @@
 use crate::algebra::expr::Graph;
 use crate::backend::Analysis;
 use crate::backend::latex;
+use crate::backend::mathml;
 use crate::backend::rust::Emitter;
 use crate::backend::unicode;
 use crate::backend::unicode::Names;
@@ -169,6 +170,8 @@ pub struct Compiled {
     pub equations: Vec<String>,
     /// The same equations in LaTeX, for a line of mathematics: without delimiters.
     pub latex: Vec<String>,
+    /// The same equations as elements of MathML.
+    pub mathml: Vec<String>,
     /// The energy Σ q̇ p − L.
     pub energy: String,
     /// The power that changes the energy: of forces, dissipation, time and driven inputs.
@@ -296,6 +299,7 @@ impl Compiled {
                 .collect(),
             operations: accelerations.count(),
             equations,
+            mathml: latex.iter().map(|line| mathml::equation(line)).collect(),
             latex,
         })
     }

@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! compile     the order of the passes
-//! backend     Rust with its jets, Unicode, LaTeX, and the copy for editors
+//! backend     Rust with its jets, Unicode, LaTeX, MathML, and the copy for editors
 //! mechanics   energies, Euler–Lagrange, elimination, symmetries, Jacobians
 //! schedule    expressions to straight-line programs
 //! model       names resolved, shapes and units

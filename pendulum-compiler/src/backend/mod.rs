@@ -1,8 +1,9 @@
-//! Writers: Rust, equations in Unicode and LaTeX, and a copy of the block for editors.
+//! Writers: Rust, equations in Unicode, LaTeX and MathML, and a copy of the block for editors.
 
 mod cancel;
 pub(crate) mod ide;
 pub(crate) mod latex;
+pub(crate) mod mathml;
 pub(crate) mod rust;
 pub(crate) mod unicode;
 

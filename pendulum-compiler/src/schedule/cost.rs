@@ -2,6 +2,7 @@
 
 use super::{Op, Program};
 use crate::algebra::functions::Function;
+use core::fmt;
 
 /// The operations of one evaluation, once everything that depends on parameters alone is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -17,6 +18,25 @@ pub struct Operations {
     pub add: usize,
     /// Quotients.
     pub div: usize,
+}
+
+/// In words: `2 sine–cosine pairs, 1 division`.
+impl fmt::Display for Operations {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rows = [
+            (self.sincos, "sine–cosine pair"),
+            (self.functions, "other function"),
+            (self.mul, "multiplication"),
+            (self.add, "addition"),
+            (self.div, "division"),
+        ];
+        let mut before = "";
+        for (number, what) in rows.into_iter().filter(|&(number, _)| 0 < number) {
+            write!(f, "{before}{number} {what}{}", if number == 1 { "" } else { "s" })?;
+            before = ", ";
+        }
+        if before.is_empty() { f.write_str("no operation") } else { Ok(()) }
+    }
 }
 
 /// The cost of a function that is an operation of its own, in multiplications.

@@ -69,6 +69,11 @@ pub(crate) fn is_greek(word: &str) -> bool {
     GREEK.iter().any(|row| row.1 == word) && word != "omicron"
 }
 
+/// The Greek letter of an English name.
+pub(crate) fn letter(word: &str) -> Option<char> {
+    GREEK.iter().find(|row| row.1 == word).and_then(|row| row.0.chars().next())
+}
+
 /// The one letter that a letter with dots composes to, if Unicode has it.
 pub(crate) fn compose(letter: &str, dots: u8) -> Option<char> {
     DOTTED.iter().find(|row| row.2 == dots && letter.chars().eq([row.1])).map(|row| row.0)

@@ -180,9 +180,8 @@ fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
         for line in latex::equations(graph, &names, motion, &sides).into_iter().filter(|_| whole) {
             writeln!(text, "latex: {line}").unwrap();
         }
-        let operations = |graph: &Graph, roots: &[_]| {
-            rust::documentation::operations(schedule::program(graph, roots).count())
-        };
+        let operations =
+            |graph: &Graph, roots: &[_]| schedule::program(graph, roots).count().to_string();
         writeln!(text, "accelerations: {}", operations(graph, &motion.accelerations)).unwrap();
         if whole {
             outputs(&mut text, graph, &names, motion);

@@ -2,8 +2,8 @@
 
 use super::Emitter;
 use crate::algebra::expr::Graph;
+use crate::backend::mathml;
 use crate::backend::unicode::{self, Names};
-use crate::schedule::Operations;
 use proc_macro2::TokenStream;
 use quote::quote;
 use std::fmt::Write;
@@ -27,17 +27,13 @@ impl Emitter<'_, '_> {
         let count = accelerations.count();
         let documented =
             self.model.block.attributes.iter().any(|attribute| attribute.path().is_ident("doc"));
-        let mut text = String::new();
-        if documented {
-            text.push_str("\n\n");
-        }
-        text.push_str("# Equations of motion\n\n```text\n");
-        for line in &self.equations[0] {
-            text.push_str(line);
-            text.push('\n');
-        }
-        text.push_str("```\n\n");
-        let _ = write!(text, "One evaluation takes {}.", operations(count));
+        let title = if documented { "\n\n" } else { "" };
+        let [unicode, latex] = self.equations.each_ref();
+        let equations =
+            format!("{title}# Equations of motion\n\n```text\n{}\n```", unicode.join("\n"));
+        let drawn = format!("{title}# Equations of motion\n\n{}", drawn(latex));
+        let mut text = String::from("\n");
+        let _ = write!(text, "One evaluation takes {}.", count);
         if !conserved.is_empty() {
             let _ = write!(text, " Conserved: {}.", conserved.join(", "));
         }
@@ -55,25 +51,22 @@ impl Emitter<'_, '_> {
                 let _ = writeln!(text, "- `{name}`{unit}");
             }
         }
-        quote!(#[doc = #text])
+        // Fonts for code set the dots beside their letters; editors show no MathML.
+        quote! {
+            #[cfg_attr(not(doc), doc = #equations)]
+            #[cfg_attr(doc, doc = #drawn)]
+            #[doc = #text]
+        }
     }
 }
 
-/// A count of operations in words.
-pub(crate) fn operations(count: Operations) -> String {
-    let rows = [
-        (count.sincos, "sine–cosine pair"),
-        (count.functions, "other function"),
-        (count.mul, "multiplication"),
-        (count.add, "addition"),
-        (count.div, "division"),
-    ];
-    let parts: Vec<String> = rows
-        .into_iter()
-        .filter(|&(number, _)| 0 < number)
-        .map(|(number, what)| format!("{number} {what}{}", if number == 1 { "" } else { "s" }))
-        .collect();
-    if parts.is_empty() { "no operation".into() } else { parts.join(", ") }
+/// Equations in LaTeX as MathML, a line each.
+fn drawn(latex: &[String]) -> String {
+    let mut text = String::new();
+    for line in latex {
+        let _ = writeln!(text, "<div style=\"margin: 0.5em 0\">{}</div>\n", mathml::equation(line));
+    }
+    text
 }
 
 #[cfg(test)]
@@ -97,5 +90,17 @@ mod tests {
             assert!(!found.contains("compile_error"), "{found}");
             assert_eq!(found.contains("the energy"), conserved, "{statements}");
         }
+    }
+
+    /// Editors show text, rustdoc what browsers draw.
+    #[test]
+    fn the_equations_stand_there_for_editors_and_for_browsers() {
+        let block = "::p; struct S { m: kg, g: m/s^2 } coordinate q: m; \
+                     kinetic = m/2*q_dot^2; potential = m*g*q;";
+        let found: String = expand(block.parse().unwrap()).to_string().split_whitespace().collect();
+        let text = "#[cfg_attr(not(doc),doc=\"#Equationsofmotion\\n\\n```text\\nq_ddot=-g\\n```";
+        assert!(found.contains(text), "{found}");
+        assert!(found.contains("<mover><mrow><mi>q</mi></mrow><mo>..</mo></mover><mo>=</mo>"));
+        assert_eq!(found.matches("#[cfg_attr(doc,doc=").count(), 1);
     }
 }
