@@ -3,6 +3,7 @@
 //! | page | answers |
 //! |---|---|
 //! | [`language`] | How is a system written down? |
+//! | [`gallery`] | Which systems are there to begin with? |
 //! | [`choosing_a_method`] | Which integrator, which tolerance, which step? |
 //! | [`control`] | How does a program steer a motion, and how do bodies bounce? |
 //! | [`constraints`] | How are closed loops, rolling and end stops written? |
@@ -11,8 +12,15 @@
 //! | [`accuracy`] | How large are the errors, and how long does it take? |
 //! | [`reliability`] | What happens with bad input? |
 
+// Pages of docs.rs have no files beside them: definitions of pictures as data stand before those of
+// paths, and count. `cargo run --release -p gallery` writes them.
+
 #[doc = include_str!("language.md")]
 pub mod language {}
+
+#[doc = include_str!("figures/gallery.uri")]
+#[doc = include_str!("gallery.md")]
+pub mod gallery {}
 
 #[doc = include_str!("choosing_a_method.md")]
 pub mod choosing_a_method {}
@@ -23,12 +31,15 @@ pub mod control {}
 #[doc = include_str!("constraints.md")]
 pub mod constraints {}
 
+#[doc = include_str!("figures/scenes.uri")]
 #[doc = include_str!("scenes.md")]
 pub mod scenes {}
 
+#[doc = include_str!("figures/ensembles.uri")]
 #[doc = include_str!("ensembles.md")]
 pub mod ensembles {}
 
+#[doc = include_str!("figures/accuracy.uri")]
 #[doc = include_str!("accuracy.md")]
 pub mod accuracy {}
 

@@ -1,0 +1,146 @@
+//! The page of the gallery, made from the sources of its systems: title and text from the comment
+//! at the top, block, program, and the equations that the compiler derives. Pictures of guides as
+//! data, for pages that cannot have files beside them.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use pendulum_compiler::compile;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// The systems in the order of the page: name of the picture and source.
+pub const SYSTEMS: [(&str, &str); 12] = [
+    ("double-pendulum", include_str!("systems/double_pendulum.rs")),
+    ("cart-pole", include_str!("systems/cart_pole.rs")),
+    ("elastic-pendulum", include_str!("systems/elastic_pendulum.rs")),
+    ("kepler", include_str!("systems/kepler.rs")),
+    ("top", include_str!("systems/top.rs")),
+    ("foucault", include_str!("systems/foucault.rs")),
+    ("wilberforce", include_str!("systems/wilberforce.rs")),
+    ("atwood", include_str!("systems/atwood.rs")),
+    ("bead-on-hoop", include_str!("systems/bead_on_hoop.rs")),
+    ("charged-particle", include_str!("systems/charged_particle.rs")),
+    ("furuta", include_str!("systems/furuta.rs")),
+    ("four-bar", include_str!("systems/four_bar.rs")),
+];
+
+const HEAD: &str = "\
+# Gallery
+
+Twelve systems: what is written, the equations that `lagrangian!` derives from it, and the motion.
+The page is made from programs: `cargo run --release -p gallery` runs them again. Take the block that
+is nearest to yours and change it.
+";
+
+/// The folder of the guide.
+pub fn guide() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../pendulum-runtime/src/guide")
+}
+
+/// The whole page; an error names what is missing in a source.
+pub fn page() -> Result<String, String> {
+    let mut page = HEAD.to_owned();
+    for (name, source) in SYSTEMS {
+        section(&mut page, name, source).map_err(|what| format!("{name}: {what}"))?;
+    }
+    page.push('\n');
+    for (name, _) in SYSTEMS {
+        let _ = writeln!(page, "[{name}]: figures/{name}.svg");
+    }
+    Ok(page)
+}
+
+fn section(page: &mut String, name: &str, source: &str) -> Result<(), String> {
+    let comment: Vec<&str> = source
+        .lines()
+        .map_while(|line| line.strip_prefix("//!"))
+        .map(|line| line.strip_prefix(' ').unwrap_or(line))
+        .collect();
+    let [title, _, text @ ..] = &comment[..] else { return Err("no title".into()) };
+    let block = between(source, "lagrangian! {\n", "\n}\n").ok_or("no block")?;
+    let body = between(source, "fn motion() -> ", "\n}\n")
+        .and_then(|motion| motion.split_once("{\n"))
+        .and_then(|(_, body)| body.strip_suffix("\n    Ok(motion)"))
+        .ok_or("no motion")?;
+    let compiled = compile(block).map_err(|messages| format!("{messages:?}"))?;
+    let body: Vec<&str> =
+        body.lines().map(|line| line.strip_prefix("    ").unwrap_or(line)).collect();
+    let equations = compiled
+        .mathml
+        .iter()
+        .map(|line| format!("<div style=\"margin: 0.5em 0\">{line}</div>\n\n"))
+        .collect::<String>();
+    let _ = write!(
+        page,
+        "\n## {title}\n\n{}\n\n![The motion: {title}][{name}]\n\n```rust\n\
+         use pendulum_runtime::prelude::*;\n\nlagrangian! {{\n{block}\n}}\n\n\
+         # fn main() -> Result<(), Box<dyn std::error::Error>> {{\n{}\n\
+         # assert!(motion.q.len() > 100);\n# Ok(())\n# }}\n```\n\n{equations}",
+        text.join("\n"),
+        body.join("\n")
+    );
+    let _ = writeln!(
+        page,
+        "One evaluation takes {}.{}",
+        compiled.operations,
+        match &compiled.conserved[..] {
+            [] => String::new(),
+            list => format!(" Conserved: `{}`.", list.join("`, `")),
+        }
+    );
+    Ok(())
+}
+
+fn between<'a>(text: &'a str, before: &str, after: &str) -> Option<&'a str> {
+    let rest = &text[text.find(before)? + before.len()..];
+    Some(&rest[..rest.find(after)?])
+}
+
+/// The definitions at the end of a page, `[name]: path`.
+fn definitions(page: &str) -> impl Iterator<Item = (&str, &str)> {
+    page.lines().filter_map(|line| line.strip_prefix('[')?.split_once("]: "))
+}
+
+/// The pictures of a page as data. Where this text stands before the page, its definitions count,
+/// and those of the page, which are for readers of the file, do not.
+pub fn pictures(page: &str) -> std::io::Result<String> {
+    let mut text = String::new();
+    for (name, path) in definitions(page).filter(|(_, path)| path.contains("figures/")) {
+        let data = std::fs::read(guide().join(path))?;
+        let kind = if path.ends_with(".png") { "png" } else { "svg+xml" };
+        let _ = writeln!(text, "[{name}]: data:image/{kind};base64,{}", STANDARD.encode(data));
+    }
+    Ok(text)
+}
+
+/// The pages that have pictures.
+pub const ILLUSTRATED: [&str; 4] = ["gallery", "scenes", "ensembles", "accuracy"];
+
+#[cfg(test)]
+mod tests {
+    use super::{ILLUSTRATED, definitions, guide, page};
+
+    const ADVICE: &str = "is stale: `cargo run --release -p gallery` writes it again";
+
+    #[test]
+    fn the_page_has_the_equations_that_the_compiler_derives() {
+        let found = std::fs::read_to_string(guide().join("gallery.md")).unwrap();
+        let expected = page().unwrap();
+        for (found, expected) in found.split("\n## ").zip(expected.split("\n## ")) {
+            assert_eq!(found, expected, "the page {ADVICE}");
+        }
+        assert_eq!(found.len(), expected.len(), "the page {ADVICE}");
+    }
+
+    #[test]
+    fn every_picture_of_a_page_is_there_as_data() {
+        for name in ILLUSTRATED {
+            let text = std::fs::read_to_string(guide().join(format!("{name}.md"))).unwrap();
+            let data =
+                std::fs::read_to_string(guide().join(format!("figures/{name}.uri"))).unwrap();
+            let names = |text| definitions(text).map(|(name, _)| name).collect::<Vec<_>>();
+            assert_eq!(names(&data), names(&text), "figures/{name}.uri {ADVICE}");
+            assert!(text.contains("!["), "{name}");
+        }
+    }
+}

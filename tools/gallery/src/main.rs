@@ -1,0 +1,56 @@
+//! `cargo run --release -p gallery` runs the systems of the gallery, draws their motions into
+//! `pendulum-runtime/src/guide/figures`, and writes the page `gallery.md` beside them. Pages with
+//! pictures get these as data, too, for docs.rs.
+
+// The modules are programs that the page shows; what they do not print is of no concern to it.
+#![allow(missing_docs)]
+
+mod picture;
+mod prelude;
+
+mod systems {
+    pub(crate) mod atwood;
+    pub(crate) mod bead_on_hoop;
+    pub(crate) mod cart_pole;
+    pub(crate) mod charged_particle;
+    pub(crate) mod double_pendulum;
+    pub(crate) mod elastic_pendulum;
+    pub(crate) mod foucault;
+    pub(crate) mod four_bar;
+    pub(crate) mod furuta;
+    pub(crate) mod kepler;
+    pub(crate) mod top;
+    pub(crate) mod wilberforce;
+}
+
+use gallery::{ILLUSTRATED, SYSTEMS, guide, page, pictures};
+
+fn main() -> prelude::Result<()> {
+    use systems::*;
+    // In the order of `SYSTEMS`.
+    let drawn = [
+        double_pendulum::picture()?,
+        cart_pole::picture()?,
+        elastic_pendulum::picture()?,
+        kepler::picture()?,
+        top::picture()?,
+        foucault::picture()?,
+        wilberforce::picture()?,
+        atwood::picture()?,
+        bead_on_hoop::picture()?,
+        charged_particle::picture()?,
+        furuta::picture()?,
+        four_bar::picture()?,
+    ];
+    for ((name, _), picture) in SYSTEMS.iter().zip(&drawn) {
+        let svg = picture.svg();
+        println!("{name}.svg: {} kB", svg.len().div_ceil(1000));
+        std::fs::write(guide().join(format!("figures/{name}.svg")), svg)?;
+    }
+    std::fs::write(guide().join("gallery.md"), page()?)?;
+    for name in ILLUSTRATED {
+        let text = std::fs::read_to_string(guide().join(format!("{name}.md")))?;
+        std::fs::write(guide().join(format!("figures/{name}.uri")), pictures(&text)?)?;
+    }
+    Ok(())
+}

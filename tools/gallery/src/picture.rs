@@ -1,0 +1,126 @@
+//! The picture of a motion: the path of a point, and what it belongs to, moving.
+
+use std::fmt::Write;
+
+/// The size of a picture, in pixels, and the room around what is drawn.
+const SIZE: [f64; 2] = [320.0, 220.0];
+const MARGIN: f64 = 12.0;
+
+/// The positions that a moving point takes, those that a line takes at least, and the points of
+/// the path.
+const POSES: usize = 360;
+const FEWEST: usize = 120;
+const POINTS: usize = 800;
+
+/// A line through points at one time; the last one draws the path.
+pub(crate) struct Frame(Vec<[f64; 2]>);
+
+impl Frame {
+    pub(crate) fn new(line: impl IntoIterator<Item = [f64; 2]>) -> Self {
+        Self(line.into_iter().collect())
+    }
+}
+
+/// Frames at equal distances of time, as many in a second as the motion has.
+pub(crate) struct Picture {
+    frames: Vec<Frame>,
+    mark: Option<[f64; 2]>,
+}
+
+impl Picture {
+    pub(crate) fn new(frames: impl Iterator<Item = Frame>) -> Self {
+        Self { frames: frames.collect(), mark: None }
+    }
+
+    /// The same picture with a dot that stays where it is.
+    pub(crate) fn with_mark(self, mark: [f64; 2]) -> Self {
+        Self { mark: Some(mark), ..self }
+    }
+
+    /// The picture as SVG, in colours that are seen on white and on black.
+    pub(crate) fn svg(&self) -> String {
+        let points = || self.frames.iter().flat_map(|frame| &frame.0).chain(&self.mark);
+        let range = |k: usize| {
+            points().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], point| {
+                [low.min(point[k]), high.max(point[k])]
+            })
+        };
+        let [x, y] = [range(0), range(1)];
+        let scale = [x, y]
+            .into_iter()
+            .zip(SIZE)
+            .map(|([low, high], size)| (size - 2.0 * MARGIN) / (high - low))
+            .fold(f64::INFINITY, f64::min);
+        let place = |point: &[f64; 2]| {
+            let [x, y] = [
+                SIZE[0] / 2.0 + scale * (point[0] - (x[0] + x[1]) / 2.0),
+                SIZE[1] / 2.0 - scale * (point[1] - (y[0] + y[1]) / 2.0),
+            ];
+            format!("{x:.1},{y:.1}")
+        };
+        let line = |points: &[[f64; 2]]| points.iter().map(place).collect::<Vec<_>>().join(" ");
+        let every = self.frames.len().div_ceil(POINTS).max(1);
+        let path: Vec<_> =
+            self.frames.iter().step_by(every).filter_map(|frame| frame.0.last().copied()).collect();
+        let length = self.frames.first().map_or(1, |frame| frame.0.len().max(1));
+        let every = self.frames.len().div_ceil((POSES / length).max(FEWEST)).max(1);
+        let poses = || self.frames.iter().step_by(every);
+        let first = poses().next().map_or(&[][..], |frame| &frame.0);
+        let seconds = 8;
+        let [width, height] = SIZE;
+        let mut text = format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' width='{width}' height='{height}' \
+             viewBox='0 0 {width} {height}' fill='none' stroke-linecap='round' \
+             stroke-linejoin='round'>\n\
+             <polyline stroke='#3b8eea' stroke-width='1.2' stroke-opacity='.8' points='{}'/>\n",
+            line(&path)
+        );
+        if let Some(mark) = &self.mark {
+            let at = place(mark);
+            let (x, y) = at.split_once(',').unwrap_or_default();
+            let _ = writeln!(text, "<circle cx='{x}' cy='{y}' r='6' fill='#e0a030'/>");
+        }
+        // Writing to a string does not fail.
+        if 1 < first.len() {
+            let values: Vec<_> = poses().map(|frame| line(&frame.0)).collect();
+            let _ = writeln!(
+                text,
+                "<polyline stroke='#8a8f98' stroke-width='2.5' points='{}'><animate \
+                 attributeName='points' dur='{seconds}s' repeatCount='indefinite' \
+                 values='{}'/></polyline>",
+                line(first),
+                values.join(";")
+            );
+        }
+        let ends: Vec<_> =
+            poses().filter_map(|frame| frame.0.last()).map(|point| place(point)).collect();
+        let at = |k: usize| {
+            let one = |place: &String| place.split(',').nth(k).unwrap_or_default().to_owned();
+            ends.iter().map(one).collect::<Vec<_>>()
+        };
+        let (x, y) = (at(0), at(1));
+        let animate = |name: &str, values: &[String]| {
+            format!(
+                "<animate attributeName='{name}' dur='{seconds}s' repeatCount='indefinite' \
+                 values='{}'/>",
+                values.join(";")
+            )
+        };
+        let _ = writeln!(
+            text,
+            "<circle cx='{}' cy='{}' r='5' fill='#e4572e'>{}{}</circle>",
+            x.first().map_or("0", |x| x),
+            y.first().map_or("0", |y| y),
+            animate("cx", &x),
+            animate("cy", &y)
+        );
+        text + "</svg>\n"
+    }
+}
+
+/// A point in space as somebody sees it who looks down at it a little.
+pub(crate) fn seen([x, y, z]: [f64; 3]) -> [f64; 2] {
+    let (sin, cos) = 0.5_f64.sin_cos();
+    let (across, away) = (x * cos - y * sin, x * sin + y * cos);
+    [across, 0.94 * z + 0.34 * away]
+}

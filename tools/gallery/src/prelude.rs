@@ -1,0 +1,5 @@
+//! What the programs of the gallery use.
+
+pub(crate) use pendulum_runtime::prelude::*;
+
+pub(crate) type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
