@@ -115,7 +115,8 @@ pub enum Error {
         /// The coordinates of the system.
         coordinates: &'static [&'static str],
     },
-    /// A constraint depends on those before it, so that their forces are undetermined.
+    /// A constraint depends on those before it, or its gradient vanishes: its force is undetermined,
+    /// and another branch of the motion begins there.
     DependentConstraints {
         /// The time.
         t: f64,
@@ -413,8 +414,9 @@ impl fmt::Display for Error {
             }
             Self::DependentConstraints { t, constraint, independence } => write!(
                 f,
-                "at t = {t:?} the constraint {constraint} depends on those before it, {independence:.1e} of it is left; \
-                 leave it out, declare it `redundant`, or stop before that state"
+                "at t = {t:?} the constraint {constraint} depends on those before it, or its gradient vanishes: \
+                 {independence:.1e} of it is left; leave it out, declare it `redundant`, stop before \
+                 that state, or let longer steps go over it by a tolerance of 1e-8 or more"
             ),
             Self::Penetration { t, limit, gap, unit } => {
                 let space = if unit.is_empty() { "" } else { " " };

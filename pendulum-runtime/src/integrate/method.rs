@@ -145,6 +145,22 @@ pub trait ErrorEstimate<D: Dynamics<N, Scalar: Float>, const N: usize>: Method<D
     /// The error of the step just taken, of the length `h` in seconds, times `weights`, as a root
     /// mean square over coordinates and velocities: the step is good enough up to 1.
     fn error(&self, workspace: &Self::Workspace, h: f64, weights: &Weights<N>) -> f64;
+
+    /// The same of the error that stays when the end of the step is brought onto the constraints:
+    /// `along` takes off an estimate, of coordinates or of velocities, what is across them.
+    ///
+    /// It is asked for where constraints almost depend on each other: the accelerations then have
+    /// few digits across them. Without an implementation of its own it is the whole error.
+    fn error_along(
+        &self,
+        workspace: &Self::Workspace,
+        h: f64,
+        weights: &Weights<N>,
+        along: impl Fn(&mut [D::Scalar; N]),
+    ) -> f64 {
+        let _ = along;
+        self.error(workspace, h, weights)
+    }
 }
 
 /// A method with an [`ErrorEstimate`], which can choose its own steps; others do not compile without

@@ -33,7 +33,7 @@ impl Emitter<'_, '_> {
             format!("{title}# Equations of motion\n\n```text\n{}\n```", unicode.join("\n"));
         let drawn = format!("{title}# Equations of motion\n\n{}", drawn(latex));
         let mut text = String::from("\n");
-        let _ = write!(text, "One evaluation takes {}.", count);
+        let _ = write!(text, "One evaluation takes {count}.");
         if !conserved.is_empty() {
             let _ = write!(text, " Conserved: {}.", conserved.join(", "));
         }

@@ -108,14 +108,27 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Dop853 {
 impl<D: Dynamics<N, Scalar: Float>, const N: usize> ErrorEstimate<D, N> for Dop853 {
     #[inline]
     fn error(&self, stages: &Stages<D::Scalar, N>, h: f64, weights: &Weights<N>) -> f64 {
+        ErrorEstimate::<D, N>::error_along(self, stages, h, weights, |_| ())
+    }
+
+    #[inline]
+    fn error_along(
+        &self,
+        stages: &Stages<D::Scalar, N>,
+        h: f64,
+        weights: &Weights<N>,
+        along: impl Fn(&mut [D::Scalar; N]),
+    ) -> f64 {
         let (dq, dv) = &stages.increment;
-        let (q5, v5) = stages.k.weighted(E5);
+        let (mut q5, mut v5) = stages.k.weighted(E5);
         let (q3, v3) = stages.k.weighted(B3);
+        let mut q3 = core::array::from_fn(|i| dq[i] - q3[i]);
+        let mut v3 = core::array::from_fn(|i| dv[i] - v3[i]);
+        for estimate in [&mut q5, &mut v5, &mut q3, &mut v3] {
+            along(estimate);
+        }
         let fifth = weights.square_sum(&q5, &v5);
-        let third = weights.square_sum::<D::Scalar>(
-            &core::array::from_fn(|i| dq[i] - q3[i]),
-            &core::array::from_fn(|i| dv[i] - v3[i]),
-        );
+        let third = weights.square_sum::<D::Scalar>(&q3, &v3);
         if fifth == 0.0 && third == 0.0 {
             return 0.0;
         }

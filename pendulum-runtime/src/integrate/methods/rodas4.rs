@@ -100,6 +100,20 @@ impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize> ErrorE
         // The last stage is the difference to the embedded method.
         (weights.square_sum(&k.v[5], &k.a[5]) / (2 * N) as f64).sqrt()
     }
+
+    #[inline]
+    fn error_along(
+        &self,
+        k: &Slopes<D::Scalar, N, 6>,
+        _: f64,
+        weights: &Weights<N>,
+        along: impl Fn(&mut [D::Scalar; N]),
+    ) -> f64 {
+        let (mut q, mut v) = (k.v[5], k.a[5]);
+        along(&mut q);
+        along(&mut v);
+        (weights.square_sum(&q, &v) / (2 * N) as f64).sqrt()
+    }
 }
 
 impl Adaptive for Rodas4 {

@@ -87,7 +87,20 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Tsit5 {
 impl<D: Dynamics<N, Scalar: Float>, const N: usize> ErrorEstimate<D, N> for Tsit5 {
     #[inline]
     fn error(&self, k: &Slopes<D::Scalar, N, 7>, h: f64, weights: &Weights<N>) -> f64 {
-        let (q, v) = k.weighted(E);
+        ErrorEstimate::<D, N>::error_along(self, k, h, weights, |_| ())
+    }
+
+    #[inline]
+    fn error_along(
+        &self,
+        k: &Slopes<D::Scalar, N, 7>,
+        h: f64,
+        weights: &Weights<N>,
+        along: impl Fn(&mut [D::Scalar; N]),
+    ) -> f64 {
+        let (mut q, mut v) = k.weighted(E);
+        along(&mut q);
+        along(&mut v);
         h * (weights.square_sum(&q, &v) / (2 * N) as f64).sqrt()
     }
 }

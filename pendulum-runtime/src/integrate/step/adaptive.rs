@@ -10,8 +10,10 @@ use crate::integrate::step::controller::{
 };
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::fast_exp2::{exp2, log2};
+use crate::integrate::step::field::Field;
 use crate::integrate::step::field::coordinate;
 use crate::integrate::step::interval::StepInterval;
+use crate::integrate::step::projection::{Tangent, is_constrained};
 use crate::integrate::step::short::shortest;
 use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, System};
@@ -202,11 +204,7 @@ where
     ) -> f64 {
         let StepContext { method, field, from, to, workspace, .. } = context;
         **to = method.attempt(field, interval, from, workspace);
-        if !to.is_finite() {
-            return f64::NAN;
-        }
-        let weights = self.in_one_word::<D::Scalar>().weights(from, to);
-        method.error(workspace, interval.h.abs(), &weights)
+        self.error_of(*method, field, interval, from, to, workspace)
     }
 
     #[inline]
@@ -252,6 +250,46 @@ where
 }
 
 impl<const N: usize> AdaptiveStep<N> {
+    /// The error of the step that `method` has just taken, over the one allowed; NaN if its end is
+    /// not finite.
+    #[inline]
+    pub(crate) fn error_of<D, M, const W: bool>(
+        &self,
+        method: &M,
+        field: &Field<'_, D, N, W>,
+        interval: &StepInterval,
+        from: &Endpoint<D::Scalar, N>,
+        to: &Endpoint<D::Scalar, N>,
+        workspace: &M::Workspace,
+    ) -> f64
+    where
+        D: Dynamics<N, Scalar: Float>,
+        M: ErrorEstimate<D, N>,
+    {
+        if !to.is_finite() {
+            return f64::NAN;
+        }
+        let weights = self.in_one_word::<D::Scalar>().weights(from, to);
+        let error = method.error(workspace, interval.h.abs(), &weights);
+        if const { !is_constrained::<D, N>() } || error <= 1.0 {
+            return error;
+        }
+        let tangent = Tangent::new(field.dynamics(), from.t, field.side(), &from.q, &from.v);
+        let along = method.error_along(workspace, interval.h.abs(), &weights, |estimate| {
+            tangent.take_off(estimate);
+        });
+        self.on_constraints::<D::Scalar>(error, along)
+    }
+
+    /// The error of a step whose end is brought onto the constraints, from the whole one and from
+    /// the one along them: what was across them leaves its square behind.
+    fn on_constraints<T: Float>(&self, whole: f64, along: f64) -> f64 {
+        let (relative, _) = self.tolerances::<T>();
+        let square = BENT * relative * whole * whole;
+        // NaN fails the comparison.
+        if along < whole && square < whole { f64::max(along, square) } else { whole }
+    }
+
     /// The error if time does not resolve an attempt that does not reach the target; `worst` gives
     /// the coordinate that it names.
     #[inline(always)]
@@ -411,6 +449,10 @@ impl<const N: usize> AdaptiveStep<N> {
         worst.0
     }
 }
+
+/// The square of an error across constraints, in parts of the state, times this is an error along
+/// them.
+const BENT: f64 = 100.0;
 
 /// The length of a step that time does not resolve: its second word has to hold the step to about
 /// ten digits.

@@ -10,6 +10,7 @@
 //! Numerical Integration (2006), IV.4.
 
 use crate::error::{Error, Part};
+use crate::integrate::saved::Memory;
 use crate::integrate::solution::{ConstraintStats, Extreme};
 use crate::integrate::state::State;
 use crate::integrate::step::compensated::Compensated;
@@ -19,6 +20,7 @@ use crate::motion::Side;
 use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Facts, Purpose, System, scalar_time};
 use crate::time::Time;
+use nalgebra::SMatrix;
 
 /// Newton iterations at most: from the end of a step one or two suffice.
 const MOST: usize = 8;
@@ -77,6 +79,41 @@ fn rounding<T: Float, const N: usize>(change: &[T; N], values: &[T; N]) -> f64 {
         most = if own.is_nan() { f64::INFINITY } else { most.max(own) };
     }
     most
+}
+
+/// The plane that the constraints leave at a state: a projection moves a state across it.
+pub(crate) struct Tangent<'d, D: Dynamics<N>, const N: usize> {
+    projection: Projection<'d, D, N>,
+    q: [D::Scalar; N],
+    v: [D::Scalar; N],
+    gradients: SMatrix<D::Scalar, N, N>,
+}
+
+impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Tangent<'d, D, N> {
+    pub(crate) fn new(
+        dynamics: &'d D,
+        t: Time,
+        side: Side,
+        q: &Compensated<D::Scalar, N>,
+        v: &Compensated<D::Scalar, N>,
+    ) -> Self {
+        let projection = Projection::new(dynamics, t, side);
+        let (q, v) = (q.high, v.high);
+        let system = dynamics.system();
+        let gradients = system.constraint_jacobian(projection.time, &q, &v, &projection.inputs);
+        Self { projection, q, v, gradients }
+    }
+
+    /// Takes what is across the plane off a change of coordinates, or of velocities.
+    pub(crate) fn take_off(&self, change: &mut [D::Scalar; N]) {
+        let off = core::array::from_fn(|k| {
+            (0..N).fold(D::Scalar::from_f64(0.0), |sum, j| sum + self.gradients[(k, j)] * change[j])
+        });
+        let across = self.projection.correction(&self.q, &self.v, &off);
+        for i in 0..N {
+            change[i] -= across[i];
+        }
+    }
 }
 
 /// What a projection has found and done.
@@ -192,8 +229,10 @@ pub(crate) fn project_end<D: Dynamics<N, Scalar: Float>, const N: usize>(
     node: &mut Endpoint<D::Scalar, N>,
     side: Side,
     stats: &mut Option<ConstraintStats>,
+    gradients: &mut Gradients<N>,
 ) -> Result<bool, Error> {
     let t = node.t.to_f64();
+    gradients.look(dynamics, node.t, side, &node.q.high, &node.v.high)?;
     independent(dynamics, node.t, side, &node.q.high, &node.v.high, stats)?;
     let found = project(dynamics, node.t, side, &mut node.q, &mut node.v);
     let constraints = facts::<D, N>().constraints;
@@ -323,7 +362,7 @@ pub(crate) fn nearest<D: Dynamics<N, Scalar: Float>, const N: usize>(
     state: &State<D::Scalar, N>,
 ) -> Result<State<D::Scalar, N>, Error> {
     let mut node = Endpoint::new(Time::new(state.t), state.q, state.v);
-    project_end(dynamics, &mut node, Side::After, &mut None)?;
+    project_end(dynamics, &mut node, Side::After, &mut None, &mut Gradients::new())?;
     independent(dynamics, node.t, Side::After, &node.q.high, &node.v.high, &mut None)?;
     if let Some(what) = first_in_state(facts::<D, N>(), &node.q.high, &node.v.high) {
         return Err(Error::NotFinite { t: state.t, what, suspects: Vec::new() });
@@ -341,6 +380,59 @@ pub(crate) fn deliver<D: Dynamics<N, Scalar: Float>, const N: usize>(
     let (mut q, mut v) = (Compensated::new(state.q), Compensated::new(state.v));
     project(dynamics, t, side, &mut q, &mut v);
     (state.q, state.v) = (q.high, v.high);
+}
+
+/// The largest gradient of each constraint that was met: Σ C_kj²/M_jj.
+///
+/// At a change point, as where all bars of a linkage lie in a line, a gradient vanishes or depends on
+/// others, and another branch of the motion begins there. A state nearer to it than the root of
+/// rounding may be on either.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gradients<const N: usize>([f64; N]);
+
+impl<const N: usize> Gradients<N> {
+    pub(crate) fn new() -> Self {
+        Self([0.0; N])
+    }
+
+    /// Checks that no gradient has vanished beside the largest one of its constraint.
+    fn look<D: Dynamics<N, Scalar: Float>>(
+        &mut self,
+        dynamics: &D,
+        time: Time,
+        side: Side,
+        q: &[D::Scalar; N],
+        v: &[D::Scalar; N],
+    ) -> Result<(), Error> {
+        let (system, t) = (dynamics.system(), scalar_time(time));
+        let inputs = dynamics.inputs(time, side, Purpose::Momenta);
+        let (gradients, masses) =
+            (system.constraint_jacobian(t, q, v, &inputs), system.mass_matrix(t, q, v, &inputs));
+        for k in 0..facts::<D, N>().held_constraints() {
+            let mut size = 0.0;
+            for j in 0..N {
+                let entry = gradients[(k, j)].to_f64();
+                size += entry * entry / masses[(j, j)].to_f64();
+            }
+            self.0[k] = f64::max(self.0[k], size);
+            let independence = size / self.0[k];
+            if independence <= least_independence::<D::Scalar>() {
+                let (t, constraint) = (time.to_f64(), facts::<D, N>().constraints[k].name);
+                return Err(Error::DependentConstraints { t, constraint, independence });
+            }
+        }
+        Ok(())
+    }
+
+    /// Visits all of them.
+    pub(crate) fn remember(&mut self, memory: &mut Memory) {
+        self.0.iter_mut().for_each(|size| memory.number(size));
+    }
+}
+
+/// Half of the digits that a pivot has, and some more.
+fn least_independence<T: Float>() -> f64 {
+    T::EPSILON.to_f64().powf(40.0 / 52.0)
 }
 
 /// Checks that no constraint depends on those before it.
@@ -364,9 +456,7 @@ fn independent<D: Dynamics<N, Scalar: Float>, const N: usize>(
     }
     let (value, index) = least;
     let (t, constraint) = (time.to_f64(), constraints[index].name);
-    // Half of the digits that a pivot has, and some more.
-    let bound = D::Scalar::EPSILON.to_f64().powf(40.0 / 52.0);
-    if value <= bound || value.is_nan() {
+    if value <= least_independence::<D::Scalar>() || value.is_nan() {
         return Err(Error::DependentConstraints { t, constraint, independence: value });
     }
     let extreme = Extreme { value, t, constraint };

@@ -4,13 +4,15 @@ use super::lanes::LaneDynamics;
 use super::tableau::S;
 use super::{Picard, iterate, tableau};
 use crate::error::Error;
-use crate::integrate::method;
+use crate::integrate::method::{self, Method};
+use crate::integrate::methods::dop853::Dop853;
 use crate::integrate::step::adaptive::AdaptiveStep;
 use crate::integrate::step::controller::{
     Controller, ControllerState, StepContext, StepLaw, Trial, Verdict,
 };
 use crate::integrate::step::fast_exp2::{log2, power};
 use crate::integrate::step::interval::StepInterval;
+use crate::integrate::step::projection::is_constrained;
 use crate::scalar::Float;
 use crate::time::Time;
 
@@ -23,6 +25,10 @@ const HIGH: f64 = AIM * 9.6;
 /// More sweeps than these, and the steps become no longer, or shorter.
 const MANY: u32 = 4;
 const TOO_MANY: u32 = 9;
+/// Rejected attempts of a step after which another method takes it, under constraints.
+const PATIENCE: u32 = 2;
+/// The steps that it takes.
+pub(super) const DETOUR: usize = 24;
 
 impl<D: LaneDynamics<N>, const N: usize> Controller<Picard, D, N> for AdaptiveStep<N> {
     fn check(&self) -> Result<(), Error> {
@@ -89,10 +95,23 @@ impl<D: LaneDynamics<N>, const N: usize> StepLaw<Picard, D, N> for AdaptiveStep<
     fn estimate(
         &self,
         context: &mut StepContext<'_, '_, D, Picard, N>,
-        _: &Trial,
+        trial: &Trial,
         interval: &StepInterval,
     ) -> f64 {
         let StepContext { field, from, to, workspace, .. } = context;
+        if const { is_constrained::<D, N>() }
+            && workspace.detour_left == 0
+            && (PATIENCE <= trial.rejected || 0 < trial.rejected && !workspace.ends.solved)
+        {
+            workspace.detour_left = DETOUR;
+        }
+        workspace.on_detour = 0 < workspace.detour_left;
+        if workspace.on_detour {
+            // Where constraints almost depend on each other, a sweep takes what is off them for
+            // huge accelerations, and does not converge.
+            **to = Dop853.attempt(field, interval, from, &mut workspace.detour);
+            return self.error_of(&Dop853, field, interval, from, to, &workspace.detour);
+        }
         iterate(field, interval, from, to, workspace, Some(&self.tolerances::<D::Scalar>()));
         workspace.ends.error
     }
@@ -108,6 +127,18 @@ impl<D: LaneDynamics<N>, const N: usize> StepLaw<Picard, D, N> for AdaptiveStep<
     ) -> Result<Verdict, Error> {
         let StepContext { method, field, from, to, workspace, .. } = context;
         let (h, wanted) = (interval.h.abs(), trial.wanted);
+        if workspace.on_detour && error.is_finite() {
+            (workspace.end, workspace.start_known, state.left) = (None, false, 0);
+            trial.fault = None;
+            let factor = 0.9 * power(1023.0 - log2(error) / 8.0);
+            let length = h * if factor < 0.2 { 0.2 } else { factor };
+            if error <= 1.0 {
+                workspace.detour_left -= 1;
+                state.h = if 4.0 * h < length { 4.0 * h } else { length };
+                return Ok(Verdict::Accept);
+            }
+            return Ok(Verdict::Reject { length });
+        }
         if error <= 1.0 {
             workspace.accept(to, interval.h);
             let sweeps = workspace.ends.progress.sweeps;

@@ -14,6 +14,7 @@ mod workspace;
 use crate::error::Error;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Memory, Method};
+use crate::integrate::methods::dop853::{self, Dop853};
 use crate::integrate::step::diagnose;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::{Field, coordinate, first_in_state};
@@ -156,6 +157,9 @@ impl<D: LaneDynamics<N>, const N: usize> Method<D, N> for Picard {
             sweeps: 2,
             weights: [zero; N],
             unsolved: None,
+            detour: dop853::Stages::zero(),
+            on_detour: false,
+            detour_left: 0,
         }
     }
 
@@ -190,6 +194,9 @@ impl<D: LaneDynamics<N>, const N: usize> Method<D, N> for Picard {
         to: &mut Endpoint<D::Scalar, N>,
         workspace: &mut WorkspaceOf<D, N>,
     ) -> Interpolant<D::Scalar, N> {
+        if workspace.on_detour {
+            return Dop853.interpolant(field, interval, from, to, &mut workspace.detour);
+        }
         dense::interpolant(field, interval, from, to, workspace)
     }
 

@@ -3,10 +3,11 @@
 // What a step needs is inlined into what is compiled for several instruction sets.
 #![allow(clippy::inline_always)]
 
-use super::controller::AIM;
+use super::controller::{AIM, DETOUR};
 use super::kernel::{Ends, Progress, Scaled, Stages};
 use super::lanes::LaneDynamics;
 use super::tableau::S;
+use crate::integrate::methods::dop853;
 use crate::integrate::saved::Memory;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::scalar::{Float, Lane};
@@ -43,6 +44,11 @@ pub struct Workspace<T: Lane, P, const N: usize> {
     /// The place at which the equations of the step were not solved: its end and the coordinate
     /// that is accelerated most.
     pub(super) unsolved: Option<(Time, usize)>,
+    /// The stages of a step that Dop853 has taken instead, and true if it was the last one.
+    pub(super) detour: dop853::Stages<T, N>,
+    pub(super) on_detour: bool,
+    /// The steps that it is to take from here on.
+    pub(super) detour_left: usize,
 }
 
 /// The room for the dynamics `D`.
@@ -171,6 +177,7 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
         let mut sweeps = self.sweeps as usize;
         memory.count(&mut sweeps, 8);
         self.sweeps = sweeps as u32;
+        memory.count(&mut self.detour_left, DETOUR);
         self.remember_sums(memory);
     }
 

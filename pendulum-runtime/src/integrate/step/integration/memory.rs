@@ -45,6 +45,7 @@ where
     fn remember_constraints(&mut self, memory: &mut Memory) {
         let constraints = <D::System as System<N>>::FACTS.constraints;
         let Some(first) = constraints.first() else { return };
+        self.gradients.remember(memory);
         let none = Extreme { value: 0.0, t: 0.0, constraint: first.name };
         let empty = || ConstraintStats { independence: none, misfit: none };
         memory.maybe(&mut self.stats.constraints, empty, |memory, stats| {

@@ -23,7 +23,7 @@ use crate::integrate::step::inertia::{inertia, is_due, varies};
 use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::limits::{self, Limits};
 use crate::integrate::step::observed::Observed;
-use crate::integrate::step::projection::{self, is_constrained};
+use crate::integrate::step::projection::{self, Gradients, is_constrained};
 use crate::integrate::step::short::{is_short, straight};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
@@ -61,6 +61,8 @@ where
     crossed: bool,
     /// What is known of the limits.
     limits: Limits<D::Scalar, N>,
+    /// What is known of the constraints.
+    gradients: Gradients<N>,
 }
 
 impl<'a, const N: usize, D, M, C> Integration<'a, N, D, M, C>
@@ -98,6 +100,7 @@ where
             kink,
             crossed: false,
             limits: Limits::<D::Scalar, N>::new(contacts::limits::<D, N>()),
+            gradients: Gradients::new(),
         };
         integration.touch()?;
         Ok(integration)
@@ -158,6 +161,7 @@ where
             kink: self.kink,
             crossed: self.crossed,
             limits: self.limits,
+            gradients: self.gradients,
         }
     }
 
@@ -267,8 +271,9 @@ where
         let mut moved = false;
         let side = onwards(self.backwards).opposite();
         if const { is_constrained::<D, N>() } {
-            let Self { dynamics, end, stats, .. } = self;
-            moved = projection::project_end(&**dynamics, end, side, &mut stats.constraints)?;
+            let Self { dynamics, end, stats, gradients, .. } = self;
+            let stats = &mut stats.constraints;
+            moved = projection::project_end(&**dynamics, end, side, stats, gradients)?;
         }
         if const { has_limits::<D, N>() } {
             let contacts = self.limits.contacts();
