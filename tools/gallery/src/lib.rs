@@ -65,11 +65,10 @@ fn section(page: &mut String, name: &str, source: &str) -> Result<(), String> {
     let compiled = compile(block).map_err(|messages| format!("{messages:?}"))?;
     let body: Vec<&str> =
         body.lines().map(|line| line.strip_prefix("    ").unwrap_or(line)).collect();
-    let equations = compiled
-        .mathml
-        .iter()
-        .map(|line| format!("<div style=\"margin: 0.5em 0\">{line}</div>\n\n"))
-        .collect::<String>();
+    let mut equations = String::new();
+    for line in &compiled.mathml {
+        let _ = writeln!(equations, "<div style=\"margin: 0.5em 0\">{line}</div>\n");
+    }
     let _ = write!(
         page,
         "\n## {title}\n\n{}\n\n![The motion: {title}][{name}]\n\n```rust\n\
@@ -107,7 +106,11 @@ pub fn pictures(page: &str) -> std::io::Result<String> {
     let mut text = String::new();
     for (name, path) in definitions(page).filter(|(_, path)| path.contains("figures/")) {
         let data = std::fs::read(guide().join(path))?;
-        let kind = if path.ends_with(".png") { "png" } else { "svg+xml" };
+        let kind = if Path::new(path).extension().is_some_and(|kind| kind == "png") {
+            "png"
+        } else {
+            "svg+xml"
+        };
         let _ = writeln!(text, "[{name}]: data:image/{kind};base64,{}", STANDARD.encode(data));
     }
     Ok(text)

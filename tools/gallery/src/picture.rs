@@ -53,8 +53,8 @@ impl Picture {
             .fold(f64::INFINITY, f64::min);
         let place = |point: &[f64; 2]| {
             let [x, y] = [
-                SIZE[0] / 2.0 + scale * (point[0] - (x[0] + x[1]) / 2.0),
-                SIZE[1] / 2.0 - scale * (point[1] - (y[0] + y[1]) / 2.0),
+                SIZE[0] / 2.0 + scale * (point[0] - f64::midpoint(x[0], x[1])),
+                SIZE[1] / 2.0 - scale * (point[1] - f64::midpoint(y[0], y[1])),
             ];
             format!("{x:.1},{y:.1}")
         };
