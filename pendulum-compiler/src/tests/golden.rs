@@ -6,7 +6,6 @@
 use super::derived;
 use crate::algebra::expr::{Graph, Symbol};
 use crate::backend::latex;
-use crate::backend::rust;
 use crate::backend::unicode;
 use crate::mechanics::motion::Motion;
 use crate::messages::Errors;

@@ -26,7 +26,10 @@ mod systems {
 use gallery::{ILLUSTRATED, SYSTEMS, guide, page, pictures};
 
 fn main() -> prelude::Result<()> {
-    use systems::*;
+    use systems::{
+        atwood, bead_on_hoop, cart_pole, charged_particle, double_pendulum, elastic_pendulum,
+        foucault, four_bar, furuta, kepler, top, wilberforce,
+    };
     // In the order of `SYSTEMS`.
     let drawn = [
         double_pendulum::picture()?,

@@ -92,8 +92,7 @@ impl Picture {
                 values.join(";")
             );
         }
-        let ends: Vec<_> =
-            poses().filter_map(|frame| frame.0.last()).map(|point| place(point)).collect();
+        let ends: Vec<_> = poses().filter_map(|frame| frame.0.last()).map(place).collect();
         let at = |k: usize| {
             let one = |place: &String| place.split(',').nth(k).unwrap_or_default().to_owned();
             ends.iter().map(one).collect::<Vec<_>>()

@@ -17,7 +17,7 @@ lagrangian! {
 
 fn motion() -> Result<Solution<f64, 2>> {
     let machine = Atwood::new(3.0, 1.0);
-    let start = [1.0, 1.5707963];
+    let start = [1.0, 1.5];
     let motion = solve(&machine, (0.0, 8.0), start, [0.0; 2]).rtol(1e-10).every(0.015).run()?;
     Ok(motion)
 }
