@@ -103,7 +103,7 @@ fn sources(root: &Path) -> Vec<PathBuf> {
         "README.md",
         "tests",
         "examples",
-        "tools/refusals/tests/blocks",
+        "tools/refusals/tests/refusals/blocks",
         "tools/stability",
         "tools/systems",
         "pendulum-runtime/src",
@@ -113,6 +113,7 @@ fn sources(root: &Path) -> Vec<PathBuf> {
     .to_vec();
     let mut files = Vec::new();
     while let Some(path) = pending.pop() {
+        assert!(path.exists(), "{} has moved", path.display());
         if path.is_dir() {
             pending.extend(std::fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path()));
         } else if path.extension().is_some_and(|kind| kind == "rs" || kind == "md")
