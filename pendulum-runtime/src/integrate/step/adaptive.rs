@@ -281,8 +281,8 @@ impl<const N: usize> AdaptiveStep<N> {
         self.on_constraints::<D::Scalar>(error, along)
     }
 
-    /// The error of a step whose end is brought onto the constraints, from the whole one and from
-    /// the one along them: what was across them leaves its square behind.
+    /// The error of a step whose end is brought onto the constraints, from the whole error and its
+    /// part along them.
     fn on_constraints<T: Float>(&self, whole: f64, along: f64) -> f64 {
         let (relative, _) = self.tolerances::<T>();
         let square = BENT * relative * whole * whole;
@@ -450,8 +450,8 @@ impl<const N: usize> AdaptiveStep<N> {
     }
 }
 
-/// The square of an error across constraints, in parts of the state, times this is an error along
-/// them.
+/// Bound on the curvature of constraints, in parts of the state: an error e across them leaves
+/// `BENT` e² along them.
 const BENT: f64 = 100.0;
 
 /// The length of a step that time does not resolve: its second word has to hold the step to about

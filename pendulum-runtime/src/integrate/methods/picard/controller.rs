@@ -25,9 +25,9 @@ const HIGH: f64 = AIM * 9.6;
 /// More sweeps than these, and the steps become no longer, or shorter.
 const MANY: u32 = 4;
 const TOO_MANY: u32 = 9;
-/// Rejected attempts of a step after which another method takes it, under constraints.
+/// Rejected attempts of a step after which `Dop853` takes it, under constraints.
 const PATIENCE: u32 = 2;
-/// The steps that it takes.
+/// The number of steps that it takes.
 pub(super) const DETOUR: usize = 24;
 
 impl<D: LaneDynamics<N>, const N: usize> Controller<Picard, D, N> for AdaptiveStep<N> {
@@ -107,8 +107,8 @@ impl<D: LaneDynamics<N>, const N: usize> StepLaw<Picard, D, N> for AdaptiveStep<
         }
         workspace.on_detour = 0 < workspace.detour_left;
         if workspace.on_detour {
-            // Where constraints almost depend on each other, a sweep takes what is off them for
-            // huge accelerations, and does not converge.
+            // Where constraints almost depend on each other, the accelerations change fast across
+            // them, and sweeps do not converge.
             **to = Dop853.attempt(field, interval, from, &mut workspace.detour);
             return self.error_of(&Dop853, field, interval, from, to, &workspace.detour);
         }

@@ -53,6 +53,9 @@ use workspace::{Tolerances, Workspace, WorkspaceOf};
 /// an iteration that does not is an [error](crate::error::Error::NoConvergence). A stiff spring or
 /// damper shortens the steps: take [`Rodas4`](crate::integrate::Rodas4) or [`Gauss`](crate::integrate::Gauss) there.
 ///
+/// Where constraints almost depend on each other, as at the change points of a linkage, the iteration
+/// does not converge: [`Dop853`] takes the next 24 steps there, and their dense output is its own.
+///
 /// The sum of the state is compensated; the coefficients have the digits of `f64`, so that over
 /// scalars of two words it is no better than over one. Dense output is the collocation polynomial
 /// at sixteen nodes, as exact as the ends; it costs about as much as the step.

@@ -44,10 +44,11 @@ pub struct Workspace<T: Lane, P, const N: usize> {
     /// The place at which the equations of the step were not solved: its end and the coordinate
     /// that is accelerated most.
     pub(super) unsolved: Option<(Time, usize)>,
-    /// The stages of a step that Dop853 has taken instead, and true if it was the last one.
+    /// The stages of a step that `Dop853` has taken.
     pub(super) detour: dop853::Stages<T, N>,
+    /// True if the last step was one.
     pub(super) on_detour: bool,
-    /// The steps that it is to take from here on.
+    /// The number of steps that `Dop853` is to take from here on.
     pub(super) detour_left: usize,
 }
 
