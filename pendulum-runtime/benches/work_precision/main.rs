@@ -1,7 +1,8 @@
 //! Run time against error: every method over its settings, and the peers, in one run.
 //!
 //! `cargo bench -p pendulum-runtime --bench work_precision -- [SYSTEM…] [--quick] [--rounds N]
-//! [--heyoka PYTHON] [--no-peers]`
+//! [--heyoka PYTHON] [--no-peers]`, or `-- --draw TABLE NOTE`, which draws the pictures of a table
+//! measured before and measures nothing.
 //!
 //! The systems are those of `systems.rs`; the error is the largest distance of any coordinate or
 //! velocity at any of the five output times from `reference.txt`. A round runs all rows, every
@@ -81,12 +82,14 @@ struct Options {
     systems: Vec<String>,
     heyoka: Option<String>,
     peers: bool,
+    /// A table measured before and the line below its pictures.
+    draw: Option<(PathBuf, String)>,
 }
 
 impl Options {
     fn parse() -> Result<Self, String> {
-        let mut options =
-            Self { quick: false, rounds: 0, systems: Vec::new(), heyoka: None, peers: true };
+        let (systems, heyoka, draw) = (Vec::new(), None, None);
+        let mut options = Self { quick: false, rounds: 0, systems, heyoka, peers: true, draw };
         let mut words = std::env::args().skip(1);
         while let Some(word) = words.next() {
             let mut value = || words.next().ok_or_else(|| format!("`{word}` wants a value"));
@@ -95,6 +98,7 @@ impl Options {
                 "--bench" => {}
                 "--quick" => options.quick = true,
                 "--no-peers" => options.peers = false,
+                "--draw" => options.draw = Some((value()?.into(), value()?)),
                 "--heyoka" => options.heyoka = Some(value()?),
                 "--rounds" => {
                     options.rounds =
@@ -128,6 +132,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let options = Options::parse()?;
     let target =
         Path::new(env!("CARGO_TARGET_TMPDIR")).parent().ok_or("no target folder")?.to_path_buf();
+    if let Some((table, note)) = &options.draw {
+        return draw(&target, note, &table::read(table)?);
+    }
     let note = describe();
     println!("{note}");
 
@@ -219,19 +226,25 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             Err(error) => println!("no times of heyoka ({}: {error})", path.display()),
         }
     }
-    let measured = |system: &&&str| entries.iter().any(|entry| entry.system == **system);
-    let systems: Vec<&str> = SYSTEMS.iter().filter(measured).copied().collect();
-    for system in &systems {
-        let path = target.join(format!("work-precision-{system}.svg"));
-        plot::draw(&path, system, &note, &entries)?;
-    }
-    summary::print(&systems, &entries);
+    draw(&target, &note, &entries)?;
     println!();
     checks::forward_and_back();
     if !options.quick {
         checks::energy();
     }
     println!("\n{:.0} s", began.elapsed().as_secs_f64());
+    Ok(())
+}
+
+/// Draws each system of a table and prints the summary.
+fn draw(target: &Path, note: &str, entries: &[Entry]) -> Result<(), Box<dyn std::error::Error>> {
+    let measured = |system: &&&str| entries.iter().any(|entry| entry.system == **system);
+    let systems: Vec<&str> = SYSTEMS.iter().filter(measured).copied().collect();
+    for system in &systems {
+        let path = target.join(format!("work-precision-{system}.svg"));
+        plot::draw(&path, system, note, entries)?;
+    }
+    summary::print(&systems, entries);
     Ok(())
 }
 

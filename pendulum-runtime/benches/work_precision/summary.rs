@@ -68,7 +68,7 @@ fn ratio(ours: &[&Entry], peer: &[&Entry], error: f64) -> Option<f64> {
 
 /// The shortest time in which one of the methods reaches `error`, in one round or as the median,
 /// and the name of the method.
-fn best<'a>(entries: &[&'a Entry], error: f64, round: Option<usize>) -> Option<(f64, &'a str)> {
+pub fn best<'a>(entries: &[&'a Entry], error: f64, round: Option<usize>) -> Option<(f64, &'a str)> {
     let mut methods: Vec<&str> = entries.iter().map(|entry| entry.method.as_str()).collect();
     methods.sort_unstable();
     methods.dedup();

@@ -122,7 +122,7 @@ fn chaos(scale: Scale, report: &mut Report) {
         let near = [f64::from_bits(q[0].to_bits() + 1), q[1]];
         let points = separation(&system, (q, v), (near, v), 100.0);
         if k < 3 {
-            report.curve(Figure::Separation, format!("pair {}", k + 1), points.clone());
+            report.curve(Figure::Separation, format!("from t = {}", 100 * (k + 1)), points.clone());
         }
         let growing: Vec<(f64, f64)> = points
             .iter()
@@ -140,7 +140,8 @@ fn chaos(scale: Scale, report: &mut Report) {
         0.51,
     );
     let near = [f64::from_bits(2.0f64.to_bits() + 1), 2.5];
-    report.curve(Figure::Separation, "P23", separation(&system, start, (near, start.1), 100.0));
+    let points = separation(&system, start, (near, start.1), 100.0);
+    report.curve(Figure::Separation, "from θ = (2, 2.5)", points);
 
     // Correlation is lost after 70 s; energy is not.
     let seconds = scale.pick(500.0, 10_000.0, 10_000.0);

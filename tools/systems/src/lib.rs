@@ -3,7 +3,6 @@
 
 #![allow(mixed_script_confusables, confusable_idents)]
 
-pub mod colors;
 pub mod constrained;
 pub mod distance;
 pub mod fingerprints;

@@ -1,0 +1,162 @@
+//! Axes: linear, logarithmic, and errors that shrink to the right.
+
+/// An axis of a chart.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    pub(crate) name: String,
+    pub(crate) scale: Scale,
+    range: Option<(f64, f64)>,
+    pub(crate) unit: &'static str,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Scale {
+    Linear,
+    Logarithmic,
+    /// Logarithmic, with small numbers to the right.
+    Digits,
+    /// Linear without ticks.
+    Bare,
+}
+
+impl Axis {
+    fn new(name: impl Into<String>, scale: Scale) -> Self {
+        Self { name: name.into(), scale, range: None, unit: "" }
+    }
+
+    /// Equal steps for equal differences.
+    pub fn linear(name: impl Into<String>) -> Self {
+        Self::new(name, Scale::Linear)
+    }
+
+    /// Equal steps for equal ratios.
+    pub fn logarithmic(name: impl Into<String>) -> Self {
+        Self::new(name, Scale::Logarithmic)
+    }
+
+    /// Logarithmic and from great to small, for errors: further to the right is more exact.
+    pub fn digits(name: impl Into<String>) -> Self {
+        Self::new(name, Scale::Digits)
+    }
+
+    /// No ticks and no name.
+    pub fn bare() -> Self {
+        Self::new("", Scale::Bare)
+    }
+
+    /// Ends of the axis, which otherwise are those of its curves.
+    pub fn range(mut self, from: f64, to: f64) -> Self {
+        self.range = Some((from, to));
+        self
+    }
+
+    /// A sign behind the numbers, as ° is.
+    pub fn unit(mut self, unit: &'static str) -> Self {
+        self.unit = unit;
+        self
+    }
+
+    /// The place of a value along the axis, from left to right or upwards.
+    pub(crate) fn place(&self, value: f64) -> f64 {
+        match self.scale {
+            Scale::Linear | Scale::Bare => value,
+            Scale::Logarithmic => value.log10(),
+            Scale::Digits => -value.log10(),
+        }
+    }
+
+    /// The places of both ends.
+    pub(crate) fn ends(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
+        if let Some((from, to)) = self.range {
+            return (self.place(from), self.place(to));
+        }
+        let (low, high) = values
+            .map(|value| self.place(value))
+            .filter(|place| place.is_finite())
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        let (low, high) = if low < high { (low, high) } else { (low.min(0.0), high.max(1.0)) };
+        let edge = 0.02 * (high - low);
+        match self.scale {
+            Scale::Bare => (low - edge, high + edge),
+            Scale::Linear => (low - edge, high + edge),
+            // At least the next whole power lies inside.
+            Scale::Logarithmic | Scale::Digits => (low - 1.5 * edge, high + 1.5 * edge),
+        }
+    }
+
+    /// Places of ticks and their texts.
+    pub(crate) fn ticks(&self, (low, high): (f64, f64), most: usize) -> Vec<(f64, String)> {
+        let (step, digits) = match self.scale {
+            Scale::Bare => return Vec::new(),
+            Scale::Linear => nice_step(high - low, most),
+            Scale::Logarithmic | Scale::Digits => {
+                let steps = [1.0, 2.0, 3.0, 5.0, 10.0];
+                let fits = |step: &f64| (high - low) / step <= most as f64;
+                (steps.into_iter().find(fits).unwrap_or(20.0), 0)
+            }
+        };
+        let first = (low / step - 1e-9).ceil() as i64;
+        let last = (high / step + 1e-9).floor() as i64;
+        let text = |place: f64| match self.scale {
+            Scale::Linear | Scale::Bare => format!("{place:.digits$}{}", self.unit),
+            Scale::Logarithmic => power(place),
+            Scale::Digits => power(-place),
+        };
+        (first..=last)
+            .map(|index| index as f64 * step)
+            // No sign before zero.
+            .map(|place| (place, text(place + 0.0)))
+            .collect()
+    }
+}
+
+/// The number as programs print it, which every font has.
+fn power(exponent: f64) -> String {
+    match exponent.round() as i32 {
+        0 => "1".to_owned(),
+        exponent => format!("1e{exponent}"),
+    }
+}
+
+/// The finest step of 1, 2 or 5 times a power of ten that gives at most so many ticks, and its
+/// digits behind the point.
+fn nice_step(length: f64, most: usize) -> (f64, usize) {
+    let least = length / most as f64;
+    let power = least.log10().floor();
+    let (mut factor, mut exponent) = (least / 10f64.powf(power), power as i32);
+    factor = [1.0, 2.0, 5.0].into_iter().find(|nice| factor <= nice + 1e-9).unwrap_or(10.0);
+    if factor == 10.0 {
+        (factor, exponent) = (1.0, exponent + 1);
+    }
+    (factor * 10f64.powi(exponent), (-exponent).max(0) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Axis;
+
+    fn texts(axis: &Axis, ends: (f64, f64), most: usize) -> Vec<String> {
+        axis.ticks(ends, most).into_iter().map(|tick| tick.1).collect()
+    }
+
+    #[test]
+    fn ticks_of_linear_axes_are_round() {
+        let axis = Axis::linear("");
+        assert_eq!(
+            texts(&axis, (-0.3, 1.1), 8),
+            ["-0.2", "0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]
+        );
+        assert_eq!(texts(&axis, (0.0, 60.0), 6), ["0", "10", "20", "30", "40", "50", "60"]);
+        assert_eq!(
+            texts(&axis.clone().unit("°"), (-50.0, 50.0), 5),
+            ["-40°", "-20°", "0°", "20°", "40°"]
+        );
+    }
+
+    #[test]
+    fn errors_shrink_to_the_right() {
+        let axis = Axis::digits("");
+        let ends = axis.ends([1e-12, 1e-2].into_iter());
+        assert_eq!(texts(&axis, ends, 6), ["1e-2", "1e-4", "1e-6", "1e-8", "1e-10", "1e-12"]);
+    }
+}
