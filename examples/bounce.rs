@@ -8,7 +8,7 @@
 
 use pendulum_runtime::integrate::Event;
 use pendulum_runtime::prelude::*;
-use std::fmt::Write;
+use pictures::{Chart, Curve, Picture, color};
 
 lagrangian! {
     pub struct Leg { m: [kg; 2], L: [m; 2], g: m/s^2 = 9.81 }
@@ -35,45 +35,26 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("{:6.3} s {:9.4} {:9.4} rad/s {lost:18.6} J", hit.time, v[0] - v[1], w[0] - w[1]);
     }
 
+    // The knee and the foot.
     let place = |t: f64| {
         let q = swing.at(t).map_or([0.0; 2], |state| state.q);
         let (sin, cos) = (q.map(f64::sin), q.map(f64::cos));
-        let knee = [300.0 + 140.0 * sin[0], 260.0 + 140.0 * cos[0]];
-        (knee, [knee[0] + 126.0 * sin[1], knee[1] + 126.0 * cos[1]])
+        let knee = (sin[0], -cos[0]);
+        (knee, (knee.0 + 0.9 * sin[1], knee.1 - 0.9 * cos[1]))
     };
-    let mut svg = String::from(
-        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 130 600 420' fill='none' stroke-linecap='round'>\n\
-         <rect y='130' width='600' height='420' fill='#10141f'/>\n",
-    );
+    let mut chart = Chart::drawing();
     for k in 0..=100 {
-        let ([x, y], [u, v]) = place(0.07 * f64::from(k));
-        writeln!(
-            svg,
-            "<path d='M300 260L{x:.1} {y:.1}L{u:.1} {v:.1}' stroke='#8fa3c8' stroke-opacity='0.18' stroke-width='2'/>"
-        )?;
+        let (knee, foot) = place(0.07 * f64::from(k));
+        chart = chart.curve(Curve::new([(0.0, 0.0), knee, foot]).opacity(0.25));
     }
-    // From blue to orange as time goes on.
-    for part in 0..350 {
-        let points = (0..=8).map(|k| place(0.02 * (f64::from(part) + f64::from(k) / 8.0)).1);
-        let path: Vec<String> = points.map(|[x, y]| format!("{x:.1} {y:.1}")).collect();
-        let hue = 210.0 - 180.0 * f64::from(part) / 350.0;
-        writeln!(
-            svg,
-            "<path d='M{}' stroke='hsl({hue:.0},85%,60%)' stroke-width='2.2'/>",
-            path.join("L")
-        )?;
-    }
+    chart = chart.way((0..=2800).map(|k| place(f64::from(k) / 400.0).1), (210.0, 30.0));
     for hit in &swing.events {
-        let [x, y] = place(hit.state.t).1;
-        let radius = 3.0 + (hit.state.v[0] - hit.state.v[1]).abs();
-        writeln!(
-            svg,
-            "<circle cx='{x:.1}' cy='{y:.1}' r='{radius:.1}' stroke='#ffffff' stroke-width='1.5'/>"
-        )?;
+        let hard = (hit.state.v[0] - hit.state.v[1]).abs();
+        chart = chart.dot(place(hit.state.t).1, 2.0 + hard / 2.0, color::ORANGE);
     }
-    writeln!(svg, "<circle cx='300' cy='260' r='5' fill='#ffffff'/>\n</svg>")?;
-    std::fs::create_dir_all("target")?;
-    std::fs::write("target/bounce.svg", svg)?;
+    Picture::new("The foot of a leg whose knee hits its stops", (960, 640))
+        .chart(chart.dot((0.0, 0.0), 5.0, color::TEXT))
+        .save("target/bounce.svg")?;
     println!("\n{} impacts; the path of the foot is in target/bounce.svg", swing.events.len());
     Ok(())
 }

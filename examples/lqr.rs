@@ -8,8 +8,8 @@
 use pendulum_runtime::analysis::state_space;
 use pendulum_runtime::nalgebra::{Matrix4, RowVector4, SMatrix, Vector4};
 use pendulum_runtime::prelude::*;
+use pictures::{Chart, Curve, Picture, color};
 use std::f64::consts::PI;
-use std::fmt::Write;
 
 lagrangian! {
     #[derive(Clone)]
@@ -60,19 +60,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         (25.0 * lacks * v[1] * θ.cos()).clamp(-4.0, 4.0) - 2.0 * q[0] - v[0]
     });
     let run = solve(&robot, (0.0, 9.0), [0.0, PI], [0.0, 0.05]).rtol(1e-9).every(0.02).run()?;
-    let mut svg = String::from(
-        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='-110 -62 220 124' stroke-width='.6'><g transform='scale(1 -1)'>\
-         <rect x='-110' y='-62' width='220' height='124' fill='#fbfaf7'/><path d='M-110 0H110' stroke='#c9c4b8'/>",
-    );
-    let mut way = String::new();
-    for (k, state) in run.iter().enumerate() {
-        let [x, y] = robot.tip(state.t, &state.q, &state.v).map(|x| 100.0 * x);
-        let (s, shade) = (100.0 * state.q[0], 0.1 + 0.6 * (k as f64 / run.len() as f64).powi(2));
-        write!(svg, "<path d='M{s:.1} 0L{x:.1} {y:.1}' stroke='#345' opacity='{shade:.2}'/>")?;
-        write!(way, " {x:.1},{y:.1}")?;
+    let tips: Vec<[f64; 2]> =
+        run.iter().map(|state| robot.tip(state.t, &state.q, &state.v)).collect();
+    let mut chart = Chart::drawing().curve(Curve::new([(-1.1, 0.0), (1.1, 0.0)]).opacity(0.5));
+    for (k, (q, &[x, y])) in run.q.iter().zip(&tips).enumerate() {
+        let late = 0.1 + 0.6 * (k as f64 / run.len() as f64).powi(2);
+        chart = chart.curve(Curve::new([(q[0], 0.0), (x, y)]).width(1.0).opacity(late));
     }
-    write!(svg, "<polyline points='{way}' fill='none' stroke='#c2410c'/></g></svg>")?;
-    std::fs::write("target/lqr.svg", svg)?;
+    let way = Curve::new(tips.iter().map(|&[x, y]| (x, y))).color(color::ORANGE);
+    Picture::new("A cart swings its pole up and balances it", (960, 560))
+        .chart(chart.curve(way))
+        .save("target/lqr.svg")?;
     let [s, θ] = run.end.q;
     println!("{}\npole off by {:.0e} rad, cart by {s:.0e} m: target/lqr.svg", run.stats, θ.sin());
     if θ.cos() < 0.9999 { Err("the pole has fallen".into()) } else { Ok(()) }

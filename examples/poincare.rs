@@ -2,12 +2,14 @@
 //!
 //! `cargo run --release --example poincare` writes `target/poincare.svg`: the angle and the momentum
 //! of the lower link whenever the upper one swings through the vertical to the right, for motions of
-//! one energy.
+//! one energy. Eighty thousand dots are one path a motion, which no crate for charts draws.
 
 #![allow(mixed_script_confusables, missing_docs)]
 
+use indicatif::ProgressBar;
 use pendulum_runtime::analysis::poincare;
 use pendulum_runtime::prelude::*;
+use pictures::{RGBColor, color};
 use std::error::Error;
 use std::f64::consts::PI;
 use std::fmt::Write;
@@ -37,11 +39,11 @@ fn velocities(angle: f64, p: f64) -> Option<[f64; 2]> {
 fn main() -> Result<(), Box<dyn Error>> {
     let double = Double::new(1.0);
     let mut svg = String::from(
-        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='-640 -400 1280 800' font-family='sans-serif'>\n\
-         <rect x='-640' y='-400' width='1280' height='800' fill='#101418'/>\n",
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='-640 -400 1280 800' font-family='sans-serif' font-size='18'>\n",
     );
     let (mut count, mut drift) = (0, 0.0_f64);
-    for motion in 0..MOTIONS {
+    // Hidden where stderr is no terminal.
+    for motion in ProgressBar::new(MOTIONS as u64).wrap_iter(0..MOTIONS) {
         // Starts on a spiral of the golden angle cover the allowed area evenly.
         let (radius, turn) = ((motion as f64 + 0.5) / MOTIONS as f64, 2.399963 * motion as f64);
         let (angle, p) = (2.0 * radius.sqrt() * turn.cos(), 1.7 * radius.sqrt() * turn.sin());
@@ -56,16 +58,16 @@ fn main() -> Result<(), Box<dyn Error>> {
             drift = drift.max((double.energy_at(t, &q, &v) - ENERGY).abs());
             count += 1;
         }
-        let (hue, light) = (360.0 * radius, 60 + 5 * (motion % 3));
+        let RGBColor(r, g, b) = color::hue(360.0 * radius);
         writeln!(
             svg,
-            "<path d='{dots}' stroke='hsl({hue:.0},70%,{light}%)' stroke-width='1.5' stroke-linecap='round'/>"
+            "<path d='{dots}' stroke='rgb({r},{g},{b})' stroke-width='1.7' stroke-linecap='round'/>"
         )?;
     }
     writeln!(
         svg,
-        "<text x='0' y='380' fill='#8a949e' text-anchor='middle'>angle of the lower link</text>\n\
-         <text transform='translate(-620 0) rotate(-90)' fill='#8a949e' text-anchor='middle'>its momentum</text></svg>"
+        "<text x='0' y='380' fill='#76767c' text-anchor='middle'>angle of the lower link</text>\n\
+         <text transform='translate(-620 0) rotate(-90)' fill='#76767c' text-anchor='middle'>its momentum</text></svg>"
     )?;
     std::fs::write("target/poincare.svg", svg)?;
     println!("{count} crossings, energy kept to {drift:.1e}; target/poincare.svg");

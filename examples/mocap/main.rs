@@ -1,22 +1,23 @@
 //! Feathers on somebody who jumps: compound pendulums driven by captured motion.
 //!
-//! `cargo run --release --example mocap [file.bvh [metres per unit]]` reads a clip, hangs a
+//! `cargo run --release --example mocap [FILE.bvh [METRES]]` reads a clip, hangs a
 //! pendulum on both hands, the head and the hips, integrates its equations, which `lagrangian!`
 //! derives, and those derived by hand, and writes `target/mocap.csv` and `target/mocap.svg`, which
 //! plays in a browser.
 
 #![allow(mixed_script_confusables)]
 
-mod bvh;
 mod hand;
 mod hung;
 mod picture;
 mod sheet;
 mod stage;
 
-use bvh::Bvh;
 use hung::{Hung, Place};
 use indicatif::{ProgressBar, ProgressStyle};
+use lexopt::Parser;
+use lexopt::prelude::*;
+use pendulum_runtime::import::bvh::Bvh;
 use pendulum_runtime::prelude::*;
 use picture::{Picture, Worn};
 use stage::{Plane, find, limbs};
@@ -55,20 +56,20 @@ const PLACES: [Place; 4] = [
     Place {
         label: "left hand",
         names: &["lefthand", "lhand", "handl", "leftwrist", "lwrist", "wristl"],
-        length: 0.16,
+        length: 0.32,
         color: "#0072b2",
     },
     Place {
         label: "right hand",
         names: &["righthand", "rhand", "handr", "rightwrist", "rwrist", "wristr"],
-        length: 0.16,
+        length: 0.32,
         color: "#d55e00",
     },
-    Place { label: "head", names: &["headend", "head"], length: 0.12, color: "#009e73" },
+    Place { label: "head", names: &["headend", "head"], length: 0.24, color: "#009e73" },
     Place {
         label: "hips",
         names: &["hips", "hip", "pelvis", "root"],
-        length: 0.2,
+        length: 0.4,
         color: "#b0488f",
     },
 ];
@@ -85,6 +86,16 @@ const FINE: usize = 4;
 /// A clip is shown up to this time, in seconds.
 const LONGEST: f64 = 600.0;
 
+const HELP: &str = "\
+Hangs feathers on somebody who was captured, and draws how they swing.
+
+cargo run --release --example mocap [FILE.bvh [METRES]]
+
+FILE.bvh  the clip; without it, somebody who jumps
+METRES    metres in a unit of the file, as 0.01; without it, 1
+
+Written: target/mocap.svg, which plays in a browser, and target/mocap.csv.";
+
 fn main() -> ExitCode {
     match swing() {
         Ok(()) => ExitCode::SUCCESS,
@@ -96,20 +107,15 @@ fn main() -> ExitCode {
 }
 
 fn swing() -> Result<(), Box<dyn Error>> {
-    let mut arguments = std::env::args().skip(1);
-    let path = arguments
-        .next()
-        .unwrap_or_else(|| concat!(env!("CARGO_MANIFEST_DIR"), "/examples/data/jumps.bvh").into());
-    let scale = match arguments.next() {
-        Some(text) => metres(&text)?,
-        None => 1.0,
+    let Some((path, scale)) = arguments()? else {
+        println!("{HELP}");
+        return Ok(());
     };
-    let text = fs::read_to_string(&path).map_err(|error| format!("{path}: {error}"))?;
-    let bvh = Bvh::read(&text).map_err(|error| format!("{path}: {error}"))?;
+    let bvh = Bvh::open(&path)?;
     let start = Instant::now();
 
     // Frames, thinned to keys that are a whole number of frames apart.
-    let rate = 1.0 / bvh.frame_time;
+    let rate = 1.0 / bvh.frame_time();
     let every = (rate / KEYS).round().max(1.0) as usize;
     let count = (bvh.frames() - 1) / every + 1;
     let seconds = ((count - 1) * every) as f64 / rate;
@@ -142,7 +148,7 @@ fn swing() -> Result<(), Box<dyn Error>> {
         poses.iter().map(|pose| pose.iter().map(|&at| plane.view(at)).collect()).collect();
 
     let names: Vec<&str> =
-        bvh.joints.iter().filter(|joint| !joint.end).map(|joint| joint.name.as_str()).collect();
+        bvh.joints().iter().filter(|joint| !joint.end).map(|joint| joint.name.as_str()).collect();
     let places: Vec<_> = PLACES
         .iter()
         .filter_map(|place| find(&bvh, place.names).map(|joint| (place, joint)))
@@ -181,7 +187,7 @@ fn swing() -> Result<(), Box<dyn Error>> {
         linear: &hung.linear.angles,
     });
     let picture = Picture {
-        limbs: limbs(&bvh.joints),
+        limbs: limbs(bvh.joints()),
         head: find(&bvh, HEAD),
         poses: &poses,
         worn: worn.collect(),
@@ -205,6 +211,22 @@ fn swing() -> Result<(), Box<dyn Error>> {
     );
     println!("largest difference to the hand-written equation: {}", sheet::difference(&pendulums));
     Ok(())
+}
+
+/// The clip and the metres in a unit of it, unless help is asked for.
+fn arguments() -> Result<Option<(String, f64)>, Box<dyn Error>> {
+    let mut path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/data/jumps.bvh").to_owned();
+    let (mut scale, mut parser, mut count) = (1.0, Parser::from_env(), 0);
+    while let Some(argument) = parser.next()? {
+        match argument {
+            Short('h') | Long("help") => return Ok(None),
+            Value(value) if count == 0 => path = value.string()?,
+            Value(value) if count == 1 => scale = metres(&value.string()?)?,
+            _ => return Err(argument.unexpected().into()),
+        }
+        count += 1;
+    }
+    Ok(Some((path, scale)))
 }
 
 fn metres(text: &str) -> Result<f64, String> {

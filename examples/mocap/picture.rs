@@ -47,6 +47,9 @@ pub(crate) struct Worn<'a> {
     pub(crate) linear: &'a [f64],
 }
 
+/// Writes the value of an attribute at a key.
+type Value<'a> = dyn Fn(usize, &mut String) -> fmt::Result + 'a;
+
 /// From metres to the picture.
 #[derive(Clone, Copy)]
 struct Frame {
@@ -102,7 +105,7 @@ impl Picture<'_> {
 <title>Feathers on captured motion</title>
 <rect width="100%" height="100%" fill="#fff"/>
 <text x="50" y="38" font-size="23" font-weight="bold" fill="#222">Feathers on captured motion</text>
-<text x="50" y="59" fill="#666">compound pendulums, driven by the joints of a captured clip: I θ̈ = −m ⟨ẍ + g e_y, (e^(iθ) c)⊥⟩ − c θ̇</text>"##,
+<text x="50" y="59" fill="#666">compound pendulums that hang from the joints of a captured clip; their equation is derived from six lines of energies</text>"##,
             SIZE[0], SIZE[1]
         )?;
         frame.ground(svg)?;
@@ -207,13 +210,14 @@ impl Picture<'_> {
         }
         if let Some(head) = self.head.filter(|head| joints[1..].contains(head)) {
             let top = joints[joints.len() - 1];
-            write!(svg, r#"<circle r="{:.1}" fill="{color}">"#, 0.1 * frame.scale)?;
+            write!(svg, r#"<circle r="{:.1}" fill="{color}""#, 0.1 * frame.scale)?;
             let middle = |key: usize| {
                 let [a, b] = [self.poses[key][head], self.poses[key][top]];
                 frame.at(f64::midpoint(a[0], b[0]), f64::midpoint(a[1], b[1]))
             };
-            self.animate(svg, "cx", |key, value| write!(value, "{:.1}", middle(key)[0]))?;
-            self.animate(svg, "cy", |key, value| write!(value, "{:.1}", middle(key)[1]))?;
+            let x = |key: usize, value: &mut String| write!(value, "{:.1}", middle(key)[0]);
+            let y = |key: usize, value: &mut String| write!(value, "{:.1}", middle(key)[1]);
+            self.moving(svg, &[("cx", &x), ("cy", &y)])?;
             writeln!(svg, "</circle>")?;
         }
         Ok(())
@@ -229,28 +233,27 @@ impl Picture<'_> {
     ) -> fmt::Result {
         write!(
             svg,
-            r#"<polyline fill="none" stroke="{color}" stroke-width="{:.1}" stroke-linecap="round" stroke-linejoin="round">"#,
+            r#"<polyline fill="none" stroke="{color}" stroke-width="{:.1}" stroke-linecap="round" stroke-linejoin="round""#,
             thick * frame.scale
         )?;
-        self.animate(svg, "points", |key, value| {
+        let points = |key: usize, value: &mut String| {
             joints.iter().try_for_each(|&joint| {
                 let [x, y] = frame.at(self.poses[key][joint][0], self.poses[key][joint][1]);
                 write!(value, "{x:.1},{y:.1} ")
             })
-        })?;
+        };
+        self.moving(svg, &[("points", &points)])?;
         writeln!(svg, "</polyline>")
     }
 
     /// A feather, turned about its pivot.
     fn feather(&self, svg: &mut String, frame: Frame, worn: &Worn<'_>) -> fmt::Result {
         let color = worn.color;
-        write!(svg, "<g>")?;
-        self.transform(svg, "translate", |key, value| {
+        self.turning(svg, "translate", |key, value| {
             let [x, y] = frame.at(worn.pivot[key * self.fine][0], worn.pivot[key * self.fine][1]);
             write!(value, "{x:.1} {y:.1}")
         })?;
-        write!(svg, "<g>")?;
-        self.transform(svg, "rotate", |key, value| {
+        self.turning(svg, "rotate", |key, value| {
             write!(value, "{:.1}", -worn.spline[key * self.fine].to_degrees())
         })?;
         write!(
@@ -292,15 +295,16 @@ impl Picture<'_> {
             let behind = (lasting * rate) as usize;
             write!(
                 svg,
-                r#"<path d="{path}" pathLength="{total:.1}" fill="none" stroke="{color}" stroke-width="{:.1}" stroke-opacity="{}">"#,
+                r#"<path d="{path}" pathLength="{total:.1}" fill="none" stroke="{color}" stroke-width="{:.1}" stroke-opacity="{}""#,
                 1.6 + 1.0 * step as f64,
                 0.22 + 0.06 * step as f64
             )?;
-            self.animate(svg, "stroke-dasharray", |key, value| {
+            let dashes = |key: usize, value: &mut String| {
                 let now = key * self.fine;
                 let from = reached[now.saturating_sub(behind)];
                 write!(value, "0 {from:.1} {:.1} {:.0}", reached[now] - from, total + 9.0)
-            })?;
+            };
+            self.moving(svg, &[("stroke-dasharray", &dashes)])?;
             writeln!(svg, "</path>")?;
         }
         Ok(())
@@ -432,35 +436,49 @@ impl Picture<'_> {
         format!(r#"dur="{:.4}s" repeatCount="indefinite""#, self.seconds)
     }
 
-    fn animate(
-        &self,
-        svg: &mut String,
-        name: &str,
-        value: impl FnMut(usize, &mut String) -> fmt::Result,
-    ) -> fmt::Result {
-        write!(svg, r#"<animate attributeName="{name}" {} values=""#, self.timing())?;
-        self.values(svg, value)
+    /// The attributes of an element that has been begun, as they are in a picture that stands
+    /// still, and how they move.
+    fn moving(&self, svg: &mut String, attributes: &[(&str, &Value<'_>)]) -> fmt::Result {
+        for (name, value) in attributes {
+            write!(svg, r#" {name}=""#)?;
+            value(self.still(), svg)?;
+            svg.push('"');
+        }
+        svg.push('>');
+        for (name, value) in attributes {
+            write!(svg, r#"<animate attributeName="{name}" {} values=""#, self.timing())?;
+            self.values(svg, value)?;
+        }
+        Ok(())
     }
 
-    fn transform(
+    /// Begins a group that moves or turns.
+    fn turning(
         &self,
         svg: &mut String,
         kind: &str,
-        value: impl FnMut(usize, &mut String) -> fmt::Result,
+        value: impl Fn(usize, &mut String) -> fmt::Result,
     ) -> fmt::Result {
+        write!(svg, r#"<g transform="{kind}("#)?;
+        value(self.still(), svg)?;
         write!(
             svg,
-            r#"<animateTransform attributeName="transform" type="{kind}" {} values=""#,
+            r#")"><animateTransform attributeName="transform" type="{kind}" {} values=""#,
             self.timing()
         )?;
         self.values(svg, value)
+    }
+
+    /// The key that programs show which play no animation: two thirds of the way.
+    fn still(&self) -> usize {
+        2 * (self.poses.len() - 1) / 3
     }
 
     /// One value a key.
     fn values(
         &self,
         svg: &mut String,
-        mut value: impl FnMut(usize, &mut String) -> fmt::Result,
+        value: impl Fn(usize, &mut String) -> fmt::Result,
     ) -> fmt::Result {
         for key in 0..self.poses.len() {
             if 0 < key {

@@ -1,6 +1,6 @@
 //! The vertical plane in which somebody moves, and the joints from which things hang.
 
-use crate::bvh::{Bvh, Joint};
+use pendulum_runtime::import::bvh::{Bvh, Joint};
 use pendulum_runtime::scalar::Real;
 
 /// The vertical plane along the main horizontal direction of a path; the second axis of the file
@@ -46,7 +46,7 @@ impl Plane {
 
 /// The first joint with one of several names, or else whose name contains one of them.
 pub(crate) fn find(bvh: &Bvh, names: &[&str]) -> Option<usize> {
-    let plain: Vec<String> = bvh.joints.iter().map(|joint| plain(&joint.name)).collect();
+    let plain: Vec<String> = bvh.joints().iter().map(|joint| plain(&joint.name)).collect();
     let same = |name: &&str| plain.iter().position(|joint| joint == name);
     let within = |name: &&str| plain.iter().position(|joint| joint.contains(*name));
     names.iter().find_map(same).or_else(|| names.iter().find_map(within))
@@ -86,7 +86,7 @@ pub(crate) fn limbs(joints: &[Joint]) -> Vec<Vec<usize>> {
 #[cfg(test)]
 mod tests {
     use super::{Plane, find, limbs};
-    use crate::bvh::Bvh;
+    use pendulum_runtime::import::bvh::Bvh;
 
     fn rig(names: [&str; 4]) -> Bvh {
         let [a, b, c, d] = names;
@@ -137,6 +137,6 @@ mod tests {
 
     #[test]
     fn limbs_start_at_branches() {
-        assert_eq!(limbs(&rig(["a", "b", "c", "d"]).joints), [vec![0, 1, 2], vec![1, 3]]);
+        assert_eq!(limbs(rig(["a", "b", "c", "d"]).joints()), [vec![0, 1, 2], vec![1, 3]]);
     }
 }

@@ -17,6 +17,8 @@ mod rig;
 
 use bake::{Baked, Course, Settings};
 use indicatif::{ProgressBar, ProgressStyle};
+use lexopt::Parser;
+use lexopt::prelude::*;
 use pendulum_runtime::import::svg::{Drawing, Role, Units};
 use rig::Rig;
 use std::error::Error;
@@ -35,6 +37,15 @@ const DAMPINGS: [f64; 5] = [0.04, 0.08, 0.16, 0.32, 0.64];
 /// The settings of `target/owl.svg`, as numbers among those.
 const SHOWN: [usize; 2] = [2, 2];
 
+const HELP: &str = "\
+Lets the feathers of a drawing swing while its keyed joints dance.
+
+cargo run --release --features svg --example owl [FILE.svg]
+
+FILE.svg  the drawing, whose groups are joints; without it, an owl
+
+Written: target/owl.svg, which plays in a browser, and target/owl.html, a page with sliders.";
+
 fn main() -> ExitCode {
     match fly() {
         Ok(()) => ExitCode::SUCCESS,
@@ -46,9 +57,18 @@ fn main() -> ExitCode {
 }
 
 fn fly() -> Result<(), Box<dyn Error>> {
-    let given = std::env::args().nth(1);
-    let path = given
-        .unwrap_or_else(|| concat!(env!("CARGO_MANIFEST_DIR"), "/examples/data/owl.svg").into());
+    let mut path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/data/owl.svg").to_owned();
+    let mut parser = Parser::from_env();
+    while let Some(argument) = parser.next()? {
+        match argument {
+            Short('h') | Long("help") => {
+                println!("{HELP}");
+                return Ok(());
+            }
+            Value(value) => path = value.string()?,
+            _ => return Err(argument.unexpected().into()),
+        }
+    }
     let text = fs::read_to_string(&path).map_err(|error| format!("{path}: {error}"))?;
     let drawing = Drawing::read(&text, UNITS).map_err(|error| format!("{path}: {error}"))?;
     let rig = Rig::new(&drawing).map_err(|error| format!("{path}: {error}"))?;

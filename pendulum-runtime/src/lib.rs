@@ -38,7 +38,7 @@
 //! | systems to begin with | a block that is there | [the gallery](guide::gallery) |
 //! | a motion with an error bound | [`solve`]`(&system, (0.0, 10.0), q, v).rtol(1e-9).run()?` | [choosing a method](guide::choosing_a_method) |
 //! | a pivot that follows a known motion | `driven x: [m; 2];` and `.driven_by(motion)` | [`motion`](mod@motion) |
-//! | motions from glTF, joints and bodies from SVG | features `gltf` and `svg` | `import` |
+//! | motions from BVH and glTF, joints and bodies from SVG | features `bvh`, `gltf` and `svg` | `import` |
 //! | a controller | `input f: N;` and `.controlled_by(\|t, q, v\| …)` | [control](guide::control) |
 //! | impacts, and runs that end when something happens | `.events([…])` | [control](guide::control#impacts) |
 //! | closed loops, rolling, end stops | `constraint loop: …;` `limit rail: …;` | [constraints](guide::constraints) |
@@ -67,7 +67,20 @@
 //! - A method that is wrong for a system does not compile for it.
 //! - Bad input is an error that names time and coordinate, not a panic.
 //!
+//! # Features
+//!
+//! | feature | default | adds | depends on |
+//! |---|---|---|---|
+//! | `simd` | yes | the widest vectors that the machine has, found out while running, in scenes, batches and `Picard` | `pulp` |
+//! | `rayon` | no | threads in scenes and ensembles | `rayon` |
+//! | `csv` | no | tables of solutions as comma-separated values | `csv` |
+//! | `serde` | no | reading and writing of solutions, states, bodies, baked motions and snapshots | `serde` |
+//! | `bvh` | no | `import::bvh`: motions from motion capture | |
+//! | `gltf` | no | `import::gltf`: motions from the animations of glTF 2.0 files | `gltf` |
+//! | `svg` | no | `import::svg`: joints and bodies from drawings | `usvg`, `svgtypes` |
+//!
 //! [`solve`]: integrate::solve
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 #[macro_use]
 mod macros;
@@ -79,7 +92,7 @@ pub mod error;
 // Text alone, which programs need not carry.
 #[cfg(any(doc, doctest))]
 pub mod guide;
-#[cfg(any(feature = "gltf", feature = "svg"))]
+#[cfg(any(feature = "bvh", feature = "gltf", feature = "svg"))]
 pub mod import;
 pub mod integrate;
 pub mod jet;

@@ -6,10 +6,6 @@
 //! longer than ten seconds, or needed more than a gigabyte. `--only TARGET --seed N --count 1`
 //! repeats one case, `--only equations --count 100000` draws so many of one.
 
-// Files are read here, and not played.
-#[allow(dead_code)]
-#[path = "../../../examples/mocap/bvh.rs"]
-mod bvh;
 mod files;
 mod memory;
 mod target;

@@ -1,10 +1,10 @@
 //! The targets of random input.
 
-use crate::bvh::Bvh;
 use crate::files::mutated;
 #[cfg(any(feature = "gltf", feature = "svg"))]
 use crate::files::renumbered;
 use pendulum_compiler::{compile, expand};
+use pendulum_runtime::import::bvh::Bvh;
 use proc_macro2::TokenStream;
 use random_systems::Random;
 use random_systems::generate::{self, Manner};

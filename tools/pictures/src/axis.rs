@@ -88,6 +88,9 @@ impl Axis {
     pub(crate) fn ticks(&self, (low, high): (f64, f64), most: usize) -> Vec<(f64, String)> {
         let (step, digits) = match self.scale {
             Scale::Bare => return Vec::new(),
+            Scale::Logarithmic | Scale::Digits if high - low < 2.0 => {
+                return self.short_ticks((low, high));
+            }
             Scale::Linear => nice_step(high - low, most),
             Scale::Logarithmic | Scale::Digits => {
                 let steps = [1.0, 2.0, 3.0, 5.0, 10.0];
@@ -106,6 +109,22 @@ impl Axis {
             .map(|index| index as f64 * step)
             // No sign before zero.
             .map(|place| (place, text(place + 0.0)))
+            .collect()
+    }
+
+    /// Ticks at 1, 2 and 5 times each power of ten.
+    fn short_ticks(&self, (low, high): (f64, f64)) -> Vec<(f64, String)> {
+        let sign = if self.scale == Scale::Digits { -1.0 } else { 1.0 };
+        let (first, last) = ((sign * low).min(sign * high), (sign * low).max(sign * high));
+        let powers = first.floor() as i32..=last.ceil() as i32;
+        let ticks = powers.flat_map(|exponent| [1, 2, 5].map(|factor| (factor, exponent)));
+        ticks
+            .map(|(factor, exponent)| {
+                let place = f64::from(factor).log10() + f64::from(exponent);
+                (place, format!("{factor}e{exponent}"))
+            })
+            .filter(|(place, _)| (first..=last).contains(place))
+            .map(|(place, text)| (sign * place, text))
             .collect()
     }
 }
@@ -150,6 +169,15 @@ mod tests {
         assert_eq!(
             texts(&axis.clone().unit("°"), (-50.0, 50.0), 5),
             ["-40°", "-20°", "0°", "20°", "40°"]
+        );
+    }
+
+    #[test]
+    fn short_logarithmic_axes_have_ticks_between_the_powers() {
+        let ends = (-2.5, -0.9);
+        assert_eq!(
+            texts(&Axis::logarithmic(""), ends, 8),
+            ["5e-3", "1e-2", "2e-2", "5e-2", "1e-1"]
         );
     }
 

@@ -119,6 +119,24 @@ impl Chart {
         self
     }
 
+    /// Adds a line through points whose colour goes from one hue to another, in degrees, as time
+    /// goes on.
+    pub fn way(
+        mut self,
+        points: impl IntoIterator<Item = (f64, f64)>,
+        (from, to): (f64, f64),
+    ) -> Self {
+        let points: Vec<(f64, f64)> = points.into_iter().collect();
+        let piece = points.len().div_ceil(60).max(1);
+        for start in (0..points.len().saturating_sub(1)).step_by(piece) {
+            let end = (start + piece + 1).min(points.len());
+            let hue = from + (to - from) * start as f64 / points.len() as f64;
+            let curve = Curve::new(points[start..end].iter().copied());
+            self = self.curve(curve.color(color::hue(hue)));
+        }
+        self
+    }
+
     /// Adds a dot of `radius` pixels, over all curves.
     pub fn dot(mut self, (x, y): (f64, f64), radius: f64, color: RGBColor) -> Self {
         self.dots.push((x, y, radius, color));
@@ -148,9 +166,14 @@ impl Chart {
         let fine = f64::from(FINE);
         let y_ticks = self.y.ticks(ys, (height / (34.0 * fine)) as usize);
         let ticks = longest(&mut y_ticks.iter().map(|tick| tick.1.chars().count()));
-        let names = longest(&mut self.curves.iter().map(|curve| curve.name.chars().count()));
+        // Strong curves have bold names.
+        let names = self.curves.iter().map(|curve| {
+            let letter = if 3.0 <= curve.width { 8.6 } else { 7.6 };
+            letter * curve.name.chars().count() as f64
+        });
+        let names = names.fold(0.0, f64::max);
         let left = if bare[1] { 12.0 } else { 36.0 + 8.0 * ticks } * fine;
-        let right = if names == 0.0 { 14.0 } else { 34.0 + 7.6 * names } * fine;
+        let right = if names == 0.0 { 14.0 } else { 34.0 + names } * fine;
         let top = if self.title.is_empty() { 10.0 } else { 40.0 } * fine;
         let bottom = if bare[0] { 10.0 } else { 50.0 } * fine;
         let (across, up) = (width - left - right, height - top - bottom);

@@ -33,7 +33,7 @@ const PAGES: &[Page] = &[
     Page {
         figure: Figure::Phase,
         file: "stability-phase.svg",
-        title: "Phase of the same pendulum: rounding makes the error grow no faster than t√t",
+        title: "Phase of the same pendulum: what rounding does to it grows about as t√t",
         x: "t in s",
         y: "error in s",
         logarithmic: true,
@@ -55,7 +55,11 @@ const PAGES: &[Page] = &[
         x: "step in s",
         y: "error after 5 s, in rad",
         logarithmic: true,
-        guides: &[("grows as h", 1.0, 1.0), ("grows as h²", 1.0, 2.0), ("grows as h⁴", 30.0, 4.0)],
+        guides: &[
+            ("first order", 1.0, 1.0),
+            ("second order", 1.0, 2.0),
+            ("fourth order", 30.0, 4.0),
+        ],
     },
 ];
 

@@ -1,6 +1,9 @@
 //! The reader's results and refusals.
 
 use super::{Bvh, LARGEST};
+use crate::body::random::Random;
+use crate::motion::{Derivatives, Motion, Side};
+use crate::time::Time;
 
 /// An arm whose shoulder turns and slides, with a hand that turns about two axes.
 const ARM: &str = "HIERARCHY
@@ -51,7 +54,7 @@ fn names_parents_and_times() {
             ("left hand end", Some(1), true)
         ]
     );
-    assert_eq!((arm.frames(), arm.frame_time), (3, 0.025));
+    assert_eq!((arm.frames(), arm.frame_time()), (3, 0.025));
 }
 
 #[test]
@@ -111,8 +114,8 @@ fn line_ends_case_and_blank_lines_do_not_matter() {
 
 #[test]
 fn the_excerpt_is_read() {
-    let text = include_str!("../data/jumps.bvh");
-    let jumps = read(text);
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/data/jumps.bvh");
+    let jumps = Bvh::open(path).unwrap();
     assert_eq!((jumps.joints.len(), jumps.frames()), (38, 241));
     let head = jumps.joints.iter().position(|joint| joint.name == "Head end").unwrap();
     let height = jumps.pose(0)[head][1];
@@ -122,49 +125,65 @@ fn the_excerpt_is_read() {
 #[test]
 fn refusals_say_where_what_and_what_to_do() {
     let cases = [
-        ("HIERARCHY", "HIERARCHIE", "line 1: `HIERARCHIE` where HIERARCHY must stand"),
-        ("ROOT Shoulder", "ROOT", "line 2: a joint without a name"),
-        ("Shoulder\n{", "Shoulder\n", "line 4: `OFFSET` where the brace of a joint must open"),
-        ("OFFSET 2 0 0", "OFFSET 2 0", "line 7: OFFSET with 2 numbers"),
-        ("OFFSET 2 0 0", "OFFSET 2 0 zero", "line 7: `zero` is no number"),
-        ("OFFSET 2 0 0", "OFFSET 2 0 NaN", "line 7: `NaN` is no number"),
-        ("OFFSET 2 0 0", "OFFSET 2 0 1e99", "line 7: `1e99` is no number"),
-        ("    OFFSET 2 0 0\n", "", "line 12: `left hand` has no OFFSET"),
-        ("OFFSET 2 0 0", "OFFSET 2 0 0 OFFSET 0 0 0", "line 7: a second OFFSET in `left hand`"),
-        ("OFFSET 2 0 0", "LENGTH 2", "line 7: `LENGTH` is not known in a hierarchy"),
-        ("CHANNELS 2", "CHANNELS 3", "line 8: 3 channels are announced, 2 names follow"),
+        ("HIERARCHY", "HIERARCHIE", "line 1, column 1: `HIERARCHIE` where HIERARCHY must stand"),
+        ("ROOT Shoulder", "ROOT", "line 2, column 1: a joint without a name"),
+        (
+            "Shoulder\n{",
+            "Shoulder\n",
+            "line 4, column 3: `OFFSET` where the brace of a joint must open",
+        ),
+        ("OFFSET 2 0 0", "OFFSET 2 0", "line 7, column 5: OFFSET with 2 numbers"),
+        ("OFFSET 2 0 0", "OFFSET 2 0 zero", "line 7, column 16: `zero` is no number"),
+        ("OFFSET 2 0 0", "OFFSET 2 0 NaN", "line 7, column 16: `NaN` is no number"),
+        ("OFFSET 2 0 0", "OFFSET 2 0 1e99", "line 7, column 16: `1e99` is no number"),
+        ("    OFFSET 2 0 0\n", "", "line 12, column 3: `left hand` has no OFFSET"),
+        (
+            "OFFSET 2 0 0",
+            "OFFSET 2 0 0 OFFSET 0 0 0",
+            "line 7, column 18: a second OFFSET in `left hand`",
+        ),
+        ("OFFSET 2 0 0", "LENGTH 2", "line 7, column 5: `LENGTH` is not known in a hierarchy"),
+        ("CHANNELS 2", "CHANNELS 3", "line 8, column 5: 3 channels are announced, 2 names follow"),
         (
             "CHANNELS 2",
             "CHANNELS 99999999999999999999",
-            "line 8: `99999999999999999999` is no number of channels",
+            "line 8, column 14: `99999999999999999999` is no number of channels",
         ),
-        ("2 Zrotation Xrotation", "1 Wrotation", "line 8: `Wrotation` is no channel"),
+        ("2 Zrotation Xrotation", "1 Wrotation", "line 8, column 16: `Wrotation` is no channel"),
         (
             "4 Xposition Yposition",
             "4 Xposition Xposition",
-            "line 5: `Xposition` twice in one joint",
+            "line 5, column 24: `Xposition` twice in one joint",
         ),
-        ("OFFSET 0 1 0", "OFFSET 0 1 0 CHANNELS 1 Xrotation", "line 11: channels in an end site"),
-        ("OFFSET 0 1 0", "JOINT finger", "line 11: a joint inside an end site"),
-        ("ROOT Shoulder", "End Site", "line 2: an end site outside of all joints"),
-        ("}\nMOTION", "MOTION", "line 2: `Shoulder` is not closed before MOTION"),
-        ("}\nMOTION", "}\n}\nMOTION", "line 15: a closing brace outside of all joints"),
-        ("Frames: 3", "Frames: three", "line 16: `three` is no number of frames"),
-        ("Frames: 3", "Frames: 0", "line 16: the file has no frames"),
+        (
+            "OFFSET 0 1 0",
+            "OFFSET 0 1 0 CHANNELS 1 Xrotation",
+            "line 11, column 20: channels in an end site",
+        ),
+        ("OFFSET 0 1 0", "JOINT finger", "line 11, column 7: a joint inside an end site"),
+        ("ROOT Shoulder", "End Site", "line 2, column 1: an end site outside of all joints"),
+        ("}\nMOTION", "MOTION", "line 2, column 1: `Shoulder` is not closed before MOTION"),
+        ("}\nMOTION", "}\n}\nMOTION", "line 15, column 1: a closing brace outside of all joints"),
+        ("Frames: 3", "Frames: three", "line 16, column 9: `three` is no number of frames"),
+        ("Frames: 3", "Frames: 0", "line 16, column 9: the file has no frames"),
         (
             "Frames: 3",
             "Frames: 18446744073709551615",
-            "line 16: 18446744073709551615 frames are announced, 3 rows follow",
+            "line 16, column 9: 18446744073709551615 frames are announced, 3 rows follow",
         ),
-        ("Frames: 3", "Frames: 2", "line 20: a row after the last of 2 frames"),
-        ("Frames: 3\n", "", "line 16: `Frame Time: .025` where `Frames: …` must stand"),
-        (".025", "0", "line 17: a frame time of 0 s"),
-        (".025", "-1", "line 17: a frame time of -1 s"),
-        ("Time: .025", "Tim .025", "line 17: `Frame Tim .025` where `Frame Time: …` must stand"),
+        ("Frames: 3", "Frames: 2", "line 20, column 1: a row after the last of 2 frames"),
+        ("Frames: 3\n", "", "line 16, column 1: `Frame Time: .025` where `Frames: …` must stand"),
+        (".025", "0", "line 17, column 13: a frame time of 0 s"),
+        (".025", "-1", "line 17, column 13: a frame time of -1 s"),
+        (
+            "Time: .025",
+            "Tim .025",
+            "line 17, column 1: `Frame Tim .025` where `Frame Time: …` must stand",
+        ),
         (
             "1 2 3 90 0 0",
             "1 2 3 90 0",
-            "line 19: 5 numbers in the row, 6 channels in the hierarchy",
+            "line 19, column 11: 5 numbers in the row, 6 channels in the hierarchy",
         ),
     ];
     for (from, to, expected) in cases {
@@ -172,23 +191,14 @@ fn refusals_say_where_what_and_what_to_do() {
         let message = message(&ARM.replacen(from, to, 1));
         assert!(message.starts_with(expected) && message.contains("; "), "{message}");
     }
-    assert!(message("").starts_with("line 1: the file ends before HIERARCHY"));
-    assert!(message("HIERARCHY\nMOTION\n").starts_with("line 2: no joint has a channel"));
+    assert!(message("").starts_with("line 1, column 1: the file ends before HIERARCHY"));
+    assert!(message("HIERARCHY\nMOTION\n").starts_with("line 2, column 1: no joint has a channel"));
 }
 
 #[test]
 fn a_skeleton_of_any_depth_is_read_or_refused() {
     let text = format!("HIERARCHY\n{}", "ROOT a { OFFSET 0 0 0 ".repeat(5000));
     assert!(message(&text).contains("joints"), "{}", message(&text));
-}
-
-/// SplitMix64 (Steele, Lea and Flood, 2014).
-fn random(state: &mut u64) -> u64 {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut z = *state;
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
 }
 
 /// Whatever is done to a file, it is either read, with finite poses, or refused in a line of text
@@ -212,23 +222,23 @@ fn mutations_are_read_or_refused() {
         "é",
         ":",
     ];
-    let mut state = 462;
+    let mut random = Random::new(462);
     let (mut accepted, mut refused) = (0, 0);
     for _ in 0..2000 {
         let mut text: Vec<char> = ARM.chars().collect();
-        for _ in 0..=random(&mut state) % 3 {
-            let at = random(&mut state) as usize % text.len();
-            let until = (at + random(&mut state) as usize % 12).min(text.len());
-            match random(&mut state) % 5 {
+        for _ in 0..=random.bits() % 3 {
+            let at = random.bits() as usize % text.len();
+            let until = (at + random.bits() as usize % 12).min(text.len());
+            match random.bits() % 5 {
                 0 => drop(text.drain(at..until)),
-                1 => text[at] = char::from(32 + (random(&mut state) % 95) as u8),
+                1 => text[at] = char::from(32 + (random.bits() % 95) as u8),
                 2 => text.truncate(at.max(1)),
                 3 => {
                     let copy = text[at..until].to_vec();
                     text.splice(at..at, copy);
                 }
                 _ => {
-                    let scrap = scraps[random(&mut state) as usize % scraps.len()];
+                    let scrap = scraps[random.bits() as usize % scraps.len()];
                     text.splice(at..at, scrap.chars());
                 }
             }
@@ -246,8 +256,9 @@ fn mutations_are_read_or_refused() {
             }
             Err(error) => {
                 refused += 1;
-                let lines = text.lines().count().max(1);
-                assert!(1 <= error.line && error.line <= lines, "{error} of {lines} lines");
+                let (line, column) = error.at.unwrap();
+                let length = text.lines().nth(line - 1).map_or(0, |line| line.chars().count());
+                assert!((1..=length + 1).contains(&column), "{error} of {length} letters");
                 assert!(
                     !error.to_string().contains('\n') && error.to_string().len() < 240,
                     "{error}"
@@ -256,4 +267,32 @@ fn mutations_are_read_or_refused() {
         }
     }
     assert!(100 < accepted && 100 < refused, "{accepted} read, {refused} refused");
+}
+
+#[test]
+fn a_motion_passes_through_the_positions_in_metres() {
+    let arm = read(ARM);
+    let hand = arm.motion("left hand", 0.01).unwrap();
+    for frame in 0..arm.frames() {
+        let t = Time::new(frame as f64 * arm.frame_time());
+        let at = Motion::<f64, 3>::sample(&hand, t, Side::Before, Derivatives::POSITION).position;
+        close(at, arm.pose(frame)[1].map(|value| 0.01 * value));
+    }
+}
+
+#[test]
+fn a_name_that_there_is_not_is_refused_with_those_that_there_are() {
+    let error = read(ARM).motion("left foot", 1.0).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "no joint is called `left foot`; there are `Shoulder`, `left hand`; give one of these names"
+    );
+    assert!(read(ARM).motion("left hand", f64::NAN).is_err());
+    let error = Bvh::open("no such file.bvh").unwrap_err().to_string();
+    assert!(error.starts_with("no such file.bvh: ") && error.ends_with("BVH file"), "{error}");
+}
+
+#[test]
+fn a_frame_beyond_the_last_is_the_last() {
+    assert_eq!(read(ARM).pose(3), read(ARM).pose(2));
 }

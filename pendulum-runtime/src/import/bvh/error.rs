@@ -1,0 +1,47 @@
+//! Errors of BVH files.
+
+use core::fmt;
+
+/// Reason for which a BVH file cannot be read: the place in it, the mistake, the advice.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct BvhError {
+    /// The name of the file, unless a text was read.
+    pub file: Option<String>,
+    /// Line and column, both from one; `None` if what was asked for is not in the file.
+    pub at: Option<(usize, usize)>,
+    /// The mistake.
+    pub what: String,
+    /// The advice.
+    pub advice: &'static str,
+}
+
+impl BvhError {
+    pub(super) fn new(at: (usize, usize), what: String, advice: &'static str) -> Self {
+        Self { file: None, at: Some(at), what, advice }
+    }
+
+    pub(super) fn of_call(what: String, advice: &'static str) -> Self {
+        Self { file: None, at: None, what, advice }
+    }
+
+    /// The same error, in a file with a name.
+    pub(super) fn within(mut self, name: &str) -> Self {
+        self.file = Some(name.to_owned());
+        self
+    }
+}
+
+impl fmt::Display for BvhError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(file) = &self.file {
+            write!(f, "{file}: ")?;
+        }
+        if let Some((line, column)) = self.at {
+            write!(f, "line {line}, column {column}: ")?;
+        }
+        write!(f, "{}; {}", self.what, self.advice)
+    }
+}
+
+impl core::error::Error for BvhError {}

@@ -1,0 +1,221 @@
+//! Motions from BVH files, in which motion capture is kept: a skeleton with offsets and channels,
+//! and a row of numbers for each frame.
+//!
+//! ```
+//! use pendulum_runtime::import::bvh::Bvh;
+//! use pendulum_runtime::motion::Projected;
+//!
+//! let text = "HIERARCHY
+//! ROOT shoulder {
+//!   OFFSET 0 140 0
+//!   CHANNELS 1 Zrotation
+//!   JOINT hand { OFFSET 60 0 0 CHANNELS 0 }
+//! }
+//! MOTION
+//! Frames: 3
+//! Frame Time: 0.5
+//! 0
+//! 90
+//! 0";
+//! let arm = Bvh::read(text)?;
+//! // The raised hand, in centimetres as in the file.
+//! assert!((arm.pose(1)[1][1] - 200.0).abs() < 1e-12);
+//! // What a pendulum in the plane hangs on: the hand in metres, seen along z.
+//! let hand = Projected::new(arm.motion("hand", 0.01)?, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A joint's position channels take the place of its offset. Rotations are applied in the order of
+//! the channels: `Zrotation Yrotation Xrotation` is R_z R_y R_x, in degrees. Meredith and Maddock,
+//! "Motion Capture File Formats Explained" (2001), section 3.
+
+mod error;
+mod read;
+#[cfg(test)]
+mod tests;
+
+pub use error::BvhError;
+
+use crate::motion::{Clip, Interpolation};
+use crate::scalar::Real;
+use read::{Channel, Reader};
+use std::path::Path;
+
+/// The greatest length and angle, in the units of the file.
+const LARGEST: f64 = 1e9;
+
+/// Names that an error lists at most.
+const LISTED: usize = 12;
+
+/// A skeleton and its motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bvh {
+    joints: Vec<Joint>,
+    frame_time: f64,
+    /// The channels of all joints, frame after frame.
+    rows: Vec<f64>,
+    /// The number of channels.
+    width: usize,
+}
+
+/// A joint, or the end of a limb.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// The name in the file; an end site has that of its parent and " end".
+    pub name: String,
+    /// The index of the parent, unless this is a root.
+    pub parent: Option<usize>,
+    /// True for an end site, which has no channels.
+    pub end: bool,
+    offset: [f64; 3],
+    channels: Vec<Channel>,
+}
+
+impl Bvh {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// A file that cannot be opened or that is no text, and the errors of [`read`](Self::read).
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, BvhError> {
+        let path = path.as_ref();
+        let name = path.display().to_string();
+        let text = std::fs::read_to_string(path).map_err(|error| {
+            BvhError::of_call(format!("{name}: {error}"), "give the path of a BVH file")
+        })?;
+        Self::read(&text).map_err(|error| error.within(&name))
+    }
+
+    /// Reads the text of a file.
+    ///
+    /// # Errors
+    /// The first mistake of the text, with its line and column.
+    pub fn read(text: &str) -> Result<Self, BvhError> {
+        let mut reader = Reader::new(text);
+        let joints = reader.hierarchy()?;
+        let width = joints.iter().map(|joint| joint.channels.len()).sum();
+        let (frame_time, rows) = reader.motion(width)?;
+        Ok(Self { joints, frame_time, rows, width })
+    }
+
+    /// The joints and the ends of limbs, parents before their children.
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// The index of the first joint with a name.
+    ///
+    /// # Errors
+    /// None has it; the error lists the names that there are.
+    pub fn joint(&self, name: &str) -> Result<usize, BvhError> {
+        self.joints.iter().position(|joint| joint.name == name).ok_or_else(|| {
+            let names: Vec<String> = self
+                .joints
+                .iter()
+                .filter(|joint| !joint.end)
+                .map(|joint| format!("`{}`", joint.name))
+                .collect();
+            let listed = names[..names.len().min(LISTED)].join(", ");
+            let more = match names.len().saturating_sub(LISTED) {
+                0 => String::new(),
+                more => format!(" and {more} more"),
+            };
+            let what = format!("no joint is called `{name}`; there are {listed}{more}");
+            BvhError::of_call(what, "give one of these names")
+        })
+    }
+
+    /// The number of frames, at least one.
+    pub fn frames(&self) -> usize {
+        self.rows.len() / self.width
+    }
+
+    /// The time between two frames in seconds.
+    pub fn frame_time(&self) -> f64 {
+        self.frame_time
+    }
+
+    /// The positions of all joints in a frame (after the last one, in the last), in the file's unit
+    /// of length.
+    pub fn pose(&self, frame: usize) -> Vec<[f64; 3]> {
+        let row = frame.min(self.frames() - 1) * self.width;
+        let mut values = self.rows[row..][..self.width].iter();
+        let mut places: Vec<Place> = Vec::with_capacity(self.joints.len());
+        for joint in &self.joints {
+            let mut local = Place { turn: IDENTITY, at: joint.offset };
+            for (channel, &value) in joint.channels.iter().zip(&mut values) {
+                match *channel {
+                    Channel::Position(axis) => local.at[axis] = value,
+                    Channel::Rotation(axis) => {
+                        local.turn = product(&local.turn, &rotation(axis, value));
+                    }
+                }
+            }
+            places.push(match joint.parent {
+                Some(parent) => places[parent].then(&local),
+                None => local,
+            });
+        }
+        places.into_iter().map(|place| place.at).collect()
+    }
+
+    /// The motion of a joint: a natural cubic spline through its positions at all frames, whose
+    /// first is at t = 0; `metres` is the file's unit of length.
+    ///
+    /// What is captured jitters: a [`Clip`] through every second or fourth pose is smoother.
+    ///
+    /// # Errors
+    /// No joint has the name, or `metres` is no number or infinite.
+    pub fn motion(&self, joint: &str, metres: f64) -> Result<Clip<3>, BvhError> {
+        let joint = self.joint(joint)?;
+        let positions: Vec<[f64; 3]> = (0..self.frames())
+            .map(|frame| self.pose(frame)[joint].map(|value| value * metres))
+            .collect();
+        Clip::new(1.0 / self.frame_time, &positions, 1, Interpolation::Spline).map_err(|error| {
+            BvhError::of_call(error.to_string(), "give the metres in a unit of the file, as 0.01")
+        })
+    }
+}
+
+type Matrix = [[f64; 3]; 3];
+
+const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// The place of a joint and its turn.
+struct Place {
+    turn: Matrix,
+    at: [f64; 3],
+}
+
+impl Place {
+    fn then(&self, local: &Self) -> Self {
+        let mut at = self.at;
+        for (value, row) in at.iter_mut().zip(&self.turn) {
+            *value += row[0] * local.at[0] + row[1] * local.at[1] + row[2] * local.at[2];
+        }
+        Self { turn: product(&self.turn, &local.turn), at }
+    }
+}
+
+fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    let mut c = [[0.0; 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            c[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
+        }
+    }
+    c
+}
+
+/// The right-handed turn about an axis, in degrees.
+fn rotation(axis: usize, degrees: f64) -> Matrix {
+    // Whole turns go first, so that a right angle after them is still one.
+    let (sin, cos) = Real::sin_cos((degrees % 360.0).to_radians());
+    let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut matrix = [[0.0; 3]; 3];
+    matrix[axis][axis] = 1.0;
+    matrix[next][next] = cos;
+    matrix[last][last] = cos;
+    matrix[next][last] = -sin;
+    matrix[last][next] = sin;
+    matrix
+}

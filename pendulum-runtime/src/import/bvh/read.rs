@@ -1,0 +1,467 @@
+//! The text of a BVH file.
+
+use super::{BvhError, Joint, LARGEST};
+
+/// No skeleton has more joints; a file that does is something else.
+const MOST_JOINTS: usize = 4096;
+
+/// A number of a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Channel {
+    /// Along an axis.
+    Position(usize),
+    /// About an axis, in degrees.
+    Rotation(usize),
+}
+
+/// The lines that are not blank.
+pub(super) struct Reader<'a> {
+    lines: Vec<Line<'a>>,
+    /// The line that is read next.
+    next: usize,
+}
+
+/// A line: its number from one, all of it, and without blanks around it.
+#[derive(Clone, Copy)]
+struct Line<'a> {
+    number: usize,
+    whole: &'a str,
+    text: &'a str,
+}
+
+/// Line and column, both from one.
+type At = (usize, usize);
+
+impl<'a> Line<'a> {
+    /// The place of a part of the line.
+    fn at(self, part: &str) -> At {
+        let offset = (part.as_ptr() as usize).wrapping_sub(self.whole.as_ptr() as usize);
+        let before = self.whole.get(..offset).unwrap_or(self.whole);
+        (self.number, before.chars().count() + 1)
+    }
+
+    /// The place of the first letter.
+    fn start(self) -> At {
+        self.at(self.text)
+    }
+
+    /// The place behind the last letter.
+    fn end(self) -> At {
+        (self.number, self.start().1 + self.text.chars().count())
+    }
+
+    /// The words, of which a brace is one wherever it stands.
+    fn words(self) -> Vec<Word<'a>> {
+        let pieces = self.text.split_whitespace().flat_map(|word| {
+            word.split_inclusive(['{', '}']).flat_map(|piece| {
+                let brace = piece.len() - usize::from(piece.ends_with(['{', '}']));
+                let (before, brace) = piece.split_at(brace);
+                [before, brace]
+            })
+        });
+        pieces.filter(|piece| !piece.is_empty()).map(|word| (self.at(word), word)).collect()
+    }
+}
+
+/// One word and its place.
+type Word<'a> = (At, &'a str);
+
+impl<'a> Reader<'a> {
+    pub(super) fn new(text: &'a str) -> Self {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let lines = text.lines().enumerate().map(|(index, whole)| Line {
+            number: index + 1,
+            whole,
+            text: whole.trim(),
+        });
+        Self { lines: lines.filter(|line| !line.text.is_empty()).collect(), next: 0 }
+    }
+
+    /// The end of the file, for what is missing there.
+    fn end(&self) -> At {
+        self.lines.last().map_or((1, 1), |line| line.end())
+    }
+
+    fn line(&mut self, missing: &str) -> Result<Line<'a>, BvhError> {
+        let found = self.lines.get(self.next).copied();
+        self.next += 1;
+        found.ok_or_else(|| {
+            error(
+                self.end(),
+                format!("the file ends before {missing}"),
+                "it was cut off: copy it again",
+            )
+        })
+    }
+
+    /// Everything up to the line `MOTION`.
+    pub(super) fn hierarchy(&mut self) -> Result<Vec<Joint>, BvhError> {
+        let first = self.line("HIERARCHY")?;
+        if !first.text.eq_ignore_ascii_case("HIERARCHY") {
+            return Err(error(
+                first.start(),
+                format!("`{}` where HIERARCHY must stand", short(first.text)),
+                "give a BVH file",
+            ));
+        }
+        let mut tree = Tree::default();
+        loop {
+            let line = self.line("MOTION")?;
+            if line.text.eq_ignore_ascii_case("MOTION") {
+                return tree.finish(line.start());
+            }
+            tree.line(&line.words())?;
+        }
+    }
+
+    /// The time between frames and the rows.
+    pub(super) fn motion(&mut self, width: usize) -> Result<(f64, Vec<f64>), BvhError> {
+        let line = self.line("`Frames:`")?;
+        let count = after(line.text, &["Frames"]).ok_or_else(|| {
+            error(
+                line.start(),
+                format!("`{}` where `Frames: …` must stand", short(line.text)),
+                "write the number of frames there",
+            )
+        })?;
+        let frames: usize = count.parse().map_err(|_| {
+            error(
+                line.at(count),
+                format!("`{}` is no number of frames", short(count)),
+                "write the number of rows that follow",
+            )
+        })?;
+        let time = self.line("`Frame Time:`")?;
+        let step = after(time.text, &["Frame", "Time"]).ok_or_else(|| {
+            error(
+                time.start(),
+                format!("`{}` where `Frame Time: …` must stand", short(time.text)),
+                "write the seconds between frames",
+            )
+        })?;
+        let frame_time = number(step).ok_or_else(|| not_a_number(time.at(step), step))?;
+        if frame_time <= 0.0 {
+            return Err(error(
+                time.at(step),
+                format!("a frame time of {step} s"),
+                "write a positive number of seconds",
+            ));
+        }
+        let rows = self.lines.get(self.next..).unwrap_or_default();
+        if frames == 0 {
+            return Err(error(
+                line.at(count),
+                "the file has no frames".into(),
+                "record at least one",
+            ));
+        }
+        // Before anything is reserved: the count is compared with the rows that are there.
+        if rows.len() < frames {
+            let what = format!("{frames} frames are announced, {} rows follow", rows.len());
+            return Err(error(
+                line.at(count),
+                what,
+                "correct the number, or copy the file again if it was cut off",
+            ));
+        }
+        if frames < rows.len() {
+            let what = format!("a row after the last of {frames} frames");
+            return Err(error(
+                rows[frames].start(),
+                what,
+                "correct the number at `Frames:` or remove the row",
+            ));
+        }
+        let mut values = Vec::new();
+        for &row in rows {
+            let mut words = row.text.split_whitespace();
+            for channel in 0..width {
+                let word = words.next().ok_or_else(|| {
+                    let what =
+                        format!("{channel} numbers in the row, {width} channels in the hierarchy");
+                    error(row.end(), what, "give each channel one number, all on one line")
+                })?;
+                values.push(number(word).ok_or_else(|| not_a_number(row.at(word), word))?);
+            }
+            if let Some(word) = words.next() {
+                let found = width + 1 + words.count();
+                let what = format!("{found} numbers in the row, {width} channels in the hierarchy");
+                let advice = "give each channel one number, all on one line";
+                return Err(error(row.at(word), what, advice));
+            }
+        }
+        Ok((frame_time, values))
+    }
+}
+
+/// A joint of which something may be missing.
+struct Unfinished {
+    name: String,
+    parent: Option<usize>,
+    end: bool,
+    offset: Option<[f64; 3]>,
+    channels: Option<Vec<Channel>>,
+}
+
+/// The joints read so far.
+#[derive(Default)]
+struct Tree {
+    joints: Vec<Unfinished>,
+    /// The joints whose braces are open, with the places of their names.
+    open: Vec<(usize, At)>,
+    /// A joint was named and its brace has not come yet.
+    named: bool,
+}
+
+impl Tree {
+    fn line(&mut self, mut words: &[Word<'_>]) -> Result<(), BvhError> {
+        while let Some((&(at, word), rest)) = words.split_first() {
+            if self.named && word != "{" {
+                return Err(error(
+                    at,
+                    format!("`{}` where the brace of a joint must open", short(word)),
+                    "write `{` there",
+                ));
+            }
+            let used = match word.to_ascii_uppercase().as_str() {
+                "{" if self.named => {
+                    self.named = false;
+                    0
+                }
+                "}" => {
+                    self.close(at)?;
+                    0
+                }
+                "ROOT" => self.name(at, rest, false)?,
+                "JOINT" => self.name(at, rest, false)?,
+                "END" => self.name(at, rest, true)?,
+                "OFFSET" => self.offset(at, rest)?,
+                "CHANNELS" => self.channels(at, rest)?,
+                _ => {
+                    let what = format!("`{}` is not known in a hierarchy", short(word));
+                    return Err(error(
+                        at,
+                        what,
+                        "it takes ROOT, JOINT, End Site, OFFSET, CHANNELS, braces, then MOTION",
+                    ));
+                }
+            };
+            words = &rest[used..];
+        }
+        Ok(())
+    }
+
+    /// A new joint in the one that is open; says how many words its name has.
+    fn name(&mut self, at: At, rest: &[Word<'_>], end: bool) -> Result<usize, BvhError> {
+        let count = rest.iter().position(|(_, word)| *word == "{").unwrap_or(rest.len());
+        let words: Vec<&str> = rest[..count].iter().map(|(_, word)| *word).collect();
+        let parent = self.open.last().map(|&(joint, _)| joint);
+        if let Some(parent) = parent
+            && self.joints[parent].end
+        {
+            return Err(error(
+                at,
+                "a joint inside an end site".into(),
+                "close the end site first, or make it a JOINT",
+            ));
+        }
+        let name = match parent {
+            Some(parent) if end => format!("{} end", self.joints[parent].name),
+            None if end => {
+                return Err(error(
+                    at,
+                    "an end site outside of all joints".into(),
+                    "put it into a joint",
+                ));
+            }
+            _ => words.join(" "),
+        };
+        if name.is_empty() {
+            return Err(error(
+                at,
+                "a joint without a name".into(),
+                "write its name after ROOT or JOINT",
+            ));
+        }
+        if self.joints.len() == MOST_JOINTS {
+            return Err(error(
+                at,
+                format!("more than {MOST_JOINTS} joints"),
+                "give a file with one skeleton",
+            ));
+        }
+        self.open.push((self.joints.len(), at));
+        self.named = true;
+        self.joints.push(Unfinished { name, parent, end, offset: None, channels: None });
+        Ok(count)
+    }
+
+    fn current(&mut self, at: At, word: &str) -> Result<&mut Unfinished, BvhError> {
+        match self.open.last() {
+            Some(&(joint, _)) => Ok(&mut self.joints[joint]),
+            None => Err(error(
+                at,
+                format!("{word} outside of all joints"),
+                "put it between the braces of a joint",
+            )),
+        }
+    }
+
+    fn close(&mut self, at: At) -> Result<(), BvhError> {
+        let joint = self.current(at, "a closing brace")?;
+        if joint.offset.is_none() {
+            let what = format!("`{}` has no OFFSET", short(&joint.name));
+            return Err(error(
+                at,
+                what,
+                "write three numbers after OFFSET before the brace closes",
+            ));
+        }
+        self.open.pop();
+        Ok(())
+    }
+
+    fn offset(&mut self, at: At, rest: &[Word<'_>]) -> Result<usize, BvhError> {
+        let joint = self.current(at, "OFFSET")?;
+        if joint.offset.is_some() {
+            return Err(error(
+                at,
+                format!("a second OFFSET in `{}`", short(&joint.name)),
+                "keep one of them",
+            ));
+        }
+        let words = rest.get(..3).ok_or_else(|| {
+            error(
+                at,
+                format!("OFFSET with {} numbers", rest.len()),
+                "write three, along x, y and z, on one line",
+            )
+        })?;
+        let mut offset = [0.0; 3];
+        for (value, word) in offset.iter_mut().zip(words) {
+            *value = number(word.1).ok_or_else(|| not_a_number(word.0, word.1))?;
+        }
+        joint.offset = Some(offset);
+        Ok(3)
+    }
+
+    fn channels(&mut self, at: At, rest: &[Word<'_>]) -> Result<usize, BvhError> {
+        let joint = self.current(at, "CHANNELS")?;
+        if joint.end {
+            return Err(error(
+                at,
+                "channels in an end site".into(),
+                "make it a JOINT or remove them",
+            ));
+        }
+        if joint.channels.is_some() {
+            return Err(error(
+                at,
+                format!("a second CHANNELS in `{}`", short(&joint.name)),
+                "keep one of them",
+            ));
+        }
+        let (first, names) = rest.split_first().ok_or_else(|| {
+            error(
+                at,
+                "CHANNELS without a number".into(),
+                "write how many channels follow, then their names",
+            )
+        })?;
+        let count: usize = first.1.parse().ok().filter(|&count| count <= 6).ok_or_else(|| {
+            error(
+                first.0,
+                format!("`{}` is no number of channels", short(first.1)),
+                "write 0 to 6, then as many names",
+            )
+        })?;
+        let names = names.get(..count).ok_or_else(|| {
+            error(
+                at,
+                format!("{count} channels are announced, {} names follow", names.len()),
+                "write as many names, on one line",
+            )
+        })?;
+        let mut channels = Vec::with_capacity(count);
+        for &(at, name) in names {
+            let channel = channel(name).ok_or_else(|| {
+                let what = format!("`{}` is no channel", short(name));
+                error(at, what, "the channels are Xposition, Yposition, Zposition, Xrotation, Yrotation and Zrotation")
+            })?;
+            if let Channel::Position(_) = channel
+                && channels.contains(&channel)
+            {
+                return Err(error(at, format!("`{name}` twice in one joint"), "keep one of them"));
+            }
+            channels.push(channel);
+        }
+        joint.channels = Some(channels);
+        Ok(1 + count)
+    }
+
+    fn finish(self, at: At) -> Result<Vec<Joint>, BvhError> {
+        if let Some(&(joint, opened)) = self.open.last() {
+            let what = format!("`{}` is not closed before MOTION", short(&self.joints[joint].name));
+            return Err(error(opened, what, "write the missing `}`"));
+        }
+        let joints = self.joints.into_iter().map(|joint| Joint {
+            name: joint.name,
+            parent: joint.parent,
+            end: joint.end,
+            offset: joint.offset.unwrap_or_default(),
+            channels: joint.channels.unwrap_or_default(),
+        });
+        let joints: Vec<Joint> = joints.collect();
+        if joints.iter().all(|joint| joint.channels.is_empty()) {
+            return Err(error(
+                at,
+                "no joint has a channel".into(),
+                "list what moves after CHANNELS",
+            ));
+        }
+        Ok(joints)
+    }
+}
+
+fn channel(name: &str) -> Option<Channel> {
+    let name = name.to_ascii_lowercase();
+    let axis = ["x", "y", "z"].iter().position(|axis| name.starts_with(axis))?;
+    match &name[1..] {
+        "position" => Some(Channel::Position(axis)),
+        "rotation" => Some(Channel::Rotation(axis)),
+        _ => None,
+    }
+}
+
+/// The rest of a line behind the words and a colon, if it starts with them.
+fn after<'a>(text: &'a str, words: &[&str]) -> Option<&'a str> {
+    let (label, value) = text.split_once(':')?;
+    let same = label
+        .split_whitespace()
+        .map(str::to_ascii_lowercase)
+        .eq(words.iter().map(|word| word.to_ascii_lowercase()));
+    same.then_some(value.trim())
+}
+
+/// A length or an angle.
+fn number(word: &str) -> Option<f64> {
+    word.parse().ok().filter(|value: &f64| value.abs() <= LARGEST)
+}
+
+fn not_a_number(at: At, word: &str) -> BvhError {
+    let what = format!("`{}` is no number that a pose can have", short(word));
+    error(at, what, "write a decimal number of at most 1e9")
+}
+
+/// The beginning of a word, so that a message stays a line.
+fn short(text: &str) -> String {
+    let mut start: String = text.chars().take(24).collect();
+    if start.len() < text.len() {
+        start.push('…');
+    }
+    start
+}
+
+fn error(at: At, what: String, advice: &'static str) -> BvhError {
+    BvhError::new(at, what, advice)
+}
