@@ -103,7 +103,7 @@ fn sources(root: &Path) -> Vec<PathBuf> {
         "README.md",
         "tests",
         "examples",
-        "tools/refusals/tests/refusals/blocks",
+        "tools/refusals/tests/blocks",
         "tools/stability",
         "tools/systems",
         "pendulum-runtime/src",

@@ -1,7 +1,0 @@
-use pendulum_runtime::lagrangian;
-
-lagrangian! {
-    pub struct Pendulum { m: kg, L: m }
-
-    kinetic = m/2 * L^2;
-}

@@ -1,9 +1,0 @@
-use pendulum_runtime::lagrangian;
-
-lagrangian! {
-    pub struct Pendulum { m: kg, L: m, g: m/s^2 = 9.81 }
-
-    coordinate θ: rad;
-    coordinate φ: rad;
-    kinetic = m/2 * (L*θ̇ + L*φ̇)^2;
-}

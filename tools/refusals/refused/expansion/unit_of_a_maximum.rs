@@ -1,9 +1,0 @@
-use pendulum_runtime::lagrangian;
-
-lagrangian! {
-    pub struct Pendulum { m: kg, L: m, k, g: m/s^2 = 9.81 }
-
-    coordinate θ: rad;
-    kinetic = m/2 * (L*θ̇)^2;
-    potential = m*g*max(L, θ);
-}

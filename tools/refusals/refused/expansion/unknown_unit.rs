@@ -1,8 +1,0 @@
-use pendulum_runtime::lagrangian;
-
-lagrangian! {
-    pub struct Pendulum { m: pound, L: m }
-
-    coordinate θ: rad;
-    kinetic = m/2 * (L*θ̇)^2;
-}

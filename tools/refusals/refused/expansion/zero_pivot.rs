@@ -1,8 +1,0 @@
-use pendulum_runtime::lagrangian;
-
-lagrangian! {
-    pub struct LightCone { m: kg }
-
-    coordinate u[2]: m;
-    kinetic = m*u̇[0]*u̇[1];
-}
