@@ -6,7 +6,7 @@ use pendulum_runtime::motion::Side;
 use pendulum_runtime::nalgebra::DVector;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::time::Time;
-use systems::constrained::{Disc, FourBar};
+use systems::constrained::{Disc, FourBar, Loops2};
 
 lagrangian! {
     /// Two bobs on rods in Cartesian coordinates, damped by the air.
@@ -171,6 +171,40 @@ fn a_disc_that_rolls_upright_is_stable_when_it_is_fast() {
         // All others are neutral; defective zeros have the root of rounding.
         let moving = all.iter().filter(|(a, b)| 1e-3 < a.abs() + b.abs());
         assert_eq!(moving.count(), 2, "{all:?}");
+    }
+}
+
+lagrangian! {
+    /// A bob on a rod, in a unit of the constraint that makes its gradient small.
+    pub struct Faint { L: m, k: 1/s^2, g: m/s^2 = 9.81 }
+    coordinate x: m;
+    coordinate y: m;
+    coordinate z: m;
+    kinetic = (ẋ^2 + ẏ^2 + ż^2)/2;
+    potential = g*y + k*x^2;
+    constraint rod: 1e-13*(x^2 + y^2) = 1e-13*L^2;
+    constraint wall: 1e9*z = 0;
+}
+
+#[test]
+fn the_unit_of_a_constraint_does_not_matter() {
+    let faint = Faint::new(2.0, 2.0);
+    let modes = linearize(&faint, 0.0, &[0.0, -2.0, 0.0], &[0.0; 3]).normal_modes().unwrap();
+    let [squared] = modes.squared_frequencies[..] else { panic!("{modes:?}") };
+    assert!((squared - (9.81 / 2.0 + 4.0)).abs() < 1e-9, "{squared}");
+    let model = state_space(&faint, 0.0, &[0.0, -2.0, 0.0], &[0.0; 3]);
+    assert_eq!((model.coordinates, model.velocities), (vec![0], vec![0]));
+}
+
+#[test]
+fn dependent_constraints_give_no_numbers() {
+    // All bars in a line, exactly and to rounding.
+    for place in [0.0, core::f64::consts::PI] {
+        let (loops, q) = (Loops2::new(1.0, 1.0), [place, place, place, 0.0, 0.0]);
+        let model = state_space(&loops, 0.0, &q, &[0.0; 5]);
+        assert!(model.a.iter().all(|entry| entry.is_nan()), "{}", model.a);
+        let modes = linearize(&loops, 0.0, &q, &[0.0; 5]).normal_modes();
+        assert!(modes.is_err(), "{modes:?}");
     }
 }
 

@@ -1,6 +1,6 @@
 //! Small motions about a state: mass, damping and stiffness, and the normal modes.
 
-use crate::analysis::reduction::free_directions;
+use crate::analysis::reduction::{free_directions, gradients};
 use crate::motion::Side;
 use crate::system::{Dynamics, Jacobians, Purpose, System, feedback_jacobians, scalar_time};
 use crate::time::Time;
@@ -18,7 +18,7 @@ pub struct Linearization<const N: usize> {
     /// The stiffness matrix K = −M ∂q̈/∂q.
     pub stiffness: SMatrix<f64, N, N>,
     /// The gradients of the constraints that the equations hold, one in a row; the rest is zero. A
-    /// small motion δ keeps them: its product with each is zero.
+    /// small motion δ keeps them: its product with each is zero. One that vanishes has no numbers.
     pub constraints: SMatrix<f64, N, N>,
 }
 
@@ -123,7 +123,7 @@ where
         by_v += law_by_v;
     }
     let (damping, stiffness) = (-mass * by_v, -mass * by_q);
-    let constraints = system.constraint_jacobian(t, q, v, &momenta);
+    let constraints = gradients(dynamics, time, q, v);
     Linearization { mass, damping, stiffness, constraints }
 }
 

@@ -6,8 +6,37 @@ use crate::system::{Dynamics, Facts, Jacobians, Purpose, System, scalar_time};
 use crate::time::Time;
 use nalgebra::{DMatrix, SMatrix};
 
-/// Singular values, and pivots, below this part of the largest count as zero.
+/// Singular values below this part of the largest, and pivots below this part of their row, count
+/// as zero.
 const RANK: f64 = 1e-11;
+
+/// The gradients C of the constraints, one in a row; no numbers for a constraint whose gradient
+/// vanishes, as where all bars of a linkage lie in a line.
+///
+/// A change of the coordinates by their size, or by one, changes such a constraint by the rounding of
+/// its terms.
+pub(super) fn gradients<D, const N: usize>(
+    dynamics: &D,
+    time: Time,
+    q: &[f64; N],
+    v: &[f64; N],
+) -> SMatrix<f64, N, N>
+where
+    D: Dynamics<N, Scalar = f64>,
+{
+    let facts: &Facts = &<D::System as System<N>>::FACTS;
+    let (system, t) = (dynamics.system(), scalar_time(time));
+    let inputs = dynamics.inputs(time, Side::After, Purpose::Momenta);
+    let mut gradients = system.constraint_jacobian(t, q, v, &inputs);
+    let [scales, _] = system.misfit_scales(t, q, v, &inputs);
+    let reach = q.iter().fold(1.0, |most: f64, q| most.max(q.abs()));
+    for row in (0..facts.held_constraints()).filter(|&row| facts.constraints[row].holonomic) {
+        if reach * gradients.row(row).amax() <= RANK * scales[row] {
+            gradients.row_mut(row).fill(f64::NAN);
+        }
+    }
+    gradients
+}
 
 /// The directions y that C L⁻ᵀ leaves, orthonormal, a column each: δ = L⁻ᵀ y keeps the constraints,
 /// where L is Cholesky's factor of the mass matrix.
@@ -16,7 +45,14 @@ pub(super) fn free_directions<const N: usize>(
     factor: &DMatrix<f64>,
 ) -> Option<DMatrix<f64>> {
     let transposed = DMatrix::from_fn(N, N, |row, column| gradients[(column, row)]);
-    let scaled = factor.solve_lower_triangular(&transposed)?.transpose();
+    let mut scaled = factor.solve_lower_triangular(&transposed)?.transpose();
+    // A constraint may have any unit.
+    for mut row in scaled.row_iter_mut() {
+        let length = row.norm();
+        if 0.0 < length {
+            row.unscale_mut(length);
+        }
+    }
     let svd = scaled.svd(false, true);
     let rows = svd.v_t?;
     let largest = svd.singular_values.max();
@@ -61,7 +97,7 @@ impl Reduction {
             return Self { coordinates, velocities, all: DMatrix::identity(2 * N, 2 * N) };
         }
         let inputs = dynamics.inputs(time, Side::After, Purpose::Momenta);
-        let gradients = system.constraint_jacobian(t, q, v, &inputs);
+        let gradients = gradients(dynamics, time, q, v);
         let masses = system.mass_matrix(t, q, v, &inputs);
         // Constraints of positions first: what they decide, decides the velocities, too.
         let mut rows: Vec<usize> = (0..held).collect();
@@ -71,7 +107,7 @@ impl Reduction {
         let slopes = slopes(dynamics, time, q, v);
         let right = |row: usize, j: usize| slopes[(rows[row], j)];
         let gradient = |row: usize, j: usize| gradients[(rows[row], j)];
-        let pivots = pivots(held, &scale, gradient);
+        let (pivots, independent) = pivots(held, &scale, gradient);
         let free =
             |decided: &[usize]| -> Vec<usize> { (0..N).filter(|j| !decided.contains(j)).collect() };
         let (coordinates, velocities) = (free(&pivots[..holonomic]), free(&pivots));
@@ -86,6 +122,9 @@ impl Reduction {
         all.view_mut((N, first), (N, second)).copy_from(&rates);
         for (row, &place) in pivots.iter().enumerate() {
             all.view_mut((N + place, 0), (1, first)).copy_from(&-by_q.row(row));
+        }
+        if !independent {
+            all.fill(f64::NAN);
         }
         Self { coordinates, velocities, all }
     }
@@ -126,14 +165,17 @@ where
     slopes
 }
 
-/// The column of the pivot of each row, where columns are measured by `scale`.
-fn pivots(rows: usize, scale: &[f64], entry: impl Fn(usize, usize) -> f64) -> Vec<usize> {
+/// The column of the pivot of each row, where columns are measured by `scale`, and false if a row
+/// depends on those before it.
+fn pivots(rows: usize, scale: &[f64], entry: impl Fn(usize, usize) -> f64) -> (Vec<usize>, bool) {
     let columns = scale.len();
     let mut rest = DMatrix::from_fn(rows, columns, |row, j| entry(row, j) / scale[j]);
-    let mut pivots = Vec::with_capacity(rows);
+    let lengths: Vec<f64> = (0..rows).map(|row| rest.row(row).norm()).collect();
+    let (mut pivots, mut independent) = (Vec::with_capacity(rows), true);
     for row in 0..rows {
         let size = |j: &usize| if pivots.contains(j) { -1.0 } else { rest[(row, *j)].abs() };
         let best = (0..columns).fold(0, |best, j| if size(&best) < size(&j) { j } else { best });
+        independent &= RANK * lengths[row] < rest[(row, best)].abs();
         for below in row + 1..rows {
             let factor = rest[(below, best)] / rest[(row, best)];
             for j in 0..columns {
@@ -143,10 +185,10 @@ fn pivots(rows: usize, scale: &[f64], entry: impl Fn(usize, usize) -> f64) -> Ve
         }
         pivots.push(best);
     }
-    pivots
+    (pivots, independent)
 }
 
-/// −C_d⁻¹ of a right side, for the columns d of the pivots: with its sign left to the caller.
+/// C_d⁻¹ of a right side, for the columns d of the pivots.
 fn solved(
     pivots: &[usize],
     entry: impl Fn(usize, usize) -> f64,
