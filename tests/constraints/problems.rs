@@ -211,6 +211,26 @@ fn no_start_leads_to_another_branch() {
     assert!(16 <= right && 0 < refused, "{right} {refused}");
 }
 
+/// A state put elsewhere near a change point is a start as any other.
+#[test]
+fn a_reset_near_a_change_point_begins_anew() {
+    let system = Loops2::new(1.0, 1.0);
+    let [q, v] = upright::<5>(3, 1.0);
+    let begin = || Integrator::new(&system, Picard, 0.0, q, v).unwrap();
+    let states = |run: &mut Integrator<'_, 5, _, Picard>| -> Vec<_> {
+        (0..40).map(|_| run.step().map(|()| run.state()).unwrap()).collect()
+    };
+    let fresh = states(&mut begin());
+    for steps in [12, 20, 30] {
+        let mut run = begin();
+        for _ in 0..steps {
+            run.step().unwrap();
+        }
+        run.reset(0.0, q, v).unwrap();
+        assert_eq!(states(&mut run), fresh, "{steps}");
+    }
+}
+
 lagrangian! {
     /// The uprights of two loops, which turn as one.
     pub struct Turning { L: m, g: m/s^2 = 9.81 }

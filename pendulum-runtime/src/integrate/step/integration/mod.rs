@@ -120,6 +120,7 @@ where
         self.backwards = false;
         // A long step from a state that it was not chosen for may go over events.
         self.state = ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
+        self.workspace = self.method.workspace(&self.dynamics);
         self.end = end;
         (self.last, self.interpolant, self.before_kink) = (None, None, None);
         self.crossed = false;
