@@ -108,7 +108,7 @@ impl fmt::Display for SceneError {
             ),
             Self::Constraint(_) => write!(
                 f,
-                "the state does not fulfil the constraints; start from one that `assemble` has found"
+                "the state does not fulfil the constraints and cannot be brought onto them; start from one that `assemble` has found"
             ),
             Self::Integration(_) => write!(
                 f,

@@ -135,6 +135,9 @@ impl<T: Float, const N: usize> Solution<T, N> {
 
     /// dE/dt at all output times: [`Dynamics::power_at`], less μ·∂h/∂t of the limits in contact.
     ///
+    /// Its integral is the change of [`energy`](Self::energy), as ∫ power dt = E(t₁) − E(t₀), but for
+    /// what impacts and events take away at once.
+    ///
     /// At two states of the same time as [`energy`](Self::energy).
     pub fn power<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<T> {
         self.evaluate(|t, side, q, v, contacts| {
@@ -188,7 +191,7 @@ impl<T: Float, const N: usize> Solution<T, N> {
     }
 
     /// One scalar of an output of the system at all output times: `"load"`, `"tip.x"`,
-    /// `"tips[2].y"`.
+    /// `"tips[2].y"`. Accelerations and reactions in it have the forces of limits in contact.
     ///
     /// At two states of the same time as [`energy`](Self::energy).
     ///

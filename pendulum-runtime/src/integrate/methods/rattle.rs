@@ -22,14 +22,17 @@ use crate::time::Time;
 /// Both constraints hold to rounding. The map is symplectic on the constraint manifold and
 /// reversible, so that the energy swings by O(h^P) about its value and does not drift; the phase is
 /// off by O(h^P) for each radian. A step of order 2, 4, 6, 8 has 1, 5, 9, 17 stages, and one
-/// evaluation more than stages; λ is found by iteration, in three to six corrections a stage. An
-/// iteration that goes astray is an [error](crate::error::Error::Inconsistent): shorten the step.
+/// evaluation more than stages; λ is found by iteration, until only rounding is left. An iteration
+/// that goes astray is an [error](crate::error::Error::Inconsistent): shorten the step.
 ///
 /// It is for systems with constraints of positions, a constant mass matrix and forces without
-/// velocities, as points on rods in Cartesian coordinates; it compiles for no others. For the few
-/// periods of an animation [`Picard`](crate::integrate::Picard) is faster; RATTLE is for 10⁵ periods
-/// and more. Dense output is the quintic through coordinates, velocities and accelerations at both
-/// ends.
+/// velocities, as points on rods in Cartesian coordinates; it compiles for no others.
+///
+/// It is no way to save time. Two bobs on rods take 92 µs a second of motion with steps of 0.02 s and
+/// order 4, and their energy stays within 2e-5 J. [`Picard`](crate::integrate::Picard) takes 11 µs at
+/// 1e-12, and drifts by 4e-15 J a second: it is closer for the first 10⁹ s. RATTLE is for studies
+/// that ask for a symplectic map, and for those in which nothing may drift. Dense output is the
+/// quintic through coordinates, velocities and accelerations at both ends.
 ///
 /// Source: Andersen (1983), J. Comput. Phys. 52, 24; Leimkuhler and Skeel (1994), J. Comput. Phys.
 /// 112, 117; for compositions Reich (1996), SIAM J. Numer. Anal. 33, 475; coefficients of order 4

@@ -163,7 +163,7 @@ impl<T: Lane + Float> Scene<T> {
     /// What lies beyond a hard limit is put on it. Hard stops act within the drifts of leapfrog and
     /// SRKN6b, where the path is straight, and at the ends of the steps of RK4; they turn the
     /// velocity of the coordinate alone, which for coupled coordinates is not what a wall at the
-    /// tip would do.
+    /// tip would do. Systems with constraints have none: this does not compile for them.
     ///
     /// # Errors
     /// A pendulum of another scene, limits in the wrong order or that leave no finite place, a
