@@ -36,7 +36,7 @@ import numpy as np
 from heyoka import cos, sin, sqrt
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-REFERENCE = ROOT / "pendulum-runtime/benches/work_precision/reference.txt"
+REFERENCE = ROOT / "tools/systems/src/work_precision/reference.txt"
 TABLE = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "work-precision-heyoka.csv"
 TOLERANCES = ["1e-3", "1e-5", "1e-7", "1e-9", "1e-11", "1e-13", "1e-15", "1e-18"]
 

@@ -4,7 +4,8 @@ use crate::animation::frames;
 use crate::bake::{Baked, Course, FRAMES};
 use crate::dance::PERIOD;
 use crate::rig::Rig;
-use std::fmt::Write;
+use base64::prelude::{BASE64_STANDARD, Engine};
+use serde_json::{Value, json};
 
 /// The angle that a number of the page stands for, in radians.
 const UNIT: f64 = 1e-4;
@@ -49,72 +50,50 @@ fn data(
     [gravities, dampings]: [&[f64]; 2],
     shown: [usize; 2],
 ) -> String {
-    let mut json = String::new();
-    let unit = UNIT.to_degrees();
-    // Writing to a string does not fail.
-    let _ = write!(
-        json,
-        r#"{{"period":{PERIOD},"frames":{FRAMES},"unit":{unit},"gravities":{gravities:?},"dampings":{dampings:?},"shown":{shown:?},"feathers":["#
-    );
-    for (index, hung) in rig.feathers.iter().enumerate() {
-        let [sign, x, y] = hung.joint.rotation(1.0);
-        let comma = if index == 0 { "" } else { "," };
-        let _ = write!(json, "{comma}[{:?},{x:.2},{y:.2},{}]", hung.joint.name, sign.signum());
-    }
-    json.push_str("],\n\"joints\":[");
-    for (index, keyed) in rig.keyed.iter().enumerate() {
-        let (turns, shifts) = frames(keyed);
-        let comma = if index == 0 { "" } else { ",\n" };
-        let [_, x, y] = keyed.joint.rotation(0.0);
-        let _ =
-            write!(json, r#"{comma}{{"id":{:?},"x":{x:.2},"y":{y:.2},"turns":["#, keyed.joint.name);
-        let degrees: Vec<String> =
-            turns.iter().map(|&turn| format!("{:.2}", keyed.joint.rotation(turn)[0])).collect();
-        json.push_str(&degrees.join(","));
-        json.push(']');
-        if shifts.iter().any(|&shift| shift != [0.0; 2]) {
-            let pairs: Vec<String> =
-                shifts.iter().map(|[x, y]| format!("[{x:.2},{y:.2}]")).collect();
-            let _ = write!(json, r#","shifts":[{}]"#, pairs.join(","));
-        }
-        json.push('}');
-    }
-    let numbers = baked.courses.iter().flatten().flat_map(Course::swings);
+    let feathers: Vec<Value> = rig
+        .feathers
+        .iter()
+        .map(|hung| {
+            let [sign, x, y] = hung.joint.rotation(1.0);
+            json!([hung.joint.name, cents(x), cents(y), sign.signum()])
+        })
+        .collect();
+    let joints: Vec<Value> = rig
+        .keyed
+        .iter()
+        .map(|keyed| {
+            let (turns, shifts) = frames(keyed);
+            let [_, x, y] = keyed.joint.rotation(0.0);
+            let degrees = turns.iter().map(|&turn| cents(keyed.joint.rotation(turn)[0]));
+            let degrees: Vec<f64> = degrees.collect();
+            let mut joint =
+                json!({"id": keyed.joint.name, "x": cents(x), "y": cents(y), "turns": degrees});
+            if shifts.iter().any(|&shift| shift != [0.0; 2]) {
+                let shifts: Vec<_> = shifts.iter().map(|shift| shift.map(cents)).collect();
+                joint["shifts"] = json!(shifts);
+            }
+            joint
+        })
+        .collect();
+    let swings = baked.courses.iter().flatten().flat_map(Course::swings);
     let bytes: Vec<u8> =
-        numbers.flat_map(|swing| ((swing / UNIT).round() as i16).to_le_bytes()).collect();
-    let _ = write!(json, "],\n\"swings\":\"{}\"}}", base64(&bytes));
+        swings.flat_map(|swing| ((swing / UNIT).round() as i16).to_le_bytes()).collect();
+    let data = json!({
+        "period": PERIOD,
+        "frames": FRAMES,
+        "unit": UNIT.to_degrees(),
+        "gravities": gravities,
+        "dampings": dampings,
+        "shown": shown,
+        "feathers": feathers,
+        "joints": joints,
+        "swings": BASE64_STANDARD.encode(bytes),
+    });
     // No name ends the script.
-    json.replace('<', "\\u003c")
+    data.to_string().replace('<', "\\u003c")
 }
 
-/// RFC 4648, section 4.
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for group in bytes.chunks(3) {
-        let word = group
-            .iter()
-            .enumerate()
-            .fold(0u32, |word, (at, &byte)| word | u32::from(byte) << (16 - 8 * at));
-        for digit in 0..4 {
-            let value = word >> (18 - 6 * digit) & 63;
-            text.push(if digit <= group.len() { char::from(DIGITS[value as usize]) } else { '=' });
-        }
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::base64;
-
-    /// RFC 4648, section 10.
-    #[test]
-    fn base64_has_the_vectors_of_its_standard() {
-        for (bytes, text) in
-            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
-        {
-            assert_eq!(base64(bytes.as_bytes()), text);
-        }
-    }
+/// A length or an angle to two digits behind the point.
+fn cents(value: f64) -> f64 {
+    (100.0 * value).round() / 100.0
 }

@@ -2,33 +2,21 @@
 //! against a table.
 
 use pendulum_runtime::scalar::{DoubleDouble, Float, Real};
+use systems::random::Random;
 
 const ORDERS: usize = 40;
 
-/// `SplitMix64`, Vigna (2015).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E3779B97F4A7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58476D1CE4E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D049BB133111EB);
-        z ^ (z >> 31)
-    }
-
-    /// Uniform in [−width, width).
-    fn within(&mut self, width: f64) -> f64 {
-        ((self.next() >> 11) as f64 / 4503599627370496.0 - 1.0) * width
-    }
+/// Uniform in [−width, width).
+fn within(random: &mut Random, width: f64) -> f64 {
+    random.uniform(-1.0, 1.0) * width
 }
 
 /// Arguments of all sizes, and next to those beyond which an order is found otherwise.
 fn arguments() -> Vec<f64> {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     let widths = [1e-300, 1e-9, 1e-3, 0.1, 1.0, 1.0, 3.2, 10.0, 45.0, 1e4];
     let mut all: Vec<f64> =
-        (0..3000).map(|index| random.within(widths[index % widths.len()])).collect();
+        (0..3000).map(|index| within(&mut random, widths[index % widths.len()])).collect();
     for n in 0..=ORDERS {
         let n = n as f64;
         all.extend([n, n.next_up(), n.next_down(), -n, n * core::f64::consts::PI]);

@@ -4,7 +4,7 @@
 use pendulum_runtime::integrate::Solution;
 use pendulum_runtime::prelude::*;
 
-use crate::systems::simple;
+use systems::work_precision::simple;
 
 /// The pendulum with g/L = 9.8 from (0.05, 0.025) over 1000 s and, with its velocity turned round,
 /// back: the distance from the start.

@@ -4,7 +4,7 @@
 //! [--heyoka PYTHON] [--no-peers]`, or `-- --draw TABLE NOTE`, which draws the pictures of a table
 //! measured before and measures nothing.
 //!
-//! The systems are those of `systems.rs`; the error is the largest distance of any coordinate or
+//! The systems are those of `tools/systems/src/work_precision`; the error is the largest distance of any coordinate or
 //! velocity at any of the five output times from `reference.txt`. A round runs all rows, every
 //! second round backwards; the time of a row is the median over the rounds, a ratio of two methods
 //! the median of the ratios in each round. Everything runs on one thread, one process at a time.
@@ -20,26 +20,24 @@
 #![allow(mixed_script_confusables, missing_docs, unreachable_pub)]
 
 mod checks;
-mod measure;
 #[macro_use]
 mod methods;
 mod peer;
 mod plot;
-mod problem;
 mod reference;
 mod summary;
-mod systems;
 mod table;
 
-use measure::Row;
 use methods::Subject;
 use peer::Peer;
 use pendulum_runtime::prelude::*;
-use problem::Problem;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
+use systems::work_precision as shared;
+use systems::work_precision::measure::{Row, Run};
+use systems::work_precision::problem::Problem;
 use table::{Entry, Party};
 
 const SYSTEMS: [&str; 9] = [
@@ -63,15 +61,15 @@ fn ours(every: usize) -> Vec<Row> {
             $($family!(subject);)+
         };
     }
-    system!("simple", 3.13, systems::simple(), [any, velocity_free]);
-    system!("moving", 2.0, systems::moving(), [any, velocity_free]);
-    system!("moving_compound", 3.05, systems::moving_compound(), [any, velocity_free]);
-    system!("elastic", 2.83, systems::elastic(), [any]);
-    system!("double_regular", 1.85, systems::double(), [any]);
-    system!("double_chaotic", 4.0, systems::double(), [any]);
-    system!("chain5", 3.55, systems::chain5(), [any]);
-    system!("kepler", 3.46, systems::kepler(), [any, velocity_free]);
-    system!("henon_heiles", 1.0, systems::henon_heiles(), [any, velocity_free]);
+    system!("simple", 3.13, shared::simple(), [any, velocity_free]);
+    system!("moving", 2.0, shared::moving(), [any, velocity_free]);
+    system!("moving_compound", 3.05, shared::moving_compound(), [any, velocity_free]);
+    system!("elastic", 2.83, shared::elastic(), [any]);
+    system!("double_regular", 1.85, shared::double(), [any]);
+    system!("double_chaotic", 4.0, shared::double(), [any]);
+    system!("chain5", 3.55, shared::chain5(), [any]);
+    system!("kepler", 3.46, shared::kepler(), [any, velocity_free]);
+    system!("henon_heiles", 1.0, shared::henon_heiles(), [any, velocity_free]);
     rows
 }
 
@@ -249,7 +247,7 @@ fn draw(target: &Path, note: &str, entries: &[Entry]) -> Result<(), Box<dyn std:
 }
 
 /// Puts a sample into its entry.
-fn take(entry: &mut Entry, sample: Result<(f64, measure::Run), String>) {
+fn take(entry: &mut Entry, sample: Result<(f64, Run), String>) {
     let checked = sample.and_then(|(seconds, run)| {
         let reference = reference::reference(&entry.system);
         if run.values.len() != reference.len() {

@@ -3,10 +3,10 @@
 //! They are macros, so that each system is asked for nothing but what the methods in its own lists
 //! want.
 
-use crate::measure::{Row, Run};
-use crate::problem::Problem;
 use pendulum_runtime::integrate::{Failure, Solution};
 use std::rc::Rc;
+use systems::work_precision::measure::{Row, Run};
+use systems::work_precision::problem::Problem;
 
 /// Methods for any system.
 macro_rules! any {

@@ -4,9 +4,9 @@
 //! between tabs), `ready`; then, for each index that it reads, the seconds, the evaluations and the
 //! values between blanks, or `failed` and the reason.
 
-use crate::measure::Run;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use systems::work_precision::measure::Run;
 
 /// Another process that offers rows.
 pub struct Peer {

@@ -1,6 +1,6 @@
 //! The exact states, in two words each.
 
-use crate::problem::lines;
+use systems::work_precision::problem::lines;
 
 /// The reference values of a system at all output times, coordinates before velocities, each as a
 /// sum of two doubles.

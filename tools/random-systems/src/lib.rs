@@ -12,10 +12,9 @@ pub mod generate;
 pub mod nilpotent;
 pub mod reference;
 mod source;
-pub mod split_mix;
 pub mod state;
 pub mod tokens;
 pub mod transform;
 pub mod tree;
 
-pub use split_mix::Random;
+pub use ::split_mix::Random;

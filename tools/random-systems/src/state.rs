@@ -2,8 +2,8 @@
 
 use super::evaluate::{Constants, Points};
 use super::reference::State;
-use super::split_mix::Random;
 use super::tree::{Kind, System};
+use split_mix::Random;
 
 /// The state of a seed. Every number is one of `f64` but the moments of bodies, which are those of
 /// `f64` points.

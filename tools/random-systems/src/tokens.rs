@@ -1,7 +1,7 @@
 //! Tokens that are no block, and blocks that are no longer one.
 
-use super::split_mix::Random;
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
+use split_mix::Random;
 
 /// The words of formulas and of their mistakes.
 const WORDS: &[&str] = &[

@@ -4,10 +4,10 @@
 use super::generate;
 use super::nilpotent::Function;
 use super::reference::State;
-use super::split_mix::Random;
 use super::tree::{
     Coordinate, Expr, Index, Kind, Let, Shape, System, Type, number, product, quotient, sum,
 };
+use split_mix::Random;
 
 /// L + dF/dt for a random F(q, t).
 pub fn gauged(system: &System) -> System {

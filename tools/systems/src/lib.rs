@@ -10,4 +10,9 @@ pub mod keys;
 pub mod pendulums;
 pub mod planet;
 pub mod problems;
-pub mod random;
+pub mod work_precision;
+
+/// The random numbers.
+pub mod random {
+    pub use split_mix::Random;
+}

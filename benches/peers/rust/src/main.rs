@@ -17,32 +17,27 @@
 #![allow(missing_docs)]
 
 mod hand;
-#[path = "../../../../pendulum-runtime/benches/work_precision/measure.rs"]
-mod measure;
-#[path = "../../../../pendulum-runtime/benches/work_precision/problem.rs"]
-mod problem;
 mod serve;
 mod solvers;
-#[path = "../../../../pendulum-runtime/benches/work_precision/systems.rs"]
-mod systems;
 
-use measure::Row;
 use pendulum_runtime::motion::Side;
 use pendulum_runtime::system::{Dynamics, Prepared};
 use pendulum_runtime::time::Time;
-use problem::Problem;
+use systems::work_precision as shared;
+use systems::work_precision::measure::Row;
+use systems::work_precision::problem::Problem;
 
 fn main() -> std::io::Result<()> {
     let mut rows = Vec::new();
-    add::<1, 2, 2>(&mut rows, "simple", systems::simple(), hand::simple);
-    add::<1, 2, 3>(&mut rows, "moving", systems::moving(), hand::moving);
-    add::<1, 2, 3>(&mut rows, "moving_compound", systems::moving_compound(), hand::moving_compound);
-    add::<2, 4, 4>(&mut rows, "elastic", systems::elastic(), hand::elastic);
-    add::<2, 4, 4>(&mut rows, "double_regular", systems::double(), hand::double);
-    add::<2, 4, 4>(&mut rows, "double_chaotic", systems::double(), hand::double);
-    add::<5, 10, 10>(&mut rows, "chain5", systems::chain5(), hand::chain5);
-    add::<2, 4, 4>(&mut rows, "kepler", systems::kepler(), hand::kepler);
-    add::<2, 4, 4>(&mut rows, "henon_heiles", systems::henon_heiles(), hand::henon_heiles);
+    add::<1, 2, 2>(&mut rows, "simple", shared::simple(), hand::simple);
+    add::<1, 2, 3>(&mut rows, "moving", shared::moving(), hand::moving);
+    add::<1, 2, 3>(&mut rows, "moving_compound", shared::moving_compound(), hand::moving_compound);
+    add::<2, 4, 4>(&mut rows, "elastic", shared::elastic(), hand::elastic);
+    add::<2, 4, 4>(&mut rows, "double_regular", shared::double(), hand::double);
+    add::<2, 4, 4>(&mut rows, "double_chaotic", shared::double(), hand::double);
+    add::<5, 10, 10>(&mut rows, "chain5", shared::chain5(), hand::chain5);
+    add::<2, 4, 4>(&mut rows, "kepler", shared::kepler(), hand::kepler);
+    add::<2, 4, 4>(&mut rows, "henon_heiles", shared::henon_heiles(), hand::henon_heiles);
     serve::serve(&versions(), &mut rows)
 }
 

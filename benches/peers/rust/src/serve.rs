@@ -1,6 +1,6 @@
 //! The other end of `peer.rs` of the benchmark, where the lines are described.
 
-use crate::measure::{Row, Run};
+use systems::work_precision::measure::{Row, Run};
 use std::io::Write;
 
 /// Offers `rows` to the process that has started this one.

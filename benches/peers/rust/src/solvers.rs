@@ -1,7 +1,7 @@
 //! One run of each crate's DOP853.
 
-use crate::measure::{Outcome, Run};
-use crate::problem::Problem;
+use systems::work_precision::measure::{Outcome, Run};
+use systems::work_precision::problem::Problem;
 use differential_equations::prelude::{ExplicitRungeKutta, IVP, ODE};
 use ode_solvers::SVector;
 use ode_solvers::dop_shared::OutputType;

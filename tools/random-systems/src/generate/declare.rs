@@ -1,8 +1,8 @@
 //! Parameters, coordinates and driven inputs.
 
 use super::Generator;
-use crate::split_mix::Random;
 use crate::tree::{Coordinate, Input, Kind, Parameter};
+use split_mix::Random;
 
 const PARAMETERS: [&str; 12] = ["m", "c", "l", "g", "κ", "b", "μ", "s", "R", "a", "ε", "d"];
 const COORDINATES: [&str; 8] = ["θ", "φ", "x", "y", "ψ", "r", "q", "h"];

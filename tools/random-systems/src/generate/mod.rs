@@ -7,8 +7,8 @@ mod leaf;
 mod scalar;
 mod vector;
 
-use super::split_mix::Random;
 use super::tree::{Expr, Kind, System, Type, number, power, product, quotient, sum};
+use split_mix::Random;
 
 /// The purpose of a system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,5 +1,6 @@
 //! Files written number by number.
 
+use base64::prelude::{BASE64_STANDARD, Engine};
 use std::fmt::Write;
 
 /// A file while it is written.
@@ -92,17 +93,5 @@ impl Writer {
 }
 
 pub(super) fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::new();
-    for group in bytes.chunks(3) {
-        let word = group
-            .iter()
-            .enumerate()
-            .fold(0u32, |word, (at, &byte)| word | u32::from(byte) << (16 - 8 * at));
-        for digit in 0..4 {
-            let value = word >> (18 - 6 * digit) & 63;
-            text.push(if digit <= group.len() { char::from(DIGITS[value as usize]) } else { '=' });
-        }
-    }
-    text
+    BASE64_STANDARD.encode(bytes)
 }

@@ -26,6 +26,12 @@ pub struct Row {
     pub run: Box<dyn FnMut() -> Outcome>,
 }
 
+impl std::fmt::Debug for Row {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Row({}, {}, {})", self.system, self.method, self.setting)
+    }
+}
+
 impl Row {
     /// The shortest of at least three runs, as many as fit into a millisecond, because
     /// interruptions only add; of a long run the first.

@@ -2,7 +2,7 @@
 """Computes the reference states of the benchmark `work_precision` to 30 digits and writes `reference.txt` beside itself.
 
     python3 -m venv venv && venv/bin/pip install mpmath
-    venv/bin/python pendulum-runtime/benches/work_precision/reference.py
+    venv/bin/python tools/systems/src/work_precision/reference.py
 
 Each system is a first-order system on a tape of operations, advanced by Taylor series (Jorba and
 Zou, 2005). Every value is computed twice, at 42 and 48 digits with different orders and steps, and the two agree to 32 digits. The

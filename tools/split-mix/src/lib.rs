@@ -1,10 +1,15 @@
-//! Random numbers, the same in every run.
+//! The random numbers of tests, benchmarks and tools: one generator, the same in every run.
 
 /// SplitMix64 (Steele, Lea and Flood, 2014).
 #[derive(Clone, Debug)]
 pub struct Random(pub u64);
 
 impl Random {
+    /// The sequence of a seed.
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
     /// The next 64 bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -32,5 +37,18 @@ impl Random {
     /// In [low, high).
     pub fn uniform(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Random;
+
+    #[test]
+    fn first_numbers_are_those_of_the_reference() {
+        // Published with the Java original for the seed 1234567.
+        let mut random = Random::new(1234567);
+        let expected = [6457827717110365317, 3203168211198807973, 9817491932198370423];
+        assert_eq!([0; 3].map(|_| random.bits()), expected);
     }
 }

@@ -1,7 +1,11 @@
-//! The systems of the benchmark, as a user would write them, with their parameters.
+//! The benchmark `work_precision` as its own methods and the peers see it: the systems, as a user
+//! would write them, with their parameters; the problems and how they are timed.
 
-use ::systems::pendulums::{Hanging, MovingCompound, Simple};
-use ::systems::problems::{Double, Elastic, Five, HenonHeiles, Kepler};
+pub mod measure;
+pub mod problem;
+
+use crate::pendulums::{Hanging, MovingCompound, Simple};
+use crate::problems::{Double, Elastic, Five, HenonHeiles, Kepler};
 use pendulum_runtime::motion::Sinusoid;
 use pendulum_runtime::system::Driven;
 
