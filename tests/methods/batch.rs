@@ -9,6 +9,7 @@ use std::fmt::Debug;
 
 use systems::pendulums::Simple;
 use systems::problems::{Double, Kepler};
+use systems::random::some;
 
 lagrangian! {
     /// ẍ = k x² + p sin 2t: without a push it leaves for infinity in a finite time.
@@ -74,7 +75,7 @@ fn any_number_of_motions_has_the_bits_of_single_ones() {
 
 #[test]
 fn any_order_and_tolerance_has_the_bits_of_single_motions() {
-    let problems = pendulums(11);
+    let problems: Vec<_> = some(pendulums(11)).collect();
     for order in [2, 3, 4, 5, 20, 30] {
         same(
             Taylor::new().order(order),

@@ -6,7 +6,7 @@ use pendulum_runtime::integrate::{Batch, Problem, Solution};
 use pendulum_runtime::motion::{Derivatives, Function, MotionError, Sample, Side, Spline};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::time::Time;
-use systems::random::Random;
+use systems::random::{Random, some};
 
 lagrangian! {
     /// A pendulum that is pushed once.
@@ -74,7 +74,7 @@ macro_rules! never_missed {
         #[test]
         fn $test() {
             let (mut random, expected) = (Random::new(7), reference(WIDTH));
-            for _ in 0..200 {
+            for _ in some(0..200) {
                 let t0 = random.uniform(1.0, 98.0);
                 let times = [t0 + 1.0];
                 let within = kicked(t0, WIDTH);
@@ -199,7 +199,7 @@ fn other_shapes() {
         force q = exp(-k*sin(t/2)^2);
     }
     let mut random = Random::new(9);
-    for _ in 0..50 {
+    for _ in some(0..50) {
         let t0 = random.uniform(1.0, 98.0);
         let pulse = solve(&Pulsed::new(t0, t0 + 0.02), (0.0, END), [0.0], [0.0])
             .rtol(1e-6)
@@ -228,7 +228,7 @@ fn other_shapes() {
 #[test]
 fn dense_keys_of_a_spline() {
     let (mut random, expected) = (Random::new(10), reference(WIDTH));
-    for _ in 0..50 {
+    for _ in some(0..50) {
         let t0 = random.uniform(3.0, 97.0).round() + 0.5;
         let mut times: Vec<f64> = (-80..=80).map(|k| t0 + 1e-3 * f64::from(k)).collect();
         times.extend((0..=100).map(f64::from));

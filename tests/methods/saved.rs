@@ -8,7 +8,7 @@ use pendulum_runtime::motion::{Linear, Spline};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::{DoubleDouble, Float};
 use systems::problems::{Double, HenonHeiles, Simple};
-use systems::random::Random;
+use systems::random::{Random, some};
 
 lagrangian! {
     pub struct Hand { L: m, g: m/s^2 = 9.81 }
@@ -52,7 +52,7 @@ fn check<const N: usize, D, M, C, T>(
         states.push(whole.state());
     }
     let last = whole.save();
-    for _ in 0..6 {
+    for _ in some(0..6) {
         let at = (random.uniform(0.0, steps as f64)) as u64;
         let mut first = fresh();
         for _ in 0..at {

@@ -7,7 +7,7 @@ use pendulum_runtime::prelude::*;
 use pendulum_runtime::scene::{Fixed, Handle, Scene, SceneError, SceneStatus};
 
 use systems::pendulums::{Double, Hanging, Simple};
-use systems::random::Random;
+use systems::random::{Random, some};
 
 lagrangian! {
     #[derive(Clone, Debug)]
@@ -100,7 +100,7 @@ fn lanes_have_the_bits_of_the_scalar_methods() {
 fn frames_do_not_show() {
     for tolerance in [1e-3, 1e-9] {
         let mut checksums = Vec::new();
-        for frames in [24, 30, 60, 144, 240, 1000] {
+        for frames in some([1000, 24, 30, 60, 144, 240]) {
             let mut scene = zoo(tolerance);
             for _ in 0..2 * frames {
                 scene.advance(1.0 / f64::from(frames)).unwrap();

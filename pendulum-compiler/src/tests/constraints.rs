@@ -129,6 +129,7 @@ fn conserved_momenta_are_those_that_constraints_leave() {
 
 /// The operations of N loops in a row, and of a chain with both ends held.
 #[test]
+#[ignore = "takes ten seconds: `.ci/run` runs it"]
 fn operations_grow_with_the_number_of_loops() {
     let total = |source: &str| {
         let count = compiled(source).operations;

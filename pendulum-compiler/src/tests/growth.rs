@@ -56,6 +56,7 @@ fn flat(tokens: proc_macro2::TokenStream) -> usize {
 /// Long sums are built at once, and what would not compile in reasonable time is refused before it
 /// is derived.
 #[test]
+#[ignore = "takes ten seconds: `.ci/run` runs it"]
 fn long_sums_expand_or_are_refused() {
     let message = "this unfolds to more than 8000 different expressions; write a shorter sum";
     let endless = "this block unfolds to more than two million expressions; write shorter sums";

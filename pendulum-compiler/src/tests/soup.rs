@@ -7,7 +7,7 @@ use random_systems::tokens::{BLOCKS, mutate, soup, transplant};
 
 /// How many of each; `SOUP=50000` in `.ci/run`, and any other number for more.
 fn rounds() -> u64 {
-    std::env::var("SOUP").ok().and_then(|text| text.parse().ok()).unwrap_or(10_000)
+    std::env::var("SOUP").ok().and_then(|text| text.parse().ok()).unwrap_or(2000)
 }
 
 #[test]
