@@ -21,7 +21,7 @@ mod serve;
 mod solvers;
 
 use pendulum_runtime::motion::Side;
-use pendulum_runtime::system::{Dynamics, Prepared};
+use pendulum_runtime::system::{Dynamics, System};
 use pendulum_runtime::time::Time;
 use systems::work_precision as shared;
 use systems::work_precision::measure::Row;
@@ -52,8 +52,10 @@ fn add<const N: usize, const M: usize, const L: usize>(
     // The parameters' part is computed once, as in our own integrators; the program lives as long
     // as its rows.
     let dynamics: &'static _ = Box::leak(Box::new(dynamics));
-    let prepared = Prepared::new(dynamics);
-    let generated = move |t, q: &[f64; N], v: &[f64; N]| prepared.accelerations_at(Time::new(t), Side::After, q, v);
+    let prepared = dynamics.system().prepare();
+    let generated = move |t, q: &[f64; N], v: &[f64; N]| {
+        dynamics.accelerations_with(&prepared, Time::new(t), Side::After, q, v)
+    };
     let problem = Problem::<N>::new(name);
     for exponent in [3, 5, 7, 9, 10, 11, 12, 13] {
         let tolerance = 10f64.powi(-exponent);
