@@ -17,6 +17,9 @@ pub struct Problem<const N: usize> {
 
 impl<const N: usize> Problem<N> {
     /// The problem of this name in `reference.txt`.
+    ///
+    /// # Panics
+    /// If `reference.txt` does not know the system.
     pub fn new(name: &'static str) -> Self {
         let mut rows = lines(name);
         let start = rows.next().expect("reference.txt knows the system");
