@@ -161,8 +161,10 @@ fn loops_keep_their_branch_at_change_points() {
     }
     let found = [apart!(Picard, 1e-6), apart!(Picard, 1e-9), apart!(Dop853, 1e-6)];
     assert!(found[0] < 1e-3 && found[1] < 1e-6 && found[2] < 1e-3, "{found:?}");
-    let found = [apart!(Taylor::new(), 1e-8), apart!(Dop853, 1e-10), apart!(Dop853, 1e-12)];
-    assert!(found[0] < 3e-6 && found[1] < 3e-8 && found[2] < 1e-9, "{found:?}");
+    let found = [apart!(Taylor::new(), 1e-8), apart!(Dop853, 1e-10)];
+    assert!(found[0] < 3e-6 && found[1] < 3e-8, "{found:?}");
+    let found = [apart!(Dop853, 1e-12), apart!(Picard, 1e-12)];
+    assert!(found.iter().all(|off| *off < 1e-9), "{found:?}");
 }
 
 /// Whatever the start and the tolerance, the motion is the right one, or there is an error: a step
