@@ -6,4 +6,5 @@ pub mod checkpoints;
 pub mod lanes;
 pub mod reductions;
 pub mod teams;
+pub mod walls;
 pub mod ways;

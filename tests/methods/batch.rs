@@ -4,7 +4,6 @@ use pendulum_runtime::error::{Error, Part};
 use pendulum_runtime::integrate::{Batch, Batched, Problem};
 use pendulum_runtime::jet::JetDynamics;
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::system::System;
 use std::fmt::Debug;
 
 use systems::pendulums::Simple;
@@ -32,8 +31,8 @@ fn noise(seed: u32) -> impl FnMut() -> f64 {
 /// Each solution and each failure is that of the motion alone, to the last bit and counter.
 fn same<S, const N: usize>(method: Taylor, batch: Batch<N>, rtol: f64, problems: &[Problem<S, N>])
 where
-    S: Batched<N> + JetDynamics<N, Scalar = <S as System<N>>::Scalar>,
-    <S as System<N>>::Scalar: Debug,
+    S: Batched<N> + JetDynamics<N>,
+    S::Scalar: Debug,
 {
     let outcomes = batch.rtol(rtol).run(problems).unwrap();
     assert_eq!(outcomes.len(), problems.len());

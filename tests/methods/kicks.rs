@@ -143,7 +143,6 @@ fn back_in_time_and_in_a_batch() {
         })
         .collect();
     let batch = Batch::new().rtol(TOLERANCE).atol(TOLERANCE).run(&problems).unwrap();
-    let mut same = 0;
     for (problem, together) in problems.iter().zip(batch) {
         let (system, t0) = (&problem.system, problem.system.t0);
         let alone = solve(system, problem.time, [0.0], [0.0])
@@ -153,15 +152,7 @@ fn back_in_time_and_in_a_batch() {
             .run()
             .unwrap();
         let together = together.unwrap();
-        if alone.stats.rejected == 0 {
-            assert_eq!((alone.end, alone.stats), (together.end, together.stats), "kick at {t0}");
-            same += 1;
-        }
-        let apart = (alone.end.q[0] - together.end.q[0]).abs();
-        assert!(
-            apart <= 100.0 * TOLERANCE,
-            "kick at {t0}: {apart:e} between a motion alone and in a batch"
-        );
+        assert_eq!((alone.end, alone.stats), (together.end, together.stats), "kick at {t0}");
         // Mirrored in time it is the same kick.
         let times = [t0 - 1.0];
         let back = solve(system, (END, 0.0), [0.0], [0.0])
@@ -173,8 +164,6 @@ fn back_in_time_and_in_a_batch() {
         let error = off(&back.unwrap(), [expected[0], -expected[1]]);
         assert!(error <= 100.0, "back over a kick at {t0}: {error} tolerances");
     }
-    // Without a rejected step a batch has the bits of `Taylor`, and that is the rule.
-    assert!(30 <= same, "{same} of 40 kicks without a rejected step");
 }
 
 /// Square waves, pulses and kicks that come again.

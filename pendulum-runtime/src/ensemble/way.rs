@@ -156,29 +156,23 @@ pub trait WayDynamics<const N: usize>: MaybeJets<N> + LaneDynamics<N> + Sized {
     }
 }
 
-impl<S, const N: usize> WayDynamics<N> for S
-where
-    S: Batched<N> + MaybeJets<N> + LaneDynamics<N>,
-    S: Dynamics<N, System = S, Scalar = <S as System<N>>::Scalar>,
-{
-    fn goes_in_lanes(
-        settings: &Settings<'_, <S as System<N>>::Scalar, N, AdaptiveStep<N>>,
-    ) -> bool {
-        let facts = const { &<S as System<N>>::FACTS };
+impl<D: Batched<N> + LaneDynamics<N>, const N: usize> WayDynamics<N> for D {
+    fn goes_in_lanes(settings: &Settings<'_, D::Scalar, N, AdaptiveStep<N>>) -> bool {
+        let facts = const { &<D::System as System<N>>::FACTS };
         let plain = facts.smooth && facts.constraints.is_empty() && facts.limits.is_empty();
         plain && Batch::can_keep(settings)
     }
 
     fn solve_in_lanes(
-        settings: &Settings<'_, <S as System<N>>::Scalar, N, AdaptiveStep<N>>,
-        members: &mut Members<'_, S, N>,
-        outcomes: &mut Outcomes<'_, <S as System<N>>::Scalar, N>,
+        settings: &Settings<'_, D::Scalar, N, AdaptiveStep<N>>,
+        members: &mut Members<'_, D, N>,
+        outcomes: &mut Outcomes<'_, D::Scalar, N>,
     ) {
         let batch = Batch::of(settings);
         let mut problems = || members().map(|(index, problem)| (index, Posed::Owned(problem)));
         let Settings { output, dense, ref events, .. } = *settings;
         let watch = Watch { output, dense, events };
-        batch.run_each::<S, true>(watch, &mut problems, outcomes);
+        batch.run_each::<D, true>(watch, &mut problems, outcomes);
     }
 }
 

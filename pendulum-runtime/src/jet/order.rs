@@ -169,8 +169,23 @@ pub trait Unrolling: Sealed {
         work: &mut S::Work,
     );
 
-    /// The same for a system over lanes, compiled into the code around it for the vectors that this
-    /// may use.
+    /// The accelerations at the start for a system over lanes, with which [`run_in_lanes`] goes on;
+    /// compiled into the code around it for the vectors that this may use.
+    ///
+    /// [`run_in_lanes`]: Self::run_in_lanes
+    #[inline(always)]
+    fn begin_in_lanes<S: Jets<N>, const N: usize>(
+        system: &S,
+        path: &mut Path<S::Scalar, N>,
+        drive: &S::Drive,
+        work: &mut S::Work,
+    ) {
+        system.coefficient(Running(0), path, drive, work);
+        part(path, work);
+    }
+
+    /// The same as [`run`](Self::run) for a system over lanes, from the accelerations at the start
+    /// and from the work of [`begin_in_lanes`](Self::begin_in_lanes).
     #[inline(always)]
     fn run_in_lanes<S: Jets<N>, const N: usize>(
         system: &S,
@@ -179,7 +194,12 @@ pub trait Unrolling: Sealed {
         drive: &S::Drive,
         work: &mut S::Work,
     ) {
-        looped::<S, true, N>(system, order, path, drive, work);
+        path.integrate(Running(0));
+        for k in 1..order.min(MAX_ORDER) {
+            system.coefficient(Running(k), path, drive, work);
+            path.integrate(Running(k));
+            part(path, work);
+        }
     }
 }
 
@@ -213,7 +233,10 @@ impl Unrolling for Looped {
         drive: &S::Drive,
         work: &mut S::Work,
     ) {
-        looped::<S, false, N>(system, order, path, drive, work);
+        for k in 0..order.min(MAX_ORDER) {
+            system.coefficient(Running(k), path, drive, work);
+            path.integrate(Running(k));
+        }
     }
 }
 
@@ -252,6 +275,17 @@ impl Unrolling for Unrolled {
     }
 
     #[inline(always)]
+    fn begin_in_lanes<S: Jets<N>, const N: usize>(
+        system: &S,
+        path: &mut Path<S::Scalar, N>,
+        drive: &S::Drive,
+        work: &mut S::Work,
+    ) {
+        system.coefficient(Constant::<0>, path, drive, work);
+        part(path, work);
+    }
+
+    #[inline(always)]
     fn run_in_lanes<S: Jets<N>, const N: usize>(
         system: &S,
         order: usize,
@@ -261,27 +295,9 @@ impl Unrolling for Unrolled {
     ) {
         // With the same bits; but one piece of code for each order takes the compiler long.
         if cfg!(debug_assertions) {
-            looped::<S, true, N>(system, order, path, drive, work);
+            Looped::run_in_lanes(system, order, path, drive, work);
         } else {
             paired(system, order, path, drive, work);
-        }
-    }
-}
-
-/// The orders one after the other, each in the same code.
-#[inline(always)]
-fn looped<S: Jets<N>, const LANES: bool, const N: usize>(
-    system: &S,
-    order: usize,
-    path: &mut Path<S::Scalar, N>,
-    drive: &S::Drive,
-    work: &mut S::Work,
-) {
-    for k in 0..order.min(MAX_ORDER) {
-        system.coefficient(Running(k), path, drive, work);
-        path.integrate(Running(k));
-        if LANES {
-            part(path, work);
         }
     }
 }
@@ -296,7 +312,8 @@ fn paired<S: Jets<N>, const N: usize>(
     drive: &S::Drive,
     work: &mut S::Work,
 ) {
-    let mut done = 0;
+    path.integrate(Constant::<0>);
+    let mut done = 1;
     macro_rules! each {
         ($([$($k:ident<$index:literal>)+] $next:literal)+) => {'groups: {$(
             if order < $next {
@@ -309,7 +326,7 @@ fn paired<S: Jets<N>, const N: usize>(
         )+}};
     }
     each! {
-        [Constant<0> Constant<1> Constant<2> Constant<3>] 4
+        [Constant<1> Constant<2> Constant<3>] 4
         [First<4> Second<5> First<6> Second<7>] 8
         [First<8> Second<9> First<10> Second<11>] 12
         [First<12> Second<13> First<14> Second<15>] 16

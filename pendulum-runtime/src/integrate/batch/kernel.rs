@@ -11,31 +11,34 @@ use super::lengths::{UNTOLD, any, fit, is_short, lengths, log_radii, longer, rea
 use super::member::InLane;
 use super::{Batch, Batched, Outcome, Posed, W};
 use crate::error::Error;
+use crate::integrate::Problem;
 use crate::integrate::events::detector::{EventDetector, POINTS, Place};
 use crate::integrate::events::{Event, Status};
-use crate::integrate::method::{self, Method};
-use crate::integrate::methods::taylor::{GAP, Rule, Taylor, largest, rest};
-use crate::integrate::output::{Output, Recorder, direction};
+use crate::integrate::method::Method;
+use crate::integrate::methods::taylor::{Ends, GAP, MISFIT, Rule, Taylor, rest};
+use crate::integrate::output::{Output, Recorder, direction, precedes};
 use crate::integrate::solution::Stats;
 use crate::integrate::state::State;
 use crate::integrate::step::compensated::{Compensated, splitter};
+use crate::integrate::step::controller::ControllerState;
 use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
-use crate::integrate::step::field::coordinate;
-use crate::integrate::step::gap;
+use crate::integrate::step::held::Held;
+use crate::integrate::step::inertia::{inertia, varies};
+use crate::integrate::step::integration::{Integration, cross};
 use crate::integrate::step::interval::StepInterval;
-use crate::jet::{Jets, LENGTH, Path, Unrolling};
+use crate::jet::{InputSeries, Jets, Known, LENGTH, Path, Unrolling};
+use crate::motion::Side;
 use crate::scalar::{Float, Lane, Lanes, Real};
 use crate::simd::Work;
-use crate::system::scalar_time;
+use crate::system::{Dynamics, Facts, System, scalar_time};
 use crate::time::Time;
 
 /// A number of each lane.
 pub(super) type Wide<T> = Lanes<T, W>;
 
 /// A source of problems and their indices.
-pub(crate) type Problems<'a, S, const N: usize> =
-    dyn FnMut() -> Option<(usize, Posed<'a, S, N>)> + 'a;
+pub(crate) type Problems<'a, D, const N: usize> =
+    dyn FnMut() -> Option<(usize, Posed<'a, D, N>)> + 'a;
 
 /// A receiver of outcomes and their indices.
 pub(crate) type Outcomes<'a, T, const N: usize> = dyn FnMut(usize, Outcome<T, N>) + 'a;
@@ -50,26 +53,26 @@ pub(crate) struct Watch<'a, T, const N: usize> {
 }
 
 /// A motion in a lane.
-struct Member<'a, S: Batched<N>, const N: usize> {
+struct Member<'a, D: Batched<N>, const N: usize> {
     index: usize,
-    problem: Posed<'a, S, N>,
-    recorder: Recorder<'a, 'a, S::Scalar, N>,
-    detector: EventDetector<'a, S::Scalar, N>,
+    problem: Posed<'a, D, N>,
+    recorder: Recorder<'a, 'a, D::Scalar, N>,
+    detector: EventDetector<'a, D::Scalar, N>,
     /// The accelerations at the start, where somebody has asked for them.
-    a: Option<[S::Scalar; N]>,
-    /// Evaluations beside those of the series.
-    evaluations: u64,
+    a: Option<[D::Scalar; N]>,
+    /// The counters without the steps since `Run::begun`.
+    stats: Stats,
 }
 
 /// A batch under way.
-pub(super) struct Run<'a, S: Batched<N>, const N: usize, const WATCHED: bool> {
+pub(super) struct Run<'a, D: Batched<N>, const N: usize, const WATCHED: bool> {
     batch: &'a Batch<N>,
     /// What is kept of each motion beside its end.
-    watch: Watch<'a, S::Scalar, N>,
+    watch: Watch<'a, D::Scalar, N>,
     /// Gives the next problem and its index, until there are no more.
-    problems: &'a mut Problems<'a, S, N>,
+    problems: &'a mut Problems<'a, D, N>,
     /// Takes the outcomes as motions end.
-    outcomes: &'a mut Outcomes<'a, S::Scalar, N>,
+    outcomes: &'a mut Outcomes<'a, D::Scalar, N>,
     /// The last problem was given.
     exhausted: bool,
     rule: Rule,
@@ -77,16 +80,20 @@ pub(super) struct Run<'a, S: Batched<N>, const N: usize, const WATCHED: bool> {
     atol: [[f64; N]; 2],
     rtol: f64,
     /// The parameters of all lanes.
-    parameters: Vec<Wide<S::Scalar>>,
-    system: S::Wide,
-    workspace: Box<Workspace<S, N>>,
-    lanes: Flight<S::Scalar, N>,
+    parameters: Vec<Wide<D::Scalar>>,
+    system: D::Wide,
+    workspace: Box<Workspace<D, N>>,
+    lanes: Flight<D::Scalar, N>,
+    /// The steps that have led to these states.
+    attempt: Attempt<D::Scalar, N>,
+    /// True if it is not yet known whether they are good.
+    attempted: bool,
     /// The motion in each lane; none where it is idle.
-    members: [Option<Member<'a, S, N>>; W],
+    members: [Option<Member<'a, D, N>>; W],
     /// The next output time of each lane, and the direction of its time.
     output: Wide<f64>,
     onwards: Wide<f64>,
-    /// The round in which the motion in each lane began.
+    /// The round before the first step that the counters of the motion in each lane lack.
     begun: [u64; W],
     /// The rounds so far: each takes one step in every lane.
     round: u64,
@@ -97,10 +104,16 @@ pub(super) struct Run<'a, S: Batched<N>, const N: usize, const WATCHED: bool> {
 }
 
 /// The room for the jets.
-struct Workspace<S: Batched<N>, const N: usize> {
-    path: Path<Wide<S::Scalar>, N>,
-    drive: <S::Wide as Jets<N>>::Drive,
-    work: <S::Wide as Jets<N>>::Work,
+struct Workspace<D: Batched<N>, const N: usize> {
+    path: Path<Wide<D::Scalar>, N>,
+    /// States and accelerations from which the next steps go.
+    ahead: Path<Wide<D::Scalar>, N>,
+    drive: <D::Wide as Jets<N>>::Drive,
+    /// The series of the driven inputs of one motion.
+    own: <D::System as Jets<N>>::Drive,
+    /// The lanes whose series of driven inputs are those at their time.
+    driven: [bool; W],
+    work: <D::Wide as Jets<N>>::Work,
 }
 
 /// The states of all lanes.
@@ -111,33 +124,60 @@ pub(super) struct Flight<T, const N: usize> {
     /// The words of the time.
     pub(super) high: Wide<f64>,
     pub(super) low: Wide<f64>,
-    /// The time at which the motion ends.
+    /// The time at which the series stop holding: that of a break, or the end of the motion.
     pub(super) end: Wide<f64>,
     /// 1 where a motion is under way, else 0.
     pub(super) live: Wide<f64>,
 }
 
+/// A step in every lane.
+#[derive(Clone, Copy)]
+struct Attempt<T, const N: usize> {
+    from: Flight<T, N>,
+    /// The lengths wanted, and those taken, in two words.
+    wanted: Wide<f64>,
+    h: [Wide<f64>; 2],
+    /// One over the errors allowed.
+    weights: [[Wide<f64>; N]; 2],
+    /// Not zero where the state at the end is not finite, or the step one that is left to `Taylor`.
+    doubted: Wide<f64>,
+    /// 1 where the step ends on a kink.
+    kinked: Wide<f64>,
+    /// True if some step is the first, the last or one of those that are too short or too long.
+    unusual: bool,
+}
+
+impl<T, const N: usize> Attempt<T, N> {
+    /// The time at which the step of a lane starts.
+    #[inline(always)]
+    fn start(&self, l: usize) -> Time {
+        Time::from_words(self.from.high.0[l], self.from.low.0[l])
+    }
+}
+
 /// All steps of a batch.
-pub(super) struct Steps<'r, 'a, S: Batched<N>, const N: usize, const WATCHED: bool>(
-    pub(super) &'r mut Run<'a, S, N, WATCHED>,
+pub(super) struct Steps<'r, 'a, D: Batched<N>, const N: usize, const WATCHED: bool>(
+    pub(super) &'r mut Run<'a, D, N, WATCHED>,
 );
 
-impl<S: Batched<N>, const N: usize, const WATCHED: bool> Work for Steps<'_, '_, S, N, WATCHED> {
+impl<D: Batched<N>, const N: usize, const WATCHED: bool> Work for Steps<'_, '_, D, N, WATCHED> {
     #[inline(always)]
     fn run(self) {
-        while self.0.round < self.0.deadline {
+        while self.0.attempted | (self.0.round < self.0.deadline) {
             self.0.step();
         }
     }
 }
 
-impl<'a, S: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, S, N, WATCHED> {
+impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCHED> {
+    const FACTS: &'static Facts = &<D::System as System<N>>::FACTS;
+
     /// The first motions in their lanes; `None` without problems.
     pub(super) fn new(
         batch: &'a Batch<N>,
-        watch: Watch<'a, S::Scalar, N>,
-        problems: &'a mut Problems<'a, S, N>,
-        outcomes: &'a mut Outcomes<'a, S::Scalar, N>,
+        watch: Watch<'a, D::Scalar, N>,
+        problems: &'a mut Problems<'a, D, N>,
+        outcomes: &'a mut Outcomes<'a, D::Scalar, N>,
     ) -> Option<Self> {
         let zero = Wide::from_f64(0.0);
         let first = problems()?;
@@ -146,33 +186,41 @@ impl<'a, S: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, S, N, WATCH
             parameters.push(Wide::splat(parameter));
             Wide::splat(parameter)
         });
-        let (rtol, atol) = batch.control.tolerances::<S::Scalar>();
+        let (rtol, atol) = batch.control.tolerances::<D::Scalar>();
         let still = Compensated::new([zero; N]);
         let number = Wide::from_f64(0.0);
+        let lanes =
+            Flight { q: still, v: still, high: number, low: number, end: number, live: number };
         let mut run = Self {
             batch,
             watch,
             problems,
             outcomes,
             exhausted: false,
-            rule: batch.rule::<S>(),
+            rule: batch.rule::<D>(),
             atol: [atol.0, atol.1],
             rtol,
             parameters,
             workspace: Box::new(Workspace {
                 path: Path::new(),
-                drive: S::Wide::drive(),
+                ahead: Path::new(),
+                drive: D::Wide::drive(),
+                own: D::System::drive(),
+                driven: [false; W],
                 work: system.work(),
             }),
             system,
-            lanes: Flight {
-                q: still,
-                v: still,
-                high: number,
-                low: number,
-                end: number,
-                live: number,
+            lanes,
+            attempt: Attempt {
+                from: lanes,
+                wanted: number,
+                h: [number; 2],
+                weights: [[number; N]; 2],
+                doubted: number,
+                kinked: number,
+                unusual: false,
             },
+            attempted: false,
             members: [const { None }; W],
             output: number,
             onwards: number,
@@ -186,75 +234,183 @@ impl<'a, S: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, S, N, WATCH
         Some(run)
     }
 
-    /// One step in every lane.
+    /// Looks at the ends of the steps under way; if they hold everywhere, one more step in every
+    /// lane.
+    ///
+    /// The accelerations at the ends are the first coefficients of the series that go on there.
     #[inline(always)]
     fn step(&mut self) {
-        let from = self.lanes;
-        let Workspace { path, drive, work } = &mut *self.workspace;
-        for l in 0..W {
-            path.t.0[l] = S::Scalar::from_f64(from.high.0[l]) + S::Scalar::from_f64(from.low.0[l]);
+        self.look_ahead();
+        if self.attempted {
+            let doubted = self.doubted();
+            let seen = if WATCHED { self.watch(doubted) } else { Wide::from_f64(0.0) };
+            if (self.attempt.unusual | any(doubted) | any(seen)) && self.settle(doubted, seen) {
+                self.attempted = false;
+                return;
+            }
         }
+        self.attempted = true;
+        self.attempt.from = self.lanes;
+        let Workspace { path, ahead, drive, work, .. } = &mut *self.workspace;
+        path.t = ahead.t;
         for i in 0..N {
-            path.q[i][0] = self.lanes.q.high[i];
-            path.v[i][0] = self.lanes.v.high[i];
+            path.q[i][0] = ahead.q[i][0];
+            path.v[i][0] = ahead.v[i][0];
+            path.a[i][0] = ahead.a[i][0];
         }
-        <S::Wide as Jets<N>>::Unrolling::run_in_lanes(
+        <D::Wide as Jets<N>>::Unrolling::run_in_lanes(
             &self.system,
             self.rule.order,
             path,
             drive,
             work,
         );
-        let weights = weights(&from, self.rtol, &self.atol);
+        let from = &self.attempt.from;
+        let weights = weights(from, self.rtol, &self.atol);
         let log_radii = log_radii(path, &self.rule, &weights);
         let mut wanted = lengths(log_radii);
         let mut unusual = wanted;
         for l in 0..W {
             unusual.0[l] = if UNTOLD < wanted.0[l] { 1.0 } else { 0.0 };
-            wanted.0[l] = self.limited(&from, l, false, wanted.0[l]);
+            wanted.0[l] = self.limited(l, false, wanted.0[l]);
         }
-        let h = fit(&from, wanted, &mut unusual);
+        let h = fit(from, wanted, &mut unusual);
+        (self.attempt.wanted, self.attempt.weights) = (wanted, weights);
         if any(unusual) | self.first | (self.round + 1 == self.deadline) {
-            self.unusual_steps(&from, log_radii, &weights);
+            self.unusual_steps(log_radii);
         } else {
-            let h = [h, Wide::from_f64(0.0)];
-            let mut not_finite = self.advance(&from, h);
-            let mut seen = Wide::from_f64(0.0);
-            if WATCHED {
-                seen = self.watch(&from, h);
-                for l in 0..W {
-                    not_finite.0[l] += seen.0[l];
+            (self.attempt.unusual, self.attempt.kinked) = (false, Wide::from_f64(0.0));
+            self.advance([h, Wide::from_f64(0.0)]);
+        }
+    }
+
+    /// The accelerations at the states of all lanes, with which their series begin.
+    #[inline(always)]
+    fn look_ahead(&mut self) {
+        if const { !Self::FACTS.inputs.is_empty() } {
+            self.drive();
+        }
+        let Workspace { ahead, drive, work, .. } = &mut *self.workspace;
+        let Flight { q, v, high, low, .. } = &self.lanes;
+        for l in 0..W {
+            ahead.t.0[l] = D::Scalar::from_f64(high.0[l]) + D::Scalar::from_f64(low.0[l]);
+        }
+        for i in 0..N {
+            ahead.q[i][0] = q.high[i];
+            ahead.v[i][0] = v.high[i];
+        }
+        <D::Wide as Jets<N>>::Unrolling::begin_in_lanes(&self.system, ahead, drive, work);
+    }
+
+    /// The series of the driven inputs in all lanes, each at its own time.
+    #[inline(never)]
+    fn drive(&mut self) {
+        let Workspace { drive, own, driven, .. } = &mut *self.workspace;
+        let order = self.rule.order;
+        for l in 0..W {
+            let Some(member) = self.members[l].as_ref().filter(|_| !driven[l]) else { continue };
+            driven[l] = true;
+            let t = Time::from_words(self.lanes.high.0[l], self.lanes.low.0[l]);
+            let side = if self.onwards.0[l] < 0.0 { Side::Before } else { Side::After };
+            member.problem.system.drive(t, side, order, own);
+            let lanes: &mut [InputSeries<Wide<D::Scalar>>] = drive.as_mut();
+            for (lanes, own) in lanes.iter_mut().zip(own.as_mut()) {
+                for k in 0..=(order + 1).min(LENGTH - 1) {
+                    lanes.position[k].0[l] = own.position[k];
+                    lanes.velocity[k].0[l] = own.velocity[k];
+                    lanes.acceleration[k].0[l] = own.acceleration[k];
                 }
-            }
-            if any(not_finite) {
-                self.settle(&from, wanted, h, seen);
             }
         }
     }
 
-    /// A length of step of a lane within the limits set, and short enough to see what time alone
-    /// does.
+    /// Finds the lanes whose steps are not to be trusted, as [`Taylor`] does: their series do not
+    /// give the accelerations at their ends. They are not zero.
     #[inline(always)]
-    fn limited(&self, from: &Flight<S::Scalar, N>, l: usize, first: bool, wanted: f64) -> f64 {
+    fn doubted(&self) -> Wide<f64> {
+        let Attempt { from, h, weights, doubted, kinked, .. } = &self.attempt;
+        let (mut doubted, most) = (*doubted, MISFIT * self.rule.order as f64);
+        let ends = self.series_at_end(h);
+        let mut suspect = *kinked;
+        for i in 0..N {
+            let difference = self.workspace.ahead.a[i][0] - ends[i];
+            for l in 0..W {
+                let misfit = h[0].0[l].abs() * difference.0[l].to_f64().abs() * weights[1][i].0[l];
+                suspect.0[l] = if misfit <= most { suspect.0[l] } else { from.live.0[l] };
+            }
+        }
+        if any(suspect) {
+            for l in 0..W {
+                if 0.0 < suspect.0[l] && doubted.0[l] == 0.0 {
+                    doubted.0[l] = if self.holds(&ends, l) { 0.0 } else { 1.0 };
+                }
+            }
+        }
+        doubted
+    }
+
+    /// The accelerations of the series at the ends of steps of the lengths `h`.
+    #[inline(always)]
+    fn series_at_end(&self, h: &[Wide<f64>; 2]) -> [Wide<D::Scalar>; N] {
+        let (mut ends, length) = ([Wide::from_f64(0.0); N], length_of::<D::Scalar>(h));
+        for i in 0..N {
+            let series = &self.workspace.path.a[i];
+            ends[i] = series[0] + (series[1] * length + rest(series, self.rule.order - 1, length));
+        }
+        ends
+    }
+
+    /// Returns true if a difference of the accelerations at the end of the step of a lane is no
+    /// more than rounding explains.
+    #[cold]
+    #[inline(never)]
+    fn holds(&self, series: &[Wide<D::Scalar>; N], l: usize) -> bool {
+        let Workspace { path, ahead, .. } = &*self.workspace;
+        let (Some(Member { problem, .. }), to) = (&self.members[l], node(&self.lanes, l)) else {
+            return true;
+        };
+        let end = if self.attempt.kinked.0[l] == 0.0 {
+            core::array::from_fn(|i| ahead.a[i][0].0[l])
+        } else {
+            // Those of the next series are accelerations beyond the kink.
+            let side = if self.onwards.0[l] < 0.0 { Side::After } else { Side::Before };
+            problem.system.accelerations_at(to.t, side, &to.q.high, &to.v.high)
+        };
+        let ends = Ends {
+            interval: &interval_of(&self.attempt.from, &self.lanes, self.attempt.h, l),
+            order: self.rule.order,
+            q: core::array::from_fn(|i| path.q[i][0].0[l]),
+            a: core::array::from_fn(|i| path.a[i][0].0[l]),
+            weights: core::array::from_fn(|i| self.attempt.weights[1][i].0[l]),
+            to: &to,
+            end,
+            series: series.map(|series| series.0[l]),
+        };
+        ends.misfit(Self::FACTS, false).allowed
+    }
+
+    /// A length of step of a lane within the limits set, and short enough to see what time and the
+    /// motions alone do; none if that is no length.
+    #[inline(always)]
+    fn limited(&self, l: usize, first: bool, wanted: f64) -> f64 {
         let wanted = self.batch.control.limited(first, wanted);
-        if !S::FACTS.explicit_time {
+        if const { !Self::FACTS.explicit_time && Self::FACTS.inputs.is_empty() } {
             return wanted;
         }
         let Some(Member { problem, .. }) = &self.members[l] else { return wanted };
-        let longest =
-            gap::longest(&problem.system, Time::from_words(from.high.0[l], from.low.0[l]), GAP);
-        if longest < wanted { longest } else { wanted }
+        let (start, end) = problem.time;
+        let t = self.attempt.start(l);
+        // What is wrong with a motion, `Taylor` says.
+        let limited =
+            ControllerState::over(end - start).within_sight(wanted, &problem.system, t, GAP);
+        limited.unwrap_or(0.0)
     }
 
-    /// Goes to the ends of steps of the lengths `h`, which come in two words; not zero where the
-    /// state there is not finite.
+    /// Goes to the ends of steps of the lengths `h`, which come in two words.
     #[inline(always)]
-    fn advance(&mut self, from: &Flight<S::Scalar, N>, h: [Wide<f64>; 2]) -> Wide<f64> {
-        let mut length = Wide::from_f64(0.0);
-        for l in 0..W {
-            length.0[l] = S::Scalar::from_f64(h[0].0[l]) + S::Scalar::from_f64(h[1].0[l]);
-        }
-        let (path, splitter) = (&self.workspace.path, Wide::splat(splitter::<S::Scalar>()));
+    fn advance(&mut self, h: [Wide<f64>; 2]) {
+        let length = length_of::<D::Scalar>(&h);
+        let (path, splitter) = (&self.workspace.path, Wide::splat(splitter::<D::Scalar>()));
         let mut finite = Wide::from_f64(0.0);
         for i in 0..N {
             for (sum, series) in [(&mut self.lanes.q, &path.q[i]), (&mut self.lanes.v, &path.v[i])]
@@ -270,67 +426,77 @@ impl<'a, S: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, S, N, WATCH
                 finite += sum.high[i] * Wide::from_f64(0.0);
             }
         }
-        let mut not_finite = Wide::from_f64(0.0);
+        self.attempt.h = h;
         for l in 0..W {
-            let t = Time::from_words(from.high.0[l], from.low.0[l]) + h[0].0[l];
+            let t = self.attempt.start(l) + h[0].0[l];
             (self.lanes.high.0[l], self.lanes.low.0[l]) = (t.to_f64(), t.low());
-            not_finite.0[l] = finite.0[l].to_f64();
+            let fine = finite.0[l].to_f64() == 0.0;
+            self.attempt.doubted.0[l] = if fine { 0.0 } else { self.attempt.from.live.0[l] };
         }
+        self.workspace.driven = [false; W];
         self.round += 1;
-        not_finite
     }
 
     /// Takes steps of which some are the first or the last ones, too short, or as long as no term
     /// tells.
     #[cold]
     #[inline(never)]
-    fn unusual_steps(
-        &mut self,
-        from: &Flight<S::Scalar, N>,
-        log_radii: Wide<f64>,
-        weights: &[[Wide<f64>; N]; 2],
-    ) {
+    fn unusual_steps(&mut self, log_radii: Wide<f64>) {
+        let Attempt { from, weights, .. } = &self.attempt;
         let mut wanted = longer(&self.workspace.path, &self.rule, weights, log_radii);
         for l in 0..W {
-            wanted.0[l] = self.limited(from, l, self.begun[l] == self.round, wanted.0[l]);
+            let first = self.begun[l] == self.round
+                && self.members[l].as_ref().is_some_and(|member| member.stats.accepted == 0);
+            wanted.0[l] = self.limited(l, first, wanted.0[l]);
         }
         let mut h = [fit(from, wanted, &mut Wide::from_f64(0.0)), Wide::from_f64(0.0)];
         for l in 0..W {
-            let (t, end) = (Time::from_words(from.high.0[l], from.low.0[l]), from.end.0[l]);
+            let (t, end) = (self.attempt.start(l), from.end.0[l]);
             if 0.0 < from.live.0[l] && reaches(t, end, wanted.0[l]) {
                 let interval = StepInterval::to(t, end);
                 (h[0].0[l], h[1].0[l]) = (interval.h, interval.low);
             }
         }
         self.first = false;
-        self.advance(from, h);
+        self.advance(h);
+        (self.attempt.wanted, self.attempt.unusual) = (wanted, true);
+        self.attempt.kinked = Wide::from_f64(0.0);
         for l in 0..W {
-            let t = Time::from_words(from.high.0[l], from.low.0[l]);
-            if 0.0 < from.live.0[l] && reaches(t, from.end.0[l], wanted.0[l]) {
-                (self.lanes.high.0[l], self.lanes.low.0[l]) = (from.end.0[l], 0.0);
+            let (t, end) = (self.attempt.start(l), self.lanes.end.0[l]);
+            let Some(member) = &self.members[l] else { continue };
+            if reaches(t, end, wanted.0[l]) {
+                (self.lanes.high.0[l], self.lanes.low.0[l]) = (end, 0.0);
+                let kink = member.next_kink(t);
+                if kink == end {
+                    self.attempt.kinked.0[l] = 1.0;
+                } else if !precedes(end, kink, member.problem.time) {
+                    // Not in order, as `Taylor` says.
+                    self.attempt.doubted.0[l] = 1.0;
+                }
+            } else if is_short(t, end, wanted.0[l]) {
+                self.attempt.doubted.0[l] = 1.0;
             }
         }
-        let seen = if WATCHED { self.watch(from, h) } else { Wide::from_f64(0.0) };
-        self.settle(from, wanted, h, seen);
     }
 
     /// Finds the lanes in whose steps something is to be kept: an output time, an event. They are
     /// not zero.
     #[inline(always)]
-    fn watch(&mut self, from: &Flight<S::Scalar, N>, h: [Wide<f64>; 2]) -> Wide<f64> {
+    fn watch(&mut self, doubted: Wide<f64>) -> Wide<f64> {
+        let live = self.attempt.from.live;
         let mut seen = Wide::from_f64(0.0);
         let always = self.watch.dense | matches!(self.watch.output, Output::Steps);
         for l in 0..W {
             let ahead = self.onwards.0[l] * (self.output.0[l] - self.lanes.high.0[l]);
-            seen.0[l] = if (ahead <= 0.0) | always { from.live.0[l] } else { 0.0 };
+            seen.0[l] = if (ahead <= 0.0) | always { live.0[l] } else { 0.0 };
         }
         if self.watch.events.is_empty() {
             return seen;
         }
-        let places = self.places(h);
+        let places = self.places();
         for l in 0..W {
-            if 0.0 < from.live.0[l] {
-                seen.0[l] = if self.is_quiet(l, from, h, &places) { seen.0[l] } else { 1.0 };
+            if 0.0 < live.0[l] && doubted.0[l] + self.attempt.kinked.0[l] == 0.0 {
+                seen.0[l] = if self.is_quiet(l, &places) { seen.0[l] } else { 1.0 };
             }
         }
         seen
@@ -338,13 +504,10 @@ impl<'a, S: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, S, N, WATCH
 
     /// The coordinates and velocities at [`POINTS`] but the two that are known.
     #[inline(always)]
-    fn places(&self, h: [Wide<f64>; 2]) -> Places<S::Scalar, N> {
+    fn places(&self) -> Places<D::Scalar, N> {
         let zero = Wide::from_f64(0.0);
         let mut places = [[[zero; N]; 2]; POINTS.len()];
-        let mut length = Wide::from_f64(0.0);
-        for l in 0..W {
-            length.0[l] = S::Scalar::from_f64(h[0].0[l]) + S::Scalar::from_f64(h[1].0[l]);
-        }
+        let length = length_of::<D::Scalar>(&self.attempt.h);
         let (path, order) = (&self.workspace.path, self.rule.order);
         for i in 0..N {
             for (part, series) in [&path.q[i], &path.v[i]].into_iter().enumerate() {
@@ -359,7 +522,7 @@ impl<'a, S: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, S, N, WATCH
                 for k in (1..=order).rev() {
                     for point in INNER {
                         sums[point] =
-                            (sums[point] + terms[k]) * Wide::<S::Scalar>::from_f64(POINTS[point]);
+                            (sums[point] + terms[k]) * Wide::<D::Scalar>::from_f64(POINTS[point]);
                     }
                 }
                 for point in INNER {
@@ -371,21 +534,16 @@ impl<'a, S: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, S, N, WATCH
     }
 
     /// Returns true if no event happens in the step of a lane.
-    fn is_quiet(
-        &mut self,
-        l: usize,
-        from: &Flight<S::Scalar, N>,
-        h: [Wide<f64>; 2],
-        places: &Places<S::Scalar, N>,
-    ) -> bool {
+    fn is_quiet(&mut self, l: usize, places: &Places<D::Scalar, N>) -> bool {
+        let Attempt { from, h, .. } = &self.attempt;
         let Some(member) = &mut self.members[l] else { return true };
-        let interval = interval_of(from, &self.lanes, h, l);
+        let interval = interval_of(from, &self.lanes, *h, l);
         let (t, length) =
-            (scalar_time::<S::Scalar>(interval.start), interval.length::<S::Scalar>());
+            (scalar_time::<D::Scalar>(interval.start), interval.length::<D::Scalar>());
         let last = POINTS.len() - 1;
         // Number by number into the same place: the next load of a copy would wait.
-        let put = |point: usize, place: &mut Place<S::Scalar, N>| {
-            place.t = t + S::Scalar::from_f64(POINTS[point]) * length;
+        let put = |point: usize, place: &mut Place<D::Scalar, N>| {
+            place.t = t + D::Scalar::from_f64(POINTS[point]) * length;
             let ends = [(1, from), (last, &self.lanes)];
             if let Some((_, end)) = ends.into_iter().find(|end| end.0 == point) {
                 *place = Place::of(&node(end, l));
@@ -400,119 +558,201 @@ impl<'a, S: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, S, N, WATCH
         member.detector.is_quiet(&interval, room, put)
     }
 
-    /// Ends the motions that have come to an end, and begins others in their lanes; looks at what is
-    /// to be kept in the lanes `seen`.
+    /// Looks at what is to be kept in the lanes `seen`, takes the steps of the lanes `doubted` once
+    /// more, ends the motions that have come to an end and begins others in their lanes. Returns
+    /// true if some lane has another state now.
     #[cold]
     #[inline(never)]
-    fn settle(
-        &mut self,
-        before: &Flight<S::Scalar, N>,
-        wanted: Wide<f64>,
-        h: [Wide<f64>; 2],
-        seen: Wide<f64>,
-    ) {
-        let mut ended = false;
+    fn settle(&mut self, doubted: Wide<f64>, seen: Wide<f64>) -> bool {
+        let (mut moved, mut ended) = (false, false);
         for l in 0..W {
-            let Some(member) = &mut self.members[l] else { continue };
-            let steps = self.round - self.begun[l];
-            let (from, to) = (node(before, l), node(&self.lanes, l));
-            let end = self.lanes.end.0[l];
-            let close = reaches(from.t, end, wanted.0[l]);
-            let interval = interval_of(before, &self.lanes, h, l);
-            let mut error = if !to.is_finite() {
-                Some(Self::not_finite(&self.batch.method, &member.problem.system, &from, &interval))
-            } else if is_short(from.t, end, wanted.0[l]) {
-                let unresolved = self.batch.control.unresolved(steps == 1, wanted.0[l]);
-                Some(unresolved.unwrap_or_else(|| {
-                    let weights = weights(before, self.rtol, &self.atol);
-                    underflow::<S, N>(
-                        &self.workspace.path,
-                        self.rule.order,
-                        &weights,
-                        &from,
-                        wanted.0[l],
-                        l,
-                    )
-                }))
-            } else {
-                None
+            if self.members[l].is_none() {
+                continue;
+            }
+            let to = node(&self.lanes, l);
+            let beyond =
+                if 0.0 < self.attempt.kinked.0[l] { self.beyond(l, &to) } else { Some(to) };
+            let end = match beyond {
+                Some(end) if doubted.0[l] == 0.0 => {
+                    if end.v.high != to.v.high {
+                        moved = true;
+                    }
+                    self.arrive(l, &to, end, 0.0 < seen.0[l])
+                }
+                _ => {
+                    moved = true;
+                    self.go_alone(l)
+                }
             };
-            let failed_step = error.is_some();
-            let (mut end, mut status) = (if failed_step { from } else { to }, None);
-            if WATCHED && !failed_step && 0.0 < seen.0[l] {
-                let mut view = InLane::<S, N> {
-                    system: &member.problem.system,
-                    path: &self.workspace.path,
-                    order: self.rule.order,
-                    lane: l,
-                    from: Endpoint { a: if steps == 1 { member.a } else { None }, ..from },
-                    end,
-                    interval,
-                    interpolant: None,
-                    evaluations: &mut member.evaluations,
-                };
-                let looked = member.detector.observe(&mut view);
-                member.recorder.events(member.detector.found());
-                let looked = looked.and_then(|status| {
-                    member.recorder.step(&mut view)?;
-                    Ok(status)
-                });
-                end = view.end;
-                match looked {
-                    Ok(ended) => status = ended,
-                    Err(failure) => error = Some(failure),
-                }
-                self.output.0[l] = member.recorder.next_time();
+            if let Some((end, outcome)) = end {
+                ended = true;
+                self.finish(l, end, outcome);
             }
-            if error.is_none() && status.is_none() {
-                if close {
-                    status = Some(Status::Completed);
-                } else if self.batch.max_steps <= steps {
-                    let max_steps = self.batch.max_steps;
-                    error = Some(Error::MaxSteps { t: to.t.to_f64(), max_steps });
-                } else {
-                    continue;
-                }
-            }
-            ended = true;
-            let (taken, tried) = if failed_step { (steps - 1, steps) } else { (steps, steps) };
-            let evaluations = tried * self.rule.order as u64;
-            self.finish(l, State::from(&end), status, error, (taken, evaluations));
         }
         if ended {
             self.fill();
+        } else if moved {
+            self.set_deadline();
+        }
+        moved | ended
+    }
+
+    /// The state beyond a kink at the end of the step of a lane; `None` if it cannot be crossed.
+    fn beyond(&self, l: usize, to: &Endpoint<D::Scalar, N>) -> Option<Endpoint<D::Scalar, N>> {
+        let system = &self.members[l].as_ref()?.problem.system;
+        let (mut beyond, backwards) = (*to, self.onwards.0[l] < 0.0);
+        cross(system, &mut beyond, backwards).ok()?;
+        if varies(Self::FACTS) {
+            let side = if backwards { Side::Before } else { Side::After };
+            inertia(system, beyond.t, side, &beyond.q.high, &beyond.v.high).ok()?;
+        }
+        Some(beyond)
+    }
+
+    /// Looks at the step of a lane to `to`, and over a kink there to `end`: what is to be kept, and
+    /// if the motion ends.
+    fn arrive(
+        &mut self,
+        l: usize,
+        to: &Endpoint<D::Scalar, N>,
+        mut end: Endpoint<D::Scalar, N>,
+        seen: bool,
+    ) -> Option<(State<D::Scalar, N>, Result<Status, Error>)> {
+        let (member, attempt) = (self.members[l].as_mut()?, &self.attempt);
+        let (steps, from) = (self.round - self.begun[l], node(&attempt.from, l));
+        let first = steps == 1 && member.stats.accepted == 0;
+        let kinked = 0.0 < attempt.kinked.0[l];
+        let mut before_kink = kinked.then_some(*to);
+        if WATCHED && (seen | kinked) {
+            let mut view = InLane::<D, N> {
+                dynamics: &member.problem.system,
+                path: &self.workspace.path,
+                order: self.rule.order,
+                lane: l,
+                from: Endpoint { a: if first { member.a } else { None }, ..from },
+                before_kink,
+                end,
+                interval: interval_of(&attempt.from, &self.lanes, attempt.h, l),
+                interpolant: None,
+                evaluations: &mut member.stats.evaluations,
+            };
+            let looked = member.detector.observe(&mut view);
+            member.recorder.events(member.detector.found());
+            let looked = looked.and_then(|status| {
+                member.recorder.step(&mut view)?;
+                Ok(status)
+            });
+            (end, before_kink) = (view.end, view.before_kink);
+            self.output.0[l] = member.recorder.next_time();
+            member.stats.kinks += u64::from(before_kink.is_some());
+            if let Some(outcome) = looked.transpose() {
+                return Some((State::from(&end), outcome));
+            }
+        }
+        if !WATCHED && kinked {
+            member.stats.kinks += 1;
+        }
+        if reaches(from.t, self.lanes.end.0[l], attempt.wanted.0[l]) {
+            if end.t == Time::new(member.problem.time.1) {
+                return Some((State::from(&end), Ok(Status::Completed)));
+            }
+            self.lanes.end.0[l] = member.next_end(end.t);
+            let (v, low) = (end.v.high, end.v.low);
+            for i in 0..N {
+                (self.lanes.v.high[i].0[l], self.lanes.v.low[i].0[l]) = (v[i], low[i]);
+            }
+        }
+        if self.batch.max_steps <= member.stats.accepted + member.stats.rejected + steps {
+            let max_steps = self.batch.max_steps;
+            return Some((
+                State::from(&end),
+                Err(Error::MaxSteps { t: end.t.to_f64(), max_steps }),
+            ));
+        }
+        None
+    }
+
+    /// Takes the step of a lane by [`Taylor`] instead, and more of them until it has no doubts: its
+    /// series may not have held, a kink may be at its end, or it may fail.
+    fn go_alone(&mut self, l: usize) -> Option<(State<D::Scalar, N>, Result<Status, Error>)> {
+        // Without the step under way.
+        self.count(l, self.round - self.begun[l] - 1);
+        let Member { problem, recorder, detector, a, stats, .. } = self.members[l].as_mut()?;
+        let Problem { system, time: (start, end), .. } = &**problem;
+        let (start, end) = (*start, *end);
+        let mut from = node(&self.attempt.from, l);
+        from.a = if stats.accepted + stats.rejected == 0 { *a } else { None };
+        let known = Known(system);
+        let resumed = Integration::resumed(
+            Held::borrowed(&known),
+            self.batch.method,
+            self.batch.control,
+            from,
+            *stats,
+            end < start,
+        );
+        let mut integration = match resumed {
+            Ok(integration) => integration.over((end - start).abs()),
+            Err(error) => return Some((State::from(&from), Err(error))),
+        };
+        let ended = loop {
+            let Stats { accepted, rejected, .. } = integration.stats;
+            if self.batch.max_steps <= accepted + rejected {
+                let max_steps = self.batch.max_steps;
+                break Some(Err(Error::MaxSteps { t: integration.t(), max_steps }));
+            }
+            if let Err(error) = integration.step(end) {
+                break Some(Err(error));
+            }
+            let looked = detector.observe(&mut integration);
+            recorder.events(detector.found());
+            let looked = looked.and_then(|status| {
+                recorder.step(&mut integration)?;
+                Ok(status)
+            });
+            if let Some(outcome) = looked.transpose() {
+                break Some(outcome);
+            }
+            if integration.end.t == Time::new(end) {
+                break Some(Ok(Status::Completed));
+            }
+            let Stats { accepted, rejected, .. } = integration.stats;
+            if integration.workspace().is_sure() && accepted + rejected < self.batch.max_steps {
+                break None;
+            }
+        };
+        let to = integration.end;
+        *stats = integration.stats;
+        self.output.0[l] = recorder.next_time();
+        match ended {
+            Some(outcome) => Some((State::from(&to), outcome)),
+            None => {
+                self.lanes.end.0[l] =
+                    self.members[l].as_ref().map_or(end, |member| member.next_end(to.t));
+                self.put(l, &to);
+                None
+            }
         }
     }
 
-    /// Gives the outcome of the motion in a lane, which is free then.
-    fn finish(
-        &mut self,
-        l: usize,
-        end: State<S::Scalar, N>,
-        status: Option<Status>,
-        error: Option<Error>,
-        (accepted, evaluations): (u64, u64),
-    ) {
-        let Some(member) = self.members[l].take() else { return };
-        let mut stats = Stats::new(<Taylor as Method<S, N>>::NAME);
-        (stats.accepted, stats.evaluations) = (accepted, evaluations + member.evaluations);
-        let outcome = match error {
-            Some(error) => Err(member.recorder.fail(error, end, 0, stats)),
-            None => Ok(member.recorder.finish(end, 0, status.unwrap_or(Status::Completed), stats)),
-        };
-        (self.outcomes)(member.index, outcome);
+    /// Puts so many steps of a lane, and all before, into the counters of its motion.
+    fn count(&mut self, l: usize, steps: u64) {
+        if let Some(Member { stats, .. }) = &mut self.members[l] {
+            stats.accepted += steps;
+            stats.evaluations += steps * self.rule.order as u64;
+        }
+        self.begun[l] = self.round;
     }
 
-    /// The error for a step of a lane that led to a number that is not finite.
-    fn not_finite(
-        method: &Taylor,
-        system: &S,
-        from: &Endpoint<S::Scalar, N>,
-        interval: &StepInterval,
-    ) -> Error {
-        let prepared = system.prepare();
-        let field = Field::new(system, &prepared);
-        method::cause(method, &field, interval, from, &Method::<S, N>::workspace(method, system))
+    /// Gives the outcome of the motion in a lane, which is free then.
+    fn finish(&mut self, l: usize, end: State<D::Scalar, N>, outcome: Result<Status, Error>) {
+        self.count(l, self.round - self.begun[l]);
+        let Some(Member { index, recorder, stats, .. }) = self.members[l].take() else { return };
+        let outcome = match outcome {
+            Err(error) => Err(recorder.fail(error, end, 0, stats)),
+            Ok(status) => Ok(recorder.finish(end, 0, status, stats)),
+        };
+        (self.outcomes)(index, outcome);
     }
 
     /// Begins motions in all free lanes.
@@ -534,39 +774,48 @@ impl<'a, S: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, S, N, WATCH
                 .widen(|parameter| parameters.next().copied().unwrap_or(Wide::splat(parameter)));
             self.workspace.work = self.system.work();
         }
-        self.deadline = (0..W)
-            .filter(|&l| self.members[l].is_some())
-            .map(|l| self.begun[l].saturating_add(self.batch.max_steps))
-            .min()
-            .unwrap_or(self.round);
+        self.set_deadline();
+    }
+
+    /// Finds the round after which a motion has taken all steps allowed.
+    fn set_deadline(&mut self) {
+        let left = |l: usize| {
+            let Stats { accepted, rejected, .. } = self.members[l].as_ref()?.stats;
+            Some(
+                self.begun[l]
+                    .saturating_add(self.batch.max_steps.saturating_sub(accepted + rejected)),
+            )
+        };
+        self.deadline = (0..W).filter_map(left).min().unwrap_or(self.round);
     }
 
     /// Begins a motion in a lane, unless it fails at once or ends where it begins.
-    fn begin(&mut self, l: usize, (index, problem): (usize, Posed<'a, S, N>)) {
+    fn begin(&mut self, l: usize, (index, problem): (usize, Posed<'a, D, N>)) {
         let Watch { output, dense, events } = self.watch;
         let (time, start) =
             (problem.time, Endpoint::new(Time::new(problem.time.0), problem.q, problem.v));
         let mut member = Member {
             index,
-            recorder: Recorder::new(output, time, const { &S::FACTS }, None),
+            recorder: Recorder::new(output, time, Self::FACTS, None),
             detector: EventDetector::new(events),
             problem,
             a: None,
-            evaluations: 0,
+            stats: Stats::new(<Taylor as Method<Known<'_, D>, N>>::NAME),
         };
         let begun = self.batch.begin(&member.problem, &output).and_then(|ends| {
             if WATCHED {
                 member.recorder.begin(State::from(&start), 0, dense);
-                let mut view = InLane::<S, N> {
-                    system: &member.problem.system,
+                let mut view = InLane::<D, N> {
+                    dynamics: &member.problem.system,
                     path: &self.workspace.path,
                     order: self.rule.order,
                     lane: l,
                     from: start,
+                    before_kink: None,
                     end: start,
                     interval: StepInterval::by(start.t, if time.1 < time.0 { -0.0 } else { 0.0 }),
                     interpolant: None,
-                    evaluations: &mut member.evaluations,
+                    evaluations: &mut member.stats.evaluations,
                 };
                 member.detector.begin(&mut view)?;
                 member.a = view.end.a;
@@ -575,21 +824,23 @@ impl<'a, S: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, S, N, WATCH
         });
         if let Ok(false) = begun {
             let mut parameters = self.parameters.iter_mut();
-            member.problem.system.map(|parameter| {
+            member.problem.system.system().map(|parameter| {
                 if let Some(lanes) = parameters.next() {
                     lanes.0[l] = parameter;
                 }
                 parameter
             });
             self.put(l, &start);
-            (self.lanes.end.0[l], self.lanes.live.0[l]) = (time.1, 1.0);
+            (self.lanes.end.0[l], self.lanes.live.0[l]) = (member.next_end(start.t), 1.0);
             (self.output.0[l], self.onwards.0[l]) =
                 (member.recorder.next_time(), direction(time.0, time.1));
             (self.members[l], self.begun[l]) = (Some(member), self.round);
             self.first = self.batch.control.limits_first();
         } else {
             self.members[l] = Some(member);
-            self.finish(l, State::from(&start), None, begun.err(), (0, 0));
+            self.begun[l] = self.round;
+            let outcome = begun.map(|_| Status::Completed);
+            self.finish(l, State::from(&start), outcome);
         }
     }
 
@@ -609,7 +860,8 @@ impl<'a, S: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, S, N, WATCH
         }
     }
 
-    fn put(&mut self, l: usize, node: &Endpoint<S::Scalar, N>) {
+    fn put(&mut self, l: usize, node: &Endpoint<D::Scalar, N>) {
+        self.workspace.driven[l] = false;
         (self.lanes.high.0[l], self.lanes.low.0[l]) = (node.t.to_f64(), node.t.low());
         for i in 0..N {
             (self.lanes.q.high[i].0[l], self.lanes.q.low[i].0[l]) = (node.q.high[i], node.q.low[i]);
@@ -624,24 +876,32 @@ const INNER: [usize; POINTS.len() - 2] = [0, 2, 3, 4, 5, 6, 7, 8, 9];
 /// The coordinates and velocities of all lanes at several points of their steps.
 type Places<T, const N: usize> = [[[Wide<T>; N]; 2]; POINTS.len()];
 
-/// The error for a step of a lane that is too short.
-fn underflow<S: Batched<N>, const N: usize>(
-    lanes: &Path<Wide<S::Scalar>, N>,
-    k: usize,
-    weights: &[[Wide<f64>; N]; 2],
-    from: &Endpoint<S::Scalar, N>,
-    wanted: f64,
-    l: usize,
-) -> Error {
-    let one = weights.map(|weights| weights.map(|weights| weights.0[l]));
-    let mut path = Path::new();
-    for i in 0..N {
-        path.q[i][k] = lanes.q[i][k].0[l];
-        path.v[i][k] = lanes.v[i][k].0[l];
+impl<D: Batched<N>, const N: usize> Member<'_, D, N> {
+    /// The first time after `t` at which the series stop holding: that of a break, or the end.
+    fn next_end(&self, t: Time) -> f64 {
+        let Problem { system, time: (start, end), .. } = &*self.problem;
+        let t = t.to_f64();
+        let found = if end < start { system.last_break(t) } else { system.next_break(t) };
+        found.filter(|time| precedes(*time, *end, (*start, *end))).unwrap_or(*end)
     }
-    let (_, index) = largest(&path, k, &one);
-    let coordinate = coordinate(&S::FACTS, index);
-    Error::StepSizeUnderflow { t: from.t.to_f64(), step: wanted, coordinate }
+
+    /// The first kink after `t`, infinite if there is none.
+    fn next_kink(&self, t: Time) -> f64 {
+        let Problem { system, time: (start, end), .. } = &*self.problem;
+        let (t, onwards) = (t.to_f64(), direction(*start, *end));
+        let kink = if onwards < 0.0 { system.last_kink(t) } else { Dynamics::next_kink(system, t) };
+        kink.unwrap_or(onwards * f64::INFINITY)
+    }
+}
+
+/// The lengths of steps in the scalar of the system.
+#[inline(always)]
+fn length_of<T: Lane + Float>(h: &[Wide<f64>; 2]) -> Wide<T> {
+    let mut length = Wide::from_f64(0.0);
+    for l in 0..W {
+        length.0[l] = T::from_f64(h[0].0[l]) + T::from_f64(h[1].0[l]);
+    }
+    length
 }
 
 /// The step that a lane has taken.

@@ -11,34 +11,36 @@ use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::observed::Observed;
 use crate::jet::Path;
-use crate::system::Facts;
+use crate::system::{Facts, System};
 use crate::time::Time;
 
 /// A motion in a lane, after a step.
-pub(super) struct InLane<'v, S: Batched<N>, const N: usize> {
-    pub(super) system: &'v S,
-    pub(super) path: &'v Path<Wide<S::Scalar>, N>,
+pub(super) struct InLane<'v, D: Batched<N>, const N: usize> {
+    pub(super) dynamics: &'v D,
+    pub(super) path: &'v Path<Wide<D::Scalar>, N>,
     pub(super) order: usize,
     pub(super) lane: usize,
-    pub(super) from: Endpoint<S::Scalar, N>,
-    pub(super) end: Endpoint<S::Scalar, N>,
+    pub(super) from: Endpoint<D::Scalar, N>,
+    /// The end on this side of a kink, if there is one.
+    pub(super) before_kink: Option<Endpoint<D::Scalar, N>>,
+    pub(super) end: Endpoint<D::Scalar, N>,
     pub(super) interval: StepInterval,
-    pub(super) interpolant: Option<Interpolant<S::Scalar, N>>,
+    pub(super) interpolant: Option<Interpolant<D::Scalar, N>>,
     pub(super) evaluations: &'v mut u64,
 }
 
-impl<S: Batched<N>, const N: usize> Observed<S::Scalar, N> for InLane<'_, S, N> {
-    const FACTS: &'static Facts = &S::FACTS;
+impl<D: Batched<N>, const N: usize> Observed<D::Scalar, N> for InLane<'_, D, N> {
+    const FACTS: &'static Facts = &<D::System as System<N>>::FACTS;
 
-    fn end(&self) -> &Endpoint<S::Scalar, N> {
+    fn end(&self) -> &Endpoint<D::Scalar, N> {
         &self.end
     }
 
-    fn before_kink(&self) -> Option<&Endpoint<S::Scalar, N>> {
-        None
+    fn before_kink(&self) -> Option<&Endpoint<D::Scalar, N>> {
+        self.before_kink.as_ref()
     }
 
-    fn interpolant(&mut self) -> Option<Interpolant<S::Scalar, N>> {
+    fn interpolant(&mut self) -> Option<Interpolant<D::Scalar, N>> {
         let Self { path, order, lane: l, from, interval, .. } = *self;
         let (path, order, l) = (path, order, l);
         let interpolant = self.interpolant.get_or_insert_with(|| {
@@ -49,9 +51,9 @@ impl<S: Batched<N>, const N: usize> Observed<S::Scalar, N> for InLane<'_, S, N> 
         Some(*interpolant)
     }
 
-    fn accelerations(&mut self) -> [S::Scalar; N] {
-        let prepared = self.system.prepare();
-        let mut field = Field::new(self.system, &prepared);
+    fn accelerations(&mut self) -> [D::Scalar; N] {
+        let prepared = self.dynamics.system().prepare();
+        let mut field = Field::new(self.dynamics, &prepared);
         field.backwards = self.goes_back();
         let a = self.end.start_acceleration(&mut field);
         *self.evaluations += field.evaluations;
@@ -66,17 +68,17 @@ impl<S: Batched<N>, const N: usize> Observed<S::Scalar, N> for InLane<'_, S, N> 
         self.interval.h
     }
 
-    fn cut(&mut self, t: Time, state: &State<S::Scalar, N>) {
-        self.end = Endpoint::new(t, state.q, state.v);
+    fn cut(&mut self, t: Time, state: &State<D::Scalar, N>) {
+        (self.before_kink, self.end) = (None, Endpoint::new(t, state.q, state.v));
     }
 
     // Events that act do not go through lanes.
-    fn jump(&mut self, state: &State<S::Scalar, N>) -> Result<(), Error> {
+    fn jump(&mut self, state: &State<D::Scalar, N>) -> Result<(), Error> {
         self.end = Endpoint::new(self.end.t, state.q, state.v);
         Ok(())
     }
 
     fn retreat(&mut self) {
-        self.end = self.from;
+        (self.before_kink, self.end) = (None, self.from);
     }
 }

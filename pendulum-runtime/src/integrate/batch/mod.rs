@@ -13,10 +13,10 @@ use crate::integrate::solution::{Failure, Solution};
 use crate::integrate::step::adaptive::AdaptiveStep;
 use crate::integrate::step::controller::Controller;
 use crate::integrate::step::integration::check_start;
-use crate::jet::Jets;
+use crate::jet::{JetDynamics, Jets, MaybeJets};
 use crate::scalar::{Float, Lane, Lanes};
 use crate::simd;
-use crate::system::Dynamics;
+use crate::system::{Dynamics, System};
 use crate::time::Time;
 use core::ops::Deref;
 use kernel::{Outcomes, Problems, Watch};
@@ -27,16 +27,20 @@ const W: usize = 8;
 /// Many motions of one type of system by their [`Taylor`] series, side by side in the lanes of the
 /// widest vectors that the machine has.
 ///
-/// Parameters, intervals and start states may differ from motion to motion, and each takes its own
-/// steps: its solution has the same bits whatever its neighbours do. Where one ends, the next one
-/// takes its lane. The steps are those that `Taylor` chooses before it looks at their ends:
-/// `Taylor` compares the accelerations there with its series and halves a step that leads through a
-/// wall; a batch does neither. State and counters have the bits of
-/// [`solve`](crate::integrate::solve)`(&system, time, q, v).method(Taylor::new())` wherever the
-/// [`Stats`](crate::integrate::Stats) of that run count no rejected step. At walls, contacts and
-/// narrow kicks take `solve`.
+/// Parameters, intervals, start states and motions may differ from motion to motion, and each takes
+/// its own steps: its solution has the same bits whatever its neighbours do. Where one ends, the
+/// next one takes its lane. State and counters have the bits of
+/// [`solve`](crate::integrate::solve)`(&system, time, q, v).method(Taylor::new())`.
+///
+/// As `Taylor` does, a batch compares the accelerations at the end of each step with those of its
+/// series, at no further evaluation: they are the first coefficients of the next series. A motion
+/// whose series does not hold, because it meets a wall, a contact or a kick, is left to `Taylor`
+/// alone until series hold again, and comes back to its lane. The accelerations compared are
+/// rounded otherwise than those of `Taylor`: a difference within rounding of what is allowed, which
+/// is 30 times the error allowed, may be judged otherwise.
+///
 /// Worth it from about four motions on; it suits every system that `lagrangian!` has made without
-/// driven inputs.
+/// driven and control inputs, constraints and limits.
 ///
 /// A failure ends one motion only. A step allocates nothing; the end of a motion does.
 ///
@@ -95,13 +99,13 @@ impl<S: Dynamics<N>, const N: usize> Deref for Posed<'_, S, N> {
     }
 }
 
-/// A system that can stand in lanes: every one that `lagrangian!` generates without driven inputs,
-/// over `f32` and `f64`.
+/// Dynamics that can stand in lanes: every system that `lagrangian!` generates without driven
+/// inputs, over `f32` and `f64`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be integrated in a batch",
     note = "a batch takes systems that `lagrangian!` has made, over `f64` or `f32` and without driven inputs"
 )]
-pub trait Batched<const N: usize>: Jets<N, Scalar: Lane + Float, Inputs = ()> + Sized {
+pub trait Batched<const N: usize>: MaybeJets<N, Scalar: Lane + Float> + Sized {
     /// The same system over lanes.
     #[doc(hidden)]
     type Wide: Jets<N, Scalar = Lanes<Self::Scalar, 8>>;
@@ -182,20 +186,21 @@ impl<const N: usize> Batch<N> {
     ///
     /// The whole fails only if a setting is out of its range. A motion that cannot begin or go on
     /// gives its own [`Failure`], with the error and the last good state.
-    pub fn run<S: Batched<N>>(
+    pub fn run<D: Batched<N> + JetDynamics<N>>(
         &self,
-        problems: &[Problem<S, N>],
-    ) -> Result<Vec<Outcome<S::Scalar, N>>, Error> {
+        problems: &[Problem<D, N>],
+    ) -> Result<Vec<Outcome<D::Scalar, N>>, Error> {
         const {
+            let facts = &<D::System as System<N>>::FACTS;
             assert!(
-                S::FACTS.constraints.is_empty() && S::FACTS.limits.is_empty(),
+                facts.constraints.is_empty() && facts.limits.is_empty(),
                 "a batch keeps no constraints and no limits: use `Ensemble`, which integrates such systems one by one"
             );
         };
-        <AdaptiveStep<N> as Controller<Taylor, S, N>>::check(&self.control)?;
+        <AdaptiveStep<N> as Controller<Taylor, D, N>>::check(&self.control)?;
         let mut outcomes: Vec<_> = problems.iter().map(|_| None).collect();
         let mut next = problems.iter().map(Posed::Borrowed).enumerate();
-        self.run_each::<S, false>(
+        self.run_each::<D, false>(
             Watch { output: Output::End, dense: false, events: &[] },
             &mut || next.next(),
             &mut |index, outcome| outcomes[index] = Some(outcome),
@@ -217,11 +222,11 @@ impl<const N: usize> Batch<N> {
 
     /// Integrates each problem that `problems` gives, and gives the outcomes to `outcomes` in the
     /// order in which motions end; `watch` is for those that are `WATCHED`.
-    pub(crate) fn run_each<'a, S: Batched<N>, const WATCHED: bool>(
+    pub(crate) fn run_each<'a, D: Batched<N>, const WATCHED: bool>(
         &'a self,
-        watch: Watch<'a, S::Scalar, N>,
-        problems: &'a mut Problems<'a, S, N>,
-        outcomes: &'a mut Outcomes<'a, S::Scalar, N>,
+        watch: Watch<'a, D::Scalar, N>,
+        problems: &'a mut Problems<'a, D, N>,
+        outcomes: &'a mut Outcomes<'a, D::Scalar, N>,
     ) {
         if let Some(mut run) = kernel::Run::<_, _, WATCHED>::new(self, watch, problems, outcomes) {
             simd::widest(kernel::Steps(&mut run));
@@ -229,15 +234,15 @@ impl<const N: usize> Batch<N> {
     }
 
     /// The rule that decides about the length of a step.
-    fn rule<S: Batched<N>>(&self) -> Rule {
-        let (rtol, _) = self.control.tolerances::<S::Scalar>();
-        Rule::new(self.method.order_for(rtol, S::PER_DIGIT), rtol)
+    fn rule<D: Batched<N>>(&self) -> Rule {
+        let (rtol, _) = self.control.tolerances::<D::Scalar>();
+        Rule::new(self.method.order_for(rtol, D::System::PER_DIGIT), rtol)
     }
 
     /// Checks that a motion can begin; `true` if it ends where it begins.
-    fn begin<S: Batched<N>>(
+    fn begin<D: Batched<N>>(
         &self,
-        problem: &Problem<S, N>,
+        problem: &Problem<D, N>,
         output: &Output<'_>,
     ) -> Result<bool, Error> {
         let (start, end) = problem.time;

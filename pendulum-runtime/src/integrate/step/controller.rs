@@ -170,6 +170,14 @@ impl Default for ControllerState {
 }
 
 impl ControllerState {
+    /// Before the first step over an interval of this length.
+    #[inline]
+    pub(crate) fn over(length: f64) -> Self {
+        // Part of a length of few units in the last place may be none, which is no length of a
+        // step.
+        Self { unknown: f64::max(gap::PART * length.abs(), f64::MIN_POSITIVE), ..Self::default() }
+    }
+
     /// `wanted`, or less if a step from `t` of a method whose samples lie `width` of a
     /// step apart
     /// might miss what time alone does.

@@ -15,7 +15,7 @@ use crate::integrate::step::interval::StepInterval;
 use crate::jet::{JetDynamics, Jets, Path, Series};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
-use crate::system::System;
+use crate::system::{Facts, System};
 
 impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Controller<Taylor, D, N>
     for AdaptiveStep<N>
@@ -141,22 +141,30 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> StepLaw<Taylor, D, N> for
 }
 
 /// The error of a step over the one allowed from which on the series does not hold at its end.
-const MISFIT: f64 = 30.0;
+pub(crate) const MISFIT: f64 = 30.0;
 
 /// The misfit of a series at the end of its step.
-struct Misfit {
+pub(crate) struct Misfit {
     /// The accelerations are those of the series.
-    allowed: bool,
+    pub(crate) allowed: bool,
     /// They differ by no more than a thousand times what rounding is taken for.
-    rounding: bool,
+    pub(super) rounding: bool,
 }
 
-/// The distance of the accelerations at the end of a step from those of the series: h |a − Σ k
-/// v\[k\] hᵏ⁻¹|/p in units of the error allowed.
-///
-/// A series knows no more than its centre does: of a wall, a contact or a switch far away its
-/// coefficients tell nothing. Rounding is taken for a thousand ε of velocities, accelerations,
-/// coordinates and time.
+/// Both ends of a step, as far as they decide whether its series holds.
+pub(crate) struct Ends<'a, T, const N: usize> {
+    pub(crate) interval: &'a StepInterval,
+    pub(crate) order: usize,
+    /// Coordinates and accelerations at the start, and one over the errors allowed of velocities.
+    pub(crate) q: [T; N],
+    pub(crate) a: [T; N],
+    pub(crate) weights: [f64; N],
+    /// The state at the end, its accelerations, and those of the series there.
+    pub(crate) to: &'a Endpoint<T, N>,
+    pub(crate) end: [T; N],
+    pub(crate) series: [T; N],
+}
+
 fn misfit<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     field: &Field<'_, D, N>,
     workspace: &WorkspaceOf<D, N>,
@@ -167,38 +175,64 @@ fn misfit<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     let (h, zero) = (interval.length::<D::Scalar>(), D::Scalar::from_f64(0.0));
     // Beside the orders of the series, which are what evaluations of this method count.
     let mut end = Field::new(field.dynamics, field.prepared);
-    let a = end.at(interval.end, side(interval.h).opposite(), &to.q.high, &to.v.high);
-    // Motions have the digits of `f64`.
-    let facts = &<D::System as System<N>>::FACTS;
-    let epsilon = D::Scalar::EPSILON.to_f64();
-    let rounding = 1e3
-        * if facts.inputs.is_empty() || f64::EPSILON < epsilon { epsilon } else { f64::EPSILON };
-    let largest = |values: &dyn Fn(usize) -> D::Scalar| {
-        (0..N).fold(0.0, |largest: f64, i| largest.max(values(i).to_f64().abs()))
-    };
-    let (q, v, weights) = (&workspace.path.q, &workspace.path.v, &workspace.weights[1]);
-    let series: [D::Scalar; N] = core::array::from_fn(|i| {
+    let end = end.at(interval.end, side(interval.h).opposite(), &to.q.high, &to.v.high);
+    let (q, v) = (&workspace.path.q, &workspace.path.v);
+    let series = core::array::from_fn(|i| {
         let orders = (1..=workspace.order).rev();
         orders.fold(zero, |sum, k| sum * h + D::Scalar::from_f64(k as f64) * v[i][k])
     });
-    // Coordinates and time are rounded too, and the accelerations change with them as they do on
-    // the way: those of the series, where a jump is no slope.
-    let way = largest(&|i| to.q.high[i] - q[i][0]);
-    let turns = [largest(&|i| a[i] - v[i][1]), largest(&|i| series[i] - v[i][1])];
-    let turn = if turns[1] < turns[0] { turns[1] } else { turns[0] };
-    let by_place = if 0.0 < way { largest(&|i| to.q.high[i]) * (turn / way) } else { 0.0 };
-    let by_time = interval.end.to_f64().abs() * (turn / interval.h.abs());
-    let size = largest(&|i| a[i]) + by_place + if facts.autonomous { 0.0 } else { by_time };
-    let (mut allowed, mut is_rounding) = (to.is_finite() && size.is_finite(), true);
-    for i in 0..N {
-        let difference = (a[i] - series[i]).to_f64().abs();
-        // That of a smooth series is gone after a halving; that of a jump is not, and the velocity
-        // is off by all of it.
-        let (share, most) = if strict { (1.0, 1.0) } else { (workspace.order as f64, MISFIT) };
-        let misfit = interval.h.abs() * difference / share;
-        let noise = rounding * (to.v.high[i].to_f64().abs() + interval.h.abs() * size);
-        allowed &= misfit * weights[i] <= most + noise * weights[i];
-        is_rounding &= difference <= 1e3 * rounding * size;
+    let ends = Ends {
+        interval,
+        order: workspace.order,
+        q: core::array::from_fn(|i| q[i][0]),
+        a: core::array::from_fn(|i| v[i][1]),
+        weights: workspace.weights[1],
+        to,
+        end,
+        series,
+    };
+    ends.misfit(&<D::System as System<N>>::FACTS, strict)
+}
+
+impl<T: Float, const N: usize> Ends<'_, T, N> {
+    /// The distance of the accelerations at the end of a step from those of the series: h |a − Σ k
+    /// v\[k\] hᵏ⁻¹|/p in units of the error allowed.
+    ///
+    /// A series knows no more than its centre does: of a wall, a contact or a switch far away its
+    /// coefficients tell nothing. Rounding is taken for a thousand ε of velocities, accelerations,
+    /// coordinates and time.
+    pub(crate) fn misfit(&self, facts: &Facts, strict: bool) -> Misfit {
+        let Self { interval, order, q, a, weights, to, end, series } = self;
+        // Motions have the digits of `f64`.
+        let epsilon = T::EPSILON.to_f64();
+        let rounding = 1e3
+            * if facts.inputs.is_empty() || f64::EPSILON < epsilon {
+                epsilon
+            } else {
+                f64::EPSILON
+            };
+        let largest = |values: &dyn Fn(usize) -> T| {
+            (0..N).fold(0.0, |largest: f64, i| largest.max(values(i).to_f64().abs()))
+        };
+        // Coordinates and time are rounded too, and the accelerations change with them as they do
+        // on the way: those of the series, where a jump is no slope.
+        let way = largest(&|i| to.q.high[i] - q[i]);
+        let turns = [largest(&|i| end[i] - a[i]), largest(&|i| series[i] - a[i])];
+        let turn = if turns[1] < turns[0] { turns[1] } else { turns[0] };
+        let by_place = if 0.0 < way { largest(&|i| to.q.high[i]) * (turn / way) } else { 0.0 };
+        let by_time = interval.end.to_f64().abs() * (turn / interval.h.abs());
+        let size = largest(&|i| end[i]) + by_place + if facts.autonomous { 0.0 } else { by_time };
+        let (mut allowed, mut is_rounding) = (to.is_finite() && size.is_finite(), true);
+        for i in 0..N {
+            let difference = (end[i] - series[i]).to_f64().abs();
+            // That of a smooth series is gone after a halving; that of a jump is not, and the
+            // velocity is off by all of it.
+            let (share, most) = if strict { (1.0, 1.0) } else { (*order as f64, MISFIT) };
+            let misfit = interval.h.abs() * difference / share;
+            let noise = rounding * (to.v.high[i].to_f64().abs() + interval.h.abs() * size);
+            allowed &= misfit * weights[i] <= most + noise * weights[i];
+            is_rounding &= difference <= 1e3 * rounding * size;
+        }
+        Misfit { allowed, rounding: is_rounding }
     }
-    Misfit { allowed, rounding: is_rounding }
 }

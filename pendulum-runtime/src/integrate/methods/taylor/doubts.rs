@@ -65,6 +65,11 @@ impl Doubts {
         if left < wanted { left } else { wanted }
     }
 
+    /// Returns true if the next step is taken as if there had been none.
+    pub(super) fn are_gone(&self) -> bool {
+        self.refuted.is_none() && self.count == 0 && self.crossed == 0
+    }
+
     /// Visits all that the next step needs.
     pub(super) fn remember(&mut self, memory: &mut Memory) {
         let Self { refuted, crossed, count, shortest, .. } = self;

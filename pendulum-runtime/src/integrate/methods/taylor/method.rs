@@ -95,6 +95,13 @@ pub struct Workspace<T, W, X, const N: usize> {
     pub(super) doubts: Doubts,
 }
 
+impl<T, W, X, const N: usize> Workspace<T, W, X, N> {
+    /// Returns true if no series of late has failed to hold.
+    pub(crate) fn is_sure(&self) -> bool {
+        self.doubts.are_gone()
+    }
+}
+
 /// The room for the jets of the dynamics `D`.
 pub(crate) type WorkspaceOf<D, const N: usize> = Workspace<
     <D as Dynamics<N>>::Scalar,

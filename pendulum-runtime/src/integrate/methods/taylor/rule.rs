@@ -68,7 +68,7 @@ pub(super) fn length<T: Float, const N: usize>(
 
 /// The largest coefficient of an order over the error allowed, and its coordinate.
 #[inline]
-pub(crate) fn largest<T: Float, const N: usize>(
+pub(super) fn largest<T: Float, const N: usize>(
     path: &Path<T, N>,
     k: usize,
     weights: &[[f64; N]; 2],

@@ -17,7 +17,6 @@ use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::{
     Field, PreparedOf, coordinate, first_in_inputs, first_in_state,
 };
-use crate::integrate::step::gap::PART;
 use crate::integrate::step::held::Held;
 use crate::integrate::step::inertia::{inertia, is_due, varies};
 use crate::integrate::step::interval::StepInterval;
@@ -82,28 +81,51 @@ where
         check_start(&*dynamics, Time::new(t), &q, &v)?;
         let end = projection::start(&*dynamics, Time::new(t), Side::After, q, v)?;
         dynamics.begin(t);
-        let kink = next_kink(&method, &*dynamics, t, false)?;
-        let mut integration = Self {
+        let stats = Stats::new(M::NAME);
+        let mut integration = Self::resumed(dynamics, method, controller, end, stats, false)?;
+        integration.touch()?;
+        Ok(integration)
+    }
+
+    /// At a state that another one has reached without limits, with its counters.
+    pub(crate) fn resumed(
+        dynamics: Held<'a, D>,
+        method: M,
+        controller: C,
+        end: Endpoint<D::Scalar, N>,
+        stats: Stats,
+        backwards: bool,
+    ) -> Result<Self, Error> {
+        let kink = next_kink(&method, &*dynamics, end.t.to_f64(), backwards)?;
+        let mut state = ControllerState::default();
+        if 0 < stats.accepted {
+            // No step is the first one.
+            state.h = f64::MIN_POSITIVE;
+        }
+        Ok(Self {
             prepared: dynamics.system().prepare(),
             workspace: method.workspace(&dynamics),
             dynamics,
             method,
             controller,
             end,
-            stats: Stats::new(M::NAME),
+            stats,
             last: None,
             from: end,
             interpolant: None,
             before_kink: None,
-            state: ControllerState::default(),
-            backwards: false,
+            state,
+            backwards,
             kink,
             crossed: false,
             limits: Limits::<D::Scalar, N>::new(contacts::limits::<D, N>()),
             gradients: Gradients::new(),
-        };
-        integration.touch()?;
-        Ok(integration)
+        })
+    }
+
+    /// The workspace of the method.
+    pub(crate) fn workspace(&self) -> &M::Workspace {
+        &self.workspace
     }
 
     /// Puts the state elsewhere; counters stay, steps are chosen as at a start.
@@ -168,9 +190,7 @@ where
 
     /// The same integration, which is known to go over an interval of this length.
     pub(crate) fn over(mut self, length: f64) -> Self {
-        // Part of a length of few units in the last place may be none, which is no length of a
-        // step.
-        self.state.unknown = f64::max(PART * length, f64::MIN_POSITIVE);
+        self.state.unknown = ControllerState::over(length).unknown;
         self
     }
 
@@ -528,7 +548,7 @@ where
 }
 
 /// Carries the velocities over the kink at `node.t`.
-fn cross<D, T, const N: usize>(
+pub(crate) fn cross<D, T, const N: usize>(
     dynamics: &D,
     node: &mut Endpoint<T, N>,
     backwards: bool,
