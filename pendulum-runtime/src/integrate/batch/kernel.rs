@@ -139,6 +139,8 @@ struct Attempt<T, const N: usize> {
     h: [Wide<f64>; 2],
     /// One over the errors allowed.
     weights: [[Wide<f64>; N]; 2],
+    /// The accelerations of the series at the ends.
+    ends: [Wide<T>; N],
     /// Not zero where the state at the end is not finite, or the step one that is left to `Taylor`.
     doubted: Wide<f64>,
     /// 1 where the step ends on a kink.
@@ -216,6 +218,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
                 wanted: number,
                 h: [number; 2],
                 weights: [[number; N]; 2],
+                ends: [zero; N],
                 doubted: number,
                 kinked: number,
                 unusual: false,
@@ -328,9 +331,8 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
     /// give the accelerations at their ends. They are not zero.
     #[inline(always)]
     fn doubted(&self) -> Wide<f64> {
-        let Attempt { from, h, weights, doubted, kinked, .. } = &self.attempt;
+        let Attempt { from, h, weights, ends, doubted, kinked, .. } = &self.attempt;
         let (mut doubted, most) = (*doubted, MISFIT * self.rule.order as f64);
-        let ends = self.series_at_end(h);
         let mut suspect = *kinked;
         for i in 0..N {
             let difference = self.workspace.ahead.a[i][0] - ends[i];
@@ -342,29 +344,18 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         if any(suspect) {
             for l in 0..W {
                 if 0.0 < suspect.0[l] && doubted.0[l] == 0.0 {
-                    doubted.0[l] = if self.holds(&ends, l) { 0.0 } else { 1.0 };
+                    doubted.0[l] = if self.holds(l) { 0.0 } else { 1.0 };
                 }
             }
         }
         doubted
     }
 
-    /// The accelerations of the series at the ends of steps of the lengths `h`.
-    #[inline(always)]
-    fn series_at_end(&self, h: &[Wide<f64>; 2]) -> [Wide<D::Scalar>; N] {
-        let (mut ends, length) = ([Wide::from_f64(0.0); N], length_of::<D::Scalar>(h));
-        for i in 0..N {
-            let series = &self.workspace.path.a[i];
-            ends[i] = series[0] + (series[1] * length + rest(series, self.rule.order - 1, length));
-        }
-        ends
-    }
-
     /// Returns true if a difference of the accelerations at the end of the step of a lane is no
     /// more than rounding explains.
     #[cold]
     #[inline(never)]
-    fn holds(&self, series: &[Wide<D::Scalar>; N], l: usize) -> bool {
+    fn holds(&self, l: usize) -> bool {
         let Workspace { path, ahead, .. } = &*self.workspace;
         let (Some(Member { problem, .. }), to) = (&self.members[l], node(&self.lanes, l)) else {
             return true;
@@ -384,7 +375,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
             weights: core::array::from_fn(|i| self.attempt.weights[1][i].0[l]),
             to: &to,
             end,
-            series: series.map(|series| series.0[l]),
+            series: self.attempt.ends.map(|ends| ends.0[l]),
         };
         ends.misfit(Self::FACTS, false).allowed
     }
@@ -411,6 +402,12 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
     fn advance(&mut self, h: [Wide<f64>; 2]) {
         let length = length_of::<D::Scalar>(&h);
         let (path, splitter) = (&self.workspace.path, Wide::splat(splitter::<D::Scalar>()));
+        let mut ends = [Wide::from_f64(0.0); N];
+        for i in 0..N {
+            let series = &path.a[i];
+            ends[i] = series[0] + (series[1] * length + rest(series, self.rule.order - 1, length));
+        }
+        self.attempt.ends = ends;
         let mut finite = Wide::from_f64(0.0);
         for i in 0..N {
             for (sum, series) in [(&mut self.lanes.q, &path.q[i]), (&mut self.lanes.v, &path.v[i])]
