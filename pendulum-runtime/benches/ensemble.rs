@@ -2,7 +2,7 @@
 //! threads, and memory.
 //!
 //! `cargo bench -p pendulum-runtime --features rayon --bench ensemble [-- --heyoka PYTHON]`; with
-//! `flip`, `ends`, `threads`, `rates` or `memory` only that. With `--heyoka`,
+//! `flip`, `ends`, `threads`, `rates`, `driven` or `memory` only that. With `--heyoka`,
 //! `benches/peers/heyoka_ensemble.py` runs in turn with it in every round, and ratios are medians
 //! of those within a round.
 
@@ -10,6 +10,7 @@
 
 use pendulum_runtime::ensemble::Ensemble;
 use pendulum_runtime::integrate::{Event, Problem};
+use pendulum_runtime::motion::{Linear, Sinusoid, Spline};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::DoubleDouble;
 use std::f64::consts::PI;
@@ -18,6 +19,17 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::Instant;
 use systems::pendulums::Simple;
 use systems::problems::{Double, Five};
+
+lagrangian! {
+    /// A pendulum on a joint that moves.
+    #[derive(Clone, Debug)]
+    pub struct OnJoint { L: m, g: m/s^2 = 9.81 }
+    coordinate θ: rad;
+    driven x: m;
+    let y = [x + L*sin(θ), -L*cos(θ)];
+    kinetic = |ẏ|^2/2;
+    potential = g*height(y);
+}
 
 const ROUNDS: usize = 7;
 const SIDE: usize = 100;
@@ -290,6 +302,49 @@ fn rates() {
     });
 }
 
+/// Members a second of a pendulum on a joint that moves, on one thread: in lanes and one by one.
+fn driven() {
+    fn rate(name: &str, run: impl Fn() -> u64) -> f64 {
+        let rates = (0..ROUNDS).map(|_| timed(&run)).map(|(seconds, n)| n as f64 / seconds);
+        let rate = median(rates.collect());
+        println!("{name:<56} {rate:9.0} members a second");
+        rate
+    }
+    macro_rules! all {
+        ($name:literal, $way:literal, $problem:ident, $rtol:ident $(, $method:expr)?) => {
+            rate(&format!("{}, rtol {:e}, {}", $name, $rtol, $way), || {
+                let all = Ensemble::new(0..2000, $problem).rtol($rtol)$(.method($method))?;
+                let all = all.map(|_, solution| solution.end.q[0]);
+                all.reduce(|| 0.0, f64::max).map_or(0, |all| all.tally.members)
+            })
+        };
+    }
+    macro_rules! measure {
+        ($name:literal, $joint:expr) => {
+            let joint = $joint;
+            let problem = |k: usize| Problem {
+                system: OnJoint { L: 1.0 + 1e-4 * k as f64, g: 9.81 }.driven_by(joint.clone()),
+                time: (0.0, 10.0),
+                q: [1e-3 * k as f64],
+                v: [0.0],
+            };
+            for rtol in [1e-6, 1e-9, 1e-12] {
+                let lanes = all!($name, "lanes", problem, rtol);
+                let picard = all!($name, "Picard alone", problem, rtol, Picard);
+                let taylor = all!($name, "Taylor alone", problem, rtol, Taylor::new());
+                println!("    lanes are {:.2} and {:.2} × as fast", lanes / picard, lanes / taylor);
+            }
+        };
+    }
+    measure!("shaken", Sinusoid::new([0.1], 6.0, [0.3]));
+    let times: Vec<f64> = (0..=20).map(|k| 0.5 * f64::from(k)).collect();
+    let places: Vec<[f64; 1]> = (0..=20).map(|k| [0.1 * (1.7 * f64::from(k)).sin()]).collect();
+    let Ok(spline) = Spline::natural(&times, &places) else { return };
+    measure!("keyed, smooth", spline);
+    let Ok(lines) = Linear::new(&times, &places) else { return };
+    measure!("keyed, with kinks", lines);
+}
+
 /// The most memory that a process has used, in kibibytes.
 fn peak() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
@@ -331,7 +386,7 @@ fn main() -> std::io::Result<()> {
         return Ok(());
     }
     let mut heyoka = after("--heyoka").map(|python| Heyoka::start(python)).transpose()?;
-    let names = ["flip", "ends", "threads", "rates", "memory"];
+    let names = ["flip", "ends", "threads", "rates", "driven", "memory"];
     let any = words.iter().any(|word| names.contains(&word.as_str()));
     let wanted = |name: &str| !any || words.iter().any(|word| word == name);
     if wanted("flip") {
@@ -345,6 +400,9 @@ fn main() -> std::io::Result<()> {
     }
     if wanted("rates") {
         rates();
+    }
+    if wanted("driven") {
+        driven();
     }
     if wanted("memory") {
         for n in ["1000000", "10000000"] {

@@ -3,6 +3,7 @@
 #![allow(mixed_script_confusables, missing_docs)]
 
 pub mod checkpoints;
+pub mod driven;
 pub mod lanes;
 pub mod reductions;
 pub mod teams;

@@ -56,23 +56,6 @@ fn lanes_have_the_bits_of_a_batch() {
 }
 
 #[test]
-fn driven_systems_go_one_by_one() {
-    let problem = |k: usize| {
-        let joint = Sinusoid::new([0.1], 2.0 + 0.1 * k as f64, [0.3]);
-        let system = OnJoint::new(0.5).driven_by(joint);
-        Problem { system, time: (0.0, 3.0), q: [0.1 * k as f64], v: [0.0] }
-    };
-    let all = Ensemble::new(0..20, problem).rtol(1e-9).every(0.5);
-    let all = all.map(|_, solution| solution.clone()).collect().unwrap();
-    for (k, member) in all.value.into_iter().enumerate() {
-        let Problem { system, time, q, v } = problem(k);
-        let alone = solve(&system, time, q, v).rtol(1e-9).every(0.5).run().unwrap();
-        assert_eq!(alone.stats.method, "Picard");
-        assert_eq!(member, Some(alone));
-    }
-}
-
-#[test]
 fn controlled_systems_and_named_methods_go_one_by_one() {
     let problem = |k: usize| {
         let law = |_: f64, q: &[f64; 1], v: &[f64; 1]| -3.0 * q[0] - v[0];

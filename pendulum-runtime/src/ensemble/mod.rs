@@ -20,7 +20,7 @@
 //!
 //! | systems | way |
 //! |---|---|
-//! | generated, without inputs, constraints and limits, smooth; no event that acts, no `t_stops` | side by side in the lanes of [`Batch`](crate::integrate::Batch), by [`Taylor`](crate::integrate::Taylor) |
+//! | generated, without control inputs, constraints and limits, smooth, driven by [`Analytic`](crate::motion::Analytic) motions if at all; no event that acts, no `t_stops` | side by side in the lanes of [`Batch`](crate::integrate::Batch), by [`Taylor`](crate::integrate::Taylor) |
 //! | all others that `lagrangian!` has made | one by one, by [`Auto`](crate::integrate::Auto) |
 //! | written by hand | one by one, by a method that is named |
 //!

@@ -14,7 +14,8 @@ use crate::integrate::{Problem, solve};
 use crate::jet::{Jets, MaybeJets};
 use crate::scalar::Float;
 use crate::sealed::Sealed;
-use crate::system::{Controlled, Driven, Dynamics, Sampled, System};
+use crate::system::{Controlled, Dynamics, Sampled, System};
+use core::cell::RefCell;
 
 /// A source of members: problems and their indices.
 type Members<'a, D, const N: usize> = dyn FnMut() -> Option<(usize, Problem<D, N>)> + 'a;
@@ -124,7 +125,9 @@ impl<D: WayDynamics<N>, const N: usize> Way<D, AdaptiveStep<N>, N> for Chosen {
 
     fn name(&self, settings: &Settings<'_, D::Scalar, N, AdaptiveStep<N>>) -> String {
         if D::goes_in_lanes(settings) {
-            "Taylor in lanes".into()
+            let driven = !<D::System as System<N>>::FACTS.inputs.is_empty();
+            let others = if driven { ", Auto without series" } else { "" };
+            format!("Taylor in lanes{others}")
         } else {
             Way::<D, AdaptiveStep<N>, N>::name(&OneByOne(Auto), settings)
         }
@@ -169,18 +172,24 @@ impl<D: Batched<N> + LaneDynamics<N>, const N: usize> WayDynamics<N> for D {
         outcomes: &mut Outcomes<'_, D::Scalar, N>,
     ) {
         let batch = Batch::of(settings);
-        let mut problems = || members().map(|(index, problem)| (index, Posed::Owned(problem)));
+        let outcomes = RefCell::new(outcomes);
+        let mut take = |index, outcome| (*outcomes.borrow_mut())(index, outcome);
+        let mut problems = || {
+            loop {
+                let (index, problem) = members()?;
+                if problem.system.is_analytic() {
+                    return Some((index, Posed::Owned(problem)));
+                }
+                let (mut one, mut take) = (Some((index, problem)), |index, outcome| {
+                    (*outcomes.borrow_mut())(index, outcome);
+                });
+                OneByOne(Auto).solve_all(settings, &mut || one.take(), &mut take);
+            }
+        };
         let Settings { output, dense, ref events, .. } = *settings;
         let watch = Watch { output, dense, events };
-        batch.run_each::<D, true>(watch, &mut problems, outcomes);
+        batch.run_each::<D, true>(watch, &mut problems, &mut take);
     }
-}
-
-impl<S, M, const N: usize> WayDynamics<N> for Driven<S, M>
-where
-    S: Jets<N>,
-    Self: MaybeJets<N> + LaneDynamics<N>,
-{
 }
 
 impl<S, M, F, U, const N: usize> WayDynamics<N> for Controlled<S, M, F, U>

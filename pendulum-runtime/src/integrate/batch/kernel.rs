@@ -43,6 +43,9 @@ pub(crate) type Problems<'a, D, const N: usize> =
 /// A receiver of outcomes and their indices.
 pub(crate) type Outcomes<'a, T, const N: usize> = dyn FnMut(usize, Outcome<T, N>) + 'a;
 
+/// The end of a motion: its last state, and how it has come to it.
+type End<T, const N: usize> = (State<T, N>, Result<Status, Error>);
+
 /// What is kept of each motion of a batch beside its end.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Watch<'a, T, const N: usize> {
@@ -614,7 +617,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         to: &Endpoint<D::Scalar, N>,
         mut end: Endpoint<D::Scalar, N>,
         seen: bool,
-    ) -> Option<(State<D::Scalar, N>, Result<Status, Error>)> {
+    ) -> Option<End<D::Scalar, N>> {
         let (member, attempt) = (self.members[l].as_mut()?, &self.attempt);
         let (steps, from) = (self.round - self.begun[l], node(&attempt.from, l));
         let first = steps == 1 && member.stats.accepted == 0;
@@ -670,8 +673,8 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
     }
 
     /// Takes the step of a lane by [`Taylor`] instead, and more of them until it has no doubts: its
-    /// series may not have held, a kink may be at its end, or it may fail.
-    fn go_alone(&mut self, l: usize) -> Option<(State<D::Scalar, N>, Result<Status, Error>)> {
+    /// series may not have held, or it may fail.
+    fn go_alone(&mut self, l: usize) -> Option<End<D::Scalar, N>> {
         // Without the step under way.
         self.count(l, self.round - self.begun[l] - 1);
         let Member { problem, recorder, detector, a, stats, .. } = self.members[l].as_mut()?;
@@ -721,15 +724,12 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         let to = integration.end;
         *stats = integration.stats;
         self.output.0[l] = recorder.next_time();
-        match ended {
-            Some(outcome) => Some((State::from(&to), outcome)),
-            None => {
-                self.lanes.end.0[l] =
-                    self.members[l].as_ref().map_or(end, |member| member.next_end(to.t));
-                self.put(l, &to);
-                None
-            }
+        if ended.is_none() {
+            self.lanes.end.0[l] =
+                self.members[l].as_ref().map_or(end, |member| member.next_end(to.t));
+            self.put(l, &to);
         }
+        ended.map(|outcome| (State::from(&to), outcome))
     }
 
     /// Puts so many steps of a lane, and all before, into the counters of its motion.

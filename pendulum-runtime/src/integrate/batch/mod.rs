@@ -14,9 +14,10 @@ use crate::integrate::step::adaptive::AdaptiveStep;
 use crate::integrate::step::controller::Controller;
 use crate::integrate::step::integration::check_start;
 use crate::jet::{JetDynamics, Jets, MaybeJets};
+use crate::motion::MaybeAnalytic;
 use crate::scalar::{Float, Lane, Lanes};
 use crate::simd;
-use crate::system::{Dynamics, System};
+use crate::system::{Driven, Dynamics, System};
 use crate::time::Time;
 use core::ops::Deref;
 use kernel::{Outcomes, Problems, Watch};
@@ -39,8 +40,12 @@ const W: usize = 8;
 /// rounded otherwise than those of `Taylor`: a difference within rounding of what is allowed, which
 /// is 30 times the error allowed, may be judged otherwise.
 ///
+/// Each motion asks its own driven inputs for their series, at its own time. Steps end at the
+/// [breaks](crate::motion::Analytic::next_break) of these motions, and at kinks velocities jump as
+/// in `solve`.
+///
 /// Worth it from about four motions on; it suits every system that `lagrangian!` has made without
-/// driven and control inputs, constraints and limits.
+/// control inputs, constraints and limits.
 ///
 /// A failure ends one motion only. A step allocates nothing; the end of a motion does.
 ///
@@ -99,11 +104,11 @@ impl<S: Dynamics<N>, const N: usize> Deref for Posed<'_, S, N> {
     }
 }
 
-/// Dynamics that can stand in lanes: every system that `lagrangian!` generates without driven
-/// inputs, over `f32` and `f64`.
+/// Dynamics that can stand in lanes: every system that `lagrangian!` generates without control
+/// inputs, over `f32` and `f64`, with motions for its driven inputs.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be integrated in a batch",
-    note = "a batch takes systems that `lagrangian!` has made, over `f64` or `f32` and without driven inputs"
+    note = "a batch takes systems that `lagrangian!` has made, over `f64` or `f32` and without controllers"
 )]
 pub trait Batched<const N: usize>: MaybeJets<N, Scalar: Lane + Float> + Sized {
     /// The same system over lanes.
@@ -124,6 +129,19 @@ where
 
     fn widen(&self, map: impl FnMut(S::Scalar) -> Lanes<S::Scalar, W>) -> Self::Wide {
         self.map(map)
+    }
+}
+
+impl<S, M, const N: usize> Batched<N> for Driven<S, M>
+where
+    S: Jets<N, Scalar: Lane + Float>,
+    M: MaybeAnalytic<S::Inputs, S::Scalar>,
+    S::With<Lanes<S::Scalar, W>>: Jets<N>,
+{
+    type Wide = S::With<Lanes<S::Scalar, W>>;
+
+    fn widen(&self, map: impl FnMut(S::Scalar) -> Lanes<S::Scalar, W>) -> Self::Wide {
+        self.system.map(map)
     }
 }
 
