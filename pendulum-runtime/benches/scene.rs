@@ -24,7 +24,7 @@
 use pendulum_runtime::motion::{Linear, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::{Float, Lane};
-use pendulum_runtime::scene::{Handle, Scene};
+use pendulum_runtime::scene::Scene;
 use std::fmt::Write;
 use std::hint::black_box;
 use std::time::Instant;
@@ -131,7 +131,8 @@ fn scene<T: Lane + Float>(pendulums: usize, joints: usize, kind: Kind) -> Scene<
     }
     if kind == Kind::Hidden99 {
         for index in (0..pendulums as u32).filter(|index| index % 100 != 0) {
-            scene.hide(Handle::<Hanging<T>, 1>::new(index)).expect("a pendulum");
+            let pendulum = scene.handle::<Hanging<T>, 1>(index).expect("a pendulum");
+            scene.hide(pendulum).expect("a pendulum");
         }
     }
     if 1 < moving {

@@ -3,7 +3,7 @@
 use super::interface::{states, zoo};
 use pendulum_runtime::motion::{Linear, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::scene::{Handle, Scene, SceneError, SceneStatus};
+use pendulum_runtime::scene::{Scene, SceneError, SceneStatus};
 use systems::pendulums::{Double, Hanging, Simple};
 
 #[test]
@@ -106,8 +106,8 @@ fn only_the_one_that_is_meant_is_reset() {
 fn directors_get_what_they_ask_for() {
     use pendulum_runtime::scene::Preserve;
     let mut scene = zoo(1e-3);
-    let handle = Handle::<Hanging<f64>, 1>::new(4);
-    let double = Handle::<Double<f64>, 2>::new(3);
+    let handle = scene.handle::<Hanging<f64>, 1>(4).unwrap();
+    let double = scene.handle::<Double<f64>, 2>(3).unwrap();
     scene.advance(0.3).unwrap();
     // Rest.
     scene.reset_to_rest(handle).unwrap();
@@ -126,7 +126,7 @@ fn directors_get_what_they_ask_for() {
     assert_eq!(scene.set_parameter_everywhere("g", 1.62).unwrap(), 100 + 3 * 34);
     assert_eq!(states(&scene), before);
     assert_eq!(scene.system(handle).g, 1.62);
-    assert!(matches!(scene.set_parameter_everywhere("h", 1.0), Err(SceneError::Parameter(_))));
+    assert!(matches!(scene.set_parameter_everywhere("h", 1.0), Err(SceneError::Parameter { .. })));
     scene.set_parameter(handle, "L", 0.25).unwrap();
     assert_eq!(scene.system(handle).L, 0.25);
     // Pause.
@@ -174,7 +174,7 @@ fn loops_close() {
 fn baked_is_live() {
     let mut scene = zoo(1e-3);
     scene.advance(0.1).unwrap();
-    let handles: Vec<_> = (0..40).map(Handle::<Hanging<f64>, 1>::new).collect();
+    let handles: Vec<_> = (0..40).filter_map(|k| scene.handle::<Hanging<f64>, 1>(k)).collect();
     let exact = scene.bake(&handles, 240, 0.0).unwrap();
     let near = scene.bake(&handles, 240, 1e-3).unwrap();
     let (mut all, mut kept) = (0, 0);
@@ -255,7 +255,7 @@ fn threads_do_not_show() {
 fn snapshots_can_be_written_and_read() {
     use pendulum_runtime::scene::{Snapshot, Stop};
     let mut scene = zoo(1e-3);
-    let handle = Handle::<Hanging<f64>, 1>::new(4);
+    let handle = scene.handle::<Hanging<f64>, 1>(4).unwrap();
     // A limit on one side only: JSON knows no infinity.
     scene.set_limits(handle, [-0.2], [f64::INFINITY], Stop::Hard { restitution: 0.5 }).unwrap();
     scene.advance(0.71).unwrap();

@@ -5,5 +5,6 @@
 pub mod commands;
 pub mod constrained;
 pub mod interface;
+pub mod refusals;
 pub mod skipping;
 pub mod sleep;

@@ -50,8 +50,35 @@ pub enum SceneError {
     },
     /// A state does not fulfil the constraints of its system, or cannot be brought onto them.
     Constraint(Error),
+    /// The mass matrix is not positive definite: a negative mass.
+    Inertia(Error),
+    /// A pendulum is too fast: in a tick it would take more than 1024 steps.
+    Frequency {
+        /// The name of its type.
+        kind: &'static str,
+        /// Its number among those of its type.
+        index: u32,
+        /// The angular frequency of its fastest small motions, in rad/s.
+        frequency: f64,
+        /// The length of a tick in seconds.
+        step: f64,
+        /// The relative error of the phase for which steps are chosen.
+        tolerance: f64,
+    },
     /// No system of the type has a parameter of that name.
-    Parameter(String),
+    Parameter {
+        /// The name given.
+        name: String,
+        /// The names that there are.
+        parameters: Vec<&'static str>,
+    },
+    /// The value of a parameter is infinite or no number.
+    ParameterValue {
+        /// The parameter.
+        name: String,
+        /// The value given.
+        value: f64,
+    },
     /// A snapshot was taken of another scene, or damaged since; what does not fit.
     Snapshot(&'static str),
     /// The time in which a pendulum was hidden could not be made up for.
@@ -96,20 +123,24 @@ impl fmt::Display for SceneError {
                     "`{kind}` {index} comes to rest nowhere; set its state, or change what drives it on"
                 )
             }
-            Self::Parameter(name) => {
-                write!(
-                    f,
-                    "there is no parameter `{name}`; a component of a vector is written `c.x`, of a family `m[0]`"
-                )
+            Self::Frequency { kind, index, frequency, step, tolerance } => write!(
+                f,
+                "`{kind}` {index} swings with {frequency:.3e} rad/s, which takes more than 1024 steps in a tick of {step:.3e} s for a tolerance of {tolerance:?}; use more ticks a second or a larger tolerance, put a rod in place of a stiff spring, or integrate it by `solve`"
+            ),
+            Self::Parameter { name, parameters } if parameters.is_empty() => {
+                write!(f, "there is no parameter `{name}`, nor any other")
+            }
+            Self::Parameter { name, parameters } => {
+                write!(f, "there is no parameter `{name}`; there are `{}`", parameters.join("`, `"))
+            }
+            Self::ParameterValue { name, value } => {
+                write!(f, "parameter `{name}` was to become {value:?}; give a finite number")
             }
             Self::Snapshot(what) => write!(
                 f,
                 "the snapshot is not one of this scene: {what}; restore it where it was taken"
             ),
-            Self::Constraint(_) => write!(
-                f,
-                "the state does not fulfil the constraints and cannot be brought onto them; start from one that `assemble` has found"
-            ),
+            Self::Constraint(error) | Self::Inertia(error) => error.fmt(f),
             Self::Integration(_) => write!(
                 f,
                 "the time in which the pendulum was hidden could not be made up for; show it in another way"
@@ -121,7 +152,8 @@ impl fmt::Display for SceneError {
 impl core::error::Error for SceneError {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
         match self {
-            Self::Integration(error) | Self::Constraint(error) => Some(error),
+            Self::Integration(error) => Some(error),
+            Self::Constraint(error) | Self::Inertia(error) => error.source(),
             _ => None,
         }
     }

@@ -1,23 +1,43 @@
-//! Handles of pendulums.
+//! Handles of pendulums, and numbers of scenes.
 
 use core::cmp::Ordering;
 use core::fmt;
 use core::hash::{Hash, Hasher};
 use core::marker::PhantomData;
+use core::sync::atomic::{AtomicU32, Ordering as Memory};
 
-/// A pendulum in a scene: its type and its number among those of its type.
+/// Number of a scene in its process, by which handles and joints of other scenes are refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct SceneId(u32);
+
+impl SceneId {
+    /// A number that no scene before has had.
+    pub(crate) fn next() -> Self {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        Self(COUNT.fetch_add(1, Memory::Relaxed))
+    }
+}
+
+/// A pendulum in a scene: the scene, its type and its number among those of its type.
+///
+/// [`Scene::hang`](crate::scene::Scene::hang) gives it, and
+/// [`Scene::handle`](crate::scene::Scene::handle) again by its number. Other scenes refuse it.
 pub struct Handle<S, const N: usize> {
+    scene: SceneId,
     index: u32,
     kind: PhantomData<fn() -> S>,
 }
 
 impl<S, const N: usize> Handle<S, N> {
-    /// The pendulum that was hung as number `index` of its type, from 0.
-    pub const fn new(index: u32) -> Self {
-        Self { index, kind: PhantomData }
+    pub(crate) const fn new(scene: SceneId, index: u32) -> Self {
+        Self { scene, index, kind: PhantomData }
     }
 
-    /// Its number among those of its type, in the order of hanging.
+    pub(crate) const fn scene(self) -> SceneId {
+        self.scene
+    }
+
+    /// Its number among those of its type, in the order of hanging, from 0.
     pub const fn index(self) -> u32 {
         self.index
     }
@@ -33,7 +53,7 @@ impl<S, const N: usize> Copy for Handle<S, N> {}
 
 impl<S, const N: usize> PartialEq for Handle<S, N> {
     fn eq(&self, other: &Self) -> bool {
-        self.index == other.index
+        (self.scene, self.index) == (other.scene, other.index)
     }
 }
 
@@ -45,16 +65,16 @@ impl<S, const N: usize> PartialOrd for Handle<S, N> {
     }
 }
 
-/// The order of hanging.
+/// The order of hanging within a scene.
 impl<S, const N: usize> Ord for Handle<S, N> {
     fn cmp(&self, other: &Self) -> Ordering {
-        self.index.cmp(&other.index)
+        (self.scene, self.index).cmp(&(other.scene, other.index))
     }
 }
 
 impl<S, const N: usize> Hash for Handle<S, N> {
     fn hash<H: Hasher>(&self, state: &mut H) {
-        self.index.hash(state);
+        (self.scene, self.index).hash(state);
     }
 }
 
@@ -66,7 +86,7 @@ impl<S, const N: usize> fmt::Debug for Handle<S, N> {
 
 #[cfg(test)]
 mod tests {
-    use super::Handle;
+    use super::{Handle, SceneId};
     use std::collections::{BTreeSet, HashSet};
 
     /// A type without any trait: handles need none of it.
@@ -74,9 +94,11 @@ mod tests {
 
     #[test]
     fn handles_are_keys_of_maps() {
-        let handle = Handle::<Bob, 1>::new;
+        let scene = SceneId::next();
+        let handle = |index| Handle::<Bob, 1>::new(scene, index);
         let ordered: BTreeSet<_> = [handle(2), handle(0), handle(2)].into();
         assert!(ordered.into_iter().eq([handle(0), handle(2)]));
         assert_eq!(HashSet::from([handle(1), handle(1)]).len(), 1);
+        assert_ne!(Handle::<Bob, 1>::new(SceneId::next(), 1), handle(1));
     }
 }

@@ -11,7 +11,7 @@ use crate::scene::handle::Handle;
 use crate::scene::lanes::detached::Detached;
 use crate::scene::lanes::system::SceneSystem;
 use crate::scene::sampling::joint::Joint;
-use crate::scene::scene::Scene;
+use crate::scene::scene::{Parts, Scene};
 use crate::system::{Purpose, System, scalar_time};
 use crate::time::Time;
 
@@ -116,7 +116,8 @@ impl<T: Lane + Float> Scene<T> {
     pub fn joint_pose<const D: usize>(&self, joint: Joint<D>, alpha: f64) -> [T; D] {
         let mut position = [T::from_f64(0.0); D];
         let t = self.clock.within(self.clock.tick() - 1, alpha);
-        self.joint_slots[joint.0 as usize].drive.sample(
+        let index = joint.of(self.id).unwrap_or_else(|error| panic!("{error}"));
+        self.joint_slots[index as usize].drive.sample(
             t,
             Side::After,
             Derivatives::POSITION,
@@ -213,8 +214,7 @@ impl<T: Lane + Float> Scene<T> {
         &self,
         pendulum: Handle<S, N>,
     ) -> &Group<S, T, N> {
-        let group =
-            self.group::<S, N>().filter(|group| (pendulum.index() as usize) < group.table.len());
+        let group = if pendulum.scene() == self.id { self.group::<S, N>() } else { None };
         group.unwrap_or_else(|| panic!("{}", unknown(pendulum)))
     }
 
@@ -223,10 +223,18 @@ impl<T: Lane + Float> Scene<T> {
         &mut self,
         pendulum: Handle<S, N>,
     ) -> Result<&mut Group<S, T, N>, SceneError> {
-        let group = self.group_mut::<S, N>().map(|(group, ..)| group);
-        group
-            .filter(|group| (pendulum.index() as usize) < group.table.len())
-            .ok_or_else(|| unknown(pendulum))
+        self.parts_of(pendulum).map(|(group, ..)| group)
+    }
+
+    /// The group of a pendulum, and what of the scene its pendulums see.
+    pub(crate) fn parts_of<S: SceneSystem<T, N>, const N: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+    ) -> Result<Parts<'_, S, T, N>, SceneError> {
+        if pendulum.scene() != self.id {
+            return Err(unknown(pendulum));
+        }
+        self.group_mut::<S, N>().ok_or_else(|| unknown(pendulum))
     }
 
     /// Changes what belongs to a pendulum and does not change its steps; one that sleeps wakes.

@@ -38,19 +38,27 @@ pub(crate) fn inertia<D: Dynamics<N, Scalar: Float>, const N: usize>(
     q: &[D::Scalar; N],
     v: &[D::Scalar; N],
 ) -> Result<(), Error> {
-    let facts = &<D::System as System<N>>::FACTS;
-    if !facts.derived {
+    if !<D::System as System<N>>::FACTS.derived {
         return Ok(());
     }
-    let inputs = dynamics.inputs(t, side, Purpose::Momenta);
-    let matrix = dynamics.system().mass_matrix(scalar_time(t), q, v, &inputs);
+    inertia_of(dynamics.system(), t, q, v, &dynamics.inputs(t, side, Purpose::Momenta))
+}
+
+/// The error for a mass matrix of a derived system that is not positive.
+pub(crate) fn inertia_of<S: System<N, Scalar: Float>, const N: usize>(
+    system: &S,
+    t: Time,
+    q: &[S::Scalar; N],
+    v: &[S::Scalar; N],
+    inputs: &S::Inputs,
+) -> Result<(), Error> {
+    let matrix = system.mass_matrix(scalar_time(t), q, v, inputs);
     let Some((index, pivot)) = negative_pivot(matrix) else { return Ok(()) };
-    let suspects = negative(dynamics.system());
     Err(Error::NegativeInertia {
         t: t.to_f64(),
-        coordinate: coordinate(facts, index),
+        coordinate: coordinate(&S::FACTS, index),
         pivot,
-        suspects,
+        suspects: negative(system),
     })
 }
 

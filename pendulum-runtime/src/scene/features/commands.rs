@@ -38,9 +38,8 @@ impl<T: Lane + Float> Scene<T> {
         &mut self,
         pendulum: Handle<S, N>,
     ) -> Result<(), SceneError> {
-        self.checked(pendulum)?;
         self.dirty = true;
-        let (group, clock, joint_slots) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
+        let (group, clock, joint_slots) = self.parts_of(pendulum)?;
         group.rest(clock, joint_slots, pendulum.index())
     }
 
@@ -96,8 +95,8 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// A joint of another scene, a motion that lacks what the equations of a pendulum on it need;
-    /// with [`Preserve::Nothing`] a pendulum that comes to rest nowhere, one that cannot be brought
-    /// onto its constraints.
+    /// with [`Preserve::Nothing`] a pendulum that comes to rest nowhere; one that cannot be brought
+    /// onto its constraints or is too fast for the ticks.
     pub fn set_motion<M, const D: usize>(
         &mut self,
         joint: Joint<D>,
@@ -107,23 +106,28 @@ impl<T: Lane + Float> Scene<T> {
     where
         M: Motion<T, D> + Send + Sync + 'static,
     {
-        let joint_slot = self
-            .joint_slots
-            .get(joint.0 as usize)
-            .filter(|joint_slot| joint_slot.drive.components() == D);
-        joint_slot.ok_or(SceneError::Joint(joint.0))?;
+        let joint = joint.of(self.id)?;
         for (_, group) in &self.groups {
-            group.accepts_motion(joint.0, M::HAS)?;
+            group.accepts_motion(joint, M::HAS)?;
         }
         let held = self.groups.iter().any(|(_, group)| group.is_constrained());
         let snapshot = (held || preserve == Preserve::Nothing).then(|| self.snapshot());
         let before = self.joint_slots.clone();
-        self.joint_slots[joint.0 as usize] = JointSlot::new(erase::<T, M, D>(motion));
+        self.joint_slots[joint as usize] = JointSlot::new(erase::<T, M, D>(motion));
         self.dirty = true;
         let Self { clock, joint_slots, groups, .. } = self;
+        if snapshot.is_none() {
+            let accepted = groups
+                .iter()
+                .try_for_each(|(_, group)| group.accepts_steps(clock, joint_slots, joint));
+            if accepted.is_err() {
+                self.joint_slots = before;
+                return accepted;
+            }
+        }
         let moved = groups
             .iter_mut()
-            .try_for_each(|(_, group)| group.moved(clock, &before, joint_slots, joint.0, preserve));
+            .try_for_each(|(_, group)| group.moved(clock, &before, joint_slots, joint, preserve));
         if let (Err(_), Some(snapshot)) = (&moved, snapshot) {
             self.joint_slots = before;
             self.restore(&snapshot)?;
@@ -167,7 +171,7 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// A pendulum of another scene, limits in the wrong order or that leave no finite place, a
-    /// restitution outside of [0, 1], a negative stiffness.
+    /// restitution outside of [0, 1], a negative stiffness or one that is too fast for the ticks.
     pub fn set_limits<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -217,13 +221,12 @@ impl<T: Lane + Float> Scene<T> {
             }
         }
         .map(T::from_f64);
-        self.checked(pendulum)?;
-        let (group, clock, joint_slots) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
+        let (group, clock, joint_slots) = self.parts_of(pendulum)?;
         let mut detached = group.read(pendulum.index());
         detached.limits = Limits { low, high, restitution, stiffness, hard, ..detached.limits };
         detached.hold();
+        group.rewrite(clock, joint_slots, &detached)?;
         group.forget_criterion(pendulum.index());
-        group.rewrite(clock, joint_slots, &detached);
         group.wake(pendulum.index());
         self.dirty = true;
         Ok(())
@@ -233,23 +236,26 @@ impl<T: Lane + Float> Scene<T> {
     /// the nearest that fulfils the constraints, its steps are chosen anew and it wakes.
     ///
     /// # Errors
-    /// A pendulum of another scene, a name that it does not have, a value that is not finite or with
-    /// which its constraints cannot be fulfilled.
+    /// A pendulum of another scene, a name that it does not have; a value that is not finite, makes
+    /// a mass negative or the pendulum too fast for its ticks, or with which its constraints cannot
+    /// be fulfilled.
     pub fn set_parameter<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
         name: &str,
         value: T,
     ) -> Result<(), SceneError> {
-        self.checked(pendulum)?;
-        finite(value)?;
+        finite(name, value)?;
         let index = S::FACTS.parameters.iter().position(|parameter| *parameter == name);
-        let index = index.ok_or_else(|| SceneError::Parameter(name.to_owned()))?;
-        let (group, clock, joint_slots) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
+        let (group, clock, joint_slots) = self.parts_of(pendulum)?;
+        let index = index.ok_or_else(|| SceneError::Parameter {
+            name: name.to_owned(),
+            parameters: S::FACTS.parameters.to_vec(),
+        })?;
         let mut detached = group.read(pendulum.index());
         detached.parameters[index] = value;
         group.constrain(clock, joint_slots, &mut detached)?;
-        group.rewrite(clock, joint_slots, &detached);
+        group.rewrite(clock, joint_slots, &detached)?;
         group.wake(pendulum.index());
         group.forget_criterion(pendulum.index());
         self.dirty = true;
@@ -261,10 +267,10 @@ impl<T: Lane + Float> Scene<T> {
     /// Gives the number of pendulums.
     ///
     /// # Errors
-    /// A name that no type here has, a value that is not finite or with which the constraints of a
-    /// pendulum cannot be fulfilled.
+    /// A name that no type here has; a value that is not finite, makes a mass negative or a pendulum
+    /// too fast for its ticks, or with which the constraints of one cannot be fulfilled.
     pub fn set_parameter_everywhere(&mut self, name: &str, value: T) -> Result<usize, SceneError> {
-        finite(value)?;
+        finite(name, value)?;
         self.dirty = true;
         let Self { clock, joint_slots, groups, .. } = self;
         for (_, group) in &*groups {
@@ -275,17 +281,20 @@ impl<T: Lane + Float> Scene<T> {
             .filter_map(|(_, group)| group.set_parameter(clock, joint_slots, name, value))
             .collect();
         if changed.is_empty() {
-            Err(SceneError::Parameter(name.to_owned()))
+            let mut parameters: Vec<_> =
+                groups.iter().flat_map(|(_, group)| group.parameters()).copied().collect();
+            parameters.sort_unstable();
+            parameters.dedup();
+            Err(SceneError::Parameter { name: name.to_owned(), parameters })
         } else {
             Ok(changed.iter().sum())
         }
     }
 }
 
-fn finite<T: Float>(value: T) -> Result<(), SceneError> {
+fn finite<T: Float>(name: &str, value: T) -> Result<(), SceneError> {
     if value.is_finite() {
-        Ok(())
-    } else {
-        Err(SceneError::Setting { name: "parameter", value: value.to_f64(), required: "finite" })
+        return Ok(());
     }
+    Err(SceneError::ParameterValue { name: name.to_owned(), value: value.to_f64() })
 }

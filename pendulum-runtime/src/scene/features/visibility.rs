@@ -120,7 +120,7 @@ impl<T: Lane + Float> Scene<T> {
         let SceneStatus::Hidden(since) = self.checked(pendulum)?.status[id as usize] else {
             return Ok(());
         };
-        let (group, clock, joint_slots) = self.group_mut::<S, N>().ok_or(SceneError::Joint(0))?;
+        let (group, clock, joint_slots) = self.parts_of(pendulum)?;
         let mut detached = group.read(id);
         let zero = [T::from_f64(0.0); N];
         let mut put = |q, v| detached.state = [q, zero, v, zero, q, v];

@@ -37,6 +37,8 @@ pub(crate) trait AnyGroup<T>: Send + Sync {
         id: u32,
         tick: i64,
     ) -> SceneFault;
+    /// The names of the parameters of its type.
+    fn parameters(&self) -> &'static [&'static str];
     /// Everything that changes while the scene runs.
     fn save(&self) -> GroupState<T>;
     /// Refuses a saved state that does not belong to this group, and names the difference.
@@ -47,6 +49,13 @@ pub(crate) trait AnyGroup<T>: Send + Sync {
     fn reset(&mut self, clock: &Clock, joint_slots: &[JointSlot<T>]) -> Result<(), SceneError>;
     /// Refuses a motion that lacks a derivative which the pendulums on a joint need.
     fn accepts_motion(&self, joint: u32, has: Derivatives) -> Result<(), SceneError>;
+    /// Refuses the motion of a joint with which a pendulum on it is too fast.
+    fn accepts_steps(
+        &self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        joint: u32,
+    ) -> Result<(), SceneError>;
     /// Adapts pendulums to the motion of a joint that was given in place of the one in `before`.
     fn moved(
         &mut self,
@@ -58,7 +67,8 @@ pub(crate) trait AnyGroup<T>: Send + Sync {
     ) -> Result<(), SceneError>;
     /// Returns true if its pendulums have constraints.
     fn is_constrained(&self) -> bool;
-    /// Refuses a value of a parameter with which constraints cannot be fulfilled.
+    /// Refuses a value of a parameter with which a pendulum is too fast, has a negative mass or
+    /// cannot fulfil its constraints.
     fn accepts_parameter(
         &self,
         clock: &Clock,
@@ -138,6 +148,10 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
         SceneFault { kind: S::FACTS.name, index: id, t, error }
     }
 
+    fn parameters(&self) -> &'static [&'static str] {
+        S::FACTS.parameters
+    }
+
     fn save(&self) -> GroupState<T> {
         Group::save(self)
     }
@@ -176,6 +190,15 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
 
     fn accepts_motion(&self, joint: u32, has: Derivatives) -> Result<(), SceneError> {
         Group::accepts_motion(self, joint, has)
+    }
+
+    fn accepts_steps(
+        &self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        joint: u32,
+    ) -> Result<(), SceneError> {
+        Group::accepts_steps(self, clock, joint_slots, joint)
     }
 
     fn moved(

@@ -7,7 +7,7 @@ use crate::scene::group::constraints::OnJoints;
 use crate::scene::group::joints::{check_motion, inputs_at};
 use crate::scene::group::members::Group;
 use crate::scene::lanes::detached::Detached;
-use crate::scene::lanes::system::{Layouts, SceneSystem};
+use crate::scene::lanes::system::SceneSystem;
 use crate::scene::sampling::clock::Clock;
 use crate::scene::sampling::joint::JointSlot;
 use crate::system::{Purpose, scalar_time};
@@ -17,7 +17,8 @@ use crate::time::Time;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Preserve {
-    /// Coordinates and velocities stay: a teleport that nobody feels.
+    /// Coordinates and velocities stay: a teleport that nobody feels, if the coordinates are
+    /// relative to the joint, as angles are; absolute ones stay behind.
     Swing,
     /// The momenta stay: a jump in the velocity of the joint is a blow.
     Momentum,
@@ -50,6 +51,9 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Adapts pendulums to the motion of a joint that was given in place of the one in `before`.
+    ///
+    /// # Errors
+    /// A pendulum that cannot be brought onto its constraints, comes to rest nowhere or is too fast.
     pub(super) fn moved(
         &mut self,
         clock: &Clock,
@@ -90,7 +94,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             if preserve != Preserve::Nothing {
                 self.constrain(clock, joint_slots, &mut detached)?;
             }
-            self.rewrite(clock, joint_slots, &detached);
+            self.rewrite(clock, joint_slots, &detached)?;
             if preserve == Preserve::Nothing {
                 self.rest(clock, joint_slots, id)?;
             }
@@ -115,7 +119,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             .constrain(clock.time(clock.tick()), detached)
     }
 
-    /// Refuses a value of a parameter with which the constraints of a pendulum cannot be fulfilled.
+    /// Refuses a value of a parameter with which a pendulum is too fast, has a negative mass or
+    /// cannot fulfil its constraints.
     pub(super) fn accepts_parameter(
         &self,
         clock: &Clock,
@@ -124,11 +129,12 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         value: T,
     ) -> Result<(), SceneError> {
         let index = S::FACTS.parameters.iter().position(|parameter| *parameter == name);
-        let Some(index) = index.filter(|_| const { Layouts::<S, N>::HELD }) else { return Ok(()) };
+        let Some(index) = index else { return Ok(()) };
         (0..self.table.len() as u32).try_for_each(|id| {
             let mut detached = self.read(id);
             detached.parameters[index] = value;
-            self.constrain(clock, joint_slots, &mut detached)
+            self.constrain(clock, joint_slots, &mut detached)?;
+            self.checked_kind(clock, joint_slots, &detached).map(drop)
         })
     }
 
@@ -147,7 +153,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             let mut detached = self.read(id);
             detached.parameters[index] = value;
             let _ = self.constrain(clock, joint_slots, &mut detached);
-            self.rewrite(clock, joint_slots, &detached);
+            let _ = self.rewrite(clock, joint_slots, &detached);
             self.wake(id);
         }
         self.criteria.clear();

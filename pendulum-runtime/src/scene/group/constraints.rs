@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::integrate::State;
+use crate::integrate::step::inertia::inertia_of;
 use crate::integrate::step::projection;
 use crate::motion::Side;
 use crate::scalar::{Float, Lane};
@@ -41,19 +42,32 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> OnJoints<'_, S, T, N
     /// A state at `t` that was given, where only rounding may have put it off the constraints.
     ///
     /// # Errors
-    /// A state that does not fulfil them.
+    /// A state that does not fulfil them, a negative mass.
     pub(crate) fn start(
         &self,
         t: f64,
         q: [T; N],
         v: [T; N],
     ) -> Result<([T; N], [T; N]), SceneError> {
+        self.check_inertia(t, &q, &v)?;
         if const { !Layouts::<S, N>::HELD } {
             return Ok((q, v));
         }
         let start = projection::start(self, Time::new(t), Side::After, q, v);
         let start = start.map_err(SceneError::Constraint)?;
         Ok((start.q.high, start.v.high))
+    }
+
+    /// Refuses a mass matrix that is not positive definite.
+    pub(crate) fn check_inertia(&self, t: f64, q: &[T; N], v: &[T; N]) -> Result<(), SceneError> {
+        if !S::FACTS.derived {
+            return Ok(());
+        }
+        let t = Time::new(t);
+        // The velocities of joints have no part in it.
+        let (joint_slots, joints, purpose) = (self.joint_slots, self.joints, Purpose::Momenta);
+        let inputs = inputs_at::<S, T, N>(joint_slots, joints, t, Side::After, purpose, true);
+        inertia_of(self.system, t, q, v, &inputs).map_err(SceneError::Inertia)
     }
 
     /// Puts a pendulum whose parameters or joints have changed on the nearest state that fulfils the
@@ -70,6 +84,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> OnJoints<'_, S, T, N
             return Ok(());
         }
         let [q, _, v, ..] = detached.state;
+        self.check_inertia(t, &q, &v)?;
         let near = projection::nearest(self, &State { t, q, v }).map_err(SceneError::Constraint)?;
         if (near.q, near.v) != (q, v) {
             let zero = [T::from_f64(0.0); N];

@@ -3,22 +3,23 @@
 use crate::scalar::{Float, Real};
 use crate::system::System;
 
-/// An angular frequency in rad/s that small motions about the neighbourhood of `q` do not exceed by
-/// much, with the inputs at rest.
+/// Angular frequencies in rad/s that small motions do not exceed by much, about `q` and about its
+/// neighbourhood, with the inputs at rest.
 ///
-/// It is the largest root of |λ| over the eigenvalues λ of ∂q̈/∂q, by power iteration with central
-/// differences, at `q` and at three states beside it, or the size of ∂q̈/∂q̇, whichever is larger.
+/// The first is the largest root of |λ| over the eigenvalues λ of ∂q̈/∂q, by power iteration with
+/// central differences, or the size of ∂q̈/∂q̇, whichever is larger; the second is the largest of
+/// these at `q` and at three states beside it.
 pub(crate) fn fastest<S: System<N, Scalar = T>, T: Float, const N: usize>(
     system: &S,
     t: T,
     q: &[T; N],
     inputs: &S::Inputs,
-) -> f64 {
+) -> [f64; 2] {
     let prepared = system.prepare();
     let zero = [T::from_f64(0.0); N];
     let a = |q: &[T; N], v: &[T; N]| system.accelerations_prepared(&prepared, t, q, v, inputs);
     let step = cube_root_of_rounding::<T>();
-    let mut fastest = 0.0f64;
+    let [mut here, mut fastest] = [0.0f64; 2];
     for place in 0..4 {
         let q = q.map(|q| q + T::from_f64(0.8 * f64::from(place)));
         let stiffness = largest(step, |direction, size| {
@@ -31,8 +32,11 @@ pub(crate) fn fastest<S: System<N, Scalar = T>, T: Float, const N: usize>(
                 (a(&q, &moved(&zero, direction, size)), a(&q, &moved(&zero, direction, -size)))
             }));
         }
+        if place == 0 {
+            here = fastest;
+        }
     }
-    fastest
+    [here, fastest]
 }
 
 /// The step for which rounding and truncation of a central difference are alike.

@@ -58,21 +58,14 @@ pub(crate) fn check_state<T: Float, const N: usize>(
     }
 }
 
-/// Refuses joints that do not exist, move in another number of dimensions than their inputs or lack
-/// a derivative that the equations or the outputs need.
+/// Refuses joints whose motions lack a derivative that the equations or the outputs need.
 pub(crate) fn check_joints<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     joint_slots: &[JointSlot<T>],
     joints: &[u32],
 ) -> Result<(), SceneError> {
-    for (input, &joint) in joints.iter().enumerate() {
-        let components = <S::Inputs as Assemble<T>>::COMPONENTS.get(input);
-        let joint_slot = joint_slots
-            .get(joint as usize)
-            .filter(|joint_slot| components == Some(&joint_slot.drive.components()));
-        let joint_slot = joint_slot.ok_or(SceneError::Joint(joint))?;
-        check_motion(&S::FACTS, input, joint_slot.drive.has())?;
-    }
-    Ok(())
+    joints.iter().enumerate().try_for_each(|(input, &joint)| {
+        check_motion(&S::FACTS, input, joint_slots[joint as usize].drive.has())
+    })
 }
 
 /// Refuses a motion that lacks a derivative which the equations or the outputs need of an input.

@@ -3,6 +3,7 @@
 use crate::motion::Side;
 use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
+use crate::scene::group::constraints::OnJoints;
 use crate::scene::group::criterion::{Alarms, SleepCriterion};
 use crate::scene::group::joints::inputs_at;
 use crate::scene::group::status::SceneStatus;
@@ -54,6 +55,9 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Hangs a pendulum on joints; it is awake.
+    ///
+    /// # Errors
+    /// A pendulum that is too fast.
     pub(crate) fn hang(
         &mut self,
         clock: &Clock,
@@ -62,14 +66,14 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         system: &S,
         tolerance: f64,
         [q, v]: [[T; N]; 2],
-    ) -> u32 {
+    ) -> Result<u32, SceneError> {
         let id = self.table.len() as u32;
+        let zero = [T::from_f64(0.0); N];
         let mut parameters = Vec::with_capacity(S::FACTS.parameters.len());
         system.mapped(|parameter| {
             parameters.push(parameter);
             parameter
         });
-        let zero = [T::from_f64(0.0); N];
         let detached = Detached {
             id,
             joints,
@@ -77,23 +81,28 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             state: [q, zero, v, zero, q, v],
             limits: Limits::none(),
         };
+        let kind = self.kind(clock, joint_slots, system, &detached, tolerance)?;
         self.table.push(Location { bucket: 0, slot: 0 });
         self.status.push(SceneStatus::Awake);
         self.tolerances.push(tolerance);
-        let kind = self.kind(clock, joint_slots, system, &detached);
         self.insert(kind, &detached);
         self.set_awake(id, true);
-        id
+        Ok(id)
     }
 
     /// The kind of a pendulum: its steps, and whether its joints rest for ever.
-    pub(crate) fn kind(
+    ///
+    /// # Errors
+    /// A pendulum that is too fast where it is. Where only its neighbourhood is too fast, it takes
+    /// as many steps as there may be.
+    fn kind(
         &self,
         clock: &Clock,
         joint_slots: &[JointSlot<T>],
         system: &S,
         detached: &Detached<T, N>,
-    ) -> Kind {
+        tolerance: f64,
+    ) -> Result<Kind, SceneError> {
         let t = clock.time(clock.tick());
         let inputs = inputs_at::<S, T, N>(
             joint_slots,
@@ -103,16 +112,55 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             Purpose::Accelerations,
             true,
         );
-        let omega = frequency::fastest(system, T::from_f64(t), &detached.state[0], &inputs);
         // A soft stop swings too.
-        let phase = omega.max(detached.limits.stiffness.to_f64().sqrt()) * clock.step();
-        let tolerance = self.tolerances[detached.id as usize];
-        let grid = match self.scheme {
-            Some(scheme) => Grid { scheme, substeps: scheme.substeps(phase, tolerance) },
-            None => Scheme::cheapest(&S::FACTS, phase, tolerance),
+        let stop = detached.limits.stiffness.to_f64().sqrt();
+        let [here, nearby] =
+            frequency::fastest(system, T::from_f64(t), &detached.state[0], &inputs)
+                .map(|omega| omega.max(stop));
+        let grid = |omega: f64| Grid::of(&S::FACTS, self.scheme, omega * clock.step(), tolerance);
+        let grid = match (grid(here), grid(nearby)) {
+            (Some(_), Some(grid)) => grid,
+            (Some(grid), None) => Grid { substeps: MOST_SUBSTEPS, ..grid },
+            (None, _) => {
+                return Err(SceneError::Frequency {
+                    kind: S::FACTS.name,
+                    index: detached.id,
+                    frequency: here,
+                    step: clock.step(),
+                    tolerance,
+                });
+            }
         };
-        debug_assert!(grid.substeps <= MOST_SUBSTEPS);
-        Kind { grid, still: still(joint_slots, &detached.joints) }
+        Ok(Kind { grid, still: still(joint_slots, &detached.joints) })
+    }
+
+    /// The kind of a pendulum that hangs here already.
+    ///
+    /// # Errors
+    /// A pendulum that is too fast, a negative mass.
+    pub(in crate::scene) fn checked_kind(
+        &self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        detached: &Detached<T, N>,
+    ) -> Result<Kind, SceneError> {
+        let (system, joints) = (self.system_of(&detached.parameters), &detached.joints[..]);
+        let [q, _, v, ..] = &detached.state;
+        let on_joints = OnJoints { system: &system, joint_slots, joints };
+        on_joints.check_inertia(clock.time(clock.tick()), q, v)?;
+        let tolerance = self.tolerances[detached.id as usize];
+        self.kind(clock, joint_slots, &system, detached, tolerance)
+    }
+
+    /// Refuses the motion of a joint with which a pendulum on it is too fast.
+    pub(super) fn accepts_steps(
+        &self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        joint: u32,
+    ) -> Result<(), SceneError> {
+        let mut ids = (0..self.table.len() as u32).filter(|&id| self.joints(id).contains(&joint));
+        ids.try_for_each(|id| self.checked_kind(clock, joint_slots, &self.read(id)).map(drop))
     }
 
     /// Puts a pendulum into its bucket, asleep.
@@ -189,21 +237,25 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Writes a pendulum back that may need other steps than before.
+    ///
+    /// # Errors
+    /// A pendulum that is too fast, or whose mass is negative; it stays as it was.
     pub(crate) fn rewrite(
         &mut self,
         clock: &Clock,
         joint_slots: &[JointSlot<T>],
         detached: &Detached<T, N>,
-    ) {
-        let system = self.system_of(&detached.parameters);
-        let kind = self.kind(clock, joint_slots, &system, detached);
+    ) -> Result<(), SceneError> {
+        let kind = self.checked_kind(clock, joint_slots, detached)?;
         if self.buckets[self.table[detached.id as usize].bucket as usize].kind == kind {
-            return self.write(detached);
+            self.write(detached);
+            return Ok(());
         }
         let awake = self.is_awake(detached.id);
         self.remove(detached.id);
         self.insert(kind, detached);
         self.set_awake(detached.id, awake);
+        Ok(())
     }
 
     /// Wakes a pendulum that sleeps.
@@ -231,8 +283,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             true,
         );
         let t = T::from_f64(t);
-        let omega = frequency::fastest(&system, t, &detached.state[0], &inputs)
-            .max(detached.limits.stiffness.to_f64().sqrt());
+        let [_, nearby] = frequency::fastest(&system, t, &detached.state[0], &inputs);
+        let omega = nearby.max(detached.limits.stiffness.to_f64().sqrt());
         rest::rest(&system, t, &detached.state[0], &inputs, omega, &detached.limits)
     }
 

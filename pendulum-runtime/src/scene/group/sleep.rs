@@ -151,7 +151,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         let still = AtRest::new(&system, clock, joint_slots, &detached);
         let [q, ..] = detached.state;
         // A pendulum that may not sleep is looked at again when it is slow.
-        let omega = frequency::fastest(&system, still.t, &q, &still.forces);
+        let [_, omega] = frequency::fastest(&system, still.t, &q, &still.forces);
         let never = SleepCriterion {
             until,
             rest: q,

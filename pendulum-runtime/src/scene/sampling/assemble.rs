@@ -4,6 +4,8 @@
 
 use crate::motion::Sample;
 use crate::scalar::Real;
+use crate::scene::error::SceneError;
+use crate::scene::handle::SceneId;
 use crate::scene::sampling::joint::Joint;
 use crate::sealed::Sealed;
 use crate::system::Samples;
@@ -45,20 +47,23 @@ impl<T: Real> Assemble<T> for () {
 /// Joints on which a system hangs: `()`, a [`Joint`] or a tuple of joints, one for each driven
 /// input in the order of declaration.
 pub trait Anchor<Inputs>: Sealed {
-    /// The joints by number.
+    /// The numbers of the joints in a scene.
+    ///
+    /// # Errors
+    /// A joint of another scene.
     #[doc(hidden)]
-    fn joints(&self) -> Vec<u32>;
+    fn joints(&self, scene: SceneId) -> Result<Vec<u32>, SceneError>;
 }
 
 impl Anchor<()> for () {
-    fn joints(&self) -> Vec<u32> {
-        Vec::new()
+    fn joints(&self, _: SceneId) -> Result<Vec<u32>, SceneError> {
+        Ok(Vec::new())
     }
 }
 
 impl<T: Real, const D: usize> Anchor<(Sample<T, D>,)> for Joint<D> {
-    fn joints(&self) -> Vec<u32> {
-        vec![self.0]
+    fn joints(&self, scene: SceneId) -> Result<Vec<u32>, SceneError> {
+        Ok(vec![self.of(scene)?])
     }
 }
 
@@ -85,8 +90,8 @@ macro_rules! tuples {
         }
 
         impl<T: Real, $(const $dim: usize),+> Anchor<($(Sample<T, $dim>,)+)> for ($(Joint<$dim>,)+) {
-            fn joints(&self) -> Vec<u32> {
-                vec![$((self.$index).0),+]
+            fn joints(&self, scene: SceneId) -> Result<Vec<u32>, SceneError> {
+                Ok(vec![$((self.$index).of(scene)?),+])
             }
         }
     )+};

@@ -2,17 +2,42 @@
 
 use crate::motion::{Derivatives, Motion, Sample, Side};
 use crate::scalar::Real;
+use crate::scene::error::SceneError;
+use crate::scene::handle::SceneId;
 use crate::scene::sampling::clock::Clock;
 use crate::sealed::Sealed;
 use crate::time::Time;
 use core::fmt;
 use std::sync::Arc;
 
-/// A joint of a scene that moves in `D` dimensions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Joint<const D: usize>(pub(crate) u32);
+/// A joint of a scene that moves in `D` dimensions; other scenes refuse it.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Joint<const D: usize> {
+    scene: SceneId,
+    index: u32,
+}
+
+impl<const D: usize> Joint<D> {
+    pub(crate) const fn new(scene: SceneId, index: u32) -> Self {
+        Self { scene, index }
+    }
+
+    /// Its number in `scene`.
+    ///
+    /// # Errors
+    /// A joint of another scene.
+    pub(crate) fn of(self, scene: SceneId) -> Result<u32, SceneError> {
+        if self.scene == scene { Ok(self.index) } else { Err(SceneError::Joint(self.index)) }
+    }
+}
 
 impl<const D: usize> Sealed for Joint<D> {}
+
+impl<const D: usize> fmt::Debug for Joint<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Joint").field(&self.index).finish()
+    }
+}
 
 /// A motion whose type and dimension are forgotten.
 pub(crate) trait Drive<T>: Send + Sync {

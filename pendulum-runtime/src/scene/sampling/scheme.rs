@@ -53,7 +53,7 @@ pub(crate) struct Grid {
 }
 
 /// The most steps into which a tick is divided.
-pub(crate) const MOST_SUBSTEPS: u32 = 64;
+pub(crate) const MOST_SUBSTEPS: u32 = 1024;
 
 /// The most evaluations in a step.
 pub(crate) const MOST_STAGES: usize = 7;
@@ -84,7 +84,9 @@ impl Scheme {
     /// The longest step in radians whose relative error of the phase is `tolerance`, within what is
     /// stable.
     ///
-    /// The error is (hω)²/24 for leapfrog, 1.5·10⁻⁵ (hω)⁴ for SRKN6b and (hω)⁴/120 for RK4.
+    /// The error is (hω)²/24 for leapfrog, 1.5·10⁻⁵ (hω)⁴ for SRKN6b and (hω)⁴/120 for RK4, whose
+    /// amplitude decays by (hω)⁵/144 in a radian, which is less than the tolerance in all these
+    /// steps.
     fn longest(self, tolerance: f64) -> f64 {
         let (step, stable) = match self {
             Self::Leapfrog => ((24.0 * tolerance).sqrt(), 1.0),
@@ -94,29 +96,49 @@ impl Scheme {
         if step < stable { step } else { stable }
     }
 
-    /// The steps in a tick of `phase` radians, a power of two.
-    pub(crate) fn substeps(self, phase: f64, tolerance: f64) -> u32 {
+    /// The steps in a tick of `phase` radians, a power of two; `None` if they are too many.
+    fn substeps(self, phase: f64, tolerance: f64) -> Option<u32> {
         let (longest, mut substeps) = (self.longest(tolerance), 1);
-        while substeps < MOST_SUBSTEPS && longest * f64::from(substeps) < phase {
+        while longest * f64::from(substeps) < phase {
+            if substeps == MOST_SUBSTEPS {
+                return None;
+            }
             substeps *= 2;
         }
-        substeps
+        Some(substeps)
     }
 
     /// The cheapest method for a system in ticks of `phase` radians.
-    pub(crate) fn cheapest(facts: &Facts, phase: f64, tolerance: f64) -> Grid {
-        let grid = |scheme: Self| Grid { scheme, substeps: scheme.substeps(phase, tolerance) };
+    fn cheapest(facts: &Facts, phase: f64, tolerance: f64) -> Option<Grid> {
+        let grid = |scheme: Self| {
+            scheme.substeps(phase, tolerance).map(|substeps| Grid { scheme, substeps })
+        };
         if !(facts.velocity_free && facts.constant_mass_matrix) {
             return grid(Self::Rk4);
         }
-        let (leapfrog, srkn) = (grid(Self::Leapfrog), grid(Self::Srkn6b));
-        let cost = |grid: Grid| grid.scheme.cost() * grid.substeps;
-        let enough = phase <= Self::Leapfrog.longest(tolerance) * f64::from(leapfrog.substeps);
-        if enough && cost(leapfrog) <= cost(srkn) { leapfrog } else { srkn }
+        let cost = |grid: &Grid| grid.scheme.cost() * grid.substeps;
+        // The first of two that cost the same.
+        [grid(Self::Leapfrog), grid(Self::Srkn6b)].into_iter().flatten().min_by_key(cost)
     }
 }
 
 impl Grid {
+    /// The steps for a system in ticks of `phase` radians, by the method that somebody has chosen or
+    /// by the cheapest; `None` if they are too many.
+    pub(crate) fn of(
+        facts: &Facts,
+        chosen: Option<Scheme>,
+        phase: f64,
+        tolerance: f64,
+    ) -> Option<Self> {
+        match chosen {
+            None => Scheme::cheapest(facts, phase, tolerance),
+            Some(scheme) => {
+                scheme.substeps(phase, tolerance).map(|substeps| Self { scheme, substeps })
+            }
+        }
+    }
+
     /// The times of all evaluations in a tick, in ticks, step by step.
     pub(crate) fn fractions(self) -> impl Iterator<Item = f64> {
         let steps = f64::from(self.substeps);
@@ -142,14 +164,32 @@ mod tests {
             constant_mass_matrix: true,
             ..Facts::new("Pendulum", &["θ"])
         };
-        let cheapest = |phase, tolerance| Scheme::cheapest(&facts, phase, tolerance);
-        assert_eq!(cheapest(0.02, 1e-3), Grid { scheme: Scheme::Leapfrog, substeps: 1 });
-        assert_eq!(cheapest(0.3, 1e-3), Grid { scheme: Scheme::Leapfrog, substeps: 2 });
-        assert_eq!(cheapest(0.3, 1e-8), Grid { scheme: Scheme::Srkn6b, substeps: 2 });
-        assert_eq!(
-            Scheme::cheapest(&Facts::new("Chain", &["θ"]), 0.02, 1e-3),
-            Grid { scheme: Scheme::Rk4, substeps: 1 }
-        );
+        let cheapest = |phase, tolerance| Grid::of(&facts, None, phase, tolerance);
+        let steps = |scheme, substeps| Some(Grid { scheme, substeps });
+        assert_eq!(cheapest(0.02, 1e-3), steps(Scheme::Leapfrog, 1));
+        assert_eq!(cheapest(0.3, 1e-3), steps(Scheme::Leapfrog, 2));
+        assert_eq!(cheapest(0.3, 1e-8), steps(Scheme::Srkn6b, 2));
+        let chain = Facts::new("Chain", &["θ"]);
+        assert_eq!(Grid::of(&chain, None, 0.02, 1e-3), steps(Scheme::Rk4, 1));
+    }
+
+    /// The largest step of each method divides the tick at most 1024 times.
+    #[test]
+    fn steps_that_are_too_many_are_none() {
+        let facts = Facts {
+            velocity_free: true,
+            constant_mass_matrix: true,
+            ..Facts::new("Pendulum", &["θ"])
+        };
+        for (chosen, longest) in [
+            (None, 1.5),
+            (Some(Scheme::Leapfrog), 2.4f64.sqrt().min(1.0)),
+            (Some(Scheme::Rk4), 1.0),
+        ] {
+            let most = Grid::of(&facts, chosen, longest * 1024.0, 0.1);
+            assert_eq!(most.map(|grid| grid.substeps), Some(1024), "{chosen:?}");
+            assert_eq!(Grid::of(&facts, chosen, longest * 1024.001, 0.1), None, "{chosen:?}");
+        }
     }
 
     #[test]
