@@ -10,6 +10,15 @@ pub enum MotionError {
     NoKeys,
     /// A motion that repeats needs two keys.
     OneKey,
+    /// A motion that repeats without a jump ends elsewhere than it begins.
+    Open {
+        /// The component, counted from zero.
+        component: usize,
+        /// Its value at the first key.
+        first: f64,
+        /// Its value at the last key.
+        last: f64,
+    },
     /// There are not as many times as values.
     Lengths {
         /// The number of times.
@@ -49,6 +58,12 @@ impl fmt::Display for MotionError {
             }
             Self::OneKey => {
                 write!(f, "a motion that repeats needs at least two keys; the last closes the loop")
+            }
+            Self::Open { component, first, last } => {
+                write!(
+                    f,
+                    "component {component} begins at {first:?} and ends at {last:?}; repeat the value of the first key at the end of the period"
+                )
             }
             Self::Lengths { times, values } => {
                 write!(f, "{times} times but {values} values; give each key one of both")

@@ -51,11 +51,11 @@ impl<const D: usize> Spline<D> {
         Ok(Self::through(times, values, &Ends::Clamped(first, last)))
     }
 
-    /// The spline that repeats for ever without a kink; the last value is taken for that of the
-    /// first key.
+    /// The spline that repeats for ever without a kink; the last value is that of the first key.
     ///
     /// # Errors
-    /// As for [`natural`](Self::natural), and fewer than two keys.
+    /// As for [`natural`](Self::natural), fewer than two keys, and a last value that is not the first
+    /// to 10⁻⁹ of the largest.
     pub fn periodic(times: &[f64], values: &[[f64; D]]) -> Result<Self, MotionError> {
         checked(times, values)?;
         if times.len() < 2 {
@@ -63,6 +63,13 @@ impl<const D: usize> Spline<D> {
         }
         let mut values = values.to_vec();
         let last = values.len() - 1;
+        for component in 0..D {
+            let largest = values.iter().map(|value| value[component].abs()).fold(0.0, f64::max);
+            let [first, last] = [values[0], values[last]].map(|value| value[component]);
+            if 1e-9 * largest < (last - first).abs() {
+                return Err(MotionError::Open { component, first, last });
+            }
+        }
         values[last] = values[0];
         Ok(Self(Self::through(times, &values, &Ends::Periodic).0.looped()?.smooth()))
     }

@@ -89,7 +89,8 @@ fn a_spline_has_continuous_accelerations() {
 
 #[test]
 fn a_periodic_spline_closes_without_a_kink() {
-    let values: Vec<[f64; 1]> = TIMES.iter().map(|&t| [(2.1 * t).rem_euclid(1.3)]).collect();
+    let mut values: Vec<[f64; 1]> = TIMES.iter().map(|&t| [(2.1 * t).rem_euclid(1.3)]).collect();
+    values[TIMES.len() - 1] = values[0];
     let spline = Spline::periodic(&TIMES, &values).unwrap();
     let (end, start) = (before(&spline, 3.0), at(&spline, 0.0));
     assert!((end.position[0] - start.position[0]).abs() < 1e-14);
@@ -105,8 +106,20 @@ fn a_periodic_spline_closes_without_a_kink() {
 
 #[test]
 fn one_piece_can_be_periodic() {
-    let spline = Spline::periodic(&[0.0, 2.0], &[[1.0], [5.0]]).unwrap();
+    let spline = Spline::periodic(&[0.0, 2.0], &[[1.0], [1.0]]).unwrap();
     assert_eq!(at(&spline, 1.3).position, [1.0]);
+}
+
+#[test]
+fn what_ends_elsewhere_than_it_begins_is_not_periodic() {
+    let refused = Spline::periodic(&[0.0, 1.0, 2.0], &[[0.0, 1.0], [1.0, 2.0], [0.0, 5.0]]);
+    let message = refused.unwrap_err().to_string();
+    assert!(message.starts_with("component 1 begins at 1.0 and ends at 5.0; repeat"), "{message}");
+    // A last value that was computed may be off by rounding.
+    let turn = std::f64::consts::TAU;
+    let values: Vec<[f64; 1]> = (0..5).map(|k| [(turn / 4.0 * f64::from(k)).sin()]).collect();
+    assert!(values[4] != values[0]);
+    Spline::periodic(&[0.0, 1.0, 2.0, 3.0, 4.0], &values).unwrap();
 }
 
 #[test]
