@@ -215,8 +215,11 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
 }
 
 impl<const N: usize, D: Dynamics<N>, M> Solve<'_, N, D, M, AdaptiveStep<N>> {
-    /// The relative tolerance, 1e-6 without this call (1.2e-5 for `f32`); at least ten machine
-    /// epsilons of the scalar.
+    /// The relative tolerance, 1e-6 without this call (1.2e-5 for `f32`).
+    ///
+    /// Runge–Kutta methods refuse less than ten machine epsilons of the scalar.
+    /// [`Picard`](crate::integrate::Picard), [`Taylor`](crate::integrate::Taylor) and the choice of
+    /// one of them take any positive number and do not go below rounding.
     ///
     /// Over two words methods whose coefficients have the digits of `f64` hold none below 2.3e-15:
     /// what lies below counts as that. Only [`Taylor`](crate::integrate::Taylor) goes on to 5e-31.
