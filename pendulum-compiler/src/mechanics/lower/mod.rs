@@ -15,7 +15,7 @@ use crate::algebra::diff;
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::REAL;
 use crate::algebra::number::Rational;
-use crate::messages::{self, Errors, Range};
+use crate::messages::{Errors, Range, lower as messages};
 use crate::model::{self, Model};
 use crate::syntax::ast::{Binder, Expr, ForceIndex, Role};
 use crate::syntax::name;
@@ -397,18 +397,12 @@ impl Lower<'_, '_, '_, '_> {
             let members: Vec<(Option<&Binder>, i64)> = match (force.index, coordinate.length) {
                 (None, None) => vec![(None, 0)],
                 (None, Some(_)) => {
-                    let name = force.name;
-                    self.errors.at(
-                        name.span(),
-                        format!("`{name}` is a family; write `{name}[k]`, or `{name}[k in 0..{}]` for all", coordinate.count()),
-                    );
+                    let message = messages::force_on_family(force.name, coordinate.count());
+                    self.errors.at(force.name.span(), message);
                     continue;
                 }
                 (Some(_), None) => {
-                    self.errors.at(
-                        force.name.span(),
-                        format!("`{}` is no family; write it without an index", force.name),
-                    );
+                    self.errors.at(force.name.span(), messages::index_of_force(force.name));
                     continue;
                 }
                 (Some(ForceIndex::One(index)), Some(length)) => {
@@ -421,8 +415,9 @@ impl Lower<'_, '_, '_, '_> {
                     let range = self.range(binder);
                     match range.clone().find(|k| !usize::try_from(*k).is_ok_and(|k| k < length)) {
                         Some(k) => {
-                            self.errors
-                                .at(binder.high.range, outside(&force.name.to_string(), k, length));
+                            let name = force.name.to_string();
+                            let message = messages::index_out_of_range(&name, k, length);
+                            self.errors.at(binder.high.range, message);
                             continue;
                         }
                         None => range.map(|k| (Some(binder), k)).collect(),
@@ -455,10 +450,7 @@ impl Lower<'_, '_, '_, '_> {
     fn within_bounds(&mut self, expr: &Expr, value: Id) -> bool {
         let nodes = self.graph.reachable(&[value]);
         if LARGEST < nodes.len() {
-            let message = format!(
-                "this unfolds to more than {LARGEST} different expressions; write a shorter sum"
-            );
-            self.errors.once(expr.source, expr.range, message);
+            self.errors.once(expr.source, expr.range, messages::large_value(LARGEST));
             return false;
         }
         let mut depths: BTreeMap<Id, usize> = BTreeMap::new();
@@ -468,10 +460,7 @@ impl Lower<'_, '_, '_, '_> {
             depths.insert(id, depth);
         }
         if DEEPEST_NODE < depths[&value] {
-            let message = format!(
-                "this unfolds to more than {DEEPEST_NODE} functions and operations within one another; write a shorter chain"
-            );
-            self.errors.once(expr.source, expr.range, message);
+            self.errors.once(expr.source, expr.range, messages::deep_value(DEEPEST_NODE));
             return false;
         }
         true
@@ -487,7 +476,8 @@ impl Lower<'_, '_, '_, '_> {
         }
         let definition = self.model.lets[index];
         if self.open.contains(&(index, k)) {
-            self.errors.once(definition.expr.source, range, messages::circular(&definition.name));
+            let message = messages::circular_definition(&definition.name);
+            self.errors.once(definition.expr.source, range, message);
             return Value::Bad;
         }
         self.open.push((index, k));
@@ -527,7 +517,8 @@ impl Lower<'_, '_, '_, '_> {
             return Value::Bad;
         }
         if self.open.iter().any(|&(other, _)| other == index) {
-            self.errors.once(definition.expr.source, range, messages::circular(&definition.name));
+            let message = messages::circular_definition(&definition.name);
+            self.errors.once(definition.expr.source, range, message);
             return Value::Bad;
         }
         self.open.push((index, None));
@@ -545,11 +536,7 @@ impl Lower<'_, '_, '_, '_> {
         let end = |lower: &mut Self, expr: &Expr| match lower.integer(expr) {
             Ok(value) => Some(value),
             Err(range) => {
-                lower.errors.once(
-                    expr.source,
-                    range,
-                    messages::unknown_number("the end of a range"),
-                );
+                lower.errors.once(expr.source, range, messages::open_end_of_range());
                 None
             }
         };
@@ -558,11 +545,7 @@ impl Lower<'_, '_, '_, '_> {
         };
         let high = if binder.inclusive { high.saturating_add(1) } else { high };
         if 65536 < high.saturating_sub(low) {
-            self.errors.once(
-                binder.high.source,
-                binder.high.range,
-                "this range has more than 65536 members; write a shorter one",
-            );
+            self.errors.once(binder.high.source, binder.high.range, messages::long_range());
             return 0..0;
         }
         low..high
@@ -578,11 +561,12 @@ impl Lower<'_, '_, '_, '_> {
                     Some(Local::Index { source, .. }) => *source,
                     _ => expr.source,
                 };
-                self.errors.once(source, expr.range, outside(name, k, length));
+                let message = messages::index_out_of_range(name, k, length);
+                self.errors.once(source, expr.range, message);
                 None
             }
             Err(range) => {
-                self.errors.once(expr.source, range, messages::unknown_number("an index"));
+                self.errors.once(expr.source, range, messages::open_index());
                 None
             }
         }
@@ -613,11 +597,4 @@ impl Lower<'_, '_, '_, '_> {
 
 fn plain(binder: &Binder) -> String {
     name::read(&binder.name.to_string()).base
-}
-
-fn outside(name: &str, k: i64, length: usize) -> String {
-    format!(
-        "index {k} is out of range; `{name}` has {length} members, `{name}[0]` to `{name}[{}]`",
-        length - 1
-    )
 }

@@ -4,7 +4,7 @@ use super::{Lower, second_derivative, total_derivative};
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::Function;
 use crate::algebra::number::Rational;
-use crate::messages;
+use crate::messages::{lower as messages, shared};
 use crate::syntax::ast::Expr;
 use crate::syntax::text::text;
 
@@ -74,36 +74,25 @@ impl Lower<'_, '_, '_, '_> {
             return self.control_rate(&value, expr);
         }
         if dependencies.any(Dependencies::MULTIPLIER) {
-            let message = format!(
-                "the derivative of a reaction in `{what}` is not known; leave the reaction out of it"
-            );
-            return self.wrong(expr, &message);
+            return self.wrong(expr, messages::derivative_of_reaction(&what));
         }
         if dependencies.any(Dependencies::ACCELERATION) {
             let what = format!("the derivative of an acceleration in `{what}`");
-            return self.wrong(expr, &messages::jerk(what));
+            return self.wrong(expr, shared::jerk(what));
         }
         if dependencies.any(Dependencies::VELOCITY) && self.constrained {
             let what = format!("the derivative of a velocity in `{what}`");
-            return self.wrong(expr, &messages::constrained_acceleration(what));
+            return self.wrong(expr, shared::constrained_acceleration(what));
         }
         if dependencies.any(Dependencies::VELOCITY) && !self.accelerations {
-            return self.wrong(
-                expr,
-                &messages::acceleration(format!("the derivative of a velocity in `{what}`")),
-            );
+            let what = format!("the derivative of a velocity in `{what}`");
+            return self.wrong(expr, shared::acceleration(what));
         }
         if dependencies.any(Dependencies::ACCELERATION_INPUT) {
-            return self.wrong(
-                expr,
-                &format!("`{what}` contains a third derivative of a driven input; they have two"),
-            );
+            return self.wrong(expr, messages::jerk_of_input(&what));
         }
         if !dependencies.any(moving) && !may_rest {
-            return self.wrong(
-                expr,
-                &format!("nothing in `{what}` moves, so its time derivative is zero; leave it out"),
-            );
+            return self.wrong(expr, messages::nothing_moves(&what));
         }
         let positions = self.positions.take();
         let accelerations = self.accelerations;
@@ -128,7 +117,7 @@ impl Lower<'_, '_, '_, '_> {
             _ => None,
         });
         match input {
-            Some(name) => self.wrong(expr, &messages::no_derivative(name)),
+            Some(name) => self.wrong(expr, shared::derivative_of_control(name)),
             None => Value::Bad,
         }
     }
@@ -191,15 +180,7 @@ impl Lower<'_, '_, '_, '_> {
             (Value::Space(a), Value::Space(b)) => {
                 Value::Space([0, 1, 2].map(|k| self.graph.add(a[k], b[k])))
             }
-            (a, b) => {
-                let message = format!(
-                    "`{}` is {}, but the terms before it are {}; a sum needs terms of one kind",
-                    text(expr),
-                    b.kind(),
-                    a.kind_plural()
-                );
-                self.wrong(expr, &message)
-            }
+            (a, b) => self.wrong(expr, messages::mixed_sum(&text(expr), b.kind(), a.kind_plural())),
         }
     }
 
@@ -250,14 +231,7 @@ impl Lower<'_, '_, '_, '_> {
                 Value::Plane { parts: a, complex: left },
                 Value::Plane { parts: b, complex: right },
             ) => Value::Plane { parts: self.complex_product(a, b), complex: left && right },
-            (a, b) => {
-                let message = format!(
-                    "{} cannot be multiplied by {}; write a component or an index",
-                    a.kind(),
-                    b.kind()
-                );
-                self.wrong(expr, &message)
-            }
+            (a, b) => self.wrong(expr, messages::no_product(a.kind(), b.kind())),
         }
     }
 
@@ -271,9 +245,7 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn divide(&mut self, a: Value, b: Value, expr: &Expr) -> Value {
         match b {
             Value::Bad => Value::Bad,
-            Value::Scalar(Graph::ZERO) => {
-                self.wrong(expr, "division by zero; write another divisor")
-            }
+            Value::Scalar(Graph::ZERO) => self.wrong(expr, messages::division_by_zero()),
             Value::Scalar(b) => match a {
                 Value::Family(_) => self.multiply(a, Value::Scalar(b), expr),
                 a => self.map(a, |graph, id| graph.div(id, b)),
@@ -284,14 +256,7 @@ impl Lower<'_, '_, '_, '_> {
                     [re, self.graph.negative(im)].map(|part| self.graph.div(part, square));
                 self.multiply(a, Value::Plane { parts: conjugate, complex: true }, expr)
             }
-            other => {
-                let message = format!(
-                    "`{}` is {}, and nothing can be divided by that; divide by its length `|u|`",
-                    text(expr),
-                    other.kind()
-                );
-                self.wrong(expr, &message)
-            }
+            other => self.wrong(expr, messages::no_divisor(&text(expr), other.kind())),
         }
     }
 
@@ -301,26 +266,24 @@ impl Lower<'_, '_, '_, '_> {
         if let Node::Number(number) = self.graph.node(power)
             && number.within(60).is_none()
         {
-            return self.wrong(exponent, "this exponent is too long for exact arithmetic; write one of at most eighteen digits");
+            return self.wrong(exponent, messages::long_exponent());
         }
         match value {
             Value::Bad => Value::Bad,
             Value::Scalar(Graph::ZERO) if self.integer(exponent).is_ok_and(|power| power < 0) => {
-                self.wrong(base, "zero has no negative power; write another base")
+                self.wrong(base, messages::negative_power_of_zero())
             }
             Value::Scalar(id) => Value::Scalar(self.graph.general_power(id, power)),
             Value::Plane { parts, complex: true } => match self.integer(exponent) {
                 Ok(count) if (0..=64).contains(&count) => {
-                    let parts = (0..count).fold([Graph::ONE, Graph::ZERO], |product, _| self.complex_product(product, parts));
+                    let parts = (0..count).fold([Graph::ONE, Graph::ZERO], |product, _| {
+                        self.complex_product(product, parts)
+                    });
                     Value::Plane { parts, complex: true }
                 }
-                _ => self.wrong(exponent, "a complex number has whole powers from 0 to 64 here; write `exp(i*φ)` for others"),
+                _ => self.wrong(exponent, messages::complex_power()),
             },
-            other => {
-                let text = text(base);
-                let message = format!("`{text}` is {}, and only scalars have powers; write `|{text}|^2`", other.kind());
-                self.wrong(base, &message)
-            }
+            other => self.wrong(base, messages::no_power(&text(base), other.kind())),
         }
     }
 
@@ -340,8 +303,7 @@ impl Lower<'_, '_, '_, '_> {
                 a.iter().copied().zip(b.iter().copied()).collect()
             }
             _ => {
-                let message = messages::two_vectors("inner", left.kind(), right.kind());
-                return self.wrong(b, &message);
+                return self.wrong(b, messages::no_vectors("inner", left.kind(), right.kind()));
             }
         };
         let products: Vec<(Id, Rational)> =
@@ -366,10 +328,7 @@ impl Lower<'_, '_, '_, '_> {
                 minor(a[2], b[0], a[0], b[2]),
                 minor(a[0], b[1], a[1], b[0]),
             ]),
-            _ => {
-                let message = messages::two_vectors("cross", left.kind(), right.kind());
-                self.wrong(b, &message)
-            }
+            _ => self.wrong(b, messages::no_vectors("cross", left.kind(), right.kind())),
         }
     }
 
@@ -386,9 +345,7 @@ impl Lower<'_, '_, '_, '_> {
                 Value::Scalar(self.graph.sqrt(square))
             }
             other @ Value::Family(_) => {
-                let message =
-                    format!("`{}` is {}; write one of its members", text(inner), other.kind());
-                self.wrong(inner, &message)
+                self.wrong(inner, messages::no_magnitude(&text(inner), other.kind()))
             }
         }
     }
