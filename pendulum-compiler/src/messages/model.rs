@@ -202,6 +202,16 @@ pub(crate) fn no_body(name: impl Display) -> Text {
     text!("`{name}` is no body; declare it as `{name}: body` in the struct")
 }
 
+/// An output in a formula.
+pub(crate) fn output_in_formula(name: &str) -> Text {
+    text!("`{name}` is an output, which no formula reads; name its value with `let`")
+}
+
+/// A unit of another size in a formula, with the one of the language and the number of it.
+pub(crate) fn scaled_unit_in_formula(name: &str, instead: &str, factor: &str) -> Text {
+    text!("unknown name `{name}`; write a number in `{instead}`: 1 {name} is {factor} {instead}")
+}
+
 /// A unit in a formula, where its name is unknown.
 pub(crate) fn unit_in_formula(name: &str) -> Text {
     text!("unknown name `{name}`; declare it as a parameter; {UNITS}")
@@ -211,6 +221,14 @@ pub(crate) fn unit_in_formula(name: &str) -> Text {
 pub(crate) fn unknown_component(name: impl Display, known: &[&str]) -> Text {
     let list: Vec<String> = known.iter().map(|known| format!("`.{known}`")).collect();
     text!("unknown component `{name}`; there are {}", list.join(", "))
+}
+
+/// A force on a coordinate that nobody declared, with the nearest one.
+pub(crate) fn unknown_coordinate(name: &str, nearest: Option<&str>) -> Text {
+    match nearest {
+        Some(near) => text!("unknown coordinate `{name}`; did you mean `{near}`?"),
+        None => text!("unknown coordinate `{name}`; declare it, as in `coordinate {name}: m;`"),
+    }
 }
 
 /// A name that nobody declared, with the nearest one.

@@ -71,11 +71,29 @@ pub(crate) fn unknown_unit(name: &str) -> Text {
     text!("unknown unit `{name}`; {FORM}")
 }
 
+/// A unit under another name, with the one of the language and the number of it in the other.
+pub(crate) fn untranslated_unit(name: &str, instead: &str, factor: Option<&str>) -> Text {
+    match factor {
+        Some(factor) => {
+            text!("unknown unit `{name}`; write `{instead}`: 1 {name} is {factor} {instead}")
+        }
+        None => text!("unknown unit `{name}`; write `{instead}`"),
+    }
+}
+
 // Formulas.
 
 /// A unit where a pure number is needed.
 pub(crate) fn impure(found: &str, unit: &str, place: Pure) -> Text {
-    text!("`{found}` is {unit}, but {place} is a pure number; divide by a unit of its kind")
+    let instead = match (unit, place) {
+        ("s", Pure::Argument("sin" | "cos" | "tan" | "cis" | "sinc")) => {
+            "multiply it by an angular frequency, such as a parameter `omega: rad/s`".to_owned()
+        }
+        ("s", _) => "divide it by a time, such as a parameter `tau: s`".to_owned(),
+        ("m", _) => "divide it by a length, such as a parameter `a: m`".to_owned(),
+        _ => format!("divide it by a quantity in {unit}"),
+    };
+    text!("`{found}` is {unit}, but {place} is a pure number; {instead}")
 }
 
 /// An energy with another unit than the first one.

@@ -313,7 +313,7 @@ fn force<'a>(
                 .collect::<Vec<_>>();
             let (span, name) = (name.span(), name.to_string());
             let nearest = name::nearest(&name, known.iter().map(String::as_str));
-            errors.at(span, messages::unknown_name(&name, nearest));
+            errors.at(span, messages::unknown_coordinate(&name, nearest));
         }
     }
 }

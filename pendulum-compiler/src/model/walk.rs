@@ -8,7 +8,7 @@ use crate::messages::model::{self as messages, Holder, Local};
 use crate::messages::shared;
 use crate::messages::{Errors, Range, Text};
 use crate::syntax::ast::{Binder, Expr, ExprKind, ForceIndex};
-use crate::syntax::elsewhere::{constant, function};
+use crate::syntax::elsewhere::{self, constant, function};
 use crate::syntax::name::{self, Name};
 use proc_macro2::Ident;
 use std::collections::BTreeSet;
@@ -332,8 +332,38 @@ impl Walk<'_, '_, '_> {
             {
                 return messages::untranslated_name(text, &constant);
             }
+            if let Some(stem) = elsewhere::moving(text).find(|stem| self.has_velocity(stem)) {
+                return messages::unknown_name(text, Some(&format!("{stem}_dot")));
+            }
+            // Two letters are a quantity more often than a unit, unless they are a length.
+            if let Some(unit) = elsewhere::unit(text)
+                && (3 <= text.chars().count() || ["mm", "cm", "km"].contains(&text))
+            {
+                return match unit.factor {
+                    Some(factor) => messages::scaled_unit_in_formula(text, unit.instead, factor),
+                    None => messages::unit_in_formula(text),
+                };
+            }
         }
-        messages::unknown_name(text, name::nearest(text, known.iter().map(String::as_str)))
+        let outputs = self.model.outputs.iter().map(|output| output.declared.name.to_string());
+        let outputs: Vec<String> = outputs.collect();
+        if outputs.iter().any(|output| output == text) {
+            return messages::output_in_formula(text);
+        }
+        let known = known.iter().chain(&outputs).map(String::as_str);
+        messages::unknown_name(text, name::nearest(text, known))
+    }
+
+    /// Returns true if a name has a velocity: a coordinate, a driven input or a definition.
+    fn has_velocity(&self, text: &str) -> bool {
+        let Name { base, dots } = name::read(text);
+        dots == 0
+            && match self.model.names.get(&base) {
+                Some(Meaning::Coordinate(_)) => true,
+                Some(&Meaning::Input(index)) => !self.model.is_control(index),
+                Some(&Meaning::Let(index)) => self.model.lets[index].arguments.is_none(),
+                Some(Meaning::Parameter(_)) | None => false,
+            }
     }
 
     fn function(&mut self, ident: &Ident, items: &[Expr], range: Range) {

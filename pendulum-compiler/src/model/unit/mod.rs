@@ -7,6 +7,7 @@ use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::messages::{Errors, Text, unit as messages};
 use crate::syntax::ast::{Expr, ExprKind};
+use crate::syntax::elsewhere;
 
 /// Reads a unit expression; reports what is no unit.
 pub(crate) fn dimension(expr: &Expr, errors: &mut Errors) -> Option<Dimension> {
@@ -17,7 +18,13 @@ pub(crate) fn dimension(expr: &Expr, errors: &mut Errors) -> Option<Dimension> {
     match &expr.kind {
         ExprKind::Name(name) => {
             let text = name.to_string();
-            Dimension::of(&text).or_else(|| refuse(errors, messages::unknown_unit(&text)))
+            Dimension::of(&text).or_else(|| {
+                let message = match elsewhere::unit(&text) {
+                    Some(unit) => messages::untranslated_unit(&text, unit.instead, unit.factor),
+                    None => messages::unknown_unit(&text),
+                };
+                refuse(errors, message)
+            })
         }
         ExprKind::Number(Literal::Exact(Rational::ONE)) => Some(Dimension::PURE),
         ExprKind::Product(factors) => {

@@ -8,7 +8,7 @@ use crate::algebra::functions::Word;
 use crate::messages::shared::implicit_product;
 use crate::messages::{Range, syntax as messages};
 use crate::syntax::ast::{Expr, ExprKind};
-use crate::syntax::elsewhere::{constant, function};
+use crate::syntax::elsewhere::{self, constant, function};
 use crate::syntax::name;
 use crate::syntax::text::text;
 use proc_macro2::{Delimiter, Ident, TokenTree};
@@ -118,7 +118,10 @@ impl Parser<'_> {
                 },
             };
             match (Dimension::of(&next), self.is_declared(&next)) {
-                (None, _) => return false,
+                (None, declared) => {
+                    let unit = 1 < next.chars().count() && elsewhere::unit(&next).is_some();
+                    return unit && !declared && Word::named(&next).is_none();
+                }
                 (Some(_), false) => return true,
                 (Some(_), true) => {}
             }

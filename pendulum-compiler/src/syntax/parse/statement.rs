@@ -389,6 +389,9 @@ fn unknown_statement(input: ParseStream, word: &str) -> syn::Error {
     if word.is_empty() {
         return unexpected(input, expected::STATEMENT);
     }
-    let nearest = name::nearest(word, STATEMENTS.into_iter());
+    let nearest = match word {
+        "control" | "actuator" => Some("input"),
+        _ => name::nearest(word, STATEMENTS.into_iter()),
+    };
     Range::from(input.span()).error(messages::unknown_statement(word, nearest))
 }
