@@ -1,6 +1,6 @@
 //! Errors, gathered and reported together, at the user's own tokens.
 
-use super::Text;
+use super::text::Text;
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::ToTokens;
 use std::collections::BTreeSet;

@@ -5,7 +5,7 @@
 
 /// A message, as `format!` writes it.
 macro_rules! text {
-    ($($part:tt)*) => { $crate::messages::Text(format!($($part)*)) };
+    ($($part:tt)*) => { $crate::messages::text::Text(format!($($part)*)) };
 }
 
 mod errors;
@@ -15,20 +15,11 @@ pub(crate) mod mechanics;
 pub(crate) mod model;
 pub(crate) mod shared;
 pub(crate) mod syntax;
+mod text;
 pub(crate) mod unit;
 
 pub(crate) use errors::{Errors, Range};
-use std::fmt;
-
-/// A message of the catalogue: the mistake, and after a semicolon the way out.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Text(String);
-
-impl fmt::Display for Text {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
+pub(crate) use text::Text;
 
 #[cfg(test)]
 mod tests {
