@@ -1,11 +1,12 @@
 //! Declarations: what a name is declared as, once, with its unit and length.
 
-use super::{Meaning, Quantity, integer, plain};
+use super::integer::integer;
+use super::resolved::{Meaning, Quantity};
 use crate::messages::Errors;
 use crate::messages::model::{self as messages, Holder};
 use crate::model::unit;
 use crate::syntax::ast::{Expr, Kind, Let};
-use crate::syntax::name::{self, Name};
+use crate::syntax::name::{self, Name, plain};
 use crate::syntax::text::text;
 use proc_macro2::Ident;
 use std::collections::BTreeMap;

@@ -1,95 +1,22 @@
 //! Names to symbols: what every name of a block means, and every name that means nothing.
 
 mod declare;
+mod integer;
 mod reach;
+mod resolved;
 pub(crate) mod unit;
 mod walk;
 
-use crate::algebra::dimension::Dimension;
-use crate::algebra::number::Rational;
+use crate::messages::Errors;
 use crate::messages::model::{self as messages, Holder};
-use crate::messages::{Errors, Range};
-use crate::syntax::ast::{self, Block, Expr, ExprKind, ForceIndex, Let, Role, Statement};
-use crate::syntax::name::{self, Name};
+use crate::syntax::ast::{self, Block, Expr, ForceIndex, Role, Statement};
+use crate::syntax::name::{self, Name, plain};
 use declare::{Declared, Shape, quantity, twice};
+pub(crate) use integer::integer;
 use proc_macro2::Ident;
+pub(crate) use resolved::{Force, Meaning, Model, Output, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
 use walk::Walk;
-
-/// A block with its names resolved.
-pub(crate) struct Model<'a> {
-    pub(crate) block: &'a Block,
-    pub(crate) parameters: Vec<Quantity<'a>>,
-    pub(crate) coordinates: Vec<Quantity<'a>>,
-    /// The driven inputs, and after them the control inputs.
-    pub(crate) inputs: Vec<Quantity<'a>>,
-    /// The number of driven inputs.
-    pub(crate) driven: usize,
-    pub(crate) outputs: Vec<Output<'a>>,
-    pub(crate) lets: Vec<&'a Let>,
-    pub(crate) energies: Vec<(Role, &'a Expr)>,
-    pub(crate) forces: Vec<Force<'a>>,
-    /// The constraints that are solved, and after them the redundant ones.
-    pub(crate) constraints: Vec<&'a ast::Constraint>,
-    pub(crate) limits: Vec<&'a ast::Limit>,
-    pub(crate) names: BTreeMap<String, Meaning>,
-    /// The parameters that no statement mentions.
-    pub(crate) unmentioned: BTreeSet<usize>,
-    /// The definitions that outputs alone need: accelerations may stand in them.
-    pub(crate) of_outputs: BTreeSet<usize>,
-}
-
-impl Model<'_> {
-    /// Returns true if an input is a control input.
-    pub(crate) fn is_control(&self, input: usize) -> bool {
-        self.driven <= input
-    }
-}
-
-/// A declared parameter, coordinate, input or output.
-pub(crate) struct Quantity<'a> {
-    pub(crate) name: &'a Ident,
-    /// `None` for a scalar, the length of a vector or family otherwise.
-    pub(crate) length: Option<usize>,
-    /// The number of scalars declared before it.
-    pub(crate) first: usize,
-    pub(crate) dimension: Option<Dimension>,
-    pub(crate) unit: String,
-    pub(crate) default: Option<&'a Expr>,
-    /// A rigid body: mass, centre and central moments.
-    pub(crate) body: bool,
-}
-
-impl Quantity<'_> {
-    /// The number of its scalars.
-    pub(crate) fn count(&self) -> usize {
-        if self.body { 6 } else { self.length.unwrap_or(1) }
-    }
-}
-
-/// An `output` statement.
-pub(crate) struct Output<'a> {
-    /// Its name, its unit and its length as declared.
-    pub(crate) declared: Quantity<'a>,
-    pub(crate) statement: &'a ast::Output,
-}
-
-/// A `force` statement.
-pub(crate) struct Force<'a> {
-    pub(crate) coordinate: usize,
-    pub(crate) name: &'a Ident,
-    pub(crate) index: Option<&'a ForceIndex>,
-    pub(crate) expr: &'a Expr,
-}
-
-/// The meaning of a name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Meaning {
-    Parameter(usize),
-    Coordinate(usize),
-    Input(usize),
-    Let(usize),
-}
 
 /// Resolves every name, reports those that cannot be.
 pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
@@ -227,11 +154,6 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     model
 }
 
-/// A dotted name without its dots, as the user would write it.
-fn plain(ident: &Ident) -> String {
-    name::read(&ident.to_string()).base
-}
-
 /// The methods of systems, which an output would hide.
 #[rustfmt::skip]
 const METHODS: &[&str] = &[
@@ -339,32 +261,5 @@ fn roles(block: &Block, errors: &mut Errors) {
     }
     if lagrangian.is_none() && split.is_none() && !block.recovery.energies {
         errors.at(block.name.span(), messages::no_energy());
-    }
-}
-
-/// A whole number, with the values of the indices in scope; the range that is none otherwise.
-pub(crate) fn integer(expr: &Expr, bound: &dyn Fn(&str) -> Option<i64>) -> Result<i64, Range> {
-    let value = rational(expr, bound).ok_or(expr.range)?;
-    value.integer().ok_or(expr.range)
-}
-
-fn rational(expr: &Expr, bound: &dyn Fn(&str) -> Option<i64>) -> Option<Rational> {
-    match &expr.kind {
-        ExprKind::Name(ident) => {
-            let name = name::read(&ident.to_string());
-            bound(&name.base).filter(|_| name.dots == 0).map(Rational::whole)
-        }
-        ExprKind::Negative(inner) => Some(rational(inner, bound)?.negative()),
-        ExprKind::Sum(terms) => terms.iter().try_fold(Rational::ZERO, |sum, (minus, term)| {
-            let term = rational(term, bound)?;
-            sum.add(if *minus { term.negative() } else { term })
-        }),
-        ExprKind::Product(factors) => {
-            factors.iter().try_fold(Rational::ONE, |product, (over, factor)| {
-                let factor = rational(factor, bound)?;
-                product.mul(if *over { factor.reciprocal()? } else { factor })
-            })
-        }
-        _ => unit::constant(expr),
     }
 }

@@ -1,7 +1,7 @@
 //! A walk over all expressions: names that nobody declared, functions with the wrong number of
 //! arguments.
 
-use super::{Meaning, Model, plain};
+use super::resolved::{Meaning, Model};
 use crate::algebra::dimension::Dimension;
 use crate::algebra::functions::Word;
 use crate::messages::model::{self as messages, Holder, Local};
@@ -9,7 +9,7 @@ use crate::messages::shared;
 use crate::messages::{Errors, Range, Text};
 use crate::syntax::ast::{Binder, Expr, ExprKind, ForceIndex};
 use crate::syntax::elsewhere::{self, constant, function};
-use crate::syntax::name::{self, Name};
+use crate::syntax::name::{self, Name, plain};
 use proc_macro2::Ident;
 use std::collections::BTreeSet;
 

@@ -10,7 +10,7 @@ use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::messages::Errors;
 use crate::messages::unit::{self as messages, Pure, Whole};
-use crate::model::{Meaning, Model, Quantity};
+use crate::model::resolved::{Meaning, Model, Quantity};
 use crate::syntax::ast::{self, Binder, Expr, ExprKind, ForceIndex, Role};
 use crate::syntax::name::{self, Name};
 use crate::syntax::text::text;
