@@ -1,8 +1,8 @@
 //! Integrals over bodies: a polynomial of degree two in the point becomes mass, centre and second
 //! moments.
 
+use super::context::{Local, Lower};
 use super::value::Value;
-use super::{Local, Lower};
 use crate::algebra::expr::{Dependencies, Graph, Id, Moment, Symbol};
 use crate::algebra::number::Rational;
 use crate::algebra::velocity_polynomial;

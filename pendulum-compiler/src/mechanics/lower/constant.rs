@@ -1,7 +1,7 @@
 //! Constants known while compiling: those that are no real number are refused where they are
 //! written.
 
-use super::Lower;
+use super::context::Lower;
 use super::value::Value;
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::number::Literal;

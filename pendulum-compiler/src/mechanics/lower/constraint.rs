@@ -1,6 +1,8 @@
 //! Constraints and limits to their scalars.
 
-use super::{Lower, Value};
+use super::context::Lower;
+use super::row::{Row, Shape};
+use super::value::Value;
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::number::Rational;
 use crate::messages::lower as messages;
@@ -8,28 +10,6 @@ use crate::syntax::ast::{Binder, Expr};
 use crate::syntax::name;
 use crate::syntax::text::text;
 use proc_macro2::Ident;
-
-/// A scalar constraint or limit.
-#[derive(Debug)]
-pub(crate) struct Row {
-    /// The index of its statement among the constraints, or among the limits.
-    pub(crate) statement: usize,
-    /// Its name with its component and its index: `loop.x`, `rod[2]`.
-    pub(crate) name: String,
-    /// The left side less the right one.
-    pub(crate) value: Id,
-    /// The restitution of a limit.
-    pub(crate) restitution: Id,
-}
-
-/// The shape of a constraint, and the number of scalars before it.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Shape {
-    first: usize,
-    members: Option<usize>,
-    /// 0 for a scalar.
-    components: usize,
-}
 
 impl Lower<'_, '_, '_, '_> {
     /// The scalars of all constraints: those that are solved come first.

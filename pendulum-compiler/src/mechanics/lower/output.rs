@@ -1,6 +1,7 @@
 //! Outputs to their scalars.
 
-use super::{Lower, Value};
+use super::context::Lower;
+use super::value::Value;
 use crate::algebra::expr::Id;
 use crate::messages::lower as messages;
 use crate::model::{self, Quantity};

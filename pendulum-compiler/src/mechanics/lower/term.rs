@@ -1,7 +1,7 @@
 //! Every kind of expression to its value.
 
+use super::context::{Local, Lower};
 use super::value::Value;
-use super::{DEEPEST, LIMIT, Local, Lower};
 use crate::algebra::expr::{Graph, Id, Symbol};
 use crate::algebra::functions::{Function, Lowering, One, Two, Word};
 use crate::messages::shared::function_without_arguments;
@@ -10,6 +10,14 @@ use crate::model::{self, Meaning};
 use crate::syntax::ast::{Binder, Expr, ExprKind};
 use crate::syntax::name::{self, Name};
 use crate::syntax::text::text;
+
+/// More evaluations, or operands in all expressions together, are refused: sums within sums would
+/// never end.
+const LIMIT: usize = 2_000_000;
+
+/// Expressions and definitions within one another beyond this are refused: they would overflow the
+/// compiler's stack.
+const DEEPEST: usize = 1000;
 
 impl Lower<'_, '_, '_, '_> {
     pub(super) fn scalar(&mut self, expr: &Expr) -> Option<Id> {
