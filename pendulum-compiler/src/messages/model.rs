@@ -1,7 +1,7 @@
 //! Messages about names and declarations.
 
 use super::Text;
-use super::shared::{UNITS, implicit_product};
+use super::shared::{NO_IMPLICIT_PRODUCT, UNITS};
 use std::fmt::{self, Display};
 
 /// The holder of a name that another declaration cannot have.
@@ -255,7 +255,7 @@ pub(crate) fn dot_of_two(product: &str) -> Text {
 
 /// A call of something else than a function.
 pub(crate) fn no_function(name: impl Display) -> Text {
-    text!("`{name}` is no function, and {}", implicit_product(format!("`{name}*(…)`")))
+    text!("`{name}` is no function, and {NO_IMPLICIT_PRODUCT}; write `{name}*(…)`")
 }
 
 /// A sum without its index.

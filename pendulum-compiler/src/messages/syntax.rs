@@ -2,7 +2,7 @@
 
 use super::Text;
 use super::expected::Expected;
-use super::shared::{TELL_CASES_APART, UNITS};
+use super::shared::{NO_IMPLICIT_PRODUCT, TELL_CASES_APART, UNITS};
 use std::fmt::Display;
 
 // Tokens and names.
@@ -40,8 +40,9 @@ pub(crate) fn rust_keyword(name: impl Display) -> Text {
     text!("`{name}` is a word of the Rust language; choose another name")
 }
 
-/// A token that cannot stand in its place; `found` as written.
-pub(crate) fn unexpected(found: impl Display, expected: Expected) -> Text {
+/// A token that cannot stand in its place, or several that a macro has handed over as one.
+pub(crate) fn unexpected(found: Option<&str>, expected: Expected) -> Text {
+    let found = found.map_or_else(|| "this".to_owned(), |found| format!("`{found}`"));
     text!("{found} is not expected here; expected {expected}")
 }
 
@@ -208,6 +209,11 @@ pub(crate) fn huge_number() -> Text {
     text!("this number is beyond the range of `f64`; write a smaller one")
 }
 
+/// Two operands side by side; `right` is the first token of the second.
+pub(crate) fn implicit_product(right: impl Display) -> Text {
+    text!("{NO_IMPLICIT_PRODUCT}; write `*` before `{right}`")
+}
+
 /// A number that begins with its point.
 pub(crate) fn leading_point(digits: impl Display) -> Text {
     text!("a number begins with a digit; write `0.{digits}`")
@@ -236,6 +242,11 @@ pub(crate) fn missing_expression() -> Text {
 /// Two parenthesized factors side by side.
 pub(crate) fn missing_operator() -> Text {
     text!("an operator is missing before `(`; write `*` to multiply")
+}
+
+/// A number with a name behind it.
+pub(crate) fn suffix_of_name(digits: &str, name: &str) -> Text {
+    text!("{NO_IMPLICIT_PRODUCT}; write `{digits}*{name}`")
 }
 
 /// A number with the suffix of a type.

@@ -49,6 +49,13 @@ impl Display for Pure<'_> {
     }
 }
 
+/// A dimension times the units of quantities that have none yet.
+pub(crate) fn open_unit(known: impl Display, quantities: &[&str]) -> String {
+    let unknown: Vec<String> =
+        quantities.iter().map(|name| format!("the unit of `{name}`")).collect();
+    format!("{known} times {}", unknown.join(" and "))
+}
+
 // Declarations.
 
 /// Something else as a unit.

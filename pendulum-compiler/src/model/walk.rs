@@ -268,14 +268,14 @@ impl Walk<'_, '_, '_> {
                 self.errors.at(ident.span(), messages::derivative_of_parameter(ident, &base));
             }
             (_, Some(Meaning::Coordinate(_))) if 2 < dots && self.accelerations => {
-                self.errors.at(ident.span(), shared::jerk(format!("`{ident}`")));
+                self.errors.at(ident.span(), shared::jerk(ident));
             }
             (_, Some(Meaning::Coordinate(_))) if 1 < dots && self.constraint => {
-                let message = shared::constrained_acceleration(format!("`{ident}`"));
+                let message = shared::acceleration_in_constraint(ident);
                 self.errors.at(ident.span(), message);
             }
             (_, Some(Meaning::Coordinate(_))) if 1 < dots && !self.accelerations => {
-                self.errors.at(ident.span(), shared::acceleration(format!("`{ident}`")));
+                self.errors.at(ident.span(), shared::acceleration(ident));
             }
             (_, Some(&Meaning::Input(index))) if 0 < dots && self.model.is_control(index) => {
                 self.errors.at(ident.span(), shared::derivative_of_control(&base));
@@ -315,7 +315,7 @@ impl Walk<'_, '_, '_> {
             {
                 return match meaning {
                     Meaning::Coordinate(_) if suffix == "ddot" && !self.accelerations => {
-                        shared::acceleration(format!("`{text}`"))
+                        shared::acceleration(text)
                     }
                     _ => messages::unknown_name(text, Some(&format!("{stem}_{suffix}"))),
                 };

@@ -29,16 +29,13 @@ impl Lower<'_, '_, '_, '_> {
             return self.wrong(expr, messages::derivative_of_reaction(&what));
         }
         if dependencies.any(Dependencies::ACCELERATION) {
-            let what = format!("the derivative of an acceleration in `{what}`");
-            return self.wrong(expr, shared::jerk(what));
+            return self.wrong(expr, shared::derivative_of_acceleration(what));
         }
         if dependencies.any(Dependencies::VELOCITY) && self.constrained {
-            let what = format!("the derivative of a velocity in `{what}`");
-            return self.wrong(expr, shared::constrained_acceleration(what));
+            return self.wrong(expr, shared::derivative_of_velocity_in_constraint(what));
         }
         if dependencies.any(Dependencies::VELOCITY) && !self.accelerations {
-            let what = format!("the derivative of a velocity in `{what}`");
-            return self.wrong(expr, shared::acceleration(what));
+            return self.wrong(expr, shared::derivative_of_velocity(what));
         }
         if dependencies.any(Dependencies::ACCELERATION_INPUT) {
             return self.wrong(expr, messages::jerk_of_input(&what));

@@ -357,12 +357,9 @@ impl Units<'_, '_, '_> {
         let quantities =
             self.model.parameters.iter().chain(&self.model.coordinates).chain(&self.model.inputs);
         let names: Vec<String> = quantities.map(|quantity| quantity.name.to_string()).collect();
-        let unknown: Vec<String> = resolved
-            .unknown
-            .keys()
-            .map(|&index| format!("the unit of `{}`", names[index]))
-            .collect();
-        format!("{} times {}", resolved.known, unknown.join(" and "))
+        let unknown: Vec<&str> =
+            resolved.unknown.keys().map(|&index| names[index].as_str()).collect();
+        messages::open_unit(resolved.known, &unknown)
     }
 
     /// Reports a unit that is not pure.

@@ -5,7 +5,6 @@ use super::token::{checked, comma, constraint_name, end, fragment, identifier, u
 use super::{Parser, to_the_last};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
-use crate::messages::shared::implicit_product;
 use crate::messages::{Range, expected, syntax as messages};
 use crate::syntax::ast::{Expr, ExprKind};
 use proc_macro2::{Ident, TokenStream, TokenTree};
@@ -311,7 +310,7 @@ impl Parser<'_> {
             } else if self.is_unit(Some(&suffix), input) {
                 messages::suffix_of_unit()
             } else {
-                implicit_product(format!("`{digits}*{suffix}`"))
+                messages::suffix_of_name(&digits, &suffix)
             };
             return Err(Range::from(span).error(message));
         }

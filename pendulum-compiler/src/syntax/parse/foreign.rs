@@ -5,7 +5,6 @@ use super::statement::STATEMENTS;
 use super::token::fragment;
 use crate::algebra::dimension::Dimension;
 use crate::algebra::functions::Word;
-use crate::messages::shared::implicit_product;
 use crate::messages::{Range, syntax as messages};
 use crate::syntax::ast::{Expr, ExprKind};
 use crate::syntax::elsewhere::{self, constant, function};
@@ -40,9 +39,7 @@ impl Parser<'_> {
             return Err(match (&left.kind, &token) {
                 (_, TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis => {
                     Range::from(group.span_open()).error(match &left.kind {
-                        ExprKind::Name(_) | ExprKind::Number(_) => {
-                            implicit_product("`*` before `(`")
-                        }
+                        ExprKind::Name(_) | ExprKind::Number(_) => messages::implicit_product("("),
                         _ => messages::missing_operator(),
                     })
                 }
@@ -59,7 +56,7 @@ impl Parser<'_> {
                 (ExprKind::Number(_), _) if self.is_unit(None, input) => {
                     right.error(messages::suffix_of_unit())
                 }
-                _ => right.error(implicit_product(format!("`*` before `{token}`"))),
+                _ => right.error(messages::implicit_product(token)),
             });
         }
         Ok(())

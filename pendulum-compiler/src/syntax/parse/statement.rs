@@ -101,7 +101,7 @@ impl Parser<'_> {
         }
         comma.error(match example {
             Some(example) => messages::several_names(&example),
-            None => messages::unexpected(expected::COMMA, expected::SEMICOLON),
+            None => messages::unexpected(Some(","), expected::SEMICOLON),
         })
     }
 

@@ -85,16 +85,15 @@ pub(super) fn unexpected(input: ParseStream, expected: Expected) -> syn::Error {
     match input.fork().parse::<TokenTree>() {
         Ok(TokenTree::Group(group)) => {
             let open = match group.delimiter() {
-                Delimiter::Parenthesis => "`(`",
-                Delimiter::Brace => "`{`",
-                Delimiter::Bracket => "`[`",
-                Delimiter::None => "this",
+                Delimiter::Parenthesis => Some("("),
+                Delimiter::Brace => Some("{"),
+                Delimiter::Bracket => Some("["),
+                Delimiter::None => None,
             };
             Range::from(group.span_open()).error(messages::unexpected(open, expected))
         }
-        Ok(token) => {
-            Range::from(token.span()).error(messages::unexpected(format!("`{token}`"), expected))
-        }
+        Ok(token) => Range::from(token.span())
+            .error(messages::unexpected(Some(&token.to_string()), expected)),
         Err(_) => Range::from(input.span()).error(messages::early_end(expected)),
     }
 }
