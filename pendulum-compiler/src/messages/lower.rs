@@ -119,14 +119,6 @@ pub(crate) fn index_of_force(name: impl Display) -> Text {
     text!("`{name}` is no family; write it without an index")
 }
 
-/// An index out of range.
-pub(crate) fn index_out_of_range(name: &str, index: i64, length: usize) -> Text {
-    text!(
-        "index {index} is out of range; `{name}` has {length} members, `{name}[0]` to `{name}[{}]`",
-        length - 1
-    )
-}
-
 /// An index of a single constraint.
 pub(crate) fn index_of_reaction(name: impl Display) -> Text {
     text!("`{name}` is no family; write `reaction({name})`")
@@ -135,6 +127,14 @@ pub(crate) fn index_of_reaction(name: impl Display) -> Text {
 /// An index of a scalar.
 pub(crate) fn index_of_scalar(found: &str) -> Text {
     text!("`{found}` is a scalar, it has no members; leave out the index")
+}
+
+/// An index out of range.
+pub(crate) fn index_out_of_range(name: &str, index: i64, length: usize) -> Text {
+    text!(
+        "index {index} is out of range; `{name}` has {length} members, `{name}[0]` to `{name}[{}]`",
+        length - 1
+    )
 }
 
 /// A range of too many members.

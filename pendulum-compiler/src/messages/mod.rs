@@ -1,7 +1,7 @@
 //! The catalogue: each message of the compiler once, as a function of what it names.
 //!
-//! A file holds the messages of a layer, by the mistake. [`Text`] is made here alone, and [`Errors`]
-//! take nothing else, so that no pass has words of its own.
+//! A file holds the messages of a layer: by subject, then by name. [`Text`] is made here alone, and
+//! [`Errors`] take nothing else, so that no pass has words of its own.
 
 /// A message, as `format!` writes it.
 macro_rules! text {

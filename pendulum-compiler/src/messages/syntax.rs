@@ -56,6 +56,11 @@ pub(crate) fn conditional_parameter() -> Text {
     )
 }
 
+/// A length behind the name instead of the unit.
+pub(crate) fn misplaced_length(name: impl Display, unit: &str, length: &str) -> Text {
+    text!("the length stands with the unit; write `{name}: [{unit}; {length}]`")
+}
+
 /// A unit between brackets without a length.
 pub(crate) fn missing_length() -> Text {
     text!("a length is missing; write `[m; 2]` for a vector, `[kg; 5]` for a family")
@@ -77,11 +82,6 @@ pub(crate) fn missing_unit(length: &str) -> Text {
     text!(
         "a unit is missing; write `[m; {length}]`, or `[_; {length}]` for a vector without a unit"
     )
-}
-
-/// A length behind the name instead of the unit.
-pub(crate) fn misplaced_length(name: impl Display, unit: &str, length: &str) -> Text {
-    text!("the length stands with the unit; write `{name}: [{unit}; {length}]`")
 }
 
 /// A trait that floating-point numbers do not have, in a `derive`; `None` for all others.

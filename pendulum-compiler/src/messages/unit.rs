@@ -103,17 +103,17 @@ pub(crate) fn impure(found: &str, unit: &str, place: Pure) -> Text {
     text!("`{found}` is {unit}, but {place} is a pure number; {instead}")
 }
 
-/// An energy with another unit than the first one.
-pub(crate) fn other_energy(found: &str, unit: &str, first: &str, expected: &str) -> Text {
-    text!("`{found}` is {unit}, but `{first}` is {expected}; all energies of a block have one unit")
-}
-
 /// A dissipation whose unit times a second is another than that of the energies.
 pub(crate) fn other_dissipation(found: &str, unit: &str, first: &str, expected: &str) -> Text {
     text!(
         "`{found}` times a second is {unit}, but `{first}` is {expected}; all energies of a block \
          have one unit"
     )
+}
+
+/// An energy with another unit than the first one.
+pub(crate) fn other_energy(found: &str, unit: &str, first: &str, expected: &str) -> Text {
+    text!("`{found}` is {unit}, but `{first}` is {expected}; all energies of a block have one unit")
 }
 
 /// A force with another unit than an energy per coordinate.

@@ -1,9 +1,9 @@
-//! Names of constants, functions, velocities and units in other notations, with their translations.
+//! Constants, functions, velocities and units in other notations, with their translations.
 
 use super::text::{closed, operand, text};
 use crate::syntax::ast::Expr;
 
-/// The value of a constant of Rust, or the time, as it is written here; in `ascii`, if the block is.
+/// A constant of Rust, or the time, as it is written here; in `ascii`, if the block is.
 pub(crate) fn constant(name: &str, ascii: bool) -> Option<String> {
     let value = match name {
         "PI" | "Pi" => "π",
