@@ -11,7 +11,7 @@ use crate::mechanics::euler_lagrange;
 use crate::mechanics::lower;
 use crate::mechanics::lower::Energies;
 use crate::mechanics::motion::Motion;
-use crate::messages::Errors;
+use crate::messages::{Errors, syntax};
 use crate::model;
 use crate::model::unit;
 use crate::model::unit::infer::RowUnits;
@@ -21,6 +21,7 @@ use crate::syntax::derive;
 use crate::syntax::parse;
 use proc_macro2::{LineColumn, TokenStream};
 use quote::quote;
+use std::fmt::Display;
 
 /// Expands a block of `lagrangian!` into Rust.
 ///
@@ -63,22 +64,15 @@ pub fn expand(input: TokenStream) -> TokenStream {
 pub fn compile(source: &str) -> Result<Compiled, Vec<Message>> {
     let tokens: TokenStream = match source.parse() {
         Ok(tokens) => tokens,
-        Err(error) => return Err(vec![Message::new(NO_TOKENS.into(), error.span())]),
+        Err(error) => return Err(vec![Message::new(syntax::broken_tokens(), error.span())]),
     };
     let mut errors = Errors::default();
     let compiled = passes(quote!(::pendulum_runtime; #tokens), &mut errors, Compiled::new);
     match compiled.flatten() {
         Some(compiled) if errors.is_empty() => Ok(compiled),
-        _ => Err(errors
-            .into_iter()
-            .map(|error| Message::new(error.to_string(), error.span()))
-            .collect()),
+        _ => Err(errors.into_iter().map(|error| Message::new(&error, error.span())).collect()),
     }
 }
-
-/// Text that is not even tokens.
-const NO_TOKENS: &str = "this cannot be read: a bracket, a quote or a comment is not closed, or a \
-                         character does not belong to the language";
 
 /// Runs the passes and hands their result to `backend`; `None` if the struct cannot be read.
 fn passes<R>(
@@ -236,8 +230,8 @@ pub struct Position {
 }
 
 impl Message {
-    fn new(text: String, span: proc_macro2::Span) -> Self {
-        Self { text, start: span.start().into(), end: span.end().into() }
+    fn new(text: impl Display, span: proc_macro2::Span) -> Self {
+        Self { text: text.to_string(), start: span.start().into(), end: span.end().into() }
     }
 }
 
@@ -307,7 +301,8 @@ impl Compiled {
 
 #[cfg(test)]
 mod tests {
-    use super::{NO_TOKENS, Position, compile};
+    use super::{Position, compile};
+    use crate::messages::syntax;
 
     #[test]
     fn the_model_is_what_is_declared() {
@@ -357,7 +352,7 @@ mod tests {
             [(at(1, 56), at(1, 57))]
         );
         let unclosed = compile("coordinate θ;\nstruct S {").unwrap_err();
-        assert_eq!((unclosed.len(), unclosed[0].text.as_str()), (1, NO_TOKENS));
+        assert_eq!((unclosed.len(), &unclosed[0].text), (1, &syntax::broken_tokens().to_string()));
         assert_eq!(unclosed[0].start, at(2, 9));
         assert_eq!(places("").len(), 1);
     }

@@ -1,7 +1,7 @@
 //! Derivatives: functions by their rows, sums and products by their rules, each shared node once.
 
 use crate::algebra::expr::{Graph, Id, Moment, Node, Symbol};
-use crate::algebra::functions::Function;
+use crate::algebra::functions::{Derivative, Divisor, Function, Sign};
 use crate::algebra::number::Rational;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -63,7 +63,7 @@ fn rule(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
             if inner == Graph::ZERO {
                 return Graph::ZERO;
             }
-            let outer = function.derivative(graph, argument, id);
+            let outer = of_function(graph, function, argument, id);
             graph.mul(outer, inner)
         }
         Node::Atan2(y, x) => {
@@ -89,6 +89,37 @@ fn rule(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
             graph.atom(value)
         }
     }
+}
+
+/// f′(u), where `y` is f(u).
+fn of_function(graph: &mut Graph, function: Function, u: Id, y: Id) -> Id {
+    let (slope, sign) = match function.row().derivative {
+        Derivative::Call(sign, other) => (graph.call(other, u), sign),
+        Derivative::Itself => (y, Sign::Plus),
+        Derivative::OneAndSquare(sign) => (one_and_square(graph, y, sign), Sign::Plus),
+        Derivative::Reciprocal(divisor, sign) => (reciprocal(graph, divisor, u), sign),
+        Derivative::Zero => (Graph::ZERO, Sign::Plus),
+    };
+    if sign == Sign::Plus { slope } else { graph.negative(slope) }
+}
+
+/// 1/u, 1/(1 + u²) or 1/√(1 − u²).
+fn reciprocal(graph: &mut Graph, divisor: Divisor, u: Id) -> Id {
+    let (base, exponent) = match divisor {
+        Divisor::Argument => (u, Rational::MINUS_ONE),
+        Divisor::OnePlusSquare => (one_and_square(graph, u, Sign::Plus), Rational::MINUS_ONE),
+        Divisor::RootOfOneMinusSquare => {
+            (one_and_square(graph, u, Sign::Minus), Rational::HALF.negative())
+        }
+    };
+    graph.power(base, exponent)
+}
+
+/// 1 ± x².
+fn one_and_square(graph: &mut Graph, x: Id, sign: Sign) -> Id {
+    let square = graph.power(x, Rational::whole(2));
+    let sign = if sign == Sign::Plus { Rational::ONE } else { Rational::MINUS_ONE };
+    graph.sum(&[(Graph::ONE, Rational::ONE), (square, sign)])
 }
 
 /// The derivative of a second moment about the pivot, S = C + m c cᵀ, to mass, centre and central

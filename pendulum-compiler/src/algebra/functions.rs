@@ -7,11 +7,10 @@
 //! they are used: rules of `rule.rs`, sine and cosine as the point of a circle (in `schedule`, in
 //! `prime_field.rs` and in the jets), and magnitudes, which roots of squares become.
 
-use crate::algebra::expr::{Graph, Id};
 use crate::algebra::number::{Rational, superscript};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use Derivative::{Call, Formula};
+use Derivative::{Call, Itself, OneAndSquare, Reciprocal, Zero};
 use Kinks::{Corner, Jump, Smooth};
 use Notation::{Bars, Prefix};
 use Parity::{Even, Neither, Odd};
@@ -118,13 +117,19 @@ pub(crate) enum Notation {
     Bars,
 }
 
-/// f′(u).
-#[derive(Clone, Copy, Debug)]
+/// f′(u) in terms of u and y = f(u).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Derivative {
-    /// Another function of u.
-    Call(Function),
-    /// An expression in u and y = f(u).
-    Formula(fn(&mut Graph, Id, Id) -> Id),
+    /// ± another function of u.
+    Call(Sign, Function),
+    /// y.
+    Itself,
+    /// 1 ± y².
+    OneAndSquare(Sign),
+    /// ± 1/d with a divisor d.
+    Reciprocal(Divisor, Sign),
+    /// 0.
+    Zero,
 }
 
 /// The Taylor series of y = f(u(t)) from that of u(t).
@@ -227,85 +232,84 @@ functions! {
     Sin = sin {
         word: true, units: UnitRule::Pure, domain: REAL, range: UNIT, at_zero: ZERO, parity: Odd,
         kinks: Smooth, scale: Oscillation, cost: 20, notation: Prefix("\\sin"), ascii: None,
-        value: |_, x| x.sin(), derivative: Call(Function::Cos), recurrence: Circular,
+        value: |_, x| x.sin(), derivative: Call(Sign::Plus, Function::Cos), recurrence: Circular,
     }
     Cos = cos {
         word: true, units: UnitRule::Pure, domain: REAL, range: UNIT, at_zero: ONE, parity: Even,
         kinks: Smooth, scale: Oscillation, cost: 20, notation: Prefix("\\cos"), ascii: None,
-        value: |_, x| x.cos(), recurrence: Circular,
-        derivative: Formula(|g, u, _| { let s = g.call(Function::Sin, u); g.negative(s) }),
+        value: |_, x| x.cos(), derivative: Call(Sign::Minus, Function::Sin), recurrence: Circular,
     }
     Tan = tan {
         word: true, units: UnitRule::Pure, domain: [-FRAC_PI_2, FRAC_PI_2], range: REAL,
         at_zero: ZERO, parity: Odd,
         kinks: Smooth, scale: Oscillation, cost: 20, notation: Prefix("\\tan"), ascii: None,
-        value: |_, x| x.tan(), recurrence: Riccati(Sign::Plus),
-        derivative: Formula(|g, _, y| one_and_square(g, y, Sign::Plus)), // 1 + tan²u
+        value: |_, x| x.tan(), derivative: OneAndSquare(Sign::Plus),
+        recurrence: Riccati(Sign::Plus),
     }
     Asin = asin {
         word: true, units: UnitRule::Pure, domain: UNIT, range: [-FRAC_PI_2, FRAC_PI_2],
         at_zero: ZERO, parity: Odd,
         kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\arcsin"), ascii: None,
-        value: |_, x| x.asin(), derivative: Formula(|g, u, _| one_over_root(g, u)), // 1/√(1 − u²)
+        value: |_, x| x.asin(), derivative: Reciprocal(Divisor::RootOfOneMinusSquare, Sign::Plus),
         recurrence: Quotient(Divisor::RootOfOneMinusSquare, Sign::Plus),
     }
     Acos = acos {
         word: true, units: UnitRule::Pure, domain: UNIT, range: [0.0, PI], at_zero: None,
         parity: Neither,
         kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\arccos"), ascii: None,
-        value: |_, x| x.acos(), recurrence: Quotient(Divisor::RootOfOneMinusSquare, Sign::Minus),
-        derivative: Formula(|g, u, _| { let r = one_over_root(g, u); g.negative(r) }),
+        value: |_, x| x.acos(), derivative: Reciprocal(Divisor::RootOfOneMinusSquare, Sign::Minus),
+        recurrence: Quotient(Divisor::RootOfOneMinusSquare, Sign::Minus),
     }
     Atan = atan {
         word: true, units: UnitRule::Pure, domain: REAL, range: [-FRAC_PI_2, FRAC_PI_2],
         at_zero: ZERO, parity: Odd,
         kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\arctan"), ascii: None,
-        value: |_, x| x.atan(), recurrence: Quotient(Divisor::OnePlusSquare, Sign::Plus),
-        derivative: Formula(|g, u, _| {
-            let s = one_and_square(g, u, Sign::Plus);
-            g.power(s, Rational::MINUS_ONE) // 1/(1 + u²)
-        }),
+        value: |_, x| x.atan(), derivative: Reciprocal(Divisor::OnePlusSquare, Sign::Plus),
+        recurrence: Quotient(Divisor::OnePlusSquare, Sign::Plus),
     }
     Sinh = sinh {
         word: true, units: UnitRule::Pure, domain: REAL, range: REAL, at_zero: ZERO, parity: Odd,
         kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\sinh"), ascii: None,
-        value: |_, x| x.sinh(), derivative: Call(Function::Cosh), recurrence: Hyperbolic(0),
+        value: |_, x| x.sinh(), derivative: Call(Sign::Plus, Function::Cosh),
+        recurrence: Hyperbolic(0),
     }
     Cosh = cosh {
         word: true, units: UnitRule::Pure, domain: REAL, range: [1.0, f64::INFINITY], at_zero: ONE,
         parity: Even,
         kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\cosh"), ascii: None,
-        value: |_, x| x.cosh(), derivative: Call(Function::Sinh), recurrence: Hyperbolic(1),
+        value: |_, x| x.cosh(), derivative: Call(Sign::Plus, Function::Sinh),
+        recurrence: Hyperbolic(1),
     }
     Tanh = tanh {
         word: true, units: UnitRule::Pure, domain: REAL, range: UNIT, at_zero: ZERO, parity: Odd,
         kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\tanh"), ascii: None,
-        value: |_, x| x.tanh(), recurrence: Riccati(Sign::Minus),
-        derivative: Formula(|g, _, y| one_and_square(g, y, Sign::Minus)), // 1 − tanh²u
+        value: |_, x| x.tanh(), derivative: OneAndSquare(Sign::Minus),
+        recurrence: Riccati(Sign::Minus),
     }
     Exp = exp {
         word: true, units: UnitRule::Pure, domain: REAL, range: POSITIVE, at_zero: ONE,
         parity: Neither,
         kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\exp"), ascii: None,
-        value: |_, x| x.exp(), derivative: Formula(|_, _, y| y), recurrence: Exponential,
+        value: |_, x| x.exp(), derivative: Itself, recurrence: Exponential,
     }
     Ln = ln {
         word: true, units: UnitRule::Pure, domain: POSITIVE, range: REAL, at_zero: None,
         parity: Neither,
         kinks: Smooth, scale: Bump, cost: 20, notation: Prefix("\\ln"), ascii: None,
-        value: |_, x| x.ln(), derivative: Formula(|g, u, _| g.power(u, Rational::MINUS_ONE)), // 1/u
+        value: |_, x| x.ln(), derivative: Reciprocal(Divisor::Argument, Sign::Plus),
         recurrence: Quotient(Divisor::Argument, Sign::Plus),
     }
     Abs = abs {
         word: true, units: UnitRule::Same, domain: REAL, range: POSITIVE, at_zero: ZERO,
         parity: Even, kinks: Corner, scale: Scale::Kink, cost: 20, notation: Bars, ascii: None,
-        value: |_, x| x.abs(), derivative: Call(Function::Sign), recurrence: Linear(Function::Sign),
+        value: |_, x| x.abs(), derivative: Call(Sign::Plus, Function::Sign),
+        recurrence: Linear(Function::Sign),
     }
     Sign = sign {
         word: true, units: UnitRule::Any, domain: REAL, range: UNIT, at_zero: None, parity: Odd,
         kinks: Jump, scale: Scale::Kink, cost: 20, notation: Prefix("\\operatorname{sign}"),
         ascii: None, value: |_, x| if x == 0.0 { 0.0 } else { x.signum() },
-        derivative: Formula(|_, _, _| Graph::ZERO), recurrence: Constant,
+        derivative: Zero, recurrence: Constant,
     }
     // The derivative of max(0, u): ½ at zero.
     Step = step {
@@ -314,7 +318,7 @@ functions! {
         kinks: Jump, scale: Scale::Kink, cost: 20, notation: Prefix("\\operatorname{step}"),
         ascii: Some(|_, x| format!("((1 + sign({x}))/2)")),
         value: |_, x| if x == 0.0 { 0.5 } else { f64::from(0.0 < x) },
-        derivative: Formula(|_, _, _| Graph::ZERO), recurrence: Constant,
+        derivative: Zero, recurrence: Constant,
     }
     // The derivative of the order of sin(x)/x.
     Sinc(order: u8) = sinc {
@@ -327,7 +331,8 @@ functions! {
         parity: if order % 2 == 0 { Even } else { Odd },
         kinks: Smooth, scale: Oscillation, cost: 20, notation: Prefix("\\operatorname{sinc}"),
         ascii: Some(sinc_in_ascii), value: sinc,
-        derivative: Call(Function::Sinc(order.saturating_add(1))), recurrence: Family,
+        derivative: Call(Sign::Plus, Function::Sinc(order.saturating_add(1))),
+        recurrence: Family,
     }
 }
 
@@ -352,31 +357,10 @@ fn sinc_in_ascii(order: u8, x: &str) -> String {
     format!("(({sine}({x}) - {times}*{before})/({x}))")
 }
 
-/// 1 ± x².
-fn one_and_square(graph: &mut Graph, x: Id, sign: Sign) -> Id {
-    let square = graph.power(x, Rational::whole(2));
-    let sign = if sign == Sign::Plus { Rational::ONE } else { Rational::MINUS_ONE };
-    graph.sum(&[(Graph::ONE, Rational::ONE), (square, sign)])
-}
-
-/// 1/√(1 − x²).
-fn one_over_root(graph: &mut Graph, x: Id) -> Id {
-    let square = one_and_square(graph, x, Sign::Minus);
-    graph.power(square, Rational::HALF.negative())
-}
-
 impl Function {
     /// f(x).
     pub(crate) fn value(self, x: f64) -> f64 {
         (self.row().value)(self.order().unwrap_or(0), x)
-    }
-
-    /// f′(u), where `y` is f(u).
-    pub(crate) fn derivative(self, graph: &mut Graph, u: Id, y: Id) -> Id {
-        match self.row().derivative {
-            Derivative::Call(function) => graph.call(function, u),
-            Derivative::Formula(formula) => formula(graph, u, y),
-        }
     }
 
     /// The primes behind the name of a derivative: ′, ″ and so on.

@@ -12,7 +12,8 @@ use crate::algebra::number::Rational;
 use crate::algebra::prime_field::Residue;
 use crate::mechanics::lower::{Energies, Row, total_derivative};
 use crate::mechanics::solve::{self, Augmented};
-use crate::messages::{self, Errors};
+use crate::messages::shared::derivative_of_control;
+use crate::messages::{Errors, Text, mechanics as messages};
 use crate::model::Model;
 use crate::syntax::ast::Expr;
 use crate::syntax::text::text;
@@ -192,8 +193,7 @@ pub(crate) fn derive(
         match limit {
             Some(limit) if !limit.holonomic => {
                 let expr = &own.difference;
-                let message = "a limit holds positions; leave the velocities out";
-                errors.once(expr.source, expr.range, message);
+                errors.once(expr.source, expr.range, messages::limit_of_velocity());
             }
             limit => constraints.limits.extend(limit),
         }
@@ -216,33 +216,30 @@ fn constraint(
     count: usize,
     errors: &mut Errors,
 ) -> Option<Constraint> {
-    let mut refuse = |message: String| {
+    let mut refuse = |message: Text| {
         errors.once(difference.source, difference.range, message);
         None
     };
     let dependencies = graph.dependencies(row.value);
-    let name = |order: u8| {
-        graph.symbols(&[row.value]).into_iter().find_map(|symbol| match symbol {
+    let input = |order: u8| {
+        let name = graph.symbols(&[row.value]).into_iter().find_map(|symbol| match symbol {
             Symbol::Control { input, .. } if order == 0 => Some(model.inputs[input].name),
             Symbol::Input { input, order: own, .. } if own == order => {
                 Some(model.inputs[input].name)
             }
             _ => None,
-        })
+        });
+        name.map_or_else(String::new, ToString::to_string)
     };
     if dependencies.any(Dependencies::CONTROL) {
-        return refuse(name(0).map_or_else(String::new, messages::no_derivative));
+        return refuse(derivative_of_control(input(0)));
     }
     let holonomic = !dependencies.any(Dependencies::VELOCITY);
     if dependencies.any(Dependencies::ACCELERATION_INPUT)
         || holonomic && dependencies.any(Dependencies::VELOCITY_INPUT)
     {
         let order = if dependencies.any(Dependencies::ACCELERATION_INPUT) { 2 } else { 1 };
-        let input = name(order).map_or_else(String::new, ToString::to_string);
-        return refuse(format!(
-            "the second derivative of this constraint contains the third one of `{input}`, and \
-             driven inputs have two; leave its derivative out"
-        ));
+        return refuse(messages::jerk_in_constraint(&input(order)));
     }
     let cornered = |&id: &Id| match graph.node(id) {
         Node::Max(..) => graph.dependencies(id).any(Dependencies::STATE),
@@ -253,29 +250,17 @@ fn constraint(
         _ => false,
     };
     if graph.reachable(&[row.value]).iter().any(cornered) {
-        return refuse(
-            "a constraint needs two derivatives, and `abs`, `sign`, `min` and `max` of what moves \
-             have a corner; write both sides without them"
-                .into(),
-        );
+        return refuse(messages::constraint_with_corner());
     }
     let rate = if holonomic { total_derivative(graph, row.value) } else { row.value };
     let gradient: Vec<Id> =
         (0..count).map(|j| derivative(graph, rate, Symbol::Velocity(j))).collect();
     if gradient.iter().any(|&entry| graph.dependencies(entry).any(Dependencies::VELOCITY)) {
-        return refuse(
-            "velocities enter a constraint to the first power only; solve it for a velocity, or \
-             write a `force`"
-                .into(),
-        );
+        return refuse(messages::nonlinear_constraint());
     }
     if gradient.iter().all(|&entry| entry == Graph::ZERO) {
         let [left, right] = difference.sides();
-        return refuse(format!(
-            "no coordinate stands in `{} = {}`: nothing here can move to fulfil it; leave it out",
-            text(left),
-            text(right)
-        ));
+        return refuse(messages::unmoved_constraint(&text(left), &text(right)));
     }
     let resting = |symbol| matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO);
     let drive = substitute(graph, rate, resting);
@@ -313,11 +298,6 @@ fn magnitude(graph: &mut Graph, id: Id) -> Id {
     }
 }
 
-/// A number of things.
-fn several_of(number: usize, what: &str) -> String {
-    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
-}
-
 /// Reports as many constraints as coordinates, and more redundant ones or limits than coordinates.
 fn few(
     model: &Model,
@@ -329,30 +309,16 @@ fn few(
     let held = constraints.held.len();
     if count <= held {
         let last = model.constraints[energies.constraints[count - 1].statement];
-        errors.at(
-            last.name.span(),
-            format!(
-                "{} for {}: nothing is left to move; leave a constraint out",
-                several_of(held, "scalar constraint"),
-                several_of(count, "coordinate")
-            ),
-        );
+        errors.at(last.name.span(), messages::fixed_coordinates(held, count));
     }
     let redundant = constraints.redundant.len();
     if let Some(row) = energies.constraints.last().filter(|_| count < redundant) {
-        let message = format!(
-            "{} for {}; leave out those that follow from others",
-            several_of(redundant, "scalar redundant constraint"),
-            several_of(count, "coordinate")
-        );
+        let message = messages::too_many_redundant(redundant, count);
         errors.at(model.constraints[row.statement].name.span(), message);
     }
     let limits = constraints.limits.len();
     if let Some(row) = energies.limits.last().filter(|_| MOST_LIMITS < limits) {
-        let message = format!(
-            "there are {limits} scalar limits, and at most {MOST_LIMITS} are kept; leave some out, \
-             or join two of one coordinate, as in `w^2 - x^2 >= 0`"
-        );
+        let message = messages::too_many_limits(limits, MOST_LIMITS);
         errors.at(model.limits[row.statement].name.span(), message);
     }
 }
@@ -390,20 +356,11 @@ fn independent(
         if !reported.insert(own.statement) {
             continue;
         }
-        let names: Vec<String> =
-            parts.iter().map(|&part| format!("`{}`", energies.constraints[part].name)).collect();
-        let from = match names.split_last() {
-            Some((last, [])) => last.clone(),
-            Some((last, others)) => format!("{} and {last}", others.join(", ")),
-            None => continue,
-        };
-        errors.at(
-            model.constraints[own.statement].name.span(),
-            format!(
-                "`{}` follows from {from}: leave it out, or write `redundant constraint` to have \
-                 it checked",
-                own.name
-            ),
-        );
+        let others: Vec<&str> =
+            parts.iter().map(|&part| energies.constraints[part].name.as_str()).collect();
+        if !others.is_empty() {
+            let message = messages::dependent_constraint(&own.name, &others);
+            errors.at(model.constraints[own.statement].name.span(), message);
+        }
     }
 }

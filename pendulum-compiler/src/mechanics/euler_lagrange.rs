@@ -20,7 +20,7 @@ use crate::mechanics::motion::Motion;
 use crate::mechanics::sign;
 use crate::mechanics::solve;
 use crate::mechanics::symmetry;
-use crate::messages::{self, Errors};
+use crate::messages::{Errors, mechanics as messages};
 use crate::model::{Model, Quantity};
 use crate::schedule;
 
@@ -369,23 +369,11 @@ fn has_jerk(
         })
     };
     if let Some(name) = accelerated(momenta) {
-        errors.at(
-            name.span(),
-            format!(
-                "the momenta contain the acceleration of `{name}`, so the equations would contain its third derivative; \
-                 leave its second derivative out of the kinetic energy"
-            ),
-        );
+        errors.at(name.span(), messages::jerk_in_momenta(name));
         return true;
     }
     if let Some(name) = accelerated(&[lagrangian]) {
-        errors.at(
-            name.span(),
-            format!(
-                "the energy contains the acceleration of `{name}`, so its power would contain a third derivative; \
-                 write what it does to a coordinate as a `force`"
-            ),
-        );
+        errors.at(name.span(), messages::jerk_in_energy(name));
         return true;
     }
     false

@@ -6,7 +6,7 @@ use crate::algebra::expr::{Dependencies, Graph, Id, Moment, Node, Symbol};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::mechanics::lower::Energies;
-use crate::messages::Errors;
+use crate::messages::{Errors, mechanics as messages};
 use crate::model::{Meaning, Model, Quantity};
 use crate::syntax::ast::{Expr, ExprKind, Role};
 use crate::syntax::name;
@@ -38,12 +38,7 @@ pub(crate) fn positive(
     let before = errors.len();
     for coordinate in model.coordinates.iter().filter(negative) {
         let Some((minus, term)) = guilty(model, &coordinate.name.to_string()) else { continue };
-        let (sign, name) = (if minus { "-" } else { "" }, coordinate.name);
-        let message = format!(
-            "the kinetic energy of `{name}` is negative in `{sign}{}`; write it with a positive sign, or write `lagrangian = …;`, \
-             which may have any, instead of `kinetic` and `potential`",
-            text(term)
-        );
+        let message = messages::negative_energy(coordinate.name, minus, &text(term));
         // A term that is negative for two coordinates is wrong once.
         errors.once(term.source, term.range, message);
     }

@@ -5,7 +5,7 @@ use crate::algebra::expr::{Dependencies, Graph, Id};
 use crate::algebra::number::Rational;
 use crate::algebra::prime_field::{Point, Residue};
 use crate::algebra::velocity_polynomial;
-use crate::messages::Errors;
+use crate::messages::{Errors, mechanics as messages};
 use crate::model::{Model, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -24,13 +24,7 @@ pub(crate) fn regular(
             rows.clone().find(|&row| matrix[row].iter().all(|&entry| entry == Graph::ZERO))
         {
             let name = named(coordinate, row);
-            errors.at(
-                coordinate.name.span(),
-                format!(
-                    "`{name}` has no kinetic energy, so its acceleration is undetermined; \
-                     add the square of its velocity to `kinetic`"
-                ),
-            );
+            errors.at(coordinate.name.span(), messages::no_kinetic_energy(&name));
         }
     }
     if before < errors.len() {
@@ -45,15 +39,9 @@ pub(crate) fn regular(
         let Some(coordinate) = found else { continue };
         let name = named(coordinate, row);
         let message = if deficient {
-            format!(
-                "the mass matrix is singular in the direction of `{name}`: its kinetic energy is that of other coordinates; \
-                 leave the redundant coordinate out"
-            )
+            messages::redundant_coordinate(&name)
         } else {
-            format!(
-                "the kinetic energy is not positive: in the direction of `{name}` it is zero at every state; \
-                 take coordinates whose squared velocities stand in it"
-            )
+            messages::indefinite_energy(&name)
         };
         errors.at(coordinate.name.span(), message);
     }

@@ -1,10 +1,12 @@
 //! Declarations: what a name is declared as, once, with its unit and length.
 
-use super::{Meaning, Quantity, integer, plain};
+use super::integer::integer;
+use super::resolved::{Meaning, Quantity};
 use crate::messages::Errors;
+use crate::messages::model::{self as messages, Holder};
 use crate::model::unit;
 use crate::syntax::ast::{Expr, Kind, Let};
-use crate::syntax::name::{self, Name};
+use crate::syntax::name::{self, Name, plain};
 use crate::syntax::text::text;
 use proc_macro2::Ident;
 use std::collections::BTreeMap;
@@ -28,13 +30,10 @@ impl<'a> Declared<'a> {
     ) {
         let Name { base, dots } = name::read(&ident.to_string());
         let refusal = match base.as_str() {
-            _ if 0 < dots => Some(format!(
-                "`{ident}` is a time derivative; declare the name without dots, `{}`",
-                plain(ident)
-            )),
-            "t" => Some("`t` is the time; choose another name".to_owned()),
-            "pi" => Some(format!("`{ident}` is the number π; choose another name")),
-            "i" => Some("`i` is the imaginary unit; choose another name".to_owned()),
+            _ if 0 < dots => Some(messages::derivative_as_name(ident, &base)),
+            "t" => Some(messages::held_name(ident, Holder::Time)),
+            "pi" => Some(messages::held_name(ident, Holder::Pi)),
+            "i" => Some(messages::held_name(ident, Holder::ImaginaryUnit)),
             _ => None,
         };
         if let Some(message) = refusal {
@@ -44,8 +43,8 @@ impl<'a> Declared<'a> {
             return;
         }
         if let Some(first) = self.places.get(&base) {
-            errors.at(ident.span(), format!("`{ident}` is declared twice; rename one of the two"));
-            errors.at(first.span(), format!("`{first}` is declared here first"));
+            errors.at(ident.span(), messages::declared_twice(ident));
+            errors.at(first.span(), messages::first_declaration(first));
             return;
         }
         self.places.insert(base.clone(), ident);
@@ -75,10 +74,7 @@ pub(super) fn quantity<'a>(
     let length = length.map(|expr| family_length(expr, errors));
     let body = matches!(shape, Shape::Kind(Kind::Body(_)));
     if let (true, Some(default)) = (body || length.is_some(), default) {
-        errors.at(
-            default.range,
-            "only a scalar has a default; leave it out and pass the value to `new`",
-        );
+        errors.at(default.range, messages::default_of_several());
     }
     let dimension = unit.and_then(|unit| unit::dimension(unit, errors));
     Quantity {
@@ -96,14 +92,11 @@ fn family_length(expr: &Expr, errors: &mut Errors) -> usize {
     match integer(expr, &|_| None) {
         Ok(length) if (1..=LONGEST).contains(&length) => usize::try_from(length).unwrap_or(1),
         Ok(_) => {
-            errors.at(
-                expr.range,
-                format!("a length is between 1 and {LONGEST}; write another number"),
-            );
+            errors.at(expr.range, messages::huge_length(LONGEST));
             1
         }
         Err(range) => {
-            errors.at(range, "a length is a whole number; write it out, as in `[kg; 5]`");
+            errors.at(range, messages::open_length());
             1
         }
     }
@@ -114,10 +107,7 @@ pub(super) fn twice(definition: &Let, errors: &mut Errors) {
     let arguments = definition.arguments.as_deref().unwrap_or_default();
     for (index, argument) in arguments.iter().enumerate() {
         if arguments[..index].iter().any(|other| plain(other) == plain(argument)) {
-            errors.at(
-                argument.span(),
-                format!("the argument `{argument}` stands twice; rename one of the two"),
-            );
+            errors.at(argument.span(), messages::twin_arguments(argument));
         }
     }
 }

@@ -1,94 +1,22 @@
 //! Names to symbols: what every name of a block means, and every name that means nothing.
 
 mod declare;
+mod integer;
 mod reach;
+mod resolved;
 pub(crate) mod unit;
 mod walk;
 
-use crate::algebra::dimension::Dimension;
-use crate::algebra::number::Rational;
-use crate::messages::{Errors, Range};
-use crate::syntax::ast::{self, Block, Expr, ExprKind, ForceIndex, Let, Role, Statement};
-use crate::syntax::name::{self, Name};
+use crate::messages::Errors;
+use crate::messages::model::{self as messages, Holder};
+use crate::syntax::ast::{self, Block, Expr, ForceIndex, Role, Statement};
+use crate::syntax::name::{self, Name, plain};
 use declare::{Declared, Shape, quantity, twice};
+pub(crate) use integer::integer;
 use proc_macro2::Ident;
+pub(crate) use resolved::{Force, Meaning, Model, Output, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
 use walk::Walk;
-
-/// A block with its names resolved.
-pub(crate) struct Model<'a> {
-    pub(crate) block: &'a Block,
-    pub(crate) parameters: Vec<Quantity<'a>>,
-    pub(crate) coordinates: Vec<Quantity<'a>>,
-    /// The driven inputs, and after them the control inputs.
-    pub(crate) inputs: Vec<Quantity<'a>>,
-    /// The number of driven inputs.
-    pub(crate) driven: usize,
-    pub(crate) outputs: Vec<Output<'a>>,
-    pub(crate) lets: Vec<&'a Let>,
-    pub(crate) energies: Vec<(Role, &'a Expr)>,
-    pub(crate) forces: Vec<Force<'a>>,
-    /// The constraints that are solved, and after them the redundant ones.
-    pub(crate) constraints: Vec<&'a ast::Constraint>,
-    pub(crate) limits: Vec<&'a ast::Limit>,
-    pub(crate) names: BTreeMap<String, Meaning>,
-    /// The parameters that no statement mentions.
-    pub(crate) unmentioned: BTreeSet<usize>,
-    /// The definitions that outputs alone need: accelerations may stand in them.
-    pub(crate) of_outputs: BTreeSet<usize>,
-}
-
-impl Model<'_> {
-    /// Returns true if an input is a control input.
-    pub(crate) fn is_control(&self, input: usize) -> bool {
-        self.driven <= input
-    }
-}
-
-/// A declared parameter, coordinate, input or output.
-pub(crate) struct Quantity<'a> {
-    pub(crate) name: &'a Ident,
-    /// `None` for a scalar, the length of a vector or family otherwise.
-    pub(crate) length: Option<usize>,
-    /// The number of scalars declared before it.
-    pub(crate) first: usize,
-    pub(crate) dimension: Option<Dimension>,
-    pub(crate) unit: String,
-    pub(crate) default: Option<&'a Expr>,
-    /// A rigid body: mass, centre and central moments.
-    pub(crate) body: bool,
-}
-
-impl Quantity<'_> {
-    /// The number of its scalars.
-    pub(crate) fn count(&self) -> usize {
-        if self.body { 6 } else { self.length.unwrap_or(1) }
-    }
-}
-
-/// An `output` statement.
-pub(crate) struct Output<'a> {
-    /// Its name, its unit and its length as declared.
-    pub(crate) declared: Quantity<'a>,
-    pub(crate) statement: &'a ast::Output,
-}
-
-/// A `force` statement.
-pub(crate) struct Force<'a> {
-    pub(crate) coordinate: usize,
-    pub(crate) name: &'a Ident,
-    pub(crate) index: Option<&'a ForceIndex>,
-    pub(crate) expr: &'a Expr,
-}
-
-/// The meaning of a name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Meaning {
-    Parameter(usize),
-    Coordinate(usize),
-    Input(usize),
-    Let(usize),
-}
 
 /// Resolves every name, reports those that cannot be.
 pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
@@ -150,19 +78,16 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
             }
             Statement::Driven { name, kind } | Statement::Input { name, kind } => {
                 let control = matches!(statement, Statement::Input { .. });
-                let (list, before, what) = if control {
-                    (&mut controls, model.driven, "a control input")
+                let (list, before, holder) = if control {
+                    (&mut controls, model.driven, Holder::ControlInput)
                 } else {
-                    (&mut model.inputs, 0, "a driven input")
+                    (&mut model.inputs, 0, Holder::DrivenInput)
                 };
                 let meaning = Meaning::Input(before + list.len());
                 declared.declare(&mut model.names, name, meaning, errors);
                 let quantity = quantity(name, Shape::Kind(kind), 0, None, errors);
                 if quantity.length.is_some_and(|length| !(2..=3).contains(&length)) {
-                    errors.at(
-                        name.span(),
-                        format!("{what} is a scalar or a vector; write `[m; 2]` or `[m; 3]`"),
-                    );
+                    errors.at(name.span(), messages::shape_of_input(holder));
                 }
                 list.push(quantity);
             }
@@ -190,9 +115,8 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         inputs += quantity.count();
     }
     if let Some(ninth) = model.inputs.get(8) {
-        let what = if model.driven == model.inputs.len() { "driven inputs" } else { "inputs" };
-        let message = format!("more than eight {what}; join some of them into vectors");
-        errors.at(ninth.name.span(), message);
+        let controlled = model.driven < model.inputs.len();
+        errors.at(ninth.name.span(), messages::too_many_inputs(controlled));
     }
     for statement in &block.statements {
         match statement {
@@ -213,7 +137,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     model.of_outputs = reach::of_outputs(&model);
     roles(block, errors);
     if model.coordinates.is_empty() && !block.recovery.declarations {
-        errors.at(block.name.span(), "no coordinate; write `coordinate θ: rad;` below the struct");
+        errors.at(block.name.span(), messages::no_coordinate());
     }
     let mut walk = Walk {
         model: &model,
@@ -228,11 +152,6 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     model.unmentioned =
         (0..model.parameters.len()).filter(|index| !mentioned.contains(index)).collect();
     model
-}
-
-/// A dotted name without its dots, as the user would write it.
-fn plain(ident: &Ident) -> String {
-    name::read(&ident.to_string()).base
 }
 
 /// The methods of systems, which an output would hide.
@@ -252,18 +171,14 @@ fn output<'a>(model: &mut Model<'a>, statement: &'a ast::Output, errors: &mut Er
     let Name { base, dots } = name::read(&name.to_string());
     let twice = model.outputs.iter().any(|other| plain(other.declared.name) == base);
     let refusal = match model.names.get(&base) {
-        _ if 0 < dots => Some(format!(
-            "`{name}` is a time derivative; give the output a name without dots, as `rate`"
-        )),
-        _ if twice => Some(format!("two outputs are called `{name}`; rename one of the two")),
+        _ if 0 < dots => Some(messages::derivative_as_name_of_output(name)),
+        _ if twice => Some(messages::twin_outputs(name)),
         _ if METHODS.contains(&name.to_string().as_str()) => {
-            Some(format!("`{name}` is a method of every system; choose another name"))
+            Some(messages::held_name(name, Holder::MethodOfSystems))
         }
-        _ if base == "FACTS" => {
-            Some(format!("`{name}` is a constant of every system; choose another name"))
-        }
+        _ if base == "FACTS" => Some(messages::held_name(name, Holder::ConstantOfSystems)),
         Some(Meaning::Parameter(_) | Meaning::Coordinate(_) | Meaning::Input(_)) => {
-            Some(format!("`{name}` is declared already; choose another name for the output"))
+            Some(messages::output_declared_already(name))
         }
         Some(Meaning::Let(_)) | None => None,
     };
@@ -282,14 +197,10 @@ fn named_apart(model: &Model, name: &Ident, errors: &mut Errors) -> bool {
     let others = model.constraints.iter().map(|constraint| &constraint.name);
     let mut others = others.chain(model.limits.iter().map(|limit| &limit.name));
     let refusal = match model.names.get(&base) {
-        _ if 0 < dots => {
-            Some(format!("`{name}` is a time derivative; write the name without dots"))
-        }
-        _ if others.any(|other| plain(other) == base) => {
-            Some(format!("two constraints or limits are called `{name}`; rename one of the two"))
-        }
+        _ if 0 < dots => Some(messages::derivative_as_name_of_constraint(name)),
+        _ if others.any(|other| plain(other) == base) => Some(messages::twin_constraints(name)),
         Some(Meaning::Parameter(_) | Meaning::Coordinate(_) | Meaning::Input(_)) => {
-            Some(format!("`{name}` is declared already; choose another name"))
+            Some(messages::declared_already(name))
         }
         Some(Meaning::Let(_)) | None => None,
     };
@@ -313,12 +224,7 @@ fn force<'a>(
             model.forces.push(Force { coordinate, name, index, expr });
         }
         Some(_) => {
-            errors.at(
-                name.span(),
-                format!(
-                    "`{name}` is no coordinate; a force acts on a coordinate, as in `force θ = …;`"
-                ),
-            );
+            errors.at(name.span(), messages::force_on_other(name));
         }
         None if model.block.recovery.declarations => {}
         None => {
@@ -327,7 +233,9 @@ fn force<'a>(
                 .iter()
                 .map(|coordinate| coordinate.name.to_string())
                 .collect::<Vec<_>>();
-            errors.at(name.span(), unknown(&name.to_string(), known.iter().map(String::as_str)));
+            let (span, name) = (name.span(), name.to_string());
+            let nearest = name::nearest(&name, known.iter().map(String::as_str));
+            errors.at(span, messages::unknown_coordinate(&name, nearest));
         }
     }
 }
@@ -340,7 +248,7 @@ fn roles(block: &Block, errors: &mut Errors) {
         if let Statement::Energy { role, keyword, .. } = statement {
             match role {
                 Role::Lagrangian if lagrangian.is_some() => {
-                    errors.at(*keyword, "`lagrangian` stands twice; write one sum");
+                    errors.at(*keyword, messages::twin_lagrangians());
                 }
                 Role::Lagrangian => lagrangian = Some(*keyword),
                 Role::Kinetic | Role::Potential => split = split.or(Some(*keyword)),
@@ -349,52 +257,9 @@ fn roles(block: &Block, errors: &mut Errors) {
         }
     }
     if let (Some(_), Some(split)) = (lagrangian, split) {
-        errors.at(
-            split,
-            "`lagrangian` is kinetic minus potential energy already; write either one or the other",
-        );
+        errors.at(split, messages::both_forms());
     }
     if lagrangian.is_none() && split.is_none() && !block.recovery.energies {
-        errors.at(
-            block.name.span(),
-            "no energy; write `kinetic = …;` and `potential = …;` below the struct",
-        );
-    }
-}
-
-/// A whole number, with the values of the indices in scope; the range that is none otherwise.
-pub(crate) fn integer(expr: &Expr, bound: &dyn Fn(&str) -> Option<i64>) -> Result<i64, Range> {
-    let value = rational(expr, bound).ok_or(expr.range)?;
-    value.integer().ok_or(expr.range)
-}
-
-fn rational(expr: &Expr, bound: &dyn Fn(&str) -> Option<i64>) -> Option<Rational> {
-    match &expr.kind {
-        ExprKind::Name(ident) => {
-            let name = name::read(&ident.to_string());
-            bound(&name.base).filter(|_| name.dots == 0).map(Rational::whole)
-        }
-        ExprKind::Negative(inner) => Some(rational(inner, bound)?.negative()),
-        ExprKind::Sum(terms) => terms.iter().try_fold(Rational::ZERO, |sum, (minus, term)| {
-            let term = rational(term, bound)?;
-            sum.add(if *minus { term.negative() } else { term })
-        }),
-        ExprKind::Product(factors) => {
-            factors.iter().try_fold(Rational::ONE, |product, (over, factor)| {
-                let factor = rational(factor, bound)?;
-                product.mul(if *over { factor.reciprocal()? } else { factor })
-            })
-        }
-        _ => unit::constant(expr),
-    }
-}
-
-/// The message about an unknown name, with the nearest known one.
-fn unknown<'b>(name: &str, known: impl Iterator<Item = &'b str>) -> String {
-    match name::nearest(name, known) {
-        Some(near) => format!("unknown name `{name}`; did you mean `{near}`?"),
-        None => format!(
-            "unknown name `{name}`; declare it as a parameter, a coordinate, an input or with `let`"
-        ),
+        errors.at(block.name.span(), messages::no_energy());
     }
 }

@@ -1,6 +1,6 @@
 //! The definitions that an expression needs.
 
-use super::{Meaning, Model};
+use super::resolved::{Meaning, Model};
 use crate::syntax::ast::{Expr, ExprKind, ForceIndex};
 use crate::syntax::name;
 use proc_macro2::Ident;

@@ -1,13 +1,15 @@
 //! A walk over all expressions: names that nobody declared, functions with the wrong number of
 //! arguments.
 
-use super::{Meaning, Model, plain, unknown};
+use super::resolved::{Meaning, Model};
 use crate::algebra::dimension::Dimension;
 use crate::algebra::functions::Word;
-use crate::messages::{self, Errors, Range, UNITS};
+use crate::messages::model::{self as messages, Holder, Local};
+use crate::messages::shared;
+use crate::messages::{Errors, Range, Text};
 use crate::syntax::ast::{Binder, Expr, ExprKind, ForceIndex};
-use crate::syntax::elsewhere::{constant, function};
-use crate::syntax::name::{self, Name};
+use crate::syntax::elsewhere::{self, constant, function};
+use crate::syntax::name::{self, Name, plain};
 use proc_macro2::Ident;
 use std::collections::BTreeSet;
 
@@ -41,7 +43,7 @@ impl Walk<'_, '_, '_> {
                 self.bind(binder);
             }
             for argument in definition.arguments.iter().flatten() {
-                self.local(argument, "an argument");
+                self.local(argument, Local::Argument);
             }
             self.expr(&definition.expr);
             self.scope.truncate(depth);
@@ -111,41 +113,36 @@ impl Walk<'_, '_, '_> {
                     self.constant(item);
                 }
             }
-            _ => self
-                .errors
-                .at(expr.range, "a default is a number; write its value, as in `g: m/s^2 = 9.81`"),
+            _ => self.errors.at(expr.range, messages::open_default()),
         }
     }
 
     fn bind(&mut self, binder: &Binder) {
         self.expr(&binder.low);
         self.expr(&binder.high);
-        self.local(&binder.name, "an index");
+        self.local(&binder.name, Local::Index);
     }
 
     /// A name that holds in one expression; it may hide a parameter or a definition, but nothing
     /// that moves.
-    fn local(&mut self, ident: &Ident, what: &str) {
+    fn local(&mut self, ident: &Ident, local: Local) {
         let Name { base, dots } = name::read(&ident.to_string());
-        let hidden = match base.as_str() {
-            _ if 0 < dots => Some(format!("`{ident}` is a time derivative")),
-            "t" => Some(format!("`{ident}` is the time")),
-            "pi" => Some(format!("`{ident}` is the number π")),
-            "i" if what != "an index" => Some(format!("`{ident}` is the imaginary unit")),
+        let holder = match base.as_str() {
+            _ if 0 < dots => Some(Holder::Derivative),
+            "t" => Some(Holder::Time),
+            "pi" => Some(Holder::Pi),
+            "i" if local != Local::Index => Some(Holder::ImaginaryUnit),
             _ => match self.model.names.get(&base) {
-                Some(Meaning::Coordinate(_)) => Some(format!("`{ident}` is a coordinate")),
-                Some(&Meaning::Input(index)) => {
-                    let what = if self.model.is_control(index) { "control" } else { "driven" };
-                    Some(format!("`{ident}` is a {what} input"))
+                Some(Meaning::Coordinate(_)) => Some(Holder::Coordinate),
+                Some(&Meaning::Input(index)) if self.model.is_control(index) => {
+                    Some(Holder::ControlInput)
                 }
+                Some(Meaning::Input(_)) => Some(Holder::DrivenInput),
                 _ => None,
             },
         };
-        if let Some(hidden) = hidden {
-            self.errors.at(
-                ident.span(),
-                format!("{hidden}, and {what} of this name would hide it; choose another name"),
-            );
+        if let Some(holder) = holder {
+            self.errors.at(ident.span(), messages::hiding(ident, holder, local));
         }
         self.scope.push(base);
     }
@@ -179,15 +176,8 @@ impl Walk<'_, '_, '_> {
                 let known: &[&str] =
                     if self.body(base) { &["mass", "center", "inertia"] } else { &["x", "y", "z"] };
                 if !known.iter().any(|known| component == known) {
-                    let list = known
-                        .iter()
-                        .map(|name| format!("`.{name}`"))
-                        .collect::<Vec<_>>()
-                        .join(", ");
-                    self.errors.at(
-                        component.span(),
-                        format!("unknown component `{component}`; there are {list}"),
-                    );
+                    let message = messages::unknown_component(component, known);
+                    self.errors.at(component.span(), message);
                 }
             }
             ExprKind::Vector(items) => {
@@ -216,16 +206,11 @@ impl Walk<'_, '_, '_> {
                         self.mentioned.insert(index);
                     }
                     Some(_) => {
-                        self.errors.at(
-                            body.span(),
-                            format!(
-                                "`{body}` is no body; declare it as `{body}: body` in the struct"
-                            ),
-                        );
+                        self.errors.at(body.span(), messages::no_body(body));
                     }
                     None => self.name(body),
                 }
-                self.local(point, "a point");
+                self.local(point, Local::Point);
                 self.expr(integrand);
                 self.scope.pop();
             }
@@ -235,34 +220,23 @@ impl Walk<'_, '_, '_> {
     /// A reaction is that of a constraint, and stands in outputs only.
     fn reaction(&mut self, ident: &Ident, range: Range) {
         if !self.accelerations {
-            self.errors.at(
-                range,
-                format!(
-                    "the reaction of `{ident}` is known only after the forces; it stands in outputs"
-                ),
-            );
+            self.errors.at(range, messages::reaction_outside_of_outputs(ident));
             return;
         }
         let base = plain(ident);
         let found = self.model.constraints.iter().find(|own| plain(&own.name) == base);
         let message = match found {
-            Some(constraint) if constraint.redundant => {
-                format!("`{ident}` is redundant, and its reaction is not unique; leave it out")
-            }
+            Some(constraint) if constraint.redundant => messages::reaction_of_redundant(ident),
             Some(_) => return,
             None if self.model.block.recovery.declarations => return,
             None if self.model.limits.iter().any(|own| plain(&own.name) == base) => {
-                format!("`{ident}` is a limit; `reaction` is that of a constraint")
+                messages::reaction_of_limit(ident)
             }
             None => {
                 let known = self.model.constraints.iter().map(|own| own.name.to_string());
                 let known: Vec<String> = known.collect();
-                match name::nearest(&ident.to_string(), known.iter().map(String::as_str)) {
-                    Some(near) => format!("unknown constraint `{ident}`; did you mean `{near}`?"),
-                    None => format!(
-                        "unknown constraint `{ident}`; declare it, as in `constraint {ident}: a = b;`"
-                    ),
-                }
+                let near = name::nearest(&ident.to_string(), known.iter().map(String::as_str));
+                messages::unknown_constraint(ident, near)
             }
         };
         self.errors.at(ident.span(), message);
@@ -288,34 +262,31 @@ impl Walk<'_, '_, '_> {
         match (base.as_str(), self.model.names.get(&base)) {
             ("t" | "pi" | "i", _) if dots == 0 => {}
             ("t" | "pi" | "i", _) => {
-                self.errors.at(ident.span(), format!("`{ident}` does not move as a coordinate does; write a number"));
+                self.errors.at(ident.span(), messages::derivative_of_constant(ident));
             }
-            (_, Some(Meaning::Parameter(_))) if 0 < dots => self.errors.at(
-                ident.span(),
-                format!(
-                    "`{}` is a parameter, so nothing in `{ident}` moves; declare it `driven` or as a coordinate",
-                    plain(ident)
-                ),
-            ),
+            (_, Some(Meaning::Parameter(_))) if 0 < dots => {
+                self.errors.at(ident.span(), messages::derivative_of_parameter(ident, &base));
+            }
             (_, Some(Meaning::Coordinate(_))) if 2 < dots && self.accelerations => {
-                self.errors.at(ident.span(), messages::jerk(format!("`{ident}`")));
+                self.errors.at(ident.span(), shared::jerk(ident));
             }
             (_, Some(Meaning::Coordinate(_))) if 1 < dots && self.constraint => {
-                self.errors.at(ident.span(), messages::constrained_acceleration(format!("`{ident}`")));
+                let message = shared::acceleration_in_constraint(ident);
+                self.errors.at(ident.span(), message);
             }
             (_, Some(Meaning::Coordinate(_))) if 1 < dots && !self.accelerations => {
-                self.errors.at(ident.span(), messages::acceleration(format!("`{ident}`")));
+                self.errors.at(ident.span(), shared::acceleration(ident));
             }
             (_, Some(&Meaning::Input(index))) if 0 < dots && self.model.is_control(index) => {
-                self.errors.at(ident.span(), messages::no_derivative(plain(ident)));
+                self.errors.at(ident.span(), shared::derivative_of_control(&base));
             }
             (_, Some(Meaning::Input(_))) if 2 < dots => {
-                self.errors.at(ident.span(), format!("`{ident}` is a third derivative; driven inputs have two"));
+                self.errors.at(ident.span(), messages::jerk_of_input(ident));
             }
             (_, Some(_)) => {}
             (_, None) if self.model.block.recovery.declarations => {}
             (text, None) if Word::named(text).is_some() => {
-                self.errors.at(ident.span(), format!("`{ident}` is a function; write `{ident}(…)`"));
+                self.errors.at(ident.span(), shared::function_without_arguments(ident));
             }
             (_, None) => {
                 let message = self.unknown(&ident.to_string());
@@ -325,7 +296,7 @@ impl Walk<'_, '_, '_> {
     }
 
     /// The mistake in a name that nobody declared.
-    fn unknown(&self, text: &str) -> String {
+    fn unknown(&self, text: &str) -> Text {
         let moving = |stem: &str| {
             let Name { base, dots } = name::read(stem);
             self.model
@@ -336,10 +307,7 @@ impl Walk<'_, '_, '_> {
         if let Some(plain) = name::unaccented(text)
             && moving(&plain).is_some()
         {
-            return format!(
-                "`{text}` has an accent, and a derivative has a dot; write {}",
-                name::dotted(&plain)
-            );
+            return messages::accent(text, &name::dotted(&plain));
         }
         for suffix in ["ddot", "dot"] {
             if let Some(stem) = text.strip_suffix(suffix)
@@ -347,25 +315,55 @@ impl Walk<'_, '_, '_> {
             {
                 return match meaning {
                     Meaning::Coordinate(_) if suffix == "ddot" && !self.accelerations => {
-                        messages::acceleration(format!("`{text}`"))
+                        shared::acceleration(text)
                     }
-                    _ => format!("unknown name `{text}`; did you mean `{stem}_{suffix}`?"),
+                    _ => messages::unknown_name(text, Some(&format!("{stem}_{suffix}"))),
                 };
             }
         }
         let known = self.known();
         if !known.iter().any(|known| known.eq_ignore_ascii_case(text)) {
             if Dimension::of(text).is_some() {
-                return format!("unknown name `{text}`; declare it as a parameter; {UNITS}");
+                return messages::unit_in_formula(text);
             }
             // A letter alone is a quantity more often than a constant.
             if let Some(constant) =
                 constant(text, self.model.block.ascii).filter(|_| 1 < text.len())
             {
-                return format!("unknown name `{text}`; write `{constant}`");
+                return messages::untranslated_name(text, &constant);
+            }
+            if let Some(stem) = elsewhere::moving(text).find(|stem| self.has_velocity(stem)) {
+                return messages::unknown_name(text, Some(&format!("{stem}_dot")));
+            }
+            // Two letters are a quantity more often than a unit, unless they are a length.
+            if let Some(unit) = elsewhere::unit(text)
+                && (3 <= text.chars().count() || ["mm", "cm", "km"].contains(&text))
+            {
+                return match unit.factor {
+                    Some(factor) => messages::scaled_unit_in_formula(text, unit.instead, factor),
+                    None => messages::unit_in_formula(text),
+                };
             }
         }
-        unknown(text, known.iter().map(String::as_str))
+        let outputs = self.model.outputs.iter().map(|output| output.declared.name.to_string());
+        let outputs: Vec<String> = outputs.collect();
+        if outputs.iter().any(|output| output == text) {
+            return messages::output_in_formula(text);
+        }
+        let known = known.iter().chain(&outputs).map(String::as_str);
+        messages::unknown_name(text, name::nearest(text, known))
+    }
+
+    /// Returns true if a name has a velocity: a coordinate, a driven input or a definition.
+    fn has_velocity(&self, text: &str) -> bool {
+        let Name { base, dots } = name::read(text);
+        dots == 0
+            && match self.model.names.get(&base) {
+                Some(Meaning::Coordinate(_)) => true,
+                Some(&Meaning::Input(index)) => !self.model.is_control(index),
+                Some(&Meaning::Let(index)) => self.model.lets[index].arguments.is_none(),
+                Some(Meaning::Parameter(_)) | None => false,
+            }
     }
 
     fn function(&mut self, ident: &Ident, items: &[Expr], range: Range) {
@@ -375,7 +373,8 @@ impl Walk<'_, '_, '_> {
             && let Some(arguments) = &self.model.lets[*index].arguments
         {
             if arguments.len() != count {
-                self.errors.at(range, messages::arguments(ident, arguments.len(), count));
+                let message = messages::wrong_number_of_arguments(ident, arguments.len(), count);
+                self.errors.at(range, message);
             }
             return;
         }
@@ -383,25 +382,20 @@ impl Walk<'_, '_, '_> {
             if let ("dot", Some(product)) =
                 (ident.to_string().as_str(), function(&ident.to_string(), items))
             {
-                self.errors.at(range, format!("`dot` is the derivative of one argument; write `{product}` for a scalar product"));
+                self.errors.at(range, messages::dot_of_two(&product));
             } else if expected != count {
-                self.errors.at(range, messages::arguments(ident, expected, count));
+                let message = messages::wrong_number_of_arguments(ident, expected, count);
+                self.errors.at(range, message);
             }
             return;
         }
         if ident == "sum" {
-            self.errors.at(range, "`sum` runs over an index; write `sum(k in 0..5, …)`");
+            self.errors.at(range, messages::sum_without_index());
         } else if self.model.names.contains_key(&base)
             || self.scope.contains(&base)
             || matches!(base.as_str(), "t" | "pi" | "i")
         {
-            self.errors.at(
-                ident.span(),
-                format!(
-                    "`{ident}` is no function, and {}",
-                    messages::no_operator(&format!("`{ident}*(…)`"))
-                ),
-            );
+            self.errors.at(ident.span(), messages::no_function(ident));
         } else if !self.model.block.recovery.declarations {
             let lets = self
                 .model
@@ -413,11 +407,8 @@ impl Walk<'_, '_, '_> {
                 Word::all().map(|word| word.name.to_owned()).chain(lets).collect();
             let nearest = || name::nearest(&ident.to_string(), known.iter().map(String::as_str));
             let message = match (function(&ident.to_string(), items), nearest()) {
-                (Some(call), _) => format!("unknown function `{ident}`; write `{call}`"),
-                (None, Some(near)) => format!("unknown function `{ident}`; did you mean `{near}`?"),
-                (None, None) => {
-                    format!("unknown function `{ident}`; define it with `let {ident}(p) = …;`")
-                }
+                (Some(call), _) => messages::untranslated_function(ident, &call),
+                (None, nearest) => messages::unknown_function(ident, nearest),
             };
             self.errors.at(ident.span(), message);
         }

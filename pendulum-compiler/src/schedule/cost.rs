@@ -1,6 +1,6 @@
 //! The cost of a program: its operations of each kind.
 
-use super::{Op, Program};
+use super::program::{Op, Program};
 use crate::algebra::functions::Function;
 use core::fmt;
 

@@ -1,7 +1,7 @@
 //! Stages of a program: what parameters decide, what time and inputs decide, what the position
 //! adds, and the rest.
 
-use super::{Op, Place, Program, operands};
+use super::program::{Op, Place, Program, operands};
 use crate::algebra::expr::Symbol;
 
 /// The values that an operation needs before it can be done.

@@ -1,19 +1,12 @@
 //! The traits that a block derives for its struct: those that cannot be are told at their names.
 
-use crate::messages::{Errors, Range};
+use crate::messages::{Errors, Range, syntax as messages};
 use proc_macro2::TokenStream;
 use quote::quote;
 use syn::parse::Parser;
 use syn::punctuated::Punctuated;
 use syn::spanned::Spanned;
 use syn::{Attribute, Path, Token};
-
-/// Traits that cannot be derived over floating-point numbers, with their substitutes.
-const EXACT: &[(&str, &str)] = &[
-    ("Eq", "leave it out, `PartialEq` compares them"),
-    ("Ord", "leave it out, `PartialOrd` compares them"),
-    ("Hash", "leave it out and hash the bits of the fields"),
-];
 
 /// Reports the derived traits that the struct cannot have, and takes them from its attributes:
 /// rustc would say it of code that the user has not written.
@@ -22,7 +15,7 @@ pub(crate) fn check(attributes: &mut [Attribute], errors: &mut Errors) {
         let all = paths(attribute);
         let mut kept: Punctuated<Path, Token![,]> = Punctuated::new();
         for path in &all {
-            match refusal(path) {
+            match standard(path).and_then(|name| messages::underivable_trait(&name)) {
                 Some(message) => {
                     let last = path.segments.last().map_or(path.span(), Spanned::span);
                     errors.at(Range { first: path.span(), last }, message);
@@ -53,13 +46,4 @@ fn standard(path: &Path) -> Option<String> {
     let first = path.segments.first()?;
     let known = path.segments.len() == 1 || first.ident == "core" || first.ident == "std";
     known.then(|| path.segments.last().map(|last| last.ident.to_string()))?
-}
-
-/// Why a trait cannot be derived.
-fn refusal(path: &Path) -> Option<String> {
-    let name = standard(path)?;
-    let (_, advice) = EXACT.iter().find(|(exact, _)| *exact == name)?;
-    Some(format!(
-        "`{name}` cannot be derived: the parameters are floating-point numbers, which do not have it; {advice}"
-    ))
 }

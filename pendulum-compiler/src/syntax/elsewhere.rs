@@ -1,9 +1,9 @@
-//! Names of constants and functions in other languages, with their translations.
+//! Constants, functions, velocities and units in other notations, with their translations.
 
 use super::text::{closed, operand, text};
 use crate::syntax::ast::Expr;
 
-/// The value of a constant of Rust, as it is written here; in `ascii`, if the block is.
+/// A constant of Rust, or the time, as it is written here; in `ascii`, if the block is.
 pub(crate) fn constant(name: &str, ascii: bool) -> Option<String> {
     let value = match name {
         "PI" | "Pi" => "π",
@@ -19,6 +19,7 @@ pub(crate) fn constant(name: &str, ascii: bool) -> Option<String> {
         "FRAC_PI_8" => "π/8",
         "FRAC_1_PI" => "1/π",
         "FRAC_1_SQRT_2" => "1/sqrt(2)",
+        "time" | "TIME" | "Time" => "t",
         _ => return None,
     };
     Some(if ascii { value.replace('π', "pi") } else { value.to_owned() })
@@ -45,4 +46,133 @@ pub(crate) fn function(name: &str, arguments: &[Expr]) -> Option<String> {
         ("dot" | "scalar" | "dot_product", [a, b]) => format!("inner({}, {})", text(a), text(b)),
         _ => return None,
     })
+}
+
+/// The names whose velocity a name may be: `x` for `vx`, `v_x`, `dx`, `dxdt` and `xd`.
+pub(crate) fn moving(name: &str) -> impl Iterator<Item = &str> {
+    let differential = name.strip_prefix('d').and_then(|rest| rest.strip_suffix("dt"));
+    let differential = differential.map(|stem| stem.strip_suffix('_').unwrap_or(stem));
+    let before = ["v_", "v", "d_", "d"].into_iter();
+    let behind = ["_prime", "prime", "_d", "d"].into_iter();
+    let stems = differential.into_iter().chain(before.filter_map(|sign| name.strip_prefix(sign)));
+    stems.chain(behind.filter_map(|sign| name.strip_suffix(sign)))
+}
+
+/// A unit under another name: what to declare instead, and how much of it the unit is, if it is
+/// another one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct ForeignUnit {
+    pub(crate) instead: &'static str,
+    pub(crate) factor: Option<&'static str>,
+}
+
+/// The translation of a unit that the language does not have.
+pub(crate) fn unit(name: &str) -> Option<ForeignUnit> {
+    let rows = || SCALED.iter().map(|&(names, instead, factor)| (names, instead, Some(factor)));
+    let rows = rows().chain(SPELLED.iter().map(|&(names, instead)| (names, instead, None)));
+    let mut rows = rows.map(|(names, instead, factor)| (names, ForeignUnit { instead, factor }));
+    if let Some((_, unit)) = rows.find(|(names, _)| names.contains(&name)) {
+        return Some(unit);
+    }
+    PREFIXES.iter().find_map(|&(symbols, word, factor)| {
+        let symbol = symbols.chars().find_map(|symbol| name.strip_prefix(symbol));
+        let symbol = symbol.and_then(|rest| PREFIXED.iter().find(|unit| **unit == rest)).copied();
+        let word = name.strip_prefix(word).and_then(|rest| {
+            SPELLED.iter().find(|(names, _)| names.contains(&rest)).map(|&(_, unit)| unit)
+        });
+        symbol.or(word).map(|instead| ForeignUnit { instead, factor: Some(factor) })
+    })
+}
+
+/// Units of other sizes: their names, the unit of the language, and the number of it.
+#[rustfmt::skip]
+const SCALED: &[(&[&str], &str, &str)] = &[
+    (&["g", "gram", "grams"],                             "kg",    "0.001"),
+    (&["mg", "milligram", "milligrams"],                  "kg",    "1e-6"),
+    (&["tonne", "tonnes", "ton", "tons"],                 "kg",    "1000"),
+    (&["lb", "lbs", "pound", "pounds"],                   "kg",    "0.45359237"),
+    (&["inch", "inches"],                                 "m",     "0.0254"),
+    (&["ft", "foot", "feet"],                             "m",     "0.3048"),
+    (&["mile", "miles"],                                  "m",     "1609.344"),
+    (&["min", "mins", "minute", "minutes"],               "s",     "60"),
+    (&["h", "hr", "hour", "hours"],                       "s",     "3600"),
+    (&["day", "days"],                                    "s",     "86400"),
+    (&["kmh", "kph"],                                     "m/s",   "5/18"),
+    (&["deg", "degs", "degree", "degrees"],               "rad",   "pi/180"),
+    (&["rev", "revs", "revolution", "turn", "turns"],     "rad",   "2*pi"),
+    (&["rpm"],                                            "rad/s", "pi/30"),
+    (&["lbf"],                                            "N",     "4.4482216152605"),
+    (&["kPa"],                                            "N/m^2", "1000"),
+    (&["bar"],                                            "N/m^2", "100000"),
+    (&["cal"],                                            "J",     "4.184"),
+    (&["eV"],                                             "J",     "1.602176634e-19"),
+    (&["kWh"],                                            "J",     "3600000"),
+];
+
+/// Units of the language under other names.
+#[rustfmt::skip]
+const SPELLED: &[(&[&str], &str)] = &[
+    (&["metre", "metres", "meter", "meters"],             "m"),
+    (&["kilogram", "kilograms", "Kg", "KG"],              "kg"),
+    (&["sec", "secs", "second", "seconds"],               "s"),
+    (&["radian", "radians", "rads"],                      "rad"),
+    (&["newton", "newtons", "Newton"],                    "N"),
+    (&["Nm"],                                             "N*m"),
+    (&["Pa", "pascal", "pascals", "Pascal"],              "N/m^2"),
+    (&["joule", "joules", "Joule"],                       "J"),
+    (&["watt", "watts", "Watt"],                          "W"),
+    (&["hertz", "Hertz"],                                 "Hz"),
+    (&["amp", "amps", "ampere", "amperes", "Ampere"],     "A"),
+    (&["volt", "volts", "Volt"],                          "V"),
+    (&["coulomb", "coulombs", "Coulomb"],                 "C"),
+    (&["farad", "farads", "Farad"],                       "F"),
+    (&["henry", "henries", "Henry"],                      "H"),
+    (&["Ω", "\u{2126}", "ohms", "Ohm", "Ohms"],           "ohm"),
+    (&["tesla", "Tesla"],                                 "T"),
+    (&["kelvin", "kelvins", "Kelvin"],                    "K"),
+];
+
+/// Prefixes: symbols, the word and the factor.
+const PREFIXES: &[(&str, &str, &str)] = &[
+    ("n", "nano", "1e-9"),
+    ("uµμ", "micro", "1e-6"),
+    ("m", "milli", "0.001"),
+    ("c", "centi", "0.01"),
+    ("d", "deci", "0.1"),
+    ("k", "kilo", "1000"),
+    ("M", "mega", "1e6"),
+    ("G", "giga", "1e9"),
+];
+
+/// The units that a prefix may stand before.
+const PREFIXED: &[&str] =
+    &["m", "s", "rad", "N", "J", "W", "Hz", "A", "V", "C", "F", "H", "ohm", "T", "K"];
+
+#[cfg(test)]
+mod tests {
+    use super::{ForeignUnit, PREFIXED, SCALED, SPELLED, unit};
+    use crate::algebra::dimension::Dimension;
+
+    /// No translation stands for a unit of the language, and each leads to one.
+    #[test]
+    fn translations_of_units_are_units() {
+        let known = |unit: &str| {
+            unit.split(['*', '/', '^']).all(|part| part == "2" || Dimension::of(part).is_some())
+        };
+        let scaled = SCALED.iter().map(|&(names, instead, _)| (names, instead));
+        for (names, instead) in scaled.chain(SPELLED.iter().copied()) {
+            assert!(known(instead), "{instead}");
+            for name in names {
+                assert!(Dimension::of(name).is_none(), "{name}");
+                assert_eq!(unit(name).unwrap().instead, instead, "{name}");
+            }
+        }
+        assert!(PREFIXED.iter().all(|name| known(name) && unit(name).is_none()));
+        let unit_of = |instead, factor| Some(ForeignUnit { instead, factor });
+        assert_eq!(unit("km"), unit_of("m", Some("1000")));
+        assert_eq!(unit("µs"), unit_of("s", Some("1e-6")));
+        assert_eq!(unit("millimetre"), unit_of("m", Some("0.001")));
+        assert_eq!(unit("min"), unit_of("s", Some("60")));
+        assert_eq!(unit("furlong"), None);
+    }
 }

@@ -1,5 +1,7 @@
 //! Names as the note writes them: Greek letters, dots, and their ASCII twins.
 
+use proc_macro2::Ident;
+
 /// A name without its dots: `θ̇1`, `theta1_dot` and `θ1̇` are all `theta1` with one dot.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Name {
@@ -37,6 +39,11 @@ pub(crate) fn read(text: &str) -> Name {
         }
     }
     Name { base, dots }
+}
+
+/// A name without its dots, in the ASCII spelling of its letters.
+pub(crate) fn plain(ident: &Ident) -> String {
+    read(&ident.to_string()).base
 }
 
 /// A name without the accents that someone took for dots; `None` if it has none.

@@ -75,7 +75,7 @@ const REFUSED: &[(&str, &str)] = &[
     ("redundant y = L;",                      "`y` is not expected here; expected `constraint`, as in `redundant constraint`"),
     ("limit floor: y >= 0;",                  "the restitution is missing; write `, restitution = 0` behind the limit `floor`, or a number up to 1"),
     ("limit floor: y <= 0, restitution = 0;", "a limit is a smallest value; write `limit floor: a >= b, restitution = 0;`"),
-    ("limit floor: y >= 0, restitution = m;", "`m` is kg, but a restitution is a pure number; divide by a unit of its kind"),
+    ("limit floor: y >= 0, restitution = m;", "`m` is kg, but a restitution is a pure number; divide it by a quantity in kg"),
     ("limit floor: y >= 0, restitution = x/L;", "`x/L` moves, and a restitution is made of parameters and numbers"),
     ("constraint a[k in 3..1]: φ[k] = 1;",     "`a` has no members; write a range such as `0..5`"),
     ("limit floor: y >= 0, restitution = 2;", "`2` is no restitution; write a number from 0, no rebound, to 1, no loss"),

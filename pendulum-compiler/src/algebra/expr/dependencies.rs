@@ -1,6 +1,6 @@
 //! Dependencies of an expression: parameters, time, coordinates, inputs.
 
-use super::Symbol;
+use super::node::Symbol;
 
 /// The kinds of symbols that stand anywhere in an expression.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -5,7 +5,8 @@
 //! parents, and is eliminated behind the coordinates of its row: a chain that is closed into a loop
 //! costs as much for each link as an open one.
 
-use super::{Held, Tree};
+use super::Held;
+use super::tree::Tree;
 use crate::algebra::diff::{derivative, substitute};
 use crate::algebra::expr::{Graph, Id, Symbol};
 use crate::algebra::number::Rational;

@@ -1,8 +1,7 @@
 //! The elimination of positions and coordinates, from the leaves to the root.
 
-use super::Tree;
-use super::joint::Joint;
 use super::quadratic::Quadratic;
+use super::tree::{Joint, Tree};
 use crate::algebra::expr::{Dependencies, Graph, Id};
 use crate::algebra::number::Rational;
 use std::collections::{BTreeMap, BTreeSet};

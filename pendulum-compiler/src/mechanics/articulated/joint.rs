@@ -1,26 +1,11 @@
 //! Joints: a parent for each position, and how it moves against that.
 
-use super::Tree;
+use super::tree::{Joint, Tree};
 use crate::algebra::diff::{derivative, substitute};
 use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
 use crate::algebra::number::Rational;
 use crate::mechanics::lower::{Extended, total_derivative};
 use std::collections::BTreeSet;
-
-/// A position, how it moves against its parent, and which coordinates do it.
-#[derive(Debug)]
-pub(super) struct Joint {
-    /// The scalars of the position, and the same components of the parent.
-    pub(super) scalars: Vec<usize>,
-    pub(super) parents: Vec<Option<usize>>,
-    pub(super) coordinates: Vec<usize>,
-    /// ∂(z − zₚ)/∂q in units of the coordinates, a row for each scalar.
-    pub(super) jacobian: Vec<Vec<Id>>,
-    /// d(z − zₚ)/dt, the same at q̇ = 0, and its rate at constant q̇.
-    pub(super) slip: Vec<Id>,
-    pub(super) drive: Vec<Id>,
-    pub(super) drift: Vec<Id>,
-}
 
 impl Tree<'_> {
     /// Finds a parent for each position: the one from which the fewest coordinates lead to it.

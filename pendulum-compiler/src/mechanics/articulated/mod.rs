@@ -14,14 +14,15 @@ mod eliminate;
 mod joint;
 mod propagate;
 mod quadratic;
+mod tree;
 
 use crate::algebra::diff::{derivative, substitute};
 use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
 use crate::algebra::number::Rational;
 use crate::algebra::velocity_polynomial;
 use crate::mechanics::lower::{Extended, total_derivative};
-use joint::Joint;
 use std::collections::BTreeMap;
+use tree::Tree;
 
 /// The results of the sparse form; the same functions as those of the dense form.
 #[derive(Debug)]
@@ -72,15 +73,6 @@ pub(crate) fn sparse(graph: &mut Graph, extended: &Extended, count: usize) -> Op
     let mut tree = Tree { graph, count, joints: Vec::new(), units: vec![Graph::ONE; count] };
     tree.build_tree(extended, &used);
     tree.forms(extended, lagrangian)
-}
-
-struct Tree<'g> {
-    graph: &'g mut Graph,
-    count: usize,
-    /// Parents before children.
-    joints: Vec<Joint>,
-    /// The parameters that each coordinate always stands with, such as the length of its link.
-    units: Vec<Id>,
 }
 
 impl Tree<'_> {
@@ -187,17 +179,5 @@ impl Tree<'_> {
             unsolved,
             held,
         })
-    }
-
-    /// An entry in the units of its unknowns.
-    fn scaled(&mut self, entry: Id, places: &[usize]) -> Id {
-        let mut factors = vec![(entry, Rational::ONE)];
-        factors.extend(
-            places
-                .iter()
-                .filter(|&&place| place < self.count)
-                .map(|&place| (self.units[place], Rational::MINUS_ONE)),
-        );
-        self.graph.product(Rational::ONE, &factors)
     }
 }

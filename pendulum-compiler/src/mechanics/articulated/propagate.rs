@@ -1,7 +1,8 @@
 //! Propagation along the tree: velocities from the root to the leaves, momenta and their rates from
 //! the leaves to the root.
 
-use super::{Tree, Unsolved};
+use super::Unsolved;
+use super::tree::Tree;
 use crate::algebra::diff::{derivative, substitute};
 use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
 use crate::algebra::number::Rational;

@@ -1,15 +1,19 @@
 //! Integrals over bodies: a polynomial of degree two in the point becomes mass, centre and second
 //! moments.
 
+use super::context::{Local, Lower};
 use super::value::Value;
-use super::{Local, Lower};
 use crate::algebra::expr::{Dependencies, Graph, Id, Moment, Symbol};
 use crate::algebra::number::Rational;
 use crate::algebra::velocity_polynomial;
+use crate::messages::{Text, lower as messages};
 use crate::model::Meaning;
 use crate::syntax::ast::{Expr, ExprKind};
 use crate::syntax::name::{self, Name};
 use crate::syntax::text::text;
+
+/// The message about an integrand, from its text and the point.
+type Refusal = fn(&str, &str) -> Text;
 
 impl Lower<'_, '_, '_, '_> {
     /// The body that an expression names.
@@ -63,7 +67,7 @@ impl Lower<'_, '_, '_, '_> {
         let value = self.expr(integrand);
         self.integrals -= 1;
         self.scope.pop();
-        let mut wrong = None;
+        let mut wrong: Option<Refusal> = None;
         let result = match value {
             Value::Bad | Value::Family(_) => Value::Bad,
             Value::Scalar(id) => Value::Scalar(self.moment(index, parts, id, &mut wrong)),
@@ -77,27 +81,15 @@ impl Lower<'_, '_, '_, '_> {
         };
         match wrong {
             None => result,
-            Some(what) => {
-                let message = format!(
-                    "`{}` is {what} in `{point}`, and a body knows its moments up to the second; write a polynomial of degree two or less",
-                    text(integrand)
-                );
-                self.wrong(integrand, &message)
-            }
+            Some(message) => self.wrong(integrand, message(&text(integrand), point)),
         }
     }
 
     /// The integral of one scalar.
-    fn moment(
-        &mut self,
-        body: usize,
-        point: [Id; 2],
-        id: Id,
-        wrong: &mut Option<&'static str>,
-    ) -> Id {
+    fn moment(&mut self, body: usize, point: [Id; 2], id: Id, wrong: &mut Option<Refusal>) -> Id {
         let Some(polynomial) = velocity_polynomial::polynomial(self.graph, id, Dependencies::POINT)
         else {
-            *wrong = Some("no polynomial");
+            *wrong = Some(messages::no_polynomial);
             return Graph::ZERO;
         };
         let mass = self.mass(body);
@@ -131,7 +123,7 @@ impl Lower<'_, '_, '_, '_> {
                     .sum(&[(inertia, Rational::HALF), (difference, Rational::HALF.negative())]),
                 (1, 1) => product,
                 _ => {
-                    *wrong = Some("of higher degree than two");
+                    *wrong = Some(messages::polynomial_of_high_degree);
                     return Graph::ZERO;
                 }
             };

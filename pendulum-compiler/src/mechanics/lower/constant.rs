@@ -1,11 +1,12 @@
 //! Constants known while compiling: those that are no real number are refused where they are
 //! written.
 
-use super::Lower;
+use super::context::Lower;
 use super::value::Value;
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
+use crate::messages::lower as messages;
 use crate::syntax::ast::Expr;
 use crate::syntax::text::text;
 
@@ -24,15 +25,9 @@ impl Lower<'_, '_, '_, '_> {
         }
         let text = text(expr);
         if number.is_nan() {
-            return self.wrong(
-                expr,
-                &format!("`{text}` is no real number; write an operand for which it is"),
-            );
+            return self.wrong(expr, messages::unreal_constant(&text));
         }
-        self.wrong(
-            expr,
-            &format!("`{text}` is infinite or beyond the range of `f64`; write another operand"),
-        )
+        self.wrong(expr, messages::infinite_constant(&text))
     }
 
     fn constant(&mut self, id: Id) -> f64 {

@@ -1,34 +1,15 @@
 //! Constraints and limits to their scalars.
 
-use super::{Lower, Value};
+use super::context::Lower;
+use super::row::{Row, Shape};
+use super::value::Value;
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::number::Rational;
+use crate::messages::lower as messages;
 use crate::syntax::ast::{Binder, Expr};
 use crate::syntax::name;
 use crate::syntax::text::text;
 use proc_macro2::Ident;
-
-/// A scalar constraint or limit.
-#[derive(Debug)]
-pub(crate) struct Row {
-    /// The index of its statement among the constraints, or among the limits.
-    pub(crate) statement: usize,
-    /// Its name with its component and its index: `loop.x`, `rod[2]`.
-    pub(crate) name: String,
-    /// The left side less the right one.
-    pub(crate) value: Id,
-    /// The restitution of a limit.
-    pub(crate) restitution: Id,
-}
-
-/// The shape of a constraint, and the number of scalars before it.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Shape {
-    first: usize,
-    members: Option<usize>,
-    /// 0 for a scalar.
-    components: usize,
-}
 
 impl Lower<'_, '_, '_, '_> {
     /// The scalars of all constraints: those that are solved come first.
@@ -74,11 +55,8 @@ impl Lower<'_, '_, '_, '_> {
         };
         let range = self.range(binder);
         if range.is_empty() {
-            self.errors.once(
-                binder.high.source,
-                binder.high.range,
-                format!("`{own}` has no members; write a range such as `0..5`"),
-            );
+            let message = messages::empty_family(&own);
+            self.errors.once(binder.high.source, binder.high.range, message);
         }
         let (mut members, mut width) = (0, 0);
         for k in range.clone() {
@@ -111,12 +89,8 @@ impl Lower<'_, '_, '_, '_> {
         }
         for (side, value) in [&left, &right] {
             if let Value::Family(members) = value {
-                let (side, count) = (text(side), members.len());
-                let message = format!(
-                    "`{side}` is a family; write it for one member, as `{name}[k in 0..{count}]: …` \
-                     with `{side}[k]`"
-                );
-                self.wrong(difference, &message);
+                let message = messages::family_in_constraint(&text(side), members.len(), name);
+                self.wrong(difference, message);
                 return 0;
             }
         }
@@ -125,14 +99,10 @@ impl Lower<'_, '_, '_, '_> {
         let alike = left.1.scalars().len() == right.1.scalars().len()
             || [&left.1, &right.1].into_iter().any(|value| zero(value) || complex(value));
         if !alike {
-            let message = format!(
-                "`{}` is {}, but `{}` is {}; both sides have one shape",
-                text(left.0),
-                left.1.kind(),
-                text(right.0),
-                right.1.kind()
-            );
-            self.wrong(difference, &message);
+            let texts = [&left, &right].map(|(side, _)| text(side));
+            let message =
+                messages::unequal_sides([&texts[0], left.1.kind()], [&texts[1], right.1.kind()]);
+            self.wrong(difference, message);
             return 0;
         }
         let value = self.expr(difference);
@@ -143,12 +113,7 @@ impl Lower<'_, '_, '_, '_> {
         let vector = !matches!(value, Value::Scalar(_));
         let bound = match restitution {
             Some(_) if vector => {
-                let message = format!(
-                    "`{}` is {}, and a limit is one number; write a component",
-                    text(difference),
-                    value.kind()
-                );
-                self.wrong(difference, &message);
+                self.wrong(difference, messages::vector_limit(&text(difference), value.kind()));
                 None
             }
             Some(restitution) => self.restitution(restitution),
@@ -167,22 +132,14 @@ impl Lower<'_, '_, '_, '_> {
     fn restitution(&mut self, expr: &Expr) -> Option<Id> {
         let value = self.scalar(expr)?;
         if self.graph.dependencies(value).any(Dependencies::STATE) {
-            let message = format!(
-                "`{}` moves, and a restitution is made of parameters and numbers",
-                text(expr)
-            );
-            self.wrong(expr, &message);
+            self.wrong(expr, messages::moving_restitution(&text(expr)));
             return None;
         }
         if let Node::Number(number) = self.graph.node(value)
             && (number.is_negative()
                 || Rational::ONE.add(number.negative()).is_none_or(Rational::is_negative))
         {
-            let message = format!(
-                "`{}` is no restitution; write a number from 0, no rebound, to 1, no loss",
-                text(expr)
-            );
-            self.wrong(expr, &message);
+            self.wrong(expr, messages::excessive_restitution(&text(expr)));
             return None;
         }
         Some(value)
@@ -211,10 +168,7 @@ impl Lower<'_, '_, '_, '_> {
         };
         match (shape.members, index) {
             (None, None) => member(self.graph, 0),
-            (None, Some(_)) => {
-                let message = format!("`{ident}` is no family; write `reaction({ident})`");
-                self.wrong(expr, &message)
-            }
+            (None, Some(_)) => self.wrong(expr, messages::index_of_reaction(ident)),
             (Some(members), None) => {
                 Value::Family((0..members).map(|k| member(self.graph, k)).collect())
             }

@@ -4,118 +4,31 @@
 //! A plane vector is a complex number; `Value::Bad` stands for what has been reported, so that one
 //! mistake gives one message.
 
+mod arithmetic;
 mod body;
 pub(crate) mod constant;
 mod constraint;
+mod context;
+mod energies;
 mod output;
+mod positions;
+mod rate;
+mod row;
 mod term;
 mod value;
 
-use crate::algebra::diff;
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::REAL;
-use crate::algebra::number::Rational;
-use crate::messages::{self, Errors, Range};
+use crate::messages::{Errors, lower as messages};
 use crate::model::{self, Model};
 use crate::syntax::ast::{Binder, Expr, ForceIndex, Role};
-use crate::syntax::name;
-use crate::syntax::text::text;
-pub(crate) use constraint::Row;
+use context::Lower;
+pub(crate) use energies::{Energies, Extended};
 pub(crate) use output::Output;
+use positions::PositionTracker;
+pub(crate) use rate::total_derivative;
+pub(crate) use row::Row;
 use std::collections::{BTreeMap, BTreeSet};
-use value::Value;
-
-/// More evaluations, or operands in all expressions together, are refused: sums within sums would
-/// never end.
-const LIMIT: usize = 2_000_000;
-
-/// Expressions and definitions within one another beyond this are refused: they would overflow the
-/// compiler's stack.
-const DEEPEST: usize = 1000;
-
-/// The same for the nodes of an energy or a force, which definitions above one another nest as
-/// well.
-const DEEPEST_NODE: usize = 1200;
-
-/// An energy or a force of more nodes is refused: its equations would take minutes to derive and to
-/// compile.
-const LARGEST: usize = 8000;
-
-/// The scalars of a block.
-#[derive(Debug, Default)]
-pub(crate) struct Energies {
-    pub(crate) kinetic: Option<Id>,
-    pub(crate) potential: Option<Id>,
-    pub(crate) lagrangian: Option<Id>,
-    pub(crate) dissipation: Option<Id>,
-    /// One generalized force for each coordinate.
-    pub(crate) forces: Vec<Id>,
-    /// The default of each parameter that has one.
-    pub(crate) defaults: Vec<Option<Id>>,
-    /// The parameters of two or three components that are used by their indices alone: families,
-    /// not vectors.
-    pub(crate) families: BTreeSet<usize>,
-    pub(crate) outputs: Vec<Output>,
-    /// The scalar constraints that are solved, and after them the redundant ones.
-    pub(crate) constraints: Vec<Row>,
-    /// The scalar limits.
-    pub(crate) limits: Vec<Row>,
-    /// The same with the velocities of positions as symbols of their own; `None` where no position
-    /// is written with `let`.
-    pub(crate) extended: Option<Extended>,
-}
-
-/// The energies of a block in which the velocities of `let` positions stand as symbols of their
-/// own.
-#[derive(Debug, Default)]
-pub(crate) struct Extended {
-    pub(crate) lagrangian: Id,
-    pub(crate) kinetic: Option<Id>,
-    pub(crate) dissipation: Id,
-    pub(crate) forces: Vec<Id>,
-    /// The scalars of each position.
-    pub(crate) positions: Vec<Vec<usize>>,
-    /// The value of each scalar.
-    pub(crate) scalars: Vec<Id>,
-    /// The holonomic constraints that are solved, in terms of positions where those stand in them;
-    /// none if there is one of velocities.
-    pub(crate) constraints: Option<Vec<Id>>,
-}
-
-impl Energies {
-    /// The constraints that hold velocities, by the indices of their statements.
-    pub(crate) fn velocity_constraints(&self, graph: &Graph) -> BTreeSet<usize> {
-        let velocity = |row: &&Row| graph.dependencies(row.value).any(Dependencies::VELOCITY);
-        self.constraints.iter().filter(velocity).map(|row| row.statement).collect()
-    }
-
-    /// Every expression in it.
-    pub(crate) fn roots(&mut self) -> Vec<&mut Id> {
-        let single =
-            [&mut self.kinetic, &mut self.potential, &mut self.lagrangian, &mut self.dissipation];
-        let single = single.into_iter().flatten();
-        let extended = self.extended.iter_mut().flat_map(|extended| {
-            let single = [&mut extended.lagrangian, &mut extended.dissipation]
-                .into_iter()
-                .chain(extended.kinetic.as_mut());
-            let constraints = extended.constraints.iter_mut().flatten();
-            single.chain(&mut extended.forces).chain(&mut extended.scalars).chain(constraints)
-        });
-        let rows = self.constraints.iter_mut().chain(&mut self.limits);
-        let rows = rows.flat_map(|row| [&mut row.value, &mut row.restitution]);
-        single
-            .chain(&mut self.forces)
-            .chain(self.defaults.iter_mut().flatten())
-            .chain(
-                self.outputs
-                    .iter_mut()
-                    .flat_map(|output| output.scalars.iter_mut().chain(&mut output.open)),
-            )
-            .chain(rows)
-            .chain(extended)
-            .collect()
-    }
-}
 
 /// Lowers all energies of a block.
 pub(crate) fn energies(model: &Model, graph: &mut Graph, errors: &mut Errors) -> Energies {
@@ -165,47 +78,6 @@ fn extended(
     })
 }
 
-/// The positions written with `let` that have been met.
-#[derive(Debug, Default)]
-struct PositionTracker {
-    scalars: Vec<Id>,
-    positions: Vec<Vec<usize>>,
-    places: BTreeMap<Id, usize>,
-    /// Constraints are told in terms of them.
-    constrained: bool,
-}
-
-impl PositionTracker {
-    /// Notes the scalars of a value that move with the coordinates.
-    fn note(&mut self, graph: &Graph, value: &Value) {
-        if let Value::Family(members) = value {
-            return members.iter().for_each(|member| self.note(graph, member));
-        }
-        let parts = value.scalars();
-        if parts.is_empty() {
-            return;
-        }
-        let other = Dependencies::VELOCITY
-            .or(Dependencies::AUXILIARY)
-            .or(Dependencies::POINT)
-            .or(Dependencies::ACCELERATION_INPUT);
-        let other = other.or(Dependencies::VELOCITY_INPUT);
-        let position = |id: &Id| {
-            graph.dependencies(*id).any(Dependencies::COORDINATE)
-                && !graph.dependencies(*id).any(other)
-        };
-        if !parts.iter().all(position) || parts.iter().any(|id| self.places.contains_key(id)) {
-            return;
-        }
-        let first = self.scalars.len();
-        for (offset, &id) in parts.iter().enumerate() {
-            self.places.insert(id, first + offset);
-        }
-        self.scalars.extend(parts);
-        self.positions.push((first..self.scalars.len()).collect());
-    }
-}
-
 /// Lowers all energies of a block, and notes its positions if that is wanted.
 fn lower(
     model: &Model,
@@ -234,77 +106,6 @@ fn lower(
     };
     let energies = lower.block();
     (energies, lower.positions)
-}
-
-/// dx/dt along any motion, by the chain rule through coordinates, driven inputs and time.
-pub(crate) fn total_derivative(graph: &mut Graph, id: Id) -> Id {
-    let mut terms = Vec::new();
-    for symbol in graph.symbols(&[id]) {
-        let rate = match symbol {
-            Symbol::Time => Graph::ONE,
-            Symbol::Coordinate(index) => graph.symbol(Symbol::Velocity(index)),
-            Symbol::Input { input, component, order } if order < 2 => {
-                graph.symbol(Symbol::Input { input, component, order: order + 1 })
-            }
-            _ => continue,
-        };
-        let partial = diff::derivative(graph, id, symbol);
-        terms.push((graph.mul(partial, rate), Rational::ONE));
-    }
-    graph.sum(&terms)
-}
-
-/// dx/dt along the motion itself, where velocities have derivatives.
-fn second_derivative(graph: &mut Graph, id: Id) -> Id {
-    let mut terms = vec![(total_derivative(graph, id), Rational::ONE)];
-    for symbol in graph.symbols(&[id]) {
-        if let Symbol::Velocity(index) = symbol {
-            let partial = diff::derivative(graph, id, symbol);
-            let acceleration = graph.symbol(Symbol::Acceleration(index));
-            terms.push((graph.mul(partial, acceleration), Rational::ONE));
-        }
-    }
-    graph.sum(&terms)
-}
-
-/// The meaning of a name that holds in one expression.
-enum Local {
-    /// An argument of a function or a point of integration.
-    Value(Value),
-    /// An index, and the source of the end of its range.
-    Index { value: i64, source: usize },
-}
-
-struct Lower<'m, 'a, 'g, 'e> {
-    model: &'m Model<'a>,
-    graph: &'g mut Graph,
-    errors: &'e mut Errors,
-    /// The indices, arguments and points that are bound, the inner ones last.
-    scope: Vec<(String, Local)>,
-    /// The definitions that are done, by their index.
-    instances: BTreeMap<(usize, Option<i64>), Value>,
-    /// The definitions that are being evaluated.
-    open: Vec<(usize, Option<i64>)>,
-    /// The parameters that are used by their indices, and those that are used whole.
-    indexed: BTreeSet<usize>,
-    whole: BTreeSet<usize>,
-    work: usize,
-    /// The number of expressions that are being evaluated.
-    depth: usize,
-    /// The number of integrals that are open.
-    integrals: usize,
-    /// The positions whose velocities become symbols.
-    positions: Option<PositionTracker>,
-    /// The values of expressions without symbols.
-    constants: BTreeMap<Id, f64>,
-    /// True if velocities have derivatives: in outputs.
-    accelerations: bool,
-    /// True in a constraint or a limit.
-    constrained: bool,
-    /// The definitions whose positions stand for themselves from now on.
-    known: Option<BTreeMap<(usize, Option<i64>), Value>>,
-    /// The shapes of the constraints.
-    shapes: Vec<constraint::Shape>,
 }
 
 impl Lower<'_, '_, '_, '_> {
@@ -397,18 +198,12 @@ impl Lower<'_, '_, '_, '_> {
             let members: Vec<(Option<&Binder>, i64)> = match (force.index, coordinate.length) {
                 (None, None) => vec![(None, 0)],
                 (None, Some(_)) => {
-                    let name = force.name;
-                    self.errors.at(
-                        name.span(),
-                        format!("`{name}` is a family; write `{name}[k]`, or `{name}[k in 0..{}]` for all", coordinate.count()),
-                    );
+                    let message = messages::force_on_family(force.name, coordinate.count());
+                    self.errors.at(force.name.span(), message);
                     continue;
                 }
                 (Some(_), None) => {
-                    self.errors.at(
-                        force.name.span(),
-                        format!("`{}` is no family; write it without an index", force.name),
-                    );
+                    self.errors.at(force.name.span(), messages::index_of_force(force.name));
                     continue;
                 }
                 (Some(ForceIndex::One(index)), Some(length)) => {
@@ -421,8 +216,9 @@ impl Lower<'_, '_, '_, '_> {
                     let range = self.range(binder);
                     match range.clone().find(|k| !usize::try_from(*k).is_ok_and(|k| k < length)) {
                         Some(k) => {
-                            self.errors
-                                .at(binder.high.range, outside(&force.name.to_string(), k, length));
+                            let name = force.name.to_string();
+                            let message = messages::index_out_of_range(&name, k, length);
+                            self.errors.at(binder.high.range, message);
                             continue;
                         }
                         None => range.map(|k| (Some(binder), k)).collect(),
@@ -450,174 +246,4 @@ impl Lower<'_, '_, '_, '_> {
         let value = self.scalar(expr)?;
         self.within_bounds(expr, value).then_some(value)
     }
-
-    /// Reports a value that is too long.
-    fn within_bounds(&mut self, expr: &Expr, value: Id) -> bool {
-        let nodes = self.graph.reachable(&[value]);
-        if LARGEST < nodes.len() {
-            let message = format!(
-                "this unfolds to more than {LARGEST} different expressions; write a shorter sum"
-            );
-            self.errors.once(expr.source, expr.range, message);
-            return false;
-        }
-        let mut depths: BTreeMap<Id, usize> = BTreeMap::new();
-        for id in nodes {
-            let depth =
-                self.graph.children(id).iter().map(|child| depths[child] + 1).max().unwrap_or(0);
-            depths.insert(id, depth);
-        }
-        if DEEPEST_NODE < depths[&value] {
-            let message = format!(
-                "this unfolds to more than {DEEPEST_NODE} functions and operations within one another; write a shorter chain"
-            );
-            self.errors.once(expr.source, expr.range, message);
-            return false;
-        }
-        true
-    }
-
-    /// One instance of a definition.
-    fn definition(&mut self, index: usize, k: Option<i64>, range: Range) -> Value {
-        if let Some(value) = self.instances.get(&(index, k)) {
-            return value.clone();
-        }
-        if let Some(value) = self.position(index, k) {
-            return value;
-        }
-        let definition = self.model.lets[index];
-        if self.open.contains(&(index, k)) {
-            self.errors.once(definition.expr.source, range, messages::circular(&definition.name));
-            return Value::Bad;
-        }
-        self.open.push((index, k));
-        let scope = std::mem::take(&mut self.scope);
-        if let (Some(k), Some(binder)) = (k, &definition.index) {
-            self.bind(binder, k);
-        }
-        let value = self.expr(&definition.expr);
-        self.scope = scope;
-        self.open.pop();
-        if let Some(positions) = &mut self.positions {
-            positions.note(self.graph, &value);
-        }
-        self.instances.insert((index, k), value.clone());
-        value
-    }
-
-    /// A definition as symbols of its positions, where they stand for themselves.
-    fn position(&mut self, index: usize, k: Option<i64>) -> Option<Value> {
-        let value = self.known.as_ref()?.get(&(index, k))?.clone();
-        let positions = self.positions.as_ref()?;
-        let places = positions.places.clone();
-        let all = !value.scalars().is_empty()
-            && value.scalars().iter().all(|scalar| places.contains_key(scalar));
-        let symbol = |graph: &mut Graph, id: Id| match places.get(&id) {
-            Some(&place) => graph.symbol(Symbol::Position(place)),
-            None => id,
-        };
-        all.then(|| self.map(value, symbol))
-    }
-
-    /// A function defined by `let`, applied.
-    fn apply(&mut self, index: usize, arguments: Vec<Value>, range: Range) -> Value {
-        let definition = self.model.lets[index];
-        let names = definition.arguments.as_deref().unwrap_or_default();
-        if names.len() != arguments.len() {
-            return Value::Bad;
-        }
-        if self.open.iter().any(|&(other, _)| other == index) {
-            self.errors.once(definition.expr.source, range, messages::circular(&definition.name));
-            return Value::Bad;
-        }
-        self.open.push((index, None));
-        let bound = names.iter().map(|name| name::read(&name.to_string()).base);
-        let bound = bound.zip(arguments.into_iter().map(Local::Value)).collect();
-        let scope = std::mem::replace(&mut self.scope, bound);
-        let value = self.expr(&definition.expr);
-        self.scope = scope;
-        self.open.pop();
-        value
-    }
-
-    /// The whole numbers of a range; a bad or endless one is reported and empty.
-    fn range(&mut self, binder: &Binder) -> std::ops::Range<i64> {
-        let end = |lower: &mut Self, expr: &Expr| match lower.integer(expr) {
-            Ok(value) => Some(value),
-            Err(range) => {
-                lower.errors.once(
-                    expr.source,
-                    range,
-                    messages::unknown_number("the end of a range"),
-                );
-                None
-            }
-        };
-        let (Some(low), Some(high)) = (end(self, &binder.low), end(self, &binder.high)) else {
-            return 0..0;
-        };
-        let high = if binder.inclusive { high.saturating_add(1) } else { high };
-        if 65536 < high.saturating_sub(low) {
-            self.errors.once(
-                binder.high.source,
-                binder.high.range,
-                "this range has more than 65536 members; write a shorter one",
-            );
-            return 0..0;
-        }
-        low..high
-    }
-
-    fn index(&mut self, expr: &Expr, length: usize, name: &str) -> Option<i64> {
-        match self.integer(expr) {
-            Ok(k) if (0..length as i64).contains(&k) => Some(k),
-            Ok(k) => {
-                // A range that is too long is one mistake, however often its index is used.
-                let text = text(expr);
-                let source = match self.local(&name::read(&text).base) {
-                    Some(Local::Index { source, .. }) => *source,
-                    _ => expr.source,
-                };
-                self.errors.once(source, expr.range, outside(name, k, length));
-                None
-            }
-            Err(range) => {
-                self.errors.once(expr.source, range, messages::unknown_number("an index"));
-                None
-            }
-        }
-    }
-
-    /// The meaning of a name that holds in one expression.
-    fn local(&self, name: &str) -> Option<&Local> {
-        self.scope.iter().rev().find(|(own, _)| own == name).map(|(_, local)| local)
-    }
-
-    /// A whole number made of numbers and indices; the range that is none otherwise.
-    fn integer(&self, expr: &Expr) -> Result<i64, Range> {
-        let index = |name: &str| match self.local(name) {
-            Some(&Local::Index { value, .. }) => Some(value),
-            _ => None,
-        };
-        model::integer(expr, &index)
-    }
-
-    fn bind(&mut self, binder: &Binder, k: i64) {
-        self.scope.push((plain(binder), Local::Index { value: k, source: binder.high.source }));
-    }
-
-    fn unbind(&mut self) {
-        self.scope.pop();
-    }
-}
-
-fn plain(binder: &Binder) -> String {
-    name::read(&binder.name.to_string()).base
-}
-
-fn outside(name: &str, k: i64, length: usize) -> String {
-    format!(
-        "index {k} is out of range; `{name}` has {length} members, `{name}[0]` to `{name}[{}]`",
-        length - 1
-    )
 }

@@ -1,9 +1,10 @@
 //! Outputs to their scalars.
 
-use super::{Lower, Value};
+use super::context::Lower;
+use super::value::Value;
 use crate::algebra::expr::Id;
-use crate::messages;
-use crate::model;
+use crate::messages::lower as messages;
+use crate::model::{self, Quantity};
 use crate::syntax::ast::{Expr, Kind};
 use crate::syntax::text::text;
 
@@ -38,15 +39,11 @@ impl Lower<'_, '_, '_, '_> {
         };
         let range = self.range(binder);
         if range.is_empty() {
-            self.errors.once(
-                binder.high.source,
-                binder.high.range,
-                format!("`{name}` has no members; write a range such as `0..5`"),
-            );
+            let message = messages::empty_family(name);
+            self.errors.once(binder.high.source, binder.high.range, message);
         }
         if range.start != 0 && !range.is_empty() {
-            let message =
-                format!("the members of `{name}` are counted from 0; begin the range there");
+            let message = messages::late_first_member(name);
             self.errors.once(binder.low.source, binder.low.range, message);
         }
         let mut result = Output { members: Some(range.clone().count()), ..Output::default() };
@@ -74,11 +71,9 @@ impl Lower<'_, '_, '_, '_> {
             Value::Family(members) => {
                 if members.iter().any(|member| !matches!(member, Value::Scalar(_))) {
                     let (name, count) = (output.declared.name, members.len());
-                    let (text, unit) = (text(expr), messages::unit_of(&output.declared.unit));
-                    let message = format!(
-                        "`{text}` is a family of vectors; write `output {name}[k in 0..{count}]: [{unit}; 2] = {text}[k];`"
-                    );
-                    self.wrong(expr, &message);
+                    let unit = &output.declared.unit;
+                    let message = messages::family_of_vectors(&text(expr), name, count, unit);
+                    self.wrong(expr, message);
                     return None;
                 }
                 Some(members.len())
@@ -97,21 +92,9 @@ impl Lower<'_, '_, '_, '_> {
 
     /// Reports an output that is declared in another shape than it has.
     fn shape(&mut self, output: &model::Output, value: &Value, own: Option<usize>, expr: &Expr) {
-        let declared = match output.declared.length {
-            None => "as a scalar".to_owned(),
-            Some(length) => format!("with {length} components"),
-        };
-        let unit = messages::unit_of(&output.declared.unit);
-        let instead = match own {
-            None => unit.to_owned(),
-            Some(length) => format!("[{unit}; {length}]"),
-        };
-        let message = format!(
-            "`{}` is {}, but `{}` is declared {declared}; write `{instead}`",
-            text(expr),
-            value.kind(),
-            output.declared.name
-        );
-        self.wrong(expr, &message);
+        let Quantity { name, length, unit, .. } = &output.declared;
+        let (found, name) = (text(expr), name.to_string());
+        let message = messages::shape_of_output(&found, [value.kind(), &name], *length, own, unit);
+        self.wrong(expr, message);
     }
 }

@@ -1,14 +1,23 @@
 //! Every kind of expression to its value.
 
+use super::context::{Local, Lower};
 use super::value::Value;
-use super::{DEEPEST, LIMIT, Local, Lower};
 use crate::algebra::expr::{Graph, Id, Symbol};
 use crate::algebra::functions::{Function, Lowering, One, Two, Word};
-use crate::messages;
+use crate::messages::shared::function_without_arguments;
+use crate::messages::{Text, lower as messages};
 use crate::model::{self, Meaning};
 use crate::syntax::ast::{Binder, Expr, ExprKind};
 use crate::syntax::name::{self, Name};
 use crate::syntax::text::text;
+
+/// More evaluations, or operands in all expressions together, are refused: sums within sums would
+/// never end.
+const LIMIT: usize = 2_000_000;
+
+/// Expressions and definitions within one another beyond this are refused: they would overflow the
+/// compiler's stack.
+const DEEPEST: usize = 1000;
 
 impl Lower<'_, '_, '_, '_> {
     pub(super) fn scalar(&mut self, expr: &Expr) -> Option<Id> {
@@ -17,14 +26,7 @@ impl Lower<'_, '_, '_, '_> {
             Value::Bad => None,
             other => {
                 if self.vector_product(expr).is_none() {
-                    self.wrong(
-                        expr,
-                        &messages::no_scalar(
-                            &text(expr),
-                            other.kind(),
-                            "`inner(u, v)`, `|u|` or a component",
-                        ),
-                    );
+                    self.wrong(expr, messages::no_scalar(&text(expr), other.kind()));
                 }
                 None
             }
@@ -42,18 +44,13 @@ impl Lower<'_, '_, '_, '_> {
                     .map(text)
                     .collect();
                 let [a, b] = vectors.as_slice() else { return None };
-                let message = messages::no_scalar(
-                    &text(expr),
-                    "the complex product of two plane vectors",
-                    &format!("`inner({a}, {b})`"),
-                );
-                Some(self.wrong(expr, &message))
+                Some(self.wrong(expr, messages::product_of_plane_vectors(&text(expr), a, b)))
             }
             _ => None,
         }
     }
 
-    pub(super) fn wrong(&mut self, expr: &Expr, message: &str) -> Value {
+    pub(super) fn wrong(&mut self, expr: &Expr, message: Text) -> Value {
         self.errors.once(expr.source, expr.range, message);
         Value::Bad
     }
@@ -61,16 +58,11 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn expr(&mut self, expr: &Expr) -> Value {
         self.work += 1;
         if LIMIT < self.work || LIMIT < self.graph.size() {
-            self.errors.once(
-                0,
-                expr.range,
-                "this block unfolds to more than two million expressions; write shorter sums",
-            );
+            self.errors.once(0, expr.range, messages::long_block());
             return Value::Bad;
         }
         if DEEPEST <= self.depth {
-            let message = "definitions within definitions are nested too deeply here; write each `let` above its uses, and call fewer functions by functions";
-            self.errors.once(0, expr.range, message);
+            self.errors.once(0, expr.range, messages::deep_definitions());
             return Value::Bad;
         }
         self.depth += 1;
@@ -124,41 +116,51 @@ impl Lower<'_, '_, '_, '_> {
             }
         }
         match self.model.names.get(&base) {
-            Some(&Meaning::Parameter(index)) if dots == 0 && self.model.parameters[index].body => self.wrong(
-                expr,
-                &format!(
-                    "`{text}` is a body; write `{text}.mass`, `{text}.center`, `{text}.inertia` or `integral(p in {text}, …)`"
-                ),
-            ),
+            Some(&Meaning::Parameter(index)) if dots == 0 && self.model.parameters[index].body => {
+                self.wrong(expr, messages::whole_body(text))
+            }
             Some(&Meaning::Parameter(index)) if dots == 0 => {
                 self.whole.insert(index);
                 self.quantity(&self.model.parameters[index], Symbol::Parameter)
             }
-            Some(&Meaning::Coordinate(index)) if dots == 0 => self.quantity(&self.model.coordinates[index], Symbol::Coordinate),
-            Some(&Meaning::Coordinate(index)) if dots == 1 => self.quantity(&self.model.coordinates[index], Symbol::Velocity),
+            Some(&Meaning::Coordinate(index)) if dots == 0 => {
+                self.quantity(&self.model.coordinates[index], Symbol::Coordinate)
+            }
+            Some(&Meaning::Coordinate(index)) if dots == 1 => {
+                self.quantity(&self.model.coordinates[index], Symbol::Velocity)
+            }
             Some(&Meaning::Coordinate(index)) if dots == 2 && self.accelerations => {
                 self.quantity(&self.model.coordinates[index], Symbol::Acceleration)
             }
             Some(&Meaning::Input(input)) if dots == 0 && self.model.is_control(input) => {
                 let quantity = &self.model.inputs[input];
                 let first = quantity.first;
-                self.quantity(quantity, |scalar| Symbol::Control { input, component: scalar - first })
+                self.quantity(quantity, |scalar| Symbol::Control {
+                    input,
+                    component: scalar - first,
+                })
             }
             Some(&Meaning::Input(input)) if dots <= 2 && !self.model.is_control(input) => {
                 let quantity = &self.model.inputs[input];
                 let first = quantity.first;
-                self.quantity(quantity, |scalar| Symbol::Input { input, component: scalar - first, order: dots })
+                self.quantity(quantity, |scalar| Symbol::Input {
+                    input,
+                    component: scalar - first,
+                    order: dots,
+                })
             }
             Some(&Meaning::Let(index)) => {
                 let definition = self.model.lets[index];
                 if definition.arguments.is_some() {
-                    return self.wrong(expr, &format!("`{text}` is a function; write `{text}(…)`"));
+                    return self.wrong(expr, function_without_arguments(text));
                 }
                 let value = match &definition.index {
                     None => self.definition(index, None, expr.range),
-                    Some(binder) => {
-                        Value::Family(self.range(binder).map(|k| self.definition(index, Some(k), expr.range)).collect())
-                    }
+                    Some(binder) => Value::Family(
+                        self.range(binder)
+                            .map(|k| self.definition(index, Some(k), expr.range))
+                            .collect(),
+                    ),
                 };
                 self.dotted(value, dots, expr)
             }
@@ -224,10 +226,7 @@ impl Lower<'_, '_, '_, '_> {
             if let Value::Space(_) = value {
                 if let (Value::Space(_), Some(left), false) = (&total, vector, *over) {
                     let (a, b) = (text(left), text(item));
-                    let message = format!(
-                        "the product of two space vectors is ambiguous; write `inner({a}, {b})` or `cross({a}, {b})`"
-                    );
-                    return self.wrong(item, &message);
+                    return self.wrong(item, messages::product_of_space_vectors(&a, &b));
                 }
                 vector = Some(item);
             }
@@ -283,27 +282,13 @@ impl Lower<'_, '_, '_, '_> {
                 Value::Plane { parts: [x, y], complex } => {
                     Value::Plane { parts: [self.graph.negative(y), x], complex }
                 }
-                other => self.wrong(
-                    item,
-                    &format!(
-                        "`{}` is {}, and a quarter turn needs a plane vector; write `perp([x, y])`",
-                        text(item),
-                        other.kind()
-                    ),
-                ),
+                other => self.wrong(item, messages::no_quarter_turn(&text(item), other.kind())),
             },
             One::Height => match self.expr(item) {
                 Value::Bad => Value::Bad,
                 Value::Plane { parts, .. } => Value::Scalar(parts[1]),
                 Value::Space(parts) => Value::Scalar(parts[2]),
-                other => self.wrong(
-                    item,
-                    &format!(
-                        "`{}` is {}, and a height is that of a vector; write the scalar itself",
-                        text(item),
-                        other.kind()
-                    ),
-                ),
+                other => self.wrong(item, messages::no_height(&text(item), other.kind())),
             },
         }
     }
@@ -342,24 +327,14 @@ impl Lower<'_, '_, '_, '_> {
             }
             Value::Scalar(id) => Value::Scalar(self.graph.call(Function::Exp, id)),
             Value::Bad => Value::Bad,
-            other => self.wrong(
-                item,
-                &format!(
-                    "`{}` is {}, but the exponent is a number; write `exp(i*φ)` for a turn",
-                    text(item),
-                    other.kind()
-                ),
-            ),
+            other => self.wrong(item, messages::exponential_of_vector(&text(item), other.kind())),
         }
     }
 
     pub(super) fn vector(&mut self, items: &[Expr], expr: &Expr) -> Value {
         let parts: Vec<Option<Id>> = items.iter().map(|item| self.scalar(item)).collect();
         if !(2..=3).contains(&parts.len()) {
-            return self.wrong(
-                expr,
-                &format!("a vector has two or three components; {} stand here", items.len()),
-            );
+            return self.wrong(expr, messages::no_vector(items.len()));
         }
         match *parts.as_slice() {
             [Some(x), Some(y)] => Value::Plane { parts: [x, y], complex: false },
@@ -390,15 +365,10 @@ impl Lower<'_, '_, '_, '_> {
                 let k = match self.integer(index) {
                     Ok(k) if range.contains(&k) => k,
                     Ok(k) => {
-                        let message = format!(
-                            "`{text}[{k}]` does not exist; `{text}` is defined for {} to {}",
-                            range.start,
-                            range.end - 1
-                        );
-                        return self.wrong(index, &message);
+                        return self.wrong(index, messages::index_of_definition(&text, k, &range));
                     }
                     Err(_) => {
-                        return self.wrong(index, &messages::unknown_number("an index"));
+                        return self.wrong(index, messages::open_index());
                     }
                 };
                 let mut value = self.definition(definition, Some(k), base.range);
@@ -415,13 +385,7 @@ impl Lower<'_, '_, '_, '_> {
             Value::Plane { parts, .. } => parts.map(Value::Scalar).to_vec(),
             Value::Space(parts) => parts.map(Value::Scalar).to_vec(),
             Value::Scalar(_) => {
-                return self.wrong(
-                    base,
-                    &format!(
-                        "`{}` is a scalar, it has no members; leave out the index",
-                        text(base)
-                    ),
-                );
+                return self.wrong(base, messages::index_of_scalar(&text(base)));
             }
         };
         match self.index(index, members.len(), &text(base)) {
@@ -462,14 +426,7 @@ impl Lower<'_, '_, '_, '_> {
             Value::Bad => Value::Bad,
             Value::Plane { parts, .. } if which < 2 => Value::Scalar(parts[which]),
             Value::Space(parts) => Value::Scalar(parts[which]),
-            other => self.wrong(
-                expr,
-                &format!(
-                    "`{}` is {}, it has no `.{component}`; write a vector",
-                    text(base),
-                    other.kind()
-                ),
-            ),
+            other => self.wrong(expr, messages::no_component(&text(base), other.kind(), component)),
         }
     }
 }

@@ -9,7 +9,8 @@ use crate::algebra::functions::{UnitRule, Word};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::messages::Errors;
-use crate::model::{self, Meaning, Model};
+use crate::messages::unit::{self as messages, Pure, Whole};
+use crate::model::resolved::{Meaning, Model, Quantity};
 use crate::syntax::ast::{self, Binder, Expr, ExprKind, ForceIndex, Role};
 use crate::syntax::name::{self, Name};
 use crate::syntax::text::text;
@@ -138,12 +139,11 @@ impl Units<'_, '_, '_> {
                 Some((expected, first)) => {
                     if !self.unify(&found, expected) {
                         let (found, expected) = (self.shown(&found), self.shown(expected));
-                        let per = if role == Role::Dissipation { " times a second" } else { "" };
-                        let message = format!(
-                            "`{}`{per} is {found}, but `{}` is {expected}; all energies of a block have one unit",
-                            text(expr),
-                            text(first)
-                        );
+                        let message = match role {
+                            Role::Dissipation => messages::other_dissipation,
+                            _ => messages::other_energy,
+                        };
+                        let message = message(&text(expr), &found, &text(first), &expected);
                         self.errors.once(expr.source, expr.range, message);
                     }
                 }
@@ -175,11 +175,8 @@ impl Units<'_, '_, '_> {
                 && !self.unify(&found, &expected)
             {
                 let (found, expected) = (self.shown(&found), self.shown(&expected));
-                let message = format!(
-                    "`{}` is {found}, but a force on `{}` is {expected}, an energy per unit of the coordinate",
-                    text(force.expr),
-                    force.name
-                );
+                let message =
+                    messages::other_force(&text(force.expr), &found, force.name, &expected);
                 self.errors.once(force.expr.source, force.expr.range, message);
             }
         }
@@ -187,30 +184,31 @@ impl Units<'_, '_, '_> {
 
     fn constraints(&mut self) {
         for constraint in &self.model.constraints {
-            let found = self.sides(constraint.index.as_ref(), &constraint.difference, "constraint");
+            let found =
+                self.sides(constraint.index.as_ref(), &constraint.difference, Whole::Constraint);
             self.constraints.push(found);
         }
     }
 
     fn limits(&mut self) {
         for limit in &self.model.limits {
-            self.sides(limit.index.as_ref(), &limit.difference, "limit");
+            self.sides(limit.index.as_ref(), &limit.difference, Whole::Limit);
             let depth = self.scope.len();
             if let Some(binder) = &limit.index {
                 self.scope.push((name::read(&binder.name.to_string()).base, Some(Unit::pure())));
             }
-            self.pure(&limit.restitution, "a restitution");
+            self.pure(&limit.restitution, Pure::Restitution);
             self.scope.truncate(depth);
         }
     }
 
     /// The common unit of the two sides of a constraint or a limit.
-    fn sides(&mut self, index: Option<&Binder>, difference: &Expr, what: &str) -> Found {
+    fn sides(&mut self, index: Option<&Binder>, difference: &Expr, whole: Whole) -> Found {
         let depth = self.scope.len();
         if let Some(binder) = index {
             self.scope.push((name::read(&binder.name.to_string()).base, Some(Unit::pure())));
         }
-        let found = self.common(difference.sides().into_iter(), &format!("a {what}"));
+        let found = self.common(difference.sides().into_iter(), whole);
         self.scope.truncate(depth);
         found
     }
@@ -247,7 +245,7 @@ impl Units<'_, '_, '_> {
             .limits
             .iter()
             .map(|limit| {
-                let found = self.sides(limit.index.as_ref(), &limit.difference, "limit");
+                let found = self.sides(limit.index.as_ref(), &limit.difference, Whole::Limit);
                 shown(self, &found).unwrap_or_default()
             })
             .collect();
@@ -267,12 +265,8 @@ impl Units<'_, '_, '_> {
                 && !self.unify(&found, &Unit::of(declared))
             {
                 let found = self.shown(&found);
-                let message = format!(
-                    "`{}` is {found}, but `{}` is declared in {}",
-                    text(expr),
-                    output.declared.name,
-                    output.declared.unit
-                );
+                let Quantity { name, unit, .. } = &output.declared;
+                let message = messages::other_output(&text(expr), &found, name, unit);
                 self.errors.once(expr.source, expr.range, message);
             }
         }
@@ -314,7 +308,7 @@ impl Units<'_, '_, '_> {
         found
     }
 
-    fn quantity(unknown: usize, quantity: &model::Quantity) -> Unit {
+    fn quantity(unknown: usize, quantity: &Quantity) -> Unit {
         match quantity.dimension {
             Some(known) => Unit::of(known),
             None => {
@@ -363,33 +357,24 @@ impl Units<'_, '_, '_> {
         let quantities =
             self.model.parameters.iter().chain(&self.model.coordinates).chain(&self.model.inputs);
         let names: Vec<String> = quantities.map(|quantity| quantity.name.to_string()).collect();
-        let unknown: Vec<String> = resolved
-            .unknown
-            .keys()
-            .map(|&index| format!("the unit of `{}`", names[index]))
-            .collect();
-        format!("{} times {}", resolved.known, unknown.join(" and "))
+        let unknown: Vec<&str> =
+            resolved.unknown.keys().map(|&index| names[index].as_str()).collect();
+        messages::open_unit(resolved.known, &unknown)
     }
 
     /// Reports a unit that is not pure.
-    fn pure(&mut self, expr: &Expr, what: &str) {
+    fn pure(&mut self, expr: &Expr, place: Pure) {
         if let Some(unit) = self.expr(expr)
             && !self.unify(&unit, &Unit::pure())
         {
             let unit = self.shown(&unit);
-            self.errors.once(
-                expr.source,
-                expr.range,
-                format!(
-                    "`{}` is {unit}, but {what} is a pure number; divide by a unit of its kind",
-                    text(expr)
-                ),
-            );
+            let message = messages::impure(&text(expr), &unit, place);
+            self.errors.once(expr.source, expr.range, message);
         }
     }
 
     /// The common unit of several expressions; the first that differs is reported.
-    fn common<'x>(&mut self, items: impl Iterator<Item = &'x Expr>, what: &str) -> Found {
+    fn common<'x>(&mut self, items: impl Iterator<Item = &'x Expr>, whole: Whole) -> Found {
         let mut common: Option<(Unit, &Expr)> = None;
         for item in items {
             let Some(found) = self.expr(item) else { continue };
@@ -397,13 +382,10 @@ impl Units<'_, '_, '_> {
                 None => common = Some((found, item)),
                 Some((expected, first)) => {
                     if !self.unify(&found, expected) {
-                        let message = format!(
-                            "`{}` is {}, but `{}` is {}; {what} needs one unit",
-                            text(item),
-                            self.shown(&found),
-                            text(first),
-                            self.shown(expected)
-                        );
+                        let units = [&found, expected].map(|unit| self.shown(unit));
+                        let texts = [item, first].map(text);
+                        let message =
+                            messages::other_part(&texts[0], &units[0], &texts[1], &units[1], whole);
                         self.errors.once(item.source, item.range, message);
                         return None;
                     }
@@ -428,7 +410,7 @@ impl Units<'_, '_, '_> {
             ExprKind::Number(Literal::Exact(Rational::ZERO)) => None,
             ExprKind::Number(_) => Some(Unit::pure()),
             ExprKind::Name(ident) => self.name(&ident.to_string()),
-            ExprKind::Sum(items) => self.common(items.iter().map(|(_, item)| item), "a sum"),
+            ExprKind::Sum(items) => self.common(items.iter().map(|(_, item)| item), Whole::Sum),
             ExprKind::Product(items) => {
                 let mut product = Some(Unit::pure());
                 for (over, item) in items {
@@ -456,12 +438,12 @@ impl Units<'_, '_, '_> {
                 if let Some(power) = constant(exponent) {
                     return self.expr(base).and_then(|unit| Unit::pure().times(&unit, power));
                 }
-                self.pure(base, "the base of a power with a non-constant exponent");
-                self.pure(exponent, "an exponent");
+                self.pure(base, Pure::Base);
+                self.pure(exponent, Pure::Exponent);
                 Some(Unit::pure())
             }
             ExprKind::Call(name, items) => self.call(&name.to_string(), items),
-            ExprKind::Vector(items) => self.common(items.iter(), "a vector"),
+            ExprKind::Vector(items) => self.common(items.iter(), Whole::Vector),
             ExprKind::SumOver(binder, term) => {
                 self.scope.push((name::read(&binder.name.to_string()).base, Some(Unit::pure())));
                 let found = self.expr(term);
@@ -546,9 +528,9 @@ impl Units<'_, '_, '_> {
                 self.expr(item);
                 Some(Unit::pure())
             }
-            (UnitRule::Common, items) => self.common(items.iter(), &format!("`{name}`")),
+            (UnitRule::Common, items) => self.common(items.iter(), Whole::Function(name)),
             (UnitRule::Ratio, items) => {
-                self.common(items.iter(), &format!("`{name}`"));
+                self.common(items.iter(), Whole::Function(name));
                 Some(Unit::pure())
             }
             // The number of arguments has been reported, if it is wrong.
@@ -562,7 +544,7 @@ impl Units<'_, '_, '_> {
                 _,
             ) => {
                 for item in items {
-                    self.pure(item, &format!("the argument of `{name}`"));
+                    self.pure(item, Pure::Argument(name));
                 }
                 Some(Unit::pure())
             }

@@ -5,23 +5,26 @@ pub(crate) mod infer;
 use crate::algebra::dimension::Dimension;
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
-use crate::messages::Errors;
+use crate::messages::{Errors, Text, unit as messages};
 use crate::syntax::ast::{Expr, ExprKind};
+use crate::syntax::elsewhere;
 
 /// Reads a unit expression; reports what is no unit.
 pub(crate) fn dimension(expr: &Expr, errors: &mut Errors) -> Option<Dimension> {
-    let refuse = |errors: &mut Errors, what: &str| {
-        errors.once(
-            expr.source,
-            expr.range,
-            format!("{what}; a unit is a product, quotient or power of `kg`, `m`, `s`, `rad`, `N`, `J`, `W`, `Hz`, `A`, `V`, `C`, `F`, `H`, `ohm`, `T`, `K` and `1`"),
-        );
+    let refuse = |errors: &mut Errors, message: Text| {
+        errors.once(expr.source, expr.range, message);
         None
     };
     match &expr.kind {
         ExprKind::Name(name) => {
             let text = name.to_string();
-            Dimension::of(&text).or_else(|| refuse(errors, &format!("unknown unit `{text}`")))
+            Dimension::of(&text).or_else(|| {
+                let message = match elsewhere::unit(&text) {
+                    Some(unit) => messages::untranslated_unit(&text, unit.instead, unit.factor),
+                    None => messages::unknown_unit(&text),
+                };
+                refuse(errors, message)
+            })
         }
         ExprKind::Number(Literal::Exact(Rational::ONE)) => Some(Dimension::PURE),
         ExprKind::Product(factors) => {
@@ -34,10 +37,10 @@ pub(crate) fn dimension(expr: &Expr, errors: &mut Errors) -> Option<Dimension> {
         }
         ExprKind::Power(base, exponent) => match constant(exponent) {
             Some(power) => Dimension::PURE.times(dimension(base, errors)?, power),
-            None => refuse(errors, "this exponent is no number"),
+            None => refuse(errors, messages::open_exponent()),
         },
-        ExprKind::Number(_) => refuse(errors, "a number is no unit"),
-        _ => refuse(errors, "this is no unit"),
+        ExprKind::Number(_) => refuse(errors, messages::number_as_unit()),
+        _ => refuse(errors, messages::no_unit()),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::Parser;
 use super::token::{end, identifier, skip, unexpected};
 use crate::algebra::number::Literal;
-use crate::messages::Range;
+use crate::messages::{Range, expected, syntax as messages};
 use crate::syntax::ast::{Block, Expr, ExprKind, Field, Kind, Recovery};
 use crate::syntax::text::text;
 use proc_macro2::{Ident, TokenStream, TokenTree};
@@ -17,16 +17,12 @@ impl Parser<'_> {
         let attributes = input.call(Attribute::parse_outer)?;
         let visibility: Visibility = input.parse()?;
         if !input.peek(Token![struct]) {
-            return Err(Range::from(input.span()).error(
-                "a block begins with its struct; write `pub struct Name { … }` with the parameters",
-            ));
+            return Err(Range::from(input.span()).error(messages::missing_struct()));
         }
         input.parse::<Token![struct]>()?;
-        let name = identifier(input, "the name of the struct")?;
+        let name = identifier(input, expected::STRUCT)?;
         if !input.peek(syn::token::Brace) {
-            return Err(Range::from(input.span()).error(
-                "the parameters are missing; write `{ m: kg, L: m }` after the name of the struct",
-            ));
+            return Err(Range::from(input.span()).error(messages::missing_parameters()));
         }
         let content;
         braced!(content in input);
@@ -82,12 +78,11 @@ impl Parser<'_> {
         let conditional = |attribute: &Attribute| attribute.path().is_ident("cfg");
         if let Some(attribute) = attributes.iter().find(|attribute| conditional(attribute)) {
             let range = Range { first: attribute.pound_token.spans[0], last: attribute.span() };
-            let message = "`cfg` has no place on a parameter, which the equations need in every build; write it above the struct";
-            self.errors.at(range, message);
+            self.errors.at(range, messages::conditional_parameter());
         }
         attributes.retain(|attribute| !conditional(attribute));
         let _: Visibility = input.parse()?;
-        let name = self.declared(input, "the name of a parameter")?;
+        let name = self.declared(input, expected::PARAMETER)?;
         let kind = self.declared_kind(input, &name)?;
         let default = if input.peek(Token![=]) {
             input.parse::<Token![=]>()?;
@@ -96,7 +91,7 @@ impl Parser<'_> {
             None
         };
         if !input.is_empty() && !input.peek(Token![,]) {
-            return Err(unexpected(input, "`,`"));
+            return Err(unexpected(input, expected::COMMA));
         }
         if !input.is_empty() {
             input.parse::<Token![,]>()?;
@@ -118,9 +113,7 @@ impl Parser<'_> {
             } else {
                 "_".to_owned()
             };
-            let message =
-                format!("the length stands with the unit; write `{name}: [{unit}; {length}]`");
-            return Err(brackets.error(message));
+            return Err(brackets.error(messages::misplaced_length(name, &unit, &length)));
         }
         if !input.peek(Token![:]) {
             return Ok(Kind::Scalar(None));
@@ -135,7 +128,8 @@ impl Parser<'_> {
             bracketed!(content in input);
             if content.peek(Token![;]) {
                 let place = Range::from(content.parse::<Token![;]>()?.span());
-                return Err(place.error(unit_missing(&content.parse::<TokenStream>()?.to_string())));
+                let length = content.parse::<TokenStream>()?.to_string();
+                return Err(place.error(messages::missing_unit(&length)));
             }
             let unit = self.unit(&content)?;
             if !content.peek(Token![;]) {
@@ -170,7 +164,7 @@ fn no_length(content: ParseStream, unit: Option<&Expr>) -> syn::Error {
         Some(Expr { kind: ExprKind::Number(Literal::Exact(length)), range, .. })
             if content.is_empty() =>
         {
-            range.error(unit_missing(&length.to_string()))
+            range.error(messages::missing_unit(&length.to_string()))
         }
         Some(unit) if content.peek(Token![,]) => {
             let place = Range::from(content.span());
@@ -181,20 +175,8 @@ fn no_length(content: ParseStream, unit: Option<&Expr>) -> syn::Error {
                 .collect::<Vec<_>>();
             let length = commas.iter().filter(|comma| **comma).count()
                 + usize::from(commas.last() == Some(&false));
-            place.error(format!(
-                "all components have one unit; write `[{}; {}]` for a vector",
-                text(unit),
-                length.max(2)
-            ))
+            place.error(messages::units_of_components(&text(unit), length.max(2)))
         }
-        _ => Range::from(content.span())
-            .error("a length is missing; write `[m; 2]` for a vector, `[kg; 5]` for a family"),
+        _ => Range::from(content.span()).error(messages::missing_length()),
     }
-}
-
-fn unit_missing(length: &str) -> String {
-    let length = if length.is_empty() { "2" } else { length };
-    format!(
-        "a unit is missing; write `[m; {length}]`, or `[_; {length}]` for a vector without a unit"
-    )
 }

@@ -1,11 +1,11 @@
 //! Expressions: operators by descending precedence, then names, calls and numbers.
 
-use super::foreign::{FOREIGN, no_condition, no_unit, path};
+use super::foreign::{no_condition, path};
 use super::token::{checked, comma, constraint_name, end, fragment, identifier, unexpected};
 use super::{Parser, to_the_last};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
-use crate::messages::{self, Range};
+use crate::messages::{Range, expected, syntax as messages};
 use crate::syntax::ast::{Expr, ExprKind};
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use quote::ToTokens;
@@ -33,8 +33,7 @@ impl Parser<'_> {
         let outside = std::mem::replace(&mut self.barred, barred);
         self.depth += 1;
         let result = if DEPTH < self.depth {
-            Err(Range::from(input.span())
-                .error("this expression is nested too deeply; name a part of it with `let`"))
+            Err(Range::from(input.span()).error(messages::deep_expression()))
         } else {
             self.sum(input)
         };
@@ -68,7 +67,7 @@ impl Parser<'_> {
             let over = input.peek(Token![/]);
             input.parse::<TokenTree>()?;
             if input.peek(Token![*]) {
-                return Err(Range::from(input.span()).error("`**` is not an operator; write `^`"));
+                return Err(Range::from(input.span()).error(messages::double_star()));
             }
             factors.push((over, self.unary(input)?));
         }
@@ -84,7 +83,7 @@ impl Parser<'_> {
         let sign: Range = input.parse::<TokenTree>()?.span().into();
         self.depth += 1;
         let operand = if DEPTH < self.depth {
-            Err(Range::from(input.span()).error("too many signs in a row; write one"))
+            Err(Range::from(input.span()).error(messages::many_signs()))
         } else {
             self.unary(input)
         };
@@ -103,7 +102,7 @@ impl Parser<'_> {
         input.parse::<Token![^]>()?;
         self.depth += 1;
         let exponent = if DEPTH < self.depth {
-            Err(Range::from(input.span()).error("too many powers in a row; name a part with `let`"))
+            Err(Range::from(input.span()).error(messages::many_powers()))
         } else {
             self.unary(input)
         };
@@ -125,7 +124,7 @@ impl Parser<'_> {
                 expr = self.node(ExprKind::Index(Box::new(expr), Box::new(index)), range);
             } else if input.peek(Token![.]) && !input.peek(Token![..]) {
                 input.parse::<Token![.]>()?;
-                let component = identifier(input, "a component, `x`, `y` or `z`")?;
+                let component = identifier(input, expected::COMPONENT)?;
                 if input.peek(syn::token::Paren) {
                     return Err(self.method(input, expr, &component));
                 }
@@ -166,7 +165,7 @@ impl Parser<'_> {
             let inner = self.expr_in(input, true)?;
             no_condition(input)?;
             if !input.peek(Token![|]) {
-                return Err(Range::from(open.span()).error("this `|` is not closed; write `|u|`"));
+                return Err(Range::from(open.span()).error(messages::unclosed_bar()));
             }
             let close = input.parse::<Token![|]>()?;
             let range = Range { first: open.span(), last: close.span() };
@@ -182,15 +181,12 @@ impl Parser<'_> {
             let dot = Range::from(input.parse::<Token![.]>()?.span());
             let digits: Lit = input.parse()?;
             let range = dot.to(digits.span().into());
-            return Err(range.error(format!(
-                "a number begins with a digit; write `0.{}`",
-                digits.to_token_stream()
-            )));
+            return Err(range.error(messages::leading_point(digits.to_token_stream())));
         }
         if input.is_empty() {
-            return Err(Range::from(input.span()).error("an expression is missing here"));
+            return Err(Range::from(input.span()).error(messages::missing_expression()));
         }
-        Err(unexpected(input, "a number, a name, `(`, `[` or `|`"))
+        Err(unexpected(input, expected::EXPRESSION))
     }
 
     /// The contents of a fragment, up to its end.
@@ -213,8 +209,8 @@ impl Parser<'_> {
         if name == "reaction" && input.peek(syn::token::Paren) {
             return self.reaction(input, name.span().into());
         }
-        if let Some(row) = FOREIGN.iter().find(|row| name == row.0) {
-            return Err(Range::from(name.span()).error(messages::rust(&name, row.1)));
+        if let Some(message) = messages::rust_word(&name.to_string()) {
+            return Err(Range::from(name.span()).error(message));
         }
         if input.peek(Token![::]) {
             return Err(path(input, Some(&name), self.ascii));
@@ -233,13 +229,12 @@ impl Parser<'_> {
             end(&content)?;
             ExprKind::SumOver(Box::new(binder), Box::new(term))
         } else if name == "integral" {
-            let point =
-                identifier(&content, "the point of integration; write `integral(p in B, …)`")?;
+            let point = identifier(&content, expected::POINT)?;
             if !content.peek(Token![in]) {
-                return Err(unexpected(&content, "`in` and the name of a body"));
+                return Err(unexpected(&content, expected::IN_BODY));
             }
             content.parse::<Token![in]>()?;
-            let body = identifier(&content, "the name of a body")?;
+            let body = identifier(&content, expected::BODY)?;
             comma(&content)?;
             let integrand = Box::new(self.expr(&content)?);
             end(&content)?;
@@ -266,7 +261,7 @@ impl Parser<'_> {
         let mut expr = self.node(ExprKind::Reaction(name, index), range);
         if content.peek(Token![.]) {
             content.parse::<Token![.]>()?;
-            let component = identifier(&content, "a component, `x`, `y` or `z`")?;
+            let component = identifier(&content, expected::COMPONENT)?;
             expr = self.node(ExprKind::Component(Box::new(expr), component), range);
         }
         end(&content)?;
@@ -306,18 +301,16 @@ impl Parser<'_> {
                 (literal.base10_digits().to_owned(), literal.suffix().to_owned())
             }
             _ => {
-                return Err(Range::from(span).error(
-                    "only numbers and names can stand in a formula; write a number such as `9.81`",
-                ));
+                return Err(Range::from(span).error(messages::literal()));
             }
         };
         if !suffix.is_empty() {
             let message = if suffix == "f32" || suffix == "f64" {
-                format!("numbers here are exact and have no suffix; write `{digits}`")
+                messages::suffix_of_type(&digits)
             } else if self.is_unit(Some(&suffix), input) {
-                no_unit()
+                messages::suffix_of_unit()
             } else {
-                messages::no_operator(&format!("`{digits}*{suffix}`"))
+                messages::suffix_of_name(&digits, &suffix)
             };
             return Err(Range::from(span).error(message));
         }
@@ -325,8 +318,7 @@ impl Parser<'_> {
             Some(value) => Literal::Exact(value),
             None if digits.parse::<f64>().is_ok_and(f64::is_finite) => Literal::Decimal(digits),
             None => {
-                return Err(Range::from(span)
-                    .error("this number is beyond the range of `f64`; write a smaller one"));
+                return Err(Range::from(span).error(messages::huge_number()));
             }
         };
         Ok(self.node(ExprKind::Number(literal), span.into()))

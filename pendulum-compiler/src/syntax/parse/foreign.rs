@@ -5,9 +5,9 @@ use super::statement::STATEMENTS;
 use super::token::fragment;
 use crate::algebra::dimension::Dimension;
 use crate::algebra::functions::Word;
-use crate::messages::{self, Range, TELL_CASES_APART, UNITS};
+use crate::messages::{Range, syntax as messages};
 use crate::syntax::ast::{Expr, ExprKind};
-use crate::syntax::elsewhere::{constant, function};
+use crate::syntax::elsewhere::{self, constant, function};
 use crate::syntax::name;
 use crate::syntax::text::text;
 use proc_macro2::{Delimiter, Ident, TokenTree};
@@ -15,34 +15,15 @@ use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Result};
 use syn::{Lifetime, Lit, Token, parenthesized};
 
-/// Words that begin Rust expressions, and what to write instead.
-#[rustfmt::skip]
-pub(super) const FOREIGN: &[(&str, &str)] = &[
-    ("if", TELL_CASES_APART),
-    ("match", TELL_CASES_APART),
-    ("for", "write `sum(k in 0..5, …)`"),
-    ("while", "write `sum(k in 0..5, …)`"),
-    ("loop", "write `sum(k in 0..5, …)`"),
-    ("return", "leave it out"),
-    ("unsafe", "leave it out"),
-    ("move", "leave it out"),
-];
-
-/// The mistake in a number that has a unit.
-pub(super) fn no_unit() -> String {
-    format!("a number in a formula has no unit; {UNITS}")
-}
-
 impl Parser<'_> {
     /// Two operands side by side: there is no implicit multiplication.
     pub(super) fn no_operand(&self, input: ParseStream, left: &Expr) -> Result<()> {
         if input.peek(Token![as]) {
-            return Err(Range::from(input.span()).error(messages::rust("as", "leave the type out")));
+            return Err(Range::from(input.span()).error(messages::rust_conversion()));
         }
         if let (ExprKind::Name(name), true) = (&left.kind, input.peek(Lifetime)) {
-            let message =
-                format!("`'` is no derivative; write {}", name::dotted(&name.to_string()));
-            return Err(Range::from(input.span()).error(message));
+            let velocity = name::dotted(&name.to_string());
+            return Err(Range::from(input.span()).error(messages::prime(&velocity)));
         }
         if fragment(input).is_some()
             || input.peek(Token![|]) && !self.barred
@@ -53,35 +34,29 @@ impl Parser<'_> {
             let token = input.fork().parse::<TokenTree>()?;
             let right = Range::from(token.span());
             if STATEMENTS.iter().any(|word| token.to_string() == *word) {
-                return Err(right.error(format!(
-                    "`;` is missing before `{token}`; end the statement above with `;`"
-                )));
+                return Err(right.error(messages::missing_end_before(token)));
             }
             return Err(match (&left.kind, &token) {
                 (_, TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis => {
-                    match &left.kind {
-                        ExprKind::Name(_) | ExprKind::Number(_) => Range::from(group.span_open())
-                            .error(messages::no_operator("`*` before `(`")),
-                        _ => Range::from(group.span_open())
-                            .error("an operator is missing before `(`; write `*` to multiply"),
-                    }
+                    Range::from(group.span_open()).error(match &left.kind {
+                        ExprKind::Name(_) | ExprKind::Number(_) => messages::implicit_product("("),
+                        _ => messages::missing_operator(),
+                    })
                 }
                 (ExprKind::Name(name), _) if self.is_function(name) => {
                     let count = Word::named(&name.to_string()).map_or(1, Word::arity);
                     let arguments = match token {
                         TokenTree::Ident(_) | TokenTree::Literal(_) if count == 1 => {
-                            token.to_string()
+                            vec![token.to_string()]
                         }
-                        _ => vec!["…"; count].join(", "),
+                        _ => vec!["…".to_owned(); count],
                     };
-                    let (plural, verb) = if count == 1 { ("", "stands") } else { ("s", "stand") };
-                    let message = format!(
-                        "the argument{plural} of `{name}` {verb} in parentheses; write `{name}({arguments})`"
-                    );
-                    right.error(message)
+                    right.error(messages::unbracketed_arguments(name, &arguments))
                 }
-                (ExprKind::Number(_), _) if self.is_unit(None, input) => right.error(no_unit()),
-                _ => right.error(messages::no_operator(&format!("`*` before `{token}`"))),
+                (ExprKind::Number(_), _) if self.is_unit(None, input) => {
+                    right.error(messages::suffix_of_unit())
+                }
+                _ => right.error(messages::implicit_product(token)),
             });
         }
         Ok(())
@@ -117,13 +92,8 @@ impl Parser<'_> {
             return Ok(());
         };
         let inverse = format!("a{name}");
-        let instead = if power == "-1" && takes(&inverse, 1) {
-            format!("`{inverse}({argument})`, or `1/{name}({argument})`")
-        } else {
-            format!("`{name}({argument})^{power}`")
-        };
-        let message =
-            format!("a function is raised to a power after its argument; write {instead}");
+        let inverse = Some(inverse.as_str()).filter(|inverse| power == "-1" && takes(inverse, 1));
+        let message = messages::powered_function(name, &argument, &power, inverse);
         Err(base.range.to(last.into()).error(message))
     }
 
@@ -145,7 +115,10 @@ impl Parser<'_> {
                 },
             };
             match (Dimension::of(&next), self.is_declared(&next)) {
-                (None, _) => return false,
+                (None, declared) => {
+                    let unit = 1 < next.chars().count() && elsewhere::unit(&next).is_some();
+                    return unit && !declared && Word::named(&next).is_none();
+                }
                 (Some(_), false) => return true,
                 (Some(_), true) => {}
             }
@@ -156,7 +129,7 @@ impl Parser<'_> {
     pub(super) fn method(&mut self, input: ParseStream, base: Expr, name: &Ident) -> syn::Error {
         let method = name.to_string();
         let mut operands = vec![base];
-        let instead = match self.arguments(input) {
+        let translation = match self.arguments(input) {
             Ok(arguments) => {
                 operands.extend(arguments);
                 let list = || operands.iter().map(text).collect::<Vec<_>>().join(", ");
@@ -165,12 +138,7 @@ impl Parser<'_> {
             }
             Err(_) => None,
         };
-        let instead = instead.map_or_else(
-            || "a function of the language, as in `sin(θ)`".to_owned(),
-            |call| format!("`{call}`"),
-        );
-        Range::from(name.span())
-            .error(messages::rust(format!(".{method}()"), &format!("write {instead}")))
+        Range::from(name.span()).error(messages::rust_method(&method, translation.as_deref()))
     }
 
     /// The expressions between a pair of parentheses.
@@ -200,8 +168,7 @@ pub(super) fn no_condition(input: ParseStream) -> Result<()> {
         || input.peek(Token![?])
     {
         let sign = input.fork().parse::<TokenTree>()?;
-        return Err(Range::from(sign.span())
-            .error(format!("a formula has no conditions; {TELL_CASES_APART}, as in `max(0, θ)`")));
+        return Err(Range::from(sign.span()).error(messages::comparison()));
     }
     Ok(())
 }
@@ -217,10 +184,7 @@ pub(super) fn path(input: ParseStream, first: Option<&Ident>, ascii: bool) -> sy
         text = format!("{text}::{name}");
         last = (name.to_string(), name.span());
     }
-    let instead = match constant(&last.0, ascii) {
-        Some(constant) => format!("`{constant}`"),
-        None if Word::named(&last.0).is_some() => format!("`{}(…)`", last.0),
-        None => "a number, or declare a parameter".to_owned(),
-    };
-    Range { first: start, last: last.1 }.error(messages::rust(text, &format!("write {instead}")))
+    let call = || Word::named(&last.0).map(|word| format!("{}(…)", word.name));
+    let translation = constant(&last.0, ascii).or_else(call);
+    Range { first: start, last: last.1 }.error(messages::rust_path(&text, translation.as_deref()))
 }

@@ -11,6 +11,7 @@ mod statement;
 mod token;
 
 use crate::messages::Errors;
+use crate::messages::expected::Expected;
 use crate::syntax::ast::{Block, Recovery, Statement};
 use crate::syntax::name;
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
@@ -108,8 +109,8 @@ struct Parser<'a> {
 
 impl Parser<'_> {
     /// A name that is declared.
-    fn declared(&mut self, input: ParseStream, what: &str) -> Result<Ident> {
-        let name = identifier(input, what)?;
+    fn declared(&mut self, input: ParseStream, expected: Expected) -> Result<Ident> {
+        let name = identifier(input, expected)?;
         self.declared.insert(name::read(&name.to_string()).base);
         Ok(name)
     }

@@ -2,7 +2,7 @@
 
 use super::Parser;
 use super::token::{constraint_name, end, equals, fragment, identifier, unexpected};
-use crate::messages::Range;
+use crate::messages::{Range, expected, syntax as messages};
 use crate::syntax::ast::{
     Binder, Constraint, Expr, ForceIndex, Kind, Let, Limit, Output, Role, Statement,
 };
@@ -27,7 +27,7 @@ impl Parser<'_> {
             attributes.iter().find(|attribute| !attribute.path().is_ident("doc"))
         {
             return Err(Range { first: attribute.pound_token.spans[0], last: attribute.span() }
-                .error("an attribute has no effect here; attributes belong on the struct and its fields"));
+                .error(messages::attribute_of_statement()));
         }
         let word = match input.fork().call(Ident::parse_any) {
             Ok(word) => word.to_string(),
@@ -42,7 +42,7 @@ impl Parser<'_> {
             "redundant" => {
                 input.call(Ident::parse_any)?;
                 if !input.fork().call(Ident::parse_any).is_ok_and(|word| word == "constraint") {
-                    return Err(unexpected(input, "`constraint`, as in `redundant constraint`"));
+                    return Err(unexpected(input, expected::REDUNDANT_CONSTRAINT));
                 }
                 self.constraint(input, true)?
             }
@@ -57,8 +57,7 @@ impl Parser<'_> {
         };
         if input.is_empty() {
             // All of the statement has been read.
-            self.errors
-                .at(input.span(), "`;` is missing after this; end the last statement with `;`");
+            self.errors.at(input.span(), messages::missing_end());
             return Ok(statement);
         }
         if !input.peek(Token![;]) {
@@ -69,7 +68,7 @@ impl Parser<'_> {
             return Err(if input.peek(Token![,]) {
                 self.several(input, &word)
             } else {
-                unexpected(input, "`;`")
+                unexpected(input, expected::SEMICOLON)
             });
         }
         input.parse::<Token![;]>()?;
@@ -101,10 +100,8 @@ impl Parser<'_> {
             }
         }
         comma.error(match example {
-            Some(example) => format!(
-                "a statement declares one name; write `{example}` as a statement of its own"
-            ),
-            None => "`,` is not expected here; expected `;`".to_owned(),
+            Some(example) => messages::several_names(&example),
+            None => messages::unexpected(Some(","), expected::SEMICOLON),
         })
     }
 
@@ -114,7 +111,7 @@ impl Parser<'_> {
     }
 
     fn named_coordinate(&mut self, input: ParseStream) -> Result<Statement> {
-        let name = self.declared(input, "the name of a coordinate")?;
+        let name = self.declared(input, expected::COORDINATE)?;
         let mut length = None;
         let mut closed = Ok(());
         if input.peek(syn::token::Bracket) {
@@ -146,10 +143,9 @@ impl Parser<'_> {
                     length: Some(length),
                     unit,
                 });
-                Err(range
-                    .error(format!("a coordinate is one number; write `{family}` for several")))
+                Err(range.error(messages::coordinate_of_components(&family)))
             }
-            Kind::Body(range) => Err(range.error("a coordinate has a unit; write `rad` or `m`")),
+            Kind::Body(range) => Err(range.error(messages::body_as_coordinate())),
         }
     }
 
@@ -164,15 +160,14 @@ impl Parser<'_> {
     }
 
     fn named_input(&mut self, input: ParseStream, control: bool) -> Result<Statement> {
-        let what =
-            if control { "the name of a control input" } else { "the name of a driven input" };
-        let name = self.declared(input, what)?;
+        let expected = if control { expected::CONTROL_INPUT } else { expected::DRIVEN_INPUT };
+        let name = self.declared(input, expected)?;
         let kind = self.declared_kind(input, &name)?;
         if let Kind::Body(range) = kind {
             return Err(range.error(if control {
-                "a control input has a unit; write `N` or `[N; 2]`"
+                messages::body_as_control_input()
             } else {
-                "a driven input has a unit; write `[m; 2]` for a motion in the plane"
+                messages::body_as_driven_input()
             }));
         }
         Ok(if control { Statement::Input { name, kind } } else { Statement::Driven { name, kind } })
@@ -181,7 +176,7 @@ impl Parser<'_> {
     fn output(&mut self, input: ParseStream, documentation: TokenStream) -> Result<Statement> {
         input.call(Ident::parse_any)?;
         // Its name is no name of the block: it may be that of a definition.
-        let name = identifier(input, "the name of an output")?;
+        let name = identifier(input, expected::OUTPUT)?;
         let mut index = None;
         if input.peek(syn::token::Bracket) {
             let content;
@@ -191,7 +186,7 @@ impl Parser<'_> {
         }
         let kind = self.declared_kind(input, &name)?;
         if let Kind::Body(range) = kind {
-            return Err(range.error("an output has a unit; write `m` or `[m; 2]`"));
+            return Err(range.error(messages::body_as_output()));
         }
         equals(input)?;
         let expr = self.expr(input)?;
@@ -205,16 +200,13 @@ impl Parser<'_> {
         let difference = self.difference(input, |input| {
             if input.peek(Token![<]) || input.peek(Token![>]) {
                 let sign = input.fork().parse::<TokenTree>()?;
-                let message = format!(
-                    "a constraint holds with `=`; write `limit {name}: a >= b, restitution = 0;` \
-                     for one side"
+                return Err(
+                    Range::from(sign.span()).error(messages::inequality_as_constraint(&name))
                 );
-                return Err(Range::from(sign.span()).error(message));
             }
             if input.peek(Token![==]) {
                 let sign = input.fork().parse::<TokenTree>()?;
-                let message = "the two sides of a constraint stand beside one `=`; write `a = b`";
-                return Err(Range::from(sign.span()).error(message));
+                return Err(Range::from(sign.span()).error(messages::comparison_as_constraint()));
             }
             equals(input)
         })?;
@@ -232,18 +224,11 @@ impl Parser<'_> {
             }
             if input.peek(Token![<]) || input.peek(Token![>]) || input.peek(Token![=]) {
                 let sign = input.fork().parse::<TokenTree>()?;
-                let message = format!(
-                    "a limit is a smallest value; write `limit {name}: a >= b, restitution = 0;`"
-                );
-                return Err(Range::from(sign.span()).error(message));
+                return Err(Range::from(sign.span()).error(messages::wrong_sign_of_limit(&name)));
             }
-            Err(unexpected(input, "`>=`"))
+            Err(unexpected(input, expected::GREATER_OR_EQUAL))
         })?;
-        let missing = || {
-            format!(
-                "the restitution is missing; write `, restitution = 0` behind the limit `{name}`, or a number up to 1"
-            )
-        };
+        let missing = || messages::missing_restitution(&name);
         if !input.peek(Token![,]) {
             return Err(Range::from(difference.range.last).error(missing()));
         }
@@ -259,7 +244,7 @@ impl Parser<'_> {
     }
 
     /// The name of a constraint or limit, its index if it is a family, and the colon.
-    fn named_row(&mut self, input: ParseStream, what: &str) -> Result<(Ident, Option<Binder>)> {
+    fn named_row(&mut self, input: ParseStream, keyword: &str) -> Result<(Ident, Option<Binder>)> {
         let name = constraint_name(input)?;
         let mut index = None;
         if input.peek(syn::token::Bracket) {
@@ -269,8 +254,7 @@ impl Parser<'_> {
             end(&content)?;
         }
         if !input.peek(Token![:]) {
-            let message = format!("a {what} has a name; write `{what} {name}: …`");
-            return Err(Range::from(name.span()).error(message));
+            return Err(Range::from(name.span()).error(messages::unnamed_row(keyword, &name)));
         }
         input.parse::<Token![:]>()?;
         Ok((name, index))
@@ -278,7 +262,7 @@ impl Parser<'_> {
 
     fn definition(&mut self, input: ParseStream) -> Result<Statement> {
         input.parse::<Token![let]>()?;
-        let name = self.declared(input, "the name of a definition")?;
+        let name = self.declared(input, expected::DEFINITION)?;
         let mut index = None;
         let mut arguments = None;
         if input.peek(syn::token::Bracket) {
@@ -291,7 +275,7 @@ impl Parser<'_> {
             parenthesized!(content in input);
             let mut names = Vec::new();
             while !content.is_empty() {
-                names.push(identifier(&content, "the name of an argument")?);
+                names.push(identifier(&content, expected::ARGUMENT)?);
                 if !content.is_empty() {
                     content.parse::<Token![,]>()?;
                 }
@@ -311,7 +295,7 @@ impl Parser<'_> {
 
     fn force(&mut self, input: ParseStream) -> Result<Statement> {
         input.call(Ident::parse_any)?;
-        let name = identifier(input, "the coordinate on which the force acts")?;
+        let name = identifier(input, expected::FORCED_COORDINATE)?;
         let index = if input.peek(syn::token::Bracket) {
             let content;
             bracketed!(content in input);
@@ -332,9 +316,9 @@ impl Parser<'_> {
 
     /// `k in 0..5`.
     pub(super) fn binder(&mut self, input: ParseStream) -> Result<Binder> {
-        let name = identifier(input, "the name of an index")?;
+        let name = identifier(input, expected::INDEX)?;
         if !input.peek(Token![in]) {
-            return Err(unexpected(input, "`in` and a range such as `0..5`"));
+            return Err(unexpected(input, expected::IN_RANGE));
         }
         input.parse::<Token![in]>()?;
         let (low, high, inclusive) = match fragment(input).filter(whole_range) {
@@ -356,7 +340,7 @@ impl Parser<'_> {
         } else if input.peek(Token![..]) {
             input.parse::<Token![..]>()?;
         } else {
-            return Err(unexpected(input, "`..` and the end of the range"));
+            return Err(unexpected(input, expected::END_OF_RANGE));
         }
         let high = self.expr(input)?;
         Ok((low, high, inclusive))
@@ -403,11 +387,11 @@ fn whole_range(tokens: &TokenStream) -> bool {
 
 fn unknown_statement(input: ParseStream, word: &str) -> syn::Error {
     if word.is_empty() {
-        return unexpected(input, "a statement such as `coordinate θ: rad;`");
+        return unexpected(input, expected::STATEMENT);
     }
-    let hint = match name::nearest(word, STATEMENTS.into_iter()) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None => "a statement begins with `coordinate`, `driven`, `input`, `let`, `kinetic`, `potential`, `lagrangian`, `dissipation`, `force`, `output`, `constraint` or `limit`".into(),
+    let nearest = match word {
+        "control" | "actuator" => Some("input"),
+        _ => name::nearest(word, STATEMENTS.into_iter()),
     };
-    Range::from(input.span()).error(format!("unknown statement `{word}`; {hint}"))
+    Range::from(input.span()).error(messages::unknown_statement(word, nearest))
 }

@@ -1,22 +1,22 @@
 //! Single tokens: names that may be declared, signs, brackets, and what is skipped after an error.
 
-use crate::messages::{self, Range};
+use crate::messages::expected::{self, Expected};
+use crate::messages::{Range, syntax as messages};
 use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
 use syn::Token;
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Result};
 
 /// An identifier that may be declared: no keyword of Rust, no reserved prefix, no middle dot.
-pub(super) fn identifier(input: ParseStream, what: &str) -> Result<Ident> {
+pub(super) fn identifier(input: ParseStream, expected: Expected) -> Result<Ident> {
     if !input.peek(Ident::peek_any) {
-        return Err(unexpected(input, what));
+        return Err(unexpected(input, expected));
     }
     let name = input.call(Ident::parse_any)?;
     checked(&name)?;
     // `gen` is a word of the language from the edition of 2024 on, wherever the block stands.
     if name == "gen" || syn::parse_str::<Ident>(&name.to_string()).is_err() {
-        return Err(Range::from(name.span())
-            .error(format!("`{name}` is a word of the Rust language; choose another name")));
+        return Err(Range::from(name.span()).error(messages::rust_keyword(&name)));
     }
     Ok(name)
 }
@@ -24,7 +24,7 @@ pub(super) fn identifier(input: ParseStream, what: &str) -> Result<Ident> {
 /// The name of a constraint or limit, which may be a word of Rust: it is no name of any code.
 pub(super) fn constraint_name(input: ParseStream) -> Result<Ident> {
     if !input.peek(Ident::peek_any) {
-        return Err(unexpected(input, "the name of a constraint"));
+        return Err(unexpected(input, expected::CONSTRAINT));
     }
     let name = input.call(Ident::parse_any)?;
     checked(&name)?;
@@ -35,17 +35,10 @@ pub(super) fn checked(name: &Ident) -> Result<()> {
     let text = name.to_string();
     if text.contains('\u{b7}') {
         let parts: Vec<&str> = text.split('\u{b7}').filter(|part| !part.is_empty()).collect();
-        let instead = match parts[..] {
-            [a, b] => format!("`*`, as in `{a}*{b}`, or `inner({a}, {b})` for vectors"),
-            [_, _, ..] => format!("`*`, as in `{}`, or `inner(u, v)` for vectors", parts.join("*")),
-            _ => "`*`, or `inner(u, v)` for vectors".to_owned(),
-        };
-        return Err(Range::from(name.span())
-            .error(format!("`·` is part of a name in Rust; write {instead}")));
+        return Err(Range::from(name.span()).error(messages::middle_dot(&parts)));
     }
     if text.starts_with("__") {
-        return Err(Range::from(name.span())
-            .error("names that begin with `__` are reserved; choose another name"));
+        return Err(Range::from(name.span()).error(messages::reserved_name()));
     }
     Ok(())
 }
@@ -55,7 +48,7 @@ pub(super) fn equals(input: ParseStream) -> Result<()> {
         input.parse::<Token![=]>()?;
         return Ok(());
     }
-    Err(unexpected(input, "`=`"))
+    Err(unexpected(input, expected::EQUALS))
 }
 
 pub(super) fn comma(input: ParseStream) -> Result<()> {
@@ -63,7 +56,7 @@ pub(super) fn comma(input: ParseStream) -> Result<()> {
         input.parse::<Token![,]>()?;
         return Ok(());
     }
-    Err(unexpected(input, "`,`"))
+    Err(unexpected(input, expected::COMMA))
 }
 
 /// The tokens that a macro of the user's has handed over as one, as `$e:expr`, if they come next.
@@ -84,26 +77,24 @@ pub(super) fn fragment(input: ParseStream) -> Option<TokenStream> {
 
 /// Nothing may be left inside a pair of brackets.
 pub(super) fn end(content: ParseStream) -> Result<()> {
-    if content.is_empty() { Ok(()) } else { Err(unexpected(content, "the closing bracket")) }
+    if content.is_empty() { Ok(()) } else { Err(unexpected(content, expected::CLOSING_BRACKET)) }
 }
 
 /// An error at the next token, or behind the last one.
-pub(super) fn unexpected(input: ParseStream, expected: &str) -> syn::Error {
+pub(super) fn unexpected(input: ParseStream, expected: Expected) -> syn::Error {
     match input.fork().parse::<TokenTree>() {
         Ok(TokenTree::Group(group)) => {
             let open = match group.delimiter() {
-                Delimiter::Parenthesis => "`(`",
-                Delimiter::Brace => "`{`",
-                Delimiter::Bracket => "`[`",
-                Delimiter::None => "this",
+                Delimiter::Parenthesis => Some("("),
+                Delimiter::Brace => Some("{"),
+                Delimiter::Bracket => Some("["),
+                Delimiter::None => None,
             };
             Range::from(group.span_open()).error(messages::unexpected(open, expected))
         }
-        Ok(token) => {
-            Range::from(token.span()).error(messages::unexpected(&format!("`{token}`"), expected))
-        }
-        Err(_) => Range::from(input.span())
-            .error(format!("the input ends too early; expected {expected}")),
+        Ok(token) => Range::from(token.span())
+            .error(messages::unexpected(Some(&token.to_string()), expected)),
+        Err(_) => Range::from(input.span()).error(messages::early_end(expected)),
     }
 }
 

@@ -1,12 +1,15 @@
 //! The recurrences of functions and powers.
 
-use super::{LENGTH, Writer};
+use super::writer::Writer;
 use crate::algebra::functions::{Divisor, Function, Recurrence, Sign};
 use crate::backend::rust::local;
 use crate::backend::rust::operation::function_call;
 use crate::schedule::Place;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
+
+/// The number of coefficients of a series of the runtime.
+const LENGTH: usize = 32;
 
 impl Writer<'_, '_, '_> {
     /// A function of one argument.
@@ -170,5 +173,13 @@ impl Writer<'_, '_, '_> {
         self.halves += 2;
         self.series.remove(&place);
         self.exponential(place, &quote!(series::product(&#b, &#logarithm, order)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn series_are_as_long_as_in_the_runtime() {
+        assert_eq!(super::LENGTH, pendulum_runtime::jet::LENGTH);
     }
 }

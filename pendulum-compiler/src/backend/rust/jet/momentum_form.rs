@@ -10,7 +10,7 @@
 //!    matrix;
 //! 3. what q̈\[k\] adds to the series goes into their newest coefficients.
 
-use super::Writer;
+use super::writer::Writer;
 use crate::algebra::expr::{Id, Symbol};
 use crate::algebra::functions::Function;
 use crate::backend::rust::local;

@@ -4,7 +4,7 @@
 //! ȧ = b q̇ and ḃ = −a q̇ = −(q̇²/2)˙: one product and one square, each of whose terms comes once,
 //! in place of two products.
 
-use super::Writer;
+use super::writer::Writer;
 use crate::algebra::expr::Symbol;
 use crate::algebra::functions::Function;
 use crate::schedule::{Op, Place, Program, operands};

@@ -1,0 +1,330 @@
+//! The statements of the recurrences, written one operation after another.
+
+use crate::algebra::expr::Symbol;
+use crate::algebra::functions::Function;
+use crate::backend::rust::{Emitter, local};
+use crate::model::Quantity;
+use crate::schedule::{Op, Place, Program};
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+use std::collections::BTreeMap;
+
+/// The recurrences of a system: the statements for one order, the type of the work and a new one,
+/// and the convolutions in halves.
+pub(super) struct Recurrences {
+    pub(super) lines: TokenStream,
+    pub(super) kind: TokenStream,
+    pub(super) work: TokenStream,
+    pub(super) halves: usize,
+}
+
+/// The statements under construction.
+pub(super) struct Writer<'e, 'm, 'a> {
+    pub(super) emitter: &'e Emitter<'m, 'a>,
+    pub(super) program: &'e Program,
+    /// True for each place that parameters alone decide.
+    pub(super) parameter_only: Vec<bool>,
+    prepared: &'e [Place],
+    pub(super) lines: TokenStream,
+    /// The coefficients of the places that move.
+    pub(super) values: Vec<TokenStream>,
+    /// The series of each place that is kept.
+    pub(super) series: BTreeMap<Place, TokenStream>,
+    pub(super) slots: usize,
+    pairs: usize,
+    leading: usize,
+    /// The convolutions so far, in halves.
+    pub(super) halves: usize,
+    /// The sines and cosines that are found from turns, and the coefficients of what they are
+    /// multiplied by.
+    pub(super) turned: BTreeMap<Place, TokenStream>,
+    pub(super) paired: Vec<(Place, TokenStream)>,
+}
+
+impl<'e, 'm, 'a> Writer<'e, 'm, 'a> {
+    /// Nothing written yet.
+    pub(super) fn new(
+        emitter: &'e Emitter<'m, 'a>,
+        program: &'e Program,
+        parameter_only: Vec<bool>,
+        prepared: &'e [Place],
+    ) -> Self {
+        Self {
+            emitter,
+            parameter_only,
+            program,
+            prepared,
+            lines: TokenStream::new(),
+            values: vec![TokenStream::new(); program.ops.len()],
+            series: BTreeMap::new(),
+            slots: 0,
+            pairs: 0,
+            leading: 0,
+            halves: 0,
+            turned: BTreeMap::new(),
+            paired: Vec::new(),
+        }
+    }
+
+    /// The recurrences written so far, with matrices of these sizes to factor.
+    pub(super) fn finish(self, factors: &[usize]) -> Recurrences {
+        let Self { emitter, program, prepared, lines, slots, pairs, leading, halves, .. } = self;
+        let (krate, scalar, length) = (&emitter.krate, emitter.scalar(), prepared.len());
+        let prepare = emitter.body_after(program, prepared, &[]);
+        let kinds = factors.iter().map(|size| quote!(#krate::jet::Factors<#scalar, #size>));
+        let kind =
+            quote!(#krate::jet::Work<#scalar, (#(#kinds,)*), #slots, #pairs, #length, #leading>);
+        let empty = factors.iter().map(|_| quote!(#krate::jet::Factors::zero()));
+        let work = quote!(#krate::jet::Work::new(#prepare, (#(#empty,)*)));
+        Recurrences { lines, kind, work, halves }
+    }
+}
+
+impl Writer<'_, '_, '_> {
+    /// A number that parameters alone decide.
+    pub(super) fn constant(&self, place: Place) -> TokenStream {
+        match self.prepared.iter().position(|prepared| *prepared == place) {
+            Some(index) => quote!(work.still[#index]),
+            None => self.emitter.operation(&self.program.ops[place.0], |_| TokenStream::new()),
+        }
+    }
+
+    /// The coefficient at this order.
+    pub(super) fn value(&self, place: Place) -> TokenStream {
+        if self.parameter_only[place.0] {
+            let constant = self.constant(place);
+            return quote!(series::constant(#constant, order));
+        }
+        self.values[place.0].clone()
+    }
+
+    /// A new series.
+    pub(super) fn slot(&mut self) -> TokenStream {
+        let slot = self.slots;
+        self.slots += 1;
+        quote!(work.series[#slot])
+    }
+
+    /// A new pair of series.
+    pub(super) fn pair(&mut self) -> TokenStream {
+        let pair = self.pairs;
+        self.pairs += 1;
+        self.halves += 4;
+        quote!(work.pairs[#pair])
+    }
+
+    /// A new series with this coefficient.
+    pub(super) fn kept(&mut self, value: &TokenStream) -> TokenStream {
+        let slot = self.slot();
+        self.lines.extend(quote!(#slot[k] = #value;));
+        slot
+    }
+
+    /// A new number that the leading coefficients decide.
+    pub(super) fn lead(&mut self) -> TokenStream {
+        let lead = self.leading;
+        self.leading += 1;
+        quote!(&mut work.leading[#lead])
+    }
+
+    /// The series of a place.
+    pub(super) fn whole(&mut self, place: Place) -> TokenStream {
+        if let Some(series) = self.series.get(&place) {
+            return series.clone();
+        }
+        let value = self.value(place);
+        let series = self.kept(&value);
+        self.series.insert(place, series.clone());
+        series
+    }
+
+    /// The series of j x[j].
+    pub(super) fn rate(&mut self, value: &TokenStream) -> TokenStream {
+        self.kept(&quote!(series::rate(#value, order)))
+    }
+
+    /// Names the coefficient of a place.
+    pub(super) fn name(&mut self, place: Place, value: &TokenStream) {
+        let name = local("x", place.0);
+        self.lines.extend(quote!(let #name = #value;));
+        self.values[place.0] = quote!(#name);
+    }
+
+    /// Names the coefficient of a place whose series the recurrence reads itself.
+    pub(super) fn name_in(&mut self, place: Place, value: &TokenStream, slot: TokenStream) {
+        self.name(place, value);
+        let name = &self.values[place.0];
+        self.lines.extend(quote!(#slot[k] = #name;));
+        self.series.insert(place, slot);
+    }
+
+    /// A value that several lines read.
+    pub(super) fn shared(
+        &mut self,
+        prefix: &str,
+        place: Place,
+        value: &TokenStream,
+    ) -> TokenStream {
+        let name = local(prefix, place.0);
+        self.lines.extend(quote!(let #name = #value;));
+        quote!(#name)
+    }
+
+    pub(super) fn operation(&mut self, place: Place) {
+        match self.program.ops[place.0] {
+            Op::Number(_) | Op::Literal(_) | Op::Pi => {}
+            Op::Load(symbol) => self.load(place, symbol),
+            Op::Negative(a) => {
+                let a = self.value(a);
+                self.name(place, &quote!(-#a));
+            }
+            Op::Add(a, b) => {
+                let (a, b) = (self.value(a), self.value(b));
+                self.name(place, &quote!(#a + #b));
+            }
+            Op::Sub(a, b) => {
+                let (a, b) = (self.value(a), self.value(b));
+                self.name(place, &quote!(#a - #b));
+            }
+            Op::Mul(a, b) => self.product(place, a, b),
+            Op::Div(a, b) => {
+                let (a, b, slot, lead) = (self.value(a), self.whole(b), self.slot(), self.lead());
+                self.halves += 2;
+                self.name_in(place, &quote!(series::quotient(#a, &#b, &#slot, #lead, order)), slot);
+            }
+            Op::Sqrt(a) => {
+                let (a, slot, lead) = (self.value(a), self.slot(), self.lead());
+                self.halves += 1;
+                self.name_in(place, &quote!(series::sqrt(#a, &#slot, #lead, order)), slot);
+            }
+            Op::Powf(a, b) => self.power(place, a, b),
+            Op::Atan2(y, x) => self.angle(place, y, x),
+            Op::Max(a, b) => {
+                let (a, b) = (self.value(a), self.value(b));
+                let (a, b) = (self.shared("a", place, &a), self.shared("b", place, &b));
+                let lead = self.lead();
+                let first = self.shared(
+                    "l",
+                    place,
+                    &quote!(series::leading(|| (#a - #b).step(), #lead, order)),
+                );
+                let scalar = self.emitter.scalar();
+                self.name(place, &quote!(#first * #a + (#scalar::from_f64(1.0) - #first) * #b));
+            }
+            Op::Call(function, a) => self.call(place, function, a),
+            Op::SinCos(a) => self.sin_cos(place, a),
+            // Both parts have been named with the pair.
+            Op::Part(function, pair) => {
+                let name = local(if function == Function::Sin { "s" } else { "c" }, pair.0);
+                self.values[place.0] = quote!(#name);
+            }
+        }
+    }
+
+    fn load(&mut self, place: Place, symbol: Symbol) {
+        let Some(series) = self.series_of(symbol) else {
+            self.values[place.0] = quote!(series::time(path.t, order));
+            return;
+        };
+        self.values[place.0] = quote!(#series[k]);
+        self.series.insert(place, series);
+    }
+
+    /// The series that the path or the drive has.
+    pub(super) fn series_of(&self, symbol: Symbol) -> Option<TokenStream> {
+        Some(match symbol {
+            Symbol::Coordinate(index) => quote!(path.q[#index]),
+            Symbol::Velocity(index) => quote!(path.v[#index]),
+            Symbol::Control { input, component } => {
+                return self.series_of(Symbol::Input { input, component, order: 0 });
+            }
+            Symbol::Input { input, component, order } => {
+                let before: usize =
+                    self.emitter.model.inputs[..input].iter().map(Quantity::count).sum();
+                let (index, order) = (before + component, usize::from(order));
+                let order = format_ident!("{}", ["position", "velocity", "acceleration"][order]);
+                quote!(drive[#index].#order)
+            }
+            _ => return None,
+        })
+    }
+
+    pub(super) fn product(&mut self, place: Place, a: Place, b: Place) {
+        let value = match (self.parameter_only[a.0], self.parameter_only[b.0]) {
+            (true, _) => {
+                let (a, b) = (self.constant(a), self.value(b));
+                quote!(#a * #b)
+            }
+            (_, true) => {
+                let (a, b) = (self.value(a), self.constant(b));
+                quote!(#a * #b)
+            }
+            _ if a == b => {
+                self.halves += 1;
+                let a = self.whole(a);
+                quote!(series::square(&#a, order))
+            }
+            _ => {
+                self.halves += 2;
+                let (a, b) = (self.whole(a), self.whole(b));
+                quote!(series::product(&#a, &#b, order))
+            }
+        };
+        self.name(place, &value);
+    }
+
+    pub(super) fn sin_cos(&mut self, place: Place, angle: Place) {
+        let pair = self.pair();
+        let (s, c) = (local("s", place.0), local("c", place.0));
+        let value = if let Op::Load(Symbol::Coordinate(index)) = self.program.ops[angle.0] {
+            quote!(series::sin_cos_of_coordinate(path, #index, &#pair, order))
+        } else {
+            let x = self.value(angle);
+            let rate = self.rate(&x);
+            quote!(series::sin_cos(#x, &#rate, &#pair, &path.reciprocals, order))
+        };
+        self.lines.extend(quote! { let [#s, #c] = #value; #pair[k] = [#s, #c]; });
+    }
+
+    /// The accelerations of coordinates that a moving mass matrix couples.
+    pub(super) fn coupled(
+        &mut self,
+        index: usize,
+        rows: &[usize],
+        masses: &[Vec<Option<Place>>],
+        forces: &[Place],
+    ) {
+        let (index, krate, scalar) =
+            (Literal::usize_unsuffixed(index), &self.emitter.krate, self.emitter.scalar());
+        let size = rows.len();
+        let entry = |i: usize, j: usize| masses[i.max(j)][i.min(j)];
+        let mut right = Vec::new();
+        for (i, &force) in forces.iter().enumerate() {
+            let mut sum = self.value(force);
+            for (j, &column) in rows.iter().enumerate() {
+                if let Some(mass) = entry(i, j).filter(|mass| !self.parameter_only[mass.0]) {
+                    let mass = self.whole(mass);
+                    self.halves += 2;
+                    sum.extend(quote!(- series::behind(&#mass, &path.a[#column], order)));
+                }
+            }
+            right.push(sum);
+        }
+        let matrix = (0..size).map(|i| {
+            let entries = (0..size).map(|j| match entry(i, j).filter(|_| j <= i) {
+                None => quote!(#scalar::from_f64(0.0)),
+                Some(mass) => self.value(mass),
+            });
+            quote!([#(#entries),*])
+        });
+        let names: Vec<_> = rows.iter().map(|&row| local("a", row)).collect();
+        let matrix = quote!([#(#matrix),*]);
+        self.lines.extend(quote! {
+            if k == 0 {
+                work.factors.#index = #krate::jet::Factors::new(#matrix);
+            }
+            let [#(#names),*] = work.factors.#index.solve([#(#right),*]);
+            #(path.a[#rows][k] = #names;)*
+        });
+    }
+}

@@ -1,0 +1,309 @@
+//! Arithmetic of scalars, vectors and complex numbers.
+
+use super::context::Lower;
+use super::rate::{second_derivative, total_derivative};
+use super::value::Value;
+use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
+use crate::algebra::functions::Function;
+use crate::algebra::number::Rational;
+use crate::messages::{lower as messages, shared};
+use crate::syntax::ast::Expr;
+use crate::syntax::text::text;
+
+impl Lower<'_, '_, '_, '_> {
+    /// The total time derivative; `may_rest` if the operand may be at rest.
+    pub(super) fn dot(&mut self, value: Value, expr: &Expr, may_rest: bool) -> Value {
+        let dependencies = self.dependencies(&value);
+        let moving = Dependencies::TIME
+            .or(Dependencies::COORDINATE)
+            .or(Dependencies::VELOCITY)
+            .or(Dependencies::INPUT);
+        let what = text(expr);
+        if value == Value::Bad {
+            return value;
+        }
+        if dependencies.any(Dependencies::CONTROL) {
+            return self.control_rate(&value, expr);
+        }
+        if dependencies.any(Dependencies::MULTIPLIER) {
+            return self.wrong(expr, messages::derivative_of_reaction(&what));
+        }
+        if dependencies.any(Dependencies::ACCELERATION) {
+            return self.wrong(expr, shared::derivative_of_acceleration(what));
+        }
+        if dependencies.any(Dependencies::VELOCITY) && self.constrained {
+            return self.wrong(expr, shared::derivative_of_velocity_in_constraint(what));
+        }
+        if dependencies.any(Dependencies::VELOCITY) && !self.accelerations {
+            return self.wrong(expr, shared::derivative_of_velocity(what));
+        }
+        if dependencies.any(Dependencies::ACCELERATION_INPUT) {
+            return self.wrong(expr, messages::jerk_of_input(&what));
+        }
+        if !dependencies.any(moving) && !may_rest {
+            return self.wrong(expr, messages::nothing_moves(&what));
+        }
+        let positions = self.positions.take();
+        let accelerations = self.accelerations;
+        let rate = |graph: &mut Graph, id: Id| match positions
+            .as_ref()
+            .and_then(|positions| positions.places.get(&id))
+        {
+            Some(&scalar) => graph.symbol(Symbol::Auxiliary(scalar)),
+            None if accelerations => second_derivative(graph, id),
+            None => total_derivative(graph, id),
+        };
+        let value = self.map(value, rate);
+        self.positions = positions;
+        value
+    }
+
+    /// Refuses the derivative of a value in which a control input stands.
+    fn control_rate(&mut self, value: &Value, expr: &Expr) -> Value {
+        let symbols = self.graph.symbols(&value.scalars());
+        let input = symbols.into_iter().find_map(|symbol| match symbol {
+            Symbol::Control { input, .. } => Some(self.model.inputs[input].name),
+            _ => None,
+        });
+        match input {
+            Some(name) => self.wrong(expr, shared::derivative_of_control(name)),
+            None => Value::Bad,
+        }
+    }
+
+    pub(super) fn dependencies(&self, value: &Value) -> Dependencies {
+        match value {
+            Value::Bad => Dependencies::default(),
+            Value::Scalar(id) => self.graph.dependencies(*id),
+            Value::Plane { parts, .. } => parts
+                .iter()
+                .fold(Dependencies::default(), |all, &id| all.or(self.graph.dependencies(id))),
+            Value::Space(parts) => parts
+                .iter()
+                .fold(Dependencies::default(), |all, &id| all.or(self.graph.dependencies(id))),
+            Value::Family(members) => members
+                .iter()
+                .fold(Dependencies::default(), |all, member| all.or(self.dependencies(member))),
+        }
+    }
+
+    pub(super) fn map(&mut self, value: Value, mut map: impl FnMut(&mut Graph, Id) -> Id) -> Value {
+        self.map_with(value, &mut map)
+    }
+
+    pub(super) fn map_with(
+        &mut self,
+        value: Value,
+        map: &mut impl FnMut(&mut Graph, Id) -> Id,
+    ) -> Value {
+        match value {
+            Value::Bad => Value::Bad,
+            Value::Scalar(id) => Value::Scalar(map(self.graph, id)),
+            Value::Plane { parts, complex } => {
+                Value::Plane { parts: parts.map(|id| map(self.graph, id)), complex }
+            }
+            Value::Space(parts) => Value::Space(parts.map(|id| map(self.graph, id))),
+            Value::Family(members) => Value::Family(
+                members.into_iter().map(|member| self.map_with(member, map)).collect(),
+            ),
+        }
+    }
+
+    pub(super) fn add(&mut self, a: Value, b: Value, expr: &Expr) -> Value {
+        match (a, b) {
+            (Value::Bad, _) | (_, Value::Bad) => Value::Bad,
+            // An empty sum is zero, whatever its terms would have been.
+            (Value::Scalar(Graph::ZERO), other) | (other, Value::Scalar(Graph::ZERO)) => other,
+            (Value::Scalar(a), Value::Scalar(b)) => Value::Scalar(self.graph.add(a, b)),
+            (
+                Value::Plane { parts: a, complex: left },
+                Value::Plane { parts: b, complex: right },
+            ) => {
+                let parts = [self.graph.add(a[0], b[0]), self.graph.add(a[1], b[1])];
+                Value::Plane { parts, complex: left && right }
+            }
+            (Value::Plane { parts, complex: true }, Value::Scalar(real))
+            | (Value::Scalar(real), Value::Plane { parts, complex: true }) => {
+                Value::Plane { parts: [self.graph.add(parts[0], real), parts[1]], complex: true }
+            }
+            (Value::Space(a), Value::Space(b)) => {
+                Value::Space([0, 1, 2].map(|k| self.graph.add(a[k], b[k])))
+            }
+            (a, b) => self.wrong(expr, messages::mixed_sum(&text(expr), b.kind(), a.kind_plural())),
+        }
+    }
+
+    /// The sum of many values, each of which `expr` gave.
+    ///
+    /// Scalars and vectors are summed at once: a sum that grows term by term would be rebuilt for
+    /// each of them.
+    pub(super) fn total(&mut self, values: Vec<Value>, expr: &Expr) -> Value {
+        let mut columns = [const { Vec::new() }; 3];
+        let alike = values.windows(2).all(|pair| pair[0].kind() == pair[1].kind());
+        for value in values.iter().filter(|_| alike) {
+            let parts = match value {
+                Value::Bad | Value::Family(_) => &[],
+                Value::Scalar(id) => std::slice::from_ref(id),
+                Value::Plane { parts, .. } => parts.as_slice(),
+                Value::Space(parts) => parts.as_slice(),
+            };
+            for (column, &part) in columns.iter_mut().zip(parts) {
+                column.push((part, Rational::ONE));
+            }
+        }
+        match values.first() {
+            None => Value::Scalar(Graph::ZERO),
+            Some(Value::Scalar(_)) if alike => Value::Scalar(self.graph.sum(&columns[0])),
+            Some(&Value::Plane { complex, .. }) if alike => {
+                Value::Plane { parts: [0, 1].map(|k| self.graph.sum(&columns[k])), complex }
+            }
+            Some(Value::Space(_)) if alike => {
+                Value::Space([0, 1, 2].map(|k| self.graph.sum(&columns[k])))
+            }
+            Some(_) => values
+                .into_iter()
+                .reduce(|sum, value| self.add(sum, value, expr))
+                .unwrap_or(Value::Bad),
+        }
+    }
+
+    pub(super) fn multiply(&mut self, a: Value, b: Value, expr: &Expr) -> Value {
+        match (a, b) {
+            (Value::Bad, _) | (_, Value::Bad) => Value::Bad,
+            (Value::Scalar(a), b @ (Value::Scalar(_) | Value::Plane { .. } | Value::Space(_))) => {
+                self.map(b, |graph, id| graph.mul(a, id))
+            }
+            (a @ (Value::Plane { .. } | Value::Space(_)), Value::Scalar(b)) => {
+                self.map(a, |graph, id| graph.mul(id, b))
+            }
+            (
+                Value::Plane { parts: a, complex: left },
+                Value::Plane { parts: b, complex: right },
+            ) => Value::Plane { parts: self.complex_product(a, b), complex: left && right },
+            (a, b) => self.wrong(expr, messages::no_product(a.kind(), b.kind())),
+        }
+    }
+
+    pub(super) fn complex_product(&mut self, a: [Id; 2], b: [Id; 2]) -> [Id; 2] {
+        let graph = &mut *self.graph;
+        let (rr, ii) = (graph.mul(a[0], b[0]), graph.mul(a[1], b[1]));
+        let (ri, ir) = (graph.mul(a[0], b[1]), graph.mul(a[1], b[0]));
+        [graph.sub(rr, ii), graph.add(ri, ir)]
+    }
+
+    pub(super) fn divide(&mut self, a: Value, b: Value, expr: &Expr) -> Value {
+        match b {
+            Value::Bad => Value::Bad,
+            Value::Scalar(Graph::ZERO) => self.wrong(expr, messages::division_by_zero()),
+            Value::Scalar(b) => match a {
+                Value::Family(_) => self.multiply(a, Value::Scalar(b), expr),
+                a => self.map(a, |graph, id| graph.div(id, b)),
+            },
+            Value::Plane { parts: [re, im], complex: true } => {
+                let square = self.square(&[re, im]);
+                let conjugate =
+                    [re, self.graph.negative(im)].map(|part| self.graph.div(part, square));
+                self.multiply(a, Value::Plane { parts: conjugate, complex: true }, expr)
+            }
+            other => self.wrong(expr, messages::no_divisor(&text(expr), other.kind())),
+        }
+    }
+
+    pub(super) fn power(&mut self, base: &Expr, exponent: &Expr) -> Value {
+        let value = self.expr(base);
+        let Some(power) = self.scalar(exponent) else { return Value::Bad };
+        if let Node::Number(number) = self.graph.node(power)
+            && number.within(60).is_none()
+        {
+            return self.wrong(exponent, messages::long_exponent());
+        }
+        match value {
+            Value::Bad => Value::Bad,
+            Value::Scalar(Graph::ZERO) if self.integer(exponent).is_ok_and(|power| power < 0) => {
+                self.wrong(base, messages::negative_power_of_zero())
+            }
+            Value::Scalar(id) => Value::Scalar(self.graph.general_power(id, power)),
+            Value::Plane { parts, complex: true } => match self.integer(exponent) {
+                Ok(count) if (0..=64).contains(&count) => {
+                    let parts = (0..count).fold([Graph::ONE, Graph::ZERO], |product, _| {
+                        self.complex_product(product, parts)
+                    });
+                    Value::Plane { parts, complex: true }
+                }
+                _ => self.wrong(exponent, messages::complex_power()),
+            },
+            other => self.wrong(base, messages::no_power(&text(base), other.kind())),
+        }
+    }
+
+    pub(super) fn cis(&mut self, angle: Id) -> Value {
+        let parts = [self.graph.call(Function::Cos, angle), self.graph.call(Function::Sin, angle)];
+        Value::Plane { parts, complex: true }
+    }
+
+    pub(super) fn inner(&mut self, a: &Expr, b: &Expr) -> Value {
+        let (left, right) = (self.expr(a), self.expr(b));
+        let pairs: Vec<(Id, Id)> = match (&left, &right) {
+            (Value::Bad, _) | (_, Value::Bad) => return Value::Bad,
+            (Value::Plane { parts: a, .. }, Value::Plane { parts: b, .. }) => {
+                a.iter().copied().zip(b.iter().copied()).collect()
+            }
+            (Value::Space(a), Value::Space(b)) => {
+                a.iter().copied().zip(b.iter().copied()).collect()
+            }
+            _ => {
+                return self.wrong(b, messages::no_vectors("inner", left.kind(), right.kind()));
+            }
+        };
+        let products: Vec<(Id, Rational)> =
+            pairs.into_iter().map(|(a, b)| (self.graph.mul(a, b), Rational::ONE)).collect();
+        Value::Scalar(self.graph.sum(&products))
+    }
+
+    pub(super) fn cross(&mut self, a: &Expr, b: &Expr) -> Value {
+        let (left, right) = (self.expr(a), self.expr(b));
+        let graph = &mut *self.graph;
+        let mut minor = |a: Id, b: Id, c: Id, d: Id| {
+            let (first, second) = (graph.mul(a, b), graph.mul(c, d));
+            graph.sub(first, second)
+        };
+        match (&left, &right) {
+            (Value::Bad, _) | (_, Value::Bad) => Value::Bad,
+            (Value::Plane { parts: a, .. }, Value::Plane { parts: b, .. }) => {
+                Value::Scalar(minor(a[0], b[1], a[1], b[0]))
+            }
+            (Value::Space(a), Value::Space(b)) => Value::Space([
+                minor(a[1], b[2], a[2], b[1]),
+                minor(a[2], b[0], a[0], b[2]),
+                minor(a[0], b[1], a[1], b[0]),
+            ]),
+            _ => self.wrong(b, messages::no_vectors("cross", left.kind(), right.kind())),
+        }
+    }
+
+    pub(super) fn magnitude(&mut self, inner: &Expr) -> Value {
+        match self.expr(inner) {
+            Value::Bad => Value::Bad,
+            Value::Scalar(id) => Value::Scalar(self.graph.call(Function::Abs, id)),
+            Value::Plane { parts, .. } => {
+                let square = self.square(&parts);
+                Value::Scalar(self.graph.sqrt(square))
+            }
+            Value::Space(parts) => {
+                let square = self.square(&parts);
+                Value::Scalar(self.graph.sqrt(square))
+            }
+            other @ Value::Family(_) => {
+                self.wrong(inner, messages::no_magnitude(&text(inner), other.kind()))
+            }
+        }
+    }
+
+    pub(super) fn square(&mut self, parts: &[Id]) -> Id {
+        let squares: Vec<(Id, Rational)> = parts
+            .iter()
+            .map(|&part| (self.graph.power(part, Rational::whole(2)), Rational::ONE))
+            .collect();
+        self.graph.sum(&squares)
+    }
+}

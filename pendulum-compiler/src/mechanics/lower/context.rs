@@ -1,0 +1,212 @@
+//! The state of a lowering: names in scope, definitions that are done, indices and ranges.
+
+use super::positions::PositionTracker;
+use super::row::Shape;
+use super::value::Value;
+use crate::algebra::expr::{Graph, Id, Symbol};
+use crate::messages::{Errors, Range, lower as messages};
+use crate::model::{self, Model};
+use crate::syntax::ast::{Binder, Expr};
+use crate::syntax::name::{self, plain};
+use crate::syntax::text::text;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// An energy or a force whose nodes nest deeper is refused: it would overflow the compiler's stack,
+/// and definitions above one another nest as well.
+const DEEPEST_NODE: usize = 1200;
+
+/// An energy or a force of more nodes is refused: its equations would take minutes to derive and to
+/// compile.
+const LARGEST: usize = 8000;
+
+/// The meaning of a name that holds in one expression.
+pub(super) enum Local {
+    /// An argument of a function or a point of integration.
+    Value(Value),
+    /// An index, and the source of the end of its range.
+    Index { value: i64, source: usize },
+}
+
+/// The state of a lowering.
+pub(super) struct Lower<'m, 'a, 'g, 'e> {
+    pub(super) model: &'m Model<'a>,
+    pub(super) graph: &'g mut Graph,
+    pub(super) errors: &'e mut Errors,
+    /// The indices, arguments and points that are bound, the inner ones last.
+    pub(super) scope: Vec<(String, Local)>,
+    /// The definitions that are done, by their index.
+    pub(super) instances: BTreeMap<(usize, Option<i64>), Value>,
+    /// The definitions that are being evaluated.
+    pub(super) open: Vec<(usize, Option<i64>)>,
+    /// The parameters that are used by their indices, and those that are used whole.
+    pub(super) indexed: BTreeSet<usize>,
+    pub(super) whole: BTreeSet<usize>,
+    pub(super) work: usize,
+    /// The number of expressions that are being evaluated.
+    pub(super) depth: usize,
+    /// The number of integrals that are open.
+    pub(super) integrals: usize,
+    /// The positions whose velocities become symbols.
+    pub(super) positions: Option<PositionTracker>,
+    /// The values of expressions without symbols.
+    pub(super) constants: BTreeMap<Id, f64>,
+    /// True if velocities have derivatives: in outputs.
+    pub(super) accelerations: bool,
+    /// True in a constraint or a limit.
+    pub(super) constrained: bool,
+    /// The definitions whose positions stand for themselves from now on.
+    pub(super) known: Option<BTreeMap<(usize, Option<i64>), Value>>,
+    /// The shapes of the constraints.
+    pub(super) shapes: Vec<Shape>,
+}
+
+impl Lower<'_, '_, '_, '_> {
+    /// Reports a value that is too long.
+    pub(super) fn within_bounds(&mut self, expr: &Expr, value: Id) -> bool {
+        let nodes = self.graph.reachable(&[value]);
+        if LARGEST < nodes.len() {
+            self.errors.once(expr.source, expr.range, messages::large_value(LARGEST));
+            return false;
+        }
+        let mut depths: BTreeMap<Id, usize> = BTreeMap::new();
+        for id in nodes {
+            let depth =
+                self.graph.children(id).iter().map(|child| depths[child] + 1).max().unwrap_or(0);
+            depths.insert(id, depth);
+        }
+        if DEEPEST_NODE < depths[&value] {
+            self.errors.once(expr.source, expr.range, messages::deep_value(DEEPEST_NODE));
+            return false;
+        }
+        true
+    }
+
+    /// One instance of a definition.
+    pub(super) fn definition(&mut self, index: usize, k: Option<i64>, range: Range) -> Value {
+        if let Some(value) = self.instances.get(&(index, k)) {
+            return value.clone();
+        }
+        if let Some(value) = self.position(index, k) {
+            return value;
+        }
+        let definition = self.model.lets[index];
+        if self.open.contains(&(index, k)) {
+            let message = messages::circular_definition(&definition.name);
+            self.errors.once(definition.expr.source, range, message);
+            return Value::Bad;
+        }
+        self.open.push((index, k));
+        let scope = std::mem::take(&mut self.scope);
+        if let (Some(k), Some(binder)) = (k, &definition.index) {
+            self.bind(binder, k);
+        }
+        let value = self.expr(&definition.expr);
+        self.scope = scope;
+        self.open.pop();
+        if let Some(positions) = &mut self.positions {
+            positions.note(self.graph, &value);
+        }
+        self.instances.insert((index, k), value.clone());
+        value
+    }
+
+    /// A definition as symbols of its positions, where they stand for themselves.
+    fn position(&mut self, index: usize, k: Option<i64>) -> Option<Value> {
+        let value = self.known.as_ref()?.get(&(index, k))?.clone();
+        let positions = self.positions.as_ref()?;
+        let places = positions.places.clone();
+        let all = !value.scalars().is_empty()
+            && value.scalars().iter().all(|scalar| places.contains_key(scalar));
+        let symbol = |graph: &mut Graph, id: Id| match places.get(&id) {
+            Some(&place) => graph.symbol(Symbol::Position(place)),
+            None => id,
+        };
+        all.then(|| self.map(value, symbol))
+    }
+
+    /// A function defined by `let`, applied.
+    pub(super) fn apply(&mut self, index: usize, arguments: Vec<Value>, range: Range) -> Value {
+        let definition = self.model.lets[index];
+        let names = definition.arguments.as_deref().unwrap_or_default();
+        if names.len() != arguments.len() {
+            return Value::Bad;
+        }
+        if self.open.iter().any(|&(other, _)| other == index) {
+            let message = messages::circular_definition(&definition.name);
+            self.errors.once(definition.expr.source, range, message);
+            return Value::Bad;
+        }
+        self.open.push((index, None));
+        let bound = names.iter().map(|name| name::read(&name.to_string()).base);
+        let bound = bound.zip(arguments.into_iter().map(Local::Value)).collect();
+        let scope = std::mem::replace(&mut self.scope, bound);
+        let value = self.expr(&definition.expr);
+        self.scope = scope;
+        self.open.pop();
+        value
+    }
+
+    /// The whole numbers of a range; a bad or endless one is reported and empty.
+    pub(super) fn range(&mut self, binder: &Binder) -> std::ops::Range<i64> {
+        let end = |lower: &mut Self, expr: &Expr| match lower.integer(expr) {
+            Ok(value) => Some(value),
+            Err(range) => {
+                lower.errors.once(expr.source, range, messages::open_end_of_range());
+                None
+            }
+        };
+        let (Some(low), Some(high)) = (end(self, &binder.low), end(self, &binder.high)) else {
+            return 0..0;
+        };
+        let high = if binder.inclusive { high.saturating_add(1) } else { high };
+        if 65536 < high.saturating_sub(low) {
+            self.errors.once(binder.high.source, binder.high.range, messages::long_range());
+            return 0..0;
+        }
+        low..high
+    }
+
+    pub(super) fn index(&mut self, expr: &Expr, length: usize, name: &str) -> Option<i64> {
+        match self.integer(expr) {
+            Ok(k) if (0..length as i64).contains(&k) => Some(k),
+            Ok(k) => {
+                // A range that is too long is one mistake, however often its index is used.
+                let text = text(expr);
+                let source = match self.local(&name::read(&text).base) {
+                    Some(Local::Index { source, .. }) => *source,
+                    _ => expr.source,
+                };
+                let message = messages::index_out_of_range(name, k, length);
+                self.errors.once(source, expr.range, message);
+                None
+            }
+            Err(range) => {
+                self.errors.once(expr.source, range, messages::open_index());
+                None
+            }
+        }
+    }
+
+    /// The meaning of a name that holds in one expression.
+    pub(super) fn local(&self, name: &str) -> Option<&Local> {
+        self.scope.iter().rev().find(|(own, _)| own == name).map(|(_, local)| local)
+    }
+
+    /// A whole number made of numbers and indices; the range that is none otherwise.
+    pub(super) fn integer(&self, expr: &Expr) -> Result<i64, Range> {
+        let index = |name: &str| match self.local(name) {
+            Some(&Local::Index { value, .. }) => Some(value),
+            _ => None,
+        };
+        model::integer(expr, &index)
+    }
+
+    pub(super) fn bind(&mut self, binder: &Binder, k: i64) {
+        self.scope
+            .push((plain(&binder.name), Local::Index { value: k, source: binder.high.source }));
+    }
+
+    pub(super) fn unbind(&mut self) {
+        self.scope.pop();
+    }
+}

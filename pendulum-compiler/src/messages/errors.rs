@@ -1,0 +1,84 @@
+//! Errors, gathered and reported together, at the user's own tokens.
+
+use super::text::Text;
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::ToTokens;
+use std::collections::BTreeSet;
+
+/// The first and the last token of a piece of source.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Range {
+    pub(crate) first: Span,
+    pub(crate) last: Span,
+}
+
+impl Range {
+    pub(crate) fn to(self, end: Range) -> Range {
+        Range { first: self.first, last: end.last }
+    }
+
+    /// An error that underlines the whole range.
+    pub(crate) fn error(self, message: Text) -> syn::Error {
+        let mut tokens = Ident::new("first", self.first).into_token_stream();
+        tokens.extend(Ident::new("last", self.last).into_token_stream());
+        syn::Error::new_spanned(tokens, message)
+    }
+}
+
+impl From<Span> for Range {
+    fn from(span: Span) -> Range {
+        Range { first: span, last: span }
+    }
+}
+
+/// All that is wrong with a block.
+#[derive(Debug, Default)]
+pub(crate) struct Errors {
+    errors: Vec<syn::Error>,
+    sources: BTreeSet<usize>,
+}
+
+impl Errors {
+    pub(crate) fn push(&mut self, error: syn::Error) {
+        self.errors.push(error);
+    }
+
+    pub(crate) fn at(&mut self, range: impl Into<Range>, message: Text) {
+        self.push(range.into().error(message));
+    }
+
+    /// Reports at most one error for each `source`: an expression that is wrong for one index is
+    /// wrong once.
+    pub(crate) fn once(&mut self, source: usize, range: Range, message: Text) {
+        if self.sources.insert(source) {
+            self.at(range, message);
+        }
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.errors.is_empty()
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.errors.len()
+    }
+
+    #[cfg(test)]
+    pub(crate) fn messages(&self) -> Vec<String> {
+        self.errors.iter().map(ToString::to_string).collect()
+    }
+
+    /// One `compile_error!` for each.
+    pub(crate) fn into_tokens(self) -> TokenStream {
+        self.errors.iter().map(syn::Error::to_compile_error).collect()
+    }
+}
+
+impl IntoIterator for Errors {
+    type Item = syn::Error;
+    type IntoIter = std::vec::IntoIter<syn::Error>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.errors.into_iter()
+    }
+}

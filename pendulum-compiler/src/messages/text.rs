@@ -1,0 +1,13 @@
+//! The text of a message.
+
+use std::fmt;
+
+/// A message of the catalogue: the mistake, and after a semicolon the way out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Text(pub(super) String);
+
+impl fmt::Display for Text {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}

@@ -1,0 +1,34 @@
+//! Whole numbers known while compiling: lengths, indices and ends of ranges.
+
+use super::unit;
+use crate::algebra::number::Rational;
+use crate::messages::Range;
+use crate::syntax::ast::{Expr, ExprKind};
+use crate::syntax::name;
+
+/// A whole number, with the values of the indices in scope; the range that is none otherwise.
+pub(crate) fn integer(expr: &Expr, bound: &dyn Fn(&str) -> Option<i64>) -> Result<i64, Range> {
+    let value = rational(expr, bound).ok_or(expr.range)?;
+    value.integer().ok_or(expr.range)
+}
+
+fn rational(expr: &Expr, bound: &dyn Fn(&str) -> Option<i64>) -> Option<Rational> {
+    match &expr.kind {
+        ExprKind::Name(ident) => {
+            let name = name::read(&ident.to_string());
+            bound(&name.base).filter(|_| name.dots == 0).map(Rational::whole)
+        }
+        ExprKind::Negative(inner) => Some(rational(inner, bound)?.negative()),
+        ExprKind::Sum(terms) => terms.iter().try_fold(Rational::ZERO, |sum, (minus, term)| {
+            let term = rational(term, bound)?;
+            sum.add(if *minus { term.negative() } else { term })
+        }),
+        ExprKind::Product(factors) => {
+            factors.iter().try_fold(Rational::ONE, |product, (over, factor)| {
+                let factor = rational(factor, bound)?;
+                product.mul(if *over { factor.reciprocal()? } else { factor })
+            })
+        }
+        _ => unit::constant(expr),
+    }
+}

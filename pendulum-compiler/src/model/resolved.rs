@@ -1,0 +1,81 @@
+//! A block with its names resolved: its quantities, definitions and statements.
+
+use crate::algebra::dimension::Dimension;
+use crate::syntax::ast::{self, Block, Expr, ForceIndex, Let, Role};
+use proc_macro2::Ident;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A block with its names resolved.
+pub(crate) struct Model<'a> {
+    pub(crate) block: &'a Block,
+    pub(crate) parameters: Vec<Quantity<'a>>,
+    pub(crate) coordinates: Vec<Quantity<'a>>,
+    /// The driven inputs, and after them the control inputs.
+    pub(crate) inputs: Vec<Quantity<'a>>,
+    /// The number of driven inputs.
+    pub(crate) driven: usize,
+    pub(crate) outputs: Vec<Output<'a>>,
+    pub(crate) lets: Vec<&'a Let>,
+    pub(crate) energies: Vec<(Role, &'a Expr)>,
+    pub(crate) forces: Vec<Force<'a>>,
+    /// The constraints that are solved, and after them the redundant ones.
+    pub(crate) constraints: Vec<&'a ast::Constraint>,
+    pub(crate) limits: Vec<&'a ast::Limit>,
+    pub(crate) names: BTreeMap<String, Meaning>,
+    /// The parameters that no statement mentions.
+    pub(crate) unmentioned: BTreeSet<usize>,
+    /// The definitions that outputs alone need: accelerations may stand in them.
+    pub(crate) of_outputs: BTreeSet<usize>,
+}
+
+impl Model<'_> {
+    /// Returns true if an input is a control input.
+    pub(crate) fn is_control(&self, input: usize) -> bool {
+        self.driven <= input
+    }
+}
+
+/// A declared parameter, coordinate, input or output.
+pub(crate) struct Quantity<'a> {
+    pub(crate) name: &'a Ident,
+    /// `None` for a scalar, the length of a vector or family otherwise.
+    pub(crate) length: Option<usize>,
+    /// The number of scalars declared before it.
+    pub(crate) first: usize,
+    pub(crate) dimension: Option<Dimension>,
+    pub(crate) unit: String,
+    pub(crate) default: Option<&'a Expr>,
+    /// A rigid body: mass, centre and central moments.
+    pub(crate) body: bool,
+}
+
+impl Quantity<'_> {
+    /// The number of its scalars.
+    pub(crate) fn count(&self) -> usize {
+        if self.body { 6 } else { self.length.unwrap_or(1) }
+    }
+}
+
+/// An `output` statement.
+pub(crate) struct Output<'a> {
+    /// Its name, its unit and its length as declared.
+    pub(crate) declared: Quantity<'a>,
+    pub(crate) statement: &'a ast::Output,
+}
+
+/// A `force` statement.
+pub(crate) struct Force<'a> {
+    pub(crate) coordinate: usize,
+    pub(crate) name: &'a Ident,
+    pub(crate) index: Option<&'a ForceIndex>,
+    pub(crate) expr: &'a Expr,
+}
+
+/// The meaning of a name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Meaning {
+    Parameter(usize),
+    Coordinate(usize),
+    Input(usize),
+    Let(usize),
+}
