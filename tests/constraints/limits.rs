@@ -528,3 +528,11 @@ fn a_shuttle_goes_between_two_walls() {
     let end = solve(&plastic, (0.0, 3.0), [0.0], [1.0]).run().unwrap().end;
     assert!((end.q[0] - 1.0).abs() < 1e-12 && end.v[0].abs() < 1e-15);
 }
+
+/// A parameter that only a limit, its restitution or a constraint contains is needed.
+#[test]
+fn parameters_of_limits_and_constraints_are_needed() {
+    assert_eq!(Shuttle::<f64>::FACTS.unused, ["m"]);
+    assert!(Bead::<f64>::FACTS.unused.is_empty());
+    assert_eq!(crate::pushed::Leaning::<f64>::FACTS.unused, ["m"]);
+}

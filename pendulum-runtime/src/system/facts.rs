@@ -79,7 +79,7 @@ facts! {
     /// conserved where [`System::power`](crate::system::System::power) is zero, as it is without
     /// `dissipation` and `force` if neither time nor a driven input stands in the energy.
     pub conserved: &'static [&'static str] = &[],
-    /// The parameters that the accelerations do not need.
+    /// The parameters that neither the accelerations nor the constraints and limits need.
     pub unused: &'static [&'static str] = &[],
     /// The equations of motion, one line a coordinate.
     pub equations: &'static str = "",

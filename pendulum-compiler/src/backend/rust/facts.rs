@@ -67,9 +67,15 @@ impl Emitter<'_, '_> {
         }))
     }
 
+    /// The parameters that neither the accelerations nor the constraints and limits need.
     pub(super) fn unused(&self, names: &Names) -> Vec<String> {
         let Some(motion) = &self.motion else { return Vec::new() };
-        let mut needed = self.graph.symbols(&motion.accelerations);
+        let constraints = &motion.constraints;
+        let rows = constraints.held.iter().chain(&constraints.redundant).chain(&constraints.limits);
+        let mut roots: Vec<Id> = rows.map(|row| row.value).collect();
+        roots.extend(&motion.accelerations);
+        roots.extend(self.energies.limits.iter().map(|limit| limit.restitution));
+        let mut needed = self.graph.symbols(&roots);
         for quantity in &self.model.parameters {
             // A moment about the pivot is made of all that a body has.
             if needed.iter().any(
