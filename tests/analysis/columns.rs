@@ -100,7 +100,7 @@ fn an_unknown_column_is_an_error_with_the_nearest_name() {
     assert_eq!(message("R"), "there is no column `R`; did you mean `r`?");
     assert_eq!(
         message("velocity"),
-        "there is no column `velocity`; there are `t`, `φ`, `r`, `angle`, `φ̇`, `ṙ`, `angle_dot`"
+        "there is no column `velocity`; there are `t`, `φ`, `r`, `angle`, `φ̇`, `ṙ`, `angle_dot`; outputs of the system come by `solution.output(&system, name)`, its energy by `solution.energy(&system)`"
     );
     assert_eq!(
         message("φ̈"),
@@ -197,6 +197,11 @@ fn a_solution_prints_a_short_table() {
     assert_eq!(lines[12], "Completed at t = 12");
     assert!(lines[13].contains("steps"), "{text}");
     assert!(format!("{:.3}", solution.table()).contains(" 0.540 "));
+    let all = format!("{:#}", solution.table());
+    assert_eq!(all.lines().count(), 1 + 13, "{all}");
+    let energy = solution.output(&pulled, "energy").unwrap_err().to_string();
+    assert!(energy.starts_with("there is no column `energy`; there "), "{energy}");
+    assert!(energy.ends_with("the energy by `solution.energy(&system)`"), "{energy}");
 }
 
 #[test]

@@ -22,13 +22,20 @@ pub struct ColumnError {
     pub nearest: Option<String>,
     /// The names of all columns.
     pub columns: Vec<String>,
+    /// The calls that give other quantities.
+    hint: &'static str,
 }
 
 /// The greatest number of names that a message lists.
 const LISTED: usize = 12;
 
 impl ColumnError {
-    pub(super) fn new<'a>(name: &str, columns: impl Iterator<Item = &'a str>) -> Self {
+    /// The error for a name that none of `columns` has; `hint` tells which calls give the rest.
+    pub(super) fn new<'a>(
+        name: &str,
+        columns: impl Iterator<Item = &'a str>,
+        hint: &'static str,
+    ) -> Self {
         let columns: Vec<String> = columns.map(String::from).collect();
         let wanted = name::read(name);
         let length = wanted.base.chars().count();
@@ -39,7 +46,7 @@ impl ColumnError {
             .filter(|&(distance, _)| distance <= limit)
             .min_by_key(|&(distance, _)| distance)
             .map(|(_, column)| column.clone());
-        Self { name: name.into(), nearest, columns }
+        Self { name: name.into(), nearest, columns, hint }
     }
 
     /// The members of the family that the name is the name of.
@@ -56,7 +63,7 @@ impl ColumnError {
 
 impl fmt::Display for ColumnError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, nearest, columns } = self;
+        let Self { name, nearest, columns, hint } = self;
         if let [first, .., last] = self.members()[..] {
             return write!(f, "`{name}` is a family; name a member, `{first}` … `{last}`");
         }
@@ -70,11 +77,14 @@ impl fmt::Display for ColumnError {
         if let Some(nearest) = nearest {
             return write!(f, "did you mean `{nearest}`?");
         }
+        if columns.is_empty() {
+            return write!(f, "there are none{hint}");
+        }
         write!(f, "there are ")?;
         for (index, column) in columns.iter().take(LISTED).enumerate() {
             write!(f, "{}`{column}`", if index == 0 { "" } else { ", " })?;
         }
-        if LISTED < columns.len() { write!(f, ", …") } else { Ok(()) }
+        write!(f, "{}{hint}", if LISTED < columns.len() { ", …" } else { "" })
     }
 }
 
@@ -109,7 +119,9 @@ impl<T: Float, const N: usize> Solution<T, N> {
         if let Some(index) = found(&labels.velocities) {
             return Ok(self.v.iter().map(|v| v[index]).collect());
         }
-        Err(ColumnError::new(name, labels.names()))
+        let hint = "; outputs of the system come by `solution.output(&system, name)`, its energy by \
+                    `solution.energy(&system)`";
+        Err(ColumnError::new(name, labels.names(), hint))
     }
 
     /// The accelerations q̈ at all output times, limits in contact included.
@@ -211,7 +223,9 @@ impl<T: Float, const N: usize> Solution<T, N> {
             }
             names.extend(own);
         }
-        Err(ColumnError::new(name, names.iter().map(String::as_str)))
+        let hint = "; coordinates and velocities come by `solution.column(name)`, the energy by \
+                    `solution.energy(&system)`";
+        Err(ColumnError::new(name, names.iter().map(String::as_str), hint))
     }
 
     /// The scalars of the output with this index at all output times, a column for each.

@@ -11,7 +11,8 @@ use core::fmt;
 /// Columns of equal length with their names and units: the states of a [`Solution`], and whatever
 /// was put beside them.
 ///
-/// `Display` prints the first and the last rows in six digits; a precision gives more (`{:.12}`).
+/// `{}` prints the first and the last five rows of nine columns in six digits, `{:#}` all rows and
+/// columns; a precision gives more digits (`{:.12}`).
 ///
 /// ```
 /// use pendulum_runtime::prelude::*;
@@ -166,7 +167,7 @@ impl<T: Float> Table<T> {
         let wanted = name::read(name);
         let found = self.columns.iter().find(|column| name::read(&column.name) == wanted);
         found.map(|column| column.values.as_slice()).ok_or_else(|| {
-            ColumnError::new(name, self.columns.iter().map(|column| column.name.as_str()))
+            ColumnError::new(name, self.columns.iter().map(|column| column.name.as_str()), "")
         })
     }
 
@@ -218,31 +219,32 @@ impl<T: Float + fmt::Display + fmt::LowerExp, const N: usize> Solution<T, N> {
     }
 }
 
-/// The rows that are printed at each end.
+/// The rows that are printed at each end without `#`.
 const ENDS: usize = 5;
 
-/// The columns that are printed.
+/// The columns that are printed without `#`.
 const COLUMNS: usize = 9;
 
 impl<T: Float> fmt::Display for Table<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let digits = f.precision().unwrap_or(6).max(1);
-        let shown: Vec<usize> = if self.rows() <= 2 * ENDS {
+        let most = if f.alternate() { self.columns.len() } else { COLUMNS };
+        let shown: Vec<usize> = if f.alternate() || self.rows() <= 2 * ENDS {
             (0..self.rows()).collect()
         } else {
             (0..ENDS).chain(self.rows() - ENDS..self.rows()).collect()
         };
-        let mut lines = vec![self.header().take(COLUMNS).collect::<Vec<_>>()];
+        let mut lines = vec![self.header().take(most).collect::<Vec<_>>()];
         let text = |value: T| number(value.to_f64(), digits);
         lines.extend(shown.iter().map(|&row| {
-            let values = self.row(row).take(COLUMNS).skip(1).map(text);
+            let values = self.row(row).take(most).skip(1).map(text);
             core::iter::once(number(self.t[row], digits)).chain(values).collect()
         }));
         let width = |column: usize| {
             lines.iter().map(|line| columns(&line[column])).max().unwrap_or_default()
         };
         let widths: Vec<usize> = (0..lines[0].len()).map(width).collect();
-        let more = if COLUMNS < self.columns.len() { " …" } else { "" };
+        let more = if most < self.columns.len() { " …" } else { "" };
         for (index, line) in lines.iter().enumerate() {
             if index == ENDS + 1 && shown.len() < self.rows() {
                 writeln!(f, "… {} rows more …", self.rows() - shown.len())?;
