@@ -4,6 +4,7 @@
 
 pub mod checkpoints;
 pub mod driven;
+pub mod edges;
 pub mod lanes;
 pub mod reductions;
 pub mod teams;

@@ -26,6 +26,7 @@ use crate::integrate::step::held::Held;
 use crate::integrate::step::inertia::{inertia, varies};
 use crate::integrate::step::integration::{Integration, cross};
 use crate::integrate::step::interval::StepInterval;
+use crate::integrate::step::short::shortest;
 use crate::jet::{InputSeries, Jets, Known, LENGTH, Path, Unrolling};
 use crate::motion::Side;
 use crate::scalar::{Float, Lane, Lanes, Real};
@@ -473,10 +474,26 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
                     // Not in order, as `Taylor` says.
                     self.attempt.doubted.0[l] = 1.0;
                 }
-            } else if is_short(t, end, wanted.0[l]) {
+            } else if is_short::<D::Scalar>(t, end, wanted.0[l]) {
                 self.attempt.doubted.0[l] = 1.0;
             }
+            if t.since(end).abs() < shortest::<D::Scalar>() {
+                // The scalar does not hold the length of this step.
+                self.attempt.doubted.0[l] = 1.0;
+            }
+            if varies(Self::FACTS) && self.lanes.high.0[l] == member.problem.time.1 {
+                self.attempt.doubted.0[l] += self.lacks_inertia(l, member);
+            }
         }
+    }
+
+    /// 1 if the mass matrix at the end of the step of a lane is not positive, which `Taylor` reports;
+    /// else 0.
+    fn lacks_inertia(&self, l: usize, member: &Member<'a, D, N>) -> f64 {
+        let to = node(&self.lanes, l);
+        let side = if self.onwards.0[l] < 0.0 { Side::Before } else { Side::After };
+        let checked = inertia(&member.problem.system, to.t, side, &to.q.high, &to.v.high);
+        if checked.is_err() { 1.0 } else { 0.0 }
     }
 
     /// Finds the lanes in whose steps something is to be kept: an output time, an event. They are
@@ -495,8 +512,10 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         }
         let places = self.places();
         for l in 0..W {
-            if 0.0 < live.0[l] && doubted.0[l] + self.attempt.kinked.0[l] == 0.0 {
-                seen.0[l] = if self.is_quiet(l, &places) { seen.0[l] } else { 1.0 };
+            // The detector looks at each step once: what it notes of a quiet one belongs to its end.
+            let unseen = (0.0 < live.0[l]) & (seen.0[l] == 0.0);
+            if unseen && doubted.0[l] + self.attempt.kinked.0[l] == 0.0 {
+                seen.0[l] = if self.is_quiet(l, &places) { 0.0 } else { 1.0 };
             }
         }
         seen
@@ -702,6 +721,11 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
                 break Some(Err(Error::MaxSteps { t: integration.t(), max_steps }));
             }
             if let Err(error) = integration.step(end) {
+                break Some(Err(error));
+            }
+            if integration.end.t == Time::new(end)
+                && let Err(error) = integration.look()
+            {
                 break Some(Err(error));
             }
             let looked = detector.observe(&mut integration);

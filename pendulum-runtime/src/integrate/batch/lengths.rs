@@ -6,7 +6,7 @@
 use super::W;
 use super::kernel::{Flight, Wide};
 use crate::integrate::methods::taylor::{LAST_ORDERS, Rule};
-use crate::integrate::step::adaptive::resolution;
+use crate::integrate::step::adaptive::resolution_of;
 use crate::integrate::step::fast_exp2::power;
 use crate::jet::Path;
 use crate::scalar::{Float, Lane, Real};
@@ -125,7 +125,7 @@ pub(super) fn nearest(a: Wide<f64>, b: Wide<f64>) -> Wide<f64> {
 /// The steps of these lengths, or what avoids leaving a sliver before the end, as for a single
 /// motion; none in idle lanes. Steps that would reach the end or are too short are marked.
 #[inline(always)]
-pub(super) fn fit<T, const N: usize>(
+pub(super) fn fit<T: Float, const N: usize>(
     from: &Flight<T, N>,
     wanted: Wide<f64>,
     unusual: &mut Wide<f64>,
@@ -139,7 +139,7 @@ pub(super) fn fit<T, const N: usize>(
         unusual.0[l] =
             if reaches(t, from.end.0[l], wanted) { from.live.0[l] } else { unusual.0[l] };
         unusual.0[l] =
-            if is_short(t, from.end.0[l], wanted) { from.live.0[l] } else { unusual.0[l] };
+            if is_short::<T>(t, from.end.0[l], wanted) { from.live.0[l] } else { unusual.0[l] };
     }
     h
 }
@@ -152,8 +152,8 @@ pub(super) fn reaches(t: Time, end: f64, wanted: f64) -> bool {
 
 /// Returns true if a step of this length would be too short before the end.
 #[inline(always)]
-pub(super) fn is_short(t: Time, end: f64, wanted: f64) -> bool {
-    (wanted <= resolution(t)) & (wanted < t.since(end).abs())
+pub(super) fn is_short<T: Float>(t: Time, end: f64, wanted: f64) -> bool {
+    (wanted <= resolution_of::<T>(t)) & (wanted < t.since(end).abs())
 }
 
 /// Returns true if some lane is not zero.

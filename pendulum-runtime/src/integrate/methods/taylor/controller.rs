@@ -165,6 +165,8 @@ pub(crate) struct Ends<'a, T, const N: usize> {
     pub(crate) series: [T; N],
 }
 
+/// The misfit of the series in `workspace` at the end `to` of its step, from one evaluation of the
+/// accelerations there; `strict` after a series that did not hold.
 fn misfit<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     field: &Field<'_, D, N>,
     workspace: &WorkspaceOf<D, N>,
