@@ -46,20 +46,20 @@ const FREQUENCIES: [f64; 3] = [20.3, 200.3, 2000.3];
 fn fast_springs_are_right_or_refused() {
     let (mut right, mut refused) = (0, 0);
     for frequency in FREQUENCIES {
-        for exponent in 2..=13 {
+        for exponent in [2, 3, 5, 7, 9, 12] {
             let (omega, tolerance) = (TAU * frequency, 10f64.powi(-exponent));
             let mut scene = Scene::<f64>::new(60.0).unwrap();
             scene.set_tolerance(tolerance).unwrap();
-            // A second is this many radians.
-            let bound = |decay: f64| decay * (1.5 * tolerance * omega).min(2.0) + 1e-10;
+            // A quarter of a second is a quarter of `omega` in radians.
+            let bound = (1.5 * tolerance * omega / 4.0).min(2.0) + 1e-10;
             match scene.hang((), Sprung::new(0.1, 0.1 * omega * omega), [1.0], [0.0]) {
                 Ok(spring) => {
-                    scene.advance(1.0).unwrap();
+                    scene.advance(0.25).unwrap();
                     let ([u], _) = scene.state(spring);
+                    let expected = (omega / 4.0).cos();
                     assert!(
-                        (u - omega.cos()).abs() < bound(1.0),
-                        "{frequency} Hz, {tolerance}: {u} for {}",
-                        omega.cos()
+                        (u - expected).abs() < bound,
+                        "{frequency} Hz, {tolerance}: {u} for {expected}"
                     );
                     right += 1;
                 }
@@ -75,13 +75,12 @@ fn fast_springs_are_right_or_refused() {
             match scene.hang((), damped, [1.0], [-decay]) {
                 Ok(spring) => {
                     let start = scene.time();
-                    scene.advance(1.0).unwrap();
-                    let (lost, t) = ((-decay).exp(), scene.time() - start);
-                    assert_eq!(t, 1.0);
+                    scene.advance(0.25).unwrap();
+                    assert_eq!(scene.time() - start, 0.25);
                     let ([u], _) = scene.state(spring);
-                    let expected = lost * omega.cos();
+                    let expected = (-0.25 * decay).exp() * (omega / 4.0).cos();
                     assert!(
-                        (u - expected).abs() < bound(1.0) && u.abs() < 1.0,
+                        (u - expected).abs() < bound && u.abs() < 1.0,
                         "{frequency} Hz, {tolerance}: {u} for {expected}"
                     );
                     right += 1;
@@ -91,7 +90,7 @@ fn fast_springs_are_right_or_refused() {
             }
         }
     }
-    assert!(20 < right && 20 < refused, "{right} right, {refused} refused");
+    assert!(12 < right && 8 < refused, "{right} right, {refused} refused");
 }
 
 #[test]
