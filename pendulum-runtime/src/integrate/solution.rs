@@ -209,7 +209,9 @@ pub struct Stats {
     pub evaluations: u64,
     /// Steps taken.
     pub accepted: u64,
-    /// Steps tried and rejected by step control.
+    /// Steps tried and rejected by step control, which tried again with shorter ones: nothing is
+    /// lost but their time. Many of them, compared with those accepted, tell of corners or of noise
+    /// in the forces.
     pub rejected: u64,
     /// Kinks crossed.
     pub kinks: u64,

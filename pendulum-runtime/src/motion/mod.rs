@@ -3,6 +3,20 @@
 //! A motion is asked for exactly the derivatives that the equations contain, and says where its
 //! kinks are: the times at which its position, velocity or acceleration jumps. There it has two
 //! values, one from each side.
+//!
+//! | keys or formula | motion | continuous | a key moves |
+//! |---|---|---|---|
+//! | keys of an animator | [`CatmullRom`] | velocity | four pieces of the curve |
+//! | few keys, gently | [`Spline`] | acceleration | the whole curve, less with distance |
+//! | a cycle, such as a walk | [`Spline::periodic`] | acceleration, over the seam too | the whole curve |
+//! | keys whose corners are meant, such as blows | [`Linear`] | position | two pieces |
+//! | frames of a captured motion | [`Clip`] | by its [`Interpolation`] | its neighbourhood |
+//! | a harmonic shake | [`Sinusoid`] | everything | – |
+//! | a formula in Rust | [`Function`] | what the formula is | – |
+//! | a point that stays | [`Still`] | everything | – |
+//!
+//! All curves go through their keys. [`Sinusoid`], [`Still`] and curves through keys are
+//! [`Analytic`]: steps end on their kinks, and Taylor series and lanes take them.
 
 mod analytic;
 mod attenuated;
