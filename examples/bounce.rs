@@ -1,5 +1,5 @@
-//! A leg that swings from the hip: the knee bends one way only, and hits a stop where it is stretched
-//! and where it is bent all the way.
+//! A leg that swings from the hip: the knee bends one way only, and hits a stop where it is
+//! stretched and where it is bent all the way.
 //!
 //! `cargo run --release --example bounce` prints the impacts and draws the path of the foot into
 //! `target/bounce.svg`: it has a corner wherever the knee hits the stop.

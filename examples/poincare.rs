@@ -1,8 +1,9 @@
 //! The Poincaré section of a double pendulum: islands of order in a chaotic sea.
 //!
-//! `cargo run --release --example poincare` writes `target/poincare.svg`: the angle and the momentum
-//! of the lower link whenever the upper one swings through the vertical to the right, for motions of
-//! one energy. Eighty thousand dots are one path a motion, which no crate for charts draws.
+//! `cargo run --release --example poincare` writes `target/poincare.svg`: the angle and the
+//! momentum of the lower link whenever the upper one swings through the vertical to the right, for
+//! motions of one energy. Eighty thousand dots are one path a motion, which no crate for charts
+//! draws.
 
 #![allow(mixed_script_confusables, missing_docs)]
 

@@ -31,7 +31,8 @@ const OMEGA: f64 = 4.0 * PI;
 const LENGTH: f64 = 0.1;
 const SECONDS: u32 = 20;
 
-/// Times with angles in degrees at the ends of the frames, and the largest angle of the second half.
+/// Times with angles in degrees at the ends of the frames, and the largest angle of the second
+/// half.
 type Swing = (Vec<(f64, f64)>, f64);
 
 /// A pendulum of 10 cm in a scene, with a damping of 4/s.

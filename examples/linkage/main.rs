@@ -1,7 +1,7 @@
 //! Andrews' squeezing mechanism: seven bodies in three closed loops, driven by a motor.
 //!
-//! `cargo run --release --example linkage` writes `target/linkage.svg`: the mechanism at eight times
-//! within 0.03 s.
+//! `cargo run --release --example linkage` writes `target/linkage.svg`: the mechanism at eight
+//! times within 0.03 s.
 
 #![allow(mixed_script_confusables, confusable_idents, missing_docs)]
 

@@ -1,5 +1,5 @@
-//! Ensembles over the ranks of MPI: the same program under `mpirun` shares the shards out, each rank
-//! with its threads, and rank 0 gets the value, with the bits of a single process.
+//! Ensembles over the ranks of MPI: the same program under `mpirun` shares the shards out, each
+//! rank with its threads, and rank 0 gets the value, with the bits of a single process.
 //!
 //! OpenMPI or MPICH has to be installed, in Debian `libopenmpi-dev openmpi-bin libclang-dev`.
 //!
@@ -60,8 +60,8 @@ enum Order {
     Finish,
 }
 
-/// The ranks of a communicator. Rank 0 is the root: it hands out the shards one by one to whoever is
-/// free.
+/// The ranks of a communicator. Rank 0 is the root: it hands out the shards one by one to whoever
+/// is free.
 ///
 /// Only the thread that calls `fold_in` speaks MPI: any level of thread support will do.
 pub struct Ranks<'w> {

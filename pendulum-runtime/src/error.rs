@@ -115,8 +115,8 @@ pub enum Error {
         /// The coordinates of the system.
         coordinates: &'static [&'static str],
     },
-    /// A constraint depends on those before it, or its gradient vanishes: its force is undetermined,
-    /// and another branch of the motion begins there.
+    /// A constraint depends on those before it, or its gradient vanishes: its force is
+    /// undetermined, and another branch of the motion begins there.
     DependentConstraints {
         /// The time.
         t: f64,

@@ -109,8 +109,8 @@ fn a_double_pendulum_has_pairs_that_add_up_to_zero() {
 #[test]
 #[ignore = "takes seconds in release: `.ci/run` runs it"]
 fn uedas_oscillator_has_its_published_exponents() {
-    // Sprott (2003), Chaos and Time-Series Analysis, A.5: b = 0.05, A = 7.5: 0.1034, 0, −0.1534 and a
-    // dimension of 2.6741, that of the time included.
+    // Sprott (2003), Chaos and Time-Series Analysis, A.5: b = 0.05, A = 7.5: 0.1034, 0, −0.1534 and
+    // a dimension of 2.6741, that of the time included.
     let system = Variational::<_, 1, ONE>::new(Ueda::new(0.05, 7.5));
     let run = lyapunov(&system, 0.0, [2.5], [0.0]).transient(500.0).interval(2.0).rtol(1e-10);
     let spectrum = run.run(1e6).unwrap();

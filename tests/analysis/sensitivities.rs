@@ -54,7 +54,8 @@ fn picard_and_dop853_agree_on_driven_systems_across_kinks() {
 #[test]
 fn picard_keeps_areas_in_phase_space() {
     // Liouville: without damping the determinant is 1 along a shaken pivot too, as it is of a
-    // Hamiltonian in the momenta; in velocities it is the ratio of det M, which returns with θ₁ − θ₂.
+    // Hamiltonian in the momenta; in velocities it is the ratio of det M, which returns with θ₁ −
+    // θ₂.
     const M: usize = variational_size(2, 0);
     let system = Hung::new(9.81, 0.7, 0.5, 0.0);
     let varied = Variational::<_, 2, M>::new(system.clone());

@@ -81,7 +81,7 @@ impl Reader {
             .all(|(k, letter)| self.letters.get(self.place + k) == Some(&letter))
     }
 
-    /// What stands in braces, as one element.
+    /// The contents of braces, as one element.
     fn argument(&mut self) -> String {
         if self.peek() == Some('{') {
             self.place += 1;
@@ -90,7 +90,7 @@ impl Reader {
         self.element()
     }
 
-    /// What stands in braces, as it is written.
+    /// The contents of braces, as they are written.
     fn verbatim(&mut self) -> String {
         let rest = &self.letters[(self.place + 1).min(self.letters.len())..];
         let text: String = rest.iter().take_while(|&&letter| letter != '}').collect();

@@ -1,6 +1,6 @@
 //! Equations in Unicode, as one would write them: θ̈ = −g·sin θ/L.
 //!
-//! Those of a block that is written in ASCII are in ASCII, as the language reads them:
+//! The equations of a block that is written in ASCII are in ASCII, as the language reads them:
 //! `theta_ddot = -g*sin(theta)/L`.
 
 use crate::algebra::expr::{Graph, Id, Moment, Node, Symbol};

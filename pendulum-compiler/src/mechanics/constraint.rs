@@ -1,8 +1,8 @@
 //! Constraints and limits: gradients, rates, multipliers.
 //!
 //! Rows are holonomic, g(q, t) = 0, or hold velocities, A(q, t) q̇ + b(q, t) = 0. With c the rate
-//! of the row's velocity form, C = ∂c/∂q̈ and γ = −c at q̈ = 0 the motion fulfils M q̈ = f + Cᵀλ and
-//! C q̈ = γ. One elimination gives accelerations and multipliers: each multiplier is eliminated
+//! of the row's velocity form, C = ∂c/∂q̈ and γ = −c at q̈ = 0 the motion fulfils M q̈ = f + Cᵀλ
+//! and C q̈ = γ. One elimination gives accelerations and multipliers: each multiplier is eliminated
 //! behind the coordinates of its row, so that all pivots have a known sign.
 
 use crate::algebra::diff::{derivative, substitute};

@@ -1,7 +1,8 @@
 //! Jacobians of the accelerations: ∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂parameters.
 //!
 //! M q̈ = f gives M ∂q̈/∂z = ∂f/∂z − ∂M/∂z q̈: each column is one more right-hand side for factors
-//! that exist already, those of the whole matrix where there are multipliers. A coordinate that stands alone in its row is differentiated directly.
+//! that exist already, those of the whole matrix where there are multipliers. A coordinate that
+//! stands alone in its row is differentiated directly.
 
 use crate::algebra::diff::derivative;
 use crate::algebra::expr::{Graph, Id, Symbol};

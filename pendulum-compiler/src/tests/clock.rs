@@ -1,4 +1,4 @@
-//! How narrow functions of time are, and when they have their middle.
+//! Widths of functions of time, and the times of their middles.
 
 use super::{derive, evaluate};
 use crate::algebra::expr::Symbol;

@@ -110,7 +110,7 @@ fn equations_show_multipliers() {
     assert!(compiled(&driven).power.contains('l'), "{}", compiled(&driven).power);
 }
 
-/// What is conserved without a constraint is conserved with it only if it does no work there.
+/// A quantity conserved without a constraint is conserved with it only if it does no work there.
 #[test]
 fn conserved_momenta_are_those_that_constraints_leave() {
     let planar = |statement: &str| {

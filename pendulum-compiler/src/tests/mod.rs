@@ -33,7 +33,7 @@ mod sparse;
 mod symmetries;
 mod translations;
 
-/// What is wrong with a block.
+/// The messages for a block.
 fn refusals(source: &str) -> Vec<String> {
     let mut errors = Errors::default();
     derived(source, &mut errors, |_, _, _, _| ());

@@ -34,7 +34,7 @@ fn powers_in_latex_hold_together() {
     }
 }
 
-/// What is shared stands once in the graph, but wherever it is used in a text.
+/// A shared value stands once in the graph, and in a text wherever it is used.
 #[test]
 fn what_is_too_long_is_not_written_out() {
     let shared: Vec<String> =
@@ -78,7 +78,7 @@ fn terms_cancel() {
     }
 }
 
-/// What is printed of a block in ASCII can be read: it prints itself.
+/// The text printed of a block in ASCII can be read: it prints itself.
 #[test]
 fn what_is_printed_in_ascii_can_be_read() {
     let bare = "struct S { a, b, c } coordinate q; driven x;";

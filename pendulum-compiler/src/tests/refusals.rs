@@ -96,7 +96,7 @@ fn one_mistake_gives_one_message() {
     }
 }
 
-/// What a newcomer writes, with the names and units of other notations.
+/// The blocks of newcomers, with the names and units of other notations.
 #[rustfmt::skip]
 const NEWCOMERS: &[(&str, &str)] = &[
     // Velocities.

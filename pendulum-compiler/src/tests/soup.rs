@@ -5,7 +5,7 @@ use proc_macro2::{TokenStream, TokenTree};
 use random_systems::Random;
 use random_systems::tokens::{BLOCKS, mutate, soup, transplant};
 
-/// How many of each; `SOUP=50000` in `.ci/run`, and any other number for more.
+/// The number of each; `SOUP=50000` in `.ci/run`, and any other number for more.
 fn rounds() -> u64 {
     std::env::var("SOUP").ok().and_then(|text| text.parse().ok()).unwrap_or(2000)
 }

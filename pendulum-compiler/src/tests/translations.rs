@@ -3,7 +3,7 @@
 use super::refusals;
 use super::refusals::block;
 
-/// What another notation writes, and what to write here.
+/// The text of another notation, and the text to write here.
 #[rustfmt::skip]
 const NOTATIONS: &[(&str, &str)] = &[
     ("potential = -cos^2(θ);",                 "a function is raised to a power after its argument; write `cos(θ)^2`"),
@@ -75,7 +75,7 @@ fn other_notations_are_translated() {
     }
 }
 
-/// What is written in ASCII is answered in ASCII.
+/// A block in ASCII is answered in ASCII.
 #[test]
 fn constants_are_translated_into_the_letters_of_the_block() {
     for (constant, expected) in [

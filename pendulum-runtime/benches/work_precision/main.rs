@@ -4,10 +4,11 @@
 //! [--heyoka PYTHON] [--no-peers]`, or `-- --draw TABLE NOTE`, which draws the pictures of a table
 //! measured before and measures nothing.
 //!
-//! The systems are those of `tools/systems/src/work_precision`; the error is the largest distance of any coordinate or
-//! velocity at any of the five output times from `reference.txt`. A round runs all rows, every
-//! second round backwards; the time of a row is the median over the rounds, a ratio of two methods
-//! the median of the ratios in each round. Everything runs on one thread, one process at a time.
+//! The systems are those of `tools/systems/src/work_precision`; the error is the largest distance
+//! of any coordinate or velocity at any of the five output times from `reference.txt`. A round runs
+//! all rows, every second round backwards; the time of a row is the median over the rounds, a ratio
+//! of two methods the median of the ratios in each round. Everything runs on one thread, one
+//! process at a time.
 //!
 //! The crates `ode_solvers` and `differential-equations` are measured by `benches/peers/rust`, a
 //! package outside the workspace that is built and started here and waits while others run; without

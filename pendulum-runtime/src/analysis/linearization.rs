@@ -67,12 +67,12 @@ impl core::error::Error for ModeError {}
 /// acceleration) they describe small motions.
 ///
 /// Driven inputs stay as they are. A feedback law is linearized along with the system;
-/// [`control_jacobian`](Jacobians::control_jacobian) is ∂q̈ by the control inputs. Limits have no part
-/// in it: it describes the motion away from them.
+/// [`control_jacobian`](Jacobians::control_jacobian) is ∂q̈ by the control inputs. Limits have no
+/// part in it: it describes the motion away from them.
 ///
 /// With constraints δ lies in the plane that they leave, and there are as many modes as it has
-/// dimensions. For a state that moves [`state_space`](crate::analysis::state_space) has the model in
-/// independent coordinates.
+/// dimensions. For a state that moves [`state_space`](crate::analysis::state_space) has the model
+/// in independent coordinates.
 ///
 /// ```
 /// use pendulum_runtime::prelude::*;
@@ -128,8 +128,8 @@ where
 }
 
 impl<const N: usize> Linearization<N> {
-    /// The vibrations that M δ̈ + K δ = 0 has on the constraints, by Cholesky's factors of M and the
-    /// eigenvalues of a symmetric matrix.
+    /// The vibrations that M δ̈ + K δ = 0 has on the constraints, by Cholesky's factors of M and
+    /// the eigenvalues of a symmetric matrix.
     ///
     /// # Errors
     /// A mass matrix that is not positive definite, numbers that are not finite.

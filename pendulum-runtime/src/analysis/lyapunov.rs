@@ -151,8 +151,8 @@ pub struct Lyapunov<'a, const N: usize, D, Me = Picard> {
 ///
 /// Sources: Benettin, Galgani, Giorgilli and Strelcyn (1980), Lyapunov Characteristic Exponents for
 /// smooth dynamical systems, Meccanica 15, 9–30, part 2; Shimada and Nagashima (1979), Progress of
-/// Theoretical Physics 61, 1605–1616. Standard errors by batch means: Geyer (1992), Practical Markov
-/// Chain Monte Carlo, Statistical Science 7, section 3.2.
+/// Theoretical Physics 61, 1605–1616. Standard errors by batch means: Geyer (1992), Practical
+/// Markov Chain Monte Carlo, Statistical Science 7, section 3.2.
 ///
 /// ```
 /// use pendulum_runtime::prelude::*;

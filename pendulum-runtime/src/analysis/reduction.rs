@@ -13,8 +13,8 @@ const RANK: f64 = 1e-11;
 /// The gradients C of the constraints, one in a row; no numbers for a constraint whose gradient
 /// vanishes, as where all bars of a linkage lie in a line.
 ///
-/// A change of the coordinates by their size, or by one, changes such a constraint by the rounding of
-/// its terms.
+/// A change of the coordinates by their size, or by one, changes such a constraint by the rounding
+/// of its terms.
 pub(super) fn gradients<D, const N: usize>(
     dynamics: &D,
     time: Time,
@@ -78,8 +78,8 @@ impl Reduction {
     /// C δq̇ + ∂(C q̇ + b)/∂q δq = 0.
     ///
     /// The dependent coordinates are the pivots of an elimination that takes the largest in the
-    /// metric of the diagonal of the mass matrix. Numbers are not finite where constraints depend on
-    /// each other.
+    /// metric of the diagonal of the mass matrix. Numbers are not finite where constraints depend
+    /// on each other.
     pub(super) fn new<D, const N: usize>(
         dynamics: &D,
         time: Time,

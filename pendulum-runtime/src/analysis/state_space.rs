@@ -17,8 +17,8 @@ pub struct StateSpace {
     /// The coordinates whose changes δq stand in x, by their indices: all of them without
     /// constraints.
     pub coordinates: Vec<usize>,
-    /// The velocities whose changes δq̇ stand in x behind those: with constraints of velocities there
-    /// are fewer.
+    /// The velocities whose changes δq̇ stand in x behind those: with constraints of velocities
+    /// there are fewer.
     pub velocities: Vec<usize>,
     /// A, 2n × 2n for n coordinates without constraints.
     pub a: DMatrix<f64>,
@@ -36,8 +36,9 @@ pub struct StateSpace {
 /// part of the model, which is that of the open loop. Driven inputs stay as they are.
 ///
 /// With constraints x holds independent coordinates and velocities: those of the others follow from
-/// C δq = 0 for constraints of positions and C δq̇ + ∂(C q̇ + b)/∂q δq = 0 for all. The state may move,
-/// and has to fulfil the constraints; where they depend on each other, the entries are not finite.
+/// C δq = 0 for constraints of positions and C δq̇ + ∂(C q̇ + b)/∂q δq = 0 for all. The state may
+/// move, and has to fulfil the constraints; where they depend on each other, the entries are not
+/// finite.
 ///
 /// Source: K. J. Åström and R. M. Murray (2008), Feedback Systems, eq. 5.33.
 pub fn state_space<D, const N: usize>(

@@ -6,7 +6,8 @@ use crate::system::{Facts, Jacobians, Staged, System, VelocityFree};
 use nalgebra::{DMatrix, SMatrix};
 
 /// A system together with the variational equations along its motion: a system itself, for `Picard`
-/// and every method that takes equations written by hand (name one: `Picard`, `Dop853`, `Gauss`, …).
+/// and every method that takes equations written by hand (name one: `Picard`, `Dop853`, `Gauss`,
+/// …).
 ///
 /// Its `M` coordinates are the `N` of the system and after them columns of `N`: ∂q/∂q₀ for each
 /// coordinate at the start, ∂q/∂q̇₀ for each velocity there, and ∂q/∂p for as many parameters as

@@ -9,7 +9,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// What a shard's file begins with; the last byte is the version of the format.
+/// The first bytes of a shard's file; the last is the version of the format.
 const MAGIC: [u8; 8] = *b"pendul\x00\x01";
 
 /// A place for finished shards that reduce to `P`: none, or a folder.

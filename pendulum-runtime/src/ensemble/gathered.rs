@@ -30,7 +30,7 @@ pub struct Gathered<R> {
 pub struct Tally {
     /// The members that were solved or have failed.
     pub members: u64,
-    /// Those that have failed.
+    /// The members that have failed.
     pub failed: u64,
     /// The first of them by index, sixteen at most.
     pub failures: Vec<FailedMember>,
@@ -97,13 +97,14 @@ impl Tally {
     }
 }
 
-/// How far an ensemble is, for a function given by [`on_progress`](super::Mapped::on_progress).
+/// The progress of an ensemble, for a function given by
+/// [`on_progress`](super::Mapped::on_progress).
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Progress {
     /// The members that are done, failed ones included.
     pub members: u64,
-    /// Those that have failed.
+    /// The members that have failed.
     pub failed: u64,
     /// All members.
     pub total: u64,

@@ -38,7 +38,7 @@ pub struct Mapped<'a, const N: usize, D: Dynamics<N>, G, W, C, F, K = Nowhere> {
     part: (usize, usize),
 }
 
-/// What all threads share of it.
+/// The work that all threads share.
 struct Work<'a, const N: usize, D: Dynamics<N>, G, W, C, F> {
     shards: Shards,
     problem: G,
@@ -69,7 +69,7 @@ struct Open<R, P> {
     tally: Tally,
 }
 
-/// What is shared between threads.
+/// The state that threads share.
 struct Shared<'a> {
     next: AtomicUsize,
     shards: usize,
@@ -120,7 +120,8 @@ impl<const N: usize, D: Dynamics<N>, G, W, C, F> Mapped<'_, N, D, G, W, C, F, Fo
 
     /// Solves the shards `index`, `index + of`, `index + 2 of`, … only, for several processes that
     /// share a folder: jobs of a cluster, for example. Shards of other parts that are there are
-    /// read, others are [`missing`](Gathered::missing); a last run without this call joins them all.
+    /// read, others are [`missing`](Gathered::missing); a last run without this call joins them
+    /// all.
     pub fn part(mut self, index: usize, of: usize) -> Self {
         self.part = (index, of);
         self
@@ -218,8 +219,8 @@ where
         self.gather(&Each { take })
     }
 
-    /// The same as [`fold`](Self::fold) with the other processes of a [`Team`]: each calls it with the
-    /// same ensemble, and the root gets the value, with the same bits as alone.
+    /// The same as [`fold`](Self::fold) with the other processes of a [`Team`]: each calls it with
+    /// the same ensemble, and the root gets the value, with the same bits as alone.
     ///
     /// With a checkpoint all of them share its folder.
     ///
@@ -425,8 +426,8 @@ where
         .concat()
     }
 
-    /// Solves the shards that `take` gives, and gives each to `give` when it is finished: the work of
-    /// one thread. Begins no further member when it is to `stop`.
+    /// Solves the shards that `take` gives, and gives each to `give` when it is finished: the work
+    /// of one thread. Begins no further member when it is to `stop`.
     fn solve<S: Sink<R>>(
         &self,
         sink: &S,

@@ -11,7 +11,7 @@ pub(super) trait Sink<R>: Sync {
     /// The reduction of one or more shards.
     type Whole: Send;
 
-    /// That of no member.
+    /// The part of no member.
     fn empty(&self) -> Self::Part;
 
     /// Adds the next member; it has no value if it failed.

@@ -154,7 +154,8 @@ where
         &self.integration.dynamics
     }
 
-    /// Chooses the steps otherwise: with a [`FixedStep`](crate::integrate::FixedStep) or an [`AdaptiveStep`].
+    /// Chooses the steps otherwise: with a [`FixedStep`](crate::integrate::FixedStep) or an
+    /// [`AdaptiveStep`].
     pub fn control<B: Controller<M, D, N>>(
         self,
         control: B,
@@ -182,8 +183,8 @@ where
         self
     }
 
-    /// Takes one step: the longest that the control allows, but not over a kink, a stop, and the end
-    /// of the interval, if it was [started](crate::integrate::Solve::start) with them.
+    /// Takes one step: the longest that the control allows, but not over a kink, a stop, and the
+    /// end of the interval, if it was [started](crate::integrate::Solve::start) with them.
     #[inline]
     pub fn step(&mut self) -> Result<(), Error>
     where
@@ -324,8 +325,8 @@ where
     /// the interruption.
     ///
     /// The integrator has to be built as the other was: with the same system, method, steps, events
-    /// and stops. [`Error::Saved`] says if it obviously is not, and leaves it as it is. A controller
-    /// that is [sampled](crate::system::Sampled) has a state that nobody can save:
+    /// and stops. [`Error::Saved`] says if it obviously is not, and leaves it as it is. A
+    /// controller that is [sampled](crate::system::Sampled) has a state that nobody can save:
     /// [`Error::SavedController`].
     pub fn restore(&mut self, saved: &Saved) -> Result<(), Error> {
         if D::SAMPLED {
@@ -399,7 +400,8 @@ where
         limit < MOST_LIMITS && Contacts::from_bits(contacts).has(limit)
     }
 
-    /// The index of the terminal event that has ended that call, or of the one that has come to rest.
+    /// The index of the terminal event that has ended that call, or of the one that has come to
+    /// rest.
     pub fn terminal_event(&self) -> Option<usize> {
         match self.ended {
             Some(Status::Event(event) | Status::Rest(event)) => Some(event),

@@ -1,7 +1,7 @@
 //! Methods: the trait that each implements, and what they work with.
 //!
-//! A method outside of this crate implements [`Method`], and [`ErrorEstimate`] and [`Adaptive`] if it
-//! can choose its steps; the example `own_method` has one.
+//! A method outside of this crate implements [`Method`], and [`ErrorEstimate`] and [`Adaptive`] if
+//! it can choose its steps; the example `own_method` has one.
 
 pub use super::interpolant::{Basis, Interpolant, TERMS};
 pub use super::step::compensated::Compensated;
@@ -106,8 +106,8 @@ pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fm
     }
 
     /// Visits everything in the workspace that one step leaves to the next, in an order of its own:
-    /// a saved integration goes on with the same bits. Methods whose steps begin with the state alone
-    /// have nothing to visit.
+    /// a saved integration goes on with the same bits. Methods whose steps begin with the state
+    /// alone have nothing to visit.
     fn remember(&self, workspace: &mut Self::Workspace, memory: &mut Memory) {
         let _ = (workspace, memory);
     }
@@ -118,8 +118,8 @@ pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fm
         let _ = (dynamics, workspace, to);
     }
 
-    /// Returns true if all accelerations of a step come from [`Field::at`], which adds the forces of
-    /// limits in contact. Others end in [`Error::Contact`] where a contact begins.
+    /// Returns true if all accelerations of a step come from [`Field::at`], which adds the forces
+    /// of limits in contact. Others end in [`Error::Contact`] where a contact begins.
     fn keeps_contacts(&self) -> bool {
         false
     }
@@ -163,8 +163,8 @@ pub trait ErrorEstimate<D: Dynamics<N, Scalar: Float>, const N: usize>: Method<D
     }
 }
 
-/// A method with an [`ErrorEstimate`], which can choose its own steps; others do not compile without
-/// a step size:
+/// A method with an [`ErrorEstimate`], which can choose its own steps; others do not compile
+/// without a step size:
 ///
 /// ```
 /// # use pendulum_runtime::{integrate::*, system::*};

@@ -15,7 +15,7 @@ pub struct Settings<'a, T, const N: usize, C> {
 }
 
 impl<T, const N: usize, C> Settings<'_, T, N, C> {
-    /// Those of [`solve`](crate::integrate::solve) without further calls.
+    /// The settings of [`solve`](crate::integrate::solve) without further calls.
     pub(crate) fn new(controller: C) -> Self {
         Self {
             controller,

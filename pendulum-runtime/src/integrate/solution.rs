@@ -90,8 +90,8 @@ impl<T: Float, const N: usize> Solution<T, N> {
 ///
 /// The impulse μ ≥ 0 acts along n = ∂h/∂q: M(q̇⁺ − q̇⁻) = nμ + Cᵀν, where ν are the impulses of the
 /// constraints, with ḣ⁺ = −e ḣ⁻. Several limits that are closed at one time act in the order of
-/// declaration, each on the velocities that the one before it has left, and again until none of them
-/// closes; after a hundred rounds without rebound.
+/// declaration, each on the velocities that the one before it has left, and again until none of
+/// them closes; after a hundred rounds without rebound.
 ///
 /// A limit whose rebound ḣ⁺ is below what the tolerances allow its rate (below rounding, with fixed
 /// steps), while ḧ < 0 without it, stays in contact: then q̈ = q̈₀ + K nμ, where q̈₀ are the
@@ -203,9 +203,9 @@ impl<'a, T: Copy, const N: usize> IntoIterator for &'a Solution<T, N> {
 pub struct Stats {
     /// The name of the method.
     pub method: &'static str,
-    /// Evaluations of the accelerations, those for dense output included. [`Taylor`](crate::integrate::Taylor)
-    /// counts an order of its series as one; the one at the end of each step, by which it checks
-    /// them, is not counted.
+    /// Evaluations of the accelerations, those for dense output included.
+    /// [`Taylor`](crate::integrate::Taylor) counts an order of its series as one; the one at the
+    /// end of each step, by which it checks them, is not counted.
     pub evaluations: u64,
     /// Steps taken.
     pub accepted: u64,
@@ -215,11 +215,11 @@ pub struct Stats {
     pub rejected: u64,
     /// Kinks crossed.
     pub kinks: u64,
-    /// How well the constraints were kept; `None` without constraints and before the first step.
+    /// The misfits of the constraints; `None` without constraints and before the first step.
     pub constraints: Option<ConstraintStats>,
 }
 
-/// How well the constraints of a system were kept at the ends of steps.
+/// The misfits of the constraints of a system at the ends of steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

@@ -126,8 +126,8 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
     }
 
     /// Looks for events; a terminal one ends the integration. They are found in
-    /// [`Solution::events`], and change no step except for known times and events that act, at which
-    /// steps end.
+    /// [`Solution::events`], and change no step except for known times and events that act, at
+    /// which steps end.
     pub fn events(mut self, events: impl AsRef<[Event<'a, D::Scalar, N>]>) -> Self {
         self.events = events.as_ref().to_vec();
         self

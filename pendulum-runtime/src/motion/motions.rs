@@ -19,8 +19,8 @@ pub trait Motions<Inputs> {
     /// The first kink of any of them after `t`.
     fn next_kink(&self, t: f64) -> Option<f64>;
 
-    /// The last kink of any of them before `t`, as [`Motion::kink_before`]; `None` if one of them does
-    /// not know.
+    /// The last kink of any of them before `t`, as [`Motion::kink_before`]; `None` if one of them
+    /// does not know.
     fn kink_before(&self, t: f64) -> Option<f64> {
         let _ = t;
         None

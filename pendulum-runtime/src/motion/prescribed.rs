@@ -47,8 +47,8 @@ pub trait Motion<T: Real, const D: usize> {
     fn next_kink(&self, t: f64) -> Option<f64>;
 
     /// The last time before `t` (never `t` itself) at which the position, the velocity or the
-    /// acceleration jumps; −∞ if there is none, and `None` if that is not known: integrations do not
-    /// go back in time then.
+    /// acceleration jumps; −∞ if there is none, and `None` if that is not known: integrations do
+    /// not go back in time then.
     fn kink_before(&self, t: f64) -> Option<f64> {
         let _ = t;
         None

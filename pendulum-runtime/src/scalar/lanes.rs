@@ -269,7 +269,7 @@ mod tests {
         if x.is_nan() { f64::NAN.to_bits() } else { x.to_bits() }
     }
 
-    /// What `numbers` gives for lanes from two arrays has the bits of single numbers.
+    /// The result of `numbers` for lanes from two arrays has the bits of single numbers.
     fn same<const W: usize, L: Real>(
         x: [f64; W],
         y: [f64; W],

@@ -108,7 +108,7 @@ pub trait Real:
 
     /// `then` where `self` is positive, `otherwise` where it is not or is no number.
     ///
-    /// What is correct for a single number stands here; types of several numbers choose for each.
+    /// The default is correct for a single number; types of several numbers choose for each.
     fn where_positive(self, then: Self, otherwise: Self) -> Self {
         if self.sign() == Self::from_f64(1.0) { then } else { otherwise }
     }

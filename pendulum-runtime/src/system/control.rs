@@ -109,9 +109,9 @@ pub struct Uncontrolled<S, M> {
 }
 
 impl<S, M> Uncontrolled<S, M> {
-    /// The system under a feedback law: the control inputs u(t, q, q̇) from the time in seconds, the
-    /// coordinates and the velocities. A number or an array for one input, a tuple for several, in
-    /// the units and in the order of their declarations.
+    /// The system under a feedback law: the control inputs u(t, q, q̇) from the time in seconds,
+    /// the coordinates and the velocities. A number or an array for one input, a tuple for several,
+    /// in the units and in the order of their declarations.
     ///
     /// Does not compile if the law gives more or fewer numbers than the control inputs have
     /// components.
@@ -133,9 +133,9 @@ impl<S, M> Uncontrolled<S, M> {
     /// The system under a controller that is asked every `period` seconds for the control inputs;
     /// they keep their values in between (zero-order hold).
     ///
-    /// Steps end at every sample. The controller may have a state of its own: the closure is
-    /// cloned at the start of each integration. The values of the last integration are recorded, one
-    /// entry a period, so that energies and outputs along its solution have them.
+    /// Steps end at every sample. The controller may have a state of its own: the closure is cloned
+    /// at the start of each integration. The values of the last integration are recorded, one entry
+    /// a period, so that energies and outputs along its solution have them.
     ///
     /// # Errors
     /// Integrations end with [`Error::Setting`] for a period that is not positive or too short for

@@ -31,8 +31,8 @@ pub trait Dynamics<const N: usize> {
     /// Control inputs follow the state: [`inputs`](Self::inputs) alone does not give them.
     const FEEDBACK: bool = false;
 
-    /// A controller with a state of its own is asked now and then: an integration cannot be taken up
-    /// again from its numbers alone.
+    /// A controller with a state of its own is asked now and then: an integration cannot be taken
+    /// up again from its numbers alone.
     const SAMPLED: bool = false;
 
     /// The samples of all inputs at `t`, seen from `side`, with the derivatives that `purpose`

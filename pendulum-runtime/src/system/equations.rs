@@ -66,8 +66,8 @@ pub trait System<const N: usize> {
         inputs: &Self::Inputs,
     ) -> Self::Scalar;
 
-    /// dE/dt along the motion: −∂L/∂t − q̇·∂R/∂q̇ + Q·q̇ − λ·b, where ∂/∂t takes in the driven inputs
-    /// and b is the rate of the constraints at q̇ = 0.
+    /// dE/dt along the motion: −∂L/∂t − q̇·∂R/∂q̇ + Q·q̇ − λ·b, where ∂/∂t takes in the driven
+    /// inputs and b is the rate of the constraints at q̇ = 0.
     fn power(
         &self,
         t: Self::Scalar,
@@ -352,7 +352,8 @@ pub trait System<const N: usize> {
 /// the position adds once for all velocities.
 ///
 /// The last stage gives the same bits as [`System::accelerations`]. Generated stages are always
-/// inlined, so that loops over [lanes](crate::scalar::Lanes) use the vectors of the code around them.
+/// inlined, so that loops over [lanes](crate::scalar::Lanes) use the vectors of the code around
+/// them.
 pub trait Staged<const N: usize>: System<N> {
     /// Values that time and driven inputs alone decide.
     type AtTime: Copy + Debug;

@@ -1,5 +1,5 @@
-//! The final states of every method and of eleven kinds of systems as hashes: what must be the same in
-//! every build on every machine.
+//! The final states of every method and of eleven kinds of systems as hashes: what must be the same
+//! in every build on every machine.
 
 #![allow(missing_docs)]
 

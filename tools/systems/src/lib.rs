@@ -1,5 +1,5 @@
-//! What tests, benchmarks and tools share: systems with a few helpers, and the final states of every
-//! method as hashes.
+//! What tests, benchmarks and tools share: systems with a few helpers, and the final states of
+//! every method as hashes.
 
 #![allow(mixed_script_confusables, confusable_idents)]
 

@@ -213,8 +213,8 @@ impl Units<'_, '_, '_> {
         found
     }
 
-    /// The unit of the multiplier of a constraint: an energy per unit of a position, a power per unit
-    /// of a velocity.
+    /// The unit of the multiplier of a constraint: an energy per unit of a position, a power per
+    /// unit of a velocity.
     fn reaction(&self, constraint: usize) -> Found {
         let own = self.constraints.get(constraint)?.clone()?;
         let unit = self.energy.as_ref()?.times(&own, Rational::MINUS_ONE)?;

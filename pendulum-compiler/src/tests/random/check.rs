@@ -9,7 +9,7 @@ use random_systems::reference::{Reference, State, reference};
 use random_systems::state::{precise, state};
 use random_systems::tree::System;
 
-/// What came out for a system.
+/// The result for a system.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Findings {
     /// The largest error of each kind relative to its terms, in `f64` and in double-double.
@@ -49,7 +49,7 @@ fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || b < a { a } else { b }
 }
 
-/// What is known of a derived block.
+/// The model, the graph and the motion of a derived block.
 pub(crate) struct Derived<'d, 'm> {
     pub(crate) model: &'d Model<'m>,
     pub(crate) graph: &'d Graph,
@@ -160,7 +160,7 @@ fn errors<T: Float>(
     errors
 }
 
-/// What changes along the motion, by dual numbers: energy by the power, momenta by their rates,
+/// The changes along the motion, by dual numbers: energy by the power, momenta by their rates,
 /// conserved quantities not at all.
 fn along<T: Float>(derived: &Derived<'_, '_>, values: &Values<T>, errors: &mut Errors) {
     let (motion, count) = (derived.motion, values.q.len());

@@ -128,7 +128,7 @@ impl Tree {
     }
 }
 
-/// What is derived of a constrained block at a state.
+/// The values derived of a constrained block at a state.
 struct Found {
     accelerations: Vec<f64>,
     /// The largest residual of the equations relative to their terms, and the least independence.

@@ -13,7 +13,7 @@ use crate::compile::derived;
 use crate::messages::Errors;
 use random_systems::tree;
 
-/// What became of a random system.
+/// The fate of a random system.
 enum Outcome {
     /// Refused, with these errors.
     Refused(String),

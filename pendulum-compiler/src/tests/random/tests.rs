@@ -57,7 +57,7 @@ fn what_is_derived_is_what_is_written() {
     assert!(unsound * 20 <= compared, "{unsound} of {compared} have no value");
 }
 
-/// What is not tame may be refused or have no value, but no value is wrong.
+/// A wild system may be refused or have no value, but no value is wrong.
 #[test]
 fn wild_systems_are_derived_or_refused() {
     for system in systems(120, 1, Manner::Wild) {

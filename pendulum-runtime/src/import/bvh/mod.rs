@@ -161,7 +161,7 @@ impl Bvh {
     /// The motion of a joint: a natural cubic spline through its positions at all frames, whose
     /// first is at t = 0; `metres` is the file's unit of length.
     ///
-    /// What is captured jitters: a [`Clip`] through every second or fourth pose is smoother.
+    /// Captured motion jitters: a [`Clip`] through every second or fourth pose is smoother.
     ///
     /// # Errors
     /// No joint has the name, or `metres` is no number or infinite.

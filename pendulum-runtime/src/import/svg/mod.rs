@@ -26,7 +26,7 @@
 //! # Ok::<(), pendulum_runtime::import::svg::DrawingError>(())
 //! ```
 //!
-//! What a shape weighs: its area under its fill rule, Bézier curves and holes exactly
+//! The mass of a shape is its area under its fill rule, Bézier curves and holes exactly
 //! ([`Outline`](crate::body::Outline)), times the density, times its opacity: that of its fill and
 //! those of the shape and of all groups around it. Of a gradient or a pattern only this opacity
 //! counts, not its colours'; that of a colour, as in `rgba`, has eight bits. Shapes that overlap
@@ -34,8 +34,8 @@
 //! are empty; animations and scripts are passed over. A circle is weighed as drawn, of cubics, with
 //! an area within 3·10⁻⁴ of a true one. Coordinates are those of `usvg`, in single precision.
 //!
-//! What weighs nothing is listed in [`Drawing::skipped`] with its id. Texts are not read: turn them
-//! into paths.
+//! A shape that weighs nothing is listed in [`Drawing::skipped`] with its id. Texts are not read:
+//! turn them into paths.
 
 mod drawing;
 mod error;

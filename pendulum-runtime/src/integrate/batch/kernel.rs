@@ -1,7 +1,7 @@
 //! The steps of the lanes.
 //!
-//! What every step does is inlined into the code that [`simd`](crate::simd) compiles for several
-//! instruction sets; what begins and ends motions is not.
+//! The work of every step is inlined into the code that [`simd`](crate::simd) compiles for several
+//! instruction sets; the work at the beginning and the end of motions is not.
 
 #![allow(clippy::inline_always)]
 // A branch in a loop over lanes would take the lanes apart.
@@ -47,7 +47,7 @@ pub(crate) type Outcomes<'a, T, const N: usize> = dyn FnMut(usize, Outcome<T, N>
 /// The end of a motion: its last state, and how it has come to it.
 type End<T, const N: usize> = (State<T, N>, Result<Status, Error>);
 
-/// What is kept of each motion of a batch beside its end.
+/// The records kept of each motion of a batch beside its end.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Watch<'a, T, const N: usize> {
     pub(crate) output: Output<'a>,
@@ -71,7 +71,7 @@ struct Member<'a, D: Batched<N>, const N: usize> {
 /// A batch under way.
 pub(super) struct Run<'a, D: Batched<N>, const N: usize, const WATCHED: bool> {
     batch: &'a Batch<N>,
-    /// What is kept of each motion beside its end.
+    /// The records kept of each motion beside its end.
     watch: Watch<'a, D::Scalar, N>,
     /// Gives the next problem and its index, until there are no more.
     problems: &'a mut Problems<'a, D, N>,
@@ -487,8 +487,8 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         }
     }
 
-    /// 1 if the mass matrix at the end of the step of a lane is not positive, which `Taylor` reports;
-    /// else 0.
+    /// 1 if the mass matrix at the end of the step of a lane is not positive, which `Taylor`
+    /// reports; else 0.
     fn lacks_inertia(&self, l: usize, member: &Member<'a, D, N>) -> f64 {
         let to = node(&self.lanes, l);
         let side = if self.onwards.0[l] < 0.0 { Side::Before } else { Side::After };
@@ -512,7 +512,8 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         }
         let places = self.places();
         for l in 0..W {
-            // The detector looks at each step once: what it notes of a quiet one belongs to its end.
+            // The detector looks at each step once: what it notes of a quiet one belongs to its
+            // end.
             let unseen = (0.0 < live.0[l]) & (seen.0[l] == 0.0);
             if unseen && doubted.0[l] + self.attempt.kinked.0[l] == 0.0 {
                 seen.0[l] = if self.is_quiet(l, &places) { 0.0 } else { 1.0 };

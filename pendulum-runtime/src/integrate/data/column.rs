@@ -147,8 +147,8 @@ impl<T: Float, const N: usize> Solution<T, N> {
 
     /// dE/dt at all output times: [`Dynamics::power_at`], less μ·∂h/∂t of the limits in contact.
     ///
-    /// Its integral is the change of [`energy`](Self::energy), as ∫ power dt = E(t₁) − E(t₀), but for
-    /// what impacts and events take away at once.
+    /// Its integral is the change of [`energy`](Self::energy), as ∫ power dt = E(t₁) − E(t₀), but
+    /// for what impacts and events take away at once.
     ///
     /// At two states of the same time as [`energy`](Self::energy).
     pub fn power<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<T> {

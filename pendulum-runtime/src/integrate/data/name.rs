@@ -1,6 +1,7 @@
 //! Names of columns as users write them: Greek letters, dots, and their ASCII twins.
 
-/// A name without its dots: `θ̇[1]`, `theta_dot[1]` and `dot(θ[1])` are all `theta[1]` with one dot.
+/// A name without its dots: `θ̇[1]`, `theta_dot[1]` and `dot(θ[1])` are all `theta[1]` with one
+/// dot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Name {
     /// The ASCII spelling of the Greek letters, everything else as written, an index in brackets.
@@ -43,8 +44,8 @@ pub(super) fn read(text: &str) -> Name {
     Name { base, dots }
 }
 
-/// The name of a velocity: a dot over the first letter, or the suffix `_dot` if the name is a word in
-/// ASCII or all of the block is.
+/// The name of a velocity: a dot over the first letter, or the suffix `_dot` if the name is a word
+/// in ASCII or all of the block is.
 pub(super) fn velocity(name: &str, ascii: bool) -> String {
     let (stem, index) = name.split_at(name.find('[').unwrap_or(name.len()));
     if ascii || stem.is_ascii() && 1 < stem.len() {

@@ -112,7 +112,8 @@ pub(crate) mod pairs {
     }
 }
 
-/// The names of methods, constraints and limits read so far: they live as long as the program, as those in programs do.
+/// The names of methods, constraints and limits read so far: they live as long as the program, as
+/// those in programs do.
 static NAMES: Mutex<Vec<&'static str>> = Mutex::new(Vec::new());
 
 /// Bounds on what files can make live for ever.

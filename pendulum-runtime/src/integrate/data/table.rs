@@ -186,7 +186,7 @@ impl<T: Float + fmt::Display + fmt::LowerExp> Table<T> {
     /// for each row, with as many digits as tell the numbers apart.
     ///
     /// # Errors
-    /// What the writer reports.
+    /// The errors of the writer.
     pub fn to_csv(&self, writer: impl std::io::Write) -> std::io::Result<()> {
         fn text<U: Float + fmt::Display + fmt::LowerExp>(value: U) -> String {
             let magnitude = value.to_f64().abs();
@@ -213,7 +213,7 @@ impl<T: Float + fmt::Display + fmt::LowerExp, const N: usize> Solution<T, N> {
     /// [`Table::with`].
     ///
     /// # Errors
-    /// What the writer reports.
+    /// The errors of the writer.
     pub fn to_csv(&self, writer: impl std::io::Write) -> std::io::Result<()> {
         self.table().to_csv(writer)
     }

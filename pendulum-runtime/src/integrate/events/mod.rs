@@ -119,8 +119,8 @@ impl<'a, const N: usize> Event<'a, f64, N> {
     /// The roots of `function`, a continuous function of time, coordinates and velocities; it may
     /// own what it captures, by `move`.
     ///
-    /// If it gives something that is not a number, the integration ends with an error. Scalars other
-    /// than `f64` have [`of`](Self::of).
+    /// If it gives something that is not a number, the integration ends with an error. Scalars
+    /// other than `f64` have [`of`](Self::of).
     pub fn new(function: impl Fn(f64, &[f64; N], &[f64; N]) -> f64 + Send + Sync + 'a) -> Self {
         Self::of(function)
     }
@@ -149,7 +149,8 @@ impl<'a, T: Float, const N: usize> Event<'a, T, N> {
         }
     }
 
-    /// Counts sign changes in one direction only: that of time, also where an integration goes back.
+    /// Counts sign changes in one direction only: that of time, also where an integration goes
+    /// back.
     pub fn direction(mut self, direction: Direction) -> Self {
         self.direction = direction;
         self

@@ -1,5 +1,5 @@
-//! Polynomials in the form of a [`Interpolant`](crate::integrate::interpolant::Piece) through given values, slopes and
-//! curvatures.
+//! Polynomials in the form of a [`Interpolant`](crate::integrate::interpolant::Piece) through given
+//! values, slopes and curvatures.
 
 use crate::integrate::interpolant::TERMS;
 use crate::integrate::schemes::linear::Factors;

@@ -89,8 +89,8 @@ fn legendre<T: Float, const N: usize>(y0: &[T; N], terms: &[[T; N]], theta: T) -
 }
 
 impl<T: Float, const N: usize> Interpolant<T, N> {
-    /// The cubics through the states at both ends of `interval` with the given slopes there: velocities
-    /// for the coordinates, accelerations for the velocities.
+    /// The cubics through the states at both ends of `interval` with the given slopes there:
+    /// velocities for the coordinates, accelerations for the velocities.
     pub fn hermite(
         interval: &StepInterval,
         from: &Endpoint<T, N>,
@@ -128,9 +128,9 @@ impl<T: Float, const N: usize> Interpolant<T, N> {
         clamp(&mut self.q, h, v0, v1);
     }
 
-    /// Bends both polynomials by cubics so that they end in the state `to`, without a change of their
-    /// starts and of the slopes at both ends; that of the coordinates at the end changes as the
-    /// velocities do.
+    /// Bends both polynomials by cubics so that they end in the state `to`, without a change of
+    /// their starts and of the slopes at both ends; that of the coordinates at the end changes as
+    /// the velocities do.
     pub(crate) fn end_at(&mut self, to: &Endpoint<T, N>) {
         let number = T::from_f64;
         let (q, v) = self.at(number(1.0));

@@ -18,8 +18,8 @@ use crate::jet::{Jets, Known, MaybeJets, Unrolling};
 use crate::scalar::Float;
 use crate::system::{Dynamics, System};
 
-/// The method that what is known about the system and the tolerance decide; [`Stats`](crate::integrate::Stats)
-/// say which it was.
+/// The method that what is known about the system and the tolerance decide;
+/// [`Stats`](crate::integrate::Stats) say which it was.
 ///
 /// | steps | choice |
 /// |---|---|
@@ -34,9 +34,9 @@ use crate::system::{Dynamics, System};
 /// two or three links, and below 2e-14 if they are long; else `Dop853`.
 ///
 /// Nothing shows beforehand that a system is stiff: for stiff springs and dampers name
-/// [`Rodas4`](crate::integrate::Rodas4) or [`Gauss`](crate::integrate::Gauss), for long runs of a conservative system
-/// with fixed steps `Gauss`. Systems written by hand have no recurrences to choose by, and name a
-/// method too:
+/// [`Rodas4`](crate::integrate::Rodas4) or [`Gauss`](crate::integrate::Gauss), for long runs of a
+/// conservative system with fixed steps `Gauss`. Systems written by hand have no recurrences to
+/// choose by, and name a method too:
 ///
 /// ```compile_fail,E0277
 /// # use pendulum_runtime::{integrate::*, system::*};

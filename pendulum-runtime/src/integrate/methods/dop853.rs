@@ -22,8 +22,8 @@ use crate::system::Dynamics;
 /// [`Function`](crate::motion::Function) says it by
 /// [`resolution`](crate::motion::Function::resolution), a motion of your own by
 /// [`longest_step`](crate::motion::Motion::longest_step). Where it is not known, a step is at most
-/// a fiftieth of the interval, or a second in an [`Integrator`](crate::integrate::Integrator), which at loose
-/// tolerances may be too long.
+/// a fiftieth of the interval, or a second in an [`Integrator`](crate::integrate::Integrator),
+/// which at loose tolerances may be too long.
 ///
 /// A rejected step costs eleven evaluations. Dense output is of order 7 and takes three more
 /// evaluations, only in those steps where it is asked for.

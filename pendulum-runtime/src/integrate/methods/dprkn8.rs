@@ -15,11 +15,11 @@ use crate::system::{Dynamics, VelocityFree};
 /// evaluations a step, adaptive.
 ///
 /// The fastest method here for errors from 1e-2 to 1e-5 over tens of periods: 0.7 of the time of
-/// [`Dop853`](crate::integrate::Dop853) for the same error of a Kepler orbit of eccentricity 0.5, half of it
-/// for pendulums on a driven pivot. Below 1e-5 [`Dprkn12`](crate::integrate::Dprkn12) is faster; over hundreds
-/// of periods of a pendulum [`QuinlanTremaine`](crate::integrate::QuinlanTremaine) takes half its time, with a
-/// step to be chosen. It is not symplectic: over very many periods the energy drifts with the
-/// tolerance.
+/// [`Dop853`](crate::integrate::Dop853) for the same error of a Kepler orbit of eccentricity 0.5,
+/// half of it for pendulums on a driven pivot. Below 1e-5 [`Dprkn12`](crate::integrate::Dprkn12) is
+/// faster; over hundreds of periods of a pendulum
+/// [`QuinlanTremaine`](crate::integrate::QuinlanTremaine) takes half its time, with a step to be
+/// chosen. It is not symplectic: over very many periods the energy drifts with the tolerance.
 ///
 /// It is for systems with a constant mass matrix and accelerations without velocities, and compiles
 /// for no others. The last stage is the first of the next step. Dense output is made of the same

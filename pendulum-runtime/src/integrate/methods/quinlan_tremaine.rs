@@ -23,8 +23,8 @@ use crate::system::{Dynamics, VelocityFree};
 /// below about 0.2 for order 12, 0.3 for order 10 and 0.5 for order 8; beyond, and near a few
 /// resonances below (orbits and many coupled frequencies have more of them), errors grow without
 /// warning, so compare with half the step. The first `P` − 1 steps after the start, after a kink
-/// and after a change of the step are taken by [`Dop853`](crate::integrate::Dop853) in four parts each: a
-/// motion with many kinks gains nothing.
+/// and after a change of the step are taken by [`Dop853`](crate::integrate::Dop853) in four parts
+/// each: a motion with many kinks gains nothing.
 ///
 /// It is for systems with a constant mass matrix and accelerations without velocities, and compiles
 /// for no others. Dense output is the polynomial through both ends and the last seven

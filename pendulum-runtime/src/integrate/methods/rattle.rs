@@ -28,11 +28,11 @@ use crate::time::Time;
 /// It is for systems with constraints of positions, a constant mass matrix and forces without
 /// velocities, as points on rods in Cartesian coordinates; it compiles for no others.
 ///
-/// It is no way to save time. Two bobs on rods take 92 µs a second of motion with steps of 0.02 s and
-/// order 4, and their energy stays within 2e-5 J. [`Picard`](crate::integrate::Picard) takes 11 µs at
-/// 1e-12, and drifts by 4e-15 J a second: it is closer for the first 10⁹ s. RATTLE is for studies
-/// that ask for a symplectic map, and for those in which nothing may drift. Dense output is the
-/// quintic through coordinates, velocities and accelerations at both ends.
+/// It is no way to save time. Two bobs on rods take 92 µs a second of motion with steps of 0.02 s
+/// and order 4, and their energy stays within 2e-5 J. [`Picard`](crate::integrate::Picard) takes 11
+/// µs at 1e-12, and drifts by 4e-15 J a second: it is closer for the first 10⁹ s. RATTLE is for
+/// studies that ask for a symplectic map, and for those in which nothing may drift. Dense output is
+/// the quintic through coordinates, velocities and accelerations at both ends.
 ///
 /// Source: Andersen (1983), J. Comput. Phys. 52, 24; Leimkuhler and Skeel (1994), J. Comput. Phys.
 /// 112, 117; for compositions Reich (1996), SIAM J. Numer. Anal. 33, 475; coefficients of order 4
@@ -152,8 +152,8 @@ impl<D: Dynamics<N, Scalar: Float, System: Holonomic<N>>, const N: usize, const 
     }
 }
 
-/// One stage of the length h from `start` to `end`; `a` are accelerations at its start, up to forces
-/// of the constraints, and then at its end.
+/// One stage of the length h from `start` to `end`; `a` are accelerations at its start, up to
+/// forces of the constraints, and then at its end.
 fn advance<D: Dynamics<N, Scalar: Float>, const N: usize, const W: bool>(
     field: &mut Field<'_, D, N, W>,
     h: D::Scalar,

@@ -11,9 +11,10 @@ use crate::system::{Dynamics, VelocityFree};
 /// The symplectic Runge–Kutta–Nyström splitting with six evaluations of Blanes and Moan: order 4,
 /// fixed step.
 ///
-/// Per evaluation it is ten to a hundred times more accurate than [`Leapfrog`](crate::integrate::Leapfrog) and
-/// five times than Yoshida's methods of order 4. Symplectic and reversible: energy errors stay
-/// bounded, phase errors grow with time. One of its drifts goes backwards.
+/// Per evaluation it is ten to a hundred times more accurate than
+/// [`Leapfrog`](crate::integrate::Leapfrog) and five times than Yoshida's methods of order 4.
+/// Symplectic and reversible: energy errors stay bounded, phase errors grow with time. One of its
+/// drifts goes backwards.
 ///
 /// It is for systems with a constant mass matrix and accelerations without velocities, and compiles
 /// for no others. Dense output is the quintic through coordinates, velocities and accelerations at

@@ -13,10 +13,10 @@ use crate::system::Dynamics;
 /// The explicit Runge–Kutta pair of orders 5 and 4 of Tsitouras: six evaluations a step, adaptive.
 ///
 /// It suits every system and is the choice for errors from 1e-2 to 1e-6; below that
-/// [`Dop853`](crate::integrate::Dop853) takes fewer evaluations. It is not symplectic, and its energy drifts
-/// with the tolerance: errors of its steps have the same sign in every period and add up, on a
-/// pivot shaken a thousand times to about a hundred tolerances whatever the tolerance is. It is
-/// explicit: a stiff spring or damper forces h·ω below about 3.5.
+/// [`Dop853`](crate::integrate::Dop853) takes fewer evaluations. It is not symplectic, and its
+/// energy drifts with the tolerance: errors of its steps have the same sign in every period and add
+/// up, on a pivot shaken a thousand times to about a hundred tolerances whatever the tolerance is.
+/// It is explicit: a stiff spring or damper forces h·ω below about 3.5.
 ///
 /// The last stage is the first of the next step. Dense output is the quartic of the same paper and
 /// costs nothing.

@@ -50,8 +50,8 @@ const ONE_WORD: f64 = 10.0 * f64::EPSILON;
 /// ([`System::longest_step`]), and of motions, as far as they say it
 /// ([`Motion::longest_step`](crate::motion::Motion::longest_step)). A
 /// [`Function`](crate::motion::Function) says it by its `resolution`; without that a step over it
-/// is at most a fiftieth of the interval, or one second where an [`Integrator`](crate::integrate::Integrator)
-/// knows no end.
+/// is at most a fiftieth of the interval, or one second where an
+/// [`Integrator`](crate::integrate::Integrator) knows no end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdaptiveStep<const N: usize> {
     rtol: Option<f64>,

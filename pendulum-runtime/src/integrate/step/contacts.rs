@@ -93,7 +93,7 @@ pub(crate) fn row<T: Float, const N: usize>(matrix: &SMatrix<T, L, N>, index: us
     core::array::from_fn(|j| matrix[(index, j)])
 }
 
-/// What limits in contact do to the accelerations.
+/// The effect of limits in contact on the accelerations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Push<T, const N: usize> {
     /// The accelerations with the contacts.
@@ -245,7 +245,8 @@ pub(crate) fn rounding<D: Dynamics<N, Scalar: Float>, const N: usize>(
     ]
 }
 
-/// Brings the coordinates of `node` onto the limits in contact, and with `rates` their rates to zero.
+/// Brings the coordinates of `node` onto the limits in contact, and with `rates` their rates to
+/// zero.
 pub(crate) fn hold<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     node: &mut Endpoint<D::Scalar, N>,

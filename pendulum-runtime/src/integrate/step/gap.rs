@@ -1,9 +1,9 @@
 //! The gaps between the times at which a step samples accelerations, and the bound of steps that
 //! follows from them.
 //!
-//! What fits between two samples is not in the error estimate. A step is therefore bounded by what
-//! is known about time scales: no two of its samples lie farther apart than [`APART`] times the
-//! width of the narrowest function of time that it goes over.
+//! A force that fits between two samples is not in the error estimate. A step is therefore bounded
+//! by what is known about time scales: no two of its samples lie farther apart than [`APART`] times
+//! the width of the narrowest function of time that it goes over.
 
 // What lanes use too has to be compiled for their vectors.
 #![allow(clippy::inline_always)]

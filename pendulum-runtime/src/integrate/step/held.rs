@@ -52,8 +52,8 @@ impl<'a, D> Held<'a, D> {
     }
 }
 
-/// The copy of a borrowed controller that is sampled would be the same one, in the middle of another
-/// integration: it knows the copy of the integration no more.
+/// The copy of a borrowed controller that is sampled would be the same one, in the middle of
+/// another integration: it knows the copy of the integration no more.
 impl<D: Clone> Clone for Held<'_, D> {
     fn clone(&self) -> Self {
         let run = if let Place::Owned(_) = self.place { self.run } else { 0 };

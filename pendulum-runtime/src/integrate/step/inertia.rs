@@ -110,8 +110,8 @@ mod tests {
         }
     }
 
-    /// What has rank one is singular, however it is rounded; a matrix that is not a number says
-    /// nothing.
+    /// A matrix of rank one is singular, however it is rounded; one that is not a number is no
+    /// evidence.
     #[test]
     fn rounding_and_numbers_that_are_none_are_no_negative_pivots() {
         for k in 1..2000 {

@@ -19,11 +19,12 @@ use crate::time::Time;
 const PARTS: usize = 8;
 /// Halvings of an interval until a root is known to the digits of a step.
 const HALVINGS: usize = 60;
-/// Impacts at one time with the limits' own restitutions, and all in all; those between are plastic.
+/// Impacts at one time with the limits' own restitutions, and all in all; those between are
+/// plastic.
 const ELASTIC: usize = 100;
 const IMPACTS: usize = 1000;
 
-/// What is known of the gap of a limit at the state reached.
+/// The state of the gap of a limit at the state reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Standing {
     /// It is open.
@@ -51,7 +52,7 @@ pub(crate) struct Limits<T, const N: usize> {
     standing: [Standing; L],
     /// The same at the start of the last step.
     before: [Standing; L],
-    /// What the tolerances are; nothing with steps of fixed length.
+    /// The tolerances; `None` with steps of fixed length.
     pub(crate) accuracy: Option<Accuracy<N>>,
     /// The impacts at the end of the last step.
     found: Vec<Impact<T, N>>,
@@ -476,8 +477,8 @@ pub(crate) fn deliver<D: Dynamics<N, Scalar: Float>, const N: usize>(
     (state.q, state.v) = (node.q.high, node.v.high);
 }
 
-/// The last place between `from` and `to` at which `function`, which falls, is not below `level`, to
-/// rounding.
+/// The last place between `from` and `to` at which `function`, which falls, is not below `level`,
+/// to rounding.
 fn falling<T: Float>(mut function: impl FnMut(f64) -> T, from: f64, to: f64, level: T) -> f64 {
     let (mut above, mut below) = (from, to);
     for _ in 0..HALVINGS {

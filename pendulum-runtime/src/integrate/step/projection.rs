@@ -116,14 +116,14 @@ impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Tangent<'d, D, N> {
     }
 }
 
-/// What a projection has found and done.
+/// The findings of a projection, and its effect.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Found {
     /// The largest misfits of positions and of velocities before it, with their constraints.
     pub(crate) misfits: [(f64, usize); 2],
     /// The first corrections of both, in units of rounding.
     pub(crate) first: [f64; 2],
-    /// What is left of both misfits in units of the rounding of their terms, and the constraints
+    /// The rest of both misfits in units of the rounding of their terms, and the constraints
     /// that are off most.
     pub(crate) left: [(f64, usize); 2],
     /// The state is another one now.
@@ -299,8 +299,8 @@ pub(crate) fn start<D: Dynamics<N, Scalar: Float>, const N: usize>(
     Ok(node)
 }
 
-/// Returns true if misfits are no larger than what the rounding of the time does to them: of a driven
-/// constraint at a state in which nothing else has a size.
+/// Returns true if misfits are no larger than what the rounding of the time does to them: of a
+/// driven constraint at a state in which nothing else has a size.
 fn by_time<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     t: Time,
@@ -315,8 +315,8 @@ fn by_time<D: Dynamics<N, Scalar: Float>, const N: usize>(
     now.iter().zip(&then).all(|(now, then)| now.abs() <= (*then - *now).abs())
 }
 
-/// Brings the state after a jump onto the constraints: the velocities by an impulse of their forces,
-/// the coordinates by no more than rounding has put them off.
+/// Brings the state after a jump onto the constraints: the velocities by an impulse of their
+/// forces, the coordinates by no more than rounding has put them off.
 ///
 /// # Errors
 /// [`Error::Inconsistent`] for coordinates that do not fulfil the constraints.
@@ -384,8 +384,8 @@ pub(crate) fn deliver<D: Dynamics<N, Scalar: Float>, const N: usize>(
 
 /// The largest gradient of each constraint that was met: Σ C_kj²/M_jj.
 ///
-/// At a change point, as where all bars of a linkage lie in a line, a gradient vanishes or depends on
-/// others, and another branch of the motion begins there. A state nearer to it than the root of
+/// At a change point, as where all bars of a linkage lie in a line, a gradient vanishes or depends
+/// on others, and another branch of the motion begins there. A state nearer to it than the root of
 /// rounding may be on either.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gradients<const N: usize>([f64; N]);

@@ -8,8 +8,8 @@ use crate::integrate::{
 };
 use crate::system::Dynamics;
 
-/// Asserts that the error falls with the power `order` of the step over a threefold number of steps,
-/// within a sixth.
+/// Asserts that the error falls with the power `order` of the step over a threefold number of
+/// steps, within a sixth.
 fn assert_order(name: &str, order: f64, error: impl Fn(u64) -> f64, steps: u64) {
     let (coarse, fine) = (error(steps), error(3 * steps));
     let measured = (coarse / fine).ln() / 3.0_f64.ln();

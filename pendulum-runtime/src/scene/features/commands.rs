@@ -164,8 +164,8 @@ impl<T: Lane + Float> Scene<T> {
     /// Keeps coordinates within `low` and `high`, in place of the limits set before; infinite
     /// limits are none.
     ///
-    /// What lies beyond a hard limit is put on it. Hard stops act within the drifts of leapfrog and
-    /// SRKN6b, where the path is straight, and at the ends of the steps of RK4; they turn the
+    /// A coordinate beyond a hard limit is put on it. Hard stops act within the drifts of leapfrog
+    /// and SRKN6b, where the path is straight, and at the ends of the steps of RK4; they turn the
     /// velocity of the coordinate alone, which for coupled coordinates is not what a wall at the
     /// tip would do. Systems with constraints have none: this does not compile for them.
     ///
@@ -232,8 +232,8 @@ impl<T: Lane + Float> Scene<T> {
         Ok(())
     }
 
-    /// Sets a parameter of a pendulum by its name, as in `FACTS.parameters`; the state stays, or goes to
-    /// the nearest that fulfils the constraints, its steps are chosen anew and it wakes.
+    /// Sets a parameter of a pendulum by its name, as in `FACTS.parameters`; the state stays, or
+    /// goes to the nearest that fulfils the constraints, its steps are chosen anew and it wakes.
     ///
     /// # Errors
     /// A pendulum of another scene, a name that it does not have; a value that is not finite, makes

@@ -70,8 +70,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> OnJoints<'_, S, T, N
         inertia_of(self.system, t, q, v, &inputs).map_err(SceneError::Inertia)
     }
 
-    /// Puts a pendulum whose parameters or joints have changed on the nearest state that fulfils the
-    /// constraints.
+    /// Puts a pendulum whose parameters or joints have changed on the nearest state that fulfils
+    /// the constraints.
     ///
     /// # Errors
     /// A search that ends off them.
@@ -94,8 +94,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> OnJoints<'_, S, T, N
         Ok(())
     }
 
-    /// The constraint that a tick of the length `h` from this state was not brought back onto, by how
-    /// much it is off at its end; `None` if the accelerations are to blame.
+    /// The constraint that a tick of the length `h` from this state was not brought back onto, by
+    /// how much it is off at its end; `None` if the accelerations are to blame.
     pub(crate) fn lost(&self, t: f64, q: &[T; N], v: &[T; N], h: f64) -> Option<Error> {
         if const { !Layouts::<S, N>::HELD } {
             return None;

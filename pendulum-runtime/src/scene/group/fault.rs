@@ -13,8 +13,8 @@ use crate::scene::sampling::joint::JointSlot;
 use crate::system::{Purpose, scalar_time};
 use crate::time::Time;
 
-/// Error that names the value which is not finite, or the constraint that is lost in the tick of the length
-/// `step` that begins at `t` with the state of `detached`.
+/// Error that names the value which is not finite, or the constraint that is lost in the tick of
+/// the length `step` that begins at `t` with the state of `detached`.
 pub(super) fn diagnose<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     system: &S,
     joint_slots: &[JointSlot<T>],

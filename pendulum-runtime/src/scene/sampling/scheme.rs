@@ -123,8 +123,8 @@ impl Scheme {
 }
 
 impl Grid {
-    /// The steps for a system in ticks of `phase` radians, by the method that somebody has chosen or
-    /// by the cheapest; `None` if they are too many.
+    /// The steps for a system in ticks of `phase` radians, by the method that somebody has chosen
+    /// or by the cheapest; `None` if they are too many.
     pub(crate) fn of(
         facts: &Facts,
         chosen: Option<Scheme>,

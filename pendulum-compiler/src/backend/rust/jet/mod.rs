@@ -1,9 +1,9 @@
 //! Taylor recurrences: one line for each operation of the equations, the same for every order.
 //!
-//! What only sums and constants touch is a number at the order in question; what a product or a
-//! function reads is kept as a series. Where coordinates are coupled by a mass matrix that moves, M
-//! q̈ = f is solved order by order: M\[0\] q̈\[k\] = f\[k\] − Σ M\[j\] q̈\[k−j\] over 1 ≤ j ≤ k,
-//! with M\[0\] factored once. Loops over the order live in the runtime.
+//! A value that only sums and constants touch is a number at the order in question; what a product
+//! or a function reads is kept as a series. Where coordinates are coupled by a mass matrix that
+//! moves, M q̈ = f is solved order by order: M\[0\] q̈\[k\] = f\[k\] − Σ M\[j\] q̈\[k−j\] over 1 ≤
+//! j ≤ k, with M\[0\] factored once. Loops over the order live in the runtime.
 
 mod function;
 mod momentum_form;

@@ -113,8 +113,8 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
         Ok(status)
     }
 
-    /// Takes note of an act, with the rates of the function before and after it; gives the status if
-    /// the event has come to rest.
+    /// Takes note of an act, with the rates of the function before and after it; gives the status
+    /// if the event has come to rest.
     fn acted(
         &mut self,
         integration: &mut impl Observed<T, N>,

@@ -112,7 +112,8 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
     /// or is terminal, puts it back there, lets it act, and gives the status if the integration
     /// ends with it.
     ///
-    /// If a function fails, it is put back to the start of the step; if an action does, to the event.
+    /// If a function fails, it is put back to the start of the step; if an action does, to the
+    /// event.
     pub(crate) fn observe(
         &mut self,
         integration: &mut impl Observed<T, N>,
@@ -180,8 +181,8 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         }
     }
 
-    /// Counts what was found, up to the first event that stops the step; gives its index in the list
-    /// of what was found.
+    /// Counts what was found, up to the first event that stops the step; gives its index in the
+    /// list of what was found.
     fn count(&mut self) -> Option<usize> {
         for (index, occurrence) in self.found.iter().enumerate() {
             let track = &mut self.tracks[occurrence.event];
@@ -240,8 +241,8 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         times.fold(target, |first, time| if time < first { time } else { first })
     }
 
-    /// Finds what happened in the step of `interpolant` that ended in `end`, and then, over a kink, in
-    /// `beyond`.
+    /// Finds what happened in the step of `interpolant` that ended in `end`, and then, over a kink,
+    /// in `beyond`.
     fn step(
         &mut self,
         interpolant: Option<&Interpolant<T, N>>,

@@ -8,7 +8,8 @@ use crate::scalar::Float;
 
 impl<T: Float, const N: usize> EventDetector<'_, T, N> {
     /// Returns true if nothing happens in a step over `interval` without a kink, of which `put`
-    /// puts the states at [`POINTS`] into a place; takes note of its end then, as a search that finds nothing.
+    /// puts the states at [`POINTS`] into a place; takes note of its end then, as a search that
+    /// finds nothing.
     ///
     /// All events have functions.
     pub(crate) fn is_quiet(

@@ -119,8 +119,8 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
     /// One step of Newton's method, with M, ∂q̈/∂q and ∂q̈/∂q̇ at the start of the step in place of
     /// the Jacobian.
     ///
-    /// What the velocities at given momenta owe to the coordinates, and the mass matrix to time, is
-    /// left out of it: neither is ever stiff, and the residuals contain them.
+    /// It leaves out the derivatives of the velocities at given momenta by the coordinates, and of
+    /// the mass matrix by time: neither is ever stiff, and the residuals contain them.
     pub(super) fn newton<const W: bool>(
         &self,
         field: &mut Field<'_, D, N, W>,

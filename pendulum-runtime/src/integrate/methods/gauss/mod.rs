@@ -34,7 +34,8 @@ pub(super) use tableau::Tableau;
 /// names time and coordinate. `Gauss<4>` with nine hundred steps a period keeps the energy of a
 /// pendulum to rounding: 4e-15 after ten million steps, growing with their square root.
 ///
-/// With constraints it is not symplectic: energy errors grow, if slowly, as those of other methods do.
+/// With constraints it is not symplectic: energy errors grow, if slowly, as those of other methods
+/// do.
 ///
 /// Rounding is kept without bias: the coefficients are m_ij = a_ij/b_j, for which m_ij + m_ji = 1
 /// holds exactly, and both coordinates and momenta are summed with compensation. Dense output is

@@ -51,10 +51,12 @@ use workspace::{Tolerances, Workspace, WorkspaceOf};
 /// error is that of rounding. The way to the next stop, break or end is divided into equal steps.
 /// Fixed steps are iterated down to rounding; while h·ω stays below about 1.5 that converges, and
 /// an iteration that does not is an [error](crate::error::Error::NoConvergence). A stiff spring or
-/// damper shortens the steps: take [`Rodas4`](crate::integrate::Rodas4) or [`Gauss`](crate::integrate::Gauss) there.
+/// damper shortens the steps: take [`Rodas4`](crate::integrate::Rodas4) or
+/// [`Gauss`](crate::integrate::Gauss) there.
 ///
-/// Where constraints almost depend on each other, as at the change points of a linkage, the iteration
-/// does not converge: [`Dop853`] takes the next 24 steps there, and their dense output is its own.
+/// Where constraints almost depend on each other, as at the change points of a linkage, the
+/// iteration does not converge: [`Dop853`] takes the next 24 steps there, and their dense output is
+/// its own.
 ///
 /// The sum of the state is compensated; the coefficients have the digits of `f64`, so that over
 /// scalars of two words it is no better than over one. Dense output is the collocation polynomial

@@ -58,9 +58,9 @@ where
     kink: f64,
     /// The last step ended on a kink.
     crossed: bool,
-    /// What is known of the limits.
+    /// The state of the limits.
     limits: Limits<D::Scalar, N>,
-    /// What is known of the constraints.
+    /// The gradients of the constraints.
     gradients: Gradients<N>,
 }
 
@@ -426,8 +426,8 @@ where
         self.end = Endpoint::new(t, state.q, state.v);
     }
 
-    /// Puts the state elsewhere at the same time: a jump at which the last step ends. The next steps
-    /// are chosen as at a start.
+    /// Puts the state elsewhere at the same time: a jump at which the last step ends. The next
+    /// steps are chosen as at a start.
     pub(crate) fn jump(&mut self, state: &State<D::Scalar, N>) -> Result<(), Error> {
         let (before, backwards) = (self.end, self.backwards);
         let side = onwards(backwards);
