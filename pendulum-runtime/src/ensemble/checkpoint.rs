@@ -2,8 +2,8 @@
 
 use super::error::EnsembleError;
 use super::gathered::{FailedMember, Tally};
-use super::mapped::Done;
 use super::record::{Record, hash};
+use super::shard::Done;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

@@ -4,6 +4,7 @@ use super::checkpoint::{Checkpoint, Folder, Keep, Nowhere};
 use super::error::EnsembleError;
 use super::gathered::{Gathered, Progress, Tally};
 use super::record::{Record, hash};
+use super::shard::{Done, Open};
 use super::shards::Shards;
 use super::sink::{Each, Fold, List, Sink};
 use super::team::{Desk, Team};
@@ -18,9 +19,9 @@ use core::any::type_name;
 use core::cell::RefCell;
 use core::fmt;
 use core::marker::PhantomData;
-use core::ops::{ControlFlow, Range};
+use core::ops::ControlFlow;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
@@ -50,24 +51,6 @@ struct Work<'a, const N: usize, D: Dynamics<N>, G, W, C, F> {
 
 /// The number of problems that stand for all.
 const PROBES: usize = 64;
-
-/// A finished shard, or several that are joined.
-pub(super) struct Done<P> {
-    pub(super) part: P,
-    pub(super) tally: Tally,
-}
-
-/// A shard of which members are under way.
-struct Open<R, P> {
-    shard: usize,
-    members: Range<usize>,
-    /// The member that is to be added next.
-    next: usize,
-    /// The values of members behind it.
-    ahead: BTreeMap<usize, Option<R>>,
-    part: Option<P>,
-    tally: Tally,
-}
 
 /// The state that threads share.
 struct Shared<'a> {
@@ -464,59 +447,12 @@ where
     }
 }
 
-impl<P> Done<P> {
-    /// Joins two in a row.
-    fn join<R, S: Sink<R, Whole = P>>(sink: &S, first: Self, second: Self) -> Self {
-        let Self { part, mut tally } = first;
-        tally.join(second.tally);
-        Self { part: sink.join(part, second.part), tally }
-    }
-}
-
 /// Tells a team that this process is through, also after a panic.
 struct Finish<'t, T: Desk>(&'t T);
 
 impl<T: Desk> Drop for Finish<'_, T> {
     fn drop(&mut self) {
         self.0.finish();
-    }
-}
-
-impl<P: Record> Done<P> {
-    fn to_bytes(&self) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        self.tally.write(&mut bytes);
-        self.part.write(&mut bytes);
-        bytes
-    }
-
-    fn of_bytes(mut bytes: &[u8]) -> Option<Self> {
-        let (tally, part) = (Tally::read(&mut bytes)?, P::read(&mut bytes)?);
-        bytes.is_empty().then_some(Self { part, tally })
-    }
-}
-
-impl<R, P> Open<R, P> {
-    fn new(shard: usize, members: Range<usize>, part: P) -> Self {
-        let (next, ahead) = (members.start, BTreeMap::new());
-        Self { shard, members, next, ahead, part: Some(part), tally: Tally::default() }
-    }
-
-    /// Adds a member and those behind it that have waited for it; returns true if all are there.
-    fn add<T, const N: usize>(
-        &mut self,
-        sink: &impl Sink<R, Part = P>,
-        index: usize,
-        value: Option<R>,
-        outcome: &Outcome<T, N>,
-    ) -> bool {
-        self.tally.add(index, outcome);
-        self.ahead.insert(index, value);
-        while let Some(value) = self.ahead.remove(&self.next) {
-            self.part = self.part.take().map(|part| sink.add(part, self.next, value));
-            self.next += 1;
-        }
-        self.next == self.members.end
     }
 }
 

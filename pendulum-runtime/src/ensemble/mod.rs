@@ -37,6 +37,7 @@ mod error;
 mod gathered;
 mod mapped;
 mod record;
+mod shard;
 mod shards;
 mod sink;
 mod team;

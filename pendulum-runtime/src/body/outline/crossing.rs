@@ -1,7 +1,8 @@
 //! Crossings of the curves of an outline.
 
+use super::Outline;
+use super::curve::Point;
 use super::curve::{CHORDS, Curve};
-use super::{Outline, Point};
 use crate::body::BodyError;
 use crate::scalar::Real;
 

@@ -1,6 +1,7 @@
 //! Cubic Bézier curves, their parts and the chords that stand for them.
 
-use super::Point;
+/// A point of the plane.
+pub(super) type Point = [f64; 2];
 
 /// Straight pieces that stand for a curve where crossings and insides are looked for.
 pub(super) const CHORDS: usize = 16;

@@ -1,7 +1,6 @@
 //! Moments of a region by Green's theorem: integrals along the curves that bound it.
 
-use super::Point;
-use super::curve::Curve;
+use super::curve::{Curve, Point};
 use crate::body::sum::Sum;
 
 /// Nodes and weights of the Gauss–Legendre rule of six points on [−1, 1], exact for degree 11;

@@ -9,10 +9,8 @@ mod winding;
 
 use super::{Body, BodyError, positive};
 use crate::scalar::Real;
-use curve::Curve;
+use curve::{Curve, Point};
 use green::integrals;
-
-type Point = [f64; 2];
 
 /// Curves coincide that are no farther apart than this part of the whole.
 const COINCIDE: f64 = 1e-9;

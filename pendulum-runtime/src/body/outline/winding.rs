@@ -1,7 +1,8 @@
 //! Winding numbers of an outline on both sides of each of its curves.
 
+use super::Outline;
 use super::curve::Curve;
-use super::{Outline, Point};
+use super::curve::Point;
 use crate::body::BodyError;
 use crate::scalar::Real;
 

@@ -35,14 +35,12 @@ mod read;
 mod tests;
 
 pub use error::BvhError;
+pub use read::Joint;
 
 use crate::motion::{Clip, Interpolation};
 use crate::scalar::Real;
 use read::{Channel, Reader};
 use std::path::Path;
-
-/// The greatest length and angle, in the units of the file.
-const LARGEST: f64 = 1e9;
 
 /// Names that an error lists at most.
 const LISTED: usize = 12;
@@ -56,19 +54,6 @@ pub struct Bvh {
     rows: Vec<f64>,
     /// The number of channels.
     width: usize,
-}
-
-/// A joint, or the end of a limb.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Joint {
-    /// The name in the file; an end site has that of its parent and " end".
-    pub name: String,
-    /// The index of the parent, unless this is a root.
-    pub parent: Option<usize>,
-    /// True for an end site, which has no channels.
-    pub end: bool,
-    offset: [f64; 3],
-    channels: Vec<Channel>,
 }
 
 impl Bvh {

@@ -1,6 +1,22 @@
 //! The text of a BVH file.
 
-use super::{BvhError, Joint, LARGEST};
+use super::error::BvhError;
+
+/// The greatest length and angle, in the units of the file.
+pub(super) const LARGEST: f64 = 1e9;
+
+/// A joint, or the end of a limb.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// The name in the file; an end site has that of its parent and " end".
+    pub name: String,
+    /// The index of the parent, unless this is a root.
+    pub parent: Option<usize>,
+    /// True for an end site, which has no channels.
+    pub end: bool,
+    pub(super) offset: [f64; 3],
+    pub(super) channels: Vec<Channel>,
+}
 
 /// No skeleton has more joints; a file that does is something else.
 const MOST_JOINTS: usize = 4096;

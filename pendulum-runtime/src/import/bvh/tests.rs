@@ -1,6 +1,7 @@
 //! The reader's results and refusals.
 
-use super::{Bvh, LARGEST};
+use super::Bvh;
+use super::read::LARGEST;
 use crate::body::random::Random;
 use crate::motion::{Derivatives, Motion, Side};
 use crate::time::Time;
