@@ -34,6 +34,38 @@ fn negative_masses_at_the_end_are_refused() {
     same!(10, problem, every(0.3));
 }
 
+lagrangian! {
+    /// A mass that is below zero for a while.
+    #[derive(Clone, Debug)]
+    pub struct Waning { s }
+    coordinate x;
+    kinetic = (1 - s*t + t^2)*ẋ^2/2;
+}
+
+/// Single motions check every 64th step, and so do lanes: a mass that recovers is refused by both.
+#[test]
+fn negative_masses_on_the_way_are_refused() {
+    let problem = |k: usize| Problem {
+        system: Waning::new(0.3 * k as f64),
+        time: (0.0, 3.0),
+        q: [0.5],
+        v: [0.0],
+    };
+    let problems: Vec<_> = (0..12).map(problem).collect();
+    let mut refused = 0;
+    let batch = Batch::new().max_step(0.004);
+    for (k, outcome) in batch.run(&problems).unwrap().into_iter().enumerate() {
+        let Problem { system, time, q, v } = problem(k);
+        let alone = solve(&system, time, q, v).method(Taylor::new()).max_step(0.004).run();
+        assert_eq!(format!("{outcome:?}"), format!("{alone:?}"), "member {k}");
+        refused += usize::from(
+            matches!(outcome, Err(failure) if matches!(failure.error, Error::NegativeInertia { .. })),
+        );
+    }
+    // The mass is negative between the roots of t² − s t + 1, which are real from s = 2.
+    assert_eq!(refused, 5);
+}
+
 /// Single precision holds no step of 1e-40 s.
 #[test]
 fn short_steps_of_single_precision_are_those_of_single_motions() {

@@ -1,8 +1,7 @@
 //! Ways in which the members of an ensemble are solved.
 
 use crate::error::Error;
-use crate::integrate::batch::kernel::{Outcomes, Watch};
-use crate::integrate::batch::{Batch, Batched, Posed};
+use crate::integrate::batch::{Batch, Batched, Outcomes, Posed, Watch};
 use crate::integrate::controller::Controller;
 use crate::integrate::method::Method;
 use crate::integrate::methods::auto::Auto;

@@ -3,8 +3,8 @@
 // What a step needs is inlined into what is compiled for several instruction sets.
 #![allow(clippy::inline_always)]
 
-use super::W;
-use super::kernel::{Flight, Wide};
+use super::flight::{Flight, Wide};
+use super::problem::W;
 use crate::integrate::methods::taylor::{LAST_ORDERS, Rule};
 use crate::integrate::step::adaptive::resolution_of;
 use crate::integrate::step::fast_exp2::power;

@@ -1,84 +1,48 @@
-//! A motion in a lane as event detectors and recorders see it.
+//! A motion in a lane.
 
-use super::Batched;
-use super::kernel::Wide;
-use crate::error::Error;
-use crate::integrate::interpolant::Interpolant;
-use crate::integrate::methods::taylor::series_interpolant;
-use crate::integrate::state::State;
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::StepInterval;
-use crate::integrate::step::observed::Observed;
-use crate::jet::Path;
-use crate::system::{Facts, System};
+use super::problem::{Batched, Posed, Problem};
+use crate::integrate::events::Event;
+use crate::integrate::events::detector::EventDetector;
+use crate::integrate::output::{Output, Recorder, direction, precedes};
+use crate::integrate::solution::Stats;
+use crate::system::Dynamics;
 use crate::time::Time;
 
-/// A motion in a lane, after a step.
-pub(super) struct InLane<'v, D: Batched<N>, const N: usize> {
-    pub(super) dynamics: &'v D,
-    pub(super) path: &'v Path<Wide<D::Scalar>, N>,
-    pub(super) order: usize,
-    pub(super) lane: usize,
-    pub(super) from: Endpoint<D::Scalar, N>,
-    /// The end on this side of a kink, if there is one.
-    pub(super) before_kink: Option<Endpoint<D::Scalar, N>>,
-    pub(super) end: Endpoint<D::Scalar, N>,
-    pub(super) interval: StepInterval,
-    pub(super) interpolant: Option<Interpolant<D::Scalar, N>>,
-    pub(super) evaluations: &'v mut u64,
+/// The records kept of each motion of a batch beside its end.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Watch<'a, T, const N: usize> {
+    pub(crate) output: Output<'a>,
+    pub(crate) dense: bool,
+    /// Events with functions that do not act.
+    pub(crate) events: &'a [Event<'a, T, N>],
 }
 
-impl<D: Batched<N>, const N: usize> Observed<D::Scalar, N> for InLane<'_, D, N> {
-    const FACTS: &'static Facts = &<D::System as System<N>>::FACTS;
+/// A motion in a lane.
+pub(super) struct Member<'a, D: Batched<N>, const N: usize> {
+    pub(super) index: usize,
+    pub(super) problem: Posed<'a, D, N>,
+    pub(super) recorder: Recorder<'a, 'a, D::Scalar, N>,
+    pub(super) detector: EventDetector<'a, D::Scalar, N>,
+    /// The accelerations at the start, where somebody has asked for them.
+    pub(super) a: Option<[D::Scalar; N]>,
+    /// The counters without the steps since `Run::begun`.
+    pub(super) stats: Stats,
+}
 
-    fn end(&self) -> &Endpoint<D::Scalar, N> {
-        &self.end
+impl<D: Batched<N>, const N: usize> Member<'_, D, N> {
+    /// The first time after `t` at which the series stop holding: that of a break, or the end.
+    pub(super) fn next_end(&self, t: Time) -> f64 {
+        let Problem { system, time: (start, end), .. } = &*self.problem;
+        let t = t.to_f64();
+        let found = if end < start { system.last_break(t) } else { system.next_break(t) };
+        found.filter(|time| precedes(*time, *end, (*start, *end))).unwrap_or(*end)
     }
 
-    fn before_kink(&self) -> Option<&Endpoint<D::Scalar, N>> {
-        self.before_kink.as_ref()
-    }
-
-    fn interpolant(&mut self) -> Option<Interpolant<D::Scalar, N>> {
-        let Self { path, order, lane: l, from, interval, .. } = *self;
-        let (path, order, l) = (path, order, l);
-        let interpolant = self.interpolant.get_or_insert_with(|| {
-            series_interpolant(interval, &from, order, |i, k| {
-                [path.q[i][k].0[l], path.v[i][k].0[l]]
-            })
-        });
-        Some(*interpolant)
-    }
-
-    fn accelerations(&mut self) -> [D::Scalar; N] {
-        let prepared = self.dynamics.system().prepare();
-        let mut field = Field::new(self.dynamics, &prepared);
-        field.backwards = self.goes_back();
-        let a = self.end.start_acceleration(&mut field);
-        *self.evaluations += field.evaluations;
-        a
-    }
-
-    fn goes_back(&self) -> bool {
-        self.interval.h.is_sign_negative()
-    }
-
-    fn last_length(&self) -> f64 {
-        self.interval.h
-    }
-
-    fn cut(&mut self, t: Time, state: &State<D::Scalar, N>) {
-        (self.before_kink, self.end) = (None, Endpoint::new(t, state.q, state.v));
-    }
-
-    // Events that act do not go through lanes.
-    fn jump(&mut self, state: &State<D::Scalar, N>) -> Result<(), Error> {
-        self.end = Endpoint::new(self.end.t, state.q, state.v);
-        Ok(())
-    }
-
-    fn retreat(&mut self) {
-        (self.before_kink, self.end) = (None, self.from);
+    /// The first kink after `t`, infinite if there is none.
+    pub(super) fn next_kink(&self, t: Time) -> f64 {
+        let Problem { system, time: (start, end), .. } = &*self.problem;
+        let (t, onwards) = (t.to_f64(), direction(*start, *end));
+        let kink = if onwards < 0.0 { system.last_kink(t) } else { Dynamics::next_kink(system, t) };
+        kink.unwrap_or(onwards * f64::INFINITY)
     }
 }

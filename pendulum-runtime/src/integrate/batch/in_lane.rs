@@ -1,0 +1,84 @@
+//! A motion in a lane as event detectors and recorders see it.
+
+use super::flight::Wide;
+use super::problem::Batched;
+use crate::error::Error;
+use crate::integrate::interpolant::Interpolant;
+use crate::integrate::methods::taylor::series_interpolant;
+use crate::integrate::state::State;
+use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::step::field::Field;
+use crate::integrate::step::interval::StepInterval;
+use crate::integrate::step::observed::Observed;
+use crate::jet::Path;
+use crate::system::{Facts, System};
+use crate::time::Time;
+
+/// A motion in a lane, after a step.
+pub(super) struct InLane<'v, D: Batched<N>, const N: usize> {
+    pub(super) dynamics: &'v D,
+    pub(super) path: &'v Path<Wide<D::Scalar>, N>,
+    pub(super) order: usize,
+    pub(super) lane: usize,
+    pub(super) from: Endpoint<D::Scalar, N>,
+    /// The end on this side of a kink, if there is one.
+    pub(super) before_kink: Option<Endpoint<D::Scalar, N>>,
+    pub(super) end: Endpoint<D::Scalar, N>,
+    pub(super) interval: StepInterval,
+    pub(super) interpolant: Option<Interpolant<D::Scalar, N>>,
+    pub(super) evaluations: &'v mut u64,
+}
+
+impl<D: Batched<N>, const N: usize> Observed<D::Scalar, N> for InLane<'_, D, N> {
+    const FACTS: &'static Facts = &<D::System as System<N>>::FACTS;
+
+    fn end(&self) -> &Endpoint<D::Scalar, N> {
+        &self.end
+    }
+
+    fn before_kink(&self) -> Option<&Endpoint<D::Scalar, N>> {
+        self.before_kink.as_ref()
+    }
+
+    fn interpolant(&mut self) -> Option<Interpolant<D::Scalar, N>> {
+        let Self { path, order, lane: l, from, interval, .. } = *self;
+        let (path, order, l) = (path, order, l);
+        let interpolant = self.interpolant.get_or_insert_with(|| {
+            series_interpolant(interval, &from, order, |i, k| {
+                [path.q[i][k].0[l], path.v[i][k].0[l]]
+            })
+        });
+        Some(*interpolant)
+    }
+
+    fn accelerations(&mut self) -> [D::Scalar; N] {
+        let prepared = self.dynamics.system().prepare();
+        let mut field = Field::new(self.dynamics, &prepared);
+        field.backwards = self.goes_back();
+        let a = self.end.start_acceleration(&mut field);
+        *self.evaluations += field.evaluations;
+        a
+    }
+
+    fn goes_back(&self) -> bool {
+        self.interval.h.is_sign_negative()
+    }
+
+    fn last_length(&self) -> f64 {
+        self.interval.h
+    }
+
+    fn cut(&mut self, t: Time, state: &State<D::Scalar, N>) {
+        (self.before_kink, self.end) = (None, Endpoint::new(t, state.q, state.v));
+    }
+
+    // Events that act do not go through lanes.
+    fn jump(&mut self, state: &State<D::Scalar, N>) -> Result<(), Error> {
+        self.end = Endpoint::new(self.end.t, state.q, state.v);
+        Ok(())
+    }
+
+    fn retreat(&mut self) {
+        (self.before_kink, self.end) = (None, self.from);
+    }
+}

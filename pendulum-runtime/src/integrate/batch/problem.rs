@@ -1,0 +1,93 @@
+//! Problems, the systems that can stand in lanes, and outcomes.
+
+use crate::integrate::solution::{Failure, Solution};
+use crate::jet::{Jets, MaybeJets};
+use crate::motion::MaybeAnalytic;
+use crate::scalar::{Float, Lane, Lanes};
+use crate::system::{Driven, Dynamics};
+use core::ops::Deref;
+
+/// The motions that are under way at the same time: a vector of 64 bytes for `f64`.
+pub(super) const W: usize = 8;
+
+/// An initial value problem: a system, with what drives it, at the start of its motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Problem<S: Dynamics<N>, const N: usize> {
+    /// The system with its parameters.
+    pub system: S,
+    /// Start and end in seconds; an end before the start leads back in time.
+    pub time: (f64, f64),
+    /// The coordinates at the start.
+    pub q: [S::Scalar; N],
+    /// The velocities at the start.
+    pub v: [S::Scalar; N],
+}
+
+/// A problem of a caller, or one that was made for the purpose.
+#[derive(Debug)]
+pub(crate) enum Posed<'a, S: Dynamics<N>, const N: usize> {
+    Borrowed(&'a Problem<S, N>),
+    Owned(Problem<S, N>),
+}
+
+impl<S: Dynamics<N>, const N: usize> Deref for Posed<'_, S, N> {
+    type Target = Problem<S, N>;
+
+    fn deref(&self) -> &Problem<S, N> {
+        match self {
+            Self::Borrowed(problem) => problem,
+            Self::Owned(problem) => problem,
+        }
+    }
+}
+
+/// Dynamics that can stand in lanes: every system that `lagrangian!` generates without control
+/// inputs, over `f32` and `f64`, with motions for its driven inputs.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot be integrated in a batch",
+    note = "a batch takes systems that `lagrangian!` has made, over `f64` or `f32` and without controllers"
+)]
+pub trait Batched<const N: usize>: MaybeJets<N, Scalar: Lane + Float> + Sized {
+    /// The same system over lanes.
+    #[doc(hidden)]
+    type Wide: Jets<N, Scalar = Lanes<Self::Scalar, 8>>;
+
+    /// The same system over lanes, with every parameter mapped.
+    #[doc(hidden)]
+    fn widen(&self, map: impl FnMut(Self::Scalar) -> Lanes<Self::Scalar, 8>) -> Self::Wide;
+}
+
+impl<S, const N: usize> Batched<N> for S
+where
+    S: Jets<N, Scalar: Lane + Float, Inputs = ()>,
+    S::With<Lanes<S::Scalar, W>>: Jets<N>,
+{
+    type Wide = S::With<Lanes<S::Scalar, W>>;
+
+    fn widen(&self, map: impl FnMut(S::Scalar) -> Lanes<S::Scalar, W>) -> Self::Wide {
+        self.map(map)
+    }
+}
+
+impl<S, M, const N: usize> Batched<N> for Driven<S, M>
+where
+    S: Jets<N, Scalar: Lane + Float>,
+    M: MaybeAnalytic<S::Inputs, S::Scalar>,
+    S::With<Lanes<S::Scalar, W>>: Jets<N>,
+{
+    type Wide = S::With<Lanes<S::Scalar, W>>;
+
+    fn widen(&self, map: impl FnMut(S::Scalar) -> Lanes<S::Scalar, W>) -> Self::Wide {
+        self.system.map(map)
+    }
+}
+
+/// A source of problems and their indices.
+pub(crate) type Problems<'a, D, const N: usize> =
+    dyn FnMut() -> Option<(usize, Posed<'a, D, N>)> + 'a;
+
+/// A receiver of outcomes and their indices.
+pub(crate) type Outcomes<'a, T, const N: usize> = dyn FnMut(usize, Outcome<T, N>) + 'a;
+
+/// The result of one motion of a batch.
+pub type Outcome<T, const N: usize> = Result<Solution<T, N>, Failure<T, N>>;
