@@ -2,6 +2,7 @@
 
 use crate::algebra::expr::Graph;
 use crate::backend::Analysis;
+use crate::backend::ide;
 use crate::backend::latex;
 use crate::backend::mathml;
 use crate::backend::rust::Emitter;
@@ -27,12 +28,24 @@ use std::fmt::Display;
 ///
 /// `input` is the path of the runtime, a semicolon and the block: `::pendulum_runtime; struct …`.
 /// Each mistake becomes a `compile_error!` at its tokens. The items are emitted all the same, with
-/// open bodies, unless the struct itself cannot be read.
+/// open bodies, unless the struct itself cannot be read; the copy for editors stands before them.
 pub fn expand(input: TokenStream) -> TokenStream {
     let mut errors = Errors::default();
-    let items = passes(input, &mut errors, |analysis| Emitter::new(analysis).items());
+    let tokens = input.clone();
+    let items = passes(input, &mut errors, |analysis| {
+        let copy = ide::copy(&tokens, Some(&analysis));
+        let items = Emitter::new(analysis).items();
+        (copy, items)
+    });
+    let (copy, items) = items.unwrap_or_else(|| (ide::copy(&tokens, None), TokenStream::new()));
     let errors = errors.into_tokens();
-    quote!(#errors #items)
+    quote!(#copy #errors #items)
+}
+
+/// The words of the language as documented items, for editors.
+#[doc(hidden)]
+pub fn words() -> TokenStream {
+    ide::words()
 }
 
 /// Compiles a block given as source text, outside of any macro: its declarations and equations.

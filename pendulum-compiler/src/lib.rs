@@ -26,5 +26,5 @@ mod syntax;
 #[cfg(test)]
 mod tests;
 
-pub use compile::{Compiled, Declaration, Message, Output, Position, compile, expand};
+pub use compile::{Compiled, Declaration, Message, Output, Position, compile, expand, words};
 pub use schedule::Operations;

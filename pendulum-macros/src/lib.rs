@@ -11,3 +11,10 @@
 pub fn lagrangian(input: proc_macro::TokenStream) -> proc_macro::TokenStream {
     pendulum_compiler::expand(input.into()).into()
 }
+
+/// The words of the language as documented items, for editors.
+#[doc(hidden)]
+#[proc_macro]
+pub fn words(_: proc_macro::TokenStream) -> proc_macro::TokenStream {
+    pendulum_compiler::words().into()
+}

@@ -21,6 +21,8 @@ use Scale::{Bell, Bump, Oscillation};
 pub(crate) struct Row {
     /// The name in the language, and of the method of `Real`.
     pub(crate) name: &'static str,
+    /// A sentence for editors.
+    pub(crate) meaning: &'static str,
     /// True if the language has it: other functions stand in derivatives alone.
     pub(crate) word: bool,
     /// The units of argument and value.
@@ -230,16 +232,19 @@ macro_rules! functions {
 
 functions! {
     Sin = sin {
+        meaning: "The sine.",
         word: true, units: UnitRule::Pure, domain: REAL, range: UNIT, at_zero: ZERO, parity: Odd,
         kinks: Smooth, scale: Oscillation, cost: 20, notation: Prefix("\\sin"), ascii: None,
         value: |_, x| x.sin(), derivative: Call(Sign::Plus, Function::Cos), recurrence: Circular,
     }
     Cos = cos {
+        meaning: "The cosine.",
         word: true, units: UnitRule::Pure, domain: REAL, range: UNIT, at_zero: ONE, parity: Even,
         kinks: Smooth, scale: Oscillation, cost: 20, notation: Prefix("\\cos"), ascii: None,
         value: |_, x| x.cos(), derivative: Call(Sign::Minus, Function::Sin), recurrence: Circular,
     }
     Tan = tan {
+        meaning: "The tangent.",
         word: true, units: UnitRule::Pure, domain: [-FRAC_PI_2, FRAC_PI_2], range: REAL,
         at_zero: ZERO, parity: Odd,
         kinks: Smooth, scale: Oscillation, cost: 20, notation: Prefix("\\tan"), ascii: None,
@@ -247,6 +252,7 @@ functions! {
         recurrence: Riccati(Sign::Plus),
     }
     Asin = asin {
+        meaning: "The arcsine.",
         word: true, units: UnitRule::Pure, domain: UNIT, range: [-FRAC_PI_2, FRAC_PI_2],
         at_zero: ZERO, parity: Odd,
         kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\arcsin"), ascii: None,
@@ -254,6 +260,7 @@ functions! {
         recurrence: Quotient(Divisor::RootOfOneMinusSquare, Sign::Plus),
     }
     Acos = acos {
+        meaning: "The arccosine.",
         word: true, units: UnitRule::Pure, domain: UNIT, range: [0.0, PI], at_zero: None,
         parity: Neither,
         kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\arccos"), ascii: None,
@@ -261,6 +268,7 @@ functions! {
         recurrence: Quotient(Divisor::RootOfOneMinusSquare, Sign::Minus),
     }
     Atan = atan {
+        meaning: "The arctangent.",
         word: true, units: UnitRule::Pure, domain: REAL, range: [-FRAC_PI_2, FRAC_PI_2],
         at_zero: ZERO, parity: Odd,
         kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\arctan"), ascii: None,
@@ -268,12 +276,14 @@ functions! {
         recurrence: Quotient(Divisor::OnePlusSquare, Sign::Plus),
     }
     Sinh = sinh {
+        meaning: "The hyperbolic sine.",
         word: true, units: UnitRule::Pure, domain: REAL, range: REAL, at_zero: ZERO, parity: Odd,
         kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\sinh"), ascii: None,
         value: |_, x| x.sinh(), derivative: Call(Sign::Plus, Function::Cosh),
         recurrence: Hyperbolic(0),
     }
     Cosh = cosh {
+        meaning: "The hyperbolic cosine.",
         word: true, units: UnitRule::Pure, domain: REAL, range: [1.0, f64::INFINITY], at_zero: ONE,
         parity: Even,
         kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\cosh"), ascii: None,
@@ -281,18 +291,21 @@ functions! {
         recurrence: Hyperbolic(1),
     }
     Tanh = tanh {
+        meaning: "The hyperbolic tangent.",
         word: true, units: UnitRule::Pure, domain: REAL, range: UNIT, at_zero: ZERO, parity: Odd,
         kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\tanh"), ascii: None,
         value: |_, x| x.tanh(), derivative: OneAndSquare(Sign::Minus),
         recurrence: Riccati(Sign::Minus),
     }
     Exp = exp {
+        meaning: "The exponential function.",
         word: true, units: UnitRule::Pure, domain: REAL, range: POSITIVE, at_zero: ONE,
         parity: Neither,
         kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\exp"), ascii: None,
         value: |_, x| x.exp(), derivative: Itself, recurrence: Exponential,
     }
     Ln = ln {
+        meaning: "The natural logarithm.",
         word: true, units: UnitRule::Pure, domain: POSITIVE, range: REAL, at_zero: None,
         parity: Neither,
         kinks: Smooth, scale: Bump, cost: 20, notation: Prefix("\\ln"), ascii: None,
@@ -300,12 +313,14 @@ functions! {
         recurrence: Quotient(Divisor::Argument, Sign::Plus),
     }
     Abs = abs {
+        meaning: "The absolute value.",
         word: true, units: UnitRule::Same, domain: REAL, range: POSITIVE, at_zero: ZERO,
         parity: Even, kinks: Corner, scale: Scale::Kink, cost: 20, notation: Bars, ascii: None,
         value: |_, x| x.abs(), derivative: Call(Sign::Plus, Function::Sign),
         recurrence: Linear(Function::Sign),
     }
     Sign = sign {
+        meaning: "The sign: −1, 0 or 1.",
         word: true, units: UnitRule::Any, domain: REAL, range: UNIT, at_zero: None, parity: Odd,
         kinks: Jump, scale: Scale::Kink, cost: 20, notation: Prefix("\\operatorname{sign}"),
         ascii: None, value: |_, x| if x == 0.0 { 0.0 } else { x.signum() },
@@ -313,6 +328,7 @@ functions! {
     }
     // The derivative of max(0, u): ½ at zero.
     Step = step {
+        meaning: "The unit step: 0, ½ or 1.",
         word: false, units: UnitRule::Any, domain: REAL, range: [0.0, 1.0], at_zero: None,
         parity: Neither,
         kinks: Jump, scale: Scale::Kink, cost: 20, notation: Prefix("\\operatorname{step}"),
@@ -322,6 +338,7 @@ functions! {
     }
     // The derivative of the order of sin(x)/x.
     Sinc(order: u8) = sinc {
+        meaning: "The function sin(x)/x, which is 1 at 0.",
         word: true, units: UnitRule::Pure, domain: REAL, range: UNIT,
         at_zero: match order % 4 {
             0 => Rational::new(1, i128::from(order) + 1),
@@ -377,6 +394,8 @@ impl Function {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Word {
     pub(crate) name: &'static str,
+    /// A sentence for editors.
+    pub(crate) meaning: &'static str,
     pub(crate) units: UnitRule,
     pub(crate) lowering: Lowering,
 }
@@ -414,24 +433,29 @@ pub(crate) enum Two {
 /// The functions with a structure of their own.
 #[rustfmt::skip]
 const STRUCTURES: [Word; 10] = [
-    Word { name: "sqrt",   units: UnitRule::Root,    lowering: Lowering::One(One::Sqrt) },
-    Word { name: "atan2",  units: UnitRule::Ratio,   lowering: Lowering::Two(Two::Atan2) },
-    Word { name: "min",    units: UnitRule::Common,  lowering: Lowering::Two(Two::Min) },
-    Word { name: "max",    units: UnitRule::Common,  lowering: Lowering::Two(Two::Max) },
-    Word { name: "dot",    units: UnitRule::Rate,    lowering: Lowering::One(One::Dot) },
-    Word { name: "inner",  units: UnitRule::Product, lowering: Lowering::Two(Two::Inner) },
-    Word { name: "cross",  units: UnitRule::Product, lowering: Lowering::Two(Two::Cross) },
-    Word { name: "perp",   units: UnitRule::Same,    lowering: Lowering::One(One::Perp) },
-    Word { name: "height", units: UnitRule::Same,    lowering: Lowering::One(One::Height) },
-    Word { name: "cis",    units: UnitRule::Pure,    lowering: Lowering::One(One::Cis) },
+    Word { name: "sqrt",   meaning: "The square root.",                              units: UnitRule::Root,    lowering: Lowering::One(One::Sqrt) },
+    Word { name: "atan2",  meaning: "The angle of the point (x, y), as atan2(y, x).", units: UnitRule::Ratio,   lowering: Lowering::Two(Two::Atan2) },
+    Word { name: "min",    meaning: "The lesser of two values.",                     units: UnitRule::Common,  lowering: Lowering::Two(Two::Min) },
+    Word { name: "max",    meaning: "The greater of two values.",                    units: UnitRule::Common,  lowering: Lowering::Two(Two::Max) },
+    Word { name: "dot",    meaning: "The total derivative by time.",                 units: UnitRule::Rate,    lowering: Lowering::One(One::Dot) },
+    Word { name: "inner",  meaning: "The inner product of two vectors.",             units: UnitRule::Product, lowering: Lowering::Two(Two::Inner) },
+    Word { name: "cross",  meaning: "The cross product of two vectors.",             units: UnitRule::Product, lowering: Lowering::Two(Two::Cross) },
+    Word { name: "perp",   meaning: "A plane vector, turned by a quarter counter-clockwise.", units: UnitRule::Same, lowering: Lowering::One(One::Perp) },
+    Word { name: "height", meaning: "The last component of a vector, which points up.", units: UnitRule::Same, lowering: Lowering::One(One::Height) },
+    Word { name: "cis",    meaning: "The complex number cos φ + i sin φ.",           units: UnitRule::Pure,    lowering: Lowering::One(One::Cis) },
 ];
 
 impl Word {
     /// All functions of the language.
     pub(crate) fn all() -> impl Iterator<Item = Self> {
         let functions = Function::ALL.iter().filter_map(|&function| {
-            let Row { name, word, units, .. } = function.row();
-            word.then_some(Self { name, units, lowering: Lowering::One(One::Function(function)) })
+            let Row { name, meaning, word, units, .. } = function.row();
+            word.then_some(Self {
+                name,
+                meaning,
+                units,
+                lowering: Lowering::One(One::Function(function)),
+            })
         });
         functions.chain(STRUCTURES)
     }

@@ -13,7 +13,7 @@ use crate::mechanics::motion::Motion;
 use crate::model::Model;
 use crate::model::unit::infer::RowUnits;
 use crate::schedule::Program;
-use proc_macro2::TokenStream;
+use proc_macro2::{Ident, Span, TokenStream};
 
 /// A block before a backend writes it.
 pub(crate) struct Analysis<'m, 'a> {
@@ -28,6 +28,13 @@ pub(crate) struct Analysis<'m, 'a> {
     pub(crate) equations: [Vec<String>; 2],
     /// The program of the accelerations.
     pub(crate) accelerations: Option<Program>,
-    /// The units of constraints and limits.
+    /// The units that are inferred.
     pub(crate) units: RowUnits,
+}
+
+/// The same name, which stands nowhere in the block.
+fn unlocated(name: &Ident) -> Ident {
+    let mut name = name.clone();
+    name.set_span(Span::call_site());
+    name
 }

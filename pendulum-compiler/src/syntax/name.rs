@@ -60,15 +60,23 @@ pub(crate) fn unaccented(text: &str) -> Option<String> {
 /// The spellings of a velocity: a dot over a letter, if the name is one, and the suffix.
 pub(crate) fn dotted(text: &str) -> String {
     let suffixed = format!("`{}_dot`", read(text).base);
-    let mut letters = text.chars();
-    match letters.next() {
-        Some(letter) if letters.clone().all(|letter| letter.is_ascii_digit()) => {
-            let composed = compose(&letter.to_string(), 1)
-                .map_or_else(|| format!("{letter}\u{307}"), String::from);
-            format!("`{composed}{}` or {suffixed}", letters.as_str())
-        }
-        _ => suffixed,
+    match velocity(text) {
+        Some(velocity) => format!("`{velocity}` or {suffixed}"),
+        None => suffixed,
     }
+}
+
+/// A name of one letter, with a number or without, under a dot.
+pub(crate) fn velocity(text: &str) -> Option<String> {
+    let mut letters = text.chars();
+    let letter = letters.next()?;
+    let number = letters.as_str();
+    number.chars().all(|digit| digit.is_ascii_digit()).then(|| {
+        match compose(&letter.to_string(), 1) {
+            Some(composed) => format!("{composed}{number}"),
+            None => format!("{letter}\u{307}{number}"),
+        }
+    })
 }
 
 /// Returns true if a word is the English name of a Greek letter that LaTeX knows by it.

@@ -19,10 +19,12 @@ const COMMON: &[&str] = &[
 /// The names of [`COMMON`] that do not stand in an absolute path; attributes are left out.
 fn relative(tokens: TokenStream, found: &mut Vec<String>) {
     let mut before = [' '; 3];
+    let mut names = false;
     for tree in tokens {
         let mark = match &tree {
             TokenTree::Group(group) => {
-                if before[2] != '#' {
+                // The modules of names have a scope of their own.
+                if before[2] != '#' && !std::mem::take(&mut names) {
                     relative(group.stream(), found);
                 }
                 'g'
@@ -33,6 +35,7 @@ fn relative(tokens: TokenStream, found: &mut Vec<String>) {
                 if !follows && COMMON.iter().any(|common| name == common) {
                     found.push(name.to_string());
                 }
+                names = before[2] == 'i' && name == "__block";
                 'i'
             }
             TokenTree::Punct(punct) => punct.as_char(),

@@ -6,6 +6,13 @@ pub use crate::system::facts::{Known, facts};
 pub use nalgebra::SMatrix;
 pub use pendulum_macros::lagrangian;
 
+/// The words of the language, which rust-analyzer alone reads.
+#[allow(unexpected_cfgs, nonstandard_style, missing_docs)]
+pub mod words {
+    #[cfg(rust_analyzer)]
+    pendulum_macros::words!();
+}
+
 /// The columns of a matrix of `N` rows, stored one after the other.
 pub fn columns<T, const N: usize>(entries: &[T]) -> &[[T; N]] {
     entries.as_chunks().0

@@ -9,7 +9,7 @@ impl Emitter<'_, '_> {
     pub(super) fn jacobians(&mut self) -> TokenStream {
         let (krate, scalar, other, count) =
             (self.krate.clone(), self.scalar(), self.other_scalar(), self.count());
-        let name = &self.model.block.name;
+        let name = &self.name();
         let written = self.motion.as_ref().is_none_or(|motion| motion.jacobians.is_some());
         let [positions, velocities, parameters, controls] =
             if written { self.written_jacobians() } else { self.dual_jacobians() };
@@ -88,7 +88,7 @@ impl Emitter<'_, '_> {
     fn dual_jacobians(&self) -> [TokenStream; 4] {
         let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
         let inputs = (0..self.model.inputs.len()).map(Literal::usize_unsuffixed);
-        let (dual, name) = (quote!(#krate::scalar::Dual::<#scalar>), &self.model.block.name);
+        let (dual, name) = (quote!(#krate::scalar::Dual::<#scalar>), &self.name());
         let map = quote!(<Self as #krate::system::System<#count>>::map);
         let accelerations = quote!(<#name<#dual> as #krate::system::System<#count>>::accelerations);
         let lifted = quote! {

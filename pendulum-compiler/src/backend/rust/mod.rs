@@ -16,8 +16,7 @@ mod system;
 mod unmentioned;
 
 use crate::algebra::expr::Graph;
-use crate::backend::Analysis;
-use crate::backend::ide;
+use crate::backend::{Analysis, unlocated};
 use crate::mechanics::lower::Energies;
 use crate::mechanics::motion::Motion;
 use crate::model::unit::infer::RowUnits;
@@ -70,7 +69,6 @@ impl Emitter<'_, '_> {
         let staged = self.staged();
         let jacobians = self.jacobians();
         let jets = self.jets();
-        let mirror = ide::function(self.model.block);
         let open = self.open_names();
         let unmentioned = self.unmentioned();
         let outputs = self.output_methods();
@@ -85,7 +83,6 @@ impl Emitter<'_, '_> {
                 #constructor #outputs #sampled_outputs #system #split #staged #marker #jacobians #jets #unmentioned
             };
             #output_trait
-            #mirror
         }
     }
 
@@ -105,6 +102,12 @@ impl Emitter<'_, '_> {
             own.chain(declared).map(|name| (name.to_string(), name)).collect();
         let names = names.values();
         quote!(#(#[allow(dead_code, non_snake_case)] fn #names() {})*)
+    }
+
+    /// The name of the struct where it is no declaration: an editor that is asked for the struct
+    /// shows it once.
+    pub(crate) fn name(&self) -> Ident {
+        unlocated(&self.model.block.name)
     }
 
     /// The scalar's type parameter; another letter if the struct took the usual one.

@@ -1,6 +1,7 @@
 //! The outputs: a method for each, a list by index, and a trait that samples the inputs.
 
 use super::Emitter;
+use crate::backend::unlocated;
 use crate::mechanics::lower;
 use crate::model;
 use crate::schedule;
@@ -21,7 +22,7 @@ impl Emitter<'_, '_> {
             return None;
         }
         let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
-        let (name, visibility) = (&self.model.block.name, &self.model.block.visibility);
+        let (name, visibility) = (self.name(), &self.model.block.visibility);
         let inputs = (!self.model.inputs.is_empty())
             .then(|| quote!(, inputs: &<Self as #krate::system::System<#count>>::Inputs));
         let methods = self.all_outputs().map(|(output, lowered)| {
@@ -50,8 +51,8 @@ impl Emitter<'_, '_> {
         }
         let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
         let block = self.model.block;
-        let (name, visibility) = (&block.name, &block.visibility);
-        let own = format_ident!("{name}Outputs", span = name.span());
+        let (name, visibility) = (self.name(), &block.visibility);
+        let own = format_ident!("{name}Outputs", span = block.name.span());
         let conditions = block.conditions();
         let signatures: Vec<(TokenStream, &Ident, TokenStream)> = self
             .all_outputs()
@@ -87,6 +88,7 @@ impl Emitter<'_, '_> {
             #[allow(non_snake_case)]
             #visibility trait #own<#scalar: #krate::scalar::Real> { #(#declared)* }
         };
+        let own = unlocated(&own);
         let implementation = quote! {
             #[automatically_derived]
             #[allow(non_snake_case, clippy::all, clippy::pedantic)]

@@ -10,8 +10,7 @@ impl Emitter<'_, '_> {
     /// The accelerations in four parts: what parameters decide, what time and inputs decide, what
     /// the position adds, and the rest.
     pub(super) fn staged(&self) -> TokenStream {
-        let (krate, scalar, count, name) =
-            (&self.krate, self.scalar(), self.count(), &self.model.block.name);
+        let (krate, scalar, count, name) = (&self.krate, self.scalar(), self.count(), &self.name());
         let missing = || (quote!(::core::unimplemented!()), 0);
         let (mut at_time, mut at_position, mut rest) = (missing(), missing(), missing().0);
         if let Some(program) = &self.accelerations {

@@ -40,20 +40,20 @@ impl Emitter<'_, '_> {
         // Where another item has the name too, rustc shows the tokens from the visibility to the
         // name, and not the whole block.
         let visibility = located(visibility.to_token_stream(), None);
-        let head = located(
-            quote!(struct #name<#scalar = ::core::primitive::f64> { #(#fields)* #empty }),
-            Some(name.span()),
-        );
+        let place = visibility.is_empty().then(|| name.span());
+        let keyword = located(quote!(struct), Some(place.unwrap_or_else(Span::call_site)));
+        let head = located(quote!(#name < ), Some(name.span()));
+        let tail = located(quote!( > { #(#fields)* #empty }), Some(name.span()));
         quote! {
             #(#attributes)*
             #documentation
             #[allow(non_snake_case)]
-            #visibility #head
+            #visibility #keyword #head #scalar = ::core::primitive::f64 #tail
         }
     }
 
     pub(super) fn constructor(&self) -> TokenStream {
-        let (name, scalar, krate) = (&self.model.block.name, self.scalar(), &self.krate);
+        let (name, scalar, krate) = (&self.name(), self.scalar(), &self.krate);
         let mut arguments = Vec::new();
         let mut values = Vec::new();
         for (index, quantity) in self.model.parameters.iter().enumerate() {
@@ -102,7 +102,7 @@ impl Emitter<'_, '_> {
 
     /// The facts without the name of a trait.
     fn inherent_facts(&self) -> TokenStream {
-        let (krate, name, count) = (&self.krate, &self.model.block.name, self.count());
+        let (krate, name, count) = (&self.krate, &self.name(), self.count());
         let visibility = &self.model.block.visibility;
         quote! {
             #[automatically_derived]
@@ -216,7 +216,7 @@ impl Emitter<'_, '_> {
     /// They stand in `driven_by` itself, so that rustc names the call; each has a constant of its
     /// own at the declaration of the input, so that one that fails hides no other.
     fn sufficient(&self) -> TokenStream {
-        let (krate, scalar, system) = (&self.krate, self.scalar(), &self.model.block.name);
+        let (krate, scalar, system) = (&self.krate, self.scalar(), &self.name());
         let purposes = self.needed();
         let driven = &self.model.inputs[..self.model.driven];
         let assertions = driven.iter().enumerate().filter_map(|(index, quantity)| {

@@ -14,7 +14,7 @@ impl Emitter<'_, '_> {
     pub(super) fn system(&mut self) -> TokenStream {
         let (krate, scalar, other, count) =
             (self.krate.clone(), self.scalar(), self.other_scalar(), self.count());
-        let name = &self.model.block.name;
+        let name = &self.name();
         let dimensions = self.model.inputs.iter().map(Quantity::count);
         let facts = self.facts();
         let mapped = self.model.parameters.iter().map(|quantity| {
@@ -128,7 +128,7 @@ impl Emitter<'_, '_> {
         let kinetic = self.output(|motion| motion.kinetic.map(|id| vec![id]));
         let potential = self.output(|motion| motion.potential.map(|id| vec![id]));
         let (krate, scalar, count) = (self.krate.clone(), self.scalar(), self.count());
-        let name = &self.model.block.name;
+        let name = &self.name();
         let state = quote!(q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs);
         Some(quote! {
             #[automatically_derived]
@@ -144,8 +144,7 @@ impl Emitter<'_, '_> {
     }
 
     pub(super) fn marker(&self) -> Option<TokenStream> {
-        let (krate, scalar, count, name) =
-            (&self.krate, self.scalar(), self.count(), &self.model.block.name);
+        let (krate, scalar, count, name) = (&self.krate, self.scalar(), self.count(), &self.name());
         let marker = match &self.motion {
             Some(motion) if motion.holonomic => quote!(Holonomic),
             Some(motion) if !motion.velocity_free => return None,

@@ -19,6 +19,8 @@ pub(crate) struct Energies {
     /// The parameters of two or three components that are used by their indices alone: families,
     /// not vectors.
     pub(crate) families: BTreeSet<usize>,
+    /// For each definition the lengths of its value, the outermost first.
+    pub(crate) lengths: Vec<Vec<usize>>,
     pub(crate) outputs: Vec<Output>,
     /// The scalar constraints that are solved, and after them the redundant ones.
     pub(crate) constraints: Vec<Row>,

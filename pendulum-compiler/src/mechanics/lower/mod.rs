@@ -154,12 +154,23 @@ impl Lower<'_, '_, '_, '_> {
             energies.constraints = self.constraints();
             energies.limits = self.limits();
             energies.outputs = self.outputs();
+            energies.lengths =
+                (0..self.model.lets.len()).map(|index| self.lengths(index)).collect();
         } else if self.positions.as_ref().is_some_and(|positions| positions.constrained) {
             self.known = Some(std::mem::take(&mut self.instances));
             energies.constraints = self.constraints();
         }
         energies.families = self.indexed.difference(&self.whole).copied().collect();
         energies
+    }
+
+    /// The lengths of a definition's value, as far as it has been lowered.
+    fn lengths(&self, index: usize) -> Vec<usize> {
+        let mut instances =
+            self.instances.range((index, None)..=(index, Some(i64::MAX))).map(|(_, value)| value);
+        let Some(first) = instances.next() else { return Vec::new() };
+        let family = self.model.lets[index].index.as_ref().map(|_| 1 + instances.count());
+        family.into_iter().chain(first.lengths()).collect()
     }
 
     /// Reports an energy in which a control input stands elsewhere than in products and whole

@@ -29,6 +29,19 @@ impl Value {
         }
     }
 
+    /// Its lengths, the outermost first.
+    pub(super) fn lengths(&self) -> Vec<usize> {
+        match self {
+            Value::Bad | Value::Scalar(_) => Vec::new(),
+            Value::Plane { .. } => vec![2],
+            Value::Space(_) => vec![3],
+            Value::Family(members) => {
+                let inner = members.first().map(Value::lengths).unwrap_or_default();
+                [vec![members.len()], inner].concat()
+            }
+        }
+    }
+
     /// Its components, those of all members of a family.
     pub(super) fn scalars(&self) -> Vec<Id> {
         match self {

@@ -20,12 +20,15 @@ use std::collections::{BTreeMap, BTreeSet};
 /// definition is checked for itself as well.
 const DEEPEST: usize = 200;
 
-/// The units of constraints and limits as text, empty where they are not known.
+/// The units that are inferred, for documentation and editors.
 #[derive(Debug, Default)]
 pub(crate) struct RowUnits {
-    /// For each constraint its own unit and that of its multiplier.
+    /// For each constraint its own unit and that of its multiplier; empty where not known.
     pub(crate) constraints: Vec<[String; 2]>,
+    /// For each limit; empty where not known.
     pub(crate) limits: Vec<String>,
+    /// For each definition without arguments.
+    pub(crate) definitions: Vec<Option<Dimension>>,
 }
 
 /// Checks a block, if any of its quantities has a unit, and gives the units of its constraints and
@@ -41,6 +44,7 @@ pub(crate) fn check(model: &Model, velocities: &BTreeSet<usize>, errors: &mut Er
         return RowUnits {
             constraints: vec![[unknown(), unknown()]; model.constraints.len()],
             limits: vec![unknown(); model.limits.len()],
+            definitions: vec![None; model.lets.len()],
         };
     }
     let mut units = Units {
@@ -249,7 +253,12 @@ impl Units<'_, '_, '_> {
                 shown(self, &found).unwrap_or_default()
             })
             .collect();
-        RowUnits { constraints, limits }
+        let definitions = (0..self.model.lets.len()).map(|index| {
+            let unit = self.resolved(self.lets.get(&index)?.as_ref()?);
+            unit.unknown.is_empty().then_some(unit.known)
+        });
+        let definitions = definitions.collect();
+        RowUnits { constraints, limits, definitions }
     }
 
     fn outputs(&mut self) {

@@ -101,8 +101,7 @@ pub(crate) fn equations(graph: &Graph, motion: &Motion) -> Equations {
 impl Emitter<'_, '_> {
     /// The implementation of `Jets`.
     pub(crate) fn jets(&self) -> TokenStream {
-        let (krate, scalar, count, name) =
-            (&self.krate, self.scalar(), self.count(), &self.model.block.name);
+        let (krate, scalar, count, name) = (&self.krate, self.scalar(), self.count(), &self.name());
         let components: usize = self.model.inputs.iter().map(Quantity::count).sum();
         let unknown = quote!(::core::unimplemented!());
         let (kind, unrolling, per_digit, work, body) = match &self.motion {

@@ -1,0 +1,232 @@
+//! The declared names of a block as documented items.
+
+use super::{Copy, is_keyword};
+use crate::algebra::dimension::Dimension;
+use crate::algebra::number::Rational;
+use crate::backend::{Analysis, unlocated};
+use crate::model::{Meaning, Quantity};
+use crate::syntax::ast::Let;
+use crate::syntax::name;
+use crate::syntax::text::text;
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
+use std::collections::BTreeSet;
+use std::fmt::Write;
+use syn::Attribute;
+
+/// A declared name.
+struct Declared<'d> {
+    name: &'d Ident,
+    /// Its kind, as a noun with its article.
+    kind: &'static str,
+    shape: Shape,
+    /// The documentation that its author has written.
+    documentation: Vec<&'d Attribute>,
+    /// Its value as text.
+    definition: Option<String>,
+    /// Its default as text.
+    default: Option<String>,
+    /// True if its velocity is offered.
+    moves: bool,
+}
+
+impl Copy<'_, '_, '_> {
+    /// The items of coordinates, of constraints and of all other names.
+    pub(super) fn declarations(&self) -> [TokenStream; 3] {
+        let mut items = [(); 3].map(|()| TokenStream::new());
+        let Some(analysis) = self.analysis else { return items };
+        let [coordinates, constraints, others] = &mut items;
+        let model = analysis.model;
+        for (base, &meaning) in &model.names {
+            if let Meaning::Let(index) = meaning
+                && let Some(arguments) = &model.lets[index].arguments
+            {
+                others.extend(Self::function(model.lets[index], arguments));
+                continue;
+            }
+            let declared = Self::declared(analysis, meaning);
+            let names = self.spellings(base, &declared);
+            let items = names.iter().filter_map(|spelling| declared.item(spelling));
+            match meaning {
+                Meaning::Coordinate(_) => coordinates.extend(items),
+                _ => others.extend(items),
+            }
+        }
+        let named = model.constraints.iter().filter(|constraint| !is_keyword(&constraint.name));
+        for constraint in named {
+            let name = &constraint.name;
+            let [left, right] = constraint.difference.sides().map(text);
+            let text = format!("A constraint.\n\n```text\n{name}: {left} = {right}\n```");
+            constraints.extend(quote! {
+                #[doc = #text]
+                pub static #name: Constraint;
+            });
+        }
+        items
+    }
+
+    /// The spellings of a name and of its derivatives: all that stand in the block, and those that
+    /// an editor offers.
+    fn spellings(&self, base: &str, declared: &Declared) -> BTreeSet<String> {
+        let own = declared.name.to_string();
+        let spelled =
+            self.scan.names.iter().filter_map(|(name, _)| Some(name.as_ref()?.to_string()));
+        let mut names: BTreeSet<String> =
+            spelled.filter(|spelling| name::read(spelling).base == base).collect();
+        if declared.moves {
+            names.insert(format!("{own}_dot"));
+            names.extend(name::velocity(&own).filter(|_| !own.is_ascii() || !self.is_ascii()));
+        }
+        names.insert(own);
+        names
+    }
+
+    fn is_ascii(&self) -> bool {
+        self.analysis.is_some_and(|analysis| analysis.model.block.ascii)
+    }
+
+    fn declared<'d>(analysis: &'d Analysis, meaning: Meaning) -> Declared<'d> {
+        let model = analysis.model;
+        let quantity = |quantity: &'d Quantity, kind: &'static str| Declared {
+            name: quantity.name,
+            kind,
+            shape: Shape {
+                unit: quantity.unit.clone(),
+                dimension: quantity.dimension,
+                lengths: quantity.length.into_iter().collect(),
+                body: quantity.body,
+            },
+            documentation: Vec::new(),
+            definition: None,
+            default: quantity.default.map(text),
+            moves: false,
+        };
+        match meaning {
+            Meaning::Parameter(index) => {
+                let attributes = &model.block.fields[index].attributes;
+                let documentation = attributes
+                    .iter()
+                    .filter(|attribute| attribute.path().is_ident("doc"))
+                    .collect();
+                Declared { documentation, ..quantity(&model.parameters[index], "A parameter") }
+            }
+            Meaning::Coordinate(index) => {
+                Declared { moves: true, ..quantity(&model.coordinates[index], "A coordinate") }
+            }
+            Meaning::Input(index) if model.is_control(index) => {
+                quantity(&model.inputs[index], "A control input")
+            }
+            Meaning::Input(index) => {
+                Declared { moves: true, ..quantity(&model.inputs[index], "A driven input") }
+            }
+            Meaning::Let(index) => {
+                let definition = model.lets[index];
+                let dimension = analysis.units.definitions.get(index).copied().flatten();
+                Declared {
+                    name: &definition.name,
+                    kind: "A definition",
+                    shape: Shape {
+                        unit: dimension.map(|dimension| dimension.to_string()).unwrap_or_default(),
+                        dimension,
+                        lengths: analysis.energies.lengths.get(index).cloned().unwrap_or_default(),
+                        body: false,
+                    },
+                    documentation: Vec::new(),
+                    definition: Some(text(&definition.expr)),
+                    default: None,
+                    moves: false,
+                }
+            }
+        }
+    }
+
+    /// A definition with arguments.
+    fn function(definition: &Let, arguments: &[Ident]) -> TokenStream {
+        let name = &definition.name;
+        if arguments.iter().chain([name]).any(is_keyword) {
+            return TokenStream::new();
+        }
+        let list = arguments.iter().map(Ident::to_string).collect::<Vec<_>>().join(", ");
+        let value = text(&definition.expr);
+        let text = format!("A definition.\n\n```text\n{name}({list}) = {value}\n```");
+        let arguments = arguments.iter().map(unlocated);
+        quote! {
+            #[doc = #text]
+            pub fn #name(#(#arguments: impl Quantity),*) -> impl Quantity;
+        }
+    }
+}
+
+impl Declared<'_> {
+    /// The name or a derivative of it, in one of its spellings.
+    fn item(&self, spelling: &str) -> Option<TokenStream> {
+        let mut item = syn::parse_str::<Ident>(spelling).ok()?;
+        item.set_span(self.name.span());
+        let (name, kind, documentation) = (self.name, self.shape.kind(), &self.documentation);
+        let mut text = match name::read(spelling).dots {
+            0 => format!("{}{}.", self.kind, self.shape.shown(0)),
+            1 => format!("The velocity of `{name}`{}.", self.shape.shown(1)),
+            2 => format!("The acceleration of `{name}`{}.", self.shape.shown(2)),
+            order => format!("The derivative of `{name}` of order {order}."),
+        };
+        if let Some(default) = &self.default {
+            let _ = write!(text, " The default is {default}.");
+        }
+        if let Some(definition) = &self.definition {
+            let _ = write!(text, "\n\n```text\n{name} = {definition}\n```");
+        }
+        if !documentation.is_empty() {
+            text.insert(0, '\n');
+        }
+        Some(quote!(#(#documentation)* #[doc = #text] pub static #item: #kind;))
+    }
+}
+
+/// The unit and the lengths of a value, as far as they are known.
+struct Shape {
+    /// The unit as written or inferred.
+    unit: String,
+    dimension: Option<Dimension>,
+    /// The lengths, the outermost first.
+    lengths: Vec<usize>,
+    body: bool,
+}
+
+impl Shape {
+    /// The unit of a time derivative, and the lengths, in the notation of declarations.
+    fn shown(&self, order: u8) -> String {
+        if self.body {
+            return String::new();
+        }
+        let unit = self.unit_of(order);
+        if unit.is_none() && self.lengths.is_empty() {
+            return String::new();
+        }
+        let unit = unit.unwrap_or_else(|| "_".to_owned());
+        let text = self.lengths.iter().rev().fold(unit, |inner, n| format!("[{inner}; {n}]"));
+        format!(" in `{text}`")
+    }
+
+    fn unit_of(&self, order: u8) -> Option<String> {
+        let dimension = self.dimension?;
+        match (order, self.unit.as_str()) {
+            (0, _) if dimension == Dimension::PURE && self.unit != "rad" => Some("1".to_owned()),
+            (0, unit) => Some(unit.to_owned()),
+            (1, "rad") => Some("rad/s".to_owned()),
+            (_, "rad") => Some(format!("rad/s^{order}")),
+            _ => {
+                let second = Dimension::whole([0, 0, 1, 0, 0]);
+                let rate = dimension.times(second, Rational::whole(-i64::from(order)))?;
+                Some(rate.to_string())
+            }
+        }
+    }
+
+    /// The type of the value in Rust; editors do not show the lengths of arrays.
+    fn kind(&self) -> TokenStream {
+        if self.body {
+            return quote!(Body);
+        }
+        self.lengths.iter().fold(quote!(f64), |inner, _| quote!([#inner]))
+    }
+}

@@ -1,0 +1,287 @@
+//! The words of the language with their documentation, as items that editors find.
+
+use crate::algebra::dimension::Dimension;
+use crate::algebra::functions::{UnitRule, Word};
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::quote;
+
+/// The words with which statements begin. Rust has documentation of its own for `let`.
+const STATEMENTS: &[(&str, &str)] = &[
+    (
+        "coordinate",
+        "A generalized coordinate, or a family of them.
+
+Its velocity is `theta_dot`, `θ̇` or `dot(theta)`.
+
+```text
+coordinate theta: rad;
+coordinate theta[5]: rad;
+```",
+    ),
+    (
+        "driven",
+        "A driven input: a motion that `driven_by` prescribes.
+
+The input and its velocity stand anywhere, its acceleration outside of energies.
+
+```text
+driven x: [m; 2];
+```",
+    ),
+    (
+        "input",
+        "A control input: a value that `controlled_by` or `sampled` supplies.
+
+It has no derivative, and stands in `force`, `potential`, `dissipation` and `output`.
+
+```text
+input u: N*m;
+```",
+    ),
+    (
+        "kinetic",
+        "A kinetic energy; several of them add.
+
+```text
+kinetic = m/2*L^2*theta_dot^2;
+```",
+    ),
+    (
+        "potential",
+        "A potential energy; several of them add.
+
+```text
+potential = -m*g*L*cos(theta);
+```",
+    ),
+    (
+        "lagrangian",
+        "The Lagrangian, kinetic minus potential energy, instead of `kinetic` and `potential`.
+
+```text
+lagrangian = m/2*L^2*theta_dot^2 + m*g*L*cos(theta);
+```",
+    ),
+    (
+        "dissipation",
+        "A Rayleigh function R, whose force on each coordinate is −∂R/∂q̇.
+
+```text
+dissipation = b/2*theta_dot^2;
+```",
+    ),
+    (
+        "force",
+        "A generalized force on a coordinate.
+
+Its unit is an energy per unit of the coordinate: a torque for an angle.
+
+```text
+force theta = u - b*theta_dot;
+force theta[k in 0..5] = -b*theta_dot[k];
+```",
+    ),
+    (
+        "output",
+        "A named value, which becomes a method of the system.
+
+It may contain accelerations and reactions.
+
+```text
+output tip: [m; 2] = L*[sin(theta), -cos(theta)];
+```",
+    ),
+    (
+        "constraint",
+        "A constraint: an equation of positions, or one that is affine in the velocities.
+
+`reaction(rod)` is its multiplier.
+
+```text
+constraint rod: |r| = L;
+```",
+    ),
+    (
+        "redundant",
+        "Marks a constraint that follows from others: it is checked while running, not solved.
+
+```text
+redundant constraint rod: |r| = L;
+```",
+    ),
+    (
+        "limit",
+        "A one-sided limit of positions: impacts, and contact while it pushes.
+
+```text
+limit floor: y >= 0, restitution = 0.8;
+```",
+    ),
+];
+
+/// The options of statements.
+const CHOICES: &[(&str, &str)] = &[(
+    "restitution",
+    "The coefficient of restitution of a limit: the velocity after an impact over that before, \
+     from 0 to 1.",
+)];
+
+/// The units by their names in the language.
+const UNITS: &[(&str, &str)] = &[
+    ("rad", "The radian, a pure number."),
+    ("kg", "The kilogram, of masses."),
+    ("m", "The metre, of lengths."),
+    ("s", "The second, of times."),
+    ("A", "The ampere, of currents."),
+    ("K", "The kelvin, of temperatures."),
+    ("Hz", "The hertz, of frequencies."),
+    ("N", "The newton, of forces."),
+    ("J", "The joule, of energies."),
+    ("W", "The watt, of powers."),
+    ("C", "The coulomb, of charges."),
+    ("V", "The volt, of potentials."),
+    ("F", "The farad, of capacitances."),
+    ("H", "The henry, of inductances."),
+    ("ohm", "The ohm, of resistances."),
+    ("T", "The tesla, of magnetic fields."),
+];
+
+/// The components of vectors and bodies.
+const COMPONENTS: &[(&str, &str)] = &[
+    ("x", "The first component of a vector."),
+    ("y", "The second component of a vector."),
+    ("z", "The third component of a space vector."),
+    ("mass", "The mass of a body in kg."),
+    ("center", "The centre of mass of a body in m, at the angle zero."),
+    ("inertia", "The moment of inertia of a body about its pivot in kg·m²."),
+];
+
+/// The constants of expressions.
+const CONSTANTS: &[(&str, &str)] = &[
+    ("t", "The time in seconds."),
+    ("pi", "The number π."),
+    ("i", "The imaginary unit, unless an index has the name."),
+];
+
+/// The forms of expressions that look like calls.
+const FORMS: &[(&str, &str, &[&str])] = &[
+    (
+        "sum",
+        "The sum over an index that is known while compiling.
+
+```text
+sum(k in 0..5, m[k]*height(r[k]))
+```",
+        &["terms"],
+    ),
+    (
+        "integral",
+        "The integral of ρ times an expression over a body, for each of its points.
+
+The expression has degree two or less in the point.
+
+```text
+integral(p in B, |dot(cis(theta)*p)|^2/2)
+```",
+        &["terms"],
+    ),
+    (
+        "reaction",
+        "The multiplier λ of a constraint, for outputs: a force along its gradient.
+
+```text
+output tension: N = reaction(rod);
+```",
+        &["constraint"],
+    ),
+];
+
+/// The modules of words that [`copy`](super::copy) leads to.
+pub(crate) fn modules() -> TokenStream {
+    let statements = list(STATEMENTS, &quote!(Statement));
+    let choices = list(CHOICES, &quote!(Choice));
+    let components = list(COMPONENTS, &quote!(Component));
+    let constants = list(CONSTANTS, &quote!(f64));
+    let units = UNITS.iter().map(|&(name, meaning)| {
+        let text = match Dimension::of(name).map(|dimension| dimension.to_string()) {
+            Some(base) if base != name && name != "rad" => {
+                format!("{meaning}\n\n1 {name} = 1 {base}")
+            }
+            _ => meaning.to_owned(),
+        };
+        item(name, &text, &quote!(Unit))
+    });
+    let forms = FORMS.iter().map(|&(name, text, arguments)| function(name, text, arguments));
+    let functions = Word::all().map(|word| {
+        let text = format!("{}\n\n{}", word.meaning, rule(word.units));
+        function(word.name, &text, &["x", "y"][..word.arity()])
+    });
+    quote! {
+        /// The beginning of a statement.
+        pub struct Statement;
+        /// An option of a statement.
+        pub struct Choice;
+        /// A unit.
+        pub struct Unit;
+        /// A component of a vector or a body.
+        pub struct Component;
+        /// A constraint.
+        pub struct Constraint;
+        /// A scalar, a vector, a complex number or a family.
+        pub trait Quantity {}
+        pub mod statements {
+            use super::Statement;
+            #statements
+        }
+        pub mod choices {
+            use super::Choice;
+            #choices
+        }
+        pub mod units {
+            use super::Unit;
+            #(#units)*
+            /// A rigid planar body, as the kind of a parameter.
+            pub static body: Unit;
+        }
+        pub mod components {
+            use super::Component;
+            #components
+        }
+        pub mod expressions {
+            use super::Quantity;
+            #constants #(#forms)* #(#functions)*
+        }
+    }
+}
+
+/// A rule of units as a sentence.
+fn rule(units: UnitRule) -> &'static str {
+    match units {
+        UnitRule::Pure => "The argument and the value are pure numbers.",
+        UnitRule::Same => "The value has the unit of the argument.",
+        UnitRule::Root => "The value has the root of the argument's unit.",
+        UnitRule::Rate => "The value has the unit of the argument per second.",
+        UnitRule::Product => "The unit of the value is the product of those of the arguments.",
+        UnitRule::Any => "The argument has any unit, the value is a pure number.",
+        UnitRule::Common => "The arguments and the value have one unit.",
+        UnitRule::Ratio => "The arguments have one unit, the value is a pure number.",
+    }
+}
+
+fn list(words: &[(&str, &str)], kind: &TokenStream) -> TokenStream {
+    words.iter().map(|&(name, meaning)| item(name, meaning, kind)).collect()
+}
+
+fn item(name: &str, text: &str, kind: &TokenStream) -> TokenStream {
+    let name = Ident::new(name, Span::call_site());
+    quote!(#[doc = #text] pub static #name: #kind;)
+}
+
+fn function(name: &str, text: &str, arguments: &[&str]) -> TokenStream {
+    let name = Ident::new(name, Span::call_site());
+    let arguments = arguments.iter().map(|argument| Ident::new(argument, Span::call_site()));
+    quote! {
+        #[doc = #text]
+        pub fn #name(#(#arguments: impl Quantity),*) -> impl Quantity;
+    }
+}
