@@ -33,7 +33,7 @@ const PAGES: &[Page] = &[
     Page {
         figure: Figure::Phase,
         file: "stability-phase.svg",
-        title: "Phase of the same pendulum: what rounding does to it grows about as t√t",
+        title: "Phase of the same pendulum: the error from rounding grows about as t√t",
         x: "t in s",
         y: "error in s",
         logarithmic: true,
