@@ -321,8 +321,8 @@ impl fmt::Display for Error {
             Self::Interval { start, end } if start.is_finite() && end.is_finite() => {
                 write!(
                     f,
-                    "the end {end:?} lies before the start {start:?}; swap them, or let every motion say by `kink_before` \
-                     which kinks come back in time; sampled controllers go forwards only"
+                    "the end {end:?} lies before the start {start:?}; swap them or, to go back in time, implement `kink_before` for \
+                     every motion; sampled controllers go forwards only"
                 )
             }
             Self::Interval { start, end } => {

@@ -176,7 +176,7 @@ impl Display for BodyError {
                 )?;
                 write!(
                     f,
-                    " (reached {reached}); ask for less, cut the shape along the jumps or use Monte Carlo"
+                    " (reached {reached}); raise the tolerance, cut the shape along the jumps or use Monte Carlo"
                 )
             }
             Self::TooFewSamples { samples } => {

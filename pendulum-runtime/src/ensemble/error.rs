@@ -44,7 +44,7 @@ impl fmt::Display for EnsembleError {
             Self::Setting(error) => error.fmt(f),
             Self::Part { index, parts } => write!(
                 f,
-                "there is no part {index} of {parts}; parts are numbered from 0 on, below their number"
+                "there is no part {index} of {parts}; give an index from 0 on that is less than the number of parts"
             ),
             Self::Refused { folder, found, hash, difference } => {
                 write!(
@@ -79,5 +79,18 @@ impl std::error::Error for EnsembleError {
 impl From<Error> for EnsembleError {
     fn from(error: Error) -> Self {
         Self::Setting(error)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::EnsembleError;
+
+    #[test]
+    fn a_part_beyond_the_last_says_which_indices_there_are() {
+        assert_eq!(
+            EnsembleError::Part { index: 3, parts: 3 }.to_string(),
+            "there is no part 3 of 3; give an index from 0 on that is less than the number of parts"
+        );
     }
 }

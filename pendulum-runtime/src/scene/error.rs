@@ -143,7 +143,7 @@ impl fmt::Display for SceneError {
             Self::Constraint(error) | Self::Inertia(error) => error.fmt(f),
             Self::Integration(_) => write!(
                 f,
-                "the time in which the pendulum was hidden could not be made up for; show it in another way"
+                "the time in which the pendulum was hidden could not be made up for; show it by `Resume::Unchanged` or `Resume::Rest`"
             ),
         }
     }
@@ -192,5 +192,11 @@ mod tests {
         assert_eq!(error.source().unwrap().to_string(), cause.to_string());
         assert!(!error.to_string().contains(&cause.to_string()), "{error}");
         assert!(SceneError::Joint(0).source().is_none());
+    }
+
+    #[test]
+    fn a_catch_up_that_fails_names_the_other_ways_to_show_a_pendulum() {
+        let message = SceneError::Integration(Error::MaxSteps { t: 1.0, max_steps: 7 }).to_string();
+        assert!(message.contains("`Resume::Unchanged` or `Resume::Rest`"), "{message}");
     }
 }
