@@ -9,6 +9,7 @@ pub mod high_precision;
 pub mod jacobians;
 pub mod jets;
 pub mod kinks;
+pub mod links;
 pub mod modes;
 pub mod momenta;
 pub mod note;

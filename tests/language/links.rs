@@ -1,0 +1,212 @@
+//! The links of all pages: files, headings, pages of the guide and definitions.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The folder of the guide's pages.
+const GUIDE: &str = "pendulum-runtime/src/guide";
+/// The address of the guide's pages on the web.
+const PUBLISHED: &str = "://docs.rs/pendulum-runtime/latest/pendulum_runtime/guide/";
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The files of a folder with an extension, in the folders below it too if it is to go `deep`.
+fn files(folder: &Path, extension: &str, deep: bool, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            if deep {
+                files(&path, extension, true, found);
+            }
+        } else if path.extension().is_some_and(|found| found == extension) {
+            found.push(path);
+        }
+    }
+}
+
+/// The pages of the repository. The README of `pendulum-runtime` is a link to the one at the root.
+fn pages() -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for folder in ["", "docs", "examples", "examples/data", GUIDE] {
+        files(&root().join(folder), "md", false, &mut found);
+    }
+    found
+}
+
+/// The page without its code.
+fn prose(text: &str) -> String {
+    let mut fenced = false;
+    let mut prose = String::new();
+    for line in text.lines() {
+        if line.trim_start().starts_with("```") {
+            fenced = !fenced;
+        } else if !fenced {
+            prose.push_str(line);
+        }
+        prose.push('\n');
+    }
+    // Code within lines: every second part between backticks.
+    prose.split('`').enumerate().map(|(k, part)| if k % 2 == 0 { part } else { "code" }).collect()
+}
+
+/// The anchors of the headings of a page, as GitHub and rustdoc make them.
+fn anchors(text: &str) -> Vec<String> {
+    let mut fenced = false;
+    let mut anchors: Vec<String> = Vec::new();
+    for line in text.lines() {
+        fenced ^= line.trim_start().starts_with("```");
+        let heading = line.trim_start_matches('#');
+        if fenced || heading.len() == line.len() || !heading.starts_with(' ') {
+            continue;
+        }
+        let anchor: String = heading
+            .trim()
+            .chars()
+            .filter(|c| c.is_alphanumeric() || " -_".contains(*c))
+            .map(|c| if c == ' ' { '-' } else { c.to_ascii_lowercase() })
+            .collect();
+        let before = anchors.iter().filter(|found| **found == anchor).count();
+        anchors.push(if before == 0 { anchor } else { format!("{anchor}-{before}") });
+    }
+    anchors
+}
+
+/// The text up to one of the characters `end`.
+fn until<'a>(text: &'a str, end: &[char]) -> &'a str {
+    text.split(end).next().unwrap_or_default()
+}
+
+/// The targets of links and pictures, in Markdown and in HTML, and those of definitions.
+fn targets(prose: &str) -> Vec<&str> {
+    let mut targets: Vec<&str> =
+        prose.split("](").skip(1).map(|part| until(part, &[')', ' ', '\n'])).collect();
+    for attribute in ["src=\"", "srcset=\"", "href=\""] {
+        targets.extend(prose.split(attribute).skip(1).map(|part| until(part, &['"'])));
+    }
+    targets.extend(definitions(prose).map(|(_, target)| target));
+    targets
+}
+
+/// The definitions of a page, `[name]: target`.
+fn definitions(prose: &str) -> impl Iterator<Item = (&str, &str)> {
+    prose.lines().filter_map(|line| line.strip_prefix('[')?.split_once("]: "))
+}
+
+/// The fault of a link to a heading of a page, if it has one.
+fn heading_fault(page: &Path, anchor: Option<&str>) -> Option<String> {
+    let Ok(text) = fs::read_to_string(page) else {
+        return Some(format!("there is no page {}", page.display()));
+    };
+    let anchor = anchor?;
+    (!anchors(&text).iter().any(|found| found == anchor))
+        .then(|| format!("no heading of {} has the anchor {anchor}", page.display()))
+}
+
+/// The fault of a link, if it has one.
+fn fault(page: &Path, target: &str) -> Option<String> {
+    let (path, anchor) = match target.split_once('#') {
+        Some((path, anchor)) => (path, Some(anchor)),
+        None => (target, None),
+    };
+    let guide = |name: &str| root().join(GUIDE).join(format!("{name}.md"));
+    if let Some((_, rest)) = path.split_once(PUBLISHED) {
+        let name = until(rest, &['/']);
+        return if name.is_empty() { None } else { heading_fault(&guide(name), anchor) };
+    }
+    if let Some((_, name)) = path.split_once("guide::") {
+        // The paths of other items are checked by rustdoc.
+        return heading_fault(&guide(name), anchor);
+    }
+    if path.contains("://") || path.contains("::") {
+        return None;
+    }
+    if path.is_empty() {
+        return heading_fault(page, anchor);
+    }
+    let file = page.parent()?.join(path);
+    if !file.exists() {
+        return Some(format!("there is no file {path}"));
+    }
+    anchor.and_then(|anchor| heading_fault(&file, Some(anchor)))
+}
+
+/// The faults of a page, and the number of its links.
+fn faults(page: &Path, text: &str) -> (Vec<String>, usize) {
+    let prose = prose(text);
+    let targets = targets(&prose);
+    let mut faults: Vec<String> = targets.iter().filter_map(|target| fault(page, target)).collect();
+    for name in prose.split("][").skip(1).map(|part| until(part, &[']', '\n'])) {
+        if !definitions(&prose).any(|(defined, _)| defined == name) {
+            faults.push(format!("[{name}] is not defined"));
+        }
+    }
+    (
+        faults.into_iter().map(|fault| format!("{}: {fault}", page.display())).collect(),
+        targets.len(),
+    )
+}
+
+#[test]
+fn links_lead_to_files_headings_and_definitions() {
+    let (mut all, mut links) = (Vec::new(), 0);
+    for page in pages() {
+        let (faults, count) = faults(&page, &fs::read_to_string(&page).unwrap());
+        all.extend(faults);
+        links += count;
+    }
+    assert!(all.is_empty(), "{}", all.join("\n"));
+    assert!(links > 80, "{links}");
+}
+
+/// rustdoc checks the pages of such links, and not their headings.
+#[test]
+fn documentation_links_headings_of_the_guide() {
+    let (mut sources, mut links) = (Vec::new(), 0);
+    files(&root().join("pendulum-runtime/src"), "rs", true, &mut sources);
+    for source in sources {
+        let text = fs::read_to_string(&source).unwrap();
+        for line in text.lines().filter(|line| line.trim_start().starts_with("//")) {
+            for target in line.split("](").skip(1).map(|part| until(part, &[')'])) {
+                if target.contains("guide::") {
+                    assert_eq!(fault(&source, target), None, "{}", source.display());
+                    links += 1;
+                }
+            }
+        }
+    }
+    assert!(links > 5, "{links}");
+}
+
+#[test]
+fn each_kind_of_dead_link_is_found() {
+    let page = root().join("README.md");
+    let dead = [
+        "[a](no/such/file.rs)",
+        "![a](no/such/picture.svg)",
+        "[a](CONTRIBUTING.md#no-such-heading)",
+        "[a](#no-such-heading)",
+        "[a](crate::guide::no_such_page)",
+        "[a](crate::guide::accuracy#no-such-heading)",
+        "[a](https://docs.rs/pendulum-runtime/latest/pendulum_runtime/guide/no_such_page/)",
+        "[a](https://docs.rs/pendulum-runtime/latest/pendulum_runtime/guide/scenes/#no-such-heading)",
+        "<img src=\"no/such/picture.png\">",
+        "<a href=\"#no-such-heading\">a</a>",
+        "[a][never defined]",
+        "[a]: no/such/file.rs",
+    ];
+    for text in dead {
+        assert_eq!(faults(&page, text).0.len(), 1, "{text}");
+    }
+    let alive = [
+        "[a](CONTRIBUTING.md#benchmarks)",
+        "[a](crate::guide::accuracy#what-misses-its-bar-and-why)",
+        "[a](crate::integrate::Solution)",
+        "`[a](in/code)`\n```text\n[a](in/a/block)\n```\n",
+        "[a][b]\n\n[b]: docs/architecture.md#layers",
+    ];
+    for text in alive {
+        assert_eq!(faults(&page, text).0, Vec::<String>::new(), "{text}");
+    }
+}
