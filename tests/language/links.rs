@@ -201,7 +201,7 @@ fn each_kind_of_dead_link_is_found() {
     }
     let alive = [
         "[a](CONTRIBUTING.md#benchmarks)",
-        "[a](crate::guide::accuracy#what-misses-its-bar-and-why)",
+        "[a](crate::guide::accuracy#missed-bars-and-their-reasons)",
         "[a](crate::integrate::Solution)",
         "`[a](in/code)`\n```text\n[a](in/a/block)\n```\n",
         "[a][b]\n\n[b]: docs/architecture.md#layers",
