@@ -71,6 +71,16 @@ pub(crate) enum Dip<T> {
     Crosses(T),
 }
 
+/// Returns true if a positive function with a lower point between two others is known not to come
+/// down to zero there, unless it wiggles: where it is convex, the lines through two of the points
+/// lie below it beyond, and it may fall twice as far.
+pub(crate) fn stays_away<T: Float>([a, b, c]: &[Point<T>; 3], tolerance: T) -> bool {
+    let (before, after) = (b.0 - a.0, c.0 - b.0);
+    let falls = [(a.1 - b.1) * (after / before), (c.1 - b.1) * (before / after)];
+    let fall = if falls[0] < falls[1] { falls[1] } else { falls[0] };
+    tolerance < b.1 - (fall + fall)
+}
+
 /// Looks whether a positive function with a lower point `b` between `a` and `c` comes down to zero
 /// there.
 ///

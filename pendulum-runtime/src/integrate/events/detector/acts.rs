@@ -1,9 +1,9 @@
-//! Lets events act on the state, and tells acts that go on from those that never end.
+//! Observes each step, and lets the events found in it act on the state.
 
+use super::accumulation::Next;
 use super::{EventDetector, Place, side};
 use crate::error::Error;
 use crate::integrate::events::{Condition, Event, Occurrence, Status};
-use crate::integrate::saved::Memory;
 use crate::integrate::state::State;
 use crate::integrate::step::field::first_in_state;
 use crate::integrate::step::observed::Observed;
@@ -14,34 +14,73 @@ use crate::time::Time;
 const MOMENT: f64 = 1.0 / 4096.0;
 /// The part of a rate below which what an act leaves of it counts as none.
 const NONE: f64 = 1e-9;
-/// Times between acts that have grown shorter so often, and by this factor, accumulate.
-const SHORTER: u32 = 5;
-const ACCUMULATED: f64 = 1e-6;
-/// The number of acts in a row, each within this part of the time reached, that stay where they
-/// are.
-const ACTS: u32 = 1000;
-const STILL: f64 = 1e-12;
-
-/// The times between the acts of an event.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Acts {
-    /// The last act.
-    last: Option<Time>,
-    /// The time between the last two, and how many in a row have been shorter than the one before.
-    gap: f64,
-    shorter: u32,
-    /// The last such time over the one before it.
-    ratio: f64,
-    /// The time between two acts from which they have grown shorter.
-    longest: f64,
-    /// The number of acts in a row at the same time.
-    still: u32,
-}
-
 impl<T: Float, const N: usize> EventDetector<'_, T, N> {
+    /// Finds what happened in the step that `integration` has just taken. If an event did that acts
+    /// or is terminal, puts it back there, lets it act, and gives the status if the integration
+    /// ends with it.
+    ///
+    /// If a function fails, it is put back to the start of the step; if an action does, to the
+    /// event.
+    pub(crate) fn observe(
+        &mut self,
+        integration: &mut impl Observed<T, N>,
+    ) -> Result<Option<Status>, Error> {
+        if self.is_idle() {
+            return Ok(None);
+        }
+        self.backwards = integration.goes_back();
+        let rooted = self.events.iter().any(|event| matches!(event.condition, Condition::Root(_)));
+        let interpolant = if rooted { integration.interpolant() } else { None };
+        let (end, beyond) = match integration.before_kink() {
+            Some(before) => (*before, Some(*integration.end())),
+            None => (*integration.end(), None),
+        };
+        if let Err(error) = self.step(interpolant.as_ref(), &end, beyond.as_ref()) {
+            integration.retreat();
+            let a = integration.accelerations();
+            self.found.clear();
+            // It has looked there before.
+            self.look(integration.end(), &a).ok();
+            return Err(error);
+        }
+        for occurrence in &mut self.found {
+            if occurrence.time != end.t {
+                integration.deliver(occurrence.time, &mut occurrence.state);
+                occurrence.after = occurrence.state;
+            }
+        }
+        let Some(stop) = self.count() else { return Ok(None) };
+        let Occurrence { event, time, state, .. } = self.found[stop];
+        let cut = time != end.t;
+        if cut {
+            // A jump has to have a time that outputs can name, unless the scalar sees the rest.
+            let one_word =
+                self.events[event].action.is_some() && f64::EPSILON <= T::EPSILON.to_f64();
+            integration.cut(if one_word { Time::new(state.t) } else { time }, &state);
+        }
+        self.gather(integration, stop);
+        self.happen(integration, stop, cut)
+    }
+
+    /// Counts what was found, up to the first event that stops the step; gives its index in the
+    /// list of what was found.
+    fn count(&mut self) -> Option<usize> {
+        for (index, occurrence) in self.found.iter().enumerate() {
+            let track = &mut self.tracks[occurrence.event];
+            track.count += 1;
+            track.last = Some(occurrence.time);
+            let event = &self.events[occurrence.event];
+            let ends = event.terminal.is_some_and(|count| count <= track.count);
+            if ends || event.action.is_some() {
+                return Some(index);
+            }
+        }
+        None
+    }
+
     /// Drops what was found after the event that stops the step, except what happens at the same
     /// time: a function that is zero there to rounding would not be found on the way from there.
-    pub(super) fn gather(&mut self, integration: &mut impl Observed<T, N>, stop: usize) {
+    fn gather(&mut self, integration: &mut impl Observed<T, N>, stop: usize) {
         let Occurrence { time, state, .. } = self.found[stop];
         let mut kept = stop + 1;
         for index in stop + 1..self.found.len() {
@@ -66,7 +105,7 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
 
     /// Lets the events from `first` on act, one after the other, and gives the status if the
     /// integration ends with one of them; `cut` if the step was put back.
-    pub(super) fn happen<O: Observed<T, N>>(
+    fn happen<O: Observed<T, N>>(
         &mut self,
         integration: &mut O,
         first: usize,
@@ -192,54 +231,4 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
 struct Rate<T> {
     value: T,
     noise: T,
-}
-
-/// The verdict on the times between the acts of an event.
-enum Next {
-    Usual,
-    /// They come at the same time.
-    Still,
-    /// They accumulate at this time.
-    Accumulated(f64),
-}
-
-impl Acts {
-    /// Visits all numbers.
-    pub(super) fn remember(&mut self, memory: &mut Memory) {
-        memory.maybe(&mut self.last, || Time::new(0.0), Memory::time);
-        for number in [&mut self.gap, &mut self.ratio, &mut self.longest] {
-            memory.number(number);
-        }
-        for count in [&mut self.shorter, &mut self.still] {
-            let mut number = *count as usize;
-            memory.count(&mut number, u32::MAX as usize);
-            *count = number as u32;
-        }
-    }
-
-    /// Takes note of an act at `time`.
-    fn next(&mut self, time: Time) -> Next {
-        let t = time.to_f64();
-        let Some(last) = self.last.replace(time) else { return Next::Usual };
-        let (gap, before) = ((time.since(last.to_f64()) - last.low()).abs(), self.gap);
-        self.gap = gap;
-        self.still = if gap <= STILL * t.abs() { self.still + 1 } else { 0 };
-        if gap < before {
-            (self.shorter, self.ratio) = (self.shorter + 1, gap / before);
-        } else {
-            (self.shorter, self.longest) = (0, gap);
-        }
-        match self.limit(time) {
-            Some(limit) if gap < ACCUMULATED * self.longest => Next::Accumulated(limit),
-            _ if ACTS <= self.still => Next::Still,
-            _ => Next::Usual,
-        }
-    }
-
-    /// The time at which acts accumulate, the last of them at `time`, if they have grown shorter
-    /// often enough: the sum of a geometric series.
-    fn limit(&self, time: Time) -> Option<f64> {
-        let rest = self.gap * self.ratio / (1.0 - self.ratio);
-        (SHORTER <= self.shorter).then(|| time.to_f64() + rest)
-    }
 }

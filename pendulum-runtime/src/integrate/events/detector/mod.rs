@@ -1,11 +1,12 @@
 //! Finds the events within each step.
 
+mod accumulation;
 mod acts;
 mod quiet;
 
 use crate::error::Error;
-use crate::integrate::events::root::{Dip, Point, dip, root};
-use crate::integrate::events::{Condition, Direction, Event, Occurrence, Status};
+use crate::integrate::events::root::{Dip, Point, dip, root, stays_away};
+use crate::integrate::events::{Condition, Direction, Event, Occurrence};
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::output::in_order;
 use crate::integrate::saved::Memory;
@@ -16,8 +17,7 @@ use crate::integrate::step::observed::Observed;
 use crate::scalar::Float;
 use crate::system::scalar_time;
 use crate::time::Time;
-use acts::Acts;
-use quiet::stays_away;
+use accumulation::Acts;
 
 /// The events of an integration and what is known of each.
 #[derive(Clone, Debug)]
@@ -108,53 +108,6 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         self.look(integration.end(), &a)
     }
 
-    /// Finds what happened in the step that `integration` has just taken. If an event did that acts
-    /// or is terminal, puts it back there, lets it act, and gives the status if the integration
-    /// ends with it.
-    ///
-    /// If a function fails, it is put back to the start of the step; if an action does, to the
-    /// event.
-    pub(crate) fn observe(
-        &mut self,
-        integration: &mut impl Observed<T, N>,
-    ) -> Result<Option<Status>, Error> {
-        if self.is_idle() {
-            return Ok(None);
-        }
-        self.backwards = integration.goes_back();
-        let rooted = self.events.iter().any(|event| matches!(event.condition, Condition::Root(_)));
-        let interpolant = if rooted { integration.interpolant() } else { None };
-        let (end, beyond) = match integration.before_kink() {
-            Some(before) => (*before, Some(*integration.end())),
-            None => (*integration.end(), None),
-        };
-        if let Err(error) = self.step(interpolant.as_ref(), &end, beyond.as_ref()) {
-            integration.retreat();
-            let a = integration.accelerations();
-            self.found.clear();
-            // It has looked there before.
-            self.look(integration.end(), &a).ok();
-            return Err(error);
-        }
-        for occurrence in &mut self.found {
-            if occurrence.time != end.t {
-                integration.deliver(occurrence.time, &mut occurrence.state);
-                occurrence.after = occurrence.state;
-            }
-        }
-        let Some(stop) = self.count() else { return Ok(None) };
-        let Occurrence { event, time, state, .. } = self.found[stop];
-        let cut = time != end.t;
-        if cut {
-            // A jump has to have a time that outputs can name, unless the scalar sees the rest.
-            let one_word =
-                self.events[event].action.is_some() && f64::EPSILON <= T::EPSILON.to_f64();
-            integration.cut(if one_word { Time::new(state.t) } else { time }, &state);
-        }
-        self.gather(integration, stop);
-        self.happen(integration, stop, cut)
-    }
-
     /// Visits what is known of each event.
     pub(crate) fn remember(&mut self, memory: &mut Memory) {
         // A list of another length does not fit; what it has left over or lacks shows it.
@@ -179,22 +132,6 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
             memory.count(next, times);
             acts.remember(memory);
         }
-    }
-
-    /// Counts what was found, up to the first event that stops the step; gives its index in the
-    /// list of what was found.
-    fn count(&mut self) -> Option<usize> {
-        for (index, occurrence) in self.found.iter().enumerate() {
-            let track = &mut self.tracks[occurrence.event];
-            track.count += 1;
-            track.last = Some(occurrence.time);
-            let event = &self.events[occurrence.event];
-            let ends = event.terminal.is_some_and(|count| count <= track.count);
-            if ends || event.action.is_some() {
-                return Some(index);
-            }
-        }
-        None
     }
 
     /// Looks at the state from which the next step goes; `a` are the accelerations there.

@@ -2,7 +2,7 @@
 
 use super::{EventDetector, POINTS, Place, side};
 use crate::integrate::events::Condition;
-use crate::integrate::events::root::Point;
+use crate::integrate::events::root::stays_away;
 use crate::integrate::step::interval::StepInterval;
 use crate::scalar::Float;
 
@@ -81,14 +81,4 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
         }
         Some(points[1].1)
     }
-}
-
-/// Returns true if a positive function with a lower point between two others is known not to come
-/// down to zero there, unless it wiggles: where it is convex, the lines through two of the points
-/// lie below it beyond, and it may fall twice as far.
-pub(super) fn stays_away<T: Float>([a, b, c]: &[Point<T>; 3], tolerance: T) -> bool {
-    let (before, after) = (b.0 - a.0, c.0 - b.0);
-    let falls = [(a.1 - b.1) * (after / before), (c.1 - b.1) * (before / after)];
-    let fall = if falls[0] < falls[1] { falls[1] } else { falls[0] };
-    tolerance < b.1 - (fall + fall)
 }
