@@ -2,6 +2,7 @@
 
 use super::lanes::LaneDynamics;
 use super::tableau::S;
+use super::workspace::{AIM, DETOUR};
 use super::{Picard, iterate, tableau};
 use crate::error::Error;
 use crate::integrate::method::{self, Method};
@@ -16,19 +17,15 @@ use crate::integrate::step::projection::is_constrained;
 use crate::scalar::Float;
 use crate::time::Time;
 
-/// The error that a step aims at, and those beyond which the next one becomes longer or shorter.
-pub(super) const AIM: f64 = 1.0 / 16.0;
-/// `AIM` / 1.25¹⁵.
-const LOW: f64 = AIM * 0.0352;
+/// The errors beyond which the next step becomes longer or shorter: `AIM` / 1.25¹⁵ and
 /// `AIM` / 0.86¹⁵.
+const LOW: f64 = AIM * 0.0352;
 const HIGH: f64 = AIM * 9.6;
 /// More sweeps than these, and the steps become no longer, or shorter.
 const MANY: u32 = 4;
 const TOO_MANY: u32 = 9;
 /// Rejected attempts of a step after which `Dop853` takes it, under constraints.
 const PATIENCE: u32 = 2;
-/// The number of steps that it takes.
-pub(super) const DETOUR: usize = 24;
 
 impl<D: LaneDynamics<N>, const N: usize> Controller<Picard, D, N> for AdaptiveStep<N> {
     fn check(&self) -> Result<(), Error> {

@@ -1,7 +1,6 @@
 //! Dense output: the motion between the ends of a step.
 
-use super::FIXED;
-use super::kernel::{Equations, Within};
+use super::kernel::{Equations, FIXED, Within};
 use super::lanes::LaneDynamics;
 use super::tableau::S;
 use super::workspace::WorkspaceOf;

@@ -6,9 +6,8 @@
 #![allow(clippy::inline_always)]
 
 use super::lanes::LaneDynamics;
-use super::tableau::{BETWEEN, Columns, EIGHT, Nodes, REFINED, S, SIXTEEN};
-use super::workspace::{Tolerances, Workspace, WorkspaceOf};
-use crate::integrate::saved::Memory;
+use super::tableau::{BETWEEN, EIGHT, Nodes, REFINED, S, SIXTEEN};
+use super::workspace::{Progress, Scaled, Stages, Tolerances, Wide, WorkspaceOf};
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
@@ -17,12 +16,6 @@ use crate::simd::Work;
 use crate::system::{Staged, System, scalar_time};
 use crate::time::Time;
 use core::hint::black_box;
-
-/// One number for each node of a vector.
-pub(super) type Wide<T> = Octet<T>;
-
-/// The accelerations at the nodes of a step, by vector and coordinate.
-pub(super) type Stages<T, const N: usize, const G: usize> = [[Wide<T>; N]; G];
 
 /// The square of the error that may be left in the equations, over the one allowed: the change that
 /// one more sweep would make.
@@ -33,81 +26,12 @@ const NEGLIGIBLE: f64 = 0.04;
 const LAST_CHANGE: f64 = 1.0;
 const EXPECTED_CHANGE: f64 = 0.25;
 
+/// The most sweeps of an adaptive step and of a fixed one.
+pub(super) const ADAPTIVE: u32 = 12;
+pub(super) const FIXED: u32 = 60;
+
 /// The system over lanes.
 type Of<D, const N: usize> = <D as LaneDynamics<N>>::Wide;
-
-/// The columns of h A and h² A² that lead from the values in `G` vectors to the points of one, for
-/// steps of one length: multiplied once, and not in every sweep.
-#[derive(Clone, Debug)]
-pub(super) struct Scaled<T, const G: usize> {
-    h: T,
-    once: [[[Wide<T>; 1]; S]; G],
-    twice: [[[Wide<T>; 1]; S]; G],
-}
-
-impl<T: Lane + Float, const G: usize> Scaled<T, G> {
-    pub(super) fn new() -> Self {
-        let zero = [[[Wide::splat(T::from_f64(0.0)); 1]; S]; G];
-        Self { h: T::from_f64(0.0), once: zero, twice: zero }
-    }
-
-    /// Makes them of the columns of A and A² for the vector `to`, if the length is another by more
-    /// than rounding.
-    #[inline(always)]
-    fn scale<const H: usize>(
-        &mut self,
-        h: T,
-        [once, twice]: [&'static Columns<G, H>; 2],
-        to: usize,
-    ) {
-        if f64::abs(self.h.to_f64() - h.to_f64()) <= 1e-15 * f64::abs(self.h.to_f64()) {
-            return;
-        }
-        self.h = h;
-        let (h, square) = (Wide::splat(h), Wide::splat(h * h));
-        for g in 0..G {
-            for j in 0..S {
-                // One column at a time: the compiler would take a lane of each.
-                let (once, twice) = black_box((&once[g][j][to], &twice[g][j][to]));
-                self.once[g][j][0] = Wide::<T>::known(once) * h;
-                self.twice[g][j][0] = Wide::<T>::known(twice) * square;
-            }
-        }
-    }
-}
-
-impl<T: Lane + Float, const G: usize> Scaled<T, G> {
-    /// Visits the length for which they were made, and makes them again when it is put back: one
-    /// that differs by rounding would give other digits.
-    fn remember<const H: usize>(
-        &mut self,
-        memory: &mut Memory,
-        columns: [&'static Columns<G, H>; 2],
-        to: usize,
-    ) {
-        let mut h = self.h;
-        memory.scalar(&mut h);
-        if memory.reads() {
-            *self = Self::new();
-            if h != self.h {
-                self.scale(h, columns, to);
-            }
-        }
-    }
-}
-
-impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
-    /// Visits the lengths of the sums.
-    pub(super) fn remember_sums(&mut self, memory: &mut Memory) {
-        let [scaled, ahead, between] = &mut self.scaled;
-        scaled.remember(memory, [&EIGHT.once, &EIGHT.twice], 0);
-        ahead.remember(memory, [&EIGHT.once_ahead, &EIGHT.twice_ahead], 0);
-        between.remember(memory, [&BETWEEN.once, &BETWEEN.twice], 0);
-        for (to, within) in self.within.iter_mut().enumerate() {
-            within.remember(memory, [&SIXTEEN.once, &SIXTEEN.twice], to);
-        }
-    }
-}
 
 /// A column of a tableau, as it stands there or scaled.
 trait Column<T> {
@@ -147,64 +71,6 @@ pub(super) struct Equations<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float,
     /// True if the last sweeps look between the nodes too, and the very last one has to change
     /// little.
     pub(super) closing: bool,
-}
-
-/// The end of the iteration.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Progress<T> {
-    /// The number of sweeps, and of the vectors evaluated in them.
-    pub(super) sweeps: u32,
-    pub(super) vectors: u32,
-    /// The square of the last change, over the error allowed.
-    pub(super) change: T,
-    /// The rest is negligible.
-    pub(super) done: bool,
-    /// It was after one sweep less.
-    pub(super) spare: bool,
-    /// All vectors that were to be evaluated are.
-    pub(super) complete: bool,
-}
-
-/// The number of coefficients by which the error of a step is judged.
-pub(super) const TAIL: usize = 5;
-
-/// The result of a step.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Ends<T, const N: usize> {
-    /// The coefficients α₁₅, α₁₄, α₁₃, α₁₂ and α₁₆ of the accelerations after Legendre.
-    pub(super) tail: [[T; TAIL]; N],
-    /// The accelerations just before its end.
-    pub(super) last: [T; N],
-    /// The mean square of the accelerations: a short scalar does not hold the squares of all its
-    /// numbers.
-    pub(super) square: [f64; N],
-    pub(super) progress: Progress<T>,
-    /// True if the equations are solved.
-    pub(super) solved: bool,
-    /// The error of the step over the one allowed.
-    pub(super) error: f64,
-}
-
-impl<T: Float, const N: usize> Ends<T, N> {
-    pub(super) fn new() -> Self {
-        let zero = [T::from_f64(0.0); N];
-        let progress = Progress {
-            sweeps: 0,
-            vectors: 0,
-            change: zero[0],
-            done: false,
-            spare: false,
-            complete: false,
-        };
-        Self {
-            tail: [[zero[0]; TAIL]; N],
-            last: zero,
-            square: [0.0; N],
-            progress,
-            solved: false,
-            error: 0.0,
-        }
-    }
 }
 
 /// A step onwards.

@@ -23,10 +23,10 @@ use crate::scalar::{Float, Octet, Real};
 use crate::simd;
 use crate::system::Dynamics;
 use crate::system::System;
-use kernel::{Ends, Onwards, Scaled};
+use kernel::{ADAPTIVE, FIXED, Onwards};
 pub use lanes::LaneDynamics;
 use tableau::{EIGHT, S};
-use workspace::{Tolerances, Workspace, WorkspaceOf};
+use workspace::{Ends, Scaled, Tolerances, Workspace, WorkspaceOf};
 
 /// Collocation with the accelerations at eight Gauss nodes, which are evaluated side by side in the
 /// lanes of a vector: order 16, adaptive.
@@ -90,10 +90,6 @@ use workspace::{Tolerances, Workspace, WorkspaceOf};
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Picard;
-
-/// The most sweeps of an adaptive step and of a fixed one.
-const ADAPTIVE: u32 = 12;
-const FIXED: u32 = 60;
 
 /// A step over `interval` that leads `to` its end; the room holds what it leaves behind until it is
 /// accepted.
