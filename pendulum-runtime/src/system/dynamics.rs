@@ -206,6 +206,12 @@ pub trait Dynamics<const N: usize> {
     }
 }
 
+/// Returns true if the system of the dynamics `D` has constraints that its equations hold.
+#[inline]
+pub(crate) const fn is_constrained<D: Dynamics<N>, const N: usize>() -> bool {
+    0 < <D::System as System<N>>::FACTS.held_constraints()
+}
+
 /// `t` in the scalar of a system, with both of its words.
 #[inline]
 pub fn scalar_time<T: Real>(t: Time) -> T {

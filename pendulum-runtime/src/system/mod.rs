@@ -13,6 +13,7 @@ mod inputs;
 
 pub use constraints::{Constraint, Limit, MOST_LIMITS};
 pub use control::{ControlSlot, ControlValues, Controlled, Sampled, Uncontrolled};
+pub(crate) use dynamics::is_constrained;
 pub use dynamics::{Driven, Dynamics, MOST_CONTROLS, scalar_time};
 pub use equations::{Holonomic, Jacobians, SplitEnergy, Staged, System, VelocityFree};
 pub use facts::Facts;

@@ -1,116 +1,15 @@
-//! Writing and reading by `serde` of what holds arrays of any length.
+//! Writing and reading of solutions by `serde`.
 
+use super::arrays::rows;
 use super::label::{Label, Labels, Source};
 use crate::integrate::events::{Occurrence, Status};
 use crate::integrate::interpolant::dense::DenseOutput;
 use crate::integrate::solution::{ConstraintStats, Extreme, Impact, Solution, Stats};
 use crate::integrate::state::State;
 use crate::time::Time;
-use core::fmt;
-use core::marker::PhantomData;
-use serde::de::{Error, SeqAccess, Visitor};
-use serde::ser::SerializeTuple;
+use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::sync::{Mutex, PoisonError};
-
-/// An array, which `serde` itself knows up to a length of 32 and of known length only.
-struct Row<A>(A);
-
-impl<T: Serialize, const N: usize> Serialize for Row<&[T; N]> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut tuple = serializer.serialize_tuple(N)?;
-        for value in self.0 {
-            tuple.serialize_element(value)?;
-        }
-        tuple.end()
-    }
-}
-
-impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Row<[T; N]> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Rows<T, const N: usize>(PhantomData<T>);
-
-        impl<'de, T: Deserialize<'de>, const N: usize> Visitor<'de> for Rows<T, N> {
-            type Value = [T; N];
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                write!(f, "{N} numbers")
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<[T; N], A::Error> {
-                let mut values = Vec::new();
-                while values.len() < N {
-                    match list.next_element()? {
-                        Some(value) => values.push(value),
-                        None => return Err(A::Error::invalid_length(values.len(), &self)),
-                    }
-                }
-                let length = values.len();
-                values.try_into().map_err(|_| A::Error::invalid_length(length, &self))
-            }
-        }
-
-        deserializer.deserialize_tuple(N, Rows(PhantomData)).map(Row)
-    }
-}
-
-/// For `#[serde(with)]`: an array.
-pub(crate) mod array {
-    use super::{Deserialize, Deserializer, Row, Serialize, Serializer};
-
-    pub(crate) fn serialize<T: Serialize, S: Serializer, const N: usize>(
-        array: &[T; N],
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
-        Row(array).serialize(serializer)
-    }
-
-    pub(crate) fn deserialize<'de, T: Deserialize<'de>, D: Deserializer<'de>, const N: usize>(
-        deserializer: D,
-    ) -> Result<[T; N], D::Error> {
-        Row::deserialize(deserializer).map(|Row(array)| array)
-    }
-}
-
-/// For `#[serde(with)]`: a list of arrays.
-pub(crate) mod rows {
-    use super::{Deserialize, Deserializer, Row, Serialize, Serializer};
-
-    pub(crate) fn serialize<T: Serialize, S: Serializer, const N: usize>(
-        rows: &[[T; N]],
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(rows.iter().map(Row))
-    }
-
-    pub(crate) fn deserialize<'de, T: Deserialize<'de>, D: Deserializer<'de>, const N: usize>(
-        deserializer: D,
-    ) -> Result<Vec<[T; N]>, D::Error> {
-        let rows = Vec::<Row<[T; N]>>::deserialize(deserializer)?;
-        Ok(rows.into_iter().map(|Row(row)| row).collect())
-    }
-}
-
-/// For `#[serde(with)]`: a list of pairs of arrays.
-pub(crate) mod pairs {
-    use super::{Deserialize, Deserializer, Row, Serialize, Serializer};
-
-    type Pair<T, const N: usize> = ([T; N], [T; N]);
-
-    pub(crate) fn serialize<T: Serialize, S: Serializer, const N: usize>(
-        pairs: &[Pair<T, N>],
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(pairs.iter().map(|(a, b)| (Row(a), Row(b))))
-    }
-
-    pub(crate) fn deserialize<'de, T: Deserialize<'de>, D: Deserializer<'de>, const N: usize>(
-        deserializer: D,
-    ) -> Result<Vec<Pair<T, N>>, D::Error> {
-        let pairs = Vec::<(Row<[T; N]>, Row<[T; N]>)>::deserialize(deserializer)?;
-        Ok(pairs.into_iter().map(|(Row(a), Row(b))| (a, b)).collect())
-    }
-}
 
 /// The names of methods, constraints and limits read so far: they live as long as the program, as
 /// those in programs do.

@@ -1,10 +1,9 @@
 //! Impacts of generalized velocities.
 
 use crate::integrate::state::State;
-use crate::integrate::step::projection::is_constrained;
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, Purpose, System, scalar_time};
+use crate::system::{Dynamics, Purpose, System, is_constrained, scalar_time};
 use crate::time::Time;
 use nalgebra::SMatrix;
 

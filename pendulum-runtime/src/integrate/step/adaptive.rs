@@ -13,10 +13,10 @@ use crate::integrate::step::fast_exp2::{exp2, log2};
 use crate::integrate::step::field::Field;
 use crate::integrate::step::field::coordinate;
 use crate::integrate::step::interval::StepInterval;
-use crate::integrate::step::projection::{Tangent, is_constrained};
+use crate::integrate::step::projection::Tangent;
 use crate::integrate::step::short::shortest;
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, System};
+use crate::system::{Dynamics, System, is_constrained};
 use crate::time::Time;
 
 /// The least tolerance that coefficients with the digits of `f64` hold over any scalar.

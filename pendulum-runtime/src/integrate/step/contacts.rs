@@ -5,7 +5,6 @@
 //! solve N K Nᵀ μ = −ḧ(q̈₀). Contacts are few, so that dense elimination at run time does.
 
 use crate::integrate::events::impact::{product, response};
-use crate::integrate::step::endpoint::Endpoint;
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, MOST_LIMITS as L, Purpose, System, scalar_time};
@@ -243,32 +242,4 @@ pub(crate) fn rounding<D: Dynamics<N, Scalar: Float>, const N: usize>(
         core::array::from_fn(|i| eps * sizes(i, q) + time * sizes(i, v)),
         core::array::from_fn(|i| eps * sizes(i, v)),
     ]
-}
-
-/// Brings the coordinates of `node` onto the limits in contact, and with `rates` their rates to
-/// zero.
-pub(crate) fn hold<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    dynamics: &D,
-    node: &mut Endpoint<D::Scalar, N>,
-    side: Side,
-    contacts: &Contacts,
-    rates: bool,
-) {
-    let minus = D::Scalar::from_f64(-1.0);
-    for part in 0..if rates { 2 } else { 1 } {
-        // From the end of a step Newton's method is at rounding after two.
-        for _ in 0..3 {
-            let (q, v) = (&node.q.high, &node.v.high);
-            let values = gaps(dynamics, node.t, side, q, v)[part];
-            let least = rounding(dynamics, node.t, side, q, v)[part];
-            let off = |i: usize| contacts.has(i) && least[i] < values[i].abs();
-            if !(0..limits::<D, N>()).any(off) {
-                break;
-            }
-            let (change, _) = shift(dynamics, node.t, side, q, v, contacts, &values);
-            let sums = if part == 0 { &mut node.q } else { &mut node.v };
-            sums.add(minus, &change);
-            node.a = None;
-        }
-    }
 }

@@ -3,6 +3,7 @@
 // Picard's steps are compiled for several instruction sets.
 #![allow(clippy::inline_always)]
 
+use crate::integrate::state::State;
 use crate::integrate::step::compensated::Compensated;
 use crate::integrate::step::field::Field;
 use crate::integrate::step::interval::StepInterval;
@@ -78,5 +79,11 @@ impl<T: Float, const N: usize> Endpoint<T, N> {
     #[inline(always)]
     pub fn is_finite(&self) -> bool {
         self.q.is_finite() && self.v.is_finite()
+    }
+}
+
+impl<T: Float, const N: usize> From<&Endpoint<T, N>> for State<T, N> {
+    fn from(end: &Endpoint<T, N>) -> Self {
+        Self { t: end.t.to_f64(), q: end.q.high, v: end.v.high }
     }
 }

@@ -9,10 +9,10 @@ use crate::integrate::state::State;
 use crate::integrate::step::compensated::Compensated;
 use crate::integrate::step::contacts::{self, Contacts, limits};
 use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::projection::{self, is_constrained};
+use crate::integrate::step::projection;
 use crate::motion::Side;
-use crate::scalar::Float;
-use crate::system::{Dynamics, Limit, MOST_LIMITS as L, System, scalar_time};
+use crate::scalar::{Float, Real};
+use crate::system::{Dynamics, Limit, MOST_LIMITS as L, System, is_constrained, scalar_time};
 use crate::time::Time;
 
 /// The number of parts of a step at whose ends gaps and reactions are looked at.
@@ -294,7 +294,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
             off.set(i, met(i) && !held.has(i) || closed.has(i) && gaps[i] < zero);
         }
         if off.any() {
-            contacts::hold(dynamics, node, side, &off, false);
+            hold_contacts(dynamics, node, side, &off, false);
             project(dynamics, node, side);
         }
         let inputs = dynamics.inputs(node.t, side, crate::system::Purpose::Momenta);
@@ -383,9 +383,9 @@ impl<T: Float, const N: usize> Limits<T, N> {
             }
         }
         if staying.any() {
-            contacts::hold(dynamics, node, side, &staying, true);
+            hold_contacts(dynamics, node, side, &staying, true);
             project(dynamics, node, side);
-            contacts::hold(dynamics, node, side, &staying, true);
+            hold_contacts(dynamics, node, side, &staying, true);
         }
         let (q, v) = (node.q.high, node.v.high);
         let [gaps, rates, _] = contacts::gaps(dynamics, node.t, side, &q, &v);
@@ -449,6 +449,34 @@ fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
     }
 }
 
+/// Brings the coordinates of `node` onto the limits in contact, and with `rates` their rates to
+/// zero.
+fn hold_contacts<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    node: &mut Endpoint<D::Scalar, N>,
+    side: Side,
+    contacts: &Contacts,
+    rates: bool,
+) {
+    let minus = D::Scalar::from_f64(-1.0);
+    for part in 0..if rates { 2 } else { 1 } {
+        // From the end of a step Newton's method is at rounding after two.
+        for _ in 0..3 {
+            let (q, v) = (&node.q.high, &node.v.high);
+            let values = contacts::gaps(dynamics, node.t, side, q, v)[part];
+            let least = contacts::rounding(dynamics, node.t, side, q, v)[part];
+            let off = |i: usize| contacts.has(i) && least[i] < values[i].abs();
+            if !(0..limits::<D, N>()).any(off) {
+                break;
+            }
+            let (change, _) = contacts::shift(dynamics, node.t, side, q, v, contacts, &values);
+            let sums = if part == 0 { &mut node.q } else { &mut node.v };
+            sums.add(minus, &change);
+            node.a = None;
+        }
+    }
+}
+
 /// Brings the end of a step onto limits in contact and constraints.
 pub(crate) fn hold<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
@@ -456,10 +484,10 @@ pub(crate) fn hold<D: Dynamics<N, Scalar: Float>, const N: usize>(
     side: Side,
     contacts: &Contacts,
 ) {
-    contacts::hold(dynamics, node, side, contacts, true);
+    hold_contacts(dynamics, node, side, contacts, true);
     if const { is_constrained::<D, N>() } {
         project(dynamics, node, side);
-        contacts::hold(dynamics, node, side, contacts, true);
+        hold_contacts(dynamics, node, side, contacts, true);
     }
 }
 

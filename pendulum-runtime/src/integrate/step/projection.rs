@@ -18,7 +18,7 @@ use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::field::first_in_state;
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, Facts, Purpose, System, scalar_time};
+use crate::system::{Dynamics, Facts, Purpose, System, is_constrained, scalar_time};
 use crate::time::Time;
 use nalgebra::SMatrix;
 
@@ -28,12 +28,6 @@ const MOST: usize = 8;
 /// The facts about the system of the dynamics `D`.
 const fn facts<D: Dynamics<N>, const N: usize>() -> &'static Facts {
     &<D::System as System<N>>::FACTS
-}
-
-/// Returns true if a system has constraints that its equations hold.
-#[inline]
-pub(crate) const fn is_constrained<D: Dynamics<N>, const N: usize>() -> bool {
-    0 < facts::<D, N>().held_constraints()
 }
 
 /// A state between the two halves of a projection.

@@ -13,8 +13,8 @@ use crate::integrate::step::controller::{
 };
 use crate::integrate::step::fast_exp2::{log2, power};
 use crate::integrate::step::interval::StepInterval;
-use crate::integrate::step::projection::is_constrained;
 use crate::scalar::Float;
+use crate::system::is_constrained;
 use crate::time::Time;
 
 /// The errors beyond which the next step becomes longer or shorter: `AIM` / 1.25¹⁵ and

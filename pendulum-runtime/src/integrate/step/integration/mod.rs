@@ -22,11 +22,11 @@ use crate::integrate::step::inertia::{inertia, is_due, varies};
 use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::limits::{self, Limits};
 use crate::integrate::step::observed::Observed;
-use crate::integrate::step::projection::{self, Gradients, is_constrained};
+use crate::integrate::step::projection::{self, Gradients};
 use crate::integrate::step::short::{is_short, straight};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, Purpose, System};
+use crate::system::{Dynamics, Purpose, System, is_constrained};
 use crate::time::Time;
 
 /// An integration under way.

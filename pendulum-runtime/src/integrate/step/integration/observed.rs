@@ -9,9 +9,9 @@ use crate::integrate::step::contacts::has_limits;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::limits;
 use crate::integrate::step::observed::Observed;
-use crate::integrate::step::projection::{self, is_constrained};
+use crate::integrate::step::projection;
 use crate::scalar::Float;
-use crate::system::{Dynamics, Facts, System};
+use crate::system::{Dynamics, Facts, System, is_constrained};
 use crate::time::Time;
 
 impl<const N: usize, D, M, C> Observed<D::Scalar, N> for Integration<'_, N, D, M, C>
