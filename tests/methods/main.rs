@@ -12,6 +12,7 @@ pub mod extremes;
 pub mod fast_drive;
 pub mod gauss;
 pub mod kicks;
+pub mod known;
 pub mod multistep;
 pub mod picard;
 pub mod problems;

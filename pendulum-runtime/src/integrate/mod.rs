@@ -83,6 +83,3 @@ pub use solve::{Solve, solve};
 pub use state::State;
 pub use step::adaptive::AdaptiveStep;
 pub use step::fixed::FixedStep;
-
-#[cfg(test)]
-mod tests;

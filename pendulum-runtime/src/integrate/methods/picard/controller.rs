@@ -213,10 +213,64 @@ mod tests {
     use crate::integrate::solution::Stats;
     use crate::integrate::step::endpoint::Endpoint;
     use crate::integrate::step::field::Field;
-    use crate::integrate::tests::systems::Kepler;
     use crate::scalar::Real;
-    use crate::system::{Staged, System};
+    use crate::system::{Facts, Staged, System};
     use crate::time::Time;
+    use nalgebra::SMatrix;
+
+    /// A body around another one that is fixed at the origin: r̈ = −μ r/r³.
+    #[derive(Clone, Copy, Debug)]
+    struct Kepler<T> {
+        mu: T,
+    }
+
+    impl<T: Real> System<2> for Kepler<T> {
+        type Scalar = T;
+        type Inputs = ();
+        type With<U: Real> = Kepler<U>;
+        type Prepared = ();
+        const FACTS: Facts = Facts { parameters: &["μ"], ..Facts::new("Kepler", &["x", "y"]) };
+
+        fn map<U: Real>(&self, mut map: impl FnMut(T) -> U) -> Kepler<U> {
+            Kepler { mu: map(self.mu) }
+        }
+
+        fn prepare(&self) {}
+
+        fn accelerations(&self, _: T, q: &[T; 2], _: &[T; 2], (): &()) -> [T; 2] {
+            let square = q[0] * q[0] + q[1] * q[1];
+            let factor = -self.mu / (square * square.sqrt());
+            [factor * q[0], factor * q[1]]
+        }
+
+        fn energy(&self, _: T, _: &[T; 2], _: &[T; 2], (): &()) -> T {
+            unreachable!("no step asks for the energy")
+        }
+
+        fn momenta(&self, _: T, _: &[T; 2], _: &[T; 2], (): &()) -> [T; 2] {
+            unreachable!("no step asks for the momenta")
+        }
+
+        fn velocities(&self, _: T, _: &[T; 2], _: &[T; 2], (): &()) -> [T; 2] {
+            unreachable!("no step asks for the velocities")
+        }
+
+        fn power(&self, _: T, _: &[T; 2], _: &[T; 2], (): &()) -> T {
+            unreachable!("no step asks for the power")
+        }
+
+        fn mass_matrix(&self, _: T, _: &[T; 2], _: &[T; 2], (): &()) -> SMatrix<T, 2, 2> {
+            unreachable!("no step asks for the mass matrix")
+        }
+
+        fn forces(&self, _: T, _: &[T; 2], _: &[T; 2], (): &()) -> [T; 2] {
+            unreachable!("no step asks for the forces")
+        }
+
+        fn momentum_rates(&self, _: T, _: &[T; 2], _: &[T; 2], (): &()) -> [T; 2] {
+            unreachable!("no step asks for the momentum rates")
+        }
+    }
 
     /// Without stages.
     impl<T: Real> Staged<2> for Kepler<T> {

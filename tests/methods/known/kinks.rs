@@ -1,11 +1,13 @@
 //! Motions whose velocity jumps: steps land on the kinks and the momenta go over them unchanged.
 
 use super::systems::{LinearKeys, MovingPendulum, moving, pendulum};
-use crate::integrate::method::Method;
-use crate::integrate::{Dop853, Integrator, Leapfrog, Rk4, Srkn6b, Srkn14a, Tsit5, solve};
-use crate::motion::Side;
-use crate::scalar::Real;
-use crate::system::{Driven, Dynamics};
+use pendulum_runtime::integrate::method::Method;
+use pendulum_runtime::integrate::{
+    Dop853, Integrator, Leapfrog, Rk4, Srkn6b, Srkn14a, Tsit5, solve,
+};
+use pendulum_runtime::motion::Side;
+use pendulum_runtime::scalar::Real;
+use pendulum_runtime::system::{Driven, Dynamics};
 
 type Keyed = Driven<MovingPendulum<f64>, (LinearKeys,)>;
 
@@ -127,8 +129,9 @@ fn momenta_are_equal_on_both_sides() {
         (solution.at_side(kink, Side::Before).unwrap(), solution.at(kink).unwrap());
     assert!((before.q[0] - after.q[0]).abs() < 1e-15);
     // Δθ̇ = −Δẋ cos θ / l.
-    let velocity =
-        |side| driven.inputs(kink.into(), side, crate::system::Purpose::Momenta).0.velocity[0];
+    let velocity = |side| {
+        driven.inputs(kink.into(), side, pendulum_runtime::system::Purpose::Momenta).0.velocity[0]
+    };
     let jump = velocity(Side::After) - velocity(Side::Before);
     assert!(1e-3 < jump.abs());
     assert!((after.v[0] - before.v[0] + jump * before.q[0].cos() / 0.5).abs() < 1e-14);

@@ -2,11 +2,11 @@
 
 use super::systems::{DoublePendulum, Pendulum, SHAKEN, double_pendulum, pendulum, shaken};
 use super::{distance, fixed};
-use crate::integrate::method::Method;
-use crate::integrate::{
+use pendulum_runtime::integrate::method::Method;
+use pendulum_runtime::integrate::{
     Dop853, Dprkn8, Dprkn12, Leapfrog, Rk4, Srkn6b, Srkn14a, SymplecticEuler, Tsit5, solve,
 };
-use crate::system::Dynamics;
+use pendulum_runtime::system::Dynamics;
 
 /// Asserts that the error falls with the power `order` of the step over a threefold number of
 /// steps, within a sixth.

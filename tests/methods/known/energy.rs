@@ -1,9 +1,9 @@
 //! Energy over long times.
 
 use super::systems::{henon_heiles, pendulum};
-use crate::integrate::method::Method;
-use crate::integrate::{FixedStep, Integrator, Leapfrog, Rk4, Srkn6b, Srkn14a};
-use crate::system::{System, VelocityFree};
+use pendulum_runtime::integrate::method::Method;
+use pendulum_runtime::integrate::{FixedStep, Integrator, Leapfrog, Rk4, Srkn6b, Srkn14a};
+use pendulum_runtime::system::{System, VelocityFree};
 
 /// The largest relative change of energy over `steps` steps of length `h`, looked at every tenth
 /// step.

@@ -5,12 +5,12 @@ use super::systems::{
     henon_heiles, oscillator, pendulum, shaken,
 };
 use super::{distance, fixed};
-use crate::integrate::method::Method;
-use crate::integrate::{
+use pendulum_runtime::integrate::method::Method;
+use pendulum_runtime::integrate::{
     Dop853, Dprkn8, Dprkn12, Leapfrog, Rk4, Solution, Srkn6b, Srkn14a, Stats, SymplecticEuler,
     Tsit5, solve,
 };
-use crate::system::Driven;
+use pendulum_runtime::system::Driven;
 
 /// The pendulum from 1.3 at t = 100.
 const PENDULUM: [f64; 2] = [0.029429667179564377788823966, -1.2100149998864702546148483];
@@ -215,7 +215,7 @@ fn henon_heiles_by_all_velocity_free_methods() {
         0.0471639671758451559513300963197,
         -0.0253059588138630476379504876741,
     ];
-    let error = |end: crate::integrate::State<f64, 2>| distance(&end.q, &end.v, &exact);
+    let error = |end: pendulum_runtime::integrate::State<f64, 2>| distance(&end.q, &end.v, &exact);
     let (system, q, v) = (henon_heiles(), [0.1, 0.0], [0.0, 0.5]);
     assert!(error(fixed(&system, 10.0, q, v, Srkn6b, 100)) < 1e-7);
     assert!(error(fixed(&system, 10.0, q, v, Srkn14a, 100)) < 1e-12);
@@ -228,7 +228,7 @@ fn henon_heiles_by_all_velocity_free_methods() {
 #[test]
 fn a_shaken_pendulum_by_every_method() {
     let driven = shaken();
-    let error = |end: crate::integrate::State<f64, 1>| distance(&end.q, &end.v, &SHAKEN);
+    let error = |end: pendulum_runtime::integrate::State<f64, 1>| distance(&end.q, &end.v, &SHAKEN);
     assert!(error(fixed(&driven, 10.0, [0.5], [0.0], SymplecticEuler, 10_000)) < 3e-3);
     assert!(error(fixed(&driven, 10.0, [0.5], [0.0], Leapfrog, 10_000)) < 3e-6);
     assert!(error(fixed(&driven, 10.0, [0.5], [0.0], Srkn6b, 200)) < 1e-6);

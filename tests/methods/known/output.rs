@@ -1,9 +1,9 @@
 //! Output at given times, at each step, and dense.
 
 use super::systems::{Pendulum, double_pendulum, pendulum};
-use crate::error::Error;
-use crate::integrate::{Dop853, Leapfrog, Rk4, Srkn14a, Tsit5, solve};
-use crate::motion::Side;
+use pendulum_runtime::error::Error;
+use pendulum_runtime::integrate::{Dop853, Leapfrog, Rk4, Srkn14a, Tsit5, solve};
+use pendulum_runtime::motion::Side;
 
 const TIMES: [f64; 7] = [0.0, 0.1, 2.5, 2.5, 7.3, 9.999, 10.0];
 

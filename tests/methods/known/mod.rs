@@ -8,11 +8,11 @@ mod kinks;
 mod order;
 mod output;
 mod stepping;
-pub(super) mod systems;
+mod systems;
 
-use crate::integrate::method::Method;
-use crate::integrate::{State, solve};
-use crate::system::Dynamics;
+use pendulum_runtime::integrate::method::Method;
+use pendulum_runtime::integrate::{State, solve};
+use pendulum_runtime::system::Dynamics;
 
 /// The largest difference between a state and an exact one.
 ///

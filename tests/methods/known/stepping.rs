@@ -1,13 +1,13 @@
 //! Integration by hand.
 
 use super::systems::{MovingPendulum, moving, pendulum, shaken};
-use crate::error::Error;
-use crate::integrate::{
+use pendulum_runtime::error::Error;
+use pendulum_runtime::integrate::{
     AdaptiveStep, Dop853, FixedStep, Integrator, Leapfrog, Rk4, Srkn14a, solve,
 };
-use crate::motion::{Function, Sample, Side};
-use crate::system::{Driven, Dynamics, Purpose};
-use crate::time::Time;
+use pendulum_runtime::motion::{Function, Sample, Side};
+use pendulum_runtime::system::{Driven, Dynamics, Purpose};
+use pendulum_runtime::time::Time;
 
 #[test]
 fn steps_have_the_length_asked_for() {
@@ -185,7 +185,7 @@ fn displaced_coordinates_keep_what_rounding_has_left_off() {
     );
     let error = there.displace([f64::INFINITY], [0.0]).unwrap_err();
     assert!(
-        matches!(error, Error::InitialState { part: crate::error::Part::Position, .. }),
+        matches!(error, Error::InitialState { part: pendulum_runtime::error::Part::Position, .. }),
         "{error}"
     );
     assert!(there.q()[0].is_finite());

@@ -1,10 +1,10 @@
 //! Systems written by hand, with the names and numbers of the literature.
 
-use crate::motion::{Derivatives, Motion, Sample, Side};
-use crate::scalar::Real;
-use crate::system::{Driven, Facts, Input, System, VelocityFree};
-use crate::time::Time;
 use nalgebra::SMatrix;
+use pendulum_runtime::motion::{Derivatives, Motion, Sample, Side};
+use pendulum_runtime::scalar::Real;
+use pendulum_runtime::system::{Driven, Facts, Input, System, VelocityFree};
+use pendulum_runtime::time::Time;
 
 /// Implements `System` from accelerations, energy, momenta and velocities, which are all that
 /// integrators and tests call.
@@ -77,6 +77,17 @@ macro_rules! system {
     };
 }
 
+/// The facts about a system with these names.
+const fn facts(
+    name: &'static str,
+    coordinates: &'static [&'static str],
+    parameters: &'static [&'static str],
+) -> Facts {
+    let mut facts = Facts::new(name, coordinates);
+    facts.parameters = parameters;
+    facts
+}
+
 fn two<T: Real>() -> T {
     T::from_f64(2.0)
 }
@@ -84,7 +95,7 @@ fn two<T: Real>() -> T {
 system! {
     /// θ̈ = −(g/L) sin θ.
     Pendulum<T, 1> { length, g } ();
-    Facts { parameters: &["L", "g"], ..Facts::new("Pendulum", &["θ"]) };
+    facts("Pendulum", &["θ"], &["L", "g"]);
     |s, q, v, x|
     accelerations [-(s.g / s.length) * q[0].sin()];
     energy s.length * s.length * v[0] * v[0] / two() - s.g * s.length * q[0].cos();
@@ -102,7 +113,11 @@ pub(crate) fn pendulum() -> Pendulum<f64> {
 system! {
     /// A pendulum whose pivot x is driven: θ̈ = −((g + ẍ₂) sin θ + ẍ₁ cos θ)/L.
     MovingPendulum<T, 1> { length, g } (Sample<T, 2>,);
-    Facts { parameters: &["L", "g"], inputs: &[X], ..Facts::new("MovingPendulum", &["θ"]) };
+    {
+        let mut facts = facts("MovingPendulum", &["θ"], &["L", "g"]);
+        facts.inputs = &[X];
+        facts
+    };
     |s, q, v, x|
     accelerations {
         let (sin, cos) = q[0].sin_cos();
@@ -135,7 +150,7 @@ impl<T: Real> VelocityFree<1> for MovingPendulum<T> {}
 system! {
     /// The double pendulum with unit masses and lengths, in absolute angles.
     DoublePendulum<T, 2> { g } ();
-    Facts { parameters: &["g"], ..Facts::new("DoublePendulum", &["θ₁", "θ₂"]) };
+    facts("DoublePendulum", &["θ₁", "θ₂"], &["g"]);
     |s, q, v, x|
     accelerations {
         let (sin, cos) = (q[0] - q[1]).sin_cos();
@@ -167,7 +182,7 @@ pub(crate) fn double_pendulum() -> DoublePendulum<f64> {
 system! {
     /// A planet around a unit mass.
     Kepler<T, 2> { mu } ();
-    Facts { parameters: &["μ"], ..Facts::new("Kepler", &["x", "y"]) };
+    facts("Kepler", &["x", "y"], &["μ"]);
     |s, q, v, x|
     accelerations {
         let square = q[0] * q[0] + q[1] * q[1];
@@ -184,7 +199,7 @@ impl<T: Real> VelocityFree<2> for Kepler<T> {}
 system! {
     /// Hénon and Heiles (1964), with λ = 1 in their potential.
     HenonHeiles<T, 2> { lambda } ();
-    Facts { parameters: &["λ"], ..Facts::new("HenonHeiles", &["x", "y"]) };
+    facts("HenonHeiles", &["x", "y"], &["λ"]);
     |s, q, v, x|
     accelerations [-q[0] - two::<T>() * s.lambda * q[0] * q[1], -q[1] - s.lambda * (q[0] * q[0] - q[1] * q[1])];
     energy {
@@ -200,7 +215,7 @@ impl<T: Real> VelocityFree<2> for HenonHeiles<T> {}
 system! {
     /// ẍ = −k x.
     Oscillator<T, 1> { k } ();
-    Facts { parameters: &["k"], ..Facts::new("Oscillator", &["x"]) };
+    facts("Oscillator", &["x"], &["k"]);
     |s, q, v, x|
     accelerations [-s.k * q[0]];
     energy (v[0] * v[0] + s.k * q[0] * q[0]) / two();
@@ -213,7 +228,7 @@ impl<T: Real> VelocityFree<1> for Oscillator<T> {}
 system! {
     /// ẍ = −k √x, which has no value for negative x.
     Root<T, 1> { k } ();
-    Facts { parameters: &["k"], ..Facts::new("Root", &["x"]) };
+    facts("Root", &["x"], &["k"]);
     |s, q, v, x|
     accelerations [-s.k * q[0].sqrt()];
     energy v[0] * v[0] / two();

@@ -3,11 +3,11 @@
 use super::systems::{
     Kepler, MovingPendulum, Pendulum, Root, double_pendulum, moving, oscillator, pendulum, shaken,
 };
-use crate::error::{Coordinate, Error, Part, Quantity, Suspect};
-use crate::integrate::{Dop853, Failure, Leapfrog, Rk4, Srkn14a, Tsit5, solve};
-use crate::motion::{Derivatives, Motion, Sample, Side};
-use crate::system::Driven;
-use crate::time::Time;
+use pendulum_runtime::error::{Coordinate, Error, Part, Quantity, Suspect};
+use pendulum_runtime::integrate::{Dop853, Failure, Leapfrog, Rk4, Srkn14a, Tsit5, solve};
+use pendulum_runtime::motion::{Derivatives, Motion, Sample, Side};
+use pendulum_runtime::system::Driven;
+use pendulum_runtime::time::Time;
 
 const THETA: Coordinate = Coordinate { index: 0, name: "θ" };
 
