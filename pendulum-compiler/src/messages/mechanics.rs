@@ -68,8 +68,8 @@ pub(crate) fn redundant_coordinate(coordinate: &str) -> Text {
 /// A constraint without second derivatives.
 pub(crate) fn constraint_with_corner() -> Text {
     text!(
-        "a constraint needs two derivatives, and `abs`, `sign`, `min` and `max` of what moves have \
-         a corner; write both sides without them"
+        "a constraint and a limit need two derivatives, and `abs`, `sign`, `min` and `max` of what moves have \
+         a corner; write both sides without them, and two limits for a bound on both sides"
     )
 }
 

@@ -34,6 +34,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         limits: Vec::new(),
         names: BTreeMap::new(),
         unmentioned: BTreeSet::new(),
+        unused: Vec::new(),
         of_outputs: BTreeSet::new(),
     };
     model.driven = block
@@ -149,8 +150,14 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     };
     walk.block();
     let mentioned = walk.mentioned;
+    let open = |meaning: Meaning| !mentioned.contains(&meaning);
     model.unmentioned =
-        (0..model.parameters.len()).filter(|index| !mentioned.contains(index)).collect();
+        (0..model.parameters.len()).filter(|&index| open(Meaning::Parameter(index))).collect();
+    let inputs = model.inputs.iter().map(|input| input.name).enumerate();
+    let inputs = inputs.filter(|&(index, _)| open(Meaning::Input(index)));
+    let lets = model.lets.iter().map(|definition| &definition.name).enumerate();
+    let lets = lets.filter(|&(index, _)| open(Meaning::Let(index)));
+    model.unused = inputs.chain(lets).map(|(_, name)| name).collect();
     model
 }
 

@@ -24,6 +24,8 @@ pub(crate) struct Model<'a> {
     pub(crate) names: BTreeMap<String, Meaning>,
     /// The parameters that no statement mentions.
     pub(crate) unmentioned: BTreeSet<usize>,
+    /// The inputs and definitions that no other statement mentions.
+    pub(crate) unused: Vec<&'a Ident>,
     /// The definitions that outputs alone need: accelerations may stand in them.
     pub(crate) of_outputs: BTreeSet<usize>,
 }
@@ -72,7 +74,7 @@ pub(crate) struct Force<'a> {
 }
 
 /// The meaning of a name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Meaning {
     Parameter(usize),
     Coordinate(usize),

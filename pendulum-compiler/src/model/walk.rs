@@ -18,8 +18,8 @@ pub(super) struct Walk<'m, 'a, 'e> {
     pub(super) model: &'m Model<'a>,
     pub(super) errors: &'e mut Errors,
     pub(super) scope: Vec<String>,
-    /// The parameters that have been met.
-    pub(super) mentioned: BTreeSet<usize>,
+    /// The declared names that have been met.
+    pub(super) mentioned: BTreeSet<Meaning>,
     /// True if accelerations of coordinates may stand here.
     pub(super) accelerations: bool,
     /// True in a constraint or a limit.
@@ -162,6 +162,7 @@ impl Walk<'_, '_, '_> {
                 self.expr(exponent);
             }
             ExprKind::Call(name, items) => {
+                self.mentioned.extend(self.model.names.get(&plain(name)));
                 self.function(name, items, expr.range);
                 for item in items {
                     self.expr(item);
@@ -200,10 +201,10 @@ impl Walk<'_, '_, '_> {
             ExprKind::Integral { point, body, integrand } => {
                 let Name { base, dots } = name::read(&body.to_string());
                 match self.model.names.get(&base) {
-                    Some(&Meaning::Parameter(index))
+                    Some(&meaning @ Meaning::Parameter(index))
                         if dots == 0 && self.model.parameters[index].body =>
                     {
-                        self.mentioned.insert(index);
+                        self.mentioned.insert(meaning);
                     }
                     Some(_) => {
                         self.errors.at(body.span(), messages::no_body(body));
@@ -256,9 +257,7 @@ impl Walk<'_, '_, '_> {
         if self.scope.contains(&base) {
             return;
         }
-        if let Some(&Meaning::Parameter(index)) = self.model.names.get(&base) {
-            self.mentioned.insert(index);
-        }
+        self.mentioned.extend(self.model.names.get(&base));
         match (base.as_str(), self.model.names.get(&base)) {
             ("t" | "pi" | "i", _) if dots == 0 => {}
             ("t" | "pi" | "i", _) => {

@@ -37,6 +37,9 @@ pub(crate) fn function(name: &str, arguments: &[Expr]) -> Option<String> {
         ("arctan2", [a, b]) => format!("atan2({}, {})", text(a), text(b)),
         ("sgn" | "signum", [a]) => format!("sign({})", text(a)),
         ("pow" | "powi" | "powf", [a, b]) => format!("{}^{}", operand(a), closed(b)),
+        ("clamp" | "clip" | "saturate" | "sat", [a, b, c]) => {
+            format!("min(max({}, {}), {})", text(a), text(b), text(c))
+        }
         ("square" | "sq", [a]) => format!("{}^2", operand(a)),
         ("cbrt", [a]) => format!("{}^(1/3)", operand(a)),
         ("sec", [a]) => format!("1/cos({})", text(a)),

@@ -335,6 +335,15 @@ fn unmentioned_parameters_are_found() {
     let statements =
         "let unused = L; kinetic = m*θ̇^2/2 + integral(p in B, 0*|p|^2); potential = 0*n[1]*θ;";
     assert_eq!(unmentioned(&format!("{source} {statements}")), ["c", "_d", "C", "h"]);
+    // Inputs and definitions that nothing uses are found beside them.
+    let unused = |source: &str| {
+        super::derive(source, |model, _, _| {
+            model.unused.iter().map(ToString::to_string).collect::<Vec<_>>()
+        })
+    };
+    let statements = "driven x: m; driven y: m; input u: N; input w: N; let a = 2*x; let b = a; \
+                      let f(p) = p^2; let g(p) = f(p); kinetic = m*θ̇^2/2; force θ = L*w;";
+    assert_eq!(unused(&format!("{source} {statements}")), ["y", "u", "b", "g"]);
     // An argument of the same name hides it.
     assert_eq!(
         unmentioned("struct P { m, c } coordinate q; let r(c) = m*c; kinetic = r(q_dot)^2;"),

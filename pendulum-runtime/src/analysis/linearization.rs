@@ -66,7 +66,8 @@ impl core::error::Error for ModeError {}
 /// M is the mass matrix, C = −M ∂q̈/∂q̇ and K = −M ∂q̈/∂q. At an equilibrium (v = 0 and no
 /// acceleration) they describe small motions.
 ///
-/// Driven inputs stay as they are. A feedback law is linearized along with the system;
+/// Driven inputs stay as they are, and so do the values of a [sampled](crate::system::Sampled)
+/// controller, which are those of its last run. A feedback law is linearized along with the system;
 /// [`control_jacobian`](Jacobians::control_jacobian) is ∂q̈ by the control inputs. Limits have no
 /// part in it: it describes the motion away from them.
 ///

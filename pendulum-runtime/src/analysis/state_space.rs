@@ -33,7 +33,11 @@ pub struct StateSpace {
 /// The linear model about the state `q`, `v` at time `t`, with all derivatives exact.
 ///
 /// The control inputs have the values there that the controller of `dynamics` gives; its law is no
-/// part of the model, which is that of the open loop. Driven inputs stay as they are.
+/// part of the model, which is that of the open loop. A [sampled](crate::system::Sampled) one gives
+/// those of its last run at `t`, not numbers before a run. Driven inputs stay as they are.
+///
+/// The model is that of small changes beside the motion through the state. About a goal at rest let
+/// the controller give the forces that hold it: `controlled_by(|_, _, _| u0)`.
 ///
 /// With constraints x holds independent coordinates and velocities: those of the others follow from
 /// C δq = 0 for constraints of positions and C δq̇ + ∂(C q̇ + b)/∂q δq = 0 for all. The state may

@@ -5,7 +5,7 @@ use crate::integrate::data::label::Source;
 use crate::integrate::events::{Occurrence, Status};
 use crate::integrate::interpolant::dense::DenseOutput;
 use crate::integrate::observe::OfStates;
-use crate::integrate::solution::{Failure, Impact, Solution, Stats};
+use crate::integrate::solution::{Failure, Impact, RunNumber, Solution, Stats};
 use crate::integrate::state::State;
 use crate::integrate::step::field::first_in_state;
 use crate::integrate::step::observed::Observed;
@@ -286,7 +286,8 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
             self.keep(end, touching);
         }
         let Self { dense, t, q, v, contacts, events, impacts, labels, .. } = self;
-        Solution { t, q, v, end, status, events, impacts, stats, dense, contacts, labels }
+        let run = RunNumber::default();
+        Solution { t, q, v, end, status, events, impacts, stats, dense, contacts, labels, run }
     }
 
     /// The failure that leaves `end` as the last state.

@@ -69,6 +69,18 @@ pub struct Solution<T, const N: usize> {
     pub(crate) contacts: Vec<u16>,
     /// The names and units of coordinates and velocities.
     pub(crate) labels: Source,
+    /// The number of the integration, as [`Dynamics::recorded`] gives it.
+    pub(crate) run: RunNumber,
+}
+
+/// The number of an integration in its program, which is no part of a result.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct RunNumber(pub(crate) u64);
+
+impl fmt::Debug for RunNumber {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("_")
+    }
 }
 
 impl<T: Float, const N: usize> Solution<T, N> {
@@ -123,7 +135,8 @@ pub struct Impact<T, const N: usize> {
 /// Equal in all numbers, in the names of the columns and in why and how it ended.
 impl<T: PartialEq, const N: usize> PartialEq for Solution<T, N> {
     fn eq(&self, other: &Self) -> bool {
-        let Self { t, q, v, end, status, events, impacts, stats, dense, contacts, labels } = self;
+        let Self { t, q, v, end, status, events, impacts, stats, dense, contacts, labels, run: _ } =
+            self;
         (t, q, v, end) == (&other.t, &other.q, &other.v, &other.end)
             && (status, events, stats) == (&other.status, &other.events, &other.stats)
             && (impacts, contacts) == (&other.impacts, &other.contacts)

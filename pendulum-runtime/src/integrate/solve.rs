@@ -9,7 +9,7 @@ use crate::integrate::methods::auto::Auto;
 use crate::integrate::observe::{Observers, OfSteps, Step};
 use crate::integrate::output::{Output, Recorder, direction, in_order};
 use crate::integrate::settings::Settings;
-use crate::integrate::solution::{Failure, Solution, Stats};
+use crate::integrate::solution::{Failure, RunNumber, Solution, Stats};
 use crate::integrate::state::State;
 use crate::integrate::step::adaptive::AdaptiveStep;
 use crate::integrate::step::controller::Controller;
@@ -275,9 +275,16 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
                 let ended = self.integrate(&mut integration, &mut recorder, steps.as_deref_mut());
                 let (end, stats) = (State::from(&integration.end), integration.stats());
                 let [_, touching] = integration.contacts();
+                let run = RunNumber(integration.dynamics.recorded());
                 match ended {
-                    Err(error) => Err(recorder.fail(error, end, touching, stats)),
-                    Ok(status) => Ok(recorder.finish(end, touching, status, stats)),
+                    Err(error) => {
+                        let mut failure = recorder.fail(error, end, touching, stats);
+                        failure.partial.run = run;
+                        Err(failure)
+                    }
+                    Ok(status) => {
+                        Ok(Solution { run, ..recorder.finish(end, touching, status, stats) })
+                    }
                 }
             }
         }

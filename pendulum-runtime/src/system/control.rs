@@ -10,6 +10,7 @@ use crate::system::inputs::{ControlSamples, Purpose};
 use crate::time::Time;
 use core::cell::RefCell;
 use core::marker::PhantomData;
+use core::sync::atomic::{AtomicU64, Ordering};
 
 /// The place of a control input among the motions of a system.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -131,11 +132,12 @@ impl<S, M> Uncontrolled<S, M> {
     }
 
     /// The system under a controller that is asked every `period` seconds for the control inputs;
-    /// they keep their values in between (zero-order hold).
+    /// they keep their values in between (zero-order hold). A rate of 1 kHz is the period 1e-3.
     ///
     /// Steps end at every sample. The controller may have a state of its own: the closure is cloned
     /// at the start of each integration. The values of the last integration are recorded, one entry
-    /// a period, so that energies and outputs along its solution have them.
+    /// a period, so that powers and outputs along its solution have them. Those of an earlier
+    /// solution are refused or not a number: a clone of the system for each run keeps them.
     ///
     /// # Errors
     /// Integrations end with [`Error::Setting`] for a period that is not positive or too short for
@@ -159,7 +161,8 @@ impl<S, M> Uncontrolled<S, M> {
     }
 }
 
-/// A system whose control inputs follow a law u(t, q, q̇), in continuous time.
+/// A system whose control inputs follow a law u(t, q, q̇), in continuous time. See the
+/// [guide](crate::guide::control).
 ///
 /// Every method for systems with velocities integrates it but [`Taylor`](crate::integrate::Taylor),
 /// which needs series.
@@ -224,6 +227,10 @@ where
 }
 
 /// A system whose control inputs a controller sets every `period` seconds.
+///
+/// It has the samples of one integration at a time, the last one: powers, outputs, accelerations
+/// and reactions along the solution of another one are not numbers. See the
+/// [guide](crate::guide::control).
 #[derive(Clone, Debug)]
 pub struct Sampled<S, M, C, U> {
     pub(crate) driven: Driven<S, M>,
@@ -231,6 +238,9 @@ pub struct Sampled<S, M, C, U> {
     controller: C,
     record: RefCell<Record<C, U>>,
 }
+
+/// The number of integrations with sampled controllers so far.
+static RUNS: AtomicU64 = AtomicU64::new(0);
 
 /// The samples of one integration.
 #[derive(Clone, Debug)]
@@ -293,11 +303,16 @@ where
     }
 
     fn begin(&self, t: f64) -> u64 {
-        let mut record = self.record.borrow_mut();
-        let run = record.run + 1;
-        *record =
+        // No other integration of the program has this number: a solution knows the system that
+        // has its samples.
+        let run = RUNS.fetch_add(1, Ordering::Relaxed) + 1;
+        *self.record.borrow_mut() =
             Record { run, start: t, controller: self.controller.clone(), samples: Vec::new() };
         run
+    }
+
+    fn recorded(&self) -> u64 {
+        self.record.borrow().run
     }
 
     fn sample(

@@ -107,6 +107,12 @@ pub trait Dynamics<const N: usize> {
         0
     }
 
+    /// The number of the integration whose samples a sampled controller has; 0 before the first
+    /// one and for all other dynamics.
+    fn recorded(&self) -> u64 {
+        0
+    }
+
     /// Asks a sampled controller for its values if they are due at the start of a step; returns
     /// true if they have changed.
     ///

@@ -1,18 +1,21 @@
-//! Parameters that no statement mentions, as rustc itself warns of a variable that nobody reads.
+//! Names that no statement mentions, as rustc itself warns of a variable that nobody reads.
 
 use super::Emitter;
+use crate::model::Model;
 use proc_macro2::{TokenStream, TokenTree};
 use quote::quote;
 use syn::Attribute;
 
 impl Emitter<'_, '_> {
-    /// A function that reads none of these parameters: each is unused at its own name in the block.
+    /// A function that reads none of these parameters, inputs and definitions: each is unused at
+    /// its own name in the block.
     ///
-    /// A leading underscore silences it, and so do `allow` and `expect` on the field or on the
-    /// struct.
+    /// A leading underscore silences it, and so do `allow` and `expect` on the struct or on the
+    /// field.
     pub(super) fn unmentioned(&self) -> Option<TokenStream> {
         // What a mistake has left out may have mentioned them.
-        if self.motion.is_none() || self.model.unmentioned.is_empty() {
+        let Model { unmentioned, unused, .. } = self.model;
+        if self.motion.is_none() || unmentioned.is_empty() && unused.is_empty() {
             return None;
         }
         let level = |attribute: &&Attribute| {
@@ -21,7 +24,7 @@ impl Emitter<'_, '_> {
         };
         let block = self.model.block;
         let levels = block.attributes.iter().filter(level);
-        let arguments = self.model.unmentioned.iter().map(|&index| {
+        let arguments = unmentioned.iter().map(|&index| {
             let field = &block.fields[index];
             let (name, levels) = (&field.name, field.attributes.iter().filter(level));
             quote!(#(#levels)* #name: ())
@@ -29,7 +32,7 @@ impl Emitter<'_, '_> {
         Some(quote! {
             #(#levels)*
             #[allow(dead_code, non_snake_case, clippy::all, clippy::pedantic)]
-            fn __unmentioned(#(#arguments),*) {}
+            fn __unmentioned(#(#arguments,)* #(#unused: ()),*) {}
         })
     }
 
@@ -39,7 +42,8 @@ impl Emitter<'_, '_> {
     /// An expectation is fulfilled where the variable is unused, and not at the struct.
     pub(super) fn is_moved(&self, attribute: &Attribute, field: Option<usize>) -> bool {
         let unmentioned = &self.model.unmentioned;
-        let own = field.map_or(!unmentioned.is_empty(), |index| unmentioned.contains(&index));
+        let some = !unmentioned.is_empty() || !self.model.unused.is_empty();
+        let own = field.map_or(some, |index| unmentioned.contains(&index));
         expects_unused(attribute) && (own || self.motion.is_none())
     }
 }

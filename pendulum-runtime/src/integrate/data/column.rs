@@ -3,7 +3,7 @@
 use super::label::Label;
 use super::name::{self, Name};
 use super::pushed::Pushed;
-use crate::integrate::solution::Solution;
+use crate::integrate::solution::{RunNumber, Solution};
 use crate::integrate::state::State;
 use crate::integrate::step::contacts::Contacts;
 use crate::motion::Side;
@@ -24,6 +24,8 @@ pub struct ColumnError {
     pub columns: Vec<String>,
     /// The calls that give other quantities.
     hint: &'static str,
+    /// True if the name is right and the values are gone.
+    stale: bool,
 }
 
 /// The greatest number of names that a message lists.
@@ -46,7 +48,13 @@ impl ColumnError {
             .filter(|&(distance, _)| distance <= limit)
             .min_by_key(|&(distance, _)| distance)
             .map(|(_, column)| column.clone());
-        Self { name: name.into(), nearest, columns, hint }
+        Self { name: name.into(), nearest, columns, hint, stale: false }
+    }
+
+    /// The error for an output whose control inputs nobody has any more.
+    fn stale(name: &str) -> Self {
+        let name = name.into();
+        Self { name, nearest: None, columns: Vec::new(), hint: "", stale: true }
     }
 
     /// The members of the family that the name is the name of.
@@ -63,7 +71,13 @@ impl ColumnError {
 
 impl fmt::Display for ColumnError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, nearest, columns, hint } = self;
+        let Self { name, nearest, columns, hint, stale } = self;
+        if *stale {
+            return write!(
+                f,
+                "`{name}` needs the values of the sampled controller, which has not run or has run again since; ask before the next run, or clone the system for each run and ask the clone"
+            );
+        }
         if let [first, .., last] = self.members()[..] {
             return write!(f, "`{name}` is a family; name a member, `{first}` … `{last}`");
         }
@@ -128,7 +142,11 @@ impl<T: Float, const N: usize> Solution<T, N> {
     ///
     /// At two states of the same time as [`energy`](Self::energy).
     pub fn accelerations<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<[T; N]> {
+        let stale = self.is_stale(dynamics);
         self.evaluate(|t, side, q, v, contacts| {
+            if stale {
+                return [T::from_f64(f64::NAN); N];
+            }
             Pushed::new(dynamics, t, side, q, v, &contacts).accelerations
         })
     }
@@ -152,7 +170,11 @@ impl<T: Float, const N: usize> Solution<T, N> {
     ///
     /// At two states of the same time as [`energy`](Self::energy).
     pub fn power<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<T> {
+        let stale = self.is_stale(dynamics);
         self.evaluate(|t, side, q, v, contacts| {
+            if stale {
+                return T::from_f64(f64::NAN);
+            }
             let inputs = dynamics.inputs_with(t, side, Purpose::Power, q, v);
             let power = dynamics.system().power(scalar_time(t), q, v, &inputs);
             if !contacts.any() {
@@ -182,10 +204,14 @@ impl<T: Float, const N: usize> Solution<T, N> {
     ///
     /// At two states of the same time as [`energy`](Self::energy).
     pub fn reactions<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
+        let count = <D::System as System<N>>::FACTS.held_constraints();
+        if self.is_stale(dynamics) {
+            return self.unknown(count);
+        }
         let rows = self.evaluate(|t, side, q, v, contacts| {
             Pushed::new(dynamics, t, side, q, v, &contacts).multipliers
         });
-        columns(&rows, <D::System as System<N>>::FACTS.held_constraints())
+        columns(&rows, count)
     }
 
     /// The multipliers μ ≥ 0 with which limits push at all output times, zero for those out of
@@ -196,10 +222,14 @@ impl<T: Float, const N: usize> Solution<T, N> {
     ///
     /// At two states of the same time as [`energy`](Self::energy).
     pub fn contact_forces<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
+        let count = <D::System as System<N>>::FACTS.limits.len();
+        if self.is_stale(dynamics) {
+            return self.unknown(count);
+        }
         let rows = self.evaluate(|t, side, q, v, contacts| {
             Pushed::new(dynamics, t, side, q, v, &contacts).forces
         });
-        columns(&rows, <D::System as System<N>>::FACTS.limits.len())
+        columns(&rows, count)
     }
 
     /// One scalar of an output of the system at all output times: `"load"`, `"tip.x"`,
@@ -208,7 +238,8 @@ impl<T: Float, const N: usize> Solution<T, N> {
     /// At two states of the same time as [`energy`](Self::energy).
     ///
     /// # Errors
-    /// A name that no output has; the error has the nearest one.
+    /// A name that no output has; the error has the nearest one. An output of a system with a
+    /// [sampled](crate::system::Sampled) controller that has run again since.
     pub fn output<D: Dynamics<N, Scalar = T>>(
         &self,
         dynamics: &D,
@@ -219,6 +250,9 @@ impl<T: Float, const N: usize> Solution<T, N> {
         for (index, output) in outputs.iter().enumerate() {
             let own = output.names();
             if let Some(scalar) = own.iter().position(|own| name::read(own) == wanted) {
+                if self.is_stale(dynamics) {
+                    return Err(ColumnError::stale(name));
+                }
                 return Ok(self.scalars(dynamics, index).swap_remove(scalar));
             }
             names.extend(own);
@@ -235,6 +269,9 @@ impl<T: Float, const N: usize> Solution<T, N> {
         index: usize,
     ) -> Vec<Vec<T>> {
         let count = <D::System as System<N>>::FACTS.outputs[index].count();
+        if self.is_stale(dynamics) {
+            return self.unknown(count);
+        }
         let rows = self.evaluate(|t, side, q, v, contacts| {
             let inputs = dynamics.inputs_with(t, side, Purpose::Outputs, q, v);
             let mut values = vec![T::from_f64(0.0); count];
@@ -249,6 +286,16 @@ impl<T: Float, const N: usize> Solution<T, N> {
             values
         });
         columns(&rows, count)
+    }
+
+    /// Returns true if a sampled controller has not the samples of this solution.
+    fn is_stale<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> bool {
+        D::SAMPLED && RunNumber(dynamics.recorded()) != self.run
+    }
+
+    /// Columns of what is not a number.
+    fn unknown(&self, count: usize) -> Vec<Vec<T>> {
+        vec![vec![T::from_f64(f64::NAN); self.t.len()]; count]
     }
 
     /// A value for each output time, from the time, its side, the state and the limits in contact.

@@ -4,7 +4,7 @@ use super::arrays::rows;
 use super::label::{Label, Labels, Source};
 use crate::integrate::events::{Occurrence, Status};
 use crate::integrate::interpolant::dense::DenseOutput;
-use crate::integrate::solution::{ConstraintStats, Extreme, Impact, Solution, Stats};
+use crate::integrate::solution::{ConstraintStats, Extreme, Impact, RunNumber, Solution, Stats};
 use crate::integrate::state::State;
 use crate::time::Time;
 use serde::de::Error;
@@ -113,7 +113,8 @@ struct Parts<T, const N: usize> {
 impl<T: Serialize + Clone, const N: usize> Serialize for Solution<T, N> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let own = self.clone();
-        let Self { t, q, v, end, status, events, impacts, stats, dense, contacts, labels } = own;
+        let Self { t, q, v, end, status, events, impacts, stats, dense, contacts, labels, .. } =
+            own;
         let Labels { coordinates, velocities } = labels.labels(N);
         let parts = Parts {
             coordinates,
@@ -163,6 +164,7 @@ impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Solution<T, 
             return Err(D::Error::custom("the dense output is damaged"));
         }
         let labels = Source::Read(Labels { coordinates, velocities });
-        Ok(Self { t, q, v, end, status, events, impacts, stats, dense, contacts, labels })
+        let run = RunNumber::default();
+        Ok(Self { t, q, v, end, status, events, impacts, stats, dense, contacts, labels, run })
     }
 }
