@@ -491,7 +491,7 @@ impl fmt::Display for Error {
             Self::Kink { t, kink } => {
                 write!(
                     f,
-                    "a motion says that its next kink after t = {t:?} is at {kink:?}; `next_kink` has to give a later time or `None`"
+                    "a motion says that its next kink or break after t = {t:?} is at {kink:?}; `next_kink` and `next_break` have to give a later time or `None`"
                 )
             }
         }

@@ -1,9 +1,13 @@
 //! Edges of what lanes can do: they fail where single motions do.
 
 use crate::lanes::same;
+use crate::ways::OnJoint;
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::{Batch, Problem};
+use pendulum_runtime::jet::Series;
+use pendulum_runtime::motion::{Analytic, Derivatives, Motion, Sample, Side, Sinusoid};
 use pendulum_runtime::prelude::*;
+use pendulum_runtime::time::Time;
 use systems::pendulums::Simple;
 
 lagrangian! {
@@ -84,5 +88,98 @@ fn short_steps_of_single_precision_are_those_of_single_motions() {
             let alone = if first { alone.first_step(1e-41).run() } else { alone.run() };
             assert_eq!(format!("{outcome:?}"), format!("{alone:?}"), "member {k}");
         }
+    }
+}
+
+/// A sway whose breaks and kinks come to a halt: after a time it gives that time again and again.
+#[derive(Clone, Debug)]
+struct Halting {
+    sway: Sinusoid<1>,
+    breaks: Option<f64>,
+    kinks: Option<f64>,
+    /// True if it says that it is analytic.
+    told: bool,
+}
+
+impl Motion<f64, 1> for Halting {
+    const HAS: Derivatives = Derivatives::ALL;
+
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<f64, 1> {
+        self.sway.sample(t, side, wanted)
+    }
+
+    fn kink_before(&self, _: f64) -> Option<f64> {
+        Some(f64::NEG_INFINITY)
+    }
+
+    fn next_kink(&self, _: f64) -> Option<f64> {
+        self.kinks
+    }
+
+    fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
+        Motion::<f64, 1>::longest_step(&self.sway, t, widths)
+    }
+
+    fn analytic(&self) -> Option<&dyn Analytic<f64, 1>> {
+        self.told.then_some(self)
+    }
+}
+
+impl Analytic<f64, 1> for Halting {
+    fn series(
+        &self,
+        t: Time,
+        side: Side,
+        component: usize,
+        count: usize,
+        position: &mut Series<f64>,
+    ) {
+        Analytic::<f64, 1>::series(&self.sway, t, side, component, count, position);
+    }
+
+    fn next_break(&self, _: f64) -> Option<f64> {
+        self.breaks
+    }
+
+    fn last_break(&self, _: f64) -> Option<f64> {
+        self.breaks
+    }
+
+    fn last_kink(&self, _: f64) -> Option<f64> {
+        self.kinks
+    }
+}
+
+/// A motion without end is as wrong in lanes as alone: no member takes all steps allowed. One that
+/// does not say that it is analytic has its series all the same.
+#[test]
+fn motions_that_halt_are_refused() {
+    let problem = |k: usize| Problem {
+        system: OnJoint::new(1.0).driven_by(Halting {
+            sway: Sinusoid::new([0.1], 3.0, [0.0]),
+            breaks: [None, Some(0.7), Some(0.7), None, Some(-1.0)][k % 5],
+            kinks: [None, Some(0.7), None, Some(0.7), None][k % 5],
+            told: k < 7,
+        }),
+        time: (0.0, 2.0),
+        q: [0.5],
+        v: [0.0],
+    };
+    let problems: Vec<_> = (0..10).map(problem).collect();
+    let outcomes = Batch::new().run(&problems).unwrap();
+    for (k, outcome) in outcomes.into_iter().enumerate() {
+        let Problem { system, time, q, v } = problem(k);
+        let alone = solve(&system, time, q, v).method(Taylor::new()).run();
+        let Err(alone) = alone else {
+            assert_eq!(format!("{outcome:?}"), format!("{alone:?}"), "member {k}");
+            assert_eq!(k % 5, 0);
+            continue;
+        };
+        // The kink at which it halts is crossed in lanes, and is not when alone.
+        let kink = |error: &Error| match error {
+            Error::Kink { kink, .. } => *kink,
+            error => panic!("member {k}: {error}"),
+        };
+        assert_eq!(kink(&outcome.unwrap_err().error), kink(&alone.error), "member {k}");
     }
 }

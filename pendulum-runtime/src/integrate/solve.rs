@@ -187,7 +187,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
         Solve { output, dense, stops, events: events.clone(), max_steps, ..run }
     }
 
-    fn control<B>(self, controller: B) -> Solve<'a, N, D, M, B> {
+    pub(crate) fn control<B>(self, controller: B) -> Solve<'a, N, D, M, B> {
         self.with(|method, _| (method, controller))
     }
 

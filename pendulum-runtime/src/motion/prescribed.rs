@@ -70,7 +70,8 @@ pub trait Motion<T: Real, const D: usize> {
 
     /// The motion as one that knows all its derivatives: `Some(self)` where it is [`Analytic`].
     ///
-    /// [`Auto`](crate::integrate::Auto) asks for it.
+    /// [`Auto`](crate::integrate::Auto) and [`Ensemble`](crate::ensemble::Ensemble) ask for it:
+    /// they do without series where there is none.
     fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
         None
     }

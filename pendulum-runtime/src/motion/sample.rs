@@ -80,6 +80,12 @@ impl<T: Real, const D: usize> Sample<T, D> {
     }
 }
 
+impl<T: Real, const D: usize> Default for Sample<T, D> {
+    fn default() -> Self {
+        Self::zero()
+    }
+}
+
 impl<T: Copy, const D: usize> Sample<T, D> {
     /// Every number mapped.
     pub fn map<U>(&self, mut map: impl FnMut(T) -> U) -> Sample<U, D> {

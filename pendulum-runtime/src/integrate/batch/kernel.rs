@@ -414,8 +414,9 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
             } else if is_short::<D::Scalar>(t, end, wanted.0[l]) {
                 self.attempt.doubted.0[l] = 1.0;
             }
-            if t.since(end).abs() < shortest::<D::Scalar>() {
-                // The scalar does not hold the length of this step.
+            let left = t.since(end).abs();
+            if left == 0.0 || left < shortest::<D::Scalar>() {
+                // The scalar does not hold the length of this step, or a motion has come to a halt.
                 self.attempt.doubted.0[l] = 1.0;
             }
         }

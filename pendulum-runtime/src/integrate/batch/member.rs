@@ -31,11 +31,16 @@ pub(super) struct Member<'a, D: Batched<N>, const N: usize> {
 
 impl<D: Batched<N>, const N: usize> Member<'_, D, N> {
     /// The first time after `t` at which the series stop holding: that of a break, or the end.
+    ///
+    /// It is `t` itself where a motion gives a break or a kink that is not after it: no step is so
+    /// short, and `Taylor` says what is wrong.
     pub(super) fn next_end(&self, t: Time) -> f64 {
         let Problem { system, time: (start, end), .. } = &*self.problem;
-        let t = t.to_f64();
-        let found = if end < start { system.last_break(t) } else { system.next_break(t) };
-        found.filter(|time| precedes(*time, *end, (*start, *end))).unwrap_or(*end)
+        let (interval, now) = ((*start, *end), t.to_f64());
+        let found = if end < start { system.last_break(now) } else { system.next_break(now) };
+        let next = found.filter(|time| !precedes(*end, *time, interval)).unwrap_or(*end);
+        let ordered = |time: f64| precedes(now, time, interval);
+        if ordered(next) && ordered(self.next_kink(t)) { next } else { now }
     }
 
     /// The first kink after `t`, infinite if there is none.

@@ -68,6 +68,9 @@ impl<D: LaneDynamics<N>, const N: usize> StepLaw<Picard, D, N> for AdaptiveStep<
         } else if let Some(time) = dynamics.next_break(t.to_f64())
             && time < context.target
         {
+            if time <= t.to_f64() {
+                return Err(Error::Kink { t: t.to_f64(), kink: time });
+            }
             context.target = time;
         }
         if state.h == 0.0 {

@@ -47,11 +47,15 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> StepLaw<Taylor, D, N> for
         let StepContext { method, field, from, workspace, target, .. } = context;
         let (t, target) = (from.t.to_f64(), *target);
         let backwards = target < t;
-        let target = if backwards {
-            field.dynamics.last_break(t).filter(|time| target < *time).unwrap_or(target)
+        let found = if backwards {
+            field.dynamics.last_break(t).filter(|time| target < *time)
         } else {
-            field.dynamics.next_break(t).filter(|time| *time < target).unwrap_or(target)
+            field.dynamics.next_break(t).filter(|time| *time < target)
         };
+        let target = found.unwrap_or(target);
+        if (target < t) != backwards || target == t {
+            return Err(Error::Kink { t, kink: target });
+        }
         let (rtol, atol) = self.tolerances::<D::Scalar>();
         if workspace.rule.tolerance != rtol {
             workspace.rule = Rule::new(method.order_for(rtol, D::System::PER_DIGIT), rtol);
