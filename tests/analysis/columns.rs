@@ -98,6 +98,8 @@ fn an_unknown_column_is_an_error_with_the_nearest_name() {
     let message = |name: &str| solution.column(name).unwrap_err().to_string();
     assert_eq!(message("angel"), "there is no column `angel`; did you mean `angle`?");
     assert_eq!(message("R"), "there is no column `R`; did you mean `r`?");
+    assert_eq!(message("dr"), "there is no column `dr`; did you mean `ṙ`?");
+    assert_eq!(message("v_r"), "there is no column `v_r`; did you mean `ṙ`?");
     assert_eq!(
         message("velocity"),
         "there is no column `velocity`; there are `t`, `φ`, `r`, `angle`, `φ̇`, `ṙ`, `angle_dot`; outputs of the system come by `solution.output(&system, name)`, its energy by `solution.energy(&system)`"

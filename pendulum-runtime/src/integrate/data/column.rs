@@ -42,12 +42,18 @@ impl ColumnError {
         let wanted = name::read(name);
         let length = wanted.base.chars().count();
         let limit = if length < 2 { 2 } else { 2 + length / 4 * 2 };
+        // `dq` and `vq` are velocities.
+        let velocity = ["v_", "v", "d_", "d"].into_iter().find_map(|sign| {
+            let velocity = Name { base: wanted.base.strip_prefix(sign)?.into(), dots: 1 };
+            columns.iter().find(|column| name::read(column) == velocity)
+        });
         let nearest = columns
             .iter()
             .map(|column| (name::distance(&wanted, &name::read(column)), column))
             .filter(|&(distance, _)| distance <= limit)
             .min_by_key(|&(distance, _)| distance)
-            .map(|(_, column)| column.clone());
+            .map(|(_, column)| column);
+        let nearest = velocity.or(nearest).cloned();
         Self { name: name.into(), nearest, columns, hint, stale: false }
     }
 
