@@ -412,3 +412,30 @@ fn samples_belong_to_one_solution() {
     let fresh = Motor::new(2.0).sampled(0.1, |_, θ, _| 1.0 - θ[0]);
     assert!(first.output(&fresh, "torque").is_err());
 }
+
+lagrangian! {
+    pub struct Loaded { m: kg, load: kg, k: N/m^3 }
+    coordinate x: m;
+    kinetic = (m + load)/2 * ẋ^2;
+    potential = k/4 * x^4;
+}
+
+/// A parameter that is zero, and with which the step began, has not made the motion grow.
+#[test]
+fn steps_that_are_too_long_name_no_parameter() {
+    let failure = solve(&Loaded::new(1.0, 0.0, 1e4), (0.0, 10.0), [1.0], [0.0])
+        .method(Rk4)
+        .step(0.25)
+        .run()
+        .unwrap_err();
+    let message = failure.to_string();
+    assert!(matches!(&failure.error, Error::NotFinite { suspects, .. } if suspects.is_empty()));
+    assert!(message.contains("the steps are too long") && !message.contains("load"), "{message}");
+    // With no mass at all it is the parameter.
+    let failure = solve(&Loaded::new(0.0, 0.0, 1e4), (0.0, 10.0), [1.0], [0.0])
+        .method(Rk4)
+        .step(0.25)
+        .run()
+        .unwrap_err();
+    assert!(failure.to_string().contains("`load`, which is 0.0"), "{failure}");
+}

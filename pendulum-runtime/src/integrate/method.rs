@@ -289,5 +289,10 @@ fn fault<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usize>(
             suspects: diagnose::suspects(dynamics.system()),
         });
     }
+    // With a parameter at fault the step would not have begun.
+    let began = start.a.is_some_and(|a| a.iter().all(|a| a.is_finite()));
+    if began {
+        return Some(Error::NotFinite { t: t.to_f64(), what, suspects: Vec::new() });
+    }
     Some(diagnose::not_finite(dynamics.system(), t, what))
 }
