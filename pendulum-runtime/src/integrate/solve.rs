@@ -219,7 +219,9 @@ impl<const N: usize, D: Dynamics<N>, M> Solve<'_, N, D, M, AdaptiveStep<N>> {
     ///
     /// Runge–Kutta methods refuse less than ten machine epsilons of the scalar.
     /// [`Picard`](crate::integrate::Picard), [`Taylor`](crate::integrate::Taylor) and the choice of
-    /// one of them take any positive number and do not go below rounding.
+    /// one of them take any positive number and do not go below the rounding of a coordinate. The
+    /// absolute tolerance has no such bound: where a motion comes to rest, `rtol` 1e-20 takes many
+    /// times the steps of 1e-14, unless [`atol`](Self::atol) is given.
     ///
     /// Over two words methods whose coefficients have the digits of `f64` hold none below 2.3e-15:
     /// what lies below counts as that. Only [`Taylor`](crate::integrate::Taylor) goes on to 5e-31.
