@@ -10,7 +10,7 @@ use crate::syntax::name;
 use crate::syntax::text::text;
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use syn::Attribute;
 
@@ -36,7 +36,7 @@ impl Copy<'_, '_, '_> {
         let mut items = [(); 3].map(|()| TokenStream::new());
         let Some(analysis) = self.analysis else { return items };
         let [coordinates, constraints, others] = &mut items;
-        let model = analysis.model;
+        let (model, mut spelled) = (analysis.model, self.spelled());
         for (base, &meaning) in &model.names {
             if let Meaning::Let(index) = meaning
                 && let Some(arguments) = &model.lets[index].arguments
@@ -45,7 +45,8 @@ impl Copy<'_, '_, '_> {
                 continue;
             }
             let declared = Self::declared(analysis, meaning);
-            let names = self.spellings(base, &declared);
+            let mut names = spelled.remove(base).unwrap_or_default();
+            names.extend(declared.offered(model.block.ascii));
             let items = names.iter().filter_map(|spelling| declared.item(spelling));
             match meaning {
                 Meaning::Coordinate(_) => coordinates.extend(items),
@@ -65,24 +66,14 @@ impl Copy<'_, '_, '_> {
         items
     }
 
-    /// The spellings of a name and of its derivatives: all that stand in the block, and those that
-    /// an editor offers.
-    fn spellings(&self, base: &str, declared: &Declared) -> BTreeSet<String> {
-        let own = declared.name.to_string();
-        let spelled =
-            self.scan.names.iter().filter_map(|(name, _)| Some(name.as_ref()?.to_string()));
-        let mut names: BTreeSet<String> =
-            spelled.filter(|spelling| name::read(spelling).base == base).collect();
-        if declared.moves {
-            names.insert(format!("{own}_dot"));
-            names.extend(name::velocity(&own).filter(|_| !own.is_ascii() || !self.is_ascii()));
+    /// The spellings of each name and of its derivatives that stand in the block.
+    fn spelled(&self) -> BTreeMap<String, BTreeSet<String>> {
+        let names = self.scan.names.iter().filter_map(|(name, _)| Some(name.as_ref()?.to_string()));
+        let mut spelled: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+        for spelling in names.collect::<BTreeSet<String>>() {
+            spelled.entry(name::read(&spelling).base).or_default().insert(spelling);
         }
-        names.insert(own);
-        names
-    }
-
-    fn is_ascii(&self) -> bool {
-        self.analysis.is_some_and(|analysis| analysis.model.block.ascii)
+        spelled
     }
 
     fn declared<'d>(analysis: &'d Analysis, meaning: Meaning) -> Declared<'d> {
@@ -158,6 +149,14 @@ impl Copy<'_, '_, '_> {
 }
 
 impl Declared<'_> {
+    /// The spellings that an editor offers: the name, and those of its velocity.
+    fn offered(&self, ascii: bool) -> impl Iterator<Item = String> {
+        let own = self.name.to_string();
+        let suffixed = self.moves.then(|| format!("{own}_dot"));
+        let dotted = name::velocity(&own).filter(|_| self.moves && !ascii);
+        suffixed.into_iter().chain(dotted).chain([own])
+    }
+
     /// The name or a derivative of it, in one of its spellings.
     fn item(&self, spelling: &str) -> Option<TokenStream> {
         let mut item = syn::parse_str::<Ident>(spelling).ok()?;
