@@ -22,6 +22,7 @@ mod golden;
 mod growth;
 mod identities;
 mod inputs;
+mod newcomers;
 mod outputs;
 mod printed;
 mod quantities;
