@@ -283,8 +283,6 @@ fn is(tree: &TokenTree, sign: char) -> bool {
 }
 
 /// The tokens before the first sign of this kind, and those after it.
-///
-/// The second of the signs `==`, `>=` and `<=` is none of its own.
 fn halves(trees: &[TokenTree], sign: char) -> (&[TokenTree], &[TokenTree]) {
     match trees.iter().position(|tree| is(tree, sign)) {
         Some(place) => (&trees[..place], &trees[place + 1..]),

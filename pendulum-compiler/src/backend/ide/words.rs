@@ -285,3 +285,44 @@ fn function(name: &str, text: &str, arguments: &[&str]) -> TokenStream {
         pub fn #name(#(#arguments: impl Quantity),*) -> impl Quantity;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{COMPONENTS, CONSTANTS, FORMS, STATEMENTS, UNITS, Word, modules};
+    use crate::algebra::dimension::Dimension;
+    use crate::messages::unit::unknown_unit;
+    use crate::syntax::parse::statement;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_statement_has_its_word() {
+        let words: BTreeSet<&str> = STATEMENTS.iter().map(|row| row.0).chain(["let"]).collect();
+        assert_eq!(words, statement::STATEMENTS.into_iter().collect());
+    }
+
+    #[test]
+    fn every_unit_has_its_word() {
+        assert!(UNITS.iter().all(|row| Dimension::of(row.0).is_some()));
+        // The units that the message lists.
+        let message = unknown_unit("parsec").to_string();
+        let list = message.split('`').filter(|part| Dimension::of(part.trim()).is_some());
+        let known: BTreeSet<&str> = list.map(str::trim).collect();
+        let words: BTreeSet<&str> = UNITS.iter().map(|row| row.0).collect();
+        assert_eq!(known, words);
+    }
+
+    #[test]
+    fn words_are_unique_and_documented() {
+        let mut names = BTreeSet::new();
+        let tables = [COMPONENTS, CONSTANTS].concat().into_iter();
+        let rows = tables.chain(FORMS.iter().map(|row| (row.0, row.1)));
+        for (name, text) in rows.chain(Word::all().map(|word| (word.name, word.meaning))) {
+            assert!(names.insert(name), "{name}");
+            assert!(text.ends_with(['.', '`', '²']), "{name}: {text}");
+        }
+        let all = modules().to_string();
+        for word in Word::all() {
+            assert!(all.contains(&format!("pub fn {} (", word.name)), "{}", word.name);
+        }
+    }
+}

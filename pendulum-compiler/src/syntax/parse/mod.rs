@@ -7,7 +7,7 @@
 mod block;
 mod expr;
 mod foreign;
-mod statement;
+pub(crate) mod statement;
 mod token;
 
 use crate::messages::Errors;

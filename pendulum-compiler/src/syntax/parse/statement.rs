@@ -17,7 +17,7 @@ use syn::{Attribute, Token, bracketed, parenthesized};
 
 /// The words with which statements begin.
 #[rustfmt::skip]
-pub(super) const STATEMENTS: [&str; 13] =
+pub(crate) const STATEMENTS: [&str; 13] =
     ["coordinate", "driven", "input", "let", "kinetic", "potential", "lagrangian", "dissipation", "force", "output", "constraint", "redundant", "limit"];
 
 impl Parser<'_> {

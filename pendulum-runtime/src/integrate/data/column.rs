@@ -147,6 +147,8 @@ impl<T: Float, const N: usize> Solution<T, N> {
     /// The accelerations q̈ at all output times, limits in contact included.
     ///
     /// At two states of the same time as [`energy`](Self::energy).
+    ///
+    /// Not numbers where a [sampled](crate::system::Sampled) controller has run again since.
     pub fn accelerations<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<[T; N]> {
         let stale = self.is_stale(dynamics);
         self.evaluate(|t, side, q, v, contacts| {
@@ -175,6 +177,8 @@ impl<T: Float, const N: usize> Solution<T, N> {
     /// for what impacts and events take away at once.
     ///
     /// At two states of the same time as [`energy`](Self::energy).
+    ///
+    /// Not numbers where a [sampled](crate::system::Sampled) controller has run again since.
     pub fn power<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<T> {
         let stale = self.is_stale(dynamics);
         self.evaluate(|t, side, q, v, contacts| {
@@ -209,6 +213,8 @@ impl<T: Float, const N: usize> Solution<T, N> {
     /// column for each constraint that the equations hold, in the order of `FACTS.constraints`.
     ///
     /// At two states of the same time as [`energy`](Self::energy).
+    ///
+    /// Not numbers where a [sampled](crate::system::Sampled) controller has run again since.
     pub fn reactions<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
         let count = <D::System as System<N>>::FACTS.held_constraints();
         if self.is_stale(dynamics) {
@@ -227,6 +233,8 @@ impl<T: Float, const N: usize> Solution<T, N> {
     /// impacts stand in [`impacts`](Self::impacts).
     ///
     /// At two states of the same time as [`energy`](Self::energy).
+    ///
+    /// Not numbers where a [sampled](crate::system::Sampled) controller has run again since.
     pub fn contact_forces<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
         let count = <D::System as System<N>>::FACTS.limits.len();
         if self.is_stale(dynamics) {

@@ -98,6 +98,8 @@ impl<T: Float, const N: usize> Solution<T, N> {
     /// Time, coordinates, velocities and the outputs of the system at all output times.
     ///
     /// Outputs at a kink are those after it, as [`energy`](Self::energy) is.
+    ///
+    /// Not numbers where a [sampled](crate::system::Sampled) controller has run again since.
     pub fn table_with_outputs<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Table<T> {
         let mut table = self.table();
         for (index, output) in <D::System as System<N>>::FACTS.outputs.iter().enumerate() {
@@ -115,6 +117,8 @@ impl<T: Float, const N: usize> Solution<T, N> {
     /// `λ_rod`, `λ_loop.x`, with their units.
     ///
     /// Multipliers at a kink are those after it, as [`energy`](Self::energy) is.
+    ///
+    /// Not numbers where a [sampled](crate::system::Sampled) controller has run again since.
     pub fn table_with_reactions<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Table<T> {
         let mut table = self.table();
         let constraints = <D::System as System<N>>::FACTS.constraints;
