@@ -114,6 +114,24 @@ fn terminal_events_end_a_lane() {
     same!(60, simple, events([first.clone(), second.clone().terminal()]));
 }
 
+/// Rounding alone decides if the angle reaches the amplitude, once in every period.
+#[test]
+fn functions_that_graze_zero() {
+    let top = |k: usize| Problem { q: [1.2], v: [0.0], ..simple(k) };
+    let reaches = Event::new(|_, q: &[f64; 1], _| q[0] - 1.2);
+    let both = Event::new(|_, q: &[f64; 1], _| q[0] * q[0] - 1.44);
+    let mut found = 0;
+    for rtol in [1e-4, 1e-9, 1e-13] {
+        let one = [reaches.clone().rising(), reaches.clone().falling(), both.clone().rising()];
+        same!(60, top, rtol(rtol), events(&one));
+        found += same!(60, top, rtol(rtol), events([reaches.clone(), both.clone()])).0;
+    }
+    assert!(200 < found, "{found}");
+    same!(60, top, events([both.clone().touching(0.0)]));
+    let third = [both.terminal_after(3), reaches];
+    same!(60, top, events(&third));
+}
+
 #[test]
 fn functions_that_fail_end_a_lane() {
     let root = Event::new(|_, q: &[f64; 1], _| (2.5 - q[0]).sqrt() - 0.1);

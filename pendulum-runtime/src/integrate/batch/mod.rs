@@ -9,6 +9,7 @@ mod member;
 mod problem;
 mod settings;
 mod settle;
+mod watch;
 
 pub(crate) use member::Watch;
 pub use problem::{Batched, Outcome, Problem};

@@ -4,7 +4,7 @@
 // A branch in a loop over lanes would take the lanes apart.
 #![allow(clippy::needless_bitwise_bool)]
 
-use super::flight::{Attempt, Wide, interval_of, length_of, node};
+use super::flight::{Wide, interval_of, node};
 use super::in_lane::InLane;
 use super::kernel::Run;
 use super::lengths::reaches;
@@ -12,112 +12,20 @@ use super::member::Member;
 use super::problem::{Batched, Problem, W};
 use crate::error::Error;
 use crate::integrate::events::Status;
-use crate::integrate::events::detector::{POINTS, Place};
-use crate::integrate::output::Output;
 use crate::integrate::solution::Stats;
 use crate::integrate::state::State;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::held::Held;
 use crate::integrate::step::inertia::{inertia, varies};
 use crate::integrate::step::integration::{Integration, cross};
-use crate::jet::{Known, LENGTH};
+use crate::jet::Known;
 use crate::motion::Side;
-use crate::scalar::Real;
-use crate::system::scalar_time;
 use crate::time::Time;
 
 /// The end of a motion: its last state, and how it has come to it.
 type End<T, const N: usize> = (State<T, N>, Result<Status, Error>);
 
-/// The indices of those of [`POINTS`] that are no ends of a step.
-const INNER: [usize; POINTS.len() - 2] = [0, 2, 3, 4, 5, 6, 7, 8, 9];
-
-/// The coordinates and velocities of all lanes at several points of their steps.
-type Places<T, const N: usize> = [[[Wide<T>; N]; 2]; POINTS.len()];
-
 impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> {
-    /// Finds the lanes in whose steps something is to be kept: an output time, an event. They are
-    /// not zero.
-    #[inline(always)]
-    pub(super) fn watch(&mut self, doubted: Wide<f64>) -> Wide<f64> {
-        let live = self.attempt.from.live;
-        let mut seen = Wide::from_f64(0.0);
-        let always = self.watch.dense | matches!(self.watch.output, Output::Steps);
-        for l in 0..W {
-            let ahead = self.onwards.0[l] * (self.output.0[l] - self.lanes.high.0[l]);
-            seen.0[l] = if (ahead <= 0.0) | always { live.0[l] } else { 0.0 };
-        }
-        if self.watch.events.is_empty() {
-            return seen;
-        }
-        let places = self.places();
-        for l in 0..W {
-            // The detector looks at each step once: what it notes of a quiet one belongs to its
-            // end.
-            let unseen = (0.0 < live.0[l]) & (seen.0[l] == 0.0);
-            if unseen && doubted.0[l] + self.attempt.kinked.0[l] == 0.0 {
-                seen.0[l] = if self.is_quiet(l, &places) { 0.0 } else { 1.0 };
-            }
-        }
-        seen
-    }
-
-    /// The coordinates and velocities at [`POINTS`] but the two that are known.
-    #[inline(always)]
-    pub(super) fn places(&self) -> Places<D::Scalar, N> {
-        let zero = Wide::from_f64(0.0);
-        let mut places = [[[zero; N]; 2]; POINTS.len()];
-        let length = length_of::<D::Scalar>(&self.attempt.h);
-        let (path, order) = (&self.workspace.path, self.rule.order);
-        for i in 0..N {
-            for (part, series) in [&path.q[i], &path.v[i]].into_iter().enumerate() {
-                let mut terms = [zero; LENGTH];
-                let mut power = length;
-                for k in 1..=order {
-                    terms[k] = series[k] * power;
-                    power *= length;
-                }
-                // Side by side: each sum waits for its own last product only.
-                let mut sums = [zero; POINTS.len()];
-                for k in (1..=order).rev() {
-                    for point in INNER {
-                        sums[point] =
-                            (sums[point] + terms[k]) * Wide::<D::Scalar>::from_f64(POINTS[point]);
-                    }
-                }
-                for point in INNER {
-                    places[point][part][i] = series[0] + sums[point];
-                }
-            }
-        }
-        places
-    }
-
-    /// Returns true if no event happens in the step of a lane.
-    pub(super) fn is_quiet(&mut self, l: usize, places: &Places<D::Scalar, N>) -> bool {
-        let Attempt { from, h, .. } = &self.attempt;
-        let Some(member) = &mut self.members[l] else { return true };
-        let interval = interval_of(from, &self.lanes, *h, l);
-        let (t, length) =
-            (scalar_time::<D::Scalar>(interval.start), interval.length::<D::Scalar>());
-        let last = POINTS.len() - 1;
-        // Number by number into the same place: the next load of a copy would wait.
-        let put = |point: usize, place: &mut Place<D::Scalar, N>| {
-            place.t = t + D::Scalar::from_f64(POINTS[point]) * length;
-            let ends = [(1, from), (last, &self.lanes)];
-            if let Some((_, end)) = ends.into_iter().find(|end| end.0 == point) {
-                *place = Place::of(&node(end, l));
-                return;
-            }
-            let [q, v] = &places[point];
-            for i in 0..N {
-                (place.q[i], place.v[i]) = (q[i].0[l], v[i].0[l]);
-            }
-        };
-        let room = Place { t, q: [t; N], v: [t; N] };
-        member.detector.is_quiet(&interval, room, put)
-    }
-
     /// Looks at what is to be kept in the lanes `seen`, takes the steps of the lanes `doubted` once
     /// more, ends the motions that have come to an end and begins others in their lanes. Returns
     /// true if some lane has another state now.

@@ -221,6 +221,14 @@ impl<'a, T: Float, const N: usize> Event<'a, T, N> {
         self
     }
 
+    /// The function whose roots the event is.
+    pub(crate) fn function(&self) -> Option<&Function<'a, T, N>> {
+        match &self.condition {
+            Condition::Root(function) => Some(function.as_ref()),
+            Condition::Times(_) => None,
+        }
+    }
+
     /// Returns true if the event is a root that leaves the motion as it is.
     pub(crate) fn is_only_seen(&self) -> bool {
         matches!(self.condition, Condition::Root(_)) && self.action.is_none()

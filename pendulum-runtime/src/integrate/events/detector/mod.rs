@@ -4,6 +4,8 @@ mod accumulation;
 mod acts;
 mod quiet;
 
+pub(crate) use quiet::{MOST, Start, clear};
+
 use crate::error::Error;
 use crate::integrate::events::root::{Dip, Point, dip, root, stays_away};
 use crate::integrate::events::{Condition, Direction, Event, Occurrence};

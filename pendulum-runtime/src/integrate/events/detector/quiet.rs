@@ -1,84 +1,116 @@
 //! Steps in which nothing happens, as most do.
 
+#![allow(clippy::inline_always)]
+// A branch in a loop over lanes would take the lanes apart.
+#![allow(clippy::needless_bitwise_bool)]
+
 use super::{EventDetector, POINTS, Place, side};
 use crate::integrate::events::Condition;
 use crate::integrate::events::root::stays_away;
 use crate::integrate::step::interval::StepInterval;
-use crate::scalar::Float;
+use crate::scalar::{Float, Lane, Lanes};
+
+/// The number of events whose values stand in a row.
+pub(crate) const MOST: usize = 8;
+
+/// What is known of a function at the start of a step.
+pub(crate) struct Start<T> {
+    pub(crate) value: T,
+    /// The sign that it shows; zero if it has passed a root just now, or has yet to show one.
+    pub(crate) sign: T,
+    /// True if there is nothing before the step.
+    pub(crate) fresh: bool,
+}
+
+/// The lanes in which a function has no root, as ones: at all [`POINTS`] it has the sign `signs`,
+/// and at none is it nearer to zero than at both neighbours.
+///
+/// The values before the step, the first ones, may have any sign.
+#[inline(always)]
+pub(crate) fn clear<T: Lane + Float, const W: usize>(
+    values: &[Lanes<T, W>; POINTS.len()],
+    signs: &Lanes<T, W>,
+) -> Lanes<T, W> {
+    let zero = T::from_f64(0.0);
+    let (mut first, mut middle) = (values[0], values[1]);
+    let mut spoilt = Lanes::<T, W>::splat(zero);
+    for l in 0..W {
+        (first.0[l], middle.0[l]) = (first.0[l].abs(), middle.0[l].abs());
+        spoilt.0[l] = first.0[l] * zero;
+    }
+    // The least value, and the most by which a value lies below both neighbours.
+    let (mut least, mut depth) = (first, Lanes::<T, W>::splat(T::from_f64(-1.0)));
+    for value in &values[2..] {
+        for l in 0..W {
+            let here = value.0[l] * signs.0[l];
+            let (fall, rise) = (first.0[l] - middle.0[l], here - middle.0[l]);
+            let lower = if fall < rise { fall } else { rise };
+            depth.0[l] = if depth.0[l] < lower { lower } else { depth.0[l] };
+            least.0[l] = if here < least.0[l] { here } else { least.0[l] };
+            spoilt.0[l] += here * zero;
+            (first.0[l], middle.0[l]) = (middle.0[l], here);
+        }
+    }
+    let mut clear = Lanes::<T, W>::splat(zero);
+    for l in 0..W {
+        let fine = (zero < least.0[l]) & (depth.0[l] < zero) & (spoilt.0[l] == zero);
+        clear.0[l] = if fine { T::from_f64(1.0) } else { zero };
+    }
+    clear
+}
 
 impl<T: Float, const N: usize> EventDetector<'_, T, N> {
-    /// Returns true if nothing happens in a step over `interval` without a kink, of which `put`
-    /// puts the states at [`POINTS`] into a place; takes note of its end then, as a search that
-    /// finds nothing.
+    /// What is known of the function of an event where the next step starts.
+    pub(crate) fn start(&self, index: usize) -> Start<T> {
+        let track = &self.tracks[index];
+        let sign = if track.expected == 0 { f64::from(track.side) } else { 0.0 };
+        Start { value: track.value, sign: T::from_f64(sign), fresh: self.fresh }
+    }
+
+    /// Returns true if a function, whose `values` at [`POINTS`] are given, neither changes its sign
+    /// nor dips towards zero in a step over `interval` without a kink.
     ///
-    /// All events have functions.
+    /// If there is nothing before the step, the first of the values is that at its start.
     pub(crate) fn is_quiet(
-        &mut self,
+        &self,
+        index: usize,
         interval: &StepInterval,
-        mut room: Place<T, N>,
-        put: impl Fn(usize, &mut Place<T, N>),
+        values: &[T; POINTS.len()],
+        place: impl Fn(usize) -> Place<T, N>,
     ) -> bool {
-        // The values at the ends; those of few events stand in a row.
-        let mut last = [T::from_f64(0.0); 8];
-        if last.len() < self.events.len() {
+        let track = &self.tracks[index];
+        let timed = matches!(self.events[index].condition, Condition::Times(_));
+        if timed || track.side == 0 || track.expected != 0 || side(values[0]) == 0 {
             return false;
         }
-        for index in 0..self.events.len() {
-            match self.quiet_end(index, interval, &mut room, &put) {
-                Some(value) => last[index] = value,
-                None => return false,
+        for i in 2..POINTS.len() {
+            if side(values[i]) != track.side {
+                return false;
             }
-        }
-        self.found.clear();
-        self.fresh = false;
-        for (track, value) in self.tracks.iter_mut().zip(last) {
-            track.value = value;
+            let [first, middle, here] =
+                [i - 2, i - 1, i].map(|point| (T::from_f64(POINTS[point]), values[point].abs()));
+            let lower = middle.1 <= here.1 && middle.1 < first.1;
+            // The function may have been on the other side before the step.
+            if lower
+                && side(values[i - 2]) == track.side
+                && !(i == 2 && (self.fresh || self.recent(index, interval)))
+            {
+                let Ok(tolerance) = self.tolerance(index, &place(i - 1)) else { return false };
+                if !stays_away(&[first, middle, here], tolerance) {
+                    return false;
+                }
+            }
         }
         true
     }
 
-    /// The value of a function at the end of a step in which it neither changes its sign nor dips
-    /// towards zero.
-    fn quiet_end(
-        &self,
-        index: usize,
-        interval: &StepInterval,
-        room: &mut Place<T, N>,
-        put: impl Fn(usize, &mut Place<T, N>),
-    ) -> Option<T> {
-        let Condition::Root(function) = &self.events[index].condition else { return None };
-        let at = |point: usize, room: &mut Place<T, N>| {
-            put(point, room);
-            function(room.t, &room.q, &room.v)
-        };
-        let track = &self.tracks[index];
-        let start = (T::from_f64(POINTS[1]), track.value);
-        let before = (T::from_f64(POINTS[0]), if self.fresh { start.1 } else { at(0, room) });
-        if track.side == 0 || track.expected != 0 || side(before.1) == 0 {
-            return None;
+    /// Goes over a step in which nothing happens: takes note of the `values` of all functions at
+    /// its end, as a search that finds nothing.
+    pub(crate) fn pass(&mut self, values: impl Fn(usize) -> T) {
+        self.found.clear();
+        self.fresh = false;
+        for (index, track) in self.tracks.iter_mut().enumerate() {
+            track.value = values(index);
         }
-        let mut points = [before, start];
-        for i in 2..POINTS.len() {
-            let point = (T::from_f64(POINTS[i]), at(i, room));
-            if side(point.1) != track.side {
-                return None;
-            }
-            let [first, middle] = points.map(|(theta, value)| (theta, value.abs()));
-            let here = (point.0, point.1.abs());
-            let lower = middle.1 <= here.1 && middle.1 < first.1;
-            // The function may have been on the other side before the step.
-            if lower
-                && side(points[0].1) == track.side
-                && !(i == 2 && (self.fresh || self.recent(index, interval)))
-            {
-                put(i - 1, room);
-                let tolerance = self.tolerance(index, room).ok()?;
-                if !stays_away(&[first, middle, here], tolerance) {
-                    return None;
-                }
-            }
-            points = [points[1], point];
-        }
-        Some(points[1].1)
     }
 }

@@ -1,0 +1,190 @@
+//! The steps in which something is to be kept: an output time, an event.
+
+#![allow(clippy::inline_always)]
+// A branch in a loop over lanes would take the lanes apart.
+#![allow(clippy::needless_bitwise_bool)]
+
+use super::flight::{Attempt, Wide, interval_of, length_of, node};
+use super::kernel::Run;
+use super::lengths::any;
+use super::problem::{Batched, W};
+use crate::integrate::events::detector::{MOST, POINTS, Place, Start, clear};
+use crate::integrate::output::Output;
+use crate::jet::LENGTH;
+use crate::scalar::Real;
+use crate::system::scalar_time;
+use crate::time::Time;
+
+/// The index of the last of [`POINTS`].
+const LAST: usize = POINTS.len() - 1;
+/// The indices of those of [`POINTS`] that are no ends of a step.
+const INNER: [usize; POINTS.len() - 2] = [0, 2, 3, 4, 5, 6, 7, 8, 9];
+
+/// The coordinates and velocities of all lanes at several points of their steps.
+type Places<T, const N: usize> = [[[Wide<T>; N]; 2]; POINTS.len()];
+
+/// The values of a function at [`POINTS`].
+type Values<T> = [Wide<T>; POINTS.len()];
+
+impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> {
+    /// Finds the lanes in whose steps something is to be kept. They are not zero.
+    #[inline(always)]
+    pub(super) fn watch(&mut self, doubted: Wide<f64>) -> Wide<f64> {
+        let live = self.attempt.from.live;
+        let mut seen = Wide::from_f64(0.0);
+        let always = self.watch.dense | matches!(self.watch.output, Output::Steps);
+        for l in 0..W {
+            let ahead = self.onwards.0[l] * (self.output.0[l] - self.lanes.high.0[l]);
+            seen.0[l] = if (ahead <= 0.0) | always { live.0[l] } else { 0.0 };
+        }
+        if self.watch.events.is_empty() {
+            return seen;
+        }
+        // The detector looks at each step once: its note of a quiet one belongs to the end.
+        let mut looked = Wide::from_f64(0.0);
+        for l in 0..W {
+            let sure = doubted.0[l] + self.attempt.kinked.0[l] == 0.0;
+            looked.0[l] = if sure & (seen.0[l] == 0.0) { live.0[l] } else { 0.0 };
+        }
+        let quiet = if any(looked) { self.quiet(looked) } else { looked };
+        for l in 0..W {
+            seen.0[l] += looked.0[l] - quiet.0[l];
+        }
+        seen
+    }
+
+    /// Those of the lanes `looked` in whose steps no event happens, as ones. The detector takes
+    /// note of their ends.
+    #[inline(always)]
+    fn quiet(&mut self, looked: Wide<f64>) -> Wide<f64> {
+        let zero = Wide::from_f64(0.0);
+        let mut ends = [Wide::from_f64(0.0); MOST];
+        if ends.len() < self.watch.events.len() {
+            return zero;
+        }
+        let mut quiet = looked;
+        let places = self.places();
+        for index in 0..self.watch.events.len() {
+            let mut signs = Wide::from_f64(0.0);
+            let values = self.values(index, quiet, &places, &mut signs);
+            let clear = clear(&values, &signs);
+            let mut unclear = zero;
+            for l in 0..W {
+                unclear.0[l] =
+                    if clear.0[l] == D::Scalar::from_f64(0.0) { quiet.0[l] } else { 0.0 };
+            }
+            if any(unclear) {
+                self.look_closer(index, unclear, &places, &values, &mut quiet);
+            }
+            ends[index] = values[LAST];
+        }
+        self.pass(quiet, &ends);
+        quiet
+    }
+
+    /// The coordinates and velocities at [`POINTS`] but the two that are known.
+    #[inline(always)]
+    fn places(&self) -> Places<D::Scalar, N> {
+        let zero = Wide::from_f64(0.0);
+        let mut places = [[[zero; N]; 2]; POINTS.len()];
+        let length = length_of::<D::Scalar>(&self.attempt.h);
+        let passed = INNER.map(|point| Wide::from_f64(POINTS[point]) * length);
+        let (path, order) = (&self.workspace.path, self.rule.order.min(LENGTH - 1));
+        for i in 0..N {
+            for (part, series) in [&path.q[i], &path.v[i]].into_iter().enumerate() {
+                // Side by side: each sum waits for its own last product only.
+                let mut sums = [zero; INNER.len()];
+                for &coefficient in series[1..=order].iter().rev() {
+                    sums = core::array::from_fn(|k| (sums[k] + coefficient) * passed[k]);
+                }
+                for (point, sum) in INNER.into_iter().zip(sums) {
+                    places[point][part][i] = series[0] + sum;
+                }
+            }
+        }
+        places
+    }
+
+    /// The values of a function in the lanes `looked`; puts the sign that it has had before into
+    /// `signs`, zero if that alone does not tell.
+    #[inline(never)]
+    fn values(
+        &self,
+        index: usize,
+        looked: Wide<f64>,
+        places: &Places<D::Scalar, N>,
+        signs: &mut Wide<D::Scalar>,
+    ) -> Values<D::Scalar> {
+        let mut values = [Wide::from_f64(0.0); POINTS.len()];
+        let Some(function) = self.watch.events[index].function() else { return values };
+        let from = &self.attempt.from;
+        let length = length_of::<D::Scalar>(&self.attempt.h);
+        for l in 0..W {
+            let Some(member) = &self.members[l] else { continue };
+            if looked.0[l] == 0.0 {
+                continue;
+            }
+            let Start { value, sign, fresh } = member.detector.start(index);
+            (signs.0[l], values[0].0[l], values[1].0[l]) = (sign, value, value);
+            let t = scalar_time::<D::Scalar>(Time::from_words(from.high.0[l], from.low.0[l]));
+            // Number by number into the same place: the next load of a copy would wait.
+            let mut place = Place { t, q: [t; N], v: [t; N] };
+            for point in if fresh { &INNER[1..] } else { &INNER[..] } {
+                place.t = t + D::Scalar::from_f64(POINTS[*point]) * length.0[l];
+                let [q, v] = &places[*point];
+                for i in 0..N {
+                    (place.q[i], place.v[i]) = (q[i].0[l], v[i].0[l]);
+                }
+                values[*point].0[l] = function(place.t, &place.q, &place.v);
+            }
+            let end = Place::of(&node(&self.lanes, l));
+            values[LAST].0[l] = function(end.t, &end.q, &end.v);
+        }
+        values
+    }
+
+    /// Looks at the lanes `unclear` one by one, and takes those in whose steps an event may happen
+    /// from `quiet`.
+    #[inline(never)]
+    fn look_closer(
+        &self,
+        index: usize,
+        unclear: Wide<f64>,
+        places: &Places<D::Scalar, N>,
+        values: &Values<D::Scalar>,
+        quiet: &mut Wide<f64>,
+    ) {
+        let Attempt { from, h, .. } = &self.attempt;
+        for l in 0..W {
+            let Some(member) = self.members[l].as_ref().filter(|_| 0.0 < unclear.0[l]) else {
+                continue;
+            };
+            let interval = interval_of(from, &self.lanes, *h, l);
+            let (t, length) =
+                (scalar_time::<D::Scalar>(interval.start), interval.length::<D::Scalar>());
+            let place = |point: usize| match point {
+                1 => Place::of(&node(from, l)),
+                LAST => Place::of(&node(&self.lanes, l)),
+                _ => Place {
+                    t: t + D::Scalar::from_f64(POINTS[point]) * length,
+                    q: places[point][0].map(|q| q.0[l]),
+                    v: places[point][1].map(|v| v.0[l]),
+                },
+            };
+            let values = values.map(|value| value.0[l]);
+            if !member.detector.is_quiet(index, &interval, &values, place) {
+                quiet.0[l] = 0.0;
+            }
+        }
+    }
+
+    /// Lets the detector take note of the values at the ends of steps in which nothing happens.
+    #[inline(never)]
+    fn pass(&mut self, quiet: Wide<f64>, ends: &[Wide<D::Scalar>; MOST]) {
+        for l in 0..W {
+            if let Some(member) = self.members[l].as_mut().filter(|_| 0.0 < quiet.0[l]) {
+                member.detector.pass(|index| ends[index].0[l]);
+            }
+        }
+    }
+}
