@@ -213,13 +213,14 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
     ///
     /// Between two ends that are finite a polynomial need not be: over a long step h² is beyond the
     /// range before h is.
-    fn within<O: Observed<T, N>>(&mut self, integration: &mut O) -> Result<(), Error> {
+    fn within(&mut self, integration: &mut dyn Observed<T, N>) -> Result<(), Error> {
         let (end, state) = (integration.end().t, State::from(integration.end()));
         let [during, after] = integration.contacts();
         if self.dense.is_some() || 0.0 < self.onwards * end.since(self.next) {
             let Some(interpolant) = integration.interpolant() else { return Ok(()) };
+            let facts = integration.facts();
             let not_finite = |t: f64, q: &[T; N], v: &[T; N]| {
-                let what = first_in_state(O::FACTS, q, v);
+                let what = first_in_state(facts, q, v);
                 what.map_or(Ok(()), |what| Err(Error::NotFinite { t, what, suspects: Vec::new() }))
             };
             if self.dense.is_some() {

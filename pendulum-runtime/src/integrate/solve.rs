@@ -328,7 +328,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         let end = self.time.1;
         let onwards = direction(self.time.0, end);
         let ahead = |at: &Endpoint<D::Scalar, N>, t| onwards * at.t.since(t) < 0.0;
-        let mut stops = self.stops.iter().copied().peekable();
+        let mut stops = self.stops;
         let mut detector = EventDetector::new(&self.events);
         let [_, touching] = integration.contacts();
         recorder.begin(State::from(&integration.end), touching, self.dense);
@@ -339,8 +339,12 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
             if self.max_steps <= accepted + rejected {
                 return Err(Error::MaxSteps { t: integration.t(), max_steps: self.max_steps });
             }
-            while stops.next_if(|stop| !ahead(&integration.end, *stop)).is_some() {}
-            let stop = stops.peek().copied().unwrap_or(end);
+            while let [stop, later @ ..] = stops
+                && !ahead(&integration.end, *stop)
+            {
+                stops = later;
+            }
+            let stop = stops.first().copied().unwrap_or(end);
             integration.step(detector.next_time(integration.t(), stop))?;
             if !ahead(&integration.end, end) {
                 integration.look()?;

@@ -30,7 +30,9 @@ pub(super) struct InLane<'v, D: Batched<N>, const N: usize> {
 }
 
 impl<D: Batched<N>, const N: usize> Observed<D::Scalar, N> for InLane<'_, D, N> {
-    const FACTS: &'static Facts = &<D::System as System<N>>::FACTS;
+    fn facts(&self) -> &'static Facts {
+        &<D::System as System<N>>::FACTS
+    }
 
     fn end(&self) -> &Endpoint<D::Scalar, N> {
         &self.end

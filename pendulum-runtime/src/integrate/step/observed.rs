@@ -8,9 +8,11 @@ use crate::system::Facts;
 use crate::time::Time;
 
 /// An integration after a step, alone or in a lane of a batch.
+///
+/// Detectors and recorders take it as a trait object: they are compiled once for all methods.
 pub(crate) trait Observed<T, const N: usize> {
     /// The facts about its system.
-    const FACTS: &'static Facts;
+    fn facts(&self) -> &'static Facts;
 
     /// The state reached; at a kink the one beyond it.
     fn end(&self) -> &Endpoint<T, N>;

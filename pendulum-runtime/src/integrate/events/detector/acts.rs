@@ -21,13 +21,19 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
     ///
     /// If a function fails, it is put back to the start of the step; if an action does, to the
     /// event.
+    #[inline]
     pub(crate) fn observe(
         &mut self,
-        integration: &mut impl Observed<T, N>,
+        integration: &mut dyn Observed<T, N>,
     ) -> Result<Option<Status>, Error> {
-        if self.is_idle() {
-            return Ok(None);
-        }
+        if self.is_idle() { Ok(None) } else { self.search_step(integration) }
+    }
+
+    /// [`observe`](Self::observe) for at least one event.
+    fn search_step(
+        &mut self,
+        integration: &mut dyn Observed<T, N>,
+    ) -> Result<Option<Status>, Error> {
         self.backwards = integration.goes_back();
         let rooted = self.events.iter().any(|event| matches!(event.condition, Condition::Root(_)));
         let interpolant = if rooted { integration.interpolant() } else { None };
@@ -80,7 +86,7 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
 
     /// Drops what was found after the event that stops the step, except what happens at the same
     /// time: a function that is zero there to rounding would not be found on the way from there.
-    fn gather(&mut self, integration: &mut impl Observed<T, N>, stop: usize) {
+    fn gather(&mut self, integration: &mut dyn Observed<T, N>, stop: usize) {
         let Occurrence { time, state, .. } = self.found[stop];
         let mut kept = stop + 1;
         for index in stop + 1..self.found.len() {
@@ -105,9 +111,9 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
 
     /// Lets the events from `first` on act, one after the other, and gives the status if the
     /// integration ends with one of them; `cut` if the step was put back.
-    fn happen<O: Observed<T, N>>(
+    fn happen(
         &mut self,
-        integration: &mut O,
+        integration: &mut dyn Observed<T, N>,
         first: usize,
         cut: bool,
     ) -> Result<Option<Status>, Error> {
@@ -120,7 +126,7 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
                 let mut state = State::from(integration.end());
                 action(&mut state);
                 state.t = integration.end().t.to_f64();
-                if let Some(what) = first_in_state(O::FACTS, &state.q, &state.v) {
+                if let Some(what) = first_in_state(integration.facts(), &state.q, &state.v) {
                     self.found.truncate(index);
                     return Err(Error::Action { t: time.to_f64(), event, what });
                 }
@@ -156,7 +162,7 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
     /// if the event has come to rest.
     fn acted(
         &mut self,
-        integration: &mut impl Observed<T, N>,
+        integration: &mut dyn Observed<T, N>,
         event: usize,
         time: Time,
         same_place: bool,
@@ -195,7 +201,7 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
     }
 
     /// The rate of the function of an event at the state of `integration`, in units a second.
-    fn rate(&self, integration: &mut impl Observed<T, N>, event: usize) -> Rate<T> {
+    fn rate(&self, integration: &mut dyn Observed<T, N>, event: usize) -> Rate<T> {
         let zero = T::from_f64(0.0);
         let a = integration.accelerations();
         let moment = T::from_f64(MOMENT * integration.last_length().abs());
@@ -217,7 +223,7 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
     }
 
     /// The side to which the function goes from the state of `integration`, without a rate.
-    fn shortly(&self, integration: &mut impl Observed<T, N>, event: usize) -> i8 {
+    fn shortly(&self, integration: &mut dyn Observed<T, N>, event: usize) -> i8 {
         let a = integration.accelerations();
         let place = Place::of(integration.end());
         let dt = T::from_f64(0.125 * integration.last_length().abs());

@@ -98,7 +98,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
     }
 
     /// Begins at the state of `integration`.
-    pub(crate) fn begin(&mut self, integration: &mut impl Observed<T, N>) -> Result<(), Error> {
+    pub(crate) fn begin(&mut self, integration: &mut dyn Observed<T, N>) -> Result<(), Error> {
         if self.is_idle() {
             return Ok(());
         }

@@ -19,7 +19,9 @@ where
     D: Dynamics<N, Scalar: Float>,
     M: Method<D, N>,
 {
-    const FACTS: &'static Facts = &<D::System as System<N>>::FACTS;
+    fn facts(&self) -> &'static Facts {
+        &<D::System as System<N>>::FACTS
+    }
 
     fn end(&self) -> &Endpoint<D::Scalar, N> {
         &self.end
