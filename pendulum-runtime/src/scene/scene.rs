@@ -114,7 +114,7 @@ impl<T: Lane + Float> Scene<T> {
         let (q, v) = OnJoints { system: &system, joint_slots: &self.joint_slots, joints: &joints }
             .start(self.time(), q, v)?;
         let index = self.index_of::<S, N>().unwrap_or_else(|| {
-            let group = Group::<S, T, N>::new(system.mapped(|parameter| parameter));
+            let group = Group::<S, T, N>::new(system.map(|parameter| parameter));
             self.groups.push((TypeId::of::<Group<S, T, N>>(), Box::new(group)));
             self.groups.len() - 1
         });

@@ -10,6 +10,7 @@ mod feedback;
 #[doc(hidden)]
 pub mod generated;
 mod inputs;
+mod lane_system;
 
 pub use constraints::{Constraint, Limit, MOST_LIMITS};
 pub use control::{ControlSlot, ControlValues, Controlled, Sampled, Uncontrolled};
@@ -19,3 +20,4 @@ pub use equations::{Holonomic, Jacobians, SplitEnergy, Staged, System, VelocityF
 pub use facts::Facts;
 pub(crate) use feedback::feedback_jacobians;
 pub use inputs::{ControlSamples, Input, NoInputs, Output, Purpose, Samples};
+pub use lane_system::{Arrangement, InLanes, InOctets, LaneSystem};

@@ -16,7 +16,7 @@ use crate::integrate::state::State;
 use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::interval::StepInterval;
 use crate::jet::{Jets, Known};
-use crate::system::System;
+use crate::system::{LaneSystem, System};
 use crate::time::Time;
 
 impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCHED> {
@@ -49,10 +49,10 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         self.idle();
         if let Some(member) = self.members.iter().flatten().next() {
             let mut parameters = self.parameters.iter();
-            self.system = member
-                .problem
-                .system
-                .widen(|parameter| parameters.next().copied().unwrap_or(Wide::splat(parameter)));
+            self.system =
+                member.problem.system.system().widen(|parameter| {
+                    parameters.next().copied().unwrap_or(Wide::splat(parameter))
+                });
             self.workspace.work = self.system.work();
         }
         self.set_deadline();

@@ -10,7 +10,7 @@
 use super::flight::{Attempt, Flight, Wide, interval_of, length_of, node};
 use super::lengths::{UNTOLD, any, fit, is_short, lengths, log_radii, longer, reaches, weights};
 use super::member::{Member, Watch};
-use super::problem::{Batched, Outcomes, Problems, W};
+use super::problem::{Batched, Outcomes, Problems, W, WideOf};
 use super::settings::Batch;
 use crate::integrate::methods::taylor::{Ends, GAP, MISFIT, Rule, rest};
 use crate::integrate::output::precedes;
@@ -23,7 +23,7 @@ use crate::jet::{InputSeries, Jets, LENGTH, Path, Unrolling};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
 use crate::simd::Work;
-use crate::system::{Facts, System};
+use crate::system::{Facts, LaneSystem, System};
 use crate::time::Time;
 
 /// A batch under way.
@@ -43,7 +43,7 @@ pub(super) struct Run<'a, D: Batched<N>, const N: usize, const WATCHED: bool> {
     pub(super) rtol: f64,
     /// The parameters of all lanes.
     pub(super) parameters: Vec<Wide<D::Scalar>>,
-    pub(super) system: D::Wide,
+    pub(super) system: WideOf<D, N>,
     pub(super) workspace: Box<Workspace<D, N>>,
     pub(super) lanes: Flight<D::Scalar, N>,
     /// The steps that have led to these states.
@@ -70,12 +70,12 @@ pub(super) struct Workspace<D: Batched<N>, const N: usize> {
     pub(super) path: Path<Wide<D::Scalar>, N>,
     /// States and accelerations from which the next steps go.
     pub(super) ahead: Path<Wide<D::Scalar>, N>,
-    pub(super) drive: <D::Wide as Jets<N>>::Drive,
+    pub(super) drive: <WideOf<D, N> as Jets<N>>::Drive,
     /// The series of the driven inputs of one motion.
     pub(super) own: <D::System as Jets<N>>::Drive,
     /// The lanes whose series of driven inputs are those at their time.
     pub(super) driven: [bool; W],
-    pub(super) work: <D::Wide as Jets<N>>::Work,
+    pub(super) work: <WideOf<D, N> as Jets<N>>::Work,
 }
 
 /// All steps of a batch.
@@ -105,7 +105,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         let zero = Wide::from_f64(0.0);
         let first = problems()?;
         let mut parameters = Vec::new();
-        let system = first.1.system.widen(|parameter| {
+        let system = first.1.system.system().widen(|parameter| {
             parameters.push(Wide::splat(parameter));
             Wide::splat(parameter)
         });
@@ -127,7 +127,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
             workspace: Box::new(Workspace {
                 path: Path::new(),
                 ahead: Path::new(),
-                drive: D::Wide::drive(),
+                drive: WideOf::<D, N>::drive(),
                 own: D::System::drive(),
                 driven: [false; W],
                 work: system.work(),
@@ -182,7 +182,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
             path.v[i][0] = ahead.v[i][0];
             path.a[i][0] = ahead.a[i][0];
         }
-        <D::Wide as Jets<N>>::Unrolling::run_in_lanes(
+        <WideOf<D, N> as Jets<N>>::Unrolling::run_in_lanes(
             &self.system,
             self.rule.order,
             path,
@@ -223,7 +223,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
             ahead.q[i][0] = q.high[i];
             ahead.v[i][0] = v.high[i];
         }
-        <D::Wide as Jets<N>>::Unrolling::begin_in_lanes(&self.system, ahead, drive, work);
+        <WideOf<D, N> as Jets<N>>::Unrolling::begin_in_lanes(&self.system, ahead, drive, work);
     }
 
     /// The series of the driven inputs in all lanes, each at its own time.

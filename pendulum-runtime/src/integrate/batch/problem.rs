@@ -4,7 +4,7 @@ use crate::integrate::solution::{Failure, Solution};
 use crate::jet::{Jets, MaybeJets};
 use crate::motion::MaybeAnalytic;
 use crate::scalar::{Float, Lane, Lanes};
-use crate::system::{Driven, Dynamics};
+use crate::system::{Driven, Dynamics, InLanes, LaneSystem, Staged};
 use core::ops::Deref;
 
 /// The motions that are under way at the same time: a vector of 64 bytes for `f64`.
@@ -47,40 +47,29 @@ impl<S: Dynamics<N>, const N: usize> Deref for Posed<'_, S, N> {
     message = "`{Self}` cannot be integrated in a batch",
     note = "a batch takes systems that `lagrangian!` has made, over `f64` or `f32` and without controllers"
 )]
-pub trait Batched<const N: usize>: MaybeJets<N, Scalar: Lane + Float> + Sized {
-    /// The same system over lanes.
-    #[doc(hidden)]
-    type Wide: Jets<N, Scalar = Lanes<Self::Scalar, 8>>;
-
-    /// The same system over lanes, with every parameter mapped.
-    #[doc(hidden)]
-    fn widen(&self, map: impl FnMut(Self::Scalar) -> Lanes<Self::Scalar, 8>) -> Self::Wide;
+pub trait Batched<const N: usize>:
+    MaybeJets<N, Scalar: Lane + Float, System: LaneSystem<InLanes<8>, N, Wide: Jets<N>>> + Sized
+{
 }
 
 impl<S, const N: usize> Batched<N> for S
 where
     S: Jets<N, Scalar: Lane + Float, Inputs = ()>,
-    S::With<Lanes<S::Scalar, W>>: Jets<N>,
+    S::With<Lanes<S::Scalar, W>>: Jets<N> + Staged<N>,
 {
-    type Wide = S::With<Lanes<S::Scalar, W>>;
-
-    fn widen(&self, map: impl FnMut(S::Scalar) -> Lanes<S::Scalar, W>) -> Self::Wide {
-        self.map(map)
-    }
 }
 
 impl<S, M, const N: usize> Batched<N> for Driven<S, M>
 where
     S: Jets<N, Scalar: Lane + Float>,
     M: MaybeAnalytic<S::Inputs, S::Scalar>,
-    S::With<Lanes<S::Scalar, W>>: Jets<N>,
+    S::With<Lanes<S::Scalar, W>>: Jets<N> + Staged<N>,
 {
-    type Wide = S::With<Lanes<S::Scalar, W>>;
-
-    fn widen(&self, map: impl FnMut(S::Scalar) -> Lanes<S::Scalar, W>) -> Self::Wide {
-        self.system.map(map)
-    }
 }
+
+/// The system of the dynamics `D` over lanes.
+pub(super) type WideOf<D, const N: usize> =
+    <<D as Dynamics<N>>::System as LaneSystem<InLanes<W>, N>>::Wide;
 
 /// A source of problems and their indices.
 pub(crate) type Problems<'a, D, const N: usize> =

@@ -70,7 +70,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         let id = self.table.len() as u32;
         let zero = [T::from_f64(0.0); N];
         let mut parameters = Vec::with_capacity(S::FACTS.parameters.len());
-        system.mapped(|parameter| {
+        system.map(|parameter| {
             parameters.push(parameter);
             parameter
         });
@@ -311,7 +311,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// The system with these parameters.
     pub(crate) fn system_of(&self, parameters: &[T]) -> S {
         let mut parameters = parameters.iter();
-        self.prototype.mapped(|parameter| parameters.next().copied().unwrap_or(parameter))
+        self.prototype.map(|parameter| parameters.next().copied().unwrap_or(parameter))
     }
 
     /// The state of a pendulum now and one tick before.

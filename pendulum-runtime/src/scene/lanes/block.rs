@@ -4,11 +4,11 @@ use crate::integrate::step::compensated::Compensated;
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::lanes::limits::LaneLimits;
 use crate::scene::lanes::system::{SceneSystem, W, Wide};
-use crate::system::System;
+use crate::system::{InLanes, LaneSystem, System};
 
 /// [`W`] pendulums of one type.
 pub(crate) struct Block<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
-    pub(crate) prepared: <S::Lanes as System<N>>::Prepared,
+    pub(crate) prepared: <S::Wide as System<N>>::Prepared,
     pub(crate) q: Compensated<Wide<T>, N>,
     pub(crate) v: Compensated<Wide<T>, N>,
     /// The state one tick before.
@@ -25,8 +25,8 @@ pub(crate) struct Block<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
 
 /// Data of [`W`] pendulums that most steps do not read: between the states they would only use up
 /// the caches.
-pub(crate) struct ColdData<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
-    pub(crate) system: S::Lanes,
+pub(crate) struct ColdData<S: LaneSystem<InLanes<W>, N>, const N: usize> {
+    pub(crate) system: S::Wide,
     /// By lane, its number in the group.
     pub(crate) id: [u32; W],
     /// Parameters have changed, so that `system` and its prepared values must be made anew.
@@ -35,7 +35,7 @@ pub(crate) struct ColdData<S: SceneSystem<T, N>, T: Lane + Float, const N: usize
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
     /// A block of pendulums like `prototype`, at rest at zero.
-    pub(crate) fn new(prototype: &S) -> (Self, ColdData<S, T, N>) {
+    pub(crate) fn new(prototype: &S) -> (Self, ColdData<S, N>) {
         let system = prototype.widen(Wide::splat);
         let zero = [Wide::from_f64(0.0); N];
         let block = Self {

@@ -28,7 +28,7 @@ pub(crate) struct Bucket<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> 
     pub(crate) tracks: Tracks<T>,
     pub(crate) blocks: Vec<Block<S, T, N>>,
     /// The other part of each block.
-    pub(crate) cold: Vec<ColdData<S, T, N>>,
+    pub(crate) cold: Vec<ColdData<S, N>>,
     /// The parameters: as many lanes for each block as the system has parameters.
     pub(crate) parameters: Vec<Wide<T>>,
     /// The number of all pendulums, and of those at the front that are awake.
@@ -70,7 +70,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
             let (block, cold) = Block::new(prototype);
             self.blocks.push(block);
             self.cold.push(cold);
-            prototype.mapped(|parameter| {
+            prototype.map(|parameter| {
                 self.parameters.push(Wide::splat(parameter));
                 parameter
             });
@@ -267,7 +267,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
 #[cfg(feature = "rayon")]
 fn run_blocks<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     blocks: &mut [Block<S, T, N>],
-    cold: &[ColdData<S, T, N>],
+    cold: &[ColdData<S, N>],
     lanes_of_last: usize,
     batch: &Batch<'_, T>,
     fork: bool,
@@ -294,7 +294,7 @@ fn run_blocks<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
 #[cfg(not(feature = "rayon"))]
 fn run_blocks<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     blocks: &mut [Block<S, T, N>],
-    cold: &[ColdData<S, T, N>],
+    cold: &[ColdData<S, N>],
     lanes_of_last: usize,
     batch: &Batch<'_, T>,
     _: bool,

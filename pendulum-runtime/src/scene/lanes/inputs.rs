@@ -8,15 +8,15 @@ use crate::scene::sampling::assemble::{Assemble, Numbers};
 use crate::scene::sampling::layout::Layout;
 use crate::scene::sampling::tracks::Tracks;
 use crate::sealed::Sealed;
-use crate::system::System;
+use crate::system::{InLanes, LaneSystem, System};
 
 /// The driven inputs of all lanes at one time.
-pub(crate) type Inputs<S, T, const N: usize> =
-    <<S as SceneSystem<T, N>>::Lanes as System<N>>::Inputs;
+pub(crate) type Inputs<S, const N: usize> =
+    <<S as LaneSystem<InLanes<W>, N>>::Wide as System<N>>::Inputs;
 
 /// Inputs that are all zero.
 #[inline(always)]
-pub(crate) fn nothing<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>() -> Inputs<S, T, N> {
+pub(crate) fn nothing<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>() -> Inputs<S, N> {
     Assemble::assemble(&mut Nothing)
 }
 
@@ -77,7 +77,7 @@ impl<'a, T: Lane + Float> Followed<'a, T> {
     pub(crate) fn inputs<S: SceneSystem<T, N>, const N: usize>(
         &self,
         evaluation: usize,
-    ) -> Inputs<S, T, N> {
+    ) -> Inputs<S, N> {
         let Self { tracks, layout, track, runs } = self;
         if let Some(Runs { count, track, begin }) = runs {
             let mut records: [&[T]; MOST_RUNS] = [&[]; MOST_RUNS];

@@ -41,7 +41,7 @@ pub(crate) struct Batch<'a, T> {
 pub(crate) struct Run<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) blocks: &'a mut [Block<S, T, N>],
     /// The other parts of the blocks.
-    pub(crate) cold: &'a [ColdData<S, T, N>],
+    pub(crate) cold: &'a [ColdData<S, N>],
     pub(crate) lanes_of_last: usize,
     pub(crate) batch: &'a Batch<'a, T>,
 }
@@ -131,7 +131,7 @@ fn batch<
     const K: usize,
 >(
     block: &mut Block<S, T, N>,
-    system: &S::Lanes,
+    system: &S::Wide,
     batch: &Batch<'_, T>,
 ) {
     let stages = K;
@@ -220,15 +220,15 @@ fn freeze<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
 /// The accelerations, with those of soft stops.
 #[inline(always)]
 fn accelerations<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
-    system: &S::Lanes,
-    prepared: &<S::Lanes as System<N>>::Prepared,
+    system: &S::Wide,
+    prepared: &<S::Wide as System<N>>::Prepared,
     t: Wide<T>,
-    inputs: &Inputs<S, T, N>,
+    inputs: &Inputs<S, N>,
     q: &[Wide<T>; N],
     v: &[Wide<T>; N],
     limits: Option<&LaneLimits<T, N>>,
 ) -> [Wide<T>; N] {
-    let at_time = S::Lanes::at_time(t, inputs);
+    let at_time = S::Wide::at_time(t, inputs);
     let at_position = system.at_position(prepared, &at_time, t, q, inputs);
     let mut a = system.accelerations_staged(prepared, &at_time, &at_position, t, q, v, inputs);
     if let Some(limits) = limits
@@ -260,11 +260,11 @@ fn step_of<
     const SCHEME: u8,
     const K: usize,
 >(
-    system: &S::Lanes,
-    prepared: &<S::Lanes as System<N>>::Prepared,
+    system: &S::Wide,
+    prepared: &<S::Wide as System<N>>::Prepared,
     weights: &Weights<T>,
     times: &[Wide<T>; K],
-    inputs: &[Inputs<S, T, N>; K],
+    inputs: &[Inputs<S, N>; K],
     q: &mut Compensated<Wide<T>, N>,
     v: &mut Compensated<Wide<T>, N>,
     limits: Option<&LaneLimits<T, N>>,
@@ -330,9 +330,9 @@ fn step_of<
 /// Newton's method is at rounding after two iterations from an error of the size of its root.
 #[inline(always)]
 fn project<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
-    system: &S::Lanes,
+    system: &S::Wide,
     t: Wide<T>,
-    inputs: &Inputs<S, T, N>,
+    inputs: &Inputs<S, N>,
     q: &mut Compensated<Wide<T>, N>,
     v: &mut Compensated<Wide<T>, N>,
 ) {
@@ -433,7 +433,7 @@ fn cut_tick<
     const K: usize,
 >(
     block: &mut Block<S, T, N>,
-    system: &S::Lanes,
+    system: &S::Wide,
     batch: &Batch<'_, T>,
     tick: usize,
 ) {
@@ -520,7 +520,7 @@ fn cut_tick<
 /// Carries the momenta over the kinks at the ends of the pieces just done.
 fn cross<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     block: &mut Block<S, T, N>,
-    system: &S::Lanes,
+    system: &S::Wide,
     batch: &Batch<'_, T>,
     pieces: &[Option<&Piece>; W],
 ) {
@@ -537,7 +537,7 @@ fn cross<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     if jumps.iter().all(Option::is_none) {
         return;
     }
-    let side = |after: usize| -> Inputs<S, T, N> {
+    let side = |after: usize| -> Inputs<S, N> {
         Assemble::assemble(&mut By(|input, derivative, component| {
             let mut lanes = Wide::from_f64(0.0);
             if let Some(place) = layout.place(input, derivative, component) {

@@ -5,7 +5,7 @@
 
 #![allow(clippy::inline_always)]
 
-use super::lanes::LaneDynamics;
+use super::lanes::{LaneDynamics, LaneInputs, WideOf};
 use super::tableau::{BETWEEN, EIGHT, Nodes, REFINED, S, SIXTEEN};
 use super::workspace::{Progress, Scaled, Stages, Tolerances, Wide, WorkspaceOf};
 use crate::integrate::step::endpoint::Endpoint;
@@ -13,7 +13,7 @@ use crate::integrate::step::interval::StepInterval;
 use crate::motion::Side;
 use crate::scalar::{Float, Lane, Octet};
 use crate::simd::Work;
-use crate::system::{Staged, System, scalar_time};
+use crate::system::{LaneSystem, Staged, System, scalar_time};
 use crate::time::Time;
 use core::hint::black_box;
 
@@ -29,9 +29,6 @@ const EXPECTED_CHANGE: f64 = 0.25;
 /// The most sweeps of an adaptive step and of a fixed one.
 pub(super) const ADAPTIVE: u32 = 12;
 pub(super) const FIXED: u32 = 60;
-
-/// The system over lanes.
-type Of<D, const N: usize> = <D as LaneDynamics<N>>::Wide;
 
 /// A column of a tableau, as it stands there or scaled.
 trait Column<T> {
@@ -56,7 +53,7 @@ impl<T: Lane> Column<T> for Wide<T> {
 /// The equations of a step at 8 `G` nodes, and how well they are to be solved.
 pub(super) struct Equations<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> {
     pub(super) dynamics: &'a D,
-    pub(super) prepared: &'a <Of<D, N> as System<N>>::Prepared,
+    pub(super) prepared: &'a <WideOf<D, N> as System<N>>::Prepared,
     pub(super) interval: &'a StepInterval,
     /// The state at its start.
     pub(super) from: &'a Endpoint<T, N>,
@@ -199,7 +196,7 @@ fn at_nodes<D: LaneDynamics<N>, const N: usize>(
     interval: &StepInterval,
     nodes: &Nodes,
     last: Option<(Time, Side)>,
-) -> ([Time; S], Wide<D::Scalar>, <D::Wide as System<N>>::Inputs) {
+) -> ([Time; S], Wide<D::Scalar>, LaneInputs<D, N>) {
     let (mut times, mut lanes) = ([interval.start; S], Wide::splat(scalar_time(interval.start)));
     // Otherwise nobody looks at them.
     if D::FEEDBACK || !<D::System as System<N>>::FACTS.autonomous {
@@ -231,12 +228,13 @@ fn sweeps<
     a: &mut Stages<T, N, H>,
     half: usize,
 ) -> Progress<T> {
-    let (zero, system) = (Wide::splat(T::from_f64(0.0)), equations.dynamics.widened());
+    let (zero, system) =
+        (Wide::splat(T::from_f64(0.0)), equations.dynamics.system().widen(Octet::splat));
     let (h, prepared) = (Wide::splat(equations.interval.length()), equations.prepared);
     // Where the motion is without accelerations.
     let mut straight = [[zero; N]; H];
     let (times, t, inputs) = at_nodes(equations.dynamics, equations.interval, points[0], None);
-    let mut known = [(t, inputs, Of::<D, N>::at_time(t, &inputs)); H];
+    let mut known = [(t, inputs, WideOf::<D, N>::at_time(t, &inputs)); H];
     let mut node_times = [times; H];
     let all = if G == H || equations.closing { H } else { G };
     for g in 0..all {
@@ -256,7 +254,7 @@ fn sweeps<
             };
             let (times, t, inputs) =
                 at_nodes(equations.dynamics, equations.interval, points[g], last);
-            known[g] = (t, inputs, Of::<D, N>::at_time(t, &inputs));
+            known[g] = (t, inputs, WideOf::<D, N>::at_time(t, &inputs));
             node_times[g] = times;
         }
     }

@@ -5,12 +5,19 @@
 use crate::motion::{Derivatives, MaybeAnalytic, Motion, Sample, Side, derivatives_of, earlier};
 use crate::scalar::{Float, Lane, Octet, Real};
 use crate::system::{
-    ControlSamples, ControlValues, Controlled, Driven, Dynamics, Input, MOST_CONTROLS, NoInputs,
-    Purpose, Sampled, Samples, Staged, System,
+    ControlSamples, ControlValues, Controlled, Driven, Dynamics, InOctets, Input, LaneSystem,
+    MOST_CONTROLS, NoInputs, Purpose, Sampled, Samples, Staged, System,
 };
 use crate::time::Time;
 
 use super::tableau::S;
+
+/// The system of the dynamics `D` over lanes.
+pub(super) type WideOf<D, const N: usize> =
+    <<D as Dynamics<N>>::System as LaneSystem<InOctets, N>>::Wide;
+
+/// The inputs of the system over lanes.
+pub(super) type LaneInputs<D, const N: usize> = <WideOf<D, N> as System<N>>::Inputs;
 
 /// Dynamics of a system that `lagrangian!` has made: the accelerations at eight times can be
 /// computed side by side.
@@ -18,23 +25,13 @@ use super::tableau::S;
     message = "`{Self}` cannot be evaluated at several times at once",
     note = "`Picard` takes systems that `lagrangian!` has made; for others use `Dop853`"
 )]
-pub trait LaneDynamics<const N: usize>: Dynamics<N, Scalar: Lane + Float> {
-    /// The system over lanes.
-    #[doc(hidden)]
-    type Wide: Staged<N, Scalar = Octet<Self::Scalar>>;
-
-    /// The system with the same parameters in every lane.
-    #[doc(hidden)]
-    fn widened(&self) -> Self::Wide;
-
+pub trait LaneDynamics<const N: usize>:
+    Dynamics<N, Scalar: Lane + Float, System: LaneSystem<InOctets, N>>
+{
     /// The samples of all driven inputs at eight times without a kink among them; in the last lane
     /// those at `last`, seen from its side, if it is given.
     #[doc(hidden)]
-    fn inputs_at(
-        &self,
-        times: &[Time; 8],
-        last: Option<(Time, Side)>,
-    ) -> <Self::Wide as System<N>>::Inputs;
+    fn inputs_at(&self, times: &[Time; 8], last: Option<(Time, Side)>) -> LaneInputs<Self, N>;
 
     /// Puts the control inputs that follow the state in each lane into `inputs`.
     #[doc(hidden)]
@@ -44,7 +41,7 @@ pub trait LaneDynamics<const N: usize>: Dynamics<N, Scalar: Lane + Float> {
         times: &[Time; 8],
         q: &[Octet<Self::Scalar>; N],
         v: &[Octet<Self::Scalar>; N],
-        inputs: &mut <Self::Wide as System<N>>::Inputs,
+        inputs: &mut LaneInputs<Self, N>,
     ) {
         let _ = (times, q, v, inputs);
     }
@@ -63,19 +60,8 @@ where
     S0: System<N, Scalar: Lane + Float, Inputs: NoInputs<S0>>,
     S0::With<Octet<S0::Scalar>>: Staged<N, Inputs: NoInputs<S0>>,
 {
-    type Wide = S0::With<Octet<S0::Scalar>>;
-
     #[inline(always)]
-    fn widened(&self) -> Self::Wide {
-        self.map(Octet::splat)
-    }
-
-    #[inline(always)]
-    fn inputs_at(
-        &self,
-        _: &[Time; S],
-        _: Option<(Time, Side)>,
-    ) -> <Self::Wide as System<N>>::Inputs {
+    fn inputs_at(&self, _: &[Time; S], _: Option<(Time, Side)>) -> LaneInputs<Self, N> {
         NoInputs::none()
     }
 
@@ -96,13 +82,6 @@ where
     M: LaneMotions<S0::Inputs, S0::Scalar> + MaybeAnalytic<S0::Inputs, S0::Scalar>,
     S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = M::Wide>,
 {
-    type Wide = S0::With<Octet<S0::Scalar>>;
-
-    #[inline(always)]
-    fn widened(&self) -> Self::Wide {
-        self.system.map(Octet::splat)
-    }
-
     #[inline(always)]
     fn inputs_at(&self, times: &[Time; S], last: Option<(Time, Side)>) -> M::Wide {
         self.motions.sample_all(times, last, S0::FACTS.inputs)
@@ -127,13 +106,6 @@ where
     F: Fn(f64, &[S0::Scalar; N], &[S0::Scalar; N]) -> U,
     U: ControlValues<S0::Scalar>,
 {
-    type Wide = S0::With<Octet<S0::Scalar>>;
-
-    #[inline(always)]
-    fn widened(&self) -> Self::Wide {
-        self.driven.system.map(Octet::splat)
-    }
-
     #[inline(always)]
     fn inputs_at(&self, times: &[Time; S], last: Option<(Time, Side)>) -> M::Wide {
         self.driven.motions.sample_all(times, last, S0::FACTS.inputs)
@@ -177,13 +149,6 @@ where
     C: FnMut(f64, &[S0::Scalar; N], &[S0::Scalar; N]) -> U + Clone,
     U: ControlValues<S0::Scalar>,
 {
-    type Wide = S0::With<Octet<S0::Scalar>>;
-
-    #[inline(always)]
-    fn widened(&self) -> Self::Wide {
-        self.driven.system.map(Octet::splat)
-    }
-
     #[inline(always)]
     fn inputs_at(&self, times: &[Time; S], last: Option<(Time, Side)>) -> M::Wide {
         let mut inputs = self.driven.motions.sample_all(times, last, S0::FACTS.inputs);
@@ -268,13 +233,4 @@ macro_rules! tuples {
     )+};
 }
 
-tuples! {
-    (A DA 0)
-    (A DA 0, B DB 1)
-    (A DA 0, B DB 1, C DC 2)
-    (A DA 0, B DB 1, C DC 2, D DD 3)
-    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4)
-    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4, F DF 5)
-    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4, F DF 5, G DG 6)
-    (A DA 0, B DB 1, C DC 2, D DD 3, E DE 4, F DF 5, G DG 6, H DH 7)
-}
+for_tuples_of_motions!(tuples);

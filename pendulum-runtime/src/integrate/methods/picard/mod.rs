@@ -21,8 +21,7 @@ use crate::integrate::step::field::{Field, coordinate, first_in_state};
 use crate::integrate::step::interval::StepInterval;
 use crate::scalar::{Float, Octet, Real};
 use crate::simd;
-use crate::system::Dynamics;
-use crate::system::System;
+use crate::system::{Dynamics, LaneSystem, System};
 use kernel::{ADAPTIVE, FIXED, Onwards};
 pub use lanes::LaneDynamics;
 use tableau::{EIGHT, S};
@@ -144,7 +143,7 @@ impl<D: LaneDynamics<N>, const N: usize> Method<D, N> for Picard {
     fn workspace(&self, dynamics: &D) -> WorkspaceOf<D, N> {
         let zero = D::Scalar::from_f64(0.0);
         Workspace {
-            prepared: dynamics.widened().prepare(),
+            prepared: dynamics.system().widen(Octet::splat).prepare(),
             a: [[[Octet::splat(zero); N]]; 2],
             last: 0,
             end: None,

@@ -3,7 +3,7 @@
 // What a step needs is inlined into what is compiled for several instruction sets.
 #![allow(clippy::inline_always)]
 
-use super::lanes::LaneDynamics;
+use super::lanes::WideOf;
 use super::tableau::{BETWEEN, Columns, EIGHT, S, SIXTEEN};
 use crate::integrate::methods::dop853;
 use crate::integrate::saved::Memory;
@@ -180,7 +180,7 @@ pub struct Workspace<T: Lane, P, const N: usize> {
 
 /// The room for the dynamics `D`.
 pub(super) type WorkspaceOf<D, const N: usize> =
-    Workspace<<D as Dynamics<N>>::Scalar, <<D as LaneDynamics<N>>::Wide as System<N>>::Prepared, N>;
+    Workspace<<D as Dynamics<N>>::Scalar, <WideOf<D, N> as System<N>>::Prepared, N>;
 
 /// The errors allowed in a step: relative, and absolute of coordinates and velocities.
 pub(super) type Tolerances<const N: usize> = (f64, ([f64; N], [f64; N]));
