@@ -97,6 +97,10 @@ fn of_function(graph: &mut Graph, function: Function, u: Id, y: Id) -> Id {
         Derivative::Call(sign, other) => (graph.call(other, u), sign),
         Derivative::Itself => (y, Sign::Plus),
         Derivative::OneAndSquare(sign) => (one_and_square(graph, y, sign), Sign::Plus),
+        Derivative::Times(sign, other) => {
+            let factor = graph.call(other, u);
+            (graph.mul(y, factor), sign)
+        }
         Derivative::Reciprocal(divisor, sign) => (reciprocal(graph, divisor, u), sign),
         Derivative::Zero => (Graph::ZERO, Sign::Plus),
     };

@@ -128,6 +128,9 @@ pub(crate) enum Derivative {
     Itself,
     /// 1 ± y².
     OneAndSquare(Sign),
+    /// ± y g(u) with another function g.
+    #[expect(dead_code, reason = "no row has it yet")]
+    Times(Sign, Function),
     /// ± 1/d with a divisor d.
     Reciprocal(Divisor, Sign),
     /// 0.
@@ -145,6 +148,9 @@ pub(crate) enum Recurrence {
     Exponential,
     /// ẏ = (1 ± y²) u̇.
     Riccati(Sign),
+    /// ẏ = ± y g(u) u̇ with another function g.
+    #[expect(dead_code, reason = "no row has it yet")]
+    Times(Sign, Function),
     /// d ẏ = ± u̇ with a divisor d.
     Quotient(Divisor, Sign),
     /// y = a u, where a is the value of this function where the series begins.

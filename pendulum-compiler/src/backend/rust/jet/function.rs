@@ -48,6 +48,21 @@ impl Writer<'_, '_, '_> {
                 self.name_in(place, &value, slot.clone());
                 self.lines.extend(quote!(#slope[k] = #one #sign series::square(&#slot, order);));
             }
+            Recurrence::Times(sign, factor) => {
+                self.call(place, factor, a);
+                let factor = self.whole(place);
+                let (x, slot, slope) = (self.value(a), self.slot(), self.slot());
+                let x = self.shared("a", place, &x);
+                let rate = self.rate(&x);
+                self.halves += 4;
+                let start = function_call(function, &x);
+                let sign = (sign == Sign::Minus).then(|| quote!(-));
+                let value =
+                    quote!(series::integral(|| #start, &#rate, &#slope, &path.reciprocals, order));
+                self.name_in(place, &value, slot.clone());
+                self.lines
+                    .extend(quote!(#slope[k] = #sign series::product(&#slot, &#factor, order);));
+            }
             Recurrence::Quotient(divisor, sign) => {
                 let (x, series) = (self.value(a), self.whole(a));
                 let x = self.shared("a", place, &x);
