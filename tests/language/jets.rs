@@ -5,8 +5,10 @@
 //! have to be the sum of the series of the accelerations. The two come from different programs: one
 //! solves for the accelerations by formulas, the other order by order.
 
+use pendulum_runtime::integrate::{Taylor, solve};
 use pendulum_runtime::jet::{JetDynamics, Jets, MAX_ORDER, Path, Series, Unrolling};
 use pendulum_runtime::motion::{Interpolation, Side, Sinusoid, Spline, Still};
+use pendulum_runtime::scalar::{DoubleDouble, Float};
 use pendulum_runtime::time::Time;
 
 use systems::random::Random;
@@ -95,6 +97,7 @@ forces! {
     Angle: (atan2(x, y));
     AngleBack: (atan2(c, ẏ - 1));
     Hyperbolic: (sinh(x) + cosh(x*y) + tanh(ẋ + y));
+    Secant: (sech(x*ẏ) + sech(x - 2*y)*tanh(x - 2*y));
     Exponential: (exp(x*ẏ));
     Logarithm: (ln(x + y));
     Root: (sqrt(x^2 + y^2));
@@ -131,6 +134,38 @@ fn series_of_sinc_hold_at_zero() {
                 check(&format!("sinc at {x}, {y}, {v}"), &system, 0.0, [x, y], [v, w], h);
             }
         }
+    }
+}
+
+mod sech {
+    pendulum_runtime::lagrangian! {
+        /// A particle in the well of Pöschl and Teller.
+        pub(crate) struct Well { m: kg, k: J, w: m }
+        coordinate x: m;
+        kinetic = m/2*ẋ^2;
+        potential = -k*sech(x/w)^2;
+    }
+}
+
+/// With the energy −e, sinh(x/w) is √((k − e)/e) sin(t √(2e/m)/w).
+#[test]
+fn the_well_has_its_motion() {
+    fn error<T: Float>(rtol: f64) -> f64 {
+        let n = T::from_f64;
+        let well = sech::Well::new(n(2.0), n(3.0), n(0.5));
+        // Here e = 3/4, and x swings over 1.3 w with the frequency √3.
+        let solution = solve(&well, (0.0, 10.0), [n(0.0)], [n(1.5)]).method(Taylor::new());
+        let end = solution.rtol(rtol).atol(rtol).run().unwrap().end;
+        let root = n(3.0).sqrt();
+        let exact = root * (n(10.0) * root).sin();
+        ((end.q[0] / n(0.5)).sinh() - exact).to_f64().abs()
+    }
+    for (found, bound) in [
+        (error::<f32>(1e-6), 3e-5),
+        (error::<f64>(1e-14), 1e-13),
+        (error::<DoubleDouble>(1e-28), 1e-26),
+    ] {
+        assert!(found < bound, "{found:e} {bound:e}");
     }
 }
 

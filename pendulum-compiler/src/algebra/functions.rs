@@ -129,7 +129,6 @@ pub(crate) enum Derivative {
     /// 1 ± y².
     OneAndSquare(Sign),
     /// ± y g(u) with another function g.
-    #[expect(dead_code, reason = "no row has it yet")]
     Times(Sign, Function),
     /// ± 1/d with a divisor d.
     Reciprocal(Divisor, Sign),
@@ -149,7 +148,6 @@ pub(crate) enum Recurrence {
     /// ẏ = (1 ± y²) u̇.
     Riccati(Sign),
     /// ẏ = ± y g(u) u̇ with another function g.
-    #[expect(dead_code, reason = "no row has it yet")]
     Times(Sign, Function),
     /// d ẏ = ± u̇ with a divisor d.
     Quotient(Divisor, Sign),
@@ -302,6 +300,14 @@ functions! {
         kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\tanh"), ascii: None,
         value: |_, x| x.tanh(), derivative: OneAndSquare(Sign::Minus),
         recurrence: Riccati(Sign::Minus),
+    }
+    Sech = sech {
+        meaning: "The hyperbolic secant.",
+        word: true, units: UnitRule::Pure, domain: REAL, range: [0.0, 1.0], at_zero: ONE,
+        parity: Even,
+        kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\operatorname{sech}"), ascii: None,
+        value: |_, x| x.cosh().recip(), derivative: Derivative::Times(Sign::Minus, Function::Tanh),
+        recurrence: Recurrence::Times(Sign::Minus, Function::Tanh),
     }
     Exp = exp {
         meaning: "The exponential function.",

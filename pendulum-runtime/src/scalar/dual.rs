@@ -277,6 +277,9 @@ mod tests {
         close(slope!(sinh, 0.75), 1.2946832846768448);
         close(slope!(cosh, 0.75), 0.82231673193583);
         close(slope!(tanh, 0.75), 0.5965858082813315);
+        close(slope!(sech, 0.75), -0.49058249218520006);
+        // Where cosh overflows.
+        assert_eq!(slope!(sech, 800.0), 0.0);
         close(slope!(exp, 0.75), 2.117000016612675);
         close(slope!(ln, 0.75), 4.0 / 3.0);
         close(slope!(sqrt, 0.5625), 2.0 / 3.0);

@@ -306,6 +306,7 @@ mod tests {
         check(a.max(b), Real::max, "larger");
         check(a.min(b), Real::min, "smaller");
         check(a.exp(), |x, _| Real::exp(x), "exponential");
+        check(a.sech(), |x, _| Real::sech(x), "secant");
         check(a.abs().sqrt(), |x, _| Real::abs(x).sqrt(), "root");
         check(a.sign(), |x, _| Real::sign(x), "sign");
         check(a.where_positive(b, -a), |x, y| x.where_positive(y, -x), "choice");

@@ -87,6 +87,14 @@ pub trait Real:
     fn cosh(self) -> Self;
     /// Hyperbolic tangent.
     fn tanh(self) -> Self;
+
+    /// Hyperbolic secant.
+    fn sech(self) -> Self {
+        // Not 1/cosh, whose derivatives are ∞/∞ where cosh overflows.
+        let power = self.where_positive(-self, self).exp();
+        (power + power) / (Self::from_f64(1.0) + power * power)
+    }
+
     /// The exponential function.
     fn exp(self) -> Self;
     /// The natural logarithm.

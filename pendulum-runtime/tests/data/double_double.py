@@ -78,6 +78,7 @@ ONE = {
     "sinh": (mp.sinh, SMALL),
     "cosh": (mp.cosh, SMALL),
     "tanh": (mp.tanh, SMALL),
+    "sech": (mp.sech, SMALL),
     "exp": (mp.exp, SMALL),
     "ln": (mp.log, POSITIVE),
     "sqrt": (mp.sqrt, POSITIVE + [(x, 0.0) for x in [5e-320, 1e-300, 1.7e308]]),
