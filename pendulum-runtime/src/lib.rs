@@ -122,10 +122,9 @@ struct Readme;
 /// `System` and an [`Event`](crate::integrate::Event) of their own.
 pub mod prelude {
     pub use crate::ensemble::Ensemble;
+    pub use crate::integrate::methods::names::*;
     pub use crate::integrate::{
-        Auto, Batch, Direction, Dop853, Dprkn8, Dprkn12, Gauss, Integrator, Leapfrog, Picard,
-        Problem, QuinlanTremaine, Rattle, Rk4, Rodas4, Solution, Srkn6b, Srkn14a, State,
-        SymplecticEuler, Taylor, Tsit5, assemble, solve,
+        Batch, Direction, Integrator, Problem, Solution, State, assemble, solve,
     };
     pub use crate::motion::Motion;
     pub use crate::scalar::Real;

@@ -30,6 +30,46 @@
 
 pub mod method;
 
+/// The methods, one a file.
+pub(crate) mod methods {
+    pub(crate) mod auto;
+    pub(crate) mod dop853;
+    pub(crate) mod dprkn12;
+    pub(crate) mod dprkn8;
+    pub(crate) mod gauss;
+    pub(crate) mod leapfrog;
+    pub(crate) mod picard;
+    pub(crate) mod quinlan_tremaine;
+    pub(crate) mod rattle;
+    pub(crate) mod rk4;
+    pub(crate) mod rodas4;
+    pub(crate) mod srkn14a;
+    pub(crate) mod srkn6b;
+    pub(crate) mod symplectic_euler;
+    pub(crate) mod taylor;
+    pub(crate) mod tsit5;
+
+    /// Their names, for this module and for the prelude.
+    pub(crate) mod names {
+        pub use super::auto::Auto;
+        pub use super::dop853::Dop853;
+        pub use super::dprkn8::Dprkn8;
+        pub use super::dprkn12::Dprkn12;
+        pub use super::gauss::Gauss;
+        pub use super::leapfrog::Leapfrog;
+        pub use super::picard::Picard;
+        pub use super::quinlan_tremaine::QuinlanTremaine;
+        pub use super::rattle::Rattle;
+        pub use super::rk4::Rk4;
+        pub use super::rodas4::Rodas4;
+        pub use super::srkn6b::Srkn6b;
+        pub use super::srkn14a::Srkn14a;
+        pub use super::symplectic_euler::SymplecticEuler;
+        pub use super::taylor::Taylor;
+        pub use super::tsit5::Tsit5;
+    }
+}
+
 /// Controllers of steps, for bounds on them.
 pub mod controller {
     pub use super::step::controller::{
@@ -43,7 +83,6 @@ pub(crate) mod data;
 pub(crate) mod events;
 mod integrator;
 pub(crate) mod interpolant;
-pub(crate) mod methods;
 mod observe;
 pub(crate) mod output;
 mod saved;
@@ -60,22 +99,9 @@ pub use data::{ColumnError, LengthError, Table};
 pub use events::impact::impact;
 pub use events::{Direction, Event, Occurrence, Status};
 pub use integrator::{Integrator, StatesAt, Steps};
-pub use methods::auto::Auto;
-pub use methods::dop853::Dop853;
-pub use methods::dprkn8::Dprkn8;
-pub use methods::dprkn12::Dprkn12;
-pub use methods::gauss::{Gauss, Newton, Sweeps};
-pub use methods::leapfrog::Leapfrog;
-pub use methods::picard::{LaneDynamics, Picard};
-pub use methods::quinlan_tremaine::QuinlanTremaine;
-pub use methods::rattle::Rattle;
-pub use methods::rk4::Rk4;
-pub use methods::rodas4::Rodas4;
-pub use methods::srkn6b::Srkn6b;
-pub use methods::srkn14a::Srkn14a;
-pub use methods::symplectic_euler::SymplecticEuler;
-pub use methods::taylor::Taylor;
-pub use methods::tsit5::Tsit5;
+pub use methods::gauss::{Newton, Sweeps};
+pub use methods::names::*;
+pub use methods::picard::LaneDynamics;
 pub use observe::Step;
 pub use saved::Saved;
 pub use solution::{Failure, Impact, Solution, States, Stats};
