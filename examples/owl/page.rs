@@ -19,7 +19,7 @@ pub(crate) fn write(
     values: [&[f64]; 2],
     shown: [usize; 2],
 ) -> String {
-    // What stands before the root, such as an XML declaration, does not belong into a page.
+    // Text before the root, such as an XML declaration, does not belong into a page.
     let drawing = &text[text.find("<svg").unwrap_or(0)..];
     let data = data(rig, baked, values, shown);
     let [gravities, dampings] = values.map(|values| values.len().to_string());
@@ -32,7 +32,7 @@ pub(crate) fn write(
         ("DRAWING", drawing.trim_end()),
         ("DATA", &data),
     ];
-    // What is put in is not looked through again.
+    // Text that is put in is not looked through again.
     let mut pieces = include_str!("page.html").split('@');
     let mut page = pieces.next().unwrap_or_default().to_string();
     for piece in pieces {

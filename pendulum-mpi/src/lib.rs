@@ -42,7 +42,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// What a message begins with.
+/// The first byte of a message.
 const REQUEST: u8 = 0;
 const SHARD: u8 = 1;
 const THROUGH: u8 = 2;

@@ -105,7 +105,7 @@ fn baked_motions_come_back() {
     assert!(message.contains("ascending"), "{message}");
 }
 
-/// What is known of constraints comes back with the names.
+/// The counters of constraints come back with the names.
 #[test]
 fn stats_of_constraints_are_read_as_they_were_written() {
     let bob = systems::constrained::Bob::new(1.0, 1.0);

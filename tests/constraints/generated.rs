@@ -1,4 +1,4 @@
-//! What is generated for constraints against dual numbers and dense algebra.
+//! Generated constraints against dual numbers and dense algebra.
 
 use nalgebra::{DMatrix, DVector};
 use pendulum_runtime::scalar::Dual;
@@ -71,7 +71,7 @@ where
             right[N + k] = along[1][k].derivative;
             targets[N + k] = -target[k];
         }
-        // How much of the digits a dense solution keeps.
+        // The digits that a dense solution keeps.
         let inverse = matrix.clone().try_inverse().expect("a regular matrix");
         let condition = (matrix.norm() * inverse.norm()).max(1.0);
         if 1e7 < condition {

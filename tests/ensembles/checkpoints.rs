@@ -110,7 +110,7 @@ fn a_run_that_is_killed_fifty_times_loses_nothing() {
         killed += u32::from(!child.wait().unwrap().success());
         let files = shards(&folder);
         most = most.max(files.len());
-        // What another machine or a full disk may leave: files that are torn or damaged.
+        // Another machine or a full disk may leave files that are torn or damaged.
         if !files.is_empty() && random(3) == 0 {
             let file = &files[random(files.len() as u32) as usize];
             let mut bytes = fs::read(file).unwrap();

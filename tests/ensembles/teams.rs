@@ -30,7 +30,7 @@ impl Desk for Clerk<'_> {
 
 struct Member<'t> {
     clerk: Clerk<'t>,
-    /// What comes to the root.
+    /// The parcels that come to the root.
     mail: Option<(usize, Receiver<Parcel>)>,
 }
 

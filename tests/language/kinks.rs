@@ -65,7 +65,7 @@ fn fixed_steps_land_on_the_keys() {
     let (error, stats) =
         run(solve(&driven, (0.0, 5.0), [0.3], [0.0]).method(Srkn6b).step(1.0 / 60.0).run());
     assert!(error.abs() < 1e-7, "{error:e}");
-    // Those between the start and the end, and the one at the end.
+    // The kinks between the start and the end, and the one at the end.
     assert_eq!(stats.kinks, 120);
     let (error, _) =
         run(solve(&driven, (0.0, 5.0), [0.3], [0.0]).method(Rk4).step(1.0 / 60.0).run());

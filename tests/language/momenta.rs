@@ -255,7 +255,7 @@ fn momenta_that_cancel_have_velocities() {
     for v in [1e-6_f64, 0.1, 1.0, 30.0, 1e3, 1e4] {
         for other in [0.0, -v, -2.0 * v, -2.0 * v * (1.0 + 1e-9), 1.0, 1e-12] {
             let found = back(&Ranges::new(1.0, 1.0), [0.0; 2], [v, other]);
-            // What the rounding of a momentum by ε does: dv/dp = (1 + v²)^(3/2).
+            // The effect of rounding a momentum by ε: dv/dp = (1 + v²)^(3/2).
             let error = 1e-14 * (1.0 + v.max((v + other).abs())).powi(3);
             assert!(
                 (found[0] - v).abs() < error && (found[1] - other).abs() < 2.0 * error,

@@ -171,7 +171,7 @@ fn a_double_pendulum_hits_a_stop_with_the_mass_matrix() {
     each!(solve(&arm, (0.0, 4.0), [0.2, -0.5], [0.0, 3.0]).events([stop()]), check;
         [], [.method(Dop853)], [.method(Tsit5)], [.method(Picard)], [.method(Taylor::new())],
         [.method(Rk4).step(0.01)], [.method(Gauss::<2>::new()).step(0.01)]);
-    // What `bounce` adds is `impact`.
+    // The velocity that `bounce` adds is `impact`.
     let (q, v) = ([0.2, 0.5], [1.0, 2.0]);
     let mut state = solve(&arm, (0.0, 0.0), q, v).run().unwrap().end;
     state.bounce(&arm, &[1.0, -1.0], e);

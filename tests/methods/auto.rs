@@ -309,7 +309,7 @@ fn what_is_seen_of_a_motion_knows_as_much_as_the_motion() {
         assert!((runs[0].end.q[0] - runs[1].end.q[0]).abs() < 1e-13);
         assert!((runs[0].end.q[0] - series.as_ref().unwrap().end.q[0]).abs() < 10.0 * rtol);
     }
-    // What is seen of a function is a function.
+    // The projection of a function is a function.
     let thrown = Function::new(|t| [0.0, t, t * t])
         .velocity(|t| [0.0, 1.0, 2.0 * t])
         .acceleration(|_| [0.0, 0.0, 2.0]);

@@ -26,8 +26,8 @@ lagrangian! {
     potential = exp(-k*x);
 }
 
-/// How far from its start a pendulum of small swings ends that `there` takes to t = 1000 and `back`
-/// to 0.
+/// The distance from its start at which a pendulum of small swings ends: `there` takes it to
+/// t = 1000, and `back` to 0.
 fn there_and_back(
     start: [f64; 2],
     there: impl Fn([f64; 2]) -> [f64; 2],
@@ -57,8 +57,8 @@ fn forth_and_back_over_a_thousand_seconds_in_equal_steps() {
     assert!(distance <= 4e-16, "{distance:e}");
 }
 
-/// What rounding leaves of the way back is a random walk, of which one start tells little: the root
-/// mean square over 24 of them.
+/// Rounding makes a random walk of the way back, of which one start tells little: the root mean
+/// square over 24 of them.
 #[test]
 fn forth_and_back_over_a_thousand_seconds() {
     let simple: Simple = Simple::new(9.8);

@@ -263,7 +263,7 @@ fn snapshots_can_be_written_and_read() {
     let text = serde_json::to_string(&snapshot).unwrap();
     let read: Snapshot<f64> = serde_json::from_str(&text).unwrap();
     assert_eq!(read, snapshot);
-    // What a file was damaged to is refused, and the scene goes on as if nothing had been.
+    // A damaged snapshot is refused, and the scene goes on as if nothing had been.
     let clock = serde_json::to_value(&snapshot).unwrap()["clock"].to_string();
     for (good, bad) in [
         ("\"Leapfrog\",1", "\"Leapfrog\",0"),

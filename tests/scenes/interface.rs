@@ -350,7 +350,7 @@ fn stops_throw_back_and_hold() {
     let (q, v) = scene.state(soft);
     let expected = 0.3 - (0.2 - std::f64::consts::PI / 30.0);
     assert!((q[0] - expected).abs() < 1e-4 && (v[0] + 1.0).abs() < 2e-3, "{q:?} {v:?} {expected}");
-    // What falls onto a wall without restitution lies there.
+    // A pendulum that falls onto a wall without restitution lies there.
     let handle = scene.hang((), Simple::new(0.1, 0.2), [1.0], [0.0]).unwrap();
     scene.set_limits(handle, [0.5], [2.0], Stop::Hard { restitution: 0.0 }).unwrap();
     scene.advance(2.0).unwrap();

@@ -104,7 +104,7 @@ fn sleepers_wake_with_the_tick_in_which_their_joint_moves() {
         (scene.state(handles[7]).0[0] - exact.end.q[0]).abs()
             < 0.05 * (exact.end.q[0] - asleep.0[0]).abs() + 2e-3
     );
-    // What is changed wakes.
+    // A pendulum that is changed wakes.
     scene.restore(&snapshot).unwrap();
     scene.set_parameter_everywhere("g", 5.0).unwrap();
     assert_eq!(scene.awake().0, 41);
@@ -237,7 +237,7 @@ fn joints_of_sleepers_are_not_asked() {
     let alone = Hanging::new(0.1, 0.5).driven_by(Sinusoid::new([0.01, 0.0], 5.0, [0.0, 0.0]));
     let exact = solve(&alone, (0.0, 60.0), [0.1], [0.0]).rtol(1e-12).atol(1e-12).run().unwrap();
     assert!((scene.state(handle).0[0] - exact.end.q[0]).abs() < 1e-4);
-    // What was hidden too long begins at rest.
+    // A pendulum that was hidden too long begins at rest.
     scene.hide(handle).unwrap();
     scene.advance(60.0).unwrap();
     scene.show(handle, Resume::CatchUp { longest: 2.0 }).unwrap();

@@ -1,4 +1,4 @@
-//! What both maps share: options, a progress bar, a picture.
+//! The parts that both maps share: options, a progress bar, a picture.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use lexopt::prelude::*;

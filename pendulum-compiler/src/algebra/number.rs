@@ -131,7 +131,7 @@ impl Rational {
         Self::new(numerator, (self.denominator / shared).checked_mul(other.denominator)?)
     }
 
-    /// Whether `self` is the smaller number; `None` where 128 bits do not tell.
+    /// Returns true if `self` is the smaller number; `None` where 128 bits do not tell.
     pub(crate) fn less(self, other: Self) -> Option<bool> {
         let left = self.numerator.checked_mul(other.denominator)?;
         let right = other.numerator.checked_mul(self.denominator)?;

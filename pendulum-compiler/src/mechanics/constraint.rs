@@ -25,7 +25,7 @@ pub(crate) const MOST_LIMITS: usize = 16;
 /// The constraints and limits of a motion.
 #[derive(Debug, Default)]
 pub(crate) struct Constraints {
-    /// Those that are solved.
+    /// Constraints that are solved.
     pub(crate) held: Vec<Constraint>,
     pub(crate) redundant: Vec<Constraint>,
     pub(crate) limits: Vec<Constraint>,

@@ -125,7 +125,7 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     }
     motion.constraints = constraints;
 
-    // What control inputs add to the Lagrangian does work as a force does: their rates are unknown.
+    // Terms with control inputs do work as a force does: the rates of the inputs are unknown.
     let own = at_rest_controls(graph, lagrangian);
     let controlled = if own == lagrangian { Graph::ZERO } else { graph.sub(lagrangian, own) };
     let mut power = Vec::new();
@@ -425,7 +425,7 @@ pub(crate) fn invert(
         if jumps(graph, rest) {
             return None;
         }
-        // What structure does not cancel vanishes at q̇ = 0.
+        // The terms that structure does not cancel vanish at q̇ = 0.
         let rest = if graph.dependencies(rest).any(Dependencies::VELOCITY) {
             at_rest(graph, rest)
         } else {

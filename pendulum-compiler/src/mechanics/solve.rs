@@ -325,7 +325,7 @@ fn factor(
 ) -> Result<Factors, usize> {
     let size = block.len();
     let mut lower = vec![vec![Graph::ZERO; size]; size];
-    // What stands left of the pivot before it is divided by it.
+    // The entries left of the pivot, not yet divided by it.
     let mut scaled = vec![vec![Graph::ZERO; size]; size];
     let mut reciprocal: Vec<Id> = Vec::with_capacity(size);
     let mut independence: Vec<Id> = Vec::with_capacity(size);

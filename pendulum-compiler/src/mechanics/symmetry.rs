@@ -54,7 +54,7 @@ pub(crate) fn conserved(
     // no symmetry to pass: for D < 2³⁰ with a chance below 2⁻²⁰⁰.
     let wanted = unknowns.len() + 9;
     let nodes = graph.reachable(&roots);
-    // What a point demands of the unknowns; its values are dropped at once.
+    // The equations of a point for the unknowns; its values are dropped at once.
     let demands = |point: &Point, seed: u64| {
         let values = point.again(seed).values_of(graph, &nodes)?;
         let at = |id: Id| values[&id];

@@ -1,8 +1,8 @@
-//! What a parser expects where something else stands.
+//! The tokens that a parser expects where something else stands.
 
 use std::fmt;
 
-/// What is expected at a token.
+/// The description of an expected token.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Expected(&'static str);
 

@@ -7,7 +7,7 @@ use std::fmt::{self, Display};
 const FORM: &str = "a unit is a product, quotient or power of `kg`, `m`, `s`, `rad`, `N`, `J`, \
                     `W`, `Hz`, `A`, `V`, `C`, `F`, `H`, `ohm`, `T`, `K` and `1`";
 
-/// What has one unit in all its parts.
+/// An expression that has one unit in all its parts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Whole<'a> {
     Constraint,

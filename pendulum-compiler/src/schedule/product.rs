@@ -9,7 +9,7 @@ use crate::algebra::number::Rational;
 impl Schedule<'_> {
     /// A product without its sign, and whether that is minus.
     ///
-    /// What does not move stands together: it is computed once by whoever prepares it.
+    /// Factors that do not move stand together: the preparation computes their product once.
     pub(super) fn product(&mut self, term: &Term) -> (Place, bool) {
         let (parameter_only, mut moving) = self.split(term);
         let mut negative = term.coefficient.is_negative();

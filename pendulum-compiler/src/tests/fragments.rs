@@ -1,4 +1,4 @@
-//! What a macro of the user's hands over as `$e:expr` comes in brackets that nobody sees.
+//! Fragments: an `$e:expr` that a macro of the user's hands over comes in invisible brackets.
 
 use crate::compile::expand;
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};

@@ -117,7 +117,7 @@ fn sources(root: &Path) -> Vec<PathBuf> {
         if path.is_dir() {
             pending.extend(std::fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path()));
         } else if path.extension().is_some_and(|kind| kind == "rs" || kind == "md")
-            // Those of the generator have a test of their own.
+            // The blocks of the generator have a test of their own.
             && !path.components().any(|part| part.as_os_str() == "random_systems")
         {
             files.push(path);
@@ -127,7 +127,7 @@ fn sources(root: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// What stands between the braces of each `lagrangian!` that no other macro writes.
+/// The text between the braces of each `lagrangian!` that no other macro writes.
 fn blocks(text: &str) -> Vec<String> {
     let mut found = Vec::new();
     for (start, _) in text.match_indices("lagrangian! {") {
@@ -146,7 +146,7 @@ fn blocks(text: &str) -> Vec<String> {
             let bare = lines.map(|line| match comment {
                 Some(mark) => {
                     let line = line.trim_start().strip_prefix(mark).unwrap_or(line);
-                    // What the documentation hides.
+                    // A line that the documentation hides.
                     line.trim_start().strip_prefix("# ").unwrap_or(line)
                 }
                 // The same in a guide.
@@ -167,8 +167,8 @@ fn report(source: &str) -> String {
     attempt(source, &mut errors, true).unwrap_or_else(|| panic!("{:?}", errors.messages()))
 }
 
-/// What a golden file holds, without energies, momenta and LaTeX unless it is the whole; `None` if
-/// the block is refused.
+/// The content of a golden file, without energies, momenta and LaTeX unless it is the whole;
+/// `None` if the block is refused.
 fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
     derived(source, errors, |model, graph, motion, energies| {
         let names = unicode::Names::new(model, energies);

@@ -27,7 +27,7 @@ fn shapes_are_checked() {
     }
 }
 
-/// What has no unit takes no part in the checks, vectors and families neither.
+/// Quantities without a unit take no part in the checks, vectors and families included.
 #[test]
 fn a_vector_may_have_no_unit() {
     let source = |unit: &str| {

@@ -51,7 +51,7 @@ fn differences_are_found_among_other_terms() {
         let (whole, parts) = (lowered(&mut graph, whole), lowered(&mut graph, parts));
         assert_eq!(without_cancellation(&mut graph, whole), parts);
     }
-    // What does not cancel stays.
+    // Terms that do not cancel stay.
     for still in ["2 - cos(a)", "1 - cos(a)^2/2", "b - c*cos(a)", "cos(a) + cos(b)", "1 - cosh(a)"]
     {
         let mut graph = Graph::new();

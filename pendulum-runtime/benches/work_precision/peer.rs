@@ -1,6 +1,6 @@
 //! Rows that another process runs and times, and that this one asks for.
 //!
-//! What the process writes: a line about itself, a line for each row (system, method and setting
+//! The output of the process: a line about itself, a line for each row (system, method and setting
 //! between tabs), `ready`; then, for each index that it reads, the seconds, the evaluations and the
 //! values between blanks, or `failed` and the reason.
 

@@ -113,7 +113,7 @@ impl Reduction {
         let (coordinates, velocities) = (free(&pivots[..holonomic]), free(&pivots));
         let positions = dependent(&pivots[..holonomic], &coordinates, N, gradient);
         let rates = dependent(&pivots, &velocities, N, gradient);
-        // What changes of the coordinates add to the dependent velocities.
+        // The dependent velocities that changes of the coordinates add.
         let by_q = DMatrix::from_fn(held, N, right) * &positions;
         let by_q = solved(&pivots, gradient, &by_q);
         let (first, second) = (coordinates.len(), velocities.len());

@@ -160,7 +160,7 @@ impl<'k, K> Checkpoint<'k, K> {
         let Some(Ok(entries)) = self.folder.map(fs::read_dir) else { return };
         for entry in entries.flatten() {
             if entry.path().extension().is_some_and(|extension| extension == "tmp") {
-                // What is left lies about, and does no harm.
+                // A file that cannot be removed does no harm.
                 let _ = fs::remove_file(entry.path());
             }
         }

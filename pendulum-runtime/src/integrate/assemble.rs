@@ -110,7 +110,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Assemble<'_, D, N> {
             search.positions(&mut q, &v)?;
             search.velocities(&q, &mut v)?;
         }
-        // What an integration asks of its start.
+        // The check that an integration makes of its start.
         projection::start(dynamics, time, Side::After, q, v)?;
         Ok(State { t, q, v })
     }

@@ -1,4 +1,4 @@
-//! Integrators: one method a file, and around them what knows no method's name.
+//! Integrators: one method a file, and the parts around them, which know no method's name.
 //!
 //! [`solve`] integrates from start to end, [`Integrator`] step by step. A method that is wrong for
 //! a system does not compile for it.
@@ -17,7 +17,7 @@
 //! | [`Rodas4`] | 4 | 6 and the Jacobians | adaptive | stiff springs and dampers |
 //! | [`Tsit5`] | 5 | 6 | adaptive | any system, errors 1e-2 … 1e-6 |
 //! | [`Dop853`] | 8 | 12 | adaptive | any system, errors 1e-6 … 1e-13 |
-//! | [`Picard`] | 16 | eight in one go, four to seven times | adaptive | any generated system, errors 1e-2 … 1e-13: the fastest of all for most |
+//! | [`Picard`] | 16 | 8 at once in each of 4 to 7 sweeps | adaptive | any generated system, errors 1e-2 … 1e-13: the fastest of all for most |
 //! | [`Taylor`] | 2 … 30 | its order | adaptive | any generated system, errors 1e-5 … rounding |
 //!
 //! [`Batch`] takes many motions of one system through `Taylor` side by side.

@@ -25,7 +25,7 @@ pub(super) fn sinc<T: Float>(x: T, order: usize) -> T {
     if number(order) < size {
         return (1..=order).fold(sin / x, |value, n| (derivative(n) - number(n) * value) / x);
     }
-    // What the order after the last would add to this one.
+    // The term that the order after the last would add to this one.
     let (mut last, mut rest) = (order + 1, number(1));
     while T::EPSILON * T::from_f64(0.015625) < rest {
         last += 1;

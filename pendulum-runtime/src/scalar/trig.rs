@@ -49,7 +49,7 @@ const SINGLE_C: [f64; 4] =
 pub(crate) fn sin_cos(x: f64) -> (f64, f64) {
     let magnitude = x.abs();
     if magnitude <= FIRST {
-        // What the kernel does here, without waiting for k = 0.
+        // As the kernel here, without waiting for k = 0.
         let (sin, cos) = polynomials(magnitude, 0.0);
         (sin.copysign(x), cos)
     } else if magnitude <= LIMIT {

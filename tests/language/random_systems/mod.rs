@@ -206,8 +206,8 @@ trait DriveOf<const N: usize>: Jets<N> {
 
 impl<S: Jets<N>, const N: usize> DriveOf<N> for S {}
 
-/// How far a motion of one module ends from its start when it is run for a while and back, as far
-/// as it goes and is smooth.
+/// The distance from its start at which a motion of one module ends when it is run for a while and
+/// back, as far as it goes and is smooth.
 macro_rules! there_and_back {
     ($module:ident, $apart:ident) => {{
         let (system, case) = (blocks::$module::system::<f64>(), &blocks::$module::CASE);

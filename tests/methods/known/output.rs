@@ -88,7 +88,7 @@ fn regular_times_include_the_end_if_they_meet_it() {
     let tenths = run(0.1);
     assert_eq!((tenths.len(), tenths[10]), (11, 2.0));
     assert_eq!(run(5.0), [1.0]);
-    // So is every multiple far from zero.
+    // Every multiple far from zero is, too.
     let run = |start, end, every| {
         solve(&pendulum(), (start, end), [1.3], [0.0]).method(Dop853).every(every).run().unwrap().t
     };

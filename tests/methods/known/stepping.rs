@@ -142,7 +142,7 @@ fn a_failed_step_leaves_the_state_before_it() {
     assert!(state.t == 1.0 && state.q[0].is_finite());
     assert!(integrator.step().is_err());
     assert_eq!(integrator.state(), state);
-    // What the method would tell about the motion belongs to the failed one.
+    // The motion that the method knows is that of the failed step.
     assert!(integrator.interpolant().is_none());
 }
 

@@ -63,7 +63,7 @@ fn main() -> ExitCode {
         eprintln!("no such target; choose one of {}", names.join(", "));
         return ExitCode::FAILURE;
     }
-    // What a panic says is told with its seed.
+    // The text of a panic is told with its seed.
     std::panic::set_hook(Box::new(|_| {}));
     let watch = watch::Watch::start(LONGEST * 6);
     let tallies = run(&plan, &targets, &watch);

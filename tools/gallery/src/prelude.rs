@@ -1,4 +1,4 @@
-//! What the programs of the gallery use.
+//! The names that the programs of the gallery use.
 
 pub(crate) use pendulum_runtime::prelude::*;
 

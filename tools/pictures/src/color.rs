@@ -16,7 +16,7 @@ pub const PINK: RGBColor = RGBColor(210, 78, 146);
 pub const OCHRE: RGBColor = RGBColor(163, 119, 34);
 /// For a curve.
 pub const TEAL: RGBColor = RGBColor(18, 140, 155);
-/// What stands for comparison.
+/// Curves for comparison.
 pub const GREY: RGBColor = RGBColor(130, 130, 134);
 /// Titles, labels and ticks.
 pub const TEXT: RGBColor = RGBColor(118, 118, 124);

@@ -40,7 +40,7 @@ pub fn scaled(system: &System) -> System {
 pub fn reversed(system: &System) -> System {
     let mut reversed = system.clone();
     let turn = |expr: &mut Expr| {
-        // What has been differentiated an odd number of times changes its sign.
+        // A quantity that has been differentiated an odd number of times changes its sign.
         if let Expr::Time
         | Expr::Velocity(..)
         | Expr::Input(_, 1)

@@ -7,8 +7,8 @@
 //! misses whose reason is known, which `pendulum-runtime/src/guide/accuracy.md` explains, do not
 //! count as failures.
 //!
-//! What is compared with comes from closed forms, from published or arbitrary-precision digits, or
-//! from the same equations in numbers of two words, never from the run itself.
+//! References come from closed forms, from published or arbitrary-precision digits, or from the
+//! same equations in numbers of two words, never from the run itself.
 
 #![allow(mixed_script_confusables)]
 
@@ -65,7 +65,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Whether every bar is met.
+/// Measures the table; returns true if every bar is met.
 fn table() -> Result<bool, Box<dyn Error>> {
     let Choice { scale, tests, known } = chosen(std::env::args().skip(1))?;
     // Hidden where stderr is no terminal.

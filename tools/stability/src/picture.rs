@@ -93,7 +93,7 @@ impl Page {
         } else {
             Axis::linear(self.x).range(0.0, right)
         };
-        // What rounds to nothing has no logarithm.
+        // A value that rounds to nothing has no logarithm.
         let y = Axis::logarithmic(self.y).range(bottom.max(1e-16) / 1.5, top * 1.5);
         let mut chart = Chart::new(x, y);
         for &(name, factor, rate) in self.guides {

@@ -257,7 +257,7 @@ impl Crowd {
         };
         let ticks = self.scene.advance(dt).unwrap().ticks;
         self.asked += if self.paused { 0.0 } else { dt };
-        // Those alone take ticks as they come.
+        // Single scenes take ticks as they come.
         for single in &mut self.singles {
             single.scene.advance_ticks(ticks as u32);
         }

@@ -48,7 +48,7 @@ fn hash(numbers: impl IntoIterator<Item = f64>) -> u64 {
 }
 
 fn hash_of<T: Float, const N: usize>(state: &State<T, N>) -> u64 {
-    // What the first word leaves off is in the difference.
+    // The rest after the first word is in the difference.
     let words = |x: &T| [x.to_f64(), (*x - T::from_f64(x.to_f64())).to_f64()];
     hash(core::iter::once(state.t).chain(state.q.iter().chain(&state.v).flat_map(words)))
 }

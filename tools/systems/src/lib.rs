@@ -1,4 +1,4 @@
-//! What tests, benchmarks and tools share: systems with a few helpers, and the final states of
+//! Systems that tests, benchmarks and tools share, with a few helpers, and the final states of
 //! every method as hashes.
 
 #![allow(mixed_script_confusables, confusable_idents)]
@@ -18,7 +18,7 @@ pub mod random {
 
     /// Every seventh case, from the first on; all of them with `ALL_CASES=1`.
     ///
-    /// What takes seconds without optimization is looked at whole by `.ci/run`.
+    /// `.ci/run` looks at all cases of tests that take seconds without optimization.
     pub fn some<T>(cases: impl IntoIterator<Item = T>) -> impl Iterator<Item = T> {
         let share = if std::env::var_os("ALL_CASES").is_some() { 1 } else { 7 };
         cases.into_iter().step_by(share)

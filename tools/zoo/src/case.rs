@@ -179,8 +179,8 @@ pub(crate) trait Case {
     /// The parameters and the motion, for who wants to repeat the run.
     fn describe(&self) -> String;
 
-    /// What is measured, with `rtol` and `atol` at this tolerance: at the end, and at other times
-    /// if there are any.
+    /// The measurement with `rtol` and `atol` at this tolerance: at the end, and at other times if
+    /// there are any.
     fn run(
         &self,
         method: Method,

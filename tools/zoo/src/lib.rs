@@ -74,7 +74,7 @@ impl Options {
         method == Method::Dop853 || self.methods.is_empty() || self.methods.iter().any(wanted)
     }
 
-    /// Whether every name is that of something.
+    /// Checks that every name is known.
     fn check(&self) -> Result<(), String> {
         for name in &self.families {
             if !families::all().any(|family| family.name.contains(name.as_str())) {

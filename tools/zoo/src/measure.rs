@@ -114,7 +114,7 @@ pub(crate) fn clock(family: &Family, measured: &mut Measured) {
         let once =
             || Some(case.run(method, family.scalar, tolerance, &[]).ok()?.time.as_secs_f64());
         let first: f64 = once()?;
-        // What takes long is not disturbed much.
+        // A long run is not disturbed much.
         let repeats = if first < 0.02 { 4 } else { 0 };
         Some((0..repeats).filter_map(|_| once()).fold(first, f64::min))
     };

@@ -129,7 +129,7 @@ impl Graph {
 
     /// The derivative of a node, if it is known.
     pub(crate) fn cached_derivative(&self, symbol: Symbol, id: Id) -> Option<Id> {
-        // What contains nothing of the symbol's kind does not depend on it.
+        // An expression with nothing of the symbol's kind does not depend on it.
         if self.dependencies(id).any(Dependencies::of(symbol)) {
             self.slopes.get(&(symbol, id)).copied()
         } else {

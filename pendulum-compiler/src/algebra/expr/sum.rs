@@ -147,8 +147,7 @@ impl Graph {
                 }
             });
         }
-        // What a division by the factor cannot take out of every term would be found again for
-        // ever.
+        // A factor that a division cannot take out of every term would be found again for ever.
         common.retain(|&(base, least)| {
             let divides = |&(other, exponent): &(Id, Rational)| {
                 let rest = exact(exponent.add(least.negative()));

@@ -100,7 +100,7 @@ impl Emitter<'_, '_> {
             Symbol::Point(..) | Symbol::Auxiliary(_) | Symbol::Position(_) => {
                 quote!(::core::unreachable!())
             }
-            // Those of the equations have been put in; here they are given.
+            // The equations have their accelerations and multipliers put in; here they are given.
             Symbol::Acceleration(index) => quote!(accelerations[#index]),
             Symbol::Multiplier(index) => quote!(multipliers[#index]),
             Symbol::Time => quote!(t),

@@ -13,7 +13,7 @@ impl Emitter<'_, '_> {
     /// A leading underscore silences it, and so do `allow` and `expect` on the struct or on the
     /// field.
     pub(super) fn unmentioned(&self) -> Option<TokenStream> {
-        // What a mistake has left out may have mentioned them.
+        // Statements that a mistake has left out may have mentioned them.
         let Model { unmentioned, unused, .. } = self.model;
         if self.motion.is_none() || unmentioned.is_empty() && unused.is_empty() {
             return None;

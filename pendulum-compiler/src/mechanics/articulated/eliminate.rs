@@ -30,7 +30,7 @@ struct Pivots {
     multipliers: BTreeSet<usize>,
     /// The part of each pivot that comes from coordinates.
     whole: BTreeMap<usize, Vec<(Id, Rational)>>,
-    /// Those that others have reduced.
+    /// Unknowns that others have reduced.
     reduced: BTreeSet<usize>,
     independence: BTreeMap<usize, Id>,
 }
@@ -71,7 +71,7 @@ impl Tree<'_> {
                 .partition(|j| !joints[..index].iter().any(|joint| joint.coordinates.contains(j)));
             open = rest;
             let ready: Vec<usize> = ready;
-            // What no position needs waits until the others are done.
+            // An unknown that no position needs waits until the others are done.
             let (now, later): (Vec<usize>, Vec<usize>) = ready.into_iter().partition(|j| {
                 index == 0 || joints.iter().any(|joint| joint.coordinates.contains(j))
             });
@@ -113,7 +113,7 @@ impl Tree<'_> {
     fn fold(&mut self, system: &mut Quadratic, joint: &Joint, drift: &[Id], steps: &mut Vec<Step>) {
         let count = self.count;
         let places: Vec<usize> = joint.scalars.iter().map(|&scalar| count + scalar).collect();
-        // What each scalar is made of: unknowns with their factors.
+        // The parts of each scalar: unknowns with their factors.
         let parts: Vec<Vec<(usize, Id)>> = (0..places.len())
             .map(|row| {
                 let parent = joint.parents[row].map(|parent| (count + parent, Graph::ONE));

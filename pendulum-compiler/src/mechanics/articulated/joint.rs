@@ -38,7 +38,7 @@ impl Tree<'_> {
             }
             found.push((*index, best.1));
         }
-        // What no energy and no descendant needs is left out.
+        // A position that no energy and no descendant needs is left out.
         let direct = |index: usize| {
             extended.positions[index]
                 .iter()

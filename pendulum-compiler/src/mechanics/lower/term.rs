@@ -311,7 +311,7 @@ impl Lower<'_, '_, '_, '_> {
     }
 
     fn of_scalars(&mut self, a: &Expr, b: &Expr, function: fn(&mut Graph, Id, Id) -> Id) -> Value {
-        // What is wrong with one argument is wrong with the call.
+        // An argument that is wrong makes the call wrong.
         let Some(a) = self.scalar(a) else { return Value::Bad };
         let Some(b) = self.scalar(b) else { return Value::Bad };
         Value::Scalar(function(self.graph, a, b))

@@ -45,7 +45,7 @@ pub(crate) fn all(input: TokenStream, errors: &mut Errors) -> Option<(TokenStrea
             Ok(())
         })
     });
-    // What recovery has left in some bracket has been reported already.
+    // Tokens that recovery has left in some bracket have been reported already.
     if let Err(error) = outcome
         && errors.is_empty()
     {

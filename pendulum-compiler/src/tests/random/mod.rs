@@ -1,7 +1,7 @@
 //! Random systems, derived by the compiler and computed without it.
 //!
-//! What the compiler and the reference of `random_systems` say at random states is compared in
-//! `f64` and in double-double.
+//! The compiler against the reference of `random_systems`, at random states, in `f64` and in
+//! double-double.
 
 mod check;
 mod constrained;

@@ -20,7 +20,7 @@
 //! let arm = Bvh::read(text)?;
 //! // The raised hand, in centimetres as in the file.
 //! assert!((arm.pose(1)[1][1] - 200.0).abs() < 1e-12);
-//! // What a pendulum in the plane hangs on: the hand in metres, seen along z.
+//! // The joint of a pendulum in the plane: the hand in metres, seen along z.
 //! let hand = Projected::new(arm.motion("hand", 0.01)?, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

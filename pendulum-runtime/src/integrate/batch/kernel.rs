@@ -304,7 +304,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         let end = if self.attempt.kinked.0[l] == 0.0 {
             core::array::from_fn(|i| ahead.a[i][0].0[l])
         } else {
-            // Those of the next series are accelerations beyond the kink.
+            // The next series begins with the accelerations beyond the kink.
             let side = if self.onwards.0[l] < 0.0 { Side::After } else { Side::Before };
             problem.system.accelerations_at(to.t, side, &to.q.high, &to.v.high)
         };
@@ -332,7 +332,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         let Some(Member { problem, .. }) = &self.members[l] else { return wanted };
         let (start, end) = problem.time;
         let t = self.attempt.start(l);
-        // What is wrong with a motion, `Taylor` says.
+        // `Taylor` names the mistake of a motion.
         let limited =
             ControllerState::over(end - start).within_sight(wanted, &problem.system, t, GAP);
         limited.unwrap_or(0.0)

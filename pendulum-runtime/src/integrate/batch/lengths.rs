@@ -1,6 +1,6 @@
 //! The lengths of steps that series tell, in all lanes at once.
 
-// What a step needs is inlined into what is compiled for several instruction sets.
+// The functions of a step are inlined into code that is compiled for several instruction sets.
 #![allow(clippy::inline_always)]
 
 use super::flight::{Flight, Wide};

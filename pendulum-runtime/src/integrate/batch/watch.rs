@@ -53,8 +53,8 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
         seen
     }
 
-    /// Those of the lanes `looked` in whose steps no event happens, as ones. The detector takes
-    /// note of their ends.
+    /// The lanes among `looked` in whose steps no event happens, as ones. The detector takes note
+    /// of their ends.
     #[inline(always)]
     fn quiet(&mut self, looked: Wide<f64>) -> Wide<f64> {
         let zero = Wide::from_f64(0.0);

@@ -217,8 +217,8 @@ fn solve<T: Float, const N: usize>(
     for _ in 0..MOST {
         let (values, scales) = misfits(to);
         let (left, constraint) = in_rounding(&values, &scales);
-        // What is left must be rounding, of either sign: the rest of an iteration that converges
-        // from one side would let the energy drift.
+        // The error left must be rounding, of either sign: an iteration that converges from one
+        // side would let the energy drift.
         if left == 0.0 || left < CLOSE && 0.5 * least <= left {
             return Ok(());
         }

@@ -1,6 +1,6 @@
 //! Steps as long as the error allows.
 
-// What lanes use too has to be compiled for their vectors.
+// Functions that lanes use too have to be compiled for their vectors.
 #![allow(clippy::inline_always)]
 
 use crate::error::Error;
@@ -426,7 +426,7 @@ impl<const N: usize> AdaptiveStep<N> {
             1e-3 * h
         };
         let step = if longer < 100.0 * h { longer } else { 100.0 * h };
-        // What time does not resolve is no step; the error of a longer one decides.
+        // A length that time does not resolve is no step; the error of a longer one decides.
         let least = 2.0 * resolution_of::<D::Scalar>(from.t);
         Ok(if step < least { least } else { step })
     }

@@ -5,7 +5,7 @@
 //! by what is known about time scales: no two of its samples lie farther apart than [`APART`] times
 //! the width of the narrowest function of time that it goes over.
 
-// What lanes use too has to be compiled for their vectors.
+// Functions that lanes use too have to be compiled for their vectors.
 #![allow(clippy::inline_always)]
 
 use crate::integrate::schemes::runge_kutta::Row;

@@ -288,7 +288,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
         if !closed.any() {
             return Ok(false);
         }
-        // What lies below zero, and what was met, is put where it touches.
+        // Limits below zero, and limits that were met, are put where they touch.
         let mut off = Contacts::NONE;
         for i in 0..count {
             off.set(i, met(i) && !held.has(i) || closed.has(i) && gaps[i] < zero);

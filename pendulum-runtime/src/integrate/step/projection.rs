@@ -172,7 +172,7 @@ pub(crate) fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
     // A correction this long, in units of rounding, leaves one below rounding behind.
     let quadratic = 0.25 / D::Scalar::EPSILON.to_f64().sqrt();
     for part in 0..2 {
-        // What is left and where, before the last correction.
+        // The greatest misfit before the last correction, with its constraint.
         let mut before = None;
         let scales = projection.scales(&q.high, &v.high)[part];
         for iteration in 0..=MOST {

@@ -255,7 +255,7 @@ impl Div for DoubleDouble {
         // Near the ends of the range both are brought to its middle.
         let (up, down) = (balance(self.high), balance(other.high));
         let quotient = self.scaled(up).quotient(other.scaled(down));
-        // What cancels must not overflow on the way.
+        // Factors that cancel must not overflow on the way.
         if up == down { quotient } else { quotient.scaled(down).scaled(1.0 / up) }
     }
 }

@@ -46,7 +46,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         joint_slots: &[JointSlot<T>],
         tolerance: f64,
     ) -> bool {
-        // What constrained pendulums gain on the way from their rest is not known.
+        // The energy that constrained pendulums gain on the way from their rest is not known.
         if S::FACTS.explicit_time || const { Layouts::<S, N>::HELD } {
             return false;
         }

@@ -247,7 +247,7 @@ impl Writer<'_, '_, '_> {
                 self.operation(place);
             }
         }
-        // What is read at the order before, or as a rate, has to stay.
+        // A value that is read at the order before, or as a rate, has to stay.
         let late = (0..plan.program.ops.len()).filter(|&index| {
             !plan.ahead[index] && !plan.parameter_only[index] && !plan.inside[index]
         });

@@ -194,7 +194,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
             match &self.events[index].condition {
                 Condition::Times(times) if self.backwards => {
                     let at = end.t.to_f64();
-                    // Those ahead when it goes forwards again.
+                    // The times ahead when it goes forwards again.
                     self.tracks[index].next = times.partition_point(|time| *time <= at);
                     if times.binary_search_by(|time| time.total_cmp(&at)).is_ok() {
                         self.found.push(occurrence(index, end));

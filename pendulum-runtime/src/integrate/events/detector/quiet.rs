@@ -13,7 +13,7 @@ use crate::scalar::{Float, Lane, Lanes};
 /// The number of events whose values stand in a row.
 pub(crate) const MOST: usize = 8;
 
-/// What is known of a function at the start of a step.
+/// A function at the start of a step.
 pub(crate) struct Start<T> {
     pub(crate) value: T,
     /// The sign that it shows; zero if it has passed a root just now, or has yet to show one.
@@ -60,7 +60,7 @@ pub(crate) fn clear<T: Lane + Float, const W: usize>(
 }
 
 impl<T: Float, const N: usize> EventDetector<'_, T, N> {
-    /// What is known of the function of an event where the next step starts.
+    /// The function of an event at the start of the next step.
     pub(crate) fn start(&self, index: usize) -> Start<T> {
         let track = &self.tracks[index];
         let sign = if track.expected == 0 { f64::from(track.side) } else { 0.0 };

@@ -306,7 +306,7 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
         mut improve: impl FnMut(&mut X, &mut Slopes<T, N, S>) -> Change,
     ) -> Result<(), Option<(usize, usize)>> {
         let epsilon = T::EPSILON.to_f64();
-        // What is left after the last sweep has the same sign in every step: it must be small
+        // The error left after the last sweep has the same sign in every step: it must be small
         // against the sum of many roundings.
         let negligible = epsilon / 65536.0;
         let rounding = 0.01 * epsilon.sqrt();

@@ -336,7 +336,7 @@ fn sweeps<
         let expected = if equations.closing { EXPECTED_CHANGE } else { NEGLIGIBLE };
         let is_near = is_known && next <= number(expected) * earlier;
         if equations.closing {
-            // Whether the closing sweep could have come before this one.
+            // Near before this sweep: the closing one could have come in its place.
             (near, was_near) = (near || is_near, near);
             if equations.least <= progress.sweeps + 1
                 && (near || !shrinks || equations.most <= progress.sweeps + 1)

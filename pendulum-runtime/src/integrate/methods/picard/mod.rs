@@ -1,7 +1,7 @@
 //! Collocation at Gauss's nodes, solved by Picard's iteration with all nodes of a step side by side
 //! in the lanes of a vector.
 
-// What a step needs is inlined into what is compiled for several instruction sets.
+// The functions of a step are inlined into code that is compiled for several instruction sets.
 #![allow(clippy::inline_always)]
 
 mod controller;

@@ -231,7 +231,7 @@ impl<T: Float, const N: usize> Ends<'_, T, N> {
         let (mut allowed, mut is_rounding) = (to.is_finite() && size.is_finite(), true);
         for i in 0..N {
             let difference = (end[i] - series[i]).to_f64().abs();
-            // That of a smooth series is gone after a halving; that of a jump is not, and the
+            // The misfit of a smooth series is gone after a halving; that of a jump is not, and the
             // velocity is off by all of it.
             let (share, most) = if strict { (1.0, 1.0) } else { (*order as f64, MISFIT) };
             let misfit = interval.h.abs() * difference / share;
