@@ -1,6 +1,7 @@
 //! Sine, cosine and the angle of a point.
 
-use super::{DoubleDouble, Real, power_of_two, series};
+use super::number::{DoubleDouble, power_of_two, series};
+use crate::scalar::Real;
 
 /// Up to this magnitude nothing needs to be taken off an angle.
 const FIRST: f64 = core::f64::consts::FRAC_PI_4;

@@ -1,6 +1,7 @@
 //! Numbers in two words from decimal digits, and back.
 
-use super::{DoubleDouble, Float, Real};
+use super::number::DoubleDouble;
+use crate::scalar::{Float, Real};
 use core::fmt;
 use core::str::FromStr;
 

@@ -1,6 +1,7 @@
 //! The exponential function, the logarithm and what is made of them.
 
-use super::{DoubleDouble, Float, Real, power_of_two, series};
+use super::number::{DoubleDouble, power_of_two, series};
+use crate::scalar::{Float, Real};
 
 /// ln 2 in two parts of 32 bits, whose product with a small integer is exact, and the rest.
 const LN_2_A: f64 = f64::from_bits(0x3FE62E42FEE00000);
