@@ -5,6 +5,7 @@ use pendulum_runtime::ensemble::Ensemble;
 use pendulum_runtime::integrate::{Event, Problem, Status};
 use pendulum_runtime::prelude::*;
 use std::f64::consts::PI;
+use std::sync::atomic::{AtomicU64, Ordering};
 use systems::pendulums::Simple;
 use systems::problems::Double;
 
@@ -112,6 +113,27 @@ fn terminal_events_end_a_lane() {
     same!(60, simple, events(twice.clone().map(Event::terminal)));
     let [first, second] = twice;
     same!(60, simple, events([first.clone(), second.clone().terminal()]));
+}
+
+/// The detector evaluates a function at ten points of a step besides its start, with outputs and
+/// without.
+#[test]
+fn each_step_is_searched_once() {
+    let evaluations = |outputs: bool| {
+        let count = AtomicU64::new(0);
+        let far = Event::new(|t, _: &[f64; 1], _: &[f64; 1]| {
+            count.fetch_add(1, Ordering::Relaxed);
+            t + 1000.0
+        });
+        let all = Ensemble::new(0..40, simple).rtol(1e-9).events([far]);
+        let all = if outputs { all.every_step() } else { all };
+        let steps = all.map(|_, solution| solution.stats.accepted).reduce(|| 0, |a, b| a + b);
+        count.into_inner() as f64 / steps.unwrap().value as f64
+    };
+    for outputs in [false, true] {
+        let found = evaluations(outputs);
+        assert!((9.5..11.0).contains(&found), "{outputs} {found}");
+    }
 }
 
 /// Rounding alone decides if the angle reaches the amplitude, once in every period.
