@@ -47,6 +47,7 @@ pub(crate) const RULES: &[Rule] = &[
     call(Function::Abs,  "abs-number",    "abs(-3/2)",                             "3/2",            abs_number),
     call(Function::Abs,  "abs-abs",       "abs(abs(a - 2))",                       "abs(a - 2)",     |g, u| idempotent(g, Function::Abs, u)),
     call(Function::Abs,  "abs-square",    "abs(a^2)",                              "a^2",            abs_square),
+    call(Function::Abs,  "abs-exp",       "abs(exp(a))",                           "exp(a)",         |g, u| matches!(g.node(u), Node::Call(Function::Exp, _)).then_some(u)),
     call(Function::Sign, "sign-number",   "sign(-3/2)",                            "-1",             sign_number),
     product("abs-even-power",             "abs(a - 2)^2",                          "(a - 2)^2",      abs_even_power),
     product("sign-abs",                   "sign(a - 2)*abs(a - 2)",                "a - 2",          sign_abs),
