@@ -1,7 +1,7 @@
 //! The definitions that an expression needs.
 
 use super::resolved::{Meaning, Model};
-use crate::syntax::ast::{Expr, ExprKind, ForceIndex};
+use crate::syntax::ast::{Expr, ExprKind};
 use crate::syntax::name;
 use proc_macro2::Ident;
 use std::collections::BTreeSet;
@@ -9,21 +9,8 @@ use std::collections::BTreeSet;
 /// The definitions that outputs need, and neither an energy, a force, a constraint nor a limit.
 pub(super) fn of_outputs(model: &Model) -> BTreeSet<usize> {
     let mut equations = Reach { model, found: BTreeSet::new() };
-    for (_, expr) in &model.energies {
-        equations.expr(expr);
-    }
-    for force in &model.forces {
-        if let Some(ForceIndex::One(index)) = force.index {
-            equations.expr(index);
-        }
-        equations.expr(force.expr);
-    }
-    for constraint in &model.constraints {
-        equations.expr(&constraint.difference);
-    }
-    for limit in &model.limits {
-        equations.expr(&limit.difference);
-        equations.expr(&limit.restitution);
+    for contribution in model.contributions() {
+        contribution.exprs.into_iter().for_each(|expr| equations.expr(expr));
     }
     let mut outputs = Reach { model, found: BTreeSet::new() };
     for output in &model.outputs {

@@ -1,7 +1,7 @@
 //! A block with its names resolved: its quantities, definitions and statements.
 
 use crate::algebra::dimension::Dimension;
-use crate::syntax::ast::{self, Block, Expr, ForceIndex, Let, Role};
+use crate::syntax::ast::{self, Binder, Block, Expr, ForceIndex, Let, Role};
 use proc_macro2::Ident;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -30,7 +30,36 @@ pub(crate) struct Model<'a> {
     pub(crate) of_outputs: BTreeSet<usize>,
 }
 
-impl Model<'_> {
+/// The expressions of a statement that contributes to the equations of motion.
+pub(super) struct Contribution<'a> {
+    /// The index of a family.
+    pub(super) index: Option<&'a Binder>,
+    pub(super) exprs: Vec<&'a Expr>,
+    /// True for a constraint or a limit.
+    pub(super) constraint: bool,
+}
+
+impl<'a> Model<'a> {
+    /// The contributions of energies, forces, constraints and limits, in this order: all passes over
+    /// names read this list.
+    pub(super) fn contributions(&self) -> Vec<Contribution<'a>> {
+        let of = |index, exprs, constraint| Contribution { index, exprs, constraint };
+        let energies = self.energies.iter().map(|&(_, expr)| of(None, vec![expr], false));
+        let forces = self.forces.iter().map(|force| match force.index {
+            None => of(None, vec![force.expr], false),
+            Some(ForceIndex::One(index)) => of(None, vec![index, force.expr], false),
+            Some(ForceIndex::Each(binder)) => of(Some(binder), vec![force.expr], false),
+        });
+        let constraints = self.constraints.iter();
+        let constraints =
+            constraints.map(|own| of(own.index.as_ref(), vec![&own.difference], true));
+        let limits = self
+            .limits
+            .iter()
+            .map(|own| of(own.index.as_ref(), vec![&own.difference, &own.restitution], true));
+        energies.chain(forces).chain(constraints).chain(limits).collect()
+    }
+
     /// Returns true if an input is a control input.
     pub(crate) fn is_control(&self, input: usize) -> bool {
         self.driven <= input

@@ -7,7 +7,7 @@ use crate::algebra::functions::Word;
 use crate::messages::model::{self as messages, Holder, Local};
 use crate::messages::shared;
 use crate::messages::{Errors, Range, Text};
-use crate::syntax::ast::{Binder, Expr, ExprKind, ForceIndex};
+use crate::syntax::ast::{Binder, Expr, ExprKind};
 use crate::syntax::elsewhere::{self, constant, function};
 use crate::syntax::name::{self, Name, plain};
 use proc_macro2::Ident;
@@ -49,30 +49,13 @@ impl Walk<'_, '_, '_> {
             self.scope.truncate(depth);
         }
         self.accelerations = false;
-        for (_, expr) in &model.energies {
-            self.expr(expr);
-        }
-        for force in &model.forces {
+        for contribution in model.contributions() {
+            self.constraint = contribution.constraint;
             let depth = self.scope.len();
-            match force.index {
-                Some(ForceIndex::Each(binder)) => self.bind(binder),
-                Some(ForceIndex::One(index)) => self.expr(index),
-                None => {}
-            }
-            self.expr(force.expr);
-            self.scope.truncate(depth);
-        }
-        self.constraint = true;
-        let constraints = model.constraints.iter();
-        let constraints = constraints.map(|own| (&own.index, [Some(&own.difference), None]));
-        let limits = model.limits.iter();
-        let limits = limits.map(|own| (&own.index, [&own.difference, &own.restitution].map(Some)));
-        for (index, exprs) in constraints.chain(limits) {
-            let depth = self.scope.len();
-            if let Some(binder) = index {
+            if let Some(binder) = contribution.index {
                 self.bind(binder);
             }
-            for expr in exprs.into_iter().flatten() {
+            for expr in contribution.exprs {
                 self.expr(expr);
             }
             self.scope.truncate(depth);
