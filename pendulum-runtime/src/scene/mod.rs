@@ -49,6 +49,16 @@
 //! state that fulfils them, one that a tick has thrown off them is frozen as a fault. Constrained
 //! pendulums do not fall asleep.
 
+// Each row of files uses only the rows below it:
+//
+// features/            abilities beside ticks: commands, visibility, sleep, snapshot, bake, cycle
+// advance.rs, state.rs frames and ticks; states of pendulums, read and written
+// scene.rs             joints, hanging, settings
+// group/               pendulums of one type: the ones awake, the criterion for sleep, saved states
+// lanes/               32 pendulums side by side: blocks, their kernel, buckets of equal steps
+// sampling/            joints, the clock, the times at which a joint is sampled, tracks
+// threads/             the decision to fork a batch
+
 mod advance;
 mod error;
 mod features;

@@ -65,7 +65,7 @@ pub(super) struct Run<'a, D: Batched<N>, const N: usize, const WATCHED: bool> {
     pub(super) first: bool,
 }
 
-/// The room for the jets.
+/// The workspace for the jets.
 pub(super) struct Workspace<D: Batched<N>, const N: usize> {
     pub(super) path: Path<Wide<D::Scalar>, N>,
     /// States and accelerations from which the next steps go.

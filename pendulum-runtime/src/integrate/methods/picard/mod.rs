@@ -90,7 +90,7 @@ use workspace::{Ends, Scaled, Tolerances, Workspace, WorkspaceOf};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Picard;
 
-/// A step over `interval` that leads `to` its end; the room holds what it leaves behind until it is
+/// A step over `interval` that leads `to` its end; the workspace holds its remains until it is
 /// accepted.
 #[inline]
 fn iterate<D: LaneDynamics<N>, const N: usize, const W: bool>(

@@ -178,7 +178,7 @@ pub struct Workspace<T: Lane, P, const N: usize> {
     pub(super) detour_left: usize,
 }
 
-/// The room for the dynamics `D`.
+/// The workspace for the dynamics `D`.
 pub(super) type WorkspaceOf<D, const N: usize> =
     Workspace<<D as Dynamics<N>>::Scalar, <WideOf<D, N> as System<N>>::Prepared, N>;
 

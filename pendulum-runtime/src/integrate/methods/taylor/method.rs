@@ -102,7 +102,7 @@ impl<T, W, X, const N: usize> Workspace<T, W, X, N> {
     }
 }
 
-/// The room for the jets of the dynamics `D`.
+/// The workspace for the jets of the dynamics `D`.
 pub(crate) type WorkspaceOf<D, const N: usize> = Workspace<
     <D as Dynamics<N>>::Scalar,
     <<D as Dynamics<N>>::System as Jets<N>>::Work,
