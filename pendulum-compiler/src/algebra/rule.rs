@@ -45,9 +45,9 @@ pub(crate) const RULES: &[Rule] = &[
     call(Function::Ln,   "ln-one",        "ln(1)",                                 "0",              |_, u| (u == Graph::ONE).then_some(Graph::ZERO)),
     call(Function::Ln,   "ln-exp",        "ln(exp(a))",                            "a",              |g, u| inverse(g, Function::Exp, u)),
     call(Function::Abs,  "abs-number",    "abs(-3/2)",                             "3/2",            abs_number),
-    call(Function::Abs,  "abs-abs",       "abs(abs(a - 2))",                       "abs(a - 2)",     |g, u| idempotent(g, Function::Abs, u)),
+    call(Function::Abs,  "abs-abs",       "abs(abs(a - 2))",                       "abs(a - 2)",     abs_range),
     call(Function::Abs,  "abs-square",    "abs(a^2)",                              "a^2",            abs_square),
-    call(Function::Abs,  "abs-exp",       "abs(exp(a))",                           "exp(a)",         |g, u| matches!(g.node(u), Node::Call(Function::Exp, _)).then_some(u)),
+    call(Function::Abs,  "abs-range",     "abs(cosh(a - 2))",                      "cosh(a - 2)",    abs_range),
     call(Function::Sign, "sign-number",   "sign(-3/2)",                            "-1",             sign_number),
     product("abs-even-power",             "abs(a - 2)^2",                          "(a - 2)^2",      abs_even_power),
     product("sign-abs",                   "sign(a - 2)*abs(a - 2)",                "a - 2",          sign_abs),
@@ -189,10 +189,6 @@ fn inverse(graph: &mut Graph, inverse: Function, argument: Id) -> Option<Id> {
     }
 }
 
-fn idempotent(graph: &mut Graph, function: Function, argument: Id) -> Option<Id> {
-    matches!(*graph.node(argument), Node::Call(inner, _) if inner == function).then_some(argument)
-}
-
 /// sin(u + kπ/2), where `shift` quarter turns are added first: cos u is sin(u + π/2).
 fn quarter_turns(graph: &mut Graph, argument: Id, shift: i64) -> Option<Id> {
     let pi = graph.pi();
@@ -226,6 +222,14 @@ fn sign_number(graph: &mut Graph, argument: Id) -> Option<Id> {
         Node::Number(value) if !value.is_zero() => {
             Some(graph.whole(if value.is_negative() { -1 } else { 1 }))
         }
+        _ => None,
+    }
+}
+
+/// |f(u)| = f(u), where f has no negative values.
+fn abs_range(graph: &mut Graph, argument: Id) -> Option<Id> {
+    match *graph.node(argument) {
+        Node::Call(function, _) if 0.0 <= function.row().range[0] => Some(argument),
         _ => None,
     }
 }

@@ -49,7 +49,7 @@ pub(crate) mod methods {
     pub(crate) mod taylor;
     pub(crate) mod tsit5;
 
-    /// Their names, for this module and for the prelude.
+    /// The public names of the methods, for this module and for the prelude.
     pub(crate) mod names {
         pub use super::auto::Auto;
         pub use super::dop853::Dop853;
