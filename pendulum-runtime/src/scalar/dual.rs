@@ -183,6 +183,11 @@ impl<T: Real> Real for Dual<T> {
         self.chain(Real::tanh(self.value), number::<T>(1.0) / (cosh * cosh))
     }
 
+    fn sech(self) -> Self {
+        let sech = Real::sech(self.value);
+        self.chain(sech, -(sech * Real::tanh(self.value)))
+    }
+
     fn exp(self) -> Self {
         let exp = Real::exp(self.value);
         self.chain(exp, exp)

@@ -73,6 +73,12 @@ macro_rules! float {
             }
 
             #[inline]
+            fn sech(self) -> Self {
+                let power = libm::exp(-f64::abs(f64::from(self)));
+                ((power + power) / (1.0 + power * power)) as $float
+            }
+
+            #[inline]
             fn exp(self) -> Self {
                 libm::exp(f64::from(self)) as $float
             }
@@ -184,6 +190,15 @@ mod tests {
         ($function:ident($x:expr $(, $y:expr)?), $expected:expr) => {
             near(<f64 as Real>::$function($x $(, $y)?), <f32 as Real>::$function($x $(, $y)?), $expected)
         };
+    }
+
+    /// Single precision rounds a result of `f64`, not each operation.
+    #[test]
+    fn the_secant_is_rounded_once() {
+        for k in -4000_i16..4000 {
+            let x = f32::from(k) / 128.0;
+            assert_eq!(Real::sech(x), Real::sech(f64::from(x)) as f32, "{x}");
+        }
     }
 
     #[test]

@@ -238,7 +238,7 @@ macro_rules! number {
                 self.each(|x| x.sinc(order))
             }
 
-            unary! { tan asin acos atan sinh cosh tanh exp ln sqrt abs sign step }
+            unary! { tan asin acos atan sinh cosh tanh sech exp ln sqrt abs sign step }
             binary! { atan2 powf max min }
 
             #[inline(always)]
