@@ -1,10 +1,11 @@
 //! A block: its struct, the fields with their units and the statements, each on its own.
 
 use super::Parser;
+use super::statement::lost;
 use super::token::{end, identifier, skip, unexpected};
 use crate::algebra::number::Literal;
 use crate::messages::{Range, expected, syntax as messages};
-use crate::syntax::ast::{Block, Expr, ExprKind, Field, Kind, Recovery};
+use crate::syntax::ast::{Block, Expr, ExprKind, Field, Kind};
 use crate::syntax::text::text;
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use syn::ext::IdentExt;
@@ -51,13 +52,9 @@ impl Parser<'_> {
                     // The number of coordinates is part of the type: without one, every use of the
                     // system would be a mistake.
                     statements.append(&mut self.begun);
-                    match word.as_str() {
-                        "kinetic" | "potential" | "lagrangian" | "dissipation" | "force" => {
-                            self.recovery.energies = true;
-                        }
-                        "output" => {}
-                        _ => self.recovery = Recovery { declarations: true, energies: true },
-                    }
+                    let lost = lost(&word);
+                    self.recovery.declarations |= lost.declarations;
+                    self.recovery.energies |= lost.energies;
                     skip(input, ';');
                 }
             }

@@ -4,7 +4,7 @@ use super::Parser;
 use super::token::{constraint_name, end, equals, fragment, identifier, unexpected};
 use crate::messages::{Range, expected, syntax as messages};
 use crate::syntax::ast::{
-    Binder, Constraint, Expr, ForceIndex, Kind, Let, Limit, Output, Role, Statement,
+    Binder, Constraint, Expr, ForceIndex, Kind, Let, Limit, Output, Recovery, Role, Statement,
 };
 use crate::syntax::name;
 use crate::syntax::text::text;
@@ -19,6 +19,17 @@ use syn::{Attribute, Token, bracketed, parenthesized};
 #[rustfmt::skip]
 pub(crate) const STATEMENTS: [&str; 13] =
     ["coordinate", "driven", "input", "let", "kinetic", "potential", "lagrangian", "dissipation", "force", "output", "constraint", "redundant", "limit"];
+
+/// The parts that a block lacks when its statement with this keyword could not be parsed.
+pub(super) fn lost(keyword: &str) -> Recovery {
+    match keyword {
+        "kinetic" | "potential" | "lagrangian" | "dissipation" | "force" => {
+            Recovery { declarations: false, energies: true }
+        }
+        "output" => Recovery::default(),
+        _ => Recovery { declarations: true, energies: true },
+    }
+}
 
 impl Parser<'_> {
     pub(super) fn statement(&mut self, input: ParseStream) -> Result<Statement> {
