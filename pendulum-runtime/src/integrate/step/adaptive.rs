@@ -483,6 +483,7 @@ pub(crate) fn at(fault: Error, t: Time) -> Error {
 
 /// The step of length `wanted` from `t`, or what avoids going beyond `target` and leaving a sliver
 /// before it.
+#[inline]
 pub(crate) fn fit(t: Time, wanted: f64, target: f64) -> StepInterval {
     let left = -t.since(target);
     if left.abs() <= 1.01 * wanted {
