@@ -88,7 +88,7 @@ macro_rules! tuples {
         impl<T: Real, $($motion: Motion<T, $dim>, const $dim: usize),+> Motions<($(Sample<T, $dim>,)+)> for ($($motion,)+) {
             const HAS: &'static [Derivatives] = &[$($motion::HAS),+];
 
-            #[inline]
+            #[inline(always)]
             fn sample(&self, t: Time, side: Side, inputs: &[Input], purpose: Purpose) -> ($(Sample<T, $dim>,)+) {
                 ($(self.$index.sample(t, side, derivatives_of(inputs, $index, purpose)),)+)
             }

@@ -98,7 +98,7 @@ impl<const D: usize> Sinusoid<D> {
 impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
     const HAS: Derivatives = Derivatives::ALL;
 
-    #[inline]
+    #[inline(always)]
     fn sample(&self, t: Time, _: Side, wanted: Derivatives) -> Sample<T, D> {
         self.at(wanted, |d| self.sin_cos(d, t))
     }

@@ -281,7 +281,7 @@ impl<const N: usize, S: System<N>, M: Motions<S::Inputs>> Dynamics<N> for Driven
         &self.system
     }
 
-    #[inline]
+    #[inline(always)]
     fn inputs(&self, t: Time, side: Side, purpose: Purpose) -> S::Inputs {
         self.motions.sample(t, side, S::FACTS.inputs, purpose)
     }

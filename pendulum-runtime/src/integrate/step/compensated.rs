@@ -11,6 +11,7 @@ use crate::scalar::{Float, Real};
 /// `high`: the sum of Kahan (1965), with the two-sum of Knuth (1969) in it, which is exact whatever
 /// the magnitudes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Compensated<T, const N: usize> {
     /// The numbers as everybody else sees them.
     pub high: [T; N],

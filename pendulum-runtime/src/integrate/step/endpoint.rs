@@ -13,7 +13,10 @@ use crate::system::Dynamics;
 use crate::time::Time;
 
 /// The state at one end of a step, with the digits that rounding has left off.
+// In this order and with the option last, the vectors that copy an endpoint are those that have
+// written it: a load that spans two stores waits for both.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub struct Endpoint<T, const N: usize> {
     /// The time.
     pub t: Time,
@@ -60,8 +63,13 @@ impl<T: Float, const N: usize> Endpoint<T, N> {
         field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
         side: Side,
     ) -> [T; N] {
-        let (t, q, v) = (self.t, &self.q.high, &self.v.high);
-        *self.a.get_or_insert_with(|| field.at(t, side, q, v))
+        if let Some(a) = self.a {
+            return a;
+        }
+        // The value comes from registers: the place where it is kept has just been written.
+        let a = field.at(self.t, side, &self.q.high, &self.v.high);
+        self.a = Some(a);
+        a
     }
 
     /// The endpoint of `interval` whose coordinates and velocities have grown by `h·dq` and

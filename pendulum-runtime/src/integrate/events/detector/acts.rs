@@ -30,6 +30,8 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
     }
 
     /// [`observe`](Self::observe) for at least one event.
+    // Inside, it would keep `observe` from being inlined into the loop over steps.
+    #[inline(never)]
     fn search_step(
         &mut self,
         integration: &mut dyn Observed<T, N>,

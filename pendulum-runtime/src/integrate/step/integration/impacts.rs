@@ -24,7 +24,6 @@ where
     #[inline(never)]
     pub(super) fn meet(
         &mut self,
-        from: &mut Endpoint<D::Scalar, N>,
         target: f64,
         met: &mut Option<Meeting>,
     ) -> Result<StepInterval, Error>
@@ -35,16 +34,16 @@ where
         const REPEATED: usize = 3;
         if self.backwards {
             let limit = <D::System as System<N>>::FACTS.limits[0].name;
-            return Err(Error::NoWayBack { t: from.t.to_f64(), limit });
+            return Err(Error::NoWayBack { t: self.from.t.to_f64(), limit });
         }
         let accuracy = self.controller.accuracy();
         self.limits.accuracy = accuracy.map(|(relative, absolute)| Accuracy { relative, absolute });
         self.limits.begin();
         let (plan, accepted) = (self.state, self.stats.accepted);
-        let mut interval = self.take(from, target)?;
+        let mut interval = self.take(target)?;
         for _ in 0..ATTEMPTS {
             let mut end = self.end;
-            let interpolant = self.motion(&interval, from, &mut end);
+            let interpolant = self.motion(&interval, &mut end);
             self.end.a = end.a;
             let Self { dynamics, prepared, limits, end, .. } = self;
             let (dynamics, prepared) = (&**dynamics, &*prepared);
@@ -58,15 +57,15 @@ where
             let mut t = interval.start + meeting.theta * interval.h;
             for repeated in 1..=REPEATED {
                 let time = t.to_f64();
-                if from.t.since(time) == 0.0 {
+                if self.from.t.since(time) == 0.0 {
                     // Time does not resolve the way there.
-                    self.end = Endpoint { a: None, ..*from };
+                    self.end = Endpoint { a: None, ..self.from };
                     *met = Some(meeting);
-                    return Ok(StepInterval::by(from.t, 0.0));
+                    return Ok(StepInterval::by(self.from.t, 0.0));
                 }
                 if self.end.t != Time::new(time) {
-                    (self.end, self.state, self.stats.accepted) = (*from, plan, accepted);
-                    interval = self.take(from, time)?;
+                    (self.end, self.state, self.stats.accepted) = (self.from, plan, accepted);
+                    interval = self.take(time)?;
                 }
                 if self.end.t != Time::new(time) {
                     // The tolerances ask for a shorter step.

@@ -209,19 +209,17 @@ where
         self.sample()?;
         let kink_comes_first = if backwards { target < self.kink } else { self.kink < target };
         let target = if kink_comes_first { self.kink } else { target };
-        let mut from = self.end;
+        self.from = self.end;
         let mut met = None;
         let taken = if const { has_limits::<D, N>() } {
-            self.meet(&mut from, target, &mut met)
+            self.meet(target, &mut met)
         } else {
-            self.take(&mut from, target)
+            self.take(target)
         };
         match taken.and_then(|interval| self.arrive(&interval).map(|()| interval)) {
-            Ok(interval) => {
-                (self.last, self.interpolant, self.from) = (Some(interval), None, from);
-            }
+            Ok(interval) => (self.last, self.interpolant) = (Some(interval), None),
             Err(error) => {
-                self.end = from;
+                self.end = self.from;
                 // The workspace is that of the step that failed.
                 (self.last, self.interpolant) = (None, None);
                 if const { has_limits::<D, N>() } {
@@ -242,13 +240,9 @@ where
         }
     }
 
-    /// Takes one step from `from` towards `target`, and brings its end onto the constraints.
+    /// Takes one step from `self.from` towards `target`, and brings its end onto the constraints.
     #[inline]
-    fn take(
-        &mut self,
-        from: &mut Endpoint<D::Scalar, N>,
-        target: f64,
-    ) -> Result<StepInterval, Error>
+    fn take(&mut self, target: f64) -> Result<StepInterval, Error>
     where
         C: Controller<M, D, N>,
     {
@@ -260,7 +254,7 @@ where
         let context = StepContext {
             method: &self.method,
             field: &mut field,
-            from,
+            from: &mut self.from,
             to: &mut self.end,
             workspace: &mut self.workspace,
             target,
@@ -364,9 +358,8 @@ where
             return self.interpolant;
         }
         let interval = *interval;
-        let (mut from, mut to) = (self.from, self.before_kink.unwrap_or(self.end));
-        let interpolant = self.motion(&interval, &mut from, &mut to);
-        self.from = from;
+        let mut to = self.before_kink.unwrap_or(self.end);
+        let interpolant = self.motion(&interval, &mut to);
         *self.before_kink.as_mut().unwrap_or(&mut self.end) = to;
         self.interpolant = Some(interpolant);
         self.interpolant
@@ -376,11 +369,10 @@ where
     fn motion(
         &mut self,
         interval: &StepInterval,
-        from: &mut Endpoint<D::Scalar, N>,
         to: &mut Endpoint<D::Scalar, N>,
     ) -> Interpolant<D::Scalar, N> {
         if is_short::<D::Scalar>(interval.h) || interval.h == 0.0 {
-            return Interpolant::linear(interval, from, to);
+            return Interpolant::linear(interval, &self.from, to);
         }
         let mut field = Field::new(&*self.dynamics, &self.prepared);
         field.backwards = self.backwards;
@@ -388,7 +380,7 @@ where
             field.contacts = self.limits.began();
         }
         let mut interpolant =
-            self.method.interpolant(&mut field, interval, from, to, &mut self.workspace);
+            self.method.interpolant(&mut field, interval, &mut self.from, to, &mut self.workspace);
         self.stats.evaluations += field.evaluations;
         if const { is_constrained::<D, N>() || has_limits::<D, N>() } {
             interpolant.end_at(to);
