@@ -100,9 +100,9 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
     pub(super) fn sweep<const W: bool>(
         &self,
         field: &mut Field<'_, D, N, W>,
-        slopes: &mut Slopes<D::Scalar, N, S>,
-    ) -> Change {
-        let old = *slopes;
+        old: &Slopes<D::Scalar, N, S>,
+    ) -> (Slopes<D::Scalar, N, S>, Change) {
+        let mut slopes = Slopes::zero();
         let (dq, dp) = (self.scaled(&old.v), self.scaled(&old.f));
         for i in 0..S {
             let (q, p) = (self.stage(&self.q, &dq, i), self.stage(&self.p, &dp, i));
@@ -113,7 +113,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
             let q = self.stage(&self.q, &dq, i);
             slopes.f[i] = field.momentum_rates(self.times[i], &q, &slopes.v[i], &self.inputs[i]);
         }
-        self.change(&old, slopes)
+        (slopes, self.change(old, &slopes))
     }
 
     /// One step of Newton's method, with M, ∂q̈/∂q and ∂q̈/∂q̇ at the start of the step in place of
@@ -125,9 +125,9 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
         &self,
         field: &mut Field<'_, D, N, W>,
         linearized: &Linearized<D::Scalar, N, S>,
-        slopes: &mut Slopes<D::Scalar, N, S>,
-    ) -> Change {
-        let old = *slopes;
+        old: &Slopes<D::Scalar, N, S>,
+    ) -> (Slopes<D::Scalar, N, S>, Change) {
+        let mut slopes = Slopes::zero();
         let zero = [D::Scalar::from_f64(0.0); N];
         let (mut residual, mut a) = ([zero; S], [zero; S]);
         let (dq, dp) = (self.scaled(&old.v), self.scaled(&old.f));
@@ -153,7 +153,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
             slopes.v[i] = core::array::from_fn(|k| old.v[i][k] + v[k]);
             slopes.f[i] = core::array::from_fn(|k| old.f[i][k] + f[k]);
         }
-        self.change(&old, slopes)
+        (slopes, self.change(old, &slopes))
     }
 
     /// h a_ij for one i.

@@ -270,7 +270,7 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
         interval: &StepInterval,
         from: &Endpoint<T, N>,
         equations: &Equations<D, N, S>,
-        improve: impl FnMut(&mut Field<'a, D, N, W>, &mut Slopes<T, N, S>) -> Change,
+        improve: impl FnMut(&mut Field<'a, D, N, W>, &Slopes<T, N, S>) -> (Slopes<T, N, S>, Change),
     ) -> Endpoint<T, N> {
         let mut to = Endpoint { t: interval.end, a: None, ..*from };
         match self.iterate(field, improve) {
@@ -303,7 +303,7 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
     fn iterate<X>(
         &mut self,
         field: &mut X,
-        mut improve: impl FnMut(&mut X, &mut Slopes<T, N, S>) -> Change,
+        mut improve: impl FnMut(&mut X, &Slopes<T, N, S>) -> (Slopes<T, N, S>, Change),
     ) -> Result<(), Option<(usize, usize)>> {
         let epsilon = T::EPSILON.to_f64();
         // The error left after the last sweep has the same sign in every step: it must be small
@@ -313,7 +313,8 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
         let (mut least, mut last, mut stalls, mut shift) =
             (f64::INFINITY, None::<Change>, 0, f64::INFINITY);
         for _ in 0..SWEEPS {
-            let change = improve(field, &mut self.slopes);
+            let (slopes, change) = improve(field, &self.slopes);
+            self.slopes = slopes;
             if change.size.is_nan() {
                 return Err(last.map(|last| last.place));
             }
