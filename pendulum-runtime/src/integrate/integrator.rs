@@ -413,7 +413,7 @@ where
     ///
     /// Methods that need further evaluations for it take them now.
     pub fn interpolant(&mut self) -> Option<Interpolant<D::Scalar, N>> {
-        self.integration.interpolant()
+        self.integration.interpolant().copied()
     }
 
     /// The time reached.

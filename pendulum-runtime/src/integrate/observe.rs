@@ -40,11 +40,11 @@ impl<T: Float, const N: usize> Step<'_, T, N> {
 }
 
 /// The state at `t` within a step from the time `start` to the state `end`.
-pub(crate) fn within<T: Float, const N: usize>(
+pub(crate) fn within<'i, T: Float, const N: usize>(
     start: f64,
     end: State<T, N>,
     t: f64,
-    interpolant: impl FnOnce() -> Option<Interpolant<T, N>>,
+    interpolant: impl FnOnce() -> Option<&'i Interpolant<T, N>>,
 ) -> Option<State<T, N>> {
     if t == end.t {
         return Some(end);

@@ -217,7 +217,8 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
         let (end, state) = (integration.end().t, State::from(integration.end()));
         let [during, after] = integration.contacts();
         if self.dense.is_some() || 0.0 < self.onwards * end.since(self.next) {
-            let Some(interpolant) = integration.interpolant() else { return Ok(()) };
+            integration.interpolate();
+            let Some(interpolant) = integration.interpolated() else { return Ok(()) };
             let facts = integration.facts();
             let not_finite = |t: f64, q: &[T; N], v: &[T; N]| {
                 let what = first_in_state(facts, q, v);
@@ -236,7 +237,7 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
                 self.advance();
             }
             if let Some(dense) = &mut self.dense {
-                dense.push(&interpolant, state);
+                dense.push(interpolant, state);
             }
         }
         self.push_while_next_is(state, after);

@@ -42,15 +42,17 @@ impl<D: Batched<N>, const N: usize> Observed<D::Scalar, N> for InLane<'_, D, N> 
         self.before_kink.as_ref()
     }
 
-    fn interpolant(&mut self) -> Option<Interpolant<D::Scalar, N>> {
+    fn interpolate(&mut self) {
         let Self { path, order, lane: l, from, interval, .. } = *self;
-        let (path, order, l) = (path, order, l);
-        let interpolant = self.interpolant.get_or_insert_with(|| {
+        self.interpolant.get_or_insert_with(|| {
             series_interpolant(interval, &from, order, |i, k| {
                 [path.q[i][k].0[l], path.v[i][k].0[l]]
             })
         });
-        Some(*interpolant)
+    }
+
+    fn interpolated(&self) -> Option<&Interpolant<D::Scalar, N>> {
+        self.interpolant.as_ref()
     }
 
     fn accelerations(&mut self) -> [D::Scalar; N] {

@@ -20,8 +20,11 @@ pub(crate) trait Observed<T, const N: usize> {
     /// The state on this side of a kink, if the last step has ended on one.
     fn before_kink(&self) -> Option<&Endpoint<T, N>>;
 
-    /// The motion within the last step, if there was one.
-    fn interpolant(&mut self) -> Option<Interpolant<T, N>>;
+    /// Computes the motion within the last step, if there was one.
+    fn interpolate(&mut self);
+
+    /// The motion within the last step, once it is computed.
+    fn interpolated(&self) -> Option<&Interpolant<T, N>>;
 
     /// The accelerations at the state reached.
     fn accelerations(&mut self) -> [T; N];

@@ -38,12 +38,15 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
     ) -> Result<Option<Status>, Error> {
         self.backwards = integration.goes_back();
         let rooted = self.events.iter().any(|event| matches!(event.condition, Condition::Root(_)));
-        let interpolant = if rooted { integration.interpolant() } else { None };
+        if rooted {
+            integration.interpolate();
+        }
+        let interpolant = if rooted { integration.interpolated() } else { None };
         let (end, beyond) = match integration.before_kink() {
             Some(before) => (*before, Some(*integration.end())),
             None => (*integration.end(), None),
         };
-        if let Err(error) = self.step(interpolant.as_ref(), &end, beyond.as_ref()) {
+        if let Err(error) = self.step(interpolant, &end, beyond.as_ref()) {
             integration.retreat();
             let a = integration.accelerations();
             self.found.clear();

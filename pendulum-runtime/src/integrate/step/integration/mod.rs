@@ -352,17 +352,14 @@ where
     }
 
     /// The motion within the last step, if there was one; evaluates what the method needs for it.
-    pub(crate) fn interpolant(&mut self) -> Option<Interpolant<D::Scalar, N>> {
-        let interval = self.last.as_ref()?;
-        if self.interpolant.is_some() {
-            return self.interpolant;
+    pub(crate) fn interpolant(&mut self) -> Option<&Interpolant<D::Scalar, N>> {
+        let interval = self.last?;
+        if self.interpolant.is_none() {
+            let mut to = self.before_kink.unwrap_or(self.end);
+            self.interpolant = Some(self.motion(&interval, &mut to));
+            *self.before_kink.as_mut().unwrap_or(&mut self.end) = to;
         }
-        let interval = *interval;
-        let mut to = self.before_kink.unwrap_or(self.end);
-        let interpolant = self.motion(&interval, &mut to);
-        *self.before_kink.as_mut().unwrap_or(&mut self.end) = to;
-        self.interpolant = Some(interpolant);
-        self.interpolant
+        self.interpolant.as_ref()
     }
 
     /// The motion within the step just taken.

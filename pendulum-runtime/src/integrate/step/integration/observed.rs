@@ -31,8 +31,12 @@ where
         self.before_kink.as_ref()
     }
 
-    fn interpolant(&mut self) -> Option<Interpolant<D::Scalar, N>> {
-        Integration::interpolant(self)
+    fn interpolate(&mut self) {
+        Integration::interpolant(self);
+    }
+
+    fn interpolated(&self) -> Option<&Interpolant<D::Scalar, N>> {
+        self.interpolant.as_ref()
     }
 
     fn accelerations(&mut self) -> [D::Scalar; N] {
