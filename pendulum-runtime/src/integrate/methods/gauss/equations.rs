@@ -97,12 +97,14 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
     ///
     /// With a constant mass matrix two halves of it contract like (h·ω)², where evaluating
     /// everything at the old slopes contracts like h·ω.
+    // Inlined into the loop over sweeps, eight stages run out of registers.
+    #[inline(never)]
     pub(super) fn sweep<const W: bool>(
         &self,
         field: &mut Field<'_, D, N, W>,
         old: &Slopes<D::Scalar, N, S>,
-    ) -> (Slopes<D::Scalar, N, S>, Change) {
-        let mut slopes = Slopes::zero();
+        slopes: &mut Slopes<D::Scalar, N, S>,
+    ) -> Change {
         let (dq, dp) = (self.scaled(&old.v), self.scaled(&old.f));
         for i in 0..S {
             let (q, p) = (self.stage(&self.q, &dq, i), self.stage(&self.p, &dp, i));
@@ -113,7 +115,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
             let q = self.stage(&self.q, &dq, i);
             slopes.f[i] = field.momentum_rates(self.times[i], &q, &slopes.v[i], &self.inputs[i]);
         }
-        (slopes, self.change(old, &slopes))
+        self.change(old, slopes)
     }
 
     /// One step of Newton's method, with M, ∂q̈/∂q and ∂q̈/∂q̇ at the start of the step in place of
@@ -126,8 +128,8 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
         field: &mut Field<'_, D, N, W>,
         linearized: &Linearized<D::Scalar, N, S>,
         old: &Slopes<D::Scalar, N, S>,
-    ) -> (Slopes<D::Scalar, N, S>, Change) {
-        let mut slopes = Slopes::zero();
+        slopes: &mut Slopes<D::Scalar, N, S>,
+    ) -> Change {
         let zero = [D::Scalar::from_f64(0.0); N];
         let (mut residual, mut a) = ([zero; S], [zero; S]);
         let (dq, dp) = (self.scaled(&old.v), self.scaled(&old.f));
@@ -153,7 +155,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
             slopes.v[i] = core::array::from_fn(|k| old.v[i][k] + v[k]);
             slopes.f[i] = core::array::from_fn(|k| old.f[i][k] + f[k]);
         }
-        (slopes, self.change(old, &slopes))
+        self.change(old, slopes)
     }
 
     /// h a_ij for one i.

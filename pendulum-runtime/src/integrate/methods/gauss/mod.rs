@@ -119,8 +119,8 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Method<D, N>
         stages: &mut Self::Workspace,
     ) -> Endpoint<D::Scalar, N> {
         let equations = stages.begin(field, interval, from);
-        stages.finish(field, interval, from, &equations, |field, slopes| {
-            equations.sweep(field, slopes)
+        stages.finish(field, interval, from, &equations, |field, old, slopes| {
+            equations.sweep(field, old, slopes)
         })
     }
 
@@ -167,8 +167,8 @@ impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize, const 
     ) -> Endpoint<D::Scalar, N> {
         let equations = stages.begin(field, interval, from);
         let linearized = Linearized::new(field, interval, from);
-        stages.finish(field, interval, from, &equations, |field, slopes| {
-            equations.newton(field, &linearized, slopes)
+        stages.finish(field, interval, from, &equations, |field, old, slopes| {
+            equations.newton(field, &linearized, old, slopes)
         })
     }
 
@@ -270,7 +270,7 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
         interval: &StepInterval,
         from: &Endpoint<T, N>,
         equations: &Equations<D, N, S>,
-        improve: impl FnMut(&mut Field<'a, D, N, W>, &Slopes<T, N, S>) -> (Slopes<T, N, S>, Change),
+        improve: impl FnMut(&mut Field<'a, D, N, W>, &Slopes<T, N, S>, &mut Slopes<T, N, S>) -> Change,
     ) -> Endpoint<T, N> {
         let mut to = Endpoint { t: interval.end, a: None, ..*from };
         match self.iterate(field, improve) {
@@ -303,7 +303,7 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
     fn iterate<X>(
         &mut self,
         field: &mut X,
-        mut improve: impl FnMut(&mut X, &Slopes<T, N, S>) -> (Slopes<T, N, S>, Change),
+        mut improve: impl FnMut(&mut X, &Slopes<T, N, S>, &mut Slopes<T, N, S>) -> Change,
     ) -> Result<(), Option<(usize, usize)>> {
         let epsilon = T::EPSILON.to_f64();
         // The error left after the last sweep has the same sign in every step: it must be small
@@ -312,39 +312,48 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
         let rounding = 0.01 * epsilon.sqrt();
         let (mut least, mut last, mut stalls, mut shift) =
             (f64::INFINITY, None::<Change>, 0, f64::INFINITY);
-        for _ in 0..SWEEPS {
-            let (slopes, change) = improve(field, &self.slopes);
-            self.slopes = slopes;
-            if change.size.is_nan() {
-                return Err(last.map(|last| last.place));
-            }
-            let shrinks = last.map_or(1.0, |last| {
-                if change.size < last.size { change.size / last.size } else { 1.0 }
-            });
-            if change.size * shrinks <= negligible {
-                return Ok(());
-            }
-            last = Some(change);
-            shift = change.shift;
-            if change.size < least {
-                least = change.size;
-            } else {
-                stalls += 1;
-                // Where stiff forces cancel, momenta are no better than their rounding, and only
-                // the coordinates come to rest.
-                let patience = if least <= epsilon {
-                    1
-                } else if shift <= rounding {
-                    2
+        let mut spare = Slopes::zero();
+        let (mut slopes, mut next, mut changed) = (&mut self.slopes, &mut spare, false);
+        let outcome = 'sweeps: {
+            for _ in 0..SWEEPS {
+                let change = improve(field, slopes, next);
+                // Slopes that have just been written are not copied: a copy waits for them.
+                (slopes, next, changed) = (next, slopes, !changed);
+                if change.size.is_nan() {
+                    break 'sweeps Err(last.map(|last| last.place));
+                }
+                let shrinks = last.map_or(1.0, |last| {
+                    if change.size < last.size { change.size / last.size } else { 1.0 }
+                });
+                if change.size * shrinks <= negligible {
+                    break 'sweeps Ok(());
+                }
+                last = Some(change);
+                shift = change.shift;
+                if change.size < least {
+                    least = change.size;
                 } else {
-                    10
-                };
-                if stalls >= patience {
-                    break;
+                    stalls += 1;
+                    // Where stiff forces cancel, momenta are no better than their rounding, and
+                    // only the coordinates come to rest.
+                    let patience = if least <= epsilon {
+                        1
+                    } else if shift <= rounding {
+                        2
+                    } else {
+                        10
+                    };
+                    if stalls >= patience {
+                        break;
+                    }
                 }
             }
+            if shift <= rounding { Ok(()) } else { Err(last.map(|last| last.place)) }
+        };
+        if changed {
+            self.slopes = spare;
         }
-        if shift <= rounding { Ok(()) } else { Err(last.map(|last| last.place)) }
+        outcome
     }
 }
 
