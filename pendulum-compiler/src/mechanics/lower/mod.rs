@@ -110,16 +110,34 @@ fn lower(
 
 impl Lower<'_, '_, '_, '_> {
     fn block(&mut self) -> Energies {
+        // Without `..`: what a statement adds to the model has a place in the graph.
+        let Model {
+            parameters,
+            lets,
+            of_outputs,
+            energies: contributions,
+            forces: _,
+            constraints: _,
+            limits: _,
+            outputs: _,
+            block: _,
+            coordinates: _,
+            inputs: _,
+            driven: _,
+            names: _,
+            unmentioned: _,
+            unused: _,
+        } = self.model;
         let mut energies = Energies::default();
-        for quantity in &self.model.parameters {
+        for quantity in parameters {
             let default = quantity
                 .default
                 .filter(|_| quantity.length.is_none())
                 .and_then(|default| self.scalar(default));
             energies.defaults.push(default);
         }
-        for (index, definition) in self.model.lets.iter().enumerate() {
-            if definition.arguments.is_some() || self.model.of_outputs.contains(&index) {
+        for (index, definition) in lets.iter().enumerate() {
+            if definition.arguments.is_some() || of_outputs.contains(&index) {
                 continue;
             }
             match &definition.index {
@@ -133,7 +151,7 @@ impl Lower<'_, '_, '_, '_> {
                 }
             }
         }
-        for &(role, expr) in &self.model.energies {
+        for &(role, expr) in contributions {
             let Some(value) = self.outcome(expr) else { continue };
             if role != Role::Dissipation && self.has_enclosed_control(expr, value) {
                 continue;
@@ -154,8 +172,7 @@ impl Lower<'_, '_, '_, '_> {
             energies.constraints = self.constraints();
             energies.limits = self.limits();
             energies.outputs = self.outputs();
-            energies.lengths =
-                (0..self.model.lets.len()).map(|index| self.lengths(index)).collect();
+            energies.lengths = (0..lets.len()).map(|index| self.lengths(index)).collect();
         } else if self.positions.as_ref().is_some_and(|positions| positions.constrained) {
             self.known = Some(std::mem::take(&mut self.instances));
             energies.constraints = self.constraints();

@@ -119,18 +119,35 @@ struct Units<'m, 'a, 'e> {
 
 impl Units<'_, '_, '_> {
     fn block(&mut self) {
-        let model = self.model;
+        // Without `..`: what a statement adds to the model has units.
+        let Model {
+            parameters,
+            coordinates,
+            inputs,
+            lets,
+            of_outputs,
+            energies,
+            forces,
+            constraints: _,
+            limits: _,
+            outputs: _,
+            block: _,
+            driven: _,
+            names: _,
+            unmentioned: _,
+            unused: _,
+        } = self.model;
         // One unknown for each quantity, whether it has a unit or not.
-        self.unknowns = model.parameters.len() + model.coordinates.len() + model.inputs.len();
-        for index in 0..model.lets.len() {
+        self.unknowns = parameters.len() + coordinates.len() + inputs.len();
+        for index in 0..lets.len() {
             // Reactions stand in the definitions of outputs, and need the units of energies.
-            let late = model.of_outputs.contains(&index);
-            if model.lets[index].arguments.is_none() && !late {
+            let late = of_outputs.contains(&index);
+            if lets[index].arguments.is_none() && !late {
                 self.definition(index);
             }
         }
         let mut energy: Option<(Unit, &Expr)> = None;
-        for &(role, expr) in &model.energies {
+        for &(role, expr) in energies {
             let Some(found) = self.expr(expr) else { continue };
             let found = match role {
                 Role::Dissipation => {
@@ -156,24 +173,22 @@ impl Units<'_, '_, '_> {
         self.energy = energy.as_ref().map(|(unit, _)| unit.clone());
         self.constraints();
         self.limits();
-        for &index in &model.of_outputs {
-            if model.lets[index].arguments.is_none() {
+        for &index in of_outputs {
+            if lets[index].arguments.is_none() {
                 self.definition(index);
             }
         }
         self.outputs();
         let Some((energy, _)) = energy else { return };
-        for force in &model.forces {
+        for force in forces {
             let depth = self.scope.len();
             if let Some(ForceIndex::Each(binder)) = force.index {
                 self.scope.push((name::read(&binder.name.to_string()).base, Some(Unit::pure())));
             }
             let found = self.expr(force.expr);
             self.scope.truncate(depth);
-            let coordinate = Self::quantity(
-                model.parameters.len() + force.coordinate,
-                &model.coordinates[force.coordinate],
-            );
+            let coordinate =
+                Self::quantity(parameters.len() + force.coordinate, &coordinates[force.coordinate]);
             let expected = energy.times(&coordinate, Rational::MINUS_ONE);
             if let (Some(found), Some(expected)) = (found, expected)
                 && !self.unify(&found, &expected)
