@@ -281,6 +281,8 @@ impl<const N: usize, S: System<N>, M: Motions<S::Inputs>> Dynamics<N> for Driven
         &self.system
     }
 
+    // The derivatives that nobody needs are left out where the purpose is known.
+    #[allow(clippy::inline_always)]
     #[inline(always)]
     fn inputs(&self, t: Time, side: Side, purpose: Purpose) -> S::Inputs {
         self.motions.sample(t, side, S::FACTS.inputs, purpose)
