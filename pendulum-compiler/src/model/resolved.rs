@@ -40,8 +40,8 @@ pub(super) struct Contribution<'a> {
 }
 
 impl<'a> Model<'a> {
-    /// The contributions of energies, forces, constraints and limits, in this order: all passes over
-    /// names read this list.
+    /// The contributions of energies, forces, constraints and limits, in this order: all passes
+    /// over names read this list.
     pub(super) fn contributions(&self) -> Vec<Contribution<'a>> {
         let of = |index, exprs, constraint| Contribution { index, exprs, constraint };
         let energies = self.energies.iter().map(|&(_, expr)| of(None, vec![expr], false));

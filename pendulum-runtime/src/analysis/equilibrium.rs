@@ -80,9 +80,10 @@ const RANK: f64 = 1e-11;
 ///
 /// A step of Newton's method solves K δ = M q̈ with the stiffness matrix K = −M ∂q̈/∂q of
 /// [`linearize`](crate::analysis::linearize). It is halved until it makes what the same K gives for
-/// the next step shorter, a test that does not depend on units (Deuflhard 2004, Newton Methods for Nonlinear Problems,
-/// section 3.2), and changes no coordinate q by more than 1 + |q|. Where K is singular, as for a
-/// cart that may stand anywhere, δ is the shortest of all solutions, by singular values.
+/// the next step shorter, a test that does not depend on units (Deuflhard 2004, Newton Methods for
+/// Nonlinear Problems, section 3.2), and changes no coordinate q by more than 1 + |q|. Where K is
+/// singular, as for a cart that may stand anywhere, δ is the shortest of all solutions, by singular
+/// values.
 ///
 /// ```
 /// use pendulum_runtime::prelude::*;

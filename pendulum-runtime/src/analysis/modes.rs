@@ -66,8 +66,8 @@ const SWEEPS: usize = 300;
 const SAME: f64 = 1e-6;
 
 impl<const N: usize> Linearization<N> {
-    /// The modes of M δ̈ + C δ̇ + K δ = 0 on the constraints, in the order of their frequencies |λ|: one for each
-    /// conjugate pair of eigenvalues, one for each real one.
+    /// The modes of M δ̈ + C δ̇ + K δ = 0 on the constraints, in the order of their frequencies
+    /// |λ|: one for each conjugate pair of eigenvalues, one for each real one.
     ///
     /// The λ are the eigenvalues of the first-order form
     ///

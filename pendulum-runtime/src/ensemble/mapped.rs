@@ -208,8 +208,8 @@ where
     /// With a checkpoint all of them share its folder.
     ///
     /// # Errors
-    /// As [`fold`](Self::fold), in the process that meets them; the value is that of the shards that
-    /// were finished.
+    /// As [`fold`](Self::fold), in the process that meets them; the value is that of the shards
+    /// that were finished.
     pub fn fold_in<P: Record + Send>(
         self,
         team: &impl Team,

@@ -54,8 +54,8 @@ impl<const D: usize> Spline<D> {
     /// The spline that repeats for ever without a kink; the last value is that of the first key.
     ///
     /// # Errors
-    /// As for [`natural`](Self::natural), fewer than two keys, and a last value that is not the first
-    /// to 10⁻⁹ of the largest.
+    /// As for [`natural`](Self::natural), fewer than two keys, and a last value that is not the
+    /// first to 10⁻⁹ of the largest.
     pub fn periodic(times: &[f64], values: &[[f64; D]]) -> Result<Self, MotionError> {
         checked(times, values)?;
         if times.len() < 2 {

@@ -1,4 +1,5 @@
-//! Blocks that do not compile: each message is ours, whole, at the user's token. And blocks that do.
+//! Blocks that do not compile: each message is ours, whole, at the user's token. And blocks that
+//! do.
 
 /// `TRYBUILD=overwrite` rewrites the expected messages.
 #[test]

@@ -45,8 +45,8 @@ impl<const N: usize> Batch<N> {
         };
         <AdaptiveStep<N> as Controller<Taylor, D, N>>::check(&self.control)?;
         let mut outcomes: Vec<_> = problems.iter().map(|_| None).collect();
-        // Lanes take series from what `Motion::analytic` gives. A motion that says nothing there has
-        // them all the same, and `Taylor` knows them.
+        // Lanes take series from what `Motion::analytic` gives. A motion that says nothing there
+        // has them all the same, and `Taylor` knows them.
         for (problem, outcome) in problems.iter().zip(&mut outcomes) {
             let Problem { system, time, q, v } = problem;
             if !MaybeJets::is_analytic(system) {

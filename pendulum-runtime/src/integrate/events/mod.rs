@@ -186,10 +186,11 @@ impl<'a, T: Float, const N: usize> Event<'a, T, N> {
     /// Errors of the integration that it may lead to:
     ///
     /// - [`Error::Action`](crate::error::Error::Action): it gives a number that is not finite.
-    /// - [`Error::Accumulation`](crate::error::Error::Accumulation): the event acts again and again,
-    ///   each time sooner, towards a time that it never passes, as a ball that bounces with four
-    ///   fifths of its speed. That is so if the times between acts have grown shorter at least five
-    ///   times in a row, down to a millionth of the first of them, or below the digits of the state.
+    /// - [`Error::Accumulation`](crate::error::Error::Accumulation): the event acts again and
+    ///   again, each time sooner, towards a time that it never passes, as a ball that bounces with
+    ///   four fifths of its speed. That is so if the times between acts have grown shorter at least
+    ///   five times in a row, down to a millionth of the first of them, or below the digits of the
+    ///   state.
     /// - [`Error::EventStays`](crate::error::Error::EventStays): it stops the motion just where the
     ///   function is zero, and the motion would go on through, or it acts a thousand times in a row
     ///   within 1e-12 of the time reached.
@@ -201,10 +202,11 @@ impl<'a, T: Float, const N: usize> Event<'a, T, N> {
     /// Ends the integration with [`Status::Rest`] at the first act whose impact speed is below
     /// `speed`, instead of an error where acts accumulate.
     ///
-    /// The impact speed is |ġ|, the rate of the event's function just before it acts: for a distance
-    /// from a wall the speed towards it, in the units of the function over seconds. The last act
-    /// still changes the state. What follows, a motion along the wall or none, has other equations:
-    /// a system without that coordinate goes on from [`Solution::end`](super::Solution::end).
+    /// The impact speed is |ġ|, the rate of the event's function just before it acts: for a
+    /// distance from a wall the speed towards it, in the units of the function over seconds. The
+    /// last act still changes the state. What follows, a motion along the wall or none, has other
+    /// equations: a system without that coordinate goes on from
+    /// [`Solution::end`](super::Solution::end).
     pub fn rest_below(mut self, speed: f64) -> Self {
         self.rest_below = Some(speed);
         self

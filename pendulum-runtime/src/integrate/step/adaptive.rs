@@ -74,9 +74,9 @@ impl<const N: usize> AdaptiveStep<N> {
 
     /// The relative tolerance. Runge–Kutta methods refuse less than ten machine epsilons of the
     /// scalar; [`Picard`](crate::integrate::Picard) and [`Taylor`](crate::integrate::Taylor) take
-    /// any positive number and do not go below the rounding of a coordinate; the absolute tolerance,
-    /// which is the same unless it is given, has no such bound. Over two words methods other than
-    /// `Taylor` hold none below 2.3e-15, and what lies below counts as that.
+    /// any positive number and do not go below the rounding of a coordinate; the absolute
+    /// tolerance, which is the same unless it is given, has no such bound. Over two words methods
+    /// other than `Taylor` hold none below 2.3e-15, and what lies below counts as that.
     pub fn rtol(mut self, rtol: f64) -> Self {
         self.rtol = Some(rtol);
         self

@@ -267,8 +267,8 @@ impl<T: Lane + Float> Scene<T> {
     /// Gives the number of pendulums.
     ///
     /// # Errors
-    /// A name that no type here has; a value that is not finite, makes a mass negative or a pendulum
-    /// too fast for its ticks, or with which the constraints of one cannot be fulfilled.
+    /// A name that no type here has; a value that is not finite, makes a mass negative or a
+    /// pendulum too fast for its ticks, or with which the constraints of one cannot be fulfilled.
     pub fn set_parameter_everywhere(&mut self, name: &str, value: T) -> Result<usize, SceneError> {
         finite(name, value)?;
         self.dirty = true;

@@ -53,7 +53,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// Adapts pendulums to the motion of a joint that was given in place of the one in `before`.
     ///
     /// # Errors
-    /// A pendulum that cannot be brought onto its constraints, comes to rest nowhere or is too fast.
+    /// A pendulum that cannot be brought onto its constraints, comes to rest nowhere or is too
+    /// fast.
     pub(super) fn moved(
         &mut self,
         clock: &Clock,

@@ -1,7 +1,8 @@
 //! Wilberforce's pendulum
 //!
-//! A body hangs on a coil spring that turns as it stretches. The body moves up and down, then turns,
-//! then moves up and down again. The picture shows the turn to the right and the height upwards.
+//! A body hangs on a coil spring that turns as it stretches. The body moves up and down, then
+//! turns, then moves up and down again. The picture shows the turn to the right and the height
+//! upwards.
 
 use crate::picture::{Frame, Picture};
 use crate::prelude::*;

@@ -1,4 +1,5 @@
-//! Attributes of the struct that its implementations follow, and names that the generated code takes itself.
+//! Attributes of the struct that its implementations follow, and names that the generated code
+//! takes itself.
 
 #![deny(warnings)]
 #![allow(non_upper_case_globals)]

@@ -1,4 +1,5 @@
-//! Constants and unit structs of the user that have the names of parameters and of what the generated code binds.
+//! Constants and unit structs of the user that have the names of parameters and of what the
+//! generated code binds.
 
 #![allow(non_upper_case_globals, non_camel_case_types, dead_code, mixed_script_confusables)]
 

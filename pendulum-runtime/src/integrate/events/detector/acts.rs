@@ -12,8 +12,10 @@ use crate::time::Time;
 
 /// The time over which rates are taken, in parts of a step.
 const MOMENT: f64 = 1.0 / 4096.0;
+
 /// The part of a rate below which what an act leaves of it counts as none.
 const NONE: f64 = 1e-9;
+
 impl<T: Float, const N: usize> EventDetector<'_, T, N> {
     /// Finds what happened in the step that `integration` has just taken. If an event did that acts
     /// or is terminal, puts it back there, lets it act, and gives the status if the integration
@@ -38,10 +40,12 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
     ) -> Result<Option<Status>, Error> {
         self.backwards = integration.goes_back();
         let rooted = self.events.iter().any(|event| matches!(event.condition, Condition::Root(_)));
-        if rooted {
+        let interpolant = if rooted {
             integration.interpolate();
-        }
-        let interpolant = if rooted { integration.interpolated() } else { None };
+            integration.interpolated()
+        } else {
+            None
+        };
         let (end, beyond) = match integration.before_kink() {
             Some(before) => (*before, Some(*integration.end())),
             None => (*integration.end(), None),

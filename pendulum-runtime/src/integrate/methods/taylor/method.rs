@@ -30,12 +30,13 @@ use crate::time::Time;
 /// end of each step are therefore compared with those of the series of order p. A step is halved
 /// where h·|Δa|/p is more than 30 times the error allowed; after a first halving, where h·|Δa| is
 /// more than that error. Differences below a thousand units of rounding are allowed. After forty
-/// halvings the shortest step goes over what must be a jump. If 256 steps are halved, and
-/// none of them is a thousand times as long as one before it, the accelerations are taken to be
-/// inexact, and whole steps are taken until series hold again. Each comparison is one evaluation, which [`Stats`](crate::integrate::Stats) do not count: there each order of the series is
-/// one. A needle or a thin wall goes unseen if a step ends behind it. The method is wrong where the
-/// equations themselves are not smooth: at the zeros of `abs` and `sign`, and where the larger of
-/// two numbers changes.
+/// halvings the shortest step goes over what must be a jump. If 256 steps are halved, and none of
+/// them is a thousand times as long as one before it, the accelerations are taken to be inexact,
+/// and whole steps are taken until series hold again. Each comparison is one evaluation, which
+/// [`Stats`](crate::integrate::Stats) do not count: there each order of the series is one. A needle
+/// or a thin wall goes unseen if a step ends behind it. The method is wrong where the equations
+/// themselves are not smooth: at the zeros of `abs` and `sign`, and where the larger of two numbers
+/// changes.
 ///
 /// The order is p = ⌈1 − c ln rtol⌉ with c = 0.8 for a coordinate that swings by itself and 0.7
 /// else, and the step is h = ρ rtol^(1/p) e^(−0.7/(p−1)), where ρ is the least of the radii of
