@@ -1,6 +1,6 @@
 //! The vertical plane in which somebody moves, and the joints from which things hang.
 
-use pendulum_runtime::import::bvh::{Bvh, Joint};
+use pendulum_runtime::import::bvh::{Bvh, SkeletonJoint};
 use pendulum_runtime::scalar::Real;
 
 /// The vertical plane along the main horizontal direction of a path; the second axis of the file
@@ -60,7 +60,7 @@ fn plain(name: &str) -> String {
 }
 
 /// The limbs: runs of joints from a branch, or the root, to an end.
-pub(crate) fn limbs(joints: &[Joint]) -> Vec<Vec<usize>> {
+pub(crate) fn limbs(joints: &[SkeletonJoint]) -> Vec<Vec<usize>> {
     let mut parents = vec![false; joints.len()];
     for parent in joints.iter().filter_map(|joint| joint.parent) {
         parents[parent] = true;

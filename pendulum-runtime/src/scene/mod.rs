@@ -83,7 +83,7 @@ pub use group::saved::GroupState;
 pub use group::status::SceneStatus;
 pub use handle::Handle;
 pub use lanes::system::SceneSystem;
-pub use sampling::assemble::{Anchor, Assemble, Numbers};
+pub use sampling::from_numbers::{Anchor, FromNumbers, Numbers};
 pub use sampling::joint::Joint;
 pub use sampling::scheme::{Fixed, Scheme};
 pub use scene::Scene;

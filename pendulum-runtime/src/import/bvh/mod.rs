@@ -35,7 +35,7 @@ mod read;
 mod tests;
 
 pub use error::BvhError;
-pub use read::Joint;
+pub use read::SkeletonJoint;
 
 use crate::motion::{Clip, Interpolation};
 use crate::scalar::Real;
@@ -48,7 +48,7 @@ const LISTED: usize = 12;
 /// A skeleton and its motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bvh {
-    joints: Vec<Joint>,
+    joints: Vec<SkeletonJoint>,
     frame_time: f64,
     /// The channels of all joints, frame after frame.
     rows: Vec<f64>,
@@ -83,7 +83,7 @@ impl Bvh {
     }
 
     /// The joints and the ends of limbs, parents before their children.
-    pub fn joints(&self) -> &[Joint] {
+    pub fn joints(&self) -> &[SkeletonJoint] {
         &self.joints
     }
 

@@ -7,7 +7,7 @@ pub(super) const LARGEST: f64 = 1e9;
 
 /// A joint, or the end of a limb.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Joint {
+pub struct SkeletonJoint {
     /// The name in the file; an end site has that of its parent and " end".
     pub name: String,
     /// The index of the parent, unless this is a root.
@@ -111,7 +111,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Everything up to the line `MOTION`.
-    pub(super) fn hierarchy(&mut self) -> Result<Vec<Joint>, BvhError> {
+    pub(super) fn hierarchy(&mut self) -> Result<Vec<SkeletonJoint>, BvhError> {
         let first = self.line("HIERARCHY")?;
         if !first.text.eq_ignore_ascii_case("HIERARCHY") {
             return Err(error(
@@ -415,19 +415,19 @@ impl Tree {
         Ok(1 + count)
     }
 
-    fn finish(self, at: At) -> Result<Vec<Joint>, BvhError> {
+    fn finish(self, at: At) -> Result<Vec<SkeletonJoint>, BvhError> {
         if let Some(&(joint, opened)) = self.open.last() {
             let what = format!("`{}` is not closed before MOTION", short(&self.joints[joint].name));
             return Err(error(opened, what, "write the missing `}`"));
         }
-        let joints = self.joints.into_iter().map(|joint| Joint {
+        let joints = self.joints.into_iter().map(|joint| SkeletonJoint {
             name: joint.name,
             parent: joint.parent,
             end: joint.end,
             offset: joint.offset.unwrap_or_default(),
             channels: joint.channels.unwrap_or_default(),
         });
-        let joints: Vec<Joint> = joints.collect();
+        let joints: Vec<SkeletonJoint> = joints.collect();
         if joints.iter().all(|joint| joint.channels.is_empty()) {
             return Err(error(
                 at,

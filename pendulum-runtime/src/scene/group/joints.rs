@@ -5,7 +5,7 @@ use crate::motion::{Derivatives, Side, derivatives_of};
 use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::lanes::system::SceneSystem;
-use crate::scene::sampling::assemble::{Assemble, By};
+use crate::scene::sampling::from_numbers::{By, FromNumbers};
 use crate::scene::sampling::joint::JointSlot;
 use crate::scene::sampling::layout::Layout;
 use crate::system::{Facts, Purpose};
@@ -21,7 +21,7 @@ pub(crate) fn inputs_at<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     purpose: Purpose,
     at_rest: bool,
 ) -> S::Inputs {
-    let components = <S::Inputs as Assemble<T>>::COMPONENTS;
+    let components = <S::Inputs as FromNumbers<T>>::COMPONENTS;
     let layout = Layout::new(S::FACTS.inputs, components, purpose);
     let mut record = vec![T::from_f64(0.0); layout.width];
     let mut at = 0;
@@ -36,7 +36,7 @@ pub(crate) fn inputs_at<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
         }
         at += own;
     }
-    Assemble::assemble(&mut By(|input, derivative, component| {
+    FromNumbers::from_numbers(&mut By(|input, derivative, component| {
         layout.place(input, derivative, component).map_or(T::from_f64(0.0), |place| record[place])
     }))
 }

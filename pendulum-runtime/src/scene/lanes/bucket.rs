@@ -44,7 +44,7 @@ pub(crate) type Failed = (u32, u8);
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     pub(crate) fn new(kind: Kind) -> Self {
         let tracks = Tracks::new(
-            <S::Inputs as crate::scene::sampling::assemble::Assemble<T>>::COMPONENTS.len(),
+            <S::Inputs as crate::scene::sampling::from_numbers::FromNumbers<T>>::COMPONENTS.len(),
         );
         Self {
             kind,

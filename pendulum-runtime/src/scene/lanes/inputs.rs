@@ -4,7 +4,7 @@
 
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::lanes::system::{SceneSystem, W, Wide};
-use crate::scene::sampling::assemble::{Assemble, Numbers};
+use crate::scene::sampling::from_numbers::{FromNumbers, Numbers};
 use crate::scene::sampling::layout::Layout;
 use crate::scene::sampling::tracks::Tracks;
 use crate::sealed::Sealed;
@@ -17,7 +17,7 @@ pub(crate) type Inputs<S, const N: usize> =
 /// Inputs that are all zero.
 #[inline(always)]
 pub(crate) fn nothing<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>() -> Inputs<S, N> {
-    Assemble::assemble(&mut Nothing)
+    FromNumbers::from_numbers(&mut Nothing)
 }
 
 struct Nothing;
@@ -86,10 +86,10 @@ impl<'a, T: Lane + Float> Followed<'a, T> {
                     records[run] = tracks.record(track[run], evaluation, layout.width);
                 }
             }
-            Assemble::assemble(&mut Spread { records: &records[..*count], begin, layout })
+            FromNumbers::from_numbers(&mut Spread { records: &records[..*count], begin, layout })
         } else {
             let records = track.map(|track| tracks.record(track, evaluation, layout.width));
-            Assemble::assemble(&mut Gathered { records: &records, layout })
+            FromNumbers::from_numbers(&mut Gathered { records: &records, layout })
         }
     }
 }

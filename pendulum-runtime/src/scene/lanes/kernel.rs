@@ -13,7 +13,7 @@ use crate::scene::lanes::block::{Block, ColdData};
 use crate::scene::lanes::inputs::{Followed, Inputs, nothing};
 use crate::scene::lanes::limits::{LaneLimits, half_decay};
 use crate::scene::lanes::system::{Layouts, SceneSystem, W, Wide};
-use crate::scene::sampling::assemble::{Assemble, By};
+use crate::scene::sampling::from_numbers::{By, FromNumbers};
 use crate::scene::sampling::scheme::{Grid, MOST_STAGES, Scheme};
 use crate::scene::sampling::tracks::{Piece, Tracks};
 use crate::simd::Work;
@@ -468,7 +468,7 @@ fn cut_tick<
         }
         let mut inputs = [nothing::<S, T, N>(); K];
         for (stage, inputs) in inputs.iter_mut().enumerate().take(stages) {
-            *inputs = Assemble::assemble(&mut By(|input, derivative, component| {
+            *inputs = FromNumbers::from_numbers(&mut By(|input, derivative, component| {
                 let mut lanes = Wide::from_f64(0.0);
                 let Some(place) = layout.place(input, derivative, component) else { return lanes };
                 for lane in (0..W).filter(|&lane| active[lane]) {
@@ -538,7 +538,7 @@ fn cross<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
         return;
     }
     let side = |after: usize| -> Inputs<S, N> {
-        Assemble::assemble(&mut By(|input, derivative, component| {
+        FromNumbers::from_numbers(&mut By(|input, derivative, component| {
             let mut lanes = Wide::from_f64(0.0);
             if let Some(place) = layout.place(input, derivative, component) {
                 for lane in 0..W {

@@ -1,7 +1,7 @@
 //! The types of systems that can hang in a scene.
 
 use crate::scalar::{Float, Lane, Lanes};
-use crate::scene::sampling::assemble::Assemble;
+use crate::scene::sampling::from_numbers::FromNumbers;
 use crate::scene::sampling::layout::Layout;
 use crate::system::{InLanes, LaneSystem, Purpose, Staged, System};
 
@@ -14,11 +14,11 @@ pub(crate) type Wide<T> = Lanes<T, W>;
 /// A system that can hang in a scene over the scalar `T`: every type that `lagrangian!` generates,
 /// over `f32` and `f64`.
 pub trait SceneSystem<T: Lane + Float, const N: usize>:
-    System<N, Scalar = T, With<T> = Self, Inputs: Assemble<T>>
+    System<N, Scalar = T, With<T> = Self, Inputs: FromNumbers<T>>
     + LaneSystem<
         InLanes<32>,
         N,
-        Wide: Staged<N, Inputs: Assemble<Lanes<T, 32>>, Prepared: Send + Sync> + Send + Sync,
+        Wide: Staged<N, Inputs: FromNumbers<Lanes<T, 32>>, Prepared: Send + Sync> + Send + Sync,
     > + Sized
     + Send
     + Sync
@@ -28,23 +28,23 @@ pub trait SceneSystem<T: Lane + Float, const N: usize>:
 
 impl<S, T: Lane + Float, const N: usize> SceneSystem<T, N> for S
 where
-    S: System<N, Scalar = T, Inputs: Assemble<T>, With<T> = S> + Send + Sync + 'static,
-    S::With<Wide<T>>: Staged<N, Inputs: Assemble<Wide<T>>, Prepared: Send + Sync> + Send + Sync,
+    S: System<N, Scalar = T, Inputs: FromNumbers<T>, With<T> = S> + Send + Sync + 'static,
+    S::With<Wide<T>>: Staged<N, Inputs: FromNumbers<Wide<T>>, Prepared: Send + Sync> + Send + Sync,
 {
 }
 
 /// The two layouts of a system and whether splitting methods suit it.
 pub(crate) struct Layouts<S, const N: usize>(core::marker::PhantomData<S>);
 
-impl<S: System<N, Inputs: Assemble<S::Scalar>>, const N: usize> Layouts<S, N> {
+impl<S: System<N, Inputs: FromNumbers<S::Scalar>>, const N: usize> Layouts<S, N> {
     pub(crate) const FORCES: Layout = Layout::new(
         S::FACTS.inputs,
-        <S::Inputs as Assemble<S::Scalar>>::COMPONENTS,
+        <S::Inputs as FromNumbers<S::Scalar>>::COMPONENTS,
         Purpose::Accelerations,
     );
     pub(crate) const MOMENTA: Layout = Layout::new(
         S::FACTS.inputs,
-        <S::Inputs as Assemble<S::Scalar>>::COMPONENTS,
+        <S::Inputs as FromNumbers<S::Scalar>>::COMPONENTS,
         Purpose::Momenta,
     );
     /// It has constraints.

@@ -1,7 +1,7 @@
 //! Time in ticks, and the samples of joints at the times that the grids of the pendulums ask for.
 
-pub(super) mod assemble;
 pub(super) mod clock;
+pub(super) mod from_numbers;
 pub(super) mod joint;
 pub(super) mod layout;
 pub(super) mod scheme;

@@ -29,19 +29,19 @@ impl<T, F: FnMut(usize, usize, usize) -> T> Numbers<T> for By<F> {
 }
 
 /// The samples of all driven inputs of a system over the scalar `T`, put together number by number.
-pub trait Assemble<T>: Samples + Sealed {
+pub trait FromNumbers<T>: Samples + Sealed {
     /// The components of each input.
     const COMPONENTS: &'static [usize];
 
     /// The samples of these numbers.
-    fn assemble(numbers: &mut impl Numbers<T>) -> Self;
+    fn from_numbers(numbers: &mut impl Numbers<T>) -> Self;
 }
 
-impl<T: Real> Assemble<T> for () {
+impl<T: Real> FromNumbers<T> for () {
     const COMPONENTS: &'static [usize] = &[];
 
     #[inline(always)]
-    fn assemble(_: &mut impl Numbers<T>) -> Self {}
+    fn from_numbers(_: &mut impl Numbers<T>) -> Self {}
 }
 
 /// Joints on which a system hangs: `()`, a [`Joint`] or a tuple of joints, one for each driven
@@ -80,11 +80,11 @@ fn sample<T: Real, const D: usize>(input: usize, numbers: &mut impl Numbers<T>) 
 
 macro_rules! tuples {
     ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
-        impl<T: Real, $(const $dim: usize),+> Assemble<T> for ($(Sample<T, $dim>,)+) {
+        impl<T: Real, $(const $dim: usize),+> FromNumbers<T> for ($(Sample<T, $dim>,)+) {
             const COMPONENTS: &'static [usize] = &[$($dim),+];
 
             #[inline(always)]
-            fn assemble(numbers: &mut impl Numbers<T>) -> Self {
+            fn from_numbers(numbers: &mut impl Numbers<T>) -> Self {
                 ($(sample::<T, $dim>($index, numbers),)+)
             }
         }
