@@ -1,12 +1,12 @@
 //! States that fulfil the constraints of a system, near a guess.
 
 use crate::error::{Error, Part};
-use crate::integrate::data::label::Source;
 use crate::integrate::state::State;
 use crate::integrate::step::integration::check_start;
 use crate::integrate::step::projection;
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
+use crate::system::label::Source;
 use crate::system::{Dynamics, Purpose, System, scalar_time};
 use crate::time::Time;
 use nalgebra::{DMatrix, DVector};

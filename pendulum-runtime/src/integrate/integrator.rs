@@ -6,17 +6,18 @@ use crate::integrate::events::{Event, Occurrence, Status};
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::Method;
 
-use crate::integrate::output::direction;
-use crate::integrate::saved::{Memory, Saved};
-use crate::integrate::solution::{Impact, Stats};
+use crate::integrate::events::observed::Observed;
+use crate::integrate::field::contacts::Contacts;
+use crate::integrate::field::first_in_state;
 use crate::integrate::state::State;
+use crate::integrate::state::impact::Impact;
+use crate::integrate::state::saved::{Memory, Saved};
+use crate::integrate::stats::Stats;
 use crate::integrate::step::adaptive::AdaptiveStep;
-use crate::integrate::step::contacts::Contacts;
 use crate::integrate::step::controller::Controller;
-use crate::integrate::step::field::first_in_state;
 use crate::integrate::step::held::Held;
 use crate::integrate::step::integration::Integration;
-use crate::integrate::step::observed::Observed;
+use crate::integrate::times::direction;
 use crate::scalar::Float;
 use crate::system::{Dynamics, MOST_LIMITS, System};
 

@@ -3,16 +3,16 @@
 //! A method outside of this crate implements [`Method`], and [`ErrorEstimate`] and [`Adaptive`] if
 //! it can choose its steps; the example `own_method` has one.
 
+use super::field::diagnose;
+pub use super::field::{Field, InputsOf};
+use super::field::{coordinate, first_in_state};
 pub use super::interpolant::{Basis, Interpolant, TERMS};
-pub use super::step::compensated::Compensated;
-use super::step::diagnose;
-pub use super::step::endpoint::Endpoint;
-pub use super::step::field::{Field, InputsOf};
-use super::step::field::{coordinate, first_in_state};
-pub use super::step::interval::StepInterval;
+pub use super::state::compensated::Compensated;
+pub use super::state::endpoint::Endpoint;
+pub use super::state::interval::StepInterval;
 use crate::error::{Error, Quantity};
 use crate::integrate::interpolant::hermite;
-pub use crate::integrate::saved::Memory;
+pub use crate::integrate::state::saved::Memory;
 use crate::scalar::Float;
 use crate::system::{Dynamics, System};
 use crate::time::Time;
@@ -271,7 +271,7 @@ fn fault<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usize>(
     let to = method.attempt(&mut watched, interval, &mut start, &mut method.workspace(dynamics));
     let findings = watched.findings;
     if let Some((t, coordinate)) = findings.lost
-        && diagnose::regular(dynamics, from)
+        && diagnose::regular(dynamics, from.t, &from.q.high, &from.v.high)
     {
         return Some(Error::NoVelocity { t: t.to_f64(), coordinate });
     }

@@ -1,9 +1,8 @@
 //! Functions that look on while an integration goes.
 
 use crate::integrate::events::Occurrence;
-use crate::integrate::interpolant::Interpolant;
-use crate::integrate::solution::Stats;
 use crate::integrate::state::State;
+use crate::integrate::stats::Stats;
 use crate::scalar::Float;
 use core::fmt;
 use core::ops::ControlFlow;
@@ -37,27 +36,6 @@ impl<T: Float, const N: usize> Step<'_, T, N> {
     pub fn at(&mut self, t: f64) -> Option<State<T, N>> {
         (self.within)(t)
     }
-}
-
-/// The state at `t` within a step from the time `start` to the state `end`.
-pub(crate) fn within<'i, T: Float, const N: usize>(
-    start: f64,
-    end: State<T, N>,
-    t: f64,
-    interpolant: impl FnOnce() -> Option<&'i Interpolant<T, N>>,
-) -> Option<State<T, N>> {
-    if t == end.t {
-        return Some(end);
-    }
-    if !(start <= t && t < end.t || end.t < t && t <= start) {
-        return None;
-    }
-    let interpolant = interpolant()?;
-    let (zero, one, theta) =
-        (T::from_f64(0.0), T::from_f64(1.0), interpolant.interval.fraction::<T>(t));
-    let theta = if theta < zero { zero } else { theta };
-    let (q, v) = interpolant.at(if theta < one { theta } else { one });
-    Some(State { t, q, v })
 }
 
 impl<T: fmt::Debug, const N: usize> fmt::Debug for Step<'_, T, N> {

@@ -1,16 +1,19 @@
 //! The states that a solution keeps.
 
 use crate::error::Error;
-use crate::integrate::data::label::Source;
+use crate::integrate::events::observed::Observed;
 use crate::integrate::events::{Occurrence, Status};
+use crate::integrate::field::first_in_state;
 use crate::integrate::interpolant::dense::DenseOutput;
 use crate::integrate::observe::OfStates;
-use crate::integrate::solution::{Failure, Impact, RunNumber, Solution, Stats};
+use crate::integrate::solution::{Failure, RunNumber, Solution};
 use crate::integrate::state::State;
-use crate::integrate::step::field::first_in_state;
-use crate::integrate::step::observed::Observed;
+use crate::integrate::state::impact::Impact;
+use crate::integrate::stats::Stats;
+use crate::integrate::times::{direction, in_order, precedes};
 use crate::scalar::Float;
 use crate::system::Facts;
+use crate::system::label::Source;
 use crate::time::Time;
 
 /// The greatest number of states that an interval between outputs may ask for.
@@ -71,34 +74,6 @@ impl Output<'_> {
             Output::End | Output::Steps => None,
         }
     }
-}
-
-/// Checks that `times` are finite, within the interval and in its direction.
-pub(crate) fn in_order(
-    name: &'static str,
-    times: &[f64],
-    start: f64,
-    end: f64,
-) -> Result<(), Error> {
-    let onwards = direction(start, end);
-    let mut least = onwards * start;
-    for (index, &time) in times.iter().enumerate() {
-        if !(least <= onwards * time && onwards * time <= onwards * end) {
-            return Err(Error::Times { name, index, time });
-        }
-        least = onwards * time;
-    }
-    Ok(())
-}
-
-/// −1 for an interval that leads back in time, else 1.
-pub(crate) fn direction(start: f64, end: f64) -> f64 {
-    if end < start { -1.0 } else { 1.0 }
-}
-
-/// Returns true if an integration over `interval` comes to `a` before it comes to `b`.
-pub(crate) fn precedes(a: f64, b: f64, (start, end): (f64, f64)) -> bool {
-    if end < start { b < a } else { a < b }
 }
 
 /// Keeps what is asked for while the integration goes on.

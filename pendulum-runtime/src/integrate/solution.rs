@@ -1,13 +1,14 @@
 //! The result of an integration.
 
 use crate::error::Error;
-use crate::integrate::data::label::Source;
 use crate::integrate::events::{Occurrence, Status};
 use crate::integrate::interpolant::dense::DenseOutput;
 use crate::integrate::state::State;
+use crate::integrate::state::impact::Impact;
+use crate::integrate::stats::Stats;
 use crate::motion::Side;
 use crate::scalar::Float;
-use crate::time::Time;
+use crate::system::label::Source;
 use core::fmt;
 use core::iter::FusedIterator;
 use core::ops::Range;
@@ -98,40 +99,6 @@ impl<T: Float, const N: usize> Solution<T, N> {
     }
 }
 
-/// An impact on a limit h(q, t) ≥ 0 of the system.
-///
-/// The impulse μ ≥ 0 acts along n = ∂h/∂q: M(q̇⁺ − q̇⁻) = nμ + Cᵀν, where ν are the impulses of the
-/// constraints, with ḣ⁺ = −e ḣ⁻. Several limits that are closed at one time act in the order of
-/// declaration, each on the velocities that the one before it has left, and again until none of
-/// them closes; after a hundred rounds without rebound.
-///
-/// A limit whose rebound ḣ⁺ is below what the tolerances allow its rate (below rounding, with fixed
-/// steps), while ḧ < 0 without it, stays in contact: then q̈ = q̈₀ + K nμ, where q̈₀ are the
-/// accelerations without it, K n = M⁻¹(n + Cᵀν) keeps the constraints and μ keeps ḧ = 0; each step
-/// ends on h = ḣ = 0. It lets go where μ falls below zero, which is no impact. Methods that do not
-/// know the force end with [`Error::Contact`] where a contact begins.
-///
-/// Source: F. Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral Contacts (1996), chapter
-/// 8.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "T: serde::Serialize")))]
-#[non_exhaustive]
-pub struct Impact<T, const N: usize> {
-    /// The index of the limit in the order of declaration.
-    pub limit: usize,
-    /// The name of the limit.
-    pub name: &'static str,
-    /// When.
-    pub time: Time,
-    /// The state before it.
-    pub state: State<T, N>,
-    /// The state after it; where the limit stays in contact, after all that acted at that time.
-    pub after: State<T, N>,
-    /// The sum of its impulses at that time, an action per unit of the limit.
-    pub impulse: T,
-}
-
 /// Equal in all numbers, in the names of the columns and in why and how it ended.
 impl<T: PartialEq, const N: usize> PartialEq for Solution<T, N> {
     fn eq(&self, other: &Self) -> bool {
@@ -206,84 +173,6 @@ impl<'a, T: Copy, const N: usize> IntoIterator for &'a Solution<T, N> {
 
     fn into_iter(self) -> States<'a, T, N> {
         self.iter()
-    }
-}
-
-/// The counters of an integration.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[non_exhaustive]
-pub struct Stats {
-    /// The name of the method.
-    pub method: &'static str,
-    /// Evaluations of the accelerations, those for dense output included.
-    /// [`Taylor`](crate::integrate::Taylor) counts an order of its series as one; the one at the
-    /// end of each step, by which it checks them, is not counted.
-    pub evaluations: u64,
-    /// Steps taken.
-    pub accepted: u64,
-    /// Steps tried and rejected by step control, which tried again with shorter ones: nothing is
-    /// lost but their time. Many of them, compared with those accepted, tell of corners or of noise
-    /// in the forces.
-    pub rejected: u64,
-    /// Kinks crossed.
-    pub kinks: u64,
-    /// The misfits of the constraints; `None` without constraints and before the first step.
-    pub constraints: Option<ConstraintStats>,
-}
-
-/// The misfits of the constraints of a system at the ends of steps.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct ConstraintStats {
-    /// The least independence of a constraint of those before it, from 0 to 1, as
-    /// [`System::independence`](crate::system::System::independence) gives it.
-    pub independence: Extreme,
-    /// The largest misfit of positions that a step has left before it was projected, in the unit of
-    /// the constraint.
-    pub misfit: Extreme,
-}
-
-/// An extreme value, where and when it was met.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[non_exhaustive]
-pub struct Extreme {
-    /// The value.
-    pub value: f64,
-    /// The time in seconds.
-    pub t: f64,
-    /// The constraint.
-    pub constraint: &'static str,
-}
-
-impl Stats {
-    pub(crate) const fn new(method: &'static str) -> Self {
-        Self { method, evaluations: 0, accepted: 0, rejected: 0, kinks: 0, constraints: None }
-    }
-}
-
-impl fmt::Display for Stats {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { method, evaluations, accepted, rejected, kinks, constraints } = self;
-        write!(
-            f,
-            "{method}: {accepted} steps, {rejected} rejected, {kinks} kinks, {evaluations} evaluations"
-        )?;
-        if let Some(ConstraintStats { independence, misfit }) = constraints {
-            write!(
-                f,
-                ", least independence {:.1e} of {} at {:?}, largest misfit {:.1e} of {} at {:?}",
-                independence.value,
-                independence.constraint,
-                independence.t,
-                misfit.value,
-                misfit.constraint,
-                misfit.t
-            )?;
-        }
-        Ok(())
     }
 }
 

@@ -2,22 +2,24 @@
 
 use crate::error::Error;
 use crate::integrate::events::detector::EventDetector;
+use crate::integrate::events::observed::Observed;
 use crate::integrate::events::{Event, Occurrence, Status};
 use crate::integrate::integrator::Integrator;
 use crate::integrate::method::Method;
 use crate::integrate::methods::auto::Auto;
 use crate::integrate::observe::{Observers, OfSteps, Step};
-use crate::integrate::output::{Output, Recorder, direction, in_order};
+use crate::integrate::output::{Output, Recorder};
 use crate::integrate::settings::Settings;
-use crate::integrate::solution::{Failure, RunNumber, Solution, Stats};
+use crate::integrate::solution::{Failure, RunNumber, Solution};
 use crate::integrate::state::State;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::stats::Stats;
 use crate::integrate::step::adaptive::AdaptiveStep;
 use crate::integrate::step::controller::Controller;
-use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::fixed::FixedStep;
 use crate::integrate::step::held::Held;
 use crate::integrate::step::integration::Integration;
-use crate::integrate::step::observed::Observed;
+use crate::integrate::times::{direction, in_order};
 use crate::scalar::Float;
 use crate::system::{Dynamics, System};
 use core::mem;

@@ -10,7 +10,9 @@ mod feedback;
 #[doc(hidden)]
 pub mod generated;
 mod inputs;
+pub(crate) mod label;
 mod lane_system;
+pub(crate) mod name;
 
 pub use constraints::{Constraint, Limit, MOST_LIMITS};
 pub use control::{ControlSlot, ControlValues, Controlled, Sampled, Uncontrolled};

@@ -5,9 +5,9 @@
 #![allow(clippy::needless_bitwise_bool)]
 
 use super::problem::W;
-use crate::integrate::step::compensated::Compensated;
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::state::compensated::Compensated;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::scalar::{Float, Lane, Lanes, Real};
 use crate::time::Time;
 

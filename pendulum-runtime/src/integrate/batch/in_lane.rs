@@ -3,13 +3,13 @@
 use super::flight::Wide;
 use super::problem::Batched;
 use crate::error::Error;
+use crate::integrate::events::observed::Observed;
+use crate::integrate::field::Field;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::methods::taylor::series_interpolant;
 use crate::integrate::state::State;
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::StepInterval;
-use crate::integrate::step::observed::Observed;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::jet::Path;
 use crate::system::{Facts, System};
 use crate::time::Time;

@@ -12,13 +12,13 @@ use super::lengths::{UNTOLD, any, fit, is_short, lengths, log_radii, longer, rea
 use super::member::{Member, Watch};
 use super::problem::{Batched, Outcomes, Problems, W, WideOf};
 use super::settings::Batch;
+use crate::integrate::field::inertia::{inertia, is_due, varies};
 use crate::integrate::methods::taylor::{Ends, GAP, MISFIT, Rule, rest};
-use crate::integrate::output::precedes;
-use crate::integrate::step::compensated::{Compensated, splitter};
+use crate::integrate::state::compensated::{Compensated, splitter};
+use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::controller::ControllerState;
-use crate::integrate::step::inertia::{inertia, is_due, varies};
-use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::short::shortest;
+use crate::integrate::times::precedes;
 use crate::jet::{InputSeries, Jets, LENGTH, Path, Unrolling};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};

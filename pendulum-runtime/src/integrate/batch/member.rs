@@ -3,8 +3,9 @@
 use super::problem::{Batched, Posed, Problem};
 use crate::integrate::events::Event;
 use crate::integrate::events::detector::EventDetector;
-use crate::integrate::output::{Output, Recorder, direction, precedes};
-use crate::integrate::solution::Stats;
+use crate::integrate::output::{Output, Recorder};
+use crate::integrate::stats::Stats;
+use crate::integrate::times::{direction, precedes};
 use crate::system::Dynamics;
 use crate::time::Time;
 

@@ -1,13 +1,13 @@
 //! Columns of a solution: coordinates and velocities by name, energies along the motion.
 
-use super::label::Label;
-use super::name::{self, Name};
 use super::pushed::Pushed;
+use crate::integrate::field::contacts::Contacts;
 use crate::integrate::solution::{RunNumber, Solution};
 use crate::integrate::state::State;
-use crate::integrate::step::contacts::Contacts;
 use crate::motion::Side;
 use crate::scalar::Float;
+use crate::system::label::Label;
+use crate::system::name::{self, Name};
 use crate::system::{Dynamics, Purpose, System, scalar_time};
 use crate::time::Time;
 use core::fmt;

@@ -1,7 +1,7 @@
 //! Accelerations and multipliers where limits are in contact.
 
-use crate::integrate::events::impact::{product, solved};
-use crate::integrate::step::contacts::{self, Contacts};
+use crate::integrate::field::contacts::{self, Contacts};
+use crate::integrate::field::response::{product, solved};
 use crate::motion::Side;
 use crate::scalar::Float;
 use crate::system::{Dynamics, MOST_LIMITS as L, Purpose, System, scalar_time};

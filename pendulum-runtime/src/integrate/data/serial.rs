@@ -1,11 +1,13 @@
 //! Writing and reading of solutions by `serde`.
 
-use super::arrays::rows;
-use super::label::{Label, Labels, Source};
 use crate::integrate::events::{Occurrence, Status};
 use crate::integrate::interpolant::dense::DenseOutput;
-use crate::integrate::solution::{ConstraintStats, Extreme, Impact, RunNumber, Solution, Stats};
+use crate::integrate::solution::{RunNumber, Solution};
 use crate::integrate::state::State;
+use crate::integrate::state::arrays::rows;
+use crate::integrate::state::impact::Impact;
+use crate::integrate::stats::{ConstraintStats, Extreme, Stats};
+use crate::system::label::{Label, Labels, Source};
 use crate::time::Time;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

@@ -1,10 +1,10 @@
 //! A table of columns with names and units.
 
 use super::column::ColumnError;
-use super::label::Labels;
-use super::name;
 use crate::integrate::solution::Solution;
 use crate::scalar::Float;
+use crate::system::label::Labels;
+use crate::system::name;
 use crate::system::{Dynamics, System};
 use core::fmt;
 

@@ -1,7 +1,7 @@
 //! Functions of the state and known times to look for on the way, and what happens there.
 
 pub(crate) mod detector;
-pub(crate) mod impact;
+pub(crate) mod observed;
 pub(crate) mod root;
 
 use crate::integrate::state::State;

@@ -2,7 +2,7 @@
 
 use crate::integrate::interpolant::{Basis, Interpolant};
 use crate::integrate::state::State;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::state::interval::StepInterval;
 use crate::motion::Side;
 use crate::scalar::Float;
 
@@ -22,7 +22,7 @@ pub(crate) struct DenseOutput<T, const N: usize> {
     /// For each step where its values end, and what its terms are multiplied by.
     ends: Vec<(usize, Basis)>,
     /// For each step the state at its start and the terms of both polynomials.
-    #[cfg_attr(feature = "serde", serde(with = "crate::integrate::data::arrays::rows"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::integrate::state::arrays::rows"))]
     values: Vec<[T; N]>,
     /// The last state.
     end: State<T, N>,

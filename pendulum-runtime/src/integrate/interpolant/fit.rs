@@ -2,7 +2,7 @@
 //! values, slopes and curvatures.
 
 use crate::integrate::interpolant::TERMS;
-use crate::integrate::schemes::linear::Factors;
+use crate::integrate::linear::Factors;
 use crate::scalar::Float;
 
 /// A condition at a place θ.

@@ -2,8 +2,8 @@
 //! ends of a step.
 
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 
 /// The cubic through coordinates and velocities at both ends, and its derivative.

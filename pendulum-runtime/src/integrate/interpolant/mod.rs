@@ -4,8 +4,9 @@ pub(crate) mod dense;
 pub(crate) mod fit;
 pub(crate) mod hermite;
 
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::state::State;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::jet::MAX_ORDER;
 use crate::scalar::Float;
 
@@ -150,6 +151,27 @@ impl<T: Float, const N: usize> Interpolant<T, N> {
             self.basis.at(&self.v0, &self.v[..self.terms], theta),
         )
     }
+}
+
+/// The state at `t` within a step from the time `start` to the state `end`.
+pub(crate) fn within<'i, T: Float, const N: usize>(
+    start: f64,
+    end: State<T, N>,
+    t: f64,
+    interpolant: impl FnOnce() -> Option<&'i Interpolant<T, N>>,
+) -> Option<State<T, N>> {
+    if t == end.t {
+        return Some(end);
+    }
+    if !(start <= t && t < end.t || end.t < t && t <= start) {
+        return None;
+    }
+    let interpolant = interpolant()?;
+    let (zero, one, theta) =
+        (T::from_f64(0.0), T::from_f64(1.0), interpolant.interval.fraction::<T>(t));
+    let theta = if theta < zero { zero } else { theta };
+    let (q, v) = interpolant.at(if theta < one { theta } else { one });
+    Some(State { t, q, v })
 }
 
 /// Adds d(3θ² − 2θ³) + s(θ³ − θ²) to one polynomial: d at the end, with the slope s there.

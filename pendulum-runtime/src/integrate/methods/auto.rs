@@ -1,6 +1,8 @@
 //! The choice of a method.
 
 use crate::error::Error;
+use crate::integrate::field::Field;
+use crate::integrate::field::contacts::has_limits;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Memory, Method};
 use crate::integrate::methods::dop853::Dop853;
@@ -8,12 +10,10 @@ use crate::integrate::methods::picard::{LaneDynamics, Picard};
 use crate::integrate::methods::srkn14a;
 use crate::integrate::methods::taylor::{Taylor, WorkspaceOf};
 use crate::integrate::schemes::splitting::drift_kick_drift_in_two_words;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::adaptive::AdaptiveStep;
-use crate::integrate::step::contacts::has_limits;
 use crate::integrate::step::controller::{Controller, ControllerState, StepContext, StepLaw};
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::StepInterval;
 use crate::jet::{Jets, Known, MaybeJets, Unrolling};
 use crate::scalar::Float;
 use crate::system::{Dynamics, System};

@@ -1,13 +1,13 @@
 //! The Nyström pair of Dormand, El-Mikkawy and Prince of order 8.
 
+use crate::integrate::field::Field;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Adaptive, ErrorEstimate, Method, Response, Weights};
 use crate::integrate::schemes::nystrom::Kicks;
 use crate::integrate::schemes::runge_kutta::Row;
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::gap::widest;
-use crate::integrate::step::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::{Dynamics, VelocityFree};
 

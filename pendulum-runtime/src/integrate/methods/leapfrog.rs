@@ -1,12 +1,12 @@
 //! The leapfrog method.
 
+use crate::integrate::field::Field;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::interpolant::hermite;
 use crate::integrate::method::Method;
 use crate::integrate::schemes::splitting::{Splitting, drift_kick_drift};
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::{Dynamics, VelocityFree};
 

@@ -1,10 +1,10 @@
 //! RATTLE and its symmetric compositions.
 
 use crate::error::{Error, Part};
+use crate::integrate::field::Field;
 use crate::integrate::method::Method;
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::projection::in_rounding;
 use crate::motion::Side;
 use crate::scalar::{Float, Real};

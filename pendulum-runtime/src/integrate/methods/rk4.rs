@@ -1,10 +1,10 @@
 //! The classical Runge–Kutta method.
 
+use crate::integrate::field::Field;
 use crate::integrate::method::Method;
 use crate::integrate::schemes::runge_kutta::Slopes;
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::scalar::{Float, Real};
 use crate::system::Dynamics;
 

@@ -1,13 +1,13 @@
 //! The Rosenbrock method of Hairer and Wanner of order 4, for stiff springs and dampers.
 
+use crate::integrate::field::Field;
 use crate::integrate::interpolant::Interpolant;
+use crate::integrate::linear::{Factors, Square, times};
 use crate::integrate::method::{Adaptive, ErrorEstimate, Method, Response, Weights};
-use crate::integrate::schemes::linear::{Factors, Square, times};
 use crate::integrate::schemes::runge_kutta::{Row, Slopes};
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::gap::{all, widest};
-use crate::integrate::step::interval::StepInterval;
 use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Jacobians, System};
 

@@ -1,10 +1,10 @@
 //! A splitting method of Blanes and Moan with fourteen evaluations.
 
+use crate::integrate::field::Field;
 use crate::integrate::method::Method;
 use crate::integrate::schemes::splitting::{Splitting, drift_kick_drift_in_two_words};
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::{Dynamics, VelocityFree};
 

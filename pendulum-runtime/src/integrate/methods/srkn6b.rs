@@ -1,10 +1,10 @@
 //! A splitting method of Blanes and Moan with six evaluations.
 
+use crate::integrate::field::Field;
 use crate::integrate::method::Method;
 use crate::integrate::schemes::splitting::{Splitting, kick_drift_kick};
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::{Dynamics, VelocityFree};
 

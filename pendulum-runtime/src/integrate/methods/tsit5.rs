@@ -1,12 +1,12 @@
 //! The method of Tsitouras of order 5.
 
+use crate::integrate::field::Field;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Adaptive, ErrorEstimate, Method, Response, Weights};
 use crate::integrate::schemes::runge_kutta::{Row, Slopes};
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::gap::widest;
-use crate::integrate::step::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::Dynamics;
 

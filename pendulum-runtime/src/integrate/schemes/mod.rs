@@ -1,7 +1,5 @@
 //! Machinery that several methods share.
 
-pub(crate) mod linear;
-pub(crate) mod multistep;
 pub(crate) mod nystrom;
 pub(crate) mod runge_kutta;
 pub(crate) mod splitting;

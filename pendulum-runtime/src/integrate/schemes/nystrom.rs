@@ -1,12 +1,12 @@
 //! The stages of explicit Runge–Kutta–Nyström methods for q̈ = a(t, q).
 
+use crate::integrate::field::Field;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::interpolant::hermite;
 use crate::integrate::method::Weights;
 use crate::integrate::schemes::runge_kutta::{Row, weighted};
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::Dynamics;
 

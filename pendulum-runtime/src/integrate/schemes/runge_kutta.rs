@@ -1,8 +1,8 @@
 //! The stages of explicit Runge–Kutta methods for (q, q̇)′ = (q̇, a(t, q, q̇)).
 
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::field::Field;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::Dynamics;
 

@@ -3,9 +3,9 @@
 //! A drift moves the coordinates with fixed velocities and advances the time, a kick changes the
 //! velocities with fixed coordinates.
 
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::field::Field;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::Dynamics;
 

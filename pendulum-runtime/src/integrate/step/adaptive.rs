@@ -4,15 +4,15 @@
 #![allow(clippy::inline_always)]
 
 use crate::error::Error;
+use crate::integrate::field::Field;
+use crate::integrate::field::coordinate;
 use crate::integrate::method::{Adaptive, ErrorEstimate, Method, Weights};
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::controller::{
     Controller, ControllerState, StepContext, StepLaw, Trial, Verdict,
 };
-use crate::integrate::step::endpoint::Endpoint;
 use crate::integrate::step::fast_exp2::{exp2, log2};
-use crate::integrate::step::field::Field;
-use crate::integrate::step::field::coordinate;
-use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::projection::Tangent;
 use crate::integrate::step::short::shortest;
 use crate::scalar::{Float, Real};

@@ -1,12 +1,12 @@
 //! Controllers: how long the next step is, and whether one is good enough.
 
 use crate::error::{Error, Quantity};
+use crate::integrate::field::Field;
 use crate::integrate::method::{self, Method};
-use crate::integrate::solution::Stats;
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
+use crate::integrate::stats::Stats;
 use crate::integrate::step::gap;
-use crate::integrate::step::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::Dynamics;
 use crate::time::Time;

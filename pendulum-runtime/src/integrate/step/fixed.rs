@@ -2,8 +2,8 @@
 
 use crate::error::Error;
 use crate::integrate::method::{self, Method};
+use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::controller::{Controller, ControllerState, StepContext};
-use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::short::{is_short, straight};
 use crate::scalar::Float;
 use crate::system::Dynamics;

@@ -8,7 +8,6 @@
 // Functions that lanes use too have to be compiled for their vectors.
 #![allow(clippy::inline_always)]
 
-use crate::integrate::schemes::runge_kutta::Row;
 use crate::scalar::{Float, Real};
 use crate::system::{System, scalar_time};
 use crate::time::Time;
@@ -28,7 +27,7 @@ pub(crate) const WITHOUT_INTERVAL: f64 = 1.0;
 
 /// The widest gap between the nodes to which an estimate gives weights, and between the last of
 /// them and the first of the next step.
-pub(crate) const fn widest<const K: usize>(nodes: &[f64], estimate: &Row<K>) -> f64 {
+pub(crate) const fn widest<const K: usize>(nodes: &[f64], estimate: &[(usize, f64); K]) -> f64 {
     let mut widest = 0.0;
     let mut i = 0;
     while i < K {
@@ -49,7 +48,7 @@ pub(crate) const fn widest<const K: usize>(nodes: &[f64], estimate: &Row<K>) -> 
 }
 
 /// Every node with a weight.
-pub(crate) const fn all<const K: usize>() -> Row<K> {
+pub(crate) const fn all<const K: usize>() -> [(usize, f64); K] {
     let mut row = [(0, 1.0); K];
     let mut k = 0;
     while k < K {

@@ -1,14 +1,14 @@
 //! Limits on the way: gaps that close, contacts that let go, and what becomes of the velocities.
 
 use crate::error::Error;
-use crate::integrate::events::impact::{product, response};
+use crate::integrate::field::contacts::{self, Contacts, limits};
+use crate::integrate::field::response::{product, response};
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::saved::Memory;
-use crate::integrate::solution::Impact;
 use crate::integrate::state::State;
-use crate::integrate::step::compensated::Compensated;
-use crate::integrate::step::contacts::{self, Contacts, limits};
-use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::state::compensated::Compensated;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::impact::Impact;
+use crate::integrate::state::saved::Memory;
 use crate::integrate::step::projection;
 use crate::motion::Side;
 use crate::scalar::{Float, Real};

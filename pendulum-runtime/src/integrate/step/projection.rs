@@ -10,12 +10,12 @@
 //! Numerical Integration (2006), IV.4.
 
 use crate::error::{Error, Part};
-use crate::integrate::saved::Memory;
-use crate::integrate::solution::{ConstraintStats, Extreme};
+use crate::integrate::field::first_in_state;
 use crate::integrate::state::State;
-use crate::integrate::step::compensated::Compensated;
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::first_in_state;
+use crate::integrate::state::compensated::Compensated;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::saved::Memory;
+use crate::integrate::stats::{ConstraintStats, Extreme};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Facts, Purpose, System, is_constrained, scalar_time};

@@ -23,7 +23,7 @@ pub struct Baked<T, const N: usize> {
     step: f64,
     /// The ticks of the keys since the first.
     ticks: Vec<u32>,
-    #[cfg_attr(feature = "serde", serde(with = "crate::integrate::data::arrays::pairs"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::integrate::state::arrays::pairs"))]
     states: Vec<([T; N], [T; N])>,
 }
 
@@ -34,7 +34,7 @@ pub struct Baked<T, const N: usize> {
 struct Keys<T, const N: usize> {
     step: f64,
     ticks: Vec<u32>,
-    #[serde(deserialize_with = "crate::integrate::data::arrays::pairs::deserialize")]
+    #[serde(deserialize_with = "crate::integrate::state::arrays::pairs::deserialize")]
     states: Vec<([T; N], [T; N])>,
 }
 

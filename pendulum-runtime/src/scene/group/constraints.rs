@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::integrate::State;
-use crate::integrate::step::inertia::inertia_of;
+use crate::integrate::field::inertia::inertia_of;
 use crate::integrate::step::projection;
 use crate::motion::Side;
 use crate::scalar::{Float, Lane};

@@ -1,8 +1,8 @@
 //! Causes of states that are not finite.
 
 use crate::error::{Error, Quantity};
-use crate::integrate::step::diagnose::suspects;
-use crate::integrate::step::field::{coordinate, first_in_inputs};
+use crate::integrate::field::diagnose::suspects;
+use crate::integrate::field::{coordinate, first_in_inputs};
 use crate::motion::Side;
 use crate::scalar::{Float, Lane};
 use crate::scene::group::constraints::OnJoints;

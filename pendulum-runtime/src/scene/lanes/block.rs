@@ -1,6 +1,6 @@
 //! A block of lanes: pendulums of one type that are computed together.
 
-use crate::integrate::step::compensated::Compensated;
+use crate::integrate::state::compensated::Compensated;
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::lanes::limits::LaneLimits;
 use crate::scene::lanes::system::{SceneSystem, W, Wide};

@@ -7,7 +7,7 @@
 #![allow(clippy::inline_always)]
 
 use crate::integrate::methods::{leapfrog, srkn6b};
-use crate::integrate::step::compensated::Compensated;
+use crate::integrate::state::compensated::Compensated;
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::lanes::block::{Block, ColdData};
 use crate::scene::lanes::inputs::{Followed, Inputs, nothing};

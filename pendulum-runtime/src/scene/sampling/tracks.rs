@@ -1,6 +1,6 @@
 //! Tracks: the samples of joints that the pendulums of a bucket see during a batch of ticks.
 
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::state::interval::StepInterval;
 use crate::motion::{Derivatives, Side};
 use crate::scalar::{Float, Real};
 use crate::scene::sampling::clock::Clock;

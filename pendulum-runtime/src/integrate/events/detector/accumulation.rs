@@ -1,6 +1,6 @@
 //! Times between acts, which tell acts that go on from those that never end.
 
-use crate::integrate::saved::Memory;
+use crate::integrate::state::saved::Memory;
 use crate::time::Time;
 
 /// Times between acts that have grown shorter so often, and by this factor, accumulate.

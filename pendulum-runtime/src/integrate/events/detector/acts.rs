@@ -3,10 +3,10 @@
 use super::accumulation::Next;
 use super::{EventDetector, Place, side};
 use crate::error::Error;
+use crate::integrate::events::observed::Observed;
 use crate::integrate::events::{Condition, Event, Occurrence, Status};
+use crate::integrate::field::first_in_state;
 use crate::integrate::state::State;
-use crate::integrate::step::field::first_in_state;
-use crate::integrate::step::observed::Observed;
 use crate::scalar::Float;
 use crate::time::Time;
 

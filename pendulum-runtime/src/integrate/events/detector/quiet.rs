@@ -7,7 +7,7 @@
 use super::{EventDetector, POINTS, Place, side};
 use crate::integrate::events::Condition;
 use crate::integrate::events::root::stays_away;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::state::interval::StepInterval;
 use crate::scalar::{Float, Lane, Lanes};
 
 /// The number of events whose values stand in a row.

@@ -3,8 +3,8 @@
 use super::tableau::Tableau;
 use crate::integrate::interpolant::fit::{Condition, fit};
 use crate::integrate::interpolant::{Interpolant, TERMS};
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 
 /// The polynomial of degree S + 1 through the velocities at both ends and at the stages, and its

@@ -1,11 +1,11 @@
 //! The equations of one step, and two ways to come nearer to their solution.
 
 use super::tableau::Tableau;
-use crate::integrate::schemes::linear::{Factors, Square, times};
-use crate::integrate::step::compensated::Compensated;
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::{Field, InputsOf};
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::field::{Field, InputsOf};
+use crate::integrate::linear::{Factors, Square, times};
+use crate::integrate::state::compensated::Compensated;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Jacobians};
 use crate::time::Time;

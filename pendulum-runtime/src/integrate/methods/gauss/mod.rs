@@ -4,12 +4,12 @@ mod dense;
 mod equations;
 mod tableau;
 
+use crate::integrate::field::Field;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Memory, Method};
-use crate::integrate::step::compensated::Compensated;
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::state::compensated::Compensated;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::motion::Side;
 use crate::scalar::Float;
 use crate::system::{Dynamics, Jacobians, Purpose, System, scalar_time};

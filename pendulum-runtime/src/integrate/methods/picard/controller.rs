@@ -7,12 +7,12 @@ use super::{Picard, iterate, tableau};
 use crate::error::Error;
 use crate::integrate::method::{self, Method};
 use crate::integrate::methods::dop853::Dop853;
+use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::adaptive::AdaptiveStep;
 use crate::integrate::step::controller::{
     Controller, ControllerState, StepContext, StepLaw, Trial, Verdict,
 };
 use crate::integrate::step::fast_exp2::{log2, power};
-use crate::integrate::step::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::is_constrained;
 use crate::time::Time;
@@ -211,11 +211,11 @@ fn scaled(error: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::{AdaptiveStep, Controller, ControllerState, Picard, StepContext, planned};
+    use crate::integrate::field::Field;
     use crate::integrate::method::Method;
     use crate::integrate::methods::picard::Workspace;
-    use crate::integrate::solution::Stats;
-    use crate::integrate::step::endpoint::Endpoint;
-    use crate::integrate::step::field::Field;
+    use crate::integrate::state::endpoint::Endpoint;
+    use crate::integrate::stats::Stats;
     use crate::scalar::Real;
     use crate::system::{Facts, Staged, System};
     use crate::time::Time;

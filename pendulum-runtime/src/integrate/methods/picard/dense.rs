@@ -4,10 +4,10 @@ use super::kernel::{Equations, FIXED, Within};
 use super::lanes::LaneDynamics;
 use super::tableau::S;
 use super::workspace::WorkspaceOf;
+use crate::integrate::field::Field;
 use crate::integrate::interpolant::{Basis, Interpolant, TERMS};
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::scalar::{Octet, Real};
 use crate::simd;
 

@@ -8,8 +8,8 @@
 use super::lanes::{LaneDynamics, LaneInputs, WideOf};
 use super::tableau::{BETWEEN, EIGHT, Nodes, REFINED, S, SIXTEEN};
 use super::workspace::{Progress, Scaled, Stages, Tolerances, Wide, WorkspaceOf};
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::motion::Side;
 use crate::scalar::{Float, Lane, Octet};
 use crate::simd::Work;

@@ -12,13 +12,13 @@ mod tableau;
 mod workspace;
 
 use crate::error::Error;
+use crate::integrate::field::diagnose;
+use crate::integrate::field::{Field, coordinate, first_in_state};
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Memory, Method};
 use crate::integrate::methods::dop853::{self, Dop853};
-use crate::integrate::step::diagnose;
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::{Field, coordinate, first_in_state};
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::scalar::{Float, Octet, Real};
 use crate::simd;
 use crate::system::{Dynamics, LaneSystem, System};

@@ -6,8 +6,8 @@
 use super::lanes::WideOf;
 use super::tableau::{BETWEEN, Columns, EIGHT, S, SIXTEEN};
 use crate::integrate::methods::dop853;
-use crate::integrate::saved::Memory;
-use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::saved::Memory;
 use crate::scalar::{Float, Lane, Octet};
 use crate::system::{Dynamics, System};
 use crate::time::Time;

@@ -4,14 +4,14 @@ use super::doubts::{Doubts, MOST_DOUBTS};
 use super::method::{GAP, Taylor, Workspace, WorkspaceOf, expand, side, sum};
 use super::rule::{Rule, largest, length};
 use crate::error::Error;
+use crate::integrate::field::Field;
 use crate::integrate::method;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::adaptive::{AdaptiveStep, fit, resolution_of};
 use crate::integrate::step::controller::{
     Controller, ControllerState, StepContext, StepLaw, Trial, Verdict,
 };
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::StepInterval;
 use crate::jet::{JetDynamics, Jets, Path, Series};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};

@@ -1,8 +1,8 @@
 //! Doubts about series that did not hold at the end of a step.
 
-use crate::integrate::saved::Memory;
+use crate::integrate::state::interval::StepInterval;
+use crate::integrate::state::saved::Memory;
 use crate::integrate::step::controller::Trial;
-use crate::integrate::step::interval::StepInterval;
 use crate::time::Time;
 
 /// A jump is found within some forty steps, and behind it they are long again. If series go on not

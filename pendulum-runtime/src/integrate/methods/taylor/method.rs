@@ -6,13 +6,13 @@
 use super::doubts::Doubts;
 use super::rule::Rule;
 use crate::error::{Error, Quantity};
+use crate::integrate::field::diagnose;
+use crate::integrate::field::{Field, coordinate, first_in_state};
 use crate::integrate::interpolant::{Basis, Interpolant, TERMS};
 use crate::integrate::method::{Memory, Method};
-use crate::integrate::step::diagnose;
-use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::fast_exp2::log2;
-use crate::integrate::step::field::{Field, coordinate, first_in_state};
-use crate::integrate::step::interval::StepInterval;
 use crate::jet::{JetDynamics, Jets, MAX_ORDER, Path, Series, Unrolling};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};

@@ -2,12 +2,12 @@
 
 use super::Integration;
 use crate::error::Error;
+use crate::integrate::field::contacts::{self, has_limits};
 use crate::integrate::method::Method;
-use crate::integrate::solution::Impact;
-use crate::integrate::step::contacts::{self, has_limits};
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::impact::Impact;
+use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::controller::{Controller, ControllerState};
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::limits::{Accuracy, Limits, Meeting};
 use crate::motion::Side;
 use crate::scalar::Float;

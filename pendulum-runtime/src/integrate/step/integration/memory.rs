@@ -1,10 +1,10 @@
 //! Everything that an integration takes from one step to the next, for those that are saved.
 
 use super::Integration;
+use crate::integrate::field::contacts::has_limits;
 use crate::integrate::method::Method;
-use crate::integrate::saved::Memory;
-use crate::integrate::solution::{ConstraintStats, Extreme, Stats};
-use crate::integrate::step::contacts::has_limits;
+use crate::integrate::state::saved::Memory;
+use crate::integrate::stats::{ConstraintStats, Extreme, Stats};
 use crate::integrate::step::controller::ControllerState;
 use crate::scalar::Float;
 use crate::system::{Constraint, Dynamics, System};

@@ -5,23 +5,21 @@ mod memory;
 mod observed;
 
 use crate::error::{Error, Part, Quantity};
+use crate::integrate::events::observed::Observed;
+use crate::integrate::field::contacts::{self, has_limits};
+use crate::integrate::field::inertia::{inertia, is_due, varies};
+use crate::integrate::field::{Field, PreparedOf, coordinate, first_in_inputs, first_in_state};
 use crate::integrate::interpolant::Interpolant;
+use crate::integrate::interpolant::within;
 use crate::integrate::method::{self, Method};
-use crate::integrate::observe::within;
-use crate::integrate::solution::Stats;
 use crate::integrate::state::State;
-use crate::integrate::step::compensated::Compensated;
-use crate::integrate::step::contacts::{self, has_limits};
+use crate::integrate::state::compensated::Compensated;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
+use crate::integrate::stats::Stats;
 use crate::integrate::step::controller::{Controller, ControllerState, StepContext};
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::{
-    Field, PreparedOf, coordinate, first_in_inputs, first_in_state,
-};
 use crate::integrate::step::held::Held;
-use crate::integrate::step::inertia::{inertia, is_due, varies};
-use crate::integrate::step::interval::StepInterval;
 use crate::integrate::step::limits::{self, Limits};
-use crate::integrate::step::observed::Observed;
 use crate::integrate::step::projection::{self, Gradients};
 use crate::integrate::step::short::{is_short, straight};
 use crate::motion::Side;

@@ -2,13 +2,13 @@
 
 use super::{Integration, onwards};
 use crate::error::Error;
+use crate::integrate::events::observed::Observed;
+use crate::integrate::field::contacts::has_limits;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::Method;
 use crate::integrate::state::State;
-use crate::integrate::step::contacts::has_limits;
-use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::step::limits;
-use crate::integrate::step::observed::Observed;
 use crate::integrate::step::projection;
 use crate::scalar::Float;
 use crate::system::{Dynamics, Facts, System, is_constrained};

@@ -4,15 +4,15 @@
 //! q_{n−1} from accelerations f; its first sum w_n = (q_{n+1} − q_n)/h = w_{n−1} + h d_n and its
 //! second q_{n+1} = q_n + h w_n are kept with compensation (Henrici 1962, 6.4).
 
+use crate::integrate::field::Field;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::interpolant::fit::{Condition, fit};
 use crate::integrate::interpolant::hermite;
 use crate::integrate::method::{Memory, Method};
 use crate::integrate::methods::dop853::{self, Dop853};
-use crate::integrate::step::compensated::Compensated;
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::state::compensated::Compensated;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::Dynamics;
 use crate::time::Time;

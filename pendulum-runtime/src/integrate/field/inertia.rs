@@ -2,8 +2,8 @@
 //! mass is.
 
 use crate::error::Error;
-use crate::integrate::step::diagnose::negative;
-use crate::integrate::step::field::coordinate;
+use crate::integrate::field::coordinate;
+use crate::integrate::field::diagnose::negative;
 use crate::motion::Side;
 use crate::scalar::Float;
 use crate::system::{Dynamics, Facts, Purpose, System, scalar_time};

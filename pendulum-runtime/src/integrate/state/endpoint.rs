@@ -3,10 +3,10 @@
 // Picard's steps are compiled for several instruction sets.
 #![allow(clippy::inline_always)]
 
+use crate::integrate::field::Field;
 use crate::integrate::state::State;
-use crate::integrate::step::compensated::Compensated;
-use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::state::compensated::Compensated;
+use crate::integrate::state::interval::StepInterval;
 use crate::motion::Side;
 use crate::scalar::Float;
 use crate::system::Dynamics;

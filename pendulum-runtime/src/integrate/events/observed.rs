@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::state::State;
-use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::state::endpoint::Endpoint;
 use crate::system::Facts;
 use crate::time::Time;
 

@@ -1,7 +1,7 @@
 //! Everything that goes from one step to the next, written down with all its bits.
 
-use crate::integrate::step::compensated::Compensated;
-use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::state::compensated::Compensated;
+use crate::integrate::state::endpoint::Endpoint;
 use crate::scalar::Float;
 use crate::time::Time;
 

@@ -1,22 +1,22 @@
 //! Suspected causes of a failed step: singular masses, and parameters.
 
 use crate::error::{Error, Quantity, Suspect};
-use crate::integrate::schemes::linear::Factors;
-use crate::integrate::step::endpoint::Endpoint;
+use crate::integrate::linear::Factors;
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Purpose, System, scalar_time};
 use crate::time::Time;
 
-/// Returns true if the mass matrix at the start of a step leads from velocities to momenta and
+/// Returns true if the mass matrix at `t` leads from velocities to momenta and
 /// back.
 pub(crate) fn regular<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
-    from: &Endpoint<D::Scalar, N>,
+    t: Time,
+    q: &[D::Scalar; N],
+    v: &[D::Scalar; N],
 ) -> bool {
-    let (t, q, v) = (scalar_time(from.t), &from.q.high, &from.v.high);
-    let inputs = dynamics.inputs(from.t, Side::After, Purpose::Momenta);
-    let mass = dynamics.system().mass_matrix(t, q, v, &inputs);
+    let inputs = dynamics.inputs(t, Side::After, Purpose::Momenta);
+    let mass = dynamics.system().mass_matrix(scalar_time(t), q, v, &inputs);
     let momenta = Factors::<_, N, 1>::new(|_, _| {
         core::array::from_fn(|i| core::array::from_fn(|j| mass[(i, j)]))
     });

@@ -1,6 +1,5 @@
 //! Impacts of generalized velocities.
 
-use crate::integrate::state::State;
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Purpose, System, is_constrained, scalar_time};
@@ -33,29 +32,6 @@ pub fn impact<const N: usize, D: Dynamics<N, Scalar: Float>>(
     let speed = product(normal, v);
     let factor = -D::Scalar::from_f64(1.0 + restitution) * speed / product(normal, &direction);
     direction.map(|component| factor * component)
-}
-
-impl<T: Float, const N: usize> State<T, N> {
-    /// Adds the change of the velocities by which [`impact`] reflects them from a wall with the
-    /// normal ∂g/∂q:
-    ///
-    /// ```
-    /// # use pendulum_runtime::{integrate::*, system::*};
-    /// fn stop<S: System<2, Scalar = f64, Inputs = ()> + Sync>(arm: &S) -> Event<'_, f64, 2> {
-    ///     Event::new(|_t, q, _v| q[1] - q[0]).falling().then(|state| state.bounce(arm, &[-1.0, 1.0], 0.5))
-    /// }
-    /// ```
-    pub fn bounce<D: Dynamics<N, Scalar = T>>(
-        &mut self,
-        dynamics: &D,
-        normal: &[T; N],
-        restitution: f64,
-    ) {
-        let change = impact(dynamics, self.t, &self.q, &self.v, normal, restitution);
-        for i in 0..N {
-            self.v[i] += change[i];
-        }
-    }
 }
 
 /// The change of the velocities by the impulse `normal` while the constraints hold: K n, which is

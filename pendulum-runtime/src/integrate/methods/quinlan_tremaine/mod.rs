@@ -1,11 +1,13 @@
 //! The symmetric multistep methods of Quinlan and Tremaine.
 
+mod history;
+
+use crate::integrate::field::Field;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Memory, Method};
-use crate::integrate::schemes::multistep::{History, Scheme, padded};
-use crate::integrate::step::endpoint::Endpoint;
-use crate::integrate::step::field::Field;
-use crate::integrate::step::interval::StepInterval;
+use crate::integrate::methods::quinlan_tremaine::history::{History, Scheme, padded};
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::{Dynamics, VelocityFree};
 

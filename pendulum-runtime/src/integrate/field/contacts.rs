@@ -4,7 +4,7 @@
 //! response K = M⁻¹ − M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹C M⁻¹ to forces, q̈ = q̈₀ + K Nᵀμ, where the multipliers μ
 //! solve N K Nᵀ μ = −ḧ(q̈₀). Contacts are few, so that dense elimination at run time does.
 
-use crate::integrate::events::impact::{product, response};
+use crate::integrate::field::response::{product, response};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, MOST_LIMITS as L, Purpose, System, scalar_time};

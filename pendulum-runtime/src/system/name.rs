@@ -3,15 +3,15 @@
 /// A name without its dots: `θ̇[1]`, `theta_dot[1]` and `dot(θ[1])` are all `theta[1]` with one
 /// dot.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Name {
+pub(crate) struct Name {
     /// The ASCII spelling of the Greek letters, everything else as written, an index in brackets.
-    pub(super) base: String,
+    pub(crate) base: String,
     /// The number of time derivatives.
-    pub(super) dots: usize,
+    pub(crate) dots: usize,
 }
 
 /// Reads a name; composed and decomposed letters are read alike, white space does not count.
-pub(super) fn read(text: &str) -> Name {
+pub(crate) fn read(text: &str) -> Name {
     let text: String = text.chars().filter(|letter| !letter.is_whitespace()).collect();
     let (mut rest, mut dots) = (text.as_str(), 0);
     while let Some(inner) = rest.strip_prefix("dot(").and_then(|inner| inner.strip_suffix(')')) {
@@ -46,7 +46,7 @@ pub(super) fn read(text: &str) -> Name {
 
 /// The name of a velocity: a dot over the first letter, or the suffix `_dot` if the name is a word
 /// in ASCII or all of the block is.
-pub(super) fn velocity(name: &str, ascii: bool) -> String {
+pub(crate) fn velocity(name: &str, ascii: bool) -> String {
     let (stem, index) = name.split_at(name.find('[').unwrap_or(name.len()));
     if ascii || stem.is_ascii() && 1 < stem.len() {
         return format!("{stem}_dot{index}");
@@ -60,7 +60,7 @@ pub(super) fn velocity(name: &str, ascii: bool) -> String {
 }
 
 /// Twice the edit distance of two names, where a letter in the other case is half a step away.
-pub(super) fn distance(a: &Name, b: &Name) -> usize {
+pub(crate) fn distance(a: &Name, b: &Name) -> usize {
     let letters = |name: &Name| -> Vec<char> { name.base.chars().take(64).collect() };
     let (a_letters, b_letters) = (letters(a), letters(b));
     let mut row: Vec<usize> = (0..=b_letters.len()).map(|steps| 2 * steps).collect();

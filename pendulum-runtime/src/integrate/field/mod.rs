@@ -1,7 +1,12 @@
 //! The accelerations as the methods see them: counted, and watched after a step that failed.
 
+pub(crate) mod contacts;
+pub(crate) mod diagnose;
+pub(crate) mod inertia;
+pub(crate) mod response;
+
+use self::contacts::{Contacts, has_limits};
 use crate::error::{Coordinate, Quantity};
-use crate::integrate::step::contacts::{self, Contacts, has_limits};
 use crate::motion::Side;
 use crate::scalar::Float;
 use crate::system::{
