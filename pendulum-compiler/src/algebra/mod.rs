@@ -7,6 +7,5 @@ pub(crate) mod functions;
 pub(crate) mod number;
 pub(crate) mod order;
 pub(crate) mod prime_field;
-pub(crate) mod rule;
 pub(crate) mod value_numbering;
 pub(crate) mod velocity_polynomial;

@@ -5,11 +5,11 @@
 //! the time.
 
 use crate::algebra::diff::{derivative, substitute};
+use crate::algebra::expr::rule;
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::Kinks;
 use crate::algebra::number::Rational;
 use crate::algebra::order;
-use crate::algebra::rule;
 use crate::algebra::value_numbering;
 use crate::algebra::velocity_polynomial;
 use crate::mechanics::articulated::{self, Held, Sparse};

@@ -2,10 +2,10 @@
 //! right.
 
 use super::{Random, evaluate, lowered};
+use crate::algebra::expr::rule::{CANCELLATIONS, RULES, without_cancellation};
 use crate::algebra::expr::{Graph, Symbol};
 use crate::algebra::functions::Function;
 use crate::algebra::number::Literal;
-use crate::algebra::rule::{CANCELLATIONS, RULES, without_cancellation};
 use crate::messages::Errors;
 use crate::model;
 use crate::syntax::ast::{Expr, ExprKind};

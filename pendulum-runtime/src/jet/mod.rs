@@ -22,18 +22,10 @@ pub use order::{
     Called, Calling, Constant, First, Looped, Order, Running, Second, Unrolled, Unrolling,
 };
 
+pub use crate::motion::series::{InputSeries, LENGTH, MAX_ORDER, Series, zero};
 use crate::scalar::Real;
 use crate::system::System;
 use core::fmt::Debug;
-
-/// The number of coefficients of a [`Series`].
-pub const LENGTH: usize = 32;
-
-/// The highest order of a jet: the last coefficients of a driven input go into its acceleration.
-pub const MAX_ORDER: usize = LENGTH - 2;
-
-/// The coefficients of one quantity, from the constant one on.
-pub type Series<T> = [T; LENGTH];
 
 /// Two series that are found together, coefficient by coefficient: sine and cosine.
 pub type Pairs<T> = [[T; 2]; LENGTH];
@@ -145,40 +137,6 @@ impl<T: Real, const N: usize> Default for Path<T, N> {
     fn default() -> Self {
         Self::new()
     }
-}
-
-/// The series of one component of a driven input.
-#[derive(Clone, Copy, Debug)]
-pub struct InputSeries<T> {
-    /// x.
-    pub position: Series<T>,
-    /// ẋ.
-    pub velocity: Series<T>,
-    /// ẍ.
-    pub acceleration: Series<T>,
-}
-
-impl<T: Real> InputSeries<T> {
-    /// All zero.
-    pub fn zero() -> Self {
-        Self { position: zero(), velocity: zero(), acceleration: zero() }
-    }
-
-    /// Velocity and acceleration from the position, for the coefficients below `count`, and the
-    /// next one of the velocity.
-    pub fn differentiate(&mut self, count: usize) {
-        let count = count.min(MAX_ORDER);
-        self.velocity[count] = self.position[count + 1] * T::from_f64((count + 1) as f64);
-        for k in 0..count {
-            self.velocity[k] = self.position[k + 1] * T::from_f64((k + 1) as f64);
-            self.acceleration[k] = self.position[k + 2] * T::from_f64(((k + 1) * (k + 2)) as f64);
-        }
-    }
-}
-
-/// The series that is zero.
-pub fn zero<T: Real>() -> Series<T> {
-    [T::from_f64(0.0); LENGTH]
 }
 
 /// The workspace of generated code: `W` series, `Q` pairs of series, `P` numbers that parameters

@@ -1,7 +1,7 @@
 //! Motions that know all their derivatives.
 
-use crate::jet::Series;
 use crate::motion::sample::Side;
+use crate::motion::series::Series;
 use crate::scalar::Real;
 use crate::time::Time;
 

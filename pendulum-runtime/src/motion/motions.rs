@@ -1,11 +1,11 @@
 //! The motions of all driven inputs of a system.
 
-use crate::jet::InputSeries;
 use crate::motion::analytic::Analytic;
+use crate::motion::input::{Input, Purpose};
 use crate::motion::prescribed::{Motion, earlier};
 use crate::motion::sample::{Derivatives, Sample, Side};
+use crate::motion::series::InputSeries;
 use crate::scalar::Real;
-use crate::system::{Input, Purpose};
 use crate::time::Time;
 
 /// The motions of all driven inputs of a system: `()` or a tuple, in the order of declaration.

@@ -494,7 +494,7 @@ macro_rules! analytic_pieces {
                 side: $crate::motion::sample::Side,
                 component: usize,
                 count: usize,
-                position: &mut $crate::jet::Series<T>,
+                position: &mut $crate::motion::series::Series<T>,
             ) {
                 $crate::motion::analytic::polynomial(
                     self.pieces().cubic(t, side, component),

@@ -3,10 +3,10 @@
 // Lanes have to be compiled for their vectors.
 #![allow(clippy::inline_always)]
 
-use crate::jet::Series;
 use crate::motion::analytic::Analytic;
 use crate::motion::prescribed::Motion;
 use crate::motion::sample::{Derivatives, Sample, Side};
+use crate::motion::series::Series;
 use crate::scalar::exact::{two_product, two_sum};
 use crate::scalar::{Lane, Octet, Real};
 use crate::simd::{Work, widest};

@@ -1,9 +1,9 @@
 //! A point at rest.
 
-use crate::jet::Series;
 use crate::motion::analytic::{Analytic, polynomial};
 use crate::motion::prescribed::Motion;
 use crate::motion::sample::{Derivatives, Sample, Side};
+use crate::motion::series::Series;
 use crate::scalar::Real;
 use crate::time::Time;
 

@@ -1,12 +1,13 @@
 //! Systems together with the controllers of their control inputs.
 
 use crate::error::{Error, Quantity};
+use crate::motion::input::Purpose;
 use crate::motion::{Derivatives, Motion, Motions, Sample, Side, shorter};
 use crate::scalar::{Float, Real};
 use crate::sealed::Sealed;
 use crate::system::dynamics::{Driven, Dynamics, MOST_CONTROLS};
 use crate::system::equations::System;
-use crate::system::inputs::{ControlSamples, Purpose};
+use crate::system::inputs::ControlSamples;
 use crate::time::Time;
 use core::cell::RefCell;
 use core::marker::PhantomData;

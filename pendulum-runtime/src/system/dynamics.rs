@@ -1,10 +1,11 @@
 //! Systems together with the motions that drive them.
 
 use crate::error::Error;
+use crate::motion::input::Purpose;
 use crate::motion::{Motions, Side, sufficient};
 use crate::scalar::Real;
 use crate::system::equations::System;
-use crate::system::inputs::{NoInputs, Purpose};
+use crate::system::inputs::NoInputs;
 use crate::time::Time;
 
 /// The greatest number of components that the inputs of a system have together.

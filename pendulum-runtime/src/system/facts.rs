@@ -1,7 +1,8 @@
 //! Facts about a system that are known before it runs.
 
+use crate::motion::input::Input;
 use crate::system::constraints::{Constraint, Limit};
-use crate::system::inputs::{Input, Output};
+use crate::system::inputs::Output;
 
 /// Defines [`Facts`] from the list of all facts, each with its value where nothing is known.
 macro_rules! facts {

@@ -14,6 +14,7 @@ pub(crate) mod label;
 mod lane_system;
 pub(crate) mod name;
 
+pub use crate::motion::input::{Input, Purpose};
 pub use constraints::{Constraint, Limit, MOST_LIMITS};
 pub use control::{ControlSlot, ControlValues, Controlled, Sampled, Uncontrolled};
 pub(crate) use dynamics::is_constrained;
@@ -21,5 +22,5 @@ pub use dynamics::{Driven, Dynamics, MOST_CONTROLS, scalar_time};
 pub use equations::{Holonomic, Jacobians, SplitEnergy, Staged, System, VelocityFree};
 pub use facts::Facts;
 pub(crate) use feedback::feedback_jacobians;
-pub use inputs::{ControlSamples, Input, NoInputs, Output, Purpose, Samples};
+pub use inputs::{ControlSamples, NoInputs, Output, Samples};
 pub use lane_system::{Arrangement, InLanes, InOctets, LaneSystem};

@@ -31,7 +31,7 @@ pub(crate) const fn double(name: &'static str, make: fn(&mut Random, Scalar) -> 
 }
 
 /// The families of the short test.
-const SHORT: &[Family] = &[
+pub(crate) const SHORT: &[Family] = &[
     double("moving", moving),
     double("closure gentle", |r, s| {
         closure(r, s, |r| Shape::Sine { a: r.within(0.05, 0.2), ω: r.within(1.0, 5.0), φ: 0.0 })
@@ -81,15 +81,6 @@ const SHORT: &[Family] = &[
     double("kapitza 1 kHz", |r, s| kapitza(r, s, 1000.0, 0.3)),
     double("kapitza 100 Hz", |r, s| kapitza(r, s, 100.0, 1.0)),
 ];
-
-/// All that are compiled.
-pub(crate) fn all() -> impl Iterator<Item = &'static Family> {
-    #[cfg(feature = "all")]
-    let others = crate::more_families::MORE;
-    #[cfg(not(feature = "all"))]
-    let others: &[Family] = &[];
-    SHORT.iter().chain(others)
-}
 
 /// Two words take a hundred times as long.
 pub(crate) fn shorter(scalar: Scalar, end: f64) -> f64 {

@@ -77,14 +77,14 @@ impl Options {
     /// Checks that every name is known.
     fn check(&self) -> Result<(), String> {
         for name in &self.families {
-            if !families::all().any(|family| family.name.contains(name.as_str())) {
+            if !families().any(|family| family.name.contains(name.as_str())) {
                 return Err(format!(
                     "no family is called `{name}`; without `--features all` only some are there"
                 ));
             }
         }
         for name in &self.scalars {
-            if !families::all().any(|family| family.scalar.name() == name) {
+            if !families().any(|family| family.scalar.name() == name) {
                 return Err(format!(
                     "no family has the scalar `{name}`; there are `f32`, `f64` and `dd`"
                 ));
@@ -101,7 +101,7 @@ impl Options {
 
     fn chosen(&self) -> Vec<&'static Family> {
         let named = |family: &&Family| {
-            let exact = |part: &String| families::all().any(|family| family.name == part);
+            let exact = |part: &String| families().any(|family| family.name == part);
             let name = |part: &String| {
                 if exact(part) { family.name == part } else { family.name.contains(part.as_str()) }
             };
@@ -109,7 +109,7 @@ impl Options {
             (self.families.is_empty() || self.families.iter().any(name))
                 && (self.scalars.is_empty() || self.scalars.iter().any(scalar))
         };
-        families::all().filter(named).collect()
+        families().filter(named).collect()
     }
 }
 
@@ -247,6 +247,15 @@ fn bars(options: &Options, rows: &[Row<'_>]) -> bool {
         tell(&wrong, 40);
     }
     met
+}
+
+/// All families of this build.
+fn families() -> impl Iterator<Item = &'static Family> {
+    #[cfg(feature = "all")]
+    let others = more_families::MORE;
+    #[cfg(not(feature = "all"))]
+    let others: &[Family] = &[];
+    families::SHORT.iter().chain(others)
 }
 
 /// All runs of all families asked for.

@@ -1,8 +1,8 @@
 //! Functions of expressions: calls, powers that are no numbers, smallest and largest values.
 
 use super::{Graph, Id, Node};
+use crate::algebra::expr::rule;
 use crate::algebra::functions::Function;
-use crate::algebra::rule;
 
 impl Graph {
     /// `a` to a power that is no number: exp(b ln a).

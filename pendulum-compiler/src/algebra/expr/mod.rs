@@ -9,6 +9,7 @@ mod call;
 mod dependencies;
 mod node;
 mod product;
+pub(crate) mod rule;
 mod sum;
 mod walk;
 

@@ -1,10 +1,10 @@
 //! Products: flat, sorted, with a coefficient and an exponent for each base.
 
 use super::{Dependencies, Graph, Id, Node, Terms};
+use crate::algebra::expr::rule;
 use crate::algebra::functions::Function;
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
-use crate::algebra::rule;
 
 impl Graph {
     /// coefficient · Π base^exponent.

@@ -2,9 +2,9 @@
 
 use super::product::exact;
 use super::{Graph, Id, Node, Terms};
+use crate::algebra::expr::rule;
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
-use crate::algebra::rule;
 
 impl Graph {
     /// Σ coefficient · term.
