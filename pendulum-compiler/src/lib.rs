@@ -1,7 +1,7 @@
 //! The compiler behind `lagrangian!` of the `pendulum` workspace: a Lagrangian as tokens in, Rust
 //! out.
-//!
 //! [`compile()`] takes source text outside of any macro. The folders are layers, each of which uses
+//! only the layers below it:
 //! those below it alone:
 //!
 //! ```text
