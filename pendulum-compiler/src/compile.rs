@@ -89,7 +89,7 @@ pub fn compile(source: &str) -> Result<Compiled, Vec<Message>> {
     }
 }
 
-/// Runs the passes and passes their result to `backend`; `None` if the struct cannot be read.
+/// Runs the passes and calls `backend` with their result; `None` if the struct cannot be read.
 fn passes<R>(
     input: TokenStream,
     errors: &mut Errors,

@@ -60,7 +60,7 @@ pub(crate) struct Row {
 /// The relation between the units of arguments and value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum UnitRule {
-    /// Pure numbers to a pure number.
+    /// A pure number, from pure numbers.
     Pure,
     /// The unit of the argument.
     Same,

@@ -1,4 +1,4 @@
-//! Writers: Rust, equations in Unicode, LaTeX and MathML, and a copy of the block for editors.
+//! The backends: Rust, equations in Unicode, LaTeX and MathML, and a copy of the block for editors.
 
 mod cancel;
 pub(crate) mod ide;

@@ -87,7 +87,7 @@ struct Polynomial {
     /// 1 and there are |v|; empty if there are too many.
     middles: Vec<Id>,
     cornered: bool,
-    /// `true` if the other terms of the expression do not depend on time.
+    /// `true` if all terms of the expression are part of the polynomial.
     whole: bool,
 }
 

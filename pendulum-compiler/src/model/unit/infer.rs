@@ -300,7 +300,7 @@ impl Units<'_, '_, '_> {
         if let Some(found) = self.lets.get(&index) {
             return found.clone();
         }
-        // Half of the depth is reserved for the definition itself, whose unit is stored.
+        // Half of the depth is reserved for the definition, whose unit is stored.
         if self.open.contains(&index) || DEEPEST / 2 <= self.depth {
             return None;
         }

@@ -97,8 +97,8 @@ impl Parser<'_> {
         Err(base.range.to(last.into()).error(message))
     }
 
-    /// Returns true if a unit begins behind a number, with a `suffix` or at the next token: one of
-    /// its names at least is nothing else.
+    /// Returns `true` if a unit follows a number, as its `suffix` or in the next tokens. At least
+    /// one name of the unit must not be declared.
     pub(super) fn is_unit(&self, suffix: Option<&str>, input: ParseStream) -> bool {
         let ahead = input.fork();
         let mut name = suffix.map(str::to_owned);
