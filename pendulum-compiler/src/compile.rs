@@ -27,8 +27,9 @@ use std::fmt::Display;
 /// Expands a block of `lagrangian!` into Rust.
 ///
 /// `input` is the path of the runtime, a semicolon and the block: `::pendulum_runtime; struct …`.
-/// Each mistake becomes a `compile_error!` at its tokens. The items are emitted all the same, with
-/// open bodies, unless the struct itself cannot be read; the copy for editors stands before them.
+/// Each mistake results in a `compile_error!` at its tokens. If there are mistakes, the items are
+/// emitted nevertheless, with `unimplemented!()` as bodies, unless the struct cannot be read. The
+/// copy for editors precedes the items.
 pub fn expand(input: TokenStream) -> TokenStream {
     let mut errors = Errors::default();
     let tokens = input.clone();
@@ -42,21 +43,22 @@ pub fn expand(input: TokenStream) -> TokenStream {
     quote!(#copy #errors #items)
 }
 
-/// The words of the language as documented items, for editors.
+/// Returns the keywords of the language as documented items, for editors.
 #[doc(hidden)]
 pub fn words() -> TokenStream {
     ide::words()
 }
 
-/// Compiles a block given as source text, outside of any macro: its declarations and equations.
+/// Compiles a block given as source text, outside of any macro. Returns its declarations and
+/// equations.
 ///
 /// # Errors
-/// All mistakes, in the order in which the passes meet them.
+/// Returns all mistakes, in the order in which the passes find them.
 ///
 /// # Memory
-/// Outside of macros `proc_macro2` keeps each text of a thread for as long as the thread lives. A
-/// program that compiles without end does so in threads of their own, or gives all spans of the
-/// thread up by `proc_macro2::extra::invalidate_current_thread_spans`.
+/// Outside of macros, `proc_macro2` stores every source text parsed by a thread until the thread
+/// ends. A program that compiles an unlimited number of blocks has to use separate threads, or to
+/// discard all spans of the thread with `proc_macro2::extra::invalidate_current_thread_spans`.
 ///
 /// ```
 /// let compiled = pendulum_compiler::compile(
@@ -87,7 +89,7 @@ pub fn compile(source: &str) -> Result<Compiled, Vec<Message>> {
     }
 }
 
-/// Runs the passes and hands their result to `backend`; `None` if the struct cannot be read.
+/// Runs the passes and calls `backend` with their result; `None` if the struct cannot be read.
 fn passes<R>(
     input: TokenStream,
     errors: &mut Errors,
@@ -126,7 +128,8 @@ fn passes<R>(
     }))
 }
 
-/// The equations of motion in Unicode and in LaTeX; what they have in common is simplified once.
+/// Returns the equations of motion in Unicode and in LaTeX. Right sides are shortened once for
+/// both.
 fn printed(
     model: &Model,
     graph: &mut Graph,
@@ -139,7 +142,7 @@ fn printed(
     [unicode::equations(graph, &names, motion, &sides), latex]
 }
 
-/// A block as its tests see it; `None` if it is refused.
+/// Analyzes a block for tests; `None` if it is refused.
 #[cfg(test)]
 pub(crate) fn derived<R>(
     source: &str,
@@ -156,8 +159,9 @@ pub(crate) fn derived<R>(
 
 /// The declarations and the equations of a block.
 ///
-/// Formulas are in Unicode, or in ASCII if the block is. Families of coordinates are unfolded:
-/// there is an equation and a momentum for each scalar coordinate, in the order of declaration.
+/// Formulas are in ASCII if the block is in ASCII, otherwise in Unicode. Families of coordinates
+/// are expanded: there is an equation and a momentum for each scalar coordinate, in the order of
+/// declaration.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Compiled {
@@ -173,15 +177,16 @@ pub struct Compiled {
     pub controls: Vec<Declaration>,
     /// The outputs.
     pub outputs: Vec<Output>,
-    /// The equations of motion, θ̈ = …; the right side of a very long one is left out, and says so.
+    /// The equations of motion, θ̈ = …. The right side of a very long equation is replaced by a
+    /// remark.
     pub equations: Vec<String>,
-    /// The same equations in LaTeX, for a line of mathematics: without delimiters.
+    /// The equations in LaTeX in math mode, without delimiters.
     pub latex: Vec<String>,
-    /// The same equations as elements of MathML.
+    /// The equations as MathML elements.
     pub mathml: Vec<String>,
     /// The energy Σ q̇ p − L.
     pub energy: String,
-    /// The power that changes the energy: of forces, dissipation, time and driven inputs.
+    /// The rate of change of the energy, by forces, dissipation, time and driven inputs.
     pub power: String,
     /// The momenta ∂L/∂q̇.
     pub momenta: Vec<String>,
@@ -197,11 +202,11 @@ pub struct Compiled {
 pub struct Declaration {
     /// The name.
     pub name: String,
-    /// The unit, as written; empty without one.
+    /// The unit as written; empty without a unit.
     pub unit: String,
     /// The length of a vector or family; `None` for a scalar and for a body.
     pub length: Option<usize>,
-    /// True if it is a rigid body.
+    /// `true` for a rigid body.
     pub body: bool,
 }
 
@@ -211,13 +216,13 @@ pub struct Declaration {
 pub struct Output {
     /// The name.
     pub name: String,
-    /// The unit, as written; empty without one.
+    /// The unit as written; empty without a unit.
     pub unit: String,
     /// The number of members of a family.
     pub members: Option<usize>,
-    /// The number of components of a vector, that of each member of a family.
+    /// The number of components of a vector, or of each member of a family of vectors.
     pub components: Option<usize>,
-    /// The value of each component of the first member, of the second and so on.
+    /// The value of each component of the first member, followed by those of the second, and so on.
     pub expressions: Vec<String>,
 }
 
@@ -225,20 +230,20 @@ pub struct Output {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Message {
-    /// The mistake, and the way out.
+    /// The mistake and advice on how to correct it.
     pub text: String,
     /// The position of the first token at fault.
     pub start: Position,
-    /// The position behind the last one.
+    /// The position after the last token at fault.
     pub end: Position,
 }
 
 /// A position in source text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Position {
-    /// The line, from 1 on.
+    /// The line, counted from 1.
     pub line: usize,
-    /// The number of characters (`char`) before it in the line: θ̇ is two.
+    /// The number of characters (`char`) before the position in its line. θ̇ is two characters.
     pub column: usize,
 }
 
@@ -255,7 +260,7 @@ impl From<LineColumn> for Position {
 }
 
 impl Compiled {
-    /// `None` without equations.
+    /// Creates the result; `None` without equations.
     fn new(analysis: Analysis<'_, '_>) -> Option<Self> {
         let Analysis {
             model,
@@ -322,7 +327,7 @@ mod tests {
         let compiled = compile(
             "struct Cart { M: kg, g: m/s^2 } coordinate x: m; kinetic = M/2*ẋ^2*z; potential = M*g*x;",
         );
-        // `z` is not declared: the mistake alone comes back.
+        // `z` is not declared. Only this mistake is reported.
         assert_eq!(compiled.unwrap_err().len(), 1);
         let compiled = compile(
             "struct Cart { M: kg, m: [kg; 2], l: m, g: m/s^2 } coordinate x: m; coordinate θ[2]: rad; driven u: [m; 2];

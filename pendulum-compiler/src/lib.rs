@@ -1,8 +1,8 @@
-//! The compiler behind `lagrangian!` of the `pendulum` workspace: a Lagrangian as tokens in, Rust
-//! out.
+//! The compiler behind `lagrangian!` of the `pendulum` workspace: from the tokens of a Lagrangian
+//! to Rust code.
 //!
 //! [`compile()`] takes source text outside of any macro. The folders are layers, each of which uses
-//! those below it alone:
+//! only the layers below it:
 //!
 //! ```text
 //! compile     the order of the passes

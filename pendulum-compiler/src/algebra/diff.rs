@@ -1,11 +1,12 @@
-//! Derivatives: functions by their rows, sums and products by their rules, each shared node once.
+//! Derivatives: functions by their table rows, sums and products by the usual rules. Each shared
+//! node is differentiated once.
 
 use crate::algebra::expr::{Graph, Id, Moment, Node, Symbol};
 use crate::algebra::functions::{Derivative, Divisor, Function, Sign};
 use crate::algebra::number::Rational;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// ∂`id`/∂`symbol`.
+/// Returns ∂`id`/∂`symbol`.
 pub(crate) fn derivative(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
     let mut unknown = BTreeSet::new();
     let mut pending = vec![id];
@@ -22,7 +23,7 @@ pub(crate) fn derivative(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
     graph.cached_derivative(symbol, id).unwrap_or_default()
 }
 
-/// The derivative of one node from those of its children.
+/// Computes the derivative of a node from the derivatives of its children.
 fn rule(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
     let known = |graph: &Graph, id: Id| graph.cached_derivative(symbol, id).unwrap_or_default();
     match graph.node(id).clone() {
@@ -45,8 +46,9 @@ fn rule(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
                 let inner = known(graph, base);
                 if inner != Graph::ZERO {
                     let power = graph.number(exponent);
-                    // Its own exponent is lowered, not the node divided: a broken power of a
-                    // product would not cancel, and be NaN at zero.
+                    // The exponent is lowered instead of dividing the product by the base: with a
+                    // fractional power of a product the quotient would not cancel and would be NaN
+                    // at zero.
                     let mut parts = factors.clone();
                     match exponent.add(Rational::MINUS_ONE) {
                         Some(lowered) => parts[place].1 = lowered,
@@ -91,7 +93,7 @@ fn rule(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
     }
 }
 
-/// f′(u), where `y` is f(u).
+/// Returns f′(u), where `y` is f(u).
 fn of_function(graph: &mut Graph, function: Function, u: Id, y: Id) -> Id {
     let (slope, sign) = match function.row().derivative {
         Derivative::Call(sign, other) => (graph.call(other, u), sign),
@@ -107,7 +109,7 @@ fn of_function(graph: &mut Graph, function: Function, u: Id, y: Id) -> Id {
     if sign == Sign::Plus { slope } else { graph.negative(slope) }
 }
 
-/// 1/u, 1/(1 + u²) or 1/√(1 − u²).
+/// Returns 1/u, 1/(1 + u²) or 1/√(1 − u²).
 fn reciprocal(graph: &mut Graph, divisor: Divisor, u: Id) -> Id {
     let (base, exponent) = match divisor {
         Divisor::Argument => (u, Rational::MINUS_ONE),
@@ -119,15 +121,15 @@ fn reciprocal(graph: &mut Graph, divisor: Divisor, u: Id) -> Id {
     graph.power(base, exponent)
 }
 
-/// 1 ± x².
+/// Returns 1 ± x².
 fn one_and_square(graph: &mut Graph, x: Id, sign: Sign) -> Id {
     let square = graph.power(x, Rational::whole(2));
     let sign = if sign == Sign::Plus { Rational::ONE } else { Rational::MINUS_ONE };
     graph.sum(&[(Graph::ONE, Rational::ONE), (square, sign)])
 }
 
-/// The derivative of a second moment about the pivot, S = C + m c cᵀ, to mass, centre and central
-/// moments.
+/// Returns the derivative of a second moment about the pivot, S = C + m c cᵀ, with respect to mass,
+/// centre or a central moment.
 fn moment_derivative(graph: &mut Graph, first: usize, moment: Moment, symbol: Symbol) -> Id {
     let Symbol::Parameter(parameter) = symbol else { return Graph::ZERO };
     let [m, x, y] = [0, 1, 2].map(|offset| graph.symbol(Symbol::Parameter(first + offset)));
@@ -161,7 +163,7 @@ fn moment_derivative(graph: &mut Graph, first: usize, moment: Moment, symbol: Sy
     }
 }
 
-/// `id` with some of its symbols replaced.
+/// Returns `id` with some of its symbols replaced.
 pub(crate) fn substitute(graph: &mut Graph, id: Id, value: impl Fn(Symbol) -> Option<Id>) -> Id {
     let mut known: BTreeMap<Id, Id> = BTreeMap::new();
     for node in graph.reachable(&[id]) {

@@ -3,7 +3,7 @@
 use super::number::{Rational, superscript};
 use std::fmt;
 
-/// Exponents of kilogram, metre, second, ampere and kelvin; the radian is a pure number.
+/// The exponents of kilogram, metre, second, ampere and kelvin. The radian is a pure number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Dimension(pub(crate) [Rational; 5]);
 
@@ -34,12 +34,12 @@ impl Dimension {
         Some(Self::whole(exponents))
     }
 
-    /// The dimension with these exponents.
+    /// Creates the dimension with these exponents.
     pub(crate) fn whole(exponents: [i64; 5]) -> Self {
         Self(exponents.map(Rational::whole))
     }
 
-    /// `self` · `other`^`power`.
+    /// Returns `self` · `other`^`power`.
     pub(crate) fn times(self, other: Self, power: Rational) -> Option<Self> {
         let mut result = self;
         for (own, other) in result.0.iter_mut().zip(other.0) {
@@ -50,7 +50,7 @@ impl Dimension {
 }
 
 impl fmt::Display for Dimension {
-    /// As one would write it: kg·m/s².
+    /// Writes the dimension as a product and quotient of units, such as kg·m/s².
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let named = |sign: bool| {
             let powers = ["kg", "m", "s", "A", "K"]

@@ -1,11 +1,12 @@
-//! The functions of the language: a row for each, with all that the compiler knows of it.
+//! The functions of the language: a table with a row for each function and all its properties.
 //!
 //! An ordinary function of one argument is a row of [`functions!`] and a method of the runtime's
-//! `Real`; a column that is missing does not compile. Functions with a structure of their own are
-//! rows of [`STRUCTURES`]: powers and two arguments are nodes of other kinds, vectors and
-//! derivatives are gone when energies are lowered. Three relations between functions stay where
-//! they are used: rules of `rule.rs`, sine and cosine as the point of a circle (in `schedule`, in
-//! `prime_field.rs` and in the jets), and magnitudes, which roots of squares become.
+//! `Real`. A row with a missing column does not compile. Functions with a special structure are
+//! rows of [`STRUCTURES`]: powers and functions of two arguments are other kinds of nodes;
+//! functions of vectors and derivatives are eliminated when energies are lowered. Three relations
+//! between functions are not in the table but where they are used: the rules of `rule.rs`, sine and
+//! cosine as a point of a circle (in `schedule`, in `prime_field.rs` and in the jets), and roots of
+//! squares, which become magnitudes.
 
 use crate::algebra::number::{Rational, superscript};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -17,79 +18,81 @@ use Parity::{Even, Neither, Odd};
 use Recurrence::{Circular, Constant, Exponential, Family, Hyperbolic, Linear, Quotient, Riccati};
 use Scale::{Bell, Bump, Oscillation};
 
-/// Everything that the compiler knows of a function f of one argument.
+/// The properties of a function f of one argument.
 pub(crate) struct Row {
-    /// The name in the language, and of the method of `Real`.
+    /// The name in the language and of the method of `Real`.
     pub(crate) name: &'static str,
-    /// A sentence for editors.
+    /// A description for editors.
     pub(crate) meaning: &'static str,
-    /// True if the language has it: other functions stand in derivatives alone.
+    /// `true` if the function can be written in the language. Other functions occur only in
+    /// derivatives.
     pub(crate) word: bool,
     /// The units of argument and value.
     pub(crate) units: UnitRule,
-    /// An interval on which f is defined, and smooth but for its kinks.
+    /// An interval on which f is defined, and smooth except for its kinks.
     #[cfg_attr(not(test), allow(dead_code, reason = "tests take their arguments from it"))]
     pub(crate) domain: [f64; 2],
     /// Bounds of the values.
     pub(crate) range: [f64; 2],
-    /// f(0), if the simplifier may write it.
+    /// The value f(0), if the simplifier may use it.
     pub(crate) at_zero: Option<Rational>,
-    /// f(−u) in terms of f(u).
+    /// The symmetry: f(−u) in terms of f(u).
     pub(crate) parity: Parity,
-    /// The kink of f, or of a derivative of it, at zero.
+    /// The kink at zero, of f or of one of its derivatives.
     pub(crate) kinks: Kinks,
-    /// The width of f(u(t)).
+    /// The rule for the width of f(u(t)).
     pub(crate) scale: Scale,
     /// The cost of a call, in multiplications.
     pub(crate) cost: usize,
-    /// Its form in equations.
+    /// The notation in equations.
     pub(crate) notation: Notation,
-    /// The text in ASCII, from the order in a family and the text of u, where it is no call.
+    /// Writes f(u) in ASCII, from the order in a family and the text of u, if it is not written as
+    /// a call.
     pub(crate) ascii: Option<fn(u8, &str) -> String>,
-    /// f(x) in the numbers of the compiler, from the order in a family and x.
+    /// Computes f(x) in the compiler, from the order in a family and x.
     pub(crate) value: fn(u8, f64) -> f64,
-    /// f′(u).
+    /// The derivative f′(u).
     pub(crate) derivative: Derivative,
-    /// The Taylor series of f(u(t)) from that of u(t).
+    /// The recurrence for the Taylor series of f(u(t)).
     pub(crate) recurrence: Recurrence,
 }
 
-/// The units of arguments and value.
+/// The relation between the units of arguments and value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum UnitRule {
-    /// Pure numbers to a pure number.
+    /// A pure number, from pure numbers.
     Pure,
-    /// The unit of the one argument.
+    /// The unit of the argument.
     Same,
-    /// Its root.
+    /// The square root of the unit of the argument.
     Root,
-    /// The unit per second.
+    /// The unit of the argument per second.
     Rate,
     /// The product of the units of two arguments.
     Product,
-    /// A pure number, of an argument with any unit.
+    /// A pure number, from an argument of any unit.
     Any,
-    /// The one unit that all arguments have.
+    /// The common unit of all arguments.
     Common,
-    /// A pure number, of arguments with one unit.
+    /// A pure number, from arguments of a common unit.
     Ratio,
 }
 
-/// f(−u) in terms of f(u).
+/// The symmetry of a function: f(−u) in terms of f(u).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Parity {
     /// −f(u).
     Odd,
     /// f(u).
     Even,
-    /// Neither of the two.
+    /// Neither.
     Neither,
 }
 
 /// The kinds of kinks at zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kinks {
-    /// Nothing: all derivatives exist.
+    /// No kink: all derivatives exist.
     Smooth,
     /// The derivative jumps.
     Corner,
@@ -97,23 +100,23 @@ pub(crate) enum Kinks {
     Jump,
 }
 
-/// The width of f(u(t)).
+/// The rule for the width of f(u(t)).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Scale {
     /// The width of a crest of a sine.
     Oscillation,
-    /// f changes where u is of the order of one.
+    /// f changes when |u| is of the order of one.
     Bell,
-    /// f has no width of its own: that of u where it is not zero.
+    /// f has no width. The width is that of u where u is not zero.
     Bump,
-    /// A kink where u is zero.
+    /// A kink at u = 0.
     Kink,
 }
 
 /// The form of f(u) in equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Notation {
-    /// The name before u, or this command in LaTeX.
+    /// The name before u; in LaTeX this command.
     Prefix(&'static str),
     /// |u|.
     Bars,
@@ -139,9 +142,9 @@ pub(crate) enum Derivative {
 /// The Taylor series of y = f(u(t)) from that of u(t).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Recurrence {
-    /// With its partner: sine and cosine.
+    /// Together with its partner: sine and cosine.
     Circular,
-    /// With its partner, in this place of the two: sinh and cosh.
+    /// Together with its partner: sinh and cosh. The number is the index in the pair.
     Hyperbolic(usize),
     /// ẏ = y u̇.
     Exponential,
@@ -151,15 +154,15 @@ pub(crate) enum Recurrence {
     Times(Sign, Function),
     /// d ẏ = ± u̇ with a divisor d.
     Quotient(Divisor, Sign),
-    /// y = a u, where a is the value of this function where the series begins.
+    /// y = a u, where a is the value of this function at the start of the series.
     Linear(Function),
     /// ẏ = 0.
     Constant,
-    /// ẏ = f₁ u̇ with the next member of a family, whose methods take the order.
+    /// ẏ = f₁ u̇, where f₁ is the next member of a family. The methods of a family take the order.
     Family,
 }
 
-/// The divisor of the rate of an argument.
+/// The divisor of the derivative of the argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Divisor {
     /// u.
@@ -184,35 +187,35 @@ const UNIT: [f64; 2] = [-1.0, 1.0];
 const ZERO: Option<Rational> = Some(Rational::ZERO);
 const ONE: Option<Rational> = Some(Rational::ONE);
 
-/// A function, or a family of its derivatives, is `Case = name { columns }` or
-/// `Case(order: u8) = name { columns }`; the methods of a family take the order.
+/// Defines functions. A function is `Case = name { columns }`; a family of derivatives is
+/// `Case(order: u8) = name { columns }`, and its methods take the order.
 macro_rules! functions {
     ($($case:ident $(($order:ident: $kind:ty))? = $name:ident { $($column:tt)* })+) => {
-        /// A function of one argument; canonical order is the order of the rows.
+        /// A function of one argument. The canonical order is the order of the rows.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub(crate) enum Function {
             $($case $(($kind))?,)+
         }
 
         impl Function {
-            /// Every function; of a family the function itself.
+            /// All functions; a family is represented by its member of order 0.
             pub(crate) const ALL: &[Self] = &[$(Self::$case $((<$kind>::MIN))?,)+];
 
-            /// Its row in the table of functions.
+            /// Returns the row in the table of functions.
             pub(crate) fn row(self) -> Row {
                 match self {
                     $(Self::$case $(($order))? => Row { name: stringify!($name), $($column)* },)+
                 }
             }
 
-            /// The order of the derivative, for a member of a family.
+            /// Returns the order of the derivative, for a member of a family.
             pub(crate) fn order(self) -> Option<u8> {
                 match self {
                     $(Self::$case $(($order))? => None$(.or(Some($order)))?,)+
                 }
             }
 
-            /// A number that no other function has.
+            /// Returns a number that is unique to this function.
             pub(crate) fn number(self) -> u64 {
                 enum Place {
                     $($case,)+
@@ -223,7 +226,7 @@ macro_rules! functions {
                 place | u64::from(self.order().unwrap_or(0)) << 32
             }
 
-            /// The value over any scalar of the runtime.
+            /// Returns the value over any scalar of the runtime.
             #[cfg(test)]
             pub(crate) fn of<T: pendulum_runtime::scalar::Real>(self, x: T) -> T {
                 match self {
@@ -348,7 +351,7 @@ functions! {
         value: |_, x| if x == 0.0 { 0.5 } else { f64::from(0.0 < x) },
         derivative: Zero, recurrence: Constant,
     }
-    // The derivative of the order of sin(x)/x.
+    // The derivatives of sin(x)/x, by order.
     Sinc(order: u8) = sinc {
         meaning: "The function sin(x)/x, which is 1 at 0.",
         word: true, units: UnitRule::Pure, domain: REAL, range: UNIT,
@@ -365,8 +368,8 @@ functions! {
     }
 }
 
-/// The derivative of an order of sin(x)/x: x sₙ + n sₙ₋₁ = sin⁽ⁿ⁾ x, upwards beyond x = n and
-/// downwards from a high order below.
+/// Computes a derivative of sin(x)/x from x sₙ + n sₙ₋₁ = sin⁽ⁿ⁾ x: upwards if |x| > n, otherwise
+/// downwards from a high order.
 fn sinc(order: u8, x: f64) -> f64 {
     let sine = |n: u8| [x.sin(), x.cos(), -x.sin(), -x.cos()][usize::from(n % 4)];
     if f64::from(order) < x.abs() {
@@ -376,7 +379,7 @@ fn sinc(order: u8, x: f64) -> f64 {
     orders.rev().fold(0.0, |value, n| (sine(n) - x * value) / f64::from(n))
 }
 
-/// The same relation, as the language reads it.
+/// Writes the same relation in the syntax of the language.
 fn sinc_in_ascii(order: u8, x: &str) -> String {
     if order == 0 {
         return format!("sinc({x})");
@@ -387,12 +390,12 @@ fn sinc_in_ascii(order: u8, x: &str) -> String {
 }
 
 impl Function {
-    /// f(x).
+    /// Returns f(x).
     pub(crate) fn value(self, x: f64) -> f64 {
         (self.row().value)(self.order().unwrap_or(0), x)
     }
 
-    /// The primes behind the name of a derivative: ′, ″ and so on.
+    /// Returns the primes after the name of a derivative: ′, ″ and so on.
     pub(crate) fn primes(self) -> String {
         match self.order() {
             None | Some(0) => String::new(),
@@ -406,7 +409,7 @@ impl Function {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Word {
     pub(crate) name: &'static str,
-    /// A sentence for editors.
+    /// A description for editors.
     pub(crate) meaning: &'static str,
     pub(crate) units: UnitRule,
     pub(crate) lowering: Lowering,
@@ -422,9 +425,9 @@ pub(crate) enum Lowering {
 /// A function of one argument.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum One {
-    /// A node.
+    /// An ordinary function of the table.
     Function(Function),
-    /// A power.
+    /// A square root, lowered to a power.
     Sqrt,
     Dot,
     Perp,
@@ -442,7 +445,7 @@ pub(crate) enum Two {
     Cross,
 }
 
-/// The functions with a structure of their own.
+/// The functions with a special structure.
 #[rustfmt::skip]
 const STRUCTURES: [Word; 10] = [
     Word { name: "sqrt",   meaning: "The square root.",                              units: UnitRule::Root,    lowering: Lowering::One(One::Sqrt) },
@@ -458,7 +461,7 @@ const STRUCTURES: [Word; 10] = [
 ];
 
 impl Word {
-    /// All functions of the language.
+    /// Returns all functions of the language.
     pub(crate) fn all() -> impl Iterator<Item = Self> {
         let functions = Function::ALL.iter().filter_map(|&function| {
             let Row { name, meaning, word, units, .. } = function.row();
@@ -472,12 +475,12 @@ impl Word {
         functions.chain(STRUCTURES)
     }
 
-    /// The function of a name.
+    /// Returns the function with this name.
     pub(crate) fn named(name: &str) -> Option<Self> {
         Self::all().find(|word| word.name == name)
     }
 
-    /// The number of arguments.
+    /// Returns the number of arguments.
     pub(crate) fn arity(self) -> usize {
         match self.lowering {
             Lowering::One(_) => 1,
@@ -485,7 +488,7 @@ impl Word {
         }
     }
 
-    /// Returns true if it takes scalars to a scalar.
+    /// Returns `true` if arguments and value are scalars.
     pub(crate) fn is_scalar(self) -> bool {
         matches!(
             self.lowering,

@@ -1,4 +1,4 @@
-//! Expressions as a graph in which equal ones are one, with exact numbers.
+//! Expressions as a graph that stores equal expressions once, with exact numbers.
 
 pub(crate) mod diff;
 pub(crate) mod dimension;

@@ -1,11 +1,11 @@
-//! Exact rationals: what numbers are until they are printed.
+//! Exact rational numbers, used for all numbers until code or text is written.
 
 use std::fmt;
 
 /// A fraction in lowest terms with a positive denominator.
 ///
-/// Its order is that of its two words, good for sorting only. Arithmetic that leaves 128 bits
-/// answers `None`, and the graph then keeps the operation unevaluated.
+/// Its `Ord` compares numerator and denominator as a pair and serves only for sorting. Arithmetic
+/// returns `None` if it exceeds 128 bits, and the graph then leaves the operation unevaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct Rational {
     numerator: i128,
@@ -57,17 +57,17 @@ impl Rational {
         self.denominator == 1
     }
 
-    /// An even whole number.
+    /// Returns `true` for an even integer.
     pub(crate) fn is_even(self) -> bool {
         self.is_integer() && self.numerator % 2 == 0
     }
 
-    /// The value as a small whole number.
+    /// Returns the value if it is an integer that fits.
     pub(crate) fn integer(self) -> Option<i64> {
         if self.is_integer() { i64::try_from(self.numerator).ok() } else { None }
     }
 
-    /// The number itself if numerator and denominator are below 2^`bits`.
+    /// Returns the number itself if numerator and denominator are below 2^`bits`.
     pub(crate) fn within(self, bits: u32) -> Option<Self> {
         let small = |value: i128| value.unsigned_abs() >> bits == 0;
         (small(self.numerator) && small(self.denominator)).then_some(self)
@@ -94,7 +94,7 @@ impl Rational {
         if self.is_integer() && other.is_integer() {
             return Self::new(self.numerator.checked_mul(other.numerator)?, 1);
         }
-        // Cross-cancelling first keeps the products as small as the result.
+        // Cancelling crosswise first keeps the products as small as the result.
         let a = Self::new(self.numerator, other.denominator)?;
         let b = Self::new(other.numerator, self.denominator)?;
         Self::new(a.numerator.checked_mul(b.numerator)?, a.denominator.checked_mul(b.denominator)?)
@@ -104,7 +104,7 @@ impl Rational {
         Self::new(self.denominator, self.numerator)
     }
 
-    /// A whole power.
+    /// Returns the power with an integer exponent.
     pub(crate) fn power(self, exponent: i64) -> Option<Self> {
         let base = if exponent < 0 { self.reciprocal()? } else { self };
         let exponent = u32::try_from(exponent.unsigned_abs()).ok()?;
@@ -114,7 +114,7 @@ impl Rational {
         })
     }
 
-    /// The exact `degree`-th root, if there is one.
+    /// Returns the exact `degree`-th root, if it is rational.
     pub(crate) fn root(self, degree: u32) -> Option<Self> {
         Some(Self {
             numerator: whole_root(self.numerator, degree)?,
@@ -122,7 +122,8 @@ impl Rational {
         })
     }
 
-    /// The content of two coefficients: the largest fraction of which both are whole multiples.
+    /// Returns the content of two coefficients: the largest fraction of which both are integer
+    /// multiples.
     pub(crate) fn content(self, other: Self) -> Option<Self> {
         let numerator =
             gcd(self.numerator.unsigned_abs(), other.numerator.unsigned_abs()).cast_signed();
@@ -131,7 +132,7 @@ impl Rational {
         Self::new(numerator, (self.denominator / shared).checked_mul(other.denominator)?)
     }
 
-    /// Returns true if `self` is the smaller number; `None` where 128 bits do not tell.
+    /// Returns `true` if `self` is less than `other`, or `None` if the comparison exceeds 128 bits.
     pub(crate) fn less(self, other: Self) -> Option<bool> {
         let left = self.numerator.checked_mul(other.denominator)?;
         let right = other.numerator.checked_mul(self.denominator)?;
@@ -156,13 +157,14 @@ impl Rational {
         }
     }
 
-    /// Returns true if numerator and denominator are exact in `f64`.
+    /// Returns `true` if numerator and denominator are exact in `f64`.
     pub(crate) fn fits_double(self) -> bool {
         let exact = |value: i128| value.unsigned_abs() >> value.trailing_zeros().min(127) < 1 << 53;
         self.numerator == 0 || exact(self.numerator) && exact(self.denominator)
     }
 
-    /// The nearest double to a positive number, and the double nearest to what that leaves off.
+    /// Returns the double nearest to a positive number, and the double nearest to the remaining
+    /// error.
     pub(crate) fn words(self) -> (f64, f64) {
         let bottom = self.denominator.unsigned_abs();
         let (mut quotient, mut rest) =
@@ -215,14 +217,14 @@ fn whole_root(value: i128, degree: u32) -> Option<i128> {
     (low.checked_pow(degree) == Some(value)).then_some(low)
 }
 
-/// A number as written: exact where it fits, else its digits.
+/// A number as written in the source: exact if it fits, otherwise its digits.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Literal {
     Exact(Rational),
     Decimal(String),
 }
 
-/// A whole number as an exponent: ⁻¹, ², ³.
+/// Formats an integer as an exponent: ⁻¹, ², ³.
 pub(crate) fn superscript(value: i64) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     value

@@ -1,8 +1,9 @@
-//! One order for one system: expressions rebuilt so that nothing remembers how they were written.
+//! Canonical order: expressions are rebuilt so that the result does not depend on how they were
+//! written.
 //!
-//! Ids grow with use, and sums and products are sorted by id. Rebuilding a graph from its leaves
-//! upwards, each level sorted by what it is made of, gives equal systems equal graphs, whatever
-//! notation they came in: the same operations in the same order.
+//! Ids grow in order of creation, and sums and products are sorted by id. The graph is rebuilt from
+//! its leaves upwards, and each level is sorted by its contents. Equal systems thereby get equal
+//! graphs, with the same operations in the same order, whatever notation they were written in.
 
 use crate::algebra::expr::{Dependencies, Graph, Id, Node};
 use crate::algebra::number::Rational;
@@ -38,8 +39,8 @@ pub(crate) fn canonicalize(old: &Graph, roots: &mut [&mut Id]) -> Graph {
     graph
 }
 
-/// The key that sorts the nodes of one level: dependencies, then the kind of node, then its parts
-/// up to sign.
+/// The sort key of a node within its level: dependencies, then the kind of node, then its parts up
+/// to sign.
 type Key = (u8, Node, Vec<(Id, Rational)>);
 
 fn key(old: &Graph, id: Id, graph: &mut Graph, known: &BTreeMap<Id, Id>) -> Key {

@@ -1,22 +1,23 @@
-//! Values of expressions in a prime field: an oracle for what is identically zero.
+//! Values of expressions in a prime field, used to test expressions for being identically zero.
 //!
-//! An expression that vanishes at random points modulo a large prime vanishes (Schwartz 1980,
-//! Zippel 1979), and nothing is rounded. Angles are points of the unit circle of the field, square
-//! roots are roots of the field, and every other function is a random value that depends on its
-//! argument's value alone. Points at which a root does not exist are thrown away: each root halves
-//! what is left. With i, the root of −1, every number of the prime field has a root, so that points
-//! with many roots are never rare.
+//! An expression that vanishes at random points modulo a large prime vanishes identically with high
+//! probability (Schwartz 1980, Zippel 1979). Arithmetic in the field has no rounding errors. Angles
+//! are points of the unit circle of the field and square roots are roots in the field. Every other
+//! function has a random value that depends only on the value of its argument. Points at which a
+//! root does not exist are discarded; on average each root discards half of the points. In the
+//! extension by i, the root of −1, every element of the prime field has a root, so that expressions
+//! with many roots have enough points too.
 
 use crate::algebra::expr::{Graph, Id, Node, Symbol};
 use crate::algebra::functions::Function;
 use crate::algebra::number::Rational;
 use std::collections::BTreeMap;
 
-/// 2⁶¹ − 1, which is 3 modulo 4: square roots are powers, and −1 has none.
+/// 2⁶¹ − 1, which is 3 modulo 4: square roots are powers, and −1 is not a square.
 const PRIME: u64 = (1 << 61) - 1;
 
-/// An element a + b·i of the prime field with i² = −1; b is zero unless a root of the extension
-/// made it.
+/// An element a + b·i of the prime field extended by i² = −1. b is zero unless it results from a
+/// root in the extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Residue(u64, u64);
 
@@ -31,7 +32,7 @@ fn negated(a: u64) -> u64 {
 
 fn product(a: u64, b: u64) -> u64 {
     let product = u128::from(a) * u128::from(b);
-    // 2⁶¹ is 1: the upper bits are added to the lower ones.
+    // 2⁶¹ ≡ 1: the upper bits are added to the lower bits.
     sum(product as u64 & PRIME, (product >> 61) as u64)
 }
 
@@ -69,39 +70,40 @@ impl Residue {
         result
     }
 
-    /// The reciprocal; `None` for zero.
+    /// Returns the reciprocal, or `None` for zero.
     pub(crate) fn reciprocal(self) -> Option<Self> {
         if self.1 == 0 {
             return (self.0 != 0).then(|| self.power(PRIME - 2));
         }
-        // 1/(a + b·i) = (a − b·i)/(a² + b²), and a² + b² is not zero because −1 is no square.
+        // 1/(a + b·i) = (a − b·i)/(a² + b²). a² + b² is not zero because −1 is not a square.
         Some(Self(self.0, negated(self.1)).mul(self.norm().reciprocal()?))
     }
 
-    /// a² + b².
+    /// Returns a² + b².
     fn norm(self) -> Self {
         Self(sum(product(self.0, self.0), product(self.1, self.1)), 0)
     }
 
-    /// The real and the imaginary part.
+    /// Returns the real and the imaginary part.
     pub(crate) fn parts(self) -> [Self; 2] {
         [Self(self.0, 0), Self(self.1, 0)]
     }
 
-    /// The root of a real number in the prime field.
+    /// Returns the root of an element of the prime field, if it lies in the prime field.
     fn root(self) -> Option<Self> {
         let root = self.power(PRIME.div_ceil(4));
         (root.mul(root) == self).then_some(root)
     }
 
-    /// The root in the field with i: every real number has one, and half of all others have.
+    /// Returns the root in the extension by i. It exists for all elements of the prime field and
+    /// for half of the other elements.
     fn extended_root(self) -> Option<Self> {
         if self.1 == 0 {
-            // Either a or −a is a square, because −1 is none.
+            // Either a or −a is a square, because −1 is not.
             return self.root().or_else(|| Some(Self(0, self.negative().root()?.0)));
         }
-        // (x + y·i)² = a + b·i: x² is (a ± √(a² + b²))/2, of which one is a square, because their
-        // product is −(b/2)².
+        // (x + y·i)² = a + b·i: x² is (a ± √(a² + b²))/2. Exactly one of the two is a square,
+        // because their product is −(b/2)².
         let length = self.norm().root()?;
         let half = Self(PRIME.div_ceil(2), 0);
         let square = |length: Self| half.mul(Self(self.0, 0).add(length)).root();
@@ -110,7 +112,7 @@ impl Residue {
         Some(Self(x.0, y.0))
     }
 
-    /// A number that stands for this one where functions take random values.
+    /// Returns a key of this element, from which random values of functions are computed.
     fn key(self) -> u64 {
         self.0 ^ self.1.wrapping_mul(0x9e37_79b9_7f4a_7c15)
     }
@@ -121,7 +123,7 @@ impl Residue {
             if number < 0 { Self(magnitude, 0).negative() } else { Self(magnitude, 0) }
         };
         let numerator = reduce(value.numerator());
-        // Most are whole, and a reciprocal costs a hundred products.
+        // Most denominators are 1, and a reciprocal costs a hundred products.
         if value.denominator() == 1 {
             Some(numerator)
         } else {
@@ -129,7 +131,7 @@ impl Residue {
         }
     }
 
-    /// The fraction of small numbers that this residue is, if there is one (Wang 1981).
+    /// Returns the fraction of small integers equal to this residue, if there is one (Wang 1981).
     pub(crate) fn rational(self) -> Option<Rational> {
         if self.1 != 0 {
             return None;
@@ -145,7 +147,7 @@ impl Residue {
     }
 }
 
-/// A point of the field for every symbol, made as they are asked for.
+/// A random point of the field: a value for every symbol, computed on demand.
 #[derive(Debug)]
 pub(crate) struct Point {
     seed: u64,
@@ -154,22 +156,22 @@ pub(crate) struct Point {
     roots: Roots,
 }
 
-/// The meaning of square roots in the field.
+/// The interpretation of square roots in the field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Roots {
-    /// Roots in the prime field, as far as they exist there.
+    /// Roots in the prime field, if they exist there.
     Prime,
-    /// Roots in the prime field with i.
+    /// Roots in the prime field extended by i.
     Extended,
     /// Unknown functions.
     Formal,
 }
 
-/// The value of every node that some roots are made of.
+/// The values of nodes.
 pub(crate) type Values = BTreeMap<Id, Residue>;
 
 impl Point {
-    /// A point for the expressions in `roots`.
+    /// Creates a point for the expressions in `roots`.
     pub(crate) fn new(graph: &Graph, roots: &[Id], seed: u64) -> Self {
         let mut denominator = 1i64;
         for id in graph.reachable(roots) {
@@ -187,31 +189,34 @@ impl Point {
         Self { seed, denominator, roots: Roots::Prime }
     }
 
-    /// A point at which roots are unknown functions: equal values belong to expressions that are
-    /// equal wherever both are real.
+    /// Creates a point at which roots are unknown functions: expressions of equal value are equal
+    /// wherever both are real.
     pub(crate) fn formal(graph: &Graph, roots: &[Id], seed: u64) -> Self {
         Self { roots: Roots::Formal, ..Self::new(graph, roots, seed) }
     }
 
-    /// A point with all roots of real numbers.
+    /// Creates a point at which every element of the prime field has a root.
     ///
-    /// The root of a product is that of its factors up to a sign that changes from point to point:
-    /// what vanishes at many such points vanishes, but not all that vanishes does so here.
+    /// The root of a product equals the product of the roots of its factors only up to a sign,
+    /// which differs from point to point. An expression that vanishes at many such points vanishes
+    /// identically, but the converse does not hold.
     pub(crate) fn extended(graph: &Graph, roots: &[Id], seed: u64) -> Self {
         Self { roots: Roots::Extended, ..Self::new(graph, roots, seed) }
     }
 
-    /// Another point for the same expressions.
+    /// Creates another point for the same expressions.
     pub(crate) fn again(&self, seed: u64) -> Self {
         Self { seed, ..*self }
     }
 
-    /// The values of `roots`; `None` where a root or a reciprocal does not exist.
+    /// Returns the values of all nodes in `roots`, or `None` if a root or a reciprocal does not
+    /// exist.
     pub(crate) fn values(&self, graph: &Graph, roots: &[Id]) -> Option<Values> {
         self.values_of(graph, &graph.reachable(roots))
     }
 
-    /// The values of `nodes`, which contain their own parts, those first.
+    /// Returns the values of `nodes`, which include their operands and are sorted with operands
+    /// first.
     pub(crate) fn values_of(&self, graph: &Graph, nodes: &[Id]) -> Option<Values> {
         let mut known = Values::new();
         for &id in nodes {
@@ -260,8 +265,8 @@ impl Point {
         Some(root.power(u64::try_from(exponent.numerator().unsigned_abs()).ok()?))
     }
 
-    /// Cosine and sine of an angle: a product of rotations for a linear one, a random rotation
-    /// otherwise.
+    /// Returns cosine and sine of an angle: a product of rotations for a linear angle, otherwise a
+    /// random rotation.
     fn circle(&self, graph: &Graph, argument: Id, value: Residue) -> Option<(Residue, Residue)> {
         let Some(terms) = linear(graph, argument) else { return self.rotation(&[value.key(), 7]) };
         let mut total = (Residue::ONE, Residue::ZERO);
@@ -279,7 +284,7 @@ impl Point {
         Some(total)
     }
 
-    /// A random point of the unit circle: ((1 − t²)/(1 + t²), 2t/(1 + t²)).
+    /// Returns a random point of the unit circle: ((1 − t²)/(1 + t²), 2t/(1 + t²)).
     fn rotation(&self, key: &[u64]) -> Option<(Residue, Residue)> {
         let t = self.random(key);
         let square = t.mul(t);
@@ -309,7 +314,7 @@ impl Point {
         self.random(&[key[0], key[1], key[2], key[3], salt])
     }
 
-    /// A residue that depends on the seed and the key alone.
+    /// Returns a residue that depends only on the seed and the key.
     fn random(&self, key: &[u64]) -> Residue {
         let mut state = self.seed;
         for part in key {
@@ -323,7 +328,7 @@ impl Point {
     }
 }
 
-/// An angle as a rational combination of symbols.
+/// Returns an angle as a linear combination of symbols with rational coefficients.
 fn linear(graph: &Graph, argument: Id) -> Option<Vec<(Id, Rational)>> {
     let symbol = |id: Id| matches!(graph.node(id), Node::Symbol(_) | Node::Pi);
     match graph.node(argument) {
@@ -341,7 +346,7 @@ fn linear(graph: &Graph, argument: Id) -> Option<Vec<(Id, Rational)>> {
     }
 }
 
-/// A basis of the vectors that all `rows` are orthogonal to, in reduced echelon form.
+/// Returns a basis of the vectors orthogonal to all `rows`, in reduced echelon form.
 pub(crate) fn null_space(mut rows: Vec<Vec<Residue>>, width: usize) -> Vec<Vec<Residue>> {
     let mut pivots = Vec::new();
     for column in 0..width {
@@ -417,7 +422,7 @@ mod tests {
             let mixed = number(value).add(i.mul(number(3 * value + 7)));
             let reciprocal = mixed.reciprocal().unwrap();
             assert_eq!(mixed.mul(reciprocal), Residue::ONE);
-            // A square has the root that it is made of, up to sign.
+            // The root of a square is the original element up to sign.
             let again = mixed.mul(mixed).extended_root().unwrap();
             assert!(again == mixed || again == mixed.negative(), "{mixed:?} and {again:?}");
         }

@@ -1,9 +1,9 @@
-//! Value numbering: expressions that are equal without looking equal become one.
+//! Value numbering: replaces expressions of equal value but different form by a single expression.
 //!
-//! Hashing finds what is built alike. What only has the same value, such as (a + b)(a − b) and a² −
-//! b², has the same residue at random points of a prime field (Gulwani and Necula 2003); the
-//! cheapest of its forms stands for all, up to sign. Roots are treated as unknown functions here,
-//! because a root in the field has no sign.
+//! Hashing finds expressions of equal form. Expressions of equal value but different form, such as
+//! (a + b)(a − b) and a² − b², have the same residues at random points of a prime field (Gulwani
+//! and Necula 2003). The cheapest form replaces all others, up to sign. Roots are treated as
+//! unknown functions here, because a root in the field has no sign.
 
 use crate::algebra::expr::{Graph, Id, Node};
 use crate::algebra::number::Rational;
@@ -11,16 +11,16 @@ use crate::algebra::prime_field::{Point, Residue};
 use crate::algebra::velocity_polynomial;
 use std::collections::BTreeMap;
 
-/// The points at which values are compared.
+/// The number of points at which values are compared.
 const POINTS: usize = 2;
 
-/// Programs of more nodes than this are left alone.
+/// The largest number of nodes in a program that is numbered.
 const LIMIT: usize = 20_000;
 
-/// The cheapest form of each value up to sign, and whether it is the negative.
+/// The cheapest form of each value up to sign, and whether this form is the negative.
 type Best = BTreeMap<Vec<Residue>, (Id, bool)>;
 
-/// `roots` with equal expressions made one.
+/// Returns `roots` with each set of equal expressions replaced by its cheapest form.
 pub(crate) fn numbered(graph: &mut Graph, roots: &[Id]) -> Vec<Id> {
     let nodes = graph.reachable(roots);
     if LIMIT < nodes.len() {
@@ -31,13 +31,11 @@ pub(crate) fn numbered(graph: &mut Graph, roots: &[Id]) -> Vec<Id> {
     if points.len() < POINTS {
         return roots.to_vec();
     }
-    // The cheapest form of each value; a form never contains itself, because its parts cost no more
-    // and are older.
     let mut constants: BTreeMap<Id, Rational> = BTreeMap::new();
     let mut forms: BTreeMap<Vec<Residue>, Vec<(Id, bool)>> = BTreeMap::new();
     let mut keys: BTreeMap<Id, (Vec<Residue>, bool)> = BTreeMap::new();
     for &id in &nodes {
-        // A closed expression has the value of what it closes.
+        // A closed expression has the same value as its child.
         if matches!(graph.node(id), Node::Atom(_)) {
             continue;
         }
@@ -53,8 +51,7 @@ pub(crate) fn numbered(graph: &mut Graph, roots: &[Id]) -> Vec<Id> {
         keys.insert(id, (key, flipped));
     }
     let unique = forms.len() == keys.len();
-    // The cheapest form of each value; a form never contains itself, because its parts cost no more
-    // and are older.
+    // A form never contains itself, because its parts are older and do not cost more.
     let cheapest = |forms: Vec<(Id, bool)>| {
         let costs = |&(id, _): &(Id, bool)| (velocity_polynomial::cost(graph, id), id);
         if let [only] = forms[..] { Some(only) } else { forms.into_iter().min_by_key(costs) }
@@ -70,13 +67,13 @@ pub(crate) fn numbered(graph: &mut Graph, roots: &[Id]) -> Vec<Id> {
     roots.iter().map(|&root| rebuilt(graph, root, &best, &keys, &mut known)).collect()
 }
 
-/// The number that an expression is, if it has one small value at all points.
+/// Returns the value of an expression that is the same small rational at all points.
 fn constant(values: &[Residue]) -> Option<Rational> {
     let (first, others) = values.split_first()?;
     if others.iter().all(|other| other == first) { first.rational() } else { None }
 }
 
-/// An expression made of the cheapest forms of its parts.
+/// Rebuilds an expression from the cheapest forms of its parts.
 fn rebuilt(
     graph: &mut Graph,
     root: Id,
@@ -113,7 +110,7 @@ mod tests {
     use crate::algebra::expr::{Graph, Id, Node};
     use crate::tests::lowered;
 
-    /// An expression with equal parts made one, and the number of calls that are left in it.
+    /// Numbers an expression; returns the graph, the new root and the number of calls in it.
     fn calls(expression: &str) -> (Graph, Id, usize) {
         let mut graph = Graph::new();
         let root = lowered(&mut graph, expression);

@@ -1,8 +1,9 @@
 //! A Lagrangian as a polynomial in the velocities.
 //!
-//! Written naively, kinetic energy is a sum of squares of Cartesian velocities. Collected by powers
-//! of the velocities, each coefficient simplifies on its own (sin² + cos², cos a cos b + sin a sin
-//! b, equal masses), and the equations of motion come out as a careful person would write them.
+//! As it is written, the kinetic energy is a sum of squares of Cartesian velocities. After its
+//! terms are collected by powers of the velocities, each coefficient is simplified separately
+//! (sin² + cos², cos a cos b + sin a sin b, equal masses), and the equations of motion resemble
+//! those derived by hand.
 
 use crate::algebra::expr::{Dependencies, Graph, Id, Node};
 use crate::algebra::number::Rational;
@@ -11,14 +12,14 @@ use std::collections::BTreeMap;
 /// Powers of the variables, sorted.
 pub(crate) type Monomial = Vec<(Id, i64)>;
 
-/// The terms of each coefficient.
+/// The terms of the coefficient of each monomial.
 pub(crate) type Polynomial = BTreeMap<Monomial, Vec<(Id, Rational)>>;
 
-/// More terms than this are left as they stand.
+/// The limit on the number of terms; larger expressions stay unchanged.
 const LIMIT: usize = 100_000;
 
-/// `id` collected by powers of its velocities (of coordinates and driven inputs), if it is a
-/// polynomial in them.
+/// Collects `id` by powers of its velocities (of coordinates and driven inputs); returns `None` if
+/// it is not a polynomial in them.
 pub(crate) fn by_velocities(graph: &mut Graph, id: Id) -> Option<Id> {
     let polynomial = polynomial(graph, id, moving())?;
     let mut terms = Vec::new();
@@ -39,7 +40,8 @@ fn moving() -> Dependencies {
         .or(Dependencies::ACCELERATION_INPUT)
 }
 
-/// The polynomial that an expression is in all symbols of some kinds, from those of its children.
+/// Returns an expression as a polynomial in all symbols of the kinds in `variables`. Polynomials
+/// are computed from those of the children.
 pub(crate) fn polynomial(
     graph: &mut Graph,
     root: Id,
@@ -127,7 +129,7 @@ fn multiply(graph: &mut Graph, a: &Polynomial, b: &Polynomial) -> Option<Polynom
     Some(product)
 }
 
-/// The cheaper of a coefficient as it came and multiplied out.
+/// Returns a coefficient as given or multiplied out, whichever is cheaper.
 pub(crate) fn simplest(graph: &mut Graph, terms: &[(Id, Rational)]) -> Id {
     let plain = graph.sum(terms);
     let mut flat = Vec::new();
@@ -148,7 +150,7 @@ pub(crate) fn simplest(graph: &mut Graph, terms: &[(Id, Rational)]) -> Id {
     if cost(graph, flat) < cost(graph, plain) { flat } else { plain }
 }
 
-/// An expression multiplied out, unless that would be too long.
+/// Returns an expression multiplied out, or the expression itself if the result would be too long.
 pub(crate) fn expanded(graph: &mut Graph, id: Id) -> Id {
     match expand(graph, id) {
         Some(terms) => graph.sum(&terms),
@@ -156,8 +158,8 @@ pub(crate) fn expanded(graph: &mut Graph, id: Id) -> Id {
     }
 }
 
-/// A product of sums multiplied out, as often as sums stand in it; `None` if that would be too
-/// long.
+/// Multiplies out a product of sums until no sum remains as a factor. Returns `None` if the result
+/// would be too long.
 fn expand(graph: &mut Graph, term: Id) -> Option<Vec<(Id, Rational)>> {
     let mut open = vec![(term, Rational::ONE)];
     let mut done = Vec::new();
@@ -187,7 +189,7 @@ fn expand(graph: &mut Graph, term: Id) -> Option<Vec<(Id, Rational)>> {
     Some(done)
 }
 
-/// A rough count of the operations of an expression, shared nodes once.
+/// Estimates the number of operations of an expression. Shared nodes are counted once.
 pub(crate) fn cost(graph: &Graph, root: Id) -> usize {
     let price = |id: Id| match graph.node(id) {
         Node::Number(_) | Node::Opaque(_) | Node::Pi | Node::Symbol(_) | Node::Atom(_) => 0,

@@ -1,26 +1,27 @@
-//! Terms that cancel in what is printed.
+//! Terms that cancel in printed equations.
 //!
-//! Equations are derived without expanding anything, so that a term may stand in one bracket with a
-//! plus and in another with a minus. What is computed stays so; what is printed is expanded where
-//! that makes it shorter.
+//! Equations are derived without expansion, so that a term may occur with opposite signs in two
+//! brackets. Computed expressions stay unexpanded. Printed expressions are expanded if this makes
+//! them shorter.
 
 use crate::algebra::expr::{Dependencies, Graph, Id, Node};
 use crate::algebra::number::Rational;
 use crate::algebra::order;
 use std::collections::BTreeMap;
 
-/// An expansion of more terms is given up.
+/// The largest number of terms of an expansion.
 const MOST_TERMS: usize = 100;
 
-/// A power of a sum beyond this one is not expanded.
+/// The highest power of a sum that is expanded.
 const MOST_FACTORS: i64 = 3;
 
 /// Products of powers with their coefficients.
 type Terms = BTreeMap<Vec<(Id, Rational)>, Rational>;
 
-/// The same value with fewer terms, in a graph of its own; `None` if nothing gets shorter.
+/// Returns the same value with fewer terms, in a separate graph; `None` if no expression becomes
+/// shorter.
 ///
-/// The graph of the system stays as it is, and with it the order in which sums are computed.
+/// The graph of the system is not changed, and neither is the order in which its sums are computed.
 pub(crate) fn shorter(
     graph: &Graph,
     root: Id,
@@ -40,7 +41,7 @@ pub(crate) fn shorter(
         return None;
     }
     let mut short: BTreeMap<Id, Id> = BTreeMap::new();
-    // Children come first.
+    // Children precede their parents.
     for id in nodes {
         let node = own.node(id).clone();
         let same = own.children(id).iter().all(|child| short[child] == *child);
@@ -67,9 +68,9 @@ pub(crate) fn shorter(
     (length(&own, found) < whole).then_some((own, found))
 }
 
-/// The known expansions of expressions in one graph.
+/// The expansions of expressions of one graph computed so far.
 struct Expansions {
-    /// True if sums of parameters alone are expanded too.
+    /// `true` if sums of parameters are expanded too.
     parameters: bool,
     known: BTreeMap<Id, Option<Expansion>>,
 }
@@ -78,12 +79,13 @@ struct Expansions {
 #[derive(Clone)]
 struct Expansion {
     terms: Terms,
-    /// True if two terms have met.
+    /// `true` if two terms had the same factors.
     met: bool,
 }
 
 impl Expansions {
-    /// The expansion of an expression; `None` if it is too long or no two of its terms meet.
+    /// Returns the expansion of an expression; `None` if it is too long or if no two terms have the
+    /// same factors.
     fn of(&mut self, graph: &Graph, id: Id) -> Option<Terms> {
         self.expand(graph, id).filter(|expansion| expansion.met).map(|expansion| expansion.terms)
     }

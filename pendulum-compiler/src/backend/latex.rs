@@ -8,7 +8,8 @@ use crate::backend::unicode::{self, Names, Sides};
 use crate::mechanics::motion::Motion;
 use crate::syntax::name;
 
-/// The equations of motion, one line a coordinate, as `unicode::equations` gives them in Unicode.
+/// Returns the equations of motion in LaTeX, with a line for each coordinate. `unicode::equations`
+/// returns the same equations in Unicode.
 pub(crate) fn equations(
     graph: &mut Graph,
     names: &Names,
@@ -66,7 +67,7 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// An expression that nothing follows.
+    /// Writes an expression that is not followed by factors or exponents.
     fn sum(&self, id: Id) -> String {
         match self.graph.node(id) {
             Node::Sum(terms) => {
@@ -104,9 +105,10 @@ impl Writer<'_> {
             below.push(coefficient.denominator().to_string());
         }
         let mut ordered: Vec<&(Id, Rational)> = factors.iter().collect();
-        // The argument of a function ends with the product.
+        // The argument of a function extends to the end of the product, so that functions come
+        // last.
         ordered.sort_by_key(|(base, _)| matches!(self.graph.node(*base), Node::Call(..)));
-        // A bracket around all that stands above or below a line says nothing.
+        // The only factor in a numerator or denominator needs no brackets.
         let tops =
             above.len() + ordered.iter().filter(|(_, exponent)| !exponent.is_negative()).count();
         let bottoms = below.len() + ordered.len() + above.len() - tops;
@@ -138,7 +140,7 @@ impl Writer<'_> {
         format!("{}^{{{exponent}}}", self.closed(base))
     }
 
-    /// An expression to which the exponent behind it belongs as a whole.
+    /// Writes an expression that is followed by an exponent.
     fn closed(&self, id: Id) -> String {
         let open = match self.graph.node(id) {
             Node::Number(value) | Node::Opaque(Literal::Exact(value)) => {
@@ -151,7 +153,7 @@ impl Writer<'_> {
         if open { format!("\\left({}\\right)", self.sum(id)) } else { self.factor(id) }
     }
 
-    /// An expression that something follows.
+    /// Writes an expression as a factor.
     fn factor(&self, id: Id) -> String {
         match self.graph.node(id) {
             Node::Number(value) => rational(*value),
@@ -176,7 +178,8 @@ impl Writer<'_> {
         }
     }
 
-    /// A factor that a symbol follows: a function's bare argument would swallow it.
+    /// Writes a factor that is followed by a symbol. Without brackets, the symbol would be read as
+    /// part of the bare argument of a function.
     fn coefficient(&self, id: Id) -> String {
         let bare = |&(base, _): &(Id, Rational)| match self.graph.node(base) {
             Node::Call(_, argument) => matches!(self.graph.node(*argument), Node::Symbol(_)),
@@ -247,7 +250,7 @@ fn rational(value: Rational) -> String {
     format!("{sign}\\frac{{{}}}{{{}}}", value.numerator().abs(), value.denominator())
 }
 
-/// The command for a function; `None` if bars stand around its argument.
+/// Returns the command for a function; `None` if its argument is written between bars.
 fn command(function: Function) -> Option<String> {
     let Notation::Prefix(command) = function.row().notation else { return None };
     Some(match function.order() {
@@ -257,8 +260,8 @@ fn command(function: Function) -> Option<String> {
     })
 }
 
-/// A name such as `θ1`, `l[0]`, `B.center.x` or `theta_max` with dots: its first word is the
-/// letter, the rest its index.
+/// Writes a name such as `θ1`, `l[0]`, `B.center.x` or `theta_max` with dots. Its first word is the
+/// letter, the rest the index.
 fn dotted(name: &str, dots: u8) -> String {
     let spelled = name::read(name).base;
     let split = spelled.find(|letter: char| !letter.is_alphabetic()).unwrap_or(spelled.len());

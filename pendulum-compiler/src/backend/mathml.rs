@@ -1,10 +1,10 @@
-//! Equations in MathML, which browsers draw with the dots over their letters in every font.
+//! Equations in MathML, in which browsers draw dots above letters in every font.
 //!
-//! The source is what `latex` writes, a small part of LaTeX.
+//! The source is the output of `latex`, a small subset of LaTeX.
 
 use crate::syntax::name;
 
-/// An equation of `latex` as a MathML element.
+/// Converts an equation of `latex` to a MathML element.
 pub(crate) fn equation(latex: &str) -> String {
     let mut reader = Reader { letters: latex.chars().collect(), place: 0 };
     format!("<math displaystyle=\"true\">{}</math>", reader.row(None))
@@ -22,12 +22,12 @@ impl Reader {
         self.letters.get(self.place).copied()
     }
 
-    /// The elements up to a bracket, or up to the end.
+    /// Reads the elements up to a bracket or to the end.
     fn row(&mut self, closing: Option<char>) -> String {
         let mut text = String::new();
-        // An element that an exponent or an index may follow.
+        // The last element, to which an exponent or an index may be added.
         let mut last = String::new();
-        // A space stands before the next element.
+        // `true` if a space precedes the next element.
         let mut spaced = false;
         while let Some(letter) = self.peek() {
             if Some(letter) == closing {
@@ -61,8 +61,8 @@ impl Reader {
                     if next == MINUS && (last.is_empty() || last.starts_with("<mo>")) {
                         next = MINUS.replace("<mo>", "<mo form=\"prefix\">");
                     }
-                    // Signs bring their own space; factors, and functions before a bare argument,
-                    // need one.
+                    // Signs have their own space. Factors, and functions before a bare argument,
+                    // require a space.
                     let signs = [&last, &next]
                         .map(|element| element.starts_with("<mo>") || element.starts_with("<mo "));
                     let gap = spaced && !last.is_empty() && signs == [false; 2];
@@ -81,7 +81,7 @@ impl Reader {
             .all(|(k, letter)| self.letters.get(self.place + k) == Some(&letter))
     }
 
-    /// The contents of braces, as one element.
+    /// Reads the contents of braces as a single element.
     fn argument(&mut self) -> String {
         if self.peek() == Some('{') {
             self.place += 1;
@@ -90,7 +90,7 @@ impl Reader {
         self.element()
     }
 
-    /// The contents of braces, as they are written.
+    /// Reads the contents of braces as they are written.
     fn verbatim(&mut self) -> String {
         let rest = &self.letters[(self.place + 1).min(self.letters.len())..];
         let text: String = rest.iter().take_while(|&&letter| letter != '}').collect();
@@ -98,7 +98,7 @@ impl Reader {
         text.replace("\\_", "_")
     }
 
-    /// The next element.
+    /// Reads the next element.
     fn element(&mut self) -> String {
         let Some(letter) = self.peek() else { return String::new() };
         if letter.is_ascii_digit() {
@@ -131,7 +131,7 @@ impl Reader {
         match name.as_str() {
             "frac" => {
                 let (above, below) = (self.argument(), self.argument());
-                // Room on both sides of the bar, which only fonts for mathematics have.
+                // Space on both sides of the bar, which only mathematical fonts provide.
                 format!(
                     "<mfrac><mrow>{above}<mspace depth=\"0.25em\"/></mrow>\
                      <mrow><mspace height=\"0.9em\"/>{below}</mrow></mfrac>"
@@ -139,7 +139,7 @@ impl Reader {
             }
             "sqrt" => format!("<msqrt>{}</msqrt>", self.argument()),
             "dot" | "ddot" => {
-                // Full stops, which stay clear of the letter in fonts without accents, too.
+                // Full stops, which stay clear of the letter even in fonts without accents.
                 let dots = if name == "dot" { "." } else { ".." };
                 format!("<mover>{}<mo>{dots}</mo></mover>", self.argument())
             }
@@ -209,7 +209,7 @@ mod tests {
         );
     }
 
-    /// Every element that begins ends, in every equation of the golden files.
+    /// The elements are balanced in every equation of the golden files.
     #[test]
     fn the_equations_of_the_golden_files_are_well_formed() {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/golden");
@@ -228,7 +228,7 @@ mod tests {
                     }
                 }
                 assert!(open.is_empty() && !drawn.contains('\\'), "{line}\n{drawn}");
-                // Nothing is lost: as many dots and fractions as before.
+                // The numbers of dots and fractions are preserved.
                 let dots = line.matches("dot{").count();
                 assert_eq!(drawn.matches("<mover").count(), dots, "{line}");
                 let fractions = line.matches("\\frac{").count();

@@ -1,4 +1,4 @@
-//! Writers: Rust, equations in Unicode, LaTeX and MathML, and a copy of the block for editors.
+//! The backends: Rust, equations in Unicode, LaTeX and MathML, and a copy of the block for editors.
 
 mod cancel;
 pub(crate) mod ide;
@@ -15,7 +15,7 @@ use crate::model::unit::infer::RowUnits;
 use crate::schedule::Program;
 use proc_macro2::{Ident, Span, TokenStream};
 
-/// A block before a backend writes it.
+/// The results of the analysis of a block, which backends write.
 pub(crate) struct Analysis<'m, 'a> {
     /// The path of the runtime.
     pub(crate) krate: TokenStream,
@@ -24,15 +24,15 @@ pub(crate) struct Analysis<'m, 'a> {
     pub(crate) energies: Energies,
     /// The equations of motion; `None` after a mistake.
     pub(crate) motion: Option<Motion>,
-    /// The equations in Unicode and in LaTeX, a line each.
+    /// The equations in Unicode and in LaTeX, in lines.
     pub(crate) equations: [Vec<String>; 2],
     /// The program of the accelerations.
     pub(crate) accelerations: Option<Program>,
-    /// The units that are inferred.
+    /// The inferred units.
     pub(crate) units: RowUnits,
 }
 
-/// The same name, which stands nowhere in the block.
+/// Returns the same name with a span outside the block.
 fn unlocated(name: &Ident) -> Ident {
     let mut name = name.clone();
     name.set_span(Span::call_site());

@@ -1,7 +1,7 @@
-//! Equations in Unicode, as one would write them: θ̈ = −g·sin θ/L.
+//! Equations in Unicode, in mathematical notation: θ̈ = −g·sin θ/L.
 //!
-//! The equations of a block that is written in ASCII are in ASCII, as the language reads them:
-//! `theta_ddot = -g*sin(theta)/L`.
+//! The equations of a block that is written in ASCII are in ASCII too, in the syntax of the
+//! language: `theta_ddot = -g*sin(theta)/L`.
 
 use crate::algebra::expr::{Graph, Id, Moment, Node, Symbol};
 use crate::algebra::functions::{Function, Notation};
@@ -19,15 +19,15 @@ pub(crate) struct Names {
     pub(crate) parameters: Vec<String>,
     pub(crate) coordinates: Vec<String>,
     inputs: Vec<(String, bool)>,
-    /// The scalar constraints: `loop.x`, `rod[2]`.
+    /// The names of scalar constraints: `loop.x`, `rod[2]`.
     pub(crate) constraints: Vec<String>,
-    /// The signs and spellings of the language in ASCII.
+    /// `true` for the signs and spellings of the language in ASCII.
     ascii: bool,
 }
 
 impl Names {
-    /// The names of a block; `energies` know its constraints, and the parameters of two or three
-    /// components that are no vectors.
+    /// Creates the names of a block. `energies` contains its constraints, and the parameters of two
+    /// or three components that are not vectors.
     pub(crate) fn new(model: &Model, energies: &Energies) -> Self {
         let families = &energies.families;
         let parameters = model.parameters.iter().enumerate();
@@ -50,22 +50,22 @@ impl Names {
         }
     }
 
-    /// The sign of a negative number or term.
+    /// Returns the sign of a negative number or term.
     fn minus(&self) -> &'static str {
         if self.ascii { "-" } else { "−" }
     }
 
-    /// The sign between factors.
+    /// Returns the sign between factors.
     fn times(&self) -> &'static str {
         if self.ascii { "*" } else { "·" }
     }
 
-    /// A name with dots.
+    /// Returns a name with dots.
     fn dotted(&self, name: &str, dots: u8) -> String {
         dotted(name, dots, self.ascii)
     }
 
-    /// An exponent, with what raises it.
+    /// Returns an exponent, with its operator in ASCII.
     fn exponent(&self, exponent: Rational) -> String {
         match exponent.integer() {
             Some(count) if !self.ascii => superscript(count),
@@ -74,7 +74,7 @@ impl Names {
         }
     }
 
-    /// A symbol's name with its dots.
+    /// Returns the name of a symbol with its dots.
     pub(crate) fn symbol(&self, symbol: Symbol) -> String {
         match symbol {
             Symbol::Parameter(index) => self.parameters[index].clone(),
@@ -104,26 +104,26 @@ impl Names {
         }
     }
 
-    /// The name of a component of an input with its dots.
+    /// Returns the name of a component of an input with its dots.
     fn of_input(&self, input: usize, component: usize, order: u8) -> String {
         let (name, vector) = &self.inputs[input];
         let name = self.dotted(name, order);
         if *vector { format!("{name}.{}", ["x", "y", "z"][component.min(2)]) } else { name }
     }
 
-    /// The name of an input, and whether it is a vector.
+    /// Returns the name of an input, and whether it is a vector.
     pub(crate) fn input(&self, index: usize) -> (&str, bool) {
         let (name, vector) = &self.inputs[index];
         (name, *vector)
     }
 
-    /// A coordinate with two dots.
+    /// Returns a coordinate with two dots.
     pub(crate) fn acceleration(&self, index: usize) -> String {
         self.dotted(&self.coordinates[index], 2)
     }
 }
 
-/// The scalars of a quantity: `c.x`, `m[3]` or the name itself.
+/// Returns the names of the scalars of a quantity: `c.x`, `m[3]` or the name itself.
 fn quantity_names(quantity: &Quantity, family: bool) -> Vec<String> {
     let name = quantity.name.to_string();
     if quantity.body {
@@ -139,8 +139,8 @@ fn quantity_names(quantity: &Quantity, family: bool) -> Vec<String> {
     }
 }
 
-/// A name with dots over its first letter, or with the ASCII suffix if the name is a word in ASCII
-/// or the block is in ASCII.
+/// Returns a name with dots over its first letter. The result has the ASCII suffix if the name is a
+/// word in ASCII or if the block is in ASCII.
 fn dotted(name: &str, dots: u8, ascii: bool) -> String {
     if dots == 0 {
         return name.into();
@@ -157,7 +157,7 @@ fn dotted(name: &str, dots: u8, ascii: bool) -> String {
     format!("{composed}{}{index}", letters.as_str())
 }
 
-/// The tightness with which an expression must hold together.
+/// The lowest precedence that an expression may have without brackets.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
     Sum,
@@ -165,15 +165,15 @@ enum Level {
     Power,
 }
 
-/// An expression as text.
+/// Returns an expression as text.
 pub(crate) fn expression(graph: &Graph, names: &Names, id: Id) -> String {
     write(graph, names, id, Level::Sum)
 }
 
-/// The right-hand sides in which terms cancel, each in a graph of its own; `None` for all others.
+/// The right sides in which terms cancel, each in a separate graph; `None` for all others.
 pub(crate) type Sides = Vec<Option<(Graph, Id)>>;
 
-/// The right-hand sides of the equations, without what cancels.
+/// Returns the right sides of the equations, without terms that cancel.
 pub(crate) fn sides(graph: &Graph, names: &Names, motion: &Motion) -> Sides {
     let short = |row: usize| {
         if too_long(graph, motion, row) {
@@ -186,8 +186,8 @@ pub(crate) fn sides(graph: &Graph, names: &Names, motion: &Motion) -> Sides {
     (0..motion.accelerations.len()).map(short).collect()
 }
 
-/// The right-hand side of the equation in a row: the acceleration where its coordinate stands
-/// alone, the force otherwise.
+/// Returns the right side of the equation in a row: the acceleration if its coordinate is not
+/// coupled to others, otherwise the force.
 fn right(motion: &Motion, row: usize) -> Id {
     match motion.constraints.sides.get(row) {
         Some(&side) if motion.constraints.bound(row) => side,
@@ -196,13 +196,14 @@ fn right(motion: &Motion, row: usize) -> Id {
     }
 }
 
-/// Returns true if a row of the mass matrix has one entry, and no constraint acts there.
+/// Returns `true` if a row of the mass matrix has a single entry and no constraint acts on its
+/// coordinate.
 pub(crate) fn alone(motion: &Motion, row: usize) -> bool {
     let entries = motion.mass_matrix[row].iter().filter(|&&entry| entry != Graph::ZERO);
     entries.count() == 1 && !motion.constraints.bound(row)
 }
 
-/// The right-hand side of the equation in a row, with the graph in which it is written.
+/// Returns the right side of the equation in a row, with its graph.
 pub(crate) fn side<'g>(
     graph: &'g Graph,
     motion: &Motion,
@@ -262,12 +263,12 @@ fn write(graph: &Graph, names: &Names, id: Id, level: Level) -> String {
     if own < level && !(call && level == Level::Product) { format!("({text})") } else { text }
 }
 
-/// The name of a function with its primes.
+/// Returns the name of a function with its primes.
 fn spelled(function: Function) -> String {
     format!("{}{}", function.row().name, function.primes())
 }
 
-/// The argument of a function, with the space or bracket before it.
+/// Returns the argument of a function, with the space or bracket before it.
 fn operand(graph: &Graph, names: &Names, argument: Id) -> String {
     if names.ascii {
         return format!("({})", write(graph, names, argument, Level::Sum));
@@ -288,7 +289,7 @@ fn sum(graph: &Graph, names: &Names, terms: &[(Id, Rational)]) -> String {
     text
 }
 
-/// The sign before a term.
+/// Returns the sign before a term.
 fn sign(names: &Names, first: bool, negative: bool) -> String {
     match (first, negative) {
         (true, true) => names.minus().into(),
@@ -321,8 +322,8 @@ fn product(
         let side = if exponent.is_negative() { &mut below } else { &mut above };
         side.push(power(graph, names, base, exponent.abs()));
     }
-    // A function's name would swallow what follows it: functions stand last, in brackets if several
-    // do.
+    // A factor after a function would be read as part of its argument. Functions therefore come
+    // last, in brackets if there are several.
     let top = if above.is_empty() { "1".to_owned() } else { above.join(names.times()) };
     let level = if above.len() + below.len() < 2 && sign.is_empty() {
         Level::Power
@@ -342,8 +343,8 @@ fn product(
     (format!("{sign}{top}/{bottom}"), if sign.is_empty() { Level::Product } else { Level::Sum })
 }
 
-/// Returns true if a space stands outside all brackets: a function's argument would swallow what
-/// follows.
+/// Returns `true` if a text contains a space outside of brackets. The text is then a function whose
+/// argument would absorb further factors.
 fn open(text: &str) -> bool {
     let mut depth = 0;
     text.chars().any(|letter| {
@@ -352,7 +353,8 @@ fn open(text: &str) -> bool {
     })
 }
 
-/// Numbers, parameters, inputs, velocities, functions, sums: the usual order of a product.
+/// Returns the rank of a factor in a product, in the usual order: numbers, parameters, other
+/// symbols, sums, functions.
 fn rank(graph: &Graph, base: Id) -> u8 {
     match graph.node(base) {
         Node::Number(_) | Node::Opaque(_) | Node::Pi => 0,
@@ -392,10 +394,10 @@ fn number(names: &Names, value: Rational, level: Level) -> String {
     }
 }
 
-/// The name of a conserved quantity in terms of the momenta: `p_φ`, `x·p_y − y·p_x`.
+/// Returns the name of a conserved quantity in terms of the momenta: `p_φ`, `x·p_y − y·p_x`.
 pub(crate) fn conserved(names: &Names, conserved: &Conserved) -> String {
     let mut terms = conserved.terms.clone();
-    // Begin with a plus.
+    // Start with a positive term.
     if let Some(first) = terms.iter().position(|(factor, ..)| !factor.is_negative()) {
         let first = terms.remove(first);
         terms.insert(0, first);
@@ -414,12 +416,12 @@ pub(crate) fn conserved(names: &Names, conserved: &Conserved) -> String {
     text
 }
 
-/// A line of more symbols is not written out: what is shared stands once in the graph, but wherever
-/// it is used in a text.
+/// The limit on the symbols of a line. An expression that is shared in the graph is repeated in the
+/// text for every use.
 const LONGEST: usize = 1000;
 
-/// Returns true if the equation in a row, solved where its coordinate stands alone, is too long to
-/// be written out.
+/// Returns `true` if the equation in a row is too long to be written out. It is solved if its
+/// coordinate is not coupled to others.
 pub(crate) fn too_long(graph: &Graph, motion: &Motion, row: usize) -> bool {
     let mut roots = vec![right(motion, row)];
     if !alone(motion, row) {
@@ -428,7 +430,7 @@ pub(crate) fn too_long(graph: &Graph, motion: &Motion, row: usize) -> bool {
     long(graph, &roots)
 }
 
-/// Returns true if expressions are too long to be written out.
+/// Returns `true` if expressions are too long to be written out.
 pub(crate) fn long(graph: &Graph, roots: &[Id]) -> bool {
     let mut lengths: BTreeMap<Id, usize> = BTreeMap::new();
     for id in graph.reachable(roots) {
@@ -441,8 +443,9 @@ pub(crate) fn long(graph: &Graph, roots: &[Id]) -> bool {
     LONGEST < roots.iter().fold(0, |sum: usize, root| sum.saturating_add(lengths[root]))
 }
 
-/// The equations of motion, one line a coordinate: solved where a coordinate stands alone, a row of
-/// M q̈ = f + Cᵀλ where several are coupled or constraints act; and one line a constraint.
+/// Returns the equations of motion, with a line for each coordinate and for each constraint. The
+/// equation of a coordinate is solved if the coordinate is not coupled to others; otherwise, it is
+/// a row of M q̈ = f + Cᵀλ.
 pub(crate) fn equations(
     graph: &mut Graph,
     names: &Names,

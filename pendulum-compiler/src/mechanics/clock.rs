@@ -1,8 +1,8 @@
-//! Time scales of the equations: width and middle of each function of time in them.
+//! Time scales of the equations: width and centre of each function of time in them.
 //!
-//! A method samples accelerations at a few times in a step. Between two of them exp(−((t − t₀)/w)²)
-//! would stay unseen if w is small, so that steps are bounded by w. A function f(u) of a polynomial
-//! u = a tᵈ + … is as narrow as |a|^(−1/d).
+//! A method samples accelerations at a few times in a step. For small w, exp(−((t − t₀)/w)²) could
+//! fall between two of these times and be missed, so that steps are limited by w. A function f(u)
+//! of a polynomial u = a tᵈ + … has the width |a|^(−1/d).
 
 use crate::algebra::diff::{derivative, substitute};
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
@@ -11,16 +11,16 @@ use crate::algebra::number::Rational;
 use crate::algebra::order;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A function of time that stands in the equations.
+/// A function of time in the equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Feature {
-    /// One over its width.
+    /// The reciprocal of its width.
     pub(crate) rate: Id,
-    /// The time since its middle; zero for what goes on for ever.
+    /// The time since its centre, or zero if it has no centre.
     pub(crate) since: Id,
 }
 
-/// The features of some expressions, in a graph of their own.
+/// Returns the features of some expressions, in a separate graph.
 pub(crate) fn features(graph: &Graph, roots: &[Id]) -> (Graph, Vec<Feature>) {
     if !roots.iter().any(|&root| graph.dependencies(root).any(Dependencies::TIME)) {
         return (Graph::new(), Vec::new());
@@ -43,17 +43,17 @@ pub(crate) fn features(graph: &Graph, roots: &[Id]) -> (Graph, Vec<Feature>) {
     (search.graph, search.found.into_iter().collect())
 }
 
-/// Polynomials in time of a higher degree are left alone.
+/// The highest degree of polynomials in time that are examined.
 const HIGHEST: i64 = 8;
 
-/// Times at which something has a corner; if there are more of them, pairs of neighbours alone are
-/// looked at.
+/// The largest number of corners for which all pairs are examined. If there are more, only pairs of
+/// neighbours are.
 ///
-/// The number of features is at most that of the functions and powers in the equations times this,
-/// and that of the pairs.
+/// The number of features is at most `CORNERS` times the number of functions and powers in the
+/// equations, plus the number of pairs.
 const CORNERS: usize = 8;
 
-/// Everything that may vary beside the time.
+/// Everything that may vary apart from time.
 const BESIDE_TIME: Dependencies = Dependencies::COORDINATE
     .or(Dependencies::VELOCITY)
     .or(Dependencies::INPUT)
@@ -68,26 +68,26 @@ struct Search {
     found: BTreeSet<Feature>,
     /// The times at which `abs`, `sign` or `max` has a corner.
     corners: BTreeSet<Id>,
-    /// The degrees of polynomials in time that are known.
+    /// The degrees of polynomials in time computed so far.
     degrees: BTreeMap<Id, Option<i64>>,
-    /// The polynomials that are known.
+    /// The polynomials computed so far.
     polynomials: BTreeMap<Id, Option<Polynomial>>,
 }
 
-/// A polynomial in time: what is known of u = a tᵈ + …, in which |u| stands for u where that is
-/// linear.
+/// A polynomial in time, u = a tᵈ + …. It may contain |v| for linear functions v.
 #[derive(Clone)]
 struct Polynomial {
-    /// The same with its arguments for magnitudes, if there is one at most.
+    /// The polynomial with v in place of each |v|; unchanged if d = 1 and there are several |v|.
     smooth: Id,
     degree: i64,
-    /// a, which contains nothing that moves; for several magnitudes the steepest slope.
+    /// The coefficient a, which is constant along the motion. For several |v| it is a bound on the
+    /// slope.
     leading: Id,
-    /// The time at which the derivative of the order d − 1 is zero, or those of the corners if
-    /// magnitudes stand there; none if there are too many.
+    /// The time at which the derivative of order d − 1 is zero, or the times of the corners if d =
+    /// 1 and there are |v|; empty if there are too many.
     middles: Vec<Id>,
     cornered: bool,
-    /// Nothing else of the expression contains the time.
+    /// `true` if all terms of the expression are part of the polynomial.
     whole: bool,
 }
 
@@ -128,7 +128,8 @@ impl Search {
         }
     }
 
-    /// Sine and cosine are as narrow as the bell that has the curvature of a crest: 1 − ω²t²/2.
+    /// Adds a feature for sine and cosine. Its width is that of a bell with the curvature of a
+    /// crest, 1 − ω²t²/2.
     fn oscillation(&mut self, angle: Id) {
         let Some(polynomial) = self.polynomial(angle) else { return };
         let rate = if polynomial.degree == 1 {
@@ -141,7 +142,7 @@ impl Search {
         self.find(rate, None);
     }
 
-    /// Functions that change where their argument is of the order of one.
+    /// Adds features for functions that change when their argument is of the order of one.
     fn bell(&mut self, argument: Id) {
         self.swings(argument);
         let Some(polynomial) = self.polynomial(argument) else { return };
@@ -154,8 +155,8 @@ impl Search {
         }
     }
 
-    /// A term k sinⁿ ωt in the argument of such a function: at a zero of the sine it leaves zero as
-    /// k (ωt)ⁿ.
+    /// Adds features for terms k sinⁿ ωt in the argument of such a function. Near a zero of the
+    /// sine, a term is approximately k (ωt)ⁿ.
     fn swings(&mut self, argument: Id) {
         for (term, coefficient) in self.terms(argument) {
             let mut factors = self.graph.factors(term);
@@ -191,8 +192,8 @@ impl Search {
         }
     }
 
-    /// A function without a width of its own, such as the reciprocal: it has that of a u that is
-    /// not zero at its middle.
+    /// Adds features for functions without a width, such as the reciprocal. Their width is that of
+    /// u if u is not zero at its centre.
     fn bump(&mut self, argument: Id) {
         let Some(polynomial) = self.polynomial(argument) else { return };
         if !polynomial.whole || polynomial.degree == 1 && !polynomial.cornered {
@@ -209,7 +210,7 @@ impl Search {
         }
     }
 
-    /// A corner where u is zero, or a pulse between two zeros.
+    /// Adds a corner at u = 0, or a feature for the pulse between two zeros.
     fn corner(&mut self, argument: Id) {
         self.bump(argument);
         if let Some(polynomial) = self.polynomial(argument)
@@ -225,7 +226,7 @@ impl Search {
         }
     }
 
-    /// Two corners may be the ends of a pulse.
+    /// Adds a feature for each pair of corners, because two corners may be the ends of a pulse.
     fn pairs(&mut self) {
         let mut corners: Vec<Id> = self.corners.iter().copied().collect();
         let pairs: Vec<(Id, Id)> = if corners.len() <= CORNERS {
@@ -234,7 +235,7 @@ impl Search {
             };
             corners.iter().enumerate().flat_map(others).collect()
         } else {
-            // Which corners are neighbours is known of numbers alone.
+            // Only corners at numeric times can be sorted.
             let time = |id: Id| match *self.graph.node(id) {
                 Node::Number(time) => time.numerator() as f64 / time.denominator() as f64,
                 _ => f64::NAN,
@@ -264,7 +265,7 @@ impl Search {
         }
     }
 
-    /// |x|^(1/d).
+    /// Returns |x|^(1/d).
     fn root(&mut self, x: Id, degree: i64) -> Id {
         let magnitude = self.graph.call(Function::Abs, x);
         match Rational::new(1, degree.into()) {
@@ -273,7 +274,7 @@ impl Search {
         }
     }
 
-    /// The terms of a sum with their coefficients.
+    /// Returns the terms of a sum with their coefficients.
     fn terms(&self, id: Id) -> Vec<(Id, Rational)> {
         match self.graph.node(id) {
             Node::Sum(terms) => terms.clone(),
@@ -282,8 +283,8 @@ impl Search {
         }
     }
 
-    /// The polynomial in time that some terms of an expression are; `None` without
-    /// any, or if its leading coefficient moves.
+    /// Returns the sum of those terms of an expression that are polynomials in time, or `None` if
+    /// there are none or if their leading coefficient is not constant.
     fn polynomial(&mut self, id: Id) -> Option<Polynomial> {
         if let Some(known) = self.polynomials.get(&id) {
             return known.clone();
@@ -331,7 +332,7 @@ impl Search {
             self.graph.product(Rational::new(1, factorial.into())?, &[(last, Rational::ONE)]);
         let middles = match magnitudes.as_slice() {
             [_] if degree == 1 => self.corners_of(&magnitudes),
-            // The last derivative but one is linear.
+            // The derivative before the last is linear.
             _ => vec![self.zero(derivatives[degree as usize - 1])?],
         };
         Some(Polynomial {
@@ -344,7 +345,7 @@ impl Search {
         })
     }
 
-    /// The time at which a linear function of it is zero; `None` for a constant.
+    /// Returns the time at which a linear function of time is zero, or `None` for a constant.
     fn zero(&mut self, line: Id) -> Option<Id> {
         let slope = derivative(&mut self.graph, line, Symbol::Time);
         if slope == Graph::ZERO {
@@ -355,13 +356,13 @@ impl Search {
         Some(self.graph.negative(quotient))
     }
 
-    /// An expression at a time.
+    /// Evaluates an expression at a time.
     fn at(&mut self, id: Id, time: Id) -> Id {
         substitute(&mut self.graph, id, |symbol| (symbol == Symbol::Time).then_some(time))
     }
 
-    /// The degree in time of what is a polynomial but for magnitudes of linear functions; `None`
-    /// for all else.
+    /// Returns the degree in time of an expression that is a polynomial apart from magnitudes of
+    /// linear functions, or `None` for any other expression.
     fn degree(&mut self, id: Id) -> Option<i64> {
         if let Some(&known) = self.degrees.get(&id) {
             return known;
@@ -399,7 +400,7 @@ impl Search {
         }
     }
 
-    /// The magnitudes of what moves in an expression, the inner ones first.
+    /// Returns the magnitudes of time-dependent arguments in an expression, inner ones first.
     fn magnitudes(&self, id: Id) -> Vec<Id> {
         let moving = |node: &Id| match *self.graph.node(*node) {
             Node::Call(Function::Abs, argument) => self.moves(argument),
@@ -408,8 +409,8 @@ impl Search {
         self.graph.reachable(&[id]).into_iter().filter(moving).collect()
     }
 
-    /// An expression with its argument for each of its magnitudes, with a minus if that has a bit
-    /// in `signs`.
+    /// Replaces each magnitude in an expression by its argument, negated if the bit of the
+    /// magnitude in `signs` is set.
     fn branch(&mut self, id: Id, magnitudes: &[Id], signs: usize) -> Id {
         if magnitudes.is_empty() {
             return id;
@@ -429,8 +430,8 @@ impl Search {
         known[&id]
     }
 
-    /// The times at which these magnitudes of linear functions have a corner, with either sign of
-    /// those within them; none if there are too many.
+    /// Returns the times at which magnitudes of linear functions have a corner, for both signs of
+    /// the magnitudes inside them. Empty if there are too many.
     fn corners_of(&mut self, magnitudes: &[Id]) -> Vec<Id> {
         let mut corners = Vec::new();
         for &magnitude in magnitudes {
@@ -451,8 +452,8 @@ impl Search {
         if CORNERS < corners.len() { Vec::new() } else { corners }
     }
 
-    /// A bound of the slope of a sum of magnitudes of linear functions: all slopes add. `None` if
-    /// it moves.
+    /// Returns a bound on the slope of a sum of magnitudes of linear functions, the sum of the
+    /// magnitudes of all slopes.
     fn steepest(&mut self, id: Id) -> Option<Id> {
         let mut slopes: BTreeMap<Id, Id> = BTreeMap::new();
         for node in self.graph.reachable(&[id]) {

@@ -1,9 +1,10 @@
 //! Constraints and limits: gradients, rates, multipliers.
 //!
-//! Rows are holonomic, g(q, t) = 0, or hold velocities, A(q, t) q̇ + b(q, t) = 0. With c the rate
-//! of the row's velocity form, C = ∂c/∂q̈ and γ = −c at q̈ = 0 the motion fulfils M q̈ = f + Cᵀλ
-//! and C q̈ = γ. One elimination gives accelerations and multipliers: each multiplier is eliminated
-//! behind the coordinates of its row, so that all pivots have a known sign.
+//! A row is either holonomic, g(q, t) = 0, or a constraint of velocities, A(q, t) q̇ + b(q, t) = 0.
+//! Let c be the time derivative of ġ or of A q̇ + b, C = ∂c/∂q̈, and γ = −c at q̈ = 0. The motion
+//! satisfies M q̈ = f + Cᵀλ and C q̈ = γ. A single elimination yields accelerations and
+//! multipliers: each multiplier is eliminated after the coordinates of its row, so that the signs
+//! of all pivots are known.
 
 use crate::algebra::diff::{derivative, substitute};
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
@@ -19,25 +20,25 @@ use crate::syntax::ast::Expr;
 use crate::syntax::text::text;
 use std::collections::BTreeSet;
 
-/// More scalar limits are refused: the runtime keeps no more.
+/// The largest number of scalar limits, which is the capacity of the runtime.
 pub(crate) const MOST_LIMITS: usize = 16;
 
 /// The constraints and limits of a motion.
 #[derive(Debug, Default)]
 pub(crate) struct Constraints {
-    /// Constraints that are solved.
+    /// The constraints that are solved.
     pub(crate) held: Vec<Constraint>,
     pub(crate) redundant: Vec<Constraint>,
     pub(crate) limits: Vec<Constraint>,
     /// λ in the order of `held`.
     pub(crate) multipliers: Vec<Id>,
-    /// The part of each pivot that the constraints before it have left, from 0 to 1.
+    /// For each pivot, the fraction that remains after the preceding constraints, from 0 to 1.
     pub(crate) independence: Vec<Id>,
     /// M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹ applied to the symbols `Target`.
     pub(crate) correction: Vec<Id>,
-    /// f + Cᵀλ with λ as symbols, to be printed; empty without constraints.
+    /// f + Cᵀλ with λ as symbols, for printed equations; empty without constraints.
     pub(crate) sides: Vec<Id>,
-    /// The power with λ as symbols, to be printed; none without constraints.
+    /// The power with λ as symbols, for printed equations; `None` without constraints.
     pub(crate) power: Option<Id>,
 }
 
@@ -51,16 +52,16 @@ pub(crate) struct Constraint {
     pub(crate) gradient: Vec<Id>,
     /// ġ or A q̇ + b.
     pub(crate) rate: Id,
-    /// The same at q̇ = 0.
+    /// The rate at q̇ = 0.
     pub(crate) drive: Id,
-    /// The rate of that at q̈ = 0: −γ.
+    /// The time derivative of the rate at q̈ = 0, −γ.
     pub(crate) drift: Id,
-    /// The sums of the magnitudes of the terms of value and rate.
+    /// The sums of the magnitudes of the terms of `value` and of `rate`.
     pub(crate) scales: [Id; 2],
 }
 
 impl Constraints {
-    /// Every expression in it.
+    /// Returns all expressions of the constraints and limits.
     pub(crate) fn roots(&mut self) -> impl Iterator<Item = &mut Id> {
         let rows = self.held.iter_mut().chain(&mut self.redundant).chain(&mut self.limits);
         let rows = rows.flat_map(|row| {
@@ -72,12 +73,13 @@ impl Constraints {
         rows.chain(lists.into_iter().flatten()).chain(&mut self.power)
     }
 
-    /// Returns true if a constraint that is solved acts on a coordinate.
+    /// Returns `true` if a constraint that is solved acts on a coordinate.
     pub(crate) fn bound(&self, coordinate: usize) -> bool {
         self.held.iter().any(|row| row.gradient[coordinate] != Graph::ZERO)
     }
 
-    /// The left sides of all constraints, g or A q̇ + b, with a positive sign in front.
+    /// Returns the left sides of all constraints, g or A q̇ + b, with their signs chosen so that
+    /// the coefficient is positive.
     pub(crate) fn values(&self, graph: &mut Graph) -> Vec<Id> {
         let rows = self.held.iter().chain(&self.redundant);
         rows.map(|row| {
@@ -87,12 +89,12 @@ impl Constraints {
         .collect()
     }
 
-    /// The rows of C.
+    /// Returns the rows of C.
     pub(crate) fn gradients(&self) -> Vec<Vec<Id>> {
         self.held.iter().map(|row| row.gradient.clone()).collect()
     }
 
-    /// The matrix of M q̈ − Cᵀλ = f and −C q̈ = −γ.
+    /// Returns the matrix of M q̈ − Cᵀλ = f and −C q̈ = −γ.
     pub(crate) fn matrix(&self, graph: &mut Graph, masses: &[Vec<Id>]) -> Vec<Vec<Id>> {
         let count = masses.len();
         let size = count + self.held.len();
@@ -110,13 +112,12 @@ impl Constraints {
         matrix
     }
 
-    /// The right side that belongs to it.
+    /// Returns the right side of these equations.
     pub(crate) fn right(&self, forces: &[Id]) -> Vec<Id> {
         forces.iter().copied().chain(self.held.iter().map(|row| row.drift)).collect()
     }
 
-    /// The accelerations, with multipliers, independence and the correction of misfits, in dense
-    /// form.
+    /// Returns the accelerations in dense form, and sets multipliers, independence and correction.
     pub(crate) fn solve(
         &mut self,
         graph: &mut Graph,
@@ -142,19 +143,19 @@ impl Constraints {
         accelerations
     }
 
-    /// The multipliers as symbols.
+    /// Returns the multipliers as symbols.
     pub(crate) fn symbols(&self, graph: &mut Graph) -> Vec<Id> {
         (0..self.held.len()).map(|k| graph.symbol(Symbol::Multiplier(k))).collect()
     }
 
-    /// The terms −λ b of the power.
+    /// Returns the terms −λ b of the power.
     pub(crate) fn power_terms(&self, graph: &mut Graph, multipliers: &[Id]) -> Vec<(Id, Rational)> {
         let rows = self.held.iter().zip(multipliers);
         rows.map(|(row, &multiplier)| (graph.mul(row.drive, multiplier), Rational::MINUS_ONE))
             .collect()
     }
 
-    /// Σ C_kj λ_k for each coordinate, with the multipliers as they are given.
+    /// Returns Σ C_kj λ_k for each coordinate j, with the given multipliers λ.
     pub(crate) fn forces(&self, graph: &mut Graph, multipliers: &[Id]) -> Vec<Id> {
         let count = self.held.first().map_or(0, |row| row.gradient.len());
         (0..count)
@@ -169,7 +170,7 @@ impl Constraints {
     }
 }
 
-/// The constraints and limits of a block; mistakes in them are reported.
+/// Derives the constraints and limits of a block, and reports mistakes in them.
 pub(crate) fn derive(
     model: &Model,
     graph: &mut Graph,
@@ -207,7 +208,7 @@ pub(crate) fn derive(
     constraints
 }
 
-/// One row; nothing if it is refused.
+/// Derives a row, or reports why it is refused.
 fn constraint(
     model: &Model,
     graph: &mut Graph,
@@ -269,7 +270,7 @@ fn constraint(
     Some(Constraint { holonomic, value: row.value, gradient, rate, drive, drift, scales })
 }
 
-/// The sum of the magnitudes of the terms of an expression.
+/// Returns the sum of the magnitudes of the terms of an expression.
 fn magnitude(graph: &mut Graph, id: Id) -> Id {
     match graph.node(id).clone() {
         Node::Atom(inner) => magnitude(graph, inner),
@@ -298,7 +299,8 @@ fn magnitude(graph: &mut Graph, id: Id) -> Id {
     }
 }
 
-/// Reports as many constraints as coordinates, and more redundant ones or limits than coordinates.
+/// Reports constraints that are as many as the coordinates, redundant constraints that are more
+/// than the coordinates, and more than `MOST_LIMITS` limits.
 fn few(
     model: &Model,
     energies: &Energies,
@@ -323,7 +325,8 @@ fn few(
     }
 }
 
-/// Reports the constraints whose gradients depend on those before them at a random state.
+/// Reports constraints whose gradients depend linearly on the gradients of preceding constraints at
+/// a random state.
 fn independent(
     model: &Model,
     graph: &Graph,
@@ -332,7 +335,7 @@ fn independent(
     errors: &mut Errors,
 ) {
     let Some(values) = solve::at_random(graph, &constraints.gradients()) else { return };
-    // Reduced rows, each with the rows that stand in it.
+    // Reduced rows, each with the indices of the rows combined in it.
     let mut reduced: Vec<(Vec<Residue>, BTreeSet<usize>)> = Vec::new();
     let mut reported = BTreeSet::new();
     for (k, row) in values.into_iter().enumerate() {

@@ -1,8 +1,8 @@
-//! Euler–Lagrange: momenta, mass matrix, forces, accelerations, energy and power from the
-//! Lagrangian.
+//! The Euler–Lagrange equations: momenta, mass matrix, forces, accelerations, energy and power from
+//! the Lagrangian.
 //!
-//! d/dt ∂L/∂q̇ − ∂L/∂q = Q − ∂R/∂q̇, where d/dt runs through the coordinates, the driven inputs and
-//! the time.
+//! d/dt ∂L/∂q̇ − ∂L/∂q = Q − ∂R/∂q̇, where d/dt acts through the coordinates, the driven inputs and
+//! time.
 
 use crate::algebra::diff::{derivative, substitute};
 use crate::algebra::expr::rule;
@@ -24,26 +24,28 @@ use crate::messages::{Errors, mechanics as messages};
 use crate::model::{Model, Quantity};
 use crate::schedule;
 
-/// Jacobians of more operations than this are left to dual numbers: an expansion stays small.
+/// The limit on the estimated operations of Jacobians. Larger Jacobians are computed with dual
+/// numbers instead, which keeps expansions small.
 const LONGEST_JACOBIAN: usize = 4000;
 
-/// Mass matrices of more rows than this are only solved in dense form if there is no cheaper sparse
-/// one.
+/// The limit on the rows of mass matrices that are always solved in dense form. Above it, the dense
+/// form is derived only if there is no cheaper sparse form.
 const LARGEST_DENSE: usize = 12;
 
-/// The same for the products of an elimination with multipliers.
+/// The corresponding limit on the products of an elimination with multipliers.
 const LARGEST_FILLED: usize = LARGEST_DENSE.pow(3) / 3;
 
-/// The sparse form must save almost half: its operations wait for each other from the leaves to the
-/// root and back. Chains of nine links and more are faster in it (`cargo bench -p
-/// pendulum-runtime --bench chains`).
+/// The sparse form is used if its cost is less than this fraction of the cost of the dense form.
+/// The fraction is well below 1 because the operations of the sparse form are sequential, from the
+/// leaves to the root and back. Chains of nine or more links are faster in the sparse form (`cargo
+/// bench -p pendulum-runtime --bench chains`).
 const CLEARLY: f64 = 0.55;
 
-/// An energy that keeps its digits may cost up to this much more: the half angle is one more sine
-/// and cosine.
+/// The factor by which an energy without cancellation may cost more. The half angle requires a
+/// further sine and cosine.
 const DEARER: f64 = 2.5;
 
-/// Derives the equations of motion so that they do not depend on how the energies were written.
+/// Derives the equations of motion. The result does not depend on how the energies are written.
 pub(crate) fn derive(
     model: &Model,
     graph: &mut Graph,
@@ -62,7 +64,7 @@ pub(crate) fn derive(
     Some(motion)
 }
 
-/// Puts the accelerations and the multipliers into the outputs that contain them.
+/// Substitutes the accelerations and the multipliers in the outputs that contain them.
 fn put_accelerations(graph: &mut Graph, motion: &Motion, energies: &mut Energies) {
     let accelerations: Vec<Id> = motion.accelerations.iter().map(|&id| graph.closed(id)).collect();
     let multipliers = &motion.constraints.multipliers;
@@ -87,7 +89,7 @@ fn put_accelerations(graph: &mut Graph, motion: &Motion, energies: &mut Energies
     }
 }
 
-/// The equations of motion; reports directions without kinetic energy.
+/// Derives the equations of motion, and reports directions without kinetic energy.
 fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Errors) -> Motion {
     let kinetic = energies.kinetic.map(|id| collected(graph, id));
     let potential = energies.potential.map(|id| collected(graph, id));
@@ -125,7 +127,7 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     }
     motion.constraints = constraints;
 
-    // Terms with control inputs do work as a force does: the rates of the inputs are unknown.
+    // Terms with control inputs do work like a force, because the rates of the inputs are unknown.
     let own = at_rest_controls(graph, lagrangian);
     let controlled = if own == lagrangian { Graph::ZERO } else { graph.sub(lagrangian, own) };
     let mut power = Vec::new();
@@ -143,7 +145,7 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
         power.push((graph.mul(velocity[i], working), Rational::ONE));
         let rate = graph.add(slope, external);
         motion.momentum_rates.push(rate);
-        // dp/dt along the motion at constant velocities: the acceleration stands in M q̈.
+        // dp/dt along the motion at constant velocities. The accelerations are in the term M q̈.
         let drift = total_derivative(graph, momenta[i]);
         let force = graph.sub(rate, drift);
         motion.forces.push(collected(graph, force));
@@ -210,8 +212,8 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     motion
 }
 
-/// Solves for accelerations and multipliers together, and adds the forces of the constraints to the
-/// rates of the momenta.
+/// Solves for accelerations and multipliers together, and adds the constraint forces to the rates
+/// of the momenta.
 fn constrained(graph: &mut Graph, motion: &mut Motion, sparse: Option<&Sparse>) {
     let constraints = &mut motion.constraints;
     if constraints.held.is_empty() {
@@ -221,7 +223,7 @@ fn constrained(graph: &mut Graph, motion: &mut Motion, sparse: Option<&Sparse>) 
     let matrix = constraints.matrix(graph, &motion.mass_matrix);
     let filled = solve::products(&matrix, motion.forces.len());
     let known = held.filter(|held| {
-        // Elimination without structure would take as long to write down.
+        // The dense form would take this many operations, both to derive and to evaluate.
         LARGEST_FILLED < filled && schedule::program(graph, &held.accelerations).cost() < filled
     });
     if known.is_none() {
@@ -248,7 +250,7 @@ fn constrained(graph: &mut Graph, motion: &mut Motion, sparse: Option<&Sparse>) 
         motion.forces.iter().zip(forces).map(|(&own, force)| graph.add(own, force)).collect();
 }
 
-/// Makes equal expressions one in each output, where that is cheaper.
+/// Applies value numbering to each output if that is cheaper.
 fn number(graph: &mut Graph, motion: &mut Motion) {
     let lists = [
         &mut motion.accelerations,
@@ -276,7 +278,7 @@ fn number(graph: &mut Graph, motion: &mut Motion) {
     }
 }
 
-/// Solves for the accelerations and for the velocities, in the form that costs less.
+/// Solves for the accelerations and for the velocities, in the cheaper form.
 fn solved(graph: &mut Graph, motion: &mut Motion, momenta: &[Id], sparse: Option<&Sparse>) {
     let largest = solve::blocks(&motion.mass_matrix).iter().map(Vec::len).max().unwrap_or(0);
     if let Some(sparse) = sparse
@@ -284,7 +286,7 @@ fn solved(graph: &mut Graph, motion: &mut Motion, momenta: &[Id], sparse: Option
         && !momenta.iter().any(|&momentum| jumps(graph, momentum))
         && schedule::program(graph, &sparse.accelerations).cost() < largest.pow(3) / 3
     {
-        // Elimination without structure would take n³/3 operations and as long to write down.
+        // Dense elimination would take n³/3 operations, both to derive and to evaluate.
         motion.accelerations.clone_from(&sparse.accelerations);
         motion.velocities = Some(sparse.velocities.clone());
         return;
@@ -299,7 +301,7 @@ fn solved(graph: &mut Graph, motion: &mut Motion, momenta: &[Id], sparse: Option
     }
 }
 
-/// Takes `other` where its cost is below a share of the own one.
+/// Replaces `own` by `other` if the cost of `other` is less than `share` times that of `own`.
 fn shorten(graph: &Graph, own: &mut [Id], other: &[Id], share: f64) {
     let cost = |roots: &[Id]| schedule::program(graph, roots).cost() as f64;
     if cost(other) < share * cost(own) {
@@ -307,7 +309,7 @@ fn shorten(graph: &Graph, own: &mut [Id], other: &[Id], share: f64) {
     }
 }
 
-/// The Jacobians, if they are short: each column costs about as much as the accelerations.
+/// Returns the Jacobians if they are short. Each column costs about as much as the accelerations.
 fn jacobians(model: &Model, graph: &mut Graph, motion: &Motion) -> Option<[Vec<Vec<Id>>; 4]> {
     let count = motion.accelerations.len();
     let parameters: usize = model.parameters.iter().map(Quantity::count).sum();
@@ -335,13 +337,13 @@ fn collected(graph: &mut Graph, id: Id) -> Id {
     }
 }
 
-/// ∂L/∂t at constant coordinates and velocities: through the time and the driven inputs.
+/// Returns ∂L/∂t at constant coordinates and velocities, through time and the driven inputs.
 fn explicit_rate(graph: &mut Graph, lagrangian: Id) -> Id {
     let mut terms = Vec::new();
     for symbol in graph.symbols(&[lagrangian]) {
         let rate = match symbol {
             Symbol::Time => Graph::ONE,
-            // A second derivative has been refused.
+            // Second derivatives have been refused before.
             Symbol::Input { input, component, order } if order < 2 => {
                 graph.symbol(Symbol::Input { input, component, order: order + 1 })
             }
@@ -353,8 +355,8 @@ fn explicit_rate(graph: &mut Graph, lagrangian: Id) -> Id {
     graph.sum(&terms)
 }
 
-/// Refuses a third derivative of a driven input, which there is not: the rates of the momenta would
-/// contain it, or else ∂L/∂t.
+/// Refuses Lagrangians that require a third derivative of a driven input, in the rates of the
+/// momenta or in ∂L/∂t. Inputs provide two derivatives.
 fn has_jerk(
     model: &Model,
     graph: &Graph,
@@ -379,7 +381,7 @@ fn has_jerk(
     false
 }
 
-/// Refuses momenta in which a control input stands: its derivative would be a force.
+/// Refuses momenta that contain a control input, because its derivative would be a force.
 fn has_control(model: &Model, graph: &Graph, momenta: &[Id], errors: &mut Errors) -> bool {
     let input = graph.symbols(momenta).into_iter().find_map(|symbol| match symbol {
         Symbol::Control { input, .. } => Some(model.inputs[input].name),
@@ -391,7 +393,7 @@ fn has_control(model: &Model, graph: &Graph, momenta: &[Id], errors: &mut Errors
     input.is_some()
 }
 
-/// An expression with all control inputs set to zero.
+/// Returns an expression with all control inputs set to zero.
 fn at_rest_controls(graph: &mut Graph, id: Id) -> Id {
     if !graph.dependencies(id).any(Dependencies::CONTROL) {
         return id;
@@ -399,7 +401,7 @@ fn at_rest_controls(graph: &mut Graph, id: Id) -> Id {
     substitute(graph, id, |symbol| matches!(symbol, Symbol::Control { .. }).then_some(Graph::ZERO))
 }
 
-/// q̇ = M⁻¹(p − b) for momenta M q̇ + b that are linear in the velocities.
+/// Returns q̇ = M⁻¹(p − b) for momenta M q̇ + b that are linear in the velocities.
 pub(crate) fn invert(
     graph: &mut Graph,
     mass_matrix: &[Vec<Id>],
@@ -425,7 +427,7 @@ pub(crate) fn invert(
         if jumps(graph, rest) {
             return None;
         }
-        // The terms that structure does not cancel vanish at q̇ = 0.
+        // Terms that depend on velocities but do not cancel structurally vanish at q̇ = 0.
         let rest = if graph.dependencies(rest).any(Dependencies::VELOCITY) {
             at_rest(graph, rest)
         } else {
@@ -437,8 +439,8 @@ pub(crate) fn invert(
     Some(solve::solve(graph, mass_matrix, &right))
 }
 
-/// Returns true if an expression jumps where a function of the velocities changes sign: its
-/// derivative does not show that it contains them.
+/// Returns `true` if an expression contains a function that jumps and whose argument depends on
+/// velocities. The derivative of such a function is zero and hides this dependence.
 fn jumps(graph: &Graph, id: Id) -> bool {
     let jumps = |id: &Id| match graph.node(*id) {
         Node::Call(function, argument) if function.row().kinks == Kinks::Jump => {
@@ -449,7 +451,7 @@ fn jumps(graph: &Graph, id: Id) -> bool {
     graph.dependencies(id).any(Dependencies::VELOCITY) && graph.reachable(&[id]).iter().any(jumps)
 }
 
-/// An expression with all velocities of coordinates set to zero.
+/// Returns an expression with all velocities of coordinates set to zero.
 fn at_rest(graph: &mut Graph, id: Id) -> Id {
     substitute(graph, id, |symbol| matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO))
 }
@@ -467,7 +469,7 @@ fn facts(graph: &mut Graph, motion: &mut Motion) {
     let time = Dependencies::TIME.or(Dependencies::INPUT);
     let forces = all(&motion.forces);
     motion.constant_mass_matrix = !masses.any(state.or(time));
-    // A control input may follow the velocities.
+    // A control input may be a function of the velocities.
     let moving = Dependencies::VELOCITY.or(Dependencies::CONTROL);
     let free = motion.constraints.held.is_empty();
     let rows = motion.constraints.held.iter().flat_map(|row| [row.value, row.rate, row.drift]);

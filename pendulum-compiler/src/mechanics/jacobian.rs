@@ -1,8 +1,8 @@
 //! Jacobians of the accelerations: ∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂parameters.
 //!
-//! M q̈ = f gives M ∂q̈/∂z = ∂f/∂z − ∂M/∂z q̈: each column is one more right-hand side for factors
-//! that exist already, those of the whole matrix where there are multipliers. A coordinate that
-//! stands alone in its row is differentiated directly.
+//! M q̈ = f gives M ∂q̈/∂z = ∂f/∂z − ∂M/∂z q̈: each column is a further right side for the existing
+//! factors of the matrix; with multipliers, for the factors of the whole matrix. The acceleration
+//! of a coordinate that is not coupled to others is differentiated directly.
 
 use crate::algebra::diff::derivative;
 use crate::algebra::expr::{Graph, Id, Symbol};
@@ -10,7 +10,7 @@ use crate::algebra::number::Rational;
 use crate::mechanics::motion::Motion;
 use crate::mechanics::solve;
 
-/// ∂q̈/∂z for each symbol z, a column after the other.
+/// Returns the column ∂q̈/∂z for each symbol z.
 pub(crate) fn columns(graph: &mut Graph, motion: &Motion, symbols: &[Symbol]) -> Vec<Vec<Id>> {
     let count = motion.accelerations.len();
     let constraints = &motion.constraints;

@@ -1,4 +1,4 @@
-//! From the energies to the equations of motion.
+//! The derivation of the equations of motion from the energies.
 
 pub(crate) mod articulated;
 pub(crate) mod clock;

@@ -1,29 +1,29 @@
-//! The equations of motion of a block, and what goes with them.
+//! The equations of motion of a block and the quantities derived with them.
 
 use crate::algebra::expr::Id;
 use crate::mechanics::articulated::Unsolved;
 use crate::mechanics::constraint::Constraints;
 use crate::mechanics::symmetry::Conserved;
 
-/// The equations of motion and what goes with them: roots in one graph.
+/// The equations of motion and the quantities derived with them: roots in one graph.
 #[derive(Debug, Default)]
 pub(crate) struct Motion {
     pub(crate) accelerations: Vec<Id>,
     pub(crate) momenta: Vec<Id>,
-    /// Row by row; symmetric.
+    /// The rows of the symmetric mass matrix.
     pub(crate) mass_matrix: Vec<Vec<Id>>,
     pub(crate) forces: Vec<Id>,
     pub(crate) momentum_rates: Vec<Id>,
-    /// The equations before they are solved, where positions are written with `let`.
+    /// The equations before they are solved, if positions are defined with `let`.
     pub(crate) unsolved: Option<Unsolved>,
-    /// q̇ from p; `None` if L is not quadratic in the velocities.
+    /// q̇ as a function of p; `None` if L is not quadratic in the velocities.
     pub(crate) velocities: Option<Vec<Id>>,
     pub(crate) energy: Id,
     pub(crate) power: Id,
     pub(crate) kinetic: Option<Id>,
     pub(crate) potential: Option<Id>,
-    /// ∂q̈/∂q, ∂q̈/∂q̇, ∂q̈/∂parameters and ∂q̈/∂u of the control inputs, column by column; `None`
-    /// where they would be too long to write out.
+    /// The columns of ∂q̈/∂q, ∂q̈/∂q̇, ∂q̈/∂parameters and ∂q̈/∂u with the control inputs u; `None`
+    /// if they would be too long.
     pub(crate) jacobians: Option<[Vec<Vec<Id>>; 4]>,
     pub(crate) cyclic: Vec<usize>,
     pub(crate) conserved: Vec<Conserved>,
@@ -32,7 +32,8 @@ pub(crate) struct Motion {
     pub(crate) explicit_time: bool,
     pub(crate) separable: bool,
     pub(crate) velocity_free: bool,
-    /// Constraints of positions alone, a constant mass matrix and forces without velocities.
+    /// `true` if all constraints are holonomic, the mass matrix is constant and the forces do not
+    /// depend on velocities.
     pub(crate) holonomic: bool,
     pub(crate) linear: bool,
     pub(crate) constant_mass_matrix: bool,
@@ -40,7 +41,7 @@ pub(crate) struct Motion {
 }
 
 impl Motion {
-    /// Every expression in it.
+    /// Returns all expressions of the motion.
     pub(crate) fn roots(&mut self) -> Vec<&mut Id> {
         let lists = [
             &mut self.accelerations,

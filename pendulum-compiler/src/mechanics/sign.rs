@@ -1,5 +1,5 @@
-//! Expressions whose sign does not depend on the state: a kinetic energy that is negative shows in
-//! its mass matrix.
+//! Expressions whose sign does not depend on the state. They reveal negative kinetic energies in
+//! the mass matrix.
 
 use crate::algebra::dimension::Dimension;
 use crate::algebra::expr::{Dependencies, Graph, Id, Moment, Node, Symbol};
@@ -14,10 +14,10 @@ use crate::syntax::text::text;
 use proc_macro2::Ident;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Reports the coordinates whose entries on the diagonal of the mass matrix are negative at every
-/// state.
+/// Reports the coordinates whose diagonal entries in the mass matrix are negative at every state.
 ///
-/// A Lagrangian that is not split may have any sign, and so may a parameter that is no mass.
+/// A Lagrangian that is not split into energies may have any sign, and so may a parameter that is
+/// not a mass.
 pub(crate) fn positive(
     model: &Model,
     graph: &Graph,
@@ -39,14 +39,14 @@ pub(crate) fn positive(
     for coordinate in model.coordinates.iter().filter(negative) {
         let Some((minus, term)) = guilty(model, &coordinate.name.to_string()) else { continue };
         let message = messages::negative_energy(coordinate.name, minus, &text(term));
-        // A term that is negative for two coordinates is wrong once.
+        // A term that is negative for two coordinates is reported once.
         errors.once(term.source, term.range, message);
     }
     before == errors.len()
 }
 
-/// The negative term of the kinetic energy that is guilty of a coordinate, and whether a minus
-/// stands before it.
+/// Returns the negative term of the kinetic energy that makes the entry of a coordinate negative,
+/// and whether it follows a minus sign.
 fn guilty<'a>(model: &Model<'a>, coordinate: &str) -> Option<(bool, &'a Expr)> {
     let mut source = Source { model, negative: BTreeMap::new(), followed: BTreeSet::new() };
     let kinetic: Vec<&'a Expr> = model
@@ -65,17 +65,17 @@ fn guilty<'a>(model: &Model<'a>, coordinate: &str) -> Option<(bool, &'a Expr)> {
     all.iter().find(|(_, term)| source.mention(term, &base)).or(all.first()).copied()
 }
 
-/// Expressions as written, with the definitions that they use; each is followed once.
+/// The written expressions with the definitions they use; each definition is followed once.
 struct Source<'m, 'a> {
     model: &'m Model<'a>,
-    /// True for each definition that begins with a minus.
+    /// For each definition, `true` if it begins with a minus sign.
     negative: BTreeMap<usize, bool>,
-    /// The definitions that a search has been through.
+    /// The definitions visited by the current search.
     followed: BTreeSet<usize>,
 }
 
 impl<'a> Source<'_, 'a> {
-    /// The definition that an expression stands for.
+    /// Returns the definition that an expression refers to.
     fn definition(&self, expr: &Expr) -> Option<usize> {
         match &expr.kind {
             ExprKind::Name(name) | ExprKind::Call(name, _)
@@ -88,7 +88,7 @@ impl<'a> Source<'_, 'a> {
         }
     }
 
-    /// The definition of a name, with or without dots.
+    /// Returns the definition of a name with or without dots.
     fn named(&self, name: &Ident) -> Option<usize> {
         match self.model.names.get(&name::read(&name.to_string()).base) {
             Some(&Meaning::Let(index)) => Some(index),
@@ -96,8 +96,8 @@ impl<'a> Source<'_, 'a> {
         }
     }
 
-    /// The negative terms of an expression, each where it is written, and whether a minus stands
-    /// before it.
+    /// Finds the negative terms of an expression where they are written, and whether each of them
+    /// follows a minus sign.
     fn negative_terms<'e>(&mut self, minus: bool, expr: &'e Expr, found: &mut Vec<(bool, &'e Expr)>)
     where
         'a: 'e,
@@ -109,7 +109,8 @@ impl<'a> Source<'_, 'a> {
                 }
             }
             (ExprKind::SumOver(_, term), _) if !minus => self.negative_terms(false, term, found),
-            // A minus before a definition is to blame, and not what is defined.
+            // If a definition follows a minus sign, that minus sign is reported and not the
+            // definition.
             (_, Some(index)) if !minus => {
                 if !self.followed.insert(index) {
                     return;
@@ -121,7 +122,7 @@ impl<'a> Source<'_, 'a> {
         }
     }
 
-    /// Returns true if an odd number of signs stands before the factors of an expression.
+    /// Returns `true` if the factors of an expression have an odd number of minus signs.
     fn begins_negative(&mut self, expr: &Expr) -> bool {
         match &expr.kind {
             ExprKind::Negative(inner) => !self.begins_negative(inner),
@@ -142,8 +143,8 @@ impl<'a> Source<'_, 'a> {
         }
     }
 
-    /// Returns true if a name stands in an expression or in a definition that it uses, with or
-    /// without dots.
+    /// Returns `true` if an expression, or a definition it uses, contains a name with or without
+    /// dots.
     fn mention(&mut self, expr: &Expr, base: &str) -> bool {
         self.followed.clear();
         self.mentions(expr, base)
@@ -160,7 +161,7 @@ impl<'a> Source<'_, 'a> {
         own || expr.parts().into_iter().any(|part| self.mentions(part, base))
     }
 
-    /// Returns true if a name is that of a definition in which another stands.
+    /// Returns `true` if a name refers to a definition that contains the name `base`.
     fn defined_with(&mut self, name: &Ident, base: &str) -> bool {
         match self.named(name).filter(|&index| self.followed.insert(index)) {
             Some(index) => self.mentions(&self.model.lets[index].expr, base),
@@ -169,7 +170,7 @@ impl<'a> Source<'_, 'a> {
     }
 }
 
-/// A sign that no state changes; what has one may be zero at some states.
+/// A sign that is the same at all states. The value may be zero at some states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sign {
     Positive,
@@ -186,7 +187,7 @@ impl Sign {
     }
 }
 
-/// The signs of all expressions that stand in `roots`; `None` for those that may have either.
+/// Returns the signs of all expressions in `roots`; `None` for expressions whose sign may vary.
 fn signs(model: &Model, graph: &Graph, roots: &[Id]) -> BTreeMap<Id, Option<Sign>> {
     let mut signs: BTreeMap<Id, Option<Sign>> = BTreeMap::new();
     for id in graph.reachable(roots) {
@@ -210,7 +211,7 @@ fn signs(model: &Model, graph: &Graph, roots: &[Id]) -> BTreeMap<Id, Option<Sign
             }
             Node::Product(coefficient, factors) => {
                 factors.iter().try_fold(Sign::of(*coefficient), |sign, (base, exponent)| {
-                    // An even power, and a root where it is real.
+                    // Even powers are not negative, and neither are even roots if they are real.
                     let square = exponent.numerator() % 2 == 0 || exponent.denominator() % 2 == 0;
                     Some(if square { sign } else { sign.times(signs[base]?) })
                 })
@@ -226,7 +227,7 @@ fn signs(model: &Model, graph: &Graph, roots: &[Id]) -> BTreeMap<Id, Option<Sign
     signs
 }
 
-/// Returns true if a scalar is a mass, a moment of inertia, a density or an inductance; a first
+/// Returns `true` if a scalar is a mass, a moment of inertia, a density or an inductance. A first
 /// moment may have any sign.
 fn is_mass(model: &Model, scalar: usize) -> bool {
     let own = |quantity: &&Quantity| {

@@ -1,5 +1,5 @@
-//! M x = f on the graph: `LDLᵀ` without square roots, structural zeros skipped, independent blocks
-//! apart.
+//! M x = f on the graph: `LDLᵀ` without square roots. Structural zeros are skipped and independent
+//! blocks are solved separately.
 
 use crate::algebra::expr::{Dependencies, Graph, Id};
 use crate::algebra::number::Rational;
@@ -9,8 +9,8 @@ use crate::messages::{Errors, mechanics as messages};
 use crate::model::{Model, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Returns true if every direction has kinetic energy at a random state; reports the coordinates
-/// that have none.
+/// Returns `true` if every direction has kinetic energy at a random state, and reports the
+/// coordinates without kinetic energy.
 pub(crate) fn regular(
     model: &Model,
     graph: &mut Graph,
@@ -48,7 +48,7 @@ pub(crate) fn regular(
     errors.len() == before
 }
 
-/// The scalar coordinate of a row, as written.
+/// Returns the name of the scalar coordinate of a row, as written in a block.
 fn named(coordinate: &Quantity, row: usize) -> String {
     match coordinate.length {
         Some(_) => format!("{}[{}]", coordinate.name, row - coordinate.first),
@@ -56,9 +56,11 @@ fn named(coordinate: &Quantity, row: usize) -> String {
     }
 }
 
-/// The entries of a matrix at a random point of a prime field. Half of all numbers have a root:
-/// where there are too many to meet a point at which all exist, roots are unknown functions, and
-/// what vanishes then vanishes too.
+/// Returns the entries of a matrix at a random point of a prime field.
+///
+/// Half of all elements of the field have a root. If there are too many roots to find a point at
+/// which all of them exist, roots are treated as unknown functions. Entries that vanish then vanish
+/// with roots too.
 pub(crate) fn at_random(graph: &Graph, matrix: &[Vec<Id>]) -> Option<Vec<Vec<Residue>>> {
     let roots: Vec<Id> = matrix.iter().flatten().copied().collect();
     let exact = (0..64).find_map(|seed| Point::new(graph, &roots, seed).values(graph, &roots));
@@ -68,8 +70,8 @@ pub(crate) fn at_random(graph: &Graph, matrix: &[Vec<Id>]) -> Option<Vec<Vec<Res
     Some(matrix.iter().map(|row| row.iter().map(|entry| values[entry]).collect()).collect())
 }
 
-/// The row in which elimination meets a pivot that is zero, and whether the rows are dependent
-/// then.
+/// Returns the row at which elimination finds a zero pivot, and whether the rows are linearly
+/// dependent.
 fn zero_pivot(values: &[Vec<Residue>], block: &[usize]) -> Option<(usize, bool)> {
     let mut rows: Vec<Vec<Residue>> =
         block.iter().map(|&i| block.iter().map(|&j| values[i][j]).collect()).collect();
@@ -89,7 +91,7 @@ fn zero_pivot(values: &[Vec<Residue>], block: &[usize]) -> Option<(usize, bool)>
     None
 }
 
-/// Solves M x = f for a symmetric matrix that `regular` has passed.
+/// Solves M x = f for a symmetric matrix that has passed `regular`.
 pub(crate) fn solve(graph: &mut Graph, matrix: &[Vec<Id>], right: &[Id]) -> Vec<Id> {
     let mut solution = vec![Graph::ZERO; right.len()];
     for block in blocks(matrix) {
@@ -100,14 +102,15 @@ pub(crate) fn solve(graph: &mut Graph, matrix: &[Vec<Id>], right: &[Id]) -> Vec<
 
 /// The solutions of equations with multipliers.
 pub(crate) struct Augmented {
-    /// One for each right side.
+    /// The solution for each right side.
     pub(crate) solutions: Vec<Vec<Id>>,
-    /// For each multiplier, its pivot over the part that other multipliers have not reduced.
+    /// For each multiplier, its pivot divided by the pivot without the reduction by other
+    /// multipliers.
     pub(crate) independence: Vec<Id>,
 }
 
-/// Solves equations whose first `count` unknowns are coordinates and whose others are multipliers,
-/// for each of several right sides.
+/// Solves equations for each of several right sides. The first `count` unknowns are coordinates,
+/// the remaining unknowns are multipliers.
 pub(crate) fn augmented(
     graph: &mut Graph,
     matrix: &[Vec<Id>],
@@ -130,7 +133,7 @@ pub(crate) fn augmented(
     Augmented { solutions, independence }
 }
 
-/// The products of an elimination with multipliers, counted by the entries that are not zero.
+/// Counts the products of an elimination with multipliers, from the nonzero entries.
 pub(crate) fn products(matrix: &[Vec<Id>], count: usize) -> usize {
     let block = |block: Vec<usize>| {
         let degrees = elimination(matrix, &block, count).into_iter().map(|(_, degree)| degree);
@@ -139,14 +142,14 @@ pub(crate) fn products(matrix: &[Vec<Id>], count: usize) -> usize {
     blocks(matrix).into_iter().map(block).sum()
 }
 
-/// The rows of a block in an order of little fill-in: those with the fewest neighbours first, of
-/// equals the last one; a multiplier behind all coordinates of its row, where its pivot has a known
-/// sign.
+/// Returns the rows of a block in an order with little fill-in: rows with the fewest neighbours
+/// first, the last of several equal ones first. A multiplier follows all coordinates of its row,
+/// because its pivot has a known sign then.
 fn elimination_order(matrix: &[Vec<Id>], block: &[usize], count: usize) -> Vec<usize> {
     elimination(matrix, block, count).into_iter().map(|(row, _)| row).collect()
 }
 
-/// The same, each row with the number of those that it is coupled to when its turn comes.
+/// Returns the same order, each row with the number of rows coupled to it when it is eliminated.
 fn elimination(matrix: &[Vec<Id>], block: &[usize], count: usize) -> Vec<(usize, usize)> {
     let neighbours = |row: usize| {
         let entries = matrix[row].iter().enumerate();
@@ -179,8 +182,9 @@ fn elimination(matrix: &[Vec<Id>], block: &[usize], count: usize) -> Vec<(usize,
     order
 }
 
-/// Puts the solution of one block of rows, eliminated in this order, into `solution`. For each row
-/// the pivot over the part of it that multipliers, the rows from `count` on, have not reduced.
+/// Stores the solution of a block of rows, eliminated in the given order, in `solution`. Returns
+/// for each row the ratio of its pivot to the pivot without the reduction by multipliers, which are
+/// the rows from `count` on.
 fn solve_block(
     graph: &mut Graph,
     matrix: &[Vec<Id>],
@@ -198,18 +202,18 @@ fn solve_block(
         Rational::ONE,
         &[(matrix[block[0]][block[0]], Rational::ONE), (scales[0], Rational::whole(-2))],
     );
-    // The first pivot becomes one where parameters alone decide it.
+    // The first pivot is scaled to one if it depends only on parameters.
     let unit = if graph.dependencies(pivot).any(Dependencies::STATE) { Graph::ONE } else { pivot };
     for (scale, _) in scales.iter_mut().zip(block).filter(|&(_, &row)| count <= row) {
-        // The gradients of constraints stay as they are.
+        // The gradients of constraints stay unscaled.
         *scale = graph.power(unit, Rational::MINUS_ONE);
     }
     let scaled: Vec<Vec<Id>> = (0..block.len())
         .map(|i| {
             let entry = |j: usize| {
                 let entry = over(graph, matrix[block[i]][block[j]], &[scales[i], scales[j], unit]);
-                // Multiplied out, a constant shows what cancels against squares: 1 − cos² is
-                // sin².
+                // Multiplying out reveals terms of a constant that cancel against squares: 1 − cos²
+                // is sin².
                 if graph.dependencies(entry).any(Dependencies::STATE) {
                     entry
                 } else {
@@ -235,7 +239,7 @@ fn solve_block(
     factors.independence
 }
 
-/// The coordinates that no other is coupled to.
+/// Returns `true` for each coordinate that is not coupled to any other.
 pub(crate) fn alone(matrix: &[Vec<Id>]) -> Vec<bool> {
     matrix
         .iter()
@@ -243,8 +247,9 @@ pub(crate) fn alone(matrix: &[Vec<Id>]) -> Vec<bool> {
         .collect()
 }
 
-/// A product of parameters for each row that stands in all its entries, twice on the diagonal: in
-/// chains the lengths. The unknowns are solved for in these units, so that fewer products move.
+/// Returns for each row a product of parameters that divides all its entries, and the diagonal
+/// twice. In chains, these are the lengths. The unknowns are measured in these units, which reduces
+/// the number of products that depend on the state.
 fn scales(graph: &mut Graph, matrix: &[Vec<Id>], block: &[usize]) -> Vec<Id> {
     let mut scales = Vec::new();
     for &row in block {
@@ -275,22 +280,24 @@ fn scales(graph: &mut Graph, matrix: &[Vec<Id>], block: &[usize]) -> Vec<Id> {
     scales
 }
 
-/// `id` divided by some others.
+/// Divides `id` by `divisors`.
 fn over(graph: &mut Graph, id: Id, divisors: &[Id]) -> Id {
     let mut factors = vec![(id, Rational::ONE)];
     factors.extend(divisors.iter().map(|&divisor| (divisor, Rational::MINUS_ONE)));
     graph.product(Rational::ONE, &factors)
 }
 
-/// Unit lower triangle and reciprocal pivots.
+/// A unit lower triangle and the reciprocals of the pivots.
 struct Factors {
     lower: Vec<Vec<Id>>,
     reciprocal: Vec<Id>,
-    /// For each multiplier, its pivot over the part that other multipliers have not reduced.
+    /// For each multiplier, its pivot divided by the pivot without the reduction by other
+    /// multipliers.
     independence: Vec<Id>,
 }
 
-/// The rows of a block, last first: chains eliminate from the leaf to the root.
+/// Returns the independent blocks of rows, in descending order: chains are eliminated from the leaf
+/// to the root.
 pub(crate) fn blocks(matrix: &[Vec<Id>]) -> Vec<Vec<usize>> {
     let mut seen = vec![false; matrix.len()];
     let mut blocks = Vec::new();
@@ -316,7 +323,7 @@ pub(crate) fn blocks(matrix: &[Vec<Id>]) -> Vec<Vec<usize>> {
     blocks
 }
 
-/// M = L D Lᵀ on atoms; the row whose pivot is structurally zero otherwise.
+/// Factors M = L D Lᵀ on atoms, or returns the row whose pivot is structurally zero.
 fn factor(
     graph: &mut Graph,
     matrix: &[Vec<Id>],
@@ -325,7 +332,7 @@ fn factor(
 ) -> Result<Factors, usize> {
     let size = block.len();
     let mut lower = vec![vec![Graph::ZERO; size]; size];
-    // The entries left of the pivot, not yet divided by it.
+    // The entries to the left of the pivot, before the division by the pivot.
     let mut scaled = vec![vec![Graph::ZERO; size]; size];
     let mut reciprocal: Vec<Id> = Vec::with_capacity(size);
     let mut independence: Vec<Id> = Vec::with_capacity(size);
@@ -350,7 +357,8 @@ fn factor(
         for i in j + 1..size {
             if scaled[i][j] != Graph::ZERO {
                 let entry = graph.mul(scaled[i][j], inverse);
-                // A division is done once; a quotient by parameters stays open and cancels.
+                // A division that depends on the state is computed once. A quotient by parameters
+                // stays open so that it can cancel.
                 lower[i][j] = if graph.moving_quotient(entry) {
                     graph.closed(entry)
                 } else {

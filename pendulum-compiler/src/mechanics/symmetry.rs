@@ -1,34 +1,34 @@
-//! Conserved quantities: every symmetry q → q + ε(a + Bq) of the Lagrangian, and the energy where
-//! nothing depends on time.
+//! Conserved quantities: every symmetry q → q + ε(a + Bq) of the Lagrangian.
 //!
 //! The Lagrangian is unchanged if Σ ∂L/∂q_i ξ_i + ∂L/∂q̇_i ξ̇_i vanishes for ξ = a + Bq (Noether
-//! 1918), which is linear in a and B: their values are the null space of that sum at random points
-//! of a prime field. Where too few points have all square roots, the field gets a root of −1 and
-//! the sum's real and imaginary part both vanish. Then Σ p_i ξ_i is conserved, if the forces do no
-//! work along ξ either.
+//! 1918). The sum is linear in a and B, and their values are its null space at random points of a
+//! prime field. If too few points have all square roots, the field is extended by a root of −1, and
+//! both the real and the imaginary part of the sum have to vanish. Σ p_i ξ_i is conserved if the
+//! forces do no work along ξ either.
 
 use crate::algebra::diff::derivative;
 use crate::algebra::expr::{Graph, Id, Symbol};
 use crate::algebra::number::Rational;
 use crate::algebra::prime_field::{Point, Residue, null_space};
 
-/// With more coordinates than this only displacements q → q + εa are looked for.
+/// The largest number of coordinates for which matrices B are searched. With more coordinates, only
+/// displacements q → q + εa are.
 const MOST_LINEAR: usize = 8;
 
-/// The number of points of the prime field that show if there are enough: more than an eighth has
-/// to have all roots.
+/// The number of points of the prime field in a first sample. The prime field is used if all roots
+/// exist at more than an eighth of them.
 const SAMPLE: usize = 32;
 
 /// A conserved quantity.
 #[derive(Clone, Debug)]
 pub(crate) struct Conserved {
-    /// Its terms in the names of the momenta: `p_φ`, `x·p_y − y·p_x`.
+    /// The terms, written with the names of the momenta: `p_φ`, `x·p_y − y·p_x`.
     pub(crate) terms: Vec<(Rational, Option<usize>, usize)>,
     pub(crate) value: Id,
 }
 
-/// The momenta of all symmetries of `lagrangian` along which neither `external` forces nor those of
-/// constraints, along their `gradients`, do anything.
+/// Returns the momenta of all symmetries of `lagrangian` along which neither the `external` forces
+/// nor the constraint forces, which are along the `gradients`, do work.
 pub(crate) fn conserved(
     graph: &mut Graph,
     lagrangian: Id,
@@ -48,13 +48,14 @@ pub(crate) fn conserved(
     }
     let mut roots: Vec<Id> = [&slopes[..], momenta, external, &coordinates, &velocities].concat();
     roots.extend(gradients.iter().flatten());
-    // Each point adds to the rank until it is full, but for a chance of D/2⁶¹, D the degree of a
-    // minor's norm: the product over the signs of all k roots has at most 2^k times the degree of
-    // one factor. Nine points more than there are unknowns must all fail for a displacement that is
-    // no symmetry to pass: for D < 2³⁰ with a chance below 2⁻²⁰⁰.
+    // Each point raises the rank until the rank is full, except with a probability of D/2⁶¹, where
+    // D is the degree of the norm of a minor. The norm is the product over the signs of all k roots
+    // and has at most 2^k times the degree of one factor. There are nine more points than unknowns.
+    // All nine have to fail if a displacement that is not a symmetry is accepted, which for D < 2³⁰
+    // has a probability below 2⁻²⁰⁰.
     let wanted = unknowns.len() + 9;
     let nodes = graph.reachable(&roots);
-    // The equations of a point for the unknowns; its values are dropped at once.
+    // The equations of a point for the unknowns. The values at the point are not kept.
     let demands = |point: &Point, seed: u64| {
         let values = point.again(seed).values_of(graph, &nodes)?;
         let at = |id: Id| values[&id];
@@ -83,7 +84,7 @@ pub(crate) fn conserved(
         let missing = wanted.saturating_sub(points.len());
         points.extend(tried.by_ref().filter_map(|seed| demands(&prime, seed)).take(missing));
     }
-    // Only roots of roots are missing there, each at every other point.
+    // In the extension, only roots of roots may be missing, each at half of the points.
     let extended = Point::extended(graph, &roots, 0);
     let more = (tried.end..2 * tried.end).filter_map(|seed| demands(&extended, seed));
     points.extend(more.take(wanted.saturating_sub(points.len())));
@@ -95,7 +96,7 @@ pub(crate) fn conserved(
     };
     let mut rows: Vec<Vec<Residue>> =
         points.iter().flatten().flat_map(|row| [part(row, 0), part(row, 1)]).collect();
-    // A row of zeros demands nothing.
+    // A row of zeros imposes no condition.
     rows.retain(|row| row.iter().any(|&value| value != Residue::ZERO));
     let mut found = Vec::new();
     for vector in null_space(rows, unknowns.len()) {
@@ -117,7 +118,7 @@ pub(crate) fn conserved(
             sum.push((part, factor));
         }
         let value = graph.sum(&sum);
-        // A momentum that is a constant is no news: gauge terms make such.
+        // A momentum that is a constant is not reported. It may result from gauge terms.
         if graph.dependencies(value).any(crate::algebra::expr::Dependencies::VELOCITY) {
             found.push(Conserved { terms, value });
         }

@@ -1,4 +1,4 @@
-//! Errors, gathered and reported together, at the user's own tokens.
+//! Errors, collected and reported together at the tokens of the user.
 
 use super::text::Text;
 use proc_macro2::{Ident, Span, TokenStream};
@@ -17,7 +17,7 @@ impl Range {
         Range { first: self.first, last: end.last }
     }
 
-    /// An error that underlines the whole range.
+    /// Creates an error that underlines the whole range.
     pub(crate) fn error(self, message: Text) -> syn::Error {
         let mut tokens = Ident::new("first", self.first).into_token_stream();
         tokens.extend(Ident::new("last", self.last).into_token_stream());
@@ -31,7 +31,7 @@ impl From<Span> for Range {
     }
 }
 
-/// All that is wrong with a block.
+/// All errors of a block.
 #[derive(Debug, Default)]
 pub(crate) struct Errors {
     errors: Vec<syn::Error>,
@@ -47,8 +47,8 @@ impl Errors {
         self.push(range.into().error(message));
     }
 
-    /// Reports at most one error for each `source`: an expression that is wrong for one index is
-    /// wrong once.
+    /// Reports at most one error for each `source`, so that an expression that is wrong for several
+    /// indices is reported once.
     pub(crate) fn once(&mut self, source: usize, range: Range, message: Text) {
         if self.sources.insert(source) {
             self.at(range, message);
@@ -68,7 +68,7 @@ impl Errors {
         self.errors.iter().map(ToString::to_string).collect()
     }
 
-    /// One `compile_error!` for each.
+    /// Returns a `compile_error!` for each error.
     pub(crate) fn into_tokens(self) -> TokenStream {
         self.errors.iter().map(syn::Error::to_compile_error).collect()
     }

@@ -1,4 +1,4 @@
-//! The tokens that a parser expects where something else stands.
+//! Descriptions of the tokens that the parser expects.
 
 use std::fmt;
 

@@ -17,17 +17,17 @@ pub(crate) fn mixed_sum(found: &str, kind: &str, others: &str) -> Text {
     )
 }
 
-/// A component of something that has none.
+/// A component of a value without components.
 pub(crate) fn no_component(found: &str, kind: &str, component: &str) -> Text {
     text!("`{found}` is {kind}, it has no `.{component}`; write a vector")
 }
 
-/// Something else as a divisor.
+/// A divisor that is not a number.
 pub(crate) fn no_divisor(found: &str, kind: &str) -> Text {
     text!("`{found}` is {kind}, and nothing can be divided by that; divide by its length `|u|`")
 }
 
-/// The height of something else than a vector.
+/// The height of a value that is not a vector.
 pub(crate) fn no_height(found: &str, kind: &str) -> Text {
     text!("`{found}` is {kind}, and a height is that of a vector; write the scalar itself")
 }
@@ -37,22 +37,22 @@ pub(crate) fn no_magnitude(found: &str, kind: &str) -> Text {
     text!("`{found}` is {kind}; write one of its members")
 }
 
-/// A power of something else than a number.
+/// A power of a value that is not a number.
 pub(crate) fn no_power(found: &str, kind: &str) -> Text {
     text!("`{found}` is {kind}, and only scalars have powers; write `|{found}|^2`")
 }
 
-/// Factors that have no product.
+/// Factors without a product.
 pub(crate) fn no_product(left: &str, right: &str) -> Text {
     text!("{left} cannot be multiplied by {right}; write a component or an index")
 }
 
-/// A quarter turn of something else than a plane vector.
+/// A quarter turn of a value that is not a plane vector.
 pub(crate) fn no_quarter_turn(found: &str, kind: &str) -> Text {
     text!("`{found}` is {kind}, and a quarter turn needs a plane vector; write `perp([x, y])`")
 }
 
-/// Something else where a scalar is needed.
+/// A value that is not a scalar where a scalar is required.
 pub(crate) fn no_scalar(found: &str, kind: &str) -> Text {
     other_than_scalar(found, kind, "`inner(u, v)`, `|u|` or a component")
 }
@@ -62,12 +62,12 @@ pub(crate) fn no_vector(count: usize) -> Text {
     text!("a vector has two or three components; {count} stand here")
 }
 
-/// A call of a function of two vectors with other things.
+/// A function of two vectors with other arguments.
 pub(crate) fn no_vectors(function: &str, left: &str, right: &str) -> Text {
     text!("`{function}` takes two vectors of one length; these are {left} and {right}")
 }
 
-/// The complex product of two plane vectors where a scalar is needed.
+/// The complex product of two plane vectors where a scalar is required.
 pub(crate) fn product_of_plane_vectors(found: &str, left: &str, right: &str) -> Text {
     let kind = "the complex product of two plane vectors";
     other_than_scalar(found, kind, &format!("`inner({left}, {right})`"))
@@ -81,7 +81,7 @@ pub(crate) fn product_of_space_vectors(left: &str, right: &str) -> Text {
     )
 }
 
-/// A body where a number is needed.
+/// A body where a number is required.
 pub(crate) fn whole_body(name: &str) -> Text {
     text!(
         "`{name}` is a body; write `{name}.mass`, `{name}.center`, `{name}.inertia` or \
@@ -142,24 +142,24 @@ pub(crate) fn long_range() -> Text {
     text!("this range has more than 65536 members; write a shorter one")
 }
 
-/// An end of a range that is no number.
+/// An end of a range that is not a number.
 pub(crate) fn open_end_of_range() -> Text {
     open_number("the end of a range")
 }
 
-/// An index that is no number.
+/// An index that is not a number.
 pub(crate) fn open_index() -> Text {
     open_number("an index")
 }
 
-/// A number that has to be known while compiling and is not.
+/// A value that is not a number known at compile time.
 fn open_number(place: &str) -> Text {
     text!("{place} is a whole number known while compiling; write numbers and indices only")
 }
 
 // Values.
 
-/// A power of a complex number that is not unfolded.
+/// A power of a complex number that cannot be expanded.
 pub(crate) fn complex_power() -> Text {
     text!("a complex number has whole powers from 0 to 64 here; write `exp(i*φ)` for others")
 }
@@ -174,7 +174,7 @@ pub(crate) fn infinite_constant(found: &str) -> Text {
     text!("`{found}` is infinite or beyond the range of `f64`; write another operand")
 }
 
-/// An exponent of too many digits.
+/// An exponent with too many digits.
 pub(crate) fn long_exponent() -> Text {
     text!("this exponent is too long for exact arithmetic; write one of at most eighteen digits")
 }
@@ -184,7 +184,7 @@ pub(crate) fn negative_power_of_zero() -> Text {
     text!("zero has no negative power; write another base")
 }
 
-/// An integrand that is no polynomial in the point.
+/// An integrand that is not a polynomial in the point.
 pub(crate) fn no_polynomial(integrand: &str, point: &str) -> Text {
     no_moment(integrand, "no polynomial", point)
 }
@@ -194,7 +194,7 @@ pub(crate) fn polynomial_of_high_degree(integrand: &str, point: &str) -> Text {
     no_moment(integrand, "of higher degree than two", point)
 }
 
-/// A constant that is no real number.
+/// A constant that is not a real number.
 pub(crate) fn unreal_constant(found: &str) -> Text {
     text!("`{found}` is no real number; write an operand for which it is")
 }
@@ -208,12 +208,12 @@ fn no_moment(integrand: &str, found: &str, point: &str) -> Text {
 
 // Definitions.
 
-/// A definition that needs its own value.
+/// A definition that depends on its own value.
 pub(crate) fn circular_definition(name: impl Display) -> Text {
     text!("`{name}` is defined by itself; break the circle")
 }
 
-/// Definitions within too many others.
+/// Definitions that are nested too deeply.
 pub(crate) fn deep_definitions() -> Text {
     text!(
         "definitions within definitions are nested too deeply here; write each `let` above its \
@@ -221,7 +221,7 @@ pub(crate) fn deep_definitions() -> Text {
     )
 }
 
-/// Functions and operations within too many others.
+/// Functions and operations that are nested too deeply.
 pub(crate) fn deep_value(deepest: usize) -> Text {
     text!(
         "this unfolds to more than {deepest} functions and operations within one another; write a \
@@ -229,19 +229,19 @@ pub(crate) fn deep_value(deepest: usize) -> Text {
     )
 }
 
-/// An energy or a force of too many nodes.
+/// An energy or a force with too many nodes.
 pub(crate) fn large_value(largest: usize) -> Text {
     text!("this unfolds to more than {largest} different expressions; write a shorter sum")
 }
 
-/// A block of too many evaluations.
+/// A block with too many evaluations.
 pub(crate) fn long_block() -> Text {
     text!("this block unfolds to more than two million expressions; write shorter sums")
 }
 
 // Derivatives and control inputs.
 
-/// A control input where the potential energy at zero may be no number.
+/// A control input at which the potential energy may be undefined at zero.
 pub(crate) fn control_in_divisor(input: impl Display) -> Text {
     text!(
         "the control input `{input}` stands in a divisor, a power or a function of an energy, \
@@ -259,7 +259,7 @@ pub(crate) fn jerk_of_input(found: &str) -> Text {
     text!("`{found}` contains a third derivative of a driven input; they have two")
 }
 
-/// The derivative of what does not move.
+/// The derivative of a value that does not depend on time.
 pub(crate) fn nothing_moves(found: &str) -> Text {
     text!("nothing in `{found}` moves, so its time derivative is zero; leave it out")
 }
@@ -288,7 +288,7 @@ pub(crate) fn family_of_vectors(found: &str, name: impl Display, count: usize, u
     )
 }
 
-/// An output whose first member has another index than 0.
+/// An output whose first member has an index other than 0.
 pub(crate) fn late_first_member(name: impl Display) -> Text {
     text!("the members of `{name}` are counted from 0; begin the range there")
 }
@@ -298,7 +298,7 @@ pub(crate) fn moving_restitution(found: &str) -> Text {
     text!("`{found}` moves, and a restitution is made of parameters and numbers")
 }
 
-/// An output of another shape than declared; lengths are `None` for scalars.
+/// An output whose shape differs from the declared shape. Lengths are `None` for scalars.
 pub(crate) fn shape_of_output(
     found: &str,
     [kind, name]: [&str; 2],
@@ -318,7 +318,7 @@ pub(crate) fn shape_of_output(
     text!("`{found}` is {kind}, but `{name}` is declared {declared}; write `{instead}`")
 }
 
-/// Sides of a constraint or a limit of different shapes; each with its kind.
+/// Sides of a constraint or a limit with different shapes. Each side is given with its kind.
 pub(crate) fn unequal_sides(left: [&str; 2], right: [&str; 2]) -> Text {
     let ([left, left_kind], [right, right_kind]) = (left, right);
     text!("`{left}` is {left_kind}, but `{right}` is {right_kind}; both sides have one shape")
@@ -329,7 +329,7 @@ pub(crate) fn vector_limit(found: &str, kind: &str) -> Text {
     text!("`{found}` is {kind}, and a limit is one number; write a component")
 }
 
-/// A unit as it is written between the brackets of a vector.
+/// Returns a unit in the form required inside the brackets of a vector.
 fn between_brackets(unit: &str) -> &str {
     if unit.is_empty() { "_" } else { unit }
 }

@@ -1,11 +1,11 @@
-//! Messages about energies, momenta and constraints, which need the graph.
+//! Messages about energies, momenta and constraints that require the graph.
 
 use super::Text;
 use std::fmt::Display;
 
 // Energies and momenta.
 
-/// A control input of which the equations would need the derivative.
+/// A control input whose derivative the equations would contain.
 pub(crate) fn control_in_momenta(input: impl Display) -> Text {
     text!(
         "the momenta contain the control input `{input}`, so the equations would contain its \
@@ -13,7 +13,7 @@ pub(crate) fn control_in_momenta(input: impl Display) -> Text {
     )
 }
 
-/// A kinetic energy that has no definite sign.
+/// A kinetic energy without a definite sign.
 pub(crate) fn indefinite_energy(coordinate: &str) -> Text {
     text!(
         "the kinetic energy is not positive: in the direction of `{coordinate}` it is zero at \
@@ -37,7 +37,8 @@ pub(crate) fn jerk_in_momenta(input: impl Display) -> Text {
     )
 }
 
-/// A kinetic energy that is negative at every state; `minus` if a minus stands before the term.
+/// A kinetic energy that is negative at every state. `minus` is set if the term follows a minus
+/// sign.
 pub(crate) fn negative_energy(coordinate: impl Display, minus: bool, term: &str) -> Text {
     let sign = if minus { "-" } else { "" };
     text!(
@@ -47,7 +48,7 @@ pub(crate) fn negative_energy(coordinate: impl Display, minus: bool, term: &str)
     )
 }
 
-/// A coordinate whose velocity stands in no energy.
+/// A coordinate whose velocity does not occur in any energy.
 pub(crate) fn no_kinetic_energy(coordinate: &str) -> Text {
     text!(
         "`{coordinate}` has no kinetic energy, so its acceleration is undetermined; add the square \
@@ -73,7 +74,7 @@ pub(crate) fn constraint_with_corner() -> Text {
     )
 }
 
-/// A constraint that follows from others.
+/// A constraint that follows from other constraints.
 pub(crate) fn dependent_constraint(name: &str, others: &[&str]) -> Text {
     let quoted: Vec<String> = others.iter().map(|other| format!("`{other}`")).collect();
     let from = match quoted.split_last() {
@@ -86,7 +87,7 @@ pub(crate) fn dependent_constraint(name: &str, others: &[&str]) -> Text {
     )
 }
 
-/// Constraints that leave no coordinate free.
+/// Constraints that determine all coordinates.
 pub(crate) fn fixed_coordinates(constraints: usize, coordinates: usize) -> Text {
     text!(
         "{} for {}: nothing is left to move; leave a constraint out",
@@ -95,7 +96,7 @@ pub(crate) fn fixed_coordinates(constraints: usize, coordinates: usize) -> Text 
     )
 }
 
-/// A constraint whose second derivative needs a third one of a driven input.
+/// A constraint whose second derivative contains the third derivative of a driven input.
 pub(crate) fn jerk_in_constraint(input: &str) -> Text {
     text!(
         "the second derivative of this constraint contains the third one of `{input}`, and driven \
@@ -116,7 +117,7 @@ pub(crate) fn nonlinear_constraint() -> Text {
     )
 }
 
-/// More limits than a step keeps.
+/// More limits than a step supports.
 pub(crate) fn too_many_limits(limits: usize, most: usize) -> Text {
     text!(
         "there are {limits} scalar limits, and at most {most} are kept; leave some out, or join \
@@ -133,7 +134,7 @@ pub(crate) fn too_many_redundant(constraints: usize, coordinates: usize) -> Text
     )
 }
 
-/// A constraint of what does not move.
+/// A constraint without coordinates.
 pub(crate) fn unmoved_constraint(left: &str, right: &str) -> Text {
     text!(
         "no coordinate stands in `{left} = {right}`: nothing here can move to fulfil it; leave it \
@@ -141,7 +142,7 @@ pub(crate) fn unmoved_constraint(left: &str, right: &str) -> Text {
     )
 }
 
-/// A number of things.
+/// Returns a number with a noun in the singular or plural.
 fn several_of(number: usize, thing: &str) -> String {
     format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
 }

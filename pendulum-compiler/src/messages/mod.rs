@@ -1,9 +1,11 @@
-//! The catalogue: each message of the compiler once, as a function of what it names.
+//! The catalogue of messages: each message of the compiler is a function of its details. The doc
+//! comment of the function names the mistake.
 //!
-//! A file holds the messages of a layer: by subject, then by name. [`Text`] is made here alone, and
-//! [`Errors`] take nothing else, so that no pass has words of its own.
+//! Each file contains the messages of a layer, ordered by subject and name. [`Text`] can be created
+//! only in this module, and [`Errors`] accept no other messages, so that passes cannot contain
+//! texts.
 
-/// A message, as `format!` writes it.
+/// Formats a message with the syntax of `format!`.
 macro_rules! text {
     ($($part:tt)*) => { $crate::messages::text::Text(format!($($part)*)) };
 }
@@ -26,14 +28,14 @@ mod tests {
     use std::fs;
     use std::path::{Path, PathBuf};
 
-    /// Calls of syn that would make an error of words that are not in the catalogue.
+    /// Calls of syn that would create an error with a message outside the catalogue.
     const CALLS: &[&str] = &["Error::new", ".error(\"", ".error(format!", ".error(&format!"];
 
     fn root() -> PathBuf {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
     }
 
-    /// The sources of the compiler, without this folder.
+    /// Returns the source files of the compiler outside this folder.
     fn sources() -> Vec<PathBuf> {
         let mut files = Vec::new();
         let mut folders = vec![root()];
@@ -61,7 +63,8 @@ mod tests {
         }
     }
 
-    /// Four words in a row count as a sentence. Backends are left out: they write documentation.
+    /// Four words in a row count as a sentence. Backends are not checked because they write
+    /// documentation.
     #[test]
     fn no_pass_has_sentences_of_its_own() {
         let passes = ["algebra", "mechanics", "model", "schedule", "syntax"];
@@ -70,7 +73,7 @@ mod tests {
         for path in sources().iter().filter(is_pass) {
             let source = fs::read_to_string(path).unwrap();
             let code = source.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
-            // The table of functions says for editors what each of them means.
+            // The table of functions contains descriptions for editors.
             let texts = ["reason =", "meaning: \""];
             let lines = code.lines().filter(|line| {
                 !line.trim_start().starts_with("//")

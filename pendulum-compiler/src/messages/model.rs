@@ -4,7 +4,7 @@ use super::Text;
 use super::shared::{NO_IMPLICIT_PRODUCT, UNITS};
 use std::fmt::{self, Display};
 
-/// The holder of a name that another declaration cannot have.
+/// The present meaning of a name, which a declaration cannot use.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Holder {
     ConstantOfSystems,
@@ -34,7 +34,7 @@ impl Display for Holder {
     }
 }
 
-/// A name that holds in one expression.
+/// A local name of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Local {
     Argument,
@@ -89,7 +89,7 @@ pub(crate) fn first_declaration(name: impl Display) -> Text {
     text!("`{name}` is declared here first")
 }
 
-/// A name that a declaration cannot have.
+/// A name that is not available for declarations.
 pub(crate) fn held_name(name: impl Display, holder: Holder) -> Text {
     text!("`{name}` is {holder}; choose another name")
 }
@@ -104,12 +104,12 @@ pub(crate) fn no_coordinate() -> Text {
     text!("no coordinate; write `coordinate θ: rad;` below the struct")
 }
 
-/// A default that has to be computed from something else than numbers.
+/// A default that does not consist of numbers.
 pub(crate) fn open_default() -> Text {
     text!("a default is a number; write its value, as in `g: m/s^2 = 9.81`")
 }
 
-/// A length that is no whole number.
+/// A length that is not an integer.
 pub(crate) fn open_length() -> Text {
     text!("a length is a whole number; write it out, as in `[kg; 5]`")
 }
@@ -124,35 +124,35 @@ pub(crate) fn shape_of_input(input: Holder) -> Text {
     text!("{input} is a scalar or a vector; write `[m; 2]` or `[m; 3]`")
 }
 
-/// A ninth input; `controlled` if control inputs are among them.
+/// A ninth input. `controlled` is set if there are control inputs.
 pub(crate) fn too_many_inputs(controlled: bool) -> Text {
     let inputs = if controlled { "inputs" } else { "driven inputs" };
     text!("more than eight {inputs}; join some of them into vectors")
 }
 
-/// Two arguments of one name.
+/// Two arguments with the same name.
 pub(crate) fn twin_arguments(name: impl Display) -> Text {
     text!("the argument `{name}` stands twice; rename one of the two")
 }
 
-/// Two constraints or limits of one name.
+/// Two constraints or limits with the same name.
 pub(crate) fn twin_constraints(name: impl Display) -> Text {
     text!("two constraints or limits are called `{name}`; rename one of the two")
 }
 
-/// Two outputs of one name.
+/// Two outputs with the same name.
 pub(crate) fn twin_outputs(name: impl Display) -> Text {
     text!("two outputs are called `{name}`; rename one of the two")
 }
 
 // Energies and forces.
 
-/// A Lagrangian beside a kinetic or a potential energy.
+/// A Lagrangian in addition to a kinetic or a potential energy.
 pub(crate) fn both_forms() -> Text {
     text!("`lagrangian` is kinetic minus potential energy already; write either one or the other")
 }
 
-/// A force on something else than a coordinate.
+/// A force on a name that is not a coordinate.
 pub(crate) fn force_on_other(name: impl Display) -> Text {
     text!("`{name}` is no coordinate; a force acts on a coordinate, as in `force θ = …;`")
 }
@@ -169,12 +169,12 @@ pub(crate) fn twin_lagrangians() -> Text {
 
 // Names in formulas.
 
-/// An accent where a dot is meant; `velocity` lists the spellings of the derivative.
+/// An accent in place of a dot. `velocity` lists the spellings of the derivative.
 pub(crate) fn accent(name: &str, velocity: &str) -> Text {
     text!("`{name}` has an accent, and a derivative has a dot; write {velocity}")
 }
 
-/// The derivative of the time, π or the imaginary unit.
+/// The derivative of time, π or the imaginary unit.
 pub(crate) fn derivative_of_constant(name: impl Display) -> Text {
     text!("`{name}` does not move as a coordinate does; write a number")
 }
@@ -187,7 +187,7 @@ pub(crate) fn derivative_of_parameter(name: impl Display, plain: &str) -> Text {
     )
 }
 
-/// A local name that hides something that moves, or a constant.
+/// A local name that hides a constant or a quantity that depends on time.
 pub(crate) fn hiding(name: impl Display, holder: Holder, local: Local) -> Text {
     text!("`{name}` is {holder}, and {local} of this name would hide it; choose another name")
 }
@@ -197,7 +197,7 @@ pub(crate) fn jerk_of_input(name: impl Display) -> Text {
     text!("`{name}` is a third derivative; driven inputs have two")
 }
 
-/// Something else where the name of a body is needed.
+/// A name that is not a body where a body is required.
 pub(crate) fn no_body(name: impl Display) -> Text {
     text!("`{name}` is no body; declare it as `{name}: body` in the struct")
 }
@@ -207,23 +207,23 @@ pub(crate) fn output_in_formula(name: &str) -> Text {
     text!("`{name}` is an output, which no formula reads; name its value with `let`")
 }
 
-/// A unit of another size in a formula, with the one of the language and the number of it.
+/// A unit of another size in a formula, with the corresponding unit of the language and the factor.
 pub(crate) fn scaled_unit_in_formula(name: &str, instead: &str, factor: &str) -> Text {
     text!("unknown name `{name}`; write a number in `{instead}`: 1 {name} is {factor} {instead}")
 }
 
-/// A unit in a formula, where its name is unknown.
+/// A unit in a formula in which its name is not declared.
 pub(crate) fn unit_in_formula(name: &str) -> Text {
     text!("unknown name `{name}`; declare it as a parameter; {UNITS}")
 }
 
-/// A component that no vector and no body has.
+/// A component of neither a vector nor a body.
 pub(crate) fn unknown_component(name: impl Display, known: &[&str]) -> Text {
     let list: Vec<String> = known.iter().map(|known| format!("`.{known}`")).collect();
     text!("unknown component `{name}`; there are {}", list.join(", "))
 }
 
-/// A force on a coordinate that nobody declared, with the nearest one.
+/// A force on an undeclared coordinate, with the nearest name.
 pub(crate) fn unknown_coordinate(name: &str, nearest: Option<&str>) -> Text {
     match nearest {
         Some(near) => text!("unknown coordinate `{name}`; did you mean `{near}`?"),
@@ -231,7 +231,7 @@ pub(crate) fn unknown_coordinate(name: &str, nearest: Option<&str>) -> Text {
     }
 }
 
-/// A name that nobody declared, with the nearest one.
+/// An undeclared name, with the nearest name.
 pub(crate) fn unknown_name(name: &str, nearest: Option<&str>) -> Text {
     match nearest {
         Some(near) => text!("unknown name `{name}`; did you mean `{near}`?"),
@@ -253,7 +253,7 @@ pub(crate) fn dot_of_two(product: &str) -> Text {
     text!("`dot` is the derivative of one argument; write `{product}` for a scalar product")
 }
 
-/// A call of something else than a function.
+/// A call of a name that is not a function.
 pub(crate) fn no_function(name: impl Display) -> Text {
     text!("`{name}` is no function, and {NO_IMPLICIT_PRODUCT}; write `{name}*(…)`")
 }
@@ -263,7 +263,7 @@ pub(crate) fn sum_without_index() -> Text {
     text!("`sum` runs over an index; write `sum(k in 0..5, …)`")
 }
 
-/// A function that nobody defined, with the nearest one.
+/// An undefined function, with the nearest name.
 pub(crate) fn unknown_function(name: impl Display, nearest: Option<&str>) -> Text {
     match nearest {
         Some(near) => text!("unknown function `{name}`; did you mean `{near}`?"),
@@ -276,7 +276,7 @@ pub(crate) fn untranslated_function(name: impl Display, translation: &str) -> Te
     text!("unknown function `{name}`; write `{translation}`")
 }
 
-/// A call with a wrong number of arguments.
+/// A call with the wrong number of arguments.
 pub(crate) fn wrong_number_of_arguments(name: impl Display, expected: usize, found: usize) -> Text {
     let expected =
         if expected == 1 { "one argument".into() } else { format!("{expected} arguments") };
@@ -295,12 +295,12 @@ pub(crate) fn reaction_of_redundant(name: impl Display) -> Text {
     text!("`{name}` is redundant, and its reaction is not unique; leave it out")
 }
 
-/// A reaction elsewhere than in an output.
+/// A reaction outside of outputs.
 pub(crate) fn reaction_outside_of_outputs(name: impl Display) -> Text {
     text!("the reaction of `{name}` is known only after the forces; it stands in outputs")
 }
 
-/// The reaction of a constraint that nobody declared, with the nearest one.
+/// The reaction of an undeclared constraint, with the nearest name.
 pub(crate) fn unknown_constraint(name: impl Display, nearest: Option<&str>) -> Text {
     match nearest {
         Some(near) => text!("unknown constraint `{name}`; did you mean `{near}`?"),

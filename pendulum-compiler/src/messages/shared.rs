@@ -1,4 +1,4 @@
-//! Messages of several layers.
+//! Messages used by several layers.
 
 use super::Text;
 use std::fmt::Display;
@@ -11,7 +11,7 @@ const NO_ACCELERATION_IN_CONSTRAINT: &str =
 
 const NO_JERK: &str = "is a third derivative; coordinates have two, in outputs";
 
-/// Advice for two operands side by side.
+/// Advice for two adjacent operands.
 pub(super) const NO_IMPLICIT_PRODUCT: &str = "there is no implicit multiplication";
 
 /// Advice instead of a comparison.

@@ -7,7 +7,7 @@ use std::fmt::Display;
 
 // Tokens and names.
 
-/// Text that is not even tokens.
+/// Text that cannot be split into tokens.
 pub(crate) fn broken_tokens() -> Text {
     text!(
         "this cannot be read: a bracket, a quote or a comment is not closed, or a character does \
@@ -15,12 +15,12 @@ pub(crate) fn broken_tokens() -> Text {
     )
 }
 
-/// Nothing where something is expected.
+/// An early end of the input.
 pub(crate) fn early_end(expected: Expected) -> Text {
     text!("the input ends too early; expected {expected}")
 }
 
-/// A middle dot in a name; `parts` are what stands between the dots.
+/// A middle dot in a name. `parts` are the parts between the dots.
 pub(crate) fn middle_dot(parts: &[&str]) -> Text {
     let instead = match parts {
         [a, b] => format!("`*`, as in `{a}*{b}`, or `inner({a}, {b})` for vectors"),
@@ -30,7 +30,7 @@ pub(crate) fn middle_dot(parts: &[&str]) -> Text {
     text!("`·` is part of a name in Rust; write {instead}")
 }
 
-/// A name that begins as those of generated code.
+/// A name with the prefix of generated names.
 pub(crate) fn reserved_name() -> Text {
     text!("names that begin with `__` are reserved; choose another name")
 }
@@ -40,7 +40,7 @@ pub(crate) fn rust_keyword(name: impl Display) -> Text {
     text!("`{name}` is a word of the Rust language; choose another name")
 }
 
-/// A token that cannot stand in its place, or several that a macro has handed over as one.
+/// A token that is not valid at its position, or several tokens passed on by a macro as a fragment.
 pub(crate) fn unexpected(found: Option<&str>, expected: Expected) -> Text {
     let found = found.map_or_else(|| "this".to_owned(), |found| format!("`{found}`"));
     text!("{found} is not expected here; expected {expected}")
@@ -56,7 +56,7 @@ pub(crate) fn conditional_parameter() -> Text {
     )
 }
 
-/// A length behind the name instead of the unit.
+/// A length after the name instead of the unit.
 pub(crate) fn misplaced_length(name: impl Display, unit: &str, length: &str) -> Text {
     text!("the length stands with the unit; write `{name}: [{unit}; {length}]`")
 }
@@ -84,7 +84,8 @@ pub(crate) fn missing_unit(length: &str) -> Text {
     )
 }
 
-/// A trait that floating-point numbers do not have, in a `derive`; `None` for all others.
+/// A trait, in a `derive`, that floating-point numbers do not implement; `None` for all other
+/// traits.
 pub(crate) fn underivable_trait(name: &str) -> Option<Text> {
     let instead = match name {
         "Eq" => "leave it out, `PartialEq` compares them",
@@ -170,7 +171,7 @@ pub(crate) fn several_names(example: &str) -> Text {
     text!("a statement declares one name; write `{example}` as a statement of its own")
 }
 
-/// A word that begins no statement, with the one nearest to it.
+/// A word that is not a statement, with the nearest keyword.
 pub(crate) fn unknown_statement(word: &str, nearest: Option<&str>) -> Text {
     match nearest {
         Some(near) => text!("unknown statement `{word}`; did you mean `{near}`?"),
@@ -187,19 +188,19 @@ pub(crate) fn unnamed_row(keyword: &str, found: impl Display) -> Text {
     text!("a {keyword} has a name; write `{keyword} {found}: …`")
 }
 
-/// A limit with another sign than `>=`.
+/// A limit with a sign other than `>=`.
 pub(crate) fn wrong_sign_of_limit(name: impl Display) -> Text {
     text!("a limit is a smallest value; write `limit {name}: a >= b, restitution = 0;`")
 }
 
 // Expressions.
 
-/// An expression within too many others.
+/// An expression that is nested too deeply.
 pub(crate) fn deep_expression() -> Text {
     text!("this expression is nested too deeply; name a part of it with `let`")
 }
 
-/// Two stars as a power.
+/// Two asterisks for a power.
 pub(crate) fn double_star() -> Text {
     text!("`**` is not an operator; write `^`")
 }
@@ -209,47 +210,47 @@ pub(crate) fn huge_number() -> Text {
     text!("this number is beyond the range of `f64`; write a smaller one")
 }
 
-/// Two operands side by side; `right` is the first token of the second.
+/// Two adjacent operands. `right` is the first token of the second operand.
 pub(crate) fn implicit_product(right: impl Display) -> Text {
     text!("{NO_IMPLICIT_PRODUCT}; write `*` before `{right}`")
 }
 
-/// A number that begins with its point.
+/// A number that begins with a decimal point.
 pub(crate) fn leading_point(digits: impl Display) -> Text {
     text!("a number begins with a digit; write `0.{digits}`")
 }
 
-/// A text or a character in a formula.
+/// A string or a character in a formula.
 pub(crate) fn literal() -> Text {
     text!("only numbers and names can stand in a formula; write a number such as `9.81`")
 }
 
-/// Powers of powers without parentheses.
+/// Chained powers without parentheses.
 pub(crate) fn many_powers() -> Text {
     text!("too many powers in a row; name a part with `let`")
 }
 
-/// Minus signs behind one another.
+/// Consecutive minus signs.
 pub(crate) fn many_signs() -> Text {
     text!("too many signs in a row; write one")
 }
 
-/// Nothing between two signs.
+/// A missing operand between two signs.
 pub(crate) fn missing_expression() -> Text {
     text!("an expression is missing here")
 }
 
-/// Two parenthesized factors side by side.
+/// Two adjacent factors in parentheses.
 pub(crate) fn missing_operator() -> Text {
     text!("an operator is missing before `(`; write `*` to multiply")
 }
 
-/// A number with a name behind it.
+/// A number followed by a name.
 pub(crate) fn suffix_of_name(digits: &str, name: &str) -> Text {
     text!("{NO_IMPLICIT_PRODUCT}; write `{digits}*{name}`")
 }
 
-/// A number with the suffix of a type.
+/// A number with a type suffix.
 pub(crate) fn suffix_of_type(digits: &str) -> Text {
     text!("numbers here are exact and have no suffix; write `{digits}`")
 }
@@ -271,7 +272,8 @@ pub(crate) fn comparison() -> Text {
     text!("a formula has no conditions; {TELL_CASES_APART}, as in `max(0, θ)`")
 }
 
-/// A function with its power before its argument; `inverse` is its inverse, if that may be meant.
+/// A power between a function and its argument. `inverse` is the inverse function, if it may be
+/// meant.
 pub(crate) fn powered_function(
     name: impl Display,
     argument: &str,
@@ -285,12 +287,12 @@ pub(crate) fn powered_function(
     text!("a function is raised to a power after its argument; write {instead}")
 }
 
-/// A prime as a derivative; `velocity` lists its spellings.
+/// A prime for a derivative. `velocity` lists the spellings of the derivative.
 pub(crate) fn prime(velocity: &str) -> Text {
     text!("`'` is no derivative; write {velocity}")
 }
 
-/// Rust's conversion to a type.
+/// A type conversion in Rust's syntax.
 pub(crate) fn rust_conversion() -> Text {
     rust("as", "leave the type out")
 }
@@ -313,7 +315,7 @@ pub(crate) fn rust_path(path: &str, translation: Option<&str>) -> Text {
     rust(path, instead)
 }
 
-/// A keyword that begins an expression of Rust; `None` for all other names.
+/// A keyword that begins a Rust expression; `None` for all other names.
 pub(crate) fn rust_word(name: &str) -> Option<Text> {
     let instead = match name {
         "if" | "match" => TELL_CASES_APART,
@@ -328,7 +330,8 @@ fn rust(found: impl Display, instead: impl Display) -> Text {
     text!("`{found}` is Rust, which has no place in a formula; {instead}")
 }
 
-/// A function with its arguments beside it; `arguments` are those to write in parentheses.
+/// A function whose arguments are not in parentheses. `arguments` are the arguments to be put in
+/// parentheses.
 pub(crate) fn unbracketed_arguments(name: impl Display, arguments: &[String]) -> Text {
     let (plural, verb) = if arguments.len() == 1 { ("", "stands") } else { ("s", "stand") };
     text!(

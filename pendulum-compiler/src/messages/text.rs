@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// A message of the catalogue: the mistake, and after a semicolon the way out.
+/// A message of the catalogue: the mistake, followed by a semicolon and advice.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Text(pub(super) String);
 

@@ -3,11 +3,11 @@
 use super::Text;
 use std::fmt::{self, Display};
 
-/// The form of a unit.
+/// The description of a valid unit.
 const FORM: &str = "a unit is a product, quotient or power of `kg`, `m`, `s`, `rad`, `N`, `J`, \
                     `W`, `Hz`, `A`, `V`, `C`, `F`, `H`, `ohm`, `T`, `K` and `1`";
 
-/// An expression that has one unit in all its parts.
+/// An expression whose parts must have the same unit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Whole<'a> {
     Constraint,
@@ -29,7 +29,7 @@ impl Display for Whole<'_> {
     }
 }
 
-/// A place of a pure number.
+/// A place that requires a pure number.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Pure<'a> {
     Argument(&'a str),
@@ -49,7 +49,7 @@ impl Display for Pure<'_> {
     }
 }
 
-/// A dimension times the units of quantities that have none yet.
+/// Describes a known dimension times the units of quantities whose units are unknown.
 pub(crate) fn open_unit(known: impl Display, quantities: &[&str]) -> String {
     let unknown: Vec<String> =
         quantities.iter().map(|name| format!("the unit of `{name}`")).collect();
@@ -58,7 +58,7 @@ pub(crate) fn open_unit(known: impl Display, quantities: &[&str]) -> String {
 
 // Declarations.
 
-/// Something else as a unit.
+/// An expression that is not a unit.
 pub(crate) fn no_unit() -> Text {
     text!("this is no unit; {FORM}")
 }
@@ -68,17 +68,18 @@ pub(crate) fn number_as_unit() -> Text {
     text!("a number is no unit; {FORM}")
 }
 
-/// A power of a unit that is no number.
+/// An exponent of a unit that is not a number.
 pub(crate) fn open_exponent() -> Text {
     text!("this exponent is no number; {FORM}")
 }
 
-/// A name that is no unit.
+/// A name that is not a unit.
 pub(crate) fn unknown_unit(name: &str) -> Text {
     text!("unknown unit `{name}`; {FORM}")
 }
 
-/// A unit under another name, with the one of the language and the number of it in the other.
+/// A unit that is not part of the language, with a unit of the language and the factor if the sizes
+/// differ.
 pub(crate) fn untranslated_unit(name: &str, instead: &str, factor: Option<&str>) -> Text {
     match factor {
         Some(factor) => {
@@ -90,7 +91,7 @@ pub(crate) fn untranslated_unit(name: &str, instead: &str, factor: Option<&str>)
 
 // Formulas.
 
-/// A unit where a pure number is needed.
+/// A unit where a pure number is required.
 pub(crate) fn impure(found: &str, unit: &str, place: Pure) -> Text {
     let instead = match (unit, place) {
         ("s", Pure::Argument("sin" | "cos" | "tan" | "cis" | "sinc")) => {
@@ -103,7 +104,7 @@ pub(crate) fn impure(found: &str, unit: &str, place: Pure) -> Text {
     text!("`{found}` is {unit}, but {place} is a pure number; {instead}")
 }
 
-/// A dissipation whose unit times a second is another than that of the energies.
+/// A dissipation whose unit times a second differs from that of the energies.
 pub(crate) fn other_dissipation(found: &str, unit: &str, first: &str, expected: &str) -> Text {
     text!(
         "`{found}` times a second is {unit}, but `{first}` is {expected}; all energies of a block \
@@ -111,12 +112,12 @@ pub(crate) fn other_dissipation(found: &str, unit: &str, first: &str, expected: 
     )
 }
 
-/// An energy with another unit than the first one.
+/// An energy whose unit differs from that of the first energy.
 pub(crate) fn other_energy(found: &str, unit: &str, first: &str, expected: &str) -> Text {
     text!("`{found}` is {unit}, but `{first}` is {expected}; all energies of a block have one unit")
 }
 
-/// A force with another unit than an energy per coordinate.
+/// A force whose unit is not that of energy per coordinate.
 pub(crate) fn other_force(
     found: &str,
     unit: &str,
@@ -129,12 +130,12 @@ pub(crate) fn other_force(
     )
 }
 
-/// An output with another unit than declared.
+/// An output whose unit differs from the declared unit.
 pub(crate) fn other_output(found: &str, unit: &str, output: impl Display, declared: &str) -> Text {
     text!("`{found}` is {unit}, but `{output}` is declared in {declared}")
 }
 
-/// A part with another unit than the first one.
+/// A part whose unit differs from that of the first part.
 pub(crate) fn other_part(
     found: &str,
     unit: &str,

@@ -1,4 +1,4 @@
-//! Declarations: what a name is declared as, once, with its unit and length.
+//! Declarations: each name is declared once, with its unit and length.
 
 use super::integer::integer;
 use super::resolved::{Meaning, Quantity};
@@ -11,10 +11,10 @@ use crate::syntax::text::text;
 use proc_macro2::Ident;
 use std::collections::BTreeMap;
 
-/// A family longer than this is refused: its equations would not compile within a day.
+/// The largest length of a family. The equations of longer families would take days to compile.
 const LONGEST: i64 = 1024;
 
-/// The place at which each name was first declared.
+/// The declaration of each name.
 #[derive(Default)]
 pub(super) struct Declared<'a> {
     places: BTreeMap<String, &'a Ident>,
@@ -38,7 +38,7 @@ impl<'a> Declared<'a> {
         };
         if let Some(message) = refusal {
             errors.at(ident.span(), message);
-            // Whoever uses the name means this declaration: one mistake gives one message.
+            // Uses of the name refer to this declaration, so that the mistake is reported once.
             names.entry(base).or_insert(meaning);
             return;
         }
@@ -102,7 +102,7 @@ fn family_length(expr: &Expr, errors: &mut Errors) -> usize {
     }
 }
 
-/// Arguments of one name.
+/// Reports arguments with the same name.
 pub(super) fn twice(definition: &Let, errors: &mut Errors) {
     let arguments = definition.arguments.as_deref().unwrap_or_default();
     for (index, argument) in arguments.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Whole numbers known while compiling: lengths, indices and ends of ranges.
+//! Integers known at compile time: lengths, indices and ends of ranges.
 
 use super::unit;
 use crate::algebra::number::Rational;
@@ -6,7 +6,8 @@ use crate::messages::Range;
 use crate::syntax::ast::{Expr, ExprKind};
 use crate::syntax::name;
 
-/// A whole number, with the values of the indices in scope; the range that is none otherwise.
+/// Evaluates an integer expression with the values of the indices in scope, or returns the range of
+/// the expression.
 pub(crate) fn integer(expr: &Expr, bound: &dyn Fn(&str) -> Option<i64>) -> Result<i64, Range> {
     let value = rational(expr, bound).ok_or(expr.range)?;
     value.integer().ok_or(expr.range)

@@ -1,4 +1,4 @@
-//! Names to symbols: what every name of a block means, and every name that means nothing.
+//! Name resolution: determines the meaning of every name of a block, and reports unknown names.
 
 mod declare;
 mod integer;
@@ -18,7 +18,7 @@ pub(crate) use resolved::{Force, Meaning, Model, Output, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
 use walk::Walk;
 
-/// Resolves every name, reports those that cannot be.
+/// Resolves every name, and reports unknown names.
 pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     let mut model = Model {
         block,
@@ -161,7 +161,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     model
 }
 
-/// The methods of systems, which an output would hide.
+/// The methods of systems. An output with one of these names would hide the method.
 #[rustfmt::skip]
 const METHODS: &[&str] = &[
     "accelerations", "accelerations_at", "accelerations_prepared", "accelerations_staged", "accelerations_with", "across_kink",
@@ -191,14 +191,14 @@ fn output<'a>(model: &mut Model<'a>, statement: &'a ast::Output, errors: &mut Er
     };
     if let Some(message) = refusal {
         errors.at(name.span(), message);
-        // A second method of the name would be an error of rustc, too.
+        // A second method of this name would result in an error of rustc as well.
         return;
     }
     let declared = quantity(name, Shape::Kind(&statement.kind), 0, None, errors);
     model.outputs.push(Output { declared, statement });
 }
 
-/// Returns true if the name of a constraint or a limit is free; reports it otherwise.
+/// Returns `true` if the name of a constraint or a limit is free, and reports it otherwise.
 fn named_apart(model: &Model, name: &Ident, errors: &mut Errors) -> bool {
     let Name { base, dots } = name::read(&name.to_string());
     let others = model.constraints.iter().map(|constraint| &constraint.name);
@@ -247,7 +247,7 @@ fn force<'a>(
     }
 }
 
-/// Either `lagrangian`, once, or `kinetic` and `potential`.
+/// Checks that a block contains either a single `lagrangian`, or `kinetic` and `potential`.
 fn roles(block: &Block, errors: &mut Errors) {
     let mut lagrangian = None;
     let mut split = None;

@@ -1,4 +1,4 @@
-//! The definitions that an expression needs.
+//! The definitions that an expression uses.
 
 use super::resolved::{Meaning, Model};
 use crate::syntax::ast::{Expr, ExprKind};
@@ -6,7 +6,7 @@ use crate::syntax::name;
 use proc_macro2::Ident;
 use std::collections::BTreeSet;
 
-/// The definitions that outputs need, and neither an energy, a force, a constraint nor a limit.
+/// Returns the definitions used by outputs but not by any energy, force, constraint or limit.
 pub(super) fn of_outputs(model: &Model) -> BTreeSet<usize> {
     let mut equations = Reach { model, found: BTreeSet::new() };
     for contribution in model.contributions() {
@@ -25,8 +25,8 @@ struct Reach<'m, 'a> {
 }
 
 impl Reach<'_, '_> {
-    /// A name that is hidden by an index or an argument counts as well: the definition is then
-    /// taken for one of the equations, where less may stand.
+    /// Visits a name. A name hidden by an index or an argument counts as well. Its definition is
+    /// then treated as part of the equations, where fewer expressions are allowed.
     fn name(&mut self, ident: &Ident) {
         let base = name::read(&ident.to_string()).base;
         if let Some(&Meaning::Let(index)) = self.model.names.get(&base)

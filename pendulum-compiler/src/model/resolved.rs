@@ -1,16 +1,16 @@
-//! A block with its names resolved: its quantities, definitions and statements.
+//! A block with resolved names: its quantities, definitions and statements.
 
 use crate::algebra::dimension::Dimension;
 use crate::syntax::ast::{self, Binder, Block, Expr, ForceIndex, Let, Role};
 use proc_macro2::Ident;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A block with its names resolved.
+/// A block with resolved names.
 pub(crate) struct Model<'a> {
     pub(crate) block: &'a Block,
     pub(crate) parameters: Vec<Quantity<'a>>,
     pub(crate) coordinates: Vec<Quantity<'a>>,
-    /// The driven inputs, and after them the control inputs.
+    /// The driven inputs, followed by the control inputs.
     pub(crate) inputs: Vec<Quantity<'a>>,
     /// The number of driven inputs.
     pub(crate) driven: usize,
@@ -18,7 +18,7 @@ pub(crate) struct Model<'a> {
     pub(crate) lets: Vec<&'a Let>,
     pub(crate) energies: Vec<(Role, &'a Expr)>,
     pub(crate) forces: Vec<Force<'a>>,
-    /// The constraints that are solved, and after them the redundant ones.
+    /// The constraints that are solved, followed by the redundant ones.
     pub(crate) constraints: Vec<&'a ast::Constraint>,
     pub(crate) limits: Vec<&'a ast::Limit>,
     pub(crate) names: BTreeMap<String, Meaning>,
@@ -26,7 +26,7 @@ pub(crate) struct Model<'a> {
     pub(crate) unmentioned: BTreeSet<usize>,
     /// The inputs and definitions that no other statement mentions.
     pub(crate) unused: Vec<&'a Ident>,
-    /// The definitions that outputs alone need: accelerations may stand in them.
+    /// The definitions used only by outputs. They may contain accelerations.
     pub(crate) of_outputs: BTreeSet<usize>,
 }
 
@@ -35,13 +35,13 @@ pub(super) struct Contribution<'a> {
     /// The index of a family.
     pub(super) index: Option<&'a Binder>,
     pub(super) exprs: Vec<&'a Expr>,
-    /// True for a constraint or a limit.
+    /// `true` for a constraint or a limit.
     pub(super) constraint: bool,
 }
 
 impl<'a> Model<'a> {
-    /// The contributions of energies, forces, constraints and limits, in this order: all passes
-    /// over names read this list.
+    /// Returns the contributions of energies, forces, constraints and limits, in this order. All
+    /// passes over names use this list.
     pub(super) fn contributions(&self) -> Vec<Contribution<'a>> {
         let of = |index, exprs, constraint| Contribution { index, exprs, constraint };
         let energies = self.energies.iter().map(|&(_, expr)| of(None, vec![expr], false));
@@ -60,7 +60,7 @@ impl<'a> Model<'a> {
         energies.chain(forces).chain(constraints).chain(limits).collect()
     }
 
-    /// Returns true if an input is a control input.
+    /// Returns `true` if an input is a control input.
     pub(crate) fn is_control(&self, input: usize) -> bool {
         self.driven <= input
     }
@@ -69,19 +69,19 @@ impl<'a> Model<'a> {
 /// A declared parameter, coordinate, input or output.
 pub(crate) struct Quantity<'a> {
     pub(crate) name: &'a Ident,
-    /// `None` for a scalar, the length of a vector or family otherwise.
+    /// The length of a vector or family; `None` for a scalar.
     pub(crate) length: Option<usize>,
     /// The number of scalars declared before it.
     pub(crate) first: usize,
     pub(crate) dimension: Option<Dimension>,
     pub(crate) unit: String,
     pub(crate) default: Option<&'a Expr>,
-    /// A rigid body: mass, centre and central moments.
+    /// `true` for a rigid body, with mass, centre and central moments.
     pub(crate) body: bool,
 }
 
 impl Quantity<'_> {
-    /// The number of its scalars.
+    /// Returns the number of scalars.
     pub(crate) fn count(&self) -> usize {
         if self.body { 6 } else { self.length.unwrap_or(1) }
     }
@@ -89,7 +89,7 @@ impl Quantity<'_> {
 
 /// An `output` statement.
 pub(crate) struct Output<'a> {
-    /// Its name, its unit and its length as declared.
+    /// The name, unit and length as declared.
     pub(crate) declared: Quantity<'a>,
     pub(crate) statement: &'a ast::Output,
 }

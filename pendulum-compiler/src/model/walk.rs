@@ -1,5 +1,5 @@
-//! A walk over all expressions: names that nobody declared, functions with the wrong number of
-//! arguments.
+//! A traversal of all expressions that reports undeclared names and functions with the wrong number
+//! of arguments.
 
 use super::resolved::{Meaning, Model};
 use crate::algebra::dimension::Dimension;
@@ -13,16 +13,16 @@ use crate::syntax::name::{self, Name, plain};
 use proc_macro2::Ident;
 use std::collections::BTreeSet;
 
-/// A walk over all expressions that reports what no one declared.
+/// A traversal of all expressions that reports undeclared names.
 pub(super) struct Walk<'m, 'a, 'e> {
     pub(super) model: &'m Model<'a>,
     pub(super) errors: &'e mut Errors,
     pub(super) scope: Vec<String>,
-    /// The declared names that have been met.
+    /// The declared names found so far.
     pub(super) mentioned: BTreeSet<Meaning>,
-    /// True if accelerations of coordinates may stand here.
+    /// `true` if accelerations of coordinates are allowed.
     pub(super) accelerations: bool,
-    /// True in a constraint or a limit.
+    /// `true` in a constraint or a limit.
     pub(super) constraint: bool,
 }
 
@@ -72,7 +72,7 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    /// A default is made of numbers.
+    /// Checks that a default consists of numbers.
     fn constant(&mut self, expr: &Expr) {
         match &expr.kind {
             ExprKind::Number(_) => {}
@@ -106,8 +106,8 @@ impl Walk<'_, '_, '_> {
         self.local(&binder.name, Local::Index);
     }
 
-    /// A name that holds in one expression; it may hide a parameter or a definition, but nothing
-    /// that moves.
+    /// Adds a local name of an expression. It may hide a parameter or a definition, but not a
+    /// quantity that depends on time.
     fn local(&mut self, ident: &Ident, local: Local) {
         let Name { base, dots } = name::read(&ident.to_string());
         let holder = match base.as_str() {
@@ -201,7 +201,7 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    /// A reaction is that of a constraint, and stands in outputs only.
+    /// Checks a reaction, which has to name a constraint and is allowed only in outputs.
     fn reaction(&mut self, ident: &Ident, range: Range) {
         if !self.accelerations {
             self.errors.at(range, messages::reaction_outside_of_outputs(ident));
@@ -226,7 +226,7 @@ impl Walk<'_, '_, '_> {
         self.errors.at(ident.span(), message);
     }
 
-    /// Returns true if an expression is the name of a body.
+    /// Returns `true` if an expression is the name of a body.
     fn body(&self, expr: &Expr) -> bool {
         let ExprKind::Name(ident) = &expr.kind else { return false };
         let Name { base, dots } = name::read(&ident.to_string());
@@ -277,7 +277,7 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    /// The mistake in a name that nobody declared.
+    /// Returns the message for an undeclared name.
     fn unknown(&self, text: &str) -> Text {
         let moving = |stem: &str| {
             let Name { base, dots } = name::read(stem);
@@ -308,7 +308,7 @@ impl Walk<'_, '_, '_> {
             if Dimension::of(text).is_some() {
                 return messages::unit_in_formula(text);
             }
-            // A letter alone is a quantity more often than a constant.
+            // A single letter is more likely a quantity than a constant.
             if let Some(constant) =
                 constant(text, self.model.block.ascii).filter(|_| 1 < text.len())
             {
@@ -317,7 +317,7 @@ impl Walk<'_, '_, '_> {
             if let Some(stem) = elsewhere::moving(text).find(|stem| self.has_velocity(stem)) {
                 return messages::unknown_name(text, Some(&format!("{stem}_dot")));
             }
-            // Two letters are a quantity more often than a unit, unless they are a length.
+            // Two letters are more likely a quantity than a unit, unless they are a unit of length.
             if let Some(unit) = elsewhere::unit(text)
                 && (3 <= text.chars().count() || ["mm", "cm", "km"].contains(&text))
             {
@@ -336,7 +336,7 @@ impl Walk<'_, '_, '_> {
         messages::unknown_name(text, name::nearest(text, known))
     }
 
-    /// Returns true if a name has a velocity: a coordinate, a driven input or a definition.
+    /// Returns `true` if a name has a velocity: a coordinate, a driven input or a definition.
     fn has_velocity(&self, text: &str) -> bool {
         let Name { base, dots } = name::read(text);
         dots == 0
@@ -396,7 +396,7 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    /// Every declared name as written.
+    /// Returns all declared names as written.
     fn known(&self) -> Vec<String> {
         let quantities =
             self.model.parameters.iter().chain(&self.model.coordinates).chain(&self.model.inputs);

@@ -1,26 +1,27 @@
-//! The cost of a program: its operations of each kind.
+//! The cost of a program: its number of operations of each kind.
 
 use super::program::{Op, Program};
 use crate::algebra::functions::Function;
 use core::fmt;
 
-/// The operations of one evaluation, once everything that depends on parameters alone is known.
+/// The number of operations of one evaluation, without the operations that depend only on
+/// parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Operations {
-    /// Pairs of sine and cosine of one angle.
+    /// The number of pairs of sine and cosine of one angle.
     pub sincos: usize,
-    /// Other functions, square roots among them.
+    /// The number of other functions, including square roots.
     pub functions: usize,
-    /// Products.
+    /// The number of products.
     pub mul: usize,
-    /// Sums and differences.
+    /// The number of sums and differences.
     pub add: usize,
-    /// Quotients.
+    /// The number of quotients.
     pub div: usize,
 }
 
-/// In words: `2 sine–cosine pairs, 1 division`.
+/// Writes the nonzero counts in words: `2 sine–cosine pairs, 1 division`.
 impl fmt::Display for Operations {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let rows = [
@@ -39,12 +40,12 @@ impl fmt::Display for Operations {
     }
 }
 
-/// The cost of a function that is an operation of its own, in multiplications.
+/// The cost of a function with a separate operation, in multiplications.
 const FUNCTION: usize = 20;
 
 impl Program {
-    /// The cost of one evaluation, in multiplications, after what parameters alone decide has been
-    /// prepared.
+    /// Returns the cost of one evaluation in multiplications, without the operations that depend
+    /// only on parameters.
     pub(crate) fn cost(&self) -> usize {
         let cost = |(op, parameter_only): (&Op, bool)| match op {
             _ if parameter_only => 0,
@@ -62,7 +63,7 @@ impl Program {
         self.ops.iter().zip(self.parameter_only()).map(cost).sum()
     }
 
-    /// The operations of one evaluation, after what parameters alone decide has been prepared.
+    /// Returns the operations of one evaluation, without those that depend only on parameters.
     pub(crate) fn count(&self) -> Operations {
         let mut count = Operations::default();
         let parameter_only = self.parameter_only();

@@ -1,8 +1,9 @@
-//! From the graph to a straight program: binary operations in order, shared ones once.
+//! From the graph to a straight-line program: binary operations in order, with shared ones computed
+//! once.
 //!
-//! Sums are factored greedily by what most of their terms share, quotients share one division, sine
-//! and cosine of one angle come together, and those of a difference of angles are products where
-//! both angles are there anyway.
+//! Sums are factored greedily by the factors that most of their terms share. Quotients share a
+//! single division. Sine and cosine of an angle are computed together. Sine and cosine of a
+//! difference of angles are computed as products if those of both angles are needed anyway.
 
 mod cost;
 mod product;
@@ -22,18 +23,19 @@ pub(crate) use stage::Stage;
 use std::collections::{BTreeMap, BTreeSet};
 use term::{Factor, Term};
 
-/// The program that computes `roots`.
+/// Returns the program that computes `roots`.
 pub(crate) fn program(graph: &Graph, roots: &[Id]) -> Program {
     scheduled(graph, roots, true)
 }
 
-/// The program whose operations work on series: there sine and cosine cost as much as two products,
-/// and a reciprocal is found once.
+/// Returns the program for series. For series, sine and cosine cost as much as two products, and
+/// reciprocals of parameters are computed once.
 pub(crate) fn of_series(graph: &Graph, roots: &[Id]) -> Program {
     scheduled(graph, roots, false).with_reciprocals()
 }
 
-/// The program; differences of angles may be taken apart.
+/// Returns the program. If `apart` is set, sines and cosines of sums and differences of angles may
+/// be computed from those of the angles.
 fn scheduled(graph: &Graph, roots: &[Id], apart: bool) -> Program {
     let mut angles: BTreeMap<Id, BTreeSet<Function>> = BTreeMap::new();
     for id in graph.reachable(roots) {
@@ -53,7 +55,7 @@ fn scheduled(graph: &Graph, roots: &[Id], apart: bool) -> Program {
     };
     schedule.count_uses(roots);
     schedule.angles(&angles, apart);
-    // Children have smaller ids: going up in order keeps the recursion shallow.
+    // Children have smaller ids, so that the ascending order keeps the recursion shallow.
     for id in schedule.graph.reachable(roots) {
         if matches!(schedule.graph.node(id), Node::Atom(_) | Node::Call(..)) {
             schedule.value(id);
@@ -68,15 +70,16 @@ struct Schedule<'g> {
     graph: &'g Graph,
     program: Program,
     done: BTreeMap<Id, Place>,
-    /// Angles that are computed from the sines and cosines of two others, with the sign of the
-    /// second.
+    /// Angles whose sine and cosine are computed from those of two other angles; `true` if the
+    /// second angle is subtracted.
     differences: BTreeMap<Id, (Id, Id, bool)>,
     /// Angles whose sine and cosine are both needed.
     pairs: BTreeSet<Id>,
-    /// The constants that sums take in, and the sums with theirs that are done.
+    /// The constants distributed into sums; `scaled` contains the finished sums with their
+    /// constants.
     scales: Vec<Term>,
     scaled: BTreeMap<(Id, usize), (Place, bool)>,
-    /// In how many products and sums each sum stands.
+    /// For each node, the number of its uses as an operand or as a root.
     uses: BTreeMap<Id, usize>,
 }
 
@@ -190,7 +193,7 @@ impl Schedule<'_> {
         self.program.push(Op::Call(function, argument))
     }
 
-    /// Returns true if an expression is made of parameters and numbers alone.
+    /// Returns `true` if an expression depends only on parameters and numbers.
     fn parameter_only(&self, id: Id) -> bool {
         let dependencies = self.graph.dependencies(id);
         !dependencies.any(Dependencies::STATE)

@@ -1,4 +1,4 @@
-//! Products and powers: constants together, one division.
+//! Products and powers: constants are grouped, and there is a single division.
 
 use super::program::mul;
 use super::term::{Factor, Term, unit};
@@ -7,9 +7,10 @@ use crate::algebra::expr::{Dependencies, Id};
 use crate::algebra::number::Rational;
 
 impl Schedule<'_> {
-    /// A product without its sign, and whether that is minus.
+    /// Computes a product without its sign. Returns its place and whether the sign is negative.
     ///
-    /// Factors that do not move stand together: the preparation computes their product once.
+    /// Factors that depend only on parameters are grouped, so that their product is computed once,
+    /// during preparation.
     pub(super) fn product(&mut self, term: &Term) -> (Place, bool) {
         let (parameter_only, mut moving) = self.split(term);
         let mut negative = term.coefficient.is_negative();
@@ -52,7 +53,7 @@ impl Schedule<'_> {
         (place, negative)
     }
 
-    /// The magnitude of what does not move in a product, and its other factors.
+    /// Returns the magnitude of the factors that depend only on parameters, and the other factors.
     pub(super) fn split(&self, term: &Term) -> (Term, Vec<(Factor, Rational)>) {
         let (factors, moving) = term
             .factors
@@ -61,7 +62,7 @@ impl Schedule<'_> {
         (Term { coefficient: term.coefficient.abs(), factors }, moving)
     }
 
-    /// A product of parameters and numbers.
+    /// Computes a product of parameters and numbers.
     fn constant(&mut self, term: &Term) -> Place {
         let (mut above, mut below) = (Vec::new(), Vec::new());
         for &(factor, exponent) in &term.factors {
@@ -85,7 +86,7 @@ impl Schedule<'_> {
         }
     }
 
-    /// The product of some positive powers.
+    /// Computes the product of some positive powers.
     fn side(
         &mut self,
         mut factors: Vec<(u8, Factor, Rational)>,
@@ -110,7 +111,7 @@ impl Schedule<'_> {
         product
     }
 
-    /// The rank of a factor in a product: the factor that changes least comes first.
+    /// Returns the rank of a factor in a product. The factor that changes least often comes first.
     fn rank(&self, base: Id) -> u8 {
         let dependencies = self.graph.dependencies(base);
         if dependencies
@@ -124,7 +125,8 @@ impl Schedule<'_> {
         }
     }
 
-    /// A positive power: repeated squares, a square root for a half, `powf` for the rest.
+    /// Computes a positive power: by repeated squaring, by a square root for a half, otherwise by
+    /// `powf`.
     fn power(&mut self, base: Id, exponent: Rational) -> Place {
         let value = self.value(base);
         let whole = exponent.numerator() / exponent.denominator();

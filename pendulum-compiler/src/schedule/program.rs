@@ -1,4 +1,5 @@
-//! Straight programs: binary operations in order, each of which reads earlier ones.
+//! Straight-line programs: binary operations in order, each of which reads results of earlier
+//! operations.
 
 use crate::algebra::expr::Symbol;
 use crate::algebra::functions::Function;
@@ -6,11 +7,11 @@ use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use std::collections::BTreeMap;
 
-/// The place of an operation in its program.
+/// The index of an operation in its program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Place(pub(crate) usize);
 
-/// An operation; its operands stand before it.
+/// An operation, which follows its operands in the program.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Op {
     Number(Rational),
@@ -27,7 +28,7 @@ pub(crate) enum Op {
     Atan2(Place, Place),
     Max(Place, Place),
     Call(Function, Place),
-    /// Sine and cosine of one angle, which `Part`s take apart.
+    /// Sine and cosine of one angle, extracted by `Part`.
     SinCos(Place),
     Part(Function, Place),
 }
@@ -41,7 +42,8 @@ pub(crate) struct Program {
 }
 
 impl Program {
-    /// The same values, with products by reciprocals for quotients by what parameters alone decide.
+    /// Returns a program with the same values in which quotients by parameters are replaced by
+    /// products with reciprocals.
     pub(super) fn with_reciprocals(self) -> Self {
         let parameter_only = self.parameter_only();
         let mut program = Self::default();
@@ -72,7 +74,7 @@ impl Program {
     }
 }
 
-/// The places that an operation reads.
+/// Returns the places that an operation reads.
 pub(crate) fn operands(op: &Op) -> Vec<Place> {
     match *op {
         Op::Number(_) | Op::Literal(_) | Op::Pi | Op::Load(_) => Vec::new(),
@@ -89,7 +91,8 @@ pub(crate) fn operands(op: &Op) -> Vec<Place> {
     }
 }
 
-/// Products and sums commute: one order, so that equal ones are found.
+/// Creates a product with its operands in ascending order, so that equal products are found. The
+/// same holds for `add`.
 pub(super) fn mul(a: Place, b: Place) -> Op {
     Op::Mul(a.min(b), a.max(b))
 }
@@ -98,7 +101,7 @@ pub(super) fn add(a: Place, b: Place) -> Op {
     Op::Add(a.min(b), a.max(b))
 }
 
-/// Leaves out what no result needs.
+/// Removes operations that no result depends on.
 pub(super) fn prune(program: Program) -> Program {
     let mut needed = vec![false; program.ops.len()];
     for result in &program.results {

@@ -1,4 +1,4 @@
-//! Constants that sums take in, where every term has a constant of its own.
+//! Constants distributed into sums in which every term has a constant already.
 
 use super::term::{Term, multiply};
 use super::{Place, Schedule};
@@ -6,7 +6,7 @@ use crate::algebra::expr::{Graph, Id, Node};
 use crate::algebra::number::Rational;
 
 impl Schedule<'_> {
-    /// A sum each of whose terms has taken in a constant.
+    /// Computes a sum with a constant distributed into its terms.
     pub(super) fn scaled_sum(&mut self, sum: Id, scale: usize) -> (Place, bool) {
         if let Some(&done) = self.scaled.get(&(sum, scale)) {
             return done;
@@ -35,10 +35,10 @@ impl Schedule<'_> {
         done
     }
 
-    /// Returns true if a sum is the better for taking in a constant: every term has a constant of
-    /// its own, or a sum that takes it in.
+    /// Returns `true` if a constant can be distributed into a sum without additional products:
+    /// every term has a constant already, or contains such a sum.
     ///
-    /// A sum that stands in more than `most` places is left alone: it would be computed twice.
+    /// A sum with more than `most` uses is excluded, because it would be computed twice.
     pub(super) fn takes_in(&self, id: Id, most: usize) -> bool {
         let Some(terms) = self.terms(id) else { return false };
         if self.parameter_only(id) || most < self.uses.get(&id).copied().unwrap_or(0) {
@@ -68,7 +68,7 @@ impl Schedule<'_> {
         self.scales.len() - 1
     }
 
-    /// The terms of a sum, closed or not.
+    /// Returns the terms of a sum or of the sum in an atom.
     fn terms(&self, id: Id) -> Option<Vec<(Id, Rational)>> {
         match self.graph.node(id) {
             Node::Sum(terms) => Some(terms.clone()),
@@ -79,7 +79,7 @@ impl Schedule<'_> {
         }
     }
 
-    /// The number of terms of a sum in which a factor stands.
+    /// Returns the number of terms that contain a factor.
     fn occurrences(&self, id: Id, terms: &[(Id, Rational)]) -> usize {
         terms
             .iter()

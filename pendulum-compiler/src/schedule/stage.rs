@@ -1,22 +1,23 @@
-//! Stages of a program: what parameters decide, what time and inputs decide, what the position
-//! adds, and the rest.
+//! Stages of a program: values that depend on parameters, on time and inputs, on the position, and
+//! on velocities.
 
 use super::program::{Op, Place, Program, operands};
 use crate::algebra::expr::Symbol;
 
-/// The values that an operation needs before it can be done.
+/// The values that an operation depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Stage {
     Numbers,
     Parameters,
-    /// The time and the driven inputs, without parameters: the same for all systems on a joint.
+    /// Time and driven inputs without parameters. These values are the same for all systems on a
+    /// joint.
     Time,
     Position,
     Velocity,
 }
 
 impl Stage {
-    /// The stage of an operation with operands of two stages.
+    /// Returns the stage of an operation with operands of two stages.
     fn with(self, other: Self) -> Self {
         match self.max(other) {
             Stage::Time if self.min(other) == Stage::Parameters => Stage::Position,
@@ -26,12 +27,12 @@ impl Stage {
 }
 
 impl Program {
-    /// True for each operation that is made of parameters and numbers alone.
+    /// Returns for each operation whether it depends only on parameters and numbers.
     pub(crate) fn parameter_only(&self) -> Vec<bool> {
         self.stages().into_iter().map(|stage| stage <= Stage::Parameters).collect()
     }
 
-    /// When each operation can be done first.
+    /// Returns the earliest stage in which each operation can be computed.
     fn stages(&self) -> Vec<Stage> {
         let mut stages: Vec<Stage> = Vec::with_capacity(self.ops.len());
         for op in &self.ops {
@@ -40,7 +41,7 @@ impl Program {
                     Symbol::Parameter(_) | Symbol::Moment(..) => Stage::Parameters,
                     Symbol::Time | Symbol::Input { .. } => Stage::Time,
                     Symbol::Coordinate(_) => Stage::Position,
-                    // A control input may follow the state.
+                    // A control input may depend on the state.
                     Symbol::Velocity(_)
                     | Symbol::Control { .. }
                     | Symbol::Acceleration(_)
@@ -61,7 +62,8 @@ impl Program {
         stages
     }
 
-    /// The places that are computed up to a stage and read after it: those worth keeping.
+    /// Returns the places to be stored: those computed in a stage and read in another stage or as
+    /// results.
     pub(crate) fn kept(&self, stage: Stage) -> Vec<Place> {
         let stages = self.stages();
         let before = |own: Stage| own == Stage::Numbers || own == stage;
@@ -78,7 +80,7 @@ impl Program {
             let leaf = match self.ops[*index] {
                 Op::Load(symbol) => !matches!(symbol, Symbol::Moment(..)),
                 Op::Number(_) | Op::Literal(_) | Op::Pi => true,
-                // A pair is kept by its parts.
+                // The parts of a pair are stored instead of the pair.
                 Op::SinCos(_) => true,
                 _ => false,
             };

@@ -1,4 +1,4 @@
-//! Sums, factored greedily by what most of their terms share.
+//! Sums, factored greedily by the factors that most of their terms share.
 
 use super::program::{add, mul};
 use super::term::{Factor, Term, common_coefficient, take};
@@ -6,16 +6,18 @@ use super::{Op, Place, Schedule};
 use crate::algebra::number::Rational;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Polynomials are nested as Horner does down to this depth, and no deeper: the stack is finite.
+/// The limit on the depth of nesting when polynomials are factored as in Horner's scheme. It bounds
+/// the use of the stack.
 const DEPTH: usize = 64;
 
 impl Schedule<'_> {
-    /// A sum of products, and whether its value is the negative of the place.
+    /// Computes a sum of products. Returns its place and whether its value is the negative of that
+    /// place.
     pub(super) fn sum(&mut self, terms: Vec<Term>) -> (Place, bool) {
         self.nested_sum(terms, 0)
     }
 
-    /// A sum that stands in `depth` others, each with a factor drawn before it.
+    /// Computes a sum inside `depth` other sums, each of which has a common factor extracted.
     fn nested_sum(&mut self, mut terms: Vec<Term>, depth: usize) -> (Place, bool) {
         let mut parts: Vec<(Place, bool)> = Vec::new();
         while depth < DEPTH
@@ -49,7 +51,7 @@ impl Schedule<'_> {
             let part = self.product(term);
             parts.push(part);
         }
-        // Begin with a positive part, so that no negation is needed.
+        // Start with a positive part, so that no negation is needed.
         let first = parts.iter().position(|&(_, negative)| !negative);
         let (start, flipped) = match first {
             Some(index) => (parts.remove(index).0, false),
@@ -66,10 +68,10 @@ impl Schedule<'_> {
         (total, flipped)
     }
 
-    /// The factor that is best drawn before a sum, and the terms in which it stands.
+    /// Returns the factor whose extraction saves most, and the terms that contain it.
     ///
-    /// A factor that moves saves a multiplication in all terms but one; a constant only in those
-    /// that have no other.
+    /// A factor that depends on more than parameters saves a multiplication in all terms but one. A
+    /// constant saves one only in terms without another constant.
     fn most_shared(&self, terms: &[Term]) -> Option<((Factor, Rational), BTreeSet<usize>)> {
         let mut shared: BTreeMap<(Factor, bool), BTreeSet<usize>> = BTreeMap::new();
         for (index, term) in terms.iter().enumerate() {

@@ -1,21 +1,21 @@
-//! Products on their way into a sum.
+//! Products that are terms of a sum under construction.
 
 use crate::algebra::expr::Id;
 use crate::algebra::number::Rational;
 
-/// A product on its way into a sum.
+/// A product that is a term of a sum under construction.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Term {
     pub(super) coefficient: Rational,
     pub(super) factors: Vec<(Factor, Rational)>,
 }
 
-/// A factor of a product; a sum may stand for itself times a constant that its own constants take
-/// in.
+/// A factor of a product. A sum with a `scale` is multiplied by a constant, which is distributed
+/// into its terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Factor {
     pub(super) id: Id,
-    /// The constant, by its place in `Schedule::scales`.
+    /// The index of the constant in `Schedule::scales`.
     pub(super) scale: Option<usize>,
 }
 
@@ -35,18 +35,18 @@ pub(super) fn multiply(factors: &mut Vec<(Factor, Rational)>, factor: Factor, ex
     let own = factors.iter_mut().find(|(other, _)| *other == factor);
     match own.and_then(|(_, own)| own.add(exponent).map(|total| (own, total))) {
         Some((own, total)) => *own = total,
-        // An exponent that cannot be added stands beside the other.
+        // An exponent that cannot be added is kept as a separate factor.
         None => factors.push((factor, exponent)),
     }
     factors.retain(|(_, exponent)| !exponent.is_zero());
 }
 
-/// The empty product.
+/// Returns the empty product.
 pub(super) fn unit() -> Term {
     Term { coefficient: Rational::ONE, factors: Vec::new() }
 }
 
-/// The coefficient that all terms share up to sign; one otherwise.
+/// Returns the coefficient that all terms share up to sign, otherwise one.
 pub(super) fn common_coefficient(terms: &[Term]) -> Rational {
     let first = terms[0].coefficient;
     if terms.iter().all(|term| term.coefficient.abs() == first.abs()) {

@@ -1,4 +1,4 @@
-//! A block as written: spans, no meaning.
+//! A block as written: names with their spans, before name resolution.
 
 use crate::algebra::number::Literal;
 use crate::messages::Range;
@@ -13,19 +13,19 @@ pub(crate) struct Block {
     pub(crate) fields: Vec<Field>,
     pub(crate) statements: Vec<Statement>,
     pub(crate) recovery: Recovery,
-    /// No name in it has a letter beyond ASCII.
+    /// `true` if all names are ASCII.
     pub(crate) ascii: bool,
 }
 
 impl Block {
-    /// The `cfg` attributes of the struct: what they leave out is left out with all that belongs to
-    /// it.
+    /// Returns the `cfg` attributes of the struct. They apply to all generated items as well.
     pub(crate) fn conditions(&self) -> impl Iterator<Item = &Attribute> {
         self.attributes.iter().filter(|attribute| attribute.path().is_ident("cfg"))
     }
 }
 
-/// The parts that could not be parsed: their absence is no second mistake.
+/// The kinds of statements that could not be parsed. Their absence is not reported as a further
+/// mistake.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Recovery {
     pub(crate) declarations: bool,
@@ -45,13 +45,13 @@ pub(crate) struct Field {
 pub(crate) enum Kind {
     /// A scalar with or without a unit.
     Scalar(Option<Expr>),
-    /// `[unit; length]`, where `_` is no unit.
+    /// `[unit; length]`, with `None` for the unit `_`.
     Array { unit: Option<Expr>, length: Expr },
     /// `body`.
     Body(Range),
 }
 
-/// A line that ends in `;`.
+/// A statement that ends in `;`.
 #[derive(Debug)]
 pub(crate) enum Statement {
     Coordinate { name: Ident, length: Option<Expr>, unit: Option<Expr> },
@@ -68,7 +68,7 @@ pub(crate) enum Statement {
 /// `output tip: [m; 2] = …` or `output tip[k in 0..5]: [m; 2] = …`.
 #[derive(Debug)]
 pub(crate) struct Output {
-    /// Its `doc` attributes.
+    /// The `doc` attributes.
     pub(crate) documentation: TokenStream,
     pub(crate) name: Ident,
     pub(crate) index: Option<Binder>,
@@ -114,7 +114,7 @@ pub(crate) struct Binder {
     pub(crate) inclusive: bool,
 }
 
-/// The index of a `force` statement: one coordinate of a family, or all of them.
+/// The index of a `force` statement: one coordinate of a family, or all coordinates.
 #[derive(Debug)]
 pub(crate) enum ForceIndex {
     One(Expr),
@@ -130,7 +130,7 @@ pub(crate) enum Role {
     Dissipation,
 }
 
-/// An expression; `source` numbers it within the block.
+/// An expression. `source` is its number within the block.
 #[derive(Debug)]
 pub(crate) struct Expr {
     pub(crate) kind: ExprKind,
@@ -142,9 +142,9 @@ pub(crate) struct Expr {
 pub(crate) enum ExprKind {
     Number(Literal),
     Name(Ident),
-    /// Each term with its sign; true is minus.
+    /// Terms with their signs; `true` is minus.
     Sum(Vec<(bool, Expr)>),
-    /// Each factor; true is divided by.
+    /// Factors; `true` for divisors.
     Product(Vec<(bool, Expr)>),
     Negative(Box<Expr>),
     Power(Box<Expr>, Box<Expr>),
@@ -164,7 +164,7 @@ pub(crate) enum ExprKind {
 }
 
 impl Expr {
-    /// The two terms of a sum: the sides of a constraint or a limit.
+    /// Returns the two terms of a sum, which are the sides of a constraint or a limit.
     pub(crate) fn sides(&self) -> [&Expr; 2] {
         match self.parts()[..] {
             [left, right] => [left, right],
@@ -172,7 +172,7 @@ impl Expr {
         }
     }
 
-    /// The expressions of which it is made, without the ends of ranges.
+    /// Returns the operands of an expression, without the ends of ranges.
     pub(crate) fn parts(&self) -> Vec<&Expr> {
         match &self.kind {
             ExprKind::Number(_) | ExprKind::Name(_) => Vec::new(),

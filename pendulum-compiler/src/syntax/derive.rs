@@ -1,4 +1,5 @@
-//! The traits that a block derives for its struct: those that cannot be are told at their names.
+//! The traits that a block derives for its struct. Traits that cannot be derived are reported at
+//! their names.
 
 use crate::messages::{Errors, Range, syntax as messages};
 use proc_macro2::TokenStream;
@@ -8,8 +9,8 @@ use syn::punctuated::Punctuated;
 use syn::spanned::Spanned;
 use syn::{Attribute, Path, Token};
 
-/// Reports the derived traits that the struct cannot have, and takes them from its attributes:
-/// rustc would say it of code that the user has not written.
+/// Reports the derived traits that the struct cannot have, and removes them from its attributes.
+/// Otherwise rustc would report an error in generated code.
 pub(crate) fn check(attributes: &mut [Attribute], errors: &mut Errors) {
     for attribute in attributes {
         let all = paths(attribute);
@@ -31,7 +32,7 @@ pub(crate) fn check(attributes: &mut [Attribute], errors: &mut Errors) {
     }
 }
 
-/// The traits of a `derive` attribute; none of any other.
+/// Returns the traits of a `derive` attribute; empty for any other attribute.
 fn paths(attribute: &Attribute) -> Punctuated<Path, Token![,]> {
     let tokens = match &attribute.meta {
         syn::Meta::List(list) if list.path.is_ident("derive") => list.tokens.clone(),
@@ -40,8 +41,8 @@ fn paths(attribute: &Attribute) -> Punctuated<Path, Token![,]> {
     Punctuated::parse_terminated.parse2(tokens).unwrap_or_default()
 }
 
-/// The name of a trait of the standard library: alone, or in a path that begins with `core` or
-/// `std`.
+/// Returns the name of a trait of the standard library: a single name, or a path that begins with
+/// `core` or `std`.
 fn standard(path: &Path) -> Option<String> {
     let first = path.segments.first()?;
     let known = path.segments.len() == 1 || first.ident == "core" || first.ident == "std";

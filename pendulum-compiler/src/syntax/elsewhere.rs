@@ -3,7 +3,7 @@
 use super::text::{closed, operand, text};
 use crate::syntax::ast::Expr;
 
-/// A constant of Rust, or the time, as it is written here; in `ascii`, if the block is.
+/// Translates a constant of Rust or a name of the time. The translation is ASCII if `ascii` is set.
 pub(crate) fn constant(name: &str, ascii: bool) -> Option<String> {
     let value = match name {
         "PI" | "Pi" => "π",
@@ -25,7 +25,7 @@ pub(crate) fn constant(name: &str, ascii: bool) -> Option<String> {
     Some(if ascii { value.replace('π', "pi") } else { value.to_owned() })
 }
 
-/// The call of a function that has another name here, or is an operator.
+/// Translates a call of a function that has another name in the language or is an operator.
 pub(crate) fn function(name: &str, arguments: &[Expr]) -> Option<String> {
     Some(match (name, arguments) {
         ("log", [a]) => format!("ln({})", text(a)),
@@ -51,7 +51,7 @@ pub(crate) fn function(name: &str, arguments: &[Expr]) -> Option<String> {
     })
 }
 
-/// The names whose velocity a name may be: `x` for `vx`, `v_x`, `dx`, `dxdt` and `xd`.
+/// Returns the names whose velocity a name may denote: `x` for `vx`, `v_x`, `dx`, `dxdt` and `xd`.
 pub(crate) fn moving(name: &str) -> impl Iterator<Item = &str> {
     let differential = name.strip_prefix('d').and_then(|rest| rest.strip_suffix("dt"));
     let differential = differential.map(|stem| stem.strip_suffix('_').unwrap_or(stem));
@@ -61,15 +61,15 @@ pub(crate) fn moving(name: &str) -> impl Iterator<Item = &str> {
     stems.chain(behind.filter_map(|sign| name.strip_suffix(sign)))
 }
 
-/// A unit under another name: what to declare instead, and how much of it the unit is, if it is
-/// another one.
+/// A unit that is not part of the language: the unit to declare instead, and the factor if the
+/// sizes differ.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct ForeignUnit {
     pub(crate) instead: &'static str,
     pub(crate) factor: Option<&'static str>,
 }
 
-/// The translation of a unit that the language does not have.
+/// Returns the translation of a unit that is not part of the language.
 pub(crate) fn unit(name: &str) -> Option<ForeignUnit> {
     let rows = || SCALED.iter().map(|&(names, instead, factor)| (names, instead, Some(factor)));
     let rows = rows().chain(SPELLED.iter().map(|&(names, instead)| (names, instead, None)));
@@ -87,7 +87,7 @@ pub(crate) fn unit(name: &str) -> Option<ForeignUnit> {
     })
 }
 
-/// Units of other sizes: their names, the unit of the language, and the number of it.
+/// Units of other sizes: their names, a unit of the language and the factor.
 #[rustfmt::skip]
 const SCALED: &[(&[&str], &str, &str)] = &[
     (&["g", "gram", "grams"],                             "kg",    "0.001"),
@@ -147,7 +147,7 @@ const PREFIXES: &[(&str, &str, &str)] = &[
     ("G", "giga", "1e9"),
 ];
 
-/// The units that a prefix may stand before.
+/// The units that accept a prefix.
 const PREFIXED: &[&str] =
     &["m", "s", "rad", "N", "J", "W", "Hz", "A", "V", "C", "F", "H", "ohm", "T", "K"];
 
@@ -156,7 +156,7 @@ mod tests {
     use super::{ForeignUnit, PREFIXED, SCALED, SPELLED, unit};
     use crate::algebra::dimension::Dimension;
 
-    /// No translation stands for a unit of the language, and each leads to one.
+    /// No translated unit is part of the language, and each translation is.
     #[test]
     fn translations_of_units_are_units() {
         let known = |unit: &str| {

@@ -1,4 +1,4 @@
-//! Tokens to a tree: names and places, no meaning.
+//! Tokens to a syntax tree: names and spans, before name resolution.
 
 pub(crate) mod ast;
 pub(crate) mod derive;

@@ -1,4 +1,4 @@
-//! Names as the note writes them: Greek letters, dots, and their ASCII twins.
+//! Names as in mathematical notation: Greek letters, dots and their ASCII spellings.
 
 use proc_macro2::Ident;
 
@@ -11,7 +11,7 @@ pub(crate) struct Name {
     pub(crate) dots: u8,
 }
 
-/// Reads an identifier; composed and decomposed letters are read alike.
+/// Reads an identifier. Composed and decomposed letters have the same result.
 pub(crate) fn read(text: &str) -> Name {
     let text = text.strip_prefix("r#").unwrap_or(text);
     let mut base = String::with_capacity(text.len());
@@ -41,12 +41,13 @@ pub(crate) fn read(text: &str) -> Name {
     Name { base, dots }
 }
 
-/// A name without its dots, in the ASCII spelling of its letters.
+/// Returns a name without its dots, in the ASCII spelling of its letters.
 pub(crate) fn plain(ident: &Ident) -> String {
     read(&ident.to_string()).base
 }
 
-/// A name without the accents that someone took for dots; `None` if it has none.
+/// Returns a name without accents, which may have been confused with dots; `None` if it has no
+/// accents.
 pub(crate) fn unaccented(text: &str) -> Option<String> {
     let marks = ['\u{300}', '\u{301}'];
     let plain = |letter: char| match ACCENTED.iter().find(|row| row.0.contains(letter)) {
@@ -57,7 +58,8 @@ pub(crate) fn unaccented(text: &str) -> Option<String> {
     Some(result).filter(|result| result != text)
 }
 
-/// The spellings of a velocity: a dot over a letter, if the name is one, and the suffix.
+/// Returns the spellings of a velocity: with a dot, if the name is a single letter, and with the
+/// suffix.
 pub(crate) fn dotted(text: &str) -> String {
     let suffixed = format!("`{}_dot`", read(text).base);
     match velocity(text) {
@@ -66,7 +68,7 @@ pub(crate) fn dotted(text: &str) -> String {
     }
 }
 
-/// A name of one letter, with a number or without, under a dot.
+/// Returns a name of a single letter, with or without a number, with a dot.
 pub(crate) fn velocity(text: &str) -> Option<String> {
     let mut letters = text.chars();
     let letter = letters.next()?;
@@ -79,22 +81,22 @@ pub(crate) fn velocity(text: &str) -> Option<String> {
     })
 }
 
-/// Returns true if a word is the English name of a Greek letter that LaTeX knows by it.
+/// Returns `true` if a word is the English name of a Greek letter for which LaTeX has a command.
 pub(crate) fn is_greek(word: &str) -> bool {
     GREEK.iter().any(|row| row.1 == word) && word != "omicron"
 }
 
-/// The Greek letter of an English name.
+/// Returns the Greek letter with an English name.
 pub(crate) fn letter(word: &str) -> Option<char> {
     GREEK.iter().find(|row| row.1 == word).and_then(|row| row.0.chars().next())
 }
 
-/// The one letter that a letter with dots composes to, if Unicode has it.
+/// Returns the composed character for a letter with dots, if Unicode has one.
 pub(crate) fn compose(letter: &str, dots: u8) -> Option<char> {
     DOTTED.iter().find(|row| row.2 == dots && letter.chars().eq([row.1])).map(|row| row.0)
 }
 
-/// The known name nearest to `name`, if it is near enough to be meant.
+/// Returns the known name nearest to `name`, if the distance is small.
 pub(crate) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let limit = match name.chars().count() {
         0 | 1 => 1,
@@ -107,7 +109,7 @@ pub(crate) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> O
         .map(|(_, other)| other)
 }
 
-/// Twice the edit distance of two names, where a letter in the other case is half a step away.
+/// Returns twice the edit distance of two names. A change of case counts half.
 fn distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().take(64).collect();
     let mut row: Vec<usize> = (0..=b.len()).map(|steps| 2 * steps).collect();
@@ -130,7 +132,7 @@ fn distance(a: &str, b: &str) -> usize {
     row[b.len()]
 }
 
-/// A letter and the dots that its code point carries.
+/// Returns a letter without the dots of its code point, and the number of these dots.
 fn decompose(letter: char) -> (char, u8) {
     match DOTTED.iter().find(|row| row.0 == letter) {
         Some(&(_, plain, dots)) => (plain, dots),
@@ -138,13 +140,13 @@ fn decompose(letter: char) -> (char, u8) {
     }
 }
 
-/// The English name of a Greek letter; variant forms and the micro sign are the letters that they
-/// are forms of.
+/// Returns the English name of a Greek letter. Variant forms and the micro sign count as the
+/// letters they represent.
 fn greek(letter: char) -> Option<&'static str> {
     GREEK.iter().find(|row| row.0.contains(letter)).map(|row| row.1)
 }
 
-/// Every letter with a dot or a diaeresis above that Unicode composes.
+/// All letters with a dot or a diaeresis above that Unicode composes.
 #[rustfmt::skip]
 const DOTTED: &[(char, char, u8)] = &[
     ('Ȧ', 'A', 1), ('Ḃ', 'B', 1), ('Ċ', 'C', 1), ('Ḋ', 'D', 1), ('Ė', 'E', 1), ('Ḟ', 'F', 1), ('Ġ', 'G', 1), ('Ḣ', 'H', 1),
@@ -158,7 +160,7 @@ const DOTTED: &[(char, char, u8)] = &[
     ('Ϊ', 'Ι', 2), ('ϊ', 'ι', 2), ('Ϋ', 'Υ', 2), ('ϋ', 'υ', 2),
 ];
 
-/// Letters with an acute or a grave accent, by the letter without.
+/// Letters with an acute or a grave accent, and the letter without it.
 #[rustfmt::skip]
 const ACCENTED: &[(&str, char)] = &[
     ("άὰ", 'α'), ("έὲ", 'ε'), ("ήὴ", 'η'), ("ίὶ", 'ι'), ("όὸ", 'ο'), ("ύὺ", 'υ'), ("ώὼ", 'ω'),

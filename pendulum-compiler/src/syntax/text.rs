@@ -3,11 +3,11 @@
 use crate::algebra::number::Literal;
 use crate::syntax::ast::{Expr, ExprKind};
 
-/// The text of a small expression, for messages and facts.
+/// Returns the text of a small expression, for messages and facts.
 pub(crate) fn text(expr: &Expr) -> String {
     let list = |items: &[Expr]| items.iter().map(text).collect::<Vec<_>>().join(", ");
     match &expr.kind {
-        // A literal is a decimal fraction, so that its nearest double prints as it was written.
+        // A literal is a decimal fraction, so that its nearest double is printed as it was written.
         ExprKind::Number(Literal::Exact(value)) => {
             (value.numerator() as f64 / value.denominator() as f64).to_string()
         }
@@ -46,7 +46,7 @@ fn joined(
     result
 }
 
-/// The text of a term.
+/// Returns the text of a term.
 fn term(expr: &Expr) -> String {
     match expr.kind {
         ExprKind::Product(ref factors) if !matches!(factors[0].1.kind, ExprKind::Negative(_)) => {
@@ -56,7 +56,7 @@ fn term(expr: &Expr) -> String {
     }
 }
 
-/// The text of an expression that a power, an index or a component follows.
+/// Returns the text of an expression that is followed by a power, an index or a component.
 pub(super) fn operand(expr: &Expr) -> String {
     match expr.kind {
         ExprKind::Power(..) => format!("({})", text(expr)),
@@ -64,7 +64,7 @@ pub(super) fn operand(expr: &Expr) -> String {
     }
 }
 
-/// The text of a factor, or of an exponent.
+/// Returns the text of a factor or an exponent.
 pub(super) fn closed(expr: &Expr) -> String {
     match expr.kind {
         ExprKind::Sum(_) | ExprKind::Product(_) | ExprKind::Negative(_) => {

@@ -1,11 +1,11 @@
-//! Paths: whatever the user calls a type, the generated code means Rust's own.
+//! Paths in generated code: they refer to Rust's own items, whatever names the user declares.
 
 use super::golden;
 use crate::compile::expand;
 use proc_macro2::{TokenStream, TokenTree};
 
-/// The primitive types, and what the prelude and the crates of the standard library bring into
-/// every scope.
+/// The primitive types, and the names that the prelude and the crates of the standard library add
+/// to every scope.
 #[rustfmt::skip]
 const COMMON: &[&str] = &[
     "f32", "f64", "u8", "u16", "u32", "u64", "u128", "usize", "i8", "i16", "i32", "i64", "i128", "isize", "bool", "char", "str",
@@ -16,21 +16,21 @@ const COMMON: &[&str] = &[
     "assert", "assert_eq", "debug_assert", "panic", "unimplemented", "unreachable", "todo", "concat", "matches", "vec", "format",
 ];
 
-/// The names of [`COMMON`] that do not stand in an absolute path; attributes are left out.
+/// Finds the names of [`COMMON`] that are not part of an absolute path. Attributes are skipped.
 fn relative(tokens: TokenStream, found: &mut Vec<String>) {
     let mut before = [' '; 3];
     let mut names = false;
     for tree in tokens {
         let mark = match &tree {
             TokenTree::Group(group) => {
-                // The modules of names have a scope of their own.
+                // The modules of names are separate scopes.
                 if before[2] != '#' && !std::mem::take(&mut names) {
                     relative(group.stream(), found);
                 }
                 'g'
             }
             TokenTree::Ident(name) => {
-                // `.map` is a method, `a::b` follows what `a` names, and `::a` is a crate.
+                // `.map` is a method, `a::b` is relative to `a`, and `::a` is a crate.
                 let follows = before[2] == '.' || before[1..] == [':', ':'];
                 if !follows && COMMON.iter().any(|common| name == common) {
                     found.push(name.to_string());
@@ -56,14 +56,15 @@ fn generated_paths_are_absolute() {
     for source in sources.iter().map(String::as_str).chain([empty, implicit, broken]) {
         let mut found = Vec::new();
         let items = expand(format!("::pendulum_runtime; {source}").parse().unwrap());
-        // Declarations of the user's names are no paths, and no such block takes one of these.
+        // Declarations of the user's names are not paths, and no golden block declares one of these
+        // names.
         relative(items, &mut found);
         assert!(found.is_empty(), "{found:?} in the expansion of {source}");
     }
 }
 
-/// Where another system took the struct's name, an implementation that leaves its number of
-/// coordinates to inference would be a second mistake.
+/// If another system has the same name as the struct, an implementation whose number of coordinates
+/// is inferred would cause a second error.
 #[test]
 fn generated_code_names_the_number_of_coordinates() {
     for source in golden::sources_of_blocks() {
@@ -78,7 +79,7 @@ fn generated_code_names_the_number_of_coordinates() {
     }
 }
 
-/// The search finds what it looks for.
+/// The search finds relative paths.
 #[test]
 fn relative_paths_are_found() {
     let mut found = Vec::new();

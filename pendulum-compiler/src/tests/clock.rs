@@ -1,12 +1,12 @@
-//! Widths of functions of time, and the times of their middles.
+//! Widths and centres of functions of time.
 
 use super::{derive, evaluate};
 use crate::algebra::expr::Symbol;
 use crate::mechanics::clock::features;
 use std::fmt::Write;
 
-/// One over the width of each function of time in a force at t = 3, and the time since its middle,
-/// with a = 5, b = 0.5 and c = 2.
+/// Returns the reciprocal width of each function of time in a force, and the time since its centre
+/// at t = 3, with a = 5, b = 0.5 and c = 2.
 fn found(force: &str) -> Vec<(f64, f64)> {
     let block =
         format!("struct S {{ a, b, c }} coordinate q; kinetic = q_dot^2/2; force q = {force};");
@@ -62,7 +62,7 @@ fn reciprocals_and_roots() {
     check("1/(b^4 + t^4)", &[(2.0, 3.0)]);
     check("ln(b^2 + t^2)", &[(2.0, 3.0)]);
     check("atan2(t - a, b)", &[(2.0, -2.0)]);
-    // The same at every distance from where they are infinite.
+    // The relative width is the same at every distance from the pole.
     for force in ["1/(a + t)", "sqrt(a + t)", "ln(t)", "1/t^2"] {
         check(force, &[]);
     }
@@ -76,7 +76,7 @@ fn oscillations() {
     check("sin(c*t^2)", &[(2f64.sqrt(), 0.0)]);
     check("sign(sin(10*t))", &[(10.0 * ROOT, 0.0)]);
     check("sin(7*t + sin(c*t))", &[(2.0 * ROOT, 0.0), (7.0 * ROOT, 0.0)]);
-    // A kick at each zero of the sine, and steep sides at each.
+    // A kick at each zero of the sine, with steep sides.
     check("exp(-100*sin(3*t)^2)", &[(3.0 * ROOT, 0.0), (30.0, 0.0)]);
     check("tanh(a*sin(3*t))", &[(3.0 * ROOT, 0.0), (15.0, 0.0)]);
 }
@@ -94,18 +94,18 @@ fn corners() {
     check("sign(t - a) - sign(t - a - b)", &[(4.0, 3.0 - 5.25)]);
 }
 
-/// Magnitudes of magnitudes and sums of them: a place at each corner, with the steepest slope.
+/// Nested magnitudes and sums of magnitudes: a centre at each corner, with the steepest slope.
 #[test]
 fn several_corners() {
     check("exp(-abs(abs(t - a) - b)/c)", &[(0.5, -2.5), (0.5, -2.0), (0.5, -1.5), (2.0, -2.0)]);
     check("exp(-abs(t - a)/b - abs(t - 1)/c)", &[(0.5, 0.0), (2.5, -2.0), (2.5, 2.0)]);
     check("tanh((abs(t - a) - abs(t - 1))/b)", &[(0.5, 0.0), (4.0, -2.0), (4.0, 2.0)]);
-    // More corners than are looked at: as wide as that at all times.
+    // With too many corners, the width applies at all times.
     let many: Vec<String> = (0..10).map(|k| format!("abs(t - {k})")).collect();
     assert!(found(&format!("exp(-({})/b)", many.join(" + "))).contains(&(20.0, 0.0)));
 }
 
-/// Of many corners at times that are numbers, neighbours are the ends of pulses.
+/// If there are many corners at numeric times, neighbours are the ends of pulses.
 #[test]
 fn many_pulses() {
     let pulses: Vec<String> = (0..6).map(|k| format!("sign(t - {k}) - sign(t - {k}.5)")).collect();
@@ -124,7 +124,7 @@ fn what_has_no_width() {
     check("q/(1 + q^2)*t", &[]);
 }
 
-/// Polynomials that are too long to be worth it are left alone, and found to be so at once.
+/// Polynomials that are too long are skipped without being expanded.
 #[test]
 fn long_polynomials() {
     let product: Vec<String> = (0..40).map(|k| format!("(t - {k})")).collect();

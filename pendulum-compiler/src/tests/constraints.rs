@@ -3,7 +3,7 @@
 use super::refusals;
 use crate::compile::{Compiled, compile};
 
-/// A bob in Cartesian coordinates, a bead on it and a driven place.
+/// Returns a block with a bob in Cartesian coordinates, beads around it and a driven point.
 fn block(statements: &str) -> String {
     format!(
         "struct P {{ m: kg, L: m, g: m/s^2, e: 1 }} coordinate x: m; coordinate y: m; coordinate φ[3]: rad;
@@ -110,7 +110,8 @@ fn equations_show_multipliers() {
     assert!(compiled(&driven).power.contains('l'), "{}", compiled(&driven).power);
 }
 
-/// A quantity conserved without a constraint is conserved with it only if it does no work there.
+/// A quantity conserved without a constraint is conserved with it only if the constraint does no
+/// work along its symmetry.
 #[test]
 fn conserved_momenta_are_those_that_constraints_leave() {
     let planar = |statement: &str| {
@@ -121,7 +122,8 @@ fn conserved_momenta_are_those_that_constraints_leave() {
         .conserved
     };
     assert_eq!(planar("").len(), 4);
-    // A rod about the origin leaves both rotations, a blade the one of all together alone.
+    // A rod about the origin preserves both rotations. A blade preserves only the common rotation
+    // of point and angle.
     assert_eq!(planar("constraint rod: |[x, y]| = L;"), ["p_θ", "x·p_y − y·p_x"]);
     assert_eq!(planar("constraint blade: ẋ*sin(θ) = ẏ*cos(θ);"), ["p_θ"]);
     assert_eq!(planar("constraint wheel: ẋ = L*θ̇;"), ["p_y"]);
@@ -163,7 +165,7 @@ fn operations_grow_with_the_number_of_loops() {
              constraint rod[k in 1..{n}]: (x[k] - x[k - 1])^2 + (y[k] - y[k - 1])^2 = L^2;"
         ))
     };
-    // A loop, a link or a bead more costs the same, wherever it is.
+    // A further loop, link or bead has the same cost at every position.
     assert_eq!(loops(16) - loops(8), 2 * (loops(8) - loops(4)));
     assert_eq!(beads(32) - beads(16), 2 * (beads(16) - beads(8)));
     let links = chain(48) - chain(32);

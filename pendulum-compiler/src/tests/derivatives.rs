@@ -51,7 +51,7 @@ fn the_step_is_the_derivative_of_the_ramp() {
     }
 }
 
-/// Where a power of a product is zero, so is its slope.
+/// At zeros of the base, a power of a product has the slope zero.
 #[test]
 fn a_power_has_its_slope_at_zero_too() {
     for (expression, inside) in

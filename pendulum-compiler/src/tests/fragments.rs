@@ -1,9 +1,10 @@
-//! Fragments: an `$e:expr` that a macro of the user's hands over comes in invisible brackets.
+//! Fragments: an `$e:expr` that a macro of the user passes on is enclosed in invisible brackets.
 
 use crate::compile::expand;
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
-/// The stream with each `?(…)` replaced: by a fragment, or by what is written in its place.
+/// Returns the stream with each `?(…)` replaced by a group with `delimiter`, either a fragment or a
+/// group in parentheses.
 fn replaced(tokens: TokenStream, delimiter: Delimiter) -> TokenStream {
     let mut marked = false;
     let mut result = TokenStream::new();
@@ -34,7 +35,8 @@ fn expanded(statements: &str, delimiter: Delimiter) -> String {
     expand(replaced(block.parse().unwrap(), delimiter)).to_string()
 }
 
-/// An expansion without the copy for editors, which tells brackets from none.
+/// Returns an expansion without the copy for editors, which differs between fragments and
+/// parentheses.
 fn items(expansion: &str) -> &str {
     &expansion[expansion.find("struct W").unwrap()..]
 }

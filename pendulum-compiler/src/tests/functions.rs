@@ -1,4 +1,4 @@
-//! Every row of the functions: what it says of itself, and what other tests have to have of it.
+//! Every row of the table of functions: its columns, and the coverage by other tests.
 
 use super::{Random, derive, evaluate, lowered, refusals};
 use crate::algebra::diff::derivative;
@@ -9,7 +9,7 @@ use crate::backend::unicode::{self, Names, Sides};
 use pendulum_runtime::scalar::Dual;
 use std::collections::BTreeSet;
 
-/// Arguments in the domain of a function, a little away from its ends and from a kink at zero.
+/// Returns arguments in the domain of a function, away from its ends and from a kink at zero.
 fn arguments(function: Function) -> Vec<f64> {
     let Row { domain: [least, greatest], kinks, .. } = function.row();
     let (least, greatest) = (least.max(-4.0), greatest.min(4.0));
@@ -19,13 +19,14 @@ fn arguments(function: Function) -> Vec<f64> {
     all.filter(|x| kinks == Kinks::Smooth || 0.01 < x.abs()).collect()
 }
 
-/// f(a) of the free scalar a.
+/// Returns f(a) of the free scalar a.
 fn call(graph: &mut Graph, function: Function) -> Id {
     let a = graph.symbol(Symbol::Parameter(0));
     graph.call(function, a)
 }
 
-/// Returns true if two numbers agree to `tolerance` of the larger one, or of one.
+/// Returns `true` if the difference of two numbers is at most `tolerance` times the larger
+/// magnitude or one.
 fn close(a: f64, b: f64, tolerance: f64) -> bool {
     (a - b).abs() <= tolerance * 1f64.max(a.abs()).max(b.abs())
 }
@@ -40,7 +41,7 @@ fn values_are_those_of_the_runtime() {
     }
 }
 
-/// The first, the second and the third derivative of the graph against those of dual numbers.
+/// The first, second and third derivatives in the graph agree with those of dual numbers.
 #[test]
 fn derivatives_are_those_of_dual_numbers() {
     type Thrice = Dual<Dual<Dual<f64>>>;
@@ -132,7 +133,7 @@ fn values_at_zero_and_parities_are_those_of_the_values() {
     }
 }
 
-/// Each kink is one of the value or of the slope, and nothing else has one.
+/// Values jump at jumps, slopes jump at corners, and there are no other jumps.
 #[test]
 fn kinks_are_at_zero() {
     for &function in Function::ALL {
@@ -154,7 +155,7 @@ fn kinks_are_at_zero() {
     }
 }
 
-/// Every function has its place in equations of every notation.
+/// Every function is printed in every notation of equations.
 #[test]
 fn equations_show_every_function() {
     for word in Word::all().filter(|word| word.is_scalar()) {
@@ -183,12 +184,12 @@ fn equations_show_every_function() {
     }
 }
 
-/// The call of a function with the arguments a and b.
+/// Returns the call of a function with the arguments a and b.
 fn call_of(word: Word) -> String {
     format!("{}({})", word.name, ["a", "b"][..word.arity()].join(", "))
 }
 
-/// The language reads back what it shows: equations in ASCII are expressions.
+/// Equations in ASCII are expressions of the language.
 #[test]
 fn equations_in_ascii_are_read_back() {
     for &function in Function::ALL {
@@ -229,7 +230,7 @@ fn every_function_is_lowered() {
     }
 }
 
-/// Lengths where pure numbers, equal units or any unit are asked for.
+/// Lengths are refused where pure numbers or a common unit are required.
 #[test]
 fn units_are_checked() {
     for word in Word::all().filter(|word| word.is_scalar()) {
@@ -252,7 +253,8 @@ fn units_are_checked() {
     }
 }
 
-/// The series of generated systems are tested in the crate that generates them, by text.
+/// The series of generated systems are tested in the crate that generates them. This test searches
+/// the text of those tests.
 #[test]
 fn the_series_of_every_function_is_tested() {
     let tested = include_str!("../../../tests/language/jets.rs");
@@ -265,7 +267,7 @@ fn the_series_of_every_function_is_tested() {
     }
 }
 
-/// Names are unique, and so are the numbers of functions.
+/// The names and the numbers of functions are unique.
 #[test]
 fn every_function_is_there_once() {
     let names: BTreeSet<&str> = Word::all().map(|word| word.name).collect();

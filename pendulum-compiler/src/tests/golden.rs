@@ -1,6 +1,6 @@
 //! Golden files: a block, its printed equations, its operations and its facts.
 //!
-//! `UPDATE_GOLDEN=1 cargo test -p pendulum-compiler` rewrites them; the difference is read in
+//! `UPDATE_GOLDEN=1 cargo test -p pendulum-compiler` rewrites them. The difference is checked in
 //! review.
 
 use super::derived;
@@ -38,7 +38,7 @@ fn golden_files_hold() {
     }
 }
 
-/// The golden files.
+/// Returns the golden files.
 fn files() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden");
     let mut files: Vec<_> =
@@ -47,7 +47,7 @@ fn files() -> Vec<PathBuf> {
     files
 }
 
-/// The blocks of the golden files.
+/// Returns the blocks of the golden files.
 pub(super) fn sources_of_blocks() -> Vec<String> {
     let texts = files().into_iter().map(|file| std::fs::read_to_string(file).unwrap());
     texts
@@ -57,7 +57,7 @@ pub(super) fn sources_of_blocks() -> Vec<String> {
         .collect()
 }
 
-/// Every other system in the repository: tests, examples, documentation.
+/// All other systems of the repository: tests, examples, documentation.
 #[test]
 fn every_system_in_the_repository() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
@@ -97,7 +97,7 @@ fn every_system_in_the_repository() {
     }
 }
 
-/// The files in which systems may stand.
+/// Returns the files that may contain systems.
 fn sources(root: &Path) -> Vec<PathBuf> {
     let mut pending = [
         "README.md",
@@ -117,7 +117,7 @@ fn sources(root: &Path) -> Vec<PathBuf> {
         if path.is_dir() {
             pending.extend(std::fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path()));
         } else if path.extension().is_some_and(|kind| kind == "rs" || kind == "md")
-            // The blocks of the generator have a test of their own.
+            // The blocks of the generator have a separate test.
             && !path.components().any(|part| part.as_os_str() == "random_systems")
         {
             files.push(path);
@@ -127,7 +127,7 @@ fn sources(root: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// The text between the braces of each `lagrangian!` that no other macro writes.
+/// Returns the text between the braces of each `lagrangian!` that is not part of another macro.
 fn blocks(text: &str) -> Vec<String> {
     let mut found = Vec::new();
     for (start, _) in text.match_indices("lagrangian! {") {
@@ -146,14 +146,14 @@ fn blocks(text: &str) -> Vec<String> {
             let bare = lines.map(|line| match comment {
                 Some(mark) => {
                     let line = line.trim_start().strip_prefix(mark).unwrap_or(line);
-                    // A line that the documentation hides.
+                    // A line that rustdoc hides.
                     line.trim_start().strip_prefix("# ").unwrap_or(line)
                 }
-                // The same in a guide.
+                // A hidden line in a guide.
                 None => line.strip_prefix("# ").unwrap_or(line),
             });
             let block = bare.collect::<Vec<_>>().join("\n");
-            // Prose about the macro is no block.
+            // Prose about the macro is not a block.
             if block.contains("struct") && block.parse::<proc_macro2::TokenStream>().is_ok() {
                 found.push(block);
             }
@@ -167,8 +167,8 @@ fn report(source: &str) -> String {
     attempt(source, &mut errors, true).unwrap_or_else(|| panic!("{:?}", errors.messages()))
 }
 
-/// The content of a golden file, without energies, momenta and LaTeX unless it is the whole;
-/// `None` if the block is refused.
+/// Returns the content of a golden file; energies, momenta and LaTeX are included only if `whole`
+/// is set. Returns `None` if the block is refused.
 fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
     derived(source, errors, |model, graph, motion, energies| {
         let names = unicode::Names::new(model, energies);

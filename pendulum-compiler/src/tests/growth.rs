@@ -11,8 +11,8 @@ fn chain(n: usize) -> String {
 }
 
 /// Dense elimination by hand takes ≈ N³/3 multiplications (2 links 17, 3 links 47, 5 links 160, 10
-/// links 845, 32 links 16 432, with 3, 6, 15, 55 and 528 divisions); from nine links on the sparse
-/// form is taken, in which each further link costs the same.
+/// links 845, 32 links 16 432, with 3, 6, 15, 55 and 528 divisions). The sparse form is used for
+/// nine or more links; each further link then has the same cost.
 #[test]
 fn chains_grow_linearly() {
     let known = [
@@ -53,8 +53,8 @@ fn flat(tokens: proc_macro2::TokenStream) -> usize {
         .sum()
 }
 
-/// Long sums are built at once, and what would not compile in reasonable time is refused before it
-/// is derived.
+/// Long sums are expanded quickly, and blocks that would not compile in reasonable time are refused
+/// before they are derived.
 #[test]
 #[ignore = "takes ten seconds: `.ci/run` runs it"]
 fn long_sums_expand_or_are_refused() {

@@ -1,4 +1,4 @@
-//! Identities that need no digits, at random states of systems of every kind.
+//! Identities that hold without reference values, at random states of various systems.
 
 use super::{Random, derive, evaluate};
 use crate::algebra::diff::derivative;
@@ -56,7 +56,7 @@ fn accelerations_solve_the_mass_matrix() {
     }
 }
 
-/// dE/dt along the motion, by the chain rule on the graph, equals the power that is emitted.
+/// dE/dt along the motion, computed by the chain rule on the graph, equals the power.
 #[test]
 fn energy_changes_by_the_power() {
     for source in SYSTEMS {
@@ -120,8 +120,8 @@ fn velocities_invert_the_momenta() {
     }
 }
 
-/// Adding the total derivative of any function of coordinates and time to L changes no
-/// acceleration.
+/// Adding the total derivative of any function of coordinates and time to L does not change the
+/// accelerations.
 #[test]
 fn gauge_terms_vanish() {
     let plain = "struct S { m, k } coordinate x; coordinate y; kinetic = m/2*(ẋ^2 + ẏ^2); potential = k*(x^4 + x*y);";
@@ -129,7 +129,7 @@ fn gauge_terms_vanish() {
     let accelerations = |source| {
         derive(source, |_, graph, motion| {
             let mut point = Point { random: Random(3), values: BTreeMap::new() };
-            // One point for both: every symbol in one order.
+            // The same point for both systems, with the symbols in the same order.
             let symbols = [
                 Symbol::Parameter(0),
                 Symbol::Parameter(1),
@@ -174,7 +174,7 @@ fn polar_and_cartesian_kepler_agree() {
     assert!((ddy - (radial * s + across * c)).abs() < 1e-14);
 }
 
-/// The point of an integral hides an index of the same name outside of it.
+/// The point of an integral hides an index of the same name.
 #[test]
 fn the_inner_name_holds() {
     let energy = |potential: &str| {

@@ -1,4 +1,4 @@
-//! Control inputs: where they may stand, and which of their derivatives are refused.
+//! Control inputs: expressions that may contain them, and derivatives that are refused.
 
 use super::{derive, refusals};
 use crate::algebra::expr::{Dependencies, Graph};

@@ -1,4 +1,4 @@
-//! Tests of whole blocks, in process.
+//! Tests of whole blocks, without running rustc.
 
 use crate::algebra::expr::{Graph, Id, Symbol};
 use crate::compile::derived;
@@ -34,7 +34,7 @@ mod sparse;
 mod symmetries;
 mod translations;
 
-/// The messages for a block.
+/// Returns the messages for a block.
 fn refusals(source: &str) -> Vec<String> {
     let mut errors = Errors::default();
     derived(source, &mut errors, |_, _, _, _| ());
@@ -50,7 +50,7 @@ fn derive<R>(source: &str, inspect: impl FnOnce(&Model, &mut Graph, &Motion) -> 
     result.unwrap()
 }
 
-/// An expression of the free scalars `a`, `b`, `c`, lowered through a block's potential.
+/// Lowers an expression of the free scalars `a`, `b`, `c` as the potential of a block.
 pub(crate) fn lowered(graph: &mut Graph, expression: &str) -> Id {
     let source = format!("::p; struct S {{ a, b, c }} coordinate q; potential = {expression};");
     let mut errors = Errors::default();
@@ -61,7 +61,7 @@ pub(crate) fn lowered(graph: &mut Graph, expression: &str) -> Id {
     energies.potential.unwrap()
 }
 
-/// The value of an expression in floating point.
+/// Evaluates an expression in floating point.
 fn evaluate(graph: &Graph, root: Id, value: &dyn Fn(Symbol) -> f64) -> f64 {
     let mut known: BTreeMap<Id, f64> = BTreeMap::new();
     for id in graph.reachable(&[root]) {

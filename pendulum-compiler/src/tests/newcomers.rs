@@ -1,8 +1,8 @@
-//! Newcomers' notations: each gets the word of the language that is meant.
+//! Notations of newcomers: the message suggests the corresponding notation of the language.
 
 use super::refusals;
 
-/// The blocks of newcomers, with the names and units of other notations.
+/// Blocks with the names and units of other notations, and their messages.
 #[rustfmt::skip]
 const NEWCOMERS: &[(&str, &str)] = &[
     // Velocities.

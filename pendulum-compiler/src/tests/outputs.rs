@@ -62,7 +62,7 @@ fn mistakes_are_told_at_the_output() {
     }
 }
 
-/// Outputs change neither the equations nor what they cost.
+/// Outputs change neither the equations nor their cost.
 #[test]
 fn equations_stay_as_they_are() {
     let plain = crate::compile(&block("")).unwrap();
@@ -74,11 +74,11 @@ fn equations_stay_as_they_are() {
     assert_eq!(plain, with);
 }
 
-/// rustc would refuse two methods of one name as well.
+/// Refused outputs have no method, because rustc would report two methods of the same name as well.
 #[test]
 fn what_is_refused_is_no_method() {
     let count = |statements: &str, method: &str| {
-        // The macro of the runtime puts its path in front of a block.
+        // The macro of the runtime inserts its path before a block.
         let source = format!("::pendulum_runtime; {}", block(statements));
         let text = crate::expand(source.parse().unwrap()).to_string();
         text.matches(&format!("fn {method} ")).count()

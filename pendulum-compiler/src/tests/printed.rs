@@ -4,7 +4,7 @@ use super::derive;
 use crate::backend::latex;
 use crate::backend::unicode;
 
-/// The equations of a block in Unicode and in LaTeX.
+/// Returns the equations of a block in Unicode and in LaTeX.
 fn printed(source: &str) -> [Vec<String>; 2] {
     derive(source, |model, graph, motion| {
         let names = unicode::Names::new(model, &crate::mechanics::lower::Energies::default());
@@ -34,7 +34,7 @@ fn powers_in_latex_hold_together() {
     }
 }
 
-/// A shared value stands once in the graph, and in a text wherever it is used.
+/// A shared value is a single node of the graph, but its text is repeated for every use.
 #[test]
 fn what_is_too_long_is_not_written_out() {
     let shared: Vec<String> =
@@ -58,7 +58,7 @@ fn what_is_too_long_is_not_written_out() {
     }
 }
 
-/// A term that stands in two brackets with opposite signs is not printed.
+/// A term with opposite signs in two brackets is not printed.
 #[test]
 fn terms_cancel() {
     for (force, expected) in [
@@ -66,7 +66,7 @@ fn terms_cancel() {
         ("(w + b)*sin(q) - w*sin(q) + c*cos(q)", "b*sin(q) + c*cos(q)"),
         ("sin((w + q)*b - w*b + c)", "sin(c + b*q)"),
         ("b/((w + q)*q_dot - w*q_dot + c)", "b/(c + q*q_dot)"),
-        // Nothing meets, or what meets makes it longer.
+        // No two terms have the same factors, or the expansion is longer.
         ("(w + q)*(b + q_dot) + c", "c + b*(w + q) + q_dot*(w + q)"),
         ("(w + q)^2*(b + sin(q)) + c", "c + (w + q)^2*(b + sin(q))"),
     ] {
@@ -78,7 +78,7 @@ fn terms_cancel() {
     }
 }
 
-/// The text printed of a block in ASCII can be read: it prints itself.
+/// Equations of a block in ASCII can be parsed and are then printed identically.
 #[test]
 fn what_is_printed_in_ascii_can_be_read() {
     let bare = "struct S { a, b, c } coordinate q; driven x;";
@@ -104,7 +104,7 @@ fn what_is_printed_in_ascii_can_be_read() {
     printed(&format!("{bare} kinetic = q_dot^2/2; force q = {right};"));
 }
 
-/// One name beyond ASCII, and the equations are in Unicode; a comment is no name.
+/// If a single name is not ASCII, the equations are in Unicode. Comments do not count.
 #[test]
 fn a_block_in_ascii_is_printed_in_ascii() {
     for (block, expected) in [

@@ -1,4 +1,4 @@
-//! Units and shapes: what does not fit together is told at the smallest expression that is wrong.
+//! Units and shapes: a mismatch is reported at the smallest expression that contains it.
 
 use super::refusals;
 use super::refusals::block;
@@ -27,7 +27,7 @@ fn shapes_are_checked() {
     }
 }
 
-/// Quantities without a unit take no part in the checks, vectors and families included.
+/// Quantities without a unit are not checked, including vectors and families.
 #[test]
 fn a_vector_may_have_no_unit() {
     let source = |unit: &str| {
@@ -43,7 +43,7 @@ fn a_vector_may_have_no_unit() {
     );
 }
 
-/// Each electrical unit in terms of the others.
+/// Each electrical unit in terms of other units.
 #[test]
 fn electrical_units_agree() {
     for (unit, other) in [
@@ -68,7 +68,7 @@ fn electrical_units_agree() {
     }
 }
 
-/// A direct-current motor: its inductance is the mass of the charge, its constant couples both
+/// A direct-current motor: its inductance is the mass of the charge, and its constant couples both
 /// circuits.
 #[test]
 fn a_motor_is_checked() {
@@ -88,7 +88,7 @@ fn a_motor_is_checked() {
     );
 }
 
-/// Units, each mistake at the smallest expression that is wrong.
+/// Units: each mistake is reported at the smallest expression that contains it.
 #[rustfmt::skip]
 const UNITS: &[(&str, &str)] = &[
     ("potential = m*9.81*L*cos(θ);",                        "`m*9.81*L*cos(θ)` is kg·m, but `m/2*L^2*θ̇^2` is kg·m²/s²; all energies of a block have one unit"),
@@ -107,10 +107,10 @@ const UNITS: &[(&str, &str)] = &[
     ("force θ = m*g;",                                      "`m*g` is kg·m/s², but a force on `θ` is kg·m²/s², an energy per unit of the coordinate"),
     ("let r(p) = p + L; potential = m*g*r(t);",             "`L` is m, but `p` is s; a sum needs one unit"),
     ("let w = g*L; potential = m*w + m*L;",                 "`m*L` is kg·m, but `m*w` is kg·m²/s²; a sum needs one unit"),
-    // Brackets stand where the language needs them, and nowhere else.
+    // Brackets are printed only where the language requires them.
     ("potential = m*g*(L - (x.x^2)^3*2 - -m*t);",            "`(x.x^2)^3*2` is m⁶, but `L` is m; a sum needs one unit"),
     ("potential = m*g*height(x + L*(θ*2 - (-θ)*2)*[t, t]);", "`L*(θ*2 - (-θ*2))*[t, t]` is m·s, but `x` is m; a sum needs one unit"),
-    // A quantity without a unit is decided by its first use and checked at the next.
+    // The unit of a quantity without a unit is inferred from its first use and checked at the next.
     ("potential = k*θ^2 + k*L;",                            "`k*L` is m times the unit of `k`, but `k*θ^2` is a pure number times the unit of `k`; a sum needs one unit"),
 ];
 
@@ -127,11 +127,11 @@ fn units_are_checked() {
 #[test]
 fn units_give_no_false_alarm() {
     let blocks = [
-        // Divided by the mass, an energy is as good.
+        // An energy may be divided by the mass.
         "struct P { L: m, g: m/s^2 } coordinate θ: rad; kinetic = L^2*θ̇^2/2; potential = -g*L*cos(θ);",
-        // Nothing has a unit: nothing is checked.
+        // Quantities without units are not checked.
         "struct P { L, g } coordinate θ; kinetic = θ̇^2 + t*θ̇^2; potential = sin(t);",
-        // Unknowns are inferred or left alone; a zero has every unit.
+        // Unknown units are inferred or stay unknown. A zero has every unit.
         "struct P { m: kg, L, g, c, k, s: N/m^(3/2) } coordinate θ: rad; coordinate z: m; driven x: [m; 2]; kinetic = m/2*|ẋ + dot(L*cis(θ))|^2 + m/2*ż^2;
          potential = m*g*(height(x) + height(L*cis(θ))) + k/2*max(0, z)^2 + s*|z|^(5/2)*sign(z); dissipation = c*θ̇^2; force θ = [c, 0].x*θ̇; force z = k*z;",
     ];

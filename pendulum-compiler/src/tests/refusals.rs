@@ -1,8 +1,8 @@
-//! One mistake gives one message, two give two; the messages say what to do.
+//! Each mistake results in one message, which states the correction.
 
 use super::refusals;
 
-/// A block with one statement to vary.
+/// Returns a block with the given statements.
 pub(super) fn block(statements: &str) -> String {
     format!(
         "struct P {{ m: kg, L: m, c: [m; 2], f: [kg; 5], g }} coordinate θ: rad; driven x: [m; 2]; {statements}"
@@ -53,7 +53,7 @@ const CASES: &[(&str, &str)] = &[
     ("coordinate φ[3]; kinetic = m*L^2*(θ̇^2 + (φ̇[0] + φ̇[2])^2 + (φ̇[1] - 2*φ̇[2])^2);", "the mass matrix is singular in the direction of `φ[0]`: its kinetic energy is that of other coordinates; leave the redundant coordinate out"),
     ("coordinate φ; kinetic = m*L^2*|dot([cos(θ + φ), sin(θ + φ)])|^2;", "the mass matrix is singular in the direction of `θ`: its kinetic energy is that of other coordinates; leave the redundant coordinate out"),
     ("coordinate φ; kinetic = m*L^2*θ̇*φ̇;", "the kinetic energy is not positive: in the direction of `φ` it is zero at every state; take coordinates whose squared velocities stand in it"),
-    // More roots than a point of the field has.
+    // More roots than can exist at a common point of the field.
     ("let z = sum(k in 1..20, sqrt(k + θ^2)*sin(k*θ)); coordinate φ; kinetic = m*L^2*(z*θ̇ + z^2*φ̇)^2;", "the mass matrix is singular in the direction of `θ`: its kinetic energy is that of other coordinates; leave the redundant coordinate out"),
     ("potential = m*g*θ;",                                     "`θ` has no kinetic energy, so its acceleration is undetermined; add the square of its velocity to `kinetic`"),
     ("",                                                       "no energy; write `kinetic = …;` and `potential = …;` below the struct"),
@@ -139,7 +139,7 @@ fn a_negative_kinetic_energy_is_refused() {
         (0..60).map(|k| format!("let u{} = u{k} + u{k};", k + 1)).collect::<Vec<_>>().concat();
     let expected = format!("the kinetic energy of `θ` is negative in `-J*θ̇^2`; {way_out}");
     assert_eq!(refusals(&block(&format!("let u0 = -J*θ̇^2; {doubled} kinetic = u60;"))), [expected]);
-    // Any sign may be meant, or the whole is positive for some values.
+    // The sign may be intended, or the energy is positive for some values.
     for statements in [
         "lagrangian = -m/2*L^2*θ̇^2;",
         "kinetic = -c/2*θ̇^2;",
@@ -151,7 +151,7 @@ fn a_negative_kinetic_energy_is_refused() {
     ] {
         assert_eq!(refusals(&block(statements)), [""; 0], "{statements}");
     }
-    // Without units, a number has a sign and a parameter has none.
+    // Without units, a number has a sign, but a parameter may have any sign.
     let source = "struct P { m } coordinate q; kinetic = -q_dot^2/2; potential = m*q^2;";
     assert_eq!(
         refusals(source),
@@ -215,12 +215,12 @@ fn a_default_that_is_no_number_is_one_mistake() {
 
 #[test]
 fn a_right_block_is_not_refused() {
-    // Each function of scalars in a default, the last of the table too.
+    // Every function of scalars in a default, including the last of the table.
     assert!(
         refusals("struct N { c = min(1, 2), d = max(1, 2), e = atan2(1, sqrt(2)) } coordinate θ; kinetic = c*d*e*θ̇^2;")
             .is_empty()
     );
-    // Bars inside bars, and an index that is called as the imaginary unit.
+    // Nested bars, and an index with the name of the imaginary unit.
     assert!(
         refusals(&block(
             "kinetic = m*L^2*θ̇^2; potential = m*g*|x + |x|*x/L|*sum(i in 0..3, i)*exp(-1)*8^(1/3);"
@@ -230,7 +230,8 @@ fn a_right_block_is_not_refused() {
     assert!(refusals(&block(ENERGY)).is_empty());
 }
 
-/// A coordinate that could be read keeps its place: the number of coordinates is part of the type.
+/// A coordinate whose declaration is readable is counted, because the number of coordinates is part
+/// of the type.
 #[test]
 fn a_broken_coordinate_is_counted() {
     for (statements, count, messages) in [
@@ -258,7 +259,7 @@ fn a_parameter_is_in_every_build() {
     );
 }
 
-/// The parameters that no statement mentions, of which rustc warns.
+/// The parameters that no statement mentions, for which rustc issues a warning.
 #[test]
 fn unmentioned_parameters_are_found() {
     let unmentioned = |source: &str| {
@@ -271,11 +272,11 @@ fn unmentioned_parameters_are_found() {
         })
     };
     let source = "struct P { m: J*s^2, L: m, c, _d, B: body, C: body, h = 2, n: [kg; 2] } coordinate θ: rad;";
-    // A mass that cancels is mentioned, and so is what stands in a definition that nobody uses.
+    // A mass that cancels is mentioned, and so are names in an unused definition.
     let statements =
         "let unused = L; kinetic = m*θ̇^2/2 + integral(p in B, 0*|p|^2); potential = 0*n[1]*θ;";
     assert_eq!(unmentioned(&format!("{source} {statements}")), ["c", "_d", "C", "h"]);
-    // Inputs and definitions that nothing uses are found beside them.
+    // Unused inputs and definitions are found in addition.
     let unused = |source: &str| {
         super::derive(source, |model, _, _| {
             model.unused.iter().map(ToString::to_string).collect::<Vec<_>>()
@@ -284,7 +285,7 @@ fn unmentioned_parameters_are_found() {
     let statements = "driven x: m; driven y: m; input u: N; input w: N; let a = 2*x; let b = a; \
                       let f(p) = p^2; let g(p) = f(p); kinetic = m*θ̇^2/2; force θ = L*w;";
     assert_eq!(unused(&format!("{source} {statements}")), ["y", "u", "b", "g"]);
-    // An argument of the same name hides it.
+    // An argument of the same name hides a parameter.
     assert_eq!(
         unmentioned("struct P { m, c } coordinate q; let r(c) = m*c; kinetic = r(q_dot)^2;"),
         ["c"]

@@ -1,5 +1,5 @@
-//! Every rule of the table, at random points: both sides agree, and the left side becomes the
-//! right.
+//! Every rule of the table at random points: both sides have the same value, and the left side is
+//! rewritten to the right side.
 
 use super::{Random, evaluate, lowered};
 use crate::algebra::expr::rule::{CANCELLATIONS, RULES, without_cancellation};
@@ -51,7 +51,7 @@ fn differences_are_found_among_other_terms() {
         let (whole, parts) = (lowered(&mut graph, whole), lowered(&mut graph, parts));
         assert_eq!(without_cancellation(&mut graph, whole), parts);
     }
-    // Terms that do not cancel stay.
+    // Terms that do not match a rule are not changed.
     for still in ["2 - cos(a)", "1 - cos(a)^2/2", "b - c*cos(a)", "cos(a) + cos(b)", "1 - cosh(a)"]
     {
         let mut graph = Graph::new();
@@ -73,7 +73,7 @@ fn the_largest_shift_is_reduced() {
     }
 }
 
-/// The left side is evaluated from its syntax, without the graph.
+/// The left side is evaluated from its syntax tree, without the graph.
 #[test]
 fn both_sides_have_one_value() {
     let mut random = Random(7);

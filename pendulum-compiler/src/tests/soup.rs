@@ -1,11 +1,11 @@
-//! Whatever tokens come, the expansion neither panics nor hangs.
+//! Random tokens: the expansion neither panics nor hangs.
 
 use crate::compile::expand;
 use proc_macro2::{TokenStream, TokenTree};
 use random_systems::Random;
 use random_systems::tokens::{BLOCKS, mutate, soup, transplant};
 
-/// The number of each; `SOUP=50000` in `.ci/run`, and any other number for more.
+/// Returns the number of inputs of each kind: `SOUP=50000` in `.ci/run`, or any other number.
 fn rounds() -> u64 {
     std::env::var("SOUP").ok().and_then(|text| text.parse().ok()).unwrap_or(2000)
 }
@@ -39,7 +39,8 @@ fn mutated_blocks_do_not_panic() {
     }
 }
 
-/// One mistake anywhere leaves the items in place: the struct, its constructor and its `System`.
+/// After a single mistake, the items are still emitted: the struct, its constructor and its
+/// `System`.
 #[test]
 fn the_items_survive_a_mistake() {
     let good = expand(BLOCKS[0].parse().unwrap()).to_string();
@@ -60,8 +61,9 @@ fn the_items_survive_a_mistake() {
     assert!(bad.contains("compile_error"));
 }
 
-/// A block with any one of its tokens gone, doubled or replaced keeps the shape that an editor
-/// needs: the struct with its fields, its constructor, its `System`, and names to hover over.
+/// If any token of a block is removed, doubled or replaced, the items required by an editor are
+/// still emitted: the struct with its fields, its constructor, its `System`, and names for hover
+/// texts.
 #[test]
 fn the_shape_survives_any_broken_token() {
     let block =
@@ -69,7 +71,7 @@ fn the_shape_survives_any_broken_token() {
                  let y = x + L*[sin(θ), -cos(θ)]; kinetic = m/2*|ẏ|^2; potential = m*g*height(y);";
     let tokens: TokenStream = block.parse().unwrap();
     let count = leaves(&tokens);
-    // The tokens before the body of the struct are what the shape is made of.
+    // The tokens before the body of the struct define its shape and are not changed.
     for index in 7..count {
         for change in [Change::Remove, Change::Double, Change::Replace] {
             let broken = changed(&tokens, index, change, &mut 0);
@@ -98,7 +100,7 @@ fn leaves(tokens: &TokenStream) -> usize {
     tokens.clone().into_iter().map(count).sum()
 }
 
-/// A stream with one of its leaves changed.
+/// Returns a stream with one of its leaves changed.
 fn changed(tokens: &TokenStream, index: usize, change: Change, next: &mut usize) -> TokenStream {
     let mut result = Vec::new();
     for tree in tokens.clone() {
@@ -120,7 +122,7 @@ fn changed(tokens: &TokenStream, index: usize, change: Change, next: &mut usize)
     result.into_iter().collect()
 }
 
-/// Powers of powers whose exponents leave exact arithmetic.
+/// Powers of powers whose exponents exceed exact arithmetic.
 #[test]
 fn huge_exponents_do_not_hang() {
     let large = [
@@ -168,7 +170,7 @@ fn deep_nesting_is_refused() {
     assert!(expand(signs.parse().unwrap()).to_string().contains("too many signs"));
 }
 
-/// Definitions within definitions: what is written above its uses is done when it is used.
+/// Nested definitions: definitions before their uses are evaluated before them.
 #[test]
 fn deep_definitions_are_refused() {
     let deep = |count: usize, sines: usize, down: bool| {

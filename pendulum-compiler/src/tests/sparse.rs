@@ -1,5 +1,5 @@
-//! The sparse form against the dense one: equal at random points of a prime field, and cheaper
-//! where it should be.
+//! The sparse form and the dense form: equal at random points of a prime field, and the sparse form
+//! is cheaper for long chains.
 
 use super::derived;
 use crate::algebra::diff::derivative;
@@ -12,7 +12,7 @@ use crate::mechanics::solve;
 use crate::messages::Errors;
 use crate::schedule;
 
-/// Compares every output of the two forms and gives the programs of both accelerations.
+/// Compares every output of the two forms and returns the programs of both accelerations.
 fn compare(source: &str) -> [schedule::Program; 2] {
     let mut errors = Errors::default();
     let programs = derived(source, &mut errors, |_, graph, motion, energies| {
@@ -80,7 +80,7 @@ fn chain(n: usize) -> String {
     )
 }
 
-/// Blocks of every shape: the two forms are the same functions.
+/// Blocks of various shapes, for which the two forms are the same functions.
 #[rustfmt::skip]
 const BLOCKS: &[(&str, &str)] = &[
     ("a driven chain",
@@ -139,7 +139,7 @@ fn chains_and_trees_grow_linearly() {
     assert_eq!(costs[2] - costs[1], costs[1] - costs[0]);
 }
 
-/// A chain with a branch at every joint.
+/// Returns a chain with a branch at every joint.
 fn comb(n: usize) -> String {
     format!(
         "struct C {{ m: [kg; {n}], l: [m; {n}], g }} coordinate θ[{n}]; coordinate φ[{n}];

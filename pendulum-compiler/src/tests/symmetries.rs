@@ -3,7 +3,7 @@
 use super::derive;
 use crate::backend::unicode;
 
-/// The conserved quantities of a block, as printed.
+/// Returns the conserved quantities of a block as printed.
 fn conserved(source: &str) -> Vec<String> {
     derive(source, |model, _, motion| {
         let names = unicode::Names::new(model, &crate::mechanics::lower::Energies::default());
@@ -11,7 +11,7 @@ fn conserved(source: &str) -> Vec<String> {
     })
 }
 
-/// Bodies in the plane; `potential` in terms of `r[k]`.
+/// Returns bodies in the plane, with a `potential` in terms of `r[k]`.
 fn bodies(count: usize, potential: &str) -> String {
     format!(
         "struct Bodies {{ m: [kg; {count}], G, k }} coordinate x[{count}]; coordinate y[{count}]; let r[k in 0..{count}] = [x[k], y[k]];
@@ -19,12 +19,12 @@ fn bodies(count: usize, potential: &str) -> String {
     )
 }
 
-/// Gravity between each pair: n(n − 1)/2 roots.
+/// Returns the potential of gravity between each pair, with n(n − 1)/2 roots.
 fn gravity(count: usize) -> String {
     format!("-G*sum(j in 0..{count}, sum(k in 0..j, m[j]*m[k]/|r[j] - r[k]|))")
 }
 
-/// The momenta along both axes and the angular momentum of `count` bodies.
+/// Returns the momenta along both axes and the angular momentum of `count` bodies.
 fn momenta(count: usize) -> Vec<String> {
     let sum =
         |axis: &str| (0..count).map(|k| format!("p_{axis}[{k}]")).collect::<Vec<_>>().join(" + ");
@@ -58,7 +58,7 @@ fn roots_of_roots_hide_no_symmetry() {
 #[test]
 fn what_a_symmetry_lacks_is_seen_behind_many_roots() {
     let [x, y, turn] = <[String; 3]>::try_from(momenta(4)).unwrap();
-    // A weak field of their own, a pole that draws them, a spring to the axis.
+    // A weak uniform field, a pole that attracts a body, a spring to an axis.
     let with = |more: &str| conserved(&bodies(4, &format!("{} + {more}", gravity(4))));
     assert_eq!(with("k*x[0]"), [y]);
     assert_eq!(with("k/|r[3]|"), [turn]);

@@ -3,7 +3,7 @@
 use super::refusals;
 use super::refusals::block;
 
-/// The text of another notation, and the text to write here.
+/// Texts in other notations, and their messages.
 #[rustfmt::skip]
 const NOTATIONS: &[(&str, &str)] = &[
     ("potential = -cos^2(θ);",                 "a function is raised to a power after its argument; write `cos(θ)^2`"),
@@ -75,7 +75,7 @@ fn other_notations_are_translated() {
     }
 }
 
-/// A block in ASCII is answered in ASCII.
+/// The message for a block in ASCII is in ASCII.
 #[test]
 fn constants_are_translated_into_the_letters_of_the_block() {
     for (constant, expected) in [
@@ -93,7 +93,7 @@ fn constants_are_translated_into_the_letters_of_the_block() {
     }
 }
 
-/// Declarations of other shapes, and statements that there are not yet.
+/// Declarations in other forms, and statements that are not supported.
 #[rustfmt::skip]
 const DECLARATIONS: &[(&str, &str)] = &[
     ("coordinate a, b: m;",                    "a statement declares one name; write `coordinate b: m;` as a statement of its own"),

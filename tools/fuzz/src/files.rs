@@ -1,8 +1,8 @@
-//! Files with something wrong in them.
+//! Invalid files.
 
 use random_systems::Random;
 
-/// Fragments over which readers of numbers and of lengths trip.
+/// Fragments that are difficult for readers of numbers and lengths.
 const SPLINTERS: [&[u8]; 16] = [
     b"-1",
     b"0",
@@ -22,7 +22,7 @@ const SPLINTERS: [&[u8]; 16] = [
     b"\xe2\x80\x8b",
 ];
 
-/// A file with a few of its bytes, words or stretches changed.
+/// Returns a file with some bytes, words or ranges changed.
 pub(crate) fn mutated(file: &[u8], random: &mut Random) -> Vec<u8> {
     let mut bytes = file.to_vec();
     for _ in 0..=random.below(6) {
@@ -30,7 +30,7 @@ pub(crate) fn mutated(file: &[u8], random: &mut Random) -> Vec<u8> {
             break;
         }
         let at = random.below(bytes.len());
-        // Headers are where structure is.
+        // Most of the structure is in headers.
         let at = if random.once_in(2) { at.min(random.below(2000)) } else { at };
         let longest = random.of(&[4, 40, 4000]);
         let end = (at + 1 + random.below(longest)).min(bytes.len());
@@ -57,7 +57,7 @@ pub(crate) fn mutated(file: &[u8], random: &mut Random) -> Vec<u8> {
     bytes
 }
 
-/// A text with a few of its numbers changed, so that its syntax holds.
+/// Returns a text with some numbers changed, so that its syntax stays valid.
 #[cfg(any(feature = "gltf", feature = "svg"))]
 pub(crate) fn renumbered(text: &[u8], random: &mut Random) -> Vec<u8> {
     const NUMBERS: [&[u8]; 16] = [

@@ -1,10 +1,10 @@
-//! Random input for everything that reads some: the whole expansion of `lagrangian!`, on tokens,
-//! broken blocks and random systems, and the reader of motion capture.
+//! Random input for all readers: the whole expansion of `lagrangian!` on tokens, broken blocks and
+//! random systems, and the reader of motion capture.
 //!
-//! `cargo run --release -p fuzz -- --seconds 1200 --seed 1` draws cases of every target in
-//! turn until the time is over, prints a line for each target and fails if a case panicked, took
-//! longer than ten seconds, or needed more than a gigabyte. `--only TARGET --seed N --count 1`
-//! repeats one case, `--only equations --count 100000` draws so many of one.
+//! `cargo run --release -p fuzz -- --seconds 1200 --seed 1` runs cases of all targets in turn until
+//! the time is over and prints a line for each target. It fails if a case panicked, took longer
+//! than ten seconds or needed more than a gigabyte. `--only TARGET --seed N --count 1` repeats a
+//! single case, `--only equations --count 100000` runs this number of cases of a target.
 
 mod files;
 mod memory;
@@ -17,16 +17,16 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 use target::{TARGETS, Target, Verdict};
 
-/// No case takes longer.
+/// The longest time of a case.
 const LONGEST: Duration = Duration::from_secs(10);
 
-/// No case needs more memory, the program included, in bytes.
+/// The largest memory during a case, including the program, in bytes.
 const LARGEST: u64 = 1 << 30;
 
-/// The time that each target gets in its turn.
+/// The time of each target per turn.
 const SLICE: Duration = Duration::from_millis(100);
 
-/// The plan of a run.
+/// The options of a run.
 struct Plan {
     seconds: f64,
     seed: u64,
@@ -34,12 +34,12 @@ struct Plan {
     only: Option<String>,
 }
 
-/// The counts of a target.
+/// The results of a target.
 #[derive(Default)]
 struct Tally {
     cases: u64,
     refused: u64,
-    /// The worst time, with its seed.
+    /// The longest time, with its seed.
     slowest: (Duration, u64),
     failures: Vec<(u64, String)>,
     peak: u64,
@@ -63,7 +63,7 @@ fn main() -> ExitCode {
         eprintln!("no such target; choose one of {}", names.join(", "));
         return ExitCode::FAILURE;
     }
-    // The text of a panic is told with its seed.
+    // The report contains the text of a panic with its seed.
     std::panic::set_hook(Box::new(|_| {}));
     let watch = watch::Watch::start(LONGEST * 6);
     let tallies = run(&plan, &targets, &watch);
@@ -106,7 +106,7 @@ fn run(plan: &Plan, targets: &[&Target], watch: &watch::Watch) -> Vec<Tally> {
     tallies
 }
 
-/// One case of one target.
+/// Runs a case of a target.
 fn case(target: &Target, seed: u64, tally: &mut Tally, watch: &watch::Watch) {
     watch.begin(target.name, seed);
     let clock = Instant::now();
@@ -114,7 +114,8 @@ fn case(target: &Target, seed: u64, tally: &mut Tally, watch: &watch::Watch) {
     let mut time = clock.elapsed();
     watch.end();
     if LONGEST < time {
-        // Others may have had the machine: once more, and the shorter time counts.
+        // Other processes may have used the machine. The case is repeated, and the shorter time
+        // counts.
         watch.begin(target.name, seed);
         let clock = Instant::now();
         let _ = catch_unwind(AssertUnwindSafe(|| (target.case)(seed)));

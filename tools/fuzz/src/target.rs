@@ -17,10 +17,10 @@ pub(crate) enum Verdict {
     Wrong(String),
 }
 
-/// Something that reads.
+/// A reader under test.
 pub(crate) struct Target {
     pub(crate) name: &'static str,
-    /// The case of a seed.
+    /// Runs the case of a seed.
     pub(crate) case: fn(u64) -> Verdict,
 }
 
@@ -37,7 +37,7 @@ pub(crate) const TARGETS: &[Target] = &[
     Target { name: "svg", case: svg },
 ];
 
-/// Any tokens, now and then behind a struct.
+/// Expands random tokens, in some cases after a struct.
 fn tokens(seed: u64) -> Verdict {
     let mut random = Random(seed);
     let mut tokens = parsed("::p;");
@@ -48,7 +48,7 @@ fn tokens(seed: u64) -> Verdict {
     expansion(tokens)
 }
 
-/// Blocks of the tests and random ones, with some of their tokens changed.
+/// Expands blocks of the tests and random blocks with some tokens changed.
 fn mutated_blocks(seed: u64) -> Verdict {
     let mut random = Random(seed);
     let block = if random.once_in(2) {
@@ -63,12 +63,12 @@ fn mutated_blocks(seed: u64) -> Verdict {
     })
 }
 
-/// Random systems of any kind, expanded.
+/// Expands random systems of any kind.
 fn blocks(seed: u64) -> Verdict {
     expansion(parsed(&format!("::p; {}", generate::system(seed, Manner::Wild).source("S"))))
 }
 
-/// Random tame systems, compiled as text: none is refused.
+/// Compiles random tame systems as text. None may be refused.
 fn equations(seed: u64) -> Verdict {
     let source = generate::system(seed, Manner::Tame).source("Random");
     let verdict = match compile(&source) {
@@ -82,17 +82,17 @@ fn equations(seed: u64) -> Verdict {
     verdict
 }
 
-/// Places of tokens are kept for ever unless they are given up.
+/// Discards the spans of tokens, which are kept otherwise.
 fn forget_sources() {
     proc_macro2::extra::invalidate_current_thread_spans();
 }
 
 const JUMPS: &[u8] = include_bytes!("../../../examples/data/jumps.bvh");
 
-/// A motion capture with something wrong in it.
+/// Reads an invalid motion capture.
 fn motion_capture(seed: u64) -> Verdict {
     let mut random = Random(seed);
-    // Most of the file is rows of numbers.
+    // Most of the file consists of rows of numbers.
     let length = if random.once_in(2) { JUMPS.len() } else { 4000 + random.below(6000) };
     let bytes = mutated(&JUMPS[..length], &mut random);
     match Bvh::read(&String::from_utf8_lossy(&bytes)) {
@@ -101,7 +101,7 @@ fn motion_capture(seed: u64) -> Verdict {
     }
 }
 
-/// A glTF file with something wrong in it, and the motions of all its nodes.
+/// Reads an invalid glTF file, and samples the motions of all its nodes.
 #[cfg(feature = "gltf")]
 fn gltf(seed: u64) -> Verdict {
     use pendulum_runtime::import::gltf::Gltf;
@@ -130,7 +130,7 @@ fn gltf(seed: u64) -> Verdict {
     Verdict::Taken
 }
 
-/// A drawing with something wrong in it.
+/// Reads an invalid drawing.
 #[cfg(feature = "svg")]
 fn svg(seed: u64) -> Verdict {
     use pendulum_runtime::import::svg::{Drawing, Units};
@@ -152,7 +152,7 @@ fn svg(seed: u64) -> Verdict {
     }
 }
 
-/// The expansion, which is there whatever is wrong.
+/// Expands tokens. The expansion always exists, even for invalid input.
 fn expansion(tokens: TokenStream) -> Verdict {
     let refused =
         expand(tokens).into_iter().any(|token| token.to_string().contains("compile_error"));

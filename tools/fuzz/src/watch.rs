@@ -1,18 +1,18 @@
-//! Ends the program if a case hangs.
+//! A watchdog that ends the program if a case hangs.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The case that is running.
+/// The running case.
 type Running = Arc<Mutex<Option<(&'static str, u64, Instant)>>>;
 
-/// A thread that looks once a second.
+/// A thread that checks the running case once a second.
 pub(crate) struct Watch {
     running: Running,
 }
 
 impl Watch {
-    /// Starts it; a case that takes longer than `limit` is told and ends the program.
+    /// Starts the thread. A case that takes longer than `limit` is reported and ends the program.
     pub(crate) fn start(limit: Duration) -> Self {
         let running = Running::default();
         let seen = Arc::clone(&running);

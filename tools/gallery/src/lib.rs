@@ -1,6 +1,6 @@
-//! The page of the gallery, made from the sources of its systems: title and text from the comment
-//! at the top, block, program, and the equations that the compiler derives. Pictures of guides as
-//! data, for pages that cannot have files beside them.
+//! The page of the gallery, created from the sources of its systems: title and text from the
+//! comment at the top, block, program, and the equations derived by the compiler. Pictures of
+//! guides are embedded as data for pages that cannot have separate files.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -8,7 +8,7 @@ use pendulum_compiler::compile;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// The systems in the order of the page: name of the picture and source.
+/// The systems in the order of the page: name of the picture, and source.
 pub const SYSTEMS: [(&str, &str); 12] = [
     ("double-pendulum", include_str!("systems/double_pendulum.rs")),
     ("cart-pole", include_str!("systems/cart_pole.rs")),
@@ -32,12 +32,12 @@ The page is made from programs: `cargo run --release -p gallery` runs them again
 is nearest to yours and change it.
 ";
 
-/// The folder of the guide.
+/// Returns the folder of the guide.
 pub fn guide() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../pendulum-runtime/src/guide")
 }
 
-/// The whole page; an error names what is missing in a source.
+/// Returns the whole page. An error states what is missing in a source.
 pub fn page() -> Result<String, String> {
     let mut page = HEAD.to_owned();
     for (name, source) in SYSTEMS {
@@ -95,13 +95,13 @@ fn between<'a>(text: &'a str, before: &str, after: &str) -> Option<&'a str> {
     Some(&rest[..rest.find(after)?])
 }
 
-/// The definitions at the end of a page, `[name]: path`.
+/// Returns the definitions at the end of a page, `[name]: path`.
 fn definitions(page: &str) -> impl Iterator<Item = (&str, &str)> {
     page.lines().filter_map(|line| line.strip_prefix('[')?.split_once("]: "))
 }
 
-/// The pictures of a page as data. Where this text stands before the page, its definitions count,
-/// and those of the page, which are for readers of the file, do not.
+/// Returns the pictures of a page as definitions with data. If this text precedes the page, its
+/// definitions take precedence over those of the page, which are intended for readers of the file.
 pub fn pictures(page: &str) -> std::io::Result<String> {
     let mut text = String::new();
     for (name, path) in definitions(page).filter(|(_, path)| path.contains("figures/")) {
@@ -116,7 +116,7 @@ pub fn pictures(page: &str) -> std::io::Result<String> {
     Ok(text)
 }
 
-/// The pages that have pictures.
+/// The pages with pictures.
 pub const ILLUSTRATED: [&str; 4] = ["gallery", "scenes", "ensembles", "accuracy"];
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! `cargo run --release -p gallery` runs the systems of the gallery, draws their motions into
-//! `pendulum-runtime/src/guide/figures`, and writes the page `gallery.md` beside them. Pages with
-//! pictures get these as data, too, for docs.rs.
+//! `pendulum-runtime/src/guide/figures`, and writes the page `gallery.md` beside them. Pictures are
+//! also embedded in pages as data, for docs.rs.
 
-// The modules are programs that the page shows; what they do not print is of no concern to it.
+// The modules are programs shown on the page. Items that they do not print need no documentation.
 #![allow(missing_docs)]
 
 mod picture;
@@ -30,7 +30,7 @@ fn main() -> prelude::Result<()> {
         atwood, bead_on_hoop, cart_pole, charged_particle, double_pendulum, elastic_pendulum,
         foucault, four_bar, furuta, kepler, top, wilberforce,
     };
-    // In the order of `SYSTEMS`.
+    // The order is that of `SYSTEMS`.
     let drawn = [
         double_pendulum::picture()?,
         cart_pole::picture()?,

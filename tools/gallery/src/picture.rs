@@ -1,18 +1,19 @@
-//! The picture of a motion: the path of a point, and what it belongs to, moving.
+//! An animated picture of a motion: the path of a point, and the moving line to which the point
+//! belongs.
 
 use std::fmt::Write;
 
-/// The size of a picture, in pixels, and the room around what is drawn.
+/// The size of a picture in pixels; `MARGIN` is the margin around the drawing.
 const SIZE: [f64; 2] = [320.0, 220.0];
 const MARGIN: f64 = 12.0;
 
-/// The positions that a moving point takes, those that a line takes at least, and the points of
-/// the path.
+/// The largest number of positions of a moving point, that of a line at least, and the largest
+/// number of points of the path.
 const POSES: usize = 360;
 const FEWEST: usize = 120;
 const POINTS: usize = 800;
 
-/// A line through points at one time; the last one draws the path.
+/// A line through points at one time. The last point draws the path.
 pub(crate) struct Frame(Vec<[f64; 2]>);
 
 impl Frame {
@@ -21,7 +22,7 @@ impl Frame {
     }
 }
 
-/// Frames at equal distances of time, as many in a second as the motion has.
+/// Frames at equal intervals of time, shown in an animation of eight seconds.
 pub(crate) struct Picture {
     frames: Vec<Frame>,
     mark: Option<[f64; 2]>,
@@ -32,12 +33,12 @@ impl Picture {
         Self { frames: frames.collect(), mark: None }
     }
 
-    /// The same picture with a dot that stays where it is.
+    /// Returns the same picture with a fixed dot.
     pub(crate) fn with_mark(self, mark: [f64; 2]) -> Self {
         Self { mark: Some(mark), ..self }
     }
 
-    /// The picture as SVG, in colours that are seen on white and on black.
+    /// Returns the picture as SVG, in colours that are visible on white and on black.
     pub(crate) fn svg(&self) -> String {
         let points = || self.frames.iter().flat_map(|frame| &frame.0).chain(&self.mark);
         let range = |k: usize| {
@@ -80,7 +81,7 @@ impl Picture {
             let (x, y) = at.split_once(',').unwrap_or_default();
             let _ = writeln!(text, "<circle cx='{x}' cy='{y}' r='6' fill='#e0a030'/>");
         }
-        // Writing to a string does not fail.
+        // Writing to a string cannot fail.
         if 1 < first.len() {
             let values: Vec<_> = poses().map(|frame| line(&frame.0)).collect();
             let _ = writeln!(
@@ -117,7 +118,7 @@ impl Picture {
     }
 }
 
-/// A point in space as somebody sees it who looks down at it a little.
+/// Projects a point in space for a viewer slightly above it.
 pub(crate) fn seen([x, y, z]: [f64; 3]) -> [f64; 2] {
     let (sin, cos) = 0.5_f64.sin_cos();
     let (across, away) = (x * cos - y * sin, x * sin + y * cos);

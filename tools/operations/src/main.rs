@@ -1,8 +1,8 @@
-//! The operations that the macro makes of a system: those of the accelerations at one state (after
-//! preparation), tokens of the whole expansion, and the time that the expansion takes.
+//! The operations generated for a system: those of the accelerations at one state (after
+//! preparation), the tokens of the whole expansion, and the time of the expansion.
 //!
-//! `cargo run --release -p operations` prints one line a system: `name coordinates sincos
-//! mul add div tokens expansion_ms`. Names on the command line choose some of them.
+//! `cargo run --release -p operations` prints a line for each system: `name coordinates sincos mul
+//! add div tokens expansion_ms`. Names on the command line select systems.
 
 mod systems;
 
@@ -41,7 +41,7 @@ fn main() {
     }
 }
 
-/// The number of tokens, those within brackets and the brackets themselves included.
+/// Counts the tokens, including brackets and the tokens inside them.
 fn count(tokens: TokenStream) -> usize {
     let count = |token| match token {
         TokenTree::Group(group) => 2 + count(group.stream()),

@@ -1,6 +1,6 @@
-//! The four systems of the note and chains of links, written in Cartesian coordinates.
+//! The four systems of the note, and chains of links, written in Cartesian coordinates.
 
-/// The name and the block of each system.
+/// Returns the name and the block of each system.
 pub(crate) fn all() -> Vec<(String, String)> {
     let note = [
         (
@@ -25,7 +25,7 @@ pub(crate) fn all() -> Vec<(String, String)> {
     note.into_iter().chain(chains).collect()
 }
 
-/// A chain of `n` links, all masses and lengths parameters.
+/// Returns a chain of `n` links with all masses and lengths as parameters.
 fn chain(n: usize) -> String {
     format!(
         "struct S {{ m: [kg; {n}], l: [m; {n}], g: m/s^2 }} coordinate θ[{n}]: rad; \

@@ -1,4 +1,4 @@
-//! Axes: linear, logarithmic, and errors that shrink to the right.
+//! Axes: linear, logarithmic, and descending logarithmic for errors.
 
 /// An axis of a chart.
 #[derive(Clone, Debug)]
@@ -13,7 +13,7 @@ pub struct Axis {
 pub(crate) enum Scale {
     Linear,
     Logarithmic,
-    /// Logarithmic, with small numbers to the right.
+    /// Logarithmic and descending: small numbers are on the right.
     Digits,
     /// Linear without ticks.
     Bare,
@@ -24,39 +24,39 @@ impl Axis {
         Self { name: name.into(), scale, range: None, unit: "" }
     }
 
-    /// Equal steps for equal differences.
+    /// Creates a linear axis.
     pub fn linear(name: impl Into<String>) -> Self {
         Self::new(name, Scale::Linear)
     }
 
-    /// Equal steps for equal ratios.
+    /// Creates a logarithmic axis.
     pub fn logarithmic(name: impl Into<String>) -> Self {
         Self::new(name, Scale::Logarithmic)
     }
 
-    /// Logarithmic and from great to small, for errors: further to the right is more exact.
+    /// Creates a descending logarithmic axis for errors: smaller errors are further to the right.
     pub fn digits(name: impl Into<String>) -> Self {
         Self::new(name, Scale::Digits)
     }
 
-    /// No ticks and no name.
+    /// Creates an axis without ticks and name.
     pub fn bare() -> Self {
         Self::new("", Scale::Bare)
     }
 
-    /// Ends of the axis, which otherwise are those of its curves.
+    /// Sets the ends of the axis. The default is the range of its curves.
     pub fn range(mut self, from: f64, to: f64) -> Self {
         self.range = Some((from, to));
         self
     }
 
-    /// A sign behind the numbers, as ° is.
+    /// Sets a sign after the numbers, such as °.
     pub fn unit(mut self, unit: &'static str) -> Self {
         self.unit = unit;
         self
     }
 
-    /// The place of a value along the axis, from left to right or upwards.
+    /// Returns the position of a value along the axis, from left to right or upwards.
     pub(crate) fn place(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Linear | Scale::Bare => value,
@@ -65,7 +65,7 @@ impl Axis {
         }
     }
 
-    /// The places of both ends.
+    /// Returns the positions of both ends.
     pub(crate) fn ends(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
         if let Some((from, to)) = self.range {
             return (self.place(from), self.place(to));
@@ -79,12 +79,12 @@ impl Axis {
         match self.scale {
             Scale::Bare => (low - edge, high + edge),
             Scale::Linear => (low - edge, high + edge),
-            // At least the next whole power lies inside.
+            // A wider margin, which includes a power of ten just outside of the values.
             Scale::Logarithmic | Scale::Digits => (low - 1.5 * edge, high + 1.5 * edge),
         }
     }
 
-    /// Places of ticks and their texts.
+    /// Returns the positions and the texts of ticks.
     pub(crate) fn ticks(&self, (low, high): (f64, f64), most: usize) -> Vec<(f64, String)> {
         let (step, digits) = match self.scale {
             Scale::Bare => return Vec::new(),
@@ -107,12 +107,12 @@ impl Axis {
         };
         (first..=last)
             .map(|index| index as f64 * step)
-            // No sign before zero.
+            // Adding zero removes the sign of −0.
             .map(|place| (place, text(place + 0.0)))
             .collect()
     }
 
-    /// Ticks at 1, 2 and 5 times each power of ten.
+    /// Returns ticks at 1, 2 and 5 times each power of ten.
     fn short_ticks(&self, (low, high): (f64, f64)) -> Vec<(f64, String)> {
         let sign = if self.scale == Scale::Digits { -1.0 } else { 1.0 };
         let (first, last) = ((sign * low).min(sign * high), (sign * low).max(sign * high));
@@ -129,7 +129,7 @@ impl Axis {
     }
 }
 
-/// The number as programs print it, which every font has.
+/// Formats a power of ten as `1e5`, which uses only characters available in every font.
 fn power(exponent: f64) -> String {
     match exponent.round() as i32 {
         0 => "1".to_owned(),
@@ -137,8 +137,8 @@ fn power(exponent: f64) -> String {
     }
 }
 
-/// The finest step of 1, 2 or 5 times a power of ten that gives at most so many ticks, and its
-/// digits behind the point.
+/// Returns the finest step of 1, 2 or 5 times a power of ten that results in at most `most` ticks,
+/// and its number of decimals.
 fn nice_step(length: f64, most: usize) -> (f64, usize) {
     let least = length / most as f64;
     let power = least.log10().floor();

@@ -1,4 +1,4 @@
-//! Curves, dots and texts over two axes.
+//! Curves, dots and texts on two axes.
 
 use crate::axis::Scale;
 use crate::labels::spread;
@@ -26,7 +26,7 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// A grey line of two pixels, without a name.
+    /// Creates a grey line of two pixels without a name.
     pub fn new(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         Self {
             points: points.into_iter().collect(),
@@ -40,13 +40,13 @@ impl Curve {
         }
     }
 
-    /// Gives a name, which stands at the end of the line.
+    /// Sets the name, which is written at the end of the line.
     pub fn name(mut self, name: impl Into<String>) -> Self {
         self.name = name.into();
         self
     }
 
-    /// Gives a colour.
+    /// Sets the colour.
     pub fn color(mut self, color: RGBColor) -> Self {
         self.color = color;
         self
@@ -58,32 +58,32 @@ impl Curve {
         self
     }
 
-    /// Lets what lies below be seen through: 0 is nothing at all.
+    /// Sets the opacity; 0 is invisible.
     pub fn opacity(mut self, opacity: f64) -> Self {
         self.opacity = opacity;
         self
     }
 
-    /// Breaks the line into dashes.
+    /// Draws the line with dashes.
     pub fn dashed(mut self) -> Self {
         self.dashed = true;
         self
     }
 
-    /// Puts a dot at every point.
+    /// Draws a dot at every point.
     pub fn marked(mut self) -> Self {
         self.marked = true;
         self
     }
 
-    /// Fills what the line goes around.
+    /// Fills the area enclosed by the line.
     pub fn filled(mut self) -> Self {
         self.filled = true;
         self
     }
 }
 
-/// Curves, dots and texts over two axes.
+/// Curves, dots and texts on two axes.
 #[derive(Clone, Debug)]
 pub struct Chart {
     title: String,
@@ -96,31 +96,31 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// An empty one.
+    /// Creates an empty chart.
     pub fn new(x: Axis, y: Axis) -> Self {
         let (title, curves, dots, texts) = (String::new(), Vec::new(), Vec::new(), Vec::new());
         Self { title, x, y, equal: false, curves, dots, texts }
     }
 
-    /// A drawing: no axes, and a metre across is as long as a metre upwards.
+    /// Creates a drawing: a chart without axes and with equal scales in both directions.
     pub fn drawing() -> Self {
         Self { equal: true, ..Self::new(Axis::bare(), Axis::bare()) }
     }
 
-    /// Puts a line above.
+    /// Sets the title above the chart.
     pub fn title(mut self, title: impl Into<String>) -> Self {
         self.title = title.into();
         self
     }
 
-    /// Adds a curve over those before.
+    /// Adds a curve above the previous curves.
     pub fn curve(mut self, curve: Curve) -> Self {
         self.curves.push(curve);
         self
     }
 
-    /// Adds a line through points whose colour goes from one hue to another, in degrees, as time
-    /// goes on.
+    /// Adds a line through points whose colour changes along the line from one hue to another, in
+    /// degrees.
     pub fn way(
         mut self,
         points: impl IntoIterator<Item = (f64, f64)>,
@@ -137,13 +137,13 @@ impl Chart {
         self
     }
 
-    /// Adds a dot of `radius` pixels, over all curves.
+    /// Adds a dot of `radius` pixels above all curves.
     pub fn dot(mut self, (x, y): (f64, f64), radius: f64, color: RGBColor) -> Self {
         self.dots.push((x, y, radius, color));
         self
     }
 
-    /// Adds a text whose middle is at a point.
+    /// Adds a text centred at a point.
     pub fn text(mut self, (x, y): (f64, f64), text: impl Into<String>, color: RGBColor) -> Self {
         self.texts.push((x, y, text.into(), color));
         self
@@ -161,12 +161,12 @@ impl Chart {
         let mut xs = self.x.ends(self.points().map(|point| point.0));
         let mut ys = self.y.ends(self.points().map(|point| point.1));
         let bare = [&self.x, &self.y].map(|axis| axis.scale == Scale::Bare);
-        // The widest letters are as wide as they are high, most are half of that.
+        // The widest letters are as wide as the font is high; most are half as wide.
         let longest = |texts: &mut dyn Iterator<Item = usize>| texts.max().unwrap_or(0) as f64;
         let fine = f64::from(FINE);
         let y_ticks = self.y.ticks(ys, (height / (34.0 * fine)) as usize);
         let ticks = longest(&mut y_ticks.iter().map(|tick| tick.1.chars().count()));
-        // Strong curves have bold names.
+        // Wide curves have bold names.
         let names = self.curves.iter().map(|curve| {
             let letter = if 3.0 <= curve.width { 8.6 } else { 7.6 };
             letter * curve.name.chars().count() as f64
@@ -187,7 +187,7 @@ impl Chart {
         }
         let (ends_x, ends_y) =
             ((left as i32)..((width - right) as i32), (top as i32)..((height - bottom) as i32));
-        // Places upwards are pixels downwards.
+        // Pixels are counted downwards.
         let (x0, y0) = area.get_base_pixel();
         let plane = area.apply_coord_spec(Cartesian2d::<RangedCoordf64, RangedCoordf64>::new(
             xs.0..xs.1,
@@ -286,7 +286,7 @@ impl Chart {
         Ok(())
     }
 
-    /// Puts the names of the curves into the margin, with lines from their ends.
+    /// Writes the names of the curves into the margin, connected to their ends by lines.
     fn draw_names(
         &self,
         area: &Area<'_>,
@@ -300,7 +300,7 @@ impl Chart {
             let places = curve.points.iter().map(|&(x, y)| (self.x.place(x), self.y.place(y)));
             let inside =
                 places.filter(|place| place.0 <= xs.1 + 1e-9 && (ys.0..=ys.1).contains(&place.1));
-            // The end is the point furthest to the right.
+            // The end is the rightmost point.
             if let Some(end) = inside.max_by(|a, b| a.0.total_cmp(&b.0)) {
                 let (x, y) = plane.map_coordinate(&end);
                 rows.push((curve, (x - x0, y - y0)));

@@ -1,33 +1,32 @@
-//! Colours that stand out from white and from black.
+//! Colours with sufficient contrast on white and on black.
 
 use plotters::style::RGBColor;
 
-/// The strong one, for what the picture is about.
+/// The colour for the subject of a picture.
 pub const ORANGE: RGBColor = RGBColor(226, 88, 34);
-/// For a curve.
+/// A colour for curves.
 pub const BLUE: RGBColor = RGBColor(54, 128, 214);
-/// For a curve.
+/// A colour for curves.
 pub const GREEN: RGBColor = RGBColor(36, 145, 82);
-/// For a curve.
+/// A colour for curves.
 pub const PURPLE: RGBColor = RGBColor(153, 101, 214);
-/// For a curve.
+/// A colour for curves.
 pub const PINK: RGBColor = RGBColor(210, 78, 146);
-/// For a curve.
+/// A colour for curves.
 pub const OCHRE: RGBColor = RGBColor(163, 119, 34);
-/// For a curve.
+/// A colour for curves.
 pub const TEAL: RGBColor = RGBColor(18, 140, 155);
-/// Curves for comparison.
+/// The colour of curves shown for comparison.
 pub const GREY: RGBColor = RGBColor(130, 130, 134);
-/// Titles, labels and ticks.
+/// The colour of titles, labels and ticks.
 pub const TEXT: RGBColor = RGBColor(118, 118, 124);
 
-/// All for curves, the strong one first.
+/// All colours for curves, beginning with that of the subject.
 pub const CURVES: [RGBColor; 7] = [ORANGE, BLUE, GREEN, PURPLE, PINK, OCHRE, TEAL];
 
-/// A colour of the circle of hues, in degrees, for what shades from one hue to another; all are
-/// about equally light.
+/// Returns a colour for a hue in degrees, for gradients. All hues are about equally light.
 pub fn hue(degrees: f64) -> RGBColor {
-    // Along the circle between the neighbours of a table of colours of like lightness.
+    // Linear interpolation between neighbours in a table of colours of similar lightness.
     const CIRCLE: [(f64, f64, f64); 6] = [
         (214.0, 72.0, 66.0),
         (150.0, 124.0, 20.0),
@@ -48,7 +47,7 @@ mod tests {
     use super::{CURVES, GREY, TEXT, hue};
     use plotters::style::RGBColor;
 
-    /// Contrast as WCAG 2 defines it.
+    /// Returns the contrast as defined by WCAG 2.
     fn contrast(a: RGBColor, b: RGBColor) -> f64 {
         let luminance = |color: RGBColor| {
             let part = |value: u8| {

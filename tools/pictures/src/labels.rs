@@ -1,12 +1,12 @@
-//! Labels one below the other, as near as they can be to where they belong.
+//! Vertical placement of labels near their preferred positions.
 
-/// Heights at least `gap` apart in the order of `wanted`, each as near as possible to the wanted
-/// one, between `top` and `bottom` as long as they fit.
+/// Returns heights in the order of `wanted` that are at least `gap` apart and as near as possible
+/// to the wanted heights. They are between `top` and `bottom` if they fit.
 pub(crate) fn spread(wanted: &[f64], gap: f64, top: f64, bottom: f64) -> Vec<f64> {
     let mut order: Vec<usize> = (0..wanted.len()).collect();
     order.sort_by(|a, b| wanted[*a].total_cmp(&wanted[*b]));
-    // Groups of labels that touch: their number, the sum of the places that they would like their
-    // first label to have.
+    // Groups of adjacent labels: the members, and the sum of their preferred positions of the first
+    // label.
     let mut groups: Vec<(Vec<usize>, f64)> = Vec::new();
     let place = |group: &(Vec<usize>, f64)| {
         let count = group.0.len() as f64;

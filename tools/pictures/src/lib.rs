@@ -1,8 +1,8 @@
-//! Charts and drawings as SVG, drawn by `plotters`, readable on light and on dark ground.
+//! Charts and drawings as SVG, drawn by `plotters`, legible on light and dark backgrounds.
 //!
-//! A [`Picture`] is a title above [`Chart`]s side by side. Curves carry their names at their ends,
-//! and there is no ground: what is behind the picture is seen through it, and every colour of
-//! [`color`] stands out from white as well as from black.
+//! A [`Picture`] is a title above [`Chart`]s in a row. Curves have their names at their ends. The
+//! background is transparent, and every colour of [`color`] has sufficient contrast on white and on
+//! black.
 
 mod axis;
 mod chart;
@@ -18,10 +18,10 @@ use plotters::prelude::*;
 use std::error::Error;
 use std::path::Path;
 
-/// Pixels of `plotters`, which are integers, within a pixel of the picture.
+/// The number of integer pixels of `plotters` per pixel of the picture.
 const FINE: u32 = 10;
 
-/// A title above charts side by side.
+/// A title above charts in a row.
 #[derive(Clone, Debug)]
 pub struct Picture {
     title: String,
@@ -31,24 +31,24 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A picture of `width` × `height` pixels; the title is best a sentence.
+    /// Creates a picture of `width` × `height` pixels. The title should be a sentence.
     pub fn new(title: impl Into<String>, size: (u32, u32)) -> Self {
         Self { title: title.into(), note: String::new(), size, charts: Vec::new() }
     }
 
-    /// Adds a small line below.
+    /// Adds a line in small letters below the charts.
     pub fn note(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
         self
     }
 
-    /// Adds a chart to the right of those before; all are of one width.
+    /// Adds a chart to the right of the previous charts. All charts have the same width.
     pub fn chart(mut self, chart: Chart) -> Self {
         self.charts.push(chart);
         self
     }
 
-    /// The text of the SVG.
+    /// Returns the text of the SVG.
     pub fn svg(&self) -> Result<String, Box<dyn Error>> {
         let (width, height) = self.size;
         let fine = (width * FINE, height * FINE);
@@ -71,12 +71,12 @@ impl Picture {
         }
         root.present()?;
         drop((area, root));
-        // The same picture in pixels of the usual size.
+        // The size of the picture in ordinary pixels.
         let [from, to] = [fine, self.size].map(|(w, h)| format!(r#"width="{w}" height="{h}""#));
         Ok(svg.replacen(&from, &to, 1))
     }
 
-    /// Writes the picture, and the folder of it where there is none.
+    /// Writes the picture to a file. Creates the folder if it does not exist.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Box<dyn Error>> {
         if let Some(folder) = path.as_ref().parent() {
             std::fs::create_dir_all(folder)?;
@@ -85,7 +85,7 @@ impl Picture {
     }
 }
 
-/// Fine pixels.
+/// Converts to the integer pixels of `plotters`.
 fn px(pixels: i32) -> i32 {
     pixels * FINE as i32
 }

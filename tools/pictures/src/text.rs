@@ -1,4 +1,4 @@
-//! Texts of a size and a colour.
+//! Texts with size and colour.
 
 use crate::FINE;
 use plotters::prelude::*;
@@ -6,14 +6,14 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 const FONT: &str = "Helvetica, Arial, sans-serif";
 
-/// A style that is not anchored yet.
+/// A text style without anchor.
 #[derive(Clone, Copy)]
 pub(crate) struct Style {
     size: u32,
     color: RGBColor,
 }
 
-/// A style of letters of `size` pixels.
+/// Creates a style of letters of `size` pixels.
 pub(crate) fn style(size: u32, color: RGBColor) -> Style {
     Style { size, color }
 }
@@ -26,22 +26,22 @@ impl Style {
         font.color(&self.color).pos(Pos::new(horizontal, VPos::Center))
     }
 
-    /// Begins where it is put.
+    /// Returns a style whose anchor is at the beginning of the text.
     pub(crate) fn left(self) -> TextStyle<'static> {
         self.at(HPos::Left, FontStyle::Normal)
     }
 
-    /// Begins where it is put, in bold letters.
+    /// Returns a bold style whose anchor is at the beginning of the text.
     pub(crate) fn bold(self) -> TextStyle<'static> {
         self.at(HPos::Left, FontStyle::Bold)
     }
 
-    /// Has its middle where it is put.
+    /// Returns a style whose anchor is in the middle of the text.
     pub(crate) fn middle(self) -> TextStyle<'static> {
         self.at(HPos::Center, FontStyle::Normal)
     }
 
-    /// Ends where it is put.
+    /// Returns a style whose anchor is at the end of the text.
     pub(crate) fn right(self) -> TextStyle<'static> {
         self.at(HPos::Right, FontStyle::Normal)
     }

@@ -1,11 +1,10 @@
-//! The value of an expression of the generator, without the macro: what is written is what is
-//! computed.
+//! Evaluation of the generator's expressions, without the macro.
 
 use super::nilpotent::{Function, Nilpotent};
 use super::tree::{Expr, Index, Kind, Property, Shape, System};
 use pendulum_runtime::scalar::Float;
 
-/// Scalar, plane or space vector.
+/// A scalar, a plane vector or a space vector.
 #[derive(Clone, Debug)]
 pub enum Value<T> {
     Scalar(Nilpotent<T>),
@@ -13,27 +12,27 @@ pub enum Value<T> {
     Space([Nilpotent<T>; 3]),
 }
 
-/// A body as point masses: what an integral over it is made of.
+/// A body as point masses, over which integrals are sums.
 #[derive(Clone, Debug)]
 pub struct Points<T>(pub Vec<(T, [T; 2])>);
 
 /// The constants.
 #[derive(Clone, Debug)]
 pub struct Constants<T> {
-    /// All scalars of the parameters in order.
+    /// All scalars of the parameters, in order.
     pub parameters: Vec<T>,
-    /// The body that each parameter is.
+    /// The body of each parameter that is a body.
     pub bodies: Vec<Option<Points<T>>>,
 }
 
-/// The variables, with their rates and all with the same infinitesimals.
+/// The variables and their rates, all with the same infinitesimals.
 #[derive(Clone, Debug)]
 pub struct Leaves<T> {
     pub time: Nilpotent<T>,
     pub q: Vec<Nilpotent<T>>,
     pub v: Vec<Nilpotent<T>>,
     pub a: Vec<Nilpotent<T>>,
-    /// For each driven input and component the value and its derivatives up to the third.
+    /// For each driven input and component, the value and its derivatives up to the third.
     pub inputs: Vec<Vec<[Nilpotent<T>; 4]>>,
 }
 
@@ -42,7 +41,8 @@ impl<T: Float> Leaves<T> {
         self.time.infinitesimals()
     }
 
-    /// A moment later: everything that moves, plus its rate times a new infinitesimal.
+    /// Returns the variables at a later time: each variable plus its rate times a new
+    /// infinitesimal.
     pub fn later(&self) -> Self {
         let zero = Nilpotent::constant(T::from_f64(0.0), self.infinitesimals());
         let one = Nilpotent::constant(T::from_f64(1.0), self.infinitesimals());
@@ -74,7 +74,7 @@ impl<T: Float> Leaves<T> {
         }
     }
 
-    /// The same with a new infinitesimal that nothing contains yet.
+    /// Returns the variables with a new infinitesimal whose coefficients are zero.
     pub fn widened(&self) -> Self {
         let zero = Nilpotent::constant(T::from_f64(0.0), self.infinitesimals());
         let wide = |value: &Nilpotent<T>| value.clone().join(zero.clone());
@@ -94,7 +94,7 @@ impl<T: Float> Leaves<T> {
     }
 }
 
-/// The arguments of a function, in the scope where they are written.
+/// The indices and arguments in scope.
 #[derive(Clone, Debug)]
 struct Scope<'s, T> {
     indices: Vec<(usize, usize)>,
@@ -141,7 +141,7 @@ impl<T: Float> Evaluator<'_, T> {
         }
     }
 
-    /// The components of a vector.
+    /// Returns the components of a vector.
     fn parts(&self, expr: &Expr, leaves: &Leaves<T>, scope: &Scope<'_, T>) -> Vec<Nilpotent<T>> {
         match self.value(expr, leaves, scope) {
             Value::Scalar(value) => vec![value],
@@ -213,7 +213,7 @@ impl<T: Float> Evaluator<'_, T> {
             Expr::Negative(inner) => return map(self.value(inner, leaves, scope), Nilpotent::neg),
             Expr::Power(base, top, bottom) => match self.value(base, leaves, scope) {
                 Value::Scalar(base) => base.rational_power(*top, *bottom),
-                // Only complex numbers have whole powers.
+                // Among vectors, only complex numbers have integer powers.
                 value => {
                     let one = Value::Plane([whole(1.0), whole(0.0)]);
                     return (0..*top).fold(one, |power, _| multiply(&power, &value));
@@ -302,7 +302,7 @@ impl<T: Float> Evaluator<'_, T> {
         })
     }
 
-    /// The total derivative by time.
+    /// Returns the total derivative with respect to time.
     fn rate(&self, expr: &Expr, leaves: &Leaves<T>, scope: &Scope<'_, T>) -> Value<T> {
         map(self.value(expr, &leaves.later(), scope), |value| value.split().1)
     }
@@ -329,7 +329,7 @@ impl<T: Float> Evaluator<'_, T> {
         match property {
             Property::Mass => Value::Scalar(constant(mass)),
             Property::Center => Value::Plane([constant(x), constant(y)]),
-            // About the pivot.
+            // The moment of inertia about the pivot.
             Property::Inertia => {
                 let points = &self.constants.bodies[index].as_ref().expect("a body has points").0;
                 let parts = points.iter().map(|&(weight, [x, y])| weight * (x * x + y * y));
@@ -381,7 +381,7 @@ fn add<T: Float>(a: &Value<T>, b: &Value<T>) -> Value<T> {
     }
 }
 
-/// Scalar times anything, or the complex product.
+/// Multiplies a scalar by any value, or two complex numbers.
 fn multiply<T: Float>(a: &Value<T>, b: &Value<T>) -> Value<T> {
     match (a, b) {
         (Value::Scalar(a), b) => map(b.clone(), |b| a.mul(b)),

@@ -1,10 +1,11 @@
 //! Random systems in the language of `lagrangian!`, and their motion computed without the compiler.
 //!
-//! The generator makes trees of its own and writes them as source text. The reference evaluates the
-//! trees with infinitesimals and knows no rule of the compiler; the tests of the compiler compare
-//! both at random states.
+//! The generator creates trees and writes them as source text. The reference evaluates the trees
+//! with infinitesimals and uses no rule of the compiler. The tests of the compiler compare both at
+//! random states.
 
-// Names of variants and fields are those of the language; nobody outside of the workspace reads on.
+// Names of variants and fields are those of the language, and the crate is used only in this
+// workspace.
 #![allow(missing_docs)]
 
 pub mod evaluate;

@@ -1,12 +1,13 @@
-//! Numbers with infinitesimals: derivatives of any order without a formula for them.
+//! Numbers with infinitesimals: derivatives of any order without formulas for them.
 //!
-//! A number with k infinitesimals ε₁, …, ε_k, each of square zero, has 2ᵏ coefficients; that of
-//! ε₁ε₂ in f(x + ε₁ + ε₂) is f″(x). A function of a + bε is f(a) + f′(a) b ε, where a and b have
-//! the other infinitesimals, so that one slope for each function is enough.
+//! A number with k infinitesimals ε₁, …, ε_k, whose squares are zero, has 2ᵏ coefficients. The
+//! coefficient of ε₁ε₂ in f(x + ε₁ + ε₂) is f″(x). A function of a + bε is f(a) + f′(a) b ε, where
+//! a and b contain the other infinitesimals, so that the first derivative of each function is
+//! sufficient.
 
 use pendulum_runtime::scalar::Float;
 
-/// The coefficients of a number; bit j of their index is set for those of εⱼ.
+/// The coefficients of a number. Bit j of an index is set for the coefficients of εⱼ.
 #[derive(Clone, Debug)]
 pub struct Nilpotent<T>(pub Vec<T>);
 
@@ -30,32 +31,32 @@ pub enum Function {
 }
 
 impl Function {
-    /// As the language writes it.
+    /// Returns the name in the language.
     pub fn name(self) -> String {
         format!("{self:?}").to_lowercase()
     }
 }
 
 impl<T: Float> Nilpotent<T> {
-    /// A number without infinitesimals where there are some.
+    /// Creates a constant with a given number of infinitesimals.
     pub fn constant(value: T, infinitesimals: usize) -> Self {
         let mut coefficients = vec![T::from_f64(0.0); 1 << infinitesimals];
         coefficients[0] = value;
         Self(coefficients)
     }
 
-    /// The number of infinitesimals.
+    /// Returns the number of infinitesimals.
     pub fn infinitesimals(&self) -> usize {
         self.0.len().trailing_zeros() as usize
     }
 
-    /// `self` + `slope` ε for a new ε.
+    /// Returns `self` + `slope` ε for a new ε.
     pub fn join(mut self, slope: Self) -> Self {
         self.0.extend(slope.0);
         self
     }
 
-    /// The parts a and b of a + bε, where ε is the newest infinitesimal.
+    /// Returns a and b of a + bε, where ε is the newest infinitesimal.
     pub fn split(&self) -> (Self, Self) {
         let (a, b) = self.0.split_at(self.0.len() / 2);
         (Self(a.to_vec()), Self(b.to_vec()))
@@ -100,19 +101,19 @@ impl<T: Float> Nilpotent<T> {
         value.join(slope.mul(&b))
     }
 
-    /// A whole power.
+    /// Returns the power with an integer exponent.
     pub fn whole_power(&self, exponent: i64) -> Self {
         let one = self.like(1.0);
         let power = (0..exponent.unsigned_abs()).fold(one, |power, _| power.mul(self));
         if exponent < 0 { power.reciprocal() } else { power }
     }
 
-    /// `self` to a number that moves: exp(b ln a).
+    /// Returns `self` to a non-constant power: exp(b ln a).
     pub fn power(&self, exponent: &Self) -> Self {
         exponent.mul(&self.call(Function::Ln)).call(Function::Exp)
     }
 
-    /// `self` to a fraction, by the powers of the scalar.
+    /// Returns `self` to the power of a fraction, computed with the powers of the scalar.
     pub fn rational_power(&self, top: i64, bottom: i64) -> Self {
         if top % bottom == 0 {
             return self.whole_power(top / bottom);
@@ -132,12 +133,14 @@ impl<T: Float> Nilpotent<T> {
         a.rational_power(top, bottom).join(slope.mul(&b))
     }
 
-    /// The larger one; the first of two equal ones, or one that is not a number.
+    /// Returns the larger number, or the first of two equal numbers. An `other` that is not finite
+    /// is always returned.
     pub fn max(&self, other: &Self) -> Self {
         if self.0[0] < other.0[0] || other.undefined() { other.clone() } else { self.clone() }
     }
 
-    /// The smaller one; the first of two equal ones, or one that is not a number.
+    /// Returns the smaller number, or the first of two equal numbers. An `other` that is not finite
+    /// is always returned.
     pub fn min(&self, other: &Self) -> Self {
         if other.0[0] < self.0[0] || other.undefined() { other.clone() } else { self.clone() }
     }
@@ -146,7 +149,7 @@ impl<T: Float> Nilpotent<T> {
         !self.0[0].is_finite()
     }
 
-    /// The angle of the point (`x`, `self`).
+    /// Returns the angle of the point (`x`, `self`).
     pub fn atan2(&self, x: &Self) -> Self {
         if let ([y], [x]) = (&self.0[..], &x.0[..]) {
             return Self(vec![y.atan2(*x)]);
@@ -166,7 +169,7 @@ impl<T: Float> Nilpotent<T> {
         a.call(function).join(slope.mul(&b))
     }
 
-    /// The derivative of a function at `self`.
+    /// Returns the derivative of a function at `self`.
     fn slope(&self, function: Function) -> Self {
         let one = || self.like(1.0);
         let square = || self.mul(self);
@@ -188,7 +191,7 @@ impl<T: Float> Nilpotent<T> {
         }
     }
 
-    /// A constant with as many infinitesimals.
+    /// Creates a constant with the same number of infinitesimals.
     fn like(&self, value: f64) -> Self {
         Self::constant(T::from_f64(value), self.infinitesimals())
     }

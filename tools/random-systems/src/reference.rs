@@ -1,27 +1,27 @@
-//! The equations of motion straight from the source: Euler–Lagrange by infinitesimals, one
-//! direction at a time.
+//! The equations of motion computed from the source: Euler–Lagrange with infinitesimals, direction
+//! by direction.
 
 use super::evaluate::{Constants, Leaves, indexed, scalar};
 use super::nilpotent::Nilpotent;
 use super::tree::System;
 use pendulum_runtime::scalar::Float;
 
-/// A state with the motion of everything around it.
+/// A state with the driven inputs and constants.
 #[derive(Clone, Debug)]
 pub struct State<T> {
     pub constants: Constants<T>,
     pub t: T,
     pub q: Vec<T>,
     pub v: Vec<T>,
-    /// For each driven input and component the value and its derivatives up to the third.
+    /// For each driven input and component, the value and its derivatives up to the third.
     pub inputs: Vec<Vec<[T; 4]>>,
 }
 
-/// The values of the source at a state: M q̈ = f and the functions beside it.
+/// The values of the source at a state: M q̈ = f and further functions.
 #[derive(Clone, Debug)]
 pub struct Reference<T> {
     pub lagrangian: T,
-    /// Σ `kinetic` and Σ `potential`.
+    /// Σ `kinetic`; `potential` is Σ `potential`.
     pub kinetic: T,
     pub potential: T,
     pub momenta: Vec<T>,
@@ -37,7 +37,7 @@ pub struct Reference<T> {
 }
 
 impl<T: Float> State<T> {
-    /// The leaves without infinitesimals.
+    /// Returns the variables without infinitesimals.
     pub fn leaves(&self, accelerations: &[T]) -> Leaves<T> {
         let constant = |&value: &T| Nilpotent::constant(value, 0);
         let all = |values: &[T]| values.iter().map(constant).collect::<Vec<_>>();
@@ -55,7 +55,7 @@ impl<T: Float> State<T> {
         }
     }
 
-    /// The state over another scalar.
+    /// Converts the state to another scalar.
     pub fn map<U>(&self, map: impl Fn(T) -> U + Copy) -> State<U> {
         use super::evaluate::Points;
         let all = |values: &[T]| values.iter().map(|&value| map(value)).collect::<Vec<_>>();
@@ -84,7 +84,7 @@ impl<T: Float> State<T> {
     }
 }
 
-/// Σ kinetic − Σ potential.
+/// Returns Σ kinetic − Σ potential.
 pub fn lagrangian<T: Float>(
     system: &System,
     constants: &Constants<T>,
@@ -112,7 +112,7 @@ fn dissipation<T: Float>(
     total
 }
 
-/// A new infinitesimal in one velocity.
+/// Adds a new infinitesimal to one velocity.
 fn pushed<T: Float>(leaves: &Leaves<T>, coordinate: usize) -> Leaves<T> {
     let mut wide = leaves.widened();
     let half = wide.v[coordinate].0.len() / 2;
@@ -120,7 +120,7 @@ fn pushed<T: Float>(leaves: &Leaves<T>, coordinate: usize) -> Leaves<T> {
     wide
 }
 
-/// The same in one coordinate.
+/// Adds a new infinitesimal to one coordinate.
 fn shifted<T: Float>(leaves: &Leaves<T>, coordinate: usize) -> Leaves<T> {
     let mut wide = leaves.widened();
     let half = wide.q[coordinate].0.len() / 2;
@@ -128,7 +128,7 @@ fn shifted<T: Float>(leaves: &Leaves<T>, coordinate: usize) -> Leaves<T> {
     wide
 }
 
-/// Everything at a state.
+/// Computes all values at a state.
 pub fn reference<T: Float>(system: &System, state: &State<T>) -> Reference<T> {
     let count = system.count();
     let zero = T::from_f64(0.0);
@@ -166,7 +166,7 @@ pub fn reference<T: Float>(system: &System, state: &State<T>) -> Reference<T> {
         let friction = dissipation(system, constants, &pushed(&still, i)).0[1];
         reference.externals.push(-friction);
     }
-    // L(q, q̇, t + ε), where driven inputs move on and coordinates do not.
+    // L(q, q̇, t + ε), where driven inputs advance and coordinates do not.
     let frozen = Leaves { q: still.widened().q, v: still.widened().v, ..later };
     reference.explicit = lagrangian(system, constants, &frozen).0[1];
     for force in &system.forces {

@@ -1,10 +1,10 @@
-//! A system as the text of a block, with no more brackets than the precedence of the language asks
-//! for.
+//! A system as the text of a block, with only the brackets required by the precedence of the
+//! language.
 
 use super::tree::{Expr, INDICES, Index, Kind, Property, Shape, System};
 use std::fmt::Write;
 
-/// The tightness of operators.
+/// The precedence of operators.
 const SUM: u8 = 1;
 const PRODUCT: u8 = 2;
 const UNARY: u8 = 3;
@@ -12,7 +12,7 @@ const POWER: u8 = 4;
 const ATOM: u8 = 5;
 
 impl System {
-    /// The block, without the name of the macro.
+    /// Returns the block, without the name of the macro.
     pub fn source(&self, name: &str) -> String {
         let mut text = format!("pub struct {name} {{");
         for parameter in &self.parameters {
@@ -90,13 +90,13 @@ impl System {
         text
     }
 
-    /// An expression where something of `least` precedence is wanted.
+    /// Returns the text of an expression, in brackets if its precedence is below `least`.
     fn text(&self, expr: &Expr, least: u8) -> String {
         let (text, own) = self.bare(expr);
         if own < least { format!("({text})") } else { text }
     }
 
-    /// An expression without brackets around it, and how tight it binds.
+    /// Returns the text of an expression without outer brackets, and its precedence.
     fn bare(&self, expr: &Expr) -> (String, u8) {
         let call = |name: &str, items: &[&Expr]| {
             let items: Vec<String> = items.iter().map(|item| self.text(item, 0)).collect();
@@ -155,8 +155,8 @@ impl System {
                         (_, false) => " + ",
                         (_, true) => " - ",
                     });
-                    // A sign binds tighter than a product: -a*b is (-a)*b, which is the same
-                    // number.
+                    // A sign has a higher precedence than a product: -a*b is (-a)*b, which is the
+                    // same number.
                     text.push_str(&self.text(item, PRODUCT));
                 }
                 (text, SUM)
@@ -170,7 +170,7 @@ impl System {
                         (_, false) => "*",
                         (_, true) => "/",
                     });
-                    // The first factor may be a product of its own: a/b*c is (a/b)*c.
+                    // The first factor may be a product: a/b*c is (a/b)*c.
                     let least = if position == 0 && !over { PRODUCT } else { UNARY };
                     text.push_str(&self.text(item, least));
                 }
@@ -200,7 +200,7 @@ impl System {
             Expr::Cross(a, b) => call("cross", &[a, b]),
             Expr::Perp(a) => call("perp", &[a]),
             Expr::Height(a) => call("height", &[a]),
-            // Bars within bars need brackets around the inner ones.
+            // Nested bars require brackets around the inner ones.
             Expr::Magnitude(a) => {
                 let text = self.text(a, 0);
                 (if text.contains('|') { format!("|({text})|") } else { format!("|{text}|") }, ATOM)

@@ -1,12 +1,12 @@
-//! A random state of a system: all numbers near one, none of them round.
+//! A random state of a system: all numbers are of the order of one, and none is round.
 
 use super::evaluate::{Constants, Points};
 use super::reference::State;
 use super::tree::{Kind, System};
 use split_mix::Random;
 
-/// The state of a seed. Every number is one of `f64` but the moments of bodies, which are those of
-/// `f64` points.
+/// Returns the state of a seed. Every number is exact in `f64`, except for the moments of bodies,
+/// which are computed from `f64` points.
 pub fn state(system: &System, seed: u64) -> State<f64> {
     let mut random = Random(seed);
     let count = system.count();
@@ -41,7 +41,7 @@ pub fn state(system: &System, seed: u64) -> State<f64> {
     State { constants: Constants { parameters, bodies }, t, q, v, inputs }
 }
 
-/// Mass, centre and central moments.
+/// Returns mass, centre and central moments.
 pub fn moments<T: pendulum_runtime::scalar::Real>(points: &Points<T>) -> [T; 6] {
     let zero = T::from_f64(0.0);
     let sum =
@@ -54,7 +54,7 @@ pub fn moments<T: pendulum_runtime::scalar::Real>(points: &Points<T>) -> [T; 6] 
     [mass, x, y, xx, xy, yy]
 }
 
-/// The state in more digits: the moments of bodies are computed anew.
+/// Returns the state in higher precision, with the moments of bodies recomputed.
 pub fn precise<T: pendulum_runtime::scalar::Real>(system: &System, state: &State<f64>) -> State<T> {
     let mut precise = state.map(T::from_f64);
     for (index, body) in precise.constants.bodies.iter().enumerate() {

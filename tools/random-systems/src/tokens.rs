@@ -1,9 +1,9 @@
-//! Tokens that are no block, and blocks that are no longer one.
+//! Random tokens, and blocks with random changes.
 
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 use split_mix::Random;
 
-/// The words of formulas and of their mistakes.
+/// The words of formulas and of mistakes in formulas.
 const WORDS: &[&str] = &[
     "θ",
     "θ̇",
@@ -92,7 +92,7 @@ pub const BLOCKS: &[&str] = &[
     "::p; struct A { m: kg, L: m, C: F } coordinate θ[2]: rad; driven x: [m; 2]; input u: N; input f: [N; 2]; let y = x + L*cis(θ[0]); let a = dot(ẏ); kinetic = m/2*|ẏ|^2 + m/2*L^2*θ̇[1]^2; potential = -inner(f, y); dissipation = m/2*θ̇[0]^2*L^2/(1 + t); force θ[1] = u*L; output tip: [m; 2] = y; output load[k in 0..2]: N = k*m*|a| + u*θ̈[k]/|θ̈[0]|; output open = f;",
 ];
 
-/// Any tokens at all.
+/// Returns random tokens.
 pub fn soup(random: &mut Random, depth: usize) -> TokenStream {
     let mut tokens = TokenStream::new();
     for _ in 0..random.below(12) {
@@ -137,8 +137,8 @@ pub fn mutate(tokens: TokenStream, random: &mut Random) -> TokenStream {
     list.into_iter().collect()
 }
 
-/// Puts other names and numbers of the block, or of another, where some stand: what comes out often
-/// parses and seldom makes sense.
+/// Replaces some names and numbers by others of the same or another block. The result often parses
+/// but rarely has a meaning.
 pub fn transplant(tokens: TokenStream, random: &mut Random) -> TokenStream {
     let mut donors = Vec::new();
     leaves(tokens.clone(), &mut donors);

@@ -1,5 +1,5 @@
-//! Other ways to write the same system: a gauge term, another scale of energy, other coordinates,
-//! time that runs backwards.
+//! Equivalent forms of a system: a gauge term, another scale of energy, other coordinates, time
+//! reversal.
 
 use super::generate;
 use super::nilpotent::Function;
@@ -9,7 +9,7 @@ use super::tree::{
 };
 use split_mix::Random;
 
-/// L + dF/dt for a random F(q, t).
+/// Returns the system with L + dF/dt for a random F(q, t).
 pub fn gauged(system: &System) -> System {
     let mut gauged = system.clone();
     let term = generate::gauge(system, &mut Random(system.seed ^ 0xf0));
@@ -23,7 +23,7 @@ pub fn gauged(system: &System) -> System {
 /// The factor of [`scaled`].
 pub const SCALE: f64 = 0.75;
 
-/// Everything times three quarters.
+/// Returns the system with energies and forces multiplied by [`SCALE`].
 pub fn scaled(system: &System) -> System {
     let mut scaled = system.clone();
     let lists = [&mut scaled.kinetic, &mut scaled.potential, &mut scaled.dissipation];
@@ -35,12 +35,12 @@ pub fn scaled(system: &System) -> System {
     scaled
 }
 
-/// The system whose motions are those of `system` run backwards: L(−t, q, −q̇), −R(−q̇), forces of
-/// −t and −q̇, and driven inputs that run backwards.
+/// Returns the time-reversed system: L(−t, q, −q̇), −R(−q̇), forces as functions of −t and −q̇, and
+/// reversed driven inputs.
 pub fn reversed(system: &System) -> System {
     let mut reversed = system.clone();
     let turn = |expr: &mut Expr| {
-        // A quantity that has been differentiated an odd number of times changes its sign.
+        // A quantity with an odd number of time derivatives changes its sign.
         if let Expr::Time
         | Expr::Velocity(..)
         | Expr::Input(_, 1)
@@ -65,7 +65,7 @@ pub fn reversed(system: &System) -> System {
     reversed
 }
 
-/// The state at which [`reversed`] does backwards what the system does at `state`.
+/// Returns the state of [`reversed`] that corresponds to `state`.
 pub fn turned(state: &State<f64>) -> State<f64> {
     let mut turned = state.clone();
     turned.t = -state.t;
@@ -78,8 +78,8 @@ pub fn turned(state: &State<f64>) -> State<f64> {
     turned
 }
 
-/// The system without its forces in coordinates Q with q = Q + sin(Q₁)/3, where Q₁ is the first of
-/// the coordinates declared next.
+/// Returns the system without its forces in coordinates Q with q = Q + sin(Q₁)/3, where Q₁ is the
+/// first scalar of the coordinates declared next.
 pub fn moved(system: &System) -> System {
     let mut moved = system.clone();
     moved.forces.clear();
@@ -112,7 +112,7 @@ pub fn moved(system: &System) -> System {
     moved
 }
 
-/// The old coordinates, velocities and accelerations from those of [`moved`].
+/// Returns the old coordinates, velocities and accelerations from those of [`moved`].
 pub fn back(system: &System, [q, v, a]: [&[f64]; 3]) -> [Vec<f64>; 3] {
     let mut old = [q.to_vec(), v.to_vec(), a.to_vec()];
     for index in 0..system.coordinates.len() {
@@ -128,7 +128,7 @@ pub fn back(system: &System, [q, v, a]: [&[f64]; 3]) -> [Vec<f64>; 3] {
     old
 }
 
-/// Coordinates become definitions, which stand before all others.
+/// Replaces coordinates by definitions, which precede all other definitions.
 fn replaced(expr: &mut Expr, count: usize) {
     let definition = |index: usize, member: Option<Index>| match member {
         None => Expr::Let(index),

@@ -1,21 +1,22 @@
-//! Blocks as the generator makes them: a language of its own that is printed for the macro and
-//! evaluated without it.
+//! Blocks of the generator: a separate language that is printed for the macro and evaluated without
+//! it.
 
 use super::nilpotent::Function;
 
-/// A system to be written as a block.
+/// A system that can be written as a block.
 #[derive(Clone, Debug, Default)]
 pub struct System {
-    /// The seed it was made from.
+    /// The seed of the system.
     pub seed: u64,
-    /// True if everything is a pure number, velocities are divided by a rate, and units are
-    /// written.
+    /// `true` if units are written. In that case all quantities are pure numbers, and velocities
+    /// are divided by a rate.
     pub units: bool,
     pub parameters: Vec<Parameter>,
     pub coordinates: Vec<Coordinate>,
     pub inputs: Vec<Input>,
     pub lets: Vec<Let>,
-    /// L = Σ kinetic − Σ potential; written as one `lagrangian` if `joined`.
+    /// The terms of L = Σ kinetic − Σ potential, written as a single `lagrangian` if `joined` is
+    /// set.
     pub kinetic: Vec<Expr>,
     pub potential: Vec<Expr>,
     pub joined: bool,
@@ -33,9 +34,9 @@ pub struct Parameter {
 pub enum Kind {
     /// A pure number.
     Scalar,
-    /// The rate that velocities are measured in.
+    /// The unit of rates.
     Rate,
-    /// The mass and the length that bodies are measured in.
+    /// The units of mass and length for bodies.
     Mass,
     Length,
     Vector(usize),
@@ -44,7 +45,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The number of its scalars.
+    /// Returns the number of scalars.
     pub fn count(self) -> usize {
         match self {
             Self::Scalar | Self::Rate | Self::Mass | Self::Length => 1,
@@ -78,9 +79,9 @@ pub struct Let {
 #[derive(Clone, Debug)]
 pub enum Shape {
     Plain,
-    /// One for each index below the count; the index is [`INDICES`]\[0\].
+    /// One definition for each index below the count. The index is [`INDICES`]\[0\].
     Indexed(usize),
-    /// With arguments of these types.
+    /// A function with arguments of these types.
     Function(Vec<Type>),
 }
 
@@ -88,12 +89,12 @@ pub enum Shape {
 pub enum Type {
     Scalar,
     Plane,
-    /// A plane vector that is written as a complex number.
+    /// A plane vector written as a complex number.
     Complex,
     Space,
 }
 
-/// A generalized force on a coordinate, on one of its members, or on each of them.
+/// A generalized force on a coordinate, on one of its members, or on each member.
 #[derive(Clone, Debug)]
 pub struct Force {
     pub coordinate: usize,
@@ -101,16 +102,16 @@ pub struct Force {
     pub expr: Expr,
 }
 
-/// The names of indices, by how deep they are bound.
+/// The names of indices, by the depth of their binding.
 pub const INDICES: [&str; 3] = ["k", "j", "n"];
 
 /// A member of a family.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Index {
     Number(usize),
-    /// The value of an index.
+    /// The value of a bound index.
     Bound(usize),
-    /// One less than what an index is bound to counts from the end: `count - 1 - k`.
+    /// A bound index counted from the end: `count - 1 - k`.
     Reversed(usize, usize),
 }
 
@@ -122,19 +123,19 @@ pub enum Expr {
     Time,
     Parameter(usize),
     Member(usize, Index),
-    /// `B.mass`, `B.center`, `B.inertia`.
+    /// `B.mass`, `B.center` or `B.inertia`.
     Property(usize, Property),
     Coordinate(usize, Option<Index>),
     /// A velocity, in one of three spellings.
     Velocity(usize, Option<Index>, usize),
     /// A driven input of order 0, 1 or 2.
     Input(usize, usize),
-    /// True is minus.
+    /// Terms; `true` is minus.
     Sum(Vec<(bool, Expr)>),
-    /// True is divided by.
+    /// Factors; `true` for divisors.
     Product(Vec<(bool, Expr)>),
     Negative(Box<Expr>),
-    /// A power by a fraction.
+    /// A power with a rational exponent.
     Power(Box<Expr>, i64, i64),
     GeneralPower(Box<Expr>, Box<Expr>),
     Call(Function, Box<Expr>),
@@ -148,18 +149,18 @@ pub enum Expr {
     Height(Box<Expr>),
     Magnitude(Box<Expr>),
     Component(Box<Expr>, usize),
-    /// `cis(φ)` or, if true, `exp(i*φ)`.
+    /// `cis(φ)`, or `exp(i*φ)` if `true`.
     Cis(Box<Expr>, bool),
     Dot(Box<Expr>),
     Let(usize),
-    /// The derivative of a definition by a dot over its name.
+    /// The derivative of a definition, written as a dot above its name.
     LetDot(usize),
     LetMember(usize, Index),
     Apply(usize, Vec<Expr>),
     Argument(usize),
     /// An index as a number.
     Bound(usize),
-    /// Σ over an index below a count; `0..=count-1` if true.
+    /// Σ over an index below a count, written as `0..=count-1` if `true`.
     Over(usize, usize, bool, Box<Expr>),
     /// ∫ over a body.
     Integral(usize, Box<Expr>),
@@ -175,24 +176,24 @@ pub enum Property {
 }
 
 impl System {
-    /// The number of scalar coordinates.
+    /// Returns the number of scalar coordinates.
     pub fn count(&self) -> usize {
         self.coordinates.iter().map(|coordinate| coordinate.length.unwrap_or(1)).sum()
     }
 
-    /// The number of scalars before a coordinate.
+    /// Returns the number of scalars before a coordinate.
     pub fn first_coordinate(&self, index: usize) -> usize {
         self.coordinates[..index].iter().map(|coordinate| coordinate.length.unwrap_or(1)).sum()
     }
 
-    /// The number of scalars before a parameter.
+    /// Returns the number of scalars before a parameter.
     pub fn first_parameter(&self, index: usize) -> usize {
         self.parameters[..index].iter().map(|parameter| parameter.kind.count()).sum()
     }
 }
 
 impl Expr {
-    /// Changes every part, from the leaves up.
+    /// Changes every part of an expression, beginning with the leaves.
     pub fn each(&mut self, change: &impl Fn(&mut Expr)) {
         let boxed = |inner: &mut Box<Expr>| inner.each(change);
         match self {
@@ -229,22 +230,22 @@ impl Expr {
     }
 }
 
-/// `a + b`.
+/// Returns `a + b`.
 pub fn sum(a: Expr, b: Expr) -> Expr {
     Expr::Sum(vec![(false, a), (false, b)])
 }
 
-/// `a * b`.
+/// Returns `a * b`.
 pub fn product(a: Expr, b: Expr) -> Expr {
     Expr::Product(vec![(false, a), (false, b)])
 }
 
-/// `a / b`.
+/// Returns `a / b`.
 pub fn quotient(a: Expr, b: Expr) -> Expr {
     Expr::Product(vec![(false, a), (true, b)])
 }
 
-/// `a ^ n`.
+/// Returns `a ^ n`.
 pub fn power(a: Expr, exponent: i64) -> Expr {
     Expr::Power(Box::new(a), exponent, 1)
 }

@@ -1,7 +1,7 @@
-//! Blocks that do not compile: each message is ours, whole, at the user's token. And blocks that
-//! do.
+//! Blocks that do not compile, with the complete expected messages at the user's tokens, and blocks
+//! that compile.
 
-/// `TRYBUILD=overwrite` rewrites the expected messages.
+/// Set `TRYBUILD=overwrite` to rewrite the expected messages.
 #[test]
 fn refused_blocks_say_what_to_do() {
     let cases = trybuild::TestCases::new();

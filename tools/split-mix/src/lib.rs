@@ -1,16 +1,17 @@
-//! The random numbers of tests, benchmarks and tools: one generator, the same in every run.
+//! The random numbers of tests, benchmarks and tools: a single generator, with the same numbers in
+//! every run.
 
-/// SplitMix64 (Steele, Lea and Flood, 2014).
+/// The generator SplitMix64 (Steele, Lea and Flood, 2014).
 #[derive(Clone, Debug)]
 pub struct Random(pub u64);
 
 impl Random {
-    /// The sequence of a seed.
+    /// Creates the generator with this seed.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
 
-    /// The next 64 bits.
+    /// Returns the next 64 bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -19,22 +20,22 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A whole number below `limit`.
+    /// Returns an integer below `limit`.
     pub fn below(&mut self, limit: usize) -> usize {
         (self.bits() % limit as u64) as usize
     }
 
-    /// True once in `count` times.
+    /// Returns `true` with a probability of 1/`count`.
     pub fn once_in(&mut self, count: usize) -> bool {
         self.below(count) == 0
     }
 
-    /// One of some.
+    /// Returns one of the choices.
     pub fn of<T: Copy>(&mut self, choices: &[T]) -> T {
         choices[self.below(choices.len())]
     }
 
-    /// In [low, high).
+    /// Returns a number in [low, high).
     pub fn uniform(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }

@@ -13,8 +13,8 @@ pub(crate) const TESTS: &[Test] = &[
     Test { id: "S21", title: "whip", run: whip },
 ];
 
-/// Multiplications, additions and divisions of the accelerations written by hand, with angles from
-/// the vertical and an unrolled elimination.
+/// The number of multiplications, additions and divisions of accelerations written by hand, with
+/// angles from the vertical and an unrolled elimination.
 const BY_HAND: [(usize, [f64; 3]); 7] = [
     (1, [2.0, 0.0, 1.0]),
     (2, [17.0, 8.0, 3.0]),
@@ -56,7 +56,8 @@ fn links(scale: Scale, report: &mut Report) {
     );
     report.at_most("P30, squared frequencies of ten links, relative", off, 1e-12);
 
-    // h ω < 2√2 for Rk4: just below it the fastest mode fades, just above it explodes.
+    // The limit of Rk4 is h ω < 2√2: just below it the fastest mode decays, just above it the mode
+    // grows.
     let fastest = reference::TEN_LINKS[9].sqrt();
     let steps = scale.pick(1000, 2000, 2000);
     let sway = |product: f64| {

@@ -1,4 +1,4 @@
-//! Sensitive motions: the separatrix, chaos, there and back.
+//! Sensitive motions: the separatrix, chaos, and motions there and back.
 
 use crate::numbers::{apart, error, error_from, larger, largest, line, truth};
 use crate::reference;
@@ -18,7 +18,7 @@ pub(crate) const TESTS: &[Test] = &[
 const UNIT: f64 = 0.5 * f64::EPSILON;
 
 fn separatrix(_: Scale, report: &mut Report) {
-    // From below with just the energy of the top: q = 4 atan eᵗ − π, q̇ = 2 sech t.
+    // From the bottom with exactly the energy at the top: q = 4 atan eᵗ − π, q̇ = 2 sech t.
     let system = Simple::new(1.0);
     let mut worst = 0.0;
     for t in [1.0, 5.0, 10.0, 20.0, 30.0] {
@@ -59,8 +59,8 @@ fn separatrix(_: Scale, report: &mut Report) {
             .unwrap();
         (solution.events[0].state.t, solution.end)
     };
-    // π − 1.2e-16 grows as cosh t: it reaches order one after ln(2/1.2e-16) = 37.3 s, give or take
-    // what one last digit of π changes.
+    // The distance from the top, 1.2e-16, grows as cosh t: it reaches order one after
+    // ln(2/1.2e-16) = 37.3 s, with an uncertainty due to the last digit of π.
     let (when, end) = fall(core::f64::consts::PI);
     report.between("fall from the double next to π to 1 rad, s", when, 35.0, 41.0);
     let (mirrored_when, mirrored) = fall(-core::f64::consts::PI);
@@ -105,8 +105,8 @@ fn chaos(scale: Scale, report: &mut Report) {
         report.at_most(format!("P23 by Taylor at t = {t}"), error(&at(*t), exact), bar);
     }
 
-    // Pairs a last digit apart, from many points of one long motion: their distance grows at the
-    // Lyapunov exponent, 0.46 ± 0.01.
+    // Pairs of states that differ in the last digit, from many points of a long motion. Their
+    // distance grows with the Lyapunov exponent, 0.46 ± 0.01.
     let pairs = scale.pick(16, 64, 64);
     let times: Vec<f64> = (1..=pairs).map(|k| 100.0 * f64::from(k)).collect();
     let path = solve(&system, (0.0, 100.0 * f64::from(pairs)), start.0, start.1)
@@ -143,7 +143,7 @@ fn chaos(scale: Scale, report: &mut Report) {
     let points = separation(&system, start, (near, start.1), 100.0);
     report.curve(Figure::Separation, "from θ = (2, 2.5)", points);
 
-    // Correlation is lost after 70 s; energy is not.
+    // The motions are uncorrelated after 70 s; energy is conserved.
     let seconds = scale.pick(500.0, 10_000.0, 10_000.0);
     let energy = |state: &State<f64, 2>| system.energy(0.0, &state.q, &state.v, &());
     let first = energy(&State { t: 0.0, q: start.0, v: start.1 });
@@ -184,7 +184,7 @@ fn chaos(scale: Scale, report: &mut Report) {
         (square / mean - 1.0).abs(),
         bar,
     );
-    // Turns of the lower link come in bursts.
+    // Turns of the lower link occur in bursts.
     report.at_most(
         format!("its turns, {flips:.0} and {others:.0}, relative difference"),
         (flips / others - 1.0).abs(),
@@ -192,7 +192,7 @@ fn chaos(scale: Scale, report: &mut Report) {
     );
 }
 
-/// The distance of two motions with time.
+/// Returns the distance of two motions as a function of time.
 fn separation(
     system: &Double<f64>,
     a: ([f64; 2], [f64; 2]),
@@ -237,8 +237,8 @@ fn back(scale: Scale, report: &mut Report) {
             .end
     };
     let start = State { t: 0.0, q: [2.0, 2.5], v: [0.0; 2] };
-    // A rounding at t = 10 comes back amplified as much as one at the start is on the way, 1.3e3
-    // times.
+    // A rounding error at t = 10 is amplified as much on the way back as an error at the start on
+    // the way there, 1.3e3 times.
     let limit = 10.0 * 1.3e3 * f64::EPSILON;
     report.at_most(
         "P23 to t = 10 and back by Taylor, ten roundings amplified 1300 times",

@@ -1,4 +1,4 @@
-//! Driven motions: fast shaking, kinks, square waves, numbers that are none, late times.
+//! Driven motions: fast shaking, kinks, square waves, values that are not finite, late times.
 
 use crate::numbers::{error, error_from, larger, largest, truth};
 use crate::reference;
@@ -23,7 +23,7 @@ pub(crate) const TESTS: &[Test] = &[
     Test { id: "S27", title: "square waves", run: square },
 ];
 
-/// y = (4/Ω) cos Ωt.
+/// Returns the motion y = (4/Ω) cos Ωt.
 fn shaken(frequency: f64) -> Sinusoid<1> {
     Sinusoid::new([4.0 / frequency], frequency, [core::f64::consts::FRAC_PI_2])
 }
@@ -76,7 +76,7 @@ fn shaking(scale: Scale, report: &mut Report) {
         1.5,
     );
 
-    // Q̈ = −sin Q − (AΩ)²/2 sin Q cos Q, from Q(0) = q(0) + A sin q(0): the difference at equal
+    // Q̈ = −sin Q − (AΩ)²/2 sin Q cos Q, from Q(0) = q(0) + A sin q(0). The difference at equal
     // times is of order A = 4/Ω.
     let effective = Effective::new(4.0);
     let mean = runs.map(|run| run.1);
@@ -112,8 +112,8 @@ fn hung() -> Hung<f64> {
     Hung::new(0.5, 9.81)
 }
 
-/// Returns true if the failure names the input and a time in this range, and keeps a finite state
-/// before it.
+/// Returns `true` if the failure names the input and a time in this range, and provides a finite
+/// state before it.
 fn blames(failure: Result<(), Failure<f64, 1>>, (from, to): (f64, f64)) -> bool {
     let Err(Failure {
         error: Error::NotFinite { t, what: Quantity::Input { name, .. }, .. },
@@ -175,8 +175,8 @@ fn not_finite(_: Scale, report: &mut Report) {
         cases,
     );
 
-    // A first step that is far too long meets the bad samples in a step that would be rejected
-    // anyway.
+    // With a first step that is far too long, the invalid samples occur in a step that would be
+    // rejected in any case.
     let push = |t: f64| if 0.9 < t && t < 0.91 { f64::NAN } else { (40.0 * t).sin() * 50.0 };
     let motion =
         Function::new(|_| [0.0; 2]).velocity(|_| [0.0; 2]).acceleration(move |t| [push(t), 0.0]);
@@ -214,7 +214,7 @@ fn keyed(_: Scale, report: &mut Report) {
     let (times, values) = keys();
     let linear = hung().driven_by(Linear::new(&times, &values).unwrap());
     let smooth = hung().driven_by(CatmullRom::new(&times, &values).unwrap());
-    // The same curve, but nobody says where its keys are.
+    // The same curve without declared keys.
     let hidden = {
         let motion = CatmullRom::new(&times, &values).unwrap();
         let at = move |t: f64| -> Sample<f64, 2> {
@@ -243,7 +243,7 @@ fn keyed(_: Scale, report: &mut Report) {
         };
     }
     let [line, curve] = reference::KEYED;
-    // The bars are what a program written by hand reached, to two digits.
+    // The bars are the errors of a program written by hand, to two digits.
     let found = [
         ("Leapfrog, lines", errors!(&linear, Leapfrog, line, 1.0), 3.25e-3, 1.95e-4),
         ("Srkn6b, lines", errors!(&linear, Srkn6b, line, 1.0), 2.65e-8, 1.05e-10),
@@ -282,8 +282,8 @@ fn keyed(_: Scale, report: &mut Report) {
         1e-11,
     );
 
-    // A teleport: the pivot is elsewhere from one moment to the next, with the same velocity. The
-    // pendulum goes along.
+    // A teleport: the pivot jumps to another place with the same velocity, and the pendulum moves
+    // with it.
     let jump = |t: f64| if t < 0.5 { 0.0 } else { 10.0 };
     let motion = |kinks: &[f64]| {
         Function::new(move |t| [jump(t), 0.0])
@@ -304,7 +304,7 @@ fn keyed(_: Scale, report: &mut Report) {
         [there == end(&still)],
     );
 
-    // Keys a nanosecond apart, a pause, and keys that coincide.
+    // Keys that are a nanosecond apart, a pause, and keys that coincide.
     let times = [0.0, 0.25, 0.25 + 1e-9, 0.5, 0.75, 1.0];
     let values = [[0.0, 0.0], [0.1, 0.0], [0.1 + 1e-9, 0.0], [0.1, 0.05], [0.1, 0.05], [0.0, 0.0]];
     let dense = hung().driven_by(Linear::new(&times, &values).unwrap());
@@ -336,8 +336,8 @@ fn keyed(_: Scale, report: &mut Report) {
     );
 }
 
-/// A motion that writes down how its times, seen from a late origin, differ from multiples of half
-/// a step.
+/// A motion that records the difference between its sample times, relative to a late origin, and
+/// multiples of half a step.
 struct Clock<'a> {
     origin: f64,
     step: f64,
@@ -398,14 +398,14 @@ fn intervals(_: Scale, report: &mut Report) {
     for _ in 0..60_000 {
         run.step().unwrap();
     }
-    // The times that the drive sees after 10⁹ s, relative to those that have passed since.
+    // The times at which the drive is sampled after 10⁹ s, relative to the elapsed times.
     report.at_most(
         "times of the drive after 1e9 s, steps of 1/60 s: error relative to a step or the time passed",
         *worst.lock().unwrap(),
         f64::EPSILON,
     );
 
-    // The same keys 10⁹ s later give the same swing.
+    // The same keys 10⁹ s later result in the same swing.
     let (times, values) = keys();
     let late: Vec<f64> = times.iter().map(|t| (t * 24.0).round() / 32.0 + 1e9).collect();
     let soon: Vec<f64> = late.iter().map(|t| t - 1e9).collect();
@@ -427,7 +427,7 @@ fn intervals(_: Scale, report: &mut Report) {
 }
 
 fn square(_: Scale, report: &mut Report) {
-    // A velocity of ±1 m/s that changes its sign 2000 times a second.
+    // A velocity of ±1 m/s whose sign changes 2000 times a second.
     let times: Vec<f64> = (0..=2000).map(|k| f64::from(k) * 5e-4).collect();
     let values: Vec<[f64; 2]> =
         (0..=2000).map(|k| [if k % 2 == 0 { 0.0 } else { 5e-4 }, 0.0]).collect();
@@ -453,7 +453,7 @@ fn square(_: Scale, report: &mut Report) {
     }
     report.at_most("1 kHz, keys known: rejected over accepted steps, three methods", rejected, 0.5);
     report.at_most("steps between two keys", cost, 2.0);
-    // A force that jumps, likewise.
+    // A force that jumps 2000 times a second.
     let kinks: Vec<f64> = (1..2000).map(|k| f64::from(k) * 5e-4).collect();
     let push = |t: f64| if ((t / 5e-4).floor() as i64) % 2 == 0 { 100.0 } else { -100.0 };
     let wave =

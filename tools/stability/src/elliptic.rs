@@ -1,11 +1,11 @@
 //! The motion of the simple pendulum in closed form, to about 30 digits.
 //!
-//! Jacobi's amplitude by the descending arithmetic–geometric mean (Abramowitz and Stegun 1964,
-//! 16.4).
+//! Jacobi's amplitude is computed with the descending arithmetic–geometric mean (Abramowitz and
+//! Stegun 1964, 16.4).
 
 use pendulum_runtime::scalar::{DoubleDouble, Float, Real};
 
-/// The modulus k, its complement k′, and the means that belong to them.
+/// The modulus k and the arithmetic–geometric means of its complement k′.
 pub(crate) struct Elliptic {
     modulus: DoubleDouble,
     /// aₙ and cₙ.
@@ -27,7 +27,7 @@ impl Elliptic {
         Self { modulus, means, quarter: DoubleDouble::PI / (a + a) }
     }
 
-    /// The amplitude of an argument of moderate size.
+    /// Returns the amplitude of an argument of moderate size.
     fn amplitude(&self, u: DoubleDouble) -> DoubleDouble {
         let (half, last) = (DoubleDouble::from(0.5), self.means.len() - 1);
         let mut angle = DoubleDouble::from(f64::from(1u32 << last)) * self.means[last].0 * u;
@@ -37,7 +37,7 @@ impl Elliptic {
         angle
     }
 
-    /// Whole multiples of `period` taken off `u`, and how many.
+    /// Returns `u` reduced by integer multiples of `period`, and the number of multiples.
     fn reduced(u: DoubleDouble, period: DoubleDouble) -> (DoubleDouble, f64) {
         let count = (u / period).to_f64().round();
         (u - period * DoubleDouble::from(count), count)
@@ -53,12 +53,12 @@ impl Swing {
         Self(Elliptic::new(k, complement))
     }
 
-    /// Four quarter periods.
+    /// Returns the period, four quarter periods.
     pub(crate) fn period(&self) -> DoubleDouble {
         self.0.quarter * DoubleDouble::from(4.0)
     }
 
-    /// q = 2 asin(k sn(K − t)), q̇ = −2k cn(K − t).
+    /// Returns q = 2 asin(k sn(K − t)) and q̇ = −2k cn(K − t).
     pub(crate) fn at(&self, t: f64) -> [DoubleDouble; 2] {
         let (t, _) = Elliptic::reduced(DoubleDouble::from(t), self.period());
         let (sn, cn) = self.0.amplitude(self.0.quarter - t).sin_cos();
@@ -66,7 +66,7 @@ impl Swing {
         [two * (k * sn).asin(), -(two * k * cn)]
     }
 
-    /// The time by which a state lies ahead of the motion, and its distance from it.
+    /// Returns the time by which a state is ahead of the motion.
     pub(crate) fn phase(&self, t: f64, q: f64, v: f64) -> f64 {
         let [exact, speed] = self.at(t);
         let force = -exact.sin().to_f64();
@@ -77,7 +77,7 @@ impl Swing {
     }
 }
 
-/// A pendulum with g = l = 1 that turns over: q(0) = 0, q̇(0) = 2.5, with k = 0.8.
+/// A pendulum with g = l = 1 that rotates: q(0) = 0, q̇(0) = 2.5, with k = 0.8.
 pub(crate) struct Turning(Elliptic);
 
 impl Turning {
@@ -85,8 +85,8 @@ impl Turning {
         Self(Elliptic::new(DoubleDouble::ratio(4.0, 5.0), DoubleDouble::ratio(3.0, 5.0)))
     }
 
-    /// q = 2 am(1.25 t): the angle within half a turn, the whole turns, and the velocity 2.5
-    /// dn(1.25 t).
+    /// Returns q = 2 am(1.25 t) as the angle within half a turn and the number of turns, and the
+    /// velocity 2.5 dn(1.25 t).
     pub(crate) fn at(&self, t: f64) -> (DoubleDouble, f64, DoubleDouble) {
         let (two, k) = (DoubleDouble::from(2.0), self.0.modulus);
         let (u, turns) = Elliptic::reduced(

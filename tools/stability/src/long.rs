@@ -1,4 +1,4 @@
-//! Long runs: energy, phase, bias, angles that grow, and what symmetry conserves.
+//! Long runs: energy, phase, bias, growing angles, and quantities conserved by symmetry.
 
 use crate::elliptic::{Swing, Turning};
 use crate::numbers::{error, largest, line};
@@ -23,21 +23,22 @@ pub(crate) const TESTS: &[Test] = &[
 /// The step of the splitting methods.
 const STEP: f64 = 1.0 / 32.0;
 
-/// The unit of rounding.
+/// The unit roundoff.
 const UNIT: f64 = 0.5 * f64::EPSILON;
 
-/// Energy and phase of the pendulum from 1.3 rad along a run.
+/// Energy and phase along a run of the pendulum from 1.3 rad.
 #[derive(Default)]
 struct Trace {
     /// The largest error of the energy up to each time, relative to the energy above rest.
     energy: Vec<(f64, f64)>,
     /// The largest error of the phase in seconds up to each time.
     phase: Vec<(f64, f64)>,
-    /// Weighted means of the relative error over the first and the second half.
+    /// Weighted means of the relative energy error over the first and the second half.
     halves: [f64; 2],
 }
 
-/// Takes `steps` steps of length `h`; plain summation throws the low words away after each.
+/// Takes `steps` steps of length `h`. If `plain` is set, the low words of the state are discarded
+/// after each step.
 fn trace<M>(method: M, h: f64, steps: u64, plain: bool) -> Trace
 where
     M: Method<Simple<f64>, 1>,
@@ -64,7 +65,7 @@ where
         }
         let relative = (energy(run.q()[0], run.v()[0]) - start) / (start + 1.0);
         worst = largest([worst, relative.abs()]);
-        // A smooth window: what oscillates averages out faster than any power of the length.
+        // A smooth window: oscillations average out faster than any power of the length.
         let (index, x) = if step as f64 <= half {
             (0, step as f64 / half)
         } else {
@@ -81,7 +82,7 @@ where
         }
         if 1.0 <= place {
             trace.energy.push((run.t(), worst.max(UNIT)));
-            // Beyond, the distance from the motion is no longer one in phase.
+            // Beyond this value, the error is no longer a phase error.
             if late < 0.5 {
                 trace.phase.push((run.t(), late.max(UNIT)));
             }
@@ -160,8 +161,8 @@ fn phase(scale: Scale, report: &mut Report) {
     );
 }
 
-/// Copies that start 1e-12 apart see different roundings: their energies must walk at random,
-/// without a common direction.
+/// Copies that start 1e-12 apart have different rounding errors. Their energies must be random
+/// walks without a common direction.
 fn bias(scale: Scale, report: &mut Report) {
     const COPIES: usize = 64;
     let system = Simple::new(1.0);
@@ -185,7 +186,7 @@ fn bias(scale: Scale, report: &mut Report) {
                 .unwrap();
             let mut step = 0;
             for (row, &mark) in marks.iter().enumerate() {
-                // The mean over a few states rounds the last words of the states away.
+                // The mean over a few states removes the roundings in the last words of the states.
                 let mut mean = 0.0;
                 while step < mark {
                     run.step().unwrap();
@@ -235,14 +236,14 @@ fn bias(scale: Scale, report: &mut Report) {
 fn growth(scale: Scale, report: &mut Report) {
     let (system, exact) = (Simple::new(1.0), Turning::new());
     let end = scale.pick(1e4, 1e6, 1e7);
-    // In s; the angle is taken modulo a turn of 2π in two words.
+    // The error in seconds. Turns of 2π are removed in double-double.
     let off = |t: f64, turns: f64, q: f64| {
         let (angle, whole, speed) = exact.at(t);
         let turn = DoubleDouble::PI + DoubleDouble::PI;
         let apart = (DoubleDouble::from(q) - angle) - turn * DoubleDouble::from(whole - turns);
         (apart / speed).to_f64().abs()
     };
-    // n^{3/2} u steps.
+    // The bar is n^{3/2} u steps.
     let bar = |t: f64| (t / STEP).powf(1.5) * UNIT * STEP;
     let start = || {
         Integrator::new(&system, Srkn14a, 0.0, [0.0], [2.5])
@@ -272,7 +273,7 @@ fn growth(scale: Scale, report: &mut Report) {
     );
 }
 
-/// The rest that the double next to 2π leaves off.
+/// The error of the double nearest to 2π.
 const TAU_LOW: f64 = 2.4492935982947064e-16;
 
 fn momenta(scale: Scale, report: &mut Report) {
@@ -318,7 +319,7 @@ fn momenta(scale: Scale, report: &mut Report) {
     );
 }
 
-/// The largest value of `change` along a run, looked at every tenth step.
+/// Returns the largest value of `change` along a run, sampled every tenth step.
 fn conserved<S, M, const N: usize>(
     system: &S,
     method: M,

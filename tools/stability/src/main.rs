@@ -1,14 +1,14 @@
-//! The stress table: twenty-eight ways in which a simulation of a mechanical system goes wrong,
-//! each measured against a bar.
+//! The stress table: twenty-eight ways in which simulations of mechanical systems fail, each
+//! measured against a bar.
 //!
-//! `cargo run --release -p stability` prints a line a measurement, writes
+//! `cargo run --release -p stability` prints a line for each measurement, writes
 //! `target/stability.csv` and the pictures `target/stability-*.svg`, and fails if a bar is missed.
-//! `--quick` takes less than a minute, `--long` an hour; `--only S7,S9` selects. With `--known` the
-//! misses whose reason is known, which `pendulum-runtime/src/guide/accuracy.md` explains, do not
-//! count as failures.
+//! `--quick` takes less than a minute, `--long` an hour; `--only S7,S9` selects tests. With
+//! `--known`, misses with a known reason, which are explained in
+//! `pendulum-runtime/src/guide/accuracy.md`, do not count as failures.
 //!
-//! References come from closed forms, from published or arbitrary-precision digits, or from the
-//! same equations in numbers of two words, never from the run itself.
+//! References are closed forms, published digits, results of arbitrary precision, or solutions of
+//! the same equations in double-double. They are independent of the run under test.
 
 #![allow(mixed_script_confusables)]
 
@@ -51,7 +51,7 @@ const THEMES: &[&[Test]] = &[
     many::TESTS,
 ];
 
-/// Tests that run at a time.
+/// The number of tests that run concurrently.
 const THREADS: usize = 2;
 
 fn main() -> ExitCode {
@@ -65,10 +65,10 @@ fn main() -> ExitCode {
     }
 }
 
-/// Measures the table; returns true if every bar is met.
+/// Measures the table. Returns `true` if every bar is met.
 fn table() -> Result<bool, Box<dyn Error>> {
     let Choice { scale, tests, known } = chosen(std::env::args().skip(1))?;
-    // Hidden where stderr is no terminal.
+    // The bar is hidden if stderr is not a terminal.
     let bar = ProgressBar::new(tests.len() as u64);
     bar.set_style(ProgressStyle::with_template("{bar:40} {pos}/{len} {elapsed} {msg}")?);
     bar.enable_steady_tick(Duration::from_millis(500));
@@ -101,11 +101,11 @@ fn table() -> Result<bool, Box<dyn Error>> {
     Ok(failed == 0)
 }
 
-/// The choice on the command line.
+/// The options of the command line.
 struct Choice {
     scale: Scale,
     tests: Vec<Test>,
-    /// True if misses with a known reason count as failures.
+    /// `true` if misses with a known reason do not count as failures.
     known: bool,
 }
 
@@ -142,7 +142,7 @@ fn chosen(mut arguments: impl Iterator<Item = String>) -> Result<Choice, String>
     Ok(Choice { scale, tests, known })
 }
 
-/// The reports of all tests in their order, a few at a time.
+/// Runs all tests, some of them concurrently. Returns their reports in order.
 fn run(scale: Scale, tests: &[Test], bar: &ProgressBar) -> Vec<Report> {
     let reports: Vec<Mutex<Report>> =
         tests.iter().map(|test| Mutex::new(Report::new(test.id))).collect();

@@ -1,4 +1,5 @@
-//! Many pendulums at once: the same bits in lanes, threads, scenes and alone, tiny numbers, a soak.
+//! Many pendulums at once: the same bits in lanes, threads and scenes as for single pendulums, tiny
+//! numbers, a soak test.
 
 use crate::memory::memory;
 use crate::numbers::larger;
@@ -35,7 +36,7 @@ fn denormals(scale: Scale, report: &mut Report) {
         }
         (begun.elapsed().as_secs_f64(), run.q()[0])
     };
-    // A B A B, the shorter of each.
+    // Alternating measurements; the shorter time of each kind counts.
     let (mut small, mut usual, mut end) = (f64::INFINITY, f64::INFINITY, 0.0);
     for _ in 0..3 {
         let (seconds, q) = time(1e-310);
@@ -48,8 +49,8 @@ fn denormals(scale: Scale, report: &mut Report) {
     let end = solve(&faint, (0.0, 1e3), [1e-200], [0.0]).method(Dop853::new()).run().unwrap().end;
     report
         .failures("g θ = 1e-400, which is zero: it stays", [end.q[0] == 1e-200 && end.v[0] == 0.0]);
-    // One over the smallest tolerances is infinite: an error is as good as a number, NaN is
-    // neither.
+    // The reciprocal of the smallest tolerances is infinite. An error or a number is acceptable,
+    // NaN is not.
     let mut kept = Vec::new();
     for atol in [0.0, 1e-322, 1e-310, 1e-305, 1e-300] {
         for start in [0.0, 1e-310] {
@@ -155,8 +156,8 @@ fn bits(scale: Scale, report: &mut Report) {
     );
 }
 
-/// Pendulums on the joints of random characters: lanes of sixteen, a joint each, half a step before
-/// and after each force.
+/// Pendulums on the joints of random characters: groups of sixteen lanes with a joint each, half a
+/// step before and after each force.
 fn soak(scale: Scale, report: &mut Report) {
     const W: usize = 16;
     let count = scale.pick(1_000, 10_000, 100_000);
@@ -206,7 +207,7 @@ fn soak(scale: Scale, report: &mut Report) {
     }
     report.failures(format!("{count} pendulums, {frames} frames: finite"), [finite]);
     report.at_most("lanes that differ from the same pendulum alone", drifted as f64, 0.0);
-    // Another test may run beside this one.
+    // Another test may run concurrently.
     report.at_most("growth of memory in bytes, other tests included", grown, 3e7);
     scenes::soak(scale, report);
 }

@@ -1,4 +1,4 @@
-//! Values between steps: dense output and events; and single precision.
+//! Values between steps: dense output and events. Single precision.
 
 use crate::elliptic::Swing;
 use crate::numbers::{apart, error, larger, truth};
@@ -39,7 +39,7 @@ fn single(scale: Scale, report: &mut Report) {
         .run()
         .unwrap()
         .end;
-    // A start error grows 5e2 times until then.
+    // An error at the start grows 5e2 times until then.
     report.at_most(
         "P28 by Rk4, T = 10, 4000 steps, against a hundred roundings amplified 500 times",
         error(&end, &reference::TRIPLE),
@@ -52,7 +52,8 @@ fn dense(_: Scale, report: &mut Report) {
     let wide = system.map(DoubleDouble::from);
     let (q, v, tolerance) = ([2.0, 2.5], [0.0; 2], 1e-9);
     let check = |solution: &Solution<f64, 2>| {
-        // Each step against the exact motion from its own start, at points that no method knows.
+        // Each step is compared with the exact motion from its own start, at points that no method
+        // uses.
         let (mut within, mut jump, mut points) = (0.0, 0.0, 0);
         let steps = solution.t.len() - 1;
         for k in 0..steps {
@@ -62,7 +63,7 @@ fn dense(_: Scale, report: &mut Report) {
             for j in 1..=count {
                 let t = from + (to - from) * (j as f64 - 0.5) / count as f64;
                 let (found, exact) = (solution.at(t).unwrap(), exact.at(t).unwrap());
-                // In the norm in which a step is accepted.
+                // The norm is the one in which steps are accepted.
                 let off = |found: &f64, exact: &DoubleDouble| {
                     ((DoubleDouble::from(*found) - *exact).to_f64()
                         / (tolerance * (1.0 + exact.to_f64().abs())))
@@ -131,7 +132,7 @@ fn events(_: Scale, report: &mut Report) {
         .events(&up)
         .run()
         .unwrap();
-    // 5e3 is what a start error has grown to by then.
+    // 5e3 is the growth of an error at the start until then.
     report.at_most(
         "by Dop853, rtol 1e-13, against 5e3 tolerances",
         (solution.events[0].state.t - reference::FLIP).abs(),
@@ -141,10 +142,10 @@ fn events(_: Scale, report: &mut Report) {
     let simple = Simple::new(1.0);
     let period = Swing::from(1.3).period().to_f64();
     let every = |k: f64| k * period;
-    // The angle touches 1.3 rad once a period; the start itself is none.
+    // The angle touches 1.3 rad once per period. The start is not an event.
     let touch = Event::new(|_, q, _| q[0] - 1.3);
     let rest = Event::new(|_, _, v| v[0]).falling();
-    // Through 1.299 rad twice around each extreme, 0.1 s apart and within one step.
+    // The angle passes 1.299 rad twice around each extreme, 0.1 s apart and within a single step.
     let twice = Event::new(|_, q, _| q[0] - 1.299);
     let solution = solve(&simple, (0.0, 10.5 * period), [1.3], [0.0])
         .method(Taylor::new())

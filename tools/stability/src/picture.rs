@@ -1,5 +1,5 @@
-//! The pictures: energy and phase against time, separation of chaotic runs, error against step over
-//! kinks.
+//! The pictures: energy and phase as functions of time, separation of chaotic runs, error as a
+//! function of the step for motions with kinks.
 
 use crate::report::{Curve, Figure};
 use pictures::{Axis, Chart, Picture, color};
@@ -13,10 +13,9 @@ struct Page {
     title: &'static str,
     x: &'static str,
     y: &'static str,
-    /// True if time or step runs logarithmically.
+    /// `true` if the axis of time or step is logarithmic.
     logarithmic: bool,
-    /// Lines for comparison: a name, a factor and a power of x; or, on a linear axis, a rate of
-    /// growth.
+    /// Lines for comparison: a name, a factor and a power of x, or a growth rate on a linear axis.
     guides: &'static [(&'static str, f64, f64)],
 }
 
@@ -63,7 +62,7 @@ const PAGES: &[Page] = &[
     },
 ];
 
-/// Draws every picture that has curves; gives the names of the files.
+/// Draws every picture that has curves, and returns the names of the files.
 pub(crate) fn draw(folder: &Path, curves: &[Curve]) -> Result<Vec<&'static str>, Box<dyn Error>> {
     let mut drawn = Vec::new();
     for page in PAGES {
@@ -93,7 +92,7 @@ impl Page {
         } else {
             Axis::linear(self.x).range(0.0, right)
         };
-        // A value that rounds to nothing has no logarithm.
+        // Zero has no logarithm.
         let y = Axis::logarithmic(self.y).range(bottom.max(1e-16) / 1.5, top * 1.5);
         let mut chart = Chart::new(x, y);
         for &(name, factor, rate) in self.guides {

@@ -1,6 +1,5 @@
-//! Trusted digits: each was computed with Taylor series in arbitrary precision at two precisions
-//! that agree far beyond the digits given here, and checked against the closed form where there is
-//! one.
+//! Reference values. Each was computed with Taylor series in arbitrary precision at two precisions
+//! that agree far beyond the digits given here, and compared with the closed form if one exists.
 
 /// P01, q(0) = 1.3: time, q and q̇.
 pub(crate) const PENDULUM: [(f64, [f64; 2]); 5] = [
@@ -65,7 +64,7 @@ pub(crate) const CHAOTIC: [(f64, [f64; 4]); 2] = [
     ),
 ];
 
-/// P23: when the upper link first stands at +π.
+/// P23: the time at which the upper link first reaches +π.
 pub(crate) const FLIP: f64 = 12.5762618679385806941741444011;
 
 /// P26, m = (2⁻¹⁰, 1), θ = (0.5, 0.625), at t = 1 and t = 5.

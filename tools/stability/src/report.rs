@@ -11,16 +11,16 @@ pub(crate) struct Test {
 /// The length of the runs.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Scale {
-    /// Less than a minute in all.
+    /// Less than a minute for all tests.
     Quick,
     /// A few minutes.
     Usual,
-    /// As long as it takes.
+    /// The full length, about an hour.
     Long,
 }
 
 impl Scale {
-    /// The value for this scale.
+    /// Returns the value for this scale.
     pub(crate) fn pick<T>(self, quick: T, usual: T, long: T) -> T {
         match self {
             Self::Quick => quick,
@@ -57,7 +57,7 @@ impl std::fmt::Display for Bar {
     }
 }
 
-/// One measurement.
+/// A measurement.
 #[derive(Clone)]
 pub(crate) struct Check {
     pub(crate) id: &'static str,
@@ -72,12 +72,12 @@ impl Check {
         self.bar.met(self.measured)
     }
 
-    /// Returns true if a miss has a reason that is known.
+    /// Returns `true` if a miss has a known reason.
     pub(crate) fn is_explained(&self) -> bool {
         !self.why.is_empty()
     }
 
-    /// The line that is printed.
+    /// Returns the printed line.
     pub(crate) fn line(&self, title: &str) -> String {
         let Self { id, what, measured, bar, why } = self;
         let measured = digits(*measured);
@@ -89,7 +89,7 @@ impl Check {
         format!("{id} {title}: {what} … measured {measured}, bar {bar}, {verdict}")
     }
 
-    /// The row of the table of values.
+    /// Returns the row of the table of values.
     pub(crate) fn row(&self, title: &str) -> String {
         let (least, greatest) = match self.bar {
             Bar::AtMost(bar) => (String::new(), bar),
@@ -100,7 +100,7 @@ impl Check {
     }
 }
 
-/// A number of two digits, or a count as it is.
+/// Formats a number with few digits, or a count as an integer.
 fn digits(value: f64) -> String {
     if value == 0.0 || (value == value.round() && value.abs() < 1e4) {
         format!("{value}")
@@ -111,7 +111,7 @@ fn digits(value: f64) -> String {
     }
 }
 
-/// A picture that curves belong to.
+/// The picture of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Figure {
     Energy,
@@ -120,7 +120,7 @@ pub(crate) enum Figure {
     Kinks,
 }
 
-/// Points of one method.
+/// The points of a method.
 #[derive(Clone, Debug)]
 pub(crate) struct Curve {
     pub(crate) figure: Figure,
@@ -128,7 +128,7 @@ pub(crate) struct Curve {
     pub(crate) points: Vec<(f64, f64)>,
 }
 
-/// The findings of a test.
+/// The measurements of a test.
 #[derive(Default)]
 pub(crate) struct Report {
     pub(crate) id: &'static str,
@@ -147,7 +147,7 @@ impl Report {
         &mut self.checks[last]
     }
 
-    /// A number that must not exceed its bar; what is not a number does.
+    /// Adds a number that must not exceed its bar. NaN exceeds every bar.
     pub(crate) fn at_most(
         &mut self,
         what: impl Into<String>,
@@ -157,7 +157,7 @@ impl Report {
         self.check(what, measured, Bar::AtMost(bar))
     }
 
-    /// A number between two others.
+    /// Adds a number that must be between two bounds.
     pub(crate) fn between(
         &mut self,
         what: impl Into<String>,
@@ -168,7 +168,7 @@ impl Report {
         self.check(what, measured, Bar::Between(least, greatest))
     }
 
-    /// The number of cases that fail their condition; none may.
+    /// Adds the number of cases that fail their condition, which must be zero.
     pub(crate) fn failures(
         &mut self,
         what: impl Into<String>,
@@ -189,7 +189,7 @@ impl Report {
 }
 
 impl Check {
-    /// Sets the text of the line if the bar is missed.
+    /// Sets the reason printed if the bar is missed.
     pub(crate) fn because(&mut self, why: &'static str) {
         self.why = why;
     }

@@ -1,4 +1,5 @@
-//! Scenes: the bits of scalar methods in lanes and threads, and a soak of random characters.
+//! Scenes: the same bits as scalar methods, in lanes and threads, and a soak test of random
+//! characters.
 
 use crate::memory::memory;
 use crate::report::{Report, Scale};
@@ -10,10 +11,11 @@ use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::Lane;
 use pendulum_runtime::scene::{Fixed, Handle, Joint, Preserve, Resume, Scene};
 
-/// Ticks a second whose length is a power of two, so that solvers take the same steps.
+/// The number of ticks per second. The length of a tick is a power of two, so that solvers take the
+/// same steps.
 const BINARY: f64 = 256.0;
 
-/// The part of S22 that scenes have.
+/// Measures the part of S22 that concerns scenes.
 pub(crate) fn bits(scale: Scale, report: &mut Report) {
     let seconds = scale.pick(2, 8, 64);
     let mut differ = alone(Leapfrog, seconds);
@@ -56,7 +58,8 @@ pub(crate) fn bits(scale: Scale, report: &mut Report) {
     );
 }
 
-/// The number among fifty pendulums that end elsewhere in a scene than by `solve`.
+/// Returns the number of pendulums, out of fifty, whose final states in a scene and with `solve`
+/// differ.
 fn alone<M: Fixed<Simple<f64>, 1> + Method<Simple<f64>, 1>>(method: M, seconds: u32) -> usize {
     let mut scene = Scene::<f64>::new(BINARY).unwrap();
     scene.set_tolerance(1e-2).unwrap();
@@ -81,7 +84,8 @@ fn alone<M: Fixed<Simple<f64>, 1> + Method<Simple<f64>, 1>>(method: M, seconds: 
     handles.into_iter().zip(starts).filter(differs).count()
 }
 
-/// The same for double pendulums, whose accelerations contain velocities, in any scalar.
+/// Returns the same number for double pendulums, whose accelerations depend on velocities, in any
+/// scalar.
 fn doubles<T: Lane + pendulum_runtime::scalar::Float>(
     seconds: u32,
     round: impl Fn(f64) -> T,
@@ -116,18 +120,17 @@ enum Pendulum {
     Two(Handle<Double<f64>, 2>),
 }
 
-/// One of a crowd, in a scene of its own.
+/// A copy of a pendulum of the crowd in a separate scene.
 struct Single {
     scene: Scene<f64>,
     joint: Joint<2>,
     pendulum: Handle<Hung<f64>, 1>,
-    /// Its joint and its handle in the crowd.
+    /// The character, which is the index of the joint, and the handle in the crowd.
     character: usize,
     there: Handle<Hung<f64>, 1>,
 }
 
-/// Characters of fifty pendulums that move at random, are teleported and hidden, and stop for a
-/// while.
+/// Characters with fifty pendulums that move randomly, are teleported and hidden, and pause.
 struct Crowd {
     scene: Scene<f64>,
     joints: Vec<Joint<2>>,
@@ -136,11 +139,11 @@ struct Crowd {
     random: Random,
     paused: bool,
     hidden: Option<Handle<Hung<f64>, 1>>,
-    /// The time that has passed while the scene was not paused.
+    /// The total time passed to the scene while it was not paused.
     asked: f64,
 }
 
-/// A joint that moves from now on.
+/// Adds a joint that moves from the current time on.
 fn moving(scene: &mut Scene<f64>, seed: u64) -> Joint<2> {
     with_motion(seed, scene.time(), |motion| match motion {
         Moving::Keys(motion) => scene.joint(motion),
@@ -150,7 +153,7 @@ fn moving(scene: &mut Scene<f64>, seed: u64) -> Joint<2> {
     })
 }
 
-/// The kinds of motions.
+/// The types of motions.
 enum Moving {
     Keys(Linear<2>),
     Curve(Spline<2>),
@@ -158,7 +161,7 @@ enum Moving {
     Still(Still<2>),
 }
 
-/// The motion of a seed, whose keys begin before `now`.
+/// Passes the motion of a seed, whose keys begin before `now`, to `take`.
 fn with_motion<R>(seed: u64, now: f64, take: impl FnOnce(Moving) -> R) -> R {
     let mut random = Random::new(seed);
     let times: Vec<f64> = (0..=60).map(|key| now - 1.0 + 0.25 * f64::from(key)).collect();
@@ -173,7 +176,7 @@ fn with_motion<R>(seed: u64, now: f64, take: impl FnOnce(Moving) -> R) -> R {
     })
 }
 
-/// Gives a joint another motion.
+/// Sets another motion for a joint.
 fn teleport(scene: &mut Scene<f64>, joint: Joint<2>, seed: u64, preserve: Preserve) {
     let moved = with_motion(seed, scene.time(), |motion| match motion {
         Moving::Keys(motion) => scene.set_motion(joint, motion, preserve),
@@ -218,7 +221,7 @@ impl Crowd {
         Self { scene, joints, pendulums, singles, random, paused: false, hidden: None, asked: 0.0 }
     }
 
-    /// A frame of any length in which something may happen; the number of ticks.
+    /// Advances a frame of random length with random events, and returns the number of ticks.
     fn frame(&mut self) -> u64 {
         let chance = |random: &mut Random, one_in: u64| random.bits().is_multiple_of(one_in);
         if chance(&mut self.random, 10) {
@@ -237,7 +240,7 @@ impl Crowd {
             self.scene.set_paused(self.paused);
         }
         if chance(&mut self.random, 20) {
-            // Somebody whom nobody looks at goes on as if there had been no time.
+            // A hidden pendulum resumes as if no time had passed.
             if let Some(pendulum) = self.hidden.take() {
                 self.scene.show(pendulum, Resume::Unchanged).unwrap();
             } else {
@@ -257,14 +260,14 @@ impl Crowd {
         };
         let ticks = self.scene.advance(dt).unwrap().ticks;
         self.asked += if self.paused { 0.0 } else { dt };
-        // Single scenes take ticks as they come.
+        // The single scenes advance by the same ticks.
         for single in &mut self.singles {
             single.scene.advance_ticks(ticks as u32);
         }
         ticks
     }
 
-    /// Returns true if all states are finite and nobody has failed.
+    /// Returns `true` if all states are finite and no pendulum has failed.
     fn is_well(&self) -> bool {
         let finite = |x: &f64| x.is_finite();
         let one = |pendulum: &Pendulum| match *pendulum {
@@ -281,7 +284,7 @@ impl Crowd {
     }
 }
 
-/// The part of S28 that scenes have.
+/// Measures the part of S28 that concerns scenes.
 pub(crate) fn soak(scale: Scale, report: &mut Report) {
     let (count, frames) = (scale.pick(1_000, 10_000, 100_000), scale.pick(2_000, 10_000, 36_000));
     let mut crowd = Crowd::new(28, count);
@@ -290,7 +293,7 @@ pub(crate) fn soak(scale: Scale, report: &mut Report) {
         ticks += crowd.frame();
         if frame % (frames / 10) == 0 {
             well &= crowd.is_well();
-            // Saved, gone on, restored, gone on.
+            // Save and advance; then restore and advance again.
             let snapshot = crowd.scene.snapshot();
             crowd.scene.advance_ticks(7);
             let after = crowd.scene.checksum();

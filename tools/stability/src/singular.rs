@@ -1,4 +1,4 @@
-//! Mass matrices near the edge, parameters of all sizes, steps that collapse.
+//! Nearly singular mass matrices, parameters of all magnitudes, collapsing steps.
 
 use crate::numbers::{error, error_from, larger, largest, truth};
 use crate::reference;
@@ -27,7 +27,7 @@ fn near_singular(_: Scale, report: &mut Report) {
             .run()
             .unwrap()
             .end;
-        // The condition of the mass matrix where the links are aligned is 2/m.
+        // The condition number of the mass matrix for aligned links is 2/m.
         report.at_most(
             format!("P26, upper mass 2^-10, Dop853 at t = {t}, against the condition"),
             error(&end, exact),
@@ -36,7 +36,7 @@ fn near_singular(_: Scale, report: &mut Report) {
     }
     let (mut worst, mut steps) = (0.0, 0.0);
     for exponent in [20, 40, 52] {
-        // Twenty periods of the fast link, which is 1/√m times as fast as the slow one.
+        // Twenty periods of the fast link, whose frequency is 1/√m times that of the slow link.
         let (system, t) = (light(exponent), 126.0 * 0.5f64.powi(exponent / 2));
         let exact = truth(&system.map(DoubleDouble::from), (0.0, t), [0.5, 0.625], [0.0; 2]).end;
         let scales = |v: f64| 1e-12 * v;
@@ -53,8 +53,9 @@ fn near_singular(_: Scale, report: &mut Report) {
     report.at_most("upper masses 2^-20, 2^-40, 2^-52: error in condition × rtol 1e-12", worst, 1.0);
     report.at_most("steps for twenty periods of the fast link", steps, 2000.0);
 
-    // Nearly aligned links: Δ is known to ε, so no formula keeps more than ε/Δ of what depends on
-    // it. The generated determinant m₁ + m₂ sin² Δ keeps that; m₁ + m₂ − m₂ cos² Δ would lose ε/Δ².
+    // Nearly aligned links: Δ has an error of ε, so that no formula is more accurate than ε/Δ. The
+    // generated determinant m₁ + m₂ sin² Δ has this accuracy; m₁ + m₂ − m₂ cos² Δ would have only
+    // ε/Δ².
     let (mut sine, mut cosine) = (0.0f64, 0.0f64);
     for exponent in 1..=24 {
         let (system, gap) = (light(52), 0.7 * 0.5f64.powi(exponent));
@@ -85,8 +86,8 @@ fn near_singular(_: Scale, report: &mut Report) {
     report.between("the determinant with cos² for comparison, in ε/Δ", cosine, 1e3, f64::INFINITY);
 }
 
-/// Returns true if an integration ended with an error about an acceleration, a coordinate that has
-/// a name, and a state that is finite.
+/// Returns `true` if an integration ended with an error about an acceleration that names the
+/// coordinate, and with a finite state.
 fn refused(result: Result<Solution<f64, 2>, Failure<f64, 2>>) -> bool {
     let Err(failure) = result else { return false };
     let finite = failure.partial.end.q.iter().chain(&failure.partial.end.v).all(|x| x.is_finite());
@@ -111,8 +112,8 @@ fn singular(_: Scale, report: &mut Report) {
         "m₂ = 0: the same",
         [refused(solve(&still, (0.0, 1.0), [0.5, 0.25], [0.0; 2]).method(Dop853::new()).run())],
     );
-    // The links line up on the way: either the step control stops before, or the run goes on with
-    // finite numbers.
+    // The links become aligned during the motion. Either the step control stops before, or the run
+    // continues with finite numbers.
     let crossing = solve(&massless, (0.0, 1.0), [0.5, 0.625], [0.0, -1.0])
         .method(Dop853::new())
         .max_steps(1_000_000)
@@ -141,8 +142,8 @@ fn singular(_: Scale, report: &mut Report) {
     );
 }
 
-/// Returns true if an integration ended at once with an error about negative inertia, a coordinate
-/// that has a name, and the state at the start.
+/// Returns `true` if an integration ended immediately with an error about negative inertia that
+/// names the coordinate, and with the initial state.
 fn unbounded(result: Result<Solution<f64, 2>, Failure<f64, 2>>) -> bool {
     let Err(failure) = result else { return false };
     let kept = (failure.partial.end.t, failure.partial.end.q) == (0.0, [0.5, 0.625]);
@@ -190,7 +191,7 @@ fn ratios(_: Scale, report: &mut Report) {
         worst,
         1e-13,
     );
-    // Powers of two change no digit.
+    // Powers of two do not change any digit.
     let binary = double(0.5f64.powi(40), 2.0f64.powi(70));
     report.failures("P22 in units of powers of two: the same bits", [binary == reference]);
 
@@ -214,7 +215,8 @@ fn ratios(_: Scale, report: &mut Report) {
     report.at_most("g = 1e300 against g = 1", apart, 1e-11);
 }
 
-/// P32 in other units of mass, length and time; the end in the units of the problem.
+/// Integrates P32 in other units of mass, length and time. Returns the final state in the units of
+/// the problem.
 fn elastic(mass: f64, length: f64, time: f64) -> [f64; 4] {
     let system = Elastic::new(mass, 8.0 * mass / (time * time), length, length / (time * time));
     let (q, v) = ([1.25 * length, 1.0], [0.0; 2]);
@@ -229,7 +231,7 @@ fn elastic(mass: f64, length: f64, time: f64) -> [f64; 4] {
     })
 }
 
-/// P22 with masses and lengths of another size, and gravity with the lengths.
+/// Integrates P22 with scaled masses and lengths, and with gravity scaled like the lengths.
 fn double(mass: f64, length: f64) -> [f64; 4] {
     let system = Double::new([mass; 2], [length; 2], length);
     let problem = solve(&system, (0.0, 2.0), [0.5, -0.25], [0.0; 2])
@@ -243,7 +245,7 @@ fn double(mass: f64, length: f64) -> [f64; 4] {
 
 fn collapse(_: Scale, report: &mut Report) {
     let kepler = Kepler::new(1.0);
-    // Straight into the sun, after π/(2√2) s from rest at distance 1.
+    // Straight into the sun, which is reached after π/(2√2) s from rest at distance 1.
     let fall = |solution: Result<Solution<f64, 2>, Failure<f64, 2>>| match solution {
         Ok(solution) => (false, solution.stats.accepted + solution.stats.rejected),
         Err(failure) => {
@@ -310,7 +312,7 @@ fn collapse(_: Scale, report: &mut Report) {
             .run()
             .unwrap(),
     );
-    // The start is rounded to 1e-16; one period amplifies it.
+    // The start is rounded to 1e-16; a period amplifies the rounding error.
     let near = truth(&orbit.map(DoubleDouble::from), (0.0, period), q, v).end;
     let rounded = largest([(near.q[0].to_f64() - 0.994).abs(), near.q[1].to_f64().abs()]);
     report.at_most(

@@ -1,4 +1,4 @@
-//! Stiff springs, heavy dampers, and the steps that adaptive methods choose.
+//! Stiff springs, heavy dampers, and the steps chosen by adaptive methods.
 
 use crate::elliptic::Swing;
 use crate::numbers::{error, larger, largest, truth};
@@ -26,7 +26,7 @@ fn spring(_: Scale, report: &mut Report) {
     for exponent in [2, 4, 6, 8, 10] {
         let stiffness = 10f64.powi(exponent);
         let system = Elastic::new(1.0, stiffness, 1.0, 1.0);
-        // At rest on the spring for this angle, so that the fast vibration is hardly there.
+        // The spring is in equilibrium for this angle, so that the fast vibration is small.
         let (q, v) = ([1.0 + 1.0f64.cos() / stiffness, 1.0], [0.0; 2]);
         let start = system.energy(0.0, &q, &v, &());
         let end = solve(&system, (0.0, 20.0), q, v)
@@ -36,7 +36,7 @@ fn spring(_: Scale, report: &mut Report) {
             .unwrap()
             .end;
         energy = larger(energy, (system.energy(0.0, &end.q, &end.v, &()) - start).abs());
-        // Far from every multiple of the fast period, the rigid rod is what remains.
+        // If k is large, the solution approaches that of a rigid rod.
         if 8 <= exponent {
             let rigid = solve(&Simple::new(1.0), (0.0, 20.0), [1.0], [0.0])
                 .method(Dop853::new())
@@ -55,7 +55,7 @@ fn spring(_: Scale, report: &mut Report) {
                 .end;
             slow = larger(slow, (damped.q[1] - rigid).abs());
         }
-        // 0.1 s is more than 2.8/√k from k = 10³ on.
+        // 0.1 s exceeds 2.8/√k for k ≥ 10³.
         if 4 <= exponent {
             refused.push(solve(&system, (0.0, 20.0), q, v).method(Rk4).step(0.1).run().is_err());
             let sweeps =
@@ -126,7 +126,8 @@ fn damping(scale: Scale, report: &mut Report) {
         0.01,
     );
 
-    // To rest, and on: no digit may become NaN, and small numbers must not be slow.
+    // The motion decays to rest and continues: no number may become NaN, and small numbers must not
+    // be slow.
     let steps = scale.pick(100_000, 1_000_000, 1_000_000);
     let rest = Damped::new(0.5);
     let mut run = Integrator::new(&rest, Rk4, 0.0, [1.0], [0.0])
@@ -141,12 +142,12 @@ fn damping(scale: Scale, report: &mut Report) {
     report.failures("damped to rest and beyond", [finite, run.q()[0].abs() < 1e-300]);
 }
 
-/// Random tolerances and first steps: what comes out of them on one system.
+/// The results for random tolerances and first steps on a system.
 struct Spread {
-    /// The largest error over the tolerance, for tolerances below and above 1e-3.
+    /// The largest error divided by the tolerance, for tolerances below and above 1e-3.
     worst: [f64; 2],
     failed: usize,
-    /// The number of times that a hundredth of the tolerance gives a larger error.
+    /// The number of times that a hundredth of the tolerance results in a larger error.
     turned: usize,
 }
 
@@ -258,7 +259,7 @@ fn tolerances(scale: Scale, report: &mut Report) {
             report.at_most(format!("{}: runs that fail", $name), all().map(|spread| spread.failed).sum::<usize>() as f64, 0.0);
             let turned = all().map(|spread| spread.turned).sum::<usize>();
             let check = report.at_most(format!("{}: errors that grow as the tolerance falls", $name), turned as f64, 0.0);
-            // The two that are known, and no more.
+            // The two known cases are accepted.
             if $name == "Picard" && turned <= 2 {
                 check.because("at 1e-8 on P01 and 1e-10 on P31 the error is 3e-5 and 8e-3 of the tolerance, by accident");
             }

@@ -1,4 +1,4 @@
-//! The systems of the stress table; P01, P22, … are names of problems whose digits stand in
+//! The systems of the stress table. P01, P22, … are the names of problems whose digits are in
 //! `reference`.
 
 #![allow(missing_docs)]

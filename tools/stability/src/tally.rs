@@ -1,4 +1,4 @@
-//! A scalar that counts what is done with it.
+//! A scalar that counts its operations.
 
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use pendulum_runtime::scalar::Real;
@@ -8,7 +8,7 @@ use std::cell::Cell;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Counted(pub(crate) f64);
 
-/// The work done so far.
+/// The operations counted so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tally {
     pub(crate) mul: f64,
@@ -18,7 +18,7 @@ pub(crate) struct Tally {
 }
 
 impl Tally {
-    /// Multiplications, additions and divisions.
+    /// Returns multiplications, additions and divisions.
     pub(crate) fn operations(&self) -> [f64; 3] {
         [self.mul, self.add, self.div]
     }
@@ -28,14 +28,14 @@ thread_local! {
     static TALLY: Cell<Tally> = const { Cell::new(Tally { mul: 0.0, add: 0.0, div: 0.0, sin_cos: 0.0 }) };
 }
 
-/// The operations that `work` does in this thread.
+/// Returns the operations that `work` executes in this thread.
 pub(crate) fn count<T>(work: impl FnOnce() -> T) -> Tally {
     TALLY.set(Tally::default());
     std::hint::black_box(work());
     TALLY.get()
 }
 
-/// Counts one more of a kind.
+/// Increments one of the counts.
 fn note(kind: impl FnOnce(&mut Tally) -> &mut f64) {
     let mut tally = TALLY.get();
     *kind(&mut tally) += 1.0;

@@ -131,7 +131,7 @@ lagrangian! {
     constraint across: ẏ + r*α̇ = Ω*x;
 }
 
-/// The linkage of N loops: N + 1 uprights on the ground, uniform unit rods.
+/// A linkage of N loops: N + 1 uprights on the ground, uniform unit rods.
 macro_rules! loops {
     ($name:ident, $n:literal, $uprights:literal) => {
         lagrangian! {
@@ -179,7 +179,7 @@ lagrangian! {
 loops!(Loops2, 2, 3);
 loops!(Loops10, 10, 11);
 
-/// Andrews' mechanism with the constants of the test set.
+/// Returns Andrews' mechanism with the constants of the test set.
 pub fn andrews() -> Andrews {
     Andrews {
         m: [0.04325, 0.00365, 0.02373, 0.00706, 0.07050, 0.00706, 0.05498],
@@ -223,8 +223,8 @@ pub const ANDREWS_START: [f64; 7] = [
     1.23054744454982119249735015568,
 ];
 
-/// Andrews' mechanism at t = 0.03, recomputed to 28 digits: the published ones are off from the
-/// tenth on.
+/// Andrews' mechanism at t = 0.03, recomputed to 28 digits. The published values are wrong from the
+/// tenth digit on.
 pub const ANDREWS_END: [[f64; 7]; 2] = [
     [
         15.810771195153707097119387,
@@ -246,7 +246,7 @@ pub const ANDREWS_END: [[f64; 7]; 2] = [
     ],
 ];
 
-/// The car axis with the constants of the test set.
+/// Returns the car axis with the constants of the test set.
 pub fn car_axis() -> CarAxis {
     CarAxis { k: 5e-4, L: 1.0, L0: 0.5, r: 0.1, ω: 10.0, g: 1.0, s: 1.0 }
 }
@@ -254,7 +254,7 @@ pub fn car_axis() -> CarAxis {
 /// The start of the car axis.
 pub const CAR_AXIS_START: [[f64; 4]; 2] = [[0.0, 0.5, 1.0, 0.5], [-0.5, 0.0, -0.5, 0.0]];
 
-/// Four bars with rational lengths.
+/// Returns four bars with rational lengths.
 pub fn four_bar() -> FourBar {
     FourBar { l: [0.4, 1.1, 0.8], d: 1.0, m: [0.5, 1.2, 0.7], g: 9.81 }
 }

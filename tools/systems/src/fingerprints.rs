@@ -1,5 +1,5 @@
-//! The final states of every method and of eleven kinds of systems as hashes: what must be the same
-//! in every build on every machine.
+//! The final states of every method and of eleven kinds of systems as hashes, which are the same in
+//! every build on every machine.
 
 #![allow(missing_docs)]
 
@@ -39,7 +39,7 @@ lagrangian! {
         + acos(v/(4 + v^2)) + (1 + u^2)^a + tan(u/(2 + u^2)) + atan2(v, 3 + u^2)/5;
 }
 
-/// The hash of Fowler, Noll and Vo (FNV-1a) of all bits of a state.
+/// Returns the hash of Fowler, Noll and Vo (FNV-1a) of all bits of a state.
 fn hash(numbers: impl IntoIterator<Item = f64>) -> u64 {
     let bytes = numbers.into_iter().flat_map(|number| number.to_bits().to_le_bytes());
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
@@ -48,7 +48,7 @@ fn hash(numbers: impl IntoIterator<Item = f64>) -> u64 {
 }
 
 fn hash_of<T: Float, const N: usize>(state: &State<T, N>) -> u64 {
-    // The rest after the first word is in the difference.
+    // The second word is the difference from the first word.
     let words = |x: &T| [x.to_f64(), (*x - T::from_f64(x.to_f64())).to_f64()];
     hash(core::iter::once(state.t).chain(state.q.iter().chain(&state.v).flat_map(words)))
 }
@@ -60,7 +60,7 @@ macro_rules! run {
     )+};
 }
 
-/// Methods of every kind: classical, adaptive, series, implicit.
+/// Runs methods of every kind: classical, adaptive, series, implicit.
 macro_rules! kinds {
     ($lines:ident, $system:literal, $dynamics:expr, $q:expr, $v:expr) => {
         run! { $lines, $system, $dynamics, $q, $v,
@@ -73,7 +73,7 @@ macro_rules! kinds {
     };
 }
 
-/// All the others that suit every system.
+/// Runs all other methods that support every system.
 macro_rules! others {
     ($lines:ident, $system:literal, $dynamics:expr, $q:expr, $v:expr) => {
         run! { $lines, $system, $dynamics, $q, $v,
@@ -90,7 +90,7 @@ macro_rules! others {
     };
 }
 
-/// The methods for velocity-free systems.
+/// Runs the methods for velocity-free systems.
 macro_rules! velocity_free {
     ($lines:ident, $system:literal, $dynamics:expr, $q:expr, $v:expr) => {
         run! { $lines, $system, $dynamics, $q, $v,
@@ -104,13 +104,13 @@ macro_rules! velocity_free {
     };
 }
 
-/// A line for each system and method: names and hash.
+/// Returns a line for each system and method: names and hash.
 ///
-/// Inline: compiled by those who call it, and by nobody who wants a system alone.
+/// The function is inline, so that it is compiled only in crates that call it.
 ///
 /// # Panics
 ///
-/// If a method fails.
+/// Panics if a method fails.
 #[inline]
 pub fn all() -> Vec<String> {
     let mut lines = Vec::new();
@@ -173,7 +173,7 @@ pub fn all() -> Vec<String> {
     lines
 }
 
-/// A classical step, over any scalar.
+/// Takes a classical Runge–Kutta step over any scalar.
 pub fn classical_step<T: Real, S: System<N, Scalar = T, Inputs = ()>, const N: usize>(
     system: &S,
     q: &mut [T; N],
@@ -197,8 +197,8 @@ pub fn classical_step<T: Real, S: System<N, Scalar = T, Inputs = ()>, const N: u
     }
 }
 
-/// The systems without drive in eight lanes: the number of lanes whose bits differ from those of
-/// the system alone, after `steps` steps.
+/// Returns for systems without drive the number of lanes, out of eight, whose bits differ from
+/// those of the same system without lanes after `steps` steps.
 #[inline]
 pub fn lanes_that_differ(steps: usize) -> Vec<(&'static str, usize)> {
     let links: [f64; 9] = core::array::from_fn(|i| 0.3 + 0.1 * i as f64);

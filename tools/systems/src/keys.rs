@@ -1,7 +1,7 @@
-//! A pivot keyed at 24 frames a second, for tests of driven motions with kinks.
+//! A pivot with 24 keys a second, for tests of driven motions with kinks.
 
-/// K_i = 0.1 sin(0.12 i) + 0.004 (u_i − ½) at the times (i − 1)/24, from i = 0 on, with the numbers
-/// u_i of a linear congruential generator.
+/// Returns the keys K_i = 0.1 sin(0.12 i) + 0.004 (u_i − ½) at the times (i − 1)/24, starting at
+/// i = 0. The numbers u_i are from a linear congruential generator.
 pub fn keys() -> (Vec<f64>, Vec<[f64; 2]>) {
     let mut state = 12345u32;
     let mut next = || {

@@ -1,4 +1,4 @@
-//! Pendulums with units, for tests and benchmarks: free, and hung up on a joint that moves.
+//! Pendulums with units, for tests and benchmarks: on a fixed joint and on a moving joint.
 
 #![allow(missing_docs)]
 

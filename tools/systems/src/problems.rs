@@ -1,5 +1,5 @@
-//! The test problems that several tests, examples and benchmarks integrate;
-//! `tests/methods/problems.rs` has their digits under the names P01, P11, …
+//! The test problems integrated by several tests, examples and benchmarks;
+//! `tests/methods/problems.rs` contains their digits under the names P01, P11, …
 
 #![allow(missing_docs)]
 

@@ -1,4 +1,4 @@
-//! The systems that the short test needs too.
+//! The systems that are also used by the short test.
 
 #![allow(missing_docs)]
 
@@ -58,7 +58,7 @@ lagrangian! {
     potential = g*height(x + y);
 }
 
-// The last two of a line are for systems whose accelerations contain no velocity.
+// The last two methods of a line require accelerations that do not depend on velocities.
 #[cfg(feature = "all")]
 case!(Wall, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12],
     f32 [Default Picard Dop853 Tsit5], dd [Default Taylor Dop853]);

@@ -1,13 +1,13 @@
-//! One problem: a system, a start and an interval, whatever their types.
+//! A problem: a system, a start and an interval, independent of their types.
 
 use crate::random::Random;
 use pendulum_runtime::scalar::{DoubleDouble, Float};
 use std::time::Duration;
 
-/// The subject of a measurement.
+/// A method under test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// The method that `solve` chooses.
+    /// The method chosen by `solve`.
     Default,
     /// `Picard`.
     Picard,
@@ -26,7 +26,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// All, in the order of the tables.
+    /// All methods, in the order of the tables.
     pub(crate) const ALL: [Self; 8] = [
         Self::Default,
         Self::Picard,
@@ -38,8 +38,8 @@ impl Method {
         Self::Dprkn12,
     ];
 
-    /// The least tolerance at which it is measured: below, methods of low order take millions of
-    /// steps.
+    /// Returns the smallest tolerance at which the method is measured. At smaller tolerances,
+    /// methods of low order take millions of steps.
     pub(crate) fn least(self, scalar: Scalar) -> f64 {
         match self {
             Self::Tsit5 | Self::Rodas4 => 1e-9,
@@ -62,7 +62,7 @@ impl Method {
     }
 }
 
-/// The numbers that a run computes with.
+/// The scalar of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Scalar {
     F32,
@@ -87,7 +87,7 @@ impl Scalar {
         }
     }
 
-    /// The tolerances that are asked for.
+    /// Returns the range of tolerances.
     pub(crate) fn tolerances(self) -> (f64, f64) {
         match self {
             Self::F32 => (30.0 * self.epsilon(), 1e-3),
@@ -96,13 +96,13 @@ impl Scalar {
         }
     }
 
-    /// The nearest number of this type.
+    /// Returns the nearest number of this type.
     pub(crate) fn round(self, x: f64) -> f64 {
         if self == Self::F32 { f64::from(x as f32) } else { x }
     }
 }
 
-/// A number with all its digits in two words.
+/// A conversion to double-double without loss.
 pub(crate) trait Widened: Float {
     fn widened(self) -> DoubleDouble;
 }
@@ -125,28 +125,27 @@ impl Widened for DoubleDouble {
     }
 }
 
-/// A state, coordinates before velocities.
+/// A state, with coordinates before velocities.
 pub(crate) type State = Vec<DoubleDouble>;
 
-/// The result of one integration.
+/// The result of an integration.
 #[derive(Clone, Debug)]
 pub(crate) struct Run {
-    /// The states at the output times, the last one at the end; that alone if no others were asked
-    /// for.
+    /// The states at the output times, followed by the state at the end.
     pub(crate) states: Vec<State>,
     pub(crate) time: Duration,
-    /// The steps, evaluations and the method that was chosen.
+    /// The numbers of steps and evaluations, and the chosen method.
     pub(crate) stats: String,
 }
 
-/// Help for a reference, and for no method that is measured: it knows the future.
+/// Settings for the reference only, because they use knowledge of the motion.
 #[derive(Clone, Debug)]
 pub(crate) struct Guide {
     /// The longest step.
     pub(crate) max_step: f64,
-    /// Times at which steps end.
+    /// The times at which steps end.
     pub(crate) stops: Vec<f64>,
-    /// The least tolerance that the numbers of the problem permit.
+    /// The smallest tolerance possible with the numbers of the problem.
     pub(crate) least: f64,
 }
 
@@ -162,25 +161,25 @@ impl Guide {
     }
 }
 
-/// The most steps of one run.
+/// The largest number of steps of a run.
 pub(crate) const MOST: u64 = 2_000_000;
 
-/// A problem without its types.
+/// A problem, independent of its types.
 pub(crate) trait Case {
-    /// The methods that suit it.
+    /// Returns the applicable methods.
     fn methods(&self, scalar: Scalar) -> &'static [Method];
 
-    /// The end of the interval, which begins at zero.
+    /// Returns the end of the interval, which begins at zero.
     fn end(&self) -> f64;
 
-    /// The start, coordinates before velocities.
+    /// Returns the start, with coordinates before velocities.
     fn start(&self) -> Vec<f64>;
 
-    /// The parameters and the motion, for who wants to repeat the run.
+    /// Describes the parameters and the motion, so that the run can be repeated.
     fn describe(&self) -> String;
 
-    /// The measurement with `rtol` and `atol` at this tolerance: at the end, and at other times if
-    /// there are any.
+    /// Runs a method with `rtol` and `atol` equal to the tolerance. Returns the states at `times`
+    /// and at the end.
     fn run(
         &self,
         method: Method,
@@ -189,14 +188,14 @@ pub(crate) trait Case {
         times: &[f64],
     ) -> Result<Run, String>;
 
-    /// The states at `times` in two words.
+    /// Returns the states at `times` in double-double.
     fn exact(&self, tolerance: f64, max_step: f64, times: &[f64]) -> Result<Vec<State>, String>;
 
-    /// Returns true if the reference is a Taylor series.
+    /// Returns `true` if the reference is a Taylor series.
     fn by_series(&self) -> bool;
 
-    /// The flow in `f64` with nearly all its digits: the state at the end from one at `t`; every
-    /// step if asked for.
+    /// Integrates in `f64` with nearly full precision from a state at `t` to the end. Returns the
+    /// final state, or every step if `steps` is set.
     fn flow(
         &self,
         t: f64,
@@ -205,12 +204,12 @@ pub(crate) trait Case {
         tolerance: f64,
     ) -> Option<Vec<(f64, Vec<f64>)>>;
 
-    /// The bounds of the reference.
+    /// Returns the settings of the reference.
     fn guide(&self) -> &Guide;
 }
 
-/// The greatest difference of any coordinate or velocity in units of 1 + its magnitude; infinite
-/// where there is no number.
+/// Returns the largest difference of a coordinate or velocity in units of 1 + its magnitude;
+/// infinite if a difference is NaN.
 pub(crate) fn distance(state: &State, exact: &State) -> f64 {
     let parts = state
         .iter()
@@ -219,14 +218,15 @@ pub(crate) fn distance(state: &State, exact: &State) -> f64 {
     parts.fold(0.0, |largest: f64, x| if x.is_nan() { f64::INFINITY } else { largest.max(x) })
 }
 
-/// The number of instants at which the flow is disturbed, and of disturbances at each.
+/// The number of times at which the flow is disturbed; `DIRECTIONS` is the number of disturbances
+/// at each.
 const INSTANTS: usize = 8;
 const DIRECTIONS: usize = 2;
 
-/// The greatest factor by which a disturbance grows until the end; at least one.
+/// Returns the largest factor by which a disturbance grows until the end; at least one.
 ///
-/// The instants divide the steps of a run into equal parts, so that they crowd where the motion
-/// changes fast: there most local errors arise.
+/// The times divide the steps of a run into equal parts. They are denser where the motion changes
+/// fast, because most local errors arise there.
 pub(crate) fn amplification(case: &dyn Case, random: &mut Random) -> Option<f64> {
     const SIZE: f64 = 1e-9;
     const EXACT: f64 = 1e-14;

@@ -1,4 +1,4 @@
-//! The families: a system with a distribution of parameters, starts and intervals.
+//! The families: systems with distributions of parameters, starts and intervals.
 
 use crate::blocks::{Forced, Friction, Hung, Relay, Wall};
 use crate::case::{Case, Guide, Scalar};
@@ -10,7 +10,7 @@ use pendulum_runtime::motion::{CatmullRom, Linear, Spline};
 /// A problem of any type.
 pub(crate) type Problem = Box<dyn Case>;
 
-/// Problems of one kind.
+/// A family of problems.
 pub(crate) struct Family {
     pub(crate) name: &'static str,
     pub(crate) scalar: Scalar,
@@ -18,7 +18,7 @@ pub(crate) struct Family {
 }
 
 impl Family {
-    /// The problem of one run, and the generator that has made it.
+    /// Returns the problem of a run, and the generator after its creation.
     pub(crate) fn problem(&self, run: usize) -> (Problem, Random) {
         let mut random = Random::of(self.name, run);
         let case = (self.make)(&mut random, self.scalar);
@@ -82,12 +82,12 @@ pub(crate) const SHORT: &[Family] = &[
     double("kapitza 100 Hz", |r, s| kapitza(r, s, 100.0, 1.0)),
 ];
 
-/// Two words take a hundred times as long.
+/// Shortens the interval for double-double, which takes a hundred times as long.
 pub(crate) fn shorter(scalar: Scalar, end: f64) -> f64 {
     if scalar == Scalar::Wide { 0.25 * end } else { end }
 }
 
-/// A pendulum that swings from anywhere.
+/// Creates a pendulum with a random start.
 pub(crate) fn pendulum<S, F>(r: &mut Random, trial: F) -> Problem
 where
     F: FnOnce(f64, [f64; 1]) -> Trial<S, 1>,
@@ -147,7 +147,7 @@ pub(crate) fn burst(r: &mut Random, scalar: Scalar) -> Problem {
     pendulum(r, |q, v| Trial::new(scalar, &forced, [q], v, 8.0, Guide::max_step(0.1)))
 }
 
-/// A pendulum on a joint that closures move.
+/// Creates a pendulum on a joint moved by closures.
 pub(crate) fn closure(r: &mut Random, scalar: Scalar, shape: fn(&mut Random) -> Shape) -> Problem {
     let hung = Hung { l: r.within(0.3, 1.0), g: 9.81 };
     let shape = shape(r);
@@ -169,7 +169,7 @@ pub(crate) fn moving(r: &mut Random, scalar: Scalar) -> Problem {
     })
 }
 
-/// The curves through keys.
+/// The interpolation of keys.
 pub(crate) enum Keys {
     Spline,
     Linear,
@@ -191,7 +191,7 @@ pub(crate) fn keyed(r: &mut Random, scalar: Scalar, keys: &Keys) -> Problem {
         Keys::Linear => Drive::Linear(Linear::new(&times, &values).expect(fits)),
         Keys::CatmullRom => Drive::CatmullRom(CatmullRom::new(&times, &values).expect(fits)),
     };
-    // The keys have the digits of `f64`.
+    // The keys have the precision of `f64`.
     let guide = Guide { least: 1e-15, ..Guide::FREE };
     pendulum(r, |q, v| Trial::new(scalar, &hung, [q], v, 5.0, guide).driven(drive))
 }

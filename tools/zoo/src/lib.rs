@@ -1,4 +1,4 @@
-//! The error control of the adaptive integrators on systems that are not gentle.
+//! Tests of the error control of the adaptive integrators on difficult systems.
 
 #![allow(mixed_script_confusables)]
 
@@ -26,28 +26,28 @@ use report::Row;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The options.
+/// The command-line options.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// The starts of each family.
+    /// The number of starts of each family.
     pub count: usize,
-    /// One run alone.
+    /// The index of a single run, if any.
     pub run: Option<usize>,
-    /// Families whose names contain one of these; all if there are none.
+    /// Parts of the names of families; empty for all families.
     pub families: Vec<String>,
-    /// The scalars, by name; all if there are none.
+    /// The names of scalars; empty for all scalars.
     pub scalars: Vec<String>,
-    /// The methods, by name; all if there are none. `Dop853` is always measured.
+    /// The names of methods; empty for all methods. `Dop853` is always measured.
     pub methods: Vec<String>,
-    /// Threads.
+    /// The number of threads.
     pub threads: usize,
-    /// True if times are measured.
+    /// `true` if times are measured.
     pub clock: bool,
-    /// True if every run is printed.
+    /// `true` if every run is printed.
     pub verbose: bool,
-    /// The file of the table.
+    /// The file of the table, if any.
     pub markdown: Option<std::path::PathBuf>,
-    /// The file with a line for each measurement.
+    /// The file with a line for each measurement, if any.
     pub csv: Option<std::path::PathBuf>,
 }
 
@@ -74,7 +74,7 @@ impl Options {
         method == Method::Dop853 || self.methods.is_empty() || self.methods.iter().any(wanted)
     }
 
-    /// Checks that every name is known.
+    /// Checks that every name exists.
     fn check(&self) -> Result<(), String> {
         for name in &self.families {
             if !families().any(|family| family.name.contains(name.as_str())) {
@@ -113,10 +113,11 @@ impl Options {
     }
 }
 
-/// Measures and prints; whether all bars are met.
+/// Runs the measurements and prints the results. Returns `true` if all bars are met.
 ///
 /// # Errors
-/// Names that no family, scalar or method has, and files that cannot be written.
+/// Returns an error for names that no family, scalar or method has, and for files that cannot be
+/// written.
 pub fn run(options: &Options) -> std::io::Result<bool> {
     options.check().map_err(std::io::Error::other)?;
     let rows = measured(options);
@@ -162,10 +163,10 @@ pub fn run(options: &Options) -> std::io::Result<bool> {
     Ok(bars(options, &rows))
 }
 
-/// The methods for which the bars hold.
+/// The methods to which the bars apply.
 const BARRED: [Method; 2] = [Method::Default, Method::Picard];
 
-/// Prints the first lines.
+/// Prints at most `most` lines.
 fn tell(lines: &[String], most: usize) {
     lines.iter().take(most).for_each(|line| println!("    {line}"));
     if most < lines.len() {
@@ -173,7 +174,7 @@ fn tell(lines: &[String], most: usize) {
     }
 }
 
-/// The error of one method in one run over tolerance and amplification, or the error that it
+/// The error of a method in a run, divided by tolerance and amplification, or the error that it
 /// returned.
 #[derive(Clone, Debug)]
 pub struct Finding {
@@ -189,7 +190,7 @@ pub struct Finding {
     pub merit: Result<f64, String>,
 }
 
-/// The measurements, without a word. Runs without a reference are left out.
+/// Returns the measurements without printing. Runs without a reference are left out.
 pub fn findings(options: &Options) -> Vec<Finding> {
     let rows = measured(options);
     let finding = |family, run: &Measured, m: &Measurement| {
@@ -211,7 +212,7 @@ pub fn findings(options: &Options) -> Vec<Finding> {
     rows.iter().flat_map(of).collect()
 }
 
-/// The bars of `Picard` and of the default.
+/// Checks the bars of `Picard` and of the default method.
 fn bars(options: &Options, rows: &[Row<'_>]) -> bool {
     let mut met = true;
     for method in BARRED {
@@ -219,7 +220,7 @@ fn bars(options: &Options, rows: &[Row<'_>]) -> bool {
             continue;
         }
         if !rows.iter().any(|row| row.family.scalar != Scalar::Wide) && method == Method::Picard {
-            // It has no digits beyond those of f64, and is not measured over two words.
+            // `Picard` has only the precision of `f64` and is not measured in double-double.
             continue;
         }
         let wrong = report::wrong(rows, method, 1000.0);
@@ -258,7 +259,7 @@ fn families() -> impl Iterator<Item = &'static Family> {
     families::SHORT.iter().chain(others)
 }
 
-/// All runs of all families asked for.
+/// Measures all runs of the chosen families.
 fn measured(options: &Options) -> Vec<Row<'static>> {
     let chosen = options.chosen();
     let runs: Vec<usize> =

@@ -2,9 +2,9 @@
 //! NAME] [--scalar f32|f64|dd] [--method NAME] [--count N] [--run K] [--threads N] [--no-time]
 //! [--verbose] [--markdown PATH] [--csv PATH]`.
 //!
-//! Without `--features all` it builds in a fraction of the time and has the families of the short
-//! test; `--profile zoo` instead of `--release` builds faster after a change. `--family` and
-//! `--method` may stand several times. It fails where a bar is missed.
+//! Without `--features all`, the build takes a fraction of the time and contains only the families
+//! of the short test. `--profile zoo` instead of `--release` builds faster after a change.
+//! `--family` and `--method` may be given several times. The program fails if a bar is missed.
 
 use lexopt::prelude::*;
 use std::process::ExitCode;

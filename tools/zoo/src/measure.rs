@@ -1,40 +1,40 @@
-//! One run of one family: reference, amplification, and every method.
+//! A run of a family: reference, amplification, and every method.
 
 use crate::case::{Case, Method, Scalar, amplification, distance};
 use crate::families::Family;
 use crate::random::Random;
 
-/// The result of one method in one run.
+/// The result of a method in a run.
 #[derive(Clone, Debug)]
 pub(crate) struct Measurement {
     pub(crate) method: Method,
-    /// The error at the end over tolerance and amplification, and the largest at the other output
-    /// times; or the error that it returned.
+    /// The error at the end divided by tolerance and amplification, and the largest such error at
+    /// the other output times; or the error that the method returned.
     pub(crate) merit: Result<(f64, f64), String>,
     /// The error at the end.
     pub(crate) error: f64,
-    /// Steps and evaluations.
+    /// The numbers of steps and evaluations.
     pub(crate) stats: String,
-    /// The time over that of `Dop853`.
+    /// The time relative to that of `Dop853`.
     pub(crate) time: Option<f64>,
 }
 
-/// One run of one family.
+/// A run of a family.
 #[derive(Clone, Debug)]
 pub(crate) struct Measured {
     pub(crate) run: usize,
     pub(crate) tolerance: f64,
     pub(crate) amplification: f64,
-    /// The distance of two references from each other.
+    /// The distance between two references.
     pub(crate) doubt: f64,
     pub(crate) start: String,
     pub(crate) measurements: Vec<Measurement>,
 }
 
-/// The parts of the interval at which dense output is looked at.
+/// The fractions of the interval at which dense output is measured.
 const WITHIN: [f64; 2] = [0.37, 0.71];
 
-/// The problem of a run and its tolerance.
+/// Returns the problem of a run, its tolerance and its generator.
 fn problem(family: &Family, run: usize) -> (Box<dyn Case>, f64, Random) {
     let (case, mut random) = family.problem(run);
     let (least, most) = family.scalar.tolerances();
@@ -42,7 +42,7 @@ fn problem(family: &Family, run: usize) -> (Box<dyn Case>, f64, Random) {
     (case, tolerance, random)
 }
 
-/// Measures the methods that `wanted` accepts.
+/// Measures the methods accepted by `wanted`.
 pub(crate) fn measure(
     family: &Family,
     run: usize,
@@ -86,8 +86,8 @@ pub(crate) fn measure(
     Ok(Measured { run, tolerance, amplification, doubt, start, measurements })
 }
 
-/// The states at the output times and at the end in two words, and how far a second reference with
-/// other steps is from them.
+/// Returns the states at the output times and at the end in double-double, and their distance from
+/// a second reference with other steps.
 fn reference(
     case: &dyn Case,
     scalar: Scalar,
@@ -107,14 +107,15 @@ fn reference(
     Ok((trusted, doubt))
 }
 
-/// The times of all methods over that of `Dop853`, each the least of a few.
+/// Measures the times of all methods relative to that of `Dop853`, each the minimum of several
+/// runs.
 pub(crate) fn clock(family: &Family, measured: &mut Measured) {
     let (case, tolerance, _) = problem(family, measured.run);
     let time = |method| {
         let once =
             || Some(case.run(method, family.scalar, tolerance, &[]).ok()?.time.as_secs_f64());
         let first: f64 = once()?;
-        // A long run is not disturbed much.
+        // Disturbances hardly affect a long run.
         let repeats = if first < 0.02 { 4 } else { 0 };
         Some((0..repeats).filter_map(|_| once()).fold(first, f64::min))
     };

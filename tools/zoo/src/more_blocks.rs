@@ -1,4 +1,4 @@
-//! The systems that are measured with `--features all` only.
+//! The systems that are measured only with `--features all`.
 
 #![allow(missing_docs)]
 
@@ -161,7 +161,7 @@ lagrangian! {
     potential = exp(a*(x[0] - x[1])) + exp(a*(x[1] - x[2])) + exp(a*(x[2] - x[0]));
 }
 
-// The last two of a line are for systems whose accelerations contain no velocity.
+// The last two methods of a line require accelerations that do not depend on velocities.
 case!(SoftStop, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12]);
 case!(Kinked, 1, free, Dop853, f64 [Default Picard Dop853 Tsit5 Rodas4]);
 case!(Steep, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12]);

@@ -1,4 +1,4 @@
-//! The families that are measured with `--features all` only.
+//! The families that are measured only with `--features all`.
 
 use crate::case::{Guide, Scalar};
 use crate::families::{
@@ -108,7 +108,7 @@ pub(crate) const MORE: &[Family] = &[
     double("toda", toda),
     double("magnetic", magnetic),
     double("stiff spring", elastic),
-    // Rest and what follows.
+    // Motions from rest.
     double("rest, ramp", |r, s| {
         let shape = Shape::Ramp {
             a: r.within(0.2, 0.6),
@@ -134,7 +134,7 @@ pub(crate) const MORE: &[Family] = &[
         closure(r, s, |r| Shape::Jump { a: r.within(1.0, 5.0), at: r.within(1.0, 6.0) })
     }),
     single("lennard-jones f32", lennard_jones),
-    // Two words.
+    // Double-double.
     wide("simple dd", simple),
     wide("double dd", coupled),
     wide("kepler dd", |r, s| {
@@ -178,11 +178,11 @@ fn oscillator(r: &mut Random, scalar: Scalar, system: &Oscillator, end: f64) -> 
     Box::new(Trial::new(scalar, system, q, v, end, Guide::max_step(0.5)))
 }
 
-/// A ball that rests until the ground moves.
+/// Creates a ball that rests until the ground moves.
 fn lifted(r: &mut Random, scalar: Scalar, shape: Shape) -> Problem {
     let (g, k, w) = (9.81, 1e4, 1e-2);
     let ball = Lifted { g, k, w, c: r.within(0.0, 1.0) };
-    // Where the spring carries the weight, by bisection.
+    // The equilibrium of spring and weight, by bisection.
     let (mut low, mut high) = (-0.1f64, 0.1f64);
     for _ in 0..60 {
         let y = 0.5 * (low + high);
@@ -242,20 +242,20 @@ fn wilberforce(r: &mut Random, scalar: Scalar) -> Problem {
     Box::new(Trial::new(scalar, &spring, q, [0.0; 2], 10.0, Guide::FREE))
 }
 
-/// An orbit of unit size that starts at the distance r where it crosses the axis.
+/// Creates an orbit of unit size that starts on the axis at the distance r.
 fn orbit(scalar: Scalar, r: f64, e: f64, end: f64) -> Problem {
     let v = [0.0, ((1.0 + e) / (1.0 - e)).sqrt()];
     Box::new(Trial::new(scalar, &Kepler { μ: 1.0 }, [r, 0.0], v, end, Guide::FREE))
 }
 
-/// Near the periodic orbit of Arenstorf.
+/// Creates a problem near the periodic orbit of Arenstorf.
 fn restricted(r: &mut Random, scalar: Scalar) -> Problem {
     let q = [0.994 + r.within(-1e-3, 1e-3), 0.0];
     let v = [0.0, -2.001_585_106_379_082_5 + r.within(-0.05, 0.05)];
     Box::new(Trial::new(scalar, &Restricted { μ: 0.012_277_471 }, q, v, 1.5, Guide::FREE))
 }
 
-/// Near the figure of eight of Chenciner and Montgomery.
+/// Creates a problem near the figure of eight of Chenciner and Montgomery.
 fn stars(r: &mut Random, scalar: Scalar) -> Problem {
     let (x, y, vx, vy) = (0.970_004_36, -0.243_087_53, 0.466_203_69, 0.432_365_73);
     let mut near = |x: [f64; 6]| x.map(|x| x + r.within(-0.1, 0.1));

@@ -1,4 +1,5 @@
-//! Prescribed motions: as a user gives them, and in two words with every break declared.
+//! Prescribed motions: in the form that users provide, and in double-double with every break
+//! declared.
 
 use pendulum_runtime::motion::{
     Analytic, CatmullRom, Derivatives, Function, Linear, Motion, Sample, Side, Sinusoid, Spline,
@@ -12,20 +13,20 @@ use pendulum_runtime::time::Time;
 pub(crate) enum Shape {
     /// a sin(ωt + φ).
     Sine { a: f64, ω: f64, φ: f64 },
-    /// An acceleration that begins at a time.
+    /// An acceleration that starts at a time.
     Jump { a: f64, at: f64 },
-    /// From 0 to a along 3u² − 2u³; the acceleration jumps at both ends.
+    /// A rise from 0 to a along 3u² − 2u³. The acceleration jumps at both ends.
     Ramp { a: f64, from: f64, long: f64 },
-    /// Cubics that meet where the third derivative jumps between j and −j.
+    /// Cubic pieces. The third derivative jumps between j and −j where they meet.
     Cubics { j: f64, every: f64 },
     /// a exp(−((t − c)/s)²).
     Pulse { a: f64, c: f64, s: f64 },
-    /// From 0 to a along a hyperbolic tangent.
+    /// A rise from 0 to a along a hyperbolic tangent.
     Rise { a: f64, c: f64, s: f64 },
 }
 
 impl Shape {
-    /// Position, velocity and acceleration.
+    /// Returns position, velocity and acceleration. `early(at)` is `true` before the time `at`.
     fn at<T: Real>(&self, t: T, early: impl Fn(f64) -> bool) -> [T; 3] {
         let n = T::from_f64;
         match *self {
@@ -52,8 +53,8 @@ impl Shape {
                 [a * u * u * (n(3.0) - u - u), a * speed, a * bend]
             }
             Self::Cubics { j, every } => {
-                // Which piece it is says the time in one word: at the ends of pieces both agree up
-                // to the third derivative.
+                // The time in a single word determines the piece. At the ends of pieces, both sides
+                // agree up to the second derivative.
                 let mut piece = 0.0;
                 while !early((piece + 1.0) * every) {
                     piece += 1.0;
@@ -84,7 +85,7 @@ impl Shape {
         }
     }
 
-    /// The times at which it is not analytic.
+    /// Returns the times at which the function is not analytic.
     fn breaks(&self) -> Vec<f64> {
         match *self {
             Self::Sine { .. } | Self::Pulse { .. } | Self::Rise { .. } => Vec::new(),
@@ -95,10 +96,10 @@ impl Shape {
     }
 }
 
-/// The form in which a motion is given.
+/// The form in which a motion is provided.
 #[derive(Clone, Debug)]
 pub(crate) enum Drive {
-    /// Closures that declare nothing.
+    /// Closures without declared breaks.
     Closure(Shape, [f64; 2]),
     /// A `Sinusoid` of a sine.
     Sinusoid(Shape, [f64; 2]),
@@ -109,7 +110,7 @@ pub(crate) enum Drive {
 
 type Closure = Box<dyn Fn(f64) -> [f64; 2]>;
 
-/// A motion of the kinds that users have.
+/// A motion of a type available to users.
 #[derive(Debug)]
 pub(crate) enum Given {
     Function(Function<Closure, Closure, Closure>),
@@ -120,7 +121,7 @@ pub(crate) enum Given {
 }
 
 impl Drive {
-    /// The motion as a user gives it.
+    /// Returns the motion in the form that a user provides.
     pub(crate) fn given(&self) -> Given {
         match self {
             Self::Closure(shape, along) => {
@@ -140,7 +141,8 @@ impl Drive {
         }
     }
 
-    /// The same motion in two words, which ends steps wherever it is not analytic.
+    /// Returns the same motion in double-double, with a break at each time at which it is not
+    /// analytic.
     pub(crate) fn exact(&self) -> Exact {
         match self {
             Self::Closure(shape, along) | Self::Sinusoid(shape, along) => {
@@ -218,7 +220,7 @@ impl<T: Real> Motion<T, 2> for Exact {
 
     fn next_kink(&self, t: f64) -> Option<f64> {
         match &self.keyed {
-            // Pieces of a spline meet where it has no kink.
+            // A spline has no kinks between its pieces.
             Some(keyed) => Motion::<T, 2>::analytic(keyed).and_then(|motion| motion.next_break(t)),
             None => self.breaks.iter().copied().find(|at| t < *at),
         }

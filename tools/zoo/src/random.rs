@@ -1,10 +1,10 @@
-//! A small generator: the same starts for every method, on every machine.
+//! The random numbers: the same starts for every method and on every machine.
 
 /// The generator of all tools, with a seed for each run.
 pub(crate) struct Random(split_mix::Random);
 
 impl Random {
-    /// The generator of one run of one family.
+    /// Creates the generator of a run of a family.
     pub(crate) fn of(family: &str, run: usize) -> Self {
         let seed = family
             .bytes()
@@ -15,16 +15,16 @@ impl Random {
         random
     }
 
-    /// A number between two others.
+    /// Returns a uniformly distributed number between two numbers.
     pub(crate) fn within(&mut self, least: f64, most: f64) -> f64 {
         self.0.uniform(least, most)
     }
 
-    /// A number between two others, evenly in its logarithm.
+    /// Returns a number between two numbers whose logarithm is uniformly distributed.
     pub(crate) fn log_within(&mut self, least: f64, most: f64) -> f64 {
         self.within(least.ln(), most.ln()).exp()
     }
 }
 
-/// The seed of everything.
+/// The common seed.
 const SEED: u64 = 0xcbf2_9ce4_8422_2325;

@@ -10,11 +10,11 @@ use std::fmt::Write;
 pub(crate) struct Row<'a> {
     pub(crate) family: &'a Family,
     pub(crate) runs: Vec<Measured>,
-    /// Runs without a reference.
+    /// The runs without a reference.
     pub(crate) lost: Vec<(usize, String)>,
 }
 
-/// The value below which this part of the sorted `values` lies.
+/// Returns the quantile of the sorted `values` at the fraction `part`.
 pub(crate) fn quantile(values: &[f64], part: f64) -> f64 {
     if values.is_empty() {
         return f64::NAN;
@@ -45,7 +45,7 @@ impl Row<'_> {
     }
 }
 
-/// Two significant digits.
+/// Formats a number with two significant digits.
 fn short(x: f64) -> String {
     if x.is_nan() {
         "–".into()
@@ -56,7 +56,7 @@ fn short(x: f64) -> String {
     }
 }
 
-/// The table of families and methods.
+/// Returns the table of families and methods.
 pub(crate) fn table(rows: &[Row<'_>]) -> String {
     let mut text = String::new();
     let heads = [
@@ -107,9 +107,9 @@ pub(crate) fn table(rows: &[Row<'_>]) -> String {
     text
 }
 
-/// The tables of the documentation: all families by method, and each family with the median
+/// Returns the tables of the documentation: all families by method; and each family with the median
 /// amplification, the runs without a reference, and for each method the median, the 90 % quantile
-/// and the largest merit, and its time over that of `Dop853`.
+/// and the largest merit, and its time relative to that of `Dop853`.
 pub(crate) fn markdown(rows: &[Row<'_>]) -> String {
     let mut text = String::from(
         "| all | runs | median | 90 % | above 100 | above 1000 | errors |\n|---|---|---|---|---|---|---|\n",
@@ -154,18 +154,18 @@ pub(crate) fn markdown(rows: &[Row<'_>]) -> String {
     text
 }
 
-/// The runs that ended in an error.
+/// Returns the number of runs that ended in an error.
 pub(crate) fn failed(rows: &[Row<'_>], method: Method) -> usize {
     rows.iter().flat_map(|row| row.of(method)).filter(|(_, m)| m.merit.is_err()).count()
 }
 
-/// The runs without a reference, and all.
+/// Returns the number of runs without a reference, and the number of all runs.
 pub(crate) fn lost(rows: &[Row<'_>]) -> (usize, usize) {
     let lost = rows.iter().map(|row| row.lost.len()).sum();
     (lost, lost + rows.iter().map(|row| row.runs.len()).sum::<usize>())
 }
 
-/// The worth of the references, a line a family.
+/// Describes the accuracy of the references, with a line for each family.
 pub(crate) fn references(rows: &[Row<'_>]) -> String {
     let mut text = String::new();
     for row in rows {
@@ -192,7 +192,8 @@ pub(crate) fn references(rows: &[Row<'_>]) -> String {
     text
 }
 
-/// The summary of each method over all families, with every run that is wrong and every failure.
+/// Returns the summary of each method over all families, with every run above the bound and every
+/// failure.
 pub(crate) fn summary(rows: &[Row<'_>]) -> String {
     let mut text = String::new();
     for method in Method::ALL {
@@ -226,8 +227,8 @@ pub(crate) fn summary(rows: &[Row<'_>]) -> String {
     text
 }
 
-/// The families in which the 90 % quantile is more than three times that of `Dop853`, which counts
-/// as `floor` at least.
+/// Returns the families in which the 90 % quantile is more than three times the larger of that of
+/// `Dop853` and `floor`.
 pub(crate) fn worse(rows: &[Row<'_>], method: Method, floor: f64) -> Vec<String> {
     let mut names = Vec::new();
     for row in rows {
@@ -240,7 +241,7 @@ pub(crate) fn worse(rows: &[Row<'_>], method: Method, floor: f64) -> Vec<String>
     names
 }
 
-/// The runs above a bound, with what repeats each.
+/// Returns the runs above a bound, with the options that repeat them.
 pub(crate) fn wrong(rows: &[Row<'_>], method: Method, bound: f64) -> Vec<String> {
     let mut lines = Vec::new();
     for row in rows {
@@ -262,12 +263,12 @@ pub(crate) fn wrong(rows: &[Row<'_>], method: Method, bound: f64) -> Vec<String>
     lines
 }
 
-/// The merits of a method over all families.
+/// Returns the sorted merits of a method over all families.
 pub(crate) fn merits(rows: &[Row<'_>], method: Method) -> Vec<f64> {
     sorted(rows.iter().flat_map(|row| row.merits(method)))
 }
 
-/// A line for each measurement, with a head.
+/// Returns a header and a line for each measurement.
 pub(crate) fn lines(rows: &[Row<'_>]) -> String {
     let mut text = String::from(
         "family,scalar,run,method,tolerance,amplification,error,merit,dense,time,failure\n",

@@ -1,4 +1,4 @@
-//! A system with a start and an interval, and what can be done with it.
+//! A system with a start and an interval.
 
 use crate::case::{Guide, Run, Scalar, State, Widened};
 use crate::motions::Drive;
@@ -15,13 +15,13 @@ pub(crate) struct Trial<S, const N: usize> {
     pub(crate) v: [f64; N],
     pub(crate) end: f64,
     pub(crate) guide: Guide,
-    /// The longest step of what is measured.
+    /// The longest step of measured methods.
     pub(crate) limit: f64,
     pub(crate) drive: Option<Drive>,
 }
 
 impl<S: System<N, Scalar = f64, With<f64> = S>, const N: usize> Trial<S, N> {
-    /// A problem whose numbers the scalar holds exactly.
+    /// Creates a problem whose numbers are exact in the scalar.
     pub(crate) fn new(
         scalar: Scalar,
         system: &S,
@@ -42,18 +42,18 @@ impl<S: System<N, Scalar = f64, With<f64> = S>, const N: usize> Trial<S, N> {
         }
     }
 
-    /// The same with steps that are not longer.
+    /// Sets the longest step.
     pub(crate) fn limited(self, limit: f64) -> Self {
         Self { limit, ..self }
     }
 
-    /// The same with a motion.
+    /// Sets the motion.
     pub(crate) fn driven(self, drive: Drive) -> Self {
         Self { drive: Some(drive), ..self }
     }
 }
 
-/// Coordinates and velocities in one list.
+/// Joins coordinates and velocities in one list.
 fn joined<T: Widened, const N: usize>(q: &[T; N], v: &[T; N]) -> State {
     q.iter().chain(v).map(|x| x.widened()).collect()
 }
@@ -70,12 +70,12 @@ pub(crate) fn finished<T: Widened, const N: usize>(
     Ok(Run { states, time, stats: solution.stats.to_string() })
 }
 
-/// The name of an error.
+/// Returns the name of an error.
 fn kind(error: &impl Debug) -> String {
     format!("{error:?}").chars().take_while(|c| c.is_alphanumeric()).collect()
 }
 
-/// A system with its motion, as a user gives it or for references.
+/// Binds a system to its motion, in the form that users provide or for references.
 macro_rules! bind {
     (free, $system:expr, $trial:ident, $kind:ident) => {
         $system
@@ -119,8 +119,8 @@ macro_rules! over {
     }};
 }
 
-/// The implementation of `Case` for a system: how its reference is computed, and what is measured
-/// over which scalar.
+/// Implements `Case` for a system: the method of its reference, and the methods measured for each
+/// scalar.
 macro_rules! case {
     ($system:ident, $n:literal, $binding:ident, $reference:ident, f64 [$($double:ident)*] $(, f32 [$($single:ident)+])? $(, dd [$($wide:ident)+])?) => {
         impl Case for Trial<$system<f64>, $n> {

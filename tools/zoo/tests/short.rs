@@ -1,10 +1,10 @@
-//! The default and `Picard` on systems that are not gentle: no error is far above the tolerance.
+//! The default method and `Picard` on difficult systems: no error is far above the tolerance.
 
 #![allow(missing_docs)]
 
 use zoo::{Finding, Method, Options, findings};
 
-/// Nine families and six starts of each; the program has sixty starts of many more.
+/// Nine families with six starts each. The program measures sixty starts of many more families.
 #[test]
 fn errors_are_those_asked_for() {
     let names = [
@@ -33,7 +33,7 @@ fn errors_are_those_asked_for() {
             .filter(|finding| finding.method == method && finding.merit.is_ok())
             .count();
         assert!(runs >= 6 * names.len() - 2, "{runs} runs of {method:?} came to an end");
-        // The bars of the program are looser; measured here are at most 0.3.
+        // The bars of the program are looser. The measured values here are at most 0.3.
         assert!(of(10.0).is_empty(), "{:#?}", of(10.0));
         assert!(of(1.0).len() <= 1, "{:#?}", of(1.0));
         for name in names {

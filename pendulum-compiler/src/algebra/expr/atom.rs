@@ -1,11 +1,12 @@
-//! Atoms: expressions closed to rewriting, on which elimination works.
+//! Atoms: expressions that are excluded from rewriting. Elimination works on them.
 
 use super::{Dependencies, Graph, Id, Node};
 use crate::algebra::number::Rational;
 
 impl Graph {
-    /// Closes the sums of an expression to rewriting: no other sum takes their terms in. Products
-    /// stay open, so that their factors cancel, and so do sums of parameters, which cost nothing.
+    /// Makes atoms of the sums in an expression, so that no other sum absorbs their terms. Products
+    /// stay open so that their factors cancel. Sums of parameters stay open too, because they are
+    /// computed only once.
     pub(crate) fn atom(&mut self, id: Id) -> Id {
         let (coefficient, bare) = self.split(id);
         match self.node(bare).clone() {
@@ -32,7 +33,7 @@ impl Graph {
         }
     }
 
-    /// Closes any expression that is not a leaf: it is computed once and used as it is.
+    /// Makes an atom of a sum or a product; returns any other expression unchanged.
     pub(crate) fn closed(&mut self, id: Id) -> Id {
         match self.node(id) {
             Node::Sum(_) | Node::Product(..) => self.intern(Node::Atom(id)),

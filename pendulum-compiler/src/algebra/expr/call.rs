@@ -1,11 +1,11 @@
-//! Functions of expressions: calls, powers that are no numbers, smallest and largest values.
+//! Functions of expressions: calls, powers with non-constant exponents, minima and maxima.
 
 use super::{Graph, Id, Node};
 use crate::algebra::expr::rule;
 use crate::algebra::functions::Function;
 
 impl Graph {
-    /// `a` to a power that is no number: exp(b ln a).
+    /// Returns `a` to the power `b`. If `b` is not a number, the power is exp(b ln a).
     pub(crate) fn general_power(&mut self, a: Id, b: Id) -> Id {
         if let Node::Number(exponent) = *self.node(b) {
             return self.power(a, exponent);
@@ -38,7 +38,7 @@ impl Graph {
         self.intern(Node::Max(a.min(b), a.max(b)))
     }
 
-    /// -max(-a, -b).
+    /// Returns the minimum, −max(−a, −b).
     pub(crate) fn min(&mut self, a: Id, b: Id) -> Id {
         let a = self.negative(a);
         let b = self.negative(b);

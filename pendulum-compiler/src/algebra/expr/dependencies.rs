@@ -1,8 +1,8 @@
-//! Dependencies of an expression: parameters, time, coordinates, inputs.
+//! Dependencies of an expression: the kinds of its symbols.
 
 use super::node::Symbol;
 
-/// The kinds of symbols that stand anywhere in an expression.
+/// A set of kinds of symbols: those that occur in an expression.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Dependencies(u16);
 
@@ -23,14 +23,14 @@ impl Dependencies {
     pub(crate) const TARGET: Self = Self(8192);
     /// Driven and control inputs.
     pub(crate) const INPUT: Self = Self(16 | 32 | 64 | 2048);
-    /// Everything but parameters.
+    /// All kinds except parameters.
     pub(crate) const STATE: Self = Self(!1);
 
     pub(crate) const fn or(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// Returns true if anything of `other` is in `self`.
+    /// Returns `true` if `self` and `other` have a kind in common.
     pub(crate) const fn any(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }

@@ -1,8 +1,8 @@
 //! The hash-consed expression graph: equal expressions are one node, numbers are exact.
 //!
 //! Sums and products are flat and sorted. A sum is primitive: its numeric content and the factors
-//! common to all its terms stand before it, so that `a*b + a*c` and `a*(b + c)` are one node.
-//! Children are always older than their parents: ascending ids are a topological order.
+//! common to all its terms are factored out, so that `a*b + a*c` and `a*(b + c)` are one node.
+//! Children are always older than their parents, so that ascending ids are a topological order.
 
 mod atom;
 mod call;
@@ -23,8 +23,8 @@ use std::hash::{BuildHasherDefault, DefaultHasher};
 /// The terms of a sum under construction.
 pub(crate) type Terms = BTreeMap<Id, Rational>;
 
-/// The same in every run; the maps that use it are asked, never listed, so that no order of theirs
-/// can be seen.
+/// A hasher without random keys. Maps with this hasher are used for look-ups only and are never
+/// iterated, so that their order has no effect.
 type Hasher = BuildHasherDefault<DefaultHasher>;
 
 /// All expressions of a block.
@@ -35,7 +35,7 @@ pub(crate) struct Graph {
     size: usize,
     dependencies: Vec<Dependencies>,
     ids: HashMap<Node, Id, Hasher>,
-    /// The derivatives that are known.
+    /// The derivatives computed so far.
     slopes: HashMap<(Symbol, Id), Id, Hasher>,
 }
 
@@ -60,7 +60,7 @@ impl Graph {
         &self.nodes[id.index()]
     }
 
-    /// The number of operands in all sums and products made so far.
+    /// Returns the number of operands in all sums and products made so far.
     pub(crate) fn size(&self) -> usize {
         self.size
     }
@@ -92,12 +92,12 @@ impl Graph {
         self.intern(Node::Symbol(symbol))
     }
 
-    /// `a + b`.
+    /// Returns `a + b`.
     pub(crate) fn add(&mut self, a: Id, b: Id) -> Id {
         self.sum(&[(a, Rational::ONE), (b, Rational::ONE)])
     }
 
-    /// `a - b`.
+    /// Returns `a - b`.
     pub(crate) fn sub(&mut self, a: Id, b: Id) -> Id {
         self.sum(&[(a, Rational::ONE), (b, Rational::MINUS_ONE)])
     }
@@ -110,12 +110,12 @@ impl Graph {
         self.product(coefficient, &[(a, Rational::ONE)])
     }
 
-    /// `a * b`.
+    /// Returns `a * b`.
     pub(crate) fn mul(&mut self, a: Id, b: Id) -> Id {
         self.product(Rational::ONE, &[(a, Rational::ONE), (b, Rational::ONE)])
     }
 
-    /// `a / b`.
+    /// Returns `a / b`.
     pub(crate) fn div(&mut self, a: Id, b: Id) -> Id {
         self.product(Rational::ONE, &[(a, Rational::ONE), (b, Rational::MINUS_ONE)])
     }
@@ -128,9 +128,9 @@ impl Graph {
         self.power(a, Rational::HALF)
     }
 
-    /// The derivative of a node, if it is known.
+    /// Returns the derivative of a node if it is in the cache or zero.
     pub(crate) fn cached_derivative(&self, symbol: Symbol, id: Id) -> Option<Id> {
-        // An expression with nothing of the symbol's kind does not depend on it.
+        // An expression without symbols of this kind has the derivative zero.
         if self.dependencies(id).any(Dependencies::of(symbol)) {
             self.slopes.get(&(symbol, id)).copied()
         } else {
@@ -138,7 +138,7 @@ impl Graph {
         }
     }
 
-    /// Remembers a derivative.
+    /// Stores a derivative in the cache.
     pub(crate) fn cache_derivative(&mut self, symbol: Symbol, id: Id, slope: Id) {
         self.slopes.insert((symbol, id), slope);
     }

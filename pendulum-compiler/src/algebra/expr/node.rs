@@ -4,7 +4,7 @@ use crate::algebra::functions::Function;
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 
-/// A node of the graph.
+/// The index of a node in its graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct Id(pub(super) u32);
 
@@ -18,23 +18,24 @@ impl Id {
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Node {
     Number(Rational),
-    /// A number that takes no part in folding: too large for exact arithmetic.
+    /// A number that is too large for exact arithmetic and is not folded.
     Opaque(Literal),
     Pi,
     Symbol(Symbol),
-    /// Two or more terms with their coefficients; `1` is the term of the constant.
+    /// Two or more terms with their coefficients. The term of a constant is `1`.
     Sum(Vec<(Id, Rational)>),
     /// A coefficient and factors with their exponents.
     Product(Rational, Vec<(Id, Rational)>),
     Call(Function, Id),
-    /// The angle of the point (second, first).
+    /// The angle of the point (x, y), with the operands in the order y, x.
     Atan2(Id, Id),
     Max(Id, Id),
-    /// The same value as its child, closed to all rewriting: what elimination works on.
+    /// An expression with the value of its child that is excluded from rewriting. Elimination works
+    /// on these.
     Atom(Id),
 }
 
-/// A leaf that has its value at run time.
+/// A leaf whose value is known at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Symbol {
     Parameter(usize),
@@ -46,30 +47,32 @@ pub(crate) enum Symbol {
         component: usize,
         order: u8,
     },
-    /// A control input, by the index and the component of the input; it has no derivatives.
+    /// A component of a control input. It has no derivatives.
     Control {
         input: usize,
         component: usize,
     },
-    /// The second derivative of a coordinate, in outputs.
+    /// The second derivative of a coordinate, used in outputs.
     Acceleration(usize),
-    /// The multiplier of a constraint, in outputs and where equations are printed.
+    /// The multiplier of a constraint, used in outputs and in printed equations.
     Multiplier(usize),
-    /// The change of a constraint that is wanted, in the function that corrects misfits.
+    /// The required change of a constraint, used in the function that corrects constraint
+    /// violations.
     Target(usize),
-    /// A generalized momentum, in the function that inverts them.
+    /// A generalized momentum, used in the function that computes velocities from momenta.
     Momentum(usize),
-    /// A second moment about its pivot of the body whose scalars begin with this parameter.
+    /// A second moment about the pivot of a body, given by the first parameter of the body.
     Moment(usize, Moment),
-    /// The velocity of a scalar of a `let` position, as an unknown of its own.
+    /// The velocity of a scalar of a `let` position, as a separate unknown.
     Auxiliary(usize),
-    /// A scalar of a `let` position, where constraints are told what they hold.
+    /// A scalar of a `let` position, used in expressions of constraints and limits.
     Position(usize),
-    /// A component of the point of integration; the first number tells nested integrals apart.
+    /// A component of the point of integration. The first number distinguishes nested integrals.
     Point(usize, usize),
 }
 
-/// The second moments of a body in which rotations are short: S_xx + S_yy, S_xx − S_yy and S_xy.
+/// The second moments of a body about its pivot. With these combinations, expressions for rotations
+/// are short.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Moment {
     /// S_xx + S_yy, the moment of inertia.

@@ -7,7 +7,7 @@ use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 
 impl Graph {
-    /// coefficient · Π base^exponent.
+    /// Returns coefficient · Π base^exponent.
     pub(crate) fn product(&mut self, coefficient: Rational, factors: &[(Id, Rational)]) -> Id {
         let mut coefficient = coefficient;
         let mut bases = Terms::new();
@@ -19,8 +19,8 @@ impl Graph {
             if coefficient.is_zero() {
                 return Self::ZERO;
             }
-            // A base whose exponents have added up to a whole number may open again; rules may fire
-            // on the rest.
+            // A base whose exponent has become an integer is split into its factors if it is a
+            // number or a product. The rules then apply to the result.
             if let Some(edit) = rule::rewrite_product(self, &bases) {
                 for id in edit.removed {
                     bases.remove(&id);
@@ -55,7 +55,7 @@ impl Graph {
         }
     }
 
-    /// The factors of a term, without its coefficient.
+    /// Returns the factors of a term, without its coefficient.
     pub(crate) fn factors(&self, id: Id) -> Vec<(Id, Rational)> {
         match self.node(id) {
             Node::Product(_, factors) => factors.clone(),
@@ -63,7 +63,7 @@ impl Graph {
         }
     }
 
-    /// The coefficient of an expression and the rest.
+    /// Splits an expression into its coefficient and the remaining factors.
     pub(crate) fn split(&mut self, id: Id) -> (Rational, Id) {
         match self.node(id).clone() {
             Node::Number(value) => (value, Self::ONE),
@@ -74,7 +74,7 @@ impl Graph {
         }
     }
 
-    /// Returns true if an expression is a quotient by something that moves.
+    /// Returns `true` if a factor with a negative exponent depends on more than parameters.
     pub(crate) fn moving_quotient(&self, id: Id) -> bool {
         let factors = self.factors(id);
         factors.iter().any(|&(base, exponent)| {
@@ -112,8 +112,8 @@ impl Graph {
                         inner.iter().map(|&(id, power)| Some((id, exact(power.mul(exponent))?)));
                     let powers = powers.collect::<Option<Vec<_>>>();
                     let Some(powers) = powers else {
-                        // Exponents beyond exact arithmetic: the power stays closed, or it would be
-                        // opened for ever.
+                        // The exponents exceed exact arithmetic. The base is closed, because it
+                        // would be split again and again otherwise.
                         let closed = self.intern(Node::Atom(base));
                         return self.add_exponent(bases, closed, exponent);
                     };
@@ -130,8 +130,8 @@ impl Graph {
         }
     }
 
-    /// A broken power of a product: even powers come out as magnitudes, positive numbers come out,
-    /// the rest stays together.
+    /// Adds a fractional power of a product. Even powers are extracted as magnitudes and positive
+    /// numbers as factors; the remaining factors stay together.
     fn add_root(
         &mut self,
         coefficient: &mut Rational,
@@ -198,12 +198,12 @@ impl Graph {
     }
 }
 
-/// An exponent as long as it is small enough for sums and differences of exponents to be exact.
+/// Returns the exponent if it is small enough for exact sums and differences of exponents.
 pub(super) fn exact(exponent: Option<Rational>) -> Option<Rational> {
     exponent?.within(60)
 }
 
-/// The exact power of a number, where there is one.
+/// Returns the exact power of a number, if it is rational and small enough.
 fn number_power(value: Rational, exponent: Rational) -> Option<Rational> {
     if value == Rational::ONE {
         return Some(value);

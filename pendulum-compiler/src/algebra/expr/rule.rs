@@ -1,16 +1,16 @@
-//! The simplifier: one table of named rules, tried whenever a node is made.
+//! The simplifier: a table of named rules, which are tried whenever a node is made.
 //!
-//! Each row names the rule, the pattern, the result and, last, the function that finds the one and
-//! answers the other. The patterns are text that the tests parse: both sides are evaluated at
-//! random points, and the left side must become the right. Values at zero and parities are columns
-//! of the functions.
+//! A row consists of the name of the rule, the pattern, the result and the function that matches
+//! the pattern and returns the result. Tests parse the patterns, evaluate both sides at random
+//! points and check that the left side is rewritten to the right side. Values at zero and parities
+//! are columns of the table of functions.
 
 use crate::algebra::expr::{Graph, Id, Node, Terms};
 use crate::algebra::functions::{Function, Parity};
 use crate::algebra::number::Rational;
 use std::collections::BTreeMap;
 
-/// A rule on one kind of node.
+/// A rule for one kind of node.
 #[cfg_attr(
     not(test),
     allow(dead_code, reason = "name and patterns are for the reader and the tests")
@@ -28,7 +28,7 @@ enum Apply {
     Product(fn(&mut Graph, &Terms) -> Option<Edit>),
 }
 
-/// Terms of a sum, or factors of a product, that others replace.
+/// A replacement of terms of a sum or factors of a product.
 pub(crate) struct Edit {
     pub(crate) removed: Vec<Id>,
     pub(crate) added: Vec<(Id, Rational)>,
@@ -60,10 +60,10 @@ pub(crate) const RULES: &[Rule] = &[
     sum("sin-sum",                        "sin(a)*cos(b) + cos(a)*sin(b)",         "sin(a + b)",     angle_sum),
 ];
 
-/// Rules that keep digits: where the two sides of the left form are close, their difference has few
-/// digits left, the product on the right has all of them. They cost more than they save, so that
-/// they are tried on energies only, which are read as values; equations of motion are derivatives,
-/// which do not cancel there.
+/// Rules that avoid cancellation. If the two terms on the left are nearly equal, their difference
+/// loses digits; the product on the right keeps all digits. Such rules cost more operations than
+/// they save, so that they are applied only to energies, whose values are output. Equations of
+/// motion are derivatives, in which these terms do not cancel.
 #[rustfmt::skip]
 pub(crate) const CANCELLATIONS: &[Rule] = &[
     sum("one-minus-cos",                  "b - b*cos(a)",                          "2*b*sin(a/2)^2", one_and_cosines),
@@ -71,13 +71,13 @@ pub(crate) const CANCELLATIONS: &[Rule] = &[
     sum("cos-minus-cos",                  "c*cos(a) - c*cos(b)",                   "2*c*sin((a + b)/2)*sin((b - a)/2)", cosines),
 ];
 
-/// `root` without the differences that the rules of `CANCELLATIONS` know.
+/// Rewrites the differences in `root` that match a rule of `CANCELLATIONS`.
 pub(crate) fn without_cancellation(graph: &mut Graph, root: Id) -> Id {
     let mut known: BTreeMap<Id, Id> = BTreeMap::new();
     for id in graph.reachable(&[root]) {
         let node = graph.node(id).clone();
         let mut value = graph.rebuilt(&node, |child| known[&child]);
-        // Each rewrite leaves fewer cosines.
+        // Each rewrite reduces the number of cosines.
         while let Some(next) = rewrite_cancellation(graph, value) {
             value = next;
         }
@@ -102,7 +102,7 @@ fn rewrite_cancellation(graph: &mut Graph, id: Id) -> Option<Id> {
     })
 }
 
-/// The simpler form of a function's value, if a rule knows one.
+/// Returns the simpler form of a function call, if a rule matches.
 pub(crate) fn rewrite_call(graph: &mut Graph, function: Function, argument: Id) -> Option<Id> {
     let row = function.row();
     if let (Graph::ZERO, Some(value)) = (argument, row.at_zero) {
@@ -120,7 +120,7 @@ pub(crate) fn rewrite_call(graph: &mut Graph, function: Function, argument: Id) 
     })
 }
 
-/// The first simplification of a sum that a rule finds.
+/// Returns the first simplification of a sum by a rule.
 pub(crate) fn rewrite_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
     if terms.len() < 2 {
         return None;
@@ -139,7 +139,7 @@ pub(crate) fn rewrite_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
     None
 }
 
-/// The first simplification of a product that a rule finds.
+/// Returns the first simplification of a product by a rule.
 pub(crate) fn rewrite_product(graph: &mut Graph, factors: &Terms) -> Option<Edit> {
     RULES.iter().find_map(|rule| match rule.apply {
         Apply::Product(apply) => apply(graph, factors),
@@ -175,13 +175,13 @@ const fn product(
     Rule { name, left, right, apply: Apply::Product(apply) }
 }
 
-/// `-argument`, if the argument begins with a minus.
+/// Returns `-argument` if the coefficient of the argument is negative.
 fn opposite(graph: &mut Graph, argument: Id) -> Option<Id> {
     let (coefficient, _) = graph.split(argument);
     coefficient.is_negative().then(|| graph.negative(argument))
 }
 
-/// f(f⁻¹(u)) = u.
+/// Applies f(f⁻¹(u)) = u.
 fn inverse(graph: &mut Graph, inverse: Function, argument: Id) -> Option<Id> {
     match *graph.node(argument) {
         Node::Call(function, inner) if function == inverse => Some(inner),
@@ -189,7 +189,7 @@ fn inverse(graph: &mut Graph, inverse: Function, argument: Id) -> Option<Id> {
     }
 }
 
-/// sin(u + kπ/2), where `shift` quarter turns are added first: cos u is sin(u + π/2).
+/// Rewrites sin(u + kπ/2). `shift` quarter turns are added first, because cos u is sin(u + π/2).
 fn quarter_turns(graph: &mut Graph, argument: Id, shift: i64) -> Option<Id> {
     let pi = graph.pi();
     let (scale, bare) = graph.split(argument);
@@ -203,7 +203,7 @@ fn quarter_turns(graph: &mut Graph, argument: Id, shift: i64) -> Option<Id> {
         }
         _ => return None,
     };
-    // Four quarters are a turn; the sum of what is left fits.
+    // Four quarter turns are a full turn. The sum of two remainders cannot overflow.
     let quarters = (turns.mul(Rational::whole(2))?.integer()?.rem_euclid(4) + shift).rem_euclid(4);
     let sin_cos = if quarters % 2 == 0 { Function::Sin } else { Function::Cos };
     let value = graph.call(sin_cos, rest);
@@ -226,7 +226,7 @@ fn sign_number(graph: &mut Graph, argument: Id) -> Option<Id> {
     }
 }
 
-/// |f(u)| = f(u), where f has no negative values.
+/// Applies |f(u)| = f(u) for functions f without negative values.
 fn abs_range(graph: &mut Graph, argument: Id) -> Option<Id> {
     match *graph.node(argument) {
         Node::Call(function, _) if 0.0 <= function.row().range[0] => Some(argument),
@@ -234,7 +234,7 @@ fn abs_range(graph: &mut Graph, argument: Id) -> Option<Id> {
     }
 }
 
-/// |u²| = u², and |c u²| = |c| u².
+/// Applies |u²| = u² and |c u²| = |c| u².
 fn abs_square(graph: &mut Graph, argument: Id) -> Option<Id> {
     match graph.node(argument) {
         Node::Product(coefficient, factors)
@@ -247,7 +247,7 @@ fn abs_square(graph: &mut Graph, argument: Id) -> Option<Id> {
     }
 }
 
-/// |u|² = u².
+/// Applies |u|² = u².
 fn abs_even_power(graph: &mut Graph, factors: &Terms) -> Option<Edit> {
     factors.iter().find_map(|(&id, &exponent)| match *graph.node(id) {
         Node::Call(Function::Abs, inner) if exponent.is_even() => {
@@ -257,7 +257,7 @@ fn abs_even_power(graph: &mut Graph, factors: &Terms) -> Option<Edit> {
     })
 }
 
-/// sign(u)·|u| = u.
+/// Applies sign(u)·|u| = u.
 fn sign_abs(graph: &mut Graph, factors: &Terms) -> Option<Edit> {
     factors.iter().find_map(|(&id, &exponent)| {
         let Node::Call(Function::Sign, inner) = *graph.node(id) else { return None };
@@ -269,7 +269,7 @@ fn sign_abs(graph: &mut Graph, factors: &Terms) -> Option<Edit> {
     })
 }
 
-/// c·r·sin²u + c·r·cos²u = c·r.
+/// Applies c·r·sin²u + c·r·cos²u = c·r.
 fn pythagoras(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
     terms.iter().find_map(|(&term, &coefficient)| {
         squares(graph, term, Function::Sin).into_iter().find_map(|(argument, rest)| {
@@ -282,7 +282,7 @@ fn pythagoras(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
     })
 }
 
-/// c·r - c·r·cos²u = c·r·sin²u, and with the two exchanged.
+/// Applies c·r - c·r·cos²u = c·r·sin²u, and the same with sine and cosine exchanged.
 fn one_minus_square(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
     terms.iter().find_map(|(&term, &coefficient)| {
         [(Function::Cos, Function::Sin), (Function::Sin, Function::Cos)].into_iter().find_map(
@@ -306,7 +306,7 @@ fn one_minus_square(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
     })
 }
 
-/// c·r·cosh²u - c·r·sinh²u = c·r.
+/// Applies c·r·cosh²u - c·r·sinh²u = c·r.
 fn hyperbolic_pythagoras(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
     terms.iter().find_map(|(&term, &coefficient)| {
         squares(graph, term, Function::Cosh).into_iter().find_map(|(argument, rest)| {
@@ -319,7 +319,7 @@ fn hyperbolic_pythagoras(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
     })
 }
 
-/// The arguments whose `function` stands squared in `term`, each with what is left without that
+/// Returns the arguments of `function` squared in `term`, each with the term divided by that
 /// square.
 fn squares(graph: &mut Graph, term: Id, function: Function) -> Vec<(Id, Id)> {
     let mut found = Vec::new();
@@ -337,7 +337,7 @@ fn squares(graph: &mut Graph, term: Id, function: Function) -> Vec<(Id, Id)> {
     found
 }
 
-/// The four addition theorems, read from right to left.
+/// Applies the four addition theorems from right to left.
 fn angle_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
     terms.iter().find_map(|(&term, &coefficient)| {
         let trig: Vec<(Id, Function, Id)> = graph
@@ -371,8 +371,8 @@ fn angle_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
                 if !same && second != coefficient.negative() {
                     continue;
                 }
-                // sin a cos b ± cos a sin b, cos a cos b ± sin a sin b: the coefficient is that of
-                // the first product.
+                // sin a cos b ± cos a sin b and cos a cos b ± sin a sin b: the coefficient is that
+                // of the first product.
                 let (function, angle, sign) = match (f, g) {
                     (Function::Cos, Function::Cos) if same => {
                         (Function::Cos, graph.sub(a, b), coefficient)
@@ -395,7 +395,7 @@ fn angle_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
     })
 }
 
-/// The terms r·cos u of a sum: r, the term, its coefficient and u.
+/// Returns the terms r·cos u of a sum: r, the term, its coefficient and u.
 fn cosine_terms(graph: &mut Graph, terms: &Terms) -> Vec<(Id, Id, Rational, Id)> {
     let mut found = Vec::new();
     for (&term, &coefficient) in terms {
@@ -415,8 +415,8 @@ fn cosine_terms(graph: &mut Graph, terms: &Terms) -> Vec<(Id, Id, Rational, Id)>
     found
 }
 
-/// r - r·cos u = 2r·sin²(u/2) and r + r·cos u = 2r·cos²(u/2), where the cosines of r use its
-/// coefficient up.
+/// Applies r - r·cos u = 2r·sin²(u/2) and r + r·cos u = 2r·cos²(u/2). The magnitudes of the
+/// coefficients of all cosines of r must add up to that of r.
 fn one_and_cosines(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
     let cosines = cosine_terms(graph, terms);
     let half = Rational::new(1, 2)?;
@@ -445,7 +445,7 @@ fn one_and_cosines(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
     })
 }
 
-/// r·cos a - r·cos b = 2r·sin((a + b)/2)·sin((b - a)/2).
+/// Applies r·cos a - r·cos b = 2r·sin((a + b)/2)·sin((b - a)/2).
 fn cosines(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
     let cosines = cosine_terms(graph, terms);
     let half = Rational::new(1, 2)?;

@@ -1,4 +1,4 @@
-//! Sums: flat, sorted, with their content and common factors before them.
+//! Sums: flat, sorted, with their content and common factors factored out.
 
 use super::product::exact;
 use super::{Graph, Id, Node, Terms};
@@ -7,7 +7,7 @@ use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 
 impl Graph {
-    /// Σ coefficient · term.
+    /// Returns Σ coefficient · term.
     pub(crate) fn sum(&mut self, terms: &[(Id, Rational)]) -> Id {
         let mut collected = Terms::new();
         for &(term, coefficient) in terms {
@@ -16,7 +16,7 @@ impl Graph {
         self.finish_sum(collected)
     }
 
-    /// Adds `coefficient · term`, flat.
+    /// Adds `coefficient · term` to `terms`; a sum is added term by term.
     pub(crate) fn add_term(&mut self, terms: &mut Terms, term: Id, coefficient: Rational) {
         if coefficient.is_zero() {
             return;
@@ -46,7 +46,7 @@ impl Graph {
         }
     }
 
-    /// Adds `a · b · term` for a term without a coefficient of its own; what overflows is left
+    /// Adds `a · b · term` for a term without a coefficient. If the product overflows, it stays
     /// unevaluated.
     fn add_monomial(&mut self, terms: &mut Terms, term: Id, a: Rational, b: Rational) {
         let old = terms.get(&term).copied().unwrap_or(Rational::ZERO);
@@ -123,7 +123,7 @@ impl Graph {
         }
     }
 
-    /// The factors that stand in every term, with the exponents nearest to zero.
+    /// Returns the factors that all terms have in common, with the exponents nearest to zero.
     fn common_factors(&self, terms: &Terms) -> Vec<(Id, Rational)> {
         let mut ids = terms.keys();
         let mut common = match ids.next() {
@@ -147,7 +147,8 @@ impl Graph {
                 }
             });
         }
-        // A factor that a division cannot take out of every term would be found again for ever.
+        // If division would not remove a factor from every term, the same factor would be found
+        // again and the loop would not end.
         common.retain(|&(base, least)| {
             let divides = |&(other, exponent): &(Id, Rational)| {
                 let rest = exact(exponent.add(least.negative()));

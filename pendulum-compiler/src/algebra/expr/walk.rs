@@ -1,5 +1,5 @@
-//! Walks through the graph: from an expression to all that it is made of, and to the same with
-//! other children.
+//! Traversal of the graph: children, reachable nodes, nodes rebuilt with other children, and
+//! properties of whole expressions.
 
 use super::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::Kinks;
@@ -7,7 +7,7 @@ use crate::algebra::number::Rational;
 use std::collections::BTreeSet;
 
 impl Graph {
-    /// A node with other children.
+    /// Returns a node of the same kind whose children are replaced by `child`.
     pub(crate) fn rebuilt(&mut self, node: &Node, child: impl Fn(Id) -> Id) -> Id {
         let list = |items: &[(Id, Rational)]| {
             items.iter().map(|&(id, number)| (child(id), number)).collect::<Vec<_>>()
@@ -33,7 +33,7 @@ impl Graph {
         }
     }
 
-    /// The nodes from which an expression is made directly.
+    /// Returns the direct operands of a node.
     pub(crate) fn children(&self, id: Id) -> Vec<Id> {
         match self.node(id) {
             Node::Number(_) | Node::Opaque(_) | Node::Pi | Node::Symbol(_) => Vec::new(),
@@ -43,7 +43,7 @@ impl Graph {
         }
     }
 
-    /// Everything from which `roots` are made, children first.
+    /// Returns all nodes that `roots` contain, children before parents.
     pub(crate) fn reachable(&self, roots: &[Id]) -> Vec<Id> {
         let mut found = vec![false; roots.iter().map(|id| id.index() + 1).max().unwrap_or(0)];
         let mut pending = roots.to_vec();
@@ -55,7 +55,8 @@ impl Graph {
         (0..).zip(found).filter(|&(_, found)| found).map(|(index, _)| Id(index)).collect()
     }
 
-    /// Returns true if nothing that moves goes through a function that has a corner or jumps.
+    /// Returns `true` if no function with a corner or a jump has an argument that depends on more
+    /// than parameters.
     pub(crate) fn smooth(&self, roots: &[Id]) -> bool {
         let cornered = |&id: &Id| match self.node(id) {
             Node::Max(..) => true,
@@ -69,8 +70,8 @@ impl Graph {
             .any(|&id| self.dependencies(id).any(Dependencies::STATE))
     }
 
-    /// Returns true if `roots` are written as sums of coordinates and velocities with coefficients
-    /// that parameters alone decide, and of what contains neither.
+    /// Returns `true` if every root is a linear combination of coordinates and velocities, with
+    /// coefficients that depend only on parameters, plus terms that contain neither.
     pub(crate) fn linear(&self, roots: &[Id]) -> bool {
         let moving = Dependencies::COORDINATE
             .or(Dependencies::VELOCITY)
@@ -98,7 +99,7 @@ impl Graph {
         roots.iter().all(|root| linear[root.index()])
     }
 
-    /// The symbols in `roots`.
+    /// Returns the symbols in `roots`.
     pub(crate) fn symbols(&self, roots: &[Id]) -> BTreeSet<Symbol> {
         let symbol = |id: Id| match self.node(id) {
             Node::Symbol(symbol) => Some(*symbol),

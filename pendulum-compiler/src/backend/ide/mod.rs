@@ -1,10 +1,10 @@
 //! The editor's view: every name of a block in plain Rust, for hover, completion and go to
 //! definition.
 //!
-//! The items are there for rust-analyzer alone; rustc never reads them. Declarations come from the
-//! model and uses from the tokens, so that names are found in a block that does not parse yet. A
-//! use is a path into a module that holds the names which may stand at its place, and no others:
-//! editors complete the name from there.
+//! The items exist only for rust-analyzer; rustc does not compile them. Declarations come from the
+//! model and uses from the tokens, so that names are found even in a block that does not parse. A
+//! use is a path into a module that contains exactly the names allowed at its position. Editors
+//! take completions from this module.
 
 mod names;
 mod scan;
@@ -17,7 +17,7 @@ use quote::{ToTokens, format_ident, quote};
 use scan::{BLOCK, Binding, Place, Scan};
 pub(crate) use words::modules as words;
 
-/// A hidden function that mentions every name of a block, and the modules of the names.
+/// Returns a hidden function that mentions every name of a block, and the modules of the names.
 ///
 /// `input` is the input of the macro; `analysis` is `None` if the struct cannot be read.
 pub(crate) fn copy(input: &TokenStream, analysis: Option<&Analysis>) -> TokenStream {
@@ -52,8 +52,8 @@ struct Copy<'c, 'm, 'a> {
 }
 
 impl Copy<'_, '_, '_> {
-    /// A name as an expression with its own span, or a path of the same length where one could
-    /// stand.
+    /// Returns a name as an expression with its own span, or a path of the same length at a
+    /// position where a name could be inserted.
     fn usage(&self, name: Option<&Ident>, place: Place) -> TokenStream {
         if name.is_some_and(is_keyword) {
             return TokenStream::new();
@@ -79,7 +79,8 @@ impl Copy<'_, '_, '_> {
         quote!(let _ = #module::#name;)
     }
 
-    /// The modules of names: of coordinates, of constraints, of the block and of each scope in it.
+    /// Returns the modules of names: of coordinates, of constraints, of the block and of each of
+    /// its scopes.
     fn modules(&self) -> TokenStream {
         let krate = self.krate;
         let [coordinates, constraints, others] = self.declarations();
@@ -113,7 +114,7 @@ impl Copy<'_, '_, '_> {
         }
     }
 
-    /// A name that a scope binds.
+    /// Returns the item of a name bound in a scope.
     fn bound(name: &Ident, binding: &Binding) -> TokenStream {
         match binding {
             Binding::Index(range) => {
@@ -131,12 +132,12 @@ impl Copy<'_, '_, '_> {
     }
 }
 
-/// Returns true if a name is a keyword of Rust, and that of no item.
+/// Returns `true` if a name is a keyword of Rust, so that no item can have it.
 fn is_keyword(name: &Ident) -> bool {
     syn::parse_str::<Ident>(&name.to_string()).is_err()
 }
 
-/// The module of a scope.
+/// Returns the name of the module of a scope.
 fn module(scope: usize) -> Ident {
     format_ident!("scope{scope}")
 }

@@ -17,21 +17,21 @@ use syn::Attribute;
 /// A declared name.
 struct Declared<'d> {
     name: &'d Ident,
-    /// Its kind, as a noun with its article.
+    /// The kind, as a noun with its article.
     kind: &'static str,
     shape: Shape,
-    /// The documentation that its author has written.
+    /// The user's documentation.
     documentation: Vec<&'d Attribute>,
-    /// Its value as text.
+    /// The value as text.
     definition: Option<String>,
-    /// Its default as text.
+    /// The default as text.
     default: Option<String>,
-    /// True if its velocity is offered.
+    /// `true` if its velocity is offered.
     moves: bool,
 }
 
 impl Copy<'_, '_, '_> {
-    /// The items of coordinates, of constraints and of all other names.
+    /// Returns the items of coordinates, of constraints and of all other names.
     pub(super) fn declarations(&self) -> [TokenStream; 3] {
         let mut items = [(); 3].map(|()| TokenStream::new());
         let Some(analysis) = self.analysis else { return items };
@@ -66,7 +66,7 @@ impl Copy<'_, '_, '_> {
         items
     }
 
-    /// The spellings of each name and of its derivatives that stand in the block.
+    /// Returns the spellings of each name and of its derivatives in the block.
     fn spelled(&self) -> BTreeMap<String, BTreeSet<String>> {
         let names = self.scan.names.iter().filter_map(|(name, _)| Some(name.as_ref()?.to_string()));
         let mut spelled: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
@@ -131,7 +131,7 @@ impl Copy<'_, '_, '_> {
         }
     }
 
-    /// A definition with arguments.
+    /// Returns the item of a definition with arguments.
     fn function(definition: &Let, arguments: &[Ident]) -> TokenStream {
         let name = &definition.name;
         if arguments.iter().chain([name]).any(is_keyword) {
@@ -149,7 +149,7 @@ impl Copy<'_, '_, '_> {
 }
 
 impl Declared<'_> {
-    /// The spellings that an editor offers: the name, and those of its velocity.
+    /// Returns the spellings that an editor offers: the name and those of its velocity.
     fn offered(&self, ascii: bool) -> impl Iterator<Item = String> {
         let own = self.name.to_string();
         let suffixed = self.moves.then(|| format!("{own}_dot"));
@@ -157,7 +157,7 @@ impl Declared<'_> {
         suffixed.into_iter().chain(dotted).chain([own])
     }
 
-    /// The name or a derivative of it, in one of its spellings.
+    /// Returns the item of the name or of one of its derivatives, in one of its spellings.
     fn item(&self, spelling: &str) -> Option<TokenStream> {
         let mut item = syn::parse_str::<Ident>(spelling).ok()?;
         item.set_span(self.name.span());
@@ -186,13 +186,13 @@ struct Shape {
     /// The unit as written or inferred.
     unit: String,
     dimension: Option<Dimension>,
-    /// The lengths, the outermost first.
+    /// The lengths, outermost first.
     lengths: Vec<usize>,
     body: bool,
 }
 
 impl Shape {
-    /// The unit of a time derivative, and the lengths, in the notation of declarations.
+    /// Returns the unit of a time derivative and the lengths, in the notation of declarations.
     fn shown(&self, order: u8) -> String {
         if self.body {
             return String::new();
@@ -221,7 +221,7 @@ impl Shape {
         }
     }
 
-    /// The type of the value in Rust; editors do not show the lengths of arrays.
+    /// Returns the type of the value in Rust. Editors do not show the lengths of arrays.
     fn kind(&self) -> TokenStream {
         if self.body {
             return quote!(Body);

@@ -1,9 +1,9 @@
-//! The names of a block by the places in which they stand, from its tokens alone: an editor asks
-//! about texts that do not parse yet.
+//! The names of a block and their positions, derived only from its tokens, because editors request
+//! names in texts that do not parse.
 
 use proc_macro2::{Delimiter, Group, Ident, TokenStream, TokenTree};
 
-/// The deepest nesting that is looked at.
+/// The limit on the depth of nested groups.
 const DEEPEST: usize = 100;
 
 /// The scope of a block outside of sums and definitions with arguments.
@@ -12,14 +12,14 @@ pub(super) const BLOCK: usize = 0;
 /// The names of a block.
 #[derive(Debug, Default)]
 pub(super) struct Scan {
-    /// All names but those of declarations, in the order of the text; `None` where one more could
-    /// stand.
+    /// All names except those in declarations, in the order of the text; `None` where a name could
+    /// be inserted.
     pub(super) names: Vec<(Option<Ident>, Place)>,
-    /// The scopes, from number 1 on.
+    /// The scopes, numbered from 1.
     pub(super) scopes: Vec<Scope>,
 }
 
-/// The place of a name.
+/// The kind of position of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
     /// The beginning of a statement.
@@ -32,7 +32,7 @@ pub(super) enum Place {
     Coordinate,
     /// The constraint of a reaction.
     Constraint,
-    /// A component, behind a dot.
+    /// A component after a dot.
     Component,
     /// An expression in this scope.
     Expression(usize),
@@ -41,7 +41,7 @@ pub(super) enum Place {
 /// The names that a sum, an integral or the left side of a definition binds.
 #[derive(Debug)]
 pub(super) struct Scope {
-    /// The scope around it.
+    /// The enclosing scope.
     pub(super) outer: usize,
     pub(super) names: Vec<(Ident, Binding)>,
 }
@@ -79,7 +79,7 @@ pub(super) fn scan(tokens: TokenStream) -> Scan {
 }
 
 impl Scan {
-    /// `pub m: kg = 2`.
+    /// Reads a field, such as `pub m: kg = 2`.
     fn field(&mut self, trees: &[TokenTree]) {
         let (kind, value) = halves(after(trees, ':'), '=');
         self.units(kind, 0);
@@ -142,7 +142,8 @@ impl Scan {
         }
     }
 
-    /// The scope behind the left side of a definition: `[k in 0..5]`, `(a, b)`, `[2]` or nothing.
+    /// Opens the scope given by the left side of a definition: `[k in 0..5]`, `(a, b)`, `[2]` or no
+    /// brackets.
     fn bound(&mut self, left: &[TokenTree]) -> usize {
         let Some(TokenTree::Group(group)) = left.first() else { return BLOCK };
         let inner = inner(group);
@@ -168,7 +169,7 @@ impl Scan {
         self.open(BLOCK, names)
     }
 
-    /// The number of a new scope.
+    /// Opens a scope and returns its number.
     fn open(&mut self, outer: usize, names: Vec<(Ident, Binding)>) -> usize {
         self.scopes.push(Scope { outer, names });
         self.scopes.len()
@@ -178,7 +179,7 @@ impl Scan {
         self.names.push((Some(name.clone()), place));
     }
 
-    /// The tokens behind the name with which these begin.
+    /// Reads the name at the beginning of these tokens and returns the rest.
     fn first<'t>(&mut self, trees: &'t [TokenTree], place: Place) -> &'t [TokenTree] {
         if let [TokenTree::Ident(name), rest @ ..] = trees {
             self.name(name, place);
@@ -257,7 +258,8 @@ impl Scan {
     }
 }
 
-/// The tokens of a stream; fragments of another macro stand without their invisible brackets.
+/// Returns the tokens of a stream. Fragments of another macro are unwrapped from their invisible
+/// brackets.
 fn trees(tokens: TokenStream) -> Vec<TokenTree> {
     let open = |tree| match tree {
         TokenTree::Group(group) if group.delimiter() == Delimiter::None => inner(&group),
@@ -270,7 +272,7 @@ fn inner(group: &Group) -> Vec<TokenTree> {
     trees(group.stream())
 }
 
-/// Returns true if a name behind these tokens is a component: they end in one dot.
+/// Returns `true` if a name after these tokens is a component: the tokens end in a single dot.
 fn is_component(before: &[TokenTree]) -> bool {
     match before {
         [.., first, last] => is(last, '.') && !is(first, '.'),
@@ -282,7 +284,7 @@ fn is(tree: &TokenTree, sign: char) -> bool {
     matches!(tree, TokenTree::Punct(punct) if punct.as_char() == sign)
 }
 
-/// The tokens before the first sign of this kind, and those after it.
+/// Returns the tokens before the first occurrence of a sign, and those after it.
 fn halves(trees: &[TokenTree], sign: char) -> (&[TokenTree], &[TokenTree]) {
     match trees.iter().position(|tree| is(tree, sign)) {
         Some(place) => (&trees[..place], &trees[place + 1..]),
@@ -294,7 +296,7 @@ fn after(trees: &[TokenTree], sign: char) -> &[TokenTree] {
     halves(trees, sign).1
 }
 
-/// The tokens behind attributes.
+/// Returns the tokens after attributes.
 fn without_attributes(trees: &[TokenTree]) -> &[TokenTree] {
     let mut rest = trees;
     while let [pound, TokenTree::Group(_), others @ ..] = rest
@@ -378,7 +380,7 @@ mod tests {
         assert_eq!(["n", "j", "k", "b", "p"].map(scope), [0, 2, 2, 3, 4]);
     }
 
-    /// A block is read while it is typed.
+    /// A block is scanned while it is being typed.
     #[test]
     fn texts_that_do_not_parse_have_names() {
         let expression = Place::Expression(BLOCK);
@@ -397,7 +399,8 @@ mod tests {
             named(&[("k", Place::Unit), ("force", statement)])
         );
         assert!(places("").is_empty());
-        // Where a name could stand: after `q +`, in `sin()`, behind `r.`, and as a new statement.
+        // Positions where a name could be inserted: after `q +`, in `sin()`, after `r.`, and as a
+        // new statement.
         let open = "struct S {} kinetic = q + ; potential = sin() + r. + q; ";
         let open: Vec<Place> = scan(open.parse().unwrap())
             .names

@@ -1,11 +1,11 @@
-//! The words of the language with their documentation, as items that editors find.
+//! The keywords of the language with their documentation, as items for editors.
 
 use crate::algebra::dimension::Dimension;
 use crate::algebra::functions::{UnitRule, Word};
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
-/// The words with which statements begin. Rust has documentation of its own for `let`.
+/// The keywords of statements, except `let`, which has documentation in Rust.
 const STATEMENTS: &[(&str, &str)] = &[
     (
         "coordinate",
@@ -163,7 +163,7 @@ const CONSTANTS: &[(&str, &str)] = &[
     ("i", "The imaginary unit, unless an index has the name."),
 ];
 
-/// The forms of expressions that look like calls.
+/// The forms of expressions with the syntax of calls.
 const FORMS: &[(&str, &str, &[&str])] = &[
     (
         "sum",
@@ -196,7 +196,7 @@ output tension: N = reaction(rod);
     ),
 ];
 
-/// The modules of words that [`copy`](super::copy) leads to.
+/// Returns the modules of words that [`copy`](super::copy) refers to.
 pub(crate) fn modules() -> TokenStream {
     let statements = list(STATEMENTS, &quote!(Statement));
     let choices = list(CHOICES, &quote!(Choice));
@@ -254,7 +254,7 @@ pub(crate) fn modules() -> TokenStream {
     }
 }
 
-/// A rule of units as a sentence.
+/// Returns a rule of units as a sentence.
 fn rule(units: UnitRule) -> &'static str {
     match units {
         UnitRule::Pure => "The argument and the value are pure numbers.",
@@ -303,7 +303,7 @@ mod tests {
     #[test]
     fn every_unit_has_its_word() {
         assert!(UNITS.iter().all(|row| Dimension::of(row.0).is_some()));
-        // The units that the message lists.
+        // The units listed in the message.
         let message = unknown_unit("parsec").to_string();
         let list = message.split('`').filter(|part| Dimension::of(part.trim()).is_some());
         let known: BTreeSet<&str> = list.map(str::trim).collect();

@@ -1,4 +1,4 @@
-//! The bound of steps that what time alone does to the equations asks for.
+//! The limit on steps that results from functions of time in the equations.
 
 use super::Emitter;
 use crate::algebra::expr::Id;
@@ -8,7 +8,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 impl Emitter<'_, '_> {
-    /// `longest_step`, where a function of time stands in the accelerations.
+    /// Returns `longest_step` if the accelerations contain a function of time.
     pub(super) fn longest_step(&self) -> Option<TokenStream> {
         let motion = self.motion.as_ref()?;
         let (graph, features) = clock::features(&self.graph, &motion.accelerations);

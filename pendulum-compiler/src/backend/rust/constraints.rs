@@ -1,4 +1,4 @@
-//! Constraints and limits: the methods of `System` that keep them, and their facts.
+//! Constraints and limits: their methods of `System`, and their facts.
 
 use super::Emitter;
 use crate::algebra::expr::{Graph, Id};
@@ -8,7 +8,7 @@ use quote::quote;
 use std::fmt::Write;
 
 impl Emitter<'_, '_> {
-    /// The methods of constraints and limits, of those that there are.
+    /// Returns the methods for the kinds of constraints and limits that exist.
     pub(super) fn constraint_methods(&self) -> TokenStream {
         let Some(motion) = &self.motion else { return TokenStream::new() };
         let Constraints { held, redundant, limits, .. } = &motion.constraints;
@@ -82,20 +82,20 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// The arguments of a function of the state.
+    /// Returns the arguments of a function of the state.
     fn state(&self) -> TokenStream {
         let (scalar, count) = (self.scalar(), self.count());
         quote!(t: #scalar, q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs)
     }
 
-    /// An array of `length` entries, `rest` beyond `roots`.
+    /// Returns an array of `length` entries: `roots`, followed by `rest`.
     fn padded(&self, roots: &[Id], rest: Id, length: usize) -> TokenStream {
         let mut roots = roots.to_vec();
         roots.resize(length, rest);
         self.roots(&roots)
     }
 
-    /// Rows of `count` entries.
+    /// Returns rows of `count` entries.
     fn matrix(&self, rows: &[Vec<Id>], count: usize) -> TokenStream {
         let scalar = self.scalar();
         let mut all = Vec::new();
@@ -116,13 +116,13 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// Values and rates of constraints.
+    /// Returns the values and rates of constraints.
     fn misfits(&self, rows: &[Constraint]) -> TokenStream {
         let value = |row: &Constraint| if row.holonomic { row.value } else { Graph::ZERO };
         self.matrix(&[column(rows, value), column(rows, |row| row.rate)], self.count())
     }
 
-    /// The gradients, each a row of `height`.
+    /// Returns the gradients as a matrix of `height` rows.
     fn gradients(&self, rows: &[Constraint], height: usize) -> TokenStream {
         let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
         let mut all: Vec<Id> = rows.iter().flat_map(|row| row.gradient.clone()).collect();
@@ -134,7 +134,7 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// The constraints and the limits as facts.
+    /// Returns the constraints and the limits as facts.
     pub(super) fn constraint_facts(&self) -> [Vec<TokenStream>; 2] {
         let krate = &self.krate;
         let Some(motion) = &self.motion else { return [Vec::new(), Vec::new()] };
@@ -156,7 +156,7 @@ impl Emitter<'_, '_> {
         [constraints.collect(), limits.collect()]
     }
 
-    /// The lines about constraints and limits for the documentation of the struct.
+    /// Returns the lines about constraints and limits in the documentation of the struct.
     pub(super) fn constraint_documentation(&self) -> String {
         let mut text = String::new();
         let unit = |unit: &str| match unit {

@@ -9,7 +9,7 @@ use quote::quote;
 use std::fmt::Write;
 
 impl Emitter<'_, '_> {
-    /// The equations, their cost and what they leave out, for hover and rustdoc.
+    /// Returns the equations, their cost and conserved quantities, for hover and rustdoc.
     pub(super) fn documentation(&self) -> TokenStream {
         let names = Names::new(self.model, &self.energies);
         let (Some(motion), Some(accelerations)) = (&self.motion, &self.accelerations) else {
@@ -20,7 +20,7 @@ impl Emitter<'_, '_> {
             .iter()
             .map(|conserved| format!("`{}`", unicode::conserved(&names, conserved)))
             .collect();
-        // An energy may contain a time that no equation does.
+        // An energy may depend on time although no equation does.
         if motion.power == Graph::ZERO {
             conserved.push("the energy".into());
         }
@@ -51,7 +51,7 @@ impl Emitter<'_, '_> {
                 let _ = writeln!(text, "- `{name}`{unit}");
             }
         }
-        // Fonts for code set the dots beside their letters; editors show no MathML.
+        // Monospaced fonts draw dots beside their letters, and editors do not show MathML.
         quote! {
             #[cfg_attr(not(doc), doc = #equations)]
             #[cfg_attr(doc, doc = #drawn)]
@@ -60,7 +60,7 @@ impl Emitter<'_, '_> {
     }
 }
 
-/// Equations in LaTeX as MathML, a line each.
+/// Converts equations from LaTeX to MathML, with an element for each line.
 fn drawn(latex: &[String]) -> String {
     let mut text = String::new();
     for line in latex {
@@ -92,7 +92,7 @@ mod tests {
         }
     }
 
-    /// Editors show text, rustdoc what browsers draw.
+    /// Editors get text, and rustdoc gets MathML.
     #[test]
     fn the_equations_stand_there_for_editors_and_for_browsers() {
         let block = "::p; struct S { m: kg, g: m/s^2 } coordinate q: m; \

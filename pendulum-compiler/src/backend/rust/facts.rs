@@ -1,4 +1,5 @@
-//! The facts of a system: its names and units, what its equations contain and what they leave out.
+//! The facts of a system: its names and units, the properties of its equations and the parameters
+//! that they do not contain.
 
 use super::Emitter;
 use crate::algebra::expr::{Id, Symbol};
@@ -67,7 +68,8 @@ impl Emitter<'_, '_> {
         }))
     }
 
-    /// The parameters that neither the accelerations nor the constraints and limits need.
+    /// Returns the parameters that neither the accelerations nor the constraints and limits depend
+    /// on.
     pub(super) fn unused(&self, names: &Names) -> Vec<String> {
         let Some(motion) = &self.motion else { return Vec::new() };
         let constraints = &motion.constraints;
@@ -77,7 +79,7 @@ impl Emitter<'_, '_> {
         roots.extend(self.energies.limits.iter().map(|limit| limit.restitution));
         let mut needed = self.graph.symbols(&roots);
         for quantity in &self.model.parameters {
-            // A moment about the pivot is made of all that a body has.
+            // A moment about the pivot depends on all parameters of its body.
             if needed.iter().any(
                 |symbol| matches!(symbol, Symbol::Moment(first, _) if *first == quantity.first),
             ) {
@@ -92,8 +94,8 @@ impl Emitter<'_, '_> {
             .collect()
     }
 
-    /// For each purpose, whether it needs the position, the velocity and the acceleration of each
-    /// driven input.
+    /// Returns for each purpose and each driven input whether its position, velocity and
+    /// acceleration are needed.
     pub(super) fn needed(&self) -> Vec<Vec<[bool; 3]>> {
         let purposes: Vec<Vec<Symbol>> = match &self.motion {
             None => vec![Vec::new(); 5],
@@ -124,7 +126,7 @@ impl Emitter<'_, '_> {
                         &motion.accelerations,
                         &motion.forces,
                         &motion.constraints.multipliers,
-                        // Ends of steps are brought onto them.
+                        // States at the ends of steps are corrected to satisfy the constraints.
                         &rows(&motion.constraints.held),
                         &rows(&motion.constraints.limits),
                         &drifts,
@@ -159,7 +161,7 @@ impl Emitter<'_, '_> {
         purposes.iter().map(of).collect()
     }
 
-    /// The derivatives of each driven input that each purpose needs.
+    /// Returns the derivatives of each driven input that each purpose needs.
     fn inputs(&self) -> Vec<TokenStream> {
         let (krate, needed) = (&self.krate, self.needed());
         let describe = |(index, quantity): (usize, &Quantity)| {

@@ -1,4 +1,5 @@
-//! The Jacobians of the accelerations: as expressions where those are small, else by dual numbers.
+//! The Jacobians of the accelerations: as expressions if these are small, otherwise by dual
+//! numbers.
 
 use super::Emitter;
 use crate::model::Quantity;
@@ -46,7 +47,7 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// The Jacobians as expressions.
+    /// Returns the Jacobians as expressions.
     fn written_jacobians(&mut self) -> [TokenStream; 4] {
         let (krate, scalar, count) = (self.krate.clone(), self.scalar(), self.count());
         let size = count * count;
@@ -84,7 +85,8 @@ impl Emitter<'_, '_> {
         [matrix(positions), matrix(velocities), parameters, controls]
     }
 
-    /// The Jacobians by dual numbers: one evaluation of the accelerations for each column.
+    /// Returns the Jacobians by dual numbers, with an evaluation of the accelerations for each
+    /// column.
     fn dual_jacobians(&self) -> [TokenStream; 4] {
         let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
         let inputs = (0..self.model.inputs.len()).map(Literal::usize_unsuffixed);

@@ -1,5 +1,5 @@
-//! Rust for a derived block: the struct, its constructor and the implementation of the runtime's
-//! traits.
+//! Rust code for a derived block: the struct, its constructor and the implementations of the
+//! runtime's traits.
 
 mod clock;
 mod constraints;
@@ -26,8 +26,8 @@ use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 use std::collections::BTreeMap;
 
-/// The names of ours that the generated code binds, besides those of the block and those that begin
-/// with `__`.
+/// The names that the generated code binds, without those of the block and those that begin with
+/// `__`.
 #[rustfmt::skip]
 const OWN: &[&str] = &[
     "acceleration", "all", "at_position", "at_time", "both", "column", "columns", "controller", "drive", "entries", "index", "inputs",
@@ -35,14 +35,15 @@ const OWN: &[&str] = &[
     "values", "widths", "work",
 ];
 
-/// Everything that the emitter writes about and with.
+/// The state of the emitter: the analysis of a block.
 pub(crate) struct Emitter<'m, 'a> {
     pub(crate) krate: TokenStream,
     pub(crate) model: &'m Model<'a>,
     pub(crate) graph: Graph,
-    /// `None` after an error: then every body is left open, so that the mistake gives one message.
+    /// The equations of motion; `None` after an error. In that case all bodies are
+    /// `unimplemented!()`, so that there are no further errors.
     pub(crate) motion: Option<Motion>,
-    /// The program of the accelerations, as long as there are equations.
+    /// The program of the accelerations, if there are equations.
     pub(crate) accelerations: Option<Program>,
     pub(crate) energies: Energies,
     /// The equations of motion in Unicode and in LaTeX.
@@ -59,7 +60,7 @@ impl<'m, 'a> Emitter<'m, 'a> {
 }
 
 impl Emitter<'_, '_> {
-    /// All items of a block.
+    /// Returns all items of a block.
     pub(crate) fn items(mut self) -> TokenStream {
         let structure = self.structure();
         let constructor = self.constructor();
@@ -86,11 +87,10 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// Functions of the names that the generated code binds.
+    /// Returns empty functions with the names that the generated code binds.
     ///
-    /// A constant or a unit struct of such a name in the user's scope would turn the binding into a
-    /// pattern; behind a function of the name it is out of sight, and a binding may shadow a
-    /// function.
+    /// A constant or a unit struct with such a name in the user's scope would turn the binding into
+    /// a pattern. The function hides the constant or struct, and a binding may shadow a function.
     fn open_names(&self) -> TokenStream {
         let own = OWN.iter().map(|name| Ident::new(name, Span::call_site()));
         let declared = self.model.parameters.iter().chain(&self.model.inputs).map(|quantity| {
@@ -104,18 +104,20 @@ impl Emitter<'_, '_> {
         quote!(#(#[allow(dead_code, non_snake_case)] fn #names() {})*)
     }
 
-    /// The name of the struct where it is no declaration: an editor that is asked for the struct
-    /// shows it once.
+    /// Returns the name of the struct for uses other than its declaration. Its span makes editors
+    /// show the struct only once.
     pub(crate) fn name(&self) -> Ident {
         unlocated(&self.model.block.name)
     }
 
-    /// The scalar's type parameter; another letter if the struct took the usual one.
+    /// Returns the type parameter of the scalar, which is another letter if the struct has the
+    /// usual name `T`.
     pub(crate) fn scalar(&self) -> Ident {
         format_ident!("{}", if self.model.block.name == "T" { "S" } else { "T" })
     }
 
-    /// The type parameter of what has another scalar; another letter as well.
+    /// Returns the type parameter of a second scalar, which is another letter if the struct has the
+    /// usual name `U`.
     pub(crate) fn other_scalar(&self) -> Ident {
         format_ident!("{}", if self.model.block.name == "U" { "V" } else { "U" })
     }
@@ -125,7 +127,7 @@ impl Emitter<'_, '_> {
     }
 }
 
-/// A name of ours that no user can write.
+/// Returns a generated name that cannot collide with a name of the user.
 pub(crate) fn local(prefix: &str, index: usize) -> Ident {
     Ident::new(&format!("__{prefix}{index}"), Span::mixed_site())
 }

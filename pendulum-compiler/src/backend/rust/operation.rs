@@ -1,5 +1,4 @@
-//! One operation of a program: arithmetic, functions, numbers, and where the values of symbols are
-//! read.
+//! A single operation of a program: arithmetic, functions, numbers and the values of symbols.
 
 use super::{Emitter, local};
 use crate::algebra::expr::{Moment, Symbol};
@@ -95,12 +94,13 @@ impl Emitter<'_, '_> {
                     Moment::Product => quote!(self.#name.moments()[1]),
                 }
             }
-            // Points of integration are gone when the integral is done, velocities of positions
+            // Points of integration are eliminated with the integral, and velocities of positions
             // when the equations are solved.
             Symbol::Point(..) | Symbol::Auxiliary(_) | Symbol::Position(_) => {
                 quote!(::core::unreachable!())
             }
-            // The equations have their accelerations and multipliers put in; here they are given.
+            // Equations contain the expressions of accelerations and multipliers. Here, their
+            // values are arguments.
             Symbol::Acceleration(index) => quote!(accelerations[#index]),
             Symbol::Multiplier(index) => quote!(multipliers[#index]),
             Symbol::Time => quote!(t),
@@ -124,7 +124,7 @@ impl Emitter<'_, '_> {
     }
 }
 
-/// A function of a value.
+/// Returns the call of a function on a value.
 pub(super) fn function_call(function: Function, value: &TokenStream) -> TokenStream {
     let method = format_ident!("{}", function.row().name);
     let order = function.order().map(Literal::u8_unsuffixed);
@@ -134,7 +134,7 @@ pub(super) fn function_call(function: Function, value: &TokenStream) -> TokenStr
 fn number(value: Rational, scalar: &Ident) -> TokenStream {
     let sign = value.is_negative().then(|| quote!(-));
     if !value.fits_double() {
-        // The nearest double, and what it leaves off for scalars of more digits.
+        // The nearest double, and its error for scalars of higher precision.
         let (high, low) = value.abs().words();
         let (high, rest) = (Literal::f64_unsuffixed(high), Literal::f64_unsuffixed(low.abs()));
         let rest_sign = (value.is_negative() != (low < 0.0)).then(|| quote!(-));

@@ -1,4 +1,4 @@
-//! The outputs: a method for each, a list by index, and a trait that samples the inputs.
+//! The outputs: a method for each, access by index, and a trait that samples the inputs.
 
 use super::Emitter;
 use crate::backend::unlocated;
@@ -9,14 +9,14 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 impl Emitter<'_, '_> {
-    /// The declared outputs with their scalars.
+    /// Returns the declared outputs with their scalars.
     fn all_outputs(&self) -> impl Iterator<Item = (&model::Output<'_>, Option<&lower::Output>)> {
         let lowered = self.energies.outputs.iter().map(Some).chain(std::iter::repeat(None));
         let lowered = lowered.map(|output| output.filter(|_| self.motion.is_some()));
         self.model.outputs.iter().zip(lowered)
     }
 
-    /// A method for each output.
+    /// Returns a method for each output.
     pub(super) fn output_methods(&self) -> Option<TokenStream> {
         if self.model.outputs.is_empty() {
             return None;
@@ -42,9 +42,11 @@ impl Emitter<'_, '_> {
         })
     }
 
-    /// The same methods for the system with its motions and controllers, which give the inputs.
+    /// Returns the same methods for a system with its motions and controllers, which provide the
+    /// inputs.
     ///
-    /// The trait, which stands beside the struct, and its implementation.
+    /// The first item is the trait, which is placed beside the struct, and the second is its
+    /// implementation.
     pub(super) fn output_trait(&self) -> (TokenStream, TokenStream) {
         if self.model.outputs.is_empty() || self.model.inputs.is_empty() {
             return (TokenStream::new(), TokenStream::new());
@@ -102,7 +104,7 @@ impl Emitter<'_, '_> {
         (declaration, implementation)
     }
 
-    /// The method of `System` that gives an output by its index.
+    /// Returns the method of `System` that computes an output by its index.
     pub(super) fn output_by_index(&self) -> Option<TokenStream> {
         if self.model.outputs.is_empty() {
             return None;
@@ -156,7 +158,7 @@ impl Emitter<'_, '_> {
         })
     }
 
-    /// The outputs as facts.
+    /// Returns the outputs as facts.
     pub(super) fn output_facts(&self) -> Vec<TokenStream> {
         let krate = &self.krate;
         let fact = |(output, lowered): (&model::Output<'_>, Option<&lower::Output>)| {
@@ -208,7 +210,7 @@ impl Emitter<'_, '_> {
     }
 }
 
-/// The lengths of the family and of the vector; as declared, where there is a mistake.
+/// Returns the lengths of the family and of the vector, as declared if the output has a mistake.
 fn shape(
     output: &model::Output,
     lowered: Option<&lower::Output>,
@@ -226,7 +228,7 @@ fn option(length: Option<usize>) -> TokenStream {
     }
 }
 
-/// The user's own words, or the name of the output, with its unit.
+/// Returns the user's documentation, or a text with the name of the output, followed by its unit.
 fn documentation(output: &model::Output) -> TokenStream {
     let (own, unit) = (&output.statement.documentation, &output.declared.unit);
     let name = output.declared.name;

@@ -8,7 +8,7 @@ use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
 impl Emitter<'_, '_> {
-    /// A block that computes an array of roots; `None` if there are no such roots.
+    /// Returns a block that computes an array of roots; `None` if these roots do not exist.
     pub(super) fn output(
         &mut self,
         pick: impl Fn(&Motion) -> Option<Vec<Id>>,
@@ -23,17 +23,17 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// A block that computes an array of these roots.
+    /// Returns a block that computes an array of these roots.
     pub(super) fn roots(&self, roots: &[Id]) -> TokenStream {
         self.body(&schedule::program(&self.graph, roots))
     }
 
-    /// The statements of a program: an operation that is read once stands where it is read.
+    /// Returns the statements of a program. An operation that is used once is inlined.
     pub(super) fn body(&self, program: &Program) -> TokenStream {
         self.body_after(program, &program.results, &[])
     }
 
-    /// The statements that lead to `results`, given arrays of values that are known already.
+    /// Returns the statements that compute `results`, given arrays of known values.
     pub(crate) fn body_after(
         &self,
         program: &Program,

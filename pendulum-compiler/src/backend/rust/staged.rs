@@ -1,5 +1,5 @@
-//! The accelerations in stages, for callers that keep what stays the same from one evaluation to
-//! the next.
+//! The accelerations in stages, for callers that store values which do not change between
+//! evaluations.
 
 use super::Emitter;
 use crate::schedule::{Place, Stage};
@@ -7,8 +7,8 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 impl Emitter<'_, '_> {
-    /// The accelerations in four parts: what parameters decide, what time and inputs decide, what
-    /// the position adds, and the rest.
+    /// Returns the accelerations in four parts: values that depend on parameters, on time and
+    /// inputs, on the position, and on velocities.
     pub(super) fn staged(&self) -> TokenStream {
         let (krate, scalar, count, name) = (&self.krate, self.scalar(), self.count(), &self.name());
         let missing = || (quote!(::core::unimplemented!()), 0);

@@ -1,4 +1,4 @@
-//! The struct of a block, its constructor and what binds motions to its driven inputs.
+//! The struct of a block, its constructor and the methods that bind motions to its driven inputs.
 
 use super::Emitter;
 use crate::model::Quantity;
@@ -37,8 +37,8 @@ impl Emitter<'_, '_> {
             .fields
             .is_empty()
             .then(|| quote! { #[doc(hidden)] pub __scalar: ::core::marker::PhantomData<#scalar>, });
-        // Where another item has the name too, rustc shows the tokens from the visibility to the
-        // name, and not the whole block.
+        // If another item has the same name, rustc shows the tokens from the visibility to the name
+        // instead of the whole block.
         let visibility = located(visibility.to_token_stream(), None);
         let place = visibility.is_empty().then(|| name.span());
         let keyword = located(quote!(struct), Some(place.unwrap_or_else(Span::call_site)));
@@ -100,7 +100,7 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// The facts without the name of a trait.
+    /// Returns the facts as an inherent constant, which does not require a trait.
     fn inherent_facts(&self) -> TokenStream {
         let (krate, name, count) = (&self.krate, &self.name(), self.count());
         let visibility = &self.model.block.visibility;
@@ -114,7 +114,7 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// The methods that bind a law to the control inputs of a system without driven ones.
+    /// Returns the methods that bind a control law to a system without driven inputs.
     fn controlled_by(&self) -> Option<TokenStream> {
         if self.model.driven == self.model.inputs.len() || 0 < self.model.driven {
             return None;
@@ -166,7 +166,7 @@ impl Emitter<'_, '_> {
         })
     }
 
-    /// The places of the control inputs among the motions, each with a comma.
+    /// Returns the slots of the control inputs among the motions, each with a comma.
     fn slots(&self) -> TokenStream {
         let krate = &self.krate;
         let slots = (self.model.driven..self.model.inputs.len())
@@ -174,7 +174,7 @@ impl Emitter<'_, '_> {
         quote!(#(#slots)*)
     }
 
-    /// The method that binds a motion to each driven input.
+    /// Returns the method that binds a motion to each driven input.
     fn driven_by(&self) -> Option<TokenStream> {
         let inputs = &self.model.inputs[..self.model.driven];
         if inputs.is_empty() {
@@ -210,11 +210,12 @@ impl Emitter<'_, '_> {
         })
     }
 
-    /// Assertions, while `driven_by` is compiled for its motions, that they have all derivatives
-    /// that the system needs.
+    /// Returns assertions that the motions passed to `driven_by` provide all derivatives needed by
+    /// the system.
     ///
-    /// They stand in `driven_by` itself, so that rustc names the call; each has a constant of its
-    /// own at the declaration of the input, so that one that fails hides no other.
+    /// The assertions are inside `driven_by`, so that rustc reports the call. Each is a separate
+    /// constant with the span of the input's declaration, so that one failure does not hide
+    /// another.
     fn sufficient(&self) -> TokenStream {
         let (krate, scalar, system) = (&self.krate, self.scalar(), &self.name());
         let purposes = self.needed();
@@ -260,7 +261,7 @@ impl Emitter<'_, '_> {
     }
 }
 
-/// The same tokens, as the macro's own and shown at `place`, or each where it stands.
+/// Returns the same tokens as code of the macro, shown at `place`, or each at its own position.
 fn located(tokens: TokenStream, place: Option<Span>) -> TokenStream {
     let own = |mut token: TokenTree| {
         token.set_span(Span::call_site().located_at(place.unwrap_or(token.span())));

@@ -1,5 +1,5 @@
-//! The accelerations, energies, momenta and forces: `System`, and the traits of those systems whose
-//! energy splits or whose forces are free of velocities.
+//! The accelerations, energies, momenta and forces: `System`, and the traits of systems whose
+//! energy splits or whose forces do not depend on velocities.
 
 use super::Emitter;
 use crate::algebra::diff;
@@ -169,8 +169,8 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// The accelerations in two parts: what parameters alone decide, and the rest; with the number
-    /// of values between them.
+    /// Returns the accelerations in two parts, values that depend only on parameters and the
+    /// remaining operations, and the number of values passed between the parts.
     fn accelerations(&self) -> (TokenStream, TokenStream, usize) {
         let Some(program) = &self.accelerations else {
             return (quote!(::core::unimplemented!()), quote!(::core::unimplemented!()), 0);
@@ -184,8 +184,8 @@ impl Emitter<'_, '_> {
         )
     }
 
-    /// Velocities and momentum rates from momenta, with what they share computed once; `None` where
-    /// velocities are found by iteration.
+    /// Returns velocities and momentum rates as functions of the momenta, with shared operations
+    /// computed once; `None` if velocities are found by iteration.
     fn hamilton(&mut self) -> Option<TokenStream> {
         let (mut roots, rates) = {
             let motion = self.motion.as_ref()?;

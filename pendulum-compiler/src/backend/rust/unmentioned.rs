@@ -1,4 +1,4 @@
-//! Names that no statement mentions, as rustc itself warns of a variable that nobody reads.
+//! Names that no statement mentions, reported by the unused-variable lint of rustc.
 
 use super::Emitter;
 use crate::model::Model;
@@ -7,13 +7,13 @@ use quote::quote;
 use syn::Attribute;
 
 impl Emitter<'_, '_> {
-    /// A function that reads none of these parameters, inputs and definitions: each is unused at
-    /// its own name in the block.
+    /// Returns a function that does not use these parameters, inputs and definitions. rustc warns
+    /// of each at its name in the block.
     ///
-    /// A leading underscore silences it, and so do `allow` and `expect` on the struct or on the
-    /// field.
+    /// A leading underscore silences the warning, and so do `allow` and `expect` on the struct or
+    /// on the field.
     pub(super) fn unmentioned(&self) -> Option<TokenStream> {
-        // Statements that a mistake has left out may have mentioned them.
+        // Statements lost because of a mistake may have mentioned the names.
         let Model { unmentioned, unused, .. } = self.model;
         if self.motion.is_none() || unmentioned.is_empty() && unused.is_empty() {
             return None;
@@ -36,10 +36,10 @@ impl Emitter<'_, '_> {
         })
     }
 
-    /// Returns whether an attribute of the struct, or of the field with an index, goes to the
-    /// function of the unmentioned parameters, and not to the struct or field itself.
+    /// Returns `true` if an attribute of the struct, or of the field with an index, applies to the
+    /// function of the unmentioned parameters instead of to the struct or field.
     ///
-    /// An expectation is fulfilled where the variable is unused, and not at the struct.
+    /// An expectation is fulfilled at an unused variable but not at the struct.
     pub(super) fn is_moved(&self, attribute: &Attribute, field: Option<usize>) -> bool {
         let unmentioned = &self.model.unmentioned;
         let some = !unmentioned.is_empty() || !self.model.unused.is_empty();
@@ -48,7 +48,7 @@ impl Emitter<'_, '_> {
     }
 }
 
-/// Returns true if an attribute is `#[expect(unused_variables)]` or `#[expect(unused)]`.
+/// Returns `true` if an attribute is `#[expect(unused_variables)]` or `#[expect(unused)]`.
 fn expects_unused(attribute: &Attribute) -> bool {
     let syn::Meta::List(list) = &attribute.meta else { return false };
     let unused =

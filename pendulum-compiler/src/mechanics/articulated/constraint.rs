@@ -1,9 +1,9 @@
 //! Constraints between positions: multipliers among the unknowns of the tree.
 //!
 //! A holonomic constraint g(z, q, t) of positions z and coordinates has the gradients ∂g/∂z and
-//! ∂g/∂q on the accelerations u̇ and q̈. Its multiplier goes along as the leaves are put into their
-//! parents, and is eliminated behind the coordinates of its row: a chain that is closed into a loop
-//! costs as much for each link as an open one.
+//! ∂g/∂q with respect to the accelerations u̇ and q̈. Its multiplier stays in the system while
+//! leaves are substituted into their parents, and is eliminated after the coordinates of its row.
+//! The cost per link of a chain closed into a loop is therefore the same as that of an open chain.
 
 use super::Held;
 use super::tree::Tree;
@@ -14,7 +14,8 @@ use crate::mechanics::lower::{Extended, total_derivative};
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Tree<'_> {
-    /// The accelerations under the constraints, the multipliers and the correction of misfits.
+    /// Returns the accelerations under the constraints, the multipliers and the correction of
+    /// constraint violations.
     pub(super) fn held(
         &mut self,
         extended: &Extended,
@@ -34,7 +35,7 @@ impl Tree<'_> {
         for (k, &value) in values.iter().enumerate() {
             let place = first + k;
             let rate = rate_of(self.graph, value);
-            // At constant velocities.
+            // The derivative at constant velocities.
             let drift = rate_of(self.graph, rate);
             let mut row = BTreeSet::new();
             for symbol in self.graph.symbols(&[rate]) {
@@ -71,7 +72,7 @@ impl Tree<'_> {
         })
     }
 
-    /// An expression with the values of positions and of their velocities put in.
+    /// Substitutes the values of positions and of their velocities in an expression.
     fn positioned(&mut self, id: Id, extended: &Extended, velocities: &BTreeMap<usize, Id>) -> Id {
         substitute(self.graph, id, |symbol| match symbol {
             Symbol::Position(scalar) => extended.scalars.get(scalar).copied(),
@@ -81,7 +82,8 @@ impl Tree<'_> {
     }
 }
 
-/// d/dt of an expression of positions and coordinates; `Auxiliary` is the velocity of a position.
+/// Returns d/dt of an expression in positions and coordinates. `Auxiliary` is the velocity of a
+/// position.
 fn rate_of(graph: &mut Graph, id: Id) -> Id {
     let mut terms = vec![(total_derivative(graph, id), Rational::ONE)];
     for symbol in graph.symbols(&[id]) {

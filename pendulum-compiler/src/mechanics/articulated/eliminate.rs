@@ -1,4 +1,4 @@
-//! The elimination of positions and coordinates, from the leaves to the root.
+//! Elimination of positions and coordinates, from the leaves to the root.
 
 use super::quadratic::Quadratic;
 use super::tree::{Joint, Tree};
@@ -6,7 +6,7 @@ use crate::algebra::expr::{Dependencies, Graph, Id};
 use crate::algebra::number::Rational;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The equation that gives an unknown from the ones found before it.
+/// An equation for an unknown in terms of unknowns found before.
 #[derive(Debug)]
 struct Step {
     unknown: usize,
@@ -19,25 +19,26 @@ struct Step {
 pub(super) struct Solution {
     pub(super) unknowns: Vec<Id>,
     pub(super) multipliers: Vec<Id>,
-    /// For each multiplier, its pivot over the part that other multipliers have not reduced.
+    /// For each multiplier, its pivot divided by the pivot without the reduction by other
+    /// multipliers.
     pub(super) independence: Vec<Id>,
 }
 
-/// The pivots of multipliers under way.
+/// The pivots of multipliers during elimination.
 #[derive(Debug, Default)]
 struct Pivots {
-    /// The places of all multipliers.
+    /// The indices of all multipliers.
     multipliers: BTreeSet<usize>,
-    /// The part of each pivot that comes from coordinates.
+    /// For each multiplier, the terms of its pivot that result from coordinates.
     whole: BTreeMap<usize, Vec<(Id, Rational)>>,
-    /// Unknowns that others have reduced.
+    /// The unknowns reduced by other multipliers.
     reduced: BTreeSet<usize>,
     independence: BTreeMap<usize, Id>,
 }
 
 impl Tree<'_> {
-    /// The unknowns of the coordinates, from masses, right sides and what each joint adds by
-    /// itself.
+    /// Solves for the coordinates, given masses, right sides and the term of each joint that does
+    /// not depend on the unknowns.
     pub(super) fn solve(
         &mut self,
         masses: &BTreeMap<(usize, usize), Id>,
@@ -48,8 +49,7 @@ impl Tree<'_> {
         Some(solution.unknowns)
     }
 
-    /// The same with multipliers, each of which is known by its place and the coordinates of its
-    /// row.
+    /// Solves with multipliers, each of which is given by its index and the coordinates of its row.
     pub(super) fn solve_with(
         &mut self,
         masses: &BTreeMap<(usize, usize), Id>,
@@ -71,7 +71,7 @@ impl Tree<'_> {
                 .partition(|j| !joints[..index].iter().any(|joint| joint.coordinates.contains(j)));
             open = rest;
             let ready: Vec<usize> = ready;
-            // An unknown that no position needs waits until the others are done.
+            // A coordinate that no joint contains is eliminated last.
             let (now, later): (Vec<usize>, Vec<usize>) = ready.into_iter().partition(|j| {
                 index == 0 || joints.iter().any(|joint| joint.coordinates.contains(j))
             });
@@ -109,11 +109,11 @@ impl Tree<'_> {
         Some(Solution { unknowns, multipliers: of(&found, Graph::ZERO), independence })
     }
 
-    /// Puts u̇ = u̇ₚ + J q̈ + γ in for the scalars of a joint.
+    /// Substitutes u̇ = u̇ₚ + J q̈ + γ for the scalars of a joint.
     fn fold(&mut self, system: &mut Quadratic, joint: &Joint, drift: &[Id], steps: &mut Vec<Step>) {
         let count = self.count;
         let places: Vec<usize> = joint.scalars.iter().map(|&scalar| count + scalar).collect();
-        // The parts of each scalar: unknowns with their factors.
+        // The terms of each scalar: unknowns with their factors.
         let parts: Vec<Vec<(usize, Id)>> = (0..places.len())
             .map(|row| {
                 let parent = joint.parents[row].map(|parent| (count + parent, Graph::ONE));
@@ -128,7 +128,7 @@ impl Tree<'_> {
         for (row, &place) in places.iter().enumerate() {
             steps.push(Step { unknown: place, constant: drift[row], terms: parts[row].clone() });
         }
-        // Right sides of what stays, and of the scalars themselves.
+        // The right sides of the remaining unknowns and of the scalars.
         let touched: BTreeSet<usize> = system
             .entries
             .keys()
@@ -160,7 +160,7 @@ impl Tree<'_> {
         self.congruence(system, &places, &parts, &touched);
     }
 
-    /// H ← KᵀHK for the scalars at `places`, each of which is made of its `parts`.
+    /// Replaces H by KᵀHK for the scalars at `places`, whose terms are `parts`.
     fn congruence(
         &mut self,
         system: &mut Quadratic,
@@ -168,8 +168,8 @@ impl Tree<'_> {
         parts: &[Vec<(usize, Id)>],
         touched: &BTreeSet<usize>,
     ) {
-        // H K: one row for each scalar and each other unknown that is coupled to it, one column for
-        // each part.
+        // H K: a row for each scalar and for each other unknown coupled to one, a column for each
+        // term.
         let others: Vec<usize> =
             touched.iter().copied().filter(|other| !places.contains(other)).collect();
         let targets: BTreeSet<usize> = parts.iter().flatten().map(|&(target, _)| target).collect();
@@ -195,7 +195,7 @@ impl Tree<'_> {
             for &target in &targets {
                 let value = half[&(other, target)];
                 add(other, target, value);
-                // Both triangles of a product with itself.
+                // A product with itself occurs in both triangles.
                 if other == target {
                     add(other, target, value);
                 }
@@ -221,7 +221,7 @@ impl Tree<'_> {
         }
     }
 
-    /// Solves the row of `unknown` for it and puts it into the others.
+    /// Solves the row of `unknown` for it and substitutes the result in the other rows.
     fn eliminate(
         &mut self,
         system: &mut Quadratic,
@@ -240,7 +240,8 @@ impl Tree<'_> {
             pivots.independence.insert(unknown, self.graph.div(pivot, whole));
         }
         let inverse = self.graph.power(pivot, Rational::MINUS_ONE);
-        // A moving reciprocal is taken once; one of parameters stays open and cancels.
+        // A reciprocal that depends on the state is computed once. A reciprocal of parameters stays
+        // open so that it can cancel.
         let inverse = if self.graph.dependencies(pivot).any(Dependencies::STATE) {
             self.graph.closed(inverse)
         } else {

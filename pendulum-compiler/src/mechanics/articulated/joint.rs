@@ -1,4 +1,4 @@
-//! Joints: a parent for each position, and how it moves against that.
+//! Joints: a parent for each position, and its motion relative to the parent.
 
 use super::tree::{Joint, Tree};
 use crate::algebra::diff::{derivative, substitute};
@@ -8,7 +8,8 @@ use crate::mechanics::lower::{Extended, total_derivative};
 use std::collections::BTreeSet;
 
 impl Tree<'_> {
-    /// Finds a parent for each position: the one from which the fewest coordinates lead to it.
+    /// Finds a parent for each position: the position from which the difference contains the fewest
+    /// coordinates.
     pub(super) fn build_tree(&mut self, extended: &Extended, used: &BTreeSet<Symbol>) {
         let mut open: Vec<(BTreeSet<usize>, usize)> = Vec::new();
         for (index, position) in extended.positions.iter().enumerate() {
@@ -38,7 +39,7 @@ impl Tree<'_> {
             }
             found.push((*index, best.1));
         }
-        // A position that no energy and no descendant needs is left out.
+        // A position that is used neither by an energy nor by a descendant is left out.
         let direct = |index: usize| {
             extended.positions[index]
                 .iter()
@@ -87,7 +88,7 @@ impl Tree<'_> {
         Joint { scalars, parents, coordinates, jacobian, slip, drive, drift }
     }
 
-    /// Draws what parameters alone decide out of each column of the Jacobians.
+    /// Extracts the common factors of parameters from each column of the Jacobians.
     fn measure(&mut self) {
         for coordinate in 0..self.count {
             let mut common: Option<Vec<(Id, Rational)>> = None;
@@ -123,7 +124,7 @@ impl Tree<'_> {
         }
     }
 
-    /// The coordinates in some expressions.
+    /// Returns the coordinates in some expressions.
     pub(super) fn coordinates(&self, roots: &[Id]) -> BTreeSet<usize> {
         let index = |symbol| match symbol {
             Symbol::Coordinate(index) => Some(index),

@@ -1,13 +1,13 @@
-//! The equations of motion in sparse form: the velocities of `let` positions as further unknowns,
-//! eliminated from the leaves to the root.
+//! The equations of motion in sparse form: the velocities of `let` positions are further unknowns,
+//! which are eliminated from the leaves to the root.
 //!
-//! A chain written with positions yₖ has a full mass matrix, but one that comes from few numbers:
-//! yₖ is yₖ₋₁ and a link. With the velocities uₛ of such positions z beside the coordinates' the
-//! Lagrangian Λ(q, q̇, u) has a sparse Hessian H, and the motion is the stationary point of ½wᵀHw −
-//! Gᵀw over the accelerations w = (q̈, u̇) with u̇ᵢ = u̇ₚ + J q̈ + γ for each position zᵢ and its
-//! parent zₚ (Gauss 1829). Putting the leaves into their parents and eliminating each joint behind
-//! them is the articulated-body recursion (Featherstone 1983): the cost grows with the number of
-//! joints, and trees branch without fill-in.
+//! In a chain, each position is yₖ = yₖ₋₁ plus a link. Its mass matrix is full but depends on few
+//! quantities. With the velocities uₛ of positions z in addition to those of the coordinates, the
+//! Lagrangian Λ(q, q̇, u) has a sparse Hessian H. The motion is the stationary point of ½wᵀHw − Gᵀw
+//! over the accelerations w = (q̈, u̇) with u̇ᵢ = u̇ₚ + J q̈ + γ for each position zᵢ and its
+//! parent zₚ (Gauss 1829). Substituting the leaves into their parents and eliminating each joint
+//! afterwards is the articulated-body recursion (Featherstone 1983): the cost is proportional to
+//! the number of joints, and trees branch without fill-in.
 
 mod constraint;
 mod eliminate;
@@ -24,7 +24,7 @@ use crate::mechanics::lower::{Extended, total_derivative};
 use std::collections::BTreeMap;
 use tree::Tree;
 
-/// The results of the sparse form; the same functions as those of the dense form.
+/// The results of the sparse form, which equal those of the dense form.
 #[derive(Debug)]
 pub(crate) struct Sparse {
     pub(crate) accelerations: Vec<Id>,
@@ -34,11 +34,12 @@ pub(crate) struct Sparse {
     pub(crate) energy: Id,
     pub(crate) kinetic: Option<Id>,
     pub(crate) unsolved: Unsolved,
-    /// Accelerations under constraints; none without them, or if they have no such form.
+    /// The accelerations under constraints; `None` without constraints or if they have no sparse
+    /// form.
     pub(crate) held: Option<Held>,
 }
 
-/// The accelerations under constraints, and what goes with them.
+/// The accelerations under constraints and the quantities solved with them.
 #[derive(Debug)]
 pub(crate) struct Held {
     pub(crate) accelerations: Vec<Id>,
@@ -50,15 +51,15 @@ pub(crate) struct Held {
 /// The equations of motion before they are solved.
 #[derive(Debug, Default)]
 pub(crate) struct Unsolved {
-    /// The momenta of the coordinates and of the positions, in q and q̇.
+    /// The momenta of the coordinates and of the positions, as functions of q and q̇.
     pub(crate) carried: Vec<Id>,
-    /// Expressions that vanish along the motion, one for each coordinate; the symbol `Auxiliary(k)`
+    /// Expressions that vanish along the motion, one for each coordinate. The symbol `Auxiliary(k)`
     /// is the rate of `carried[k]`.
     pub(crate) equations: Vec<Id>,
 }
 
-/// The sparse form of a Lagrangian whose positions are written with `let`; `None` if there are
-/// none, or if it has none.
+/// Returns the sparse form of a Lagrangian whose positions are defined with `let`, or `None` if
+/// there are no positions or no sparse form.
 pub(crate) fn sparse(graph: &mut Graph, extended: &Extended, count: usize) -> Option<Sparse> {
     let lagrangian = velocity_polynomial::by_velocities(graph, extended.lagrangian)?;
     let mut used = graph.symbols(&[lagrangian, extended.dissipation]);
@@ -80,7 +81,7 @@ impl Tree<'_> {
         let count = self.count;
         let scalars: Vec<usize> =
             self.joints.iter().flat_map(|joint| joint.scalars.clone()).collect();
-        // The place of a scalar among the unknowns comes after those of the coordinates.
+        // The scalars of positions follow the coordinates in the order of the unknowns.
         let symbols: BTreeMap<usize, Symbol> = (0..count)
             .map(|j| (j, Symbol::Velocity(j)))
             .chain(scalars.iter().map(|&scalar| (count + scalar, Symbol::Auxiliary(scalar))))

@@ -9,7 +9,7 @@ use crate::algebra::number::Rational;
 use std::collections::BTreeMap;
 
 impl Tree<'_> {
-    /// The velocity of each scalar and the part of it that the drive alone makes, from the root to
+    /// Returns the velocity of each scalar, and its velocity at q̇ = 0, computed from the root to
     /// the leaves.
     pub(super) fn rates(&mut self) -> (BTreeMap<usize, Id>, BTreeMap<usize, Id>) {
         let (mut velocities, mut drives) = (BTreeMap::new(), BTreeMap::new());
@@ -28,7 +28,7 @@ impl Tree<'_> {
         (velocities, drives)
     }
 
-    /// An expression with the velocities of positions put in.
+    /// Substitutes the velocities of positions in an expression.
     pub(super) fn at(&mut self, id: Id, velocities: &BTreeMap<usize, Id>) -> Id {
         if !self.graph.dependencies(id).any(Dependencies::AUXILIARY) {
             return id;
@@ -39,7 +39,8 @@ impl Tree<'_> {
         })
     }
 
-    /// Momenta and their rates: what the positions carry goes from the leaves to the root.
+    /// Returns the momenta and their rates. The contributions of the positions are accumulated from
+    /// the leaves to the root.
     pub(super) fn backward_pass(
         &mut self,
         momenta: &BTreeMap<usize, Id>,
@@ -89,9 +90,10 @@ impl Tree<'_> {
         (sums(self.graph, &carried), sums(self.graph, &pushed))
     }
 
-    /// d'Alembert's principle: ṗ less its cause, for the coordinates and for the positions, which
-    /// hand it on from the leaves to the root. The rates of the lever arms ∂z/∂q are those of the
-    /// velocities, ∂u/∂q, and go out.
+    /// Returns the equations of d'Alembert's principle: ṗ minus its cause, for the coordinates and
+    /// for the positions, whose contributions are accumulated from the leaves to the root. The
+    /// rates of the lever arms ∂z/∂q equal the gradients ∂u/∂q of the velocities, so that these
+    /// terms cancel.
     pub(super) fn unsolved(
         &mut self,
         momenta: &BTreeMap<usize, Id>,

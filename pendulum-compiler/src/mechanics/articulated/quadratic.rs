@@ -1,9 +1,9 @@
-//! Quadratic forms: symmetric matrices of which only the entries that are not zero are kept.
+//! Quadratic forms: symmetric matrices that store only nonzero entries.
 
 use crate::algebra::expr::{Graph, Id};
 use std::collections::BTreeMap;
 
-/// A symmetric matrix and the right sides that go with it.
+/// A symmetric matrix and the right sides of its equations.
 #[derive(Debug, Default)]
 pub(super) struct Quadratic {
     pub(super) entries: BTreeMap<(usize, usize), Id>,
@@ -23,7 +23,7 @@ impl Quadratic {
         }
     }
 
-    /// The other entries of a row.
+    /// Returns the off-diagonal entries of a row.
     pub(super) fn row(&self, unknown: usize) -> Vec<(usize, Id)> {
         let other = |(&(a, b), &value): (&(usize, usize), &Id)| match (a == unknown, b == unknown) {
             (true, false) => Some((b, value)),

@@ -1,18 +1,18 @@
-//! A tree of positions: what the steps of the sparse form work on.
+//! A tree of positions, on which the steps of the sparse form operate.
 
 use crate::algebra::expr::{Graph, Id};
 use crate::algebra::number::Rational;
 
-/// A position, how it moves against its parent, and which coordinates do it.
+/// A position, its motion relative to its parent and the coordinates of that motion.
 #[derive(Debug)]
 pub(super) struct Joint {
-    /// The scalars of the position, and the same components of the parent.
+    /// The scalars of the position; `parents` are the same components of the parent.
     pub(super) scalars: Vec<usize>,
     pub(super) parents: Vec<Option<usize>>,
     pub(super) coordinates: Vec<usize>,
-    /// ∂(z − zₚ)/∂q in units of the coordinates, a row for each scalar.
+    /// ∂(z − zₚ)/∂q in the units of the coordinates, a row for each scalar.
     pub(super) jacobian: Vec<Vec<Id>>,
-    /// d(z − zₚ)/dt, the same at q̇ = 0, and its rate at constant q̇.
+    /// d(z − zₚ)/dt. `drive` is its value at q̇ = 0, and `drift` is its rate at constant q̇.
     pub(super) slip: Vec<Id>,
     pub(super) drive: Vec<Id>,
     pub(super) drift: Vec<Id>,
@@ -22,14 +22,14 @@ pub(super) struct Joint {
 pub(super) struct Tree<'g> {
     pub(super) graph: &'g mut Graph,
     pub(super) count: usize,
-    /// Parents before children.
+    /// The joints, parents before children.
     pub(super) joints: Vec<Joint>,
-    /// The parameters that each coordinate always stands with, such as the length of its link.
+    /// For each coordinate, the parameters that always multiply it, such as the length of its link.
     pub(super) units: Vec<Id>,
 }
 
 impl Tree<'_> {
-    /// An entry in the units of its unknowns.
+    /// Divides an entry by the units of its unknowns.
     pub(super) fn scaled(&mut self, entry: Id, places: &[usize]) -> Id {
         let mut factors = vec![(entry, Rational::ONE)];
         factors.extend(

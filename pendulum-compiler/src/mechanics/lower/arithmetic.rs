@@ -11,7 +11,7 @@ use crate::syntax::ast::Expr;
 use crate::syntax::text::text;
 
 impl Lower<'_, '_, '_, '_> {
-    /// The total time derivative; `may_rest` if the operand may be at rest.
+    /// Returns the total time derivative. If `may_rest` is set, a constant operand is allowed.
     pub(super) fn dot(&mut self, value: Value, expr: &Expr, may_rest: bool) -> Value {
         let dependencies = self.dependencies(&value);
         let moving = Dependencies::TIME
@@ -58,7 +58,7 @@ impl Lower<'_, '_, '_, '_> {
         value
     }
 
-    /// Refuses the derivative of a value in which a control input stands.
+    /// Refuses the derivative of a value that contains a control input.
     fn control_rate(&mut self, value: &Value, expr: &Expr) -> Value {
         let symbols = self.graph.symbols(&value.scalars());
         let input = symbols.into_iter().find_map(|symbol| match symbol {
@@ -112,7 +112,7 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn add(&mut self, a: Value, b: Value, expr: &Expr) -> Value {
         match (a, b) {
             (Value::Bad, _) | (_, Value::Bad) => Value::Bad,
-            // An empty sum is zero, whatever its terms would have been.
+            // An empty sum is zero, regardless of the shape of its terms.
             (Value::Scalar(Graph::ZERO), other) | (other, Value::Scalar(Graph::ZERO)) => other,
             (Value::Scalar(a), Value::Scalar(b)) => Value::Scalar(self.graph.add(a, b)),
             (
@@ -133,10 +133,10 @@ impl Lower<'_, '_, '_, '_> {
         }
     }
 
-    /// The sum of many values, each of which `expr` gave.
+    /// Returns the sum of many values, all of which result from `expr`.
     ///
-    /// Scalars and vectors are summed at once: a sum that grows term by term would be rebuilt for
-    /// each of them.
+    /// All terms are summed in a single operation, because a sum that grows term by term would be
+    /// rebuilt for each term.
     pub(super) fn total(&mut self, values: Vec<Value>, expr: &Expr) -> Value {
         let mut columns = [const { Vec::new() }; 3];
         let alike = values.windows(2).all(|pair| pair[0].kind() == pair[1].kind());

@@ -12,11 +12,11 @@ use crate::syntax::ast::{Expr, ExprKind};
 use crate::syntax::name::{self, Name};
 use crate::syntax::text::text;
 
-/// The message about an integrand, from its text and the point.
+/// A message about an integrand, from its text and that of the point.
 type Refusal = fn(&str, &str) -> Text;
 
 impl Lower<'_, '_, '_, '_> {
-    /// The body that an expression names.
+    /// Returns the body that an expression names.
     pub(super) fn body(&self, expr: &Expr) -> Option<usize> {
         let ExprKind::Name(ident) = &expr.kind else { return None };
         let Name { base, dots: 0 } = name::read(&ident.to_string()) else { return None };
@@ -29,7 +29,7 @@ impl Lower<'_, '_, '_, '_> {
         }
     }
 
-    /// `B.mass`, `B.center` or `B.inertia`.
+    /// Returns `B.mass`, `B.center` or `B.inertia`.
     pub(super) fn property(&mut self, body: usize, name: &str) -> Value {
         match name {
             "mass" => Value::Scalar(self.mass(body)),
@@ -51,7 +51,7 @@ impl Lower<'_, '_, '_, '_> {
         [1, 2].map(|offset| self.graph.symbol(Symbol::Parameter(first + offset)))
     }
 
-    /// ∫ ρ expr dp over a body.
+    /// Returns ∫ ρ expr dp over a body.
     pub(super) fn integral(&mut self, point: &str, body: &str, integrand: &Expr) -> Value {
         let Some(&Meaning::Parameter(index)) = self.model.names.get(&name::read(body).base) else {
             return Value::Bad;
@@ -85,7 +85,7 @@ impl Lower<'_, '_, '_, '_> {
         }
     }
 
-    /// The integral of one scalar.
+    /// Returns the integral of a scalar.
     fn moment(&mut self, body: usize, point: [Id; 2], id: Id, wrong: &mut Option<Refusal>) -> Id {
         let Some(polynomial) = velocity_polynomial::polynomial(self.graph, id, Dependencies::POINT)
         else {
@@ -99,7 +99,7 @@ impl Lower<'_, '_, '_, '_> {
             .map(|moment| self.graph.symbol(Symbol::Moment(first, moment)));
         let mut terms = Vec::new();
         for (monomial, coefficients) in polynomial {
-            // Points of an integral outside are constants here.
+            // Points of enclosing integrals are constants here.
             let power = |component: usize| {
                 monomial
                     .iter()

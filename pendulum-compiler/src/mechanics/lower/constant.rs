@@ -1,4 +1,4 @@
-//! Constants known while compiling: those that are no real number are refused where they are
+//! Constants known at compile time. Constants that are not real numbers are refused where they are
 //! written.
 
 use super::context::Lower;
@@ -11,7 +11,7 @@ use crate::syntax::ast::Expr;
 use crate::syntax::text::text;
 
 impl Lower<'_, '_, '_, '_> {
-    /// A value, unless it is a constant that is not finite.
+    /// Returns a value, or refuses it if it is a constant that is not finite.
     pub(super) fn real(&mut self, value: Value, expr: &Expr) -> Value {
         let Value::Scalar(id) = value else { return value };
         if self.graph.dependencies(id) != Dependencies::default()
@@ -43,7 +43,7 @@ impl Lower<'_, '_, '_, '_> {
     }
 }
 
-/// The value of a node in floating point, from those of its children and of the symbols.
+/// Evaluates a node in floating point, given the values of its children and of the symbols.
 pub(crate) fn evaluate(
     graph: &Graph,
     id: Id,

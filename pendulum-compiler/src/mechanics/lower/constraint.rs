@@ -1,4 +1,4 @@
-//! Constraints and limits to their scalars.
+//! Lowering of constraints and limits to scalars.
 
 use super::context::Lower;
 use super::row::{Row, Shape};
@@ -12,7 +12,7 @@ use crate::syntax::text::text;
 use proc_macro2::Ident;
 
 impl Lower<'_, '_, '_, '_> {
-    /// The scalars of all constraints: those that are solved come first.
+    /// Returns the scalars of all constraints, with the solved constraints first.
     pub(super) fn constraints(&mut self) -> Vec<Row> {
         self.constrained = true;
         let mut rows = Vec::new();
@@ -25,7 +25,7 @@ impl Lower<'_, '_, '_, '_> {
         rows
     }
 
-    /// The scalars of all limits.
+    /// Returns the scalars of all limits.
     pub(super) fn limits(&mut self) -> Vec<Row> {
         self.constrained = true;
         let mut rows = Vec::new();
@@ -74,7 +74,7 @@ impl Lower<'_, '_, '_, '_> {
         Shape { first, members: Some(members), components: width }
     }
 
-    /// Adds the scalars of one member; the number of components, 0 for a scalar.
+    /// Adds the scalars of one member. Returns the number of components, or 0 for a scalar.
     fn member_rows(
         &mut self,
         rows: &mut Vec<Row>,
@@ -128,7 +128,7 @@ impl Lower<'_, '_, '_, '_> {
         if vector { scalars.len() } else { 0 }
     }
 
-    /// A restitution, which parameters and numbers decide.
+    /// Returns a restitution, which may depend only on parameters and numbers.
     fn restitution(&mut self, expr: &Expr) -> Option<Id> {
         let value = self.scalar(expr)?;
         if self.graph.dependencies(value).any(Dependencies::STATE) {
@@ -145,7 +145,7 @@ impl Lower<'_, '_, '_, '_> {
         Some(value)
     }
 
-    /// The multipliers of a constraint.
+    /// Returns the multipliers of a constraint.
     pub(super) fn reaction(&mut self, ident: &Ident, index: Option<&Expr>, expr: &Expr) -> Value {
         let base = name::read(&ident.to_string()).base;
         let found = self
@@ -172,7 +172,7 @@ impl Lower<'_, '_, '_, '_> {
             (Some(members), None) => {
                 Value::Family((0..members).map(|k| member(self.graph, k)).collect())
             }
-            // The constraint has no members because of a mistake that has been told.
+            // The constraint has no members because of a mistake that has been reported.
             (Some(0), Some(_)) => Value::Bad,
             (Some(members), Some(index)) => match self.index(index, members, &ident.to_string()) {
                 Some(k) => member(self.graph, usize::try_from(k).unwrap_or(0)),

@@ -1,4 +1,4 @@
-//! The state of a lowering: names in scope, definitions that are done, indices and ranges.
+//! The state of a lowering: names in scope, finished definitions, indices and ranges.
 
 use super::positions::PositionTracker;
 use super::row::Shape;
@@ -11,15 +11,15 @@ use crate::syntax::name::{self, plain};
 use crate::syntax::text::text;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// An energy or a force whose nodes nest deeper is refused: it would overflow the compiler's stack,
-/// and definitions above one another nest as well.
+/// The limit on the depth of the nodes of an energy or a force. Deeper expressions would overflow
+/// the compiler's stack; nested definitions add to the depth.
 const DEEPEST_NODE: usize = 1200;
 
-/// An energy or a force of more nodes is refused: its equations would take minutes to derive and to
-/// compile.
+/// The limit on the number of nodes of an energy or a force. The equations of larger expressions
+/// would take minutes to derive and to compile.
 const LARGEST: usize = 8000;
 
-/// The meaning of a name that holds in one expression.
+/// The local meaning of a name within an expression.
 pub(super) enum Local {
     /// An argument of a function or a point of integration.
     Value(Value),
@@ -32,36 +32,36 @@ pub(super) struct Lower<'m, 'a, 'g, 'e> {
     pub(super) model: &'m Model<'a>,
     pub(super) graph: &'g mut Graph,
     pub(super) errors: &'e mut Errors,
-    /// The indices, arguments and points that are bound, the inner ones last.
+    /// The bound indices, arguments and points, inner ones last.
     pub(super) scope: Vec<(String, Local)>,
-    /// The definitions that are done, by their index.
+    /// The finished definitions, by index and member.
     pub(super) instances: BTreeMap<(usize, Option<i64>), Value>,
-    /// The definitions that are being evaluated.
+    /// The definitions under evaluation.
     pub(super) open: Vec<(usize, Option<i64>)>,
-    /// The parameters that are used by their indices, and those that are used whole.
+    /// The parameters used with indices; `whole` contains those used without.
     pub(super) indexed: BTreeSet<usize>,
     pub(super) whole: BTreeSet<usize>,
     pub(super) work: usize,
-    /// The number of expressions that are being evaluated.
+    /// The number of expressions under evaluation.
     pub(super) depth: usize,
-    /// The number of integrals that are open.
+    /// The number of enclosing integrals.
     pub(super) integrals: usize,
     /// The positions whose velocities become symbols.
     pub(super) positions: Option<PositionTracker>,
     /// The values of expressions without symbols.
     pub(super) constants: BTreeMap<Id, f64>,
-    /// True if velocities have derivatives: in outputs.
+    /// `true` in outputs, where velocities have derivatives.
     pub(super) accelerations: bool,
-    /// True in a constraint or a limit.
+    /// `true` in a constraint or a limit.
     pub(super) constrained: bool,
-    /// The definitions whose positions stand for themselves from now on.
+    /// The definitions whose positions are replaced by symbols from now on.
     pub(super) known: Option<BTreeMap<(usize, Option<i64>), Value>>,
     /// The shapes of the constraints.
     pub(super) shapes: Vec<Shape>,
 }
 
 impl Lower<'_, '_, '_, '_> {
-    /// Reports a value that is too long.
+    /// Returns `true` if a value is within the limits; otherwise reports it.
     pub(super) fn within_bounds(&mut self, expr: &Expr, value: Id) -> bool {
         let nodes = self.graph.reachable(&[value]);
         if LARGEST < nodes.len() {
@@ -81,7 +81,7 @@ impl Lower<'_, '_, '_, '_> {
         true
     }
 
-    /// One instance of a definition.
+    /// Returns one instance of a definition.
     pub(super) fn definition(&mut self, index: usize, k: Option<i64>, range: Range) -> Value {
         if let Some(value) = self.instances.get(&(index, k)) {
             return value.clone();
@@ -110,7 +110,7 @@ impl Lower<'_, '_, '_, '_> {
         value
     }
 
-    /// A definition as symbols of its positions, where they stand for themselves.
+    /// Returns a definition as symbols of its positions, if positions are replaced by symbols.
     fn position(&mut self, index: usize, k: Option<i64>) -> Option<Value> {
         let value = self.known.as_ref()?.get(&(index, k))?.clone();
         let positions = self.positions.as_ref()?;
@@ -124,7 +124,7 @@ impl Lower<'_, '_, '_, '_> {
         all.then(|| self.map(value, symbol))
     }
 
-    /// A function defined by `let`, applied.
+    /// Applies a function defined by `let`.
     pub(super) fn apply(&mut self, index: usize, arguments: Vec<Value>, range: Range) -> Value {
         let definition = self.model.lets[index];
         let names = definition.arguments.as_deref().unwrap_or_default();
@@ -146,7 +146,8 @@ impl Lower<'_, '_, '_, '_> {
         value
     }
 
-    /// The whole numbers of a range; a bad or endless one is reported and empty.
+    /// Returns the integers of a range. A range that is invalid or too long is reported, and the
+    /// result is empty.
     pub(super) fn range(&mut self, binder: &Binder) -> std::ops::Range<i64> {
         let end = |lower: &mut Self, expr: &Expr| match lower.integer(expr) {
             Ok(value) => Some(value),
@@ -170,7 +171,8 @@ impl Lower<'_, '_, '_, '_> {
         match self.integer(expr) {
             Ok(k) if (0..length as i64).contains(&k) => Some(k),
             Ok(k) => {
-                // A range that is too long is one mistake, however often its index is used.
+                // A range that is too long is reported once, independent of the number of uses of
+                // its index.
                 let text = text(expr);
                 let source = match self.local(&name::read(&text).base) {
                     Some(Local::Index { source, .. }) => *source,
@@ -187,12 +189,13 @@ impl Lower<'_, '_, '_, '_> {
         }
     }
 
-    /// The meaning of a name that holds in one expression.
+    /// Returns the local meaning of a name within an expression.
     pub(super) fn local(&self, name: &str) -> Option<&Local> {
         self.scope.iter().rev().find(|(own, _)| own == name).map(|(_, local)| local)
     }
 
-    /// A whole number made of numbers and indices; the range that is none otherwise.
+    /// Evaluates an integer expression of numbers and indices, or returns the range of the part
+    /// that is not an integer.
     pub(super) fn integer(&self, expr: &Expr) -> Result<i64, Range> {
         let index = |name: &str| match self.local(name) {
             Some(&Local::Index { value, .. }) => Some(value),

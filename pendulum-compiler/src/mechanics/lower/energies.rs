@@ -1,4 +1,4 @@
-//! The scalars of a block, as its statements give them.
+//! The scalars of a block, as given by its statements.
 
 use super::output::Output;
 use super::row::Row;
@@ -12,27 +12,26 @@ pub(crate) struct Energies {
     pub(crate) potential: Option<Id>,
     pub(crate) lagrangian: Option<Id>,
     pub(crate) dissipation: Option<Id>,
-    /// One generalized force for each coordinate.
+    /// The generalized force of each coordinate.
     pub(crate) forces: Vec<Id>,
-    /// The default of each parameter that has one.
+    /// The default of each parameter, if any.
     pub(crate) defaults: Vec<Option<Id>>,
-    /// The parameters of two or three components that are used by their indices alone: families,
-    /// not vectors.
+    /// The parameters of two or three components that are used only with indices. They are
+    /// families, not vectors.
     pub(crate) families: BTreeSet<usize>,
-    /// For each definition the lengths of its value, the outermost first.
+    /// For each definition, the lengths of its value, outermost first.
     pub(crate) lengths: Vec<Vec<usize>>,
     pub(crate) outputs: Vec<Output>,
-    /// The scalar constraints that are solved, and after them the redundant ones.
+    /// The scalar constraints: those that are solved, followed by the redundant ones.
     pub(crate) constraints: Vec<Row>,
     /// The scalar limits.
     pub(crate) limits: Vec<Row>,
-    /// The same with the velocities of positions as symbols of their own; `None` where no position
-    /// is written with `let`.
+    /// The energies with the velocities of positions as separate symbols; `None` if no position is
+    /// defined with `let`.
     pub(crate) extended: Option<Extended>,
 }
 
-/// The energies of a block in which the velocities of `let` positions stand as symbols of their
-/// own.
+/// The energies of a block with the velocities of `let` positions as separate symbols.
 #[derive(Debug, Default)]
 pub(crate) struct Extended {
     pub(crate) lagrangian: Id,
@@ -43,19 +42,19 @@ pub(crate) struct Extended {
     pub(crate) positions: Vec<Vec<usize>>,
     /// The value of each scalar.
     pub(crate) scalars: Vec<Id>,
-    /// The holonomic constraints that are solved, in terms of positions where those stand in them;
-    /// none if there is one of velocities.
+    /// The holonomic constraints that are solved, in terms of positions where they contain them;
+    /// `None` if there is a constraint of velocities.
     pub(crate) constraints: Option<Vec<Id>>,
 }
 
 impl Energies {
-    /// The constraints that hold velocities, by the indices of their statements.
+    /// Returns the constraints of velocities, as indices of their statements.
     pub(crate) fn velocity_constraints(&self, graph: &Graph) -> BTreeSet<usize> {
         let velocity = |row: &&Row| graph.dependencies(row.value).any(Dependencies::VELOCITY);
         self.constraints.iter().filter(velocity).map(|row| row.statement).collect()
     }
 
-    /// Every expression in it.
+    /// Returns all expressions of the energies.
     pub(crate) fn roots(&mut self) -> Vec<&mut Id> {
         let single =
             [&mut self.kinetic, &mut self.potential, &mut self.lagrangian, &mut self.dissipation];

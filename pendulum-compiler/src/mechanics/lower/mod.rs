@@ -1,8 +1,8 @@
-//! Vectors, complex numbers and families to scalars: every expression of a block becomes nodes of
-//! one graph.
+//! Lowering of vectors, complex numbers and families to scalars: every expression of a block
+//! becomes nodes of one graph.
 //!
-//! A plane vector is a complex number; `Value::Bad` stands for what has been reported, so that one
-//! mistake gives one message.
+//! A plane vector is a complex number. `Value::Bad` represents an expression that has been
+//! reported, so that each mistake results in one message.
 
 mod arithmetic;
 mod body;
@@ -40,10 +40,10 @@ pub(crate) fn energies(model: &Model, graph: &mut Graph, errors: &mut Errors) ->
     energies
 }
 
-/// Lowers a block once more, with the velocities of its positions as unknowns.
+/// Lowers a block again, with the velocities of its positions as unknowns.
 ///
-/// Constraints are lowered in terms of positions, whose rates are no expressions: only where all
-/// are `holonomic`.
+/// Constraints are lowered in terms of positions only if all of them are `holonomic`, because the
+/// rates of positions are not expressions.
 fn extended(
     model: &Model,
     graph: &mut Graph,
@@ -78,7 +78,7 @@ fn extended(
     })
 }
 
-/// Lowers all energies of a block, and notes its positions if that is wanted.
+/// Lowers all energies of a block, and records its positions if `positions` is given.
 fn lower(
     model: &Model,
     graph: &mut Graph,
@@ -110,7 +110,7 @@ fn lower(
 
 impl Lower<'_, '_, '_, '_> {
     fn block(&mut self) -> Energies {
-        // Without `..`: what a statement adds to the model has a place in the graph.
+        // The pattern has no `..`, so that every field of the model is considered here.
         let Model {
             parameters,
             lets,
@@ -181,7 +181,7 @@ impl Lower<'_, '_, '_, '_> {
         energies
     }
 
-    /// The lengths of a definition's value, as far as it has been lowered.
+    /// Returns the lengths of a definition's value, as far as it has been lowered.
     fn lengths(&self, index: usize) -> Vec<usize> {
         let mut instances =
             self.instances.range((index, None)..=(index, Some(i64::MAX))).map(|(_, value)| value);
@@ -190,8 +190,8 @@ impl Lower<'_, '_, '_, '_> {
         family.into_iter().chain(first.lengths()).collect()
     }
 
-    /// Reports an energy in which a control input stands elsewhere than in products and whole
-    /// powers: forces that it exerts count from its value zero on.
+    /// Reports an energy that contains a control input outside of products and positive integer
+    /// powers. The forces exerted by an input are measured relative to its value zero.
     fn has_enclosed_control(&mut self, expr: &Expr, value: Id) -> bool {
         let controlled = |id: Id| self.graph.dependencies(id).any(Dependencies::CONTROL);
         let enclosed = |&id: &Id| match self.graph.node(id) {
@@ -269,7 +269,7 @@ impl Lower<'_, '_, '_, '_> {
         }
     }
 
-    /// An energy or a force, unless it is too long.
+    /// Returns an energy or a force, unless it is too long.
     fn outcome(&mut self, expr: &Expr) -> Option<Id> {
         let value = self.scalar(expr)?;
         self.within_bounds(expr, value).then_some(value)

@@ -1,4 +1,4 @@
-//! Outputs to their scalars.
+//! Lowering of outputs to scalars.
 
 use super::context::Lower;
 use super::value::Value;
@@ -13,17 +13,17 @@ use crate::syntax::text::text;
 pub(crate) struct Output {
     /// The length of a family.
     pub(crate) members: Option<usize>,
-    /// The length of a vector: that of each member of a family.
+    /// The length of a vector, or of each member of a family of vectors.
     pub(crate) components: Option<usize>,
-    /// The components of the first member, of the second and so on.
+    /// The components of the first member, followed by those of the second, and so on.
     pub(crate) scalars: Vec<Id>,
-    /// The same with accelerations and multipliers as symbols, where limits in contact change them;
-    /// else empty.
+    /// The scalars with accelerations and multipliers as symbols, if limits in contact change their
+    /// values; otherwise empty.
     pub(crate) open: Vec<Id>,
 }
 
 impl Lower<'_, '_, '_, '_> {
-    /// The outputs in the order of declaration; one with a mistake has no scalars.
+    /// Returns the outputs in the order of declaration. An output with a mistake has no scalars.
     pub(super) fn outputs(&mut self) -> Vec<Output> {
         self.accelerations = true;
         let outputs = self.model.outputs.iter().map(|output| self.output(output)).collect();
@@ -58,7 +58,7 @@ impl Lower<'_, '_, '_, '_> {
         result
     }
 
-    /// The length of a vector, and its scalars.
+    /// Returns the length of a vector, and its scalars.
     fn output_member(&mut self, output: &model::Output) -> Option<(Option<usize>, Vec<Id>)> {
         let expr = &output.statement.expr;
         let value = self.expr(expr);
@@ -79,7 +79,7 @@ impl Lower<'_, '_, '_, '_> {
                 Some(members.len())
             }
         };
-        // Without a unit the output has the shape of its value.
+        // An output without a unit has the shape of its value.
         let open = matches!(output.statement.kind, Kind::Scalar(None));
         if own != declared && !open {
             self.shape(output, &value, own, expr);
@@ -90,7 +90,7 @@ impl Lower<'_, '_, '_, '_> {
         checked.then_some((own, scalars))
     }
 
-    /// Reports an output that is declared in another shape than it has.
+    /// Reports an output whose declared shape differs from that of its value.
     fn shape(&mut self, output: &model::Output, value: &Value, own: Option<usize>, expr: &Expr) {
         let Quantity { name, length, unit, .. } = &output.declared;
         let (found, name) = (text(expr), name.to_string());

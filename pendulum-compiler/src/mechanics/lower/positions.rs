@@ -1,21 +1,22 @@
-//! Positions written with `let`, whose velocities become unknowns of the sparse form.
+//! Positions defined with `let`, whose velocities become unknowns of the sparse form.
 
 use super::value::Value;
 use crate::algebra::expr::{Dependencies, Graph, Id};
 use std::collections::BTreeMap;
 
-/// The positions written with `let` that have been met.
+/// The positions defined with `let` and found so far.
 #[derive(Debug, Default)]
 pub(super) struct PositionTracker {
     pub(super) scalars: Vec<Id>,
     pub(super) positions: Vec<Vec<usize>>,
     pub(super) places: BTreeMap<Id, usize>,
-    /// Constraints are told in terms of them.
+    /// `true` if constraints are expressed in terms of positions.
     pub(super) constrained: bool,
 }
 
 impl PositionTracker {
-    /// Notes the scalars of a value that move with the coordinates.
+    /// Records the scalars of a value if all of them depend on the coordinates and not on
+    /// velocities.
     pub(super) fn note(&mut self, graph: &Graph, value: &Value) {
         if let Value::Family(members) = value {
             return members.iter().for_each(|member| self.note(graph, member));

@@ -4,7 +4,7 @@ use crate::algebra::diff;
 use crate::algebra::expr::{Graph, Id, Symbol};
 use crate::algebra::number::Rational;
 
-/// dx/dt along any motion, by the chain rule through coordinates, driven inputs and time.
+/// Returns dx/dt along any motion, by the chain rule through coordinates, driven inputs and time.
 pub(crate) fn total_derivative(graph: &mut Graph, id: Id) -> Id {
     let mut terms = Vec::new();
     for symbol in graph.symbols(&[id]) {
@@ -22,7 +22,7 @@ pub(crate) fn total_derivative(graph: &mut Graph, id: Id) -> Id {
     graph.sum(&terms)
 }
 
-/// dx/dt along the motion itself, where velocities have derivatives.
+/// Returns dx/dt along the motion of the system, including the accelerations.
 pub(super) fn second_derivative(graph: &mut Graph, id: Id) -> Id {
     let mut terms = vec![(total_derivative(graph, id), Rational::ONE)];
     for symbol in graph.symbols(&[id]) {

@@ -1,4 +1,4 @@
-//! Every kind of expression to its value.
+//! Lowering of each kind of expression to its value.
 
 use super::context::{Local, Lower};
 use super::value::Value;
@@ -11,12 +11,12 @@ use crate::syntax::ast::{Binder, Expr, ExprKind};
 use crate::syntax::name::{self, Name};
 use crate::syntax::text::text;
 
-/// More evaluations, or operands in all expressions together, are refused: sums within sums would
-/// never end.
+/// The limit on evaluations, and on operands in all expressions together. Nested sums could exceed
+/// any time otherwise.
 const LIMIT: usize = 2_000_000;
 
-/// Expressions and definitions within one another beyond this are refused: they would overflow the
-/// compiler's stack.
+/// The limit on nested expressions and definitions. Deeper nesting would overflow the compiler's
+/// stack.
 const DEEPEST: usize = 1000;
 
 impl Lower<'_, '_, '_, '_> {
@@ -33,7 +33,7 @@ impl Lower<'_, '_, '_, '_> {
         }
     }
 
-    /// Reports an expression that is the product of two plane vectors where a scalar is meant.
+    /// Reports an expression that is the product of two plane vectors but has to be a scalar.
     fn vector_product(&mut self, expr: &Expr) -> Option<Value> {
         match &expr.kind {
             ExprKind::Negative(inner) => self.vector_product(inner),
@@ -106,7 +106,8 @@ impl Lower<'_, '_, '_, '_> {
             };
             return self.dotted(value, dots, expr);
         }
-        // A declaration of one of these names has been refused, but it is what the name means.
+        // A declaration with one of these names has been refused; the name still has its declared
+        // meaning.
         if dots == 0 && !self.model.names.contains_key(&base) {
             match base.as_str() {
                 "t" => return Value::Scalar(self.graph.symbol(Symbol::Time)),
@@ -255,7 +256,7 @@ impl Lower<'_, '_, '_, '_> {
             (Some(Lowering::One(one)), [a]) => self.call_of_one(one, a),
             (Some(Lowering::Two(two)), [a, b]) => self.call_of_two(two, a, b),
             _ => {
-                // The call has been reported, and the kind of its arguments is open.
+                // The call has been reported, and the required kinds of its arguments are unknown.
                 for item in items {
                     self.expr(item);
                 }
@@ -311,13 +312,13 @@ impl Lower<'_, '_, '_, '_> {
     }
 
     fn of_scalars(&mut self, a: &Expr, b: &Expr, function: fn(&mut Graph, Id, Id) -> Id) -> Value {
-        // An argument that is wrong makes the call wrong.
+        // A mistake in an argument makes the call invalid.
         let Some(a) = self.scalar(a) else { return Value::Bad };
         let Some(b) = self.scalar(b) else { return Value::Bad };
         Value::Scalar(function(self.graph, a, b))
     }
 
-    /// The exponential of a number, which may be complex.
+    /// Returns the exponential of a real or complex number.
     fn exponential(&mut self, item: &Expr) -> Value {
         match self.expr(item) {
             Value::Plane { parts: [re, im], complex: true } => {
@@ -394,7 +395,7 @@ impl Lower<'_, '_, '_, '_> {
         }
     }
 
-    /// The value to which an index is applied.
+    /// Returns the value to which an index is applied.
     pub(super) fn indexed(&mut self, base: &Expr) -> Value {
         if let ExprKind::Name(ident) = &base.kind {
             let Name { base: text, dots: 0 } = name::read(&ident.to_string()) else {
@@ -431,7 +432,7 @@ impl Lower<'_, '_, '_, '_> {
     }
 }
 
-/// Returns true if an index stands in an expression: one member of a family may be at rest.
+/// Returns `true` if an expression contains an index: a single member of a family may be at rest.
 fn has_index(expr: &Expr) -> bool {
     let own = matches!(expr.kind, ExprKind::Index(..));
     own || !matches!(expr.kind, ExprKind::Integral { .. })

@@ -2,13 +2,13 @@
 
 use crate::algebra::expr::Id;
 
-/// An expression by its components.
+/// The value of an expression, by its components.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Value {
     Bad,
     Scalar(Id),
-    /// A plane vector; `complex` if it was written as a complex number, so that a real number may
-    /// be added to it.
+    /// A plane vector. `complex` is set if it was written as a complex number, so that a real
+    /// number may be added to it.
     Plane {
         parts: [Id; 2],
         complex: bool,
@@ -29,7 +29,7 @@ impl Value {
         }
     }
 
-    /// Its lengths, the outermost first.
+    /// Returns the lengths, outermost first.
     pub(super) fn lengths(&self) -> Vec<usize> {
         match self {
             Value::Bad | Value::Scalar(_) => Vec::new(),
@@ -42,7 +42,7 @@ impl Value {
         }
     }
 
-    /// Its components, those of all members of a family.
+    /// Returns the components, for a family those of all members.
     pub(super) fn scalars(&self) -> Vec<Id> {
         match self {
             Value::Bad => Vec::new(),

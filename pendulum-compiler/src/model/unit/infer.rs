@@ -1,8 +1,8 @@
-//! The units of a block: checked where they are written, inferred where the sums decide them.
+//! The units of a block: checked where they are written, and inferred from sums otherwise.
 //!
-//! Every quantity without a unit is an unknown. A dimension is a known one times powers of
-//! unknowns; each sum, function argument and energy gives an equation that is linear in the
-//! exponents, and the first equation that has no unknown left and does not hold is the mistake.
+//! Every quantity without a unit is an unknown. A unit is a known dimension times powers of
+//! unknowns. Each sum, function argument and energy yields an equation that is linear in the
+//! exponents. The first equation that contains no unknown and does not hold is reported.
 
 use super::{Dimension, constant};
 use crate::algebra::functions::{UnitRule, Word};
@@ -16,26 +16,26 @@ use crate::syntax::name::{self, Name};
 use crate::syntax::text::text;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The deepest nesting that is looked at: more would overflow the compiler's stack. Every
-/// definition is checked for itself as well.
+/// The limit on the depth of nesting, which protects the compiler's stack. Every definition is also
+/// checked separately.
 const DEEPEST: usize = 200;
 
-/// The units that are inferred, for documentation and editors.
+/// The inferred units, for documentation and editors.
 #[derive(Debug, Default)]
 pub(crate) struct RowUnits {
-    /// For each constraint its own unit and that of its multiplier; empty where not known.
+    /// For each constraint, its unit and that of its multiplier; empty if unknown.
     pub(crate) constraints: Vec<[String; 2]>,
-    /// For each limit; empty where not known.
+    /// For each limit, its unit; empty if unknown.
     pub(crate) limits: Vec<String>,
-    /// For each definition without arguments.
+    /// For each definition without arguments, its dimension.
     pub(crate) definitions: Vec<Option<Dimension>>,
 }
 
-/// Checks a block, if any of its quantities has a unit, and gives the units of its constraints and
+/// Checks a block if any of its quantities has a unit. Returns the units of its constraints and
 /// limits.
 ///
-/// `velocities` are the constraints that hold velocities: the power of a multiplier is λ times the
-/// rate of a position, but λ times a velocity itself.
+/// `velocities` are the constraints of velocities. The power of a multiplier λ is λ times the rate
+/// of a position for other constraints, but λ times a velocity for these.
 pub(crate) fn check(model: &Model, velocities: &BTreeSet<usize>, errors: &mut Errors) -> RowUnits {
     let quantities = || model.parameters.iter().chain(&model.coordinates).chain(&model.inputs);
     let outputs = model.outputs.iter().map(|output| &output.declared);
@@ -80,7 +80,7 @@ impl Unit {
         Self::of(Dimension::PURE)
     }
 
-    /// `self` · `other`^`power`.
+    /// Returns `self` · `other`^`power`.
     fn times(&self, other: &Self, power: Rational) -> Option<Self> {
         let mut unknown = self.unknown.clone();
         for (&name, &exponent) in &other.unknown {
@@ -96,30 +96,30 @@ impl Unit {
     }
 }
 
-/// The unit of an expression, or none if it has any or a mistake that has been reported.
+/// The unit of an expression, or `None` if the unit is arbitrary or a mistake has been reported.
 type Found = Option<Unit>;
 
 struct Units<'m, 'a, 'e> {
     model: &'m Model<'a>,
     errors: &'e mut Errors,
-    /// Unknowns that are decided, in terms of others.
+    /// The solved unknowns, in terms of other unknowns.
     solved: BTreeMap<usize, Unit>,
     scope: Vec<(String, Found)>,
     lets: BTreeMap<usize, Found>,
     open: Vec<usize>,
-    /// The number of expressions that are being evaluated.
+    /// The number of expressions under evaluation.
     depth: usize,
     unknowns: usize,
-    /// The unit of the energies, and those of the constraints.
+    /// The unit of the energies; `constraints` contains the units of the constraints.
     energy: Found,
     constraints: Vec<Found>,
-    /// The constraints that hold velocities.
+    /// The constraints of velocities.
     velocities: &'m BTreeSet<usize>,
 }
 
 impl Units<'_, '_, '_> {
     fn block(&mut self) {
-        // Without `..`: what a statement adds to the model has units.
+        // The pattern has no `..`, so that every field of the model is considered here.
         let Model {
             parameters,
             coordinates,
@@ -137,10 +137,10 @@ impl Units<'_, '_, '_> {
             unmentioned: _,
             unused: _,
         } = self.model;
-        // One unknown for each quantity, whether it has a unit or not.
+        // There is an unknown for each quantity, with or without a unit.
         self.unknowns = parameters.len() + coordinates.len() + inputs.len();
         for index in 0..lets.len() {
-            // Reactions stand in the definitions of outputs, and need the units of energies.
+            // Reactions occur in the definitions of outputs and require the units of energies.
             let late = of_outputs.contains(&index);
             if lets[index].arguments.is_none() && !late {
                 self.definition(index);
@@ -221,7 +221,7 @@ impl Units<'_, '_, '_> {
         }
     }
 
-    /// The common unit of the two sides of a constraint or a limit.
+    /// Returns the common unit of the two sides of a constraint or a limit.
     fn sides(&mut self, index: Option<&Binder>, difference: &Expr, whole: Whole) -> Found {
         let depth = self.scope.len();
         if let Some(binder) = index {
@@ -232,8 +232,8 @@ impl Units<'_, '_, '_> {
         found
     }
 
-    /// The unit of the multiplier of a constraint: an energy per unit of a position, a power per
-    /// unit of a velocity.
+    /// Returns the unit of the multiplier of a constraint: energy per unit of a position, or power
+    /// per unit of a velocity.
     fn reaction(&self, constraint: usize) -> Found {
         let own = self.constraints.get(constraint)?.clone()?;
         let unit = self.energy.as_ref()?.times(&own, Rational::MINUS_ONE)?;
@@ -244,7 +244,7 @@ impl Units<'_, '_, '_> {
         }
     }
 
-    /// The units of constraints and limits, as far as they are decided.
+    /// Returns the units of constraints and limits, as far as they are known.
     fn rows(&mut self) -> RowUnits {
         let shown = |units: &Self, found: &Found| {
             let unit = units.resolved(found.as_ref()?);
@@ -300,7 +300,7 @@ impl Units<'_, '_, '_> {
         if let Some(found) = self.lets.get(&index) {
             return found.clone();
         }
-        // Half of the depth is left for the definition itself, whose unit stays.
+        // Half of the depth is reserved for the definition, whose unit is stored.
         if self.open.contains(&index) || DEEPEST / 2 <= self.depth {
             return None;
         }
@@ -341,7 +341,7 @@ impl Units<'_, '_, '_> {
         }
     }
 
-    /// A unit with every decided unknown replaced.
+    /// Returns a unit with every solved unknown replaced.
     fn resolved(&self, unit: &Unit) -> Unit {
         let mut result = Unit::of(unit.known);
         for (&name, &exponent) in &unit.unknown {
@@ -357,14 +357,15 @@ impl Units<'_, '_, '_> {
         result
     }
 
-    /// Makes two units equal, by deciding an unknown if need be; false if they cannot be.
+    /// Makes two units equal by solving for an unknown if necessary. Returns `false` if they cannot
+    /// be equal.
     fn unify(&mut self, a: &Unit, b: &Unit) -> bool {
         let Some(quotient) = a.times(b, Rational::MINUS_ONE) else { return true };
         let mut rest = self.resolved(&quotient);
         let Some((name, exponent)) = rest.unknown.pop_last() else {
             return rest.known == Dimension::PURE;
         };
-        // name^exponent · rest = 1.
+        // The equation is name^exponent · rest = 1.
         if let Some(solution) =
             exponent.reciprocal().and_then(|power| Unit::pure().times(&rest, power.negative()))
         {
@@ -386,7 +387,7 @@ impl Units<'_, '_, '_> {
         messages::open_unit(resolved.known, &unknown)
     }
 
-    /// Reports a unit that is not pure.
+    /// Reports a unit that is not that of a pure number.
     fn pure(&mut self, expr: &Expr, place: Pure) {
         if let Some(unit) = self.expr(expr)
             && !self.unify(&unit, &Unit::pure())
@@ -397,7 +398,7 @@ impl Units<'_, '_, '_> {
         }
     }
 
-    /// The common unit of several expressions; the first that differs is reported.
+    /// Returns the common unit of several expressions, and reports the first that differs.
     fn common<'x>(&mut self, items: impl Iterator<Item = &'x Expr>, whole: Whole) -> Found {
         let mut common: Option<(Unit, &Expr)> = None;
         for item in items {
@@ -491,7 +492,7 @@ impl Units<'_, '_, '_> {
         }
     }
 
-    /// Returns true if an expression is the name of a body.
+    /// Returns `true` if an expression is the name of a body.
     fn body(&self, expr: &Expr) -> bool {
         let ExprKind::Name(ident) = &expr.kind else { return false };
         let base = name::read(&ident.to_string()).base;
@@ -557,7 +558,7 @@ impl Units<'_, '_, '_> {
                 self.common(items.iter(), Whole::Function(name));
                 Some(Unit::pure())
             }
-            // The number of arguments has been reported, if it is wrong.
+            // A wrong number of arguments has been reported.
             (
                 UnitRule::Pure
                 | UnitRule::Same

@@ -1,4 +1,4 @@
-//! Dimensions: what a unit expression means in kilograms, metres, seconds, amperes and kelvins.
+//! Dimensions: unit expressions in terms of kilograms, metres, seconds, amperes and kelvins.
 
 pub(crate) mod infer;
 
@@ -9,7 +9,7 @@ use crate::messages::{Errors, Text, unit as messages};
 use crate::syntax::ast::{Expr, ExprKind};
 use crate::syntax::elsewhere;
 
-/// Reads a unit expression; reports what is no unit.
+/// Reads a unit expression, and reports an invalid one.
 pub(crate) fn dimension(expr: &Expr, errors: &mut Errors) -> Option<Dimension> {
     let refuse = |errors: &mut Errors, message: Text| {
         errors.once(expr.source, expr.range, message);
@@ -44,7 +44,7 @@ pub(crate) fn dimension(expr: &Expr, errors: &mut Errors) -> Option<Dimension> {
     }
 }
 
-/// The value of an expression of numbers.
+/// Returns the value of an expression of numbers.
 pub(crate) fn constant(expr: &Expr) -> Option<Rational> {
     match &expr.kind {
         ExprKind::Number(Literal::Exact(value)) => Some(*value),

@@ -1,4 +1,5 @@
-//! A block: its struct, the fields with their units and the statements, each on its own.
+//! Parsing of a block: its struct, the fields with their units, and the statements, each parsed
+//! independently.
 
 use super::Parser;
 use super::statement::lost;
@@ -49,8 +50,8 @@ impl Parser<'_> {
                 Ok(statement) => statements.push(statement),
                 Err(error) => {
                     self.errors.push(error);
-                    // The number of coordinates is part of the type: without one, every use of the
-                    // system would be a mistake.
+                    // The number of coordinates is part of the type. Without a coordinate, every
+                    // use of the system would result in an error.
                     statements.append(&mut self.begun);
                     let lost = lost(&word);
                     self.recovery.declarations |= lost.declarations;
@@ -96,8 +97,8 @@ impl Parser<'_> {
         Ok(Field { attributes, name, kind, default })
     }
 
-    /// The kind after the name of a parameter, an input or an output: a colon and a kind, or
-    /// nothing.
+    /// Parses the kind after the name of a parameter, an input or an output: a colon and a kind, or
+    /// neither.
     pub(super) fn declared_kind(&mut self, input: ParseStream, name: &Ident) -> Result<Kind> {
         if input.peek(syn::token::Bracket) {
             let brackets = Range::from(input.span());
@@ -145,7 +146,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A unit, or `_` where none is known.
+    /// Parses a unit, or `_` for an unknown unit.
     fn unit(&mut self, input: ParseStream) -> Result<Option<Expr>> {
         if input.peek(Token![_]) {
             input.parse::<Token![_]>()?;
@@ -155,7 +156,7 @@ impl Parser<'_> {
     }
 }
 
-/// The mistake between brackets that hold a unit without a length, or a length without a unit.
+/// Returns the error for brackets that contain a unit without a length, or a length without a unit.
 fn no_length(content: ParseStream, unit: Option<&Expr>) -> syn::Error {
     match unit {
         Some(Expr { kind: ExprKind::Number(Literal::Exact(length)), range, .. })
@@ -166,7 +167,7 @@ fn no_length(content: ParseStream, unit: Option<&Expr>) -> syn::Error {
         Some(unit) if content.peek(Token![,]) => {
             let place = Range::from(content.span());
             let rest = content.parse::<TokenStream>().unwrap_or_default().into_iter();
-            // A comma at the end is none between components.
+            // A comma at the end does not separate components.
             let commas = rest
                 .map(|tree| matches!(tree, TokenTree::Punct(sign) if sign.as_char() == ','))
                 .collect::<Vec<_>>();

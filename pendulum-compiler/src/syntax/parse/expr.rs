@@ -1,4 +1,4 @@
-//! Expressions: operators by descending precedence, then names, calls and numbers.
+//! Parsing of expressions: operators by precedence, then names, calls and numbers.
 
 use super::foreign::{no_condition, path};
 use super::token::{checked, comma, constraint_name, end, fragment, identifier, unexpected};
@@ -14,7 +14,7 @@ use syn::parse::{ParseStream, Result};
 use syn::spanned::Spanned;
 use syn::{Lit, Token, bracketed, parenthesized};
 
-/// Deeper expressions are refused: they would overflow the stack before they meant anything.
+/// The limit on the depth of expressions, which protects the stack.
 const DEPTH: usize = 128;
 
 impl Parser<'_> {
@@ -24,7 +24,7 @@ impl Parser<'_> {
         Ok(expr)
     }
 
-    /// A unit is written as an expression is.
+    /// Parses a unit, which has the syntax of an expression.
     pub(super) fn quantity(&mut self, input: ParseStream) -> Result<Expr> {
         self.expr_in(input, false)
     }
@@ -76,7 +76,7 @@ impl Parser<'_> {
     }
 
     fn unary(&mut self, input: ParseStream) -> Result<Expr> {
-        // A sign inside a fragment is that of its own operand.
+        // A sign inside a fragment belongs to the operand of the fragment.
         if fragment(input).is_some() || !input.peek(Token![-]) {
             return self.power(input);
         }
@@ -189,7 +189,7 @@ impl Parser<'_> {
         Err(unexpected(input, expected::EXPRESSION))
     }
 
-    /// The contents of a fragment, up to its end.
+    /// Parses the contents of a fragment up to its end.
     pub(super) fn inside<R>(
         &mut self,
         tokens: TokenStream,
@@ -245,7 +245,8 @@ impl Parser<'_> {
         Ok(self.node(kind, range))
     }
 
-    /// `(loop)`, `(loop.x)` or `(rod[2])` behind `reaction`; `loop` is a fine name for a loop.
+    /// Parses `(loop)`, `(loop.x)` or `(rod[2])` after `reaction`. Keywords such as `loop` are
+    /// valid names of constraints.
     fn reaction(&mut self, input: ParseStream, start: Range) -> Result<Expr> {
         let content;
         let parens = parenthesized!(content in input);
@@ -268,7 +269,7 @@ impl Parser<'_> {
         Ok(expr)
     }
 
-    /// Two sides with `sign` between them, as the left one less the right one.
+    /// Parses two sides separated by `sign`, as the left side minus the right side.
     pub(super) fn difference(
         &mut self,
         input: ParseStream,

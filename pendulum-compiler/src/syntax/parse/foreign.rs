@@ -1,4 +1,4 @@
-//! Notations that have no place in a formula, with their translations.
+//! Notations that are not valid in formulas, with their translations.
 
 use super::Parser;
 use super::statement::STATEMENTS;
@@ -16,7 +16,7 @@ use syn::parse::{ParseStream, Result};
 use syn::{Lifetime, Lit, Token, parenthesized};
 
 impl Parser<'_> {
-    /// Two operands side by side: there is no implicit multiplication.
+    /// Reports two adjacent operands, because there is no implicit multiplication.
     pub(super) fn no_operand(&self, input: ParseStream, left: &Expr) -> Result<()> {
         if input.peek(Token![as]) {
             return Err(Range::from(input.span()).error(messages::rust_conversion()));
@@ -62,7 +62,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// The power of a function before its argument, as in `cos^2(θ)`.
+    /// Reports the power of a function before its argument, as in `cos^2(θ)`.
     pub(super) fn no_powered_function(&mut self, input: ParseStream, base: &Expr) -> Result<()> {
         let ExprKind::Name(name) = &base.kind else { return Ok(()) };
         if !self.is_function(name) {
@@ -97,8 +97,8 @@ impl Parser<'_> {
         Err(base.range.to(last.into()).error(message))
     }
 
-    /// Returns true if a unit begins behind a number, with a `suffix` or at the next token: one of
-    /// its names at least is nothing else.
+    /// Returns `true` if a unit follows a number, as its `suffix` or in the next tokens. At least
+    /// one name of the unit must not be declared.
     pub(super) fn is_unit(&self, suffix: Option<&str>, input: ParseStream) -> bool {
         let ahead = input.fork();
         let mut name = suffix.map(str::to_owned);
@@ -125,7 +125,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A method call, and what to write instead.
+    /// Returns the error for a method call, with its translation.
     pub(super) fn method(&mut self, input: ParseStream, base: Expr, name: &Ident) -> syn::Error {
         let method = name.to_string();
         let mut operands = vec![base];
@@ -141,7 +141,7 @@ impl Parser<'_> {
         Range::from(name.span()).error(messages::rust_method(&method, translation.as_deref()))
     }
 
-    /// The expressions between a pair of parentheses.
+    /// Parses the expressions between a pair of parentheses.
     fn arguments(&mut self, input: ParseStream) -> Result<Vec<Expr>> {
         let content;
         parenthesized!(content in input);
@@ -153,12 +153,12 @@ impl Parser<'_> {
     }
 }
 
-/// Returns true if a function takes that many arguments.
+/// Returns `true` if a function takes this number of arguments.
 fn takes(name: &str, count: usize) -> bool {
     Word::named(name).is_some_and(|word| word.arity() == count)
 }
 
-/// A comparison, which Rust has and formulas have not.
+/// Reports a comparison, which Rust has but formulas do not.
 pub(super) fn no_condition(input: ParseStream) -> Result<()> {
     let equal = input.peek(Token![==]) || input.peek(Token![!=]);
     if equal
@@ -173,7 +173,7 @@ pub(super) fn no_condition(input: ParseStream) -> Result<()> {
     Ok(())
 }
 
-/// A path, and what to write instead.
+/// Returns the error for a path, with its translation.
 pub(super) fn path(input: ParseStream, first: Option<&Ident>, ascii: bool) -> syn::Error {
     let start = first.map_or_else(|| input.span(), Ident::span);
     let (mut text, mut last) =

@@ -1,8 +1,9 @@
-//! Tokens to syntax: a recovering parser whose operators bind as in mathematics, not as in Rust.
+//! Tokens to syntax: a parser with error recovery, whose operators have the precedence of
+//! mathematics instead of Rust's.
 //!
-//! Precedence, low to high: `+ -`, `* /`, unary `-`, `^` (to the right), call, index, `|…|`. A
-//! statement that does not parse is reported and skipped to its `;`, so that two mistakes give two
-//! messages.
+//! Precedence, low to high: `+ -`, `* /`, unary `-`, `^` (right-associative), call, index, `|…|`. A
+//! statement that cannot be parsed is reported and skipped up to its `;`, so that several mistakes
+//! are reported separately.
 
 mod block;
 mod expr;
@@ -20,7 +21,7 @@ use syn::parse::{ParseStream, Parser as Syn, Result};
 use syn::{Token, braced};
 use token::{drain, identifier};
 
-/// Parses the path of the runtime and a block; `None` if not even the struct could be read.
+/// Parses the path of the runtime and a block; `None` if not even the struct could be parsed.
 pub(crate) fn all(input: TokenStream, errors: &mut Errors) -> Option<(TokenStream, Block)> {
     let mut parsed = None;
     let ascii = is_ascii(input.clone());
@@ -45,7 +46,7 @@ pub(crate) fn all(input: TokenStream, errors: &mut Errors) -> Option<(TokenStrea
             Ok(())
         })
     });
-    // Tokens that recovery has left in some bracket have been reported already.
+    // Remaining tokens in brackets after recovery have been reported already.
     if let Err(error) = outcome
         && errors.is_empty()
     {
@@ -55,7 +56,7 @@ pub(crate) fn all(input: TokenStream, errors: &mut Errors) -> Option<(TokenStrea
     parsed
 }
 
-/// Returns true if no name has a letter beyond ASCII; comments and other literals may.
+/// Returns `true` if all names are ASCII. Comments and literals are not checked.
 fn is_ascii(tokens: TokenStream) -> bool {
     tokens.into_iter().all(|tree| match tree {
         TokenTree::Ident(name) => name.to_string().is_ascii(),
@@ -64,7 +65,7 @@ fn is_ascii(tokens: TokenStream) -> bool {
     })
 }
 
-/// The path of the runtime, up to the first `;`.
+/// Parses the path of the runtime, up to the first `;`.
 fn runtime(input: ParseStream) -> Result<TokenStream> {
     let mut path = TokenStream::new();
     while !input.is_empty() && !input.peek(Token![;]) {
@@ -74,8 +75,8 @@ fn runtime(input: ParseStream) -> Result<TokenStream> {
     Ok(path)
 }
 
-/// Parses tokens so that what is missing at their end is missing at the last of them, and not at
-/// the whole macro.
+/// Parses tokens so that an error at their end is reported at the last token instead of the whole
+/// macro.
 fn to_the_last<R>(tokens: TokenStream, parse: impl FnOnce(ParseStream) -> Result<R>) -> Result<R> {
     let last = match tokens.clone().into_iter().last() {
         Some(TokenTree::Group(group)) => group.span_close(),
@@ -96,19 +97,19 @@ struct Parser<'a> {
     errors: &'a mut Errors,
     sources: usize,
     depth: usize,
-    /// True if a `|` closes what stands here.
+    /// `true` if a `|` closes the current expression.
     barred: bool,
     recovery: Recovery,
-    /// The coordinates of a statement that ends in a mistake, as far as they could be read.
+    /// The coordinates of a statement that ends in a mistake, as far as they could be parsed.
     begun: Vec<Statement>,
-    /// The names that have been declared so far.
+    /// The names declared so far.
     declared: BTreeSet<String>,
-    /// True if no name of the block has a letter beyond ASCII.
+    /// `true` if all names of the block are ASCII.
     ascii: bool,
 }
 
 impl Parser<'_> {
-    /// A name that is declared.
+    /// Parses a name and records it as declared.
     fn declared(&mut self, input: ParseStream, expected: Expected) -> Result<Ident> {
         let name = identifier(input, expected)?;
         self.declared.insert(name::read(&name.to_string()).base);

@@ -1,4 +1,5 @@
-//! Statements: coordinates, inputs, definitions, energies, forces, outputs, constraints, limits.
+//! Parsing of statements: coordinates, inputs, definitions, energies, forces, outputs, constraints,
+//! limits.
 
 use super::Parser;
 use super::token::{constraint_name, end, equals, fragment, identifier, unexpected};
@@ -15,12 +16,13 @@ use syn::parse::{ParseStream, Result};
 use syn::spanned::Spanned;
 use syn::{Attribute, Token, bracketed, parenthesized};
 
-/// The words with which statements begin.
+/// The keywords of statements.
 #[rustfmt::skip]
 pub(crate) const STATEMENTS: [&str; 13] =
     ["coordinate", "driven", "input", "let", "kinetic", "potential", "lagrangian", "dissipation", "force", "output", "constraint", "redundant", "limit"];
 
-/// The parts that a block lacks when its statement with this keyword could not be parsed.
+/// Returns the kinds of statements that a block lacks if the statement with this keyword could not
+/// be parsed.
 pub(super) fn lost(keyword: &str) -> Recovery {
     match keyword {
         "kinetic" | "potential" | "lagrangian" | "dissipation" | "force" => {
@@ -67,7 +69,7 @@ impl Parser<'_> {
             _ => return Err(unknown_statement(input, &word)),
         };
         if input.is_empty() {
-            // All of the statement has been read.
+            // The statement is complete except for its end.
             self.errors.at(input.span(), messages::missing_end());
             return Ok(statement);
         }
@@ -86,7 +88,7 @@ impl Parser<'_> {
         Ok(statement)
     }
 
-    /// Several names in one statement, which declares one.
+    /// Reports several names in a statement that declares one.
     fn several(&mut self, input: ParseStream, word: &str) -> syn::Error {
         let comma = Range::from(input.span());
         let mut example = None;
@@ -186,7 +188,7 @@ impl Parser<'_> {
 
     fn output(&mut self, input: ParseStream, documentation: TokenStream) -> Result<Statement> {
         input.call(Ident::parse_any)?;
-        // Its name is no name of the block: it may be that of a definition.
+        // The names of outputs are separate: an output may have the name of a definition.
         let name = identifier(input, expected::OUTPUT)?;
         let mut index = None;
         if input.peek(syn::token::Bracket) {
@@ -254,7 +256,7 @@ impl Parser<'_> {
         Ok(Statement::Limit(Box::new(limit)))
     }
 
-    /// The name of a constraint or limit, its index if it is a family, and the colon.
+    /// Parses the name of a constraint or limit, the index of a family, and the colon.
     fn named_row(&mut self, input: ParseStream, keyword: &str) -> Result<(Ident, Option<Binder>)> {
         let name = constraint_name(input)?;
         let mut index = None;
@@ -325,7 +327,7 @@ impl Parser<'_> {
         Ok(Statement::Force { name, index, expr: self.expr(input)? })
     }
 
-    /// `k in 0..5`.
+    /// Parses `k in 0..5`.
     pub(super) fn binder(&mut self, input: ParseStream) -> Result<Binder> {
         let name = identifier(input, expected::INDEX)?;
         if !input.peek(Token![in]) {
@@ -342,7 +344,7 @@ impl Parser<'_> {
         Ok(Binder { name, low, high, inclusive })
     }
 
-    /// `0..5`.
+    /// Parses `0..5`.
     fn range(&mut self, input: ParseStream) -> Result<(Expr, Expr, bool)> {
         let low = self.expr(input)?;
         let inclusive = input.peek(Token![..=]);
@@ -358,7 +360,7 @@ impl Parser<'_> {
     }
 }
 
-/// A declaration as one would write it.
+/// Returns a declaration as it is written in a block.
 fn written(statement: &Statement) -> String {
     let unit = |unit: &Option<Expr>| {
         unit.as_ref().map_or_else(String::new, |unit| format!(": {}", text(unit)))
@@ -376,7 +378,7 @@ fn written(statement: &Statement) -> String {
     }
 }
 
-/// A unit behind its colon, with the length of a vector.
+/// Returns a unit after its colon, with the length of a vector.
 fn kind_written(kind: &Kind) -> String {
     match kind {
         Kind::Scalar(unit) => {
@@ -390,7 +392,7 @@ fn kind_written(kind: &Kind) -> String {
     }
 }
 
-/// Returns true if a fragment is a range and not its lower end.
+/// Returns `true` if a fragment is a range and not only its lower end.
 fn whole_range(tokens: &TokenStream) -> bool {
     let dots = |tree| matches!(tree, TokenTree::Punct(dot) if dot.as_char() == '.' && dot.spacing() == Spacing::Joint);
     tokens.clone().into_iter().any(dots)

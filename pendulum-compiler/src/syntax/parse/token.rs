@@ -1,4 +1,4 @@
-//! Single tokens: names that may be declared, signs, brackets, and what is skipped after an error.
+//! Single tokens: names, signs, brackets, and tokens skipped after an error.
 
 use crate::messages::expected::{self, Expected};
 use crate::messages::{Range, syntax as messages};
@@ -7,21 +7,23 @@ use syn::Token;
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Result};
 
-/// An identifier that may be declared: no keyword of Rust, no reserved prefix, no middle dot.
+/// Parses an identifier that may be declared: not a keyword of Rust, without a reserved prefix or a
+/// middle dot.
 pub(super) fn identifier(input: ParseStream, expected: Expected) -> Result<Ident> {
     if !input.peek(Ident::peek_any) {
         return Err(unexpected(input, expected));
     }
     let name = input.call(Ident::parse_any)?;
     checked(&name)?;
-    // `gen` is a word of the language from the edition of 2024 on, wherever the block stands.
+    // `gen` is a keyword since the 2024 edition, and is refused in all editions.
     if name == "gen" || syn::parse_str::<Ident>(&name.to_string()).is_err() {
         return Err(Range::from(name.span()).error(messages::rust_keyword(&name)));
     }
     Ok(name)
 }
 
-/// The name of a constraint or limit, which may be a word of Rust: it is no name of any code.
+/// Parses the name of a constraint or limit. It may be a keyword of Rust, because it is not a name
+/// in the generated code.
 pub(super) fn constraint_name(input: ParseStream) -> Result<Ident> {
     if !input.peek(Ident::peek_any) {
         return Err(unexpected(input, expected::CONSTRAINT));
@@ -59,10 +61,11 @@ pub(super) fn comma(input: ParseStream) -> Result<()> {
     Err(unexpected(input, expected::COMMA))
 }
 
-/// The tokens that a macro of the user's has handed over as one, as `$e:expr`, if they come next.
+/// Returns the tokens of a fragment such as `$e:expr`, which a macro has passed on as a unit, if
+/// the fragment comes next.
 ///
-/// They stand between brackets that nobody sees and that syn looks through. A single name or number
-/// needs none: it may be called.
+/// A fragment is enclosed in invisible brackets, which syn skips. A fragment that is a single name
+/// or number is treated as a plain token, because it may be called.
 pub(super) fn fragment(input: ParseStream) -> Option<TokenStream> {
     let mut cursor = input.cursor();
     loop {
@@ -75,12 +78,12 @@ pub(super) fn fragment(input: ParseStream) -> Option<TokenStream> {
     }
 }
 
-/// Nothing may be left inside a pair of brackets.
+/// Checks that no tokens are left inside a pair of brackets.
 pub(super) fn end(content: ParseStream) -> Result<()> {
     if content.is_empty() { Ok(()) } else { Err(unexpected(content, expected::CLOSING_BRACKET)) }
 }
 
-/// An error at the next token, or behind the last one.
+/// Returns an error at the next token, or after the last token.
 pub(super) fn unexpected(input: ParseStream, expected: Expected) -> syn::Error {
     match input.fork().parse::<TokenTree>() {
         Ok(TokenTree::Group(group)) => {
@@ -98,7 +101,7 @@ pub(super) fn unexpected(input: ParseStream, expected: Expected) -> syn::Error {
     }
 }
 
-/// Skips to behind the next `mark` at this level.
+/// Skips all tokens up to and including the next `mark` at this level.
 pub(super) fn skip(input: ParseStream, mark: char) {
     while let Ok(token) = input.parse::<TokenTree>() {
         if matches!(&token, TokenTree::Punct(punct) if punct.as_char() == mark) {

@@ -1,4 +1,4 @@
-//! Everything that the compiler derives of one system, against the reference.
+//! Comparison of all derived quantities of a system with the reference.
 
 use super::interpret::Values;
 use crate::algebra::expr::{Graph, Id};
@@ -9,14 +9,14 @@ use random_systems::reference::{Reference, State, reference};
 use random_systems::state::{precise, state};
 use random_systems::tree::System;
 
-/// The result for a system.
+/// The results for a system.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Findings {
     /// The largest error of each kind relative to its terms, in `f64` and in double-double.
     pub(crate) worst: Vec<(&'static str, f64, f64)>,
     /// The smallest pivot of the mass matrix relative to its largest entry.
     pub(crate) pivot: f64,
-    /// The error of the reference itself in `f64`, not a number where the source has no value.
+    /// The error of the reference itself in `f64`; NaN if the source has no value.
     pub(crate) own: f64,
 }
 
@@ -28,23 +28,23 @@ impl Findings {
         }
     }
 
-    /// Returns true if the source itself has a value at the state that plain arithmetic can find.
+    /// Returns `true` if the source has a value at the state that `f64` can compute.
     pub(crate) fn sound(&self) -> bool {
         self.own < 1e-13
     }
 
-    /// The errors that are larger than they may be.
+    /// Returns the errors above the tolerance.
     pub(crate) fn wrong(&self) -> Vec<(&'static str, f64, f64)> {
         let right = |row: &&(&str, f64, f64)| !(row.1 < PLAIN && row.2 < PRECISE);
         self.worst.iter().filter(right).copied().collect()
     }
 }
 
-/// The largest relative residuals in `f64` and in double-double.
+/// The tolerances for relative residuals in `f64` and in double-double.
 pub(crate) const PLAIN: f64 = 1e-12;
 pub(crate) const PRECISE: f64 = 1e-25;
 
-/// The larger one, or what is not a number.
+/// Returns the larger number, or NaN.
 fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || b < a { a } else { b }
 }
@@ -62,14 +62,14 @@ impl Derived<'_, '_> {
     }
 }
 
-/// The value in two words.
+/// Converts a value to double-double.
 fn double<T: Float>(value: T) -> DoubleDouble {
     let high = value.to_f64();
     let low = (value - T::from_f64(high)).to_f64();
     DoubleDouble::sum(high, low)
 }
 
-/// Compares at one state.
+/// Compares a system with the reference at one state.
 pub(crate) fn compare(system: &System, derived: &Derived<'_, '_>, seed: u64) -> Findings {
     let plain = state(system, seed);
     let precise: State<DoubleDouble> = precise(system, &plain);
@@ -140,7 +140,7 @@ fn errors<T: Float>(
             truth.momenta.iter().map(|&p| T::from_f64(p.high()) + T::from_f64(p.low())).collect();
         let found = derived.values(&values, velocities);
         for i in 0..count {
-            // M q̇ is p less what it is at q̇ = 0.
+            // M q̇ is the momentum minus its value at q̇ = 0.
             let terms = (0..count).map(|j| truth.masses[i][j] * (found[j] - v[j]));
             let scale = (0..count).fold(truth.momenta[i].to_f64().abs().max(1.0), |scale, j| {
                 scale.max((truth.masses[i][j] * v[j]).to_f64().abs())
@@ -160,8 +160,8 @@ fn errors<T: Float>(
     errors
 }
 
-/// The changes along the motion, by dual numbers: energy by the power, momenta by their rates,
-/// conserved quantities not at all.
+/// Checks rates along the motion by dual numbers: the power for the energy, the momentum rates for
+/// the momenta, and zero for conserved quantities.
 fn along<T: Float>(derived: &Derived<'_, '_>, values: &Values<T>, errors: &mut Errors) {
     let (motion, count) = (derived.motion, values.q.len());
     let accelerations = values.of(derived.model, derived.graph, &motion.accelerations);
@@ -207,7 +207,7 @@ fn along<T: Float>(derived: &Derived<'_, '_>, values: &Values<T>, errors: &mut E
     }
 }
 
-/// The Jacobians by dual numbers.
+/// Checks the Jacobians by dual numbers.
 fn jacobians<T: Float>(derived: &Derived<'_, '_>, values: &Values<T>, errors: &mut Errors) {
     let motion = derived.motion;
     let Some(jacobians) = &motion.jacobians else { return };
@@ -245,14 +245,14 @@ fn jacobians<T: Float>(derived: &Derived<'_, '_>, values: &Values<T>, errors: &m
     }
 }
 
-/// The sum of terms that ought to cancel, relative to the largest of them or to one.
+/// Returns the sum of terms that should cancel, relative to the largest of them or to one.
 fn residual(terms: &[DoubleDouble]) -> f64 {
     let sum = terms.iter().copied().reduce(|a, b| a + b).map_or(0.0, Float::to_f64);
     let scale = terms.iter().fold(1.0, |scale: f64, term| scale.max(term.to_f64().abs()));
     (sum / scale).abs()
 }
 
-/// The error of the forces and masses of the reference itself in plain arithmetic.
+/// Returns the error of the forces and masses of the reference in `f64`.
 fn own_error(own: &Reference<f64>, truth: &Reference<DoubleDouble>) -> f64 {
     let pairs = |own: &[f64], truth: &[DoubleDouble]| {
         let scale = truth.iter().fold(1.0, |scale: f64, x| scale.max(x.to_f64().abs()));
@@ -271,8 +271,8 @@ fn own_error(own: &Reference<f64>, truth: &Reference<DoubleDouble>) -> f64 {
         .fold(worst, |worst, (own, truth)| worse(worst, pairs(own, truth)))
 }
 
-/// The smallest pivot of a symmetric matrix relative to its largest entry; negative if it is not
-/// positive definite.
+/// Returns the smallest pivot of a symmetric matrix relative to its largest entry. It is negative
+/// if the matrix is not positive definite.
 fn pivot(matrix: &[Vec<DoubleDouble>]) -> f64 {
     let mut rows: Vec<Vec<f64>> =
         matrix.iter().map(|row| row.iter().map(|entry| entry.to_f64()).collect()).collect();

@@ -1,8 +1,9 @@
 //! Random constrained systems: trees of links closed by random loops.
 //!
-//! Their accelerations fulfil the second derivatives of the constraints, by dual numbers of dual
-//! numbers, and the equations with multipliers; trees whose links are rods between Cartesian
-//! points move as the same trees in angles. `RANDOM_COUNT=10000` looks at more.
+//! The tests check that accelerations satisfy the second derivatives of the constraints, computed
+//! by dual numbers of dual numbers, and the equations with multipliers. Trees whose links are rods
+//! between Cartesian points have the same motion as the same trees in angles. `RANDOM_COUNT=10000`
+//! tests more systems.
 
 use super::interpret::Values;
 use crate::compile::derived;
@@ -11,7 +12,7 @@ use pendulum_runtime::scalar::{Dual, Real};
 use random_systems::Random;
 use std::fmt::Write;
 
-/// A random tree: for each link its parent, its length and its mass.
+/// A random tree: the parent, the length and the mass of each link.
 struct Tree {
     links: Vec<(Option<usize>, f64, f64)>,
     gravity: f64,
@@ -41,7 +42,7 @@ impl Tree {
         format!("struct Random {{ L: [m; {n}], m: [kg; {n}], g: m/s^2 }}\n")
     }
 
-    /// The tree in angles, the first coordinates, with a slider on which everything hangs.
+    /// Returns the tree in angles, which are the first coordinates, attached to a slider.
     fn angles(&self) -> String {
         let n = self.links.len();
         let mut text = self.head();
@@ -54,7 +55,7 @@ impl Tree {
         self.energies(text)
     }
 
-    /// The tree in Cartesian coordinates, with a constraint for each link.
+    /// Returns the tree in Cartesian coordinates, with a constraint for each link.
     fn points(&self) -> String {
         let n = self.links.len();
         let mut text = self.head();
@@ -81,7 +82,7 @@ impl Tree {
         text
     }
 
-    /// Random constraints, fewer than coordinates.
+    /// Returns random constraints, fewer than coordinates.
     fn constraints(&self, random: &mut Random) -> String {
         let n = self.links.len();
         let mut text = String::new();
@@ -128,15 +129,16 @@ impl Tree {
     }
 }
 
-/// The values derived of a constrained block at a state.
+/// The derived values of a constrained block at a state.
 struct Found {
     accelerations: Vec<f64>,
-    /// The largest residual of the equations relative to their terms, and the least independence.
+    /// The largest residual of the equations relative to their terms; `independence` is the
+    /// smallest independence of the constraints.
     residual: f64,
     independence: f64,
 }
 
-/// Accelerations, and how well they fulfil the equations; the errors of a refused block.
+/// Returns the accelerations and the residual of the equations, or the errors of a refused block.
 fn examine(source: &str, values: &Values<f64>) -> Result<Found, Vec<String>> {
     let mut errors = Errors::default();
     let found = derived(source, &mut errors, |model, graph, motion, _| {
@@ -151,7 +153,7 @@ fn examine(source: &str, values: &Values<f64>) -> Result<Found, Vec<String>> {
             let own = sum.abs() / scale.max(1.0);
             worst = if own.is_nan() { own } else { worst.max(own) };
         };
-        // C by dual numbers of the constraints themselves.
+        // C, by dual numbers of the constraints.
         let mut gradients = vec![vec![0.0; n]; constraints.held.len()];
         for j in 0..n {
             let mut pushed = map(values, Dual::constant);
@@ -172,7 +174,7 @@ fn examine(source: &str, values: &Values<f64>) -> Result<Found, Vec<String>> {
             let scale = terms.iter().fold(0.0, |scale: f64, term| scale.max(term.abs()));
             compare(terms.iter().sum(), scale);
         }
-        // Second derivatives along the motion: dual numbers of dual numbers.
+        // Second derivatives along the motion, by dual numbers of dual numbers.
         let second = |value: f64, rate: f64, second: f64| Dual {
             value: Dual { value, derivative: rate },
             derivative: Dual { value: rate, derivative: second },
@@ -181,7 +183,7 @@ fn examine(source: &str, values: &Values<f64>) -> Result<Found, Vec<String>> {
         along.time = second(values.time, 1.0, 0.0);
         for j in 0..n {
             along.q[j] = second(values.q[j], values.v[j], accelerations[j]);
-            // Of velocities one derivative is known.
+            // Only the first derivative of the velocities is known.
             along.v[j] = second(values.v[j], accelerations[j], 0.0);
         }
         let largest = accelerations.iter().fold(0.0, |largest: f64, a| largest.max(a.abs()));
@@ -227,7 +229,7 @@ fn variable(name: &str) -> Option<u64> {
     std::env::var(name).ok().and_then(|text| text.parse().ok())
 }
 
-/// The seeds of a test.
+/// Returns the seeds of a test.
 fn seeds(count: u64) -> std::ops::Range<u64> {
     let first = variable("RANDOM_SEED").unwrap_or(0);
     first..first + variable("RANDOM_COUNT").unwrap_or(count)
@@ -255,7 +257,7 @@ fn closed_trees_fulfil_their_equations() {
         match examine(&source, &values) {
             Ok(found) => {
                 compared += 1;
-                // Digits are lost where constraints almost depend on each other.
+                // Precision is lost if constraints are nearly dependent.
                 let allowed = 1e-12 / found.independence.min(1e-2);
                 assert!(
                     found.residual < allowed.min(1e-7),
@@ -265,7 +267,7 @@ fn closed_trees_fulfil_their_equations() {
                 );
             }
             Err(messages) => {
-                // Random loops may close what is closed.
+                // A random constraint may follow from others.
                 let known =
                     |text: &String| text.contains("follows from") || text.contains("nothing");
                 assert!(messages.iter().all(known), "seed {seed}: {messages:?} for\n{source}");
@@ -297,7 +299,7 @@ fn points_on_rods_move_as_angles_do() {
             minimal.of(model, graph, &motion.accelerations)
         })
         .unwrap_or_else(|| panic!("{:?}", errors.messages()));
-        // Cartesian places, velocities and accelerations of the points.
+        // Cartesian positions, velocities and accelerations of the points.
         let mut places: Vec<[[f64; 3]; 2]> = Vec::new();
         for (k, &(parent, length, _)) in tree.links.iter().enumerate() {
             let root = parent

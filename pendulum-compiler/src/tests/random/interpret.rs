@@ -1,4 +1,4 @@
-//! The derived equations, computed at a state by the program that it would emit.
+//! Evaluation of the derived equations at a state, by the program that would be emitted.
 
 use crate::algebra::expr::{Graph, Id, Moment, Symbol};
 use crate::algebra::functions::Function;
@@ -9,7 +9,7 @@ use crate::schedule::{self, Op};
 use pendulum_runtime::scalar::Real;
 use random_systems::reference::State;
 
-/// Values for all symbols of a block.
+/// The values of all symbols of a block.
 #[derive(Clone, Debug)]
 pub(crate) struct Values<T> {
     pub(crate) parameters: Vec<T>,
@@ -17,7 +17,7 @@ pub(crate) struct Values<T> {
     pub(crate) q: Vec<T>,
     pub(crate) v: Vec<T>,
     pub(crate) p: Vec<T>,
-    /// By input and component, all orders.
+    /// All orders, by input and component.
     pub(crate) inputs: Vec<Vec<[T; 4]>>,
 }
 
@@ -71,7 +71,7 @@ impl<T: Real> Values<T> {
         }
     }
 
-    /// The values of some outputs.
+    /// Returns the values of some outputs.
     pub(crate) fn of(&self, model: &Model, graph: &Graph, roots: &[Id]) -> Vec<T> {
         let program = schedule::program(graph, roots);
         let mut known: Vec<(T, T)> = Vec::with_capacity(program.ops.len());
@@ -108,7 +108,7 @@ impl<T: Real> Values<T> {
     }
 }
 
-/// An exact number, rounded in the scalar: its halves are numbers of `f64`.
+/// Converts an exact number to the scalar, split into parts that are exact in `f64`.
 fn ratio<T: Real>(value: Rational) -> T {
     whole::<T>(value.numerator()) / whole(value.denominator())
 }

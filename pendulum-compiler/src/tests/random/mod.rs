@@ -1,7 +1,7 @@
-//! Random systems, derived by the compiler and computed without it.
+//! Random systems, derived by the compiler and evaluated without it.
 //!
-//! The compiler against the reference of `random_systems`, at random states, in `f64` and in
-//! double-double.
+//! The compiler is compared with the reference of `random_systems`, at random states, in `f64` and
+//! in double-double.
 
 mod check;
 mod constrained;
@@ -13,16 +13,16 @@ use crate::compile::derived;
 use crate::messages::Errors;
 use random_systems::tree;
 
-/// The fate of a random system.
+/// The outcome of a random system.
 enum Outcome {
-    /// Refused, with these errors.
+    /// The block was refused with these errors.
     Refused(String),
-    /// The source has no value at the state that plain arithmetic can find.
+    /// The source has no value at the state that `f64` can compute.
     Unsound,
     Compared(check::Findings),
 }
 
-/// Derives the system of a seed and compares it at the state of the same seed.
+/// Derives a system and compares it with the reference at the state of its seed.
 fn outcome(system: &tree::System) -> Outcome {
     let mut errors = Errors::default();
     let found = derived(&system.source("Random"), &mut errors, |model, graph, motion, _| {

@@ -1,5 +1,5 @@
-//! Laws that hold for every random system. `RANDOM_SEED=17 RANDOM_COUNT=1` looks at one,
-//! `RANDOM_COUNT=100000` at more.
+//! Laws that hold for every random system. `RANDOM_SEED=17 RANDOM_COUNT=1` tests a single system,
+//! `RANDOM_COUNT=100000` more systems.
 
 use super::check::{Derived, PLAIN, PRECISE};
 use super::interpret::Values;
@@ -16,7 +16,7 @@ fn variable(name: &str) -> Option<u64> {
     std::env::var(name).ok().and_then(|text| text.parse().ok())
 }
 
-/// The systems of a test, one of every `share` seeds.
+/// Returns the systems of a test, for one of every `share` seeds.
 fn systems(count: u64, share: u64, manner: Manner) -> impl Iterator<Item = System> {
     let first = variable("RANDOM_SEED").unwrap_or(0);
     let count = variable("RANDOM_COUNT").unwrap_or(count);
@@ -30,7 +30,7 @@ fn systems(count: u64, share: u64, manner: Manner) -> impl Iterator<Item = Syste
 }
 
 /// Accelerations, mass matrix, momenta, forces, energies, powers, velocities from momenta,
-/// Jacobians and conserved quantities.
+/// Jacobians and conserved quantities agree with the reference.
 #[test]
 fn what_is_derived_is_what_is_written() {
     let (mut compared, mut unsound) = (0, 0);
@@ -45,7 +45,7 @@ fn what_is_derived_is_what_is_written() {
                     system.seed,
                     system.source("Random")
                 );
-                // The generator makes kinetic energies that are positive.
+                // The generator creates positive kinetic energies.
                 assert!(0.0 < findings.pivot, "seed {}: pivot {}", system.seed, findings.pivot);
             }
             Outcome::Unsound => unsound += 1,
@@ -57,12 +57,12 @@ fn what_is_derived_is_what_is_written() {
     assert!(unsound * 20 <= compared, "{unsound} of {compared} have no value");
 }
 
-/// A wild system may be refused or have no value, but no value is wrong.
+/// A wild system may be refused or have no value, but its values are correct.
 #[test]
 fn wild_systems_are_derived_or_refused() {
     for system in systems(120, 1, Manner::Wild) {
         if let Outcome::Compared(findings) = outcome(&system) {
-            // Where a function has an infinite slope, a simplified derivative may have no value.
+            // If a function has an infinite slope, a simplified derivative may have no value.
             let wrong: Vec<_> =
                 findings.wrong().into_iter().filter(|row| 1e-6 < row.1 && 1e-6 < row.2).collect();
             assert!(
@@ -75,7 +75,7 @@ fn wild_systems_are_derived_or_refused() {
     }
 }
 
-/// Accelerations and momenta of a system.
+/// Returns the accelerations and momenta of a system.
 fn outputs<T: Float>(system: &System, state: &State<T>) -> [Vec<T>; 2] {
     let source = system.source("Random");
     let mut errors = crate::messages::Errors::default();
@@ -88,7 +88,8 @@ fn outputs<T: Float>(system: &System, state: &State<T>) -> [Vec<T>; 2] {
     found.unwrap_or_else(|| panic!("seed {}: {:?} for\n{source}", system.seed, errors.messages()))
 }
 
-/// The largest difference relative to the largest value, or to one; zero if that has no value.
+/// Returns the largest difference relative to the largest expected value or to one, or zero if an
+/// expected value is not finite.
 fn difference<T: Float>(found: &[T], expected: &[T]) -> f64 {
     let scale = expected.iter().fold(1.0, |scale: f64, x| scale.max(x.to_f64().abs()));
     if !expected.iter().all(|x| x.is_finite()) {
@@ -101,7 +102,7 @@ fn difference<T: Float>(found: &[T], expected: &[T]) -> f64 {
         .fold(0.0, |worst, own| if own.is_nan() || worst < own { own } else { worst })
 }
 
-/// A total derivative in L changes no acceleration.
+/// A total derivative in L does not change the accelerations.
 #[test]
 fn gauge_terms_change_nothing() {
     for system in systems(200, 8, Manner::Tame) {
@@ -130,7 +131,7 @@ fn the_scale_of_energy_cancels() {
     }
 }
 
-/// Run backwards, a motion has the same accelerations and the opposite momenta.
+/// A time-reversed motion has the same accelerations and the opposite momenta.
 #[test]
 fn motions_run_backwards() {
     for system in systems(200, 8, Manner::Tame) {
@@ -160,7 +161,7 @@ fn other_coordinates_give_the_same_motion() {
         let [q, v, a] = back(&system, [&new.q, &new.v, &accelerations]);
         let [expected, _] = outputs(&system, &State { q, v, ..new });
         let own = difference(&a, &expected);
-        // Of the condition of two mass matrices nothing is known but that they are positive.
+        // The mass matrices are positive, but their condition is not bounded.
         assert!(
             own < 1e-9,
             "seed {seed}: {own} for\n{}and\n{}",
@@ -170,7 +171,7 @@ fn other_coordinates_give_the_same_motion() {
     }
 }
 
-/// The systems that are compiled and run are those of the generator.
+/// The systems in the written file are those of the generator.
 #[test]
 fn written_systems_are_up_to_date() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/language/random_systems/blocks.rs");

@@ -1,5 +1,5 @@
-//! Some random systems as a source file that is compiled and run, with what the reference says
-//! about each.
+//! Random systems written to a source file that is compiled and run, with reference values for each
+//! system.
 
 use super::check::{Derived, compare};
 use super::interpret::Values;
@@ -14,7 +14,7 @@ use std::fmt::Write;
 /// The number of systems.
 const COUNT: usize = 40;
 
-/// The file.
+/// Returns the content of the file.
 pub(crate) fn file() -> String {
     let mut text = String::from(
         "//! Random systems and what they do at a random state, in 31 digits. Written by the generator in `tools/random-systems`:\n\
@@ -40,7 +40,7 @@ pub(crate) fn file() -> String {
     text
 }
 
-/// One system, unless it is long or its source has no value at the state.
+/// Returns the module of a system; `None` if its source is long or has no value at the state.
 fn module(system: &System) -> Option<String> {
     let source = system.source("Random");
     let plain = state(system, system.seed);
@@ -111,7 +111,7 @@ fn module(system: &System) -> Option<String> {
     Some(text)
 }
 
-/// M⁻¹ f of the reference, by elimination.
+/// Returns M⁻¹ f of the reference, by elimination.
 fn solved(truth: &Reference<DoubleDouble>) -> Vec<DoubleDouble> {
     let count = truth.momenta.len();
     let force = |i: usize| truth.slopes[i] + truth.externals[i] - truth.drifts[i];
@@ -131,7 +131,7 @@ fn solved(truth: &Reference<DoubleDouble>) -> Vec<DoubleDouble> {
     (0..count).map(|i| rows[i][count] / rows[i][i]).collect()
 }
 
-/// The third and fourth derivatives of the coordinates along the motion.
+/// Returns the third and fourth derivatives of the coordinates along the motion.
 fn higher(derived: &Derived<'_, '_>, values: &Values<DoubleDouble>) -> [Vec<DoubleDouble>; 2] {
     let of = |values: &Values<DoubleDouble>| {
         values.of(derived.model, derived.graph, &derived.motion.accelerations)
@@ -143,7 +143,7 @@ fn higher(derived: &Derived<'_, '_>, values: &Values<DoubleDouble>) -> [Vec<Doub
         .iter()
         .map(|a| a.derivative)
         .collect();
-    // The accelerations of a moment later are known with their rates now.
+    // The accelerations have known rates now, so that their second derivatives can be computed.
     let pairs: Vec<Dual<DoubleDouble>> =
         second.iter().zip(&third).map(|(&value, &derivative)| Dual { value, derivative }).collect();
     let twice = later(&first, &pairs);
@@ -152,7 +152,7 @@ fn higher(derived: &Derived<'_, '_>, values: &Values<DoubleDouble>) -> [Vec<Doub
     [third, fourth]
 }
 
-/// Everything with its rate.
+/// Returns all values with their rates.
 fn later<T: Real>(values: &Values<T>, accelerations: &[T]) -> Values<Dual<T>> {
     let dual = |value: T, derivative: T| Dual { value, derivative };
     let pairs = |a: &[T], b: &[T]| a.iter().zip(b).map(|(&a, &b)| dual(a, b)).collect::<Vec<_>>();
@@ -171,7 +171,7 @@ fn later<T: Real>(values: &Values<T>, accelerations: &[T]) -> Values<Dual<T>> {
     }
 }
 
-/// The arguments of `new`.
+/// Returns the arguments of `new`.
 fn arguments(system: &System, state: &State<DoubleDouble>) -> String {
     let mut arguments = Vec::new();
     for (index, parameter) in system.parameters.iter().enumerate() {
@@ -195,7 +195,7 @@ fn arguments(system: &System, state: &State<DoubleDouble>) -> String {
     arguments.join(", ")
 }
 
-/// The type and the value of the samples of the driven inputs.
+/// Returns the type and the value of the samples of the driven inputs.
 fn inputs(state: &State<DoubleDouble>) -> (String, String) {
     let (mut kinds, mut values) = (String::new(), String::new());
     for components in &state.inputs {
@@ -216,7 +216,7 @@ fn inputs(state: &State<DoubleDouble>) -> (String, String) {
     (format!("({kinds})"), format!("({values})"))
 }
 
-/// A number of either type in its words.
+/// Returns the text of a number as the words of a double-double.
 fn number(value: DoubleDouble) -> String {
     format!("words({:?}, {:?})", value.high(), (value - DoubleDouble::from(value.high())).to_f64())
 }

@@ -31,7 +31,7 @@ pub(crate) fn picture() -> Result<Picture> {
     let frames = motion()?.q.into_iter().map(|[alpha, beta, gamma]| {
         let elbow = [0.4 * alpha.cos(), 0.4 * alpha.sin()];
         let tip = [1.0 + 0.8 * gamma.cos(), 0.8 * gamma.sin()];
-        // A point of the coupler, to one side of its middle.
+        // A point of the coupler, beside its middle.
         let side = [-0.3 * beta.sin(), 0.3 * beta.cos()];
         let point = [0, 1].map(|k| f64::midpoint(elbow[k], tip[k]) + side[k]);
         Frame::new([[0.0; 2], elbow, tip, [1.0, 0.0], tip, point, elbow, point])

@@ -19,7 +19,7 @@ impl Generator {
             self.system.parameters.push(Parameter { name, kind: Kind::Scalar });
         }
         self.system.parameters.push(Parameter { name: "ω".to_owned(), kind: Kind::Rate });
-        // An array or a body has a unit, and then everything is checked.
+        // Arrays and bodies have units, so that all units are checked.
         if units {
             for kind in [Kind::Vector(2), Kind::Vector(3), Kind::Family(4), Kind::Body] {
                 if self.random.below(3) != 0 {

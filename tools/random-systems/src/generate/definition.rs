@@ -1,4 +1,4 @@
-//! Definitions, and where they are used.
+//! Definitions and their uses.
 
 use super::{Generator, May};
 use crate::nilpotent::Function;
@@ -68,7 +68,7 @@ impl Generator {
     }
 }
 
-/// Returns true if a coordinate stands openly in an expression that is never simplified away.
+/// Returns `true` if an expression contains a coordinate that no simplification can remove.
 fn moves(expr: &Expr) -> bool {
     match expr {
         Expr::Coordinate(..) => true,

@@ -36,7 +36,7 @@ impl Generator {
         }
     }
 
-    /// A positive square of each velocity.
+    /// Adds a positive square of each velocity.
     fn squares(&mut self, may: May) {
         for coordinate in 0..self.system.coordinates.len() {
             let length = self.system.coordinates[coordinate].length;
@@ -68,7 +68,7 @@ impl Generator {
         }
     }
 
-    /// Something that leaves the mass matrix positive.
+    /// Returns a term for which the mass matrix stays positive.
     fn kinetic_term(&mut self, still: May, moving: May) -> Expr {
         if self.manner == Manner::Wild && self.random.once_in(2) {
             return self.scalar(3, moving);
@@ -96,7 +96,7 @@ impl Generator {
                     _ => Expr::Call(Function::Cosh, Box::new(quotient(velocity, number(3)))),
                 }
             }
-            // A mixed term that is small beside the squares.
+            // A mixed term that is small compared with the squares.
             _ => {
                 let (a, b) = (self.velocity(still), self.velocity(still));
                 let factor = self.bounded(2, still);
@@ -113,7 +113,7 @@ impl Generator {
             2 => product(factor, power(Expr::Magnitude(Box::new(velocity)), 3)),
             _ => self.scalar(2, moving),
         };
-        // Energy per second.
+        // The unit is energy per second.
         if self.system.units { product(pure, self.frequency()) } else { pure }
     }
 }

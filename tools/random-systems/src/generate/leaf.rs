@@ -40,7 +40,7 @@ impl Generator {
         }
     }
 
-    /// An index below `count`.
+    /// Returns an index below `count`.
     pub(crate) fn index(&mut self, count: usize, may: May) -> Index {
         match may.bound {
             Some(bound) if bound <= count && self.random.below(4) != 0 => {
@@ -96,7 +96,7 @@ impl Generator {
         Expr::Parameter(self.random.of(&scalars))
     }
 
-    /// A component of a driven input, or of its derivatives as pure numbers.
+    /// Returns a component of a driven input or of its derivatives, as a pure number.
     fn input(&mut self, may: May) -> Expr {
         let index = self.random.below(self.system.inputs.len());
         let order = self.random.below(may.orders + 1);
@@ -115,7 +115,7 @@ impl Generator {
         }
     }
 
-    /// A property of a body as a pure number.
+    /// Returns a property of a body as a pure number.
     pub(crate) fn property(&self, body: usize, property: Property) -> Expr {
         let own = Expr::Property(body, property);
         match property {
@@ -136,7 +136,7 @@ impl Generator {
         measure(&self.system, kind)
     }
 
-    /// A rate as a pure number, where units are checked.
+    /// Returns a rate as a pure number if units are checked.
     pub(crate) fn rate(&mut self, rate: Expr) -> Expr {
         if self.system.units || self.random.once_in(4) {
             quotient(rate, self.frequency())

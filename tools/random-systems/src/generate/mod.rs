@@ -1,4 +1,4 @@
-//! Random systems: well formed always, and tame if they are to be compared in numbers.
+//! Random systems: always well formed, and tame if their values are to be compared.
 
 mod declare;
 mod definition;
@@ -10,33 +10,33 @@ mod vector;
 use super::tree::{Expr, Kind, System, Type, number, power, product, quotient, sum};
 use split_mix::Random;
 
-/// The purpose of a system.
+/// The kind of system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Manner {
     /// Every function has an argument for which it is real and smooth, kinetic energies are
-    /// positive, nothing is large.
+    /// positive, and no value is large.
     Tame,
-    /// Anything that is well formed.
+    /// Any well-formed system.
     Wild,
 }
 
-/// The quantities that may stand in an expression.
+/// The quantities allowed in an expression.
 #[derive(Clone, Copy, Debug)]
 struct May {
-    /// Velocities of coordinates.
+    /// `true` if velocities of coordinates are allowed.
     velocities: bool,
-    /// The highest derivative of driven inputs: none where the derivative of all is taken, the
-    /// first in energies.
+    /// The highest derivative of driven inputs: 0 in expressions that are differentiated, 1 in
+    /// energies, 2 in forces.
     orders: usize,
-    /// Definitions with a smaller number than this.
+    /// The definitions with an index below this number are allowed.
     lets: usize,
-    /// Indices that are bound: their number, and the least of the ranges.
+    /// The length of the range of the bound index, if there is one.
     bound: Option<usize>,
-    /// The arguments of a function.
+    /// The types of the arguments of the enclosing function.
     arguments: &'static [Type],
 }
 
-/// The system of a seed.
+/// Returns the system of a seed.
 pub fn system(seed: u64, manner: Manner) -> System {
     let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5eed);
     random.bits();
@@ -47,22 +47,23 @@ pub fn system(seed: u64, manner: Manner) -> System {
     generator.system
 }
 
-/// A function of coordinates and time.
+/// Returns a random function of coordinates and time.
 pub fn gauge(system: &System, random: &mut Random) -> Expr {
     let mut generator =
         Generator { random: random.clone(), system: system.clone(), manner: Manner::Tame };
     let may = May { velocities: false, orders: 0, lets: 0, bound: None, arguments: &[] };
     let coordinate = generator.coordinate(may);
-    // The last term is the only one with a second power of its own, so that the whole moves.
+    // Only the last term contains a separate second power, so that the sum depends on the
+    // coordinate.
     let rest = sum(product(coordinate.clone(), generator.scalar(1, may)), generator.scalar(2, may));
     sum(rest, quotient(power(coordinate, 2), number(7)))
 }
 
-/// The parameter that a kind of quantity is measured in.
+/// Returns the parameter that is the unit of a kind of quantity.
 ///
 /// # Panics
 ///
-/// If the system has no parameter of this kind.
+/// Panics if the system has no parameter of this kind.
 pub fn measure(system: &System, kind: Kind) -> Expr {
     let found = system.parameters.iter().position(|parameter| parameter.kind == kind);
     Expr::Parameter(found.expect("a system has a measure for what it has"))

@@ -1,4 +1,4 @@
-//! Scalar expressions: anything, and what is bounded, positive or wild.
+//! Scalar expressions: arbitrary, bounded, positive or wild.
 
 use super::{Generator, Manner, May};
 use crate::nilpotent::Function;
@@ -53,7 +53,7 @@ impl Generator {
         }
     }
 
-    /// Anything of no more than moderate size.
+    /// Returns an expression of at most moderate magnitude.
     pub(crate) fn bounded(&mut self, depth: usize, may: May) -> Expr {
         let inner = depth.saturating_sub(1);
         let call = |function, argument| Expr::Call(function, Box::new(argument));
@@ -100,7 +100,7 @@ impl Generator {
         }
     }
 
-    /// A sum that a trigonometric function may take apart.
+    /// Returns a sum that a trigonometric function may expand.
     pub(crate) fn angle(&mut self, depth: usize, may: May) -> Expr {
         if 0 < depth && self.random.once_in(3) {
             return self.scalar(depth - 1, may);
@@ -116,7 +116,7 @@ impl Generator {
         }
     }
 
-    /// At least one half.
+    /// Returns an expression that is at least one half.
     pub(crate) fn positive(&mut self, depth: usize, may: May) -> Expr {
         match self.random.below(5) {
             0 => sum(number(1), power(self.scalar(depth, may), 2)),
@@ -130,7 +130,7 @@ impl Generator {
         }
     }
 
-    /// Functions of whatever comes.
+    /// Returns a function of an arbitrary expression.
     fn wild(&mut self, depth: usize, may: May) -> Expr {
         let inner = depth - 1;
         let a = Box::new(self.scalar(inner, may));
@@ -164,7 +164,7 @@ impl Generator {
     }
 
     fn sum_over(&mut self, depth: usize, may: May) -> Expr {
-        // An index is bound once; within a range the index outside keeps its name.
+        // Sums are not nested, because all of them bind index 0.
         if may.bound.is_some() {
             return self.leaf(may);
         }
@@ -185,14 +185,15 @@ impl Generator {
             6 => Expr::Component(boxed(self, Type::Space), self.random.below(3)),
             7 => power(Expr::Magnitude(boxed(self, Type::Space)), 2),
             _ => {
-                // The length of what is never short.
+                // The length of a vector that is never short.
                 let parts = [self.positive(depth, may), self.scalar(depth, may)];
                 Expr::Magnitude(Box::new(Expr::Vector(parts.to_vec())))
             }
         }
     }
 
-    /// The integral of the square of a velocity, of a height, or of a function of the point.
+    /// Returns the integral of the square of a velocity, of a height, or of a function of the
+    /// point.
     fn integral(&mut self, may: May) -> Option<Expr> {
         let body =
             self.system.parameters.iter().position(|parameter| parameter.kind == Kind::Body)?;

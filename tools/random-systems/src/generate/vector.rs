@@ -36,7 +36,7 @@ impl Generator {
         }
     }
 
-    /// A quantity that is declared as a vector.
+    /// Returns a quantity that is declared as a vector.
     fn whole(&mut self, components: usize, may: May) -> Option<Expr> {
         let argument = may.arguments.iter().position(|&kind| kind == Type::Plane);
         if let Some(index) = argument
@@ -65,7 +65,7 @@ impl Generator {
         }
     }
 
-    /// Something that is written as a complex number.
+    /// Returns an expression written as a complex number.
     pub(crate) fn complex(&mut self, depth: usize, may: May) -> Expr {
         let inner = depth.saturating_sub(1);
         let cis = |generator: &mut Self| {
@@ -103,7 +103,7 @@ impl Generator {
         }
     }
 
-    /// A vector that moves, so that its derivative may be taken.
+    /// Returns a vector that depends on the coordinates, so that it may be differentiated.
     pub(crate) fn moved(&mut self, vector: Expr) -> Expr {
         let may = May { velocities: false, orders: 0, lets: 0, bound: None, arguments: &[] };
         let shift =

@@ -1,5 +1,5 @@
-//! Attributes of the struct that its implementations follow, and names that the generated code
-//! takes itself.
+//! Attributes of the struct that also apply to its implementations, and names that the generated
+//! code uses.
 
 #![deny(warnings)]
 #![allow(non_upper_case_globals)]
@@ -97,7 +97,7 @@ lagrangian! {
     kinetic = m*q_dot^2/2;
 }
 
-/// A constant of the name of a parameter that is not mentioned.
+/// A constant with the name of a parameter that is not mentioned.
 const c: f64 = 1.0;
 
 fn main() {

@@ -1,5 +1,5 @@
-//! Constants and unit structs of the user that have the names of parameters and of what the
-//! generated code binds.
+//! Constants and unit structs of the user with the names of parameters and of bindings in generated
+//! code.
 
 #![allow(non_upper_case_globals, non_camel_case_types, dead_code, mixed_script_confusables)]
 
@@ -39,7 +39,7 @@ lagrangian! {
     potential = m*g*(1 - cos(θ)) + k*θ^2*c.x*c.y;
 }
 
-// Long enough for Jacobians by dual numbers.
+// Long enough for Jacobians to be computed by dual numbers.
 lagrangian! {
     struct Chain { l, q: [1; 8] }
     coordinate θ[8];

@@ -1,4 +1,4 @@
-//! Blocks that a macro of the user's writes, from expressions, numbers, names and units.
+//! Blocks written by a macro of the user, from expressions, numbers, names and units.
 
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::SplitEnergy;

@@ -1,4 +1,5 @@
-//! A struct without parameters, named as the scalar usually is, and one inside a function.
+//! A struct without parameters that has the usual name of the scalar, and a struct inside a
+//! function.
 
 use pendulum_runtime::prelude::*;
 

@@ -1,4 +1,4 @@
-//! Every spelling of a name is one name, in one block.
+//! All spellings of a name in one block refer to the same name.
 
 #![allow(mixed_script_confusables)]
 

@@ -1,4 +1,4 @@
-//! Types, traits and modules of the user that have the names of Rust's own.
+//! Types, traits and modules of the user with the names of Rust's own items.
 
 #![deny(warnings)]
 #![allow(non_camel_case_types, dead_code)]

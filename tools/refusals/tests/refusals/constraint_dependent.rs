@@ -1,4 +1,4 @@
-//! A constraint that follows from another one.
+//! A constraint that follows from another constraint.
 
 use pendulum_runtime::prelude::*;
 

@@ -1,4 +1,4 @@
-//! A method that needs series, for a law that has none.
+//! A method that requires series, with a control law that has no series.
 
 use pendulum_runtime::prelude::*;
 

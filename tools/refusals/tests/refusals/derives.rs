@@ -1,4 +1,4 @@
-//! Derived traits that floating-point numbers do not have.
+//! Derived traits that floating-point numbers do not implement.
 
 use pendulum_runtime::prelude::*;
 

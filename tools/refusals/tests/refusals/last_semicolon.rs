@@ -25,6 +25,6 @@ lagrangian! {
 }
 
 fn main() {
-    // Its statement has been read, so that the type is whole.
+    // The statement has been parsed, so that the type is complete.
     let _: [f64; 1] = pendulum_runtime::system::System::momenta(&Bob::new(1.0), 0.0, &[0.0], &[0.0], &());
 }

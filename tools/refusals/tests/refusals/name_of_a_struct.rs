@@ -1,4 +1,4 @@
-//! A block whose struct has the name of another.
+//! A block whose struct has the same name as another struct.
 
 use pendulum_runtime::prelude::*;
 

@@ -1,4 +1,4 @@
-//! An output in another unit than declared.
+//! An output whose unit differs from the declared unit.
 
 use pendulum_runtime::prelude::*;
 

@@ -1,20 +1,22 @@
-//! One row of the table: a system, a method, a setting, and how they are run and timed.
+//! A row of the table: a system, a method and a setting, with its run and its timing.
 
 use std::time::Instant;
 
-/// The states at all output times, coordinates before velocities, and what they took.
+/// The states at all output times, with coordinates before velocities, and the number of
+/// evaluations.
 #[derive(Clone, Debug)]
 pub struct Run {
     /// All numbers in the order of `reference`.
     pub values: Vec<f64>,
-    /// Evaluations of the accelerations; steps where a method has no evaluations.
+    /// The number of evaluations of the accelerations, or of steps if the method has no
+    /// evaluations.
     pub evaluations: u64,
 }
 
-/// A run, or why there is none.
+/// A run, or the reason for its absence.
 pub type Outcome = Result<Run, String>;
 
-/// Something to be timed.
+/// A row to be timed.
 pub struct Row {
     /// The name of the system.
     pub system: String,
@@ -22,7 +24,7 @@ pub struct Row {
     pub method: String,
     /// The tolerance or the number of steps.
     pub setting: String,
-    /// Runs it once.
+    /// Runs the method once.
     pub run: Box<dyn FnMut() -> Outcome>,
 }
 
@@ -33,8 +35,8 @@ impl std::fmt::Debug for Row {
 }
 
 impl Row {
-    /// The shortest of at least three runs, as many as fit into a millisecond, because
-    /// interruptions only add; of a long run the first.
+    /// Returns the shortest time of several runs, because interruptions only add time: at least
+    /// three runs, as many as fit into a millisecond. Returns the first time of a long run.
     pub fn sample(&mut self) -> Result<(f64, Run), String> {
         let (mut seconds, run) = self.timed()?;
         if seconds < 0.05 {

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-/// A problem: the states at `times` from the state at 0.
+/// A problem: integrates from the state at 0 to the states at `times`.
 #[derive(Clone, Debug)]
 pub struct Problem<const N: usize> {
     /// The name of the system.
@@ -11,15 +11,15 @@ pub struct Problem<const N: usize> {
     pub q: [f64; N],
     /// The velocities at 0.
     pub v: [f64; N],
-    /// The output times, ascending; the last one is the end.
+    /// The output times in ascending order. The last is the end.
     pub times: Vec<f64>,
 }
 
 impl<const N: usize> Problem<N> {
-    /// The problem of this name in `reference.txt`.
+    /// Creates the problem with this name in `reference.txt`.
     ///
     /// # Panics
-    /// If `reference.txt` does not know the system.
+    /// Panics if `reference.txt` does not contain the system.
     pub fn new(name: &'static str) -> Self {
         let mut rows = lines(name);
         let start = rows.next().expect("reference.txt knows the system");
@@ -34,10 +34,10 @@ impl<const N: usize> Problem<N> {
     }
 }
 
-/// A line of `reference.txt`: the system, the time, the coordinates and velocities in decimal.
+/// A line of `reference.txt`: the system, the time, and the coordinates and velocities as decimals.
 pub type Line = (&'static str, f64, Vec<&'static str>);
 
-/// The lines of one system.
+/// Returns the lines of a system.
 pub fn lines(name: &str) -> impl Iterator<Item = &'static Line> {
     LINES.iter().filter(move |line| line.0 == name)
 }

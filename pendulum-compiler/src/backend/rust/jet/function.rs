@@ -12,7 +12,7 @@ use quote::{format_ident, quote};
 const LENGTH: usize = 32;
 
 impl Writer<'_, '_, '_> {
-    /// A function of one argument.
+    /// Writes a function of one argument.
     pub(super) fn call(&mut self, place: Place, function: Function, a: Place) {
         let scalar = self.emitter.scalar();
         let one = quote!(series::constant(#scalar::from_f64(1.0), order));
@@ -116,14 +116,13 @@ impl Writer<'_, '_, '_> {
             Recurrence::Constant => {
                 let x = self.value(a);
                 let value = function_call(function, &x);
-                // The value at order 0 is all there is; that of another order means nothing and is
-                // not used.
+                // Only the value at order 0 is used. At other orders, the value is meaningless.
                 self.name(place, &quote!(series::constant(#value, order)));
             }
         }
     }
 
-    /// exp x.
+    /// Writes exp x.
     fn exponential(&mut self, place: Place, x: &TokenStream) {
         let (x, slot) = (self.shared("e", place, x), self.slot());
         let rate = self.rate(&x);
@@ -132,7 +131,7 @@ impl Writer<'_, '_, '_> {
         self.name_in(place, &value, slot);
     }
 
-    /// A function with the value `start` whose rate is `rate` over `divisor`.
+    /// Writes a function with the value `start` and the derivative `rate` divided by `divisor`.
     fn inverse(
         &mut self,
         place: Place,
@@ -152,7 +151,7 @@ impl Writer<'_, '_, '_> {
         self.name(place, &quote!(series::from_rate(|| #start, #slope, &path.reciprocals, order)));
     }
 
-    /// (x ẏ − y ẋ)/(x² + y²) is the rate of the angle of the point (x, y).
+    /// Writes the angle of the point (x, y), whose rate is (x ẏ − y ẋ)/(x² + y²).
     pub(super) fn angle(&mut self, place: Place, y: Place, x: Place) {
         let (y_value, x_value) = (self.value(y), self.value(x));
         let (y_value, x_value) =
@@ -166,7 +165,8 @@ impl Writer<'_, '_, '_> {
         self.inverse(place, &quote!(#y_value.atan2(#x_value)), &rate, &divisor, false);
     }
 
-    /// A power: one recurrence if the exponent does not move, else exp(b ln a).
+    /// Writes a power: a single recurrence if the exponent depends only on parameters, otherwise
+    /// exp(b ln a).
     pub(super) fn power(&mut self, place: Place, a: Place, b: Place) {
         if self.parameter_only[b.0] {
             let (a, b, slot, lead) = (self.whole(a), self.constant(b), self.slot(), self.lead());

@@ -1,9 +1,10 @@
-//! Taylor recurrences: one line for each operation of the equations, the same for every order.
+//! Taylor recurrences: a statement for each operation of the equations, the same at every order.
 //!
-//! A value that only sums and constants touch is a number at the order in question; what a product
-//! or a function reads is kept as a series. Where coordinates are coupled by a mass matrix that
-//! moves, M q̈ = f is solved order by order: M\[0\] q̈\[k\] = f\[k\] − Σ M\[j\] q̈\[k−j\] over 1 ≤
-//! j ≤ k, with M\[0\] factored once. Loops over the order live in the runtime.
+//! A value used only by sums and constants is a number at the current order; a value used by a
+//! product or a function is stored as a series. If coordinates are coupled by a mass matrix that
+//! depends on the state, M q̈ = f is solved order by order: M\[0\] q̈\[k\] = f\[k\] − Σ M\[j\]
+//! q̈\[k−j\] over 1 ≤ j ≤ k, with M\[0\] factored once. The loops over the order are part of the
+//! runtime.
 
 mod function;
 mod momentum_form;
@@ -24,31 +25,31 @@ use sine_oscillator::swing;
 use std::collections::BTreeMap;
 use writer::{Recurrences, Writer};
 
-/// The most convolutions, in halves, of a system whose orders are unrolled, and of one whose sums
-/// are loops in their places.
+/// The largest number of convolutions, in halves, of a system whose orders are unrolled, and the
+/// largest number of a system whose sums are inlined loops.
 const MOST_UNROLLED: usize = 10;
 const MOST_LOOPED: usize = 80;
 
-/// The most convolutions, in halves, of a system for which higher orders pay: the rest of a step
-/// costs as much.
+/// The largest number of convolutions, in halves, of a system for which higher orders are
+/// efficient, because the remaining work of a step is at least as expensive.
 const MOST_CHEAP: usize = 4;
 
-/// The equations as a program: for each block of the mass matrix its rows, and what the program's
-/// results mean for it.
+/// The equations as a program. For each block of the mass matrix, its rows and the results of the
+/// program that belong to it.
 pub(crate) struct Equations {
     pub(crate) program: Program,
     pub(crate) blocks: Vec<Block>,
 }
 
-/// Coordinates that the mass matrix couples.
+/// Coordinates coupled by the mass matrix.
 pub(crate) enum Block {
     /// The accelerations are results of the program.
     Explicit(Vec<(usize, Place)>),
-    /// The rows, for each the entries of the lower triangle that are not zero, and the forces.
+    /// For each row, the nonzero entries of the lower triangle, and the force.
     Coupled { rows: Vec<usize>, masses: Vec<Vec<Option<Place>>>, forces: Vec<Place> },
 }
 
-/// The equations that the jets of a motion compute.
+/// Returns the equations that the jets of a motion compute.
 pub(crate) fn equations(graph: &Graph, motion: &Motion) -> Equations {
     let blocks = solve::blocks(&motion.mass_matrix);
     let constrained = !motion.constraints.held.is_empty();
@@ -99,7 +100,7 @@ pub(crate) fn equations(graph: &Graph, motion: &Motion) -> Equations {
 }
 
 impl Emitter<'_, '_> {
-    /// The implementation of `Jets`.
+    /// Returns the implementation of `Jets`.
     pub(crate) fn jets(&self) -> TokenStream {
         let (krate, scalar, count, name) = (&self.krate, self.scalar(), self.count(), &self.name());
         let components: usize = self.model.inputs.iter().map(Quantity::count).sum();
@@ -133,8 +134,8 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// The type of the work, how orders are gone through and how many pay, the new work and the
-    /// statements for one order.
+    /// Returns the type of the work, the kind of loops over the order, the orders per digit, the
+    /// expression for a new work and the statements for one order.
     fn recurrences(
         &self,
         motion: &Motion,
@@ -161,8 +162,8 @@ impl Emitter<'_, '_> {
         (kind, unrolling, per_digit, work, lines)
     }
 
-    /// The recurrences of accelerations, where coordinates are coupled in series with the mass
-    /// matrix.
+    /// Returns the recurrences of accelerations. Coupled coordinates are solved in series with the
+    /// mass matrix.
     fn solved(&self, program: &Program, blocks: &[Block]) -> Recurrences {
         let (parameter_only, prepared) =
             (program.parameter_only(), program.kept(Stage::Parameters));
@@ -206,7 +207,7 @@ impl Emitter<'_, '_> {
         writer.finish(&factors)
     }
 
-    /// The recurrences of equations that are not solved, where they have any.
+    /// Returns the recurrences of equations that are not solved, if they exist.
     fn unsolved(&self, motion: &Motion, unsolved: &Unsolved) -> Option<Recurrences> {
         let program = schedule::of_series(&self.graph, &momentum_form::roots(unsolved));
         let (parameter_only, prepared) =

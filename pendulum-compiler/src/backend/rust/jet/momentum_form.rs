@@ -1,14 +1,14 @@
-//! Taylor recurrences from equations that are not solved: sums of rates of momenta, one order
-//! ahead.
+//! Taylor recurrences from equations that are not solved: sums of rates of momenta, which are
+//! computed one order ahead.
 //!
-//! Where positions are written with `let`, ṗ comes from few products: a chain has two for each link
-//! in its momenta and two in what they turn, while the products of its full mass matrix grow with
-//! the square of its length. At order k
-//! 1. the momenta are found at order k + 1 with q̈\[k\] = 0, which leaves a\[0\] v\[k+1\] out of
+//! If positions are defined with `let`, ṗ requires few products. A chain has two products per link
+//! in its momenta and two in its torques, whereas the number of products of its full mass matrix is
+//! proportional to the square of its length. At order k
+//! 1. the momenta are computed at order k + 1 with q̈\[k\] = 0, which omits a\[0\] v\[k+1\] from
 //!    each product a v;
-//! 2. with (k+1) p\[k+1\] for ṗ\[k\] the equations leave −M\[0\] q̈\[k\], where M is the mass
-//!    matrix;
-//! 3. what q̈\[k\] adds to the series goes into their newest coefficients.
+//! 2. with (k+1) p\[k+1\] for ṗ\[k\], the remainders of the equations are −M\[0\] q̈\[k\], where M
+//!    is the mass matrix;
+//! 3. the contributions of q̈\[k\] are added to the newest coefficients of the series.
 
 use super::writer::Writer;
 use crate::algebra::expr::{Id, Symbol};
@@ -21,7 +21,8 @@ use proc_macro2::TokenStream;
 use quote::quote;
 use std::collections::BTreeMap;
 
-/// A product of what parameters decide, a velocity, and the sine or cosine of its coordinate.
+/// A product of constants, a velocity, and the sine or cosine of its coordinate. The constants
+/// depend only on parameters.
 struct Turn {
     constants: Vec<Place>,
     pair: Place,
@@ -29,37 +30,39 @@ struct Turn {
     coordinate: usize,
 }
 
-/// a sin q + b cos q of a coordinate with a turn.
+/// A sum a sin q + b cos q for a coordinate q with a turn.
 struct Dot {
     pair: Place,
     factors: [Place; 2],
 }
 
-/// The part of the equations to which each operation belongs.
+/// The assignment of operations to the parts of the equations.
 pub(super) struct Plan<'p> {
     program: &'p Program,
     parameter_only: &'p [bool],
     carried: Vec<Place>,
     equations: Vec<Place>,
-    /// The operations that the momenta need, and of them those with velocities.
+    /// The operations that the momenta depend on; `moved` contains those of them that depend on
+    /// velocities.
     ahead: Vec<bool>,
     moved: Vec<bool>,
-    /// Of the other operations those with rates.
+    /// The other operations that depend on rates.
     rated: Vec<bool>,
     turns: BTreeMap<Place, Turn>,
-    /// Sums of two products that are found in one go, and the products that then need not be.
+    /// Sums of two products that are computed together; `inside` contains the products that are
+    /// then not computed separately.
     dots: BTreeMap<Place, Dot>,
     inside: Vec<bool>,
 }
 
-/// The expressions that jets of equations that are not solved need.
+/// Returns the expressions that the jets of unsolved equations compute.
 pub(super) fn roots(unsolved: &Unsolved) -> Vec<Id> {
     unsolved.carried.iter().chain(&unsolved.equations).copied().collect()
 }
 
 impl<'p> Plan<'p> {
-    /// The plan for the program of [`roots`]; `None` where a momentum is not affine in the
-    /// velocities by sums and products.
+    /// Creates the plan for the program of [`roots`]; `None` if a momentum is not an affine
+    /// function of the velocities, composed of sums and products.
     pub(super) fn new(
         program: &'p Program,
         parameter_only: &'p [bool],
@@ -136,7 +139,7 @@ impl<'p> Plan<'p> {
         Some(plan)
     }
 
-    /// A sum as a dot product, and its two products.
+    /// Returns a sum as a dot product, with its two products.
     fn dot(&self, place: Place, uses: &[usize]) -> Option<(Dot, [Place; 2])> {
         let Op::Add(a, b) = self.program.ops[place.0] else { return None };
         let product = |place: Place| {
@@ -157,7 +160,7 @@ impl<'p> Plan<'p> {
         (turned && pair == other && f != g).then_some((Dot { pair, factors }, [a, b]))
     }
 
-    /// A product as a turn.
+    /// Returns a product as a turn.
     fn turn(&self, place: Place) -> Option<Turn> {
         let Op::Mul(a, b) = self.program.ops[place.0] else { return None };
         let (mut constants, mut velocity, mut part) = (Vec::new(), None, None);
@@ -179,7 +182,7 @@ impl<'p> Plan<'p> {
 }
 
 impl Writer<'_, '_, '_> {
-    /// The statements for one order.
+    /// Writes the statements for one order.
     pub(super) fn unsolved(&mut self, plan: &Plan<'_>, motion: &Motion) {
         let (ahead, turns) = self.momenta(plan);
         self.remainders(plan);
@@ -215,8 +218,8 @@ impl Writer<'_, '_, '_> {
         self.gains(plan, &turns);
     }
 
-    /// The momenta one order ahead: the statements, and the pairs of products of a velocity with
-    /// the sine and cosine of its coordinate.
+    /// Writes the momenta one order ahead. Returns the statements, and the pairs of products of a
+    /// velocity with the sine and cosine of its coordinate.
     fn momenta(&mut self, plan: &Plan<'_>) -> (TokenStream, BTreeMap<Place, TokenStream>) {
         let mut products: BTreeMap<Place, TokenStream> = BTreeMap::new();
         for index in 0..plan.program.ops.len() {
@@ -247,7 +250,7 @@ impl Writer<'_, '_, '_> {
                 self.operation(place);
             }
         }
-        // A value that is read at the order before, or as a rate, has to stay.
+        // A value that is used at the previous order or as a rate is stored as a series.
         let late = (0..plan.program.ops.len()).filter(|&index| {
             !plan.ahead[index] && !plan.parameter_only[index] && !plan.inside[index]
         });
@@ -264,7 +267,7 @@ impl Writer<'_, '_, '_> {
         (std::mem::take(&mut self.lines), products)
     }
 
-    /// The remainders of the equations at q̈ = 0.
+    /// Writes the remainders of the equations at q̈ = 0.
     fn remainders(&mut self, plan: &Plan<'_>) {
         for (index, op) in plan.program.ops.iter().enumerate() {
             if plan.ahead[index] || plan.parameter_only[index] || plan.inside[index] {
@@ -297,7 +300,7 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// The mass matrix at the start of the step, as `masses`.
+    /// Returns the statements that compute the mass matrix at the start of the step as `masses`.
     fn masses_at_start(&self, motion: &Motion) -> TokenStream {
         let count = motion.mass_matrix.len();
         let roots: Vec<Id> =
@@ -313,7 +316,7 @@ impl Writer<'_, '_, '_> {
             }
             _ => None,
         };
-        // The sine and the cosine of an angle from those at hand.
+        // Sine and cosine of an angle from those computed already.
         let pair = |angle: Place| match program.ops[angle.0] {
             Op::Load(_) => known(angle),
             Op::Sub(a, b) => {
@@ -372,12 +375,12 @@ impl Writer<'_, '_, '_> {
         quote!(#lines let masses = [#(#rows),*];)
     }
 
-    /// The contribution of the accelerations to the newest coefficients.
+    /// Writes the contributions of the accelerations to the newest coefficients.
     fn gains(&mut self, plan: &Plan<'_>, turns: &BTreeMap<Place, TokenStream>) {
         let mut gains: Vec<Option<TokenStream>> = vec![None; plan.program.ops.len()];
         let mut turned: Vec<Place> = Vec::new();
         let sinks: Vec<bool> = self.sinks(plan);
-        // A rate may stand before its momentum.
+        // A rate may precede its momentum.
         let (momenta, others): (Vec<usize>, Vec<usize>) =
             (0..plan.program.ops.len()).partition(|&index| plan.ahead[index]);
         for index in momenta.into_iter().chain(others) {
@@ -446,7 +449,7 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// The operations whose gains are kept in a series, or needed for one that is.
+    /// Returns for each operation whether its gain is stored in a series or needed for one that is.
     fn sinks(&self, plan: &Plan<'_>) -> Vec<bool> {
         let mut sinks: Vec<bool> = (0..plan.program.ops.len())
             .map(|index| self.series.contains_key(&Place(index)))
@@ -457,7 +460,7 @@ impl Writer<'_, '_, '_> {
         for (place, _) in &self.paired {
             sinks[place.0] = true;
         }
-        // A rate may stand before its momentum: twice.
+        // Two passes, because a rate may precede its momentum.
         for _ in 0..2 {
             for (index, op) in plan.program.ops.iter().enumerate().rev() {
                 if sinks[index] {
@@ -471,13 +474,13 @@ impl Writer<'_, '_, '_> {
         sinks
     }
 
-    /// A gain times the leading coefficient of a factor.
+    /// Returns a gain times the leading coefficient of a factor.
     fn leading_times(&mut self, gain: &TokenStream, factor: Place) -> TokenStream {
         let factor = self.leading_value(factor);
         quote!(#gain * #factor)
     }
 
-    /// The leading coefficient of a place.
+    /// Returns the leading coefficient of a place.
     fn leading_value(&mut self, place: Place) -> TokenStream {
         if self.parameter_only[place.0] {
             return self.constant(place);
@@ -487,7 +490,7 @@ impl Writer<'_, '_, '_> {
     }
 }
 
-/// Marks the operands.
+/// Marks the operands of an operation.
 fn mark(marks: &mut [bool], op: &Op) {
     for operand in operands(op) {
         marks[operand.0] = true;

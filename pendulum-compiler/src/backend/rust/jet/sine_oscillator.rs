@@ -1,8 +1,9 @@
-//! Swings: coordinates with q̈ = κ sin q + λ cos q, where κ and λ do not move.
+//! Sine oscillators: coordinates with q̈ = κ sin q + λ cos q, where κ and λ depend only on
+//! parameters.
 //!
-//! Their jets need neither sine nor cosine as a series. With a = q̈ and b = κ cos q − λ sin q is
-//! ȧ = b q̇ and ḃ = −a q̇ = −(q̇²/2)˙: one product and one square, each of whose terms comes once,
-//! in place of two products.
+//! Their jets store neither sine nor cosine as a series. With a = q̈ and b = κ cos q − λ sin q, ȧ =
+//! b q̇ and ḃ = −a q̇ = −(q̇²/2)˙. These are one product and one square, in which each term is
+//! computed once, instead of two products.
 
 use super::writer::Writer;
 use crate::algebra::expr::Symbol;
@@ -12,8 +13,8 @@ use proc_macro2::TokenStream;
 use quote::quote;
 use std::collections::BTreeSet;
 
-/// The operations between the coordinate and its acceleration, if they make it swing and nothing
-/// else reads them.
+/// Returns the operations from a coordinate to its acceleration if the coordinate is a sine
+/// oscillator and if no other operation uses them.
 pub(super) fn swing(
     program: &Program,
     parameter_only: &[bool],
@@ -36,7 +37,7 @@ pub(super) fn swing(
 }
 
 impl Writer<'_, '_, '_> {
-    /// The acceleration of a coordinate that swings.
+    /// Writes the acceleration of a sine oscillator.
     pub(super) fn swing(&mut self, row: usize, place: Place) {
         let (combination, slot) = (self.combination(place), self.slot());
         self.halves += 3;
@@ -52,7 +53,7 @@ impl Writer<'_, '_, '_> {
         });
     }
 
-    /// A combination of sine and cosine as an expression in `s` and `c`.
+    /// Writes a combination of sine and cosine as an expression in `s` and `c`.
     fn combination(&self, place: Place) -> TokenStream {
         match self.program.ops[place.0] {
             Op::Call(Function::Sin, _) | Op::Part(Function::Sin, _) => quote!(s),
@@ -86,8 +87,8 @@ impl Writer<'_, '_, '_> {
     }
 }
 
-/// Returns true if a place is a sum of multiples of the sine and the cosine of the coordinate;
-/// collects what moves on the way there.
+/// Returns `true` if a place is a sum of multiples of the sine and the cosine of the coordinate,
+/// and collects the operations that depend on more than parameters.
 fn combines(
     program: &Program,
     parameter_only: &[bool],

@@ -1,4 +1,4 @@
-//! The statements of the recurrences, written one operation after another.
+//! The statements of the recurrences, written operation by operation.
 
 use crate::algebra::expr::Symbol;
 use crate::algebra::functions::Function;
@@ -9,8 +9,8 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 use std::collections::BTreeMap;
 
-/// The recurrences of a system: the statements for one order, the type of the work and a new one,
-/// and the convolutions in halves.
+/// The recurrences of a system: the statements for one order, the type of the work, the expression
+/// for a new work, and the number of convolutions in halves.
 pub(super) struct Recurrences {
     pub(super) lines: TokenStream,
     pub(super) kind: TokenStream,
@@ -18,31 +18,31 @@ pub(super) struct Recurrences {
     pub(super) halves: usize,
 }
 
-/// The statements under construction.
+/// The recurrences under construction.
 pub(super) struct Writer<'e, 'm, 'a> {
     pub(super) emitter: &'e Emitter<'m, 'a>,
     pub(super) program: &'e Program,
-    /// True for each place that parameters alone decide.
+    /// `true` for each place that depends only on parameters.
     pub(super) parameter_only: Vec<bool>,
     prepared: &'e [Place],
     pub(super) lines: TokenStream,
-    /// The coefficients of the places that move.
+    /// The current coefficients of the places that depend on more than parameters.
     pub(super) values: Vec<TokenStream>,
-    /// The series of each place that is kept.
+    /// The series of each place that is stored as a series.
     pub(super) series: BTreeMap<Place, TokenStream>,
     pub(super) slots: usize,
     pairs: usize,
     leading: usize,
-    /// The convolutions so far, in halves.
+    /// The number of convolutions so far, in halves.
     pub(super) halves: usize,
-    /// The sines and cosines that are found from turns, and the coefficients of what they are
-    /// multiplied by.
+    /// The sines and cosines computed from turns; `paired` contains the coefficients of their
+    /// factors.
     pub(super) turned: BTreeMap<Place, TokenStream>,
     pub(super) paired: Vec<(Place, TokenStream)>,
 }
 
 impl<'e, 'm, 'a> Writer<'e, 'm, 'a> {
-    /// Nothing written yet.
+    /// Creates a writer without statements.
     pub(super) fn new(
         emitter: &'e Emitter<'m, 'a>,
         program: &'e Program,
@@ -66,7 +66,7 @@ impl<'e, 'm, 'a> Writer<'e, 'm, 'a> {
         }
     }
 
-    /// The recurrences written so far, with matrices of these sizes to factor.
+    /// Returns the recurrences written so far, with matrices of these sizes to factor.
     pub(super) fn finish(self, factors: &[usize]) -> Recurrences {
         let Self { emitter, program, prepared, lines, slots, pairs, leading, halves, .. } = self;
         let (krate, scalar, length) = (&emitter.krate, emitter.scalar(), prepared.len());
@@ -81,7 +81,7 @@ impl<'e, 'm, 'a> Writer<'e, 'm, 'a> {
 }
 
 impl Writer<'_, '_, '_> {
-    /// A number that parameters alone decide.
+    /// Returns a number that depends only on parameters.
     pub(super) fn constant(&self, place: Place) -> TokenStream {
         match self.prepared.iter().position(|prepared| *prepared == place) {
             Some(index) => quote!(work.still[#index]),
@@ -89,7 +89,7 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// The coefficient at this order.
+    /// Returns the coefficient at the current order.
     pub(super) fn value(&self, place: Place) -> TokenStream {
         if self.parameter_only[place.0] {
             let constant = self.constant(place);
@@ -98,14 +98,14 @@ impl Writer<'_, '_, '_> {
         self.values[place.0].clone()
     }
 
-    /// A new series.
+    /// Allocates a series.
     pub(super) fn slot(&mut self) -> TokenStream {
         let slot = self.slots;
         self.slots += 1;
         quote!(work.series[#slot])
     }
 
-    /// A new pair of series.
+    /// Allocates a pair of series.
     pub(super) fn pair(&mut self) -> TokenStream {
         let pair = self.pairs;
         self.pairs += 1;
@@ -113,21 +113,21 @@ impl Writer<'_, '_, '_> {
         quote!(work.pairs[#pair])
     }
 
-    /// A new series with this coefficient.
+    /// Allocates a series and stores this coefficient in it.
     pub(super) fn kept(&mut self, value: &TokenStream) -> TokenStream {
         let slot = self.slot();
         self.lines.extend(quote!(#slot[k] = #value;));
         slot
     }
 
-    /// A new number that the leading coefficients decide.
+    /// Allocates a number that depends only on the leading coefficients.
     pub(super) fn lead(&mut self) -> TokenStream {
         let lead = self.leading;
         self.leading += 1;
         quote!(&mut work.leading[#lead])
     }
 
-    /// The series of a place.
+    /// Returns the series of a place, which is stored from now on.
     pub(super) fn whole(&mut self, place: Place) -> TokenStream {
         if let Some(series) = self.series.get(&place) {
             return series.clone();
@@ -138,7 +138,7 @@ impl Writer<'_, '_, '_> {
         series
     }
 
-    /// The series of j x[j].
+    /// Stores the series j x\[j\].
     pub(super) fn rate(&mut self, value: &TokenStream) -> TokenStream {
         self.kept(&quote!(series::rate(#value, order)))
     }
@@ -150,7 +150,7 @@ impl Writer<'_, '_, '_> {
         self.values[place.0] = quote!(#name);
     }
 
-    /// Names the coefficient of a place whose series the recurrence reads itself.
+    /// Names the coefficient of a place whose series is an argument of its own recurrence.
     pub(super) fn name_in(&mut self, place: Place, value: &TokenStream, slot: TokenStream) {
         self.name(place, value);
         let name = &self.values[place.0];
@@ -158,7 +158,7 @@ impl Writer<'_, '_, '_> {
         self.series.insert(place, slot);
     }
 
-    /// A value that several lines read.
+    /// Names a value that several statements use.
     pub(super) fn shared(
         &mut self,
         prefix: &str,
@@ -213,7 +213,7 @@ impl Writer<'_, '_, '_> {
             }
             Op::Call(function, a) => self.call(place, function, a),
             Op::SinCos(a) => self.sin_cos(place, a),
-            // Both parts have been named with the pair.
+            // Both parts are named with the pair.
             Op::Part(function, pair) => {
                 let name = local(if function == Function::Sin { "s" } else { "c" }, pair.0);
                 self.values[place.0] = quote!(#name);
@@ -230,7 +230,7 @@ impl Writer<'_, '_, '_> {
         self.series.insert(place, series);
     }
 
-    /// The series that the path or the drive has.
+    /// Returns the series that is part of the path or the drive, if any.
     pub(super) fn series_of(&self, symbol: Symbol) -> Option<TokenStream> {
         Some(match symbol {
             Symbol::Coordinate(index) => quote!(path.q[#index]),
@@ -286,7 +286,8 @@ impl Writer<'_, '_, '_> {
         self.lines.extend(quote! { let [#s, #c] = #value; #pair[k] = [#s, #c]; });
     }
 
-    /// The accelerations of coordinates that a moving mass matrix couples.
+    /// Writes the accelerations of coordinates that are coupled by a mass matrix which depends on
+    /// the state.
     pub(super) fn coupled(
         &mut self,
         index: usize,
