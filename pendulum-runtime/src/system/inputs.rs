@@ -1,52 +1,53 @@
-//! Inputs of a system, driven and controlled, and their samples; its outputs.
+//! Driven and controlled inputs of a system, their samples, and the outputs of a system.
 
 use crate::motion::{Derivatives, Sample};
 use crate::scalar::Real;
 use core::fmt::Debug;
 
-/// Needs of a system of one of its inputs.
+/// An input of a system and the derivatives of it that the functions of the system need.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Input {
-    /// The name as written.
+    /// The name in the source.
     pub name: &'static str,
     /// The number of components.
     pub components: usize,
-    /// It is a control input, which has a position alone: the value that the controller gives.
+    /// `true` for a control input. A control input has a position only: the value from the
+    /// controller.
     pub control: bool,
-    /// Derivatives that accelerations and forces need.
+    /// The derivatives that accelerations and forces need.
     pub accelerations: Derivatives,
-    /// Derivatives that momenta, velocities and momentum rates need.
+    /// The derivatives that momenta, velocities and momentum rates need.
     pub momenta: Derivatives,
-    /// Derivatives that the energy needs.
+    /// The derivatives that the energy needs.
     pub energy: Derivatives,
-    /// Derivatives that the power needs.
+    /// The derivatives that the power needs.
     pub power: Derivatives,
-    /// Derivatives that the outputs need.
+    /// The derivatives that the outputs need.
     pub outputs: Derivatives,
 }
 
-/// An output of a system: its name, its unit and its shape.
+/// An output of a system: its name, unit and shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Output {
-    /// The name as written.
+    /// The name in the source.
     pub name: &'static str,
-    /// The unit as written, empty where none was given.
+    /// The unit in the source, empty if none is given.
     pub unit: &'static str,
-    /// The number of members of a family.
+    /// The number of members if the output is a family.
     pub members: Option<usize>,
-    /// The number of components of a vector, that of each member of a family.
+    /// The number of components if the output, or each member of the family, is a vector.
     pub components: Option<usize>,
 }
 
 impl Output {
-    /// The number of scalars: components times members.
+    /// Returns the number of scalars: components times members.
     pub const fn count(&self) -> usize {
         let members = if let Some(members) = self.members { members } else { 1 };
         let components = if let Some(components) = self.components { components } else { 1 };
         members * components
     }
 
-    /// The name of each scalar, in the order of
+    /// Returns the name of each scalar, in the order of
     /// [`System::output`](crate::system::System::output): `tip.x`, `tip[3].y`, `load`.
     pub fn names(&self) -> Vec<String> {
         let component = |k: usize| match self.components {
@@ -66,8 +67,8 @@ impl Output {
 
 /// The samples of all inputs of a system: `()` or a tuple of [`Sample`]s.
 pub trait Samples: Copy + Debug + PartialEq {
-    /// The first number that is not finite: the input, the derivative (0 for the position) and the
-    /// component, by index.
+    /// Returns the indices of the first number that is not finite: the input, the derivative (0 for
+    /// the position) and the component.
     fn first_not_finite(&self) -> Option<(usize, usize, usize)>;
 }
 
@@ -92,9 +93,9 @@ macro_rules! samples {
 
 for_tuples_of_motions!(samples);
 
-/// Samples of inputs over the scalar `T` into which the values of control inputs are put.
+/// Samples of inputs over the scalar `T` in which the values of control inputs can be set.
 pub trait ControlSamples<T>: Samples {
-    /// Puts `values` into the positions of the inputs from the one with the index `first` on.
+    /// Writes `values` to the positions of the inputs, starting with the input of index `first`.
     fn set_controls(&mut self, first: usize, values: &[T]);
 }
 
@@ -121,9 +122,9 @@ macro_rules! control_samples {
 
 for_tuples_of_motions!(control_samples);
 
-/// The derivative and the component of the first number in `sample` that is not finite.
+/// Returns the derivative and the component of the first number in `sample` that is not finite.
 fn first_in_sample<T: Real, const D: usize>(sample: &Sample<T, D>) -> Option<(usize, usize)> {
-    // Times zero, infinity and what is not a number are not zero; everything else is.
+    // 0 · x = 0 holds exactly if x is finite.
     let zero = T::from_f64(0.0);
     let infinite = |x: &T| *x * zero != zero;
     let derivatives = [&sample.position, &sample.velocity, &sample.acceleration];
@@ -133,7 +134,7 @@ fn first_in_sample<T: Real, const D: usize>(sample: &Sample<T, D>) -> Option<(us
         .find_map(|(derivative, values)| Some((derivative, values.iter().position(infinite)?)))
 }
 
-/// The output for which a driven input is sampled.
+/// The function of a system for which its inputs are sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Purpose {
@@ -155,7 +156,7 @@ pub enum Purpose {
 }
 
 impl Input {
-    /// The derivatives that `purpose` needs.
+    /// Returns the derivatives that `purpose` needs.
     pub const fn derivatives(&self, purpose: Purpose) -> Derivatives {
         match purpose {
             Purpose::Accelerations => self.accelerations,
@@ -167,14 +168,14 @@ impl Input {
     }
 }
 
-/// The samples of the driven inputs of a system `S` that has none: `()`.
+/// The samples `()` of a system `S` without inputs.
 #[diagnostic::on_unimplemented(
     message = "`{S}` has inputs; give their motions by `.driven_by(…)`, their controllers by `.controlled_by(…)`",
     label = "the motions or the controllers of its inputs are missing",
     note = "`driven_by` takes one motion for each driven input, in the order of declaration; `controlled_by` and `sampled` take a controller for all control inputs"
 )]
 pub trait NoInputs<S>: Samples {
-    /// No samples.
+    /// Returns the empty samples.
     fn none() -> Self;
 }
 
